@@ -1,0 +1,118 @@
+#include "core/decomposition.hpp"
+
+#include "core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace thalweg {
+
+namespace {
+
+bool fits(const Index3& cells, const Index3& layout) {
+  for (int a = 0; a < 3; ++a)
+    if (layout[a] > 1 && cells[a] / layout[a] < Decomposition::min_cells_per_rank) return false;
+  return true;
+}
+
+// Cells on the faces between blocks; a cut in z counts many times over because it separates bed from water.
+double cost_of(const Index3& cells, const Index3& layout) {
+  constexpr double vertical_cut_penalty = 8.0;
+  const double nx = cells[0], ny = cells[1], nz = cells[2];
+  return (layout[0] - 1) * ny * nz + (layout[1] - 1) * nx * nz + vertical_cut_penalty * (layout[2] - 1) * nx * ny;
+}
+
+}  // namespace
+
+Index3 Decomposition::best_layout(const Index3& cells, int ranks) {
+  Index3 best{0, 0, 0};
+  double best_cost = std::numeric_limits<double>::infinity();
+  for (int px = 1; px <= ranks; ++px) {
+    if (ranks % px != 0) continue;
+    for (int py = 1; py <= ranks / px; ++py) {
+      if ((ranks / px) % py != 0) continue;
+      const Index3 layout{px, py, ranks / px / py};
+      if (!fits(cells, layout)) continue;
+      const double cost = cost_of(cells, layout);
+      if (cost < best_cost) {
+        best_cost = cost;
+        best = layout;
+      }
+    }
+  }
+  if (best[0] == 0)
+    throw InputError(fmt::format("{} x {} x {} cells cannot be shared by {} ranks with at least {} cells a rank along "
+                                 "every cut axis; use fewer ranks or a larger domain.",
+                                 cells[0], cells[1], cells[2], ranks, min_cells_per_rank));
+  return best;
+}
+
+Decomposition::Decomposition(const Index3& cells, double spacing, const std::array<bool, 3>& periodic,
+                             const Index3& layout)
+    : cells_(cells), spacing_(spacing), periodic_(periodic), layout_(layout) {
+  if (!fits(cells, layout))
+    throw InputError(fmt::format("Layout {},{},{} gives some rank fewer than {} of the {} x {} x {} cells along a cut "
+                                 "axis; use fewer ranks there.",
+                                 layout[0], layout[1], layout[2], min_cells_per_rank, cells[0], cells[1], cells[2]));
+  for (int a = 0; a < 3; ++a)
+    for (int slab = 0; slab <= layout[a]; ++slab)
+      cuts_[a].push_back(static_cast<int>(static_cast<std::int64_t>(cells[a]) * slab / layout[a]));
+}
+
+PeriodicBox Decomposition::box() const {
+  return {Vec3(cells_[0] * spacing_, cells_[1] * spacing_, cells_[2] * spacing_), periodic_};
+}
+
+Index3 Decomposition::coordinates_of(int rank) const {
+  return {rank % layout_[0], rank / layout_[0] % layout_[1], rank / (layout_[0] * layout_[1])};
+}
+
+int Decomposition::rank_at(const Index3& coordinates) const {
+  Index3 c = coordinates;
+  for (int a = 0; a < 3; ++a) {
+    if (c[a] >= 0 && c[a] < layout_[a]) continue;
+    if (!periodic_[a]) return -1;
+    c[a] = (c[a] % layout_[a] + layout_[a]) % layout_[a];
+  }
+  return (c[2] * layout_[1] + c[1]) * layout_[0] + c[0];
+}
+
+Block Decomposition::block_of(int rank) const {
+  const Index3 c = coordinates_of(rank);
+  Block block;
+  for (int a = 0; a < 3; ++a) {
+    block.lower[a] = cuts_[a][c[a]];
+    block.upper[a] = cuts_[a][c[a] + 1];
+  }
+  return block;
+}
+
+int Decomposition::owner_of(const Vec3& position) const {
+  Index3 c;
+  for (int a = 0; a < 3; ++a) {
+    c[a] = 0;
+    while (c[a] + 1 < layout_[a] && position[a] >= cuts_[a][c[a] + 1] * spacing_) ++c[a];
+  }
+  return rank_at(c);
+}
+
+bool Decomposition::reaches(int rank, const Vec3& position, double distance) const {
+  const Block block = block_of(rank);
+  for (int a = 0; a < 3; ++a) {
+    const double lower = block.lower[a] * spacing_ - distance, upper = block.upper[a] * spacing_ + distance;
+    const double length = cells_[a] * spacing_, x = position[a];
+    bool inside = x >= lower && x <= upper;
+    if (periodic_[a] && !inside)
+      inside = (x - length >= lower && x - length <= upper) || (x + length >= lower && x + length <= upper);
+    // Beyond an outer wall the outermost block still answers for the position.
+    if (!periodic_[a] && !inside)
+      inside = (x < lower && block.lower[a] == 0) || (x > upper && block.upper[a] == cells_[a]);
+    if (!inside) return false;
+  }
+  return true;
+}
+
+}  // namespace thalweg

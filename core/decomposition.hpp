@@ -1,0 +1,66 @@
+// Who owns which part of the box: a Cartesian grid of blocks of cells, one block a rank, shared by lattice and grains.
+//
+// Cell (i, j, k) covers [i, i+1) x [j, j+1) x [k, k+1) times the spacing; its centre, where the populations live, is at
+// (i+1/2, j+1/2, k+1/2) times the spacing. Walls stand on the outer faces of the box (half a link from the last centre).
+#pragma once
+
+#include "core/periodic_box.hpp"
+#include "core/types.hpp"
+
+#include <array>
+#include <vector>
+
+namespace thalweg {
+
+// A box of cells: lower inclusive, upper exclusive, in global cell coordinates.
+struct Block {
+  Index3 lower{0, 0, 0};
+  Index3 upper{0, 0, 0};
+
+  Index3 size() const { return {upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2]}; }
+  bool contains(const Index3& cell) const {
+    for (int a = 0; a < 3; ++a)
+      if (cell[a] < lower[a] || cell[a] >= upper[a]) return false;
+    return true;
+  }
+};
+
+class Decomposition {
+public:
+  // cells: global number of cells; spacing: m (or 1 for lattice units); layout: ranks along x, y, z.
+  // Throws InputError where a rank would get fewer than min_cells_per_rank cells along an axis that is cut.
+  Decomposition(const Index3& cells, double spacing, const std::array<bool, 3>& periodic, const Index3& layout);
+
+  static constexpr int min_cells_per_rank = 4;
+
+  // The layout for `ranks` ranks that cuts x and y before z (a bed is alike everywhere in plan, so columns balance)
+  // and then has the smallest surface between blocks. Throws InputError if none fits.
+  static Index3 best_layout(const Index3& cells, int ranks);
+
+  const Index3& cells() const { return cells_; }
+  double spacing() const { return spacing_; }
+  const std::array<bool, 3>& periodic() const { return periodic_; }
+  const Index3& layout() const { return layout_; }
+  int ranks() const { return layout_[0] * layout_[1] * layout_[2]; }
+  PeriodicBox box() const;   // in metres
+
+  Index3 coordinates_of(int rank) const;            // position of a rank in the layout
+  int rank_at(const Index3& coordinates) const;     // -1 beyond a non-periodic face; wraps on periodic axes
+  Block block_of(int rank) const;
+
+  // The rank whose block holds a position (m). Positions outside the box on a non-periodic axis belong to the nearest
+  // block; on a periodic axis they must have been wrapped.
+  int owner_of(const Vec3& position) const;
+
+  // True if the closed box of a rank, widened by `distance` (m) on every side, holds the position or a periodic image.
+  bool reaches(int rank, const Vec3& position, double distance) const;
+
+private:
+  Index3 cells_;
+  double spacing_;
+  std::array<bool, 3> periodic_;
+  Index3 layout_;
+  std::array<std::vector<int>, 3> cuts_;   // first cell of each slab, and one past the last
+};
+
+}  // namespace thalweg

@@ -1,0 +1,15 @@
+// The few value types every room of the house shares.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstdint>
+
+namespace thalweg {
+
+using Vec3 = Eigen::Vector3d;        // a vector in space: x streamwise, y cross-stream, z up
+using Index3 = std::array<int, 3>;   // cell counts or cell coordinates (x, y, z)
+using GlobalId = std::int64_t;       // a grain's name for life: 0 .. number of grains - 1
+
+}  // namespace thalweg

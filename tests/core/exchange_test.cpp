@@ -1,0 +1,55 @@
+#include "core/mpi_session.hpp"
+#include "core/packed_exchange.hpp"
+#include "core/schedule.hpp"
+
+#include <gtest/gtest.h>
+
+namespace thalweg {
+namespace {
+
+TEST(ExchangeRows, DeliversInOrderOfTheSendingRank) {
+  const int rank = rank_of(MPI_COMM_WORLD), ranks = size_of(MPI_COMM_WORLD);
+  struct Row { int from, to, serial; };
+  std::vector<Row> rows;
+  std::vector<int> destination;
+  for (int serial = 0; serial < 3; ++serial)
+    for (int to = 0; to < ranks; ++to) {
+      rows.push_back({rank, to, serial});
+      destination.push_back(to);
+    }
+  const std::vector<Row> received = exchange_rows(MPI_COMM_WORLD, rows, destination);
+  ASSERT_EQ(received.size(), 3u * ranks);
+  for (int i = 0; i < 3 * ranks; ++i) {
+    EXPECT_EQ(received[i].to, rank);
+    EXPECT_EQ(received[i].from, i / 3);
+    EXPECT_EQ(received[i].serial, i % 3);
+  }
+}
+
+TEST(PackedExchange, RingPassesAgainAndAgain) {
+  const int rank = rank_of(MPI_COMM_WORLD), ranks = size_of(MPI_COMM_WORLD);
+  const int left = (rank + ranks - 1) % ranks, right = (rank + 1) % ranks;
+  // On one or two ranks both neighbours are the same rank; tags keep the two directions apart.
+  PackedExchange ring(MPI_COMM_WORLD, {{right, 0, 1, sizeof(int), sizeof(int)}, {left, 1, 0, sizeof(int), sizeof(int)}});
+  for (int round = 0; round < 10; ++round) {
+    *ring.send_buffer<int>(0) = 100 * rank + round;
+    *ring.send_buffer<int>(1) = -100 * rank - round;
+    ring.start();
+    ring.finish();
+    EXPECT_EQ(*ring.receive_buffer<int>(0), -100 * right - round);
+    EXPECT_EQ(*ring.receive_buffer<int>(1), 100 * left + round);
+  }
+}
+
+TEST(Schedule, CountsFromStepZero) {
+  const Schedule schedule(0.01, 0.002);
+  EXPECT_EQ(schedule.interval(), 5);
+  EXPECT_TRUE(schedule.due(0));
+  EXPECT_FALSE(schedule.due(4));
+  EXPECT_TRUE(schedule.due(15));
+  EXPECT_FALSE(Schedule().due(0));
+  EXPECT_EQ(Schedule(1e-9, 1.0).interval(), 1);
+}
+
+}  // namespace
+}  // namespace thalweg
