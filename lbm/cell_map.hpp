@@ -1,0 +1,54 @@
+// Which cells are fluid and which are covered by a body, and which packs of a row hold any fluid at all.
+#pragma once
+
+#include "lbm/populations.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace thalweg::lbm {
+
+class CellMap {
+public:
+  static constexpr std::int32_t fluid = -1;   // any other value: the id of the covering body
+
+  explicit CellMap(const CellIndexing& indexing)
+      : indexing_(indexing),
+        body_(indexing.count(), fluid),
+        fluid_in_pack_(static_cast<std::size_t>(indexing.packs_per_row()) * indexing.size()[1] * indexing.size()[2]) {
+    const int width = indexing.pack(), nx = indexing.size()[0];
+    for (std::size_t p = 0; p < fluid_in_pack_.size(); ++p) {
+      const int first = static_cast<int>(p) % indexing.packs_per_row() * width;
+      fluid_in_pack_[p] = static_cast<std::uint8_t>(nx - first < width ? nx - first : width);
+    }
+  }
+
+  const CellIndexing& indexing() const { return indexing_; }
+  bool is_fluid(std::ptrdiff_t cell) const { return body_[cell] == fluid; }
+  std::int32_t body(std::ptrdiff_t cell) const { return body_[cell]; }
+  const std::int32_t* bodies() const { return body_.data(); }
+
+  // Gives a cell (local coordinates; owned or ghost) to a body, or back to the fluid.
+  void assign(int x, int y, int z, std::int32_t body) {
+    std::int32_t& now = body_[indexing_.index(x, y, z)];
+    if (indexing_.owned(x, y, z) && (now == fluid) != (body == fluid)) {
+      std::uint8_t& count = fluid_in_pack_[pack_of(x, y, z)];
+      count = static_cast<std::uint8_t>(count + (body == fluid ? 1 : -1));
+    }
+    now = body;
+  }
+
+  // Number of fluid cells in each pack of an owned row.
+  const std::uint8_t* fluid_in_packs(int y, int z) const { return fluid_in_pack_.data() + pack_of(0, y, z); }
+
+private:
+  std::size_t pack_of(int x, int y, int z) const {
+    return (static_cast<std::size_t>(z) * indexing_.size()[1] + y) * indexing_.packs_per_row() + x / indexing_.pack();
+  }
+
+  CellIndexing indexing_;
+  std::vector<std::int32_t> body_;
+  std::vector<std::uint8_t> fluid_in_pack_;
+};
+
+}  // namespace thalweg::lbm

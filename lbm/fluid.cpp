@@ -1,0 +1,183 @@
+#include "lbm/fluid.hpp"
+
+#include "core/error.hpp"
+#include "core/mpi_session.hpp"
+#include "lbm/equilibrium.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace thalweg::lbm {
+
+namespace {
+
+using CellSum = FixedPoint<36>;   // sums over cells: resolution 1.5e-11, range +-1e8
+
+const CollisionParameters& checked(const CollisionParameters& parameters) {
+  if (!(parameters.relaxation_time > 0.5))
+    throw InputError(fmt::format("The relaxation time is {}, but a fluid needs more than 1/2; raise the viscosity or the "
+                                 "time step.",
+                                 parameters.relaxation_time));
+  return parameters;
+}
+
+}  // namespace
+
+template <typename Real>
+Fluid<Real>::Fluid(const Decomposition& decomposition, MPI_Comm communicator, const CollisionParameters& parameters,
+                   const FaceConditions& faces)
+    : decomposition_(decomposition),
+      communicator_(communicator),
+      parameters_(checked(parameters)),
+      block_(decomposition.block_of(rank_of(communicator))),
+      populations_(CellIndexing(block_.size(), pack_width<Real>())),
+      cells_(populations_.indexing()),
+      walls_(decomposition, rank_of(communicator), populations_.indexing(), faces, parameters),
+      halo_(decomposition, communicator, populations_, walls_) {
+  for (auto& row : shear_rows_) row.resize(populations_.indexing().packs_per_row() * populations_.indexing().pack());
+}
+
+template <typename Real>
+template <typename Visit>
+void Fluid<Real>::for_each_fluid_cell(Visit visit) const {
+  const Index3& n = indexing().size();
+  for (int z = 0; z < n[2]; ++z)
+    for (int y = 0; y < n[1]; ++y)
+      for (int x = 0; x < n[0]; ++x) {
+        const std::ptrdiff_t cell = indexing().index(x, y, z);
+        if (cells_.is_fluid(cell)) visit(cell, x, y, z);
+      }
+}
+
+template <typename Real>
+void Fluid<Real>::initialise(const std::function<FluidState(const Vec3&)>& state) {
+  populations_.set_arrangement(Arrangement::swapped);
+  const Index3& n = indexing().size();
+  for (int z = 0; z < n[2]; ++z)
+    for (int y = 0; y < n[1]; ++y)
+      for (int x = 0; x < n[0]; ++x) {
+        const FluidState s = state(Vec3(block_.lower[0] + x + 0.5, block_.lower[1] + y + 0.5, block_.lower[2] + z + 0.5));
+        const std::ptrdiff_t cell = indexing().index(x, y, z);
+        for (int i = 0; i < D3Q19::directions; ++i)
+          populations_.post_collision(i, cell) =
+              static_cast<Real>(equilibrium_deviation(i, s.density_deviation, s.velocity));
+      }
+}
+
+template <typename Real>
+void Fluid<Real>::exchange_halo() {
+  halo_.start();
+  halo_.finish();
+}
+
+template <typename Real>
+void Fluid<Real>::stream_and_collide() {
+  const Index3& n = indexing().size();
+  const RowShear<Real> shear{{shear_rows_[0].data(), shear_rows_[1].data(), shear_rows_[2].data()}};
+  for (int z = 0; z < n[2]; ++z)
+    for (int y = 0; y < n[1]; ++y) {
+      const bool wanted = walls_.wants_shear(y, z);
+      sweep_row<Real>(populations_, cells_, parameters_, y, z, wanted ? &shear : nullptr);
+      if (wanted) walls_.take_shear(y, z, shear, cells_);
+    }
+  populations_.set_arrangement(populations_.arrangement() == Arrangement::swapped ? Arrangement::moved
+                                                                                  : Arrangement::swapped);
+}
+
+template <typename Real>
+void Fluid<Real>::advance() {
+  exchange_halo();
+  apply_walls();
+  stream_and_collide();
+}
+
+template <typename Real>
+FluidState Fluid<Real>::state_at(std::ptrdiff_t cell) const {
+  FluidState s;
+  Vec3 momentum = Vec3::Zero();
+  for (int i = 0; i < D3Q19::directions; ++i) {
+    const double f = populations_.post_collision(i, cell);
+    s.density_deviation += f;
+    for (int a = 0; a < 3; ++a) momentum[a] += D3Q19::c[i][a] * f;
+  }
+  // A collision adds the whole force to the momentum; the velocity is the one half-way.
+  for (int a = 0; a < 3; ++a) s.velocity[a] = (momentum[a] - 0.5 * parameters_.force[a]) / (1.0 + s.density_deviation);
+  return s;
+}
+
+template <typename Real>
+double Fluid<Real>::largest_speed() const {
+  double largest = 0.0;
+  for_each_fluid_cell([&](std::ptrdiff_t cell, int, int, int) {
+    const double speed = state_at(cell).velocity.squaredNorm();
+    if (!(speed <= largest)) largest = speed;   // lets NaN through
+  });
+  return std::sqrt(largest);
+}
+
+template <typename Real>
+FluidTotals Fluid<Real>::totals() const {
+  std::int64_t sums[5] = {0, 0, 0, 0, 0};
+  for_each_fluid_cell([&](std::ptrdiff_t cell, int, int, int) {
+    double density = 0.0, momentum[3] = {0.0, 0.0, 0.0};
+    for (int i = 0; i < D3Q19::directions; ++i) {
+      const double f = populations_.post_collision(i, cell);
+      density += f;
+      for (int a = 0; a < 3; ++a) momentum[a] += D3Q19::c[i][a] * f;
+    }
+    sums[0] += CellSum::from(density);
+    for (int a = 0; a < 3; ++a) sums[1 + a] += CellSum::from(momentum[a]);
+    ++sums[4];
+  });
+  MPI_Allreduce(MPI_IN_PLACE, sums, 5, MPI_INT64_T, MPI_SUM, communicator_);
+  return {CellSum::to_double(sums[0]),
+          Vec3(CellSum::to_double(sums[1]), CellSum::to_double(sums[2]), CellSum::to_double(sums[3])), sums[4]};
+}
+
+template <typename Real>
+ArrayBox Fluid<Real>::array_box() const {
+  ArrayBox box;
+  for (int a = 2; a >= 0; --a) {
+    box.global_shape.push_back(decomposition_.cells()[a]);
+    box.offset.push_back(block_.lower[a]);
+    box.shape.push_back(block_.size()[a]);
+  }
+  return box;
+}
+
+template <typename Real>
+void Fluid<Real>::save(ArchiveWriter& archive) const {
+  const Index3& n = indexing().size();
+  std::vector<Real> values(static_cast<std::size_t>(n[0]) * n[1] * n[2]);
+  for (int i = 0; i < D3Q19::directions; ++i) {
+    std::fill(values.begin(), values.end(), Real(0));
+    for_each_fluid_cell([&](std::ptrdiff_t cell, int x, int y, int z) {
+      values[(static_cast<std::size_t>(z) * n[1] + y) * n[0] + x] = populations_.post_collision(i, cell);
+    });
+    archive.write(fmt::format("fluid/populations_{:02d}", i), std::span<const Real>(values), array_box());
+  }
+  walls_.save(archive, decomposition_, block_);
+}
+
+template <typename Real>
+void Fluid<Real>::load(ArchiveReader& archive) {
+  const Index3& n = indexing().size();
+  populations_.set_arrangement(Arrangement::swapped);
+  std::vector<Real> values(static_cast<std::size_t>(n[0]) * n[1] * n[2]);
+  for (int i = 0; i < D3Q19::directions; ++i) {
+    archive.read(fmt::format("fluid/populations_{:02d}", i), std::span<Real>(values), array_box());
+    for (int z = 0; z < n[2]; ++z)
+      for (int y = 0; y < n[1]; ++y)
+        for (int x = 0; x < n[0]; ++x)
+          populations_.post_collision(i, indexing().index(x, y, z)) =
+              values[(static_cast<std::size_t>(z) * n[1] + y) * n[0] + x];
+  }
+  walls_.load(archive, decomposition_, block_);
+}
+
+template class Fluid<float>;
+template class Fluid<double>;
+
+}  // namespace thalweg::lbm

@@ -1,0 +1,81 @@
+// The lattice fluid of one rank: populations, walls, halo and sweep, in the order a step calls them. Lattice units
+// throughout; densities as deviations rho - 1.
+//
+// A step without bodies is advance(). With bodies, the coupling calls its parts and puts the links in between:
+//   exchange_halo(), apply_walls(), [apply_links()], stream_and_collide().
+#pragma once
+
+#include "core/archive.hpp"
+#include "core/decomposition.hpp"
+#include "core/fixed_point.hpp"
+#include "lbm/boundary.hpp"
+#include "lbm/cell_map.hpp"
+#include "lbm/collision.hpp"
+#include "lbm/halo.hpp"
+#include "lbm/populations.hpp"
+#include "lbm/walls.hpp"
+
+#include <functional>
+
+namespace thalweg::lbm {
+
+struct FluidState {
+  double density_deviation = 0.0;
+  Vec3 velocity = Vec3::Zero();
+};
+
+// Sums over all fluid cells of the domain; exact to 2^-37 a cell, in any order.
+struct FluidTotals {
+  double mass_deviation = 0.0;       // sum of rho - 1
+  Vec3 momentum = Vec3::Zero();      // sum of rho u after the collision: sum over c_i f_i^c
+  std::int64_t cells = 0;
+};
+
+template <typename Real>
+class Fluid {
+public:
+  // The decomposition must outlive the fluid. Throws InputError if the relaxation time is not above 1/2.
+  Fluid(const Decomposition& decomposition, MPI_Comm communicator, const CollisionParameters& parameters,
+        const FaceConditions& faces);
+
+  // Sets every cell to the equilibrium of the given state; the argument is the cell's centre in global lattice units.
+  void initialise(const std::function<FluidState(const Vec3&)>& state);
+
+  void exchange_halo();
+  void apply_walls() { walls_.apply(populations_, cells_); }
+  void stream_and_collide();
+  void advance();
+
+  const Block& block() const { return block_; }
+  const CellIndexing& indexing() const { return populations_.indexing(); }
+  const CollisionParameters& parameters() const { return parameters_; }
+  Populations<Real>& populations() { return populations_; }
+  const Populations<Real>& populations() const { return populations_; }
+  CellMap& cells() { return cells_; }
+  const CellMap& cells() const { return cells_; }
+
+  FluidState state_at(std::ptrdiff_t cell) const;   // density and velocity (with the half force) of a cell
+  double largest_speed() const;                     // over this rank's fluid cells
+  FluidTotals totals() const;                       // collective
+
+  // Post-collision populations of every owned cell, zero in solid ones, and the walls' state. Collective.
+  void save(ArchiveWriter& archive) const;
+  void load(ArchiveReader& archive);
+
+private:
+  template <typename Visit>
+  void for_each_fluid_cell(Visit visit) const;
+  ArrayBox array_box() const;
+
+  const Decomposition& decomposition_;
+  MPI_Comm communicator_;
+  CollisionParameters parameters_;
+  Block block_;
+  Populations<Real> populations_;
+  CellMap cells_;
+  Walls<Real> walls_;
+  Halo<Real> halo_;
+  std::array<std::vector<Real>, 3> shear_rows_;
+};
+
+}  // namespace thalweg::lbm

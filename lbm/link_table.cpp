@@ -1,0 +1,78 @@
+#include "lbm/link_table.hpp"
+
+#include <algorithm>
+
+namespace thalweg::lbm {
+
+std::size_t LinkTable::count() const {
+  std::size_t total = 0;
+  for (const Plane& plane : planes_) total += plane.live;
+  return total;
+}
+
+void LinkTable::replace(int body, std::span<const Link> links, std::span<const int> plane_of) {
+  if (static_cast<std::size_t>(body) >= places_.size()) places_.resize(body + 1);
+  std::vector<Place>& places = places_[body];
+  std::size_t next = 0;
+  // Walk the old places and the new planes together; both ascend.
+  for (std::size_t old = 0; old < places.size() || next < links.size();) {
+    const int new_plane = next < links.size() ? plane_of[next] : static_cast<int>(planes_.size());
+    const int old_plane = old < places.size() ? places[old].plane : static_cast<int>(planes_.size());
+    if (old_plane < new_plane) {   // no links left in this plane
+      Plane& plane = planes_[old_plane];
+      Chunk& chunk = plane.chunks[places[old].chunk];
+      plane.live -= chunk.count;
+      chunk.body = -1;
+      chunk.count = 0;
+      plane.free_chunks.push_back(places[old].chunk);
+      places.erase(places.begin() + old);
+      continue;
+    }
+    std::size_t end = next;
+    while (end < links.size() && plane_of[end] == new_plane) ++end;
+    Plane& plane = planes_[new_plane];
+    if (old_plane != new_plane) {   // a plane newly reached
+      std::uint32_t fresh;
+      if (plane.free_chunks.empty()) {
+        fresh = static_cast<std::uint32_t>(plane.chunks.size());
+        plane.chunks.emplace_back();
+      } else {
+        fresh = plane.free_chunks.back();
+        plane.free_chunks.pop_back();
+      }
+      plane.chunks[fresh].body = body;
+      places.insert(places.begin() + old, {new_plane, fresh});
+    }
+    put(plane, plane.chunks[places[old].chunk], links.subspan(next, end - next));
+    ++old;
+    next = end;
+  }
+}
+
+void LinkTable::put(Plane& plane, Chunk& chunk, std::span<const Link> links) {
+  plane.live += links.size();
+  plane.live -= chunk.count;
+  if (links.size() > chunk.capacity) {
+    chunk.count = 0;
+    chunk.first = static_cast<std::uint32_t>(plane.links.size());
+    chunk.capacity = static_cast<std::uint32_t>(links.size() + links.size() / 4);
+    plane.links.resize(plane.links.size() + chunk.capacity);
+  }
+  std::copy(links.begin(), links.end(), plane.links.begin() + chunk.first);
+  chunk.count = static_cast<std::uint32_t>(links.size());
+  if (plane.links.size() > 3 * plane.live + 4096) compact(plane);
+}
+
+void LinkTable::compact(Plane& plane) {
+  std::vector<Link> packed;
+  packed.reserve(plane.live + plane.live / 4);
+  for (Chunk& chunk : plane.chunks) {
+    const std::uint32_t first = static_cast<std::uint32_t>(packed.size());
+    packed.insert(packed.end(), plane.links.begin() + chunk.first, plane.links.begin() + chunk.first + chunk.count);
+    chunk.first = first;
+    chunk.capacity = chunk.count;
+  }
+  plane.links = std::move(packed);
+}
+
+}  // namespace thalweg::lbm

@@ -1,0 +1,27 @@
+// The one hot loop of the lattice: stream in place and collide every pack of cells that holds fluid.
+#pragma once
+
+#include "lbm/cell_map.hpp"
+#include "lbm/collision.hpp"
+#include "lbm/populations.hpp"
+
+namespace thalweg::lbm {
+
+// Cells in a SIMD pack of this storage type on the machine compiled for.
+template <typename Real>
+int pack_width();
+
+// Shear rates at the cells of one row as the collision saw them, by the axis the wall would be normal to:
+// shear[a][x] = 2 sqrt(sum over the other axes b of S_ab^2). Rows of whole packs.
+template <typename Real>
+struct RowShear {
+  Real* normal_to[3];
+};
+
+// Sweeps one owned row. shear: where to leave the shear rates, or null. The arrangement is not switched: the caller does
+// that once all rows are done.
+template <typename Real>
+void sweep_row(Populations<Real>& populations, const CellMap& cells, const CollisionParameters& parameters, int y, int z,
+               const RowShear<Real>* shear);
+
+}  // namespace thalweg::lbm

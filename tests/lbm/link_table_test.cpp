@@ -1,0 +1,48 @@
+#include "lbm/link_table.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <random>
+#include <set>
+
+namespace thalweg::lbm {
+namespace {
+
+// Random bodies come, change and go; the table must hold exactly what was put in last.
+TEST(LinkTable, HoldsWhatWasPutInLast) {
+  constexpr int planes = 9, bodies = 6;
+  LinkTable table(planes);
+  std::map<int, std::multiset<std::pair<int, std::uint32_t>>> expected;
+  std::mt19937 generator(11);
+  std::uint32_t serial = 0;
+  for (int round = 0; round < 3000; ++round) {
+    const int body = static_cast<int>(generator() % bodies);
+    std::vector<Link> links;
+    std::vector<int> plane_of;
+    expected[body].clear();
+    const bool gone = generator() % 5 == 0;
+    const int first = static_cast<int>(generator() % planes);
+    for (int plane = first; plane < planes && !gone; plane += 1 + static_cast<int>(generator() % 2))
+      for (unsigned k = 0; k < generator() % 40; ++k) {
+        Link link{};
+        link.cell = serial++;
+        links.push_back(link);
+        plane_of.push_back(plane);
+        expected[body].insert({plane, link.cell});
+      }
+    table.replace(body, links, plane_of);
+
+    std::map<int, std::multiset<std::pair<int, std::uint32_t>>> found;
+    std::size_t count = 0;
+    for (int plane = 0; plane < planes; ++plane)
+      for (const LinkTable::Chunk& chunk : table.planes()[plane].chunks)
+        for (std::uint32_t k = 0; k < chunk.count; ++k, ++count)
+          found[chunk.body].insert({plane, table.planes()[plane].links[chunk.first + k].cell});
+    for (int b = 0; b < bodies; ++b) ASSERT_EQ(found[b], expected[b]) << "body " << b << " in round " << round;
+    ASSERT_EQ(count, table.count());
+  }
+}
+
+}  // namespace
+}  // namespace thalweg::lbm
