@@ -1,0 +1,162 @@
+#include "dem/ghost_exchange.hpp"
+
+#include "core/mpi_session.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace thalweg::dem {
+
+namespace {
+
+constexpr int motion_tag = 4101, attached_tag = 4102, values_tag = 4103;
+
+struct GhostRow {
+  GlobalId id;
+  std::int64_t motion;
+  double radius, mass;
+  std::array<std::array<double, 3>, 3> value;   // position, velocity, angular velocity
+  std::int64_t owner;
+};
+
+// What a sub-step's message holds of a grain.
+struct MotionRow {
+  double value[9];
+};
+
+std::array<double, 3> plain(const Vec3& v) { return {v[0], v[1], v[2]}; }
+
+bool blocks_near(const Decomposition& d, int rank_1, int rank_2, double distance) {
+  const Block b1 = d.block_of(rank_1), b2 = d.block_of(rank_2);
+  for (int axis = 0; axis < 3; ++axis) {
+    bool near = false;
+    for (int image = -1; image <= 1; ++image) {
+      if (image != 0 && !d.periodic()[axis]) continue;
+      const double shift = image * d.cells()[axis] * d.spacing();
+      near = near || (b1.lower[axis] * d.spacing() - distance <= b2.upper[axis] * d.spacing() + shift &&
+                      b1.upper[axis] * d.spacing() + distance >= b2.lower[axis] * d.spacing() + shift);
+    }
+    if (!near) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+GhostExchange::GhostExchange(const Decomposition& decomposition, MPI_Comm communicator, double reach)
+    : decomposition_(decomposition), communicator_(communicator), reach_(reach) {
+  const int me = rank_of(communicator);
+  for (int rank = 0; rank < decomposition.ranks(); ++rank)
+    // A little further than the grains' own test, so that rounding cannot make this one the stricter.
+    if (rank != me && blocks_near(decomposition, me, rank, 1.001 * reach)) candidates_.push_back(rank);
+}
+
+void GhostExchange::build(GrainStore& store) {
+  store.drop_ghosts();
+  neighbours_.clear();
+  values_ready_ = false;
+  std::vector<GhostRow> rows;
+  std::vector<double> columns;
+  std::vector<int> row_to, column_to;
+  for (const int rank : candidates_) {
+    Neighbour neighbour{rank, {}};
+    for (std::size_t s = 0; s < store.owned; ++s) {
+      if (!decomposition_.reaches(rank, store.position[s], reach_)) continue;
+      neighbour.send.push_back(static_cast<std::uint32_t>(s));
+      rows.push_back({store.id[s], static_cast<std::int64_t>(store.motion[s]), store.radius[s], store.mass[s],
+                      {plain(store.position[s]), plain(store.velocity[s]), plain(store.angular_velocity[s])},
+                      rank_of(communicator_)});
+      row_to.push_back(rank);
+      for (const double value : store.attached_of(s)) columns.push_back(value);
+      column_to.insert(column_to.end(), store.attached_width, rank);
+    }
+    neighbours_.push_back(std::move(neighbour));
+  }
+
+  const std::vector<GhostRow> ghosts = exchange_rows(communicator_, rows, row_to);
+  store.reserve(store.owned + ghosts.size());
+  auto neighbour = neighbours_.begin();
+  for (const GhostRow& g : ghosts) {
+    while (neighbour->rank != g.owner) ++neighbour;
+    if (neighbour->count++ == 0) neighbour->first = store.total();
+    store.append(g.id, g.radius, g.mass, static_cast<Motion>(g.motion), Vec3(g.value[0].data()));
+    store.velocity.back() = Vec3(g.value[1].data());
+    store.angular_velocity.back() = Vec3(g.value[2].data());
+  }
+  std::erase_if(neighbours_, [](const Neighbour& n) { return n.send.empty() && n.count == 0; });
+  motion_ = PackedExchange(communicator_, messages(motion_tag, sizeof(MotionRow)));
+  if (store.attached_width > 0) {
+    const std::vector<double> ghost_columns = exchange_rows(communicator_, columns, column_to);
+    std::copy(ghost_columns.begin(), ghost_columns.end(),
+              store.attached.begin() + static_cast<std::ptrdiff_t>(store.owned * store.attached_width));
+    attached_ = PackedExchange(communicator_, messages(attached_tag, sizeof(double) * store.attached_width));
+  }
+}
+
+std::vector<PackedExchange::Neighbour> GhostExchange::messages(int tag, std::size_t bytes_per_grain) const {
+  std::vector<PackedExchange::Neighbour> list;
+  for (const Neighbour& n : neighbours_)
+    list.push_back({n.rank, tag, tag, n.send.size() * bytes_per_grain, n.count * bytes_per_grain});
+  return list;
+}
+
+void GhostExchange::refresh(GrainStore& store) {
+  for (std::size_t n = 0; n < neighbours_.size(); ++n) {
+    auto* row = motion_.send_buffer<MotionRow>(n);
+    for (const std::uint32_t s : neighbours_[n].send) {
+      const Vec3 &x = store.position[s], &v = store.velocity[s], &w = store.angular_velocity[s];
+      *row++ = {{x[0], x[1], x[2], v[0], v[1], v[2], w[0], w[1], w[2]}};
+    }
+  }
+  motion_.start();
+  motion_.finish();
+  for (std::size_t n = 0; n < neighbours_.size(); ++n) {
+    const auto* row = motion_.receive_buffer<MotionRow>(n);
+    const std::size_t end = neighbours_[n].first + neighbours_[n].count;
+    for (std::size_t s = neighbours_[n].first; s < end; ++s, ++row) {
+      store.position[s] = Vec3(row->value);
+      store.velocity[s] = Vec3(row->value + 3);
+      store.angular_velocity[s] = Vec3(row->value + 6);
+    }
+  }
+}
+
+void GhostExchange::refresh_attached(GrainStore& store) {
+  if (store.attached_width == 0) return;
+  for (std::size_t n = 0; n < neighbours_.size(); ++n) {
+    auto* value = attached_.send_buffer<double>(n);
+    for (const std::uint32_t s : neighbours_[n].send)
+      for (const double column : store.attached_of(s)) *value++ = column;
+  }
+  attached_.start();
+  attached_.finish();
+  for (std::size_t n = 0; n < neighbours_.size(); ++n) {
+    const std::size_t count = neighbours_[n].count * store.attached_width;
+    std::copy_n(attached_.receive_buffer<double>(n), count,
+                store.attached.begin() + static_cast<std::ptrdiff_t>(neighbours_[n].first * store.attached_width));
+  }
+}
+
+// The way back: every neighbour sends what it has for its ghosts to the rank it has them from.
+void GhostExchange::add_to_owners(std::vector<std::int64_t>& values, int width) {
+  const std::size_t grain_bytes = sizeof(std::int64_t) * width;
+  if (!values_ready_) {
+    std::vector<PackedExchange::Neighbour> list;
+    for (const Neighbour& n : neighbours_)
+      list.push_back({n.rank, values_tag, values_tag, n.count * grain_bytes, n.send.size() * grain_bytes});
+    values_ = PackedExchange(communicator_, list);
+    values_ready_ = true;
+  }
+  for (std::size_t n = 0; n < neighbours_.size(); ++n)
+    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(neighbours_[n].first * width), neighbours_[n].count * width,
+                values_.send_buffer<std::int64_t>(n));
+  values_.start();
+  values_.finish();
+  for (std::size_t n = 0; n < neighbours_.size(); ++n) {
+    const auto* value = values_.receive_buffer<std::int64_t>(n);
+    for (const std::uint32_t s : neighbours_[n].send)
+      for (int k = 0; k < width; ++k) values[static_cast<std::size_t>(s) * width + k] += *value++;
+  }
+}
+
+}  // namespace thalweg::dem

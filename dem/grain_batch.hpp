@@ -1,0 +1,53 @@
+// Grains and contact histories on their way between ranks and files: rows of plain values.
+#pragma once
+
+#include "core/types.hpp"
+#include "dem/grain_store.hpp"
+
+#include <mpi.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace thalweg::dem {
+
+// Everything of a grain that the next sub-step depends on, except its contacts and attached columns.
+struct GrainRow {
+  enum Vector { position, velocity, angular_velocity, contact_force, contact_torque, load_force, load_torque, vectors };
+
+  GlobalId id;
+  std::int64_t motion;
+  double radius, mass;
+  std::array<std::array<double, 3>, vectors> value;
+};
+
+struct GrainBatch {
+  std::vector<GrainRow> rows;
+  std::vector<double> attached;   // attached_width values a row
+};
+
+// Copies of the owned grains, in their order.
+GrainBatch owned_grains(const GrainStore& store);
+
+// Replaces all grains of the store by those of the batch; no ghosts. Rows must be sorted by id.
+void adopt(GrainStore& store, const GrainBatch& batch);
+
+// Sends row i to rank destination[i]; returns what arrived here, sorted by id. Collective.
+GrainBatch exchange_grains(MPI_Comm communicator, const GrainBatch& batch, const std::vector<int>& destination,
+                           int attached_width);
+
+// The tangential spring of one contact. `second` is the higher id of two grains, or -1 - w for wall w.
+struct ContactHistory {
+  GlobalId first, second;
+  std::array<double, 3> spring;   // m
+
+  bool operator<(const ContactHistory& other) const {
+    return first != other.first ? first < other.first : second < other.second;
+  }
+};
+
+// Sorts by ids and drops repetitions.
+void sort_histories(std::vector<ContactHistory>& histories);
+
+}  // namespace thalweg::dem

@@ -1,0 +1,242 @@
+#include "dem/grain_dynamics.hpp"
+
+#include "core/error.hpp"
+#include "core/mpi_session.hpp"
+#include "dem/contact_forces.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace thalweg::dem {
+
+namespace {
+
+const GrainParameters& checked(const GrainParameters& p) {
+  check(p.contact);
+  for (const Plane& wall : p.walls) check(wall);
+  if (p.sub_steps < 1) throw InputError(fmt::format("The number of grain sub-steps is {}; it must be positive.", p.sub_steps));
+  if (!(p.skin > 0.0)) throw InputError(fmt::format("The skin of the contact list is {:g} m; it must be positive.", p.skin));
+  if (!(p.ghost_width >= 0.0))
+    throw InputError(fmt::format("The ghost width of the grains is {:g} m; it must not be negative.", p.ghost_width));
+  return p;
+}
+
+double largest_radius_of(const std::vector<GrainSeed>& seeds) {
+  double largest = 0.0;
+  for (const GrainSeed& seed : seeds) largest = std::max(largest, seed.radius);
+  return largest;
+}
+
+// The seeds of one rank, sorted by id, positions wrapped.
+GrainBatch batch_of(const std::vector<GrainSeed>& seeds, const Decomposition& decomposition, int rank, int width) {
+  const PeriodicBox box = decomposition.box();
+  GrainBatch batch;
+  for (const GrainSeed& seed : seeds) {
+    const Vec3 x = box.wrapped(seed.position), &v = seed.velocity, &w = seed.angular_velocity;
+    if (decomposition.owner_of(x) != rank) continue;
+    GrainRow row{seed.id, static_cast<std::int64_t>(seed.motion), seed.radius, seed.mass(), {}};
+    row.value[GrainRow::position] = {x[0], x[1], x[2]};
+    row.value[GrainRow::velocity] = {v[0], v[1], v[2]};
+    row.value[GrainRow::angular_velocity] = {w[0], w[1], w[2]};
+    batch.rows.push_back(row);
+  }
+  std::sort(batch.rows.begin(), batch.rows.end(), [](const GrainRow& a, const GrainRow& b) { return a.id < b.id; });
+  batch.attached.assign(batch.rows.size() * width, 0.0);
+  return batch;
+}
+
+enum class Trouble { none, not_finite, outside, too_fast, outran };
+
+}  // namespace
+
+GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm communicator,
+                             const GrainParameters& parameters, const std::vector<GrainSeed>& seeds)
+    : decomposition_(decomposition), box_(decomposition.box()), communicator_(communicator),
+      parameters_(checked(parameters)), damping_(parameters.contact), largest_radius_(largest_radius_of(seeds)),
+      global_count_(static_cast<std::int64_t>(seeds.size())), store_(parameters.attached_width),
+      ghosts_(decomposition, communicator, ghost_reach()) {
+  assert(decomposition.ranks() == size_of(communicator));
+  check(seeds, box_, parameters_.walls);
+  double lightest = std::numeric_limits<double>::infinity();
+  for (const GrainSeed& seed : seeds)
+    if (!holds_translation(seed.motion)) lightest = std::min(lightest, seed.mass());
+  // Two of the lightest grains have the shortest contact; a single grain has only walls to touch.
+  if (std::isfinite(lightest))
+    check_time_step(parameters_.contact, seeds.size() > 1 ? 0.5 * lightest : lightest, parameters_.time_step);
+
+  adopt(store_, batch_of(seeds, decomposition_, rank_of(communicator_), store_.attached_width));
+  settle_in({});
+  evaluate_forces(0.0);
+}
+
+double GrainDynamics::ghost_reach() const {
+  // A grain may come half a skin nearer before the ghosts are made anew.
+  return std::max(parameters_.ghost_width + 0.5 * parameters_.skin, 2.0 * largest_radius_ + parameters_.skin);
+}
+
+namespace {
+
+Trouble trouble_of(const GrainStore& store, std::size_t s, const PeriodicBox& box, double displacement, double speed,
+                   double half_skin, double step_time) {
+  const Vec3& x = store.position[s];
+  if (!x.allFinite() || !std::isfinite(speed)) return Trouble::not_finite;
+  for (int axis = 0; axis < 3; ++axis)
+    if (!box.periodic[axis] && (x[axis] < -store.radius[s] || x[axis] > box.size[axis] + store.radius[s]))
+      return Trouble::outside;
+  if (speed * step_time > store.radius[s]) return Trouble::too_fast;
+  return displacement > half_skin ? Trouble::outran : Trouble::none;
+}
+
+}  // namespace
+
+bool GrainDynamics::prepare() {
+  wrap_positions();
+  // What may still happen before the next call: a grain at rest can be thrown at no more than about twice the largest
+  // speed, and the loads accelerate it.
+  double farthest = 0.0, fastest = 0.0;
+  bool trouble = false;
+  for (std::size_t s = 0; s < store_.owned; ++s) {
+    const double displacement = box_.difference(store_.position[s], listed_position_[s]).norm();
+    const double speed = store_.velocity[s].norm();
+    const double pull = (store_.load_force[s] + body_force_[s]).norm() * store_.inverse_mass[s];
+    farthest = std::max(farthest, displacement);
+    fastest = std::max(fastest, 2.0 * speed + pull * step_time());
+    trouble = trouble || trouble_of(store_, s, box_, displacement, speed, 0.5 * parameters_.skin, step_time()) !=
+                             Trouble::none;
+  }
+  const double mine[3] = {farthest, fastest, trouble ? 1.0 : 0.0};
+  double all[3];
+  MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_MAX, communicator_);
+  if (all[2] != 0.0) throw_trouble();
+  if (all[0] + all[1] * step_time() <= 0.5 * parameters_.skin) return false;
+  rebuild();
+  return true;
+}
+
+void GrainDynamics::throw_trouble() const {
+  struct Report {
+    std::int64_t id = std::numeric_limits<std::int64_t>::max();
+    Trouble trouble = Trouble::none;
+    double x[3] = {}, speed = 0.0;
+  } report;
+  for (std::size_t s = 0; s < store_.owned && report.trouble == Trouble::none; ++s) {
+    const double displacement = box_.difference(store_.position[s], listed_position_[s]).norm();
+    const double speed = store_.velocity[s].norm();
+    const Trouble t = trouble_of(store_, s, box_, displacement, speed, 0.5 * parameters_.skin, step_time());
+    const Vec3& x = store_.position[s];
+    if (t != Trouble::none) report = {store_.id[s], t, {x[0], x[1], x[2]}, speed};
+  }
+  // Every rank tells of the same grain: the one with the lowest id.
+  std::int64_t lowest = 0;
+  MPI_Allreduce(&report.id, &lowest, 1, MPI_INT64_T, MPI_MIN, communicator_);
+  int teller = report.id == lowest ? rank_of(communicator_) : 0, root = 0;
+  MPI_Allreduce(&teller, &root, 1, MPI_INT, MPI_MAX, communicator_);
+  MPI_Bcast(&report, sizeof(Report), MPI_BYTE, root, communicator_);
+
+  const std::string grain = fmt::format("Grain {} at ({:g}, {:g}, {:g}) m, moving at {:g} m/s,", report.id, report.x[0],
+                                        report.x[1], report.x[2], report.speed);
+  switch (report.trouble) {
+    case Trouble::not_finite:
+      throw RunError(grain + " has a position or velocity that is not a number; its load or its contacts have blown up.");
+    case Trouble::outside:
+      throw RunError(grain + " is more than its radius beyond a face of the box that is not periodic.");
+    case Trouble::too_fast:
+      throw RunError(fmt::format("{} moves more than its radius in one step of {:g} s; use a shorter time step.", grain,
+                                 step_time()));
+    default:
+      throw RunError(fmt::format("{} has gone more than half the skin of {:g} m since the contact list was built; use a "
+                                 "shorter time step or a wider skin.",
+                                 grain, parameters_.skin));
+  }
+}
+
+void GrainDynamics::wrap_positions() {
+  for (Vec3& x : store_.position) x = box_.wrapped(x);
+}
+
+void GrainDynamics::rebuild() {
+  std::vector<ContactHistory> histories = histories_of(list_, store_);
+  if (size_of(communicator_) > 1) migrate(histories);
+  settle_in(histories);
+  ++rebuilds_;
+}
+
+void GrainDynamics::migrate(std::vector<ContactHistory>& histories) {
+  const int me = rank_of(communicator_);
+  std::vector<int> owner(store_.owned);
+  for (std::size_t s = 0; s < store_.owned; ++s) owner[s] = decomposition_.owner_of(store_.position[s]);
+
+  // Both grains of a contact take its history along. Ids of ghosts and walls are not found: not this rank's to move.
+  const auto new_owner = [&](GlobalId id) {
+    const auto end = store_.id.begin() + static_cast<std::ptrdiff_t>(store_.owned);
+    const auto found = std::lower_bound(store_.id.begin(), end, id);
+    return found != end && *found == id ? owner[static_cast<std::size_t>(found - store_.id.begin())] : me;
+  };
+  std::vector<ContactHistory> leaving;
+  std::vector<int> destination;
+  for (const ContactHistory& h : histories)
+    for (const GlobalId id : {h.first, h.second})
+      if (const int to = new_owner(id); to != me) {
+        leaving.push_back(h);
+        destination.push_back(to);
+      }
+  const std::vector<ContactHistory> arrived = exchange_rows(communicator_, leaving, destination);
+  histories.insert(histories.end(), arrived.begin(), arrived.end());
+  sort_histories(histories);
+  adopt(store_, exchange_grains(communicator_, owned_grains(store_), owner, store_.attached_width));
+}
+
+// Makes everything that follows from the owned grains: ghosts, contact list, body forces.
+void GrainDynamics::settle_in(const std::vector<ContactHistory>& histories) {
+  ghosts_.build(store_);
+  list_ = find_contacts(store_, box_, parameters_.walls, damping_, parameters_.skin, largest_radius_);
+  restore_histories(list_, store_, histories);
+  const auto owned_end = static_cast<std::ptrdiff_t>(store_.owned);
+  listed_position_.assign(store_.position.begin(), store_.position.begin() + owned_end);
+  body_force_.assign(store_.owned, Vec3::Zero());
+  if (!parameters_.body_force) return;
+  for (std::size_t s = 0; s < store_.owned; ++s)
+    body_force_[s] = parameters_.body_force(store_.mass[s], store_.radius[s]);
+}
+
+void GrainDynamics::evaluate_forces(double time_step) {
+  const ContactParameters& c = parameters_.contact;
+  const SpringDashpotFriction law(c.normal_stiffness, c.tangential_stiffness, c.attraction, time_step);
+  evaluate_contacts(store_, list_, box_, parameters_.walls, law, c.friction);
+}
+
+void GrainDynamics::advance(int sub_steps) {
+  for (int s = 0; s < sub_steps; ++s) {
+    half_kick();
+    drift();
+    ghosts_.refresh(store_);
+    evaluate_forces(parameters_.time_step);
+    half_kick();
+  }
+}
+
+void GrainDynamics::half_kick() {
+  const double half = 0.5 * parameters_.time_step;
+  for (std::size_t s = 0; s < store_.owned; ++s) {
+    const double push = half * store_.inverse_mass[s], spin = half * store_.inverse_inertia[s];
+    store_.velocity[s] += push * (store_.contact_force[s] + (store_.load_force[s] + body_force_[s]));
+    store_.angular_velocity[s] += spin * (store_.contact_torque[s] + store_.load_torque[s]);
+  }
+}
+
+void GrainDynamics::drift() {
+  for (std::size_t s = 0; s < store_.owned; ++s) store_.position[s] += parameters_.time_step * store_.velocity[s];
+}
+
+void GrainDynamics::refresh_ghosts() {
+  wrap_positions();
+  ghosts_.refresh(store_);
+}
+
+void GrainDynamics::refresh_ghost_attached() { ghosts_.refresh_attached(store_); }
+
+}  // namespace thalweg::dem

@@ -1,0 +1,130 @@
+// The grains of a run and their motion: velocity Verlet with contacts, on the blocks of a decomposition.
+//
+//   v(n+1/2) = v(n) + dt/2 a(n);  x(n+1) = x(n) + dt v(n+1/2);  forces from x(n+1), v(n+1/2);
+//   v(n+1) = v(n+1/2) + dt/2 a(n+1);  the same for the angular velocity with I = 2/5 m R^2.
+//
+// SI units. The state after any number of steps is bitwise the same on any number of ranks, in any layout, and after any
+// save and load. A step of the caller (a fluid step) is
+//   prepare();  ... loads into store() ...;  advance(sub_steps);  refresh_ghosts();
+#pragma once
+
+#include "core/archive.hpp"
+#include "core/decomposition.hpp"
+#include "dem/contact_list.hpp"
+#include "dem/ghost_exchange.hpp"
+#include "dem/grain_seed.hpp"
+#include "dem/grain_store.hpp"
+#include "dem/material.hpp"
+#include "dem/walls.hpp"
+
+#include <mpi.h>
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace thalweg::dem {
+
+struct GrainParameters {
+  ContactParameters contact;
+  std::vector<Plane> walls;
+  std::function<Vec3(double mass, double radius)> body_force;   // N of a grain (kg, m), constant; empty: none
+  double time_step = 0.0;          // s, of a sub-step: at most a 20th of the shortest contact time
+  int sub_steps = 1;               // at most that many between two calls of prepare()
+  double skin = 0.0;               // m: the neighbour list holds until a grain has moved half of it
+  double ghost_width = 0.0;        // m: grains at least this near to a rank's block are its ghosts at all times
+  int attached_width = 0;          // columns attached to every grain
+};
+
+// Two grains in contact, or a grain and a wall.
+struct Contact {
+  GlobalId first, second;          // the higher id; -1 - w for wall w
+  double overlap;                  // m
+  Vec3 normal;                     // unit, from second to first
+  Vec3 spring;                     // m, tangential displacement at the last evaluation
+};
+
+class GrainDynamics {
+public:
+  // seeds: the same full list on every rank; each rank keeps the grains it owns. Throws InputError, on every rank, for
+  // impossible parameters, a time step too long, or impossible seeds (grain_seed.hpp). Contact forces are evaluated
+  // (without moving any spring), so that the first half kick has its forces. Collective.
+  GrainDynamics(const Decomposition& decomposition, MPI_Comm communicator, const GrainParameters& parameters,
+                const std::vector<GrainSeed>& seeds);
+  GrainDynamics(const GrainDynamics&) = delete;
+  GrainDynamics& operator=(const GrainDynamics&) = delete;
+
+  // Before the sub-steps of a fluid step: wraps positions and, where some grain may leave its half skin during the coming
+  // sub-steps, moves grains to the rank of their centre and rebuilds ghosts and contact list. True if slots changed.
+  // Throws RunError, on every rank, where a grain has outrun its half skin, moves more than its radius in one fluid step,
+  // is beyond a non-periodic face by more than its radius, or is no longer a number. One reduction. Collective.
+  bool prepare();
+
+  // Velocity Verlet under the loads in store(). At most GrainParameters::sub_steps since prepare(). Collective.
+  void advance(int sub_steps);
+
+  // After the sub-steps: wraps positions and gives ghosts the final velocities of their owners. Collective.
+  void refresh_ghosts();
+  void refresh_ghost_attached();   // the attached columns of ghosts, if the caller changed those of owned grains
+
+  // Adds what every rank has for its ghosts in `values` (width integers a grain of the store) to the owners' entries: sums
+  // of loads over ranks, exact in any order. Collective.
+  void add_ghost_values(std::vector<std::int64_t>& values, int width) { ghosts_.add_to_owners(values, width); }
+
+  // Loads and attached columns are the caller's to write; the rest is to be read.
+  GrainStore& store() { return store_; }
+  const GrainStore& store() const { return store_; }
+  const Vec3& body_force(std::size_t owned_slot) const { return body_force_[owned_slot]; }   // N
+  const GrainParameters& parameters() const { return parameters_; }
+  const Decomposition& decomposition() const { return decomposition_; }
+  double largest_radius() const { return largest_radius_; }      // m, over all ranks
+  std::int64_t global_count() const { return global_count_; }    // grains over all ranks
+  std::int64_t rebuilds() const { return rebuilds_; }            // since construction or load
+
+  // The touching pairs whose lower id is owned here, sorted by ids, then the touching walls of owned grains.
+  std::vector<Contact> contacts() const;
+
+  // Figures over all ranks, the same bits in any layout. Collective.
+  std::int64_t contact_count() const;         // touching pairs of grains
+  double largest_overlap() const;             // of two grains, in diameters of the smaller
+  double kinetic_energy() const;              // J, with rotation
+  Vec3 momentum() const;                      // kg m/s
+  double largest_speed() const;               // m/s
+  std::int64_t moving_count(double speed) const;   // free grains faster than speed (m/s)
+
+  // Everything the next sub-step depends on, sorted by id, below `group`; collective. To be called after
+  // refresh_ghosts(). Loading replaces all grains, whatever the seeds were; parameters stay those given at construction.
+  // Throws InputError where the archive does not fit the box, the walls or the time step.
+  void save(ArchiveWriter& archive, const std::string& group = "grains") const;
+  void load(ArchiveReader& archive, const std::string& group = "grains");
+
+private:
+  double step_time() const { return parameters_.time_step * parameters_.sub_steps; }
+  double ghost_reach() const;
+  void wrap_positions();
+  void throw_trouble() const;
+  void rebuild();
+  void migrate(std::vector<ContactHistory>& histories);
+  void settle_in(const std::vector<ContactHistory>& histories);
+  void evaluate_forces(double time_step);
+  void half_kick();
+  void drift();
+
+  Decomposition decomposition_;
+  PeriodicBox box_;
+  MPI_Comm communicator_;
+  GrainParameters parameters_;
+  Damping damping_;
+  double largest_radius_ = 0.0;
+  std::int64_t global_count_ = 0;
+  std::int64_t rebuilds_ = 0;
+
+  GrainStore store_;
+  GhostExchange ghosts_;
+  ContactList list_;
+  std::vector<Vec3> listed_position_;   // of owned grains, when the list was built
+  std::vector<Vec3> body_force_;        // of owned grains
+};
+
+}  // namespace thalweg::dem

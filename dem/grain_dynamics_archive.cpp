@@ -1,0 +1,211 @@
+// Saving and loading of GrainDynamics. Datasets, one row a grain in order of id: radius, mass, motion, position,
+// velocity, angular_velocity, contact_force, contact_torque, load_force, load_torque, attached. One row a contact, sorted
+// by ids: contact_ids (lower id; higher id, or -1 - w for wall w), contact_spring.
+#include "core/error.hpp"
+#include "core/mpi_session.hpp"
+#include "dem/grain_batch.hpp"
+#include "dem/grain_dynamics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace thalweg::dem {
+
+namespace {
+
+constexpr const char* vector_names[GrainRow::vectors] = {"position",      "velocity",       "angular_velocity",
+                                                         "contact_force", "contact_torque", "load_force",
+                                                         "load_torque"};
+
+// The rows [first, last) of `count` that a rank writes or reads.
+struct Share {
+  Share(std::int64_t rows, int ranks, int rank)
+      : count(rows), first(rows * rank / ranks), last(rows * (rank + 1) / ranks) {}
+
+  ArrayBox box(std::uint64_t columns) const {
+    return {{static_cast<std::uint64_t>(count), columns}, {static_cast<std::uint64_t>(first), 0},
+            {static_cast<std::uint64_t>(last - first), columns}};
+  }
+  ArrayBox box() const {
+    return {{static_cast<std::uint64_t>(count)}, {static_cast<std::uint64_t>(first)},
+            {static_cast<std::uint64_t>(last - first)}};
+  }
+
+  std::int64_t count, first, last;
+};
+
+// The rank in whose share a row falls.
+int home_of(std::int64_t row, std::int64_t count, int ranks) {
+  auto rank = static_cast<int>(row * ranks / count);
+  while (row >= count * (rank + 1) / ranks) ++rank;
+  return rank;
+}
+
+void write_grains(ArchiveWriter& archive, const std::string& group, const GrainBatch& batch, const Share& share,
+                  int attached_width) {
+  std::vector<double> radius, mass, vectors;
+  std::vector<std::int64_t> motion;
+  for (const GrainRow& row : batch.rows) {
+    radius.push_back(row.radius);
+    mass.push_back(row.mass);
+    motion.push_back(row.motion);
+  }
+  archive.write(group + "/radius", radius, share.box());
+  archive.write(group + "/mass", mass, share.box());
+  archive.write(group + "/motion", motion, share.box());
+  for (int v = 0; v < GrainRow::vectors; ++v) {
+    vectors.clear();
+    for (const GrainRow& row : batch.rows) vectors.insert(vectors.end(), row.value[v].begin(), row.value[v].end());
+    archive.write(group + "/" + vector_names[v], vectors, share.box(3));
+  }
+  if (attached_width > 0) archive.write(group + "/attached", batch.attached, share.box(attached_width));
+}
+
+GrainBatch read_grains(ArchiveReader& archive, const std::string& group, const Share& share, int attached_width) {
+  const auto rows = static_cast<std::size_t>(share.last - share.first);
+  GrainBatch batch;
+  batch.rows.resize(rows);
+  std::vector<double> radius(rows), mass(rows), vectors(3 * rows);
+  std::vector<std::int64_t> motion(rows);
+  archive.read(group + "/radius", radius, share.box());
+  archive.read(group + "/mass", mass, share.box());
+  archive.read(group + "/motion", motion, share.box());
+  for (std::size_t r = 0; r < rows; ++r)
+    batch.rows[r] = {share.first + static_cast<std::int64_t>(r), motion[r], radius[r], mass[r], {}};
+  for (int v = 0; v < GrainRow::vectors; ++v) {
+    archive.read(group + "/" + vector_names[v], vectors, share.box(3));
+    for (std::size_t r = 0; r < rows; ++r)
+      batch.rows[r].value[v] = {vectors[3 * r], vectors[3 * r + 1], vectors[3 * r + 2]};
+  }
+  batch.attached.resize(rows * attached_width);
+  if (attached_width > 0) archive.read(group + "/attached", batch.attached, share.box(attached_width));
+  return batch;
+}
+
+// A contact history on its way to the owner of grain `to`.
+struct Addressed {
+  GlobalId to;
+  ContactHistory history;
+};
+
+std::vector<Addressed> read_histories(ArchiveReader& archive, const std::string& group, const Share& share) {
+  const auto rows = static_cast<std::size_t>(share.last - share.first);
+  std::vector<std::int64_t> ids(2 * rows);
+  std::vector<double> springs(3 * rows);
+  archive.read(group + "/contact_ids", ids, share.box(2));
+  archive.read(group + "/contact_spring", springs, share.box(3));
+  std::vector<Addressed> addressed;
+  for (std::size_t r = 0; r < rows; ++r) {
+    const ContactHistory h{ids[2 * r], ids[2 * r + 1], {springs[3 * r], springs[3 * r + 1], springs[3 * r + 2]}};
+    addressed.push_back({h.first, h});
+    if (h.second >= 0) addressed.push_back({h.second, h});
+  }
+  return addressed;
+}
+
+// Throws on every rank, naming the same grain, the one with the lowest id.
+void check_loaded(const GrainBatch& batch, const PeriodicBox& box, MPI_Comm communicator) {
+  struct Stray {
+    std::int64_t id = std::numeric_limits<std::int64_t>::max(), axis = 0;
+    double x = 0.0;
+  } stray;
+  for (const GrainRow& row : batch.rows)
+    for (int axis = 0; axis < 3; ++axis) {
+      const double x = row.value[GrainRow::position][axis];
+      const bool inside = x >= -row.radius && x <= box.size[axis] + row.radius;
+      if (!inside && row.id < stray.id) stray = {row.id, axis, x};
+    }
+  std::int64_t lowest = 0;
+  MPI_Allreduce(&stray.id, &lowest, 1, MPI_INT64_T, MPI_MIN, communicator);
+  if (lowest == std::numeric_limits<std::int64_t>::max()) return;
+  int teller = stray.id == lowest ? rank_of(communicator) : 0, root = 0;
+  MPI_Allreduce(&teller, &root, 1, MPI_INT, MPI_MAX, communicator);
+  MPI_Bcast(&stray, sizeof(Stray), MPI_BYTE, root, communicator);
+  throw InputError(fmt::format("Grain {} of the saved state has {} = {:g} m, outside the box of 0 to {:g} m.", stray.id,
+                               "xyz"[stray.axis], stray.x, box.size[static_cast<int>(stray.axis)]));
+}
+
+}  // namespace
+
+void GrainDynamics::save(ArchiveWriter& archive, const std::string& group) const {
+  const int ranks = size_of(communicator_), me = rank_of(communicator_);
+  archive.attribute(group + "/walls", static_cast<std::int64_t>(parameters_.walls.size()));
+  std::vector<int> home;
+  for (std::size_t s = 0; s < store_.owned; ++s) home.push_back(home_of(store_.id[s], global_count_, ranks));
+  write_grains(archive, group, exchange_grains(communicator_, owned_grains(store_), home, store_.attached_width),
+               Share(global_count_, ranks, me), store_.attached_width);
+
+  // A pair known to two ranks is written by the owner of its lower id.
+  std::vector<ContactHistory> mine = histories_of(list_, store_);
+  const auto owned_end = store_.id.begin() + static_cast<std::ptrdiff_t>(store_.owned);
+  std::erase_if(mine, [&](const ContactHistory& h) { return !std::binary_search(store_.id.begin(), owned_end, h.first); });
+  home.clear();
+  for (const ContactHistory& h : mine) home.push_back(home_of(h.first, global_count_, ranks));
+  std::vector<ContactHistory> rows = exchange_rows(communicator_, mine, home);
+  sort_histories(rows);
+
+  const auto here = static_cast<std::int64_t>(rows.size());
+  Share share(sum_over_ranks(communicator_, here), 1, 0);
+  MPI_Scan(&here, &share.last, 1, MPI_INT64_T, MPI_SUM, communicator_);
+  share.first = share.last - here;
+  std::vector<std::int64_t> ids;
+  std::vector<double> springs;
+  for (const ContactHistory& h : rows) {
+    ids.insert(ids.end(), {h.first, h.second});
+    springs.insert(springs.end(), h.spring.begin(), h.spring.end());
+  }
+  archive.write(group + "/contact_ids", ids, share.box(2));
+  archive.write(group + "/contact_spring", springs, share.box(3));
+}
+
+void GrainDynamics::load(ArchiveReader& archive, const std::string& group) {
+  const int ranks = size_of(communicator_), me = rank_of(communicator_);
+  const std::int64_t walls = archive.integer_attribute(group + "/walls");
+  if (walls != static_cast<std::int64_t>(parameters_.walls.size()))
+    throw InputError(fmt::format("The saved grains had {} walls, but this case has {}; the boundaries must be the same.",
+                                 walls, parameters_.walls.size()));
+  global_count_ = static_cast<std::int64_t>(archive.shape(group + "/radius").at(0));
+  GrainBatch batch = read_grains(archive, group, Share(global_count_, ranks, me), store_.attached_width);
+
+  double lightest = std::numeric_limits<double>::infinity(), largest = 0.0;
+  check_loaded(batch, box_, communicator_);
+  for (const GrainRow& row : batch.rows) {
+    largest = std::max(largest, row.radius);
+    if (!holds_translation(static_cast<Motion>(row.motion))) lightest = std::min(lightest, row.mass);
+  }
+  largest_radius_ = max_over_ranks(communicator_, largest);
+  lightest = -max_over_ranks(communicator_, -lightest);
+  if (std::isfinite(lightest))
+    check_time_step(parameters_.contact, global_count_ > 1 ? 0.5 * lightest : lightest, parameters_.time_step);
+  ghosts_ = GhostExchange(decomposition_, communicator_, ghost_reach());
+
+  // Grains to the rank of their centre; histories first to the rank that read the grain and so knows its owner.
+  std::vector<int> owner;
+  for (GrainRow& row : batch.rows) {
+    const Vec3 x = box_.wrapped(Vec3(row.value[GrainRow::position].data()));
+    row.value[GrainRow::position] = {x[0], x[1], x[2]};
+    owner.push_back(decomposition_.owner_of(x));
+  }
+  const Share contacts(static_cast<std::int64_t>(archive.shape(group + "/contact_ids").at(0)), ranks, me);
+  std::vector<Addressed> read = read_histories(archive, group, contacts);
+  std::vector<int> to;
+  for (const Addressed& a : read) to.push_back(home_of(a.to, global_count_, ranks));
+  read = exchange_rows(communicator_, read, to);
+  to.clear();
+  const std::int64_t first = Share(global_count_, ranks, me).first;
+  std::vector<ContactHistory> histories;
+  for (const Addressed& a : read) {
+    histories.push_back(a.history);
+    to.push_back(owner[static_cast<std::size_t>(a.to - first)]);
+  }
+  histories = exchange_rows(communicator_, histories, to);
+  sort_histories(histories);
+
+  adopt(store_, exchange_grains(communicator_, batch, owner, store_.attached_width));
+  settle_in(histories);
+  rebuilds_ = 0;
+}
+
+}  // namespace thalweg::dem

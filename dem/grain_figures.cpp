@@ -1,0 +1,84 @@
+// Figures of the state of all grains: GrainDynamics looked at, never changed.
+#include "core/mpi_session.hpp"
+#include "dem/grain_dynamics.hpp"
+#include "dem/reproducible_sum.hpp"
+
+#include <algorithm>
+
+namespace thalweg::dem {
+
+namespace {
+
+// Calls visit(pair, overlap, separation) for every touching pair of the list whose lower id is owned.
+template <typename Visitor>
+void for_each_touching(const ContactList& list, const GrainStore& store, const PeriodicBox& box, Visitor&& visit) {
+  for (const PairContact& c : list.pairs) {
+    if (store.is_ghost(c.first)) continue;
+    const Vec3 separation = box.difference(store.position[c.first], store.position[c.second]);
+    const double overlap = c.reach - separation.norm();
+    if (overlap > 0.0) visit(c, overlap, separation);
+  }
+}
+
+}  // namespace
+
+std::vector<Contact> GrainDynamics::contacts() const {
+  std::vector<Contact> touching;
+  for_each_touching(list_, store_, box_, [&](const PairContact& c, double overlap, const Vec3& separation) {
+    touching.push_back({store_.id[c.first], store_.id[c.second], overlap, separation.normalized(), Vec3(c.spring)});
+  });
+  for (const WallContact& c : list_.walls) {
+    const Plane& wall = parameters_.walls[c.wall];
+    const double overlap = store_.radius[c.grain] - (store_.position[c.grain] - wall.point).dot(wall.normal);
+    if (overlap > 0.0)
+      touching.push_back({store_.id[c.grain], -1 - static_cast<GlobalId>(c.wall), overlap, wall.normal, Vec3(c.spring)});
+  }
+  return touching;
+}
+
+std::int64_t GrainDynamics::contact_count() const {
+  std::int64_t count = 0;
+  for_each_touching(list_, store_, box_, [&](const PairContact&, double, const Vec3&) { ++count; });
+  return sum_over_ranks(communicator_, count);
+}
+
+double GrainDynamics::largest_overlap() const {
+  double largest = 0.0;
+  for_each_touching(list_, store_, box_, [&](const PairContact& c, double overlap, const Vec3&) {
+    largest = std::max(largest, overlap / (2.0 * std::min(store_.radius[c.first], store_.radius[c.second])));
+  });
+  return max_over_ranks(communicator_, largest);
+}
+
+double GrainDynamics::kinetic_energy() const {
+  std::vector<double> energy(store_.owned);
+  for (std::size_t s = 0; s < store_.owned; ++s)
+    energy[s] = 0.5 * store_.mass[s] * store_.velocity[s].squaredNorm() +
+                0.5 * store_.inertia[s] * store_.angular_velocity[s].squaredNorm();
+  return reproducible_sum(communicator_, energy);
+}
+
+Vec3 GrainDynamics::momentum() const {
+  Vec3 sum;
+  std::vector<double> term(store_.owned);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t s = 0; s < store_.owned; ++s) term[s] = store_.mass[s] * store_.velocity[s][axis];
+    sum[axis] = reproducible_sum(communicator_, term);
+  }
+  return sum;
+}
+
+double GrainDynamics::largest_speed() const {
+  double largest = 0.0;
+  for (std::size_t s = 0; s < store_.owned; ++s) largest = std::max(largest, store_.velocity[s].norm());
+  return max_over_ranks(communicator_, largest);
+}
+
+std::int64_t GrainDynamics::moving_count(double speed) const {
+  std::int64_t count = 0;
+  for (std::size_t s = 0; s < store_.owned; ++s)
+    if (!holds_translation(store_.motion[s]) && store_.velocity[s].norm() > speed) ++count;
+  return sum_over_ranks(communicator_, count);
+}
+
+}  // namespace thalweg::dem

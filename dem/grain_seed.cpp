@@ -1,0 +1,94 @@
+#include "dem/grain_seed.hpp"
+
+#include "core/error.hpp"
+#include "dem/cell_grid.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace thalweg::dem {
+
+namespace {
+
+std::string place(const Vec3& p) { return fmt::format("({:g}, {:g}, {:g}) m", p[0], p[1], p[2]); }
+
+void check_ids(std::span<const GrainSeed> seeds) {
+  std::vector<bool> seen(seeds.size(), false);
+  for (const GrainSeed& seed : seeds) {
+    const bool in_range = seed.id >= 0 && seed.id < static_cast<GlobalId>(seeds.size());
+    if (!in_range || seen[seed.id])
+      throw InputError(fmt::format("Grain id {} is {}; {} grains must have the ids 0 to {}, each once.", seed.id,
+                                   in_range ? "given twice" : "out of range", seeds.size(), seeds.size() - 1));
+    seen[seed.id] = true;
+  }
+}
+
+void check_alone(const GrainSeed& seed, const PeriodicBox& box, std::span<const Plane> walls) {
+  if (!(std::isfinite(seed.radius) && seed.radius > 0.0))
+    throw InputError(fmt::format("Grain {} at {} has radius {:g} m; it must be positive.", seed.id, place(seed.position),
+                                 seed.radius));
+  if (!(std::isfinite(seed.density) && seed.density > 0.0))
+    throw InputError(fmt::format("Grain {} at {} has density {:g} kg/m^3; it must be positive.", seed.id,
+                                 place(seed.position), seed.density));
+  if (!seed.velocity.allFinite() || !seed.angular_velocity.allFinite())
+    throw InputError(fmt::format("Grain {} at {} has a velocity that is not a number.", seed.id, place(seed.position)));
+  for (int axis = 0; axis < 3; ++axis)
+    if (!(seed.position[axis] >= 0.0 && seed.position[axis] <= box.size[axis]))
+      throw InputError(fmt::format("Grain {} at {} has its centre outside the box; its {} must be between 0 and {:g} m.",
+                                   seed.id, place(seed.position), "xyz"[axis], box.size[axis]));
+  if (seed.motion == Motion::fixed) return;
+  for (const Plane& wall : walls) {
+    const double overlap = seed.radius - (seed.position - wall.point).dot(wall.normal);
+    if (overlap > allowed_initial_overlap * 2.0 * seed.radius)
+      throw InputError(fmt::format("Grain {} at {} with radius {:g} m reaches {:g} m into the wall with normal ({:g}, "
+                                   "{:g}, {:g}); move it away by that much.",
+                                   seed.id, place(seed.position), seed.radius, overlap, wall.normal[0], wall.normal[1],
+                                   wall.normal[2]));
+  }
+}
+
+void check_pair(const GrainSeed& a, const GrainSeed& b, const PeriodicBox& box) {
+  if (a.motion == Motion::fixed && b.motion == Motion::fixed) return;
+  const double overlap = a.radius + b.radius - box.difference(a.position, b.position).norm();
+  if (overlap > allowed_initial_overlap * 2.0 * std::min(a.radius, b.radius))
+    throw InputError(fmt::format("Grain {} at {} and grain {} at {} overlap by {:g} m at the start; they must not touch "
+                                 "by more than {:g} diameters.",
+                                 a.id, place(a.position), b.id, place(b.position), overlap, allowed_initial_overlap));
+}
+
+}  // namespace
+
+double GrainSeed::mass() const { return density * (4.0 / 3.0) * std::numbers::pi * radius * radius * radius; }
+
+void check(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<const Plane> walls) {
+  check_ids(seeds);
+  std::vector<GrainSeed> sorted(seeds.begin(), seeds.end());
+  std::sort(sorted.begin(), sorted.end(), [](const GrainSeed& a, const GrainSeed& b) { return a.id < b.id; });
+  double largest = 0.0;
+  for (const GrainSeed& seed : sorted) {
+    check_alone(seed, box, walls);
+    largest = std::max(largest, seed.radius);
+  }
+  for (int axis = 0; axis < 3; ++axis)
+    if (box.periodic[axis] && box.size[axis] < 4.0 * largest)
+      throw InputError(fmt::format("The box is {:g} m along its periodic axis {}; it must be at least two of the "
+                                   "largest grain diameters, {:g} m, so that grains meet only once.",
+                                   box.size[axis], "xyz"[axis], 4.0 * largest));
+  if (sorted.empty()) return;
+
+  std::vector<Vec3> points;
+  for (const GrainSeed& seed : sorted) points.push_back(box.wrapped(seed.position));
+  const CellGrid grid(box, 2.0 * largest, points);
+  std::vector<std::uint32_t> near;
+  for (std::uint32_t a = 0; a < sorted.size(); ++a) {
+    near.clear();
+    grid.for_each_near(points[a], [&](std::uint32_t b) { if (b > a) near.push_back(b); });
+    std::sort(near.begin(), near.end());
+    for (const std::uint32_t b : near) check_pair(sorted[a], sorted[b], box);
+  }
+}
+
+}  // namespace thalweg::dem

@@ -1,0 +1,33 @@
+// A grain as a run begins with it.
+#pragma once
+
+#include "core/periodic_box.hpp"
+#include "core/types.hpp"
+#include "dem/grain_store.hpp"
+#include "dem/walls.hpp"
+
+#include <span>
+
+namespace thalweg::dem {
+
+struct GrainSeed {
+  GlobalId id = 0;                               // 0 .. number of grains - 1, each once
+  double radius = 0.0;                           // m
+  double density = 0.0;                          // kg/m^3
+  Vec3 position = Vec3::Zero();                  // m
+  Vec3 velocity = Vec3::Zero();                  // m/s
+  Vec3 angular_velocity = Vec3::Zero();          // rad/s
+  Motion motion = Motion::free;                  // what is held keeps the velocities above
+
+  double mass() const;                           // kg, of the full sphere
+};
+
+// Overlap at the start, in diameters of the smaller grain, that is taken for rounding.
+inline constexpr double allowed_initial_overlap = 1e-6;
+
+// Throws InputError naming the first grain (by id) with an id out of place, a radius or density that is not positive, a
+// centre outside the box, an overlap with a wall, or an overlap with another grain. Fixed grains may reach into walls
+// and into each other. A periodic axis must be at least two of the largest diameters long.
+void check(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<const Plane> walls);
+
+}  // namespace thalweg::dem

@@ -1,0 +1,63 @@
+// The grains a rank knows, as a structure of arrays: those it owns in [0, owned), sorted by id, then its ghosts, copies
+// of grains owned elsewhere, in [owned, total()). SI units. Slots change only in GrainDynamics::prepare() and load().
+#pragma once
+
+#include "core/types.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace thalweg::dem {
+
+// What the forces may change. A held component keeps the velocity it was given (zero: it does not move).
+enum class Motion : std::uint8_t { free = 0, held_translation = 1, held_rotation = 2, fixed = 3 };
+
+inline bool holds_translation(Motion motion) { return (static_cast<unsigned>(motion) & 1u) != 0; }
+inline bool holds_rotation(Motion motion) { return (static_cast<unsigned>(motion) & 2u) != 0; }
+
+struct GrainStore {
+  explicit GrainStore(int attached_columns = 0) : attached_width(attached_columns) {}
+
+  std::size_t owned = 0;
+  std::size_t total() const { return id.size(); }
+
+  std::vector<GlobalId> id;
+  std::vector<double> radius;              // m
+  std::vector<double> mass;                // kg
+  std::vector<double> inertia;             // kg m^2, 2/5 m R^2
+  std::vector<double> inverse_mass;        // 1/kg, 0 where the translation is held
+  std::vector<double> inverse_inertia;     // 1/(kg m^2), 0 where the rotation is held
+  std::vector<Motion> motion;
+  std::vector<Vec3> position;              // m, global and unshifted, also of ghosts
+  std::vector<Vec3> velocity;              // m/s
+  std::vector<Vec3> angular_velocity;      // rad/s
+  std::vector<Vec3> contact_force;         // N, sum over contacts at the last evaluation; of ghosts meaningless
+  std::vector<Vec3> contact_torque;        // N m
+  std::vector<Vec3> load_force;            // N, set from outside, constant during the sub-steps; of ghosts not used
+  std::vector<Vec3> load_torque;           // N m
+
+  // Columns of the grains' keeper (for example the last fluid load): carried at migration, given to new ghosts, saved
+  // and loaded, never interpreted here. Grain `slot` has attached_width values from slot * attached_width on.
+  int attached_width;
+  std::vector<double> attached;
+  std::span<double> attached_of(std::size_t slot) {
+    return {attached.data() + slot * attached_width, static_cast<std::size_t>(attached_width)};
+  }
+  std::span<const double> attached_of(std::size_t slot) const {
+    return {attached.data() + slot * attached_width, static_cast<std::size_t>(attached_width)};
+  }
+
+  bool is_ghost(std::size_t slot) const { return slot >= owned; }
+
+  void clear();
+  void reserve(std::size_t grains);
+  // A grain at rest without forces at the end of the arrays; its attached columns are zero.
+  void append(GlobalId grain, double grain_radius, double grain_mass, Motion grain_motion, const Vec3& grain_position);
+  void drop_ghosts();
+
+private:
+  template <typename Visitor> void for_each_column(Visitor&& visit);
+};
+
+}  // namespace thalweg::dem

@@ -1,0 +1,192 @@
+#include "dem/packing.hpp"
+
+#include "core/error.hpp"
+#include "dem/counter_random.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace thalweg::dem {
+
+namespace {
+
+// Does the region meet itself through the periodic faces of this axis?
+bool wraps(const PeriodicBox& box, const Region& region, int axis) {
+  return box.periodic[axis] && region.upper[axis] - region.lower[axis] >= box.size[axis] * (1.0 - 1e-12);
+}
+
+void check_region(const PeriodicBox& box, const Region& region) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (!(region.lower[axis] >= 0.0 && region.lower[axis] < region.upper[axis] &&
+          region.upper[axis] <= box.size[axis] * (1.0 + 1e-12)))
+      throw InputError(fmt::format("The region for grains reaches from {:g} to {:g} m along {}; it must lie between 0 and "
+                                   "{:g} m.",
+                                   region.lower[axis], region.upper[axis], "xyz"[axis], box.size[axis]));
+}
+
+struct Lattice {
+  std::array<std::int64_t, 3> count{0, 0, 0};
+  double spacing = 0.0;   // m, the smallest of the three
+};
+
+// The lattice of at least `count` sites whose smallest spacing is widest; spacing 0 if none is as wide as a diameter.
+Lattice widest_lattice(const Vec3& extent, std::int64_t count, const std::array<std::int64_t, 3>& most) {
+  Lattice best;
+  for (std::int64_t nx = 1; nx <= most[0]; ++nx)
+    for (std::int64_t ny = 1; ny <= most[1]; ++ny) {
+      const std::int64_t nz = (count + nx * ny - 1) / (nx * ny);
+      if (nz > most[2]) continue;
+      const double spacing = std::min({extent[0] / static_cast<double>(nx), extent[1] / static_cast<double>(ny),
+                                      extent[2] / static_cast<double>(nz)});
+      // Of lattices with the same spacing, the one with fewest sites to spare is filled most evenly.
+      const bool fewer = spacing == best.spacing && nx * ny * nz < best.count[0] * best.count[1] * best.count[2];
+      if (spacing > best.spacing || fewer) best = {{nx, ny, nz}, spacing};
+    }
+  return best;
+}
+
+}  // namespace
+
+std::vector<Vec3> uniform_packing(const PeriodicBox& box, const Region& region, std::int64_t count, double radius,
+                                  double clearance, std::uint64_t seed) {
+  check_region(box, region);
+  const double diameter = 2.0 * radius;
+  Vec3 lower = region.lower, extent = region.upper - region.lower;
+  std::array<std::int64_t, 3> most{};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!wraps(box, region, axis)) {
+      lower[axis] += clearance;
+      extent[axis] -= 2.0 * clearance;
+    }
+    // A box made for n grains must take n in spite of rounding; the overlap this allows is far below a millionth.
+    most[axis] = std::max<std::int64_t>(0, static_cast<std::int64_t>(std::floor(extent[axis] / diameter + 1e-9)));
+  }
+  if (count > most[0] * most[1] * most[2])
+    throw InputError(fmt::format("{} grains of {:g} m do not fit on a lattice in {:g} x {:g} x {:g} m: {} would; use fewer "
+                                 "or smaller grains or a larger region.",
+                                 count, diameter, extent[0], extent[1], extent[2], most[0] * most[1] * most[2]));
+  if (count == 0) return {};
+
+  const Lattice lattice = widest_lattice(extent, count, most);
+  const double room = std::max(0.0, 0.5 * (lattice.spacing - diameter));
+  const double jitter = std::min(0.01 * diameter, 0.999 * room);
+  const std::int64_t sites = lattice.count[0] * lattice.count[1] * lattice.count[2];
+  std::vector<Vec3> centres;
+  for (std::int64_t i = 0; i < count; ++i) {
+    const std::int64_t site = i * sites / count;
+    const std::int64_t along[3] = {site % lattice.count[0], site / lattice.count[0] % lattice.count[1],
+                                   site / (lattice.count[0] * lattice.count[1])};
+    Vec3 centre;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double step = extent[axis] / static_cast<double>(lattice.count[axis]);
+      const double draw = uniform_random(seed, static_cast<std::uint64_t>(i), axis);
+      centre[axis] = lower[axis] + (static_cast<double>(along[axis]) + 0.5) * step + jitter * (2.0 * draw - 1.0);
+    }
+    centres.push_back(box.wrapped(centre));
+  }
+  return centres;
+}
+
+namespace {
+
+// Spheres placed so far, in cells one largest diameter wide, found by distance.
+class Placed {
+public:
+  Placed(const PeriodicBox& box, double largest_diameter, std::size_t expected) : box_(box) {
+    double width = largest_diameter;
+    const double most = 8.0 * static_cast<double>(expected) + 64.0;
+    while (box.size.prod() / (width * width * width) > most) width *= 1.25;
+    for (int axis = 0; axis < 3; ++axis) count_[axis] = std::max(1, static_cast<int>(box.size[axis] / width));
+    cells_.resize(static_cast<std::size_t>(count_[0]) * count_[1] * count_[2]);
+  }
+
+  void add(const Sphere& sphere) { cell(cell_of(sphere.position)).push_back(sphere); }
+
+  bool clear_of(const Sphere& sphere) {
+    const Index3 home = cell_of(sphere.position);
+    Index3 c;
+    for (int k = -1; k <= 1; ++k)
+      for (int j = -1; j <= 1; ++j)
+        for (int i = -1; i <= 1; ++i) {
+          c = {home[0] + i, home[1] + j, home[2] + k};
+          if (!bring_inside(c)) continue;
+          for (const Sphere& other : cell(c)) {
+            const double reach = sphere.radius + other.radius;
+            if (box_.difference(sphere.position, other.position).squaredNorm() < reach * reach) return false;
+          }
+        }
+    return true;
+  }
+
+private:
+  Index3 cell_of(const Vec3& p) const {
+    Index3 c;
+    for (int axis = 0; axis < 3; ++axis)
+      c[axis] = std::clamp(static_cast<int>(p[axis] / box_.size[axis] * count_[axis]), 0, count_[axis] - 1);
+    return c;
+  }
+  bool bring_inside(Index3& c) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (box_.periodic[axis]) c[axis] = (c[axis] + count_[axis]) % count_[axis];
+      if (c[axis] < 0 || c[axis] >= count_[axis]) return false;
+    }
+    return true;
+  }
+  std::vector<Sphere>& cell(const Index3& c) {
+    return cells_[(static_cast<std::size_t>(c[2]) * count_[1] + c[1]) * count_[0] + c[0]];
+  }
+
+  PeriodicBox box_;
+  Index3 count_{};
+  std::vector<std::vector<Sphere>> cells_;
+};
+
+}  // namespace
+
+std::vector<Vec3> random_packing(const PeriodicBox& box, const Region& region, std::span<const double> radii,
+                                 double clearance, std::uint64_t seed, std::span<const Sphere> obstacles) {
+  check_region(box, region);
+  std::vector<std::size_t> order(radii.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return radii[a] > radii[b]; });
+  double largest = radii.empty() ? 0.0 : radii[order.front()];
+  for (const Sphere& obstacle : obstacles) largest = std::max(largest, obstacle.radius);
+  if (radii.empty()) return {};
+
+  Placed placed(box, 2.0 * largest, radii.size() + obstacles.size());
+  for (const Sphere& obstacle : obstacles) placed.add({box.wrapped(obstacle.position), obstacle.radius});
+  constexpr int attempts = 5000;
+  std::vector<Vec3> centres(radii.size());
+  for (std::size_t n = 0; n < order.size(); ++n) {
+    const std::size_t grain = order[n];
+    bool found = false;
+    for (int attempt = 0; attempt < attempts && !found; ++attempt) {
+      Sphere trial{Vec3::Zero(), radii[grain]};
+      bool room = true;
+      for (int axis = 0; axis < 3; ++axis) {
+        const double margin = wraps(box, region, axis) ? 0.0 : radii[grain] + clearance;
+        const double free = region.upper[axis] - region.lower[axis] - 2.0 * margin;
+        room = room && free >= 0.0;
+        trial.position[axis] =
+            region.lower[axis] + margin + free * uniform_random(seed, grain, 3u * static_cast<unsigned>(attempt) + axis);
+      }
+      if (!room) break;
+      trial.position = box.wrapped(trial.position);
+      found = placed.clear_of(trial);
+      if (!found) continue;
+      placed.add(trial);
+      centres[grain] = trial.position;
+    }
+    if (!found)
+      throw InputError(fmt::format("{} grains do not fit at random in {:g} x {:g} x {:g} m: {} did; use fewer or smaller "
+                                   "grains, a larger region, or a uniform placement.",
+                                   radii.size(), region.upper[0] - region.lower[0], region.upper[1] - region.lower[1],
+                                   region.upper[2] - region.lower[2], n));
+  }
+  return centres;
+}
+
+}  // namespace thalweg::dem

@@ -1,0 +1,37 @@
+// Where grains are put at the start. The same on every rank: no communication, random numbers from the seed alone.
+#pragma once
+
+#include "core/periodic_box.hpp"
+#include "core/types.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace thalweg::dem {
+
+// A part of the box, m. On a periodic axis that it spans whole, grains may sit across the face.
+struct Region {
+  Vec3 lower, upper;
+};
+
+inline Region whole(const PeriodicBox& box) { return {Vec3::Zero(), box.size}; }
+
+struct Sphere {
+  Vec3 position;   // m
+  double radius;   // m
+};
+
+// Centres of `count` equal grains spread over the region as evenly as a cubic lattice allows: the lattice with the widest
+// spacing that has enough sites, sites left over spread evenly, each centre moved at random by up to 1 % of a diameter
+// (less where there is no room) so that grains do not stack perfectly. clearance: m, surface to the region's faces that
+// are not periodic. Throws InputError saying how many would fit.
+std::vector<Vec3> uniform_packing(const PeriodicBox& box, const Region& region, std::int64_t count, double radius,
+                                  double clearance, std::uint64_t seed);
+
+// Centres at random, one for each radius (m), clear of each other and of the obstacles. Large grains are placed first;
+// beyond about a third of the volume that gets hard. Throws InputError saying how many would fit.
+std::vector<Vec3> random_packing(const PeriodicBox& box, const Region& region, std::span<const double> radii,
+                                 double clearance, std::uint64_t seed, std::span<const Sphere> obstacles = {});
+
+}  // namespace thalweg::dem

@@ -1,0 +1,42 @@
+#include "dem/walls.hpp"
+
+#include "core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace thalweg::dem {
+
+Plane face_plane(const PeriodicBox& box, int axis, bool upper, double friction, const Vec3& velocity) {
+  Plane plane;
+  plane.normal = Vec3::Zero();
+  plane.normal[axis] = upper ? -1.0 : 1.0;
+  if (upper) plane.point[axis] = box.size[axis];
+  plane.friction = friction;
+  plane.velocity = velocity;
+  return plane;
+}
+
+std::vector<Plane> face_planes(const PeriodicBox& box, const ContactParameters& contact) {
+  std::vector<Plane> planes;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (box.periodic[axis]) continue;
+    for (const bool upper : {false, true}) planes.push_back(face_plane(box, axis, upper, contact.wall_friction));
+  }
+  return planes;
+}
+
+void check(const Plane& plane) {
+  const Vec3& n = plane.normal;
+  if (!(std::abs(n.norm() - 1.0) < 1e-12))
+    throw InputError(fmt::format("The normal ({:g}, {:g}, {:g}) of a wall has length {:g}; it must be 1.", n[0], n[1],
+                                 n[2], n.norm()));
+  if (!(plane.friction >= 0.0))
+    throw InputError(fmt::format("The friction of a wall is {:g}; it must be zero or positive.", plane.friction));
+  if (!(std::abs(plane.velocity.dot(n)) <= 1e-12 * plane.velocity.norm()))
+    throw InputError(fmt::format("A wall moves at {:g} m/s along its normal; it may move in its own plane only.",
+                                 plane.velocity.dot(n)));
+}
+
+}  // namespace thalweg::dem

@@ -1,0 +1,79 @@
+#include "dem/packing.hpp"
+
+#include "core/error.hpp"
+#include "tests/dem/grain_cases.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace thalweg::dem {
+namespace {
+
+const PeriodicBox flume{Vec3(0.12, 0.04, 0.106), {true, true, false}};
+
+std::vector<GrainSeed> seeds_at(const std::vector<Vec3>& centres, double radius) {
+  std::vector<GrainSeed> seeds;
+  for (std::size_t i = 0; i < centres.size(); ++i)
+    seeds.push_back(test::glass_sphere(static_cast<GlobalId>(i), centres[i], Vec3::Zero(), radius));
+  return seeds;
+}
+
+std::string refusal(const std::function<void()>& place) {
+  try {
+    place();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(UniformPacking, FillsTheBoxWithoutOverlap) {
+  const std::vector<Vec3> centres = uniform_packing(flume, whole(flume), 2884, 2.5e-3, 1e-3, 1);
+  ASSERT_EQ(centres.size(), 2884u);
+  EXPECT_NO_THROW(check(seeds_at(centres, 2.5e-3), flume, face_planes(flume, test::glass(0.9))));
+  // Evenly: every eighth of the box holds an eighth of the grains, up to a layer's share.
+  for (int octant = 0; octant < 8; ++octant) {
+    const auto inside = std::count_if(centres.begin(), centres.end(), [&](const Vec3& x) {
+      return (x[0] < 0.06) == (octant % 2 == 0) && (x[1] < 0.02) == (octant / 2 % 2 == 0) &&
+             (x[2] < 0.053) == (octant / 4 == 0);
+    });
+    EXPECT_NEAR(static_cast<double>(inside), 2884.0 / 8.0, 60.0);
+  }
+  EXPECT_EQ(centres, uniform_packing(flume, whole(flume), 2884, 2.5e-3, 1e-3, 1));
+  EXPECT_NE(centres, uniform_packing(flume, whole(flume), 2884, 2.5e-3, 1e-3, 2));
+}
+
+TEST(UniformPacking, TakesExactlyAsManyAsFitAndNamesThem) {
+  // 24 x 8 x 21 touching spheres.
+  EXPECT_EQ(uniform_packing(flume, whole(flume), 24 * 8 * 21, 2.5e-3, 0.0, 1).size(), 24u * 8u * 21u);
+  EXPECT_NO_THROW(check(seeds_at(uniform_packing(flume, whole(flume), 24 * 8 * 21, 2.5e-3, 0.0, 1), 2.5e-3), flume, {}));
+  const std::string message = refusal([] { uniform_packing(flume, whole(flume), 24 * 8 * 21 + 1, 2.5e-3, 0.0, 1); });
+  EXPECT_NE(message.find("4032 would"), std::string::npos) << message;
+}
+
+TEST(RandomPacking, KeepsClearOfWallsObstaclesAndEachOther) {
+  std::vector<double> radii;
+  for (int i = 0; i < 1200; ++i) radii.push_back(i % 3 == 0 ? 3.0e-3 : 2.0e-3);
+  const Region region{Vec3(0.0, 0.0, 0.01), Vec3(0.12, 0.04, 0.1)};
+  const Sphere obstacle{Vec3(0.06, 0.02, 0.05), 8e-3};
+  const std::vector<Vec3> centres = random_packing(flume, region, radii, 1e-3, 7, {{obstacle}});
+  ASSERT_EQ(centres.size(), radii.size());
+  for (std::size_t i = 0; i < centres.size(); ++i) {
+    ASSERT_GE(centres[i][2], 0.01 + radii[i] + 1e-3 - 1e-12);
+    ASSERT_LE(centres[i][2], 0.1 - radii[i] - 1e-3 + 1e-12);
+    ASSERT_GE(flume.difference(centres[i], obstacle.position).norm(), radii[i] + obstacle.radius);
+    for (std::size_t j = 0; j < i; ++j)
+      ASSERT_GE(flume.difference(centres[i], centres[j]).norm(), radii[i] + radii[j]);
+  }
+}
+
+TEST(RandomPacking, SaysHowManyFitted) {
+  const std::vector<double> radii(4000, 2.5e-3);
+  const std::string message = refusal([&] { random_packing(flume, whole(flume), radii, 0.0, 7); });
+  EXPECT_NE(message.find("4000 grains do not fit"), std::string::npos) << message;
+  EXPECT_NE(message.find(" did;"), std::string::npos) << message;
+}
+
+}  // namespace
+}  // namespace thalweg::dem

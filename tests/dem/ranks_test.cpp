@@ -1,0 +1,203 @@
+// The same bits on any number of ranks, in any layout, and after saving and loading: the saved state (everything the next
+// step depends on) of a run on all ranks is compared with that of a run each rank does alone.
+#include "dem/counter_random.hpp"
+#include "dem/packing.hpp"
+#include "tests/dem/grain_cases.hpp"
+#include "tests/support/memory_archive.hpp"
+
+#include <gtest/gtest.h>
+
+namespace thalweg::dem {
+namespace {
+
+struct Case {
+  Index3 cells;
+  double spacing;   // m
+  std::array<bool, 3> periodic;
+  int grains;
+  Vec3 gravity;     // m/s^2
+  Vec3 drift;       // m/s, of all grains at the start: a heap in contact crosses the borders between ranks
+};
+
+// Grains of 3.2 to 5 mm, thrown about at up to 0.4 m/s an axis.
+std::vector<GrainSeed> cloud(const Case& c) {
+  const PeriodicBox box = Decomposition(c.cells, c.spacing, c.periodic, {1, 1, 1}).box();
+  std::vector<double> radii;
+  for (int i = 0; i < c.grains; ++i) radii.push_back(1.6e-3 + 0.9e-3 * uniform_random(1, i, 0));
+  const std::vector<Vec3> places = random_packing(box, whole(box), radii, 1e-5, 3);
+  std::vector<GrainSeed> seeds;
+  for (int i = 0; i < c.grains; ++i) {
+    const auto draw = [i](int n) { return 2.0 * uniform_random(2, i, n) - 1.0; };
+    GrainSeed seed =
+        test::glass_sphere(i, places[i], c.drift + 0.4 * Vec3(draw(0), draw(1), draw(2)), radii[i]);
+    seed.angular_velocity = 30.0 * Vec3(draw(3), draw(4), draw(5));
+    if (i % 17 == 3) {
+      seed.motion = Motion::fixed;
+      seed.velocity = i % 2 == 0 ? Vec3::Zero() : c.drift;
+    }
+    seeds.push_back(seed);
+  }
+  return seeds;
+}
+
+GrainParameters parameters_of(const Case& c) {
+  const PeriodicBox box = Decomposition(c.cells, c.spacing, c.periodic, {1, 1, 1}).box();
+  GrainParameters p;
+  p.contact = test::glass(0.6);
+  // Soft grains: long contacts, so that many are open at any time, and long steps.
+  p.contact.normal_stiffness = 500.0;
+  p.contact.tangential_stiffness = 2.0 / 7.0 * 500.0;
+  p.walls = face_planes(box, p.contact);
+  p.body_force = [g = c.gravity](double mass, double) { return Vec3(mass * g); };
+  p.time_step = 2.5e-5;
+  p.sub_steps = 10;
+  p.skin = 1e-3;
+  p.ghost_width = 3e-3;
+  p.attached_width = 2;
+  return p;
+}
+
+// Steps with loads that depend on the grain's state; the attached columns remember something of every step.
+void run(GrainDynamics& grains, int steps) {
+  for (int n = 0; n < steps; ++n) {
+    grains.prepare();
+    GrainStore& s = grains.store();
+    for (std::size_t i = 0; i < s.owned; ++i) {
+      const auto attached = s.attached_of(i);
+      s.load_force[i] = -2e-4 * s.velocity[i] + Vec3(1e-5 * attached[0], 0.0, 0.0);
+      s.load_torque[i] = -1e-9 * s.angular_velocity[i];
+      attached[0] = s.velocity[i][0];
+      attached[1] += s.position[i][2];
+    }
+    grains.advance(grains.parameters().sub_steps);
+    grains.refresh_ghosts();
+    grains.refresh_ghost_attached();
+  }
+}
+
+thalweg::test::MemoryArchive saved(const GrainDynamics& grains, MPI_Comm communicator) {
+  thalweg::test::MemoryArchive archive;
+  thalweg::test::MemoryWriter writer(archive, communicator);
+  grains.save(writer);
+  return archive;
+}
+
+std::vector<Index3> layouts(const Index3& cells, int ranks) {
+  std::vector<Index3> all;
+  for (int px = 1; px <= ranks; ++px)
+    for (int py = 1; px * py <= ranks; ++py) {
+      if (ranks % (px * py) != 0) continue;
+      const Index3 layout{px, py, ranks / (px * py)};
+      bool fits = true;
+      for (int a = 0; a < 3; ++a)
+        fits = fits && (layout[a] == 1 || cells[a] / layout[a] >= Decomposition::min_cells_per_rank);
+      if (fits) all.push_back(layout);
+    }
+  return all;
+}
+
+// Every ghost is its owner's grain, bit for bit.
+void expect_true_ghosts(const GrainDynamics& grains, MPI_Comm communicator) {
+  const thalweg::test::MemoryArchive archive = saved(grains, communicator);
+  const auto values = [&](const char* name) { return std::get<std::vector<double>>(archive.datasets.at(name).values); };
+  const auto position = values("grains/position"), velocity = values("grains/velocity"),
+             spin = values("grains/angular_velocity"), attached = values("grains/attached");
+  const GrainStore& s = grains.store();
+  for (std::size_t i = s.owned; i < s.total(); ++i) {
+    for (int a = 0; a < 2; ++a)
+      ASSERT_EQ(s.attached_of(i)[a], attached[static_cast<std::size_t>(2 * s.id[i] + a)]);
+    for (int a = 0; a < 3; ++a) {
+      const std::size_t at = static_cast<std::size_t>(3 * s.id[i] + a);
+      ASSERT_EQ(s.position[i][a], position[at]);
+      ASSERT_EQ(s.velocity[i][a], velocity[at]);
+      ASSERT_EQ(s.angular_velocity[i][a], spin[at]);
+    }
+  }
+}
+
+int moved_to_another_octant(const Case& c, const std::vector<GrainSeed>& seeds, const GrainDynamics& grains) {
+  const Decomposition octants(c.cells, c.spacing, c.periodic, {2, 2, 2});
+  int count = 0;
+  for (std::size_t i = 0; i < seeds.size(); ++i)
+    if (octants.owner_of(seeds[i].position) != octants.owner_of(grains.store().position[i])) ++count;
+  return count;
+}
+
+void compare(const Case& c, int steps) {
+  const std::vector<GrainSeed> seeds = cloud(c);
+  const GrainParameters p = parameters_of(c);
+  const int ranks = size_of(MPI_COMM_WORLD);
+  GrainDynamics alone(Decomposition(c.cells, c.spacing, c.periodic, {1, 1, 1}), MPI_COMM_SELF, p, seeds);
+  const double energy = alone.kinetic_energy();
+  run(alone, steps / 2);
+  const thalweg::test::MemoryArchive half = saved(alone, MPI_COMM_SELF);
+  run(alone, steps - steps / 2);
+  const thalweg::test::MemoryArchive reference = saved(alone, MPI_COMM_SELF);
+  // The run is worth comparing: grains collided, touch with friction, and have crossed borders.
+  EXPECT_LT(alone.kinetic_energy(), 0.9 * energy);
+  EXPECT_GT(half.datasets.at("grains/contact_ids").shape[0], 10u);
+  EXPECT_GT(alone.rebuilds(), 3);
+  EXPECT_GT(moved_to_another_octant(c, seeds, alone), c.grains / 10);
+
+  for (const Index3& layout : layouts(c.cells, ranks)) {
+    const std::string name = fmt::format("layout {},{},{}", layout[0], layout[1], layout[2]);
+    const Decomposition decomposition(c.cells, c.spacing, c.periodic, layout);
+    GrainDynamics grains(decomposition, MPI_COMM_WORLD, p, seeds);
+    run(grains, steps / 2);
+    EXPECT_EQ(thalweg::test::first_difference(saved(grains, MPI_COMM_WORLD), half), "") << name;
+    expect_true_ghosts(grains, MPI_COMM_WORLD);
+    run(grains, steps - steps / 2);
+    EXPECT_EQ(thalweg::test::first_difference(saved(grains, MPI_COMM_WORLD), reference), "") << name;
+    EXPECT_EQ(grains.kinetic_energy(), alone.kinetic_energy()) << name;
+    EXPECT_EQ(grains.momentum(), alone.momentum()) << name;
+    EXPECT_EQ(grains.contact_count(), alone.contact_count()) << name;
+    EXPECT_EQ(grains.largest_overlap(), alone.largest_overlap()) << name;
+    EXPECT_EQ(grains.rebuilds(), alone.rebuilds()) << name;
+
+    // What one rank saved half way, loaded on all of them, ends alike.
+    GrainDynamics restarted(decomposition, MPI_COMM_WORLD, p, {});
+    thalweg::test::MemoryReader reader(half);
+    restarted.load(reader);
+    EXPECT_EQ(thalweg::test::first_difference(saved(restarted, MPI_COMM_WORLD), half), "") << name;
+    run(restarted, steps - steps / 2);
+    EXPECT_EQ(thalweg::test::first_difference(saved(restarted, MPI_COMM_WORLD), reference), "") << name;
+  }
+}
+
+TEST(Ranks, CloudInAPeriodicBox) {
+  compare({{16, 16, 16}, 2.0e-3, {true, true, true}, 220, Vec3::Zero(), Vec3(0.2, -0.3, 0.4)}, 120);
+}
+
+TEST(Ranks, HeapBetweenWalls) {
+  compare({{16, 8, 32}, 1.5e-3, {false, false, false}, 60, Vec3(4.0, 0.0, -15.0), Vec3::Zero()}, 240);
+}
+
+TEST(Ranks, HeapThatSlidesAcrossBorders) {
+  compare({{16, 16, 16}, 1.5e-3, {true, true, false}, 60, Vec3(4.0, 2.0, -15.0), Vec3(0.4, 0.3, 0.0)}, 240);
+}
+
+TEST(Ranks, ChannelTwoDiametersWide) {
+  // 10.5 mm, 2.1 of the largest diameters, periodic and cut; and short along x as well, where everything is near.
+  compare({{32, 8, 16}, 1.3125e-3, {true, true, false}, 40, Vec3(4.0, 0.0, -15.0), Vec3(0.2, 0.4, 0.0)}, 320);
+  compare({{8, 8, 32}, 1.3125e-3, {true, true, false}, 30, Vec3(0.0, 4.0, -15.0), Vec3(0.3, 0.4, 0.0)}, 320);
+}
+
+TEST(Ranks, StateSavedByAllIsLoadedByOne) {
+  const Case c{{16, 8, 16}, 2.0e-3, {true, true, false}, 80, Vec3(0.0, 0.0, -15.0), Vec3(0.3, 0.2, 0.0)};
+  const GrainParameters p = parameters_of(c);
+  const Decomposition one(c.cells, c.spacing, c.periodic, {1, 1, 1});
+  GrainDynamics together(Decomposition(c.cells, c.spacing, c.periodic,
+                                       Decomposition::best_layout(c.cells, size_of(MPI_COMM_WORLD))),
+                         MPI_COMM_WORLD, p, cloud(c));
+  run(together, 120);
+  const thalweg::test::MemoryArchive half = saved(together, MPI_COMM_WORLD);
+  run(together, 120);
+  GrainDynamics alone(one, MPI_COMM_SELF, p, {});
+  thalweg::test::MemoryReader reader(half);
+  alone.load(reader);
+  run(alone, 120);
+  EXPECT_EQ(thalweg::test::first_difference(saved(together, MPI_COMM_WORLD), saved(alone, MPI_COMM_SELF)), "");
+}
+
+}  // namespace
+}  // namespace thalweg::dem

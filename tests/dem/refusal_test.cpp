@@ -1,0 +1,110 @@
+// What is refused at the start and what stops a run, on every rank alike.
+#include "core/error.hpp"
+#include "tests/dem/grain_cases.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace thalweg::dem {
+namespace {
+
+Decomposition shared_box() {
+  const Index3 cells{16, 16, 16};
+  return Decomposition(cells, 2.5e-3, {true, true, false}, Decomposition::best_layout(cells, size_of(MPI_COMM_WORLD)));
+}
+
+GrainParameters usual() {
+  GrainParameters p;
+  p.contact = test::glass(0.9);
+  p.walls = {face_plane(shared_box().box(), 2, false, 0.5)};
+  p.time_step = 5e-6;
+  p.sub_steps = 20;
+  p.skin = 1e-3;
+  return p;
+}
+
+template <typename Error> std::string message_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "nothing was thrown";
+}
+
+std::string start(const std::vector<GrainSeed>& seeds, const GrainParameters& p = usual()) {
+  return message_of<InputError>([&] { GrainDynamics grains(shared_box(), MPI_COMM_WORLD, p, seeds); });
+}
+
+void expect_names(const std::string& message, const std::vector<std::string>& words) {
+  for (const std::string& word : words) EXPECT_NE(message.find(word), std::string::npos) << word << " in: " << message;
+}
+
+TEST(Start, RefusesImpossibleGrains) {
+  const GrainSeed good = test::glass_sphere(0, Vec3(0.02, 0.02, 0.02));
+  EXPECT_EQ(start({good}), "nothing was thrown");
+  GrainSeed bad = good;
+  bad.radius = -1e-3;
+  expect_names(start({bad}), {"Grain 0", "radius", "-0.001 m"});
+  bad = good;
+  bad.density = 0.0;
+  expect_names(start({bad}), {"Grain 0", "density"});
+  expect_names(start({test::glass_sphere(0, Vec3(0.041, 0.02, 0.02))}), {"Grain 0", "outside", "0.041"});
+  expect_names(start({test::glass_sphere(0, Vec3(0.02, 0.02, 0.002))}), {"Grain 0", "wall"});
+  expect_names(start({good, test::glass_sphere(2, Vec3(0.03, 0.03, 0.03))}), {"id 2"});
+  // Across the periodic face; touching within a millionth of a diameter is taken for rounding.
+  const GrainSeed edge = test::glass_sphere(0, Vec3(0.0395, 0.02, 0.02));
+  expect_names(start({edge, test::glass_sphere(1, Vec3(0.0040, 0.02, 0.02))}), {"Grain 0", "grain 1", "0.0395", "0.004"});
+  EXPECT_EQ(start({edge, test::glass_sphere(1, Vec3(0.0045 - 4e-9, 0.02, 0.02))}), "nothing was thrown");
+}
+
+TEST(Start, RefusesImpossibleParameters) {
+  const std::vector<GrainSeed> seeds{test::glass_sphere(0, Vec3(0.02, 0.02, 0.02)),
+                                     test::glass_sphere(1, Vec3(0.03, 0.03, 0.03))};
+  GrainParameters p = usual();
+  p.time_step = 2e-5;   // t_c/20 of a pair is 1.015e-5 s
+  expect_names(start(seeds, p), {"2e-05 s", "too long", "1.015"});
+  p = usual();
+  p.skin = 0.0;
+  expect_names(start(seeds, p), {"skin"});
+  p = usual();
+  p.contact.damping = 0.1;
+  expect_names(start(seeds, p), {"restitution and damping"});
+  const GrainSeed boulder = test::glass_sphere(0, Vec3(0.02, 0.02, 0.02), Vec3::Zero(), 0.0105);
+  expect_names(start({boulder}), {"periodic axis x", "0.042"});
+}
+
+TEST(Run, StopsWhereAGrainLeavesTheBox) {
+  GrainDynamics grains(shared_box(), MPI_COMM_WORLD, usual(),
+                       {test::glass_sphere(0, Vec3(0.02, 0.02, 0.037), Vec3(0.0, 0.0, 2.0)),
+                        test::glass_sphere(1, Vec3(0.005, 0.02, 0.02))});
+  // Steps of 1e-4 s: 0.2 mm each; the centre is a radius beyond the top after 5.5 mm, in the 28th step.
+  const std::string message = message_of<RunError>([&] {
+    for (int n = 0; n < 40; ++n) test::step(grains);
+  });
+  expect_names(message, {"Grain 0", "0.042", "2 m/s", "beyond a face"});
+}
+
+TEST(Run, StopsWhereAGrainIsTooFastForTheStep) {
+  GrainDynamics fast(shared_box(), MPI_COMM_WORLD, usual(),
+                     {test::glass_sphere(0, Vec3(0.02, 0.02, 0.02), Vec3(30.0, 0.0, 0.0))});
+  expect_names(message_of<RunError>([&] { fast.prepare(); }), {"Grain 0", "30 m/s", "more than its radius"});
+  GrainDynamics quick(shared_box(), MPI_COMM_WORLD, usual(),
+                      {test::glass_sphere(0, Vec3(0.02, 0.02, 0.02), Vec3(10.0, 0.0, 0.0))});
+  test::step(quick);
+  expect_names(message_of<RunError>([&] { quick.prepare(); }), {"Grain 0", "10 m/s", "half the skin"});
+}
+
+TEST(Run, StopsWhereALoadIsNoNumber) {
+  GrainDynamics grains(shared_box(), MPI_COMM_WORLD, usual(), {test::glass_sphere(0, Vec3(0.02, 0.02, 0.02))});
+  grains.prepare();
+  for (std::size_t s = 0; s < grains.store().owned; ++s)
+    grains.store().load_force[s][1] = std::numeric_limits<double>::quiet_NaN();
+  grains.advance(20);
+  grains.refresh_ghosts();
+  expect_names(message_of<RunError>([&] { grains.prepare(); }), {"Grain 0", "not a number"});
+}
+
+}  // namespace
+}  // namespace thalweg::dem
