@@ -37,14 +37,14 @@ struct PairSums {
 
 // A constant in every lane, rounded once to the storage type.
 template <typename Number>
-inline Number pack_constant(double value) {
+[[gnu::always_inline]] inline Number pack_constant(double value) {
   if constexpr (std::is_arithmetic_v<Number>) return static_cast<Number>(value);
   else return Number(static_cast<typename Number::value_type>(value));
 }
 
 // Collides f in place. `with_eddies` false: plain BGK at tau_0.
 template <bool with_eddies, typename Number>
-inline CellStress<Number> collide(Number (&f)[19], const CollisionParameters& parameters) {
+[[gnu::always_inline]] inline CellStress<Number> collide(Number (&f)[19], const CollisionParameters& parameters) {
   using std::sqrt;
   constexpr auto constant = pack_constant<Number>;
   const Number fx = constant(parameters.force[0]), fy = constant(parameters.force[1]), fz = constant(parameters.force[2]);
@@ -96,7 +96,8 @@ inline CellStress<Number> collide(Number (&f)[19], const CollisionParameters& pa
   const Number ox = omega * jx + guo * fx, oy = omega * jy + guo * fy, oz = omega * jz + guo * fz;
 
   f[0] = keep * f[0] + constant(D3Q19::rest_weight) * common;
-  const auto relax = [&](int plus, double weight, const Number& cu, const Number& cf, const Number& odd) {
+  const auto relax = [&](int plus, double weight, const Number& cu, const Number& cf,
+                         const Number& odd) __attribute__((always_inline)) {
     const Number even = constant(weight) * (common + cu * (quadratic * cu + cross * cf));
     const Number odd_part = constant(3.0 * weight) * odd;
     f[plus] = keep * f[plus] + (even + odd_part);

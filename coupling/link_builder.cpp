@@ -1,0 +1,64 @@
+#include "coupling/link_builder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace thalweg::coupling {
+
+using lbm::D3Q19;
+
+void LinkBuilder::build(int slot, const MappedGrain& grain, lbm::LinkTable& table, lbm::LinkBody& body) {
+  constexpr double longest_link = 1.4142135623730951;
+  const double reach = grain.radius + longest_link;
+  links_.clear();
+  planes_.clear();
+  body.centre = grain.centre;
+  for (int a = 0; a < 3; ++a) body.origin[a] = static_cast<int>(std::floor(grain.centre[a]));
+
+  local_cells_.along(0, grain.centre.x(), reach, grain.centre.x(), 0, xs_);
+  local_cells_.along(1, grain.centre.y(), reach, grain.centre.y(), 0, ys_);
+  local_cells_.along(2, grain.centre.z(), reach, grain.centre.z(), 0, zs_);
+  std::sort(zs_.begin(), zs_.end(), [](const LocalCell& p, const LocalCell& q) { return p.local < q.local; });
+  for (const LocalCell& z : zs_)
+    for (const LocalCell& y : ys_) {
+      const double from_axis = y.offset * y.offset + z.offset * z.offset;
+      if (from_axis >= reach * reach) continue;
+      for (const LocalCell& x : xs_) {
+        const double squared = x.offset * x.offset + from_axis;
+        if (squared >= grain.radius * grain.radius && squared < reach * reach)
+          add_links_of_cell(slot, grain, body, x, y, z);
+      }
+    }
+  table.replace(slot, links_, planes_);
+}
+
+void LinkBuilder::add_links_of_cell(int slot, const MappedGrain& grain, const lbm::LinkBody& body, const LocalCell& x,
+                                    const LocalCell& y, const LocalCell& z) {
+  const lbm::CellIndexing& indexing = cells_.indexing();
+  const std::ptrdiff_t cell = indexing.index(x.local, y.local, z.local);
+  if (!cells_.is_fluid(cell)) return;
+  const double distance_squared = x.offset * x.offset + y.offset * y.offset + z.offset * z.offset;
+  const double q = distance_squared - grain.radius * grain.radius;
+  for (int i = 1; i < D3Q19::directions; ++i) {
+    if (cells_.body(cell + indexing.offset(i)) != slot) continue;
+    const double a = D3Q19::length_squared(i);
+    const double b = D3Q19::c[i][0] * x.offset + D3Q19::c[i][1] * y.offset + D3Q19::c[i][2] * z.offset;
+    const double discriminant = b * b - a * q;
+    // In a box hardly wider than the grain the solid cell may belong to its other periodic image, met elsewhere.
+    if (b >= 0.0 || discriminant < 0.0) continue;
+    const double delta = (-b - std::sqrt(discriminant)) / a;
+    if (delta > 1.0 + 1e-9) continue;
+    lbm::Link link;
+    link.cell = static_cast<std::uint32_t>(cell);
+    link.offset[0] = static_cast<std::int16_t>(x.global - body.origin[0]);
+    link.offset[1] = static_cast<std::int16_t>(y.global - body.origin[1]);
+    link.offset[2] = static_cast<std::int16_t>(z.global - body.origin[2]);
+    link.direction = static_cast<std::uint8_t>(i);
+    link.upstream_solid = cells_.is_fluid(cell - indexing.offset(i)) ? 0 : 1;
+    link.distance = static_cast<float>(std::clamp(delta, 0.0, 1.0));
+    links_.push_back(link);
+    planes_.push_back(z.local);
+  }
+}
+
+}  // namespace thalweg::coupling

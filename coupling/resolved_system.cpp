@@ -1,0 +1,297 @@
+#include "coupling/resolved_system.hpp"
+
+#include "core/mpi_session.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace thalweg::coupling {
+
+using lbm::CellMap;
+
+namespace {
+
+Vec3 vector_at(std::span<const double> columns, int first) { return {columns[first], columns[first + 1], columns[first + 2]}; }
+
+void set_vector(std::span<double> columns, int first, const Vec3& value) {
+  for (int a = 0; a < 3; ++a) columns[first + a] = value[a];
+}
+
+Vec3 cells_as_vector(const Index3& cells) { return {double(cells[0]), double(cells[1]), double(cells[2])}; }
+
+}  // namespace
+
+template <typename Real>
+ResolvedSystem<Real>::ResolvedSystem(std::unique_ptr<Decomposition> decomposition, MPI_Comm communicator,
+                                     const ResolvedParameters& parameters, std::unique_ptr<dem::GrainDynamics> grains)
+    : decomposition_(std::move(decomposition)),
+      communicator_(communicator),
+      parameters_(parameters),
+      fluid_(*decomposition_, communicator, parameters.collision, parameters.faces),
+      grains_(std::move(grains)),
+      box_(decomposition_->box()),
+      lattice_box_{cells_as_vector(decomposition_->cells()), decomposition_->periodic()},
+      map_(*decomposition_, fluid_.block(), fluid_.cells()),
+      links_(fluid_.block().size()[2]),
+      link_builder_(*decomposition_, fluid_.block(), fluid_.cells()),
+      refill_(*decomposition_, communicator) {
+  phases_ = {timer_.phase("grain map"), timer_.phase("refill"), timer_.phase("halo"),  timer_.phase("walls"),
+             timer_.phase("links"),     timer_.phase("sweep"),  timer_.phase("grains")};
+  if (parameters_.initial_fluid)
+    fluid_.initialise([&](const Vec3& cell_centre) {
+      const FluidInitialState s = parameters_.initial_fluid(cell_centre * parameters_.units.spacing);
+      return lbm::FluidState{s.density_deviation, s.velocity / parameters_.units.velocity()};
+    });
+  dem::GrainStore& store = grains_->store();
+  for (std::size_t g = 0; g < store.total(); ++g) set_vector(store.attached_of(g), link_position, store.position[g]);
+  initialise_map();
+}
+
+// The cells covered at the start (of a run or after loading) were never fluid: nothing to refill.
+template <typename Real>
+void ResolvedSystem<Real>::initialise_map() {
+  map_.begin_update();
+  synchronise_slots();
+  map_.settle();
+  build_links();
+}
+
+template <typename Real>
+void ResolvedSystem<Real>::synchronise_slots() {
+  dem::GrainStore& store = grains_->store();
+  std::vector<char> present(map_.grains().size(), 0);
+  map_slot_.resize(store.total());
+  for (std::size_t g = 0; g < store.total(); ++g) {
+    const int slot = map_.slot_of(store.id[g]);
+    if (slot >= 0) present[slot] = 1;
+  }
+  for (std::size_t slot = 0; slot < present.size(); ++slot)
+    if (!present[slot] && map_.grains()[slot].id >= 0) map_.remove(static_cast<int>(slot));
+  for (std::size_t g = 0; g < store.total(); ++g) {
+    int slot = map_.slot_of(store.id[g]);
+    if (slot < 0) {
+      slot = map_.add(store.id[g], store.radius[g] / parameters_.units.spacing);
+      map_.place(slot, lattice_position(vector_at(store.attached_of(g), link_position)));
+    }
+    map_slot_[g] = slot;
+  }
+  bodies_.resize(map_.grains().size());
+  update_bodies();
+}
+
+template <typename Real>
+void ResolvedSystem<Real>::update_bodies() {
+  const dem::GrainStore& store = grains_->store();
+  for (std::size_t g = 0; g < store.total(); ++g) {
+    lbm::LinkBody& body = bodies_[map_slot_[g]];
+    body.velocity = store.velocity[g] / parameters_.units.velocity();
+    body.angular_velocity = store.angular_velocity[g] * parameters_.units.time_step;
+    body.force = {};
+    body.torque = {};
+  }
+}
+
+// Ghosts follow the same rule from the same numbers as their owners, so every rank moves a grain's cells in the same step.
+template <typename Real>
+void ResolvedSystem<Real>::update_map() {
+  dem::GrainStore& store = grains_->store();
+  const double tolerance = parameters_.link_tolerance * parameters_.units.spacing;
+  for (std::size_t g = 0; g < store.total(); ++g) {
+    const std::span<double> columns = store.attached_of(g);
+    const Vec3 moved = box_.difference(store.position[g], vector_at(columns, link_position));
+    if (moved.squaredNorm() <= tolerance * tolerance) continue;
+    set_vector(columns, link_position, store.position[g]);
+    map_.place(map_slot_[g], lattice_position(store.position[g]));
+  }
+}
+
+template <typename Real>
+void ResolvedSystem<Real>::build_links() {
+  for (const int slot : map_.slots_to_relink()) {
+    if (map_.grains()[slot].id < 0) links_.remove(slot);
+    else link_builder_.build(slot, map_.grains()[slot], links_, bodies_[slot]);
+  }
+}
+
+template <typename Real>
+void ResolvedSystem<Real>::exchange_momentum() {
+  lbm::apply_links(fluid_.populations(), fluid_.cells(), links_, lattice_box_, parameters_.links, bodies_);
+  const std::size_t count = grains_->store().total();
+  exchanged_.resize(6 * count);
+  for (std::size_t g = 0; g < count; ++g) {
+    const lbm::LinkBody& body = bodies_[map_slot_[g]];
+    const std::int64_t sums[6] = {body.force.x, body.force.y, body.force.z, body.torque.x, body.torque.y, body.torque.z};
+    std::copy(sums, sums + 6, exchanged_.begin() + 6 * g);
+    step_totals_.link_momentum += body.force.to_vec3();
+  }
+  grains_->add_ghost_values(exchanged_, 6);
+}
+
+// The mean of the last two exchanges drives the grains: it damps the two-step oscillation of the lattice (Ladd 1994).
+template <typename Real>
+void ResolvedSystem<Real>::apply_loads() {
+  dem::GrainStore& store = grains_->store();
+  for (std::size_t g = 0; g < store.owned; ++g) {
+    const std::int64_t* sums = &exchanged_[6 * g];
+    const Vec3 force = FixedVec3{sums[0], sums[1], sums[2]}.to_vec3() * parameters_.units.force();
+    const Vec3 torque = FixedVec3{sums[3], sums[4], sums[5]}.to_vec3() * parameters_.units.torque();
+    const std::span<double> columns = store.attached_of(g);
+    const bool first = columns[has_load] == 0.0;
+    store.load_force[g] = first ? force : Vec3(0.5 * (force + vector_at(columns, last_force)));
+    store.load_torque[g] = first ? torque : Vec3(0.5 * (torque + vector_at(columns, last_torque)));
+    set_vector(columns, last_force, force);
+    set_vector(columns, last_torque, torque);
+    columns[has_load] = 1.0;
+  }
+}
+
+template <typename Real>
+void ResolvedSystem<Real>::advance() {
+  step_totals_ = {};
+  bool slots_changed = false;
+  {
+    const auto scope = timer_.measure(phases_.grains);
+    slots_changed = grains_->prepare();
+  }
+  {
+    const auto scope = timer_.measure(phases_.map);
+    map_.begin_update();
+    if (slots_changed) synchronise_slots();
+    else update_bodies();
+    update_map();
+    map_.settle();
+    account_for_covered_cells();
+    build_links();
+  }
+  {
+    const auto scope = timer_.measure(phases_.refill);
+    step_totals_.refilled = refill_.equilibrium(fluid_, map_.changes(), bodies_).momentum;
+  }
+  {
+    const auto scope = timer_.measure(phases_.halo);
+    fluid_.exchange_halo();
+  }
+  {
+    const auto scope = timer_.measure(phases_.walls);
+    fluid_.apply_walls();
+  }
+  {
+    const auto scope = timer_.measure(phases_.links);
+    exchange_momentum();
+    apply_loads();
+  }
+  {
+    const auto scope = timer_.measure(phases_.sweep);
+    fluid_.stream_and_collide();
+  }
+  {
+    const auto scope = timer_.measure(phases_.grains);
+    grains_->advance(parameters_.sub_steps);
+    grains_->refresh_ghosts();
+  }
+  ++step_;
+}
+
+template <typename Real>
+void ResolvedSystem<Real>::account_for_covered_cells() {
+  for (const GrainMap::Change& change : map_.changes()) {
+    const Index3& at = change.cell;
+    if (change.before != CellMap::fluid || !fluid_.indexing().owned(at[0], at[1], at[2])) continue;
+    const std::ptrdiff_t cell = fluid_.indexing().index(at[0], at[1], at[2]);
+    for (int i = 0; i < lbm::D3Q19::directions; ++i)
+      for (int a = 0; a < 3; ++a)
+        step_totals_.covered[a] += lbm::D3Q19::c[i][a] * static_cast<double>(fluid_.populations().post_collision(i, cell));
+  }
+}
+
+template <typename Real>
+std::int64_t ResolvedSystem<Real>::cells() const {
+  const Index3& n = decomposition_->cells();
+  return static_cast<std::int64_t>(n[0]) * n[1] * n[2];
+}
+
+template <typename Real>
+std::int64_t ResolvedSystem<Real>::grain_steps_per_step() const {
+  return grains_->global_count() * parameters_.sub_steps;
+}
+
+template <typename Real>
+Snapshot ResolvedSystem<Real>::snapshot() const {
+  const dem::GrainStore& store = grains_->store();
+  const std::size_t n = store.owned;
+  Snapshot s;
+  s.time = time();
+  s.step = step_;
+  s.decomposition = decomposition_.get();
+  s.fluid = this;
+  s.grains.global_count = grains_->global_count();
+  s.grains.id = {store.id.data(), n};
+  s.grains.radius = {store.radius.data(), n};
+  s.grains.mass = {store.mass.data(), n};
+  s.grains.position = {store.position.data(), n};
+  s.grains.velocity = {store.velocity.data(), n};
+  s.grains.angular_velocity = {store.angular_velocity.data(), n};
+  s.grains.fluid_force = {store.load_force.data(), n};
+  s.grains.fluid_torque = {store.load_torque.data(), n};
+  s.grains.contact_force = {store.contact_force.data(), n};
+  return s;
+}
+
+template <typename Real>
+FluidFields ResolvedSystem<Real>::sample() const {
+  const Index3& n = fluid_.indexing().size();
+  const double velocity_unit = parameters_.units.velocity(), pressure_unit = parameters_.units.stress() / 3.0;
+  FluidFields fields;
+  fields.block = fluid_.block();
+  for (int z = 0; z < n[2]; ++z)
+    for (int y = 0; y < n[1]; ++y)
+      for (int x = 0; x < n[0]; ++x) {
+        const std::ptrdiff_t cell = fluid_.indexing().index(x, y, z);
+        const std::int32_t slot = fluid_.cells().body(cell);
+        lbm::FluidState state;
+        if (slot == CellMap::fluid) state = fluid_.state_at(cell);
+        for (int a = 0; a < 3; ++a) fields.velocity.push_back(static_cast<float>(state.velocity[a] * velocity_unit));
+        fields.pressure.push_back(static_cast<float>(state.density_deviation * pressure_unit));
+        fields.grain_id.push_back(slot == CellMap::fluid ? -1 : static_cast<std::int32_t>(map_.grains()[slot].id));
+      }
+  return fields;
+}
+
+template <typename Real>
+std::vector<Figure> ResolvedSystem<Real>::figures() const {
+  const lbm::FluidTotals totals = fluid_.totals();
+  double speed = fluid_.largest_speed();
+  // Not-a-number does not survive MPI_MAX; infinity does.
+  speed = max_over_ranks(communicator_, std::isfinite(speed) ? speed : HUGE_VAL);
+  return {{"largest_lattice_velocity", "1", speed},
+          {"largest_fluid_speed", "m/s", speed * parameters_.units.velocity()},
+          {"mean_density_deviation", "1", totals.mass_deviation / static_cast<double>(std::max<std::int64_t>(1, totals.cells))},
+          {"fluid_cells", "1", static_cast<double>(totals.cells)},
+          {"largest_overlap", "diameter", grains_->largest_overlap()}};
+}
+
+template <typename Real>
+void ResolvedSystem<Real>::save(ArchiveWriter& archive) const {
+  archive.attribute("step", step_);
+  archive.attribute("time", time());
+  fluid_.save(archive);
+  grains_->save(archive);
+}
+
+template <typename Real>
+void ResolvedSystem<Real>::load(ArchiveReader& archive) {
+  step_ = archive.integer_attribute("step");
+  map_.begin_update();
+  for (std::size_t slot = 0; slot < map_.grains().size(); ++slot)
+    if (map_.grains()[slot].id >= 0) map_.remove(static_cast<int>(slot));
+  map_.settle();
+  build_links();
+  fluid_.load(archive);
+  grains_->load(archive);
+  initialise_map();
+}
+
+template class ResolvedSystem<float>;
+template class ResolvedSystem<double>;
+
+}  // namespace thalweg::coupling

@@ -1,0 +1,106 @@
+// Grains in a resolved flow: the system the project exists for. One step is one lattice step and its DEM sub-steps.
+#pragma once
+
+#include "core/decomposition.hpp"
+#include "core/system.hpp"
+#include "core/units.hpp"
+#include "coupling/grain_map.hpp"
+#include "coupling/link_builder.hpp"
+#include "coupling/refill.hpp"
+#include "dem/grain_dynamics.hpp"
+#include "lbm/bouzidi.hpp"
+#include "lbm/fluid.hpp"
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace thalweg::coupling {
+
+struct FluidInitialState {
+  double density_deviation = 0.0;    // relative: rho/rho_0 - 1
+  Vec3 velocity = Vec3::Zero();      // m/s
+};
+
+struct ResolvedParameters {
+  Units units;                               // of the lattice
+  lbm::CollisionParameters collision;        // lattice units; force included
+  lbm::FaceConditions faces;
+  lbm::LinkOptions links;
+  double link_tolerance = 1e-3;              // cells a grain may move before its links are built anew
+  int sub_steps = 50;                        // DEM steps per lattice step
+  std::function<FluidInitialState(const Vec3&)> initial_fluid;   // of a position in m; empty: at rest
+};
+
+// This rank's part of the sums that a momentum balance of the fluid needs (lattice units, of the step just done).
+struct ExchangeTotals {
+  Vec3 link_momentum = Vec3::Zero();     // force on the grains through this rank's links
+  Vec3 refilled = Vec3::Zero();          // given to uncovered cells
+  Vec3 covered = Vec3::Zero();           // lost in cells that became solid
+};
+
+template <typename Real>
+class ResolvedSystem final : public System, private FluidSource {
+public:
+  // The grains (already holding their seeds) must carry attached_width attached columns and reach ghost_reach() beyond
+  // their block. Takes both over.
+  ResolvedSystem(std::unique_ptr<Decomposition> decomposition, MPI_Comm communicator, const ResolvedParameters& parameters,
+                 std::unique_ptr<dem::GrainDynamics> grains);
+
+  // Attached columns of a grain: where its links were built (m), then force (N) and torque (N m) of the last exchange.
+  enum Attached { link_position = 0, last_force = 3, last_torque = 6, has_load = 9, attached_width = 10 };
+
+  // How far beyond a block its grains must be known for the map, as a distance from the grain's centre (m).
+  static double ghost_reach(double largest_radius, double spacing) { return largest_radius + 2.5 * spacing; }
+
+  void advance() override;
+  std::int64_t step() const override { return step_; }
+  double time_step() const override { return parameters_.units.time_step; }
+  Snapshot snapshot() const override;
+  std::vector<Figure> figures() const override;
+  void save(ArchiveWriter& archive) const override;
+  void load(ArchiveReader& archive) override;
+  PhaseTimer& timer() override { return timer_; }
+  std::int64_t cells() const override;
+  std::int64_t grain_steps_per_step() const override;
+
+  const lbm::Fluid<Real>& fluid() const { return fluid_; }
+  const dem::GrainDynamics& grains() const { return *grains_; }
+  const lbm::LinkTable& links() const { return links_; }
+  const ExchangeTotals& step_totals() const { return step_totals_; }
+
+private:
+  FluidFields sample() const override;
+
+  void initialise_map();
+  void synchronise_slots();
+  void update_map();
+  void update_bodies();
+  void build_links();
+  void account_for_covered_cells();
+  void exchange_momentum();
+  void apply_loads();
+  Vec3 lattice_position(const Vec3& position) const { return position / parameters_.units.spacing; }
+
+  std::unique_ptr<Decomposition> decomposition_;
+  MPI_Comm communicator_;
+  ResolvedParameters parameters_;
+  lbm::Fluid<Real> fluid_;
+  std::unique_ptr<dem::GrainDynamics> grains_;
+  PeriodicBox box_, lattice_box_;            // m, cells
+  GrainMap map_;
+  lbm::LinkTable links_;
+  LinkBuilder link_builder_;
+  Refill refill_;
+  std::vector<lbm::LinkBody> bodies_;        // by map slot
+  std::vector<int> map_slot_;                // of each grain of the store
+  std::vector<std::int64_t> exchanged_;      // force and torque sums of each grain of the store
+  ExchangeTotals step_totals_;
+  std::int64_t step_ = 0;
+  PhaseTimer timer_;
+  struct Phases {
+    int map, refill, halo, walls, links, sweep, grains;
+  } phases_;
+};
+
+}  // namespace thalweg::coupling

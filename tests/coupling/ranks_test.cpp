@@ -1,0 +1,101 @@
+// Grains in a flow have the same bits on any number of ranks, however the box is cut: every rank runs the whole box alone
+// as well, and compares its own block and grains. Grains cross rank borders and periodic faces all the time.
+#include "tests/coupling/water_box.hpp"
+
+#include "core/mpi_session.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+namespace thalweg::coupling {
+namespace {
+
+std::vector<Index3> layouts_of(int ranks) {
+  std::vector<Index3> layouts;
+  for (int x = 1; x <= ranks; ++x)
+    for (int y = 1; x * y <= ranks; ++y)
+      if (ranks % (x * y) == 0) layouts.push_back({x, y, ranks / (x * y)});
+  return layouts;
+}
+
+FluidInitialState swirl(const Vec3& p) {
+  return {0.0, Vec3(0.4 + 0.1 * std::sin(500.0 * p.z()), 0.1 * std::sin(300.0 * p.x()), 0.1 * std::cos(400.0 * p.y()))};
+}
+
+WaterBox crowded(const Index3& cells, const std::array<bool, 3>& periodic, int count, double distance) {
+  WaterBox box;
+  box.cells = cells;
+  box.periodic = periodic;
+  box.spacing = 5e-3 / 6.0;
+  box.gravity = Vec3(1.0, 0.3, -9.0);
+  box.sub_steps = 20;
+  box.initial = swirl;
+  const Index3 places{static_cast<int>(cells[0] * box.spacing / distance), static_cast<int>(cells[1] * box.spacing / distance),
+                      static_cast<int>(cells[2] * box.spacing / distance)};
+  for (int k = 0; k < count; ++k) {
+    const Index3 at{k % places[0], k / places[0] % places[1], k / (places[0] * places[1])};
+    const Vec3 wobble(std::sin(1.0 + k), std::sin(2.0 + 3.0 * k), std::sin(5.0 * k));
+    box.seeds.push_back(glass_sphere(k, distance * Vec3(at[0] + 0.5, at[1] + 0.5, at[2] + 0.5) + 1e-4 * wobble,
+                                     0.5 * Vec3(std::cos(2.0 * k), std::sin(3.0 * k), std::cos(7.0 * k))));
+  }
+  return box;
+}
+
+template <typename Real>
+void compare(const WaterBox& box, const Index3& layout, int steps) {
+  const auto alone = make_system<Real>(box, MPI_COMM_SELF, {1, 1, 1});
+  const auto shared = make_system<Real>(box, MPI_COMM_WORLD, layout);
+  for (int step = 0; step < steps; ++step) {
+    alone->advance();
+    shared->advance();
+  }
+  const lbm::Fluid<Real>&whole = alone->fluid(), &part = shared->fluid();
+  const Index3 n = part.indexing().size(), from = part.block().lower;
+  std::int64_t differing = 0, solid = 0;
+  for (int z = 0; z < n[2]; ++z)
+    for (int y = 0; y < n[1]; ++y)
+      for (int x = 0; x < n[0]; ++x) {
+        const std::ptrdiff_t here = part.indexing().index(x, y, z);
+        const std::ptrdiff_t there = whole.indexing().index(from[0] + x, from[1] + y, from[2] + z);
+        if (part.cells().is_fluid(here) != whole.cells().is_fluid(there)) ++differing;
+        solid += !part.cells().is_fluid(here);
+        if (!part.cells().is_fluid(here)) continue;
+        for (int i = 0; i < 19; ++i)
+          differing += part.populations().post_collision(i, here) != whole.populations().post_collision(i, there);
+      }
+  const dem::GrainStore &all = alone->grains().store(), &mine = shared->grains().store();
+  std::map<GlobalId, std::size_t> slot;
+  for (std::size_t g = 0; g < all.owned; ++g) slot[all.id[g]] = g;
+  for (std::size_t g = 0; g < mine.owned; ++g) {
+    const std::size_t a = slot.at(mine.id[g]);
+    differing += mine.position[g] != all.position[a] || mine.velocity[g] != all.velocity[a] ||
+                 mine.angular_velocity[g] != all.angular_velocity[a] || mine.load_force[g] != all.load_force[a] ||
+                 mine.load_torque[g] != all.load_torque[a] || mine.contact_force[g] != all.contact_force[a];
+  }
+  EXPECT_EQ(differing, 0) << "layout " << layout[0] << "," << layout[1] << "," << layout[2];
+  EXPECT_EQ(sum_over_ranks(MPI_COMM_WORLD, static_cast<std::int64_t>(mine.owned)),
+            static_cast<std::int64_t>(box.seeds.size()));
+  EXPECT_GT(sum_over_ranks(MPI_COMM_WORLD, solid), 1000);
+}
+
+TEST(Ranks, DoNotChangeOneBitOfABedInAFlume) {
+  const WaterBox box = crowded({48, 36, 36}, {true, false, false}, 100, 5.4e-3);
+  for (const Index3& layout : layouts_of(size_of(MPI_COMM_WORLD))) compare<float>(box, layout, 25);
+}
+
+TEST(Ranks, DoNotChangeOneBitOfACloudInAPeriodicBox) {
+  const WaterBox box = crowded({33, 34, 35}, {true, true, true}, 60, 5.4e-3);
+  for (const Index3& layout : layouts_of(size_of(MPI_COMM_WORLD))) compare<double>(box, layout, 25);
+}
+
+// Only 2.2 diameters wide: a grain can meet its neighbour through either periodic face, and a cut leaves 1.1 a rank.
+TEST(Ranks, DoNotChangeOneBitInANarrowPeriodicBox) {
+  const WaterBox box = crowded({48, 13, 40}, {true, true, false}, 40, 5.3e-3);
+  for (const Index3& layout : layouts_of(size_of(MPI_COMM_WORLD)))
+    if (layout[1] <= 2) compare<float>(box, layout, 40);
+}
+
+}  // namespace
+}  // namespace thalweg::coupling

@@ -1,0 +1,82 @@
+// A small resolved system for tests: 5 mm glass spheres in water or a thicker fluid, 6 to 8 cells a diameter.
+#pragma once
+
+#include "coupling/resolved_system.hpp"
+#include "dem/walls.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace thalweg::coupling {
+
+struct WaterBox {
+  Index3 cells{32, 24, 24};
+  std::array<bool, 3> periodic{true, true, true};
+  double spacing = 0.8e-3;             // m
+  double time_step = 1e-4;             // s
+  double viscosity = 1e-6;             // m^2/s
+  double smagorinsky_constant = 0.27;
+  Vec3 gravity = Vec3(0.0, 0.0, 0.0);  // m/s^2; reduced: along z only the submerged weight counts
+  Vec3 fluid_velocity = Vec3::Zero();  // m/s at the start
+  FluidInitialState (*initial)(const Vec3&) = nullptr;
+  lbm::LinkOptions links;
+  double link_tolerance = 1e-3;
+  int sub_steps = 50;
+  std::vector<dem::GrainSeed> seeds;
+};
+
+template <typename Real>
+std::unique_ptr<ResolvedSystem<Real>> make_system(const WaterBox& box, MPI_Comm communicator, const Index3& layout) {
+  constexpr double fluid_density = 1000.0;
+  auto decomposition = std::make_unique<Decomposition>(box.cells, box.spacing, box.periodic, layout);
+
+  ResolvedParameters p;
+  p.units = {box.spacing, box.time_step, fluid_density};
+  p.collision.relaxation_time = p.units.relaxation_time(box.viscosity);
+  p.collision.smagorinsky_constant = box.smagorinsky_constant;
+  for (int a = 0; a < 2; ++a) p.collision.force[a] = box.gravity[a] / p.units.acceleration();
+  for (int face = 0; face < 6; ++face)
+    p.faces[face].type = box.periodic[face / 2] ? lbm::FaceType::periodic
+                         : face == 5            ? lbm::FaceType::free_slip
+                         : face == 4            ? lbm::FaceType::no_slip
+                                                : lbm::FaceType::law_of_the_wall;
+  p.links = box.links;
+  p.link_tolerance = box.link_tolerance;
+  p.sub_steps = box.sub_steps;
+  if (box.initial) p.initial_fluid = box.initial;
+  else p.initial_fluid = [u = box.fluid_velocity](const Vec3&) { return FluidInitialState{0.0, u}; };
+
+  dem::GrainParameters g;
+  g.contact.normal_stiffness = 20000.0;
+  g.contact.tangential_stiffness = 5714.0;
+  g.contact.restitution = 0.93;
+  g.contact.friction = 0.5;
+  g.contact.wall_friction = 0.45;
+  g.walls = dem::face_planes(decomposition->box(), g.contact);
+  g.body_force = [gravity = box.gravity](double mass, double radius) {
+    const double displaced = fluid_density * 4.0 / 3.0 * 3.14159265358979323846 * radius * radius * radius;
+    return Vec3(mass * gravity.x(), mass * gravity.y(), (mass - displaced) * gravity.z());
+  };
+  g.time_step = box.time_step / box.sub_steps;
+  g.sub_steps = box.sub_steps;
+  double largest = 0.0;
+  for (const dem::GrainSeed& seed : box.seeds) largest = std::max(largest, seed.radius);
+  g.skin = 0.2 * largest;
+  g.ghost_width = ResolvedSystem<Real>::ghost_reach(largest, box.spacing);
+  g.attached_width = ResolvedSystem<Real>::attached_width;
+  auto grains = std::make_unique<dem::GrainDynamics>(*decomposition, communicator, g, box.seeds);
+  return std::make_unique<ResolvedSystem<Real>>(std::move(decomposition), communicator, p, std::move(grains));
+}
+
+inline dem::GrainSeed glass_sphere(GlobalId id, const Vec3& position, const Vec3& velocity = Vec3::Zero(),
+                                   double radius = 2.5e-3) {
+  dem::GrainSeed seed;
+  seed.id = id;
+  seed.radius = radius;
+  seed.density = 2550.0;
+  seed.position = position;
+  seed.velocity = velocity;
+  return seed;
+}
+
+}  // namespace thalweg::coupling
