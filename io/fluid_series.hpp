@@ -1,0 +1,41 @@
+// The fluid as a time series for ParaView: cell data of an image, and fluid.pvd that gives each picture its time.
+#pragma once
+
+#include "core/snapshot.hpp"
+#include "io/pvd_index.hpp"
+
+#include <mpi.h>
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+namespace thalweg::io {
+
+enum class FluidRegion { whole, slice_x, slice_y, slice_z };   // a slice: the middle layer of cells across that axis
+enum class FluidField { velocity, pressure, grain_id };
+
+// Writes fluid/fluid_<step>.vti in the run folder, or, for the whole box on several ranks, fluid/fluid_<step>.pvti with
+// one .vti a rank in fluid/fluid_<step>/. Cell arrays velocity (m/s), pressure (Pa), grain_id (-1: fluid).
+// All calls are collective and throw RunError on every rank if a file cannot be written.
+class FluidSeries {
+public:
+  // continue_from: as for GrainSeries.
+  FluidSeries(MPI_Comm communicator, const std::filesystem::path& run_folder, FluidRegion region,
+              std::vector<FluidField> fields, std::optional<double> continue_from = std::nullopt);
+
+  // Does nothing for a snapshot without a fluid.
+  void write(const Snapshot& snapshot);
+
+private:
+  std::filesystem::path write_pieces(const Snapshot& snapshot, const FluidFields& fields);
+  std::filesystem::path write_gathered(const Snapshot& snapshot, const FluidFields& fields);
+
+  MPI_Comm communicator_;
+  std::filesystem::path folder_;
+  FluidRegion region_;
+  std::vector<FluidField> fields_;
+  PvdIndex index_;
+};
+
+}  // namespace thalweg::io

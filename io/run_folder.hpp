@@ -1,0 +1,54 @@
+// The folder of one run: what lies where in it, and the care that nothing of the user's is lost.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace thalweg::io {
+
+// Plain paths and file operations; called by one rank (the others may hold a RunFolder for its paths).
+class RunFolder {
+public:
+  // The folder `path`, whether it exists or not.
+  explicit RunFolder(std::filesystem::path path) : path_(std::move(path)) {}
+
+  // True if this is a folder some run wrote: its case.yaml begins with case_marker.
+  bool is_run_folder() const;
+
+  // Makes the folder ready for a new run. Throws InputError if something is there already: a run without `overwrite`, or
+  // anything that is not a run in any case. With `overwrite` only what a run writes is removed, and nothing else.
+  // check_new() only checks, so that a bad case can be refused before anything is written.
+  void check_new(bool overwrite) const;
+  void create(bool overwrite) const;
+
+  // Writes case.yaml: the marker, the given lines as comments (version, command), the case. Throws RunError.
+  void write_case(const std::string& comment_lines, const std::string& yaml) const;
+  static constexpr const char* case_marker = "# Thalweg run:";
+
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path case_file() const { return path_ / "case.yaml"; }
+  std::filesystem::path log() const { return path_ / "run.log"; }
+  std::filesystem::path series() const { return path_ / "series.csv"; }
+  std::filesystem::path profiles() const { return path_ / "profiles.h5"; }
+  std::filesystem::path tracks() const { return path_ / "tracks.h5"; }
+  std::filesystem::path summary() const { return path_ / "summary.json"; }
+  std::filesystem::path checkpoints() const { return path_ / "checkpoints"; }
+  std::filesystem::path checkpoint(std::int64_t step) const;   // checkpoints/step_<step>.h5
+
+  // After the checkpoint of `step` has been closed: makes it the latest (checkpoints/latest holds its file name) and
+  // removes all but the newest `keep` of those up to `step`, and any after it, which a restart from an earlier time has
+  // made wrong. Throws RunError.
+  void rotate_checkpoints(std::int64_t step, int keep) const;
+
+  // The latest checkpoint; InputError if there is none.
+  std::filesystem::path latest_checkpoint() const;
+
+private:
+  std::filesystem::path path_;
+};
+
+// The checkpoint a `--restart PATH` means: the file itself, or the latest checkpoint of a run folder. Throws InputError.
+std::filesystem::path checkpoint_at(const std::filesystem::path& path);
+
+}  // namespace thalweg::io

@@ -1,0 +1,41 @@
+// series.csv: one row of numbers per time, under a header that names each column and its unit: time [s],q_star [1],...
+#pragma once
+
+#include <mpi.h>
+
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace thalweg::io {
+
+// Numbers are written with as many digits as it takes to read back the same bits. Rank 0 writes; all calls are
+// collective and throw RunError on every rank if the file cannot be written.
+class SeriesTable {
+public:
+  struct Column {
+    std::string name;
+    std::string unit;   // "1" for none
+  };
+
+  // columns: after the first, which is always time [s]. continue_from: take up an existing file and drop the rows after
+  // that time (s), and a last row cut short; a file with other columns is an InputError. Empty: a new file.
+  SeriesTable(MPI_Comm communicator, std::filesystem::path path, std::vector<Column> columns,
+              std::optional<double> continue_from = std::nullopt);
+
+  // Appends a row, on the disk before this returns. values: one per column; only rank 0's are used.
+  void append(double time, std::span<const double> values);
+
+private:
+  void throw_if_failed(bool failed) const;
+
+  MPI_Comm communicator_;
+  std::filesystem::path path_;
+  std::vector<Column> columns_;
+  std::ofstream file_;
+};
+
+}  // namespace thalweg::io
