@@ -1,0 +1,24 @@
+// The case file: YAML in, a checked Case out, and back.
+#pragma once
+
+#include "driver/case.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace thalweg {
+
+// Reads and checks a case. overrides: texts of the form "key.sub=VALUE" (items of a list by index: grains.0.count=10)
+// that replace or add to what the file says. Throws InputError: one sentence with file and line (or the override), key,
+// value, and what would be right. Writes nothing.
+Case read_case(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
+
+// The case with every default filled in, as YAML that read_case() reads back as the same case.
+std::string resolved_yaml(const Case& c);
+
+// Every key of a system ("resolved" or "grains"; InputError for another) with its default, unit and meaning: a valid
+// case, with plausible values for the keys that have no default, and the optional ones commented out.
+std::string defaults_yaml(const std::string& system = "resolved");
+
+}  // namespace thalweg
