@@ -1,0 +1,157 @@
+// One description of the keys of a section serves three uses: reading it, writing it back with all defaults, and
+// documenting it. For a plain struct T write once
+//
+//   void describe(io::SectionVisitor& visit, FluidCase& fluid) {
+//     visit.real("density", fluid.density, {.unit = "kg/m^3", .meaning = "mass density", .above = 0.0});
+//     ...
+//   }
+//
+// in T's namespace; SectionReader and SectionWriter are the visitors. The default of a key is the value the struct has
+// before it is read; `required` keys and optional values have none.
+#pragma once
+
+#include "core/types.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace thalweg::io {
+
+struct RealKey {
+  std::string unit = "1";   // "1": none
+  std::string meaning = {};
+  bool required = false;
+  std::optional<double> above = std::nullopt;      // value > above
+  std::optional<double> at_least = std::nullopt;
+  std::optional<double> below = std::nullopt;      // value < below
+  std::optional<double> at_most = std::nullopt;
+  std::optional<double> example = std::nullopt;    // shown in errors and, for an optional value, in the documentation
+};
+
+struct IntegerKey {
+  std::string meaning = {};
+  bool required = false;
+  std::int64_t at_least = 0;
+  std::optional<std::int64_t> example = std::nullopt;
+};
+
+struct TextKey {
+  std::string meaning = {};
+  bool required = false;
+};
+
+// A section, a list of sections, or a choice.
+struct SectionKey {
+  std::string meaning = {};
+  bool required = false;
+  std::string shorthand = {};    // a plain word in place of the section is the value of this key: x: no_slip
+  std::string empty_name = {};   // this word in place of the section stands for the section without keys: fluid: rest
+};
+
+// A word of a choice and what it means.
+template <typename Choice>
+struct NamedChoice {
+  Choice value;
+  std::string name;
+  std::string meaning = {};
+};
+
+class SectionVisitor {
+public:
+  virtual ~SectionVisitor() = default;
+
+  virtual void real(const std::string& key, double& value, const RealKey& about) = 0;
+  virtual void real(const std::string& key, std::optional<double>& value, const RealKey& about) = 0;
+  virtual void vec3(const std::string& key, Vec3& value, const RealKey& about) = 0;
+  virtual void vec3(const std::string& key, std::optional<Vec3>& value, const RealKey& about) = 0;
+  virtual void vec3_list(const std::string& key, std::vector<Vec3>& values, const RealKey& about) = 0;
+  virtual void integer(const std::string& key, std::int64_t& value, const IntegerKey& about) = 0;
+  virtual void text(const std::string& key, std::string& value, const TextKey& about) = 0;
+  virtual void flag(const std::string& key, bool& value, const TextKey& about) = 0;
+
+  template <typename Choice>
+  void choice(const std::string& key, Choice& value, const std::vector<NamedChoice<Choice>>& choices,
+              const SectionKey& about) {
+    std::size_t index = index_of(value, choices);
+    word(key, index, words_of(choices), about);
+    value = choices[index].value;
+  }
+
+  template <typename Choice>
+  void choice_list(const std::string& key, std::vector<Choice>& values,
+                   const std::vector<NamedChoice<Choice>>& choices, const SectionKey& about) {
+    std::vector<std::size_t> indices;
+    for (const Choice& value : values) indices.push_back(index_of(value, choices));
+    word_list(key, indices, words_of(choices), about);
+    values.clear();
+    for (std::size_t index : indices) values.push_back(choices[index].value);
+  }
+
+  template <typename Section>
+  void section(const std::string& key, Section& value, const SectionKey& about) {
+    nested(key, true, about, [&](SectionVisitor& inside) { describe(inside, value); });
+  }
+
+  // Empty: the section is not given.
+  template <typename Section>
+  void section(const std::string& key, std::optional<Section>& value, const SectionKey& about) {
+    const bool given = is_given(key, value.has_value());
+    Section held = value.value_or(Section{});
+    nested(key, given, about, [&](SectionVisitor& inside) { describe(inside, held); });
+    if (given) value = held;
+    else value.reset();
+  }
+
+  template <typename Section>
+  void list(const std::string& key, std::vector<Section>& values, const SectionKey& about) {
+    const std::size_t size = begin_list(key, values.size(), about);
+    values.resize(size);
+    for (std::size_t n = 0; n < size; ++n)
+      item(key, n, [&](SectionVisitor& inside) { describe(inside, values[n]); });
+  }
+
+  // The key belongs to this section but not to this case; reading it is an error that gives the reason.
+  virtual void not_here(const std::string& key, const std::string& reason) = 0;
+
+  // A condition between values just visited; where it does not hold, reading fails with the place and value of the key
+  // and this remedy.
+  virtual void require(bool condition, const std::string& key, const std::string& remedy) = 0;
+
+  // True if values are being filled in, false if they are being shown.
+  virtual bool reading() const = 0;
+
+protected:
+  using Body = std::function<void(SectionVisitor&)>;
+  struct Word {
+    std::string name, meaning;
+  };
+
+  virtual void word(const std::string& key, std::size_t& index, const std::vector<Word>& words,
+                    const SectionKey& about) = 0;
+  virtual void word_list(const std::string& key, std::vector<std::size_t>& indices, const std::vector<Word>& words,
+                         const SectionKey& about) = 0;
+  virtual bool is_given(const std::string& key, bool has_value) = 0;
+  virtual void nested(const std::string& key, bool given, const SectionKey& about, const Body& body) = 0;
+  virtual std::size_t begin_list(const std::string& key, std::size_t size, const SectionKey& about) = 0;
+  virtual void item(const std::string& key, std::size_t index, const Body& body) = 0;
+
+private:
+  template <typename Choice>
+  static std::size_t index_of(const Choice& value, const std::vector<NamedChoice<Choice>>& choices) {
+    std::size_t index = 0;
+    while (index + 1 < choices.size() && choices[index].value != value) ++index;
+    return index;
+  }
+  template <typename Choice>
+  static std::vector<Word> words_of(const std::vector<NamedChoice<Choice>>& choices) {
+    std::vector<Word> words;
+    for (const auto& choice : choices) words.push_back({choice.name, choice.meaning});
+    return words;
+  }
+};
+
+}  // namespace thalweg::io

@@ -1,0 +1,65 @@
+// The visitor that shows a struct as YAML: plainly, with units behind the numbers, or as documentation.
+#pragma once
+
+#include "io/section_visitor.hpp"
+
+namespace thalweg::io {
+
+// plain: every key that has a value, its unit as a comment. documented: meanings as well, and the keys that are not given
+// as comments, so that the text is both a valid file and the reference of all keys.
+enum class YamlStyle { plain, documented };
+
+class SectionWriter final : public SectionVisitor {
+public:
+  explicit SectionWriter(YamlStyle style) : style_(style) {}
+
+  void real(const std::string& key, double& value, const RealKey& about) override;
+  void real(const std::string& key, std::optional<double>& value, const RealKey& about) override;
+  void vec3(const std::string& key, Vec3& value, const RealKey& about) override;
+  void vec3(const std::string& key, std::optional<Vec3>& value, const RealKey& about) override;
+  void vec3_list(const std::string& key, std::vector<Vec3>& values, const RealKey& about) override;
+  void integer(const std::string& key, std::int64_t& value, const IntegerKey& about) override;
+  void text(const std::string& key, std::string& value, const TextKey& about) override;
+  void flag(const std::string& key, bool& value, const TextKey& about) override;
+  void not_here(const std::string&, const std::string&) override {}
+  void require(bool, const std::string&, const std::string&) override {}
+  bool reading() const override { return false; }
+
+  std::string yaml() const;
+
+private:
+  struct Line {
+    bool given;            // false: shown as a comment
+    int depth;             // in sections
+    std::string text;      // key and value
+    std::string comment;
+  };
+
+  void word(const std::string& key, std::size_t& index, const std::vector<Word>& words,
+            const SectionKey& about) override;
+  void word_list(const std::string& key, std::vector<std::size_t>& indices, const std::vector<Word>& words,
+                 const SectionKey& about) override;
+  bool is_given(const std::string& key, bool has_value) override;
+  void nested(const std::string& key, bool given, const SectionKey& about, const Body& body) override;
+  std::size_t begin_list(const std::string& key, std::size_t size, const SectionKey& about) override;
+  void item(const std::string& key, std::size_t index, const Body& body) override;
+
+  void put(bool given, const std::string& key, const std::string& value, const std::string& comment);
+  std::string comment_of(const RealKey& about) const;
+
+  YamlStyle style_;
+  std::vector<Line> lines_;
+};
+
+// A struct described for SectionVisitor, as YAML.
+template <typename Section>
+std::string written(Section value, YamlStyle style) {
+  SectionWriter writer(style);
+  describe(writer, value);
+  return writer.yaml();
+}
+
+// A number with as few digits as read back to the same bits.
+std::string shortest(double value);
+
+}  // namespace thalweg::io

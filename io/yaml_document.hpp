@@ -1,0 +1,54 @@
+// A YAML file as a tree in which every value knows where it stands, so that every complaint can say it.
+#pragma once
+
+#include "core/error.hpp"
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace thalweg::io {
+
+struct YamlNode {
+  enum class Kind { scalar, section, list };
+
+  Kind kind = Kind::section;
+  std::string text;                                        // of a scalar; empty for null
+  std::vector<std::pair<std::string, YamlNode>> entries;   // of a section, in the order of the file
+  std::vector<YamlNode> items;                             // of a list
+  std::string place;                                       // "cases/x/case.yaml:12" or "--set fluid.density=water"
+
+  const YamlNode* find(const std::string& key) const;      // entry of a section; null if there is none
+};
+
+class YamlDocument {
+public:
+  // Reads a file, then applies the overrides ("key.sub=VALUE", VALUE being YAML itself; list items by index).
+  // Throws InputError: missing file, YAML syntax, duplicate key, an override that names no key.
+  YamlDocument(const std::filesystem::path& path, const std::vector<std::string>& overrides);
+
+  const YamlNode& root() const { return root_; }
+  const std::filesystem::path& path() const { return path_; }
+
+  // The value at "fluid.density" or "grains.0.count"; null if there is none.
+  const YamlNode* find(const std::string& key_path) const;
+
+  // The error of a value: "<place>: <key path> = <value found>: <remedy>.", or, where the key is not given, the place of
+  // the section it belongs to and "<key path>: <remedy>.".
+  InputError error(const std::string& key_path, const std::string& remedy) const;
+
+private:
+  void apply(const std::string& override_text);
+
+  std::filesystem::path path_;
+  YamlNode root_;
+};
+
+// The value as a complaint shows it: "water" in quotes, a number bare, [0, 1] or "a section with 3 keys".
+std::string shown(const YamlNode& node);
+
+// "fluid" and "density" -> "fluid.density"; "" and "fluid" -> "fluid".
+std::string joined_key(const std::string& section, const std::string& key);
+
+}  // namespace thalweg::io
