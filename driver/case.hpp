@@ -99,7 +99,7 @@ struct ContactCase {
   std::optional<double> restitution;           // 1; exactly one of restitution and damping is set
   std::optional<double> damping;               // kg/s
   double friction = 0.5;                       // grain on grain
-  double wall_friction = 0.5;                  // grain on wall
+  double wall_friction = 0.45;                 // grain on wall
   Attraction attraction = Attraction::allowed; // allowed: the dashpot may pull grains together as they part
   bool operator==(const ContactCase&) const = default;
 };

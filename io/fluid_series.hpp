@@ -7,6 +7,7 @@
 #include <mpi.h>
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -28,8 +29,7 @@ public:
   void write(const Snapshot& snapshot);
 
 private:
-  std::filesystem::path write_pieces(const Snapshot& snapshot, const FluidFields& fields);
-  std::filesystem::path write_gathered(const Snapshot& snapshot, const FluidFields& fields);
+  void agree(const std::function<void()>& work) const;   // throws RunError on every rank if it failed on one
 
   MPI_Comm communicator_;
   std::filesystem::path folder_;

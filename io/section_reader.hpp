@@ -44,12 +44,13 @@ private:
                  const std::string& expectation) const;
   std::size_t word_from(const YamlNode& node, const std::string& key, const std::vector<Word>& words) const;
   void read_inside(const YamlNode& node, const std::string& key, const SectionKey& about, const Body& body) const;
-  [[noreturn]] void fail(const YamlNode& node, const std::string& key, const std::string& expectation) const;
+  [[noreturn]] void fail(const YamlNode& node, const std::string& key, const std::string& remedy) const;
 
   const YamlDocument& document_;
   std::string key_path_;
   const YamlNode& section_;
   std::vector<std::string> known_;   // every key asked for, in order
+  std::string missing_;              // the complaint about the first required key that is not given
 };
 
 // Reads a whole document into a struct described for SectionVisitor.

@@ -30,9 +30,9 @@ public:
 private:
   struct Line {
     bool given;            // false: shown as a comment
+    bool item;             // the first line of an entry of a list
     int depth;             // in sections
-    std::string text;      // key and value
-    std::string comment;
+    std::string key, value, comment;
   };
 
   void word(const std::string& key, std::size_t& index, const std::vector<Word>& words,
@@ -46,8 +46,12 @@ private:
 
   void put(bool given, const std::string& key, const std::string& value, const std::string& comment);
   std::string comment_of(const RealKey& about) const;
+  std::string comment_of(const std::vector<Word>& words, const SectionKey& about) const;
 
   YamlStyle style_;
+  bool given_ = true;           // false inside a section that is not given
+  bool item_begins_ = false;    // the next line is the first of an entry of a list
+  int depth_ = 0;
   std::vector<Line> lines_;
 };
 

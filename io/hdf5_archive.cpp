@@ -1,0 +1,358 @@
+#include "io/hdf5_archive.hpp"
+
+#include "core/error.hpp"
+#include "core/mpi_session.hpp"
+#include "io/hdf5_handle.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <exception>
+#include <functional>
+#include <numeric>
+
+namespace thalweg::io {
+namespace {
+
+// In the file every number is little-endian and of fixed size; in memory it is what this machine uses.
+template <typename Number> struct Stored;
+template <> struct Stored<double> {
+  static hid_t file() { return H5T_IEEE_F64LE; }
+  static hid_t memory() { return H5T_NATIVE_DOUBLE; }
+  static constexpr const char* name = "float64";
+};
+template <> struct Stored<float> {
+  static hid_t file() { return H5T_IEEE_F32LE; }
+  static hid_t memory() { return H5T_NATIVE_FLOAT; }
+  static constexpr const char* name = "float32";
+};
+template <> struct Stored<std::int64_t> {
+  static hid_t file() { return H5T_STD_I64LE; }
+  static hid_t memory() { return H5T_NATIVE_INT64; }
+  static constexpr const char* name = "int64";
+};
+
+std::string name_of_type(hid_t type) {
+  if (H5Tequal(type, H5T_IEEE_F64LE) > 0) return Stored<double>::name;
+  if (H5Tequal(type, H5T_IEEE_F32LE) > 0) return Stored<float>::name;
+  if (H5Tequal(type, H5T_STD_I64LE) > 0) return Stored<std::int64_t>::name;
+  return "another type";
+}
+
+std::vector<hsize_t> extents_of(hid_t dataset) {
+  const Handle space(H5Dget_space(dataset), H5Sclose);
+  std::vector<hsize_t> extents(static_cast<std::size_t>(std::max(0, H5Sget_simple_extent_ndims(space))));
+  if (!extents.empty()) H5Sget_simple_extent_dims(space, extents.data(), nullptr);
+  return extents;
+}
+
+std::string shown(const std::vector<std::uint64_t>& shape) { return fmt::format("{}", fmt::join(shape, " x ")); }
+
+std::uint64_t volume(const std::vector<std::uint64_t>& shape) {
+  return std::accumulate(shape.begin(), shape.end(), std::uint64_t{1}, std::multiplies<>());
+}
+
+// The rank's box in the dataset, and the same number of values in a row in memory. A rank with nothing takes part in the
+// collective call with empty selections.
+struct Selection {
+  Handle file, memory;
+
+  explicit Selection(const ArrayBox& box)
+      : file(H5Screate_simple(static_cast<int>(box.global_shape.size()),
+                              std::vector<hsize_t>(box.global_shape.begin(), box.global_shape.end()).data(), nullptr),
+             H5Sclose) {
+    const hsize_t count = volume(box.shape);
+    memory = Handle(H5Screate_simple(1, &count, nullptr), H5Sclose);
+    if (count == 0) {
+      H5Sselect_none(file);
+      H5Sselect_none(memory);
+      return;
+    }
+    const std::vector<hsize_t> offset(box.offset.begin(), box.offset.end());
+    const std::vector<hsize_t> shape(box.shape.begin(), box.shape.end());
+    H5Sselect_hyperslab(file, H5S_SELECT_SET, offset.data(), nullptr, shape.data(), nullptr);
+  }
+};
+
+Handle collective_transfer() {
+  Handle properties(H5Pcreate(H5P_DATASET_XFER), H5Pclose);
+  H5Pset_dxpl_mpio(properties, H5FD_MPIO_COLLECTIVE);
+  return properties;
+}
+
+void check_box(const std::string& path, const ArrayBox& box, std::size_t values) {
+  const std::size_t rank = box.global_shape.size();
+  if (rank < 1 || rank > 4 || box.offset.size() != rank || box.shape.size() != rank || volume(box.shape) != values)
+    throw std::logic_error(fmt::format("archive path {}: box {} at {} of {} does not describe {} values", path,
+                                       shown(box.shape), shown(box.offset), shown(box.global_shape), values));
+}
+
+std::pair<std::string, std::string> group_and_name(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  if (slash == std::string::npos) return {"/", path};
+  return {path.substr(0, slash), path.substr(slash + 1)};
+}
+
+}  // namespace
+
+struct Hdf5Writer::File {
+  MPI_Comm communicator;
+  std::filesystem::path path, partial;
+  Handle file;
+  bool failed_everywhere = false;   // every rank knows that writing failed, so closing together is safe
+
+  // Every rank learns whether all went well.
+  void agree(bool good) {
+    if (!any_rank(communicator, !good)) return;
+    failed_everywhere = true;
+    throw RunError(fmt::format("{}: cannot write the file; is the disk full or the folder missing or write-protected?",
+                               path.string()));
+  }
+
+  // Opens a group, creating it and its parents where they are missing.
+  Handle group(const std::string& name) const {
+    if (name == "/") return Handle(H5Gopen2(file, "/", H5P_DEFAULT), H5Gclose);
+    const Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+    H5Pset_obj_track_times(creation, false);
+    Handle current;
+    for (std::size_t end = 0; end != std::string::npos;) {
+      end = name.find('/', end + 1);
+      const std::string part = name.substr(0, end);
+      current = H5Lexists(file, part.c_str(), H5P_DEFAULT) > 0
+                    ? Handle(H5Gopen2(file, part.c_str(), H5P_DEFAULT), H5Gclose)
+                    : Handle(H5Gcreate2(file, part.c_str(), H5P_DEFAULT, creation, H5P_DEFAULT), H5Gclose);
+    }
+    return current;
+  }
+
+  template <typename Number>
+  void write(const std::string& name, std::span<const Number> values, const ArrayBox& box) {
+    check_box(name, box, values.size());
+    const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    H5Pset_obj_track_times(creation, false);
+    H5Pset_layout(creation, H5D_CONTIGUOUS);
+    H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER);   // every value is written anyway
+    const auto [group_name, leaf] = group_and_name(name);
+    const Handle parent = group(group_name);
+    const Selection selection(box);
+    const Handle dataset(H5Dcreate2(parent, leaf.c_str(), Stored<Number>::file(), selection.file, H5P_DEFAULT, creation,
+                                    H5P_DEFAULT), H5Dclose);
+    agree(dataset.good());
+    const Handle transfer = collective_transfer();
+    agree(H5Dwrite(dataset, Stored<Number>::memory(), selection.memory, selection.file, transfer, values.data()) >= 0);
+  }
+
+  void attribute(const std::string& name, hid_t file_type, hid_t memory_type, const void* value) {
+    const auto [group_name, leaf] = group_and_name(name);
+    const Handle parent = group(group_name);
+    const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+    const Handle attribute(H5Acreate2(parent, leaf.c_str(), file_type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    agree(attribute.good() && H5Awrite(attribute, memory_type, value) >= 0);
+  }
+};
+
+Hdf5Writer::Hdf5Writer(MPI_Comm communicator, const std::filesystem::path& path) : file_(std::make_unique<File>()) {
+  silence_hdf5();
+  file_->communicator = communicator;
+  file_->path = path;
+  file_->partial = path;
+  file_->partial += ".partial";
+  // MPI-IO keeps the length of a file it finds, so an old one must go first; and rank 0 alone finds out whether the
+  // folder can be written at all, because a failed collective open is not always collective.
+  bool creatable = true;
+  if (rank_of(communicator) == 0) {
+    std::error_code ignored;
+    std::filesystem::remove(file_->partial, ignored);
+    creatable = can_create(file_->partial);
+  }
+  file_->agree(creatable);
+  const Handle access = mpi_access(communicator);
+  file_->file = Handle(H5Fcreate(file_->partial.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose);
+  file_->agree(file_->file.good());
+}
+
+Hdf5Writer::~Hdf5Writer() {
+  if (!file_->file.good()) return;
+  // Closing is collective. While another rank's exception may be on its way, it could wait for ever: leave the file to
+  // the end of the program then.
+  if (std::uncaught_exceptions() > 0 && !file_->failed_everywhere) {
+    file_->file.release();
+    return;
+  }
+  file_->file.reset();
+  if (rank_of(file_->communicator) == 0) {
+    std::error_code ignored;
+    std::filesystem::remove(file_->partial, ignored);
+  }
+}
+
+void Hdf5Writer::write(const std::string& path, std::span<const double> values, const ArrayBox& box) {
+  file_->write(path, values, box);
+}
+void Hdf5Writer::write(const std::string& path, std::span<const float> values, const ArrayBox& box) {
+  file_->write(path, values, box);
+}
+void Hdf5Writer::write(const std::string& path, std::span<const std::int64_t> values, const ArrayBox& box) {
+  file_->write(path, values, box);
+}
+void Hdf5Writer::attribute(const std::string& path, double value) {
+  file_->attribute(path, Stored<double>::file(), Stored<double>::memory(), &value);
+}
+void Hdf5Writer::attribute(const std::string& path, std::int64_t value) {
+  file_->attribute(path, Stored<std::int64_t>::file(), Stored<std::int64_t>::memory(), &value);
+}
+void Hdf5Writer::attribute(const std::string& path, const std::string& value) {
+  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type, value.size() + 1);   // a fixed length, with the closing zero: variable lengths live in a heap
+  H5Tset_cset(type, H5T_CSET_UTF8);
+  file_->attribute(path, type, type, value.c_str());
+}
+
+void Hdf5Writer::close() {
+  const bool flushed = H5Fflush(file_->file, H5F_SCOPE_GLOBAL) >= 0;
+  const bool closed = H5Fclose(file_->file.release()) >= 0;
+  file_->agree(flushed && closed);
+  bool renamed = true;
+  if (rank_of(file_->communicator) == 0) renamed = put_on_disk(file_->partial, file_->path);
+  file_->agree(renamed);
+}
+
+struct Hdf5Reader::File {
+  MPI_Comm communicator;
+  std::filesystem::path path;
+  Handle file;
+
+  InputError error(const std::string& name, const std::string& what) const {
+    return InputError(fmt::format("{}: {}: {}; was the file written by this program for a case like this one?",
+                                  path.string(), name, what));
+  }
+
+  // H5Lexists wants every group on the way to exist.
+  bool has_link(const std::string& name) const {
+    for (std::size_t end = 0; end != std::string::npos;) {
+      end = name.find('/', end + 1);
+      if (H5Lexists(file, name.substr(0, end).c_str(), H5P_DEFAULT) <= 0) return false;
+    }
+    return true;
+  }
+
+  bool has_attribute(const std::string& name) const {
+    const auto [group_name, leaf] = group_and_name(name);
+    if (group_name != "/" && !has_link(group_name)) return false;
+    return H5Aexists_by_name(file, group_name.c_str(), leaf.c_str(), H5P_DEFAULT) > 0;
+  }
+
+  Handle dataset(const std::string& name) const {
+    Handle found;
+    if (has_link(name)) found = Handle(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose);
+    if (!found.good()) throw error(name, "the file has no such data");
+    return found;
+  }
+
+  template <typename Number>
+  void read(const std::string& name, std::span<Number> values, const ArrayBox& box) const {
+    check_box(name, box, values.size());
+    const Handle found = dataset(name);
+    const Handle type(H5Dget_type(found), H5Tclose);
+    if (H5Tequal(type, Stored<Number>::file()) <= 0)
+      throw error(name, fmt::format("the file holds {}, but {} is needed", name_of_type(type), Stored<Number>::name));
+    const std::vector<hsize_t> extents = extents_of(found);
+    const std::vector<std::uint64_t> stored(extents.begin(), extents.end());
+    if (stored != box.global_shape)
+      throw error(name, fmt::format("the file holds {} values, but {} are needed", shown(stored), shown(box.global_shape)));
+    const Selection selection(box);
+    const Handle transfer = collective_transfer();
+    const bool good =
+        H5Dread(found, Stored<Number>::memory(), selection.memory, selection.file, transfer, values.data()) >= 0;
+    if (any_rank(communicator, !good)) throw error(name, "the data cannot be read, the file is damaged");
+  }
+
+  Handle attribute(const std::string& name) const {
+    if (!has_attribute(name)) throw error(name, "the file has no such attribute");
+    const auto [group_name, leaf] = group_and_name(name);
+    return Handle(H5Aopen_by_name(file, group_name.c_str(), leaf.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  }
+
+  template <typename Number>
+  Number number_attribute(const std::string& name) const {
+    const Handle found = attribute(name);
+    const Handle type(H5Aget_type(found), H5Tclose);
+    Number value{};
+    if (H5Tequal(type, Stored<Number>::file()) <= 0 || H5Aread(found, Stored<Number>::memory(), &value) < 0)
+      throw error(name, fmt::format("the attribute is not of type {}", Stored<Number>::name));
+    return value;
+  }
+};
+
+Hdf5Reader::Hdf5Reader(MPI_Comm communicator, const std::filesystem::path& path) : file_(std::make_unique<File>()) {
+  silence_hdf5();
+  file_->communicator = communicator;
+  file_->path = path;
+  int outcome = 0;   // rank 0 looks before all open together
+  if (rank_of(communicator) == 0) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) outcome = 1;
+    else if (H5Fis_hdf5(path.c_str()) <= 0) outcome = 2;
+  }
+  MPI_Bcast(&outcome, 1, MPI_INT, 0, communicator);
+  if (outcome == 1) throw InputError(fmt::format("{}: there is no such file; check the path.", path.string()));
+  const Handle access = mpi_access(communicator);
+  if (outcome == 0) file_->file = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
+  if (any_rank(communicator, !file_->file.good()))
+    throw InputError(fmt::format("{}: this is not an HDF5 file or it is damaged; give a checkpoint.", path.string()));
+}
+
+Hdf5Reader::~Hdf5Reader() {
+  // As for the writer: another rank may not come to close the file.
+  if (std::uncaught_exceptions() > 0) file_->file.release();
+}
+
+bool Hdf5Reader::has(const std::string& path) const { return file_->has_link(path) || file_->has_attribute(path); }
+
+std::vector<std::uint64_t> Hdf5Reader::shape(const std::string& path) const {
+  const std::vector<hsize_t> extents = extents_of(file_->dataset(path));
+  return {extents.begin(), extents.end()};
+}
+
+void Hdf5Reader::read(const std::string& path, std::span<double> values, const ArrayBox& box) {
+  file_->read(path, values, box);
+}
+void Hdf5Reader::read(const std::string& path, std::span<float> values, const ArrayBox& box) {
+  file_->read(path, values, box);
+}
+void Hdf5Reader::read(const std::string& path, std::span<std::int64_t> values, const ArrayBox& box) {
+  file_->read(path, values, box);
+}
+double Hdf5Reader::real_attribute(const std::string& path) const { return file_->number_attribute<double>(path); }
+std::int64_t Hdf5Reader::integer_attribute(const std::string& path) const {
+  return file_->number_attribute<std::int64_t>(path);
+}
+
+std::string Hdf5Reader::text_attribute(const std::string& path) const {
+  const Handle found = file_->attribute(path);
+  const Handle type(H5Aget_type(found), H5Tclose);
+  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0)
+    throw file_->error(path, "the attribute is not a text of fixed length");
+  std::string value(H5Tget_size(type), '\0');
+  if (H5Aread(found, type, value.data()) < 0) throw file_->error(path, "the attribute cannot be read");
+  value.resize(value.find_last_not_of('\0') + 1);
+  return value;
+}
+
+std::vector<Hdf5Reader::Entry> Hdf5Reader::datasets() const {
+  std::vector<std::string> names;
+  H5Ovisit_by_name(file_->file, "/", H5_INDEX_NAME, H5_ITER_INC,
+      [](hid_t, const char* name, const H5O_info_t* info, void* list) -> herr_t {
+        if (info->type == H5O_TYPE_DATASET) static_cast<std::vector<std::string>*>(list)->emplace_back(name);
+        return 0;
+      }, &names, H5P_DEFAULT);
+  std::vector<Entry> entries;
+  for (const std::string& name : names) {
+    const Handle dataset = file_->dataset(name);
+    const Handle type(H5Dget_type(dataset), H5Tclose);
+    entries.push_back({name, name_of_type(type), shape(name)});
+  }
+  return entries;
+}
+
+}  // namespace thalweg::io

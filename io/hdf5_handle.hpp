@@ -1,0 +1,53 @@
+// What io's HDF5 sources share: owned identifiers, the parallel access, silence. Included by their .cpp files only.
+#pragma once
+
+#include <hdf5.h>
+#include <mpi.h>
+
+#include <filesystem>
+#include <utility>
+
+namespace thalweg::io {
+
+// An HDF5 identifier that closes itself. A negative one stands for a call that failed.
+class Handle {
+public:
+  using Close = herr_t (*)(hid_t);
+
+  Handle() = default;
+  Handle(hid_t id, Close close) : id_(id), close_(close) {}
+  ~Handle() { reset(); }
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, H5I_INVALID_HID)), close_(other.close_) {}
+  Handle& operator=(Handle&& other) noexcept {
+    std::swap(id_, other.id_);
+    std::swap(close_, other.close_);
+    return *this;
+  }
+
+  bool good() const { return id_ >= 0; }
+  operator hid_t() const { return id_; }
+  hid_t release() { return std::exchange(id_, H5I_INVALID_HID); }
+  void reset() {
+    if (good()) close_(id_);
+    id_ = H5I_INVALID_HID;
+  }
+
+private:
+  hid_t id_ = H5I_INVALID_HID;
+  Close close_ = nullptr;
+};
+
+// HDF5 prints its own stack of errors unless told not to; ours say it in one sentence.
+inline void silence_hdf5() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+// Access to a file through MPI-IO by all ranks of a communicator, also where there is only one, so that the layout of
+// the file is always the same.
+Handle mpi_access(MPI_Comm communicator);
+
+// True if an empty file could be created under this name; leaves nothing behind.
+bool can_create(const std::filesystem::path& path);
+
+// Waits until the data of `from` are on the disk, then renames it to `to`. False if either fails.
+bool put_on_disk(const std::filesystem::path& from, const std::filesystem::path& to);
+
+}  // namespace thalweg::io

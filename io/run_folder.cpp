@@ -1,0 +1,119 @@
+#include "io/run_folder.hpp"
+
+#include "core/error.hpp"
+#include "io/atomic_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <optional>
+#include <vector>
+
+namespace thalweg::io {
+namespace fs = std::filesystem;
+namespace {
+
+// All a run writes; --overwrite removes these and nothing else.
+constexpr std::array run_contents{"case.yaml", "run.log",    "series.csv", "profiles.h5", "tracks.h5", "grains.pvd",
+                                  "fluid.pvd", "grains",     "fluid",      "checkpoints", "summary.json"};
+constexpr const char* latest_name = "latest";
+
+std::optional<std::int64_t> step_of_checkpoint(const std::string& name) {
+  constexpr std::string_view before = "step_", after = ".h5";
+  if (!name.starts_with(before) || !name.ends_with(after)) return std::nullopt;
+  std::int64_t step = 0;
+  const char* end = name.data() + name.size() - after.size();
+  const auto parsed = std::from_chars(name.data() + before.size(), end, step);
+  if (parsed.ec != std::errc() || parsed.ptr != end) return std::nullopt;
+  return step;
+}
+
+}  // namespace
+
+bool RunFolder::is_run_folder() const {
+  std::error_code ignored;
+  return fs::is_regular_file(case_file(), ignored) && read_text(case_file()).starts_with(case_marker);
+}
+
+void RunFolder::check_new(bool overwrite) const {
+  std::error_code ignored;
+  if (!fs::exists(path_, ignored)) return;
+  if (!fs::is_directory(path_, ignored))
+    throw InputError(fmt::format("{}: there is a file of this name; choose another folder with --out.", path_.string()));
+  if (fs::is_empty(path_, ignored)) return;
+  if (!is_run_folder())
+    throw InputError(fmt::format("{}: the folder holds something that is not a run of Thalweg and is left alone; choose "
+                                 "another folder with --out.", path_.string()));
+  if (!overwrite)
+    throw InputError(fmt::format("{}: the folder holds a run already; choose another with --out, continue it with "
+                                 "--restart {}, or replace it with --overwrite.", path_.string(), path_.string()));
+}
+
+void RunFolder::create(bool overwrite) const {
+  check_new(overwrite);
+  make_folder(path_);
+  // case.yaml, by which the folder is known, goes last: an interrupted removal can be taken up again.
+  for (auto name = run_contents.rbegin(); name != run_contents.rend(); ++name) {
+    std::error_code error;
+    fs::remove_all(path_ / *name, error);
+    if (error) throw RunError(fmt::format("{}: cannot remove: {}.", (path_ / *name).string(), error.message()));
+  }
+}
+
+void RunFolder::write_case(const std::string& comment_lines, const std::string& yaml) const {
+  std::string text = std::string(case_marker) + " this is the case as it was run, with every default filled in.\n";
+  std::size_t start = 0;
+  while (start < comment_lines.size()) {
+    const std::size_t end = std::min(comment_lines.find('\n', start), comment_lines.size());
+    text += "# " + comment_lines.substr(start, end - start) + "\n";
+    start = end + 1;
+  }
+  write_text_atomically(case_file(), text + yaml);
+}
+
+fs::path RunFolder::checkpoint(std::int64_t step) const { return checkpoints() / fmt::format("step_{}.h5", step); }
+
+void RunFolder::rotate_checkpoints(std::int64_t step, int keep) const {
+  write_text_atomically(checkpoints() / latest_name, checkpoint(step).filename().string() + "\n");
+  std::vector<std::int64_t> steps;
+  for (const auto& entry : fs::directory_iterator(checkpoints()))
+    if (const auto found = step_of_checkpoint(entry.path().filename().string())) steps.push_back(*found);
+  std::sort(steps.rbegin(), steps.rend());
+  int kept = 0;
+  for (const std::int64_t found : steps) {
+    if (found <= step && kept < std::max(keep, 1)) {
+      ++kept;
+      continue;
+    }
+    std::error_code error;
+    fs::remove(checkpoint(found), error);
+    if (error) throw RunError(fmt::format("{}: cannot remove: {}.", checkpoint(found).string(), error.message()));
+  }
+}
+
+fs::path RunFolder::latest_checkpoint() const {
+  std::error_code ignored;
+  const fs::path latest = checkpoints() / latest_name;
+  if (!fs::exists(latest, ignored))
+    throw InputError(fmt::format("{}: the folder has no checkpoint ({} is missing); give the path of a checkpoint or of a "
+                                 "run that wrote one.", path_.string(), latest.string()));
+  std::string name = read_text(latest);
+  while (!name.empty() && (name.back() == '\n' || name.back() == ' ')) name.pop_back();
+  const fs::path file = checkpoints() / name;
+  if (!step_of_checkpoint(name) || !fs::exists(file, ignored))
+    throw InputError(fmt::format("{}: the checkpoint \"{}\" it names does not exist; give the path of another checkpoint "
+                                 "of this folder.", latest.string(), name));
+  return file;
+}
+
+fs::path checkpoint_at(const fs::path& path) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) return RunFolder(path).latest_checkpoint();
+  if (fs::exists(path, ignored)) return path;
+  throw InputError(fmt::format("{}: there is no such file or folder; give a checkpoint, for example "
+                               "run/checkpoints/step_1000.h5, or a run folder.", path.string()));
+}
+
+}  // namespace thalweg::io

@@ -1,0 +1,164 @@
+#include "io/section_writer.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace thalweg::io {
+namespace {
+
+constexpr std::size_t comment_column = 44;
+
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += fmt::format("\\{}", c);
+    else if (static_cast<unsigned char>(c) < 0x20) result += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+    else result += c;
+  }
+  return result + "\"";
+}
+
+std::string bracketed(const Vec3& value) {
+  return fmt::format("[{}, {}, {}]", shortest(value[0]), shortest(value[1]), shortest(value[2]));
+}
+
+}  // namespace
+
+std::string shortest(double value) { return fmt::format("{}", value); }
+
+std::string SectionWriter::comment_of(const RealKey& about) const {
+  if (style_ == YamlStyle::plain) return about.unit == "1" ? "" : about.unit;
+  std::string range;
+  if (about.above) range += ", above " + shortest(*about.above);
+  if (about.at_least) range += ", at least " + shortest(*about.at_least);
+  if (about.below) range += ", below " + shortest(*about.below);
+  if (about.at_most) range += ", at most " + shortest(*about.at_most);
+  return fmt::format("{}{}; {}", about.unit, range, about.meaning);
+}
+
+void SectionWriter::put(bool given, const std::string& key, const std::string& value, const std::string& comment) {
+  given = given && given_;
+  if (!given && style_ == YamlStyle::plain) return;
+  lines_.push_back({given, item_begins_, depth_, key, value, comment});
+  item_begins_ = false;
+}
+
+void SectionWriter::real(const std::string& key, double& value, const RealKey& about) {
+  put(true, key, shortest(value), comment_of(about));
+}
+
+void SectionWriter::real(const std::string& key, std::optional<double>& value, const RealKey& about) {
+  put(value.has_value(), key, shortest(value.value_or(about.example.value_or(1.0))), comment_of(about));
+}
+
+void SectionWriter::vec3(const std::string& key, Vec3& value, const RealKey& about) {
+  put(true, key, bracketed(value), comment_of(about));
+}
+
+void SectionWriter::vec3(const std::string& key, std::optional<Vec3>& value, const RealKey& about) {
+  put(value.has_value(), key, bracketed(value.value_or(Vec3::Constant(about.example.value_or(0.0)))), comment_of(about));
+}
+
+void SectionWriter::vec3_list(const std::string& key, std::vector<Vec3>& values, const RealKey& about) {
+  if (values.empty()) return put(false, key, "[[0.01, 0.01, 0.005], [0.02, 0.01, 0.005]]", comment_of(about));
+  put(true, key, "", comment_of(about));
+  ++depth_;
+  for (const Vec3& value : values) {
+    item_begins_ = true;
+    put(true, "", bracketed(value), "");
+  }
+  --depth_;
+}
+
+void SectionWriter::integer(const std::string& key, std::int64_t& value, const IntegerKey& about) {
+  put(true, key, fmt::format("{}", value),
+      style_ == YamlStyle::plain ? "" : fmt::format("whole number, at least {}; {}", about.at_least, about.meaning));
+}
+
+void SectionWriter::text(const std::string& key, std::string& value, const TextKey& about) {
+  put(true, key, quoted(value), style_ == YamlStyle::plain ? "" : "text; " + about.meaning);
+}
+
+void SectionWriter::flag(const std::string& key, bool& value, const TextKey& about) {
+  put(true, key, value ? "true" : "false", style_ == YamlStyle::plain ? "" : "true | false; " + about.meaning);
+}
+
+std::string SectionWriter::comment_of(const std::vector<Word>& words, const SectionKey& about) const {
+  if (style_ == YamlStyle::plain) return "";
+  std::vector<std::string> names;
+  for (const Word& word : words)
+    names.push_back(word.meaning.empty() ? word.name : fmt::format("{} ({})", word.name, word.meaning));
+  return fmt::format("{}; {}", fmt::join(names, " | "), about.meaning);
+}
+
+void SectionWriter::word(const std::string& key, std::size_t& index, const std::vector<Word>& words,
+                         const SectionKey& about) {
+  put(true, key, words[index].name, comment_of(words, about));
+}
+
+void SectionWriter::word_list(const std::string& key, std::vector<std::size_t>& indices,
+                              const std::vector<Word>& words, const SectionKey& about) {
+  std::vector<std::string> names;
+  for (const std::size_t index : indices) names.push_back(words[index].name);
+  put(true, key, fmt::format("[{}]", fmt::join(names, ", ")), comment_of(words, about));
+}
+
+bool SectionWriter::is_given(const std::string&, bool has_value) { return has_value; }
+
+void SectionWriter::nested(const std::string& key, bool given, const SectionKey& about, const Body& body) {
+  const bool given_outside = given_;
+  if (!given && style_ == YamlStyle::plain) return;
+  put(given, key, "", style_ == YamlStyle::plain ? "" : about.meaning);
+  const std::size_t head = lines_.size() - 1;
+  given_ = given_ && given;
+  ++depth_;
+  body(*this);
+  --depth_;
+  given_ = given_outside;
+
+  std::size_t shown_inside = 0;
+  for (std::size_t n = head + 1; n < lines_.size(); ++n) shown_inside += lines_[n].given ? 1 : 0;
+  const bool only_shorthand = lines_.size() == head + 2 && lines_.back().key == about.shorthand;
+  if (only_shorthand) {
+    lines_[head].value = lines_.back().value;
+    if (style_ == YamlStyle::documented)
+      lines_[head].comment = fmt::format("{}; {}", lines_.back().comment, about.meaning);
+    lines_.pop_back();
+  } else if (shown_inside == 0 && lines_[head].given) {
+    lines_[head].value = about.empty_name.empty() ? "{}" : about.empty_name;
+  }
+}
+
+std::size_t SectionWriter::begin_list(const std::string& key, std::size_t size, const SectionKey& about) {
+  put(true, key, size == 0 ? "[]" : "", style_ == YamlStyle::plain ? "" : about.meaning);
+  return size;
+}
+
+void SectionWriter::item(const std::string&, std::size_t, const Body& body) {
+  item_begins_ = true;
+  depth_ += 2;
+  body(*this);
+  depth_ -= 2;
+}
+
+std::string SectionWriter::yaml() const {
+  std::string result;
+  for (const Line& line : lines_) {
+    const std::size_t indent = 2 * static_cast<std::size_t>(line.depth - (line.item && !line.key.empty() ? 1 : 0));
+    std::string text(indent, ' ');
+    if (line.item) text += "- ";
+    if (!line.given) text += "# ";
+    if (!line.key.empty()) text += line.key + ":" + (line.value.empty() ? "" : " ");
+    text += line.value;
+    if (!line.comment.empty()) {
+      text.resize(std::max(text.size() + 2, comment_column), ' ');
+      text += "# " + line.comment;
+    }
+    result += text + "\n";
+  }
+  return result;
+}
+
+}  // namespace thalweg::io

@@ -1,0 +1,197 @@
+#include "io/yaml_document.hpp"
+
+#include "io/atomic_file.hpp"
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include <charconv>
+#include <cmath>
+#include <functional>
+
+namespace thalweg::io {
+namespace {
+
+constexpr int deepest = 32;   // levels: more are a file gone wrong, or one that contains itself
+
+using PlaceOf = std::function<std::string(const YAML::Mark&)>;
+
+YamlNode converted(const YAML::Node& node, const std::string& place, const std::string& key_path,
+                   const PlaceOf& place_of, int depth) {
+  if (depth > deepest)
+    throw InputError(fmt::format("{}: {}: the file is nested more than {} levels deep.", place, key_path, deepest));
+  YamlNode result;
+  result.place = place;
+  if (node.IsMap()) {
+    result.kind = YamlNode::Kind::section;
+    for (const auto& entry : node) {
+      const std::string here = place_of(entry.first.Mark());
+      if (!entry.first.IsScalar())
+        throw InputError(fmt::format("{}: {}: a key must be a single word.", here, key_path));
+      const std::string key = entry.first.Scalar();
+      const std::string path = joined_key(key_path, key);
+      if (const YamlNode* first = result.find(key))
+        throw InputError(fmt::format("{}: {}: the key is given twice (first at {}); remove one of the two.", here, path,
+                                     first->place));
+      result.entries.emplace_back(key, converted(entry.second, here, path, place_of, depth + 1));
+    }
+  } else if (node.IsSequence()) {
+    result.kind = YamlNode::Kind::list;
+    for (const auto& item : node)
+      result.items.push_back(converted(item, place_of(item.Mark()), joined_key(key_path, fmt::format("{}",
+                                       result.items.size())), place_of, depth + 1));
+  } else {
+    result.kind = YamlNode::Kind::scalar;
+    if (node.IsScalar()) result.text = node.Scalar();
+  }
+  return result;
+}
+
+YamlNode parsed(const std::string& text, const PlaceOf& place_of, const std::string& whole_place,
+                const std::string& key_path) {
+  try {
+    return converted(YAML::Load(text), whole_place, key_path, place_of, 0);
+  } catch (const YAML::Exception& error) {
+    const std::string place = error.mark.is_null() ? whole_place : place_of(error.mark);
+    throw InputError(fmt::format("{}: this is not valid YAML: {}; look for a missing colon, bracket or quote and for "
+                                 "uneven indentation here or just above.", place, error.msg));
+  }
+}
+
+bool is_number(const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+YamlNode* entry_of(YamlNode& section, const std::string& key) {
+  return const_cast<YamlNode*>(section.find(key));
+}
+
+YamlNode* item_of(YamlNode& list, const std::string& key) {
+  std::size_t index = 0;
+  const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), index);
+  if (error != std::errc() || end != key.data() + key.size() || index >= list.items.size()) return nullptr;
+  return &list.items[index];
+}
+
+std::vector<std::string> split_key(const std::string& key_path) {
+  std::vector<std::string> parts;
+  std::size_t start = 0;
+  while (true) {
+    const std::size_t dot = key_path.find('.', start);
+    parts.push_back(key_path.substr(start, dot - start));
+    if (dot == std::string::npos) return parts;
+    start = dot + 1;
+  }
+}
+
+void erase_entry(YamlNode& section, const std::string& key) {
+  std::erase_if(section.entries, [&](const auto& entry) { return entry.first == key; });
+}
+
+}  // namespace
+
+const YamlNode* YamlNode::find(const std::string& key) const {
+  for (const auto& [name, value] : entries)
+    if (name == key) return &value;
+  return nullptr;
+}
+
+std::string joined_key(const std::string& section, const std::string& key) {
+  return section.empty() ? key : section + "." + key;
+}
+
+std::string shown(const YamlNode& node) {
+  if (node.kind == YamlNode::Kind::section)
+    return fmt::format("a section with {} key{}", node.entries.size(), node.entries.size() == 1 ? "" : "s");
+  if (node.kind == YamlNode::Kind::scalar) return is_number(node.text) ? node.text : fmt::format("\"{}\"", node.text);
+  constexpr std::size_t most = 6;
+  std::string text = "[";
+  for (std::size_t n = 0; n < node.items.size() && n < most; ++n)
+    text += (n ? ", " : "") + shown(node.items[n]);
+  return text + (node.items.size() > most ? ", ...]" : "]");
+}
+
+YamlDocument::YamlDocument(const std::filesystem::path& path, const std::vector<std::string>& overrides)
+    : path_(path) {
+  const std::string name = path.string();
+  const auto place_of = [&](const YAML::Mark& mark) { return fmt::format("{}:{}", name, mark.line + 1); };
+  if (std::filesystem::is_directory(path))
+    throw InputError(fmt::format("{}: this is a folder: give the case file itself, for example {}.", name,
+                                 (path / "case.yaml").string()));
+  root_ = parsed(read_text(path), place_of, name + ":1", "");
+  if (root_.kind == YamlNode::Kind::scalar && root_.text.empty()) root_.kind = YamlNode::Kind::section;
+  if (root_.kind != YamlNode::Kind::section)
+    throw InputError(fmt::format("{}:1: expected keys with values, for example system: resolved.", name));
+  for (const std::string& text : overrides) apply(text);
+}
+
+void YamlDocument::apply(const std::string& override_text) {
+  const std::string place = "--set " + override_text;
+  const std::size_t equals = override_text.find('=');
+  if (equals == std::string::npos || equals == 0)
+    throw InputError(fmt::format("{}: expected KEY=VALUE, for example --set run.until=10.", place));
+  const std::string key_path = override_text.substr(0, equals);
+  const std::string value_text = override_text.substr(equals + 1);
+  YamlNode value = parsed(value_text, [&](const YAML::Mark&) { return place; }, place, key_path);
+  const bool remove = value.kind == YamlNode::Kind::scalar && value.text.empty();
+
+  YamlNode* node = &root_;
+  std::string done;
+  const std::vector<std::string> parts = split_key(key_path);
+  for (std::size_t n = 0; n < parts.size(); ++n) {
+    const std::string& key = parts[n];
+    const bool last = n + 1 == parts.size();
+    YamlNode* next = nullptr;
+    if (node->kind == YamlNode::Kind::scalar && !node->text.empty())
+      throw InputError(fmt::format("{}: {} = {} is a single value and has no key {}; set {} itself.", place, done,
+                                   shown(*node), key, done));
+    if (node->kind == YamlNode::Kind::list) {
+      next = item_of(*node, key);
+      if (!next)
+        throw InputError(fmt::format("{}: {} is a list of {} and has no entry \"{}\"; count from 0.", place, done,
+                                     node->items.size(), key));
+    } else {
+      node->kind = YamlNode::Kind::section;
+      next = entry_of(*node, key);
+      if (!next && !(last && remove)) {
+        node->entries.emplace_back(key, YamlNode{});
+        next = &node->entries.back().second;
+        next->place = place;
+      }
+      if (last && remove) {
+        erase_entry(*node, key);
+        return;
+      }
+    }
+    node = next;
+    done = joined_key(done, key);
+  }
+  *node = std::move(value);
+}
+
+const YamlNode* YamlDocument::find(const std::string& key_path) const {
+  const YamlNode* node = &root_;
+  for (const std::string& key : split_key(key_path)) {
+    node = node->kind == YamlNode::Kind::list ? item_of(const_cast<YamlNode&>(*node), key) : node->find(key);
+    if (!node) return nullptr;
+  }
+  return node;
+}
+
+InputError YamlDocument::error(const std::string& key_path, const std::string& remedy) const {
+  if (const YamlNode* node = find(key_path))
+    return InputError(fmt::format("{}: {} = {}: {}.", node->place, key_path, shown(*node), remedy));
+  std::string section = key_path;
+  const YamlNode* node = nullptr;
+  while (!node) {
+    const std::size_t dot = section.rfind('.');
+    if (dot == std::string::npos) break;
+    section.resize(dot);
+    node = find(section);
+  }
+  return InputError(fmt::format("{}: {}: {}.", (node ? *node : root_).place, key_path, remedy));
+}
+
+}  // namespace thalweg::io
