@@ -21,7 +21,9 @@ enum class FaceType { periodic, no_slip, free_slip, law_of_the_wall };
 struct Face {
   FaceType type = FaceType::no_slip;
   double coefficient = 8.36;   // law of the wall: slip velocity over friction velocity (numerics: U+ at the wall)
-  bool operator==(const Face& other) const;   // the coefficient counts only where the type uses it
+  bool operator==(const Face& other) const {   // the coefficient counts only where the type uses it
+    return type == other.type && (type != FaceType::law_of_the_wall || coefficient == other.coefficient);
+  }
 };
 
 // The order of the faces everywhere in the driver.

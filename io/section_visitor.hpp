@@ -91,6 +91,10 @@ public:
     for (std::size_t index : indices) values.push_back(choices[index].value);
   }
 
+  // What a section holds, where a struct and its describe() will not do: where it depends on other sections.
+  using Body = std::function<void(SectionVisitor&)>;
+  void section(const std::string& key, const SectionKey& about, const Body& body) { nested(key, true, about, body); }
+
   template <typename Section>
   void section(const std::string& key, Section& value, const SectionKey& about) {
     nested(key, true, about, [&](SectionVisitor& inside) { describe(inside, value); });
@@ -125,7 +129,6 @@ public:
   virtual bool reading() const = 0;
 
 protected:
-  using Body = std::function<void(SectionVisitor&)>;
   struct Word {
     std::string name, meaning;
   };

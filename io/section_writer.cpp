@@ -35,7 +35,7 @@ std::string SectionWriter::comment_of(const RealKey& about) const {
   if (about.at_least) range += ", at least " + shortest(*about.at_least);
   if (about.below) range += ", below " + shortest(*about.below);
   if (about.at_most) range += ", at most " + shortest(*about.at_most);
-  return fmt::format("{}{}; {}", about.unit, range, about.meaning);
+  return fmt::format("{}{}{}; {}", about.required ? "required, " : "", about.unit, range, about.meaning);
 }
 
 void SectionWriter::put(bool given, const std::string& key, const std::string& value, const std::string& comment) {
@@ -46,7 +46,7 @@ void SectionWriter::put(bool given, const std::string& key, const std::string& v
 }
 
 void SectionWriter::real(const std::string& key, double& value, const RealKey& about) {
-  put(true, key, shortest(value), comment_of(about));
+  put(true, key, shortest(given_ ? value : about.example.value_or(value)), comment_of(about));
 }
 
 void SectionWriter::real(const std::string& key, std::optional<double>& value, const RealKey& about) {
@@ -54,7 +54,8 @@ void SectionWriter::real(const std::string& key, std::optional<double>& value, c
 }
 
 void SectionWriter::vec3(const std::string& key, Vec3& value, const RealKey& about) {
-  put(true, key, bracketed(value), comment_of(about));
+  const bool show_example = !given_ && about.example;
+  put(true, key, bracketed(show_example ? Vec3(Vec3::Constant(*about.example)) : value), comment_of(about));
 }
 
 void SectionWriter::vec3(const std::string& key, std::optional<Vec3>& value, const RealKey& about) {
@@ -90,7 +91,7 @@ std::string SectionWriter::comment_of(const std::vector<Word>& words, const Sect
   std::vector<std::string> names;
   for (const Word& word : words)
     names.push_back(word.meaning.empty() ? word.name : fmt::format("{} ({})", word.name, word.meaning));
-  return fmt::format("{}; {}", fmt::join(names, " | "), about.meaning);
+  return fmt::format("{}{}; {}", about.required ? "required, " : "", fmt::join(names, " | "), about.meaning);
 }
 
 void SectionWriter::word(const std::string& key, std::size_t& index, const std::vector<Word>& words,

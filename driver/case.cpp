@@ -1,0 +1,120 @@
+#include "driver/case.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace thalweg {
+
+double PopulationCase::mass() const { return density * std::numbers::pi / 6.0 * diameter * diameter * diameter; }
+
+Index3 cells_of(const DomainCase& domain) {
+  Index3 cells;
+  for (int axis = 0; axis < 3; ++axis)
+    cells[static_cast<std::size_t>(axis)] = static_cast<int>(std::lround(domain.size[axis] / domain.spacing));
+  return cells;
+}
+
+std::array<bool, 3> periodic_axes(const DomainCase& domain) {
+  const auto periodic = [&](FaceIndex face) { return domain.faces[face].type == FaceType::periodic; };
+  return {periodic(x_low), periodic(y_low), periodic(bottom)};
+}
+
+double fluid_time_step(const Case& c) {
+  if (c.fluid.time_step) return *c.fluid.time_step;
+  return *c.fluid.maximum_lattice_velocity * c.domain.spacing / *c.fluid.expected_velocity;
+}
+
+double grain_time_step(const Case& c) {
+  if (c.system == SystemKind::grains) return *c.run.time_step;
+  return fluid_time_step(c) / static_cast<double>(c.coupling.grain_steps_per_fluid_step);
+}
+
+Vec3 gravity_vector(const GravityCase& gravity) {
+  if (gravity.vector) return *gravity.vector;
+  const double angle = std::atan(gravity.slope.value_or(0.0));
+  return {*gravity.magnitude * std::sin(angle), 0.0, -*gravity.magnitude * std::cos(angle)};
+}
+
+Units units_of(const Case& c) { return {c.domain.spacing, fluid_time_step(c), c.fluid.density}; }
+
+double relaxation_time(const Case& c) { return units_of(c).relaxation_time(c.fluid.kinematic_viscosity); }
+
+std::int64_t grain_count(const Case& c) {
+  std::int64_t count = 0;
+  for (const PopulationCase& population : c.grains) count += population.count;
+  return count;
+}
+
+double largest_diameter(const Case& c) {
+  double diameter = 0.0;
+  for (const PopulationCase& population : c.grains) diameter = std::max(diameter, population.diameter);
+  return diameter;
+}
+
+double smallest_diameter(const Case& c) {
+  double diameter = largest_diameter(c);
+  for (const PopulationCase& population : c.grains) diameter = std::min(diameter, population.diameter);
+  return diameter;
+}
+
+double grain_volume(const Case& c) {
+  double volume = 0.0;
+  for (const PopulationCase& population : c.grains)
+    volume += static_cast<double>(population.count) * population.mass() / population.density;
+  return volume;
+}
+
+double shortest_contact(const Case& c) {
+  double lightest = std::numeric_limits<double>::infinity();
+  for (const PopulationCase& population : c.grains) lightest = std::min(lightest, population.mass());
+  return std::numbers::pi * std::sqrt(0.5 * lightest / c.contact.normal_stiffness);
+}
+
+double estimated_velocity(const Case& c) {
+  constexpr double bed_fraction = 0.6;   // of a bed's volume that is grain
+  constexpr double karman = 0.41;
+  const Vec3 gravity = gravity_vector(c.gravity);
+  const double along = std::hypot(gravity[0], gravity[1]);
+  const double bed = grain_volume(c) / (bed_fraction * c.domain.size[0] * c.domain.size[1]);
+  const double depth = c.domain.size[2] - bed;
+  if (c.system != SystemKind::resolved || along == 0.0 || depth <= 0.0) return 0.0;
+  const double nu = c.fluid.kinematic_viscosity;
+  const double laminar = along * depth * depth / (2.0 * nu);
+  const double shear_velocity = std::sqrt(along * depth);
+  // Rough over grains (equivalent roughness two diameters), smooth over a bare floor.
+  const double roughness = c.grains.empty() ? nu / (9.0 * shear_velocity) : largest_diameter(c) / 15.0;
+  if (depth <= std::numbers::e * roughness) return laminar;
+  return std::min(laminar, shear_velocity / karman * std::log(depth / roughness));
+}
+
+std::vector<std::string> warnings(const Case& c) {
+  std::vector<std::string> found;
+  if (c.system != SystemKind::resolved) return found;
+  const double lattice_velocity = estimated_velocity(c) / units_of(c).velocity();
+  if (!c.fluid.expected_velocity && lattice_velocity > 0.1)
+    found.push_back(fmt::format(
+        "The flow may reach about {:.2g} m/s, which is {:.2g} cells a step; results are accurate below 0.1 and the limit "
+        "is 0.173: consider a fluid.time_step of at most {:.2g} s.",
+        estimated_velocity(c), lattice_velocity, 0.1 * c.domain.spacing / estimated_velocity(c)));
+  const double excess = relaxation_time(c) - 0.5;
+  if (excess < 5e-3 && c.fluid.smagorinsky_constant == 0.0)
+    found.push_back(fmt::format("The relaxation time is only {:.2g} above 1/2 and there is no subgrid model, so the fluid may "
+                                "become unstable: consider fluid.smagorinsky_constant: 0.27.", excess));
+  if (excess > 1.0)
+    found.push_back(fmt::format("The relaxation time, {:.2g}, is so large that walls and grains lose accuracy: consider a "
+                                "shorter fluid.time_step.", excess + 0.5));
+  if (!c.grains.empty() && smallest_diameter(c) < 5.99 * c.domain.spacing)
+    found.push_back(fmt::format("A grain is only {:.2g} cells across; drag is accurate to a few percent from about 8.",
+                                smallest_diameter(c) / c.domain.spacing));
+  for (const PopulationCase& population : c.grains)
+    if (!population.fixed && !population.prescribed_velocity && population.density < 1.2 * c.fluid.density)
+      found.push_back(fmt::format("Grains of {} kg/m^3 are nearly as light as the fluid; the explicit coupling may become "
+                                  "unstable below 1.2 times its density.", population.density));
+  return found;
+}
+
+}  // namespace thalweg

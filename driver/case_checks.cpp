@@ -1,0 +1,182 @@
+#include "driver/case_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace thalweg {
+namespace {
+
+constexpr const char* axis_name[3] = {"x", "y", "z"};
+
+// Random close packing of equal spheres: no bed is denser.
+constexpr double densest_bed = 0.64;
+// True Mach number 0.3, beyond which the lattice fluid is compressible: 0.3 / sqrt(3) cells a step.
+constexpr double largest_lattice_velocity = 0.173;
+// Fewer cells than this across a grain do not resolve the flow around it.
+constexpr double fewest_cells_per_diameter = 5.0;
+// The shortest contact must last this many sub-steps for the dashpot and the spring to be integrated accurately.
+constexpr double fewest_steps_per_contact = 20.0;
+// Decimal numbers such as 0.12 / 0.0005 are whole up to a few units in the last place.
+constexpr double whole_number_tolerance = 1e-6;
+constexpr double most_cells_along_axis = 1e6;
+
+void check_whole_cells(const DomainCase& domain, const io::YamlDocument& document) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double cells = domain.size[axis] / domain.spacing;
+    const double whole = std::round(cells);
+    if (cells > most_cells_along_axis)
+      throw document.error("domain.spacing", fmt::format("the {} m along {} would be {:.3g} cells, more than {:.0f}; give a "
+                                                         "larger spacing in m", domain.size[axis], axis_name[axis], cells,
+                                                         most_cells_along_axis));
+    if (whole >= 1.0 && std::abs(cells - whole) <= whole_number_tolerance * whole) continue;
+    const double shorter = std::floor(cells) * domain.spacing, longer = std::ceil(cells) * domain.spacing;
+    const std::string sizes = shorter > 0.0 ? fmt::format("{:.9g} or {:.9g} m", shorter, longer)
+                                            : fmt::format("at least {:.9g} m", longer);
+    throw document.error("domain.size", fmt::format("the {} m along {} are {:.6g} cells of {} m; make it a whole number of "
+                                                    "cells, {}", domain.size[axis], axis_name[axis], cells,
+                                                    domain.spacing, sizes));
+  }
+}
+
+void check_resolution(const Case& c, const io::YamlDocument& document) {
+  if (c.grains.empty() || c.system != SystemKind::resolved) return;
+  const double largest = smallest_diameter(c) / fewest_cells_per_diameter;
+  if (c.domain.spacing > largest * (1.0 + whole_number_tolerance))
+    throw document.error("domain.spacing", fmt::format("the spacing is too coarse for grains of {} m; give at most {:.4g} m, "
+                                                       "a fifth of the diameter", smallest_diameter(c), largest));
+}
+
+void check_room(const Case& c, const io::YamlDocument& document) {
+  const std::array<bool, 3> periodic = periodic_axes(c.domain);
+  const double diameter = largest_diameter(c);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double least = (periodic[static_cast<std::size_t>(axis)] ? 2.0 : 1.0) * diameter;
+    if (c.domain.size[axis] < least)
+      throw document.error("domain.size",
+                           fmt::format("the {} m along {} are too narrow for grains of {} m; give at least {:.6g} m ({})",
+                                       c.domain.size[axis], axis_name[axis], diameter, least,
+                                       least > diameter ? "two diameters of a periodic axis" : "one diameter"));
+  }
+  const double box = c.domain.size.prod();
+  const double fraction = grain_volume(c) / box;
+  if (fraction > densest_bed)
+    throw document.error(c.grains.size() == 1 ? "grains.0.count" : "grains",
+                         fmt::format("{} grains do not fit: they would fill {:.0f} % of the box, and at most {:.0f} % is "
+                                     "possible; give at most {:.0f}% of them or a larger domain.size in m", grain_count(c),
+                                     100.0 * fraction, 100.0 * densest_bed,
+                                     std::floor(100.0 * densest_bed / fraction)));
+}
+
+bool inside(const Vec3& point, const DomainCase& domain) {
+  return (point.array() >= 0.0).all() && (point.array() <= domain.size.array()).all();
+}
+
+std::string shown(const Vec3& v) { return fmt::format("[{}, {}, {}]", v[0], v[1], v[2]); }
+
+void check_placement(const Case& c, const io::YamlDocument& document) {
+  for (std::size_t n = 0; n < c.grains.size(); ++n) {
+    const PopulationCase& grains = c.grains[n];
+    const std::string key = fmt::format("grains.{}", n);
+    for (std::size_t p = 0; p < grains.placement.positions.size(); ++p)
+      if (!inside(grains.placement.positions[p], c.domain))
+        throw document.error(fmt::format("{}.placement.positions.{}", key, p),
+                             fmt::format("the grain is outside the box; give a point in m between [0, 0, 0] and {}",
+                                         shown(c.domain.size)));
+    if (!grains.placement.region) continue;
+    const RegionCase& region = *grains.placement.region;
+    const Vec3 extent = region.upper - region.lower;
+    if (!inside(region.lower, c.domain) || !inside(region.upper, c.domain) || !(extent.array() > 0.0).all())
+      throw document.error(key + ".placement.region.upper",
+                           fmt::format("the region must lie in the box with lower below upper along every axis; give "
+                                       "corners in m between [0, 0, 0] and {}", shown(c.domain.size)));
+    const double fraction = static_cast<double>(grains.count) * grains.mass() / grains.density / extent.prod();
+    if (fraction > densest_bed)
+      throw document.error(key + ".count",
+                           fmt::format("{} grains do not fit in their region: they would fill {:.0f} % of it, and at most "
+                                       "{:.0f} % is possible; give a larger placement.region in m or fewer grains",
+                                       grains.count, 100.0 * fraction, 100.0 * densest_bed));
+  }
+}
+
+void check_lattice_velocity(const Case& c, const io::YamlDocument& document, const std::string& key, double velocity) {
+  const double lattice_velocity = velocity / units_of(c).velocity();
+  if (lattice_velocity <= largest_lattice_velocity * (1.0 + whole_number_tolerance)) return;
+  throw document.error(key, fmt::format("{:.4g} m/s would be {:.3g} cells a step, more than {}; give a step of the fluid of "
+                                        "at most {:.3g} s", velocity, lattice_velocity, largest_lattice_velocity,
+                                        largest_lattice_velocity * c.domain.spacing / velocity));
+}
+
+void check_initial_fluid(const Case& c, const io::YamlDocument& document) {
+  if (c.initial.fluid.uniform)
+    check_lattice_velocity(c, document, "initial.fluid.uniform", c.initial.fluid.uniform->norm());
+  if (!c.initial.fluid.log_profile) return;
+  const LogProfileCase& profile = *c.initial.fluid.log_profile;
+  const double depth = c.domain.size[2] - profile.bed_height;
+  if (depth <= profile.roughness)
+    throw document.error("initial.fluid.log_profile.bed_height",
+                         fmt::format("no fluid is left above the bed; give a height in m below {:.6g}",
+                                     c.domain.size[2] - profile.roughness));
+  check_lattice_velocity(c, document, "initial.fluid.log_profile.shear_velocity",
+                         profile.shear_velocity / 0.41 * std::log(depth / profile.roughness));
+}
+
+void check_fluid(const Case& c, const io::YamlDocument& document) {
+  if (c.system != SystemKind::resolved) return;
+  const std::string step_key = c.fluid.time_step ? "fluid.time_step" : "fluid.maximum_lattice_velocity";
+  if (!(relaxation_time(c) > 0.5))
+    throw document.error("fluid.kinematic_viscosity", "the relaxation time of the lattice comes to 1/2, where nothing "
+                                                      "dissipates; give a larger viscosity in m^2/s or a longer step");
+  if (fluid_time_step(c) > c.run.until)
+    throw document.error(step_key, fmt::format("the step of {:.4g} s is longer than the run; give a shorter step in s or a "
+                                               "later run.until", fluid_time_step(c)));
+  if (c.fluid.expected_velocity) check_lattice_velocity(c, document, "fluid.expected_velocity", *c.fluid.expected_velocity);
+  check_initial_fluid(c, document);
+  for (std::size_t n = 0; n < c.grains.size(); ++n) {
+    const PopulationCase& grains = c.grains[n];
+    const std::string key = fmt::format("grains.{}.", n);
+    const double radius = 0.5 * grains.diameter;
+    check_lattice_velocity(c, document, key + "velocity", grains.velocity.norm());
+    check_lattice_velocity(c, document, key + "angular_velocity", grains.angular_velocity.norm() * radius);
+    if (grains.prescribed_velocity)
+      check_lattice_velocity(c, document, key + "prescribed_velocity", grains.prescribed_velocity->norm());
+    if (grains.prescribed_angular_velocity)
+      check_lattice_velocity(c, document, key + "prescribed_angular_velocity",
+                             grains.prescribed_angular_velocity->norm() * radius);
+  }
+}
+
+void check_contact_steps(const Case& c, const io::YamlDocument& document) {
+  if (c.grains.empty()) return;
+  const double longest = shortest_contact(c) / fewest_steps_per_contact;
+  const double step = grain_time_step(c);
+  if (step <= longest * (1.0 + whole_number_tolerance)) return;
+  const std::string reason = fmt::format("a step of the grains of {:.4g} s is longer than 1/20 of their shortest contact "
+                                         "({:.4g} s)", step, shortest_contact(c));
+  if (c.system == SystemKind::grains)
+    throw document.error("run.time_step", fmt::format("{}; give at most {:.3g} s", reason, longest));
+  throw document.error("coupling.grain_steps_per_fluid_step",
+                       fmt::format("{}; give at least {:.0f} sub-steps, or a lower contact.normal_stiffness in N/m", reason,
+                                   std::ceil(fluid_time_step(c) / longest)));
+}
+
+}  // namespace
+
+void check_case(const Case& c, const io::YamlDocument& document) {
+  check_whole_cells(c.domain, document);
+  check_resolution(c, document);
+  check_room(c, document);
+  check_placement(c, document);
+  check_fluid(c, document);
+  check_contact_steps(c, document);
+  if (c.analysis.transport_rate && c.analysis.transport_rate->from >= c.run.until)
+    throw document.error("analysis.transport_rate.from",
+                         fmt::format("the mean would begin after the end of the run; give a time in s below {}",
+                                     c.run.until));
+  if (c.analysis.transport_rate && c.grains.empty())
+    throw document.error("analysis.transport_rate", "there are no grains to measure; remove the section or add grains");
+}
+
+}  // namespace thalweg

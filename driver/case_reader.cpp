@@ -1,0 +1,67 @@
+#include "driver/case_reader.hpp"
+
+#include "core/error.hpp"
+#include "driver/case_checks.hpp"
+#include "driver/case_sections.hpp"
+#include "io/section_reader.hpp"
+#include "io/section_writer.hpp"
+#include "io/yaml_document.hpp"
+
+#include <fmt/format.h>
+
+namespace thalweg {
+namespace {
+
+// Plausible values for the keys that have no default: a small flume of glass spheres in water.
+Case example_case(SystemKind system) {
+  Case c;
+  c.system = system;
+  c.domain.size = {0.060, 0.0105, 0.075};
+  c.domain.spacing = 0.5e-3;
+  const Face periodic{FaceType::periodic}, floor{FaceType::no_slip}, lid{FaceType::free_slip};
+  const Face side{system == SystemKind::resolved ? FaceType::law_of_the_wall : FaceType::no_slip};
+  c.domain.faces = {periodic, periodic, side, side, floor, lid};
+  c.gravity.magnitude = 9.8;
+  c.gravity.slope = 0.07;
+  PopulationCase glass;
+  glass.count = 200;
+  glass.diameter = 4.95e-3;
+  glass.density = 2550.0;
+  c.grains = {glass};
+  c.contact.restitution = 0.93;
+  c.run.until = 3.0;
+  c.analysis.transport_rate.emplace();
+  if (system == SystemKind::resolved) {
+    c.fluid.density = 1000.0;
+    c.fluid.kinematic_viscosity = 1e-6;
+    c.fluid.time_step = 2e-5;
+  }
+  return c;
+}
+
+constexpr double steps_per_contact = 50.0;   // dry grains, where the user gives no step
+
+}  // namespace
+
+Case read_case(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
+  const io::YamlDocument document(path, overrides);
+  Case c;
+  io::read_document(document, c);
+  if (c.system == SystemKind::grains && !c.run.time_step) c.run.time_step = shortest_contact(c) / steps_per_contact;
+  check_case(c, document);
+  return c;
+}
+
+std::string resolved_yaml(const Case& c) { return io::written(c, io::YamlStyle::plain); }
+
+std::string defaults_yaml(const std::string& system) {
+  if (system != "resolved" && system != "grains")
+    throw InputError(fmt::format("There is no system \"{}\": give one of resolved, grains.", system));
+  const Case example = example_case(system == "resolved" ? SystemKind::resolved : SystemKind::grains);
+  return fmt::format("# Every key of a case with system: {}, with its default. Comments give the unit, the range and the\n"
+                     "# meaning. What has no default (required keys and one of each set of alternatives) shows an\n"
+                     "# example; keys that are commented out are optional.\n", system) +
+         io::written(example, io::YamlStyle::documented);
+}
+
+}  // namespace thalweg

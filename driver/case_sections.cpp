@@ -1,0 +1,369 @@
+#include "driver/case_sections.hpp"
+
+#include <fmt/format.h>
+
+// Functions named describe are static rather than in an unnamed namespace, where argument-dependent lookup from the
+// visitor's templates would not find them.
+namespace thalweg {
+namespace {
+
+// The faces as the file names them: an axis at once, or each side.
+struct BoundaryKeys {
+  std::optional<Face> x, y, x_low, x_high, y_low, y_high, bottom, top;
+};
+
+BoundaryKeys keys_of(const std::array<Face, 6>& faces) {
+  BoundaryKeys keys;
+  if (faces[x_low] == faces[x_high]) {
+    keys.x = faces[x_low];
+  } else {
+    keys.x_low = faces[x_low];
+    keys.x_high = faces[x_high];
+  }
+  if (faces[y_low] == faces[y_high]) {
+    keys.y = faces[y_low];
+  } else {
+    keys.y_low = faces[y_low];
+    keys.y_high = faces[y_high];
+  }
+  keys.bottom = faces[bottom];
+  keys.top = faces[top];
+  return keys;
+}
+
+std::array<Face, 6> faces_of(const BoundaryKeys& keys) {
+  std::array<Face, 6> faces;
+  faces[x_low] = keys.x.value_or(keys.x_low.value_or(Face{}));
+  faces[x_high] = keys.x.value_or(keys.x_high.value_or(Face{}));
+  faces[y_low] = keys.y.value_or(keys.y_low.value_or(Face{}));
+  faces[y_high] = keys.y.value_or(keys.y_high.value_or(Face{}));
+  faces[bottom] = keys.bottom.value_or(Face{});
+  faces[top] = keys.top.value_or(Face{});
+  return faces;
+}
+
+const std::string face_forms = "periodic, no_slip, free_slip, law_of_the_wall or {type: law_of_the_wall, coefficient: 8.36}";
+
+void check_axis(io::SectionVisitor& visit, const std::string& axis, const std::optional<Face>& both,
+                const std::optional<Face>& low, const std::optional<Face>& high) {
+  const std::string low_key = axis + "_low", high_key = axis + "_high";
+  visit.require(!both || (!low && !high), low ? low_key : high_key,
+                fmt::format("the axis is given twice; give either {} or {} and {}", axis, low_key, high_key));
+  if (both) return;
+  visit.require(low || high, axis, fmt::format("these two faces are missing; give one of {}", face_forms));
+  visit.require(low.has_value(), low_key, fmt::format("this face is missing; give one of {}", face_forms));
+  visit.require(high.has_value(), high_key, fmt::format("this face is missing; give one of {}", face_forms));
+}
+
+bool half_periodic(const std::optional<Face>& a, const std::optional<Face>& b) {
+  return a && b && (a->type == FaceType::periodic) != (b->type == FaceType::periodic);
+}
+
+}  // namespace
+
+static void describe(io::SectionVisitor& visit, Face& face) {
+  visit.choice<FaceType>("type", face.type,
+                         {{FaceType::periodic, "periodic"},
+                          {FaceType::no_slip, "no_slip"},
+                          {FaceType::free_slip, "free_slip"},
+                          {FaceType::law_of_the_wall, "law_of_the_wall"}},
+                         {.meaning = "kind of face, all by half-link rules"});
+  if (face.type == FaceType::law_of_the_wall)
+    visit.real("coefficient", face.coefficient,
+               {.meaning = "slip velocity at the wall over the friction velocity", .above = 0.0});
+  else
+    visit.not_here("coefficient", "only a law_of_the_wall has a coefficient; remove it");
+}
+
+static void describe_boundaries(io::SectionVisitor& visit, BoundaryKeys& keys) {
+  const auto face = [&](const std::string& key, std::optional<Face>& value, const std::string& meaning) {
+    visit.section(key, value, {.meaning = meaning, .shorthand = "type"});
+  };
+  face("x", keys.x, "both faces across the stream; or x_low and x_high");
+  face("x_low", keys.x_low, "the upstream face");
+  face("x_high", keys.x_high, "the downstream face");
+  face("y", keys.y, "both side faces; or y_low and y_high");
+  face("y_low", keys.y_low, "the side face at y = 0");
+  face("y_high", keys.y_high, "the side face at the far end of y");
+  face("bottom", keys.bottom, "the floor");
+  face("top", keys.top, "the lid or free surface");
+  check_axis(visit, "x", keys.x, keys.x_low, keys.x_high);
+  check_axis(visit, "y", keys.y, keys.y_low, keys.y_high);
+  visit.require(keys.bottom.has_value(), "bottom", fmt::format("this face is missing; give one of {}", face_forms));
+  visit.require(keys.top.has_value(), "top", fmt::format("this face is missing; give one of {}", face_forms));
+  const std::string together = "an axis is periodic on both faces or on neither; make both faces periodic";
+  visit.require(!half_periodic(keys.x_low, keys.x_high), "x_low", together);
+  visit.require(!half_periodic(keys.y_low, keys.y_high), "y_low", together);
+  visit.require(!half_periodic(keys.bottom, keys.top), "bottom", together);
+}
+
+static void describe(io::SectionVisitor& visit, DomainCase& domain) {
+  visit.vec3("size", domain.size, {.unit = "m", .meaning = "length streamwise (x), cross-stream (y), upwards (z)",
+                                   .required = true, .above = 0.0, .example = 0.1});
+  visit.real("spacing", domain.spacing,
+             {.unit = "m", .meaning = "side of a cell, of which every length holds a whole number; without a fluid only "
+                                      "the grid on which ranks share the box",
+              .required = true, .above = 0.0, .example = 0.5e-3});
+  BoundaryKeys keys = keys_of(domain.faces);
+  visit.section("boundaries", {.meaning = "what stands at each face: " + face_forms, .required = true},
+                [&](io::SectionVisitor& inside) { describe_boundaries(inside, keys); });
+  if (visit.reading()) domain.faces = faces_of(keys);
+}
+
+static void describe(io::SectionVisitor& visit, FluidCase& fluid) {
+  visit.real("density", fluid.density,
+             {.unit = "kg/m^3", .meaning = "mass density", .required = true, .above = 0.0, .example = 1000.0});
+  visit.real("kinematic_viscosity", fluid.kinematic_viscosity,
+             {.unit = "m^2/s", .meaning = "molecular viscosity", .required = true, .above = 0.0, .example = 1e-6});
+  visit.real("smagorinsky_constant", fluid.smagorinsky_constant,
+             {.meaning = "of the subgrid model; 0.27 for water, 0 switches it off", .at_least = 0.0, .below = 1.0});
+  visit.real("time_step", fluid.time_step,
+             {.unit = "s", .meaning = "of the fluid; or give the two velocities below", .above = 0.0, .example = 2e-5});
+  visit.real("maximum_lattice_velocity", fluid.maximum_lattice_velocity,
+             {.unit = "cells/step", .meaning = "with expected_velocity, in place of time_step: the step in which the "
+                                               "expected velocity covers this many cells",
+              .above = 0.0, .at_most = 0.173, .example = 0.05});
+  visit.real("expected_velocity", fluid.expected_velocity,
+             {.unit = "m/s", .meaning = "the largest velocity expected in the fluid", .above = 0.0, .example = 0.5});
+  visit.require(!(fluid.time_step && fluid.maximum_lattice_velocity), "time_step",
+                "the step is given twice; give either time_step or maximum_lattice_velocity with expected_velocity");
+  visit.require(fluid.time_step || fluid.maximum_lattice_velocity, "time_step",
+                "the step is missing; give time_step in s, for example 2e-05, or maximum_lattice_velocity with "
+                "expected_velocity");
+  visit.require(!fluid.maximum_lattice_velocity || fluid.expected_velocity, "expected_velocity",
+                "maximum_lattice_velocity needs it; give the largest velocity expected in m/s, for example 0.5");
+  visit.choice<Collision>("collision", fluid.collision, {{Collision::bgk, "bgk"}},
+                          {.meaning = "collision operator"});
+  visit.choice<Precision>("precision", fluid.precision, {{Precision::single, "single"}, {Precision::double_, "double"}},
+                          {.meaning = "of the stored populations"});
+}
+
+static void describe_gravity(io::SectionVisitor& visit, GravityCase& gravity, bool with_fluid) {
+  visit.real("magnitude", gravity.magnitude,
+             {.unit = "m/s^2", .meaning = "with slope; or give vector", .at_least = 0.0, .example = 9.8});
+  visit.real("slope", gravity.slope,
+             {.meaning = "tangent of the bed's angle, downhill along x; 0 where not given", .example = 0.016});
+  visit.vec3("vector", gravity.vector, {.unit = "m/s^2", .meaning = "in place of magnitude and slope", .example = 0.0});
+  visit.require(!gravity.vector || (!gravity.magnitude && !gravity.slope), "vector",
+                "gravity is given twice; give either magnitude and slope or vector");
+  visit.require(gravity.vector || gravity.magnitude, "magnitude",
+                "gravity is missing; give magnitude in m/s^2, for example 9.8, with slope, or vector");
+  if (with_fluid)
+    visit.choice<GravityMode>("mode", gravity.mode,
+                              {{GravityMode::reduced, "reduced", "hydrostatic pressure left out"},
+                               {GravityMode::full, "full", "hydrostatic pressure in the fluid"}},
+                              {.meaning = "how the weight of the resting fluid is treated"});
+  else
+    visit.not_here("mode", "a run without fluid has only one kind of gravity; remove the key");
+}
+
+static void describe(io::SectionVisitor& visit, RegionCase& region) {
+  visit.vec3("lower", region.lower, {.unit = "m", .meaning = "lower corner", .required = true, .example = 0.0});
+  visit.vec3("upper", region.upper, {.unit = "m", .meaning = "upper corner", .required = true, .example = 0.05});
+}
+
+static void describe(io::SectionVisitor& visit, PlacementCase& placement) {
+  visit.vec3_list("positions", placement.positions,
+                  {.unit = "m", .meaning = "centres of the grains, one by one, in place of the keys below"});
+  if (!placement.positions.empty()) {
+    for (const char* key : {"pattern", "seed", "region"})
+      visit.not_here(key, "the positions are given one by one; remove this key or the positions");
+    return;
+  }
+  visit.choice<PlacementPattern>("pattern", placement.pattern,
+                                 {{PlacementPattern::uniform, "uniform", "evenly spread, slightly disturbed"},
+                                  {PlacementPattern::random, "random", "at random without overlap"}},
+                                 {.meaning = "how the grains are spread over the region"});
+  visit.integer("seed", placement.seed, {.meaning = "another seed, another packing", .at_least = 0});
+  visit.section("region", placement.region, {.meaning = "where the grains are put; the whole box where not given"});
+}
+
+static void describe(io::SectionVisitor& visit, PopulationCase& grains) {
+  visit.real("diameter", grains.diameter,
+             {.unit = "m", .meaning = "of every grain", .required = true, .above = 0.0, .example = 5e-3});
+  visit.real("density", grains.density,
+             {.unit = "kg/m^3", .meaning = "of every grain", .required = true, .above = 0.0, .example = 2550.0});
+  visit.section("placement", grains.placement, {.meaning = "where the grains are at the start"});
+  const auto given = static_cast<std::int64_t>(grains.placement.positions.size());
+  if (visit.reading() && given > 0) grains.count = given;
+  visit.integer("count", grains.count,
+                {.meaning = "number of grains; not needed with positions", .at_least = 1, .example = 100});
+  visit.require(grains.count > 0, "count",
+                "the number of grains is missing; give a whole number, for example 100, or placement.positions");
+  visit.require(given == 0 || grains.count == given, "count",
+                fmt::format("there are {} positions; give this number or leave the key out", given));
+  visit.vec3("velocity", grains.velocity, {.unit = "m/s", .meaning = "at the start"});
+  visit.vec3("angular_velocity", grains.angular_velocity, {.unit = "rad/s", .meaning = "at the start"});
+  visit.flag("fixed", grains.fixed, {.meaning = "the grains never move"});
+  visit.vec3("prescribed_velocity", grains.prescribed_velocity,
+             {.unit = "m/s", .meaning = "kept whatever the forces", .example = 0.0});
+  visit.vec3("prescribed_angular_velocity", grains.prescribed_angular_velocity,
+             {.unit = "rad/s", .meaning = "kept whatever the torques", .example = 0.0});
+  visit.require(!grains.fixed || (!grains.prescribed_velocity && !grains.prescribed_angular_velocity), "fixed",
+                "a fixed grain cannot have a prescribed velocity; give one or the other");
+  visit.require(!grains.fixed || (grains.velocity.isZero(0.0) && grains.angular_velocity.isZero(0.0)), "fixed",
+                "a fixed grain cannot start with a velocity; remove fixed or the velocity");
+  visit.require(!grains.prescribed_velocity || grains.velocity.isZero(0.0), "velocity",
+                "prescribed_velocity already says how the grains move; remove one of the two");
+  visit.require(!grains.prescribed_angular_velocity || grains.angular_velocity.isZero(0.0), "angular_velocity",
+                "prescribed_angular_velocity already says how the grains turn; remove one of the two");
+}
+
+static void describe_contact(io::SectionVisitor& visit, ContactCase& contact, bool with_grains) {
+  visit.real("normal_stiffness", contact.normal_stiffness,
+             {.unit = "N/m", .meaning = "of the spring across a contact", .above = 0.0});
+  visit.real("tangential_stiffness", contact.tangential_stiffness,
+             {.unit = "N/m", .meaning = "of the spring along a contact", .above = 0.0});
+  visit.real("restitution", contact.restitution,
+             {.meaning = "speed after over speed before a dry collision; or give damping", .above = 0.0, .at_most = 1.0,
+              .example = 0.93});
+  visit.real("damping", contact.damping,
+             {.unit = "kg/s", .meaning = "of the dashpot across a contact, in place of restitution", .at_least = 0.0,
+              .example = 0.09});
+  visit.require(!(contact.restitution && contact.damping), "restitution",
+                "the loss in a collision is given twice; give either restitution or damping");
+  visit.require(!with_grains || contact.restitution || contact.damping, "restitution",
+                "the loss in a collision is missing; give restitution, for example 0.93, or damping in kg/s");
+  visit.real("friction", contact.friction, {.meaning = "coefficient between grains", .at_least = 0.0});
+  visit.real("wall_friction", contact.wall_friction, {.meaning = "coefficient between grain and wall", .at_least = 0.0});
+  visit.choice<Attraction>("attraction", contact.attraction,
+                           {{Attraction::none, "none", "the force never pulls"},
+                            {Attraction::allowed, "allowed", "the dashpot may pull as grains part, as in the linear law"}},
+                           {.meaning = "sign of the normal force"});
+}
+
+static void describe(io::SectionVisitor& visit, CouplingCase& coupling) {
+  visit.integer("grain_steps_per_fluid_step", coupling.grain_steps_per_fluid_step,
+                {.meaning = "sub-steps of the grains in one step of the fluid", .at_least = 1});
+  visit.real("link_tolerance", coupling.link_tolerance,
+             {.unit = "cells", .meaning = "how far a grain may move before its surface is cut anew", .at_least = 0.0,
+              .at_most = 0.1});
+  visit.choice<MomentumExchange>("momentum_exchange", coupling.momentum_exchange,
+                                 {{MomentumExchange::galilean_invariant, "galilean_invariant", "Wen et al. 2014"},
+                                  {MomentumExchange::classical, "classical", "Mei et al. 2002"}},
+                                 {.meaning = "how the force on a grain is summed"});
+  visit.choice<WallDensity>("wall_density", coupling.wall_density,
+                            {{WallDensity::local, "local", "of the fluid cell"},
+                             {WallDensity::reference, "reference", "of the fluid at rest"}},
+                            {.meaning = "density in the moving-wall term"});
+  visit.choice<Refill>("refill", coupling.refill, {{Refill::equilibrium, "equilibrium"}},
+                       {.meaning = "populations of a cell that a grain has uncovered"});
+}
+
+static void describe(io::SectionVisitor& visit, LogProfileCase& profile) {
+  visit.real("bed_height", profile.bed_height,
+             {.unit = "m", .meaning = "above the bottom; the fluid below is at rest", .required = true, .at_least = 0.0,
+              .example = 0.06});
+  visit.real("shear_velocity", profile.shear_velocity,
+             {.unit = "m/s", .meaning = "u(z) = shear_velocity / 0.41 ln((z - bed_height) / roughness)",
+              .required = true, .above = 0.0, .example = 0.08});
+  visit.real("roughness", profile.roughness,
+             {.unit = "m", .meaning = "height above the bed at which the velocity is zero", .required = true,
+              .above = 0.0, .example = 3.3e-4});
+}
+
+static void describe(io::SectionVisitor& visit, InitialFluidCase& fluid) {
+  visit.vec3("uniform", fluid.uniform, {.unit = "m/s", .meaning = "the same velocity everywhere", .example = 0.0});
+  visit.section("log_profile", fluid.log_profile, {.meaning = "a turbulent profile along x over a bed"});
+  visit.require(!(fluid.uniform && fluid.log_profile), "uniform",
+                "the start is given twice; give either uniform or log_profile");
+}
+
+static void describe(io::SectionVisitor& visit, InitialCase& initial) {
+  visit.section("fluid", initial.fluid,
+                {.meaning = "velocity at the start: rest, uniform or log_profile", .empty_name = "rest"});
+}
+
+static void describe_run(io::SectionVisitor& visit, RunCase& run, bool with_fluid) {
+  visit.real("until", run.until,
+             {.unit = "s", .meaning = "simulated time at which the run ends", .required = true, .above = 0.0,
+              .example = 30.0});
+  if (with_fluid) visit.not_here("time_step", "with a fluid the step is fluid.time_step; remove the key");
+  else
+    visit.real("time_step", run.time_step,
+               {.unit = "s", .meaning = "of the grains; 1/50 of the shortest contact where not given", .above = 0.0,
+                .example = 4e-6});
+}
+
+static void describe(io::SectionVisitor& visit, SeriesOutputCase& series) {
+  visit.real("every", series.every, {.unit = "s", .meaning = "between rows of series.csv; 0: none", .at_least = 0.0});
+}
+
+static void describe(io::SectionVisitor& visit, FluidOutputCase& fluid) {
+  using io::FluidField;
+  using io::FluidRegion;
+  visit.real("every", fluid.every, {.unit = "s", .meaning = "between pictures of the fluid; 0: none", .at_least = 0.0});
+  visit.choice<FluidRegion>("region", fluid.region,
+                            {{FluidRegion::whole, "whole"},
+                             {FluidRegion::slice_x, "slice_x"},
+                             {FluidRegion::slice_y, "slice_y"},
+                             {FluidRegion::slice_z, "slice_z"}},
+                            {.meaning = "the whole box, or the middle layer of cells across an axis"});
+  visit.choice_list<FluidField>("fields", fluid.fields,
+                                {{FluidField::velocity, "velocity"},
+                                 {FluidField::pressure, "pressure"},
+                                 {FluidField::grain_id, "grain_id"}},
+                                {.meaning = "what the pictures show"});
+}
+
+static void describe(io::SectionVisitor& visit, GrainOutputCase& grains) {
+  visit.real("every", grains.every, {.unit = "s", .meaning = "between pictures of the grains; 0: none", .at_least = 0.0});
+}
+
+static void describe(io::SectionVisitor& visit, CheckpointOutputCase& checkpoint) {
+  visit.real("every", checkpoint.every,
+             {.unit = "s", .meaning = "between checkpoints; 0: only at the end of the run", .at_least = 0.0});
+  visit.integer("keep", checkpoint.keep, {.meaning = "number of newest checkpoints that are kept", .at_least = 1});
+}
+
+static void describe_output(io::SectionVisitor& visit, OutputCase& output, bool with_fluid) {
+  visit.section("series", output.series, {.meaning = "the table series.csv"});
+  if (with_fluid) visit.section("fluid", output.fluid, {.meaning = "pictures of the fluid, fluid.pvd"});
+  else visit.not_here("fluid", "a run without fluid has no pictures of it; remove the section");
+  visit.section("grains", output.grains, {.meaning = "pictures of the grains, grains.pvd"});
+  visit.section("checkpoint", output.checkpoint, {.meaning = "states from which the run can be continued"});
+}
+
+static void describe(io::SectionVisitor& visit, TransportRateCase& rate) {
+  visit.real("from", rate.from,
+             {.unit = "s", .meaning = "start of the mean that summary.json gives", .at_least = 0.0});
+}
+
+static void describe(io::SectionVisitor& visit, AnalysisCase& analysis) {
+  visit.section("transport_rate", analysis.transport_rate, {.meaning = "the grains' flux q and q* along x"});
+}
+
+void describe(io::SectionVisitor& visit, Case& c) {
+  visit.choice<SystemKind>("system", c.system,
+                           {{SystemKind::resolved, "resolved", "fluid with grains in it, every grain resolved"},
+                            {SystemKind::grains, "grains", "dry grains"}},
+                           {.meaning = "what is simulated", .required = true});
+  const bool with_fluid = c.system == SystemKind::resolved;
+  const auto only_with_fluid = [&](const std::string& key) {
+    visit.not_here(key, "system: grains has no fluid; remove the section or set system: resolved");
+  };
+  visit.text("name", c.name, {.meaning = "what the run is called in its output"});
+  visit.section("domain", c.domain, {.meaning = "the box, its cells and its faces", .required = true});
+  if (with_fluid) visit.section("fluid", c.fluid, {.meaning = "what fills the box", .required = true});
+  else only_with_fluid("fluid");
+  visit.section("gravity", {.meaning = "given by magnitude and slope, or as a vector", .required = true},
+                [&](io::SectionVisitor& inside) { describe_gravity(inside, c.gravity, with_fluid); });
+  visit.list("grains", c.grains, {.meaning = "populations of grains", .required = !with_fluid});
+  visit.section("contact", {.meaning = "linear spring and dashpot, with friction"}, [&](io::SectionVisitor& inside) {
+    describe_contact(inside, c.contact, !c.grains.empty());
+  });
+  if (with_fluid) {
+    visit.section("coupling", c.coupling, {.meaning = "how fluid and grains act on each other"});
+    visit.section("initial", c.initial, {.meaning = "state at the start"});
+  } else {
+    only_with_fluid("coupling");
+    only_with_fluid("initial");
+  }
+  visit.section("run", {.meaning = "how long", .required = true},
+                [&](io::SectionVisitor& inside) { describe_run(inside, c.run, with_fluid); });
+  visit.section("output", {.meaning = "what the run writes, besides run.log and summary.json"},
+                [&](io::SectionVisitor& inside) { describe_output(inside, c.output, with_fluid); });
+  visit.section("analysis", c.analysis, {.meaning = "what is measured while the run goes"});
+}
+
+}  // namespace thalweg

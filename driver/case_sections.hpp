@@ -1,0 +1,12 @@
+// The keys of a case file: their names, units, meanings, ranges and defaults, described once for reading, writing and
+// documenting.
+#pragma once
+
+#include "driver/case.hpp"
+#include "io/section_visitor.hpp"
+
+namespace thalweg {
+
+void describe(io::SectionVisitor& visit, Case& c);
+
+}  // namespace thalweg
