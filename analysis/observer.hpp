@@ -1,0 +1,35 @@
+// What measures a run. An observer looks at snapshots and turns them into numbers; it never changes the state, so that
+// switching it off does not change one bit of the run.
+#pragma once
+
+#include "core/archive.hpp"
+#include "core/snapshot.hpp"
+#include "core/system.hpp"
+
+#include <string>
+#include <vector>
+
+namespace thalweg::analysis {
+
+class Observer {
+public:
+  virtual ~Observer() = default;
+
+  // Name of the group its results form in summary.json and in a checkpoint, e.g. "transport_rate".
+  virtual std::string name() const = 0;
+
+  // Takes one measurement. Collective: every rank calls it at the same steps.
+  virtual void observe(const Snapshot& snapshot) = 0;
+
+  // The latest measurement, the same on every rank: columns of the series. Their names and order never change.
+  virtual std::vector<Figure> figures() const = 0;
+
+  // What the run has come to so far, the same on every rank: means for the summary.
+  virtual std::vector<Figure> results() const { return figures(); }
+
+  // Running sums, so that a restarted run reports the same means as one that was never interrupted. Collective.
+  virtual void save(ArchiveWriter& archive) const = 0;
+  virtual void load(ArchiveReader& archive) = 0;   // does nothing if the archive holds no sums that fit
+};
+
+}  // namespace thalweg::analysis

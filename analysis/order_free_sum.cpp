@@ -1,0 +1,54 @@
+#include "analysis/order_free_sum.hpp"
+
+#include "core/mpi_session.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace thalweg::analysis {
+
+namespace {
+
+// Power of two by which a column is multiplied before rounding: |term| < 2^exponent, and 2^spare terms fit in 62 bits.
+int shift_for(double largest, std::int64_t terms) {
+  int exponent = 0;
+  std::frexp(largest, &exponent);
+  int spare = 0;
+  while ((std::int64_t{1} << spare) < terms) ++spare;
+  return 62 - exponent - spare;
+}
+
+}  // namespace
+
+std::vector<double> order_free_sums(MPI_Comm communicator, std::span<const double> terms, std::size_t columns) {
+  const std::size_t rows = columns == 0 ? 0 : terms.size() / columns;
+  // One reduction for the largest term of every column; infinity stands for anything not finite.
+  std::vector<double> largest(columns, 0.0);
+  for (std::size_t row = 0; row < rows; ++row)
+    for (std::size_t c = 0; c < columns; ++c) {
+      const double size = std::abs(terms[row * columns + c]);
+      largest[c] = std::isfinite(size) ? std::max(largest[c], size) : std::numeric_limits<double>::infinity();
+    }
+  MPI_Allreduce(MPI_IN_PLACE, largest.data(), static_cast<int>(columns), MPI_DOUBLE, MPI_MAX, communicator);
+  const std::int64_t all_rows = sum_over_ranks(communicator, static_cast<std::int64_t>(rows));
+
+  std::vector<std::int64_t> sums(columns, 0);
+  std::vector<int> shift(columns, 0);
+  for (std::size_t c = 0; c < columns; ++c) {
+    if (largest[c] == 0.0 || std::isinf(largest[c])) continue;
+    shift[c] = shift_for(largest[c], all_rows);
+    for (std::size_t row = 0; row < rows; ++row)
+      sums[c] += std::llrint(std::ldexp(terms[row * columns + c], shift[c]));
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(columns), MPI_INT64_T, MPI_SUM, communicator);
+
+  std::vector<double> result(columns, 0.0);
+  for (std::size_t c = 0; c < columns; ++c)
+    result[c] = std::isinf(largest[c]) ? std::numeric_limits<double>::quiet_NaN()
+                                       : std::ldexp(static_cast<double>(sums[c]), -shift[c]);
+  return result;
+}
+
+}  // namespace thalweg::analysis

@@ -1,0 +1,20 @@
+// Sums over the grains of all ranks with the same bits whoever owns which grain and in whatever order.
+//
+// Every term is turned into a 64-bit integer multiple of a power of two that is chosen from the largest term and the
+// number of terms, so that the sum of integers, which is associative, cannot overflow. The rounding of one term is at
+// most 2^-61 times the number of terms times the largest term.
+#pragma once
+
+#include <mpi.h>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace thalweg::analysis {
+
+// terms: rows of `columns` values, one row a grain owned here (columns of a row together). Returns one sum a column, the
+// same on every rank; not-a-number for a column that holds a term which is not finite. Collective.
+std::vector<double> order_free_sums(MPI_Comm communicator, std::span<const double> terms, std::size_t columns);
+
+}  // namespace thalweg::analysis

@@ -1,0 +1,56 @@
+#include "driver/build_system.hpp"
+
+#include "core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+namespace thalweg::driver {
+
+namespace {
+
+using Builder = std::unique_ptr<System> (*)(const Case&, MPI_Comm, const Index3&);
+
+struct Entry {
+  SystemKind kind;
+  Builder build;
+};
+
+constexpr Entry builders[] = {
+    {SystemKind::resolved, build_resolved_system},
+    {SystemKind::grains, build_grains_system},
+};
+
+}  // namespace
+
+const char* name_of(SystemKind kind) {
+  switch (kind) {
+    case SystemKind::resolved: return "resolved";
+    case SystemKind::grains: return "grains";
+  }
+  return "";
+}
+
+Index3 choose_layout(const Case& c, int ranks, const std::optional<Index3>& asked_for) {
+  const Index3 layout = asked_for ? *asked_for : Decomposition::best_layout(cells_of(c.domain), ranks);
+  if (layout[0] * layout[1] * layout[2] != ranks)
+    throw InputError(fmt::format("--layout {},{},{} is for {} ranks, but the program runs on {}.", layout[0], layout[1],
+                                 layout[2], layout[0] * layout[1] * layout[2], ranks));
+  return layout;
+}
+
+Decomposition decomposition_of(const Case& c, const Index3& layout) {
+  return {cells_of(c.domain), c.domain.spacing, periodic_axes(c.domain), layout};
+}
+
+std::unique_ptr<System> build_system(const Case& c, MPI_Comm communicator, const Index3& layout) {
+  const auto entry = std::find_if(std::begin(builders), std::end(builders),
+                                  [&](const Entry& candidate) { return candidate.kind == c.system; });
+  if (entry == std::end(builders))
+    throw InputError(fmt::format("system: {} cannot be run by this build of the program.", name_of(c.system)));
+  return entry->build(c, communicator, layout);
+}
+
+}  // namespace thalweg::driver

@@ -1,0 +1,185 @@
+#include "driver/check_report.hpp"
+
+#include "dem/grain_seed.hpp"
+#include "dem/material.hpp"
+#include "driver/build_system.hpp"
+#include "driver/grain_setup.hpp"
+#include "driver/machine.hpp"
+#include "driver/progress.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace thalweg::driver {
+
+namespace {
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+// What the program is assumed to reach, for the estimate of time: the share of the memory-bound speed of a bed with its
+// links on one core, and the grain-steps of one core.
+constexpr double share_of_memory_bound = 0.25;
+constexpr double grain_steps_per_second = 2.5e6;
+
+// Bytes: per cell 19 populations twice and its flags; per link a record; per grain its columns, neighbours and history.
+constexpr double flag_bytes = 8.0, link_bytes = 32.0, grain_bytes = 2000.0;
+constexpr double links_per_square_cell = 15.8;   // links of a sphere over its diameter in cells squared
+
+bool fluid_in(const Case& c) { return c.system == SystemKind::resolved; }
+
+bool is_wall(const Face& face) { return face.type == FaceType::no_slip || face.type == FaceType::law_of_the_wall; }
+
+double bytes_per_value(const Case& c) { return c.fluid.precision == Precision::single ? 4.0 : 8.0; }
+
+double step_time(const Case& c) {
+  return fluid_in(c) ? fluid_time_step(c)
+                     : grain_time_step(c) * static_cast<double>(c.coupling.grain_steps_per_fluid_step);
+}
+
+using Lines = std::vector<std::string>;
+
+void add_domain(const Case& c, Lines& lines) {
+  const Index3 n = cells_of(c.domain);
+  lines.push_back(fmt::format("domain     {:g} x {:g} x {:g} m: {} x {} x {} cells of {:g} m", c.domain.size.x(),
+                              c.domain.size.y(), c.domain.size.z(), n[0], n[1], n[2], c.domain.spacing));
+}
+
+void add_fluid(const Case& c, Lines& lines) {
+  if (!fluid_in(c)) return;
+  const Units units = units_of(c);
+  lines.push_back(fmt::format("fluid      {:g} kg/m^3, {:g} m^2/s; relaxation time 1/2 + {:.3g}; {:g} s a step",
+                              c.fluid.density, c.fluid.kinematic_viscosity, relaxation_time(c) - 0.5, units.time_step));
+  const double expected = c.fluid.expected_velocity.value_or(estimated_velocity(c));
+  const double lattice = expected / units.velocity();
+  lines.push_back(fmt::format("flow       up to about {:.3g} m/s: {:.3g} cells a step, Mach number {:.3g} (good below 0.3)",
+                              expected, lattice, lattice * std::sqrt(3.0)));
+}
+
+void add_bed(const Case& c, Lines& lines) {
+  const FlowNumbers flow = flow_numbers(c);
+  if (!std::isfinite(flow.galileo)) return;
+  lines.push_back(fmt::format("density    ratio {:.4g}; Galileo number {:.4g}", flow.density_ratio, flow.galileo));
+  if (!std::isfinite(flow.shields_depth)) return;
+  lines.push_back(fmt::format("bed        settles at about {:.3g} m ({:.3g} diameters), {:.3g} m of flow above, slope {:g}",
+                              flow.bed_height, flow.bed_height / c.grains.front().diameter, flow.depth, flow.slope));
+  lines.push_back(fmt::format("Shields    {:.4g} from depth and slope", flow.shields_depth) +
+                  (flow.side_walls ? fmt::format("; {:.4g} from the hydraulic radius between the side walls",
+                                                 flow.shields_hydraulic)
+                                   : ""));
+  lines.push_back(fmt::format("Reynolds   {:.4g} of a grain at the friction velocity {:.3g} m/s", flow.particle_reynolds,
+                              flow.friction_velocity));
+}
+
+void add_grains(const Case& c, Lines& lines) {
+  for (const PopulationCase& population : c.grains) {
+    lines.push_back(fmt::format("grains     {} of {:g} m, {:g} kg/m^3", population.count, population.diameter,
+                                population.density) +
+                    (fluid_in(c) ? fmt::format(": {:.3g} cells a diameter", population.diameter / c.domain.spacing) : ""));
+  }
+  if (c.grains.empty()) return;
+  const PeriodicBox box{c.domain.size, periodic_axes(c.domain)};
+  const dem::ContactParameters contact = grain_parameters(c, box).contact;
+  double lightest = c.grains.front().mass();
+  for (const PopulationCase& population : c.grains) lightest = std::min(lightest, population.mass());
+  const double effective = 0.5 * lightest;
+  const double damping = dem::Damping(contact).coefficient(effective);
+  const double duration = dem::contact_time(contact.normal_stiffness, effective, damping);
+  const double step = grain_time_step(c);
+  lines.push_back(fmt::format("contact    lasts {:.3g} s: {:.3g} sub-steps of {:.3g} s (at least {:g}); damping {:.3g} kg/s",
+                              duration, duration / step, step, dem::fewest_steps_per_contact, damping));
+  if (!fluid_in(c)) return;
+  lines.push_back(fmt::format("flight     a grain moves a fiftieth of a cell a step at {:.3g} m/s: faster ones are less exact",
+                              0.02 * units_of(c).velocity()));
+}
+
+std::string bytes_text(double bytes) {
+  return bytes < 1e9 ? fmt::format("{:.3g} MB", bytes * 1e-6) : fmt::format("{:.3g} GB", bytes * 1e-9);
+}
+
+void add_cost(const Case& c, double bandwidth, Lines& lines) {
+  const Cost cost = cost_of(c, bandwidth);
+  std::string work = fmt::format("work       {:.0f} steps to {:g} s", cost.steps, c.run.until);
+  if (cost.cell_updates > 0.0) work += fmt::format(": {:.3g} cell updates", cost.cell_updates);
+  if (cost.grain_steps > 0.0) work += fmt::format(", {:.3g} grain-steps", cost.grain_steps);
+  lines.push_back(work);
+  lines.push_back("memory     about " + bytes_text(cost.memory));
+  lines.push_back(fmt::format("time       about {} on one core like this one ({:.3g} GB/s), and so many times less on more",
+                              clock_text(cost.core_seconds), bandwidth * 1e-9));
+}
+
+// What dem would refuse when the run starts.
+void refuse_impossible_grains(const Case& c) {
+  if (c.grains.empty()) return;
+  const PeriodicBox box{c.domain.size, periodic_axes(c.domain)};
+  const dem::GrainParameters parameters = grain_parameters(c, box);
+  dem::check(parameters.contact);
+  double lightest = c.grains.front().mass();
+  for (const PopulationCase& population : c.grains) lightest = std::min(lightest, population.mass());
+  dem::check_time_step(parameters.contact, 0.5 * lightest, parameters.time_step);
+  dem::check(grain_seeds(c), box, parameters.walls);
+}
+
+}  // namespace
+
+FlowNumbers flow_numbers(const Case& c) {
+  FlowNumbers flow{nothing, nothing, nothing, nothing, false,   nothing,
+                   nothing, nothing, nothing, nothing, nothing};
+  if (!fluid_in(c) || c.grains.empty()) return flow;
+  const Vec3 gravity = gravity_vector(c.gravity);
+  const double g = gravity.norm(), d = c.grains.front().diameter;
+  flow.density_ratio = c.grains.front().density / c.fluid.density;
+  const double excess = flow.density_ratio - 1.0;
+  flow.galileo = std::sqrt(std::abs(excess) * g * d * d * d) / c.fluid.kinematic_viscosity;
+  if (gravity.x() <= 0.0 || gravity.z() >= 0.0 || excess <= 0.0) return flow;
+
+  const Vec3 size = c.domain.size;
+  flow.slope = gravity.x() / -gravity.z();
+  flow.bed_height = grain_volume(c) / (FlowNumbers::settled_fraction * size.x() * size.y());
+  flow.depth = size.z() - flow.bed_height;
+  if (flow.depth <= 0.0) return flow;
+  flow.side_walls = is_wall(c.domain.faces[y_low]) && is_wall(c.domain.faces[y_high]);
+  flow.hydraulic_radius = flow.side_walls ? flow.depth * size.y() / (2.0 * flow.depth + size.y()) : flow.depth;
+  flow.shields_depth = flow.slope * flow.depth / (excess * d);
+  flow.shields_hydraulic = flow.slope * flow.hydraulic_radius / (excess * d);
+  flow.friction_velocity = std::sqrt(g * flow.slope * flow.hydraulic_radius);
+  flow.particle_reynolds = flow.friction_velocity * d / c.fluid.kinematic_viscosity;
+  return flow;
+}
+
+Cost cost_of(const Case& c, double bandwidth) {
+  const Index3 n = cells_of(c.domain);
+  Cost cost{};
+  cost.cells = fluid_in(c) ? static_cast<double>(n[0]) * n[1] * n[2] : 0.0;
+  cost.steps = std::ceil(c.run.until / step_time(c) * (1.0 - 1e-12));
+  cost.cell_updates = cost.cells * cost.steps;
+  cost.grain_steps = static_cast<double>(grain_count(c) * c.coupling.grain_steps_per_fluid_step) * cost.steps;
+  cost.memory = cost.cells * (2.0 * 19.0 * bytes_per_value(c) + flag_bytes) +
+                static_cast<double>(grain_count(c)) * grain_bytes;
+  if (fluid_in(c))
+    for (const PopulationCase& population : c.grains) {
+      const double cells_across = population.diameter / c.domain.spacing;
+      cost.memory += static_cast<double>(population.count) * links_per_square_cell * cells_across * cells_across *
+                     link_bytes;
+    }
+  const double updates_per_second =
+      share_of_memory_bound * bandwidth / bytes_per_cell_update(static_cast<int>(bytes_per_value(c)));
+  cost.core_seconds = cost.cell_updates / updates_per_second + cost.grain_steps / grain_steps_per_second;
+  return cost;
+}
+
+std::vector<std::string> check_report(const Case& c, double bandwidth) {
+  refuse_impossible_grains(c);
+  Lines lines{fmt::format("{} (system: {})", c.name, name_of(c.system))};
+  add_domain(c, lines);
+  add_fluid(c, lines);
+  add_grains(c, lines);
+  add_bed(c, lines);
+  add_cost(c, bandwidth, lines);
+  for (const std::string& warning : warnings(c)) lines.push_back("warning    " + warning);
+  return lines;
+}
+
+}  // namespace thalweg::driver

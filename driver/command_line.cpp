@@ -1,0 +1,122 @@
+#include "driver/command_line.hpp"
+
+#include "core/error.hpp"
+#include "driver/version.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <sstream>
+
+namespace thalweg::driver {
+
+namespace {
+
+constexpr const char* examples = R"(Examples:
+  thalweg check cases/quickstart/case.yaml             what the case means and what it costs
+  thalweg run cases/quickstart/case.yaml --out run/a   run it on one core
+  mpirun -n 8 thalweg run case.yaml --walltime 23:50:00 --set fluid.time_step=1e-5
+  mpirun -n 4 thalweg run case.yaml --out run/a --restart run/a --until 60
+  thalweg info run/a                                   how far it has come
+  thalweg defaults > all_keys.yaml                     every key of a case with its default and meaning
+
+Exit codes: 0 done, or stopped in good order by a signal or --walltime (summary.json says which; the last checkpoint
+takes up from there); 1 the run failed; 2 the input cannot be run (nothing was written).)";
+
+constexpr const char* set_help = "Replace one value of the case, e.g. fluid.time_step=1e-5 (repeatable)";
+
+struct Texts {
+  std::string walltime, layout;
+};
+
+void add_run(CLI::App& app, Command& command, Texts& texts) {
+  CLI::App* run = app.add_subcommand("run", "Run a case");
+  run->add_option("CASE.yaml", command.path, "The case")->required();
+  run->add_option("--out", command.out, "Run folder to write (default: the folder run beside the case file)");
+  run->add_option("--set", command.settings, set_help)->allow_extra_args(false)->type_name("KEY.SUB=VALUE");
+  run->add_option("--restart", command.restart, "Go on from a run folder's last checkpoint or from a checkpoint file");
+  run->add_option("--until", command.until, "Simulated time to stop at in s, instead of the case's run.until");
+  run->add_option("--walltime", texts.walltime, "Save and stop in good order before this much wall time has passed")
+      ->type_name("HH:MM:SS");
+  run->add_option("--layout", texts.layout, "Ranks along x, y and z (default: chosen)")->type_name("PX,PY,PZ");
+  run->add_flag("--overwrite", command.overwrite, "Replace an existing run folder");
+  run->final_callback([&] { command.kind = Command::Kind::run; });
+}
+
+void add_others(CLI::App& app, Command& command) {
+  CLI::App* check = app.add_subcommand("check", "Say what a case means and costs, without running it");
+  check->add_option("CASE.yaml", command.path, "The case")->required();
+  check->add_option("--set", command.settings, set_help)->allow_extra_args(false)->type_name("KEY.SUB=VALUE");
+  check->final_callback([&] { command.kind = Command::Kind::check; });
+  CLI::App* defaults = app.add_subcommand("defaults", "Print every key with its default, unit and meaning");
+  defaults->add_option("SYSTEM", command.system, "resolved (default) or grains");
+  defaults->final_callback([&] { command.kind = Command::Kind::defaults; });
+  CLI::App* info = app.add_subcommand("info", "Say what a run folder or a checkpoint holds");
+  info->add_option("PATH", command.path, "Run folder or checkpoint file")->required();
+  info->final_callback([&] { command.kind = Command::Kind::info; });
+}
+
+// CLI11's messages are fragments; users get a whole sentence that says where to look.
+std::string as_sentence(std::string message) {
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  while (!message.empty() && (message.back() == ' ' || message.back() == '.')) message.pop_back();
+  return message + " (thalweg --help shows what is possible).";
+}
+
+}  // namespace
+
+double parse_walltime(const std::string& text) {
+  int days = 0, hours = 0, minutes = 0, seconds = 0, end = 0;
+  const auto matches = [&](const char* format, auto*... fields) {
+    end = 0;
+    return std::sscanf(text.c_str(), format, fields..., &end) == sizeof...(fields) &&
+           end == static_cast<int>(text.size());
+  };
+  const bool understood = matches("%d-%d:%2d:%2d%n", &days, &hours, &minutes, &seconds) ||
+                          (days = 0, matches("%d:%2d:%2d%n", &hours, &minutes, &seconds)) ||
+                          (hours = 0, matches("%d:%2d%n", &minutes, &seconds));
+  const double total = 86400.0 * days + 3600.0 * hours + 60.0 * minutes + seconds;
+  if (!understood || days < 0 || hours < 0 || minutes < 0 || seconds < 0 || seconds > 59 || total <= 0.0)
+    throw InputError(fmt::format("--walltime {} is not a time: write HH:MM:SS, e.g. 23:50:00.", text));
+  return total;
+}
+
+Index3 parse_layout(const std::string& text) {
+  Index3 layout{0, 0, 0};
+  int end = 0;
+  if (std::sscanf(text.c_str(), "%d,%d,%d%n", &layout[0], &layout[1], &layout[2], &end) != 3 ||
+      end != static_cast<int>(text.size()) || layout[0] < 1 || layout[1] < 1 || layout[2] < 1)
+    throw InputError(fmt::format("--layout {} is not a layout: write the numbers of ranks along x, y and z, e.g. 4,2,1.",
+                                 text));
+  return layout;
+}
+
+CommandLine parse_command_line(int argc, const char* const* argv) {
+  CLI::App app{"Thalweg: particle-resolved flow over a bed of grains", "thalweg"};
+  Command command;
+  Texts texts;
+  app.set_version_flag("--version", "thalweg " + version_text());
+  app.footer(examples);
+  app.require_subcommand(1);
+  app.failure_message(CLI::FailureMessage::simple);
+  add_run(app, command, texts);
+  add_others(app, command);
+  try {
+    app.parse(argc, argv);
+    if (!texts.walltime.empty()) command.walltime = parse_walltime(texts.walltime);
+    if (!texts.layout.empty()) command.layout = parse_layout(texts.layout);
+  } catch (const CLI::Success& asked) {
+    std::ostringstream text;
+    app.exit(asked, text, text);
+    return {std::nullopt, text.str(), 0};
+  } catch (const CLI::ParseError& error) {
+    return {std::nullopt, as_sentence(error.what()), 2};
+  } catch (const InputError& error) {
+    return {std::nullopt, error.what(), 2};
+  }
+  for (int a = 0; a < argc; ++a) command.line += (a == 0 ? "" : " ") + std::string(argv[a]);
+  return {command, "", 0};
+}
+
+}  // namespace thalweg::driver

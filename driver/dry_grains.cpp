@@ -1,0 +1,81 @@
+#include "driver/dry_grains.hpp"
+
+#include "core/error.hpp"
+#include "driver/build_system.hpp"
+#include "driver/grain_setup.hpp"
+
+#include <fmt/format.h>
+
+namespace thalweg::driver {
+
+namespace {
+
+dem::GrainParameters dry_parameters(const Case& c, const Decomposition& decomposition) {
+  dem::GrainParameters parameters = grain_parameters(c, decomposition.box());
+  const Vec3 gravity = gravity_vector(c.gravity);
+  parameters.body_force = [gravity](double mass, double) -> Vec3 { return mass * gravity; };
+  return parameters;
+}
+
+}  // namespace
+
+DryGrains::DryGrains(const Case& c, MPI_Comm communicator, const Decomposition& decomposition)
+    : decomposition_(decomposition), sub_steps_(static_cast<int>(c.coupling.grain_steps_per_fluid_step)),
+      time_step_(grain_time_step(c) * sub_steps_),
+      grains_(decomposition, communicator, dry_parameters(c, decomposition), grain_seeds(c)),
+      lists_(timer_.phase("grain lists")), motion_(timer_.phase("grain motion")) {}
+
+void DryGrains::advance() {
+  {
+    const auto scope = timer_.measure(lists_);
+    grains_.prepare();
+  }
+  const auto scope = timer_.measure(motion_);
+  grains_.advance(sub_steps_);
+  grains_.refresh_ghosts();
+  ++step_;
+}
+
+Snapshot DryGrains::snapshot() const {
+  const dem::GrainStore& store = grains_.store();
+  const std::size_t owned = store.owned;
+  Snapshot snapshot;
+  snapshot.time = time();
+  snapshot.step = step_;
+  snapshot.decomposition = &decomposition_;
+  snapshot.grains.global_count = grains_.global_count();
+  snapshot.grains.id = {store.id.data(), owned};
+  snapshot.grains.radius = {store.radius.data(), owned};
+  snapshot.grains.mass = {store.mass.data(), owned};
+  snapshot.grains.position = {store.position.data(), owned};
+  snapshot.grains.velocity = {store.velocity.data(), owned};
+  snapshot.grains.angular_velocity = {store.angular_velocity.data(), owned};
+  snapshot.grains.contact_force = {store.contact_force.data(), owned};
+  return snapshot;
+}
+
+std::vector<Figure> DryGrains::figures() const {
+  return {{"contacts", "1", static_cast<double>(grains_.contact_count())},
+          {"largest_overlap", "1", grains_.largest_overlap()}};
+}
+
+void DryGrains::save(ArchiveWriter& archive) const {
+  archive.attribute("system/step", step_);
+  archive.attribute("system/time_step", time_step_);
+  grains_.save(archive);
+}
+
+void DryGrains::load(ArchiveReader& archive) {
+  const double saved = archive.real_attribute("system/time_step");
+  if (saved != time_step_)
+    throw InputError(fmt::format("The checkpoint was made with {:.6g} s a step and this case has {:.6g} s: a run can only "
+                                 "go on with the same time step.", saved, time_step_));
+  step_ = archive.integer_attribute("system/step");
+  grains_.load(archive);
+}
+
+std::unique_ptr<System> build_grains_system(const Case& c, MPI_Comm communicator, const Index3& layout) {
+  return std::make_unique<DryGrains>(c, communicator, decomposition_of(c, layout));
+}
+
+}  // namespace thalweg::driver

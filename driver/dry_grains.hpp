@@ -1,0 +1,40 @@
+// Grains alone, under gravity, between the walls of the box: the system `grains`.
+//
+// One step is coupling.grain_steps_per_fluid_step sub-steps of grain_time_step(): the same beat as in a fluid.
+#pragma once
+
+#include "core/system.hpp"
+#include "dem/grain_dynamics.hpp"
+#include "driver/case.hpp"
+
+#include <mpi.h>
+
+namespace thalweg::driver {
+
+class DryGrains final : public System {
+public:
+  // Throws InputError where the grains do not fit or the time step is too long. Collective.
+  DryGrains(const Case& c, MPI_Comm communicator, const Decomposition& decomposition);
+
+  void advance() override;
+  std::int64_t step() const override { return step_; }
+  double time_step() const override { return time_step_; }
+  Snapshot snapshot() const override;
+  std::vector<Figure> figures() const override;   // contacts, largest_overlap (in diameters)
+  void save(ArchiveWriter& archive) const override;
+  void load(ArchiveReader& archive) override;
+  PhaseTimer& timer() override { return timer_; }
+  std::int64_t cells() const override { return 0; }
+  std::int64_t grain_steps_per_step() const override { return grains_.global_count() * sub_steps_; }
+
+private:
+  Decomposition decomposition_;
+  int sub_steps_;
+  double time_step_;   // s, of sub_steps_ sub-steps
+  dem::GrainDynamics grains_;
+  std::int64_t step_ = 0;
+  PhaseTimer timer_;
+  int lists_, motion_;   // phases
+};
+
+}  // namespace thalweg::driver

@@ -1,0 +1,20 @@
+// The grains of a case, as dem wants them: the same for dry grains and for grains in a fluid.
+#pragma once
+
+#include "dem/grain_dynamics.hpp"
+#include "driver/case.hpp"
+
+#include <vector>
+
+namespace thalweg::driver {
+
+// Contact law, time step, sub-steps, skin, and a plane with the walls' friction at every non-periodic face. The body
+// force, ghost width and attached columns are left to the caller.
+dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box);
+
+// All grains at the start. Ids run through the populations in the order of the case. Given positions are taken first,
+// then uniform patterns, then random ones, which keep clear of all others. Throws InputError where they do not fit.
+// The same on every rank, without communication.
+std::vector<dem::GrainSeed> grain_seeds(const Case& c);
+
+}  // namespace thalweg::driver

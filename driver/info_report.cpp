@@ -1,0 +1,99 @@
+#include "driver/info_report.hpp"
+
+#include "core/error.hpp"
+#include "driver/progress.hpp"
+#include "io/atomic_file.hpp"
+#include "io/hdf5_archive.hpp"
+#include "io/run_folder.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <mpi.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+
+namespace thalweg::driver {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Lines = std::vector<std::string>;
+
+void add_checkpoint(const fs::path& file, Lines& lines) {
+  io::Hdf5Reader archive(MPI_COMM_SELF, file);
+  if (!archive.has("run/system"))
+    throw InputError(fmt::format("{} is an HDF5 file but not a checkpoint of this program.", file.string()));
+  lines.push_back(fmt::format("checkpoint  {}", file.string()));
+  lines.push_back(fmt::format("  run       {} (system: {}), written by version {}", archive.text_attribute("run/name"),
+                              archive.text_attribute("run/system"), archive.text_attribute("run/version")));
+  lines.push_back(fmt::format("  state     {:.9g} s, step {} of {:.6g} s each", archive.real_attribute("run/time"),
+                              archive.integer_attribute("run/step"), archive.real_attribute("run/time_step")));
+  for (const io::Hdf5Reader::Entry& entry : archive.datasets())
+    lines.push_back(fmt::format("  {:<32} {:<8} {}", entry.path, entry.type, fmt::join(entry.shape, " x ")));
+}
+
+// A scalar of summary.json; empty if it is not there.
+std::string value(const YAML::Node& summary, const std::string& name) {
+  const YAML::Node node = summary[name];
+  return node && node.IsScalar() ? node.Scalar() : "";
+}
+
+void add_group(const YAML::Node& group, const std::string& title, Lines& lines) {
+  for (const auto& entry : group)
+    lines.push_back(fmt::format("  {:<36} {}", title + "." + entry.first.as<std::string>(),
+                                entry.second.IsScalar() ? entry.second.Scalar() : "-"));
+}
+
+// JSON is YAML, so the reader is at hand.
+void add_summary(const fs::path& file, Lines& lines) {
+  YAML::Node summary;
+  try {
+    summary = YAML::Load(io::read_text(file));
+  } catch (const YAML::Exception&) {
+    throw InputError(fmt::format("{} is damaged: it is not JSON.", file.string()));
+  }
+  const bool finished = value(summary, "finished") == "true";
+  lines.push_back(fmt::format("run         {} (system: {}), version {}", value(summary, "name"), value(summary, "system"),
+                              value(summary, "version")));
+  lines.push_back(fmt::format("state       {}", finished ? "finished" : "not finished: " + value(summary, "reason")));
+  lines.push_back(fmt::format("time        {} of {} s, {} steps", value(summary, "simulated_time"), value(summary, "until"),
+                              value(summary, "steps")));
+  lines.push_back(fmt::format("size        {} cells, {} grains; {} ranks ({})", value(summary, "cells"),
+                              value(summary, "grains"), value(summary, "ranks"), value(summary, "layout")));
+  lines.push_back(fmt::format("speed       {} steps/s, {} MLUPS", value(summary, "steps_per_second"),
+                              value(summary, "mlups")));
+  lines.push_back("results");
+  for (const auto& entry : summary)
+    if (entry.second.IsMap() && entry.first.Scalar() != "phases" && entry.first.Scalar() != "largest")
+      add_group(entry.second, entry.first.Scalar(), lines);
+}
+
+std::string last_line(const fs::path& file) {
+  std::string text = io::read_text(file);
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  return text.substr(text.find_last_of('\n') + 1);
+}
+
+}  // namespace
+
+std::vector<std::string> info_report(const fs::path& path) {
+  Lines lines;
+  std::error_code ignored;
+  if (fs::is_regular_file(path, ignored)) {
+    add_checkpoint(path, lines);
+    return lines;
+  }
+  const io::RunFolder folder(path);
+  if (!folder.is_run_folder())
+    throw InputError(fmt::format("{} is neither a run folder nor a checkpoint: give a folder that thalweg run has written, "
+                                 "or an .h5 file in its checkpoints.", path.string()));
+  if (fs::exists(folder.summary(), ignored)) add_summary(folder.summary(), lines);
+  else lines.push_back("state       still running, or killed without notice");
+  if (fs::exists(folder.log(), ignored)) lines.push_back("last line   " + last_line(folder.log()));
+  if (fs::exists(folder.checkpoints() / "latest", ignored)) add_checkpoint(folder.latest_checkpoint(), lines);
+  else lines.push_back("checkpoint  none yet");
+  return lines;
+}
+
+}  // namespace thalweg::driver

@@ -1,0 +1,27 @@
+#include "driver/log.hpp"
+
+#include "core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+namespace thalweg::driver {
+
+void Log::copy_to(const std::string& path) {
+  if (!speaking_) return;
+  file_.open(path, std::ios::app);
+  if (!file_) throw RunError(fmt::format("The log {} cannot be written.", path));
+  file_ << said_before_file_ << std::flush;
+  said_before_file_.clear();
+}
+
+void Log::line(const std::string& text) {
+  if (!speaking_) return;
+  std::fprintf(stdout, "%s\n", text.c_str());
+  std::fflush(stdout);   // a pipe to tee or a batch system's file must not lag behind
+  if (file_.is_open()) file_ << text << '\n' << std::flush;
+  else said_before_file_ += text + '\n';
+}
+
+}  // namespace thalweg::driver

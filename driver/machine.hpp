@@ -1,0 +1,15 @@
+// How fast the memory of this machine is: what bounds the speed of a lattice.
+#pragma once
+
+#include <mpi.h>
+
+namespace thalweg::driver {
+
+// Bytes per second read and written by all ranks together updating arrays much larger than their caches in place.
+// Takes about 0.1 s. Collective.
+double measure_bandwidth(MPI_Comm communicator);
+
+// Bytes a cell update must move at least: 19 populations of `bytes_per_value` read and written once.
+inline double bytes_per_cell_update(int bytes_per_value) { return 2.0 * 19.0 * bytes_per_value; }
+
+}  // namespace thalweg::driver

@@ -1,0 +1,37 @@
+#include "driver/progress.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace thalweg::driver {
+
+std::optional<double> find_figure(const std::vector<Figure>& figures, const std::string& name) {
+  for (const Figure& figure : figures)
+    if (figure.name == name) return figure.value;
+  return std::nullopt;
+}
+
+std::string clock_text(double seconds) {
+  const auto whole = static_cast<long long>(std::llround(std::max(0.0, seconds)));
+  const long long days = whole / 86400, hours = whole / 3600, minutes = whole / 60;
+  if (days > 0) return fmt::format("{} d {:02}:{:02}", days, hours % 24, minutes % 60);
+  if (hours > 0) return fmt::format("{}:{:02}:{:02}", hours, minutes % 60, whole % 60);
+  if (minutes > 0) return fmt::format("{}:{:02}", minutes, whole % 60);
+  return fmt::format("{} s", whole);
+}
+
+std::string progress_line(const ProgressState& state) {
+  std::string line = fmt::format("t {:<9.5g} of {:g} s  {:3.0f} %  left {:<9} {:>7.4g} steps/s", state.time, state.until,
+                                 100.0 * state.share_done,
+                                 state.seconds_left < 0.0 ? "?" : clock_text(state.seconds_left),
+                                 state.steps_per_second);
+  if (state.mlups > 0.0) line += fmt::format("  {:>6.3g} MLUPS", state.mlups);
+  if (const auto moving = find_figure(state.figures, "moving_grains")) line += fmt::format("  moving {:<6.0f}", *moving);
+  if (const auto q_star = find_figure(state.figures, "q_star")) line += fmt::format("  q* {:<9.3g}", *q_star);
+  if (const auto speed = find_figure(state.figures, "largest_lattice_velocity"))
+    line += fmt::format("  u_max {:.3g}", *speed);
+  return line.substr(0, line.find_last_not_of(' ') + 1);
+}
+
+}  // namespace thalweg::driver

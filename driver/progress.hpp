@@ -1,0 +1,32 @@
+// The line a person watches while a run goes on, about once a second.
+#pragma once
+
+#include "core/system.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace thalweg::driver {
+
+struct ProgressState {
+  double time;               // s, simulated
+  double until;              // s
+  double share_done;         // 0 .. 1, of the whole run
+  double seconds_left;       // s of wall time; negative: not known yet
+  double steps_per_second;
+  double mlups;              // million lattice cell updates a second; 0: no lattice
+  std::vector<Figure> figures;
+};
+
+// e.g. "t 1.2345 of 3 s   41 %   left 1:23   812 steps/s   12.3 MLUPS   moving 23   q* 0.0123   u_max 0.081"
+// Of the figures it shows moving_grains, q_star and largest_lattice_velocity, as far as they are there.
+std::string progress_line(const ProgressState& state);
+
+// "59 s", "12:03" (minutes and seconds), "3:04:05", "2 d 03:04" (hours and minutes).
+std::string clock_text(double seconds);
+
+// The figure of that name, if there is one.
+std::optional<double> find_figure(const std::vector<Figure>& figures, const std::string& name);
+
+}  // namespace thalweg::driver

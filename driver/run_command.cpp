@@ -1,0 +1,168 @@
+#include "driver/run_command.hpp"
+
+#include "analysis/grain_energy.hpp"
+#include "analysis/transport_rate.hpp"
+#include "core/error.hpp"
+#include "core/mpi_session.hpp"
+#include "driver/build_system.hpp"
+#include "driver/case_reader.hpp"
+#include "driver/machine.hpp"
+#include "driver/on_first_rank.hpp"
+#include "driver/progress.hpp"
+#include "driver/run_output.hpp"
+#include "driver/stop_request.hpp"
+#include "driver/summary.hpp"
+#include "driver/version.hpp"
+#include "io/atomic_file.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+namespace thalweg::driver {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Where a run starts and where it writes.
+struct Places {
+  fs::path checkpoint;        // to go on from; empty: from the start
+  io::RunFolder folder;
+  bool same_folder = false;   // the checkpoint is the folder's own: its series go on
+};
+
+// The run folder a checkpoint lies in; empty if it lies anywhere else.
+fs::path run_folder_of(const fs::path& checkpoint) {
+  const fs::path checkpoints = fs::absolute(checkpoint).lexically_normal().parent_path();
+  const io::RunFolder folder(checkpoints.parent_path());
+  return folder.is_run_folder() && folder.checkpoints() == checkpoints ? folder.path() : fs::path();
+}
+
+Places places_of(const Command& command) {
+  fs::path checkpoint, origin;
+  if (!command.restart.empty()) {
+    checkpoint = io::checkpoint_at(command.restart);
+    origin = run_folder_of(checkpoint);
+  }
+  fs::path out = command.out;
+  if (out.empty()) out = origin.empty() ? fs::path(command.path).parent_path() / "run" : origin;
+  std::error_code ignored;
+  const bool same = !origin.empty() && fs::equivalent(out, origin, ignored);
+  return {checkpoint, io::RunFolder(out), same};
+}
+
+Observers observers_of(const Case& c, MPI_Comm communicator) {
+  Observers observers;
+  if (c.grains.empty()) return observers;
+  if (c.analysis.transport_rate) {
+    const PopulationCase& first = c.grains.front();
+    const double fluid_density = c.system == SystemKind::grains ? 0.0 : c.fluid.density;
+    const analysis::TransportScales scales{first.diameter, first.density, fluid_density,
+                                           gravity_vector(c.gravity).norm()};
+    observers.push_back(
+        std::make_unique<analysis::TransportRate>(communicator, scales, c.analysis.transport_rate->from));
+  }
+  observers.push_back(std::make_unique<analysis::GrainEnergy>(communicator));
+  return observers;
+}
+
+// Says what is about to run, and measures what the memory of the machine allows.
+void greet(const Case& c, RunIdentity& identity, const System& system, const Places& places, MPI_Comm communicator,
+           Log& log) {
+  log.line(fmt::format("Thalweg {}: {}", version_text(), c.name));
+  log.line(fmt::format("{} on {} rank{}, layout {} x {} x {}; {} grains, {} cells; {:.6g} s a step, {:.0f} steps to {:g} s",
+                       identity.system, identity.ranks, identity.ranks == 1 ? "" : "s", identity.layout[0],
+                       identity.layout[1], identity.layout[2], system.snapshot().grains.global_count, system.cells(),
+                       system.time_step(), c.run.until / system.time_step(), c.run.until));
+  if (!places.checkpoint.empty())
+    log.line(fmt::format("going on from {} at {:.6g} s", places.checkpoint.string(), system.time()));
+  log.line(fmt::format("writing {}", places.folder.path().string()));
+  if (system.cells() > 0) {
+    const double bandwidth = measure_bandwidth(communicator);
+    const double bytes = bytes_per_cell_update(c.fluid.precision == Precision::single ? 4 : 8);
+    identity.memory_bound_mlups = bandwidth / bytes * 1e-6;
+    log.line(fmt::format("memory bandwidth {:.1f} GB/s; {:.0f} bytes a cell update: at most {:.0f} MLUPS", bandwidth * 1e-9,
+                         bytes, identity.memory_bound_mlups));
+  }
+  for (const std::string& warning : warnings(c)) log.line("warning: " + warning);
+}
+
+void prepare_folder(const Places& places, const Case& c, const Command& command, MPI_Comm communicator, Log& log) {
+  on_first_rank(communicator, [&] {
+    if (!places.same_folder) places.folder.create(command.overwrite);
+    io::make_folder(places.folder.checkpoints());
+    places.folder.write_case(fmt::format("version {}\ncommand {}", version_text(), command.line), resolved_yaml(c));
+    log.copy_to(places.folder.log().string());
+  });
+}
+
+void say_how_it_ended(const RunIdentity& identity, const LoopRecord& record, const System& system, const std::vector<PhaseShare>& phases,
+                      const io::RunFolder& folder, Log& log) {
+  log.line("");
+  for (const std::string& line : phase_table(phases)) log.line(line);
+  const Speeds speeds = speeds_of(system, record);
+  std::string speed = fmt::format("{:.4g} steps/s", speeds.steps_per_second);
+  if (speeds.mlups > 0.0) speed += fmt::format(", {:.3g} MLUPS", speeds.mlups);
+  if (identity.memory_bound_mlups > 0.0)
+    speed += fmt::format(" ({:.0f} % of the memory bound while advancing)",
+                         100.0 * speeds.mlups_advancing / identity.memory_bound_mlups);
+  if (speeds.grain_steps_per_second > 0.0)
+    speed += fmt::format(", {:.3g} million grain-steps/s", speeds.grain_steps_per_second * 1e-6);
+  log.line(fmt::format("{} steps in {}: {}", record.last_step - record.first_step, clock_text(record.wall_seconds), speed));
+  if (record.finished)
+    log.line(fmt::format("finished at {:.6g} s: {}", system.time(), folder.summary().string()));
+  else
+    log.line(fmt::format("not finished, {}: at {:.6g} s; to go on: --restart {}", record.reason, system.time(),
+                         folder.path().string()));
+}
+
+}  // namespace
+
+void run_case(const Command& command, MPI_Comm communicator, WallClock::time_point started, FailureCouncil& council,
+              Log& log) {
+  listen_for_stop_signals();
+  Case c = read_case(command.path, command.settings);
+  if (command.until) c.run.until = *command.until;
+  if (!(c.run.until > 0.0))
+    throw InputError(fmt::format("--until {:g} is not a time to run to: give seconds above zero.", c.run.until));
+  const Places places = places_of(command);
+  on_first_rank(communicator, [&] {
+    if (!places.same_folder) places.folder.check_new(command.overwrite);
+  });
+  const Index3 layout = choose_layout(c, size_of(communicator), command.layout);
+  const std::unique_ptr<System> system = build_system(c, communicator, layout);
+  Observers observers = observers_of(c, communicator);
+  if (!places.checkpoint.empty()) read_checkpoint_file(communicator, places.checkpoint, c, *system, observers);
+  if (system->time() > c.run.until * (1.0 + 1e-12))
+    throw InputError(fmt::format("{} is at {:.6g} s already and the run ends at {:.6g} s: give a later --until.",
+                                 places.checkpoint.string(), system->time(), c.run.until));
+
+  prepare_folder(places, c, command, communicator, log);
+  RunIdentity identity{c.name, name_of(c.system), command.line, c.run.until, layout, size_of(communicator)};
+  greet(c, identity, *system, places, communicator, log);
+  RunOutput output(communicator, c, places.folder, *system, observers,
+                   places.same_folder ? std::optional<double>(system->time()) : std::nullopt);
+  LoopPlan plan;
+  plan.until = c.run.until;
+  plan.walltime = command.walltime;
+  plan.started = started;
+  plan.write_at_start = !places.same_folder;
+  output.add_to(plan);
+  TimeLoop loop(communicator, *system, observers, plan, log);
+  try {
+    loop.run();
+  } catch (const RunError& error) {
+    LoopRecord record = loop.record();
+    record.reason = error.what();
+    if (!council.everybody_failed(seconds_to_wait_for_others) || log.speaking())
+      summary_of(identity, *system, record, observers, {}).write(places.folder.summary());
+    throw;
+  }
+  const std::vector<PhaseShare> phases = collect_phases(communicator, *system, loop);
+  say_how_it_ended(identity, loop.record(), *system, phases, places.folder, log);
+  const io::JsonObject summary = summary_of(identity, *system, loop.record(), observers, phases);
+  on_first_rank(communicator, [&] { summary.write(places.folder.summary()); });
+}
+
+}  // namespace thalweg::driver

@@ -1,0 +1,84 @@
+#include "driver/run_output.hpp"
+
+#include "core/error.hpp"
+#include "driver/build_system.hpp"
+#include "driver/on_first_rank.hpp"
+#include "driver/version.hpp"
+#include "io/hdf5_archive.hpp"
+
+#include <fmt/format.h>
+
+namespace thalweg::driver {
+
+RunOutput::RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& folder, const System& system,
+                     const Observers& observers, std::optional<double> continue_from)
+    : communicator_(communicator), case_(c), folder_(folder), system_(system), observers_(observers),
+      continue_from_(continue_from) {
+  const Snapshot snapshot = system.snapshot();
+  if (c.output.grains.every > 0.0 && snapshot.grains.global_count > 0)
+    grains_ = std::make_unique<io::GrainSeries>(communicator, folder.path(), continue_from);
+  if (c.output.fluid.every > 0.0 && snapshot.fluid != nullptr)
+    fluid_ = std::make_unique<io::FluidSeries>(communicator, folder.path(), c.output.fluid.region,
+                                               c.output.fluid.fields, continue_from);
+}
+
+void RunOutput::add_to(LoopPlan& plan) {
+  const double time_step = system_.time_step();
+  plan.series = Schedule(case_.output.series.every, time_step);
+  plan.write_row = [this](double time, std::int64_t, const std::vector<Figure>& row) { write_row(time, row); };
+  plan.checkpoint = Schedule(case_.output.checkpoint.every, time_step);
+  plan.write_checkpoint = [this] { write_checkpoint(); };
+  if (grains_)
+    plan.outputs.push_back({"grain pictures", Schedule(case_.output.grains.every, time_step),
+                            [this](const Snapshot& snapshot) { grains_->write(snapshot); }});
+  if (fluid_)
+    plan.outputs.push_back({"fluid pictures", Schedule(case_.output.fluid.every, time_step),
+                            [this](const Snapshot& snapshot) { fluid_->write(snapshot); }});
+}
+
+void RunOutput::write_row(double time, const std::vector<Figure>& row) {
+  if (!series_) {
+    std::vector<io::SeriesTable::Column> columns;
+    for (const Figure& figure : row) columns.push_back({figure.name, figure.unit});
+    series_ = std::make_unique<io::SeriesTable>(communicator_, folder_.series(), columns, continue_from_);
+  }
+  std::vector<double> values;
+  for (const Figure& figure : row) values.push_back(figure.value);
+  series_->append(time, values);
+}
+
+void RunOutput::write_checkpoint() {
+  write_checkpoint_file(communicator_, folder_.checkpoint(system_.step()), case_, system_, observers_);
+  on_first_rank(communicator_, [this] {
+    folder_.rotate_checkpoints(system_.step(), static_cast<int>(case_.output.checkpoint.keep));
+  });
+}
+
+void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c,
+                           const System& system, const Observers& observers) {
+  io::Hdf5Writer archive(communicator, path);
+  archive.attribute("run/system", std::string(name_of(c.system)));
+  archive.attribute("run/name", c.name);
+  archive.attribute("run/version", version_number());   // the commit would make equal states differ
+  archive.attribute("run/step", system.step());
+  archive.attribute("run/time", system.time());
+  archive.attribute("run/time_step", system.time_step());
+  system.save(archive);
+  for (const auto& observer : observers) observer->save(archive);
+  archive.close();
+}
+
+void read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c, System& system,
+                          Observers& observers) {
+  io::Hdf5Reader archive(communicator, path);
+  if (!archive.has("run/system"))
+    throw InputError(fmt::format("{} is an HDF5 file but not a checkpoint of this program.", path.string()));
+  const std::string saved = archive.text_attribute("run/system");
+  if (saved != name_of(c.system))
+    throw InputError(fmt::format("{} holds a run with system: {}, but this case has system: {}.", path.string(), saved,
+                                 name_of(c.system)));
+  system.load(archive);
+  for (const auto& observer : observers) observer->load(archive);
+}
+
+}  // namespace thalweg::driver

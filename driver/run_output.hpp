@@ -1,0 +1,58 @@
+// Everything a run writes into its folder while it goes on.
+#pragma once
+
+#include "analysis/observer.hpp"
+#include "core/system.hpp"
+#include "driver/case.hpp"
+#include "driver/time_loop.hpp"
+#include "io/fluid_series.hpp"
+#include "io/grain_series.hpp"
+#include "io/run_folder.hpp"
+#include "io/series_table.hpp"
+
+#include <mpi.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace thalweg::driver {
+
+using Observers = std::vector<std::unique_ptr<analysis::Observer>>;
+
+class RunOutput {
+public:
+  // folder exists. continue_from: the simulated time (s) at which a restarted run takes up the folder's own series;
+  // empty: new series. Everything referred to must outlive this.
+  RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& folder, const System& system,
+            const Observers& observers, std::optional<double> continue_from);
+
+  // Schedules and actions for the time loop; they refer to this object.
+  void add_to(LoopPlan& plan);
+
+private:
+  void write_row(double time, const std::vector<Figure>& row);
+  void write_checkpoint();
+
+  MPI_Comm communicator_;
+  const Case& case_;
+  const io::RunFolder& folder_;
+  const System& system_;
+  const Observers& observers_;
+  std::optional<double> continue_from_;
+  std::unique_ptr<io::SeriesTable> series_;   // from the first row on: only then the columns are known
+  std::unique_ptr<io::GrainSeries> grains_;
+  std::unique_ptr<io::FluidSeries> fluid_;
+};
+
+// A checkpoint: what it is (group "run": system, name, version, step, time in s, time_step in s), the system, the
+// observers. Nothing in it tells how many ranks wrote it. Collective; RunError on every rank.
+void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c,
+                           const System& system, const Observers& observers);
+
+// The state of a checkpoint into a system and observers built from a case. Throws InputError where they do not fit.
+void read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c, System& system,
+                          Observers& observers);
+
+}  // namespace thalweg::driver

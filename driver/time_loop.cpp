@@ -1,0 +1,171 @@
+#include "driver/time_loop.hpp"
+
+#include "core/error.hpp"
+#include "core/mpi_session.hpp"
+#include "driver/progress.hpp"
+#include "driver/stop_request.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace thalweg::driver {
+
+namespace {
+
+constexpr double seconds_between_conferences = 0.2;   // mpirun kills one second after its SIGTERM
+constexpr double seconds_between_lines = 1.0;
+constexpr std::int64_t most_steps_between_conferences = 100000;
+
+double seconds_since(WallClock::time_point start) {
+  return std::chrono::duration<double>(WallClock::now() - start).count();
+}
+
+}  // namespace
+
+TimeLoop::TimeLoop(MPI_Comm communicator, System& system,
+                   std::vector<std::unique_ptr<analysis::Observer>>& observers, const LoopPlan& plan, Log& log)
+    : communicator_(communicator), system_(system), observers_(observers), plan_(plan), log_(log) {
+  // Rounded up, except where the quotient misses a whole number of steps by round-off only.
+  final_step_ = static_cast<std::int64_t>(std::ceil(plan.until / system.time_step() * (1.0 - 1e-12)));
+  record_.first_step = record_.last_step = system.step();
+}
+
+void TimeLoop::run() {
+  begin_ = WallClock::now();
+  printed_step_ = conferred_step_ = next_conference_ = system_.step();
+  if (plan_.write_at_start) write_what_is_due();
+  Verdict verdict = Verdict::go_on;
+  while (system_.step() < final_step_ && verdict == Verdict::go_on) {
+    const WallClock::time_point before = WallClock::now();
+    system_.advance();
+    record_.advance_seconds += seconds_since(before);
+    record_.last_step = system_.step();
+    record_.wall_seconds = seconds_since(begin_);
+    if (system_.step() % steps_between_health_checks == 0) look_at_health();
+    write_what_is_due();
+    if (plan_.checkpoint.due(system_.step())) checkpoint();
+    if (system_.step() >= next_conference_) verdict = confer();
+  }
+  look_at_health();
+  checkpoint();
+  if (log_.speaking() && printed_step_ != system_.step()) report(seconds_since(begin_));
+  record_.finished = system_.step() >= final_step_;
+  if (record_.finished) record_.reason.clear();
+  record_.wall_seconds = seconds_since(begin_);
+}
+
+void TimeLoop::look_at_health() {
+  if (looked_at_step_ == system_.step()) return;
+  looked_at_step_ = system_.step();
+  const auto scope = timer_.measure(timer_.phase("figures"));
+  record_.figures = system_.figures();
+  if (record_.largest.empty()) record_.largest = record_.figures;
+  for (std::size_t f = 0; f < record_.figures.size(); ++f) {
+    const Figure& figure = record_.figures[f];
+    if (!std::isfinite(figure.value))
+      throw RunError(fmt::format("The run broke down before {:.6g} s (step {}): {} is not a finite number.",
+                                 system_.time(), system_.step(), figure.name));
+    record_.largest[f].value = std::max(record_.largest[f].value, figure.value);
+  }
+  const double speed = find_figure(record_.figures, "largest_lattice_velocity").value_or(0.0);
+  if (speed > stable_lattice_velocity)
+    throw RunError(fmt::format("The fluid became unstable at {:.6g} s (step {}): its largest velocity is {:.3g} in "
+                               "lattice units, and beyond {} the method breaks down; a shorter fluid.time_step lowers it.",
+                               system_.time(), system_.step(), speed, stable_lattice_velocity));
+}
+
+void TimeLoop::write_what_is_due() {
+  const std::int64_t step = system_.step();
+  if (plan_.series.due(step)) {
+    look_at_health();
+    const Snapshot snapshot = system_.snapshot();
+    {
+      const auto scope = timer_.measure(timer_.phase("observers"));
+      measured_.clear();
+      for (const auto& observer : observers_) {
+        observer->observe(snapshot);
+        for (const Figure& figure : observer->figures()) measured_.push_back(figure);
+      }
+    }
+    if (plan_.write_row) {
+      const auto scope = timer_.measure(timer_.phase("series"));
+      std::vector<Figure> row = record_.figures;
+      row.insert(row.end(), measured_.begin(), measured_.end());
+      plan_.write_row(system_.time(), step, row);
+    }
+  }
+  for (const OutputTask& output : plan_.outputs) {
+    if (!output.schedule.due(step)) continue;
+    look_at_health();
+    const auto scope = timer_.measure(timer_.phase(output.phase));
+    output.act(system_.snapshot());
+  }
+}
+
+void TimeLoop::checkpoint() {
+  if (!plan_.write_checkpoint || saved_step_ == system_.step()) return;
+  look_at_health();   // a broken state must not replace a good checkpoint
+  const WallClock::time_point before = WallClock::now();
+  {
+    const auto scope = timer_.measure(timer_.phase("checkpoints"));
+    plan_.write_checkpoint();
+  }
+  saved_step_ = system_.step();
+  longest_checkpoint_ = std::max(longest_checkpoint_, seconds_since(before));
+}
+
+TimeLoop::Verdict TimeLoop::confer() {
+  // Only rank 0 looks at the clock; all ranks may have seen a signal. One reduction settles everything.
+  enum { verdict, signal, print, steps, items };
+  std::array<std::int64_t, items> opinion{};
+  opinion[signal] = received_stop_signal();
+  if (opinion[signal] != 0) opinion[verdict] = static_cast<int>(Verdict::signal);
+  const double now = seconds_since(begin_);
+  if (rank_of(communicator_) == 0) {
+    const std::int64_t done = std::max<std::int64_t>(1, system_.step() - conferred_step_);
+    const double per_step = std::max(1e-9, (now - conferred_at_) / static_cast<double>(done));
+    opinion[steps] = std::clamp<std::int64_t>(static_cast<std::int64_t>(seconds_between_conferences / per_step), 1,
+                                              std::min(2 * done, most_steps_between_conferences));
+    const double reserve = 3.0 * longest_checkpoint_ + std::min(60.0, 0.05 * plan_.walltime) +
+                           2.0 * per_step * static_cast<double>(opinion[steps]);
+    if (plan_.walltime > 0.0 && seconds_since(plan_.started) + reserve > plan_.walltime)
+      opinion[verdict] = std::max<std::int64_t>(opinion[verdict], static_cast<int>(Verdict::wall_time_is_up));
+    opinion[print] = now - printed_at_ >= seconds_between_lines ? 1 : 0;
+    conferred_at_ = now;
+    conferred_step_ = system_.step();
+  }
+  MPI_Allreduce(MPI_IN_PLACE, opinion.data(), items, MPI_INT64_T, MPI_MAX, communicator_);
+  next_conference_ = system_.step() + opinion[steps];
+  const auto agreed = static_cast<Verdict>(opinion[verdict]);
+  if (agreed == Verdict::signal)
+    record_.reason = fmt::format("stopped by {}", signal_name(static_cast<int>(opinion[signal])));
+  if (agreed == Verdict::wall_time_is_up) record_.reason = "the wall time is nearly up";
+  if (opinion[print] != 0) {
+    look_at_health();
+    report(now);
+  }
+  return agreed;
+}
+
+void TimeLoop::report(double now) {
+  const double interval = std::max(1e-9, now - printed_at_);
+  const auto steps = static_cast<double>(system_.step() - printed_step_);
+  const auto done = static_cast<double>(system_.step() - record_.first_step);
+  ProgressState state;
+  state.time = system_.time();
+  state.until = plan_.until;
+  state.share_done = final_step_ > 0 ? static_cast<double>(system_.step()) / static_cast<double>(final_step_) : 1.0;
+  state.seconds_left = done > 0.0 ? now / done * static_cast<double>(final_step_ - system_.step()) : -1.0;
+  state.steps_per_second = steps / interval;
+  state.mlups = state.steps_per_second * static_cast<double>(system_.cells()) * 1e-6;
+  state.figures = record_.figures;
+  state.figures.insert(state.figures.end(), measured_.begin(), measured_.end());
+  log_.line(progress_line(state));
+  printed_at_ = now;
+  printed_step_ = system_.step();
+}
+
+}  // namespace thalweg::driver

@@ -1,0 +1,102 @@
+// Drives any system through time: measures, writes, saves, reports, and stops in good order.
+//
+// A step is: advance; look at the system's health if due; measure and write what is due; checkpoint if due; and every few
+// steps the ranks agree (one small reduction) whether to print a progress line or to stop early. Those decisions never
+// touch the state, so the clock cannot change one bit of the run.
+#pragma once
+
+#include "analysis/observer.hpp"
+#include "core/schedule.hpp"
+#include "core/system.hpp"
+#include "driver/log.hpp"
+
+#include <mpi.h>
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace thalweg::driver {
+
+using WallClock = std::chrono::steady_clock;
+
+// Something done with the state at regular simulated times, e.g. writing a picture.
+struct OutputTask {
+  std::string phase;                                 // its line in the table of phases
+  Schedule schedule;
+  std::function<void(const Snapshot&)> act;          // collective
+};
+
+using SeriesRow = std::function<void(double time, std::int64_t step, const std::vector<Figure>&)>;   // collective
+using WriteCheckpoint = std::function<void()>;                                                       // collective
+
+struct LoopPlan {
+  double until = 0.0;                 // s, simulated
+  double walltime = 0.0;              // s of wall time from `started` on; 0: as long as it takes
+  WallClock::time_point started = WallClock::now();   // of the program
+  bool write_at_start = true;         // false where a run goes on: its first picture exists already
+  Schedule series;                    // when observers measure and a row of figures is written
+  Schedule checkpoint;                // a last one is written in any case
+  SeriesRow write_row;                // none: not written
+  WriteCheckpoint write_checkpoint;   // none: not written
+  std::vector<OutputTask> outputs;
+};
+
+// What has become of a run so far.
+struct LoopRecord {
+  bool finished = false;
+  std::string reason;                      // why it is not finished; empty if it is
+  std::int64_t first_step = 0, last_step = 0;
+  double wall_seconds = 0.0;               // in run(), this time
+  double advance_seconds = 0.0;            // of which in System::advance()
+  std::vector<Figure> figures;             // of the system, at the latest look
+  std::vector<Figure> largest;             // of the system: the largest value of each figure seen in this run
+};
+
+class TimeLoop {
+public:
+  // Everything referred to must outlive the loop.
+  TimeLoop(MPI_Comm communicator, System& system, std::vector<std::unique_ptr<analysis::Observer>>& observers,
+           const LoopPlan& plan, Log& log);
+
+  // Runs to plan.until, or until a stop signal or the end of the wall time (record().finished is false then).
+  // Throws RunError when a figure is not finite, or largest_lattice_velocity exceeds stable_lattice_velocity; nothing of
+  // such a state is written. The record is valid then, too.
+  void run();
+
+  const LoopRecord& record() const { return record_; }
+  PhaseTimer& timer() { return timer_; }   // phases outside System::advance()
+
+  static constexpr double stable_lattice_velocity = 0.3;
+  static constexpr std::int64_t steps_between_health_checks = 200;
+
+private:
+  enum class Verdict : int { go_on = 0, wall_time_is_up = 1, signal = 2 };
+
+  void look_at_health();
+  void write_what_is_due();
+  void checkpoint();
+  Verdict confer();
+  void report(double now);
+
+  MPI_Comm communicator_;
+  System& system_;
+  std::vector<std::unique_ptr<analysis::Observer>>& observers_;
+  const LoopPlan& plan_;
+  Log& log_;
+  PhaseTimer timer_;
+  LoopRecord record_;
+  WallClock::time_point begin_;
+  std::int64_t final_step_ = 0;
+  std::int64_t looked_at_step_ = -1, saved_step_ = -1, next_conference_ = 0;
+  std::vector<Figure> measured_;            // by the observers, latest
+  double longest_checkpoint_ = 0.0;         // s
+  // Rank 0's own: when and where the last line was printed and the last conference held.
+  double printed_at_ = 0.0, conferred_at_ = 0.0;
+  std::int64_t printed_step_ = 0, conferred_step_ = 0;
+};
+
+}  // namespace thalweg::driver

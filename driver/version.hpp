@@ -1,0 +1,14 @@
+// Which Thalweg this is.
+#pragma once
+
+#include <string>
+
+namespace thalweg::driver {
+
+// e.g. "0.1.0 (a647374)": version of the project and the commit it was built from, as far as known at configure time.
+std::string version_text();
+
+// "0.1.0" alone.
+std::string version_number();
+
+}  // namespace thalweg::driver

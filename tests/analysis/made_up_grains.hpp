@@ -1,0 +1,57 @@
+// Grains whose state follows from their id alone, dealt out to the ranks so that each rank holds another order of them.
+#pragma once
+
+#include "core/mpi_session.hpp"
+#include "core/snapshot.hpp"
+
+#include <functional>
+#include <vector>
+
+namespace thalweg::analysis {
+
+struct MadeUpGrain {
+  double radius, mass;
+  Vec3 velocity, angular_velocity;
+};
+
+class MadeUpGrains {
+public:
+  MadeUpGrains(MPI_Comm communicator, GlobalId count, const std::function<MadeUpGrain(GlobalId)>& grain)
+      : decomposition_({40, 20, 10}, 0.5, {true, true, false}, {1, 1, 1}), count_(count) {
+    const int ranks = size_of(communicator), rank = rank_of(communicator);
+    for (GlobalId id = count - 1; id >= 0; --id) {   // descending, and scattered: never the order of one rank
+      if ((id * 7 + id / 3) % ranks != rank) continue;
+      const MadeUpGrain made = grain(id);
+      id_.push_back(id);
+      radius_.push_back(made.radius);
+      mass_.push_back(made.mass);
+      velocity_.push_back(made.velocity);
+      angular_velocity_.push_back(made.angular_velocity);
+      position_.emplace_back(Vec3::Zero());
+    }
+  }
+
+  Snapshot snapshot(double time) const {   // domain of 20 m x 10 m x 5 m
+    Snapshot snapshot;
+    snapshot.time = time;
+    snapshot.decomposition = &decomposition_;
+    snapshot.grains = {count_, id_, radius_, mass_, position_, velocity_, angular_velocity_, {}, {}, {}};
+    return snapshot;
+  }
+
+private:
+  Decomposition decomposition_;
+  GlobalId count_;
+  std::vector<GlobalId> id_;
+  std::vector<double> radius_, mass_;
+  std::vector<Vec3> position_, velocity_, angular_velocity_;
+};
+
+// The value of a figure by name; fails loudly when there is none.
+inline double value_of(const std::vector<Figure>& figures, const std::string& name) {
+  for (const Figure& figure : figures)
+    if (figure.name == name) return figure.value;
+  throw std::out_of_range("no figure " + name);
+}
+
+}  // namespace thalweg::analysis

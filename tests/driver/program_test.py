@@ -1,0 +1,283 @@
+#!/usr/bin/python3
+"""The program as its user meets it: exit codes, messages, files, signals, restarts.
+
+Called by ctest: program_test.py THALWEG MPIEXEC [unittest arguments]
+"""
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+THALWEG, MPIEXEC = sys.argv[1:3]
+
+# 40 grains tumbling down a bumpy slope: contacts, walls, periodic sides and, on several ranks, migration.
+CASE = """
+system: grains
+name: tumbling grains
+domain:
+  size: [0.040, 0.020, 0.040]     # m
+  spacing: 1.0e-3                 # m
+  boundaries: {x: periodic, y: periodic, bottom: no_slip, top: no_slip}
+gravity: {magnitude: 9.8, slope: 0.5}
+grains:
+  - {count: 40, diameter: 5.0e-3, density: 2550, placement: {pattern: random, seed: 3}}
+contact: {normal_stiffness: 20000, tangential_stiffness: 5714, restitution: 0.8, friction: 0.5}
+run: {until: 0.1, time_step: 4.0e-6}
+output:
+  series: {every: 2.0e-3}
+  grains: {every: 0.02}
+  checkpoint: {every: 0.04, keep: 2}
+analysis:
+  transport_rate: {from: 0.05}
+"""
+
+
+def files_below(folder):
+    return sorted(str(p.relative_to(folder)) for p in Path(folder).rglob("*"))
+
+
+class ProgramTest(unittest.TestCase):
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.folder = Path(holder.name)
+        self.case = self.folder / "case.yaml"
+        self.case.write_text(CASE)
+
+    def command(self, arguments, ranks):
+        # Open MPI's mpirun answers SIGTERM by passing it on and killing a second later; a busy machine needs more.
+        parallel = [MPIEXEC, "--mca", "odls_base_sigkill_timeout", "20", "-n", str(ranks)] if ranks else []
+        return parallel + [THALWEG] + [str(a) for a in arguments]
+
+    def thalweg(self, *arguments, ranks=0):
+        return subprocess.run(self.command(arguments, ranks), capture_output=True, text=True, timeout=120,
+                              cwd=self.folder)
+
+    def run_well(self, *arguments, ranks=0):
+        result = self.thalweg(*arguments, ranks=ranks)
+        self.assertEqual(result.returncode, 0, result.stderr + result.stdout)
+        return result
+
+    def summary(self, run):
+        return json.loads((self.folder / run / "summary.json").read_text())
+
+    def last_checkpoint(self, run):
+        checkpoints = self.folder / run / "checkpoints"
+        return checkpoints / (checkpoints / "latest").read_text().strip()
+
+    def assert_refused(self, *arguments, words, ranks=0):
+        """Exit code 2, one sentence with the words on standard error, nothing written anywhere."""
+        before = files_below(self.folder)
+        result = self.thalweg(*arguments, ranks=ranks)
+        self.assertEqual(result.returncode, 2, result.stderr + result.stdout)
+        ours = [line for line in result.stderr.splitlines() if line.startswith("thalweg: ")]
+        self.assertEqual(len(ours), 1, result.stderr)
+        if not ranks:   # else mpirun adds its own words about the exit code
+            self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+            self.assertEqual(result.stdout, "")
+        self.assertNotIn("MPI_ABORT", result.stderr)
+        for word in words:
+            self.assertIn(word, ours[0])
+        self.assertEqual(files_below(self.folder), before)
+
+
+class CommandLine(ProgramTest):
+    def test_help_and_version(self):
+        self.assertIn("mpirun -n 8 thalweg run", self.run_well("--help").stdout)
+        self.assertRegex(self.run_well("--version").stdout, r"^thalweg \d+\.\d+\.\d+")
+        self.assertIn("--walltime", self.run_well("run", "--help").stdout)
+
+    def test_on_several_ranks_only_one_speaks(self):
+        self.assertEqual(self.run_well("--version", ranks=2).stdout.count("thalweg"), 1)
+        self.assertEqual(self.run_well("check", self.case, ranks=2).stdout.count("tumbling grains"), 1)
+
+    def test_wrong_words(self):
+        self.assert_refused("fly", words=["fly"])
+        self.assert_refused(words=["--help"])
+        self.assert_refused("run", words=["CASE.yaml"])
+        self.assert_refused("run", self.case, "--layout", "2,x,1", words=["--layout", "2,x,1"])
+        self.assert_refused("run", self.case, "--walltime", "soon", words=["--walltime", "soon"])
+
+    def test_cases_that_cannot_be_run(self):
+        self.assert_refused("run", "missing.yaml", words=["missing.yaml"])
+        for command in ("run", "check"):
+            self.assert_refused(command, self.case, "--set", "gravity.magnitde=9.8", words=["magnitde"])
+            self.assert_refused(command, self.case, "--set", "grains.0.diameter=-0.005", words=["grains.0.diameter"])
+            self.assert_refused(command, self.case, "--set", "grains.0.density=heavy", words=["grains.0.density", "heavy"])
+            self.assert_refused(command, self.case, "--set", "grains.0.count=4000", words=["grains.0"])
+            self.assert_refused(command, self.case, "--set", "run.time_step=1e-3", words=["time"])
+        self.assert_refused("run", self.case, "--layout", "2,1,1", words=["--layout", "2 ranks"])
+        self.assert_refused("run", self.case, "--restart", "nowhere", words=["nowhere"])
+
+    def test_cases_that_cannot_be_run_on_two_ranks(self):
+        self.assert_refused("run", self.case, "--set", "grains.0.diameter=-0.005", words=["grains.0.diameter"], ranks=2)
+        self.assert_refused("run", self.case, "--layout", "1,1,1", words=["--layout"], ranks=2)
+        self.assert_refused("run", self.case, "--set", "grains.0.count=4000", words=["grains.0"], ranks=2)
+
+    def test_defaults_are_a_case(self):
+        text = self.run_well("defaults", "grains").stdout
+        (self.folder / "defaults.yaml").write_text(text)
+        self.run_well("check", "defaults.yaml")
+        self.assert_refused("defaults", "plasma", words=["plasma"])
+
+    def test_check_says_what_a_case_means(self):
+        report = self.run_well("check", self.case).stdout
+        self.assertEqual(files_below(self.folder), ["case.yaml"])
+        # Pair of 5 mm spheres of 2550 kg/m^3, e = 0.8: omega_0 = sqrt(k/(m/2)), zeta = 0.0709 (attraction) or so:
+        # t_c = pi/omega_0 = 2.029e-4 s within 1 %; in sub-steps of 4e-6 s: 50.9.
+        self.assertRegex(report, r"contact +lasts 0\.00020[2-5] s: 5[01]\.\d sub-steps of 4e-06 s")
+        # 0.1 s in steps of 50 * 4e-6 s, 40 grains with 50 sub-steps each.
+        self.assertRegex(report, r"work +500 steps to 0\.1 s, 1e\+06 grain-steps")
+
+
+class Running(ProgramTest):
+    def test_a_run_leaves_a_complete_folder_and_is_not_overwritten(self):
+        result = self.run_well("run", self.case)
+        run = self.folder / "run"
+        for name in ("case.yaml", "run.log", "series.csv", "grains.pvd", "summary.json"):
+            self.assertTrue((run / name).is_file(), name)
+        summary = self.summary("run")
+        self.assertTrue(summary["finished"])
+        self.assertEqual(summary["steps"], 500)
+        self.assertEqual(summary["grains"], 40)
+        self.assertAlmostEqual(summary["simulated_time"], 0.1, delta=1e-12)
+        self.assertGreater(summary["grain_steps_per_second"], 0)
+        self.assertAlmostEqual(sum(p["share"] for p in summary["phases"].values()), 1.0, delta=0.05)
+        self.assertIn("phase", result.stdout)
+        # A row every 2 ms from 0 to 0.1 s; the mean over the rows from 0.05 s on.
+        lines = (run / "series.csv").read_text().splitlines()
+        header = [column.split(" [")[0] for column in lines[0].split(",")]
+        rows = [[float(x) for x in line.split(",")] for line in lines[1:]]
+        self.assertEqual(len(rows), 51)
+        fluxes = [row[header.index("q_s")] for row in rows if row[0] > 0.0499]
+        self.assertEqual(len(fluxes), 26)
+        mean = sum(fluxes) / len(fluxes)
+        self.assertAlmostEqual(summary["transport_rate"]["q_s_mean"], mean, delta=1e-12 * abs(mean))
+        self.assertGreater(mean, 0)
+        self.assertEqual(len(list((run / "checkpoints").glob("*.h5"))), 2)
+
+        before = (run / "summary.json").read_bytes()
+        self.assert_refused("run", self.case, words=["--overwrite", "--restart"])
+        self.assertEqual((run / "summary.json").read_bytes(), before)
+        self.run_well("run", self.case, "--overwrite", "--until", "0.01")
+        self.assertEqual(self.summary("run")["steps"], 50)
+
+        self.assertIn("finished", self.run_well("info", run).stdout)
+        self.assertIn("step 50", self.run_well("info", self.last_checkpoint("run")).stdout)
+        self.assert_refused("info", self.case, words=["case.yaml"])
+
+    def test_the_case_as_run_runs_again_with_the_same_bits(self):
+        self.run_well("run", self.case, "--out", "a", "--until", "0.01")
+        self.run_well("run", "a/case.yaml", "--out", "b")
+        self.assertEqual(self.last_checkpoint("a").read_bytes(), self.last_checkpoint("b").read_bytes())
+
+    def test_the_same_bits_on_any_ranks_and_layout(self):
+        self.run_well("run", self.case, "--out", "one")
+        reference = self.last_checkpoint("one").read_bytes()
+        series = (self.folder / "one" / "series.csv").read_bytes()
+        for ranks, layout in ((2, "2,1,1"), (2, "1,1,2"), (4, "2,2,1")):
+            out = "on_" + layout.replace(",", "x")
+            self.run_well("run", self.case, "--out", out, "--layout", layout, ranks=ranks)
+            self.assertEqual(self.summary(out)["ranks"], ranks)
+            self.assertEqual(self.last_checkpoint(out).read_bytes(), reference, out)
+            self.assertEqual((self.folder / out / "series.csv").read_bytes(), series, out)
+
+    def test_observers_and_output_do_not_touch_the_run(self):
+        self.run_well("run", self.case, "--out", "watched")
+        self.run_well("run", self.case, "--out", "alone", "--set", "output.series.every=0", "--set",
+                      "output.grains.every=0", "--set", "output.checkpoint.every=0")
+        import h5py
+        with h5py.File(self.last_checkpoint("watched")) as a, h5py.File(self.last_checkpoint("alone")) as b:
+            names = []
+            a.visititems(lambda name, item: names.append(name) if isinstance(item, h5py.Dataset) else None)
+            self.assertTrue(any("position" in name for name in names))
+            for name in names:
+                self.assertEqual(a[name][()].tobytes(), b[name][()].tobytes(), name)
+
+    def test_a_failed_run_says_so_and_keeps_its_checkpoint(self):
+        # A grain held at 1 m/s leaves the box through its top, 0.02 m away, after about 0.02 s.
+        grain = "[{count: 1, diameter: 5.0e-3, density: 2550, placement: {positions: [[0.02, 0.01, 0.02]]}," \
+                " prescribed_velocity: [0, 0, 1]}]"
+        for ranks in (0, 2):
+            out = f"on_{ranks}"
+            result = self.thalweg("run", self.case, "--out", out, "--set", "grains=" + grain, "--set",
+                                  "output.checkpoint.every=0.01", ranks=ranks)
+            self.assertEqual(result.returncode, 1, result.stderr)
+            self.assertEqual(len([line for line in result.stderr.splitlines() if line.startswith("thalweg: ")]), 1)
+            self.assertNotIn("MPI_ABORT", result.stderr)
+            summary = self.summary(out)
+            self.assertFalse(summary["finished"])
+            self.assertIn("rain 0", summary["reason"])
+            self.assertEqual(self.last_checkpoint(out).name, "step_100.h5")
+
+
+class Stopping(ProgramTest):
+    LONG = ("--until", "1000")
+
+    def start(self, *arguments, ranks=0):
+        """A run that would take hours, once it has begun to report."""
+        process = subprocess.Popen(self.command(("run", self.case) + self.LONG + arguments, ranks), cwd=self.folder,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.kill)
+        log = self.folder / "run" / "run.log"
+        for _ in range(600):
+            if log.exists() and "steps/s" in log.read_text():
+                return process
+            time.sleep(0.05)
+        self.fail("no progress line within 30 s: " + (log.read_text() if log.exists() else "no log"))
+
+    def assert_can_go_on(self, ranks_before):
+        """The stopped run, continued on other ranks for ten steps, has the bits of a run straight to that time."""
+        summary = self.summary("run")
+        self.assertFalse(summary["finished"])
+        until = f"{(summary['steps'] + 10) * 50 * 4e-6:.9g}"
+        self.run_well("run", self.case, "--restart", "run", "--until", until, ranks=3 - max(1, ranks_before))
+        self.assertTrue(self.summary("run")["finished"])
+        self.run_well("run", self.case, "--out", "straight", "--until", until)
+        self.assertEqual(self.last_checkpoint("run").read_bytes(), self.last_checkpoint("straight").read_bytes())
+        self.assertEqual((self.folder / "run" / "series.csv").read_text(),
+                         (self.folder / "straight" / "series.csv").read_text())
+        self.assertEqual((self.folder / "run" / "grains.pvd").read_text(),
+                         (self.folder / "straight" / "grains.pvd").read_text())
+
+    def test_sigterm(self):
+        process = self.start()
+        process.send_signal(signal.SIGTERM)
+        _, errors = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 0, errors)
+        self.assertEqual(self.summary("run")["reason"], "stopped by SIGTERM")
+        self.assertIn("SIGTERM", self.run_well("info", "run").stdout)
+        self.assert_can_go_on(1)
+
+    def test_sigusr1_through_mpirun(self):
+        process = self.start(ranks=2)
+        process.send_signal(signal.SIGUSR1)
+        _, errors = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 0, errors)
+        self.assertEqual(self.summary("run")["reason"], "stopped by SIGUSR1")
+        self.assert_can_go_on(2)
+
+    def test_sigterm_to_mpirun_leaves_a_checkpoint(self):
+        # mpirun's own exit code then is not the program's: what counts is on the disk.
+        process = self.start(ranks=2)
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=30)
+        self.assertEqual(self.summary("run")["reason"], "stopped by SIGTERM")
+        self.assert_can_go_on(2)
+
+    def test_walltime(self):
+        start = time.monotonic()
+        self.run_well("run", self.case, *self.LONG, "--walltime", "00:00:03")
+        # Within the three seconds; the bound leaves room for a busy machine to load the program.
+        self.assertLess(time.monotonic() - start, 4.0)
+        self.assertIn("wall time", self.summary("run")["reason"])
+        self.assert_can_go_on(1)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:], verbosity=2)

@@ -1,0 +1,31 @@
+#include "driver/progress.hpp"
+
+#include <gtest/gtest.h>
+
+namespace thalweg::driver {
+namespace {
+
+TEST(Progress, ShowsWhatAPersonWantsToSee) {
+  ProgressState state{1.25, 3.0, 1.25 / 3.0, 83.0, 812.0, 12.34, {}};
+  state.figures = {{"largest_lattice_velocity", "1", 0.081}, {"q_s", "m^2/s", 1.0}, {"q_star", "1", 0.0123},
+                   {"moving_grains", "1", 23.0}};
+  EXPECT_EQ(progress_line(state),
+            "t 1.25      of 3 s   42 %  left 1:23          812 steps/s    12.3 MLUPS  moving 23      q* 0.0123     "
+            "u_max 0.081");
+}
+
+TEST(Progress, LeavesOutWhatIsNotThere) {
+  const ProgressState state{0.0, 0.5, 0.0, -1.0, 1e5, 0.0, {}};
+  EXPECT_EQ(progress_line(state), "t 0         of 0.5 s    0 %  left ?           1e+05 steps/s");
+}
+
+TEST(Progress, ClockTexts) {
+  EXPECT_EQ(clock_text(0.2), "0 s");
+  EXPECT_EQ(clock_text(59.4), "59 s");
+  EXPECT_EQ(clock_text(723.0), "12:03");
+  EXPECT_EQ(clock_text(11045.0), "3:04:05");
+  EXPECT_EQ(clock_text(2 * 86400.0 + 3 * 3600.0 + 4 * 60.0 + 5.0), "2 d 03:04");
+}
+
+}  // namespace
+}  // namespace thalweg::driver

@@ -1,0 +1,202 @@
+#include "driver/time_loop.hpp"
+
+#include "core/error.hpp"
+#include "core/mpi_session.hpp"
+#include "driver/stop_request.hpp"
+#include "driver/summary.hpp"
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <functional>
+#include <limits>
+#include <thread>
+
+namespace thalweg::driver {
+namespace {
+
+const MPI_Comm world = MPI_COMM_WORLD;
+
+// Counts its steps, and has one figure that follows a given function of the step.
+class Counter : public System {
+public:
+  std::function<double(std::int64_t)> lattice_velocity = [](std::int64_t) { return 0.05; };
+  std::function<void(std::int64_t)> on_advance = [](std::int64_t) {};
+
+  explicit Counter(std::int64_t start = 0) : step_(start) {}
+  void advance() override {
+    const auto scope = timer_.measure(timer_.phase("counting"));
+    ++step_;
+    on_advance(step_);
+  }
+  std::int64_t step() const override { return step_; }
+  double time_step() const override { return 0.001; }
+  Snapshot snapshot() const override {
+    Snapshot snapshot;
+    snapshot.time = time();
+    snapshot.step = step_;
+    return snapshot;
+  }
+  std::vector<Figure> figures() const override { return {{"largest_lattice_velocity", "1", lattice_velocity(step_)}}; }
+  void save(ArchiveWriter&) const override {}
+  void load(ArchiveReader&) override {}
+  PhaseTimer& timer() override { return timer_; }
+  std::int64_t cells() const override { return 1000; }
+  std::int64_t grain_steps_per_step() const override { return 20; }
+
+private:
+  std::int64_t step_;
+  PhaseTimer timer_;
+};
+
+class LooksOn : public analysis::Observer {
+public:
+  std::string name() const override { return "looks_on"; }
+  void observe(const Snapshot& snapshot) override { steps.push_back(snapshot.step); }
+  std::vector<Figure> figures() const override { return {{"seen", "1", static_cast<double>(steps.size())}}; }
+  void save(ArchiveWriter&) const override {}
+  void load(ArchiveReader&) override {}
+  std::vector<std::int64_t> steps;
+};
+
+// What the loop did, and the loop itself.
+struct Bench {
+  explicit Bench(double until, std::int64_t start = 0) : system(start) {
+    listen_for_stop_signals();   // forget the signal of an earlier test
+    plan.until = until;
+    plan.series = Schedule(0.003, 0.001);
+    plan.checkpoint = Schedule(0.004, 0.001);
+    plan.write_row = [this](double, std::int64_t step, const std::vector<Figure>& row) {
+      rows.push_back(step);
+      columns = row.size();
+    };
+    plan.write_checkpoint = [this] { checkpoints.push_back(system.step()); };
+    plan.outputs.push_back(
+        {"pictures", Schedule(0.005, 0.001), [this](const Snapshot& s) { pictures.push_back(s.step); }});
+    auto observer = std::make_unique<LooksOn>();
+    looks_on = observer.get();
+    observers.push_back(std::move(observer));
+  }
+  TimeLoop& run() {
+    loop = std::make_unique<TimeLoop>(world, system, observers, plan, log);
+    loop->run();
+    return *loop;
+  }
+  Counter system;
+  std::vector<std::unique_ptr<analysis::Observer>> observers;
+  LooksOn* looks_on;
+  LoopPlan plan;
+  Log log{false};
+  std::unique_ptr<TimeLoop> loop;
+  std::vector<std::int64_t> rows, checkpoints, pictures;
+  std::size_t columns = 0;
+};
+
+using Steps = std::vector<std::int64_t>;
+
+TEST(TimeLoop, KeepsEveryBeatAndEndsWithACheckpoint) {
+  Bench bench(0.010);
+  const LoopRecord& record = bench.run().record();
+  EXPECT_TRUE(record.finished);
+  EXPECT_EQ(record.last_step, 10);
+  EXPECT_EQ(bench.rows, (Steps{0, 3, 6, 9}));
+  EXPECT_EQ(bench.looks_on->steps, (Steps{0, 3, 6, 9}));
+  EXPECT_EQ(bench.columns, 2u);
+  EXPECT_EQ(bench.pictures, (Steps{0, 5, 10}));
+  EXPECT_EQ(bench.checkpoints, (Steps{4, 8, 10}));
+}
+
+TEST(TimeLoop, GoesOnFromALaterStepWithoutRepeatingWhatIsWritten) {
+  Bench bench(0.010, 6);
+  bench.plan.write_at_start = false;
+  const LoopRecord& record = bench.run().record();
+  EXPECT_EQ(record.first_step, 6);
+  EXPECT_EQ(bench.rows, (Steps{9}));
+  EXPECT_EQ(bench.checkpoints, (Steps{8, 10}));
+}
+
+TEST(TimeLoop, ReachesUntilInWholeStepsDespiteRoundOff) {
+  Bench exact(0.3), between(0.0305);
+  EXPECT_EQ(exact.run().record().last_step, 300);   // 0.3/0.001 is 299.99999999999994 or 300 in floating point
+  EXPECT_EQ(between.run().record().last_step, 31);
+}
+
+TEST(TimeLoop, StopsAnUnstableRunAndKeepsTheLastGoodCheckpoint) {
+  Bench bench(1.0);
+  bench.plan.series = Schedule();
+  bench.plan.outputs.clear();
+  bench.system.lattice_velocity = [](std::int64_t step) { return step < 398 ? 0.29 : 0.31; };
+  EXPECT_THROW(bench.run(), RunError);
+  EXPECT_EQ(bench.system.step(), 400);               // noticed when the next checkpoint was due
+  EXPECT_EQ(bench.checkpoints.back(), 396);
+  EXPECT_FALSE(bench.loop->record().finished);
+
+  Bench rare(1.0);
+  rare.plan.series = rare.plan.checkpoint = Schedule();
+  rare.plan.outputs.clear();
+  rare.system.lattice_velocity = [](std::int64_t step) {
+    return step < 250 ? 0.29 : std::numeric_limits<double>::quiet_NaN();
+  };
+  EXPECT_THROW(rare.run(), RunError);
+  // Looked at every 200 steps at the latest (and, by chance of the clock, when a progress line is due).
+  EXPECT_TRUE(rare.system.step() > 250 && rare.system.step() <= 400) << rare.system.step();
+  EXPECT_TRUE(rare.checkpoints.empty());
+}
+
+TEST(TimeLoop, StopsAtTheSameStepEverywhereWhenTheWallTimeIsUp) {
+  Bench bench(1e9);
+  bench.plan.checkpoint = bench.plan.series = Schedule();
+  bench.plan.outputs.clear();
+  bench.plan.walltime = 0.5;
+  bench.plan.started = WallClock::now();
+  bench.system.on_advance = [](std::int64_t) { std::this_thread::sleep_for(std::chrono::microseconds(200)); };
+  const auto start = WallClock::now();
+  const LoopRecord& record = bench.run().record();
+  EXPECT_LT(std::chrono::duration<double>(WallClock::now() - start).count(), 2.0);   // 0.5 s and a busy machine
+  EXPECT_FALSE(record.finished);
+  EXPECT_NE(record.reason.find("wall time"), std::string::npos);
+  EXPECT_EQ(bench.checkpoints, (Steps{record.last_step}));
+  EXPECT_EQ(sum_over_ranks(world, record.last_step), record.last_step * size_of(world));
+}
+
+TEST(TimeLoop, StopsEverywhereWhenOneRankReceivesASignal) {
+  Bench bench(1e9);
+  bench.plan.checkpoint = Schedule();
+  bench.system.on_advance = [](std::int64_t step) {
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+    if (step == 50 && rank_of(world) == size_of(world) - 1) std::raise(SIGUSR1);
+  };
+  const LoopRecord& record = bench.run().record();
+  EXPECT_FALSE(record.finished);
+  EXPECT_EQ(record.reason, "stopped by SIGUSR1");
+  EXPECT_GE(record.last_step, 50);
+  EXPECT_EQ(bench.checkpoints, (Steps{record.last_step}));
+}
+
+TEST(Summary, AccountsForTheWholeWallTime) {
+  Bench bench(0.050);
+  bench.system.on_advance = [](std::int64_t) { std::this_thread::sleep_for(std::chrono::milliseconds(1)); };
+  TimeLoop& loop = bench.run();
+  const std::vector<PhaseShare> phases = collect_phases(world, bench.system, loop);
+  if (rank_of(world) == 0) {
+    double mean = 0.0, share = 0.0;
+    for (const PhaseShare& phase : phases) {
+      mean += phase.mean_seconds;
+      share += phase.share;
+      EXPECT_GE(phase.largest_seconds, phase.mean_seconds * (1.0 - 1e-9));
+    }
+    EXPECT_EQ(phases.front().name, "counting");
+    EXPECT_EQ(phases.back().name, "other");
+    EXPECT_GE(phases.front().mean_seconds, 0.050);   // fifty times at least a millisecond
+    EXPECT_NEAR(share, mean / loop.record().wall_seconds, 1e-9);
+    EXPECT_NEAR(mean, loop.record().wall_seconds, 0.2 * loop.record().wall_seconds);   // ranks start a little apart
+    EXPECT_EQ(phase_table(phases).size(), phases.size() + 1);
+  }
+  const Speeds speeds = speeds_of(bench.system, loop.record());
+  EXPECT_NEAR(speeds.steps_per_second * loop.record().wall_seconds, 50.0, 1e-9);
+  EXPECT_NEAR(speeds.mlups, speeds.steps_per_second * 1e-3, 1e-12);
+  EXPECT_NEAR(speeds.grain_steps_per_second, speeds.steps_per_second * 20.0, 1e-6);
+}
+
+}  // namespace
+}  // namespace thalweg::driver
