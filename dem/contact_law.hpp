@@ -1,5 +1,5 @@
-// The force of one contact: linear spring and dashpot along the normal, Cundall and Strack's spring with Coulomb's limit
-// across it (Cundall & Strack, Geotechnique 29 (1979) 47), no tangential dashpot.
+// The force of one contact: linear spring and dashpot along the normal, Cundall and Strack's spring with Coulomb's
+// limit across it (Cundall & Strack, Geotechnique 29 (1979) 47), no tangential dashpot.
 //
 //   F_n = k_n delta + gamma delta'                      delta: overlap, delta' = -v.n; without attraction F_n >= 0
 //   F_t = -k_t xi,   xi = integral of v_t dt            |F_t| <= mu |F_n|, xi shortened to it while the contact slides
@@ -39,7 +39,8 @@ public:
         least_(attraction ? -std::numeric_limits<double>::infinity() : 0.0) {}
 
   // damping: kg/s; friction: mu; spring: as the last evaluation left it (zero in a new contact).
-  ContactForce operator()(const ContactMotion& c, double damping, double friction, const TangentialSpring& spring) const {
+  ContactForce operator()(const ContactMotion& c, double damping, double friction,
+                          const TangentialSpring& spring) const {
     const double closing = -(c.vx * c.nx + c.vy * c.ny + c.vz * c.nz);
     const double pressed = kn_ * c.overlap + damping * closing;
     const double normal = pressed > least_ ? pressed : least_;

@@ -148,8 +148,8 @@ void GhostExchange::add_to_owners(std::vector<std::int64_t>& values, int width) 
     values_ready_ = true;
   }
   for (std::size_t n = 0; n < neighbours_.size(); ++n)
-    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(neighbours_[n].first * width), neighbours_[n].count * width,
-                values_.send_buffer<std::int64_t>(n));
+    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(neighbours_[n].first * width),
+                neighbours_[n].count * width, values_.send_buffer<std::int64_t>(n));
   values_.start();
   values_.finish();
   for (std::size_t n = 0; n < neighbours_.size(); ++n) {

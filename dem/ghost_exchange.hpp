@@ -27,8 +27,8 @@ public:
   // Brings the ghosts' attached columns up to date.
   void refresh_attached(GrainStore& store);
 
-  // Adds what the ranks have in `values` for their ghosts to the owners' entries: `width` integers a grain of the store, so
-  // that the sums do not depend on any order. Entries of ghosts stay as they are. Always the same width.
+  // Adds what the ranks have in `values` for their ghosts to the owners' entries: `width` integers a grain of the
+  // store, so that the sums do not depend on any order. Entries of ghosts stay as they are. Always the same width.
   void add_to_owners(std::vector<std::int64_t>& values, int width);
 
 private:

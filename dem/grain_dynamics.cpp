@@ -18,8 +18,10 @@ namespace {
 const GrainParameters& checked(const GrainParameters& p) {
   check(p.contact);
   for (const Plane& wall : p.walls) check(wall);
-  if (p.sub_steps < 1) throw InputError(fmt::format("The number of grain sub-steps is {}; it must be positive.", p.sub_steps));
-  if (!(p.skin > 0.0)) throw InputError(fmt::format("The skin of the contact list is {:g} m; it must be positive.", p.skin));
+  if (p.sub_steps < 1)
+    throw InputError(fmt::format("The number of grain sub-steps is {}; it must be positive.", p.sub_steps));
+  if (!(p.skin > 0.0))
+    throw InputError(fmt::format("The skin of the contact list is {:g} m; it must be positive.", p.skin));
   if (!(p.ghost_width >= 0.0))
     throw InputError(fmt::format("The ghost width of the grains is {:g} m; it must not be negative.", p.ghost_width));
   return p;
@@ -141,16 +143,18 @@ void GrainDynamics::throw_trouble() const {
                                         report.x[1], report.x[2], report.speed);
   switch (report.trouble) {
     case Trouble::not_finite:
-      throw RunError(grain + " has a position or velocity that is not a number; its load or its contacts have blown up.");
+      throw RunError(grain +
+                     " has a position or velocity that is not a number; its load or its contacts have blown up.");
     case Trouble::outside:
       throw RunError(grain + " is more than its radius beyond a face of the box that is not periodic.");
     case Trouble::too_fast:
       throw RunError(fmt::format("{} moves more than its radius in one step of {:g} s; use a shorter time step.", grain,
                                  step_time()));
     default:
-      throw RunError(fmt::format("{} has gone more than half the skin of {:g} m since the contact list was built; use a "
-                                 "shorter time step or a wider skin.",
-                                 grain, parameters_.skin));
+      throw RunError(
+          fmt::format("{} has gone more than half the skin of {:g} m since the contact list was built; use a "
+                      "shorter time step or a wider skin.",
+                      grain, parameters_.skin));
   }
 }
 

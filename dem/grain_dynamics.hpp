@@ -3,8 +3,8 @@
 //   v(n+1/2) = v(n) + dt/2 a(n);  x(n+1) = x(n) + dt v(n+1/2);  forces from x(n+1), v(n+1/2);
 //   v(n+1) = v(n+1/2) + dt/2 a(n+1);  the same for the angular velocity with I = 2/5 m R^2.
 //
-// SI units. The state after any number of steps is bitwise the same on any number of ranks, in any layout, and after any
-// save and load. A step of the caller (a fluid step) is
+// SI units. The state after any number of steps is bitwise the same on any number of ranks, in any layout, and after
+// any save and load. A step of the caller (a fluid step) is
 //   prepare();  ... loads into store() ...;  advance(sub_steps);  refresh_ghosts();
 #pragma once
 
@@ -55,10 +55,11 @@ public:
   GrainDynamics(const GrainDynamics&) = delete;
   GrainDynamics& operator=(const GrainDynamics&) = delete;
 
-  // Before the sub-steps of a fluid step: wraps positions and, where some grain may leave its half skin during the coming
-  // sub-steps, moves grains to the rank of their centre and rebuilds ghosts and contact list. True if slots changed.
-  // Throws RunError, on every rank, where a grain has outrun its half skin, moves more than its radius in one fluid step,
-  // is beyond a non-periodic face by more than its radius, or is no longer a number. One reduction. Collective.
+  // Before the sub-steps of a fluid step: wraps positions and, where some grain may leave its half skin during the
+  // coming sub-steps, moves grains to the rank of their centre and rebuilds ghosts and contact list. True if slots
+  // changed. Throws RunError, on every rank, where a grain has outrun its half skin, moves more than its radius in one
+  // fluid step, is beyond a non-periodic face by more than its radius, or is no longer a number. One reduction.
+  // Collective.
   bool prepare();
 
   // Velocity Verlet under the loads in store(). At most GrainParameters::sub_steps since prepare(). Collective.
@@ -68,8 +69,8 @@ public:
   void refresh_ghosts();
   void refresh_ghost_attached();   // the attached columns of ghosts, if the caller changed those of owned grains
 
-  // Adds what every rank has for its ghosts in `values` (width integers a grain of the store) to the owners' entries: sums
-  // of loads over ranks, exact in any order. Collective.
+  // Adds what every rank has for its ghosts in `values` (width integers a grain of the store) to the owners' entries:
+  // sums of loads over ranks, exact in any order. Collective.
   void add_ghost_values(std::vector<std::int64_t>& values, int width) { ghosts_.add_to_owners(values, width); }
 
   // Loads and attached columns are the caller's to write; the rest is to be read.
@@ -94,8 +95,8 @@ public:
   std::int64_t moving_count(double speed) const;   // free grains faster than speed (m/s)
 
   // Everything the next sub-step depends on, sorted by id, below `group`; collective. To be called after
-  // refresh_ghosts(). Loading replaces all grains, whatever the seeds were; parameters stay those given at construction.
-  // Throws InputError where the archive does not fit the box, the walls or the time step.
+  // refresh_ghosts(). Loading replaces all grains, whatever the seeds were; parameters stay those given at
+  // construction. Throws InputError where the archive does not fit the box, the walls or the time step.
   void save(ArchiveWriter& archive, const std::string& group = "grains") const;
   void load(ArchiveReader& archive, const std::string& group = "grains");
 

@@ -1,6 +1,6 @@
 // Saving and loading of GrainDynamics. Datasets, one row a grain in order of id: radius, mass, motion, position,
-// velocity, angular_velocity, contact_force, contact_torque, load_force, load_torque, attached. One row a contact, sorted
-// by ids: contact_ids (lower id; higher id, or -1 - w for wall w), contact_spring.
+// velocity, angular_velocity, contact_force, contact_torque, load_force, load_torque, attached. One row a contact,
+// sorted by ids: contact_ids (lower id; higher id, or -1 - w for wall w), contact_spring.
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
 #include "dem/grain_batch.hpp"
@@ -140,7 +140,8 @@ void GrainDynamics::save(ArchiveWriter& archive, const std::string& group) const
   // A pair known to two ranks is written by the owner of its lower id.
   std::vector<ContactHistory> mine = histories_of(list_, store_);
   const auto owned_end = store_.id.begin() + static_cast<std::ptrdiff_t>(store_.owned);
-  std::erase_if(mine, [&](const ContactHistory& h) { return !std::binary_search(store_.id.begin(), owned_end, h.first); });
+  std::erase_if(mine,
+                [&](const ContactHistory& h) { return !std::binary_search(store_.id.begin(), owned_end, h.first); });
   home.clear();
   for (const ContactHistory& h : mine) home.push_back(home_of(h.first, global_count_, ranks));
   std::vector<ContactHistory> rows = exchange_rows(communicator_, mine, home);
@@ -164,8 +165,9 @@ void GrainDynamics::load(ArchiveReader& archive, const std::string& group) {
   const int ranks = size_of(communicator_), me = rank_of(communicator_);
   const std::int64_t walls = archive.integer_attribute(group + "/walls");
   if (walls != static_cast<std::int64_t>(parameters_.walls.size()))
-    throw InputError(fmt::format("The saved grains had {} walls, but this case has {}; the boundaries must be the same.",
-                                 walls, parameters_.walls.size()));
+    throw InputError(
+        fmt::format("The saved grains had {} walls, but this case has {}; the boundaries must be the same.", walls,
+                    parameters_.walls.size()));
   global_count_ = static_cast<std::int64_t>(archive.shape(group + "/radius").at(0));
   GrainBatch batch = read_grains(archive, group, Share(global_count_, ranks, me), store_.attached_width);
 

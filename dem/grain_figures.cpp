@@ -31,7 +31,8 @@ std::vector<Contact> GrainDynamics::contacts() const {
     const Plane& wall = parameters_.walls[c.wall];
     const double overlap = store_.radius[c.grain] - (store_.position[c.grain] - wall.point).dot(wall.normal);
     if (overlap > 0.0)
-      touching.push_back({store_.id[c.grain], -1 - static_cast<GlobalId>(c.wall), overlap, wall.normal, Vec3(c.spring)});
+      touching.push_back(
+          {store_.id[c.grain], -1 - static_cast<GlobalId>(c.wall), overlap, wall.normal, Vec3(c.spring)});
   }
   return touching;
 }

@@ -28,8 +28,8 @@ void check_ids(std::span<const GrainSeed> seeds) {
 
 void check_alone(const GrainSeed& seed, const PeriodicBox& box, std::span<const Plane> walls) {
   if (!(std::isfinite(seed.radius) && seed.radius > 0.0))
-    throw InputError(fmt::format("Grain {} at {} has radius {:g} m; it must be positive.", seed.id, place(seed.position),
-                                 seed.radius));
+    throw InputError(fmt::format("Grain {} at {} has radius {:g} m; it must be positive.", seed.id,
+                                 place(seed.position), seed.radius));
   if (!(std::isfinite(seed.density) && seed.density > 0.0))
     throw InputError(fmt::format("Grain {} at {} has density {:g} kg/m^3; it must be positive.", seed.id,
                                  place(seed.position), seed.density));
@@ -37,8 +37,9 @@ void check_alone(const GrainSeed& seed, const PeriodicBox& box, std::span<const 
     throw InputError(fmt::format("Grain {} at {} has a velocity that is not a number.", seed.id, place(seed.position)));
   for (int axis = 0; axis < 3; ++axis)
     if (!(seed.position[axis] >= 0.0 && seed.position[axis] <= box.size[axis]))
-      throw InputError(fmt::format("Grain {} at {} has its centre outside the box; its {} must be between 0 and {:g} m.",
-                                   seed.id, place(seed.position), "xyz"[axis], box.size[axis]));
+      throw InputError(
+          fmt::format("Grain {} at {} has its centre outside the box; its {} must be between 0 and {:g} m.", seed.id,
+                      place(seed.position), "xyz"[axis], box.size[axis]));
   if (seed.motion == Motion::fixed) return;
   for (const Plane& wall : walls) {
     const double overlap = seed.radius - (seed.position - wall.point).dot(wall.normal);
@@ -54,9 +55,10 @@ void check_pair(const GrainSeed& a, const GrainSeed& b, const PeriodicBox& box) 
   if (a.motion == Motion::fixed && b.motion == Motion::fixed) return;
   const double overlap = a.radius + b.radius - box.difference(a.position, b.position).norm();
   if (overlap > allowed_initial_overlap * 2.0 * std::min(a.radius, b.radius))
-    throw InputError(fmt::format("Grain {} at {} and grain {} at {} overlap by {:g} m at the start; they must not touch "
-                                 "by more than {:g} diameters.",
-                                 a.id, place(a.position), b.id, place(b.position), overlap, allowed_initial_overlap));
+    throw InputError(
+        fmt::format("Grain {} at {} and grain {} at {} overlap by {:g} m at the start; they must not touch "
+                    "by more than {:g} diameters.",
+                    a.id, place(a.position), b.id, place(b.position), overlap, allowed_initial_overlap));
 }
 
 }  // namespace

@@ -35,7 +35,8 @@ void GrainStore::append(GlobalId grain, double grain_radius, double grain_mass, 
 
 void GrainStore::drop_ghosts() {
   const std::size_t kept = owned;
-  for_each_column([kept](auto& column) { column.erase(column.begin() + static_cast<std::ptrdiff_t>(kept), column.end()); });
+  for_each_column(
+      [kept](auto& column) { column.erase(column.begin() + static_cast<std::ptrdiff_t>(kept), column.end()); });
   attached.resize(kept * attached_width);
 }
 

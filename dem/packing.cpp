@@ -22,9 +22,10 @@ void check_region(const PeriodicBox& box, const Region& region) {
   for (int axis = 0; axis < 3; ++axis)
     if (!(region.lower[axis] >= 0.0 && region.lower[axis] < region.upper[axis] &&
           region.upper[axis] <= box.size[axis] * (1.0 + 1e-12)))
-      throw InputError(fmt::format("The region for grains reaches from {:g} to {:g} m along {}; it must lie between 0 and "
-                                   "{:g} m.",
-                                   region.lower[axis], region.upper[axis], "xyz"[axis], box.size[axis]));
+      throw InputError(
+          fmt::format("The region for grains reaches from {:g} to {:g} m along {}; it must lie between 0 and "
+                      "{:g} m.",
+                      region.lower[axis], region.upper[axis], "xyz"[axis], box.size[axis]));
 }
 
 struct Lattice {
@@ -65,9 +66,10 @@ std::vector<Vec3> uniform_packing(const PeriodicBox& box, const Region& region, 
     most[axis] = std::max<std::int64_t>(0, static_cast<std::int64_t>(std::floor(extent[axis] / diameter + 1e-9)));
   }
   if (count > most[0] * most[1] * most[2])
-    throw InputError(fmt::format("{} grains of {:g} m do not fit on a lattice in {:g} x {:g} x {:g} m: {} would; use fewer "
-                                 "or smaller grains or a larger region.",
-                                 count, diameter, extent[0], extent[1], extent[2], most[0] * most[1] * most[2]));
+    throw InputError(
+        fmt::format("{} grains of {:g} m do not fit on a lattice in {:g} x {:g} x {:g} m: {} would; use fewer "
+                    "or smaller grains or a larger region.",
+                    count, diameter, extent[0], extent[1], extent[2], most[0] * most[1] * most[2]));
   if (count == 0) return {};
 
   const Lattice lattice = widest_lattice(extent, count, most);
@@ -170,8 +172,8 @@ std::vector<Vec3> random_packing(const PeriodicBox& box, const Region& region, s
         const double margin = wraps(box, region, axis) ? 0.0 : radii[grain] + clearance;
         const double free = region.upper[axis] - region.lower[axis] - 2.0 * margin;
         room = room && free >= 0.0;
-        trial.position[axis] =
-            region.lower[axis] + margin + free * uniform_random(seed, grain, 3u * static_cast<unsigned>(attempt) + axis);
+        trial.position[axis] = region.lower[axis] + margin +
+                               free * uniform_random(seed, grain, 3u * static_cast<unsigned>(attempt) + axis);
       }
       if (!room) break;
       trial.position = box.wrapped(trial.position);
@@ -181,10 +183,11 @@ std::vector<Vec3> random_packing(const PeriodicBox& box, const Region& region, s
       centres[grain] = trial.position;
     }
     if (!found)
-      throw InputError(fmt::format("{} grains do not fit at random in {:g} x {:g} x {:g} m: {} did; use fewer or smaller "
-                                   "grains, a larger region, or a uniform placement.",
-                                   radii.size(), region.upper[0] - region.lower[0], region.upper[1] - region.lower[1],
-                                   region.upper[2] - region.lower[2], n));
+      throw InputError(
+          fmt::format("{} grains do not fit at random in {:g} x {:g} x {:g} m: {} did; use fewer or smaller "
+                      "grains, a larger region, or a uniform placement.",
+                      radii.size(), region.upper[0] - region.lower[0], region.upper[1] - region.lower[1],
+                      region.upper[2] - region.lower[2], n));
   }
   return centres;
 }

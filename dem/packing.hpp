@@ -22,10 +22,10 @@ struct Sphere {
   double radius;   // m
 };
 
-// Centres of `count` equal grains spread over the region as evenly as a cubic lattice allows: the lattice with the widest
-// spacing that has enough sites, sites left over spread evenly, each centre moved at random by up to 1 % of a diameter
-// (less where there is no room) so that grains do not stack perfectly. clearance: m, surface to the region's faces that
-// are not periodic. Throws InputError saying how many would fit.
+// Centres of `count` equal grains spread over the region as evenly as a cubic lattice allows: the lattice with the
+// widest spacing that has enough sites, sites left over spread evenly, each centre moved at random by up to 1 % of a
+// diameter (less where there is no room) so that grains do not stack perfectly. clearance: m, surface to the region's
+// faces that are not periodic. Throws InputError saying how many would fit.
 std::vector<Vec3> uniform_packing(const PeriodicBox& box, const Region& region, std::int64_t count, double radius,
                                   double clearance, std::uint64_t seed);
 

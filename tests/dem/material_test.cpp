@@ -41,8 +41,8 @@ TEST(Restitution, ClosedFormsAreThoseOfTheDifferentialEquation) {
 
 TEST(Restitution, KnownPairsOfGlassSpheres) {
   const double mass = test::glass_sphere(0, Vec3::Zero()).mass();
-  // 5 mm spheres, k = 20000 N/m: damping ratio and damping that give 0.93 where attraction is allowed, and what the same
-  // damping gives without (last digits printed).
+  // 5 mm spheres, k = 20000 N/m: damping ratio and damping that give 0.93 where attraction is allowed, and what the
+  // same damping gives without (last digits printed).
   EXPECT_NEAR(damping_ratio_of_restitution(0.93, true), 0.023094, 5e-7);
   EXPECT_NEAR(Damping(test::glass(0.93, true)).coefficient(0.5 * mass), 0.05967, 5e-6);
   EXPECT_NEAR(Damping(test::glass(0.93, true)).coefficient(mass), 0.0844, 5e-5);

@@ -73,7 +73,8 @@ TEST(NormalImpact, LastsTheContactTime) {
 }
 
 TEST(NormalImpact, ErrorsOfVelocityVerletAtFiftyStepsAContact) {
-  const ContactParameters elastic = test::glass(1.0, true), glass = test::glass(0.93, true), soft = test::glass(0.2, true);
+  const ContactParameters elastic = test::glass(1.0, true), glass = test::glass(0.93, true),
+                          soft = test::glass(0.2, true);
   const std::vector<double> whole{0.0}, any{0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9};
   const auto order = [](const ContactParameters& contact, const std::vector<double>& parts) {
     return std::log2(worst_error(contact, 50.0, parts) / worst_error(contact, 100.0, parts));

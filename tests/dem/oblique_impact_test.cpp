@@ -1,4 +1,5 @@
-// Oblique impacts with friction: the exact rebound for k_t/k_n = 2/7, where normal and tangential half periods are equal.
+// Oblique impacts with friction: the exact rebound for k_t/k_n = 2/7, where normal and tangential half periods are
+// equal.
 #include "tests/dem/grain_cases.hpp"
 
 #include <Eigen/Geometry>

@@ -47,7 +47,8 @@ TEST(UniformPacking, FillsTheBoxWithoutOverlap) {
 TEST(UniformPacking, TakesExactlyAsManyAsFitAndNamesThem) {
   // 24 x 8 x 21 touching spheres.
   EXPECT_EQ(uniform_packing(flume, whole(flume), 24 * 8 * 21, 2.5e-3, 0.0, 1).size(), 24u * 8u * 21u);
-  EXPECT_NO_THROW(check(seeds_at(uniform_packing(flume, whole(flume), 24 * 8 * 21, 2.5e-3, 0.0, 1), 2.5e-3), flume, {}));
+  EXPECT_NO_THROW(
+      check(seeds_at(uniform_packing(flume, whole(flume), 24 * 8 * 21, 2.5e-3, 0.0, 1), 2.5e-3), flume, {}));
   const std::string message = refusal([] { uniform_packing(flume, whole(flume), 24 * 8 * 21 + 1, 2.5e-3, 0.0, 1); });
   EXPECT_NE(message.find("4032 would"), std::string::npos) << message;
 }

@@ -55,7 +55,8 @@ TEST(Start, RefusesImpossibleGrains) {
   expect_names(start({good, test::glass_sphere(2, Vec3(0.03, 0.03, 0.03))}), {"id 2"});
   // Across the periodic face; touching within a millionth of a diameter is taken for rounding.
   const GrainSeed edge = test::glass_sphere(0, Vec3(0.0395, 0.02, 0.02));
-  expect_names(start({edge, test::glass_sphere(1, Vec3(0.0040, 0.02, 0.02))}), {"Grain 0", "grain 1", "0.0395", "0.004"});
+  expect_names(start({edge, test::glass_sphere(1, Vec3(0.0040, 0.02, 0.02))}),
+               {"Grain 0", "grain 1", "0.0395", "0.004"});
   EXPECT_EQ(start({edge, test::glass_sphere(1, Vec3(0.0045 - 4e-9, 0.02, 0.02))}), "nothing was thrown");
 }
 

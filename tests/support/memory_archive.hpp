@@ -1,5 +1,5 @@
-// An archive in memory for tests: every rank of the writing communicator keeps the whole of every dataset, so that it can
-// be read back on any other communicator, and compared bit by bit with the archive of a run on other ranks.
+// An archive in memory for tests: every rank of the writing communicator keeps the whole of every dataset, so that it
+// can be read back on any other communicator, and compared bit by bit with the archive of a run on other ranks.
 #pragma once
 
 #include "core/archive.hpp"
