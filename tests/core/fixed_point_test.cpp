@@ -23,8 +23,19 @@ TEST(FixedPoint, SumDoesNotDependOnTheOrder) {
   const std::int64_t first = sum();
   std::shuffle(terms.begin(), terms.end(), generator);
   EXPECT_EQ(sum(), first);
-  // Each term is rounded by at most half a unit of 2^-50.
-  EXPECT_NEAR(LatticeFixed::to_double(first), std::accumulate(terms.begin(), terms.end(), 0.0), 5000 * 0x1p-51 + 1e-11);
+  // Each term is rounded by at most half a unit of 2^-44.
+  EXPECT_NEAR(LatticeFixed::to_double(first), std::accumulate(terms.begin(), terms.end(), 0.0), 5000 * 0x1p-45 + 1e-11);
+}
+
+TEST(FixedPoint, RoundsToTheNearestAndTiesToEven) {
+  using Quarter = FixedPoint<2>;
+  EXPECT_EQ(Quarter::from(0.3), 1);
+  EXPECT_EQ(Quarter::from(-0.3), -1);
+  EXPECT_EQ(Quarter::from(0.125), 0);
+  EXPECT_EQ(Quarter::from(0.375), 2);
+  EXPECT_EQ(Quarter::from(-0.375), -2);
+  EXPECT_EQ(LatticeFixed::from(-100.0), -100 * (std::int64_t{1} << 44));
+  EXPECT_EQ(LatticeFixed::to_double(LatticeFixed::from(100.0 + 0x1p-44)), 100.0 + 0x1p-44);
 }
 
 }  // namespace
