@@ -67,7 +67,7 @@ static void describe(io::SectionVisitor& visit, Face& face) {
                           {FaceType::no_slip, "no_slip"},
                           {FaceType::free_slip, "free_slip"},
                           {FaceType::law_of_the_wall, "law_of_the_wall"}},
-                         {.meaning = "kind of face, all by half-link rules"});
+                         {.meaning = "kind of face, all by half-link rules", .required = true});
   if (face.type == FaceType::law_of_the_wall)
     visit.real("coefficient", face.coefficient,
                {.meaning = "slip velocity at the wall over the friction velocity", .above = 0.0});

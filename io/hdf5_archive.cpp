@@ -138,6 +138,9 @@ struct Hdf5Writer::File {
     const Handle dataset(H5Dcreate2(parent, leaf.c_str(), Stored<Number>::file(), selection.file, H5P_DEFAULT, creation,
                                     H5P_DEFAULT), H5Dclose);
     agree(dataset.good());
+    const std::uint64_t bytes = volume(box.global_shape) * sizeof(Number);
+    if (bytes == 0) return;   // it has no place in the file that could be written
+    agree(rank_of(communicator) != 0 || reserve_on_disk(partial, H5Dget_offset(dataset), bytes));
     const Handle transfer = collective_transfer();
     agree(H5Dwrite(dataset, Stored<Number>::memory(), selection.memory, selection.file, transfer, values.data()) >= 0);
   }
@@ -179,11 +182,12 @@ Hdf5Writer::~Hdf5Writer() {
     file_->file.release();
     return;
   }
+  // HDF5 cannot recover from a close that fails, and on a full disk it would: give the room back first.
+  std::error_code ignored;
+  if (rank_of(file_->communicator) == 0) std::filesystem::resize_file(file_->partial, 0, ignored);
+  MPI_Barrier(file_->communicator);
   file_->file.reset();
-  if (rank_of(file_->communicator) == 0) {
-    std::error_code ignored;
-    std::filesystem::remove(file_->partial, ignored);
-  }
+  if (rank_of(file_->communicator) == 0) std::filesystem::remove(file_->partial, ignored);
 }
 
 void Hdf5Writer::write(const std::string& path, std::span<const double> values, const ArrayBox& box) {
@@ -209,9 +213,8 @@ void Hdf5Writer::attribute(const std::string& path, const std::string& value) {
 }
 
 void Hdf5Writer::close() {
-  const bool flushed = H5Fflush(file_->file, H5F_SCOPE_GLOBAL) >= 0;
-  const bool closed = H5Fclose(file_->file.release()) >= 0;
-  file_->agree(flushed && closed);
+  file_->agree(H5Fflush(file_->file, H5F_SCOPE_GLOBAL) >= 0);
+  file_->agree(H5Fclose(file_->file.release()) >= 0);
   bool renamed = true;
   if (rank_of(file_->communicator) == 0) renamed = put_on_disk(file_->partial, file_->path);
   file_->agree(renamed);
@@ -260,6 +263,7 @@ struct Hdf5Reader::File {
     const std::vector<std::uint64_t> stored(extents.begin(), extents.end());
     if (stored != box.global_shape)
       throw error(name, fmt::format("the file holds {} values, but {} are needed", shown(stored), shown(box.global_shape)));
+    if (volume(stored) == 0) return;
     const Selection selection(box);
     const Handle transfer = collective_transfer();
     const bool good =

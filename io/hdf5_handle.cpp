@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
 
 namespace thalweg::io {
@@ -10,8 +11,6 @@ namespace thalweg::io {
 Handle mpi_access(MPI_Comm communicator) {
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_fapl_mpio(access, communicator, MPI_INFO_NULL);
-  H5Pset_all_coll_metadata_ops(access, false);
-  H5Pset_coll_metadata_write(access, true);
   return access;
 }
 
@@ -20,6 +19,14 @@ bool can_create(const std::filesystem::path& path) {
   if (file < 0) return false;
   ::close(file);
   return std::remove(path.c_str()) == 0;
+}
+
+bool reserve_on_disk(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t bytes) {
+  const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  if (file < 0) return false;
+  const int error = ::fallocate(file, 0, static_cast<off_t>(offset), static_cast<off_t>(bytes)) == 0 ? 0 : errno;
+  ::close(file);
+  return error == 0 || error == EOPNOTSUPP || error == ENOSYS;   // a file system that cannot promise
 }
 
 bool put_on_disk(const std::filesystem::path& from, const std::filesystem::path& to) {

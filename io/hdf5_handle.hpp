@@ -4,6 +4,7 @@
 #include <hdf5.h>
 #include <mpi.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <utility>
 
@@ -46,6 +47,10 @@ Handle mpi_access(MPI_Comm communicator);
 
 // True if an empty file could be created under this name; leaves nothing behind.
 bool can_create(const std::filesystem::path& path);
+
+// Takes the room for `bytes` bytes from `offset` on the disk, false if there is none. A collective write through MPI-IO
+// does not always report that the disk is full (Open MPI's does not), so the room is taken beforehand.
+bool reserve_on_disk(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t bytes);
 
 // Waits until the data of `from` are on the disk, then renames it to `to`. False if either fails.
 bool put_on_disk(const std::filesystem::path& from, const std::filesystem::path& to);

@@ -89,7 +89,8 @@ SectionReader::SectionReader(const YamlDocument& document, std::string key_path,
     : document_(document), key_path_(std::move(key_path)), section_(section) {}
 
 void SectionReader::fail(const YamlNode& node, const std::string& key, const std::string& remedy) const {
-  throw InputError(fmt::format("{}: {} = {}: {}.", node.place, joined_key(key_path_, key), shown(node), remedy));
+  throw InputError(fmt::format("{}: {} = {}: {}{}", node.place, joined_key(key_path_, key), shown(node), remedy,
+                               remedy.ends_with('?') ? "" : "."));
 }
 
 // A missing key waits until finish(): most often it is there but misspelt, and the misspelling is the better complaint.

@@ -1,0 +1,89 @@
+"""Opens the series that io_vtk_test wrote with VTK's own readers, as ParaView would, and compares every number.
+
+Usage: check_vtk_series.py FOLDER RANKS
+"""
+import sys
+import xml.etree.ElementTree as xml
+from pathlib import Path
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLImageDataReader, vtkXMLPImageDataReader, vtkXMLPolyDataReader
+
+FOLDER, RANKS = Path(sys.argv[1]), int(sys.argv[2])
+CELLS, SPACING, GRAINS = (12, 9, 8), 0.25e-3, 37
+TIMES = [0.0, 0.2, 0.1 * 7]
+
+
+def pictures(index):
+    """(time, path) of every picture a .pvd lists."""
+    root = xml.parse(index).getroot()
+    assert root.get("type") == "Collection", index
+    found = [(float(d.get("timestep")), index.parent / d.get("file")) for d in root.iter("DataSet")]
+    assert [time for time, _ in found] == TIMES, f"{index}: times {[time for time, _ in found]}"
+    return found
+
+
+def read(reader, path):
+    reader.SetFileName(str(path))
+    assert reader.CanReadFile(str(path)), path
+    reader.Update()
+    assert reader.GetErrorCode() == 0, path
+    return reader.GetOutput()
+
+
+def arrays(data):
+    return {data.GetArrayName(n): vtk_to_numpy(data.GetArray(n)) for n in range(data.GetNumberOfArrays())}
+
+
+def check_grains(name, with_fluid):
+    for time, path in pictures(FOLDER / name / "grains.pvd"):
+        data = read(vtkXMLPolyDataReader(), path)
+        n = np.arange(GRAINS)
+        zero, one = np.zeros(GRAINS), np.ones(GRAINS)
+        assert data.GetNumberOfPoints() == GRAINS and data.GetNumberOfVerts() == GRAINS
+        points = vtk_to_numpy(data.GetPoints().GetData())
+        assert np.array_equal(points, np.stack([0.1 * n, 0.2 * n, 0.3 * n + time], axis=1))
+        expected = {
+            "id": n,
+            "radius": 1e-3 + 1e-5 * n,
+            "speed": 5.0 * n,
+            "velocity": np.stack([3.0 * n, 4.0 * n, zero], axis=1),
+            "angular_velocity": np.stack([n, zero, -n], axis=1),
+            "contact_force": np.stack([one, 2 * one, n], axis=1),
+        }
+        if with_fluid:
+            expected["fluid_force"] = np.stack([zero, n, one], axis=1)
+        found = arrays(data.GetPointData())
+        assert found.keys() == expected.keys(), found.keys()
+        for key, values in expected.items():
+            assert np.array_equal(found[key], values), f"{path}: {key}"
+
+
+def check_fluid(name, fields, lower, upper, in_pieces):
+    for time, path in pictures(FOLDER / name / "fluid.pvd"):
+        assert path.suffix == (".pvti" if in_pieces else ".vti"), path
+        data = read(vtkXMLPImageDataReader() if in_pieces else vtkXMLImageDataReader(), path)
+        extent = [bound for pair in zip(lower, upper) for bound in pair]
+        assert list(data.GetExtent()) == extent, data.GetExtent()
+        assert data.GetSpacing() == (SPACING,) * 3 and data.GetOrigin() == (0.0, 0.0, 0.0)
+        assert np.allclose(data.GetBounds(), [SPACING * bound for bound in extent], rtol=1e-14, atol=0)
+        k, j, i = np.meshgrid(*[np.arange(lower[a], upper[a]) for a in (2, 1, 0)], indexing="ij")
+        i, j, k = i.ravel(), j.ravel(), k.ravel()
+        expected = {
+            "velocity": np.stack([i, j, k], axis=1) + 0.5,
+            "pressure": (i + 100 * j + 10000 * k + time).astype(np.float32),
+            "grain_id": (i + j + k) % 5 - 1,
+        }
+        found = arrays(data.GetCellData())
+        assert list(found) == fields, list(found)
+        for key, values in found.items():
+            assert np.array_equal(values, expected[key]), f"{path}: {key}"
+
+
+check_grains("wet", True)
+check_grains("dry", False)
+check_fluid("whole", ["velocity", "pressure", "grain_id"], (0, 0, 0), CELLS, RANKS > 1)
+check_fluid("slice_y", ["pressure", "velocity"], (0, 4, 0), (12, 5, 8), False)
+check_fluid("slice_z", ["grain_id"], (0, 0, 4), (12, 9, 5), False)
+print(f"{FOLDER}: every array, extent and time as written")

@@ -1,0 +1,117 @@
+// What a run may and may not do to a folder.
+#include "core/error.hpp"
+#include "io/run_folder.hpp"
+#include "tests/io/scratch_folder.hpp"
+
+#include <gtest/gtest.h>
+
+namespace thalweg::io {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::contents;
+using testing::message_of;
+using testing::put;
+using testing::ScratchFolder;
+
+// The calls are one rank's, so the other ranks of the executable only look on.
+class RunFolderTest : public ::testing::Test {
+protected:
+  void SetUp() override {
+    if (rank_of(MPI_COMM_WORLD) != 0) GTEST_SKIP();
+  }
+  fs::path scratch(const std::string& name) {
+    const fs::path path = fs::path("scratch") / ("run_folder_" + std::to_string(size_of(MPI_COMM_WORLD))) / name;
+    fs::remove_all(path);
+    fs::create_directories(path.parent_path());
+    return path;
+  }
+};
+
+TEST_F(RunFolderTest, AnExistingRunNeedsOverwriteAndIsOtherwiseUntouched) {
+  const fs::path path = scratch("existing");
+  const RunFolder folder(path);
+  folder.create(false);
+  folder.write_case("thalweg 0.1.0\nthalweg run case.yaml", "system: grains\n");
+  put(folder.series(), "time [s]\n");
+  put(folder.checkpoint(5), "state");
+  put(path / "notes.txt", "mine");
+
+  const std::string refused = message_of<InputError>([&] { folder.create(false); });
+  EXPECT_EQ(refused, path.string() + ": the folder holds a run already; choose another with --out, continue it with "
+                                     "--restart " + path.string() + ", or replace it with --overwrite.");
+  EXPECT_TRUE(fs::exists(folder.series()) && fs::exists(folder.checkpoint(5)));
+
+  folder.create(true);
+  EXPECT_FALSE(fs::exists(folder.series()) || fs::exists(folder.checkpoints()) || fs::exists(folder.case_file()));
+  EXPECT_EQ(contents(path / "notes.txt"), "mine");
+}
+
+TEST_F(RunFolderTest, WhatIsNotARunIsNeverTouched) {
+  const fs::path path = scratch("foreign");
+  put(path / "case.yaml", "system: grains\n");   // a case somebody wrote, not the record of a run
+  put(path / "series.csv", "precious");
+  for (const bool overwrite : {false, true}) {
+    const std::string message = message_of<InputError>([&] { RunFolder(path).create(overwrite); });
+    EXPECT_NE(message.find("is not a run of Thalweg and is left alone; choose another folder with --out"),
+              std::string::npos) << message;
+  }
+  EXPECT_EQ(contents(path / "series.csv"), "precious");
+  EXPECT_NE(message_of<InputError>([&] { RunFolder(path / "series.csv").create(true); }).find("there is a file of this name"),
+            std::string::npos);
+}
+
+TEST_F(RunFolderTest, AnEmptyOrMissingFolderIsFine) {
+  const fs::path path = scratch("new");
+  RunFolder(path / "deep").check_new(false);
+  EXPECT_FALSE(fs::exists(path));
+  RunFolder(path / "deep").create(false);
+  EXPECT_TRUE(fs::is_directory(path / "deep"));
+  RunFolder(path / "deep").create(false);
+}
+
+TEST_F(RunFolderTest, TheCaseBeginsWithItsMarkerAndComments) {
+  const fs::path path = scratch("case");
+  const RunFolder folder(path);
+  folder.create(false);
+  EXPECT_FALSE(folder.is_run_folder());
+  folder.write_case("version 1\ncommand", "system: grains\n");
+  EXPECT_TRUE(folder.is_run_folder());
+  EXPECT_EQ(contents(folder.case_file()), "# Thalweg run: this is the case as it was run, with every default filled in.\n"
+                                          "# version 1\n# command\nsystem: grains\n");
+}
+
+TEST_F(RunFolderTest, RotationKeepsTheNewestAndNamesTheLatest) {
+  const fs::path path = scratch("rotation");
+  const RunFolder folder(path);
+  folder.create(false);
+  put(folder.checkpoints() / "mine.h5", "left alone");
+  for (const std::int64_t step : {900, 1000, 1100}) {
+    put(folder.checkpoint(step), "state");
+    folder.rotate_checkpoints(step, 2);
+  }
+  EXPECT_FALSE(fs::exists(folder.checkpoint(900)));
+  EXPECT_TRUE(fs::exists(folder.checkpoint(1000)) && fs::exists(folder.checkpoint(1100)));
+  EXPECT_EQ(folder.latest_checkpoint(), folder.checkpoint(1100));
+  EXPECT_EQ(checkpoint_at(path), folder.checkpoint(1100));
+  EXPECT_EQ(checkpoint_at(folder.checkpoint(1000)), folder.checkpoint(1000));
+
+  // A restart from step 1000 that has come to 1050: 1100 is of a run that never was.
+  put(folder.checkpoint(1050), "state");
+  folder.rotate_checkpoints(1050, 2);
+  EXPECT_FALSE(fs::exists(folder.checkpoint(1100)));
+  EXPECT_TRUE(fs::exists(folder.checkpoint(1000)) && fs::exists(folder.checkpoint(1050)));
+  EXPECT_EQ(folder.latest_checkpoint(), folder.checkpoint(1050));
+  EXPECT_TRUE(fs::exists(folder.checkpoints() / "mine.h5"));
+
+  fs::remove(folder.checkpoint(1050));
+  EXPECT_NE(message_of<InputError>([&] { checkpoint_at(path); }).find("\"step_1050.h5\" it names does not exist"),
+            std::string::npos);
+  EXPECT_NE(message_of<InputError>([&] { checkpoint_at(scratch("nowhere")); }).find("there is no such file or folder"),
+            std::string::npos);
+  EXPECT_NE(message_of<InputError>([&] { checkpoint_at(path.parent_path()); }).find("has no checkpoint"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace thalweg::io

@@ -1,0 +1,152 @@
+// Writes both ParaView series, interrupted and continued, into vtk_<ranks>/ beside the test; check_vtk_series.py then
+// opens them with VTK's own readers. Here: what the index files keep, and the errors.
+#include "core/error.hpp"
+#include "core/mpi_session.hpp"
+#include "io/fluid_series.hpp"
+#include "io/grain_series.hpp"
+#include "tests/io/scratch_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+namespace thalweg::io {
+namespace {
+
+using testing::contents;
+using testing::message_of;
+using testing::ScratchFolder;
+
+constexpr Index3 cells{12, 9, 8};
+constexpr double spacing = 0.25e-3;   // m
+constexpr std::int64_t grain_count = 37;
+
+// Fields that tell every cell apart; check_vtk_series.py computes the same.
+class CellNumbers final : public FluidSource {
+public:
+  CellNumbers(Block block, double time) : block_(block), time_(time) {}
+  FluidFields sample() const override {
+    FluidFields fields;
+    fields.block = block_;
+    for (int k = block_.lower[2]; k < block_.upper[2]; ++k)
+      for (int j = block_.lower[1]; j < block_.upper[1]; ++j)
+        for (int i = block_.lower[0]; i < block_.upper[0]; ++i) {
+          for (const int c : {i, j, k}) fields.velocity.push_back(static_cast<float>(c) + 0.5f);
+          fields.pressure.push_back(static_cast<float>(i + 100 * j + 10000 * k + time_));
+          fields.grain_id.push_back((i + j + k) % 5 - 1);
+        }
+    return fields;
+  }
+
+private:
+  Block block_;
+  double time_;
+};
+
+// Grain n is owned by rank n % ranks, listed backwards.
+struct Grains {
+  std::vector<GlobalId> id;
+  std::vector<double> radius, mass;
+  std::vector<Vec3> position, velocity, angular_velocity, fluid_force, fluid_torque, contact_force;
+
+  explicit Grains(double time) {
+    for (std::int64_t n = grain_count - 1; n >= 0; --n) {
+      if (n % size_of(MPI_COMM_WORLD) != rank_of(MPI_COMM_WORLD)) continue;
+      const auto x = static_cast<double>(n);
+      id.push_back(n);
+      radius.push_back(1e-3 + 1e-5 * x);
+      mass.push_back(1.0);
+      position.emplace_back(0.1 * x, 0.2 * x, 0.3 * x + time);
+      velocity.emplace_back(3.0 * x, 4.0 * x, 0.0);
+      angular_velocity.emplace_back(x, 0.0, -x);
+      fluid_force.emplace_back(0.0, x, 1.0);
+      fluid_torque.emplace_back(0.0, 0.0, 0.0);
+      contact_force.emplace_back(1.0, 2.0, x);
+    }
+  }
+  GrainView view(bool with_fluid) const {
+    GrainView view{grain_count, id, radius, mass, position, velocity, angular_velocity, {}, {}, contact_force};
+    if (with_fluid) {
+      view.fluid_force = fluid_force;
+      view.fluid_torque = fluid_torque;
+    }
+    return view;
+  }
+};
+
+class Pictures {
+public:
+  explicit Pictures(const std::filesystem::path& folder) : folder_(folder) {}
+
+  // One picture of every series at time `step` * 0.1 s.
+  void write(std::int64_t step, std::optional<double> continue_from) {
+    const double time = 0.1 * static_cast<double>(step);
+    const Decomposition decomposition(cells, spacing, {true, true, false},
+                                      Decomposition::best_layout(cells, size_of(MPI_COMM_WORLD)));
+    const CellNumbers fluid(decomposition.block_of(rank_of(MPI_COMM_WORLD)), time);
+    const Grains grains(time);
+    Snapshot snapshot{time, step, &decomposition, grains.view(true), &fluid};
+
+    series<GrainSeries>("wet", continue_from, snapshot);
+    series<FluidSeries>("whole", continue_from, snapshot, FluidRegion::whole,
+                        std::vector<FluidField>{FluidField::velocity, FluidField::pressure, FluidField::grain_id});
+    series<FluidSeries>("slice_y", continue_from, snapshot, FluidRegion::slice_y,
+                        std::vector<FluidField>{FluidField::pressure, FluidField::velocity});
+    series<FluidSeries>("slice_z", continue_from, snapshot, FluidRegion::slice_z,
+                        std::vector<FluidField>{FluidField::grain_id});
+    snapshot.grains = grains.view(false);
+    series<GrainSeries>("dry", continue_from, snapshot);
+    snapshot.fluid = nullptr;
+    series<FluidSeries>("without_fluid", continue_from, snapshot, FluidRegion::whole,
+                        std::vector<FluidField>{FluidField::pressure});
+  }
+
+private:
+  template <typename Series, typename... Options>
+  void series(const std::string& name, std::optional<double> continue_from, const Snapshot& snapshot,
+              const Options&... options) {
+    const auto folder = folder_ / name;
+    if (rank_of(MPI_COMM_WORLD) == 0) std::filesystem::create_directories(folder);
+    Series(MPI_COMM_WORLD, folder, options..., continue_from).write(snapshot);
+  }
+  std::filesystem::path folder_;
+};
+
+TEST(VtkSeries, WritesAnInterruptedAndContinuedSeries) {
+  const std::filesystem::path folder = fmt::format("vtk_{}", size_of(MPI_COMM_WORLD));
+  if (rank_of(MPI_COMM_WORLD) == 0) std::filesystem::remove_all(folder);
+  MPI_Barrier(MPI_COMM_WORLD);
+  Pictures pictures(folder);
+  pictures.write(3, std::nullopt);   // of an older run: a new series forgets it
+  pictures.write(0, std::nullopt);
+  pictures.write(2, 0.0);
+  pictures.write(9, 0.5);            // the run then stops, and is continued from a checkpoint at 0.5 s:
+  pictures.write(7, 0.5);            // the picture at 0.9 s leaves the index
+  if (rank_of(MPI_COMM_WORLD) != 0) return;
+  const PvdIndex index(folder / "wet/grains.pvd", 100.0);
+  ASSERT_EQ(index.entries().size(), 3u);
+  EXPECT_EQ(index.entries()[1].time, 0.1 * 2.0);   // the same bits as written
+  EXPECT_EQ(index.entries()[2].file, "grains/grains_000000007.vtp");
+  EXPECT_FALSE(std::filesystem::exists(folder / "without_fluid/fluid.pvd"));
+}
+
+TEST(VtkSeries, AFolderThatCannotBeWrittenIsARunErrorOnEveryRank) {
+  const ScratchFolder folder;
+  if (rank_of(MPI_COMM_WORLD) == 0) {
+    testing::put(folder / "grains", "a file where the folder should be");
+    testing::put(folder / "fluid", "a file where the folder should be");
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  const Decomposition decomposition(cells, spacing, {true, true, false},
+                                    Decomposition::best_layout(cells, size_of(MPI_COMM_WORLD)));
+  const CellNumbers fluid(decomposition.block_of(rank_of(MPI_COMM_WORLD)), 0.0);
+  const Grains grains(0.0);
+  const Snapshot snapshot{0.0, 0, &decomposition, grains.view(true), &fluid};
+  EXPECT_NE(message_of<RunError>([&] { GrainSeries(MPI_COMM_WORLD, folder.path()).write(snapshot); }), "");
+  EXPECT_NE(message_of<RunError>([&] {
+              FluidSeries(MPI_COMM_WORLD, folder.path(), FluidRegion::whole, {FluidField::pressure}).write(snapshot);
+            }), "");
+}
+
+}  // namespace
+}  // namespace thalweg::io

@@ -1,0 +1,237 @@
+// One description of the keys: read, written, documented; and every complaint as one sentence that says where.
+#include "core/error.hpp"
+#include "io/section_reader.hpp"
+#include "io/section_writer.hpp"
+#include "tests/io/scratch_folder.hpp"
+
+#include <gtest/gtest.h>
+
+namespace thalweg::io {
+
+enum class Colour { red, green };
+
+struct Wheel {
+  double radius = 0.0;
+  std::optional<Vec3> axis;
+  bool operator==(const Wheel&) const = default;
+};
+struct Paint {
+  Colour colour = Colour::red;
+  double gloss = 0.5;
+  bool operator==(const Paint&) const = default;
+};
+struct Cargo {
+  std::optional<double> mass;
+  bool operator==(const Cargo&) const = default;
+};
+struct Cart {
+  std::string name = "cart";
+  double length = 0.0;
+  Vec3 position = Vec3::Zero();
+  std::int64_t seats = 2;
+  bool brake = false;
+  Paint paint;
+  std::optional<Paint> lining;
+  Cargo cargo;
+  std::vector<Wheel> wheels;
+  std::vector<Vec3> track;
+  std::vector<Colour> flags{Colour::green};
+  bool operator==(const Cart&) const = default;
+};
+
+const std::vector<NamedChoice<Colour>> colours{{Colour::red, "red"}, {Colour::green, "green"}};
+
+static void describe(SectionVisitor& visit, Wheel& wheel) {
+  visit.real("radius", wheel.radius, {.unit = "m", .meaning = "outer", .required = true, .above = 0.0, .example = 0.3});
+  visit.vec3("axis", wheel.axis, {.meaning = "of turning"});
+}
+static void describe(SectionVisitor& visit, Paint& paint) {
+  visit.choice("colour", paint.colour, colours, {.meaning = "seen in daylight", .required = true});
+  if (paint.colour == Colour::green) visit.real("gloss", paint.gloss, {.meaning = "shine", .at_least = 0.0, .at_most = 1.0});
+  else visit.not_here("gloss", "only green paint shines; remove the key");
+}
+static void describe(SectionVisitor& visit, Cargo& cargo) {
+  visit.real("mass", cargo.mass, {.unit = "kg", .meaning = "of the load", .above = 0.0});
+}
+static void describe(SectionVisitor& visit, Cart& cart) {
+  visit.text("name", cart.name, {.meaning = "painted on the side"});
+  visit.real("length", cart.length, {.unit = "m", .meaning = "overall", .required = true, .above = 0.0, .example = 2.0});
+  visit.vec3("position", cart.position, {.unit = "m", .meaning = "of the centre", .at_least = 0.0});
+  visit.integer("seats", cart.seats, {.meaning = "for people", .at_least = 1});
+  visit.flag("brake", cart.brake, {.meaning = "has one"});
+  visit.section("paint", cart.paint, {.meaning = "outside", .shorthand = "colour"});
+  visit.section("lining", cart.lining, {.meaning = "inside", .shorthand = "colour"});
+  visit.section("cargo", cart.cargo, {.meaning = "load", .empty_name = "none"});
+  visit.list("wheels", cart.wheels, {.meaning = "all of them"});
+  visit.vec3_list("track", cart.track, {.unit = "m", .meaning = "way points"});
+  visit.choice_list("flags", cart.flags, colours, {.meaning = "flown"});
+  visit.require(cart.seats < 10 || cart.length > 5.0, "seats", "a short cart has fewer than 10");
+}
+
+namespace {
+
+using testing::message_of;
+using testing::ScratchFolder;
+
+Cart read(const std::string& yaml, const std::vector<std::string>& overrides = {}) {
+  const ScratchFolder folder;
+  testing::put(folder / "cart.yaml", yaml);
+  const YamlDocument document(folder / "cart.yaml", overrides);
+  Cart cart;
+  read_document(document, cart);
+  return cart;
+}
+
+const std::string minimal = "paint: red\nlength: 2.5\n";
+
+Cart full_cart() {
+  Cart cart;
+  cart.name = "a \"quoted\" name: # \\ \xc3\xa4";
+  cart.length = 1.0 / 3.0;
+  cart.position = {0.1 + 0.2, 1e-300, 3.0};
+  cart.seats = 5;
+  cart.brake = true;
+  cart.paint = {Colour::green, 0.7};
+  cart.lining = Paint{};
+  cart.cargo.mass = 12.5;
+  cart.wheels = {{0.3, std::nullopt}, {0.4, Vec3(0, 1, 0)}};
+  cart.track = {{1, 2, 3}, {-4, 5e-5, 6}};
+  cart.flags = {Colour::red, Colour::green};
+  return cart;
+}
+
+TEST(YamlSection, FillsInDefaults) {
+  const Cart cart = read(minimal);
+  EXPECT_EQ(cart.length, 2.5);
+  EXPECT_EQ(cart.name, "cart");
+  EXPECT_EQ(cart.seats, 2);
+  EXPECT_FALSE(cart.lining.has_value());
+  EXPECT_EQ(cart.flags, std::vector<Colour>{Colour::green});
+}
+
+TEST(YamlSection, WhatIsWrittenReadsBackTheSame) {
+  for (const YamlStyle style : {YamlStyle::plain, YamlStyle::documented}) {
+    EXPECT_EQ(read(written(full_cart(), style)), full_cart()) << written(full_cart(), style);
+    const Cart small = read(minimal);
+    EXPECT_EQ(read(written(small, style)), small) << written(small, style);
+  }
+}
+
+TEST(YamlSection, DocumentationShowsUnitRangeMeaningAndWhatIsNotGiven) {
+  const std::string text = written(read(minimal), YamlStyle::documented);
+  for (const std::string part : {"length: 2.5   ", "# required, m, above 0; overall\n", "paint: red   ", "cargo: none   ",
+                                 "# mass: 1   ", "# lining: red   ", "# red | green; flown\n"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+}
+
+TEST(YamlSection, OverridesReplaceAddReachIntoListsAndRemove) {
+  const std::string yaml = minimal + "seats: 3\nwheels:\n  - radius: 0.1\n  - {radius: 0.2}\n";
+  const Cart cart = read(yaml, {"length=7", "wheels.1.radius=0.9", "cargo.mass=3", "position=[1, 2, 3]", "seats=",
+                                "length=8", "lining={colour: green, gloss: 0.25}"});
+  EXPECT_EQ(cart.length, 8.0);   // the last one counts
+  EXPECT_EQ(cart.wheels[0].radius, 0.1);
+  EXPECT_EQ(cart.wheels[1].radius, 0.9);
+  EXPECT_EQ(cart.cargo.mass, 3.0);
+  EXPECT_EQ(cart.position, Vec3(1, 2, 3));
+  EXPECT_EQ(cart.seats, 2);
+  EXPECT_EQ(cart.lining->gloss, 0.25);
+}
+
+struct Bad {
+  std::string name, yaml, override_text, message;   // FILE stands for the path
+};
+void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.name; }
+
+class BadYaml : public ::testing::TestWithParam<Bad> {};
+
+TEST_P(BadYaml, IsOneSentenceThatSaysWhere) {
+  std::vector<std::string> overrides;
+  if (!GetParam().override_text.empty()) overrides.push_back(GetParam().override_text);
+  std::string path;
+  const std::string message = message_of<InputError>([&] {
+    const ScratchFolder folder;
+    path = (folder / "cart.yaml").string();
+    testing::put(path, GetParam().yaml);
+    const YamlDocument document(path, overrides);
+    Cart cart;
+    read_document(document, cart);
+  });
+  std::string expected = GetParam().message;
+  for (std::size_t at = expected.find("FILE"); at != std::string::npos; at = expected.find("FILE"))
+    expected.replace(at, 4, path);
+  EXPECT_EQ(message, expected);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BadYaml,
+    ::testing::Values(
+        Bad{"text_for_number", "paint: red\nlength: long\n", "",
+            "FILE:2: length = \"long\": expected a number in m above 0, for example 2."},
+        Bad{"number_with_unit", "paint: red\nlength: 2 m\n", "",
+            "FILE:2: length = \"2 m\": expected a number in m above 0, for example 2."},
+        Bad{"not_finite", "paint: red\nlength: .inf\n", "",
+            "FILE:2: length = \".inf\": expected a number in m above 0, for example 2."},
+        Bad{"out_of_range", "paint: red\nlength: -1\n", "",
+            "FILE:2: length = -1: expected a number in m above 0, for example 2."},
+        Bad{"section_for_number", "paint: red\nlength: {a: 1}\n", "",
+            "FILE:2: length = a section with 1 key: expected a number in m above 0, for example 2."},
+        Bad{"missing", "# nothing\npaint: red\n", "",
+            "FILE:1: length is missing: give a number in m above 0, for example 2."},
+        Bad{"missing_in_list", "paint: red\nlength: 2\nwheels:\n  - radius: 1\n  - axis: [1, 0, 0]\n", "",
+            "FILE:5: wheels.1.radius is missing: give a number in m above 0, for example 0.3."},
+        Bad{"unknown", "paint: red\nlenght: 2\n", "", "FILE:2: lenght = 2: unknown key; did you mean length?"},
+        Bad{"unknown_far", "paint: red\nlength: 2\ncargo:\n  horse: 1\n", "",
+            "FILE:4: cargo.horse = 1: unknown key; cargo has the keys mass."},
+        Bad{"duplicate", "paint: red\nlength: 2\nseats: 3\nlength: 3\n", "",
+            "FILE:4: length: the key is given twice (first at FILE:2); remove one of the two."},
+        Bad{"fraction_for_integer", minimal + "seats: 2.5\n", "",
+            "FILE:3: seats = 2.5: expected a whole number, at least 1, for example 2."},
+        Bad{"flag", minimal + "brake: maybe\n", "", "FILE:3: brake = \"maybe\": expected true or false."},
+        Bad{"short_vector", minimal + "position: [1, 2]\n", "",
+            "FILE:3: position = [1, 2]: expected a list of 3 numbers in m, each at least 0, for example [0.1, 0.1, 0.1]."},
+        Bad{"vector_of_text", minimal + "position: [1, 2, x]\n", "",
+            "FILE:3: position = [1, 2, \"x\"]: expected a list of 3 numbers in m, each at least 0, for example "
+            "[0.1, 0.1, 0.1]."},
+        Bad{"choice", "length: 2\npaint:\n  colour: blue\n", "",
+            "FILE:3: paint.colour = \"blue\": expected one of red, green."},
+        Bad{"choice_in_list", minimal + "flags: [red, blue]\n", "",
+            "FILE:3: flags.1 = \"blue\": expected one of red, green."},
+        Bad{"twice_in_list", minimal + "flags: [red, red]\n", "",
+            "FILE:3: flags.1 = \"red\": the word is given twice; remove one of the two."},
+        Bad{"not_here", "length: 2\npaint: {colour: red, gloss: 0.1}\n", "",
+            "FILE:2: paint.gloss = 0.1: only green paint shines; remove the key."},
+        Bad{"scalar_for_section", minimal + "cargo: 12\n", "",
+            "FILE:3: cargo = 12: expected none or a section of keys with values."},
+        Bad{"list_for_section", minimal + "cargo: [12]\n", "",
+            "FILE:3: cargo = [12]: expected a section of keys with values, not a list."},
+        Bad{"section_for_list", minimal + "wheels: {radius: 1}\n", "",
+            "FILE:3: wheels = a section with 1 key: expected a list of sections, each beginning with a dash."},
+        Bad{"condition", minimal + "seats: 12\n", "", "FILE:3: seats = 12: a short cart has fewer than 10."},
+        Bad{"override_value", minimal, "length=far",
+            "--set length=far: length = \"far\": expected a number in m above 0, for example 2."},
+        Bad{"override_unknown", minimal, "cargo.maas=1",
+            "--set cargo.maas=1: cargo.maas = 1: unknown key; did you mean cargo.mass?"},
+        Bad{"override_without_value", minimal, "length",
+            "--set length: expected KEY=VALUE, for example --set run.until=10."},
+        Bad{"override_index", minimal + "wheels: [{radius: 1}]\n", "wheels.1.radius=2",
+            "--set wheels.1.radius=2: wheels is a list of 1 and has no entry \"1\"; count from 0."},
+        Bad{"override_into_scalar", minimal, "length.x=2",
+            "--set length.x=2: length = 2.5 is a single value and has no key x; set length itself."},
+        Bad{"no_sections_at_all", "just words\n", "", "FILE:1: expected keys with values, for example system: resolved."}),
+    [](const auto& bad) { return bad.param.name; });
+
+TEST(YamlSection, SyntaxErrorsHaveALine) {
+  const std::string message = message_of<InputError>([] { read("paint: red\nlength: [1, 2\nseats: 3\n"); });
+  EXPECT_NE(message.find("cart.yaml:3: this is not valid YAML: "), std::string::npos) << message;
+}
+
+TEST(YamlSection, MissingFilesAndFolders) {
+  EXPECT_EQ(message_of<InputError>([] { YamlDocument("nowhere/case.yaml", {}); }),
+            "nowhere/case.yaml: there is no such file; check the path.");
+  const ScratchFolder folder;
+  EXPECT_NE(message_of<InputError>([&] { YamlDocument(folder.path(), {}); }).find("this is a folder: give the case file"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace thalweg::io
