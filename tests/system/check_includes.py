@@ -1,0 +1,150 @@
+#!/usr/bin/python3
+"""Checks that the house stands as docs/architecture.md draws it.
+
+    check_includes.py [ROOT]      of the repository (default: the one this file is in)
+
+- A room includes, and its CMake target links, only the rooms its arrows point to; nobody but tests uses driver.
+- VTK and HDF5 appear only in io, and a header of io that shows them is not included from elsewhere; yaml-cpp appears only
+  in io and driver.
+- Includes are written from the repository root, and what they name exists.
+- No file carries a note that something is left to do.
+
+Prints one line per breach and exits with 1 if there is any.
+"""
+import pathlib
+import re
+import sys
+
+ROOMS = {
+    "core": {"core"},
+    "lbm": {"core", "lbm"},
+    "dem": {"core", "dem"},
+    "continuum": {"core", "continuum"},
+    "analysis": {"core", "analysis"},
+    "io": {"core", "io"},
+    "coupling": {"core", "lbm", "dem", "continuum", "coupling"},
+    "driver": {"core", "lbm", "dem", "continuum", "analysis", "io", "coupling", "driver"},
+}
+# Whoever else may use the driver: its own tests, tests of the whole program, and measurements of whole cases.
+USERS_OF_DRIVER = ("driver/", "tests/driver/", "tests/system/", "benchmarks/")
+SOURCE_SUFFIXES = {".hpp", ".cpp", ".ipp", ".h", ".cc"}
+TEXT_SUFFIXES = SOURCE_SUFFIXES | {".py", ".md", ".txt", ".cmake", ".yaml", ".json", ".sh", ".cff", ".csv", ""}
+SKIPPED_FOLDERS = {".git", "build", "run", "__pycache__"}
+
+INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.MULTILINE)
+TARGET = re.compile(r"thalweg(?:::|_)(\w+)")
+VTK_OR_HDF5 = re.compile(r"^(vtk\w*\.h|hdf5(_hl)?\.h|H5\w*\.h)$", re.IGNORECASE)
+YAML = re.compile(r"^yaml-cpp/")
+UNFINISHED = re.compile(r"\b(?:" + "|".join(("TO" + "DO", "FIX" + "ME", "XX" + "X", "HA" + "CK")) + r")\b")
+
+
+def home_of(relative):
+    """The room a file belongs to: its own folder, or for a test the one it tests."""
+    return relative.parts[1] if relative.parts[0] == "tests" and len(relative.parts) > 2 else relative.parts[0]
+
+
+def line_of(text, position):
+    return text.count("\n", 0, position) + 1
+
+
+def files_of(root):
+    for path in sorted(root.rglob("*")):
+        relative = path.relative_to(root)
+        if path.is_file() and not SKIPPED_FOLDERS.intersection(relative.parts[:-1]):
+            yield path, relative
+
+
+def headers_that_show_vtk_or_hdf5(root):
+    """The headers of io that include VTK or HDF5, directly or through another header of io."""
+    includes = {f"io/{path.name}": [name for _, name in INCLUDE.findall(path.read_text())]
+                for path in (root / "io").glob("*.hpp")}
+    shown = set()
+    while True:
+        more = {header for header, names in includes.items()
+                if any(VTK_OR_HDF5.match(name) or name in shown for name in names)}
+        if more == shown:
+            return shown
+        shown = more
+
+
+def check_quoted(root, relative, name, private):
+    """What is wrong with #include "name" in a file, or None."""
+    room, target = relative.parts[0], name.split("/")[0]
+    if "/" not in name or target in (".", ".."):
+        return f'"{name}" is not written from the repository root'
+    if not (root / name).is_file():
+        return f'"{name}" does not exist in this repository (other people\'s headers go in <>)'
+    if room in ROOMS and target not in ROOMS[room]:
+        return f'{room} must not include "{name}": its arrows go to {", ".join(sorted(ROOMS[room] - {room})) or "nobody"}'
+    if name in private and home_of(relative) != "io":
+        return f'"{name}" shows VTK or HDF5, which stay private to io'
+    if target == "driver" and not relative.as_posix().startswith(USERS_OF_DRIVER):
+        return f'nobody but the program and its tests includes the driver ("{name}")'
+    return None
+
+
+def check_foreign(relative, name):
+    """What is wrong with #include <name> in a file, or None."""
+    room = home_of(relative)
+    if VTK_OR_HDF5.match(name) and room not in ("io", "system"):
+        return f"<{name}> belongs in io alone"
+    if YAML.match(name) and room not in ("io", "driver"):
+        return f"<{name}> belongs in io and driver alone"
+    if name.split("/")[0] in ROOMS and "/" in name:
+        return f'<{name}> is one of our own: write "{name}"'
+    return None
+
+
+def check_source(root, relative, text, private):
+    for match in INCLUDE.finditer(text):
+        own, name = match.group(1) == '"', match.group(2)
+        wrong = check_quoted(root, relative, name, private) if own else check_foreign(relative, name)
+        if wrong:
+            yield line_of(text, match.start()), wrong
+
+
+def check_targets(relative, text):
+    """A room's CMakeLists.txt may name the targets of the rooms its arrows go to."""
+    room = relative.parts[0]
+    for match in TARGET.finditer(text):
+        target = match.group(1)
+        if target in ROOMS and target not in ROOMS[room]:
+            yield line_of(text, match.start()), f"{room} must not link thalweg::{target}"
+
+
+def breaches(root):
+    """(file, line, what) of everything that is wrong."""
+    private = headers_that_show_vtk_or_hdf5(root)
+    for path, relative in files_of(root):
+        if path.suffix not in TEXT_SUFFIXES:
+            continue
+        try:
+            text = path.read_text(encoding="utf-8")
+        except UnicodeDecodeError:
+            continue   # not a text
+        found = []
+        if path.suffix in SOURCE_SUFFIXES:
+            found += check_source(root, relative, text, private)
+        if path.name == "CMakeLists.txt" and relative.parts[0] in ROOMS:
+            found += check_targets(relative, text)
+        found += [(line_of(text, m.start()), f'"{m.group()}": finish it, or say in an issue what is missing')
+                  for m in UNFINISHED.finditer(text)]
+        for line, what in found:
+            yield relative, line, what
+
+
+def main():
+    root = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parents[2]
+    rooms = [room for room in ROOMS if (root / room).is_dir()]
+    if not rooms:
+        print(f"check_includes: {root} holds no room of the house.", file=sys.stderr)
+        return 2
+    found = list(breaches(root))
+    for relative, line, what in found:
+        print(f"{relative}:{line}: {what}")
+    print(f"{len(found)} breach{'' if len(found) == 1 else 'es'} in {', '.join(rooms)}")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,78 @@
+"""The check of the includes lets a sound house pass and sees every kind of breach, each planted alone."""
+import pathlib
+import tempfile
+import unittest
+
+import check_includes
+
+SOUND = {
+    "core/types.hpp": "#pragma once\n#include <vector>\n",
+    "core/error.hpp": '#include "core/types.hpp"\n',
+    "core/CMakeLists.txt": "thalweg_library(core types.cpp)\n",
+    "lbm/sweep.hpp": '#include "core/types.hpp"\n',
+    "dem/grain_store.hpp": '#include "core/error.hpp"\n',
+    "dem/CMakeLists.txt": "thalweg_library(dem a.cpp)\ntarget_link_libraries(thalweg_dem PUBLIC thalweg::core)\n",
+    "coupling/links.cpp": '#include "dem/grain_store.hpp"\n#include "lbm/sweep.hpp"\n',
+    "analysis/rate.hpp": '#include "core/types.hpp"\n',
+    "io/hdf5_handle.hpp": "#include <hdf5.h>\n",
+    "io/hdf5_arrays.hpp": '#include "io/hdf5_handle.hpp"\n',
+    "io/archive.hpp": '#include "core/types.hpp"\n',
+    "io/archive.cpp": '#include "io/archive.hpp"\n#include "io/hdf5_arrays.hpp"\n',
+    "io/vtk_series.cpp": '#include "core/types.hpp"\n#include <vtkImageData.h>\n#include <hdf5.h>\n#include <yaml-cpp/yaml.h>\n',
+    "driver/main.cpp": '#include "lbm/sweep.hpp"\n#include <yaml-cpp/yaml.h>\n',
+    "driver/case.hpp": '#include "analysis/rate.hpp"\n#include "io/archive.hpp"\n',
+    "tests/driver/case_test.cpp": '#include "driver/case.hpp"\n',
+    "tests/io/vtk_test.cpp": "#include <vtkImageData.h>\n",
+    "build/release/lbm/generated.hpp": '#include "dem/grain_store.hpp"\n',   # not ours to check
+}
+
+# (file, text, a piece of the complaint)
+PLANTED = [
+    ("core/bad.hpp", '#include "lbm/sweep.hpp"\n', "core must not include"),
+    ("lbm/bad.cpp", '#include "dem/grain_store.hpp"\n', "lbm must not include"),
+    ("dem/bad.cpp", '  #  include "lbm/sweep.hpp"\n', "dem must not include"),
+    ("analysis/bad.cpp", '#include "dem/grain_store.hpp"\n', "analysis must not include"),
+    ("io/bad.cpp", '#include "analysis/rate.hpp"\n', "io must not include"),
+    ("coupling/bad.cpp", '#include "analysis/rate.hpp"\n', "coupling must not include"),
+    ("coupling/bad.hpp", '#include "driver/case.hpp"\n', "coupling must not include"),
+    ("tests/lbm/bad_test.cpp", '#include "driver/case.hpp"\n', "includes the driver"),
+    ("dem/bad.cpp", "#include <vtkPolyData.h>\n", "belongs in io alone"),
+    ("core/bad.hpp", "#include <hdf5.h>\n", "belongs in io alone"),
+    ("driver/bad.cpp", '#include "io/hdf5_handle.hpp"\n', "private to io"),
+    ("driver/bad.cpp", '#include "io/hdf5_arrays.hpp"\n', "private to io"),
+    ("tests/driver/bad_test.cpp", '#include "io/hdf5_arrays.hpp"\n', "private to io"),
+    ("driver/bad.cpp", "#include <H5Cpp.h>\n", "belongs in io alone"),
+    ("analysis/bad.cpp", "#include <yaml-cpp/yaml.h>\n", "belongs in io and driver alone"),
+    ("lbm/bad.cpp", '#include "sweep.hpp"\n', "not written from the repository root"),
+    ("lbm/bad.cpp", '#include "../core/types.hpp"\n', "not written from the repository root"),
+    ("lbm/bad.cpp", '#include "core/gone.hpp"\n', "does not exist"),
+    ("lbm/bad.cpp", "#include <dem/grain_store.hpp>\n", "is one of our own"),
+    ("lbm/CMakeLists.txt", "target_link_libraries(thalweg_lbm PUBLIC thalweg::dem)\n", "lbm must not link thalweg::dem"),
+    ("docs/bad.md", "One day. " + "TO" + "DO: say more.\n", "finish it"),
+    ("lbm/bad.cpp", "// FIX" + "ME\n", "finish it"),
+]
+
+
+class CheckIncludes(unittest.TestCase):
+    def breaches(self, files):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            for name, text in files.items():
+                (root / name).parent.mkdir(parents=True, exist_ok=True)
+                (root / name).write_text(text)
+            return [(relative.as_posix(), line, what) for relative, line, what in check_includes.breaches(root)]
+
+    def test_a_sound_house_passes(self):
+        self.assertEqual(self.breaches(SOUND), [])
+
+    def test_every_planted_breach_is_seen_alone_and_in_its_place(self):
+        for name, text, complaint in PLANTED:
+            with self.subTest(file=name, text=text):
+                found = self.breaches(SOUND | {name: "\n" + text})
+                self.assertEqual(len(found), 1, found)
+                self.assertEqual(found[0][:2], (name, 2))
+                self.assertIn(complaint, found[0][2])
+
+
+if __name__ == "__main__":
+    unittest.main()
