@@ -3,8 +3,9 @@
 
     compare_checkpoints.py FIRST SECOND [--ignore PATH]...
 
-FIRST and SECOND are checkpoint files (.h5) or run folders, of which the latest checkpoint is taken. Says nothing but one
-line if they are the same. Exit code 0: the same bits; 1: different; 2: cannot be compared (a file is missing or broken).
+FIRST and SECOND are checkpoint files (.h5) or run folders, of which the latest checkpoint is taken. Prints a line for
+every dataset or attribute that differs and one at the end.
+Exit code 0: the same bits; 1: different; 2: cannot be compared (a file is missing or broken).
 """
 import argparse
 import pathlib

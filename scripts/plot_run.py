@@ -82,6 +82,20 @@ def read_fluid_slice(path):
     return speed, (bounds[0], bounds[1], bounds[4], bounds[5])
 
 
+def without_holes(layer):
+    """Masked cells filled from their neighbours, ring by ring: grains on top hide them but for their corners."""
+    values, known = np.where(layer.mask, 0.0, layer.data), ~np.ma.getmaskarray(layer)
+    while known.any() and not known.all():
+        total, count = np.zeros_like(values), np.zeros(values.shape, int)
+        for axis, step in ((0, 1), (0, -1), (1, 1), (1, -1)):
+            total += np.roll(np.where(known, values, 0.0), step, axis)
+            count += np.roll(known, step, axis)
+        ring = ~known & (count > 0)
+        values[ring] = total[ring] / count[ring]
+        known |= ring
+    return values
+
+
 def with_periodic_images(position, radius, speed, size, periodic):
     """The grains and copies of those that stick out of a periodic face across x or y."""
     for axis in (0, 1):
@@ -154,9 +168,8 @@ def draw_bed(folder, case, time, path):
         bars[1].remove()
     else:
         flow, box = layer
-        axes.set_facecolor("#d9dee2")   # cells inside a grain of the middle plane that no grain in front hides
-        water = axes.imshow(1e2 * flow, origin="lower", extent=1e3 * np.array(box), cmap=FLUID_COLOURS, vmin=0.0,
-                            interpolation="bilinear", zorder=1)
+        water = axes.imshow(1e2 * without_holes(flow), origin="lower", extent=1e3 * np.array(box), cmap=FLUID_COLOURS,
+                            vmin=0.0, interpolation="bilinear", zorder=1)
         figure.colorbar(water, cax=bars[1], label="fluid speed [cm/s]")
     axes.set(xlabel="x [mm], flow to the right", ylabel="z [mm]", xlim=(0, 1e3 * size[0]), ylim=(0, 1e3 * size[2]))
     axes.set_title(f"{case.get('name', folder.name)}, t = {grains[0]:.3g} s", fontsize=11)
@@ -203,6 +216,14 @@ def running_mean(time, value, window):
     return (total[last] - total[first]) / (last - first)
 
 
+def range_of_interest(rate, counted):
+    """Limits that show what counts: grains that settle at the start may carry tens of times as much."""
+    low, high = min(0.0, 1.05 * float(np.min(rate))), 1.08 * float(np.max(rate))
+    if 0.0 < np.max(counted) < 0.25 * np.max(rate):
+        high = 1.5 * float(np.max(counted))
+    return low, high if high > low else low + 1.0
+
+
 def draw_transport_rate(folder, case, path):
     """q* against time with its running mean and the mean that summary.json reports."""
     series = read_series(folder / "series.csv")
@@ -225,7 +246,7 @@ def draw_transport_rate(folder, case, path):
         axes.hlines(mean, max(start, time[0]), time[-1], color="#c0392b", linestyle="--", linewidth=1.3,
                     label=f"mean from {start:g} s on: {mean:.3g}")
     axes.set(xlabel="time [s]", ylabel=label, xlim=(time[0], time[-1] if time[-1] > time[0] else time[0] + 1))
-    axes.set_ylim(bottom=min(0.0, float(np.min(rate)) * 1.05))
+    axes.set_ylim(*range_of_interest(rate, rate[counted] if counted.any() else rate))
     axes.set_title(case.get("name", folder.name), fontsize=11)
     axes.grid(color="#e5e8ea", linewidth=0.8)
     axes.set_axisbelow(True)

@@ -3,9 +3,9 @@
 #
 #   sbatch scripts/cluster/slurm.sh CASE.yaml RUN_FOLDER
 #
-# Adapt the #SBATCH lines (or give them to sbatch) and, with another --time, THALWEG_WALLTIME. The program saves its state
-# and stops in good order before its --walltime; the next turn goes on from there, and the result has the same bits as a
-# run that was never interrupted, whatever the number of ranks of each turn.
+# Adapt the #SBATCH lines (or give them to sbatch) and, with another --time, THALWEG_WALLTIME. The program saves its
+# state and stops in good order before its --walltime; the next turn goes on from there, and the result has the same bits
+# as a run that was never interrupted, whatever the number of ranks of each turn.
 #SBATCH --job-name=thalweg
 #SBATCH --nodes=1
 #SBATCH --ntasks-per-node=64
@@ -41,7 +41,7 @@ done
 finished=$(python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["finished"])' "$folder/summary.json")
 [[ $finished == True ]] && exit 0
 if [[ $(latest) == "$before" ]]; then
-  echo "slurm.sh: this turn has not got as far as a new checkpoint, so another would not either; see $folder/run.log." >&2
+  echo "slurm.sh: this turn made no new checkpoint, so another would not either; see $folder/run.log." >&2
   exit 1
 fi
 scontrol requeue "$SLURM_JOB_ID"

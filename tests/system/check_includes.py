@@ -4,8 +4,8 @@
     check_includes.py [ROOT]      of the repository (default: the one this file is in)
 
 - A room includes, and its CMake target links, only the rooms its arrows point to; nobody but tests uses driver.
-- VTK and HDF5 appear only in io, and a header of io that shows them is not included from elsewhere; yaml-cpp appears only
-  in io and driver.
+- VTK and HDF5 appear only in io, and a header of io that shows them is not included from elsewhere; yaml-cpp appears
+  only in io and driver.
 - Includes are written from the repository root, and what they name exists.
 - No file carries a note that something is left to do.
 
@@ -75,7 +75,8 @@ def check_quoted(root, relative, name, private):
     if not (root / name).is_file():
         return f'"{name}" does not exist in this repository (other people\'s headers go in <>)'
     if room in ROOMS and target not in ROOMS[room]:
-        return f'{room} must not include "{name}": its arrows go to {", ".join(sorted(ROOMS[room] - {room})) or "nobody"}'
+        allowed = ", ".join(sorted(ROOMS[room] - {room})) or "nobody"
+        return f'{room} must not include "{name}": its arrows go to {allowed}'
     if name in private and home_of(relative) != "io":
         return f'"{name}" shows VTK or HDF5, which stay private to io'
     if target == "driver" and not relative.as_posix().startswith(USERS_OF_DRIVER):

@@ -52,12 +52,12 @@ class CompareCheckpoints(unittest.TestCase):
                     file[name] = value
             return act
 
-        last = np.linspace(-1, 1, 105, dtype=np.float32)[-1]
+        above = np.nextafter(np.linspace(-1, 1, 105, dtype=np.float32)[-1], np.float32(2))
         changes = {
-            "one unit in the last place": (change_dataset("fluid/populations", (6, 4, 2), np.nextafter(last, np.float32(2))),
+            "one unit in the last place": (change_dataset("fluid/populations", (6, 4, 2), above),
                                            "fluid/populations: 1 of 105", "[6, 4, 2]"),
             "the sign of zero": (change_dataset("grains/position", (0, 0), -0.0), "grains/position: 1 of 6", "[0, 0]"),
-            "a number for no number": (change_dataset("grains/position", (0, 1), 1.0), "grains/position: 1 of 6", "[0, 1]"),
+            "a number for none": (change_dataset("grains/position", (0, 1), 1.0), "grains/position: 1 of 6", "[0, 1]"),
             "an integer": (change_dataset("grains/id", 1, 5), "grains/id: 1 of 2", "by at most 4"),
             "a scalar": (change_dataset("run", (), 0.25), "run: 1 of 1", "0.5 against 0.25"),
             "the type": (replace("grains/id", np.arange(2, dtype=np.int32)), "grains/id: type", "int32"),

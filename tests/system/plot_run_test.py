@@ -66,9 +66,24 @@ class PlotRun(unittest.TestCase):
         radius = np.array([0.2, 0.2])
         alone = plot_run.render_spheres(np.array([place(0.1)]), radius[:1], np.array([0.9]), extent, 100.0, lambda v: v)
         for order in (slice(None), slice(None, None, -1)):
-            both = plot_run.render_spheres(np.array([place(0.1), place(0.6)])[order], radius, np.array([0.9, 0.1])[order],
-                                           extent, 100.0, lambda v: v)
+            both = plot_run.render_spheres(np.array([place(0.1), place(0.6)])[order], radius,
+                                           np.array([0.9, 0.1])[order], extent, 100.0, lambda v: v)
             np.testing.assert_array_equal(both, alone)
+
+    def test_holes_take_the_mean_of_their_neighbours(self):
+        layer = np.ma.array([[1.0, 2.0, 3.0, 4.0, 5.0]] * 5, mask=np.zeros((5, 5), bool))
+        layer[2, 2] = np.ma.masked
+        filled = plot_run.without_holes(layer)
+        np.testing.assert_allclose(filled, [[1.0, 2.0, 3.0, 4.0, 5.0]] * 5, atol=1e-15)
+        layer.mask[:] = True
+        self.assertEqual(plot_run.without_holes(layer).shape, (5, 5))
+
+    def test_the_settling_at_the_start_does_not_dwarf_the_rest(self):
+        rate = np.array([0.0, 2.0, 0.1, 0.08])
+        self.assertEqual(plot_run.range_of_interest(rate, rate[2:]), (0.0, 1.5 * 0.1))
+        self.assertEqual(plot_run.range_of_interest(rate, rate), (0.0, 1.08 * 2.0))
+        low, high = plot_run.range_of_interest(np.zeros(3), np.zeros(3))
+        self.assertLess(low, high)
 
     def test_a_running_mean_is_a_mean(self):
         time = np.arange(0.0, 1.0, 0.01)
