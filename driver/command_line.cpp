@@ -57,6 +57,14 @@ void add_others(CLI::App& app, Command& command) {
   info->final_callback([&] { command.kind = Command::Kind::info; });
 }
 
+// CLI11 would only say that a subcommand is missing.
+void refuse_unknown_command(const CLI::App& app, int argc, const char* const* argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  for (const CLI::App* known : app.get_subcommands({}))
+    if (known->get_name() == argv[1]) return;
+  throw InputError(fmt::format("{} is not a command: there are run, check, defaults and info (thalweg --help).", argv[1]));
+}
+
 // CLI11's messages are fragments; users get a whole sentence that says where to look.
 std::string as_sentence(std::string message) {
   std::replace(message.begin(), message.end(), '\n', ' ');
@@ -103,13 +111,16 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   add_run(app, command, texts);
   add_others(app, command);
   try {
+    refuse_unknown_command(app, argc, argv);
     app.parse(argc, argv);
     if (!texts.walltime.empty()) command.walltime = parse_walltime(texts.walltime);
     if (!texts.layout.empty()) command.layout = parse_layout(texts.layout);
   } catch (const CLI::Success& asked) {
     std::ostringstream text;
     app.exit(asked, text, text);
-    return {std::nullopt, text.str(), 0};
+    std::string shown = text.str();
+    if (shown.empty() || shown.back() != '\n') shown += '\n';
+    return {std::nullopt, shown, 0};
   } catch (const CLI::ParseError& error) {
     return {std::nullopt, as_sentence(error.what()), 2};
   } catch (const InputError& error) {

@@ -13,15 +13,6 @@ namespace thalweg::driver {
 namespace {
 
 constexpr double skin_in_diameters = 0.1;
-constexpr double skin_reserve = 1.2;   // a grain may get a little faster than the estimate
-
-// The speed (m/s) dry grains can reach: given at the start, plus a fall through the box.
-double fastest_dry_grain(const Case& c) {
-  double given = 0.0;
-  for (const PopulationCase& population : c.grains)
-    given = std::max({given, population.velocity.norm(), population.prescribed_velocity.value_or(Vec3::Zero()).norm()});
-  return given + std::sqrt(2.0 * gravity_vector(c.gravity).norm() * c.domain.size.norm());
-}
 
 PeriodicBox box_of(const Case& c) { return {c.domain.size, periodic_axes(c.domain)}; }
 
@@ -83,10 +74,6 @@ dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box) {
   parameters.time_step = grain_time_step(c);
   parameters.sub_steps = static_cast<int>(c.coupling.grain_steps_per_fluid_step);
   parameters.skin = skin_in_diameters * smallest_diameter(c);
-  // In a fluid a grain moves a small part of a cell per step; dry grains may be faster, and must not outrun half a skin.
-  if (c.system == SystemKind::grains)
-    parameters.skin = std::max(parameters.skin, 2.0 * skin_reserve * fastest_dry_grain(c) * parameters.time_step *
-                                                    parameters.sub_steps);
   return parameters;
 }
 

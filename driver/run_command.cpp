@@ -122,10 +122,9 @@ void say_how_it_ended(const RunIdentity& identity, const LoopRecord& record, con
 void run_case(const Command& command, MPI_Comm communicator, WallClock::time_point started, FailureCouncil& council,
               Log& log) {
   listen_for_stop_signals();
-  Case c = read_case(command.path, command.settings);
-  if (command.until) c.run.until = *command.until;
-  if (!(c.run.until > 0.0))
-    throw InputError(fmt::format("--until {:g} is not a time to run to: give seconds above zero.", c.run.until));
+  std::vector<std::string> settings = command.settings;
+  if (command.until) settings.push_back(fmt::format("run.until={}", *command.until));
+  const Case c = read_case(command.path, settings);
   const Places places = places_of(command);
   on_first_rank(communicator, [&] {
     if (!places.same_folder) places.folder.check_new(command.overwrite);

@@ -1,0 +1,56 @@
+#include "core/error.hpp"
+#include "core/mpi_session.hpp"
+#include "driver/collective_failure.hpp"
+#include "driver/on_first_rank.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+namespace thalweg::driver {
+namespace {
+
+const MPI_Comm world = MPI_COMM_WORLD;
+
+TEST(OnFirstRank, WorksOnceAndTellsEveryRankOfItsErrors) {
+  int calls = 0;
+  on_first_rank(world, [&] { ++calls; });
+  EXPECT_EQ(calls, rank_of(world) == 0 ? 1 : 0);
+  for (const bool input : {true, false}) {
+    std::string message;
+    try {
+      on_first_rank(world, [&] {
+        if (input) throw InputError("no such folder");
+        throw std::runtime_error("disk full");
+      });
+    } catch (const InputError& error) {
+      message = std::string("input: ") + error.what();
+    } catch (const RunError& error) {
+      message = std::string("run: ") + error.what();
+    }
+    EXPECT_EQ(message, input ? "input: no such folder" : "run: disk full");
+  }
+}
+
+TEST(FailureCouncil, AgreesWhenEveryRankHasFailed) {
+  FailureCouncil council(world);
+  std::this_thread::sleep_for(std::chrono::milliseconds(20 * rank_of(world)));
+  EXPECT_TRUE(council.everybody_failed(30.0));
+  EXPECT_TRUE(council.everybody_failed(0.0));   // remembered
+}
+
+TEST(FailureCouncil, NoticesThatTheOthersDoNotCome) {
+  const int last = size_of(world) - 1;
+  if (last == 0) GTEST_SKIP() << "one rank is everybody";
+  FailureCouncil council(world);
+  if (rank_of(world) == last) {
+    EXPECT_FALSE(council.everybody_failed(0.05));
+    EXPECT_FALSE(council.everybody_failed(30.0));   // remembered, without waiting again
+  }
+  MPI_Barrier(world);   // where the others wait for the failed rank
+  if (rank_of(world) != last) council.everybody_failed(30.0);   // completes the barrier the failed rank has left
+}
+
+}  // namespace
+}  // namespace thalweg::driver
