@@ -3,9 +3,9 @@
 //   q_s = sum over grains of V v_x / (L W)              volume flux per unit width, m^2/s
 //   q*  = q_s / sqrt((s - 1) g d^3),  s = rho_s/rho_f   the same without dimension
 //
-// V volume of a grain, v_x its streamwise velocity, L and W length and width of the domain (Zhang et al. 2022: all grains
-// of the whole domain count). With several populations d and rho_s are those of the first one in the case. Without a
-// fluid s has no meaning and q* is left out.
+// V volume of a grain, v_x its streamwise velocity, L and W length and width of the domain (Zhang et al. 2022: all
+// grains of the whole domain count). With several populations d and rho_s are those of the first one in the case.
+// Without a fluid s has no meaning and q* is left out.
 #pragma once
 
 #include "analysis/observer.hpp"

@@ -24,7 +24,8 @@ constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 constexpr double share_of_memory_bound = 0.25;
 constexpr double grain_steps_per_second = 2.5e6;
 
-// Bytes: per cell 19 populations twice and its flags; per link a record; per grain its columns, neighbours and history.
+// Bytes: per cell 19 populations, streamed in place, and flags; per link a record; per grain its columns, neighbours
+// and history.
 constexpr double flag_bytes = 8.0, link_bytes = 32.0, grain_bytes = 2000.0;
 constexpr double links_per_square_cell = 15.8;   // links of a sphere over its diameter in cells squared
 
@@ -54,8 +55,9 @@ void add_fluid(const Case& c, Lines& lines) {
                               c.fluid.density, c.fluid.kinematic_viscosity, relaxation_time(c) - 0.5, units.time_step));
   const double expected = c.fluid.expected_velocity.value_or(estimated_velocity(c));
   const double lattice = expected / units.velocity();
-  lines.push_back(fmt::format("flow       up to about {:.3g} m/s: {:.3g} cells a step, Mach number {:.3g} (good below 0.3)",
-                              expected, lattice, lattice * std::sqrt(3.0)));
+  lines.push_back(
+      fmt::format("flow       up to about {:.3g} m/s: {:.3g} cells a step, Mach number {:.3g} (good below 0.3)",
+                  expected, lattice, lattice * std::sqrt(3.0)));
 }
 
 void add_bed(const Case& c, Lines& lines) {
@@ -63,21 +65,22 @@ void add_bed(const Case& c, Lines& lines) {
   if (!std::isfinite(flow.galileo)) return;
   lines.push_back(fmt::format("density    ratio {:.4g}; Galileo number {:.4g}", flow.density_ratio, flow.galileo));
   if (!std::isfinite(flow.shields_depth)) return;
-  lines.push_back(fmt::format("bed        settles at about {:.3g} m ({:.3g} diameters), {:.3g} m of flow above, slope {:g}",
-                              flow.bed_height, flow.bed_height / c.grains.front().diameter, flow.depth, flow.slope));
+  lines.push_back(
+      fmt::format("bed        settles at about {:.3g} m ({:.3g} diameters), {:.3g} m of flow above, slope {:g}",
+                  flow.bed_height, flow.bed_height / c.grains.front().diameter, flow.depth, flow.slope));
   lines.push_back(fmt::format("Shields    {:.4g} from depth and slope", flow.shields_depth) +
                   (flow.side_walls ? fmt::format("; {:.4g} from the hydraulic radius between the side walls",
                                                  flow.shields_hydraulic)
                                    : ""));
-  lines.push_back(fmt::format("Reynolds   {:.4g} of a grain at the friction velocity {:.3g} m/s", flow.particle_reynolds,
-                              flow.friction_velocity));
+  lines.push_back(fmt::format("Reynolds   {:.4g} of a grain at the friction velocity {:.3g} m/s",
+                              flow.particle_reynolds, flow.friction_velocity));
 }
 
 void add_grains(const Case& c, Lines& lines) {
   for (const PopulationCase& population : c.grains) {
-    lines.push_back(fmt::format("grains     {} of {:g} m, {:g} kg/m^3", population.count, population.diameter,
-                                population.density) +
-                    (fluid_in(c) ? fmt::format(": {:.3g} cells a diameter", population.diameter / c.domain.spacing) : ""));
+    lines.push_back(
+        fmt::format("grains     {} of {:g} m, {:g} kg/m^3", population.count, population.diameter, population.density) +
+        (fluid_in(c) ? fmt::format(": {:.3g} cells a diameter", population.diameter / c.domain.spacing) : ""));
   }
   if (c.grains.empty()) return;
   const PeriodicBox box{c.domain.size, periodic_axes(c.domain)};
@@ -88,11 +91,13 @@ void add_grains(const Case& c, Lines& lines) {
   const double damping = dem::Damping(contact).coefficient(effective);
   const double duration = dem::contact_time(contact.normal_stiffness, effective, damping);
   const double step = grain_time_step(c);
-  lines.push_back(fmt::format("contact    lasts {:.3g} s: {:.3g} sub-steps of {:.3g} s (at least {:g}); damping {:.3g} kg/s",
-                              duration, duration / step, step, dem::fewest_steps_per_contact, damping));
+  lines.push_back(
+      fmt::format("contact    lasts {:.3g} s: {:.3g} sub-steps of {:.3g} s (at least {:g}); damping {:.3g} kg/s",
+                  duration, duration / step, step, dem::fewest_steps_per_contact, damping));
   if (!fluid_in(c)) return;
-  lines.push_back(fmt::format("flight     a grain moves a fiftieth of a cell a step at {:.3g} m/s: faster ones are less exact",
-                              0.02 * units_of(c).velocity()));
+  lines.push_back(
+      fmt::format("flight     a grain moves a fiftieth of a cell a step at {:.3g} m/s: faster ones are less exact",
+                  0.02 * units_of(c).velocity()));
 }
 
 std::string bytes_text(double bytes) {
@@ -106,8 +111,9 @@ void add_cost(const Case& c, double bandwidth, Lines& lines) {
   if (cost.grain_steps > 0.0) work += fmt::format(", {:.3g} grain-steps", cost.grain_steps);
   lines.push_back(work);
   lines.push_back("memory     about " + bytes_text(cost.memory));
-  lines.push_back(fmt::format("time       about {} on one core like this one ({:.3g} GB/s), and so many times less on more",
-                              clock_text(cost.core_seconds), bandwidth * 1e-9));
+  lines.push_back(
+      fmt::format("time       about {} on one core like this one ({:.3g} GB/s), and so many times less on more",
+                  clock_text(cost.core_seconds), bandwidth * 1e-9));
 }
 
 // What dem would refuse when the run starts.
@@ -156,7 +162,7 @@ Cost cost_of(const Case& c, double bandwidth) {
   cost.steps = std::ceil(c.run.until / step_time(c) * (1.0 - 1e-12));
   cost.cell_updates = cost.cells * cost.steps;
   cost.grain_steps = static_cast<double>(grain_count(c) * c.coupling.grain_steps_per_fluid_step) * cost.steps;
-  cost.memory = cost.cells * (2.0 * 19.0 * bytes_per_value(c) + flag_bytes) +
+  cost.memory = cost.cells * (19.0 * bytes_per_value(c) + flag_bytes) +
                 static_cast<double>(grain_count(c)) * grain_bytes;
   if (fluid_in(c))
     for (const PopulationCase& population : c.grains) {

@@ -39,8 +39,8 @@ struct Cost {
 // bandwidth: bytes/s of one core's memory (machine.hpp).
 Cost cost_of(const Case& c, double bandwidth);
 
-// Whole report, one text a line. Throws InputError where the case cannot be run (grains that do not fit, a grain step too
-// long for the contacts).
+// Whole report, one text a line. Throws InputError where the case cannot be run (grains that do not fit, a grain step
+// too long for the contacts).
 std::vector<std::string> check_report(const Case& c, double bandwidth);
 
 }  // namespace thalweg::driver

@@ -18,7 +18,8 @@ public:
   FailureCouncil& operator=(const FailureCouncil&) = delete;
 
   // Called by a rank that has failed. True if all ranks get here within `patience` seconds. False: the others wait in
-  // some exchange for this rank and will do so for ever; only MPI_Abort ends them. Asked again, it gives the same answer.
+  // some exchange for this rank and will do so for ever; only MPI_Abort ends them. Asked again, it gives the same
+  // answer.
   bool everybody_failed(double patience);
 
 private:

@@ -62,7 +62,8 @@ void refuse_unknown_command(const CLI::App& app, int argc, const char* const* ar
   if (argc < 2 || argv[1][0] == '-') return;
   for (const CLI::App* known : app.get_subcommands({}))
     if (known->get_name() == argv[1]) return;
-  throw InputError(fmt::format("{} is not a command: there are run, check, defaults and info (thalweg --help).", argv[1]));
+  throw InputError(
+      fmt::format("{} is not a command: there are run, check, defaults and info (thalweg --help).", argv[1]));
 }
 
 // CLI11's messages are fragments; users get a whole sentence that says where to look.
@@ -95,8 +96,8 @@ Index3 parse_layout(const std::string& text) {
   int end = 0;
   if (std::sscanf(text.c_str(), "%d,%d,%d%n", &layout[0], &layout[1], &layout[2], &end) != 3 ||
       end != static_cast<int>(text.size()) || layout[0] < 1 || layout[1] < 1 || layout[2] < 1)
-    throw InputError(fmt::format("--layout {} is not a layout: write the numbers of ranks along x, y and z, e.g. 4,2,1.",
-                                 text));
+    throw InputError(
+        fmt::format("--layout {} is not a layout: write the numbers of ranks along x, y and z, e.g. 4,2,1.", text));
   return layout;
 }
 

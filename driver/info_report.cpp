@@ -54,11 +54,11 @@ void add_summary(const fs::path& file, Lines& lines) {
     throw InputError(fmt::format("{} is damaged: it is not JSON.", file.string()));
   }
   const bool finished = value(summary, "finished") == "true";
-  lines.push_back(fmt::format("run         {} (system: {}), version {}", value(summary, "name"), value(summary, "system"),
-                              value(summary, "version")));
+  lines.push_back(fmt::format("run         {} (system: {}), version {}", value(summary, "name"),
+                              value(summary, "system"), value(summary, "version")));
   lines.push_back(fmt::format("state       {}", finished ? "finished" : "not finished: " + value(summary, "reason")));
-  lines.push_back(fmt::format("time        {} of {} s, {} steps", value(summary, "simulated_time"), value(summary, "until"),
-                              value(summary, "steps")));
+  lines.push_back(fmt::format("time        {} of {} s, {} steps", value(summary, "simulated_time"),
+                              value(summary, "until"), value(summary, "steps")));
   lines.push_back(fmt::format("size        {} cells, {} grains; {} ranks ({})", value(summary, "cells"),
                               value(summary, "grains"), value(summary, "ranks"), value(summary, "layout")));
   lines.push_back(fmt::format("speed       {} steps/s, {} MLUPS", value(summary, "steps_per_second"),
@@ -86,8 +86,10 @@ std::vector<std::string> info_report(const fs::path& path) {
   }
   const io::RunFolder folder(path);
   if (!folder.is_run_folder())
-    throw InputError(fmt::format("{} is neither a run folder nor a checkpoint: give a folder that thalweg run has written, "
-                                 "or an .h5 file in its checkpoints.", path.string()));
+    throw InputError(
+        fmt::format("{} is neither a run folder nor a checkpoint: give a folder that thalweg run has written, "
+                    "or an .h5 file in its checkpoints.",
+                    path.string()));
   if (fs::exists(folder.summary(), ignored)) add_summary(folder.summary(), lines);
   else lines.push_back("state       still running, or killed without notice");
   if (fs::exists(folder.log(), ignored)) lines.push_back("last line   " + last_line(folder.log()));

@@ -7,7 +7,8 @@
 
 namespace thalweg::driver {
 
-// Runs `work` on rank 0. If it throws, every rank throws: InputError as InputError, anything else as RunError. Collective.
+// Runs `work` on rank 0. If it throws, every rank throws: InputError as InputError, anything else as RunError.
+// Collective.
 void on_first_rank(MPI_Comm communicator, const std::function<void()>& work);
 
 }  // namespace thalweg::driver

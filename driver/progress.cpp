@@ -22,12 +22,12 @@ std::string clock_text(double seconds) {
 }
 
 std::string progress_line(const ProgressState& state) {
-  std::string line = fmt::format("t {:<9.5g} of {:g} s  {:3.0f} %  left {:<9} {:>7.4g} steps/s", state.time, state.until,
-                                 100.0 * state.share_done,
-                                 state.seconds_left < 0.0 ? "?" : clock_text(state.seconds_left),
-                                 state.steps_per_second);
+  std::string line = fmt::format(
+      "t {:<9.5g} of {:g} s  {:3.0f} %  left {:<9} {:>7.4g} steps/s", state.time, state.until, 100.0 * state.share_done,
+      state.seconds_left < 0.0 ? "?" : clock_text(state.seconds_left), state.steps_per_second);
   if (state.mlups > 0.0) line += fmt::format("  {:>6.3g} MLUPS", state.mlups);
-  if (const auto moving = find_figure(state.figures, "moving_grains")) line += fmt::format("  moving {:<6.0f}", *moving);
+  if (const auto moving = find_figure(state.figures, "moving_grains"))
+    line += fmt::format("  moving {:<6.0f}", *moving);
   if (const auto q_star = find_figure(state.figures, "q_star")) line += fmt::format("  q* {:<9.3g}", *q_star);
   if (const auto speed = find_figure(state.figures, "largest_lattice_velocity"))
     line += fmt::format("  u_max {:.3g}", *speed);

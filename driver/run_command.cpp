@@ -71,10 +71,11 @@ Observers observers_of(const Case& c, MPI_Comm communicator) {
 void greet(const Case& c, RunIdentity& identity, const System& system, const Places& places, MPI_Comm communicator,
            Log& log) {
   log.line(fmt::format("Thalweg {}: {}", version_text(), c.name));
-  log.line(fmt::format("{} on {} rank{}, layout {} x {} x {}; {} grains, {} cells; {:.6g} s a step, {:.0f} steps to {:g} s",
-                       identity.system, identity.ranks, identity.ranks == 1 ? "" : "s", identity.layout[0],
-                       identity.layout[1], identity.layout[2], system.snapshot().grains.global_count, system.cells(),
-                       system.time_step(), c.run.until / system.time_step(), c.run.until));
+  log.line(
+      fmt::format("{} on {} rank{}, layout {} x {} x {}; {} grains, {} cells; {:.6g} s a step, {:.0f} steps to {:g} s",
+                  identity.system, identity.ranks, identity.ranks == 1 ? "" : "s", identity.layout[0],
+                  identity.layout[1], identity.layout[2], system.snapshot().grains.global_count, system.cells(),
+                  system.time_step(), c.run.until / system.time_step(), c.run.until));
   if (!places.checkpoint.empty())
     log.line(fmt::format("going on from {} at {:.6g} s", places.checkpoint.string(), system.time()));
   log.line(fmt::format("writing {}", places.folder.path().string()));
@@ -82,8 +83,8 @@ void greet(const Case& c, RunIdentity& identity, const System& system, const Pla
     const double bandwidth = measure_bandwidth(communicator);
     const double bytes = bytes_per_cell_update(c.fluid.precision == Precision::single ? 4 : 8);
     identity.memory_bound_mlups = bandwidth / bytes * 1e-6;
-    log.line(fmt::format("memory bandwidth {:.1f} GB/s; {:.0f} bytes a cell update: at most {:.0f} MLUPS", bandwidth * 1e-9,
-                         bytes, identity.memory_bound_mlups));
+    log.line(fmt::format("memory bandwidth {:.1f} GB/s; {:.0f} bytes a cell update: at most {:.0f} MLUPS",
+                         bandwidth * 1e-9, bytes, identity.memory_bound_mlups));
   }
   for (const std::string& warning : warnings(c)) log.line("warning: " + warning);
 }
@@ -97,8 +98,8 @@ void prepare_folder(const Places& places, const Case& c, const Command& command,
   });
 }
 
-void say_how_it_ended(const RunIdentity& identity, const LoopRecord& record, const System& system, const std::vector<PhaseShare>& phases,
-                      const io::RunFolder& folder, Log& log) {
+void say_how_it_ended(const RunIdentity& identity, const LoopRecord& record, const System& system,
+                      const std::vector<PhaseShare>& phases, const io::RunFolder& folder, Log& log) {
   log.line("");
   for (const std::string& line : phase_table(phases)) log.line(line);
   const Speeds speeds = speeds_of(system, record);
@@ -109,7 +110,8 @@ void say_how_it_ended(const RunIdentity& identity, const LoopRecord& record, con
                          100.0 * speeds.mlups_advancing / identity.memory_bound_mlups);
   if (speeds.grain_steps_per_second > 0.0)
     speed += fmt::format(", {:.3g} million grain-steps/s", speeds.grain_steps_per_second * 1e-6);
-  log.line(fmt::format("{} steps in {}: {}", record.last_step - record.first_step, clock_text(record.wall_seconds), speed));
+  log.line(
+      fmt::format("{} steps in {}: {}", record.last_step - record.first_step, clock_text(record.wall_seconds), speed));
   if (record.finished)
     log.line(fmt::format("finished at {:.6g} s: {}", system.time(), folder.summary().string()));
   else

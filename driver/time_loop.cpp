@@ -72,9 +72,10 @@ void TimeLoop::look_at_health() {
   }
   const double speed = find_figure(record_.figures, "largest_lattice_velocity").value_or(0.0);
   if (speed > stable_lattice_velocity)
-    throw RunError(fmt::format("The fluid became unstable at {:.6g} s (step {}): its largest velocity is {:.3g} in "
-                               "lattice units, and beyond {} the method breaks down; a shorter fluid.time_step lowers it.",
-                               system_.time(), system_.step(), speed, stable_lattice_velocity));
+    throw RunError(
+        fmt::format("The fluid became unstable at {:.6g} s (step {}): its largest velocity is {:.3g} in "
+                    "lattice units, and beyond {} the method breaks down; a shorter fluid.time_step lowers it.",
+                    system_.time(), system_.step(), speed, stable_lattice_velocity));
 }
 
 void TimeLoop::write_what_is_due() {

@@ -1,8 +1,8 @@
 // Drives any system through time: measures, writes, saves, reports, and stops in good order.
 //
-// A step is: advance; look at the system's health if due; measure and write what is due; checkpoint if due; and every few
-// steps the ranks agree (one small reduction) whether to print a progress line or to stop early. Those decisions never
-// touch the state, so the clock cannot change one bit of the run.
+// A step is: advance; look at the system's health if due; measure and write what is due; checkpoint if due; and every
+// few steps the ranks agree (one small reduction) whether to print a progress line or to stop early. Those decisions
+// never touch the state, so the clock cannot change one bit of the run.
 #pragma once
 
 #include "analysis/observer.hpp"
@@ -63,8 +63,8 @@ public:
            const LoopPlan& plan, Log& log);
 
   // Runs to plan.until, or until a stop signal or the end of the wall time (record().finished is false then).
-  // Throws RunError when a figure is not finite, or largest_lattice_velocity exceeds stable_lattice_velocity; nothing of
-  // such a state is written. The record is valid then, too.
+  // Throws RunError when a figure is not finite, or largest_lattice_velocity exceeds stable_lattice_velocity; nothing
+  // of such a state is written. The record is valid then, too.
   void run();
 
   const LoopRecord& record() const { return record_; }

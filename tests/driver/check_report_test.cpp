@@ -74,9 +74,9 @@ TEST(Cost, CountsCellsAndSteps) {
   EXPECT_EQ(cost.steps, 1.5e6);   // 30 s of 2e-5 s
   EXPECT_EQ(cost.cell_updates, cost.cells * 1.5e6);
   EXPECT_EQ(cost.grain_steps, 1000.0 * 50.0 * 1.5e6);
-  // At least one copy of 19 single-precision values a cell, at most two and as much again for flags and links.
+  // At least 19 single-precision values a cell, and not more than twice that with flags and the links of 1000 grains.
   EXPECT_GT(cost.memory, cost.cells * 19 * 4);
-  EXPECT_LT(cost.memory, cost.cells * 19 * 4 * 4);
+  EXPECT_LT(cost.memory, cost.cells * 19 * 4 * 2);
   const Cost on_faster_memory = cost_of(c, 20e9);
   EXPECT_LT(on_faster_memory.core_seconds, cost.core_seconds);
   EXPECT_GT(on_faster_memory.core_seconds, 0.5 * cost.core_seconds);   // the grains do not get faster

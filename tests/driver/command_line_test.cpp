@@ -13,9 +13,9 @@ CommandLine parse(std::vector<const char*> words) {
 }
 
 TEST(CommandLine, RunTakesEveryOptionInAnyOrder) {
-  const CommandLine line = parse({"run", "--set", "fluid.time_step=1e-5", "a/case.yaml", "--set", "name=x y", "--out", "b",
-                                  "--restart", "c", "--until", "2.5", "--walltime", "01:02:03", "--layout", "4,2,1",
-                                  "--overwrite"});
+  const CommandLine line =
+      parse({"run", "--set", "fluid.time_step=1e-5", "a/case.yaml", "--set", "name=x y", "--out", "b", "--restart", "c",
+             "--until", "2.5", "--walltime", "01:02:03", "--layout", "4,2,1", "--overwrite"});
   ASSERT_TRUE(line.command) << line.text;
   const Command& command = *line.command;
   EXPECT_EQ(command.kind, Command::Kind::run);

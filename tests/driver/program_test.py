@@ -107,7 +107,8 @@ class CommandLine(ProgramTest):
         for command in ("run", "check"):
             self.assert_refused(command, self.case, "--set", "gravity.magnitde=9.8", words=["magnitde"])
             self.assert_refused(command, self.case, "--set", "grains.0.diameter=-0.005", words=["grains.0.diameter"])
-            self.assert_refused(command, self.case, "--set", "grains.0.density=heavy", words=["grains.0.density", "heavy"])
+            self.assert_refused(command, self.case, "--set", "grains.0.density=heavy",
+                                words=["grains.0.density", "heavy"])
             self.assert_refused(command, self.case, "--set", "grains.0.count=4000", words=["grains.0"])
             self.assert_refused(command, self.case, "--set", "run.time_step=1e-3", words=["time"])
         self.assert_refused("run", self.case, "--layout", "2,1,1", words=["--layout", "2 rank"])
@@ -219,7 +220,8 @@ class Running(ProgramTest):
 PERPETUAL = CASE.replace("slope: 0.5", "slope: 0").replace("magnitude: 9.8", "magnitude: 0") \
     .replace("restitution: 0.8, friction: 0.5", "restitution: 1, friction: 0, wall_friction: 0") \
     .replace("seed: 3}}", "seed: 3}, velocity: [0.1, 0, 0]}\n"
-             "  - {count: 10, diameter: 6.0e-3, density: 2550, placement: {pattern: random}, velocity: [-0.2, 0.1, 0.1]}") \
+             "  - {count: 10, diameter: 6.0e-3, density: 2550, placement: {pattern: random},"
+             " velocity: [-0.2, 0.1, 0.1]}") \
     .replace("{from: 0.05}", "{from: 0}").replace("every: 0.04", "every: 100").replace("every: 0.02", "every: 20") \
     .replace("every: 2.0e-3", "every: 0.1")
 
@@ -237,7 +239,8 @@ class Stopping(ProgramTest):
         if ranks:
             # Open MPI's mpirun answers SIGTERM by passing it on and killing a second later; a busy machine needs more.
             command[1:1] = ["--mca", "odls_base_sigkill_timeout", "5"]
-        process = subprocess.Popen(command, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        process = subprocess.Popen(command, cwd=self.folder, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.PIPE, text=True)
         self.addCleanup(process.stderr.close)
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)
