@@ -75,7 +75,7 @@ double shortest_contact(const Case& c) {
 }
 
 double estimated_velocity(const Case& c) {
-  constexpr double bed_fraction = 0.6;   // of a bed's volume that is grain
+  constexpr double bed_fraction = 0.6;  // of a bed's volume that is grain
   constexpr double karman = 0.41;
   const Vec3 gravity = gravity_vector(c.gravity);
   const double along = std::hypot(gravity[0], gravity[1]);
@@ -96,24 +96,31 @@ std::vector<std::string> warnings(const Case& c) {
   if (c.system != SystemKind::resolved) return found;
   const double lattice_velocity = estimated_velocity(c) / units_of(c).velocity();
   if (!c.fluid.expected_velocity && lattice_velocity > 0.1)
-    found.push_back(fmt::format(
-        "The flow may reach about {:.2g} m/s, which is {:.2g} cells a step; results are accurate below 0.1 and the limit "
-        "is 0.173: consider a fluid.time_step of at most {:.2g} s.",
-        estimated_velocity(c), lattice_velocity, 0.1 * c.domain.spacing / estimated_velocity(c)));
+    found.push_back(
+        fmt::format("The flow may reach about {:.2g} m/s, which is {:.2g} cells a step; results are accurate below 0.1 "
+                    "and the limit "
+                    "is 0.173: consider a fluid.time_step of at most {:.2g} s.",
+                    estimated_velocity(c), lattice_velocity, 0.1 * c.domain.spacing / estimated_velocity(c)));
   const double excess = relaxation_time(c) - 0.5;
   if (excess < 5e-3 && c.fluid.smagorinsky_constant == 0.0)
-    found.push_back(fmt::format("The relaxation time is only {:.2g} above 1/2 and there is no subgrid model, so the fluid may "
-                                "become unstable: consider fluid.smagorinsky_constant: 0.27.", excess));
+    found.push_back(
+        fmt::format("The relaxation time is only {:.2g} above 1/2 and there is no subgrid model, so the fluid may "
+                    "become unstable: consider fluid.smagorinsky_constant: 0.27.",
+                    excess));
   if (excess > 1.0)
-    found.push_back(fmt::format("The relaxation time, {:.2g}, is so large that walls and grains lose accuracy: consider a "
-                                "shorter fluid.time_step.", excess + 0.5));
+    found.push_back(
+        fmt::format("The relaxation time, {:.2g}, is so large that walls and grains lose accuracy: consider a "
+                    "shorter fluid.time_step.",
+                    excess + 0.5));
   if (!c.grains.empty() && smallest_diameter(c) < 5.99 * c.domain.spacing)
     found.push_back(fmt::format("A grain is only {:.2g} cells across; drag is accurate to a few percent from about 8.",
                                 smallest_diameter(c) / c.domain.spacing));
   for (const PopulationCase& population : c.grains)
     if (!population.fixed && !population.prescribed_velocity && population.density < 1.2 * c.fluid.density)
-      found.push_back(fmt::format("Grains of {} kg/m^3 are nearly as light as the fluid; the explicit coupling may become "
-                                  "unstable below 1.2 times its density.", population.density));
+      found.push_back(
+          fmt::format("Grains of {} kg/m^3 are nearly as light as the fluid; the explicit coupling may become "
+                      "unstable below 1.2 times its density.",
+                      population.density));
   return found;
 }
 

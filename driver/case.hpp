@@ -20,8 +20,8 @@ enum class FaceType { periodic, no_slip, free_slip, law_of_the_wall };
 
 struct Face {
   FaceType type = FaceType::no_slip;
-  double coefficient = 8.36;   // law of the wall: slip velocity over friction velocity (numerics: U+ at the wall)
-  bool operator==(const Face& other) const {   // the coefficient counts only where the type uses it
+  double coefficient = 8.36;  // law of the wall: slip velocity over friction velocity (numerics: U+ at the wall)
+  bool operator==(const Face& other) const {  // the coefficient counts only where the type uses it
     return type == other.type && (type != FaceType::law_of_the_wall || coefficient == other.coefficient);
   }
 };
@@ -30,8 +30,8 @@ struct Face {
 enum FaceIndex { x_low, x_high, y_low, y_high, bottom, top };
 
 struct DomainCase {
-  Vec3 size = Vec3::Zero();   // m
-  double spacing = 0.0;       // m
+  Vec3 size = Vec3::Zero();  // m
+  double spacing = 0.0;      // m
   std::array<Face, 6> faces{};
   bool operator==(const DomainCase&) const = default;
 };
@@ -40,12 +40,12 @@ enum class Collision { bgk };
 enum class Precision { single, double_ };
 
 struct FluidCase {
-  double density = 0.0;                              // kg/m^3
-  double kinematic_viscosity = 0.0;                  // m^2/s
-  double smagorinsky_constant = 0.0;                 // 1; 0: no subgrid model
-  std::optional<double> time_step;                   // s; else from the two velocities
-  std::optional<double> maximum_lattice_velocity;    // cells per step
-  std::optional<double> expected_velocity;           // m/s, the largest
+  double density = 0.0;                            // kg/m^3
+  double kinematic_viscosity = 0.0;                // m^2/s
+  double smagorinsky_constant = 0.0;               // 1; 0: no subgrid model
+  std::optional<double> time_step;                 // s; else from the two velocities
+  std::optional<double> maximum_lattice_velocity;  // cells per step
+  std::optional<double> expected_velocity;         // m/s, the largest
   Collision collision = Collision::bgk;
   Precision precision = Precision::single;
   bool operator==(const FluidCase&) const = default;
@@ -55,9 +55,9 @@ struct FluidCase {
 enum class GravityMode { reduced, full };
 
 struct GravityCase {
-  std::optional<double> magnitude;   // m/s^2, with slope ...
-  std::optional<double> slope;       // 1, tangent of the bed's angle, downhill along x
-  std::optional<Vec3> vector;        // ... or the vector itself, m/s^2
+  std::optional<double> magnitude;  // m/s^2, with slope ...
+  std::optional<double> slope;      // 1, tangent of the bed's angle, downhill along x
+  std::optional<Vec3> vector;       // ... or the vector itself, m/s^2
   GravityMode mode = GravityMode::reduced;
   bool operator==(const GravityCase&) const = default;
 };
@@ -65,44 +65,44 @@ struct GravityCase {
 enum class PlacementPattern { uniform, random };
 
 struct RegionCase {
-  Vec3 lower = Vec3::Zero();   // m
-  Vec3 upper = Vec3::Zero();   // m
+  Vec3 lower = Vec3::Zero();  // m
+  Vec3 upper = Vec3::Zero();  // m
   bool operator==(const RegionCase&) const = default;
 };
 
 struct PlacementCase {
-  PlacementPattern pattern = PlacementPattern::uniform;   // unless there are positions
+  PlacementPattern pattern = PlacementPattern::uniform;  // unless there are positions
   std::int64_t seed = 1;
-  std::optional<RegionCase> region;                       // none: the whole box
-  std::vector<Vec3> positions;                            // m; as many as the population counts, or none
+  std::optional<RegionCase> region;  // none: the whole box
+  std::vector<Vec3> positions;       // m; as many as the population counts, or none
   bool operator==(const PlacementCase&) const = default;
 };
 
 struct PopulationCase {
-  std::int64_t count = 0;        // read as the number of positions where those are given
-  double diameter = 0.0;         // m
-  double density = 0.0;          // kg/m^3
+  std::int64_t count = 0;  // read as the number of positions where those are given
+  double diameter = 0.0;   // m
+  double density = 0.0;    // kg/m^3
   PlacementCase placement;
-  Vec3 velocity = Vec3::Zero();            // m/s, at the start
-  Vec3 angular_velocity = Vec3::Zero();    // rad/s, at the start
-  bool fixed = false;                                   // never moves
-  std::optional<Vec3> prescribed_velocity;              // m/s, kept whatever the loads
-  std::optional<Vec3> prescribed_angular_velocity;      // rad/s
+  Vec3 velocity = Vec3::Zero();                     // m/s, at the start
+  Vec3 angular_velocity = Vec3::Zero();             // rad/s, at the start
+  bool fixed = false;                               // never moves
+  std::optional<Vec3> prescribed_velocity;          // m/s, kept whatever the loads
+  std::optional<Vec3> prescribed_angular_velocity;  // rad/s
   bool operator==(const PopulationCase&) const = default;
 
-  double mass() const;           // kg
+  double mass() const;  // kg
 };
 
 enum class Attraction { none, allowed };
 
 struct ContactCase {
-  double normal_stiffness = 20000.0;           // N/m
-  double tangential_stiffness = 5714.0;        // N/m
-  std::optional<double> restitution;           // 1; exactly one of restitution and damping is set
-  std::optional<double> damping;               // kg/s
-  double friction = 0.5;                       // grain on grain
-  double wall_friction = 0.45;                 // grain on wall
-  Attraction attraction = Attraction::allowed; // allowed: the dashpot may pull grains together as they part
+  double normal_stiffness = 20000.0;            // N/m
+  double tangential_stiffness = 5714.0;         // N/m
+  std::optional<double> restitution;            // 1; exactly one of restitution and damping is set
+  std::optional<double> damping;                // kg/s
+  double friction = 0.5;                        // grain on grain
+  double wall_friction = 0.45;                  // grain on wall
+  Attraction attraction = Attraction::allowed;  // allowed: the dashpot may pull grains together as they part
   bool operator==(const ContactCase&) const = default;
 };
 
@@ -112,7 +112,7 @@ enum class Refill { equilibrium };
 
 struct CouplingCase {
   std::int64_t grain_steps_per_fluid_step = 50;
-  double link_tolerance = 1e-3;                // cells a grain may move before its links are built anew
+  double link_tolerance = 1e-3;  // cells a grain may move before its links are built anew
   MomentumExchange momentum_exchange = MomentumExchange::galilean_invariant;
   WallDensity wall_density = WallDensity::local;
   Refill refill = Refill::equilibrium;
@@ -121,15 +121,15 @@ struct CouplingCase {
 
 // u(z) = (shear_velocity / 0.41) ln((z - bed_height) / roughness) along x above the bed, zero below.
 struct LogProfileCase {
-  double bed_height = 0.0;       // m above the bottom
-  double shear_velocity = 0.0;   // m/s
-  double roughness = 0.0;        // m, the height where the velocity is zero (for grains about d/30)
+  double bed_height = 0.0;      // m above the bottom
+  double shear_velocity = 0.0;  // m/s
+  double roughness = 0.0;       // m, the height where the velocity is zero (for grains about d/30)
   bool operator==(const LogProfileCase&) const = default;
 };
 
 // Neither: at rest.
 struct InitialFluidCase {
-  std::optional<Vec3> uniform;   // m/s
+  std::optional<Vec3> uniform;  // m/s
   std::optional<LogProfileCase> log_profile;
   bool operator==(const InitialFluidCase&) const = default;
 };
@@ -140,8 +140,8 @@ struct InitialCase {
 };
 
 struct RunCase {
-  double until = 0.0;                  // s
-  std::optional<double> time_step;     // s, of dry grains; read as 1/50 of the shortest contact where it is not given
+  double until = 0.0;               // s
+  std::optional<double> time_step;  // s, of dry grains; read as 1/50 of the shortest contact where it is not given
   bool operator==(const RunCase&) const = default;
 };
 
@@ -162,7 +162,7 @@ struct GrainOutputCase {
 };
 struct CheckpointOutputCase {
   double every = 0.0;
-  std::int64_t keep = 2;   // newest checkpoints that stay on the disk
+  std::int64_t keep = 2;  // newest checkpoints that stay on the disk
   bool operator==(const CheckpointOutputCase&) const = default;
 };
 
@@ -175,7 +175,7 @@ struct OutputCase {
 };
 
 struct TransportRateCase {
-  double from = 0.0;   // s: the mean in the summary is taken from here to the end of the run
+  double from = 0.0;  // s: the mean in the summary is taken from here to the end of the run
   bool operator==(const TransportRateCase&) const = default;
 };
 
@@ -188,7 +188,7 @@ struct Case {
   SystemKind system = SystemKind::resolved;
   std::string name;
   DomainCase domain;
-  FluidCase fluid;                       // meaningless for dry grains, as are coupling and initial
+  FluidCase fluid;  // meaningless for dry grains, as are coupling and initial
   GravityCase gravity;
   std::vector<PopulationCase> grains;
   ContactCase contact;
@@ -202,25 +202,26 @@ struct Case {
 
 // What follows from a case that read_case() has accepted.
 
-Index3 cells_of(const DomainCase& domain);                       // size over spacing
+Index3 cells_of(const DomainCase& domain);  // size over spacing
 std::array<bool, 3> periodic_axes(const DomainCase& domain);
-double fluid_time_step(const Case& c);                           // s; given, or from the lattice velocity
-double grain_time_step(const Case& c);                           // s: a sub-step, or the step of dry grains
-Vec3 gravity_vector(const GravityCase& gravity);                 // m/s^2: (g sin, 0, -g cos) of atan(slope)
-Units units_of(const Case& c);                                   // of a resolved run
-double relaxation_time(const Case& c);                           // BGK, without the subgrid model
+double fluid_time_step(const Case& c);            // s; given, or from the lattice velocity
+double grain_time_step(const Case& c);            // s: a sub-step, or the step of dry grains
+Vec3 gravity_vector(const GravityCase& gravity);  // m/s^2: (g sin, 0, -g cos) of atan(slope)
+Units units_of(const Case& c);                    // of a resolved run
+double relaxation_time(const Case& c);            // BGK, without the subgrid model
 
-std::int64_t grain_count(const Case& c);                         // of all populations
-double largest_diameter(const Case& c);                          // m; 0 without grains
-double smallest_diameter(const Case& c);                         // m; 0 without grains
-double grain_volume(const Case& c);                              // m^3, of all grains
+std::int64_t grain_count(const Case& c);  // of all populations
+double largest_diameter(const Case& c);   // m; 0 without grains
+double smallest_diameter(const Case& c);  // m; 0 without grains
+double grain_volume(const Case& c);       // m^3, of all grains
 
 // Half a period of the undamped spring between two grains of the lightest population, pi sqrt(m / 2 / k_n): the
 // shortest contact there can be (damping makes it longer). s; infinite without grains.
 double shortest_contact(const Case& c);
 
 // The speed (m/s) a flow driven by gravity along the bed can reach: that of a laminar film over the bed, or of the log
-// law above it where that is less. An upper estimate (no side walls), for warnings and `thalweg check`. 0 without slope.
+// law above it where that is less. An upper estimate (no side walls), for warnings and `thalweg check`. 0 without
+// slope.
 double estimated_velocity(const Case& c);
 
 // What does not forbid a run but deserves a second look: whole sentences.

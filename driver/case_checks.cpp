@@ -28,16 +28,18 @@ void check_whole_cells(const DomainCase& domain, const io::YamlDocument& documen
     const double cells = domain.size[axis] / domain.spacing;
     const double whole = std::round(cells);
     if (cells > most_cells_along_axis)
-      throw document.error("domain.spacing", fmt::format("the {} m along {} would be {:.3g} cells, more than {:.0f}; give a "
-                                                         "larger spacing in m", domain.size[axis], axis_name[axis], cells,
-                                                         most_cells_along_axis));
+      throw document.error("domain.spacing",
+                           fmt::format("the {} m along {} would be {:.3g} cells, more than {:.0f}; give a "
+                                       "larger spacing in m",
+                                       domain.size[axis], axis_name[axis], cells, most_cells_along_axis));
     if (whole >= 1.0 && std::abs(cells - whole) <= whole_number_tolerance * whole) continue;
     const double shorter = std::floor(cells) * domain.spacing, longer = std::ceil(cells) * domain.spacing;
-    const std::string sizes = shorter > 0.0 ? fmt::format("{:.9g} or {:.9g} m", shorter, longer)
-                                            : fmt::format("at least {:.9g} m", longer);
-    throw document.error("domain.size", fmt::format("the {} m along {} are {:.6g} cells of {} m; make it a whole number of "
-                                                    "cells, {}", domain.size[axis], axis_name[axis], cells,
-                                                    domain.spacing, sizes));
+    const std::string sizes =
+        shorter > 0.0 ? fmt::format("{:.9g} or {:.9g} m", shorter, longer) : fmt::format("at least {:.9g} m", longer);
+    throw document.error("domain.size",
+                         fmt::format("the {} m along {} are {:.6g} cells of {} m; make it a whole number of "
+                                     "cells, {}",
+                                     domain.size[axis], axis_name[axis], cells, domain.spacing, sizes));
   }
 }
 
@@ -45,8 +47,10 @@ void check_resolution(const Case& c, const io::YamlDocument& document) {
   if (c.grains.empty() || c.system != SystemKind::resolved) return;
   const double largest = smallest_diameter(c) / fewest_cells_per_diameter;
   if (c.domain.spacing > largest * (1.0 + whole_number_tolerance))
-    throw document.error("domain.spacing", fmt::format("the spacing is too coarse for grains of {} m; give at most {:.4g} m, "
-                                                       "a fifth of the diameter", smallest_diameter(c), largest));
+    throw document.error("domain.spacing",
+                         fmt::format("the spacing is too coarse for grains of {} m; give at most {:.4g} m, "
+                                     "a fifth of the diameter",
+                                     smallest_diameter(c), largest));
 }
 
 void check_room(const Case& c, const io::YamlDocument& document) {
@@ -55,19 +59,19 @@ void check_room(const Case& c, const io::YamlDocument& document) {
   for (int axis = 0; axis < 3; ++axis) {
     const double least = (periodic[static_cast<std::size_t>(axis)] ? 2.0 : 1.0) * diameter;
     if (c.domain.size[axis] < least)
-      throw document.error("domain.size",
-                           fmt::format("the {} m along {} are too narrow for grains of {} m; give at least {:.6g} m ({})",
-                                       c.domain.size[axis], axis_name[axis], diameter, least,
-                                       least > diameter ? "two diameters of a periodic axis" : "one diameter"));
+      throw document.error(
+          "domain.size", fmt::format("the {} m along {} are too narrow for grains of {} m; give at least {:.6g} m ({})",
+                                     c.domain.size[axis], axis_name[axis], diameter, least,
+                                     least > diameter ? "two diameters of a periodic axis" : "one diameter"));
   }
   const double box = c.domain.size.prod();
   const double fraction = grain_volume(c) / box;
   if (fraction > densest_bed)
-    throw document.error(c.grains.size() == 1 ? "grains.0.count" : "grains",
-                         fmt::format("{} grains do not fit: they would fill {:.0f} % of the box, and at most {:.0f} % is "
-                                     "possible; give at most {:.0f}% of them or a larger domain.size in m", grain_count(c),
-                                     100.0 * fraction, 100.0 * densest_bed,
-                                     std::floor(100.0 * densest_bed / fraction)));
+    throw document.error(
+        c.grains.size() == 1 ? "grains.0.count" : "grains",
+        fmt::format("{} grains do not fit: they would fill {:.0f} % of the box, and at most {:.0f} % is "
+                    "possible; give at most {:.0f}% of them or a larger domain.size in m",
+                    grain_count(c), 100.0 * fraction, 100.0 * densest_bed, std::floor(100.0 * densest_bed / fraction)));
 }
 
 bool inside(const Vec3& point, const DomainCase& domain) {
@@ -91,22 +95,26 @@ void check_placement(const Case& c, const io::YamlDocument& document) {
     if (!inside(region.lower, c.domain) || !inside(region.upper, c.domain) || !(extent.array() > 0.0).all())
       throw document.error(key + ".placement.region.upper",
                            fmt::format("the region must lie in the box with lower below upper along every axis; give "
-                                       "corners in m between [0, 0, 0] and {}", shown(c.domain.size)));
+                                       "corners in m between [0, 0, 0] and {}",
+                                       shown(c.domain.size)));
     const double fraction = static_cast<double>(grains.count) * grains.mass() / grains.density / extent.prod();
     if (fraction > densest_bed)
-      throw document.error(key + ".count",
-                           fmt::format("{} grains do not fit in their region: they would fill {:.0f} % of it, and at most "
-                                       "{:.0f} % is possible; give a larger placement.region in m or fewer grains",
-                                       grains.count, 100.0 * fraction, 100.0 * densest_bed));
+      throw document.error(
+          key + ".count",
+          fmt::format("{} grains do not fit in their region: they would fill {:.0f} % of it, and at most "
+                      "{:.0f} % is possible; give a larger placement.region in m or fewer grains",
+                      grains.count, 100.0 * fraction, 100.0 * densest_bed));
   }
 }
 
 void check_lattice_velocity(const Case& c, const io::YamlDocument& document, const std::string& key, double velocity) {
   const double lattice_velocity = velocity / units_of(c).velocity();
   if (lattice_velocity <= largest_lattice_velocity * (1.0 + whole_number_tolerance)) return;
-  throw document.error(key, fmt::format("{:.4g} m/s would be {:.3g} cells a step, more than {}; give a step of the fluid of "
-                                        "at most {:.3g} s", velocity, lattice_velocity, largest_lattice_velocity,
-                                        largest_lattice_velocity * c.domain.spacing / velocity));
+  throw document.error(key,
+                       fmt::format("{:.4g} m/s would be {:.3g} cells a step, more than {}; give a step of the fluid of "
+                                   "at most {:.3g} s",
+                                   velocity, lattice_velocity, largest_lattice_velocity,
+                                   largest_lattice_velocity * c.domain.spacing / velocity));
 }
 
 void check_initial_fluid(const Case& c, const io::YamlDocument& document) {
@@ -127,12 +135,16 @@ void check_fluid(const Case& c, const io::YamlDocument& document) {
   if (c.system != SystemKind::resolved) return;
   const std::string step_key = c.fluid.time_step ? "fluid.time_step" : "fluid.maximum_lattice_velocity";
   if (!(relaxation_time(c) > 0.5))
-    throw document.error("fluid.kinematic_viscosity", "the relaxation time of the lattice comes to 1/2, where nothing "
-                                                      "dissipates; give a larger viscosity in m^2/s or a longer step");
+    throw document.error("fluid.kinematic_viscosity",
+                         "the relaxation time of the lattice comes to 1/2, where nothing "
+                         "dissipates; give a larger viscosity in m^2/s or a longer step");
   if (fluid_time_step(c) > c.run.until)
-    throw document.error(step_key, fmt::format("the step of {:.4g} s is longer than the run; give a shorter step in s or a "
-                                               "later run.until", fluid_time_step(c)));
-  if (c.fluid.expected_velocity) check_lattice_velocity(c, document, "fluid.expected_velocity", *c.fluid.expected_velocity);
+    throw document.error(step_key,
+                         fmt::format("the step of {:.4g} s is longer than the run; give a shorter step in s or a "
+                                     "later run.until",
+                                     fluid_time_step(c)));
+  if (c.fluid.expected_velocity)
+    check_lattice_velocity(c, document, "fluid.expected_velocity", *c.fluid.expected_velocity);
   check_initial_fluid(c, document);
   for (std::size_t n = 0; n < c.grains.size(); ++n) {
     const PopulationCase& grains = c.grains[n];
@@ -153,13 +165,15 @@ void check_contact_steps(const Case& c, const io::YamlDocument& document) {
   const double longest = shortest_contact(c) / fewest_steps_per_contact;
   const double step = grain_time_step(c);
   if (step <= longest * (1.0 + whole_number_tolerance)) return;
-  const std::string reason = fmt::format("a step of the grains of {:.4g} s is longer than 1/20 of their shortest contact "
-                                         "({:.4g} s)", step, shortest_contact(c));
+  const std::string reason = fmt::format(
+      "a step of the grains of {:.4g} s is longer than 1/20 of their shortest contact "
+      "({:.4g} s)",
+      step, shortest_contact(c));
   if (c.system == SystemKind::grains)
     throw document.error("run.time_step", fmt::format("{}; give at most {:.3g} s", reason, longest));
   throw document.error("coupling.grain_steps_per_fluid_step",
-                       fmt::format("{}; give at least {:.0f} sub-steps, or a lower contact.normal_stiffness in N/m", reason,
-                                   std::ceil(fluid_time_step(c) / longest)));
+                       fmt::format("{}; give at least {:.0f} sub-steps, or a lower contact.normal_stiffness in N/m",
+                                   reason, std::ceil(fluid_time_step(c) / longest)));
 }
 
 }  // namespace
@@ -172,9 +186,9 @@ void check_case(const Case& c, const io::YamlDocument& document) {
   check_fluid(c, document);
   check_contact_steps(c, document);
   if (c.analysis.transport_rate && c.analysis.transport_rate->from >= c.run.until)
-    throw document.error("analysis.transport_rate.from",
-                         fmt::format("the mean would begin after the end of the run; give a time in s below {}",
-                                     c.run.until));
+    throw document.error(
+        "analysis.transport_rate.from",
+        fmt::format("the mean would begin after the end of the run; give a time in s below {}", c.run.until));
   if (c.analysis.transport_rate && c.grains.empty())
     throw document.error("analysis.transport_rate", "there are no grains to measure; remove the section or add grains");
 }

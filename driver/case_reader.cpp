@@ -39,7 +39,7 @@ Case example_case(SystemKind system) {
   return c;
 }
 
-constexpr double steps_per_contact = 50.0;   // dry grains, where the user gives no step
+constexpr double steps_per_contact = 50.0;  // dry grains, where the user gives no step
 
 }  // namespace
 
@@ -58,9 +58,11 @@ std::string defaults_yaml(const std::string& system) {
   if (system != "resolved" && system != "grains")
     throw InputError(fmt::format("There is no system \"{}\": give one of resolved, grains.", system));
   const Case example = example_case(system == "resolved" ? SystemKind::resolved : SystemKind::grains);
-  return fmt::format("# Every key of a case with system: {}, with its default. Comments give the unit, the range and the\n"
-                     "# meaning. What has no default (required keys and one of each set of alternatives) shows an\n"
-                     "# example; keys that are commented out are optional.\n", system) +
+  return fmt::format(
+             "# Every key of a case with system: {}, with its default. Comments give the unit, the range and the\n"
+             "# meaning. What has no default (required keys and one of each set of alternatives) shows an\n"
+             "# example; keys that are commented out are optional.\n",
+             system) +
          io::written(example, io::YamlStyle::documented);
 }
 

@@ -5,110 +5,6 @@
 // Functions named describe are static rather than in an unnamed namespace, where argument-dependent lookup from the
 // visitor's templates would not find them.
 namespace thalweg {
-namespace {
-
-// The faces as the file names them: an axis at once, or each side.
-struct BoundaryKeys {
-  std::optional<Face> x, y, x_low, x_high, y_low, y_high, bottom, top;
-};
-
-BoundaryKeys keys_of(const std::array<Face, 6>& faces) {
-  BoundaryKeys keys;
-  if (faces[x_low] == faces[x_high]) {
-    keys.x = faces[x_low];
-  } else {
-    keys.x_low = faces[x_low];
-    keys.x_high = faces[x_high];
-  }
-  if (faces[y_low] == faces[y_high]) {
-    keys.y = faces[y_low];
-  } else {
-    keys.y_low = faces[y_low];
-    keys.y_high = faces[y_high];
-  }
-  keys.bottom = faces[bottom];
-  keys.top = faces[top];
-  return keys;
-}
-
-std::array<Face, 6> faces_of(const BoundaryKeys& keys) {
-  std::array<Face, 6> faces;
-  faces[x_low] = keys.x.value_or(keys.x_low.value_or(Face{}));
-  faces[x_high] = keys.x.value_or(keys.x_high.value_or(Face{}));
-  faces[y_low] = keys.y.value_or(keys.y_low.value_or(Face{}));
-  faces[y_high] = keys.y.value_or(keys.y_high.value_or(Face{}));
-  faces[bottom] = keys.bottom.value_or(Face{});
-  faces[top] = keys.top.value_or(Face{});
-  return faces;
-}
-
-const std::string face_forms = "periodic, no_slip, free_slip, law_of_the_wall or {type: law_of_the_wall, coefficient: 8.36}";
-
-void check_axis(io::SectionVisitor& visit, const std::string& axis, const std::optional<Face>& both,
-                const std::optional<Face>& low, const std::optional<Face>& high) {
-  const std::string low_key = axis + "_low", high_key = axis + "_high";
-  visit.require(!both || (!low && !high), low ? low_key : high_key,
-                fmt::format("the axis is given twice; give either {} or {} and {}", axis, low_key, high_key));
-  if (both) return;
-  visit.require(low || high, axis, fmt::format("these two faces are missing; give one of {}", face_forms));
-  visit.require(low.has_value(), low_key, fmt::format("this face is missing; give one of {}", face_forms));
-  visit.require(high.has_value(), high_key, fmt::format("this face is missing; give one of {}", face_forms));
-}
-
-bool half_periodic(const std::optional<Face>& a, const std::optional<Face>& b) {
-  return a && b && (a->type == FaceType::periodic) != (b->type == FaceType::periodic);
-}
-
-}  // namespace
-
-static void describe(io::SectionVisitor& visit, Face& face) {
-  visit.choice<FaceType>("type", face.type,
-                         {{FaceType::periodic, "periodic"},
-                          {FaceType::no_slip, "no_slip"},
-                          {FaceType::free_slip, "free_slip"},
-                          {FaceType::law_of_the_wall, "law_of_the_wall"}},
-                         {.meaning = "kind of face, all by half-link rules", .required = true});
-  if (face.type == FaceType::law_of_the_wall)
-    visit.real("coefficient", face.coefficient,
-               {.meaning = "slip velocity at the wall over the friction velocity", .above = 0.0});
-  else
-    visit.not_here("coefficient", "only a law_of_the_wall has a coefficient; remove it");
-}
-
-static void describe_boundaries(io::SectionVisitor& visit, BoundaryKeys& keys) {
-  const auto face = [&](const std::string& key, std::optional<Face>& value, const std::string& meaning) {
-    visit.section(key, value, {.meaning = meaning, .shorthand = "type"});
-  };
-  face("x", keys.x, "both faces across the stream; or x_low and x_high");
-  face("x_low", keys.x_low, "the upstream face");
-  face("x_high", keys.x_high, "the downstream face");
-  face("y", keys.y, "both side faces; or y_low and y_high");
-  face("y_low", keys.y_low, "the side face at y = 0");
-  face("y_high", keys.y_high, "the side face at the far end of y");
-  face("bottom", keys.bottom, "the floor");
-  face("top", keys.top, "the lid or free surface");
-  check_axis(visit, "x", keys.x, keys.x_low, keys.x_high);
-  check_axis(visit, "y", keys.y, keys.y_low, keys.y_high);
-  visit.require(keys.bottom.has_value(), "bottom", fmt::format("this face is missing; give one of {}", face_forms));
-  visit.require(keys.top.has_value(), "top", fmt::format("this face is missing; give one of {}", face_forms));
-  const std::string together = "an axis is periodic on both faces or on neither; make both faces periodic";
-  visit.require(!half_periodic(keys.x_low, keys.x_high), "x_low", together);
-  visit.require(!half_periodic(keys.y_low, keys.y_high), "y_low", together);
-  visit.require(!half_periodic(keys.bottom, keys.top), "bottom", together);
-}
-
-static void describe(io::SectionVisitor& visit, DomainCase& domain) {
-  visit.vec3("size", domain.size, {.unit = "m", .meaning = "length streamwise (x), cross-stream (y), upwards (z)",
-                                   .required = true, .above = 0.0, .example = 0.1});
-  visit.real("spacing", domain.spacing,
-             {.unit = "m", .meaning = "side of a cell, of which every length holds a whole number; without a fluid only "
-                                      "the grid on which ranks share the box",
-              .required = true, .above = 0.0, .example = 0.5e-3});
-  BoundaryKeys keys = keys_of(domain.faces);
-  visit.section("boundaries", {.meaning = "what stands at each face: " + face_forms, .required = true},
-                [&](io::SectionVisitor& inside) { describe_boundaries(inside, keys); });
-  if (visit.reading()) domain.faces = faces_of(keys);
-}
 
 static void describe(io::SectionVisitor& visit, FluidCase& fluid) {
   visit.real("density", fluid.density,
@@ -120,9 +16,12 @@ static void describe(io::SectionVisitor& visit, FluidCase& fluid) {
   visit.real("time_step", fluid.time_step,
              {.unit = "s", .meaning = "of the fluid; or give the two velocities below", .above = 0.0, .example = 2e-5});
   visit.real("maximum_lattice_velocity", fluid.maximum_lattice_velocity,
-             {.unit = "cells/step", .meaning = "with expected_velocity, in place of time_step: the step in which the "
-                                               "expected velocity covers this many cells",
-              .above = 0.0, .at_most = 0.173, .example = 0.05});
+             {.unit = "cells/step",
+              .meaning = "with expected_velocity, in place of time_step: the step in which the "
+                         "expected velocity covers this many cells",
+              .above = 0.0,
+              .at_most = 0.173,
+              .example = 0.05});
   visit.real("expected_velocity", fluid.expected_velocity,
              {.unit = "m/s", .meaning = "the largest velocity expected in the fluid", .above = 0.0, .example = 0.5});
   visit.require(!(fluid.time_step && fluid.maximum_lattice_velocity), "time_step",
@@ -132,8 +31,7 @@ static void describe(io::SectionVisitor& visit, FluidCase& fluid) {
                 "expected_velocity");
   visit.require(!fluid.maximum_lattice_velocity || fluid.expected_velocity, "expected_velocity",
                 "maximum_lattice_velocity needs it; give the largest velocity expected in m/s, for example 0.5");
-  visit.choice<Collision>("collision", fluid.collision, {{Collision::bgk, "bgk"}},
-                          {.meaning = "collision operator"});
+  visit.choice<Collision>("collision", fluid.collision, {{Collision::bgk, "bgk"}}, {.meaning = "collision operator"});
   visit.choice<Precision>("precision", fluid.precision, {{Precision::single, "single"}, {Precision::double_, "double"}},
                           {.meaning = "of the stored populations"});
 }
@@ -215,28 +113,36 @@ static void describe_contact(io::SectionVisitor& visit, ContactCase& contact, bo
   visit.real("tangential_stiffness", contact.tangential_stiffness,
              {.unit = "N/m", .meaning = "of the spring along a contact", .above = 0.0});
   visit.real("restitution", contact.restitution,
-             {.meaning = "speed after over speed before a dry collision; or give damping", .above = 0.0, .at_most = 1.0,
+             {.meaning = "speed after over speed before a dry collision; or give damping",
+              .above = 0.0,
+              .at_most = 1.0,
               .example = 0.93});
   visit.real("damping", contact.damping,
-             {.unit = "kg/s", .meaning = "of the dashpot across a contact, in place of restitution", .at_least = 0.0,
+             {.unit = "kg/s",
+              .meaning = "of the dashpot across a contact, in place of restitution",
+              .at_least = 0.0,
               .example = 0.09});
   visit.require(!(contact.restitution && contact.damping), "restitution",
                 "the loss in a collision is given twice; give either restitution or damping");
   visit.require(!with_grains || contact.restitution || contact.damping, "restitution",
                 "the loss in a collision is missing; give restitution, for example 0.93, or damping in kg/s");
   visit.real("friction", contact.friction, {.meaning = "coefficient between grains", .at_least = 0.0});
-  visit.real("wall_friction", contact.wall_friction, {.meaning = "coefficient between grain and wall", .at_least = 0.0});
-  visit.choice<Attraction>("attraction", contact.attraction,
-                           {{Attraction::none, "none", "the force never pulls"},
-                            {Attraction::allowed, "allowed", "the dashpot may pull as grains part, as in the linear law"}},
-                           {.meaning = "sign of the normal force"});
+  visit.real("wall_friction", contact.wall_friction,
+             {.meaning = "coefficient between grain and wall", .at_least = 0.0});
+  visit.choice<Attraction>(
+      "attraction", contact.attraction,
+      {{Attraction::none, "none", "the force never pulls"},
+       {Attraction::allowed, "allowed", "the dashpot may pull as grains part, as in the linear law"}},
+      {.meaning = "sign of the normal force"});
 }
 
 static void describe(io::SectionVisitor& visit, CouplingCase& coupling) {
   visit.integer("grain_steps_per_fluid_step", coupling.grain_steps_per_fluid_step,
                 {.meaning = "sub-steps of the grains in one step of the fluid", .at_least = 1});
   visit.real("link_tolerance", coupling.link_tolerance,
-             {.unit = "cells", .meaning = "how far a grain may move before its surface is cut anew", .at_least = 0.0,
+             {.unit = "cells",
+              .meaning = "how far a grain may move before its surface is cut anew",
+              .at_least = 0.0,
               .at_most = 0.1});
   visit.choice<MomentumExchange>("momentum_exchange", coupling.momentum_exchange,
                                  {{MomentumExchange::galilean_invariant, "galilean_invariant", "Wen et al. 2014"},
@@ -252,14 +158,23 @@ static void describe(io::SectionVisitor& visit, CouplingCase& coupling) {
 
 static void describe(io::SectionVisitor& visit, LogProfileCase& profile) {
   visit.real("bed_height", profile.bed_height,
-             {.unit = "m", .meaning = "above the bottom; the fluid below is at rest", .required = true, .at_least = 0.0,
+             {.unit = "m",
+              .meaning = "above the bottom; the fluid below is at rest",
+              .required = true,
+              .at_least = 0.0,
               .example = 0.06});
   visit.real("shear_velocity", profile.shear_velocity,
-             {.unit = "m/s", .meaning = "u(z) = shear_velocity / 0.41 ln((z - bed_height) / roughness)",
-              .required = true, .above = 0.0, .example = 0.08});
+             {.unit = "m/s",
+              .meaning = "u(z) = shear_velocity / 0.41 ln((z - bed_height) / roughness)",
+              .required = true,
+              .above = 0.0,
+              .example = 0.08});
   visit.real("roughness", profile.roughness,
-             {.unit = "m", .meaning = "height above the bed at which the velocity is zero", .required = true,
-              .above = 0.0, .example = 3.3e-4});
+             {.unit = "m",
+              .meaning = "height above the bed at which the velocity is zero",
+              .required = true,
+              .above = 0.0,
+              .example = 3.3e-4});
 }
 
 static void describe(io::SectionVisitor& visit, InitialFluidCase& fluid) {
@@ -276,12 +191,18 @@ static void describe(io::SectionVisitor& visit, InitialCase& initial) {
 
 static void describe_run(io::SectionVisitor& visit, RunCase& run, bool with_fluid) {
   visit.real("until", run.until,
-             {.unit = "s", .meaning = "simulated time at which the run ends", .required = true, .above = 0.0,
+             {.unit = "s",
+              .meaning = "simulated time at which the run ends",
+              .required = true,
+              .above = 0.0,
               .example = 30.0});
-  if (with_fluid) visit.not_here("time_step", "with a fluid the step is fluid.time_step; remove the key");
+  if (with_fluid)
+    visit.not_here("time_step", "with a fluid the step is fluid.time_step; remove the key");
   else
     visit.real("time_step", run.time_step,
-               {.unit = "s", .meaning = "of the grains; 1/50 of the shortest contact where not given", .above = 0.0,
+               {.unit = "s",
+                .meaning = "of the grains; 1/50 of the shortest contact where not given",
+                .above = 0.0,
                 .example = 4e-6});
 }
 
@@ -299,15 +220,15 @@ static void describe(io::SectionVisitor& visit, FluidOutputCase& fluid) {
                              {FluidRegion::slice_y, "slice_y"},
                              {FluidRegion::slice_z, "slice_z"}},
                             {.meaning = "the whole box, or the middle layer of cells across an axis"});
-  visit.choice_list<FluidField>("fields", fluid.fields,
-                                {{FluidField::velocity, "velocity"},
-                                 {FluidField::pressure, "pressure"},
-                                 {FluidField::grain_id, "grain_id"}},
-                                {.meaning = "what the pictures show"});
+  visit.choice_list<FluidField>(
+      "fields", fluid.fields,
+      {{FluidField::velocity, "velocity"}, {FluidField::pressure, "pressure"}, {FluidField::grain_id, "grain_id"}},
+      {.meaning = "what the pictures show"});
 }
 
 static void describe(io::SectionVisitor& visit, GrainOutputCase& grains) {
-  visit.real("every", grains.every, {.unit = "s", .meaning = "between pictures of the grains; 0: none", .at_least = 0.0});
+  visit.real("every", grains.every,
+             {.unit = "s", .meaning = "between pictures of the grains; 0: none", .at_least = 0.0});
 }
 
 static void describe(io::SectionVisitor& visit, CheckpointOutputCase& checkpoint) {
@@ -318,15 +239,16 @@ static void describe(io::SectionVisitor& visit, CheckpointOutputCase& checkpoint
 
 static void describe_output(io::SectionVisitor& visit, OutputCase& output, bool with_fluid) {
   visit.section("series", output.series, {.meaning = "the table series.csv"});
-  if (with_fluid) visit.section("fluid", output.fluid, {.meaning = "pictures of the fluid, fluid.pvd"});
-  else visit.not_here("fluid", "a run without fluid has no pictures of it; remove the section");
+  if (with_fluid)
+    visit.section("fluid", output.fluid, {.meaning = "pictures of the fluid, fluid.pvd"});
+  else
+    visit.not_here("fluid", "a run without fluid has no pictures of it; remove the section");
   visit.section("grains", output.grains, {.meaning = "pictures of the grains, grains.pvd"});
   visit.section("checkpoint", output.checkpoint, {.meaning = "states from which the run can be continued"});
 }
 
 static void describe(io::SectionVisitor& visit, TransportRateCase& rate) {
-  visit.real("from", rate.from,
-             {.unit = "s", .meaning = "start of the mean that summary.json gives", .at_least = 0.0});
+  visit.real("from", rate.from, {.unit = "s", .meaning = "start of the mean that summary.json gives", .at_least = 0.0});
 }
 
 static void describe(io::SectionVisitor& visit, AnalysisCase& analysis) {
@@ -344,14 +266,16 @@ void describe(io::SectionVisitor& visit, Case& c) {
   };
   visit.text("name", c.name, {.meaning = "what the run is called in its output"});
   visit.section("domain", c.domain, {.meaning = "the box, its cells and its faces", .required = true});
-  if (with_fluid) visit.section("fluid", c.fluid, {.meaning = "what fills the box", .required = true});
-  else only_with_fluid("fluid");
+  if (with_fluid)
+    visit.section("fluid", c.fluid, {.meaning = "what fills the box", .required = true});
+  else
+    only_with_fluid("fluid");
   visit.section("gravity", {.meaning = "given by magnitude and slope, or as a vector", .required = true},
                 [&](io::SectionVisitor& inside) { describe_gravity(inside, c.gravity, with_fluid); });
   visit.list("grains", c.grains, {.meaning = "populations of grains", .required = !with_fluid});
-  visit.section("contact", {.meaning = "linear spring and dashpot, with friction"}, [&](io::SectionVisitor& inside) {
-    describe_contact(inside, c.contact, !c.grains.empty());
-  });
+  visit.require(with_fluid || !c.grains.empty(), "grains", "a run of dry grains needs at least one population of them");
+  visit.section("contact", {.meaning = "linear spring and dashpot, with friction"},
+                [&](io::SectionVisitor& inside) { describe_contact(inside, c.contact, !c.grains.empty()); });
   if (with_fluid) {
     visit.section("coupling", c.coupling, {.meaning = "how fluid and grains act on each other"});
     visit.section("initial", c.initial, {.meaning = "state at the start"});

@@ -8,5 +8,6 @@
 namespace thalweg {
 
 void describe(io::SectionVisitor& visit, Case& c);
+void describe(io::SectionVisitor& visit, DomainCase& domain);
 
 }  // namespace thalweg

@@ -17,8 +17,7 @@ void write_text_atomically(const std::filesystem::path& path, const std::string&
   std::ofstream file(partial, std::ios::binary | std::ios::trunc);
   file << text;
   file.close();
-  if (!file)
-    throw RunError(fmt::format("{}: cannot write the file: {}.", path.string(), std::strerror(errno)));
+  if (!file) throw RunError(fmt::format("{}: cannot write the file: {}.", path.string(), std::strerror(errno)));
   rename_into_place(partial, path);
 }
 

@@ -26,9 +26,12 @@ struct FieldInfo {
 
 FieldInfo info_of(FluidField field) {
   switch (field) {
-    case FluidField::velocity: return {"velocity", "Float32", 3};
-    case FluidField::pressure: return {"pressure", "Float32", 1};
-    case FluidField::grain_id: return {"grain_id", "Int32", 1};
+    case FluidField::velocity:
+      return {"velocity", "Float32", 3};
+    case FluidField::pressure:
+      return {"pressure", "Float32", 1};
+    case FluidField::grain_id:
+      return {"grain_id", "Int32", 1};
   }
   throw std::logic_error("unknown fluid field");
 }
@@ -180,7 +183,8 @@ void FluidSeries::write(const Snapshot& snapshot) {
   if (!whole) region = gathered(communicator_, fields, block_of(region_, snapshot.decomposition->cells()));
   agree([&] {
     const double spacing = snapshot.decomposition->spacing();
-    if (in_pieces) write_image(pieces / piece_name(rank_of(communicator_)), fields, spacing, fields_);
+    if (in_pieces)
+      write_image(pieces / piece_name(rank_of(communicator_)), fields, spacing, fields_);
     else if (rank_of(communicator_) == 0)
       write_image(folder_ / "fluid" / (name + ".vti"), whole ? fields : region, spacing, fields_);
   });

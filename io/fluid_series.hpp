@@ -13,7 +13,7 @@
 
 namespace thalweg::io {
 
-enum class FluidRegion { whole, slice_x, slice_y, slice_z };   // a slice: the middle layer of cells across that axis
+enum class FluidRegion { whole, slice_x, slice_y, slice_z };  // a slice: the middle layer of cells across that axis
 enum class FluidField { velocity, pressure, grain_id };
 
 // Writes fluid/fluid_<step>.vti in the run folder, or, for the whole box on several ranks, fluid/fluid_<step>.pvti with
@@ -29,7 +29,7 @@ public:
   void write(const Snapshot& snapshot);
 
 private:
-  void agree(const std::function<void()>& work) const;   // throws RunError on every rank if it failed on one
+  void agree(const std::function<void()>& work) const;  // throws RunError on every rank if it failed on one
 
   MPI_Comm communicator_;
   std::filesystem::path folder_;

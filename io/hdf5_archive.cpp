@@ -15,18 +15,22 @@ namespace thalweg::io {
 namespace {
 
 // In the file every number is little-endian and of fixed size; in memory it is what this machine uses.
-template <typename Number> struct Stored;
-template <> struct Stored<double> {
+template <typename Number>
+struct Stored;
+template <>
+struct Stored<double> {
   static hid_t file() { return H5T_IEEE_F64LE; }
   static hid_t memory() { return H5T_NATIVE_DOUBLE; }
   static constexpr const char* name = "float64";
 };
-template <> struct Stored<float> {
+template <>
+struct Stored<float> {
   static hid_t file() { return H5T_IEEE_F32LE; }
   static hid_t memory() { return H5T_NATIVE_FLOAT; }
   static constexpr const char* name = "float32";
 };
-template <> struct Stored<std::int64_t> {
+template <>
+struct Stored<std::int64_t> {
   static hid_t file() { return H5T_STD_I64LE; }
   static hid_t memory() { return H5T_NATIVE_INT64; }
   static constexpr const char* name = "int64";
@@ -52,8 +56,8 @@ std::uint64_t volume(const std::vector<std::uint64_t>& shape) {
   return std::accumulate(shape.begin(), shape.end(), std::uint64_t{1}, std::multiplies<>());
 }
 
-// The rank's box in the dataset, and the same number of values in a row in memory. A rank with nothing takes part in the
-// collective call with empty selections.
+// The rank's box in the dataset, and the same number of values in a row in memory. A rank with nothing takes part in
+// the collective call with empty selections.
 struct Selection {
   Handle file, memory;
 
@@ -99,7 +103,7 @@ struct Hdf5Writer::File {
   MPI_Comm communicator;
   std::filesystem::path path, partial;
   Handle file;
-  bool failed_everywhere = false;   // every rank knows that writing failed, so closing together is safe
+  bool failed_everywhere = false;  // every rank knows that writing failed, so closing together is safe
 
   // Every rank learns whether all went well.
   void agree(bool good) {
@@ -131,15 +135,16 @@ struct Hdf5Writer::File {
     const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     H5Pset_obj_track_times(creation, false);
     H5Pset_layout(creation, H5D_CONTIGUOUS);
-    H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER);   // every value is written anyway
+    H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER);  // every value is written anyway
     const auto [group_name, leaf] = group_and_name(name);
     const Handle parent = group(group_name);
     const Selection selection(box);
-    const Handle dataset(H5Dcreate2(parent, leaf.c_str(), Stored<Number>::file(), selection.file, H5P_DEFAULT, creation,
-                                    H5P_DEFAULT), H5Dclose);
+    const Handle dataset(
+        H5Dcreate2(parent, leaf.c_str(), Stored<Number>::file(), selection.file, H5P_DEFAULT, creation, H5P_DEFAULT),
+        H5Dclose);
     agree(dataset.good());
     const std::uint64_t bytes = volume(box.global_shape) * sizeof(Number);
-    if (bytes == 0) return;   // it has no place in the file that could be written
+    if (bytes == 0) return;  // it has no place in the file that could be written
     agree(rank_of(communicator) != 0 || reserve_on_disk(partial, H5Dget_offset(dataset), bytes));
     const Handle transfer = collective_transfer();
     agree(H5Dwrite(dataset, Stored<Number>::memory(), selection.memory, selection.file, transfer, values.data()) >= 0);
@@ -207,7 +212,7 @@ void Hdf5Writer::attribute(const std::string& path, std::int64_t value) {
 }
 void Hdf5Writer::attribute(const std::string& path, const std::string& value) {
   const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-  H5Tset_size(type, value.size() + 1);   // a fixed length, with the closing zero: variable lengths live in a heap
+  H5Tset_size(type, value.size() + 1);  // a fixed length, with the closing zero: variable lengths live in a heap
   H5Tset_cset(type, H5T_CSET_UTF8);
   file_->attribute(path, type, type, value.c_str());
 }
@@ -262,7 +267,8 @@ struct Hdf5Reader::File {
     const std::vector<hsize_t> extents = extents_of(found);
     const std::vector<std::uint64_t> stored(extents.begin(), extents.end());
     if (stored != box.global_shape)
-      throw error(name, fmt::format("the file holds {} values, but {} are needed", shown(stored), shown(box.global_shape)));
+      throw error(name,
+                  fmt::format("the file holds {} values, but {} are needed", shown(stored), shown(box.global_shape)));
     if (volume(stored) == 0) return;
     const Selection selection(box);
     const Handle transfer = collective_transfer();
@@ -292,11 +298,13 @@ Hdf5Reader::Hdf5Reader(MPI_Comm communicator, const std::filesystem::path& path)
   silence_hdf5();
   file_->communicator = communicator;
   file_->path = path;
-  int outcome = 0;   // rank 0 looks before all open together
+  int outcome = 0;  // rank 0 looks before all open together
   if (rank_of(communicator) == 0) {
     std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) outcome = 1;
-    else if (H5Fis_hdf5(path.c_str()) <= 0) outcome = 2;
+    if (!std::filesystem::exists(path, ignored))
+      outcome = 1;
+    else if (H5Fis_hdf5(path.c_str()) <= 0)
+      outcome = 2;
   }
   MPI_Bcast(&outcome, 1, MPI_INT, 0, communicator);
   if (outcome == 1) throw InputError(fmt::format("{}: there is no such file; check the path.", path.string()));
@@ -345,11 +353,13 @@ std::string Hdf5Reader::text_attribute(const std::string& path) const {
 
 std::vector<Hdf5Reader::Entry> Hdf5Reader::datasets() const {
   std::vector<std::string> names;
-  H5Ovisit_by_name(file_->file, "/", H5_INDEX_NAME, H5_ITER_INC,
+  H5Ovisit_by_name(
+      file_->file, "/", H5_INDEX_NAME, H5_ITER_INC,
       [](hid_t, const char* name, const H5O_info_t* info, void* list) -> herr_t {
         if (info->type == H5O_TYPE_DATASET) static_cast<std::vector<std::string>*>(list)->emplace_back(name);
         return 0;
-      }, &names, H5P_DEFAULT);
+      },
+      &names, H5P_DEFAULT);
   std::vector<Entry> entries;
   for (const std::string& name : names) {
     const Handle dataset = file_->dataset(name);

@@ -1,7 +1,7 @@
 // HDF5 files behind core/archive.hpp: the checkpoints.
 //
-// The file's bytes depend on the data alone, not on the number of ranks that wrote it: every dataset is contiguous, of a
-// little-endian type of fixed size, without time stamps, and all metadata are created collectively in the same order.
+// The file's bytes depend on the data alone, not on the number of ranks that wrote it: every dataset is contiguous, of
+// a little-endian type of fixed size, without time stamps, and all metadata are created collectively in the same order.
 #pragma once
 
 #include "core/archive.hpp"
@@ -20,7 +20,7 @@ namespace thalweg::io {
 class Hdf5Writer final : public ArchiveWriter {
 public:
   Hdf5Writer(MPI_Comm communicator, const std::filesystem::path& path);
-  ~Hdf5Writer() override;   // without close(): the unfinished file is thrown away
+  ~Hdf5Writer() override;  // without close(): the unfinished file is thrown away
   Hdf5Writer(const Hdf5Writer&) = delete;
   Hdf5Writer& operator=(const Hdf5Writer&) = delete;
 
@@ -48,7 +48,7 @@ public:
   Hdf5Reader(const Hdf5Reader&) = delete;
   Hdf5Reader& operator=(const Hdf5Reader&) = delete;
 
-  bool has(const std::string& path) const override;   // a dataset or an attribute
+  bool has(const std::string& path) const override;  // a dataset or an attribute
   std::vector<std::uint64_t> shape(const std::string& path) const override;
   void read(const std::string& path, std::span<double> values, const ArrayBox& box) override;
   void read(const std::string& path, std::span<float> values, const ArrayBox& box) override;
@@ -60,7 +60,7 @@ public:
   // What the file holds, sorted by path: for `thalweg info`.
   struct Entry {
     std::string path;
-    std::string type;                    // "float64", "float32" or "int64"
+    std::string type;  // "float64", "float32" or "int64"
     std::vector<std::uint64_t> shape;
   };
   std::vector<Entry> datasets() const;

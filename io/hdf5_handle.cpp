@@ -26,7 +26,7 @@ bool reserve_on_disk(const std::filesystem::path& path, std::uint64_t offset, st
   if (file < 0) return false;
   const int error = ::fallocate(file, 0, static_cast<off_t>(offset), static_cast<off_t>(bytes)) == 0 ? 0 : errno;
   ::close(file);
-  return error == 0 || error == EOPNOTSUPP || error == ENOSYS;   // a file system that cannot promise
+  return error == 0 || error == EOPNOTSUPP || error == ENOSYS;  // a file system that cannot promise
 }
 
 bool put_on_disk(const std::filesystem::path& from, const std::filesystem::path& to) {

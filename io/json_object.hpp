@@ -22,15 +22,15 @@ public:
   JsonObject& set(const std::string& name, const JsonObject& value);
   JsonObject& set(const std::string& name, const std::vector<double>& values);
 
-  std::string line() const;                        // on one line
-  std::string text() const;                        // indented, one entry a line
-  void write(const std::filesystem::path& path) const;   // atomically; throws RunError
+  std::string line() const;                             // on one line
+  std::string text() const;                             // indented, one entry a line
+  void write(const std::filesystem::path& path) const;  // atomically; throws RunError
 
 private:
   struct Entry {
     std::string name;
-    std::string line;   // the value on one line
-    std::string text;   // the value over several lines
+    std::string line;  // the value on one line
+    std::string text;  // the value over several lines
   };
   JsonObject& put(const std::string& name, std::string line, std::string text);
 

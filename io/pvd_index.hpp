@@ -11,8 +11,8 @@ namespace thalweg::io {
 class PvdIndex {
 public:
   struct Entry {
-    double time;        // s
-    std::string file;   // relative to the folder of the index
+    double time;       // s
+    std::string file;  // relative to the folder of the index
   };
 
   // continue_from: read an existing index and keep its entries up to that time (s). Empty: start with none.

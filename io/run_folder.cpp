@@ -16,8 +16,8 @@ namespace fs = std::filesystem;
 namespace {
 
 // All a run writes; --overwrite removes these and nothing else.
-constexpr std::array run_contents{"case.yaml", "run.log",    "series.csv", "profiles.h5", "tracks.h5", "grains.pvd",
-                                  "fluid.pvd", "grains",     "fluid",      "checkpoints", "summary.json"};
+constexpr std::array run_contents{"case.yaml", "run.log", "series.csv", "profiles.h5", "tracks.h5",   "grains.pvd",
+                                  "fluid.pvd", "grains",  "fluid",      "checkpoints", "summary.json"};
 constexpr const char* latest_name = "latest";
 
 std::optional<std::int64_t> step_of_checkpoint(const std::string& name) {
@@ -41,14 +41,19 @@ void RunFolder::check_new(bool overwrite) const {
   std::error_code ignored;
   if (!fs::exists(path_, ignored)) return;
   if (!fs::is_directory(path_, ignored))
-    throw InputError(fmt::format("{}: there is a file of this name; choose another folder with --out.", path_.string()));
+    throw InputError(
+        fmt::format("{}: there is a file of this name; choose another folder with --out.", path_.string()));
   if (fs::is_empty(path_, ignored)) return;
   if (!is_run_folder())
-    throw InputError(fmt::format("{}: the folder holds something that is not a run of Thalweg and is left alone; choose "
-                                 "another folder with --out.", path_.string()));
+    throw InputError(
+        fmt::format("{}: the folder holds something that is not a run of Thalweg and is left alone; choose "
+                    "another folder with --out.",
+                    path_.string()));
   if (!overwrite)
-    throw InputError(fmt::format("{}: the folder holds a run already; choose another with --out, continue it with "
-                                 "--restart {}, or replace it with --overwrite.", path_.string(), path_.string()));
+    throw InputError(
+        fmt::format("{}: the folder holds a run already; choose another with --out, continue it with "
+                    "--restart {}, or replace it with --overwrite.",
+                    path_.string(), path_.string()));
 }
 
 void RunFolder::create(bool overwrite) const {
@@ -97,14 +102,18 @@ fs::path RunFolder::latest_checkpoint() const {
   std::error_code ignored;
   const fs::path latest = checkpoints() / latest_name;
   if (!fs::exists(latest, ignored))
-    throw InputError(fmt::format("{}: the folder has no checkpoint ({} is missing); give the path of a checkpoint or of a "
-                                 "run that wrote one.", path_.string(), latest.string()));
+    throw InputError(
+        fmt::format("{}: the folder has no checkpoint ({} is missing); give the path of a checkpoint or of a "
+                    "run that wrote one.",
+                    path_.string(), latest.string()));
   std::string name = read_text(latest);
   while (!name.empty() && (name.back() == '\n' || name.back() == ' ')) name.pop_back();
   const fs::path file = checkpoints() / name;
   if (!step_of_checkpoint(name) || !fs::exists(file, ignored))
-    throw InputError(fmt::format("{}: the checkpoint \"{}\" it names does not exist; give the path of another checkpoint "
-                                 "of this folder.", latest.string(), name));
+    throw InputError(
+        fmt::format("{}: the checkpoint \"{}\" it names does not exist; give the path of another checkpoint "
+                    "of this folder.",
+                    latest.string(), name));
   return file;
 }
 
@@ -112,8 +121,10 @@ fs::path checkpoint_at(const fs::path& path) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) return RunFolder(path).latest_checkpoint();
   if (fs::exists(path, ignored)) return path;
-  throw InputError(fmt::format("{}: there is no such file or folder; give a checkpoint, for example "
-                               "run/checkpoints/step_1000.h5, or a run folder.", path.string()));
+  throw InputError(
+      fmt::format("{}: there is no such file or folder; give a checkpoint, for example "
+                  "run/checkpoints/step_1000.h5, or a run folder.",
+                  path.string()));
 }
 
 }  // namespace thalweg::io

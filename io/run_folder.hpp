@@ -16,8 +16,8 @@ public:
   // True if this is a folder some run wrote: its case.yaml begins with case_marker.
   bool is_run_folder() const;
 
-  // Makes the folder ready for a new run. Throws InputError if something is there already: a run without `overwrite`, or
-  // anything that is not a run in any case. With `overwrite` only what a run writes is removed, and nothing else.
+  // Makes the folder ready for a new run. Throws InputError if something is there already: a run without `overwrite`,
+  // or anything that is not a run in any case. With `overwrite` only what a run writes is removed, and nothing else.
   // check_new() only checks, so that a bad case can be refused before anything is written.
   void check_new(bool overwrite) const;
   void create(bool overwrite) const;
@@ -34,7 +34,7 @@ public:
   std::filesystem::path tracks() const { return path_ / "tracks.h5"; }
   std::filesystem::path summary() const { return path_ / "summary.json"; }
   std::filesystem::path checkpoints() const { return path_ / "checkpoints"; }
-  std::filesystem::path checkpoint(std::int64_t step) const;   // checkpoints/step_<step>.h5
+  std::filesystem::path checkpoint(std::int64_t step) const;  // checkpoints/step_<step>.h5
 
   // After the checkpoint of `step` has been closed: makes it the latest (checkpoints/latest holds its file name) and
   // removes all but the newest `keep` of those up to `step`, and any after it, which a restart from an earlier time has
@@ -48,7 +48,8 @@ private:
   std::filesystem::path path_;
 };
 
-// The checkpoint a `--restart PATH` means: the file itself, or the latest checkpoint of a run folder. Throws InputError.
+// The checkpoint a `--restart PATH` means: the file itself, or the latest checkpoint of a run folder. Throws
+// InputError.
 std::filesystem::path checkpoint_at(const std::filesystem::path& path);
 
 }  // namespace thalweg::io

@@ -24,8 +24,9 @@ bool parse(const std::string& text, Number& value) {
 }
 
 bool in_range(double value, const RealKey& about) {
-  return std::isfinite(value) && !(about.above && !(value > *about.above)) && !(about.below && !(value < *about.below)) &&
-         !(about.at_least && !(value >= *about.at_least)) && !(about.at_most && !(value <= *about.at_most));
+  return std::isfinite(value) && !(about.above && !(value > *about.above)) &&
+         !(about.below && !(value < *about.below)) && !(about.at_least && !(value >= *about.at_least)) &&
+         !(about.at_most && !(value <= *about.at_most));
 }
 
 std::string range_of(const RealKey& about) {
@@ -49,8 +50,8 @@ std::string expected_real(const RealKey& about, double fallback) {
 std::string expected_vec3(const RealKey& about) {
   const double e = about.example.value_or(0.1);
   const std::string range = range_of(about);
-  return fmt::format("a list of 3 numbers{}{}{}, for example [{}, {}, {}]", unit_of(about), range.empty() ? "" : ", each",
-                     range, shortest(e), shortest(e), shortest(e));
+  return fmt::format("a list of 3 numbers{}{}{}, for example [{}, {}, {}]", unit_of(about),
+                     range.empty() ? "" : ", each", range, shortest(e), shortest(e), shortest(e));
 }
 
 // Levenshtein distance.
@@ -107,8 +108,9 @@ void SectionReader::finish() const {
     if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
     const std::string meant = nearest(key, known_);
     if (!meant.empty()) fail(node, key, fmt::format("unknown key; did you mean {}?", joined_key(key_path_, meant)));
-    fail(node, key, fmt::format("unknown key; {} {}", key_path_.empty() ? "a case has" : key_path_ + " has",
-                                known_.empty() ? "no keys" : fmt::format("the keys {}", fmt::join(known_, ", "))));
+    fail(node, key,
+         fmt::format("unknown key; {} {}", key_path_.empty() ? "a case has" : key_path_ + " has",
+                     known_.empty() ? "no keys" : fmt::format("the keys {}", fmt::join(known_, ", "))));
   }
   if (!missing_.empty()) throw InputError(missing_);
 }
@@ -135,27 +137,33 @@ Vec3 SectionReader::vec3_from(const YamlNode& node, const std::string& key, cons
 
 void SectionReader::real(const std::string& key, double& value, const RealKey& about) {
   const std::string expectation = expected_real(about, value);
-  if (const YamlNode* node = look_up(key, about.required, expectation)) value = real_from(*node, key, about, expectation);
+  if (const YamlNode* node = look_up(key, about.required, expectation))
+    value = real_from(*node, key, about, expectation);
 }
 
 void SectionReader::real(const std::string& key, std::optional<double>& value, const RealKey& about) {
   const std::string expectation = expected_real(about, value.value_or(1.0));
-  if (const YamlNode* node = look_up(key, about.required, expectation)) value = real_from(*node, key, about, expectation);
+  if (const YamlNode* node = look_up(key, about.required, expectation))
+    value = real_from(*node, key, about, expectation);
 }
 
 void SectionReader::vec3(const std::string& key, Vec3& value, const RealKey& about) {
   const std::string expectation = expected_vec3(about);
-  if (const YamlNode* node = look_up(key, about.required, expectation)) value = vec3_from(*node, key, about, expectation);
+  if (const YamlNode* node = look_up(key, about.required, expectation))
+    value = vec3_from(*node, key, about, expectation);
 }
 
 void SectionReader::vec3(const std::string& key, std::optional<Vec3>& value, const RealKey& about) {
   const std::string expectation = expected_vec3(about);
-  if (const YamlNode* node = look_up(key, about.required, expectation)) value = vec3_from(*node, key, about, expectation);
+  if (const YamlNode* node = look_up(key, about.required, expectation))
+    value = vec3_from(*node, key, about, expectation);
 }
 
 void SectionReader::vec3_list(const std::string& key, std::vector<Vec3>& values, const RealKey& about) {
-  const std::string expectation = fmt::format("a list of points{}, each a list of 3 numbers, for example "
-                                              "[[0.01, 0.01, 0.005], [0.02, 0.01, 0.005]]", unit_of(about));
+  const std::string expectation = fmt::format(
+      "a list of points{}, each a list of 3 numbers, for example "
+      "[[0.01, 0.01, 0.005], [0.02, 0.01, 0.005]]",
+      unit_of(about));
   const YamlNode* node = look_up(key, about.required, expectation);
   if (!node) return;
   if (node->kind != YamlNode::Kind::list || node->items.empty()) fail(*node, key, "expected " + expectation);
@@ -208,11 +216,12 @@ void SectionReader::word(const std::string& key, std::size_t& index, const std::
     index = word_from(*node, key, words);
 }
 
-void SectionReader::word_list(const std::string& key, std::vector<std::size_t>& indices,
-                              const std::vector<Word>& words, const SectionKey& about) {
+void SectionReader::word_list(const std::string& key, std::vector<std::size_t>& indices, const std::vector<Word>& words,
+                              const SectionKey& about) {
   std::vector<std::string> names;
   for (const Word& word : words) names.push_back(word.name);
-  const std::string expectation = fmt::format("a list of some of {}, for example [{}]", fmt::join(names, ", "), names[0]);
+  const std::string expectation =
+      fmt::format("a list of some of {}, for example [{}]", fmt::join(names, ", "), names[0]);
   const YamlNode* node = look_up(key, about.required, expectation);
   if (!node) return;
   if (node->kind != YamlNode::Kind::list || node->items.empty()) fail(*node, key, "expected " + expectation);

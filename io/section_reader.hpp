@@ -24,7 +24,7 @@ public:
   void require(bool condition, const std::string& key, const std::string& remedy) override;
   bool reading() const override { return true; }
 
-  void finish() const;   // throws InputError for an unknown key, with the nearest known one
+  void finish() const;  // throws InputError for an unknown key, with the nearest known one
 
 private:
   void word(const std::string& key, std::size_t& index, const std::vector<Word>& words,
@@ -49,8 +49,8 @@ private:
   const YamlDocument& document_;
   std::string key_path_;
   const YamlNode& section_;
-  std::vector<std::string> known_;   // every key asked for, in order
-  std::string missing_;              // the complaint about the first required key that is not given
+  std::vector<std::string> known_;  // every key asked for, in order
+  std::string missing_;             // the complaint about the first required key that is not given
 };
 
 // Reads a whole document into a struct described for SectionVisitor.

@@ -22,14 +22,14 @@
 namespace thalweg::io {
 
 struct RealKey {
-  std::string unit = "1";   // "1": none
+  std::string unit = "1";  // "1": none
   std::string meaning = {};
   bool required = false;
-  std::optional<double> above = std::nullopt;      // value > above
+  std::optional<double> above = std::nullopt;  // value > above
   std::optional<double> at_least = std::nullopt;
-  std::optional<double> below = std::nullopt;      // value < below
+  std::optional<double> below = std::nullopt;  // value < below
   std::optional<double> at_most = std::nullopt;
-  std::optional<double> example = std::nullopt;    // shown in errors and, for an optional value, in the documentation
+  std::optional<double> example = std::nullopt;  // shown in errors and, for an optional value, in the documentation
 };
 
 struct IntegerKey {
@@ -48,8 +48,8 @@ struct TextKey {
 struct SectionKey {
   std::string meaning = {};
   bool required = false;
-  std::string shorthand = {};    // a plain word in place of the section is the value of this key: x: no_slip
-  std::string empty_name = {};   // this word in place of the section stands for the section without keys: fluid: rest
+  std::string shorthand = {};   // a plain word in place of the section is the value of this key: x: no_slip
+  std::string empty_name = {};  // this word in place of the section stands for the section without keys: fluid: rest
 };
 
 // A word of a choice and what it means.
@@ -82,8 +82,8 @@ public:
   }
 
   template <typename Choice>
-  void choice_list(const std::string& key, std::vector<Choice>& values,
-                   const std::vector<NamedChoice<Choice>>& choices, const SectionKey& about) {
+  void choice_list(const std::string& key, std::vector<Choice>& values, const std::vector<NamedChoice<Choice>>& choices,
+                   const SectionKey& about) {
     std::vector<std::size_t> indices;
     for (const Choice& value : values) indices.push_back(index_of(value, choices));
     word_list(key, indices, words_of(choices), about);
@@ -106,16 +106,17 @@ public:
     const bool given = is_given(key, value.has_value());
     Section held = value.value_or(Section{});
     nested(key, given, about, [&](SectionVisitor& inside) { describe(inside, held); });
-    if (given) value = held;
-    else value.reset();
+    if (given)
+      value = held;
+    else
+      value.reset();
   }
 
   template <typename Section>
   void list(const std::string& key, std::vector<Section>& values, const SectionKey& about) {
     const std::size_t size = begin_list(key, values.size(), about);
     values.resize(size);
-    for (std::size_t n = 0; n < size; ++n)
-      item(key, n, [&](SectionVisitor& inside) { describe(inside, values[n]); });
+    for (std::size_t n = 0; n < size; ++n) item(key, n, [&](SectionVisitor& inside) { describe(inside, values[n]); });
   }
 
   // The key belongs to this section but not to this case; reading it is an error that gives the reason.

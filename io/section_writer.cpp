@@ -13,9 +13,12 @@ constexpr std::size_t comment_column = 44;
 std::string quoted(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) {
-    if (c == '"' || c == '\\') result += fmt::format("\\{}", c);
-    else if (static_cast<unsigned char>(c) < 0x20) result += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
-    else result += c;
+    if (c == '"' || c == '\\')
+      result += fmt::format("\\{}", c);
+    else if (static_cast<unsigned char>(c) < 0x20)
+      result += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+    else
+      result += c;
   }
   return result + "\"";
 }
@@ -59,7 +62,8 @@ void SectionWriter::vec3(const std::string& key, Vec3& value, const RealKey& abo
 }
 
 void SectionWriter::vec3(const std::string& key, std::optional<Vec3>& value, const RealKey& about) {
-  put(value.has_value(), key, bracketed(value.value_or(Vec3::Constant(about.example.value_or(0.0)))), comment_of(about));
+  put(value.has_value(), key, bracketed(value.value_or(Vec3::Constant(about.example.value_or(0.0)))),
+      comment_of(about));
 }
 
 void SectionWriter::vec3_list(const std::string& key, std::vector<Vec3>& values, const RealKey& about) {
@@ -99,8 +103,8 @@ void SectionWriter::word(const std::string& key, std::size_t& index, const std::
   put(true, key, words[index].name, comment_of(words, about));
 }
 
-void SectionWriter::word_list(const std::string& key, std::vector<std::size_t>& indices,
-                              const std::vector<Word>& words, const SectionKey& about) {
+void SectionWriter::word_list(const std::string& key, std::vector<std::size_t>& indices, const std::vector<Word>& words,
+                              const SectionKey& about) {
   std::vector<std::string> names;
   for (const std::size_t index : indices) names.push_back(words[index].name);
   put(true, key, fmt::format("[{}]", fmt::join(names, ", ")), comment_of(words, about));

@@ -5,8 +5,8 @@
 
 namespace thalweg::io {
 
-// plain: every key that has a value, its unit as a comment. documented: meanings as well, and the keys that are not given
-// as comments, so that the text is both a valid file and the reference of all keys.
+// plain: every key that has a value, its unit as a comment. documented: meanings as well, and the keys that are not
+// given as comments, so that the text is both a valid file and the reference of all keys.
 enum class YamlStyle { plain, documented };
 
 class SectionWriter final : public SectionVisitor {
@@ -29,9 +29,9 @@ public:
 
 private:
   struct Line {
-    bool given;            // false: shown as a comment
-    bool item;             // the first line of an entry of a list
-    int depth;             // in sections
+    bool given;  // false: shown as a comment
+    bool item;   // the first line of an entry of a list
+    int depth;   // in sections
     std::string key, value, comment;
   };
 
@@ -49,8 +49,8 @@ private:
   std::string comment_of(const std::vector<Word>& words, const SectionKey& about) const;
 
   YamlStyle style_;
-  bool given_ = true;           // false inside a section that is not given
-  bool item_begins_ = false;    // the next line is the first of an entry of a list
+  bool given_ = true;         // false inside a section that is not given
+  bool item_begins_ = false;  // the next line is the first of an entry of a list
   int depth_ = 0;
   std::vector<Line> lines_;
 };

@@ -46,8 +46,10 @@ SeriesTable::SeriesTable(MPI_Comm communicator, std::filesystem::path path, std:
       std::string rows;
       if (continue_from && std::filesystem::exists(path_)) {
         const std::string text = read_text(path_);
-        if (text.starts_with(header)) rows = kept_rows(text, header.size(), *continue_from);
-        else if (!text.empty()) outcome = other_columns;
+        if (text.starts_with(header))
+          rows = kept_rows(text, header.size(), *continue_from);
+        else if (!text.empty())
+          outcome = other_columns;
       }
       if (outcome == good) {
         write_text_atomically(path_, header + rows);
@@ -60,8 +62,10 @@ SeriesTable::SeriesTable(MPI_Comm communicator, std::filesystem::path path, std:
   }
   MPI_Bcast(&outcome, 1, MPI_INT, 0, communicator_);
   if (outcome == other_columns)
-    throw InputError(fmt::format("{}: the file has other columns than this run writes ({}); restart into another folder "
-                                 "with --out.", path_.string(), header_of(columns_).substr(0, header_of(columns_).size() - 1)));
+    throw InputError(
+        fmt::format("{}: the file has other columns than this run writes ({}); restart into another folder "
+                    "with --out.",
+                    path_.string(), header_of(columns_).substr(0, header_of(columns_).size() - 1)));
   throw_if_failed(outcome == cannot_write);
 }
 
@@ -77,8 +81,8 @@ void SeriesTable::append(double time, std::span<const double> values) {
 
 void SeriesTable::throw_if_failed(bool failed) const {
   if (any_rank(communicator_, failed))
-    throw RunError(fmt::format("{}: cannot write the series; is the disk full or the folder write-protected?",
-                               path_.string()));
+    throw RunError(
+        fmt::format("{}: cannot write the series; is the disk full or the folder write-protected?", path_.string()));
 }
 
 }  // namespace thalweg::io

@@ -18,7 +18,7 @@ class SeriesTable {
 public:
   struct Column {
     std::string name;
-    std::string unit;   // "1" for none
+    std::string unit;  // "1" for none
   };
 
   // columns: after the first, which is always time [s]. continue_from: take up an existing file and drop the rows after

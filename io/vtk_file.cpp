@@ -9,7 +9,7 @@
 namespace thalweg::io {
 
 void write_vtk_file(vtkXMLWriter& writer, const std::filesystem::path& path) {
-  vtkObject::GlobalWarningDisplayOff();   // VTK would print the same failure in its own words
+  vtkObject::GlobalWarningDisplayOff();  // VTK would print the same failure in its own words
   std::filesystem::path partial = path;
   partial += ".partial";
   writer.SetFileName(partial.c_str());
@@ -17,8 +17,8 @@ void write_vtk_file(vtkXMLWriter& writer, const std::filesystem::path& path) {
   writer.EncodeAppendedDataOff();
   writer.SetCompressorTypeToZLib();
   if (writer.Write() == 0 || writer.GetErrorCode() != 0)
-    throw RunError(fmt::format("{}: cannot write the picture; is the disk full or the folder write-protected?",
-                               path.string()));
+    throw RunError(
+        fmt::format("{}: cannot write the picture; is the disk full or the folder write-protected?", path.string()));
   rename_into_place(partial, path);
 }
 

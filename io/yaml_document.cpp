@@ -12,7 +12,7 @@
 namespace thalweg::io {
 namespace {
 
-constexpr int deepest = 32;   // levels: more are a file gone wrong, or one that contains itself
+constexpr int deepest = 32;  // levels: more are a file gone wrong, or one that contains itself
 
 using PlaceOf = std::function<std::string(const YAML::Mark&)>;
 
@@ -38,8 +38,9 @@ YamlNode converted(const YAML::Node& node, const std::string& place, const std::
   } else if (node.IsSequence()) {
     result.kind = YamlNode::Kind::list;
     for (const auto& item : node)
-      result.items.push_back(converted(item, place_of(item.Mark()), joined_key(key_path, fmt::format("{}",
-                                       result.items.size())), place_of, depth + 1));
+      result.items.push_back(converted(item, place_of(item.Mark()),
+                                       joined_key(key_path, fmt::format("{}", result.items.size())), place_of,
+                                       depth + 1));
   } else {
     result.kind = YamlNode::Kind::scalar;
     if (node.IsScalar()) result.text = node.Scalar();
@@ -53,8 +54,10 @@ YamlNode parsed(const std::string& text, const PlaceOf& place_of, const std::str
     return converted(YAML::Load(text), whole_place, key_path, place_of, 0);
   } catch (const YAML::Exception& error) {
     const std::string place = error.mark.is_null() ? whole_place : place_of(error.mark);
-    throw InputError(fmt::format("{}: this is not valid YAML: {}; look for a missing colon, bracket or quote and for "
-                                 "uneven indentation here or just above.", place, error.msg));
+    throw InputError(
+        fmt::format("{}: this is not valid YAML: {}; look for a missing colon, bracket or quote and for "
+                    "uneven indentation here or just above.",
+                    place, error.msg));
   }
 }
 
@@ -64,9 +67,7 @@ bool is_number(const std::string& text) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
-YamlNode* entry_of(YamlNode& section, const std::string& key) {
-  return const_cast<YamlNode*>(section.find(key));
-}
+YamlNode* entry_of(YamlNode& section, const std::string& key) { return const_cast<YamlNode*>(section.find(key)); }
 
 YamlNode* item_of(YamlNode& list, const std::string& key) {
   std::size_t index = 0;
@@ -108,13 +109,11 @@ std::string shown(const YamlNode& node) {
   if (node.kind == YamlNode::Kind::scalar) return is_number(node.text) ? node.text : fmt::format("\"{}\"", node.text);
   constexpr std::size_t most = 6;
   std::string text = "[";
-  for (std::size_t n = 0; n < node.items.size() && n < most; ++n)
-    text += (n ? ", " : "") + shown(node.items[n]);
+  for (std::size_t n = 0; n < node.items.size() && n < most; ++n) text += (n ? ", " : "") + shown(node.items[n]);
   return text + (node.items.size() > most ? ", ...]" : "]");
 }
 
-YamlDocument::YamlDocument(const std::filesystem::path& path, const std::vector<std::string>& overrides)
-    : path_(path) {
+YamlDocument::YamlDocument(const std::filesystem::path& path, const std::vector<std::string>& overrides) : path_(path) {
   const std::string name = path.string();
   const auto place_of = [&](const YAML::Mark& mark) { return fmt::format("{}:{}", name, mark.line + 1); };
   if (std::filesystem::is_directory(path))
@@ -134,7 +133,8 @@ void YamlDocument::apply(const std::string& override_text) {
     throw InputError(fmt::format("{}: expected KEY=VALUE, for example --set run.until=10.", place));
   const std::string key_path = override_text.substr(0, equals);
   const std::string value_text = override_text.substr(equals + 1);
-  YamlNode value = parsed(value_text, [&](const YAML::Mark&) { return place; }, place, key_path);
+  YamlNode value = parsed(
+      value_text, [&](const YAML::Mark&) { return place; }, place, key_path);
   const bool remove = value.kind == YamlNode::Kind::scalar && value.text.empty();
 
   YamlNode* node = &root_;

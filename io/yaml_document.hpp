@@ -14,12 +14,12 @@ struct YamlNode {
   enum class Kind { scalar, section, list };
 
   Kind kind = Kind::section;
-  std::string text;                                        // of a scalar; empty for null
-  std::vector<std::pair<std::string, YamlNode>> entries;   // of a section, in the order of the file
-  std::vector<YamlNode> items;                             // of a list
-  std::string place;                                       // "cases/x/case.yaml:12" or "--set fluid.density=water"
+  std::string text;                                       // of a scalar; empty for null
+  std::vector<std::pair<std::string, YamlNode>> entries;  // of a section, in the order of the file
+  std::vector<YamlNode> items;                            // of a list
+  std::string place;                                      // "cases/x/case.yaml:12" or "--set fluid.density=water"
 
-  const YamlNode* find(const std::string& key) const;      // entry of a section; null if there is none
+  const YamlNode* find(const std::string& key) const;  // entry of a section; null if there is none
 };
 
 class YamlDocument {
@@ -34,8 +34,8 @@ public:
   // The value at "fluid.density" or "grains.0.count"; null if there is none.
   const YamlNode* find(const std::string& key_path) const;
 
-  // The error of a value: "<place>: <key path> = <value found>: <remedy>.", or, where the key is not given, the place of
-  // the section it belongs to and "<key path>: <remedy>.".
+  // The error of a value: "<place>: <key path> = <value found>: <remedy>.", or, where the key is not given, the place
+  // of the section it belongs to and "<key path>: <remedy>.".
   InputError error(const std::string& key_path, const std::string& remedy) const;
 
 private:

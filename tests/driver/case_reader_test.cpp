@@ -1,6 +1,7 @@
-// Case files: the example of the documentation, round trips, and a table of bad input with what the user reads about it.
-#include "core/error.hpp"
+// Case files: the example of the documentation, round trips, and a table of bad input with what the user reads about
+// it.
 #include "driver/case_reader.hpp"
+#include "core/error.hpp"
 #include "tests/io/scratch_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -72,13 +73,13 @@ TEST(CaseReader, ReadsWhatTheFileSays) {
 }
 
 TEST(CaseReader, ReadsEveryFormOfFacesGravityStepAndStart) {
-  const Case c = read(flume, {"domain.boundaries={x_low: no_slip, x_high: free_slip, y: periodic, bottom: "
-                              "{type: no_slip}, top: law_of_the_wall}",
-                              "gravity={vector: [0.1, 0, -9.8], mode: full}", "fluid.time_step=",
-                              "fluid.maximum_lattice_velocity=0.05", "fluid.expected_velocity=1.0",
-                              "contact={damping: 0.09, attraction: none}",
-                              "initial.fluid={log_profile: {bed_height: 0.05, shear_velocity: 0.06, roughness: 2e-4}}",
-                              "grains.1.fixed=false", "grains.1.prescribed_angular_velocity=[0, 1, 0]"});
+  const Case c = read(
+      flume, {"domain.boundaries={x_low: no_slip, x_high: free_slip, y: periodic, bottom: "
+              "{type: no_slip}, top: law_of_the_wall}",
+              "gravity={vector: [0.1, 0, -9.8], mode: full}", "fluid.time_step=", "fluid.maximum_lattice_velocity=0.05",
+              "fluid.expected_velocity=1.0", "contact={damping: 0.09, attraction: none}",
+              "initial.fluid={log_profile: {bed_height: 0.05, shear_velocity: 0.06, roughness: 2e-4}}",
+              "grains.1.fixed=false", "grains.1.prescribed_angular_velocity=[0, 1, 0]"});
   EXPECT_EQ(c.domain.faces[x_low].type, FaceType::no_slip);
   EXPECT_EQ(c.domain.faces[x_high].type, FaceType::free_slip);
   EXPECT_EQ(c.domain.faces[top], (Face{FaceType::law_of_the_wall, 8.36}));
@@ -124,10 +125,9 @@ void collect_keys(const YAML::Node& node, const std::string& path, std::vector<s
 TEST(CaseReader, TheDefaultsAreValidAndNameEveryKey) {
   const std::string text = defaults_yaml("resolved");
   EXPECT_EQ(read(text).grains.at(0).placement.seed, 1);
-  for (const std::string key :
-       {"x_low", "y_high", "maximum_lattice_velocity", "expected_velocity", "vector", "positions", "region", "lower",
-        "prescribed_velocity", "prescribed_angular_velocity", "damping", "uniform", "log_profile", "bed_height",
-        "shear_velocity", "roughness"})
+  for (const std::string key : {"x_low", "y_high", "maximum_lattice_velocity", "expected_velocity", "vector",
+                                "positions", "region", "lower", "prescribed_velocity", "prescribed_angular_velocity",
+                                "damping", "uniform", "log_profile", "bed_height", "shear_velocity", "roughness"})
     EXPECT_NE(text.find("# " + key + ": "), std::string::npos) << key;
   std::vector<std::string> keys;
   collect_keys(YAML::Load(text), "", keys);
@@ -142,7 +142,7 @@ TEST(CaseReader, TheDefaultsAreValidAndNameEveryKey) {
 struct Bad {
   std::string name;
   std::vector<std::string> overrides;
-  std::vector<std::string> parts;   // of the message, in order
+  std::vector<std::string> parts;  // of the message, in order
 };
 void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.name; }
 
@@ -165,67 +165,104 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Bad{"system_not_built", {"system=continuum"}, {"system = \"continuum\": expected one of resolved, grains."}},
         Bad{"collision_not_built", {"fluid.collision=trt"}, {"fluid.collision = \"trt\": expected bgk."}},
-        Bad{"face_not_built", {"domain.boundaries.top=navier_slip"},
+        Bad{"face_not_built",
+            {"domain.boundaries.top=navier_slip"},
             {"top.type = \"navier_slip\": expected one of periodic, no_slip, free_slip, law_of_the_wall."}},
         Bad{"unknown_key", {"fluid.densty=1000"}, {"fluid.densty = 1000: unknown key; did you mean fluid.density?"}},
-        Bad{"text_for_number", {"fluid.density=water"},
+        Bad{"text_for_number",
+            {"fluid.density=water"},
             {"fluid.density = \"water\": expected a number in kg/m^3 above 0, for example 1000."}},
-        Bad{"negative_diameter", {"grains.0.diameter=-0.005"},
+        Bad{"negative_diameter",
+            {"grains.0.diameter=-0.005"},
             {"grains.0.diameter = -0.005: expected a number in m above 0, for example 0.005."}},
-        Bad{"not_whole_cells", {"domain.size=[0.0602, 0.0105, 0.075]"},
+        Bad{"not_whole_cells",
+            {"domain.size=[0.0602, 0.0105, 0.075]"},
             {"domain.size = [0.0602, 0.0105, 0.075]: the 0.0602 m along x are 120.4 cells of 0.0005 m",
              "0.06 or 0.0605 m"}},
         Bad{"smaller_than_a_cell", {"domain.size=[0.06, 0.0001, 0.075]"}, {"along y", "at least 0.0005 m"}},
-        Bad{"too_coarse", {"domain.size=[0.06, 0.012, 0.075]", "domain.spacing=1e-3"},
+        Bad{"too_coarse",
+            {"domain.size=[0.06, 0.012, 0.075]", "domain.spacing=1e-3"},
             {"domain.spacing = 1e-3: the spacing is too coarse for grains of 0.004 m; give at most 0.0008 m"}},
         Bad{"too_many_cells", {"domain.spacing=1e-9"}, {"domain.spacing = 1e-9", "6e+07 cells", "larger spacing in m"}},
-        Bad{"narrow_periodic_axis", {"domain.size=[0.009, 0.0105, 0.075]", "grains.0.placement.region="},
+        Bad{"narrow_periodic_axis",
+            {"domain.size=[0.009, 0.0105, 0.075]", "grains.0.placement.region="},
             {"domain.size", "along x are too narrow for grains of 0.00495 m; give at least 0.0099 m (two diameters"}},
-        Bad{"narrow_walls", {"domain.size=[0.06, 0.0045, 0.075]"}, {"along y are too narrow", "0.00495 m (one diameter)"}},
-        Bad{"too_many_grains", {"grains.0.count=800", "grains.0.placement.region="},
+        Bad{"narrow_walls",
+            {"domain.size=[0.06, 0.0045, 0.075]"},
+            {"along y are too narrow", "0.00495 m (one diameter)"}},
+        Bad{"too_many_grains",
+            {"grains.0.count=800", "grains.0.placement.region="},
             {"grains = [", "802 grains do not fit: they would fill 108 % of the box, and at most 64 %", "at most 59%"}},
-        Bad{"too_many_in_region", {"grains.0.placement.region.upper=[0.06, 0.0105, 0.01]"},
+        Bad{"too_many_in_region",
+            {"grains.0.placement.region.upper=[0.06, 0.0105, 0.01]"},
             {"grains.0.count = 150: 150 grains do not fit in their region: they would fill 151 % of it"}},
-        Bad{"region_upside_down", {"grains.0.placement.region.lower=[0, 0, 0.06]"},
+        Bad{"region_upside_down",
+            {"grains.0.placement.region.lower=[0, 0, 0.06]"},
             {"grains.0.placement.region.upper", "lower below upper"}},
-        Bad{"position_outside", {"grains.1.placement.positions.1=[0.02, 0.005, 0.6]"},
-            {"grains.1.placement.positions.1 = [0.02, 0.005, 0.6]: the grain is outside the box", "[0.06, 0.0105, 0.075]"}},
-        Bad{"positions_and_pattern", {"grains.1.placement.seed=3"},
+        Bad{"position_outside",
+            {"grains.1.placement.positions.1=[0.02, 0.005, 0.6]"},
+            {"grains.1.placement.positions.1 = [0.02, 0.005, 0.6]: the grain is outside the box",
+             "[0.06, 0.0105, 0.075]"}},
+        Bad{"positions_and_pattern",
+            {"grains.1.placement.seed=3"},
             {"grains.1.placement.seed = 3: the positions are given one by one"}},
         Bad{"count_and_positions", {"grains.1.count=3"}, {"grains.1.count = 3: there are 2 positions"}},
         Bad{"no_count", {"grains.0.count="}, {"grains.0.count: the number of grains is missing"}},
-        Bad{"fixed_and_moving", {"grains.1.velocity=[0, 0, 1]"}, {"grains.1.fixed = \"true\": a fixed grain cannot start"}},
-        Bad{"lattice_too_fast", {"fluid.expected_velocity=5"},
-            {"fluid.expected_velocity = 5: 5 m/s would be 0.2 cells a step, more than 0.173; give a step of the fluid of at "
+        Bad{"fixed_and_moving",
+            {"grains.1.velocity=[0, 0, 1]"},
+            {"grains.1.fixed = \"true\": a fixed grain cannot start"}},
+        Bad{"lattice_too_fast",
+            {"fluid.expected_velocity=5"},
+            {"fluid.expected_velocity = 5: 5 m/s would be 0.2 cells a step, more than 0.173; give a step of the fluid "
+             "of at "
              "most 1.73e-05 s"}},
-        Bad{"lattice_limit", {"fluid.time_step=", "fluid.maximum_lattice_velocity=0.2", "fluid.expected_velocity=1"},
+        Bad{"lattice_limit",
+            {"fluid.time_step=", "fluid.maximum_lattice_velocity=0.2", "fluid.expected_velocity=1"},
             {"fluid.maximum_lattice_velocity = 0.2: expected a number in cells/step above 0 and at most 0.173"}},
-        Bad{"grain_too_fast", {"grains.0.velocity=[6, 0, 0]"}, {"grains.0.velocity = [6, 0, 0]: 6 m/s would be 0.24 cells"}},
-        Bad{"start_too_fast", {"initial.fluid={uniform: [6, 0, 0]}"}, {"initial.fluid.uniform = [6, 0, 0]", "0.24 cells"}},
-        Bad{"both_steps", {"fluid.maximum_lattice_velocity=0.05", "fluid.expected_velocity=1"},
+        Bad{"grain_too_fast",
+            {"grains.0.velocity=[6, 0, 0]"},
+            {"grains.0.velocity = [6, 0, 0]: 6 m/s would be 0.24 cells"}},
+        Bad{"start_too_fast",
+            {"initial.fluid={uniform: [6, 0, 0]}"},
+            {"initial.fluid.uniform = [6, 0, 0]", "0.24 cells"}},
+        Bad{"both_steps",
+            {"fluid.maximum_lattice_velocity=0.05", "fluid.expected_velocity=1"},
             {"fluid.time_step = 2.0e-5: the step is given twice"}},
         Bad{"no_step", {"fluid.time_step="}, {"fluid.time_step: the step is missing; give time_step in s"}},
-        Bad{"no_expected_velocity", {"fluid.time_step=", "fluid.maximum_lattice_velocity=0.05"},
+        Bad{"no_expected_velocity",
+            {"fluid.time_step=", "fluid.maximum_lattice_velocity=0.05"},
             {"fluid.expected_velocity: maximum_lattice_velocity needs it"}},
-        Bad{"sub_step_too_long", {"coupling.grain_steps_per_fluid_step=1"},
-            {"coupling.grain_steps_per_fluid_step = 1: a step of the grains of 2e-05 s is longer than 1/20 of their shortest "
-             "contact (0.000145", "give at least 3 sub-steps"}},
+        Bad{"sub_step_too_long",
+            {"coupling.grain_steps_per_fluid_step=1"},
+            {"coupling.grain_steps_per_fluid_step = 1: a step of the grains of 2e-05 s is longer than 1/20 of their "
+             "shortest "
+             "contact (0.000145",
+             "give at least 3 sub-steps"}},
         Bad{"no_loss", {"contact.restitution="}, {"contact.restitution: the loss in a collision is missing"}},
-        Bad{"both_losses", {"contact.damping=0.09"},
+        Bad{"both_losses",
+            {"contact.damping=0.09"},
             {"contact.restitution = 0.93: the loss in a collision is given twice"}},
         Bad{"restitution_above_one", {"contact.restitution=1.2"}, {"a number above 0 and at most 1, for example 0.93"}},
         Bad{"negative_stiffness", {"contact.normal_stiffness=-2e4"}, {"a number in N/m above 0, for example 20000"}},
-        Bad{"half_periodic", {"domain.boundaries.bottom=periodic"},
+        Bad{"half_periodic",
+            {"domain.boundaries.bottom=periodic"},
             {"domain.boundaries.bottom = \"periodic\": an axis is periodic on both faces or on neither"}},
-        Bad{"axis_twice", {"domain.boundaries.x_low=no_slip"}, {"boundaries.x_low = \"no_slip\": the axis is given twice"}},
+        Bad{"axis_twice",
+            {"domain.boundaries.x_low=no_slip"},
+            {"boundaries.x_low = \"no_slip\": the axis is given twice"}},
         Bad{"face_missing", {"domain.boundaries.top="}, {"domain.boundaries.top: this face is missing; give one of"}},
         Bad{"axis_missing", {"domain.boundaries.y="}, {"domain.boundaries.y: these two faces are missing"}},
-        Bad{"coefficient_of_no_slip", {"domain.boundaries.top={type: no_slip, coefficient: 2}"},
+        Bad{"coefficient_of_no_slip",
+            {"domain.boundaries.top={type: no_slip, coefficient: 2}"},
             {"top.coefficient = 2: only a law_of_the_wall has a coefficient"}},
         Bad{"gravity_twice", {"gravity.vector=[0, 0, -9.8]"}, {"gravity.vector", "gravity is given twice"}},
         Bad{"gravity_missing", {"gravity={}"}, {"gravity.magnitude: gravity is missing"}},
-        Bad{"dry_with_fluid", {"system=grains"}, {"case.yaml:7: fluid = a section with 4 keys: system: grains has no fluid"}},
-        Bad{"step_of_wet_grains", {"run.time_step=1e-6"}, {"run.time_step = 1e-6: with a fluid the step is fluid.time_step"}},
+        Bad{"dry_with_fluid",
+            {"system=grains"},
+            {"case.yaml:7: fluid = a section with 4 keys: system: grains has no fluid"}},
+        Bad{"step_of_wet_grains",
+            {"run.time_step=1e-6"},
+            {"run.time_step = 1e-6: with a fluid the step is fluid.time_step"}},
         Bad{"mean_after_the_end", {"run.until=0.5"}, {"case.yaml:27: analysis.transport_rate.from = 1.0", "below 0.5"}},
         Bad{"log_profile_above_the_top",
             {"initial.fluid={log_profile: {bed_height: 0.08, shear_velocity: 0.06, roughness: 2e-4}}"},
@@ -233,10 +270,18 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"no_run", {"run="}, {"case.yaml:1: run is missing: give a section"}}),
     [](const auto& bad) { return bad.param.name; });
 
+TEST(CaseReader, DryGrainsNeedGrains) {
+  const std::string message = message_of<InputError>([] { read(defaults_yaml("grains"), {"grains=[]"}); });
+  EXPECT_NE(message.find("--set grains=[]: grains = []: a run of dry grains needs at least one"), std::string::npos)
+      << message;
+}
+
 TEST(CaseReader, DryGrainsRefuseAStepTooLong) {
   const std::string message = message_of<InputError>([] { read(defaults_yaml("grains"), {"run.time_step=1e-4"}); });
-  EXPECT_NE(message.find("--set run.time_step=1e-4: run.time_step = 1e-4: a step of the grains of 0.0001 s is longer than "
-                         "1/20 of their shortest contact (0.0001999 s); give at most 9.99e-06 s."), std::string::npos)
+  EXPECT_NE(
+      message.find("--set run.time_step=1e-4: run.time_step = 1e-4: a step of the grains of 0.0001 s is longer than "
+                   "1/20 of their shortest contact (0.0001999 s); give at most 9.99e-06 s."),
+      std::string::npos)
       << message;
 }
 

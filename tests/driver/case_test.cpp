@@ -32,10 +32,10 @@ Case wide_bed() {
 
 TEST(Case, MassesTimesAndTheStepOfThePaper) {
   const Case c = wide_bed();
-  EXPECT_NEAR(c.grains[0].mass(), 1.669e-4, 0.0005e-4);            // kg, 5 mm glass sphere
-  EXPECT_NEAR(grain_time_step(c), 4e-7, 1e-21);                    // 2e-5 s in 50 sub-steps
-  EXPECT_NEAR(relaxation_time(c), 0.5 + 2.4e-4, 1e-12);            // water at 2e-5 s and 0.5 mm
-  EXPECT_NEAR(shortest_contact(c) / grain_time_step(c), 508, 3);   // the paper's t_c / dt, damping left out (-0.1 %)
+  EXPECT_NEAR(c.grains[0].mass(), 1.669e-4, 0.0005e-4);           // kg, 5 mm glass sphere
+  EXPECT_NEAR(grain_time_step(c), 4e-7, 1e-21);                   // 2e-5 s in 50 sub-steps
+  EXPECT_NEAR(relaxation_time(c), 0.5 + 2.4e-4, 1e-12);           // water at 2e-5 s and 0.5 mm
+  EXPECT_NEAR(shortest_contact(c) / grain_time_step(c), 508, 3);  // the paper's t_c / dt, damping left out (-0.1 %)
   EXPECT_EQ(periodic_axes(c.domain), (std::array<bool, 3>{true, true, false}));
 }
 
@@ -43,7 +43,7 @@ TEST(Case, CellsAreRoundedNotCut) {
   DomainCase domain;
   domain.size = {0.3, 0.7, 0.0105};
   domain.spacing = 0.1e-3;
-  EXPECT_EQ(cells_of(domain), (Index3{3000, 7000, 105}));   // 0.3 / 0.0001 is 2999.9999999999995
+  EXPECT_EQ(cells_of(domain), (Index3{3000, 7000, 105}));  // 0.3 / 0.0001 is 2999.9999999999995
 }
 
 TEST(Case, TheStepFollowsFromTheLatticeVelocity) {
@@ -51,13 +51,13 @@ TEST(Case, TheStepFollowsFromTheLatticeVelocity) {
   c.fluid.time_step.reset();
   c.fluid.maximum_lattice_velocity = 0.05;
   c.fluid.expected_velocity = 0.5;
-  EXPECT_NEAR(fluid_time_step(c), 5e-5, 1e-19);   // 0.05 x 0.5 mm / (0.5 m/s)
+  EXPECT_NEAR(fluid_time_step(c), 5e-5, 1e-19);  // 0.05 x 0.5 mm / (0.5 m/s)
 }
 
 TEST(Case, GravityLeansByTheAngleOfTheSlope) {
   GravityCase gravity;
   gravity.magnitude = 10.0;
-  gravity.slope = 0.75;   // the 3-4-5 triangle
+  gravity.slope = 0.75;  // the 3-4-5 triangle
   EXPECT_NEAR((gravity_vector(gravity) - Vec3(6.0, 0.0, -8.0)).norm(), 0.0, 1e-14);
 }
 
@@ -77,10 +77,10 @@ TEST(Case, TheVelocityEstimateIsTheLaminarFilmInAThickFluid) {
 TEST(Case, WarnsOfWhatDeservesASecondLookAndOfNothingElse) {
   Case c = wide_bed();
   c.fluid.smagorinsky_constant = 0.27;
-  EXPECT_TRUE(warnings(c).empty());   // 0.94 m/s are 0.038 cells a step
-  c.fluid.time_step = 1e-4;           // 0.19 cells a step
+  EXPECT_TRUE(warnings(c).empty());  // 0.94 m/s are 0.038 cells a step
+  c.fluid.time_step = 1e-4;          // 0.19 cells a step
   c.fluid.smagorinsky_constant = 0.0;
-  c.domain.spacing = 1e-3;            // 5 cells a diameter, and 0.094 cells a step
+  c.domain.spacing = 1e-3;  // 5 cells a diameter, and 0.094 cells a step
   ASSERT_EQ(warnings(c).size(), 2u);
   EXPECT_NE(warnings(c)[0].find("subgrid"), std::string::npos);
   EXPECT_NE(warnings(c)[1].find("only 5 cells across"), std::string::npos);

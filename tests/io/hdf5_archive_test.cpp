@@ -1,15 +1,15 @@
 // Checkpoints: what is written reads back on any ranks, and the bytes of the file do not depend on the ranks.
+#include "io/hdf5_archive.hpp"
 #include "core/decomposition.hpp"
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
-#include "io/hdf5_archive.hpp"
 #include "tests/io/scratch_folder.hpp"
 
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
 #include <chrono>
 #include <csignal>
-#include <sys/resource.h>
 #include <thread>
 
 namespace thalweg::io {
@@ -84,7 +84,7 @@ TEST(Hdf5Archive, ReadsBackTheSameBits) {
   std::vector<float> single(values.size());
   reader.read("fluid/single", std::span<float>(single), expected.box);
   EXPECT_EQ(single, std::vector<float>(expected.values.begin(), expected.values.end()));
-  std::vector<std::int64_t> ids(11);   // every rank reads the whole list
+  std::vector<std::int64_t> ids(11);  // every rank reads the whole list
   reader.read("grains/deep/id", std::span<std::int64_t>(ids), ArrayBox{{11}, {0}, {11}});
   EXPECT_EQ(ids[10], 10000000065LL);
   reader.read("grains/none", std::span<double>(), ArrayBox{{0}, {0}, {0}});
@@ -119,7 +119,7 @@ TEST(Hdf5Archive, ABoxThatCrossesTheWritersBlocksReadsBack) {
 TEST(Hdf5Archive, BytesDoNotDependOnRanksOrTheTimeOfDay) {
   const ScratchFolder folder;
   write_all(MPI_COMM_WORLD, folder / "together.h5");
-  std::this_thread::sleep_for(std::chrono::milliseconds(1100));   // the clock of HDF5's time stamps ticks in seconds
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // the clock of HDF5's time stamps ticks in seconds
   if (rank_of(MPI_COMM_WORLD) == 0) {
     write_all(MPI_COMM_SELF, folder / "alone.h5");
     const std::string together = contents(folder / "together.h5"), alone = contents(folder / "alone.h5");
@@ -142,13 +142,15 @@ TEST(Hdf5Archive, ReadErrorsNameFileAndPath) {
   EXPECT_EQ(error_reading("grains/mass", row).find(path.string() + ": grains/mass: the file has no such data"), 0u);
   EXPECT_NE(error_reading("fluid/f", row).find("fluid/f: the file holds 9 x 12 x 16 values, but 4 are needed"),
             std::string::npos);
-  EXPECT_NE(error_reading("fluid/single", row).find("the file holds float32, but float64 is needed"), std::string::npos);
+  EXPECT_NE(error_reading("fluid/single", row).find("the file holds float32, but float64 is needed"),
+            std::string::npos);
   EXPECT_NE(message_of<InputError>([&] { reader.real_attribute("step"); }).find("step: the attribute is not of type"),
             std::string::npos);
   EXPECT_NE(message_of<InputError>([&] { reader.text_attribute("fluid/name"); }).find("no such attribute"),
             std::string::npos);
-  EXPECT_NE(message_of<InputError>([&] { Hdf5Reader(MPI_COMM_WORLD, folder / "none.h5"); }).find("there is no such file"),
-            std::string::npos);
+  EXPECT_NE(
+      message_of<InputError>([&] { Hdf5Reader(MPI_COMM_WORLD, folder / "none.h5"); }).find("there is no such file"),
+      std::string::npos);
   if (rank_of(MPI_COMM_WORLD) == 0) testing::put(folder / "text.h5", "not HDF5");
   MPI_Barrier(MPI_COMM_WORLD);
   EXPECT_NE(message_of<InputError>([&] { Hdf5Reader(MPI_COMM_WORLD, folder / "text.h5"); }).find("not an HDF5 file"),

@@ -25,9 +25,10 @@ JsonObject example() {
 }
 
 TEST(JsonObject, OnOneLine) {
-  EXPECT_EQ(example().line(), "{\"state\": \"finished\", \"steps\": 7, \"nan\": null, \"good\": true, "
-                              "\"text\": \"a \\\"quote\\\", a \\\\ and a\\u000aline\", "
-                              "\"wall_seconds\": {\"fluid\": 1.5, \"grains\": 0.25}, \"list\": [0.1, -2e-30], \"none\": {}}");
+  EXPECT_EQ(example().line(),
+            "{\"state\": \"finished\", \"steps\": 7, \"nan\": null, \"good\": true, "
+            "\"text\": \"a \\\"quote\\\", a \\\\ and a\\u000aline\", "
+            "\"wall_seconds\": {\"fluid\": 1.5, \"grains\": 0.25}, \"list\": [0.1, -2e-30], \"none\": {}}");
 }
 
 TEST(JsonObject, Indented) {

@@ -1,6 +1,6 @@
 // What a run may and may not do to a folder.
-#include "core/error.hpp"
 #include "io/run_folder.hpp"
+#include "core/error.hpp"
 #include "tests/io/scratch_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -38,8 +38,10 @@ TEST_F(RunFolderTest, AnExistingRunNeedsOverwriteAndIsOtherwiseUntouched) {
   put(path / "notes.txt", "mine");
 
   const std::string refused = message_of<InputError>([&] { folder.create(false); });
-  EXPECT_EQ(refused, path.string() + ": the folder holds a run already; choose another with --out, continue it with "
-                                     "--restart " + path.string() + ", or replace it with --overwrite.");
+  EXPECT_EQ(refused, path.string() +
+                         ": the folder holds a run already; choose another with --out, continue it with "
+                         "--restart " +
+                         path.string() + ", or replace it with --overwrite.");
   EXPECT_TRUE(fs::exists(folder.series()) && fs::exists(folder.checkpoint(5)));
 
   folder.create(true);
@@ -49,16 +51,18 @@ TEST_F(RunFolderTest, AnExistingRunNeedsOverwriteAndIsOtherwiseUntouched) {
 
 TEST_F(RunFolderTest, WhatIsNotARunIsNeverTouched) {
   const fs::path path = scratch("foreign");
-  put(path / "case.yaml", "system: grains\n");   // a case somebody wrote, not the record of a run
+  put(path / "case.yaml", "system: grains\n");  // a case somebody wrote, not the record of a run
   put(path / "series.csv", "precious");
   for (const bool overwrite : {false, true}) {
     const std::string message = message_of<InputError>([&] { RunFolder(path).create(overwrite); });
     EXPECT_NE(message.find("is not a run of Thalweg and is left alone; choose another folder with --out"),
-              std::string::npos) << message;
+              std::string::npos)
+        << message;
   }
   EXPECT_EQ(contents(path / "series.csv"), "precious");
-  EXPECT_NE(message_of<InputError>([&] { RunFolder(path / "series.csv").create(true); }).find("there is a file of this name"),
-            std::string::npos);
+  EXPECT_NE(
+      message_of<InputError>([&] { RunFolder(path / "series.csv").create(true); }).find("there is a file of this name"),
+      std::string::npos);
 }
 
 TEST_F(RunFolderTest, AnEmptyOrMissingFolderIsFine) {
@@ -77,8 +81,9 @@ TEST_F(RunFolderTest, TheCaseBeginsWithItsMarkerAndComments) {
   EXPECT_FALSE(folder.is_run_folder());
   folder.write_case("version 1\ncommand", "system: grains\n");
   EXPECT_TRUE(folder.is_run_folder());
-  EXPECT_EQ(contents(folder.case_file()), "# Thalweg run: this is the case as it was run, with every default filled in.\n"
-                                          "# version 1\n# command\nsystem: grains\n");
+  EXPECT_EQ(contents(folder.case_file()),
+            "# Thalweg run: this is the case as it was run, with every default filled in.\n"
+            "# version 1\n# command\nsystem: grains\n");
 }
 
 TEST_F(RunFolderTest, RotationKeepsTheNewestAndNamesTheLatest) {

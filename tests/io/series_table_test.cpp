@@ -1,6 +1,6 @@
 // series.csv: header, round trip of every digit, and what a restart keeps.
-#include "core/error.hpp"
 #include "io/series_table.hpp"
+#include "core/error.hpp"
 #include "tests/io/scratch_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ TEST(SeriesTable, EveryNumberReadsBackToTheSameBits) {
   const std::vector<double> values{1.0 / 3.0, -4.9406564584124654e-300};
   SeriesTable table(MPI_COMM_WORLD, folder / "series.csv", columns);
   table.append(0.1 + 0.2, values);
-  const std::string text = contents(folder / "series.csv");   // on the disk while the table is open
+  const std::string text = contents(folder / "series.csv");  // on the disk while the table is open
   const std::string header = "time [s],q_star [1],speed [m/s]\n";
   ASSERT_EQ(text.substr(0, header.size()), header);
   double time = 0.0, a = 0.0, b = 0.0;
@@ -38,7 +38,7 @@ TEST(SeriesTable, ARestartDropsWhatCameAfterIt) {
     SeriesTable table(MPI_COMM_WORLD, path, columns);
     for (int n = 0; n <= 4; ++n) table.append(0.25 * n, std::vector<double>{1.0 * n, 2.0 * n});
   }
-  if (rank_of(MPI_COMM_WORLD) == 0) std::ofstream(path, std::ios::app) << "0.25,0.5";   // cut short by a kill
+  if (rank_of(MPI_COMM_WORLD) == 0) std::ofstream(path, std::ios::app) << "0.25,0.5";  // cut short by a kill
   MPI_Barrier(MPI_COMM_WORLD);
   SeriesTable table(MPI_COMM_WORLD, path, columns, 0.5);
   table.append(0.6, std::vector<double>{7.0, 8.0});
@@ -61,7 +61,8 @@ TEST(SeriesTable, AFileWithOtherColumnsIsLeftAlone) {
   const std::string message =
       message_of<InputError>([&] { SeriesTable(MPI_COMM_WORLD, folder / "series.csv", columns, 1.0); });
   EXPECT_NE(message.find("the file has other columns than this run writes (time [s],q_star [1],speed [m/s])"),
-            std::string::npos) << message;
+            std::string::npos)
+      << message;
   EXPECT_EQ(contents(folder / "series.csv"), other);
 }
 

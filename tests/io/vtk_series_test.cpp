@@ -18,7 +18,7 @@ using testing::message_of;
 using testing::ScratchFolder;
 
 constexpr Index3 cells{12, 9, 8};
-constexpr double spacing = 0.25e-3;   // m
+constexpr double spacing = 0.25e-3;  // m
 constexpr std::int64_t grain_count = 37;
 
 // Fields that tell every cell apart; check_vtk_series.py computes the same.
@@ -117,15 +117,15 @@ TEST(VtkSeries, WritesAnInterruptedAndContinuedSeries) {
   if (rank_of(MPI_COMM_WORLD) == 0) std::filesystem::remove_all(folder);
   MPI_Barrier(MPI_COMM_WORLD);
   Pictures pictures(folder);
-  pictures.write(3, std::nullopt);   // of an older run: a new series forgets it
+  pictures.write(3, std::nullopt);  // of an older run: a new series forgets it
   pictures.write(0, std::nullopt);
   pictures.write(2, 0.0);
-  pictures.write(9, 0.5);            // the run then stops, and is continued from a checkpoint at 0.5 s:
-  pictures.write(7, 0.5);            // the picture at 0.9 s leaves the index
+  pictures.write(9, 0.5);  // the run then stops, and is continued from a checkpoint at 0.5 s:
+  pictures.write(7, 0.5);  // the picture at 0.9 s leaves the index
   if (rank_of(MPI_COMM_WORLD) != 0) return;
   const PvdIndex index(folder / "wet/grains.pvd", 100.0);
   ASSERT_EQ(index.entries().size(), 3u);
-  EXPECT_EQ(index.entries()[1].time, 0.1 * 2.0);   // the same bits as written
+  EXPECT_EQ(index.entries()[1].time, 0.1 * 2.0);  // the same bits as written
   EXPECT_EQ(index.entries()[2].file, "grains/grains_000000007.vtp");
   EXPECT_FALSE(std::filesystem::exists(folder / "without_fluid/fluid.pvd"));
 }
@@ -145,7 +145,8 @@ TEST(VtkSeries, AFolderThatCannotBeWrittenIsARunErrorOnEveryRank) {
   EXPECT_NE(message_of<RunError>([&] { GrainSeries(MPI_COMM_WORLD, folder.path()).write(snapshot); }), "");
   EXPECT_NE(message_of<RunError>([&] {
               FluidSeries(MPI_COMM_WORLD, folder.path(), FluidRegion::whole, {FluidField::pressure}).write(snapshot);
-            }), "");
+            }),
+            "");
 }
 
 }  // namespace

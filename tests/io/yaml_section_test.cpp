@@ -47,15 +47,18 @@ static void describe(SectionVisitor& visit, Wheel& wheel) {
 }
 static void describe(SectionVisitor& visit, Paint& paint) {
   visit.choice("colour", paint.colour, colours, {.meaning = "seen in daylight", .required = true});
-  if (paint.colour == Colour::green) visit.real("gloss", paint.gloss, {.meaning = "shine", .at_least = 0.0, .at_most = 1.0});
-  else visit.not_here("gloss", "only green paint shines; remove the key");
+  if (paint.colour == Colour::green)
+    visit.real("gloss", paint.gloss, {.meaning = "shine", .at_least = 0.0, .at_most = 1.0});
+  else
+    visit.not_here("gloss", "only green paint shines; remove the key");
 }
 static void describe(SectionVisitor& visit, Cargo& cargo) {
   visit.real("mass", cargo.mass, {.unit = "kg", .meaning = "of the load", .above = 0.0});
 }
 static void describe(SectionVisitor& visit, Cart& cart) {
   visit.text("name", cart.name, {.meaning = "painted on the side"});
-  visit.real("length", cart.length, {.unit = "m", .meaning = "overall", .required = true, .above = 0.0, .example = 2.0});
+  visit.real("length", cart.length,
+             {.unit = "m", .meaning = "overall", .required = true, .above = 0.0, .example = 2.0});
   visit.vec3("position", cart.position, {.unit = "m", .meaning = "of the centre", .at_least = 0.0});
   visit.integer("seats", cart.seats, {.meaning = "for people", .at_least = 1});
   visit.flag("brake", cart.brake, {.meaning = "has one"});
@@ -119,16 +122,16 @@ TEST(YamlSection, WhatIsWrittenReadsBackTheSame) {
 
 TEST(YamlSection, DocumentationShowsUnitRangeMeaningAndWhatIsNotGiven) {
   const std::string text = written(read(minimal), YamlStyle::documented);
-  for (const std::string part : {"length: 2.5   ", "# required, m, above 0; overall\n", "paint: red   ", "cargo: none   ",
-                                 "# mass: 1   ", "# lining: red   ", "# red | green; flown\n"})
+  for (const std::string part : {"length: 2.5   ", "# required, m, above 0; overall\n", "paint: red   ",
+                                 "cargo: none   ", "# mass: 1   ", "# lining: red   ", "# red | green; flown\n"})
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
 }
 
 TEST(YamlSection, OverridesReplaceAddReachIntoListsAndRemove) {
   const std::string yaml = minimal + "seats: 3\nwheels:\n  - radius: 0.1\n  - {radius: 0.2}\n";
-  const Cart cart = read(yaml, {"length=7", "wheels.1.radius=0.9", "cargo.mass=3", "position=[1, 2, 3]", "seats=",
-                                "length=8", "lining={colour: green, gloss: 0.25}"});
-  EXPECT_EQ(cart.length, 8.0);   // the last one counts
+  const Cart cart = read(yaml, {"length=7", "wheels.1.radius=0.9", "cargo.mass=3", "position=[1, 2, 3]",
+                                "seats=", "length=8", "lining={colour: green, gloss: 0.25}"});
+  EXPECT_EQ(cart.length, 8.0);  // the last one counts
   EXPECT_EQ(cart.wheels[0].radius, 0.1);
   EXPECT_EQ(cart.wheels[1].radius, 0.9);
   EXPECT_EQ(cart.cargo.mass, 3.0);
@@ -138,7 +141,7 @@ TEST(YamlSection, OverridesReplaceAddReachIntoListsAndRemove) {
 }
 
 struct Bad {
-  std::string name, yaml, override_text, message;   // FILE stands for the path
+  std::string name, yaml, override_text, message;  // FILE stands for the path
 };
 void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.name; }
 
@@ -188,7 +191,8 @@ INSTANTIATE_TEST_SUITE_P(
             "FILE:3: seats = 2.5: expected a whole number, at least 1, for example 2."},
         Bad{"flag", minimal + "brake: maybe\n", "", "FILE:3: brake = \"maybe\": expected true or false."},
         Bad{"short_vector", minimal + "position: [1, 2]\n", "",
-            "FILE:3: position = [1, 2]: expected a list of 3 numbers in m, each at least 0, for example [0.1, 0.1, 0.1]."},
+            "FILE:3: position = [1, 2]: expected a list of 3 numbers in m, each at least 0, for example [0.1, 0.1, "
+            "0.1]."},
         Bad{"vector_of_text", minimal + "position: [1, 2, x]\n", "",
             "FILE:3: position = [1, 2, \"x\"]: expected a list of 3 numbers in m, each at least 0, for example "
             "[0.1, 0.1, 0.1]."},
@@ -217,7 +221,8 @@ INSTANTIATE_TEST_SUITE_P(
             "--set wheels.1.radius=2: wheels is a list of 1 and has no entry \"1\"; count from 0."},
         Bad{"override_into_scalar", minimal, "length.x=2",
             "--set length.x=2: length = 2.5 is a single value and has no key x; set length itself."},
-        Bad{"no_sections_at_all", "just words\n", "", "FILE:1: expected keys with values, for example system: resolved."}),
+        Bad{"no_sections_at_all", "just words\n", "",
+            "FILE:1: expected keys with values, for example system: resolved."}),
     [](const auto& bad) { return bad.param.name; });
 
 TEST(YamlSection, SyntaxErrorsHaveALine) {
@@ -229,8 +234,9 @@ TEST(YamlSection, MissingFilesAndFolders) {
   EXPECT_EQ(message_of<InputError>([] { YamlDocument("nowhere/case.yaml", {}); }),
             "nowhere/case.yaml: there is no such file; check the path.");
   const ScratchFolder folder;
-  EXPECT_NE(message_of<InputError>([&] { YamlDocument(folder.path(), {}); }).find("this is a folder: give the case file"),
-            std::string::npos);
+  EXPECT_NE(
+      message_of<InputError>([&] { YamlDocument(folder.path(), {}); }).find("this is a folder: give the case file"),
+      std::string::npos);
 }
 
 }  // namespace

@@ -1,0 +1,120 @@
+#include "driver/case_sections.hpp"
+
+#include <fmt/format.h>
+
+namespace thalweg {
+namespace {
+
+// The faces as the file names them: an axis at once, or each side.
+struct BoundaryKeys {
+  std::optional<Face> x, y, x_low, x_high, y_low, y_high, bottom, top;
+};
+
+BoundaryKeys keys_of(const std::array<Face, 6>& faces) {
+  BoundaryKeys keys;
+  if (faces[x_low] == faces[x_high]) {
+    keys.x = faces[x_low];
+  } else {
+    keys.x_low = faces[x_low];
+    keys.x_high = faces[x_high];
+  }
+  if (faces[y_low] == faces[y_high]) {
+    keys.y = faces[y_low];
+  } else {
+    keys.y_low = faces[y_low];
+    keys.y_high = faces[y_high];
+  }
+  keys.bottom = faces[bottom];
+  keys.top = faces[top];
+  return keys;
+}
+
+std::array<Face, 6> faces_of(const BoundaryKeys& keys) {
+  std::array<Face, 6> faces;
+  faces[x_low] = keys.x.value_or(keys.x_low.value_or(Face{}));
+  faces[x_high] = keys.x.value_or(keys.x_high.value_or(Face{}));
+  faces[y_low] = keys.y.value_or(keys.y_low.value_or(Face{}));
+  faces[y_high] = keys.y.value_or(keys.y_high.value_or(Face{}));
+  faces[bottom] = keys.bottom.value_or(Face{});
+  faces[top] = keys.top.value_or(Face{});
+  return faces;
+}
+
+const std::string face_forms =
+    "periodic, no_slip, free_slip, law_of_the_wall or {type: law_of_the_wall, coefficient: 8.36}";
+
+void check_axis(io::SectionVisitor& visit, const std::string& axis, const std::optional<Face>& both,
+                const std::optional<Face>& low, const std::optional<Face>& high) {
+  const std::string low_key = axis + "_low", high_key = axis + "_high";
+  visit.require(!both || (!low && !high), low ? low_key : high_key,
+                fmt::format("the axis is given twice; give either {} or {} and {}", axis, low_key, high_key));
+  if (both) return;
+  visit.require(low || high, axis, fmt::format("these two faces are missing; give one of {}", face_forms));
+  visit.require(low.has_value(), low_key, fmt::format("this face is missing; give one of {}", face_forms));
+  visit.require(high.has_value(), high_key, fmt::format("this face is missing; give one of {}", face_forms));
+}
+
+bool half_periodic(const std::optional<Face>& a, const std::optional<Face>& b) {
+  return a && b && (a->type == FaceType::periodic) != (b->type == FaceType::periodic);
+}
+
+}  // namespace
+
+// Not in the unnamed namespace, where argument-dependent lookup would not find it.
+static void describe(io::SectionVisitor& visit, Face& face) {
+  visit.choice<FaceType>("type", face.type,
+                         {{FaceType::periodic, "periodic"},
+                          {FaceType::no_slip, "no_slip"},
+                          {FaceType::free_slip, "free_slip"},
+                          {FaceType::law_of_the_wall, "law_of_the_wall"}},
+                         {.meaning = "kind of face, all by half-link rules", .required = true});
+  if (face.type == FaceType::law_of_the_wall)
+    visit.real("coefficient", face.coefficient,
+               {.meaning = "slip velocity at the wall over the friction velocity", .above = 0.0});
+  else
+    visit.not_here("coefficient", "only a law_of_the_wall has a coefficient; remove it");
+}
+
+static void describe_boundaries(io::SectionVisitor& visit, BoundaryKeys& keys) {
+  const auto face = [&](const std::string& key, std::optional<Face>& value, const std::string& meaning) {
+    visit.section(key, value, {.meaning = meaning, .shorthand = "type"});
+  };
+  face("x", keys.x, "both faces across the stream; or x_low and x_high");
+  face("x_low", keys.x_low, "the upstream face");
+  face("x_high", keys.x_high, "the downstream face");
+  face("y", keys.y, "both side faces; or y_low and y_high");
+  face("y_low", keys.y_low, "the side face at y = 0");
+  face("y_high", keys.y_high, "the side face at the far end of y");
+  face("bottom", keys.bottom, "the floor");
+  face("top", keys.top, "the lid or free surface");
+  check_axis(visit, "x", keys.x, keys.x_low, keys.x_high);
+  check_axis(visit, "y", keys.y, keys.y_low, keys.y_high);
+  visit.require(keys.bottom.has_value(), "bottom", fmt::format("this face is missing; give one of {}", face_forms));
+  visit.require(keys.top.has_value(), "top", fmt::format("this face is missing; give one of {}", face_forms));
+  const std::string together = "an axis is periodic on both faces or on neither; make both faces periodic";
+  visit.require(!half_periodic(keys.x_low, keys.x_high), "x_low", together);
+  visit.require(!half_periodic(keys.y_low, keys.y_high), "y_low", together);
+  visit.require(!half_periodic(keys.bottom, keys.top), "bottom", together);
+}
+
+void describe(io::SectionVisitor& visit, DomainCase& domain) {
+  visit.vec3("size", domain.size,
+             {.unit = "m",
+              .meaning = "length streamwise (x), cross-stream (y), upwards (z)",
+              .required = true,
+              .above = 0.0,
+              .example = 0.1});
+  visit.real("spacing", domain.spacing,
+             {.unit = "m",
+              .meaning = "side of a cell, of which every length holds a whole number; without a fluid only "
+                         "the grid on which ranks share the box",
+              .required = true,
+              .above = 0.0,
+              .example = 0.5e-3});
+  BoundaryKeys keys = keys_of(domain.faces);
+  visit.section("boundaries", {.meaning = "what stands at each face: " + face_forms, .required = true},
+                [&](io::SectionVisitor& inside) { describe_boundaries(inside, keys); });
+  if (visit.reading()) domain.faces = faces_of(keys);
+}
+
+}  // namespace thalweg
