@@ -93,6 +93,11 @@ double estimated_velocity(const Case& c) {
 
 std::vector<std::string> warnings(const Case& c) {
   std::vector<std::string> found;
+  if (c.analysis.transport_rate && c.analysis.transport_rate->from >= c.run.until)
+    found.push_back(
+        fmt::format("The mean transport rate begins at {} s, after the end of the run at {} s, so the summary "
+                    "will have none: consider an earlier analysis.transport_rate.from.",
+                    c.analysis.transport_rate->from, c.run.until));
   if (c.system != SystemKind::resolved) return found;
   const double lattice_velocity = estimated_velocity(c) / units_of(c).velocity();
   if (!c.fluid.expected_velocity && lattice_velocity > 0.1)

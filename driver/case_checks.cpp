@@ -185,10 +185,6 @@ void check_case(const Case& c, const io::YamlDocument& document) {
   check_placement(c, document);
   check_fluid(c, document);
   check_contact_steps(c, document);
-  if (c.analysis.transport_rate && c.analysis.transport_rate->from >= c.run.until)
-    throw document.error(
-        "analysis.transport_rate.from",
-        fmt::format("the mean would begin after the end of the run; give a time in s below {}", c.run.until));
   if (c.analysis.transport_rate && c.grains.empty())
     throw document.error("analysis.transport_rate", "there are no grains to measure; remove the section or add grains");
 }

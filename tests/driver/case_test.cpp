@@ -77,13 +77,17 @@ TEST(Case, TheVelocityEstimateIsTheLaminarFilmInAThickFluid) {
 TEST(Case, WarnsOfWhatDeservesASecondLookAndOfNothingElse) {
   Case c = wide_bed();
   c.fluid.smagorinsky_constant = 0.27;
+  c.run.until = 30.0;
+  c.analysis.transport_rate = TransportRateCase{20.0};
   EXPECT_TRUE(warnings(c).empty());  // 0.94 m/s are 0.038 cells a step
   c.fluid.time_step = 1e-4;          // 0.19 cells a step
   c.fluid.smagorinsky_constant = 0.0;
   c.domain.spacing = 1e-3;  // 5 cells a diameter, and 0.094 cells a step
-  ASSERT_EQ(warnings(c).size(), 2u);
-  EXPECT_NE(warnings(c)[0].find("subgrid"), std::string::npos);
-  EXPECT_NE(warnings(c)[1].find("only 5 cells across"), std::string::npos);
+  c.run.until = 10.0;       // before the mean begins
+  ASSERT_EQ(warnings(c).size(), 3u);
+  EXPECT_NE(warnings(c)[0].find("mean transport rate begins at 20 s, after the end"), std::string::npos);
+  EXPECT_NE(warnings(c)[1].find("subgrid"), std::string::npos);
+  EXPECT_NE(warnings(c)[2].find("only 5 cells across"), std::string::npos);
 }
 
 }  // namespace
