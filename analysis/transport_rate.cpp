@@ -48,6 +48,9 @@ void TransportRate::observe(const Snapshot& snapshot) {
 
   // from_ may be a rounded multiple of the time step: a measurement at that very step counts.
   if (snapshot.time < from_ * (1.0 - 1e-12)) return;
+  // A run that goes on from a checkpoint looks once more at the state the checkpoint holds.
+  if (snapshot.step <= counted_step_) return;
+  counted_step_ = snapshot.step;
   ++measurements_;
   sum_ += q_s_;
   sum_of_squares_ += q_s_ * q_s_;
@@ -79,6 +82,7 @@ std::vector<Figure> TransportRate::results() const {
 void TransportRate::save(ArchiveWriter& archive) const {
   archive.attribute("transport_rate/mean_from", from_);
   archive.attribute("transport_rate/measurements", measurements_);
+  archive.attribute("transport_rate/counted_step", counted_step_);
   archive.attribute("transport_rate/sum", sum_);
   archive.attribute("transport_rate/sum_of_squares", sum_of_squares_);
 }
@@ -86,6 +90,7 @@ void TransportRate::save(ArchiveWriter& archive) const {
 void TransportRate::load(ArchiveReader& archive) {
   if (!archive.has("transport_rate/mean_from") || archive.real_attribute("transport_rate/mean_from") != from_) return;
   measurements_ = archive.integer_attribute("transport_rate/measurements");
+  counted_step_ = archive.integer_attribute("transport_rate/counted_step");
   sum_ = archive.real_attribute("transport_rate/sum");
   sum_of_squares_ = archive.real_attribute("transport_rate/sum_of_squares");
 }

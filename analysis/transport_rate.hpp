@@ -33,7 +33,7 @@ public:
   TransportRate(MPI_Comm communicator, const TransportScales& scales, double from);
 
   std::string name() const override { return "transport_rate"; }
-  void observe(const Snapshot& snapshot) override;
+  void observe(const Snapshot& snapshot) override;   // a step seen before does not count again in the means
 
   // q_s (m^2/s), q_star (1; only in a fluid), moving_grains (1: faster than moving_speed()), largest_grain_speed (m/s).
   std::vector<Figure> figures() const override;
@@ -53,6 +53,7 @@ private:
   std::int64_t moving_ = 0;
   double largest_speed_ = 0.0;
   std::int64_t measurements_ = 0;   // from from_ on
+  std::int64_t counted_step_ = -1;  // of the latest of them
   double sum_ = 0.0;                // of q_s, m^2/s
   double sum_of_squares_ = 0.0;     // of q_s, m^4/s^2
 };

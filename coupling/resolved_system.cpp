@@ -1,6 +1,9 @@
 #include "coupling/resolved_system.hpp"
 
+#include "core/error.hpp"
 #include "core/mpi_session.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -272,15 +275,19 @@ std::vector<Figure> ResolvedSystem<Real>::figures() const {
 
 template <typename Real>
 void ResolvedSystem<Real>::save(ArchiveWriter& archive) const {
-  archive.attribute("step", step_);
-  archive.attribute("time", time());
+  archive.attribute("system/step", step_);
+  archive.attribute("system/time_step", time_step());
   fluid_.save(archive);
   grains_->save(archive);
 }
 
 template <typename Real>
 void ResolvedSystem<Real>::load(ArchiveReader& archive) {
-  step_ = archive.integer_attribute("step");
+  const double saved = archive.real_attribute("system/time_step");
+  if (saved != time_step())
+    throw InputError(fmt::format("The checkpoint was made with {:.6g} s a step and this case has {:.6g} s: a run can only "
+                                 "go on with the same time step.", saved, time_step()));
+  step_ = archive.integer_attribute("system/step");
   map_.begin_update();
   for (std::size_t slot = 0; slot < map_.grains().size(); ++slot)
     if (map_.grains()[slot].id >= 0) map_.remove(static_cast<int>(slot));

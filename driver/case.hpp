@@ -51,8 +51,8 @@ struct FluidCase {
   bool operator==(const FluidCase&) const = default;
 };
 
-// reduced: the fluid is driven by rho g_x, _y alone and the grains feel their submerged weight; full: everything does.
-enum class GravityMode { reduced, full };
+// reduced: the fluid is driven by rho g_x, _y alone and the grains feel their submerged weight.
+enum class GravityMode { reduced };
 
 struct GravityCase {
   std::optional<double> magnitude;  // m/s^2, with slope ...

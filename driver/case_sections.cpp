@@ -48,8 +48,7 @@ static void describe_gravity(io::SectionVisitor& visit, GravityCase& gravity, bo
                 "gravity is missing; give magnitude in m/s^2, for example 9.8, with slope, or vector");
   if (with_fluid)
     visit.choice<GravityMode>("mode", gravity.mode,
-                              {{GravityMode::reduced, "reduced", "hydrostatic pressure left out"},
-                               {GravityMode::full, "full", "hydrostatic pressure in the fluid"}},
+                              {{GravityMode::reduced, "reduced", "hydrostatic pressure left out"}},
                               {.meaning = "how the weight of the resting fluid is treated"});
   else
     visit.not_here("mode", "a run without fluid has only one kind of gravity; remove the key");

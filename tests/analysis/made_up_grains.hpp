@@ -4,6 +4,7 @@
 #include "core/mpi_session.hpp"
 #include "core/snapshot.hpp"
 
+#include <cmath>
 #include <functional>
 #include <vector>
 
@@ -34,6 +35,7 @@ public:
   Snapshot snapshot(double time) const {   // domain of 20 m x 10 m x 5 m
     Snapshot snapshot;
     snapshot.time = time;
+    snapshot.step = std::llround(100.0 * time);   // steps of 0.01 s
     snapshot.decomposition = &decomposition_;
     snapshot.grains = {count_, id_, radius_, mass_, position_, velocity_, angular_velocity_, {}, {}, {}};
     return snapshot;

@@ -86,6 +86,7 @@ TEST(TransportRate, TakesTheMeanFromAGivenTimeAndCarriesItOverARestart) {
   TransportRate restarted(world, scales, 2.0), other_window(world, scales, 2.5);
   for (TransportRate* next : {&restarted, &other_window}) {
     next->load(checkpoint);
+    next->observe(grains(1.0).snapshot(2.0));   // what the checkpoint holds, seen again: it counts once
     next->observe(grains(3.0).snapshot(3.0));
   }
   // Measurements 1 and 3 times the same flux: mean 2, standard deviation 1.

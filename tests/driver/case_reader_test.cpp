@@ -76,7 +76,7 @@ TEST(CaseReader, ReadsEveryFormOfFacesGravityStepAndStart) {
   const Case c = read(
       flume, {"domain.boundaries={x_low: no_slip, x_high: free_slip, y: periodic, bottom: "
               "{type: no_slip}, top: law_of_the_wall}",
-              "gravity={vector: [0.1, 0, -9.8], mode: full}", "fluid.time_step=", "fluid.maximum_lattice_velocity=0.05",
+              "gravity={vector: [0.1, 0, -9.8], mode: reduced}", "fluid.time_step=", "fluid.maximum_lattice_velocity=0.05",
               "fluid.expected_velocity=1.0", "contact={damping: 0.09, attraction: none}",
               "initial.fluid={log_profile: {bed_height: 0.05, shear_velocity: 0.06, roughness: 2e-4}}",
               "grains.1.fixed=false", "grains.1.prescribed_angular_velocity=[0, 1, 0]"});
@@ -84,7 +84,7 @@ TEST(CaseReader, ReadsEveryFormOfFacesGravityStepAndStart) {
   EXPECT_EQ(c.domain.faces[x_high].type, FaceType::free_slip);
   EXPECT_EQ(c.domain.faces[top], (Face{FaceType::law_of_the_wall, 8.36}));
   EXPECT_EQ(gravity_vector(c.gravity), Vec3(0.1, 0, -9.8));
-  EXPECT_EQ(c.gravity.mode, GravityMode::full);
+  EXPECT_EQ(c.gravity.mode, GravityMode::reduced);
   EXPECT_EQ(fluid_time_step(c), 0.05 * 0.5e-3);
   EXPECT_EQ(*c.contact.damping, 0.09);
   EXPECT_EQ(c.contact.attraction, Attraction::none);

@@ -3,17 +3,16 @@
 
 Called by ctest: program_test.py THALWEG MPIEXEC [unittest arguments]
 """
-import json
 import os
 import signal
 import subprocess
 import sys
-import tempfile
 import time
-import unittest
 from pathlib import Path
 
-THALWEG, MPIEXEC = sys.argv[1:3]
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+import program
+from program import ProgramTest, files_below
 
 # 40 grains tumbling down a bumpy slope: contacts, walls, periodic sides and, on several ranks, migration.
 CASE = """
@@ -37,55 +36,11 @@ analysis:
 """
 
 
-def files_below(folder):
-    return sorted(str(p.relative_to(folder)) for p in Path(folder).rglob("*"))
+class DryGrains(ProgramTest):
+    CASE = CASE
 
 
-class ProgramTest(unittest.TestCase):
-    def setUp(self):
-        holder = tempfile.TemporaryDirectory()
-        self.addCleanup(holder.cleanup)
-        self.folder = Path(holder.name)
-        self.case = self.folder / "case.yaml"
-        self.case.write_text(CASE)
-
-    def command(self, arguments, ranks):
-        parallel = [MPIEXEC, "-n", str(ranks)] if ranks else []
-        return parallel + [THALWEG] + [str(a) for a in arguments]
-
-    def thalweg(self, *arguments, ranks=0):
-        return subprocess.run(self.command(arguments, ranks), capture_output=True, text=True, timeout=120,
-                              cwd=self.folder)
-
-    def run_well(self, *arguments, ranks=0):
-        result = self.thalweg(*arguments, ranks=ranks)
-        self.assertEqual(result.returncode, 0, result.stderr + result.stdout)
-        return result
-
-    def summary(self, run):
-        return json.loads((self.folder / run / "summary.json").read_text())
-
-    def last_checkpoint(self, run):
-        checkpoints = self.folder / run / "checkpoints"
-        return checkpoints / (checkpoints / "latest").read_text().strip()
-
-    def assert_refused(self, *arguments, words, ranks=0):
-        """Exit code 2, one sentence with the words on standard error, nothing written anywhere."""
-        before = files_below(self.folder)
-        result = self.thalweg(*arguments, ranks=ranks)
-        self.assertEqual(result.returncode, 2, result.stderr + result.stdout)
-        ours = [line for line in result.stderr.splitlines() if line.startswith("thalweg: ")]
-        self.assertEqual(len(ours), 1, result.stderr)
-        if not ranks:   # else mpirun adds its own words about the exit code
-            self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
-            self.assertEqual(result.stdout, "")
-        self.assertNotIn("MPI_ABORT", result.stderr)
-        for word in words:
-            self.assertIn(word, ours[0])
-        self.assertEqual(files_below(self.folder), before)
-
-
-class CommandLine(ProgramTest):
+class CommandLine(DryGrains):
     def test_help_and_version(self):
         self.assertIn("mpirun -n 8 thalweg run", self.run_well("--help").stdout)
         self.assertRegex(self.run_well("--version").stdout, r"^thalweg \d+\.\d+\.\d+")
@@ -135,7 +90,7 @@ class CommandLine(ProgramTest):
         self.assertRegex(report, r"work +500 steps to 0\.1 s, 1e\+06 grain-steps")
 
 
-class Running(ProgramTest):
+class Running(DryGrains):
     def test_a_run_leaves_a_complete_folder_and_is_not_overwritten(self):
         result = self.run_well("run", self.case)
         run = self.folder / "run"
@@ -226,7 +181,7 @@ PERPETUAL = CASE.replace("slope: 0.5", "slope: 0").replace("magnitude: 9.8", "ma
     .replace("every: 2.0e-3", "every: 0.1")
 
 
-class Stopping(ProgramTest):
+class Stopping(DryGrains):
     LONG = ("--until", "10000")
 
     def setUp(self):
@@ -293,11 +248,11 @@ class Stopping(ProgramTest):
     def test_walltime(self):
         start = time.monotonic()
         self.run_well("run", self.case, *self.LONG, "--walltime", "00:00:03")
-        # Within the three seconds; the bound leaves room for a busy machine to load the program.
-        self.assertLess(time.monotonic() - start, 4.0)
+        # Within the three seconds; the bound leaves room for a busy machine (the whole run would take minutes).
+        self.assertLess(time.monotonic() - start, 15.0)
         self.assertIn("wall time", self.summary("run")["reason"])
         self.assert_can_go_on(1)
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1] + sys.argv[3:], verbosity=2)
+    program.main()

@@ -1,0 +1,66 @@
+"""What every test of the whole program needs: a folder of its own, a case in it, and ways to run and to be refused.
+
+A test script is called THE_SCRIPT THALWEG MPIEXEC [unittest arguments]; it ends with program.main().
+"""
+import json
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+THALWEG, MPIEXEC = sys.argv[1:3]
+
+
+def files_below(folder):
+    return sorted(str(p.relative_to(folder)) for p in Path(folder).rglob("*"))
+
+
+class ProgramTest(unittest.TestCase):
+    CASE = ""   # text of case.yaml; subclasses give theirs
+
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.folder = Path(holder.name)
+        self.case = self.folder / "case.yaml"
+        self.case.write_text(self.CASE)
+
+    def command(self, arguments, ranks):
+        parallel = [MPIEXEC, "-n", str(ranks)] if ranks else []
+        return parallel + [THALWEG] + [str(a) for a in arguments]
+
+    def thalweg(self, *arguments, ranks=0):
+        return subprocess.run(self.command(arguments, ranks), capture_output=True, text=True, timeout=120,
+                              cwd=self.folder)
+
+    def run_well(self, *arguments, ranks=0):
+        result = self.thalweg(*arguments, ranks=ranks)
+        self.assertEqual(result.returncode, 0, result.stderr + result.stdout)
+        return result
+
+    def summary(self, run):
+        return json.loads((self.folder / run / "summary.json").read_text())
+
+    def last_checkpoint(self, run):
+        checkpoints = self.folder / run / "checkpoints"
+        return checkpoints / (checkpoints / "latest").read_text().strip()
+
+    def assert_refused(self, *arguments, words, ranks=0):
+        """Exit code 2, one sentence with the words on standard error, nothing written anywhere."""
+        before = files_below(self.folder)
+        result = self.thalweg(*arguments, ranks=ranks)
+        self.assertEqual(result.returncode, 2, result.stderr + result.stdout)
+        ours = [line for line in result.stderr.splitlines() if line.startswith("thalweg: ")]
+        self.assertEqual(len(ours), 1, result.stderr)
+        if not ranks:   # else mpirun adds its own words about the exit code
+            self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+            self.assertEqual(result.stdout, "")
+        self.assertNotIn("MPI_ABORT", result.stderr)
+        for word in words:
+            self.assertIn(word, ours[0])
+        self.assertEqual(files_below(self.folder), before)
+
+
+def main():
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:], verbosity=2)

@@ -1,0 +1,115 @@
+#!/usr/bin/python3
+"""Grains in a resolved flow, from the case file to the last checkpoint.
+
+Called by ctest: resolved_run_test.py THALWEG MPIEXEC [unittest arguments]
+"""
+import sys
+from pathlib import Path
+
+import h5py
+import numpy
+from vtk.util.numpy_support import vtk_to_numpy
+from vtk import vtkXMLImageDataReader, vtkXMLPolyDataReader
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+import program
+from program import ProgramTest
+
+
+class ResolvedRun(ProgramTest):
+    # A short narrow flume in which everything moves: grains fall, meet each other, the floor and the side walls, and cross
+    # the borders between ranks and the periodic faces.
+    CASE = """
+system: resolved
+name: short flume
+domain:
+  size: [0.0396, 0.010725, 0.0396]   # m
+  spacing: 0.825e-3                  # m
+  boundaries: {x: periodic, y: law_of_the_wall, bottom: no_slip, top: free_slip}
+fluid:
+  density: 1000
+  kinematic_viscosity: 1.0e-6
+  smagorinsky_constant: 0.27
+  time_step: 1.0e-4
+  precision: single
+gravity: {magnitude: 9.8, slope: 0.2}
+grains:
+  - {count: 70, diameter: 4.95e-3, density: 2550, placement: {pattern: uniform, seed: 1}, velocity: [0.3, 0.0, -0.1]}
+contact: {normal_stiffness: 20000, tangential_stiffness: 5714, restitution: 0.93, friction: 0.5, wall_friction: 0.45}
+coupling: {grain_steps_per_fluid_step: 20}
+initial: {fluid: {uniform: [0.3, 0.0, 0.0]}}
+run: {until: 0.06}
+output:
+  series: {every: 0.01}
+  grains: {every: 0.03}
+  fluid: {every: 0.03, fields: [velocity, pressure, grain_id]}
+  checkpoint: {every: 0.03, keep: 3}
+analysis:
+  transport_rate: {from: 0.02}
+"""
+
+    def test_the_same_bits_on_any_ranks_and_layout(self):
+        self.run_well("run", self.case, "--out", "one")
+        reference = self.last_checkpoint("one").read_bytes()
+        for ranks, layout in ((2, "2,1,1"), (2, "1,1,2"), (4, "4,1,1"), (4, "2,2,1")):
+            out = "on_" + layout.replace(",", "x")
+            self.run_well("run", self.case, "--out", out, "--layout", layout, ranks=ranks)
+            self.assertEqual(self.last_checkpoint(out).read_bytes(), reference, out)
+            self.assertEqual((self.folder / out / "series.csv").read_bytes(),
+                             (self.folder / "one" / "series.csv").read_bytes(), out)
+
+    def test_a_restart_on_other_ranks_changes_nothing(self):
+        self.run_well("run", self.case, "--out", "straight")
+        half_way = self.folder / "straight/checkpoints/step_300.h5"
+        self.run_well("run", self.case, "--out", "again", "--restart", half_way, ranks=2)
+        self.assertEqual(self.last_checkpoint("again").read_bytes(), self.last_checkpoint("straight").read_bytes())
+
+    def test_double_precision_has_the_same_bits_too(self):
+        for out, ranks in (("one", 1), ("two", 2)):
+            self.run_well("run", self.case, "--out", out, "--set", "fluid.precision=double", "--until", "0.025",
+                          ranks=ranks)
+        self.assertEqual(self.last_checkpoint("one").read_bytes(), self.last_checkpoint("two").read_bytes())
+
+    def test_what_it_writes_can_be_opened(self):
+        self.run_well("run", self.case, ranks=2)
+        run = self.folder / "run"
+        summary = self.summary("run")
+        self.assertTrue(summary["finished"])
+        self.assertGreater(summary["transport_rate"]["q_star_mean"], 0)
+        # k_n holds the grains apart: an impact at v overlaps by v sqrt(m/2/k_n), below 1 % of a diameter up to 1 m/s.
+        self.assertLess(summary["largest"]["largest_overlap"], 0.02)
+
+        reader = vtkXMLPolyDataReader()
+        reader.SetFileName(str(run / "grains/grains_000000600.vtp"))
+        reader.Update()
+        grains = reader.GetOutput()
+        self.assertEqual(grains.GetNumberOfPoints(), 70)
+        points = vtk_to_numpy(grains.GetPoints().GetData())
+        self.assertTrue((points >= 0).all() and (points <= [0.0396, 0.010725, 0.0396]).all())
+        ids = vtk_to_numpy(grains.GetPointData().GetArray("id"))
+        self.assertEqual(ids.tolist(), list(range(70)))
+        with h5py.File(self.last_checkpoint("run")) as checkpoint:
+            numpy.testing.assert_allclose(points, checkpoint["grains/position"][()], atol=1e-8)
+
+        pieces = sorted((run / "fluid" / "fluid_000000600").glob("*.vti"))
+        self.assertGreater(len(pieces), 0)
+        cells = solid = 0
+        for piece in pieces:
+            reader = vtkXMLImageDataReader()
+            reader.SetFileName(str(piece))
+            reader.Update()
+            data = reader.GetOutput().GetCellData()
+            covering = vtk_to_numpy(data.GetArray("grain_id"))
+            velocity = vtk_to_numpy(data.GetArray("velocity"))
+            cells += len(covering)
+            solid += (covering >= 0).sum()
+            self.assertTrue((velocity[covering >= 0] == 0).all())
+            self.assertTrue(numpy.isfinite(velocity).all())
+            self.assertLess(numpy.abs(velocity).max(), 2.0)
+        self.assertEqual(cells, 48 * 13 * 48)
+        # 70 spheres of 6 cells' diameter: 113.1 cells each; the staircase of many spheres averages to within 1 %.
+        self.assertAlmostEqual(solid / (70 * numpy.pi / 6 * 6**3), 1.0, delta=0.01)
+
+
+if __name__ == "__main__":
+    program.main()
