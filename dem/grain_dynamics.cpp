@@ -60,9 +60,11 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
     : decomposition_(decomposition), box_(decomposition.box()), communicator_(communicator),
       parameters_(checked(parameters)), damping_(parameters.contact), largest_radius_(largest_radius_of(seeds)),
       global_count_(static_cast<std::int64_t>(seeds.size())), store_(parameters.attached_width),
-      ghosts_(decomposition, communicator, ghost_reach()) {
+      ghosts_(decomposition, communicator, ghost_reach()), lists_phase_(timer_.phase("contact lists")),
+      forces_phase_(timer_.phase("contact forces")), motion_phase_(timer_.phase("motion")),
+      messages_phase_(timer_.phase("messages")) {
   assert(decomposition.ranks() == size_of(communicator));
-  check(seeds, box_, parameters_.walls);
+  check(seeds, box_, parameters_.walls, parameters_.initial_overlap);
   double lightest = std::numeric_limits<double>::infinity();
   for (const GrainSeed& seed : seeds)
     if (!holds_translation(seed.motion)) lightest = std::min(lightest, seed.mass());
@@ -96,6 +98,7 @@ Trouble trouble_of(const GrainStore& store, std::size_t s, const PeriodicBox& bo
 }  // namespace
 
 bool GrainDynamics::prepare() {
+  const auto scope = timer_.measure(lists_phase_);
   wrap_positions();
   // What may still happen before the next call: a grain at rest can be thrown at no more than about twice the largest
   // speed, and the loads accelerate it.
@@ -208,6 +211,7 @@ void GrainDynamics::settle_in(const std::vector<ContactHistory>& histories) {
 }
 
 void GrainDynamics::evaluate_forces(double time_step) {
+  const auto scope = timer_.measure(forces_phase_);
   const ContactParameters& c = parameters_.contact;
   const SpringDashpotFriction law(c.normal_stiffness, c.tangential_stiffness, c.attraction, time_step);
   evaluate_contacts(store_, list_, box_, parameters_.walls, law, c.friction);
@@ -217,13 +221,19 @@ void GrainDynamics::advance(int sub_steps) {
   for (int s = 0; s < sub_steps; ++s) {
     half_kick();
     drift();
-    ghosts_.refresh(store_);
+    refresh_ghost_motion();
     evaluate_forces(parameters_.time_step);
     half_kick();
   }
 }
 
+void GrainDynamics::refresh_ghost_motion() {
+  const auto scope = timer_.measure(messages_phase_);
+  ghosts_.refresh(store_);
+}
+
 void GrainDynamics::half_kick() {
+  const auto scope = timer_.measure(motion_phase_);
   const double half = 0.5 * parameters_.time_step;
   for (std::size_t s = 0; s < store_.owned; ++s) {
     const double push = half * store_.inverse_mass[s], spin = half * store_.inverse_inertia[s];
@@ -233,12 +243,13 @@ void GrainDynamics::half_kick() {
 }
 
 void GrainDynamics::drift() {
+  const auto scope = timer_.measure(motion_phase_);
   for (std::size_t s = 0; s < store_.owned; ++s) store_.position[s] += parameters_.time_step * store_.velocity[s];
 }
 
 void GrainDynamics::refresh_ghosts() {
   wrap_positions();
-  ghosts_.refresh(store_);
+  refresh_ghost_motion();
 }
 
 void GrainDynamics::refresh_ghost_attached() { ghosts_.refresh_attached(store_); }

@@ -10,6 +10,7 @@
 
 #include "core/archive.hpp"
 #include "core/decomposition.hpp"
+#include "core/phase_timer.hpp"
 #include "dem/contact_list.hpp"
 #include "dem/ghost_exchange.hpp"
 #include "dem/grain_seed.hpp"
@@ -35,6 +36,7 @@ struct GrainParameters {
   double skin = 0.0;               // m: the neighbour list holds until a grain has moved half of it
   double ghost_width = 0.0;        // m: grains at least this near to a rank's block are its ghosts at all times
   int attached_width = 0;          // columns attached to every grain
+  double initial_overlap = allowed_initial_overlap;   // diameters the seeds may overlap by: a settled bed's do
 };
 
 // Two grains in contact, or a grain and a wall.
@@ -82,6 +84,7 @@ public:
   double largest_radius() const { return largest_radius_; }      // m, over all ranks
   std::int64_t global_count() const { return global_count_; }    // grains over all ranks
   std::int64_t rebuilds() const { return rebuilds_; }            // since construction or load
+  PhaseTimer& timer() { return timer_; }                         // contact lists, contact forces, motion, messages
 
   // The touching pairs whose lower id is owned here, sorted by ids, then the touching walls of owned grains.
   std::vector<Contact> contacts() const;
@@ -109,6 +112,7 @@ private:
   void migrate(std::vector<ContactHistory>& histories);
   void settle_in(const std::vector<ContactHistory>& histories);
   void evaluate_forces(double time_step);
+  void refresh_ghost_motion();
   void half_kick();
   void drift();
 
@@ -126,6 +130,9 @@ private:
   ContactList list_;
   std::vector<Vec3> listed_position_;   // of owned grains, when the list was built
   std::vector<Vec3> body_force_;        // of owned grains
+
+  PhaseTimer timer_;
+  int lists_phase_, forces_phase_, motion_phase_, messages_phase_;
 };
 
 }  // namespace thalweg::dem

@@ -26,7 +26,8 @@ void check_ids(std::span<const GrainSeed> seeds) {
   }
 }
 
-void check_alone(const GrainSeed& seed, const PeriodicBox& box, std::span<const Plane> walls) {
+void check_alone(const GrainSeed& seed, const PeriodicBox& box, std::span<const Plane> walls,
+                 double allowed_overlap) {
   if (!(std::isfinite(seed.radius) && seed.radius > 0.0))
     throw InputError(fmt::format("Grain {} at {} has radius {:g} m; it must be positive.", seed.id,
                                  place(seed.position), seed.radius));
@@ -43,7 +44,7 @@ void check_alone(const GrainSeed& seed, const PeriodicBox& box, std::span<const 
   if (seed.motion == Motion::fixed) return;
   for (const Plane& wall : walls) {
     const double overlap = seed.radius - (seed.position - wall.point).dot(wall.normal);
-    if (overlap > allowed_initial_overlap * 2.0 * seed.radius)
+    if (overlap > allowed_overlap * 2.0 * seed.radius)
       throw InputError(fmt::format("Grain {} at {} with radius {:g} m reaches {:g} m into the wall with normal ({:g}, "
                                    "{:g}, {:g}); move it away by that much.",
                                    seed.id, place(seed.position), seed.radius, overlap, wall.normal[0], wall.normal[1],
@@ -51,27 +52,28 @@ void check_alone(const GrainSeed& seed, const PeriodicBox& box, std::span<const 
   }
 }
 
-void check_pair(const GrainSeed& a, const GrainSeed& b, const PeriodicBox& box) {
+void check_pair(const GrainSeed& a, const GrainSeed& b, const PeriodicBox& box, double allowed_overlap) {
   if (a.motion == Motion::fixed && b.motion == Motion::fixed) return;
   const double overlap = a.radius + b.radius - box.difference(a.position, b.position).norm();
-  if (overlap > allowed_initial_overlap * 2.0 * std::min(a.radius, b.radius))
+  if (overlap > allowed_overlap * 2.0 * std::min(a.radius, b.radius))
     throw InputError(
         fmt::format("Grain {} at {} and grain {} at {} overlap by {:g} m at the start; they must not touch "
                     "by more than {:g} diameters.",
-                    a.id, place(a.position), b.id, place(b.position), overlap, allowed_initial_overlap));
+                    a.id, place(a.position), b.id, place(b.position), overlap, allowed_overlap));
 }
 
 }  // namespace
 
 double GrainSeed::mass() const { return density * (4.0 / 3.0) * std::numbers::pi * radius * radius * radius; }
 
-void check(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<const Plane> walls) {
+void check(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<const Plane> walls,
+           double allowed_overlap) {
   check_ids(seeds);
   std::vector<GrainSeed> sorted(seeds.begin(), seeds.end());
   std::sort(sorted.begin(), sorted.end(), [](const GrainSeed& a, const GrainSeed& b) { return a.id < b.id; });
   double largest = 0.0;
   for (const GrainSeed& seed : sorted) {
-    check_alone(seed, box, walls);
+    check_alone(seed, box, walls, allowed_overlap);
     largest = std::max(largest, seed.radius);
   }
   for (int axis = 0; axis < 3; ++axis)
@@ -89,7 +91,7 @@ void check(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<c
     near.clear();
     grid.for_each_near(points[a], [&](std::uint32_t b) { if (b > a) near.push_back(b); });
     std::sort(near.begin(), near.end());
-    for (const std::uint32_t b : near) check_pair(sorted[a], sorted[b], box);
+    for (const std::uint32_t b : near) check_pair(sorted[a], sorted[b], box, allowed_overlap);
   }
 }
 

@@ -26,8 +26,10 @@ struct GrainSeed {
 inline constexpr double allowed_initial_overlap = 1e-6;
 
 // Throws InputError naming the first grain (by id) with an id out of place, a radius or density that is not positive, a
-// centre outside the box, an overlap with a wall, or an overlap with another grain. Fixed grains may reach into walls
-// and into each other. A periodic axis must be at least two of the largest diameters long.
-void check(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<const Plane> walls);
+// centre outside the box, or an overlap with a wall or another grain of more than `allowed_overlap` diameters of the
+// smaller. Fixed grains may reach into walls and into each other. A periodic axis must be at least two of the largest
+// diameters long.
+void check(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<const Plane> walls,
+           double allowed_overlap = allowed_initial_overlap);
 
 }  // namespace thalweg::dem
