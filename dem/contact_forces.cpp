@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <limits>
 
 namespace thalweg::dem {
 
 namespace {
 
-// The minimum image of core/periodic_box.hpp (same bits), with the axes' rules turned into numbers.
+// The minimum image of core/periodic_box.hpp (same bits), all axes at once and with their rules turned into numbers.
 class MinimumImage {
 public:
   explicit MinimumImage(const PeriodicBox& box) {
@@ -18,41 +21,87 @@ public:
       half_[axis] = box.periodic[axis] ? 0.5 * box.size[axis] : std::numeric_limits<double>::infinity();
     }
   }
-  double operator()(int axis, double d) const {
-    return d > half_[axis] ? d - size_[axis] : d < -half_[axis] ? d + size_[axis] : d;
-  }
+  Row operator()(const Row& d) const { return d > half_ ? d - size_ : d < -half_ ? d + size_ : d; }
 
 private:
-  double size_[3], half_[3];
+  Row size_{}, half_{0.0, 0.0, 0.0, std::numeric_limits<double>::infinity()};
 };
+
+inline Row last_everywhere(const Row& r) { return Row{r[3], r[3], r[3], r[3]}; }
+
+inline Row row_at(const double* values) {
+  Row row;
+  std::memcpy(&row, values, sizeof(Row));
+  return row;
+}
+
+// Turns four rows into four columns, and back.
+inline void transpose(Row (&r)[4]) {
+  const Row a = __builtin_shufflevector(r[0], r[1], 0, 4, 2, 6), b = __builtin_shufflevector(r[0], r[1], 1, 5, 3, 7);
+  const Row c = __builtin_shufflevector(r[2], r[3], 0, 4, 2, 6), d = __builtin_shufflevector(r[2], r[3], 1, 5, 3, 7);
+  r[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+  r[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+  r[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+  r[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
 
 // Touching pairs, gathered into arrays so that the law is evaluated for several at once, and scattered in their order.
 class PairBatch {
 public:
   static constexpr int capacity = 64;
-  static constexpr int lanes = 8;   // whole vectors: the rest of the last one holds old, harmless values
+  static constexpr int lanes = 8;   // whole vectors: the last one is filled up with copies of the first pair
 
   bool full() const { return count_ == capacity; }
 
-  void gather(const GrainStore& store, PairContact& c, double dx, double dy, double dz) {
-    const int k = count_++;
-    contact_[k] = &c;
-    x_[k] = dx, y_[k] = dy, z_[k] = dz;
-    reach_[k] = c.reach;
-    damping_[k] = c.damping;
-    const double r1 = store.radius[c.first], r2 = store.radius[c.second];
-    r1_[k] = r1, r2_[k] = r2;
-    const Vec3 &v1 = store.velocity[c.first], &v2 = store.velocity[c.second];
-    vx_[k] = v1[0] - v2[0], vy_[k] = v1[1] - v2[1], vz_[k] = v1[2] - v2[2];
-    const Vec3 &w1 = store.angular_velocity[c.first], &w2 = store.angular_velocity[c.second];
-    rwx_[k] = r1 * w1[0] + r2 * w2[0], rwy_[k] = r1 * w1[1] + r2 * w2[1], rwz_[k] = r1 * w1[2] + r2 * w2[2];
-    wx_[k] = w1[0] + w2[0], wy_[k] = w1[1] + w2[1], wz_[k] = w1[2] + w2[2];
-    sx_[k] = c.spring[0], sy_[k] = c.spring[1], sz_[k] = c.spring[2];
+  // Keeps the pair if it touches. No branch: whether a pair within the skin touches cannot be foreseen.
+  void offer(PairContact& c, const Row& separation, bool touches) {
+    contact_[count_] = &c;
+    separation_[count_] = separation;
+    count_ += touches;
+  }
+
+  void evaluate_and_scatter(MovingGrains& grains, const SpringDashpotFriction& law, double friction) {
+    if (count_ == 0) return;
+    const int rounded = (count_ + lanes - 1) / lanes * lanes;
+    for (int k = count_; k < rounded; ++k) contact_[k] = contact_[0], separation_[k] = separation_[0];
+    for (int k = 0; k < rounded; k += 4) gather(grains, k);
+    evaluate(law, friction, rounded);
+    for (int k = 0; k < count_; k += 4) scatter(grains, k);
+    count_ = 0;
+  }
+
+private:
+  using Lane = double[capacity];
+
+  static void store(const Row (&r)[4], int k, Lane& x, Lane& y, Lane& z, Lane& last) {
+    std::memcpy(x + k, &r[0], sizeof(Row));
+    std::memcpy(y + k, &r[1], sizeof(Row));
+    std::memcpy(z + k, &r[2], sizeof(Row));
+    std::memcpy(last + k, &r[3], sizeof(Row));
+  }
+
+  void gather(const MovingGrains& grains, int k) {
+    Row v[4], rw[4], w[4], spring[4];
+    for (int m = 0; m < 4; ++m) {
+      const PairContact& c = *contact_[k + m];
+      const MovingGrain &first = grains[c.first], &second = grains[c.second];
+      v[m] = first.velocity - second.velocity;
+      rw[m] = last_everywhere(first.position) * first.spin + last_everywhere(second.position) * second.spin;
+      w[m] = first.spin + second.spin;
+      spring[m] = row_at(c.spring);
+      reach_[k + m] = c.reach;
+    }
+    Row separation[4] = {separation_[k], separation_[k + 1], separation_[k + 2], separation_[k + 3]};
+    transpose(separation), transpose(v), transpose(rw), transpose(w), transpose(spring);
+    store(separation, k, x_, y_, z_, difference_);
+    store(v, k, vx_, vy_, vz_, unused_);
+    store(rw, k, rwx_, rwy_, rwz_, unused_);
+    store(w, k, wx_, wy_, wz_, unused_);
+    store(spring, k, sx_, sy_, sz_, damping_);
   }
 
   // Force on the first and turning moment per unit of lever arm on both: n x F_t, with the sign turned.
-  void evaluate(const SpringDashpotFriction& law, double friction) {
-    const int rounded = (count_ + lanes - 1) / lanes * lanes;
+  void evaluate(const SpringDashpotFriction& law, double friction, int rounded) {
     for (int k = 0; k < rounded; ++k) {
       const double distance = std::sqrt(x_[k] * x_[k] + y_[k] * y_[k] + z_[k] * z_[k]);
       const double inverse = 1.0 / distance, nx = inverse * x_[k], ny = inverse * y_[k], nz = inverse * z_[k];
@@ -65,87 +114,82 @@ public:
       x_[k] = f.normal * nx + f.tx, y_[k] = f.normal * ny + f.ty, z_[k] = f.normal * nz + f.tz;
       wx_[k] = f.ty * nz - f.tz * ny, wy_[k] = f.tz * nx - f.tx * nz, wz_[k] = f.tx * ny - f.ty * nx;
       sx_[k] = f.spring.x, sy_[k] = f.spring.y, sz_[k] = f.spring.z;
-      r1_[k] -= half;
-      r2_[k] -= half;
+      difference_[k] = half;
     }
   }
 
-  void scatter(GrainStore& store) {
-    for (int k = 0; k < count_; ++k) {
-      PairContact& c = *contact_[k];
-      c.spring[0] = sx_[k], c.spring[1] = sy_[k], c.spring[2] = sz_[k];
-      const Vec3 force(x_[k], y_[k], z_[k]), turn(wx_[k], wy_[k], wz_[k]);
-      store.contact_force[c.first] += force;
-      store.contact_force[c.second] -= force;
-      store.contact_torque[c.first] += r1_[k] * turn;
-      store.contact_torque[c.second] += r2_[k] * turn;
+  void scatter(MovingGrains& grains, int k) {
+    Row force[4] = {row_at(x_ + k), row_at(y_ + k), row_at(z_ + k), row_at(difference_ + k)};
+    Row turn[4] = {row_at(wx_ + k), row_at(wy_ + k), row_at(wz_ + k), Row{}};
+    Row spring[4] = {row_at(sx_ + k), row_at(sy_ + k), row_at(sz_ + k), row_at(damping_ + k)};
+    transpose(force), transpose(turn), transpose(spring);
+    for (int m = 0; m < 4 && k + m < count_; ++m) {
+      PairContact& c = *contact_[k + m];
+      std::memcpy(c.spring, &spring[m], sizeof(Row));
+      MovingGrain &first = grains[c.first], &second = grains[c.second];
+      const Row half = last_everywhere(force[m]), f = force[m] * Row{1.0, 1.0, 1.0, 0.0};
+      first.force += f;
+      second.force -= f;
+      first.torque += (last_everywhere(first.position) - half) * turn[m];
+      second.torque += (last_everywhere(second.position) - half) * turn[m];
     }
-    count_ = 0;
   }
-
-private:
-  using Lane = double[capacity];
 
   int count_ = 0;
-  PairContact* contact_[capacity];
-  alignas(64) Lane x_{}, y_{}, z_{};            // separation from second to first; then the force on the first
-  alignas(64) Lane reach_{}, damping_{}, r1_{}, r2_{};   // radii; then lever arms
-  alignas(64) Lane vx_{}, vy_{}, vz_{};         // velocity of the first centre against the second
-  alignas(64) Lane rwx_{}, rwy_{}, rwz_{};      // R1 w1 + R2 w2
-  alignas(64) Lane wx_{}, wy_{}, wz_{};         // w1 + w2; then the moment
-  alignas(64) Lane sx_{}, sy_{}, sz_{};         // spring
+  PairContact* contact_[capacity + 1];                   // one more: what is offered to a full batch is not kept
+  Row separation_[capacity + 1];                         // from second to first
+  alignas(64) Lane x_{}, y_{}, z_{}, difference_{};      // separation, difference of radii; then force, overlap/2
+  alignas(64) Lane reach_{}, damping_{}, unused_{};
+  alignas(64) Lane vx_{}, vy_{}, vz_{};                  // velocity of the first centre against the second
+  alignas(64) Lane rwx_{}, rwy_{}, rwz_{};               // R1 w1 + R2 w2
+  alignas(64) Lane wx_{}, wy_{}, wz_{};                  // w1 + w2; then the moment
+  alignas(64) Lane sx_{}, sy_{}, sz_{};                  // spring
 };
 
-void evaluate_pairs(GrainStore& store, std::vector<PairContact>& pairs, const PeriodicBox& box,
+void evaluate_pairs(MovingGrains& grains, std::vector<PairContact>& pairs, const PeriodicBox& box,
                     const SpringDashpotFriction& law, double friction) {
+  static_assert(offsetof(PairContact, damping) == offsetof(PairContact, spring) + 3 * sizeof(double));
   const MinimumImage image(box);
   PairBatch batch;
-  const auto flush = [&] {
-    batch.evaluate(law, friction);
-    batch.scatter(store);
-  };
   for (PairContact& c : pairs) {
-    const Vec3 &p1 = store.position[c.first], &p2 = store.position[c.second];
-    const double dx = image(0, p1[0] - p2[0]), dy = image(1, p1[1] - p2[1]), dz = image(2, p1[2] - p2[2]);
-    if (dx * dx + dy * dy + dz * dz >= c.reach * c.reach) {
-      c.spring[0] = c.spring[1] = c.spring[2] = 0.0;
-      continue;
-    }
-    batch.gather(store, c, dx, dy, dz);
-    if (batch.full()) flush();
+    const Row d = image(grains[c.first].position - grains[c.second].position), square = d * d;
+    const bool touches = square[0] + square[1] + square[2] < c.reach * c.reach;
+    const bool was_touching = (c.spring[0] != 0.0) | (c.spring[1] != 0.0) | (c.spring[2] != 0.0);
+    if (!touches & was_touching) c.spring[0] = c.spring[1] = c.spring[2] = 0.0;
+    batch.offer(c, d, touches);
+    if (batch.full()) batch.evaluate_and_scatter(grains, law, friction);
   }
-  flush();
+  batch.evaluate_and_scatter(grains, law, friction);
 }
 
-void evaluate_walls(GrainStore& store, std::vector<WallContact>& contacts, std::span<const Plane> walls,
+void evaluate_walls(MovingGrains& grains, std::vector<WallContact>& contacts, std::span<const Plane> walls,
                     const SpringDashpotFriction& law) {
   for (WallContact& c : contacts) {
+    MovingGrain& grain = grains[c.grain];
     const Plane& wall = walls[c.wall];
     const Vec3& n = wall.normal;
-    const double height = (store.position[c.grain] - wall.point).dot(n);
-    const double overlap = store.radius[c.grain] - height;
+    const double height = (vector_of(grain.position) - wall.point).dot(n);
+    const double overlap = grain.position[3] - height;
     if (!(overlap > 0.0)) {
       c.spring[0] = c.spring[1] = c.spring[2] = 0.0;
       continue;
     }
-    const Vec3 v = store.velocity[c.grain] - wall.velocity - height * store.angular_velocity[c.grain].cross(n);
+    const Vec3 v = vector_of(grain.velocity) - wall.velocity - height * vector_of(grain.spin).cross(n);
     const ContactForce f = law({overlap, n[0], n[1], n[2], v[0], v[1], v[2]}, c.damping, wall.friction,
                                {c.spring[0], c.spring[1], c.spring[2]});
     c.spring[0] = f.spring.x, c.spring[1] = f.spring.y, c.spring[2] = f.spring.z;
     const Vec3 tangential(f.tx, f.ty, f.tz);
-    store.contact_force[c.grain] += f.normal * n + tangential;
-    store.contact_torque[c.grain] += height * tangential.cross(n);
+    grain.force += row_of(f.normal * n + tangential);
+    grain.torque += row_of(height * tangential.cross(n));
   }
 }
 
 }  // namespace
 
-void evaluate_contacts(GrainStore& store, ContactList& list, const PeriodicBox& box, std::span<const Plane> walls,
+void evaluate_contacts(MovingGrains& grains, ContactList& list, const PeriodicBox& box, std::span<const Plane> walls,
                        const SpringDashpotFriction& law, double friction) {
-  std::fill(store.contact_force.begin(), store.contact_force.end(), Vec3::Zero());
-  std::fill(store.contact_torque.begin(), store.contact_torque.end(), Vec3::Zero());
-  evaluate_pairs(store, list.pairs, box, law, friction);
-  evaluate_walls(store, list.walls, walls, law);
+  evaluate_pairs(grains, list.pairs, box, law, friction);
+  evaluate_walls(grains, list.walls, walls, law);
 }
 
 }  // namespace thalweg::dem

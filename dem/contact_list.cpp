@@ -63,7 +63,7 @@ ContactList find_contacts(const GrainStore& store, const PeriodicBox& box, std::
     const double mass = effective_mass(store.mass[p.first], holds_translation(store.motion[p.first]),
                                        store.mass[p.second], holds_translation(store.motion[p.second]));
     list.pairs.push_back({p.first, p.second, store.radius[p.first] + store.radius[p.second],
-                          damping.coefficient(mass), {0.0, 0.0, 0.0}});
+                          {0.0, 0.0, 0.0}, damping.coefficient(mass)});
   }
   for (std::size_t s = 0; s < store.owned; ++s)
     // From the last wall to the first: the keys -1 - wall then rise.

@@ -20,8 +20,8 @@ namespace thalweg::dem {
 struct PairContact {
   std::uint32_t first, second;   // slots of the lower and the higher id
   double reach;                  // m, sum of the radii
-  double damping;                // kg/s
   double spring[3];              // m, xi of the first against the second; zero when they do not touch
+  double damping;                // kg/s; right behind the spring, so that one load takes both
 };
 
 struct WallContact {

@@ -100,25 +100,46 @@ std::vector<PackedExchange::Neighbour> GhostExchange::messages(int tag, std::siz
   return list;
 }
 
-void GhostExchange::refresh(GrainStore& store) {
+// read(slot) gives what is sent of a grain, write(slot, row) takes it.
+template <typename Read, typename Write> void GhostExchange::exchange_motion(Read&& read, Write&& write) {
   for (std::size_t n = 0; n < neighbours_.size(); ++n) {
     auto* row = motion_.send_buffer<MotionRow>(n);
-    for (const std::uint32_t s : neighbours_[n].send) {
-      const Vec3 &x = store.position[s], &v = store.velocity[s], &w = store.angular_velocity[s];
-      *row++ = {{x[0], x[1], x[2], v[0], v[1], v[2], w[0], w[1], w[2]}};
-    }
+    for (const std::uint32_t s : neighbours_[n].send) *row++ = read(s);
   }
   motion_.start();
   motion_.finish();
   for (std::size_t n = 0; n < neighbours_.size(); ++n) {
     const auto* row = motion_.receive_buffer<MotionRow>(n);
     const std::size_t end = neighbours_[n].first + neighbours_[n].count;
-    for (std::size_t s = neighbours_[n].first; s < end; ++s, ++row) {
-      store.position[s] = Vec3(row->value);
-      store.velocity[s] = Vec3(row->value + 3);
-      store.angular_velocity[s] = Vec3(row->value + 6);
-    }
+    for (std::size_t s = neighbours_[n].first; s < end; ++s) write(s, *row++);
   }
+}
+
+void GhostExchange::refresh(GrainStore& store) {
+  exchange_motion(
+      [&](std::size_t s) -> MotionRow {
+        const Vec3 &x = store.position[s], &v = store.velocity[s], &w = store.angular_velocity[s];
+        return {{x[0], x[1], x[2], v[0], v[1], v[2], w[0], w[1], w[2]}};
+      },
+      [&](std::size_t s, const MotionRow& row) {
+        store.position[s] = Vec3(row.value);
+        store.velocity[s] = Vec3(row.value + 3);
+        store.angular_velocity[s] = Vec3(row.value + 6);
+      });
+}
+
+void GhostExchange::refresh(MovingGrains& grains) {
+  exchange_motion(
+      [&](std::size_t s) -> MotionRow {
+        const Row &x = grains[s].position, &v = grains[s].velocity, &w = grains[s].spin;
+        return {{x[0], x[1], x[2], v[0], v[1], v[2], w[0], w[1], w[2]}};
+      },
+      [&](std::size_t s, const MotionRow& row) {
+        const double* value = row.value;
+        grains[s].position = Row{value[0], value[1], value[2], grains[s].position[3]};
+        grains[s].velocity = Row{value[3], value[4], value[5], 0.0};
+        grains[s].spin = Row{value[6], value[7], value[8], 0.0};
+      });
 }
 
 void GhostExchange::refresh_attached(GrainStore& store) {

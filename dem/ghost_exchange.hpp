@@ -4,6 +4,7 @@
 #include "core/decomposition.hpp"
 #include "core/packed_exchange.hpp"
 #include "dem/grain_store.hpp"
+#include "dem/moving_grains.hpp"
 
 #include <mpi.h>
 
@@ -23,6 +24,7 @@ public:
 
   // Brings the ghosts' position, velocity and angular velocity up to date.
   void refresh(GrainStore& store);
+  void refresh(MovingGrains& grains);
 
   // Brings the ghosts' attached columns up to date.
   void refresh_attached(GrainStore& store);
@@ -38,6 +40,7 @@ private:
     std::size_t first = 0, count = 0;  // slots of the ghosts it owns
   };
 
+  template <typename Read, typename Write> void exchange_motion(Read&& read, Write&& write);
   std::vector<PackedExchange::Neighbour> messages(int tag, std::size_t bytes_per_grain) const;
 
   Decomposition decomposition_;

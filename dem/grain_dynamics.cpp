@@ -74,7 +74,9 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
 
   adopt(store_, batch_of(seeds, decomposition_, rank_of(communicator_), store_.attached_width));
   settle_in({});
+  moving_.load(store_, body_force_);
   evaluate_forces(0.0);
+  moving_.unload(store_);
 }
 
 double GrainDynamics::ghost_reach() const {
@@ -214,42 +216,37 @@ void GrainDynamics::evaluate_forces(double time_step) {
   const auto scope = timer_.measure(forces_phase_);
   const ContactParameters& c = parameters_.contact;
   const SpringDashpotFriction law(c.normal_stiffness, c.tangential_stiffness, c.attraction, time_step);
-  evaluate_contacts(store_, list_, box_, parameters_.walls, law, c.friction);
+  evaluate_contacts(moving_, list_, box_, parameters_.walls, law, c.friction);
 }
 
 void GrainDynamics::advance(int sub_steps) {
-  for (int s = 0; s < sub_steps; ++s) {
-    half_kick();
-    drift();
-    refresh_ghost_motion();
-    evaluate_forces(parameters_.time_step);
-    half_kick();
+  if (sub_steps < 1) return;
+  const double dt = parameters_.time_step;
+  const auto timed = [this](int phase, auto&& work) {
+    const auto scope = timer_.measure(phase);
+    work();
+  };
+  timed(motion_phase_, [&] {
+    moving_.load(store_, body_force_);
+    moving_.half_kick(dt);
+    moving_.drift(dt);
+  });
+  for (int s = 0;; ++s) {
+    timed(messages_phase_, [&] { ghosts_.refresh(moving_); });
+    evaluate_forces(dt);
+    if (s + 1 == sub_steps) break;
+    timed(motion_phase_, [&] { moving_.two_half_kicks_and_drift(dt); });
   }
-}
-
-void GrainDynamics::refresh_ghost_motion() {
-  const auto scope = timer_.measure(messages_phase_);
-  ghosts_.refresh(store_);
-}
-
-void GrainDynamics::half_kick() {
-  const auto scope = timer_.measure(motion_phase_);
-  const double half = 0.5 * parameters_.time_step;
-  for (std::size_t s = 0; s < store_.owned; ++s) {
-    const double push = half * store_.inverse_mass[s], spin = half * store_.inverse_inertia[s];
-    store_.velocity[s] += push * (store_.contact_force[s] + (store_.load_force[s] + body_force_[s]));
-    store_.angular_velocity[s] += spin * (store_.contact_torque[s] + store_.load_torque[s]);
-  }
-}
-
-void GrainDynamics::drift() {
-  const auto scope = timer_.measure(motion_phase_);
-  for (std::size_t s = 0; s < store_.owned; ++s) store_.position[s] += parameters_.time_step * store_.velocity[s];
+  timed(motion_phase_, [&] {
+    moving_.half_kick(dt);
+    moving_.unload(store_);
+  });
 }
 
 void GrainDynamics::refresh_ghosts() {
   wrap_positions();
-  refresh_ghost_motion();
+  const auto scope = timer_.measure(messages_phase_);
+  ghosts_.refresh(store_);
 }
 
 void GrainDynamics::refresh_ghost_attached() { ghosts_.refresh_attached(store_); }

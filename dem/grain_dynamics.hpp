@@ -16,6 +16,7 @@
 #include "dem/grain_seed.hpp"
 #include "dem/grain_store.hpp"
 #include "dem/material.hpp"
+#include "dem/moving_grains.hpp"
 #include "dem/walls.hpp"
 
 #include <mpi.h>
@@ -112,9 +113,6 @@ private:
   void migrate(std::vector<ContactHistory>& histories);
   void settle_in(const std::vector<ContactHistory>& histories);
   void evaluate_forces(double time_step);
-  void refresh_ghost_motion();
-  void half_kick();
-  void drift();
 
   Decomposition decomposition_;
   PeriodicBox box_;
@@ -128,6 +126,7 @@ private:
   GrainStore store_;
   GhostExchange ghosts_;
   ContactList list_;
+  MovingGrains moving_;                 // the state during the sub-steps
   std::vector<Vec3> listed_position_;   // of owned grains, when the list was built
   std::vector<Vec3> body_force_;        // of owned grains
 

@@ -1,0 +1,68 @@
+#include "dem/moving_grains.hpp"
+
+namespace thalweg::dem {
+
+namespace {
+
+constexpr Row zero{0.0, 0.0, 0.0, 0.0};
+constexpr Row first_three{1.0, 1.0, 1.0, 0.0};
+
+template <typename Load> inline void kick(MovingGrain& grain, const Load& load, double half) {
+  // The last entry of a load is the inverse mass or inertia, which is taken out again by the zero of first_three.
+  grain.velocity += half * load.force[3] * first_three * (grain.force + load.force);
+  grain.spin += half * load.torque[3] * first_three * (grain.torque + load.torque);
+}
+
+inline void move(MovingGrain& grain, double time_step) {
+  grain.position += time_step * grain.velocity;
+  grain.force = zero;
+  grain.torque = zero;
+}
+
+}  // namespace
+
+void MovingGrains::load(const GrainStore& store, std::span<const Vec3> body_force) {
+  grains_.resize(store.total());
+  loads_.resize(store.owned);
+  for (std::size_t s = 0; s < store.total(); ++s)
+    grains_[s] = {row_of(store.position[s], store.radius[s]), row_of(store.velocity[s]),
+                  row_of(store.angular_velocity[s]), row_of(store.contact_force[s]), row_of(store.contact_torque[s])};
+  for (std::size_t s = 0; s < store.owned; ++s)
+    loads_[s] = {row_of(store.load_force[s] + body_force[s], store.inverse_mass[s]),
+                 row_of(store.load_torque[s], store.inverse_inertia[s])};
+}
+
+void MovingGrains::unload(GrainStore& store) const {
+  for (std::size_t s = 0; s < grains_.size(); ++s) {
+    store.position[s] = vector_of(grains_[s].position);
+    store.velocity[s] = vector_of(grains_[s].velocity);
+    store.angular_velocity[s] = vector_of(grains_[s].spin);
+  }
+  for (std::size_t s = 0; s < loads_.size(); ++s) {
+    store.contact_force[s] = vector_of(grains_[s].force);
+    store.contact_torque[s] = vector_of(grains_[s].torque);
+  }
+}
+
+void MovingGrains::half_kick(double time_step) {
+  for (std::size_t s = 0; s < loads_.size(); ++s) kick(grains_[s], loads_[s], 0.5 * time_step);
+}
+
+void MovingGrains::drift(double time_step) {
+  for (std::size_t s = 0; s < loads_.size(); ++s) move(grains_[s], time_step);
+  for (std::size_t s = loads_.size(); s < grains_.size(); ++s) grains_[s].force = grains_[s].torque = zero;
+}
+
+void MovingGrains::two_half_kicks_and_drift(double time_step) {
+  const double half = 0.5 * time_step;
+  for (std::size_t s = 0; s < loads_.size(); ++s) {
+    MovingGrain grain = grains_[s];
+    kick(grain, loads_[s], half);
+    kick(grain, loads_[s], half);
+    move(grain, time_step);
+    grains_[s] = grain;
+  }
+  for (std::size_t s = loads_.size(); s < grains_.size(); ++s) grains_[s].force = grains_[s].torque = zero;
+}
+
+}  // namespace thalweg::dem

@@ -1,0 +1,58 @@
+// What the sub-steps work on: the moving state of all grains a rank knows, packed so that a contact finds everything of
+// a grain in neighbouring cache lines and takes three components with one load. GrainStore has the same numbers for
+// everybody else; they are copied here before the sub-steps of a fluid step and back after them.
+#pragma once
+
+#include "dem/grain_store.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace thalweg::dem {
+
+// Four doubles that the processor handles at once: x, y, z and one more.
+using Row = double __attribute__((vector_size(32)));
+
+inline Row row_of(const Vec3& v, double last = 0.0) { return Row{v[0], v[1], v[2], last}; }
+inline Vec3 vector_of(const Row& r) { return {r[0], r[1], r[2]}; }
+
+struct MovingGrain {
+  Row position;   // m; last: radius, m
+  Row velocity;   // m/s; last: 0
+  Row spin;       // rad/s; last: 0
+  Row force;      // N, of contacts; last: 0
+  Row torque;     // N m, of contacts; last: 0
+};
+
+class MovingGrains {
+public:
+  // Copies the state of all grains and the loads of owned ones. body_force: N, of owned grains.
+  void load(const GrainStore& store, std::span<const Vec3> body_force);
+
+  // Copies position, velocity and spin of all grains back, and the contact forces of owned ones.
+  void unload(GrainStore& store) const;
+
+  // v += dt/2 F/m, w += dt/2 T/I of owned grains (s).
+  void half_kick(double time_step);
+  // x += dt v of owned grains; the contact forces of all grains begin anew at zero.
+  void drift(double time_step);
+  // half_kick(), half_kick(), drift(): from the end of one sub-step to the forces of the next, in one pass.
+  void two_half_kicks_and_drift(double time_step);
+
+  MovingGrain* data() { return grains_.data(); }
+  const MovingGrain& operator[](std::size_t slot) const { return grains_[slot]; }
+  MovingGrain& operator[](std::size_t slot) { return grains_[slot]; }
+
+private:
+  // What pulls at an owned grain besides its contacts, and how readily it follows.
+  struct Load {
+    Row force;    // N; last: 1/m, 1/kg
+    Row torque;   // N m; last: 1/I, 1/(kg m^2)
+  };
+
+  std::vector<MovingGrain> grains_;
+  std::vector<Load> loads_;
+};
+
+}  // namespace thalweg::dem
