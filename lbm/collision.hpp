@@ -1,11 +1,21 @@
-// One cell's collision: BGK with Guo's force and the Smagorinsky closure in closed form. A pure function of 19 values;
-// Number is a plain number or a SIMD pack of them. Lattice units, populations as deviations f_i - w_i.
+// One cell's collision in two steps, each a pure function of 19 values: its moments and relaxation rate first, then the
+// relaxation, one function for each model. Number is a plain number or a SIMD pack. Lattice units; populations are
+// deviations f_i - w_i, i' is the opposite of i.
 //
-//   u      = (sum c_i f_i + F/2) / rho
-//   f_i^c  = f_i - (f_i - f_i^eq)/tau_e + (1 - 1/(2 tau_e)) w_i [3 (c_i - u).F + 9 (c_i.u)(c_i.F)]   (Guo et al. 2002)
-//   tau_e  = [tau_0 + sqrt(tau_0^2 + 18 sqrt(2) C_s^2 Q/rho)]/2,  Q = sqrt(Pi_ab Pi_ab),             (Hou et al. 1994)
-//   Pi_ab  = sum c_ia c_ib (f_i - f_i^eq) + (u_a F_b + u_b F_a)/2,   S_ab = -3/(2 rho tau_e) Pi_ab.
-// The force term in Pi makes S exact to the order of the Chapman-Enskog expansion; C_s counts in cell sizes.
+//   d = sum f_i,  rho = 1 + d,  m = sum c_i f_i,  u = (m + F/2)/rho,
+//   f_i^eq = w_i {d + rho [3 c_i.u + 9/2 (c_i.u)^2 - 3/2 u.u]},  S_i = w_i [3 (c_i - u).F + 9 (c_i.u)(c_i.F)]
+//   tau = [tau_0 + sqrt(tau_0^2 + 18 sqrt(2) C_s^2 Q/rho)]/2,  Q = sqrt(Pi_ab Pi_ab),               (Hou et al. 1994)
+//   Pi_ab = sum c_ia c_ib (f_i - f_i^eq) + (u_a F_b + u_b F_a)/2,   S_ab = -3/(2 rho tau) Pi_ab.
+// The force term in Pi makes S exact to the order of the Chapman-Enskog expansion; C_s counts in cell sizes. Written out,
+//   Pi_ab = sum c_ia c_ib f_i - d/3 delta_ab - (m_a m_b - F_a F_b/4)/rho.
+//
+// With omega = 1/tau:
+//   bgk          f_i^c = f_i - omega (f_i - f_i^eq) + (1 - omega/2) S_i                               (Guo et al. 2002)
+//   trt          the same for the even part (f_i + f_i')/2; the odd part (f_i - f_i')/2 relaxes with omega', where
+//                (1/omega - 1/2)(1/omega' - 1/2) = magic parameter                                  (Ginzburg et al. 2008)
+//   regularised  bgk after f_i - f_i^eq has been replaced by its projection on Hermite polynomials up to second order,
+//                w_i [-3/2 c_i.F + 9/2 (c_ia c_ib - delta_ab/3) sum_j c_ja c_jb (f_j - f_j^eq)]     (Latt and Chopard 2006;
+//                the first-order term is the half force, without which momentum would be lost)
 #pragma once
 
 #include "lbm/d3q19.hpp"
@@ -15,24 +25,30 @@
 
 namespace thalweg::lbm {
 
+enum class CollisionModel { bgk, trt, regularised };
+
 struct CollisionParameters {
-  double relaxation_time = 1.0;        // tau_0 = 1/2 + 3 nu dt/dx^2
-  double smagorinsky_constant = 0.0;   // C_s; 0 switches the subgrid model off
-  double force[3] = {0.0, 0.0, 0.0};   // force density on the fluid
+  CollisionModel model = CollisionModel::bgk;
+  double magic_parameter = 3.0 / 16.0;   // of trt; 3/16 puts half-link walls exactly half way
+  double relaxation_time = 1.0;          // tau_0 = 1/2 + 3 nu dt/dx^2
+  double smagorinsky_constant = 0.0;     // C_s; 0 switches the subgrid model off
+  double force[3] = {0.0, 0.0, 0.0};     // force density on the fluid
 };
 
-// Moments of one cell that the collision needs and a wall model may want.
+// A symmetric tensor.
 template <typename Number>
-struct CellStress {
-  Number xy, xz, yz;          // off-diagonal Pi
-  Number inverse_rho_tau;     // 1/(rho tau_e); shear rate of a component: 2 |S_ab| = 3 |Pi_ab| / (rho tau_e)
+struct Symmetric {
+  Number xx, yy, zz, xy, xz, yz;
 };
 
-// Sums over a pair of opposite directions.
+// What the relaxation needs to know of a cell, and a wall model may want.
 template <typename Number>
-struct PairSums {
-  Number sum, difference;
-  PairSums(const Number& plus, const Number& minus) : sum(plus + minus), difference(plus - minus) {}
+struct CellMoments {
+  Number deviation;         // d
+  Number mx, my, mz;        // m, without the half force
+  Number inverse_rho;
+  Number omega;             // 1/tau
+  Symmetric<Number> pi;     // Pi; shear rate of a component: 2 |S_ab| = 3 |Pi_ab| omega/rho
 };
 
 // A constant in every lane, rounded once to the storage type.
@@ -42,78 +58,248 @@ template <typename Number>
   else return Number(static_cast<typename Number::value_type>(value));
 }
 
-// Collides f in place. `with_eddies` false: plain BGK at tau_0.
+// The numbers a collision needs in every cell, ready in packs.
+template <typename Number>
+struct CollisionConstants {
+  Number tau0, tau0_squared, eddies;      // eddies = 18 sqrt(2) C_s^2
+  Number omega0, magic;                   // 1/tau_0;  2 magic parameter - 1/2
+  Number force[3], half_force[3];
+  Symmetric<Number> quarter;              // F_a F_b/4
+  Number cross[3], odd[3];                // 9 w F and 3 w F with the diagonal weight w
+
+  [[gnu::always_inline]] explicit CollisionConstants(const CollisionParameters& p) {
+    constexpr auto constant = pack_constant<Number>;
+    constexpr double w = D3Q19::diagonal_weight;
+    const double(&f)[3] = p.force;
+    tau0 = constant(p.relaxation_time);
+    tau0_squared = constant(p.relaxation_time * p.relaxation_time);
+    eddies = constant(25.455844122715711 * p.smagorinsky_constant * p.smagorinsky_constant);
+    omega0 = constant(1.0 / p.relaxation_time);
+    magic = constant(2.0 * p.magic_parameter - 0.5);
+    for (int a = 0; a < 3; ++a) {
+      force[a] = constant(f[a]);
+      half_force[a] = constant(0.5 * f[a]);
+      cross[a] = constant(9.0 * w * f[a]);
+      odd[a] = constant(3.0 * w * f[a]);
+    }
+    quarter = {constant(0.25 * f[0] * f[0]), constant(0.25 * f[1] * f[1]), constant(0.25 * f[2] * f[2]),
+               constant(0.25 * f[0] * f[1]), constant(0.25 * f[0] * f[2]), constant(0.25 * f[1] * f[2])};
+  }
+};
+
+// `with_eddies` false: omega = 1/tau_0 whatever the smagorinsky_constant.
 template <bool with_eddies, typename Number>
-[[gnu::always_inline]] inline CellStress<Number> collide(Number (&f)[19], const CollisionParameters& parameters) {
+[[gnu::always_inline]] inline CellMoments<Number> moments_of(const Number (&f)[19],
+                                                              const CollisionConstants<Number>& constants) {
   using std::sqrt;
   constexpr auto constant = pack_constant<Number>;
-  const Number fx = constant(parameters.force[0]), fy = constant(parameters.force[1]), fz = constant(parameters.force[2]);
+  const Number x = f[1] + f[2], y = f[3] + f[4], z = f[5] + f[6];
+  const Number xy = f[7] + f[8], xmy = f[9] + f[10], xz = f[11] + f[12], xmz = f[13] + f[14], yz = f[15] + f[16],
+               ymz = f[17] + f[18];
+  const Number in_xy = xy + xmy, in_xz = xz + xmz, in_yz = yz + ymz;
+  const Number xy_along = f[7] - f[8], xmy_along = f[9] - f[10], xz_along = f[11] - f[12], xmz_along = f[13] - f[14],
+               yz_along = f[15] - f[16], ymz_along = f[17] - f[18];
 
-  const PairSums<Number> x(f[1], f[2]), y(f[3], f[4]), z(f[5], f[6]);
-  const PairSums<Number> xy(f[7], f[8]), xmy(f[9], f[10]), xz(f[11], f[12]), xmz(f[13], f[14]), yz(f[15], f[16]),
-      ymz(f[17], f[18]);
+  CellMoments<Number> m;
+  m.deviation = f[0] + ((x + y) + z) + ((in_xy + in_xz) + in_yz);
+  m.mx = (f[1] - f[2]) + (xy_along + xmy_along) + (xz_along + xmz_along);
+  m.my = (f[3] - f[4]) + (xy_along - xmy_along) + (yz_along + ymz_along);
+  m.mz = (f[5] - f[6]) + (xz_along - xmz_along) + (yz_along - ymz_along);
+  m.inverse_rho = constant(1) / (constant(1) + m.deviation);
 
-  const Number in_xy = xy.sum + xmy.sum, in_xz = xz.sum + xmz.sum, in_yz = yz.sum + ymz.sum;
-  const Number deviation = f[0] + ((x.sum + y.sum) + z.sum) + ((in_xy + in_xz) + in_yz);
-  const Number rho = constant(1) + deviation;
-  const Number inverse_rho = constant(1) / rho;
-  const Number half = constant(0.5);
-  // Momentum with half the force.
-  const Number jx = x.difference + (xy.difference + xmy.difference) + (xz.difference + xmz.difference) + half * fx;
-  const Number jy = y.difference + (xy.difference - xmy.difference) + (yz.difference + ymz.difference) + half * fy;
-  const Number jz = z.difference + (xz.difference - xmz.difference) + (yz.difference - ymz.difference) + half * fz;
-  const Number ux = jx * inverse_rho, uy = jy * inverse_rho, uz = jz * inverse_rho;
+  const Number vx = m.mx * m.inverse_rho, vy = m.my * m.inverse_rho, vz = m.mz * m.inverse_rho;
+  const Symmetric<Number>& quarter = constants.quarter;
+  const Number pressure = constant(1.0 / 3.0) * m.deviation;
+  m.pi.xx = ((x - pressure) + (in_xy + in_xz)) - (m.mx * vx - quarter.xx * m.inverse_rho);
+  m.pi.yy = ((y - pressure) + (in_xy + in_yz)) - (m.my * vy - quarter.yy * m.inverse_rho);
+  m.pi.zz = ((z - pressure) + (in_xz + in_yz)) - (m.mz * vz - quarter.zz * m.inverse_rho);
+  m.pi.xy = (xy - xmy) - (m.mx * vy - quarter.xy * m.inverse_rho);
+  m.pi.xz = (xz - xmz) - (m.mx * vz - quarter.xz * m.inverse_rho);
+  m.pi.yz = (yz - ymz) - (m.my * vz - quarter.yz * m.inverse_rho);
 
-  const Number third = constant(1.0 / 3.0);
-  CellStress<Number> stress;
-  stress.xy = (xy.sum - xmy.sum) - jx * uy + half * (ux * fy + uy * fx);
-  stress.xz = (xz.sum - xmz.sum) - jx * uz + half * (ux * fz + uz * fx);
-  stress.yz = (yz.sum - ymz.sum) - jy * uz + half * (uy * fz + uz * fy);
-
-  const Number tau0 = constant(parameters.relaxation_time);
-  Number tau = tau0;
   if constexpr (with_eddies) {
-    const Number xx = x.sum + in_xy + in_xz - third * deviation - jx * ux + ux * fx;
-    const Number yy = y.sum + in_xy + in_yz - third * deviation - jy * uy + uy * fy;
-    const Number zz = z.sum + in_xz + in_yz - third * deviation - jz * uz + uz * fz;
-    const Number squared = (xx * xx + yy * yy + zz * zz) +
-                           constant(2) * (stress.xy * stress.xy + stress.xz * stress.xz + stress.yz * stress.yz);
-    const double cs = parameters.smagorinsky_constant;
-    const Number eddy_coefficient = constant(25.455844122715711 * cs * cs);   // 18 sqrt(2) C_s^2
-    tau = half * (tau0 + sqrt(tau0 * tau0 + eddy_coefficient * inverse_rho * sqrt(squared)));
+    const Number squared = (m.pi.xx * m.pi.xx + m.pi.yy * m.pi.yy + m.pi.zz * m.pi.zz) +
+                           constant(2) * (m.pi.xy * m.pi.xy + m.pi.xz * m.pi.xz + m.pi.yz * m.pi.yz);
+    const Number eddies = constants.eddies * m.inverse_rho;
+    m.omega = constant(2) / (constants.tau0 + sqrt(constants.tau0_squared + eddies * sqrt(squared)));
+  } else {
+    m.omega = constants.omega0;
   }
-  const Number omega = constant(1) / tau;
-  stress.inverse_rho_tau = inverse_rho * omega;
+  return m;
+}
 
-  // f_i^c = keep f_i + [omega w (d + rho(4.5 cu^2 - 1.5 uu)) + guo w (9 cu cF - 3 uF)]   (even in c)
-  //                  + [3 w (omega c.j + guo c.F)]                                       (odd in c)
-  const Number keep = constant(1) - omega;
-  const Number guo = constant(1) - half * omega;
-  const Number u_dot_f = ux * fx + uy * fy + uz * fz;
-  const Number common = omega * (deviation - constant(1.5) * (jx * ux + jy * uy + jz * uz)) - constant(3) * guo * u_dot_f;
-  const Number quadratic = constant(4.5) * omega * rho;
-  const Number cross = constant(9) * guo;
-  const Number ox = omega * jx + guo * fx, oy = omega * jy + guo * fy, oz = omega * jz + guo * fz;
+namespace detail {
 
-  f[0] = keep * f[0] + constant(D3Q19::rest_weight) * common;
-  const auto relax = [&](int plus, double weight, const Number& cu, const Number& cf,
-                         const Number& odd) __attribute__((always_inline)) {
-    const Number even = constant(weight) * (common + cu * (quadratic * cu + cross * cf));
-    const Number odd_part = constant(3.0 * weight) * odd;
-    f[plus] = keep * f[plus] + (even + odd_part);
-    f[plus + 1] = keep * f[plus + 1] + (even - odd_part);
-  };
-  constexpr double axis = D3Q19::axis_weight, diagonal = D3Q19::diagonal_weight;
-  relax(1, axis, ux, fx, ox);
-  relax(3, axis, uy, fy, oy);
-  relax(5, axis, uz, fz, oz);
-  relax(7, diagonal, ux + uy, fx + fy, ox + oy);
-  relax(9, diagonal, ux - uy, fx - fy, ox - oy);
-  relax(11, diagonal, ux + uz, fx + fz, ox + oz);
-  relax(13, diagonal, ux - uz, fx - fz, ox - oz);
-  relax(15, diagonal, uy + uz, fy + fz, oy + oz);
-  relax(17, diagonal, uy - uz, fy - fz, oy - oz);
-  return stress;
+// Calls pair.operator()<i>() with the first direction of each of the nine pairs of opposites.
+template <typename Pair>
+[[gnu::always_inline]] inline void for_each_pair(Pair pair) {
+  pair.template operator()<1>();
+  pair.template operator()<3>();
+  pair.template operator()<5>();
+  pair.template operator()<7>();
+  pair.template operator()<9>();
+  pair.template operator()<11>();
+  pair.template operator()<13>();
+  pair.template operator()<15>();
+  pair.template operator()<17>();
+}
+
+// c_i . v for a direction known at compile time, without multiplications.
+template <int i, typename Number>
+[[gnu::always_inline]] inline Number along(const Number& x, const Number& y, const Number& z) {
+  constexpr int cx = D3Q19::c[i][0], cy = D3Q19::c[i][1], cz = D3Q19::c[i][2];
+  static_assert(cx > 0 || (cx == 0 && (cy > 0 || (cy == 0 && cz > 0))), "the first direction of a pair");
+  if constexpr (cx == 1 && cy == 0 && cz == 0) return x;
+  else if constexpr (cx == 0 && cy == 1 && cz == 0) return y;
+  else if constexpr (cx == 0 && cy == 0) return z;
+  else if constexpr (cx == 1 && cz == 0) return cy > 0 ? x + y : x - y;
+  else if constexpr (cx == 1) return cz > 0 ? x + z : x - z;
+  else return cz > 0 ? y + z : y - z;
+}
+
+// Equilibrium and force of a cell by pairs, each times its rate, both in units of the diagonal weight:
+//   even part: even_rate f^eq + even_force S,   odd part: odd_rate f^eq + odd_force S.
+template <typename Number>
+struct Target {
+  Number ux, uy, uz;
+  Number common;                     // even part, the same for all directions
+  Number quadratic;                  // times (c.u)^2
+  Number cross_x, cross_y, cross_z;  // times (c.u), along c
+  Number odd_x, odd_y, odd_z;        // along c
+
+  [[gnu::always_inline]] Target(const CellMoments<Number>& m, const CollisionConstants<Number>& constants,
+                                const Number& even_rate, const Number& odd_rate) {
+    constexpr auto constant = pack_constant<Number>;
+    constexpr double w = D3Q19::diagonal_weight;
+    const auto& force = constants.force;
+    const Number even_force = constant(1) - constant(0.5) * even_rate, odd_force = constant(1) - constant(0.5) * odd_rate;
+    const Number jx = m.mx + constants.half_force[0], jy = m.my + constants.half_force[1],
+                 jz = m.mz + constants.half_force[2];
+    ux = jx * m.inverse_rho;
+    uy = jy * m.inverse_rho;
+    uz = jz * m.inverse_rho;
+    const Number u_dot_f = ux * force[0] + uy * force[1] + uz * force[2];
+    const Number twice_energy = jx * ux + jy * uy + jz * uz;
+    common = even_rate * (constant(w) * m.deviation - constant(1.5 * w) * twice_energy) -
+             (constant(3.0 * w) * even_force) * u_dot_f;
+    quadratic = (constant(4.5 * w) * even_rate) * (constant(1) + m.deviation);
+    cross_x = constants.cross[0] * even_force;
+    cross_y = constants.cross[1] * even_force;
+    cross_z = constants.cross[2] * even_force;
+    const Number rate = constant(3.0 * w) * odd_rate;
+    odd_x = rate * jx + constants.odd[0] * odd_force;
+    odd_y = rate * jy + constants.odd[1] * odd_force;
+    odd_z = rate * jz + constants.odd[2] * odd_force;
+  }
+
+  template <int i>
+  [[gnu::always_inline]] Number even() const {
+    const Number cu = along<i>(ux, uy, uz);
+    const Number half = common + cu * (quadratic * cu + along<i>(cross_x, cross_y, cross_z));
+    return D3Q19::length_squared(i) == 1 ? half + half : half;
+  }
+  template <int i>
+  [[gnu::always_inline]] Number odd() const {
+    const Number half = along<i>(odd_x, odd_y, odd_z);
+    return D3Q19::length_squared(i) == 1 ? half + half : half;
+  }
+  [[gnu::always_inline]] Number rest() const {
+    return pack_constant<Number>(D3Q19::rest_weight / D3Q19::diagonal_weight) * common;
+  }
+};
+
+}  // namespace detail
+
+// Replaces f by its value after the collision.
+template <typename Number>
+[[gnu::always_inline]] inline void relax_bgk(Number (&f)[19], const CellMoments<Number>& m,
+                                             const CollisionConstants<Number>& constants) {
+  const Number keep = pack_constant<Number>(1) - m.omega;
+  const detail::Target<Number> target(m, constants, m.omega, m.omega);
+  f[0] = keep * f[0] + target.rest();
+  detail::for_each_pair([&]<int i>() __attribute__((always_inline)) {
+    const Number even = target.template even<i>(), odd = target.template odd<i>();
+    f[i] = keep * f[i] + (even + odd);
+    f[i + 1] = keep * f[i + 1] + (even - odd);
+  });
+}
+
+template <typename Number>
+[[gnu::always_inline]] inline void relax_trt(Number (&f)[19], const CellMoments<Number>& m,
+                                             const CollisionConstants<Number>& constants) {
+  constexpr auto constant = pack_constant<Number>;
+  // omega' = (2 - omega)/(1 + omega (2 magic - 1/2)).
+  const Number odd_rate =
+      (constant(2) - m.omega) / (constant(1) + constants.magic * m.omega);
+  const Number keep_even = constant(1) - m.omega, keep_odd = constant(1) - odd_rate;
+  const Number same = constant(0.5) * (keep_even + keep_odd), swapped = constant(0.5) * (keep_even - keep_odd);
+  const detail::Target<Number> target(m, constants, m.omega, odd_rate);
+  f[0] = keep_even * f[0] + target.rest();
+  detail::for_each_pair([&]<int i>() __attribute__((always_inline)) {
+    const Number even = target.template even<i>(), odd = target.template odd<i>();
+    const Number plus = f[i], minus = f[i + 1];
+    f[i] = same * plus + (swapped * minus + (even + odd));
+    f[i + 1] = same * minus + (swapped * plus + (even - odd));
+  });
+}
+
+// With n = m + F, the momentum after the collision: f^c_i = w_i {d + 3 c_i.n + 9/2 (c_ia c_ib - delta_ab/3) P_ab},
+//   P_ab = rho u_a u_b + (1 - omega) sum c_a c_b (f - f^eq) + (1 - omega/2)(u_a F_b + F_a u_b)
+//        = (1 - omega) Pi_ab + (n_a n_b - F_a F_b/4)/rho.
+template <typename Number>
+[[gnu::always_inline]] inline void relax_regularised(Number (&f)[19], const CellMoments<Number>& m,
+                                                     const CollisionConstants<Number>& constants) {
+  constexpr auto constant = pack_constant<Number>;
+  constexpr double w = D3Q19::diagonal_weight;
+  const Number weight = constant(4.5 * w) * m.inverse_rho, keep = constant(4.5 * w) * (constant(1) - m.omega);
+  const Number nx = m.mx + constants.force[0], ny = m.my + constants.force[1], nz = m.mz + constants.force[2];
+  const Number hx = nx * weight, hy = ny * weight, hz = nz * weight;
+  const Symmetric<Number>& quarter = constants.quarter;
+  // 9/2 w P, the off-diagonals twice as both of a pair count.
+  const Number pxx = keep * m.pi.xx + (nx * hx - quarter.xx * weight), pyy = keep * m.pi.yy + (ny * hy - quarter.yy * weight),
+               pzz = keep * m.pi.zz + (nz * hz - quarter.zz * weight);
+  const Number twice = keep + keep;
+  const auto doubled = [](const Number& a) { return a + a; };
+  const Number pxy = twice * m.pi.xy + doubled(nx * hy - quarter.xy * weight),
+               pxz = twice * m.pi.xz + doubled(nx * hz - quarter.xz * weight),
+               pyz = twice * m.pi.yz + doubled(ny * hz - quarter.yz * weight);
+  const Number common = constant(w) * m.deviation - constant(1.0 / 3.0) * (pxx + pyy + pzz);
+  const Number ox = constant(3.0 * w) * nx, oy = constant(3.0 * w) * ny, oz = constant(3.0 * w) * nz;
+
+  f[0] = constant(D3Q19::rest_weight / w) * common;
+  detail::for_each_pair([&]<int i>() __attribute__((always_inline)) {
+    constexpr int cx = D3Q19::c[i][0], cy = D3Q19::c[i][1], cz = D3Q19::c[i][2];
+    Number even = common, odd = detail::along<i>(ox, oy, oz);
+    if constexpr (cx != 0) even += pxx;
+    if constexpr (cy != 0) even += pyy;
+    if constexpr (cz != 0) even += pzz;
+    if constexpr (cx * cy != 0) even = cx * cy > 0 ? even + pxy : even - pxy;
+    if constexpr (cx * cz != 0) even = cx * cz > 0 ? even + pxz : even - pxz;
+    if constexpr (cy * cz != 0) even = cy * cz > 0 ? even + pyz : even - pyz;
+    if constexpr (D3Q19::length_squared(i) == 1) {
+      even += even;
+      odd += odd;
+    }
+    f[i] = even + odd;
+    f[i + 1] = even - odd;
+  });
+}
+
+template <CollisionModel model, typename Number>
+[[gnu::always_inline]] inline void relax(Number (&f)[19], const CellMoments<Number>& m,
+                                         const CollisionConstants<Number>& constants) {
+  if constexpr (model == CollisionModel::bgk) relax_bgk(f, m, constants);
+  else if constexpr (model == CollisionModel::trt) relax_trt(f, m, constants);
+  else relax_regularised(f, m, constants);
+}
+
+// Both steps at once; returns the moments before the collision.
+template <CollisionModel model, bool with_eddies, typename Number>
+[[gnu::always_inline]] inline CellMoments<Number> collide(Number (&f)[19], const CollisionParameters& parameters) {
+  const CollisionConstants<Number> constants(parameters);
+  const CellMoments<Number> m = moments_of<with_eddies>(f, constants);
+  relax<model>(f, m, constants);
+  return m;
 }
 
 }  // namespace thalweg::lbm

@@ -1,6 +1,8 @@
 #include "lbm/sweep.hpp"
 
+#include <algorithm>
 #include <experimental/simd>
+#include <utility>
 
 namespace thalweg::lbm {
 
@@ -11,7 +13,7 @@ using Pack = stdx::native_simd<Real>;
 
 // The 19 streams of a sweep are too many for the processor to foresee; asking for each a few cache lines ahead is worth
 // a factor of 1.7 (measured: two to eight lines do equally well).
-constexpr std::ptrdiff_t prefetch_bytes = 256;
+constexpr std::ptrdiff_t prefetch_bytes = 512;
 
 template <typename Real>
 int pack_width() {
@@ -42,29 +44,129 @@ struct Streams {
   }
 };
 
+// What the first pass over a stretch of a row leaves for the second, pack by pack.
 template <typename Real>
-void store_shear(const CellStress<Pack<Real>>& s, const RowShear<Real>& shear, int x) {
-  const Pack<Real> factor = Real(3) * s.inverse_rho_tau;
-  const Pack<Real> xy = s.xy * s.xy, xz = s.xz * s.xz, yz = s.yz * s.yz;
+struct Stretch {
+  static constexpr int packs = 8;
+  Pack<Real> deviation[packs], mx[packs], my[packs], mz[packs], inverse_rho[packs], omega[packs];
+  Pack<Real> xx[packs], yy[packs], zz[packs], xy[packs], xz[packs], yz[packs];
+};
+
+// Calls visit.operator()<i>() for every direction: a loop the compiler cannot leave rolled up, or it would keep the
+// populations in memory instead of in registers.
+template <typename Visit, int... i>
+[[gnu::always_inline]] inline void unrolled(std::integer_sequence<int, i...>, Visit visit) {
+  (visit.template operator()<i>(), ...);
+}
+template <typename Visit>
+[[gnu::always_inline]] inline void for_each_direction(Visit visit) {
+  unrolled(std::make_integer_sequence<int, D3Q19::directions>(), visit);
+}
+
+template <typename Real>
+[[gnu::always_inline]] inline void load(Pack<Real> (&f)[D3Q19::directions], const Streams<Real>& streams,
+                                        std::ptrdiff_t cell) {
+  for_each_direction([&]<int i>() __attribute__((always_inline)) {
+    f[i].copy_from(streams.in[i] + cell, stdx::element_aligned);
+  });
+}
+
+template <typename Real>
+[[gnu::always_inline]] inline void prefetch(const Streams<Real>& streams, std::ptrdiff_t cell) {
+  for_each_direction([&]<int i>() __attribute__((always_inline)) {
+    __builtin_prefetch(streams.in[i] + cell + prefetch_bytes / static_cast<std::ptrdiff_t>(sizeof(Real)), 1);
+  });
+}
+
+template <bool with_eddies, bool with_diagonal, bool with_shear, typename Real>
+[[gnu::always_inline]] inline void measure_pack(const Streams<Real>& streams, std::ptrdiff_t cell,
+                                                const CollisionConstants<Pack<Real>>& constants, Stretch<Real>& stretch,
+                                                int p) {
+  Pack<Real> f[D3Q19::directions];
+  load(f, streams, cell);
+  const CellMoments<Pack<Real>> m = moments_of<with_eddies>(f, constants);
+  stretch.deviation[p] = m.deviation;
+  stretch.mx[p] = m.mx;
+  stretch.my[p] = m.my;
+  stretch.mz[p] = m.mz;
+  stretch.inverse_rho[p] = m.inverse_rho;
+  stretch.omega[p] = m.omega;
+  if constexpr (with_diagonal) {
+    stretch.xx[p] = m.pi.xx;
+    stretch.yy[p] = m.pi.yy;
+    stretch.zz[p] = m.pi.zz;
+  }
+  if constexpr (with_diagonal || with_shear) {
+    stretch.xy[p] = m.pi.xy;
+    stretch.xz[p] = m.pi.xz;
+    stretch.yz[p] = m.pi.yz;
+  }
+}
+
+template <CollisionModel model, typename Real>
+[[gnu::always_inline]] inline void relax_pack(const Streams<Real>& streams, std::ptrdiff_t cell,
+                                              const CollisionConstants<Pack<Real>>& constants, const Stretch<Real>& s,
+                                              int p) {
+  Pack<Real> f[D3Q19::directions];
+  CellMoments<Pack<Real>> m;
+  m.deviation = s.deviation[p];
+  m.mx = s.mx[p];
+  m.my = s.my[p];
+  m.mz = s.mz[p];
+  m.inverse_rho = s.inverse_rho[p];
+  m.omega = s.omega[p];
+  if constexpr (model == CollisionModel::regularised) m.pi = {s.xx[p], s.yy[p], s.zz[p], s.xy[p], s.xz[p], s.yz[p]};
+  else load(f, streams, cell);
+  relax<model>(f, m, constants);
+  for_each_direction([&]<int i>() __attribute__((always_inline)) {
+    f[i].copy_to(streams.out[i] + cell, stdx::element_aligned);
+  });
+}
+
+// On its own, so that what a row computes does not depend on whether its shear rates are wanted.
+template <typename Real>
+[[gnu::noinline]] void store_shear(const Stretch<Real>& s, int p, const RowShear<Real>& shear, int x) {
+  const Pack<Real> factor = Real(3) * s.omega[p] * s.inverse_rho[p];
+  const Pack<Real> xy = s.xy[p] * s.xy[p], xz = s.xz[p] * s.xz[p], yz = s.yz[p] * s.yz[p];
   (factor * sqrt(xy + xz)).copy_to(shear.normal_to[0] + x, stdx::element_aligned);
   (factor * sqrt(xy + yz)).copy_to(shear.normal_to[1] + x, stdx::element_aligned);
   (factor * sqrt(xz + yz)).copy_to(shear.normal_to[2] + x, stdx::element_aligned);
 }
 
-template <bool with_eddies, bool with_shear, typename Real>
+// Moments of a whole stretch first, then its relaxation: either pass alone is short enough for the processor to work on
+// several packs at once, while one long pass waits for its own divisions and roots.
+template <CollisionModel model, bool with_eddies, bool with_shear, typename Real>
 void sweep_packs(const Streams<Real>& streams, std::ptrdiff_t row, const std::uint8_t* fluid_in_packs, int packs,
                  const CollisionParameters& parameters, const RowShear<Real>* shear) {
   constexpr int width = static_cast<int>(Pack<Real>::size());
-  for (int p = 0; p < packs; ++p) {
-    if (fluid_in_packs[p] == 0) continue;
-    const std::ptrdiff_t cell = row + p * width;
-    for (int i = 0; i < D3Q19::directions; ++i)
-      __builtin_prefetch(streams.in[i] + cell + prefetch_bytes / static_cast<std::ptrdiff_t>(sizeof(Real)), 1);
-    Pack<Real> f[D3Q19::directions];
-    for (int i = 0; i < D3Q19::directions; ++i) f[i].copy_from(streams.in[i] + cell, stdx::element_aligned);
-    const CellStress<Pack<Real>> stress = collide<with_eddies>(f, parameters);
-    for (int i = 0; i < D3Q19::directions; ++i) f[i].copy_to(streams.out[i] + cell, stdx::element_aligned);
-    if constexpr (with_shear) store_shear<Real>(stress, *shear, p * width);
+  constexpr bool with_diagonal = model == CollisionModel::regularised;
+  const CollisionConstants<Pack<Real>> constants(parameters);
+  Stretch<Real> stretch;
+  for (int first = 0; first < packs; first += Stretch<Real>::packs) {
+    const int count = std::min(Stretch<Real>::packs, packs - first);
+    for (int p = 0; p < count; ++p) {
+      if (fluid_in_packs[first + p] == 0) continue;
+      measure_pack<with_eddies, with_diagonal, with_shear>(streams, row + (first + p) * width, constants, stretch, p);
+    }
+    for (int p = 0; p < count; ++p) {
+      if (fluid_in_packs[first + p] == 0) continue;
+      const std::ptrdiff_t cell = row + (first + p) * width;
+      prefetch(streams, cell);
+      relax_pack<model>(streams, cell, constants, stretch, p);
+      if constexpr (with_shear) store_shear(stretch, p, *shear, (first + p) * width);
+    }
+  }
+}
+
+template <CollisionModel model, typename Real>
+void sweep_row_with(const Streams<Real>& streams, std::ptrdiff_t row, const std::uint8_t* fluid, int packs,
+                    const CollisionParameters& parameters, const RowShear<Real>* shear) {
+  if (parameters.smagorinsky_constant > 0.0) {
+    if (shear) sweep_packs<model, true, true>(streams, row, fluid, packs, parameters, shear);
+    else sweep_packs<model, true, false>(streams, row, fluid, packs, parameters, shear);
+  } else {
+    if (shear) sweep_packs<model, false, true>(streams, row, fluid, packs, parameters, shear);
+    else sweep_packs<model, false, false>(streams, row, fluid, packs, parameters, shear);
   }
 }
 
@@ -77,12 +179,13 @@ void sweep_row(Populations<Real>& populations, const CellMap& cells, const Colli
   const std::ptrdiff_t row = populations.indexing().index(0, y, z);
   const std::uint8_t* fluid = cells.fluid_in_packs(y, z);
   const int packs = populations.indexing().packs_per_row();
-  if (parameters.smagorinsky_constant > 0.0) {
-    if (shear) sweep_packs<true, true>(streams, row, fluid, packs, parameters, shear);
-    else sweep_packs<true, false>(streams, row, fluid, packs, parameters, shear);
-  } else {
-    if (shear) sweep_packs<false, true>(streams, row, fluid, packs, parameters, shear);
-    else sweep_packs<false, false>(streams, row, fluid, packs, parameters, shear);
+  switch (parameters.model) {
+    case CollisionModel::bgk:
+      return sweep_row_with<CollisionModel::bgk>(streams, row, fluid, packs, parameters, shear);
+    case CollisionModel::trt:
+      return sweep_row_with<CollisionModel::trt>(streams, row, fluid, packs, parameters, shear);
+    case CollisionModel::regularised:
+      return sweep_row_with<CollisionModel::regularised>(streams, row, fluid, packs, parameters, shear);
   }
 }
 

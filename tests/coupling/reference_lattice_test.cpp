@@ -53,7 +53,7 @@ public:
       if (owner_[at] >= 0) continue;
       double cell[19];
       std::copy(streamed[at].begin(), streamed[at].end(), cell);
-      lbm::collide<true>(cell, parameters_);
+      lbm::collide<lbm::CollisionModel::bgk, true>(cell, parameters_);
       std::copy(cell, cell + 19, f_[at].begin());
     }
     return loads;
