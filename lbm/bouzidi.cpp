@@ -56,9 +56,11 @@ public:
            std::vector<LinkBody>& bodies)
       : slots_(populations), cells_(cells), box_(box), options_(options), bodies_(bodies) {}
 
-  void operator()(LinkBody& body, const Link* links, int count) {
+  // links_end: end of the plane's records, valid to look ahead to.
+  void operator()(LinkBody& body, const Link* links, int count, const Link* links_end) {
     for (int first = 0; first < count; first += Batch::capacity) {
       const int n = std::min(Batch::capacity, count - first);
+      ask_for(links + first, n, links_end);
       gather(body, links + first, n);
       reflect(body, n);
       scatter(links + first, n);
@@ -67,6 +69,18 @@ public:
   }
 
 private:
+  // Asks the memory for what a later batch will need; the lines of the links between are on their way already.
+  void ask_for(const Link* links, int n, const Link* links_end) const {
+    const Link* first = links + lookahead;
+    const Link* last = std::min(first + n, links_end);
+    for (const Link* link = first; link < last; ++link) {
+      const int i = link->direction;
+      __builtin_prefetch(slots_.into_body[i] + link->cell, 0);
+      __builtin_prefetch(slots_.second[link->distance < 0.5f][i] + link->cell, 0);
+      __builtin_prefetch(slots_.reflected[i] + link->cell, 1);
+    }
+  }
+
   void gather(const LinkBody& body, const Link* links, int n) {
     Batch& b = batch_;
     const double to_origin[3] = {body.origin[0] + 0.5 - body.centre.x(), body.origin[1] + 0.5 - body.centre.y(),
@@ -164,6 +178,8 @@ private:
     body.torque += torque;
   }
 
+  static constexpr int lookahead = 128;   // links
+
   LinkSlots<Real> slots_;
   const CellMap& cells_;
   const PeriodicBox& box_;
@@ -179,9 +195,14 @@ template <typename Real>
 void apply_links(Populations<Real>& populations, const CellMap& cells, const LinkTable& links, const PeriodicBox& box,
                  const LinkOptions& options, std::vector<LinkBody>& bodies) {
   LinkPass<Real> pass(populations, cells, box, options, bodies);
-  for (const LinkTable::Plane& plane : links.planes())
-    for (const LinkTable::Chunk& chunk : plane.chunks)
-      if (chunk.count > 0) pass(bodies[chunk.body], plane.links.data() + chunk.first, static_cast<int>(chunk.count));
+  for (int z = 0; z < static_cast<int>(links.planes().size()); ++z) {
+    const LinkTable::Plane& plane = links.planes()[z];
+    for (const std::uint32_t c : links.chunks_in_order(z)) {
+      const LinkTable::Chunk& chunk = plane.chunks[c];
+      pass(bodies[chunk.body], plane.links.data() + chunk.first, static_cast<int>(chunk.count),
+           plane.links.data() + plane.links.size());
+    }
+  }
 }
 
 template void apply_links(Populations<float>&, const CellMap&, const LinkTable&, const PeriodicBox&, const LinkOptions&,

@@ -22,6 +22,7 @@ void LinkTable::replace(int body, std::span<const Link> links, std::span<const i
       Plane& plane = planes_[old_plane];
       Chunk& chunk = plane.chunks[places[old].chunk];
       plane.live -= chunk.count;
+      plane.in_order = false;
       chunk.body = -1;
       chunk.count = 0;
       plane.free_chunks.push_back(places[old].chunk);
@@ -41,12 +42,27 @@ void LinkTable::replace(int body, std::span<const Link> links, std::span<const i
         plane.free_chunks.pop_back();
       }
       plane.chunks[fresh].body = body;
+      plane.in_order = false;
       places.insert(places.begin() + old, {new_plane, fresh});
     }
     put(plane, plane.chunks[places[old].chunk], links.subspan(next, end - next));
     ++old;
     next = end;
   }
+}
+
+const std::vector<std::uint32_t>& LinkTable::chunks_in_order(int plane) const {
+  Plane& p = planes_[plane];
+  if (!p.in_order) {
+    p.order.clear();
+    for (std::uint32_t c = 0; c < p.chunks.size(); ++c)
+      if (p.chunks[c].count > 0) p.order.push_back(c);
+    std::sort(p.order.begin(), p.order.end(), [&p](std::uint32_t a, std::uint32_t b) {
+      return p.links[p.chunks[a].first].cell < p.links[p.chunks[b].first].cell;
+    });
+    p.in_order = true;
+  }
+  return p.order;
 }
 
 void LinkTable::put(Plane& plane, Chunk& chunk, std::span<const Link> links) {

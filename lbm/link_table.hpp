@@ -42,12 +42,17 @@ public:
     std::vector<Link> links;
     std::vector<Chunk> chunks;
     std::vector<std::uint32_t> free_chunks;
+    std::vector<std::uint32_t> order;     // of the chunks in use, by their first cell; see chunks_in_order()
+    bool in_order = true;
     std::size_t live = 0;                 // links in use
   };
 
   explicit LinkTable(int planes) : planes_(planes) {}
 
   const std::vector<Plane>& planes() const { return planes_; }
+
+  // The chunks of a plane in memory order of the cells, so that neighbouring grains share what they load.
+  const std::vector<std::uint32_t>& chunks_in_order(int plane) const;
   std::size_t count() const;              // all links
 
   // Replaces all links of a body. links: sorted by plane; plane_of[k] the plane of links[k].
@@ -62,7 +67,7 @@ private:
   void put(Plane& plane, Chunk& chunk, std::span<const Link> links);
   void compact(Plane& plane);
 
-  std::vector<Plane> planes_;
+  mutable std::vector<Plane> planes_;        // their order is made when it is asked for
   std::vector<std::vector<Place>> places_;   // of each body
 };
 
