@@ -1,15 +1,26 @@
 // Domain walls: fill, before a sweep, the populations that would have streamed in from beyond a wall.
 //
 // With o the direction that enters the fluid, o' its opposite, m its mirror image at the wall, t the tangential part of
-// c_o, all populations post-collision, and r the fraction that bounces back (the rest reflects specularly):
-//   f_o(x, t+1) = r(x) f_o'(x, t) + [1 - r(x - t)] f_m(x - t, t)
-// r = 1 is no-slip, r = 0 free slip. Taking 1 - r at the source cell conserves mass. If the source cell is solid, or in
-// an edge between two walls, the population bounces back whole.
+// c_o, f^c post-collision populations, and r the fraction that bounces back (the rest reflects specularly):
+//   walls              f_o(x, t+1) = r(x) f_o'^c(x, t) + [1 - r(x - t)] f_m^c(x - t, t)
+//                      r = 1: no slip, r = 0: free slip. Taking 1 - r at the source cell conserves mass.
+//   moving, inlet      f_o(x, t+1) = f_o'^c(x, t) + 6 w_o rho(x, t) c_o.U                               (Ladd 1994)
+//   outlet             f_o(x, t+1) = -f_o'^c(x, t) + 2 w_o rho_w [1 + 9/2 (c_o.u)^2 - 3/2 u.u],  u of the cell
+//                      (anti-bounce-back, Ginzburg, Verhaeghe and d'Humieres 2008)
+//   on_node            f_o(x, t+1) = r(x) f_o'(x, t+1) + [1 - r(x)] f_m(x, t+1), from what has streamed into x;
+//                      the wall runs through the cell centre, and mass is conserved only where nothing varies along it.
 //
-// Law of the wall (Zhang et al. 2022, appendix A): u_slip = A u_tau with u_tau^2 = [(C_s dx)^2 g + nu] g, g the shear rate
-// in the cell at the wall; for the wall half a cell beyond the cell centre this slip length means, exactly in Couette flow,
-//   r = 3 u_tau / (3 u_tau + A)      (lattice units).
-// A = 8.36 follows from the recipe of that paper: the tangent of u+ = ln(y+)/0.41 + 5 at y+ = 10.8, taken to the wall.
+// Slip length s and bounced fraction, exact in Couette flow for tau - 1/2 = 3 nu and nu with the eddies' share C_s^2 g,
+// g being the shear rate in the cell at the wall (Zhang et al. 2022, appendix A, whose A2 holds for the half-link wall):
+//   half-link r = 1/[1 + s/(tau - 1/2)],   on_node r = 1/(1 + s/tau).
+// Law of the wall (the same, A3 to A5): slip velocity A u_tau with u_tau^2 = nu g, hence s = A nu/u_tau and, half-link,
+//   r = 3 u_tau/(3 u_tau + A).
+//
+// Next to a body: a population whose source cell is solid bounces back whole. A population that comes out of the edge
+// between two faces belongs to the face that comes first in: walls with friction, inlet, outlet, free slip. It bounces
+// back whole, plus the terms of both faces that have a velocity; at an outlet it obeys the outlet's rule. Two free-slip
+// faces reflect both components, which is the same. Populations with three components do not exist, so corners need no
+// rule. Next to an edge an on_node face falls back to bounce-back for the populations that run along the other normal.
 #pragma once
 
 #include "core/archive.hpp"
@@ -43,6 +54,7 @@ struct FaceField {
 template <typename Real>
 class Walls {
 public:
+  // Throws InputError where a moving wall would move out of its plane, or a slip length or coefficient is negative.
   Walls(const Decomposition& decomposition, int rank, const CellIndexing& indexing, const FaceConditions& faces,
         const CollisionParameters& parameters);
 
@@ -59,7 +71,10 @@ public:
   // no shear rate; theirs goes back to the start value).
   void take_shear(int y, int z, const RowShear<Real>& shear, const CellMap& cells);
 
-  // Bounced fraction r at a law-of-the-wall face, for the halo exchange; empty elsewhere.
+  // The body force, where it changes with time.
+  void set_force(const Vec3& force) { half_force_ = 0.5 * force; }
+
+  // Bounced fraction r at a slip or law-of-the-wall face, for the halo exchange; empty elsewhere.
   FaceField<Real>& bounced(int face) { return bounced_[face]; }
 
   void save(ArchiveWriter& archive, const Decomposition& decomposition, const Block& block) const;
@@ -69,10 +84,16 @@ private:
   void apply_face(Populations<Real>& populations, const CellMap& cells, int face) const;
   void apply_direction(Populations<Real>& populations, const CellMap& cells, int face, int direction) const;
   void take_cell(int face, int x, int y, int z, double shear_rate, const CellMap& cells);
+  bool decides_edge(int face, int other) const;
+  bool follows_shear(int face) const;
+  double bounced_fraction(int face, double shear_rate) const;
+  Real with_velocity(const Populations<Real>& populations, int direction, std::ptrdiff_t cell, const Vec3& velocity) const;
+  Real at_pressure(const Populations<Real>& populations, int direction, std::ptrdiff_t cell, double deviation) const;
 
   CellIndexing indexing_;
   FaceConditions faces_;
   double viscosity_, eddy_coefficient_;   // nu and C_s^2, lattice units
+  Vec3 half_force_;
   std::array<bool, 6> present_{};
   mutable std::array<FaceField<Real>, 6> bounced_;
 };

@@ -20,7 +20,11 @@ double drift_in_closed_box(FaceType type, int steps) {
   parameters.relaxation_time = 0.505;
   parameters.smagorinsky_constant = 0.27;
   FaceConditions faces;
-  for (FaceCondition& face : faces) face.type = type;
+  for (int face = 0; face < 6; ++face) {
+    faces[face].type = type;
+    faces[face].slip_length = 1.5;
+    if (type == FaceType::moving) faces[face].velocity[(face / 2 + 1) % 3] = face % 2 == 0 ? 0.02 : -0.03;
+  }
   Fluid<Real> fluid(decomposition, MPI_COMM_SELF, parameters, faces);
   fluid.initialise(swirl);
   const double before = fluid.totals().mass_deviation;
@@ -38,7 +42,8 @@ TEST_P(ClosedBox, KeepsItsMass) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Walls, ClosedBox,
-                         ::testing::Values(FaceType::no_slip, FaceType::free_slip, FaceType::law_of_the_wall));
+                         ::testing::Values(FaceType::no_slip, FaceType::free_slip, FaceType::moving,
+                                           FaceType::navier_slip, FaceType::law_of_the_wall));
 
 }  // namespace
 }  // namespace thalweg::lbm

@@ -1,0 +1,148 @@
+// Walls::apply: the rules of walls.hpp, direction by direction, row by row.
+#include "lbm/face_axes.hpp"
+#include "lbm/walls.hpp"
+
+#include <algorithm>
+
+namespace thalweg::lbm {
+
+namespace {
+
+std::ptrdiff_t axis_stride(const CellIndexing& indexing, int axis) {
+  return axis == 0 ? 1 : axis == 1 ? indexing.row_stride() : indexing.plane_stride();
+}
+
+// Who decides about a population that comes out of an edge: the larger number.
+int precedence(FaceType type) {
+  switch (type) {
+    case FaceType::free_slip: return 0;
+    case FaceType::pressure_outlet: return 1;
+    case FaceType::velocity_inlet: return 2;
+    default: return 3;
+  }
+}
+
+bool has_velocity(FaceType type) { return type == FaceType::moving || type == FaceType::velocity_inlet; }
+
+double dot(int direction, const Vec3& v) {
+  return D3Q19::c[direction][0] * v.x() + D3Q19::c[direction][1] * v.y() + D3Q19::c[direction][2] * v.z();
+}
+
+}  // namespace
+
+template <typename Real>
+void Walls<Real>::apply(Populations<Real>& populations, const CellMap& cells) const {
+  for (int face = 0; face < 6; ++face)
+    if (present_[face]) apply_face(populations, cells, face);
+}
+
+template <typename Real>
+void Walls<Real>::apply_face(Populations<Real>& populations, const CellMap& cells, int face) const {
+  const int axis = face / 2, inward = face % 2 == 0 ? 1 : -1;
+  for (int o = 1; o < D3Q19::directions; ++o)
+    if (D3Q19::c[o][axis] == inward) apply_direction(populations, cells, face, o);
+}
+
+template <typename Real>
+bool Walls<Real>::decides_edge(int face, int other) const {
+  return precedence(faces_[face].type) >= precedence(faces_[other].type);
+}
+
+template <typename Real>
+Real Walls<Real>::with_velocity(const Populations<Real>& populations, int o, std::ptrdiff_t cell,
+                                const Vec3& velocity) const {
+  const double rho = 1.0 + populations.density_deviation(cell);
+  return static_cast<Real>(populations.post_collision(D3Q19::opposite(o), cell) +
+                           6.0 * D3Q19::weight(o) * rho * dot(o, velocity));
+}
+
+template <typename Real>
+Real Walls<Real>::at_pressure(const Populations<Real>& populations, int o, std::ptrdiff_t cell, double deviation) const {
+  Vec3 momentum = -half_force_;   // a collision leaves the whole force in it; the velocity takes half
+  double density = 1.0;
+  for (int i = 0; i < D3Q19::directions; ++i) {
+    const double f = populations.post_collision(i, cell);
+    density += f;
+    for (int a = 0; a < 3; ++a) momentum[a] += D3Q19::c[i][a] * f;
+  }
+  const Vec3 u = momentum / density;
+  const double cu = dot(o, u);
+  return static_cast<Real>(-static_cast<double>(populations.post_collision(D3Q19::opposite(o), cell)) +
+                           2.0 * D3Q19::weight(o) *
+                               (deviation + (1.0 + deviation) * (4.5 * cu * cu - 1.5 * u.squaredNorm())));
+}
+
+template <typename Real>
+void Walls<Real>::apply_direction(Populations<Real>& populations, const CellMap& cells, int face, int o) const {
+  const FaceCondition& wall = faces_[face];
+  const int axis = face / 2, u_axis = first_axis(axis), v_axis = second_axis(axis);
+  const int nu = indexing_.size()[u_axis], nv = indexing_.size()[v_axis];
+  const int cu = D3Q19::c[o][u_axis], cv = D3Q19::c[o][v_axis];
+  const int opposite = D3Q19::opposite(o), mirror = D3Q19::mirror(o, axis);
+  const std::ptrdiff_t stride = axis_stride(indexing_, u_axis);
+  const std::ptrdiff_t tangential = cu * stride + cv * axis_stride(indexing_, v_axis);
+  const bool along_u = cu != 0, along_v = cv != 0;
+
+  // What an ordinary cell gets; u, v only matter to a slip wall.
+  const auto ordinary = [&](std::ptrdiff_t cell, int u, int v) -> Real {
+    const Real own = populations.post_collision(opposite, cell);
+    switch (wall.type) {
+      case FaceType::moving:
+      case FaceType::velocity_inlet: return with_velocity(populations, o, cell, wall.velocity);
+      case FaceType::pressure_outlet: return at_pressure(populations, o, cell, wall.density_deviation);
+      case FaceType::free_slip: {
+        const std::ptrdiff_t source = cell - tangential;
+        return cells.is_fluid(source) ? populations.post_collision(mirror, source) : own;
+      }
+      case FaceType::navier_slip:
+      case FaceType::law_of_the_wall: {
+        const Real r = bounced_[face].at(u, v);
+        if (wall.on_node) {
+          const bool by_edge = (along_u && ((u == 0 && present(u_axis, false)) || (u == nu - 1 && present(u_axis, true)))) ||
+                               (along_v && ((v == 0 && present(v_axis, false)) || (v == nv - 1 && present(v_axis, true))));
+          const bool by_body = !cells.is_fluid(cell + indexing_.offset(o)) || !cells.is_fluid(cell - indexing_.offset(mirror));
+          if (by_edge || by_body) return own;
+          return r * populations.incoming(opposite, cell) + (Real(1) - r) * populations.incoming(mirror, cell);
+        }
+        const std::ptrdiff_t source = cell - tangential;
+        if (!cells.is_fluid(source)) return own;
+        return r * own + (Real(1) - bounced_[face].at(u - cu, v - cv)) * populations.post_collision(mirror, source);
+      }
+      default: return own;
+    }
+  };
+  // What a cell gets out of the edge with another face.
+  const auto from_edge = [&](std::ptrdiff_t cell, int other) -> Real {
+    if (wall.type == FaceType::pressure_outlet) return at_pressure(populations, o, cell, wall.density_deviation);
+    Vec3 velocity = Vec3::Zero();
+    for (const int f : {std::min(face, other), std::max(face, other)})
+      if (has_velocity(faces_[f].type)) velocity += faces_[f].velocity;
+    return with_velocity(populations, o, cell, velocity);
+  };
+  // The other face if this population comes out of an edge, or -1.
+  const auto edge_face = [&](int u, int v) {
+    if (cu > 0 && u == 0 && present(u_axis, false)) return face_of(u_axis, false);
+    if (cu < 0 && u == nu - 1 && present(u_axis, true)) return face_of(u_axis, true);
+    if (cv > 0 && v == 0 && present(v_axis, false)) return face_of(v_axis, false);
+    if (cv < 0 && v == nv - 1 && present(v_axis, true)) return face_of(v_axis, true);
+    return -1;
+  };
+
+  for (int v = 0; v < nv; ++v) {
+    Index3 at{0, 0, 0};
+    at[axis] = face % 2 == 0 ? 0 : indexing_.size()[axis] - 1;
+    at[v_axis] = v;
+    const std::ptrdiff_t first = indexing_.index(at[0], at[1], at[2]);
+    for (int u = 0; u < nu; ++u) {
+      const std::ptrdiff_t cell = first + u * stride;
+      const int other = edge_face(u, v);
+      if (other < 0) populations.incoming(o, cell) = ordinary(cell, u, v);
+      else if (decides_edge(face, other)) populations.incoming(o, cell) = from_edge(cell, other);
+    }
+  }
+}
+
+template class Walls<float>;
+template class Walls<double>;
+
+}  // namespace thalweg::lbm
