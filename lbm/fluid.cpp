@@ -73,7 +73,25 @@ void Fluid<Real>::exchange_halo() {
 }
 
 template <typename Real>
+void Fluid<Real>::control_flow(const FlowTarget& target) {
+  control_.emplace(target);
+}
+
+// The populations are still those of the last collision, which left the whole of its force in them.
+template <typename Real>
+void Fluid<Real>::update_force() {
+  const int axis = control_->target().axis;
+  if (control_->due()) {
+    const FluidTotals sums = totals();
+    control_->update(sums.momentum[axis] / static_cast<double>(sums.cells) - 0.5 * parameters_.force[axis]);
+  }
+  parameters_.force[axis] = control_->force();
+  walls_.set_force(Vec3(parameters_.force[0], parameters_.force[1], parameters_.force[2]));
+}
+
+template <typename Real>
 void Fluid<Real>::stream_and_collide() {
+  if (control_) update_force();
   const Index3& n = indexing().size();
   const RowShear<Real> shear{{shear_rows_[0].data(), shear_rows_[1].data(), shear_rows_[2].data()}};
   for (int z = 0; z < n[2]; ++z)
@@ -159,6 +177,7 @@ void Fluid<Real>::save(ArchiveWriter& archive) const {
     archive.write(fmt::format("fluid/populations_{:02d}", i), std::span<const Real>(values), array_box());
   }
   walls_.save(archive, decomposition_, block_);
+  if (control_) control_->save(archive);
 }
 
 template <typename Real>
@@ -175,6 +194,10 @@ void Fluid<Real>::load(ArchiveReader& archive) {
               values[(static_cast<std::size_t>(z) * n[1] + y) * n[0] + x];
   }
   walls_.load(archive, decomposition_, block_);
+  if (control_) {
+    control_->load(archive);
+    parameters_.force[control_->target().axis] = control_->force();
+  }
 }
 
 template class Fluid<float>;

@@ -11,11 +11,13 @@
 #include "lbm/boundary.hpp"
 #include "lbm/cell_map.hpp"
 #include "lbm/collision.hpp"
+#include "lbm/flow_control.hpp"
 #include "lbm/halo.hpp"
 #include "lbm/populations.hpp"
 #include "lbm/walls.hpp"
 
 #include <functional>
+#include <optional>
 
 namespace thalweg::lbm {
 
@@ -41,6 +43,13 @@ public:
   // Sets every cell to the equilibrium of the given state; the argument is the cell's centre in global lattice units.
   void initialise(const std::function<FluidState(const Vec3&)>& state);
 
+  // Hands the force along one axis to a controller; its state is part of the checkpoint.
+  void control_flow(const FlowTarget& target);
+
+  // The halo's message can also be on its way while the caller does something else; between the two calls nobody may
+  // write a population.
+  void start_halo_exchange() { halo_.start(); }
+  void finish_halo_exchange() { halo_.finish(); }
   void exchange_halo();
   void apply_walls() { walls_.apply(populations_, cells_); }
   void stream_and_collide();
@@ -66,6 +75,7 @@ private:
   template <typename Visit>
   void for_each_fluid_cell(Visit visit) const;
   ArrayBox array_box() const;
+  void update_force();
 
   const Decomposition& decomposition_;
   MPI_Comm communicator_;
@@ -75,6 +85,7 @@ private:
   CellMap cells_;
   Walls<Real> walls_;
   Halo<Real> halo_;
+  std::optional<FlowControl> control_;
   std::array<std::vector<Real>, 3> shear_rows_;
 };
 
