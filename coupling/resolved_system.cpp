@@ -40,6 +40,7 @@ ResolvedSystem<Real>::ResolvedSystem(std::unique_ptr<Decomposition> decompositio
       refill_(*decomposition_, communicator) {
   phases_ = {timer_.phase("grain map"), timer_.phase("refill"), timer_.phase("halo"),  timer_.phase("walls"),
              timer_.phase("links"),     timer_.phase("sweep"),  timer_.phase("grains")};
+  if (parameters_.flow_target) fluid_.control_flow(*parameters_.flow_target);
   if (parameters_.initial_fluid)
     fluid_.initialise([&](const Vec3& cell_centre) {
       const FluidInitialState s = parameters_.initial_fluid(cell_centre * parameters_.units.spacing);

@@ -13,6 +13,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace thalweg::coupling {
@@ -26,6 +27,7 @@ struct ResolvedParameters {
   Units units;                               // of the lattice
   lbm::CollisionParameters collision;        // lattice units; force included
   lbm::FaceConditions faces;
+  std::optional<lbm::FlowTarget> flow_target;   // a mean velocity to hold, in place of the force along its axis
   lbm::LinkOptions links;
   double link_tolerance = 1e-3;              // cells a grain may move before its links are built anew
   int sub_steps = 50;                        // DEM steps per lattice step

@@ -16,13 +16,36 @@ namespace thalweg {
 
 enum class SystemKind { resolved, grains };
 
-enum class FaceType { periodic, no_slip, free_slip, law_of_the_wall };
+enum class FaceType {
+  periodic,
+  no_slip,
+  free_slip,
+  moving,
+  navier_slip,
+  law_of_the_wall,
+  law_of_the_wall_as_printed,   // the same with the coefficient the paper prints, 2.35
+  velocity_inlet,
+  pressure_outlet
+};
 
 struct Face {
   FaceType type = FaceType::no_slip;
-  double coefficient = 8.36;  // law of the wall: slip velocity over friction velocity (numerics: U+ at the wall)
-  bool operator==(const Face& other) const {  // the coefficient counts only where the type uses it
-    return type == other.type && (type != FaceType::law_of_the_wall || coefficient == other.coefficient);
+  double coefficient = 8.36;   // law of the wall: slip velocity over friction velocity (numerics: U+ at the wall)
+  double slip_length = 0.0;          // m, navier_slip
+  bool on_node = false;              // of the two slips: the wall runs through the outermost cell centres
+  Vec3 velocity = Vec3::Zero();      // m/s, moving and velocity_inlet
+  double pressure = 0.0;             // Pa above the reference, pressure_outlet
+
+  bool slips() const {
+    return type == FaceType::navier_slip || type == FaceType::law_of_the_wall ||
+           type == FaceType::law_of_the_wall_as_printed;
+  }
+  bool has_velocity() const { return type == FaceType::moving || type == FaceType::velocity_inlet; }
+  bool operator==(const Face& other) const {   // what the type does not use does not count
+    return type == other.type && (type != FaceType::law_of_the_wall || coefficient == other.coefficient) &&
+           (type != FaceType::navier_slip || slip_length == other.slip_length) && (!slips() || on_node == other.on_node) &&
+           (!has_velocity() || velocity == other.velocity) &&
+           (type != FaceType::pressure_outlet || pressure == other.pressure);
   }
 };
 
@@ -36,8 +59,15 @@ struct DomainCase {
   bool operator==(const DomainCase&) const = default;
 };
 
-enum class Collision { bgk };
+enum class Collision { bgk, trt, regularised };
 enum class Precision { single, double_ };
+
+// A mean velocity of the fluid that the body force is steered to, in place of gravity along that axis.
+struct FlowTargetCase {
+  double velocity = 0.0;        // m/s, along x
+  double response_time = 0.0;   // s
+  bool operator==(const FlowTargetCase&) const = default;
+};
 
 struct FluidCase {
   double density = 0.0;                            // kg/m^3
@@ -47,7 +77,9 @@ struct FluidCase {
   std::optional<double> maximum_lattice_velocity;  // cells per step
   std::optional<double> expected_velocity;         // m/s, the largest
   Collision collision = Collision::bgk;
+  double magic_parameter = 3.0 / 16.0;               // of trt
   Precision precision = Precision::single;
+  std::optional<FlowTargetCase> mean_velocity;
   bool operator==(const FluidCase&) const = default;
 };
 

@@ -2,9 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 // Functions named describe are static rather than in an unnamed namespace, where argument-dependent lookup from the
 // visitor's templates would not find them.
 namespace thalweg {
+
+static void describe(io::SectionVisitor& visit, FlowTargetCase& target) {
+  visit.real("velocity", target.velocity,
+             {.unit = "m/s", .meaning = "mean over the fluid, along x", .required = true, .example = 0.3});
+  visit.real("response_time", target.response_time,
+             {.unit = "s", .meaning = "in which the force answers; not longer than the flow needs to come to rest",
+              .required = true, .above = 0.0, .example = 0.1});
+}
 
 static void describe(io::SectionVisitor& visit, FluidCase& fluid) {
   visit.real("density", fluid.density,
@@ -34,6 +44,8 @@ static void describe(io::SectionVisitor& visit, FluidCase& fluid) {
   visit.choice<Collision>("collision", fluid.collision, {{Collision::bgk, "bgk"}}, {.meaning = "collision operator"});
   visit.choice<Precision>("precision", fluid.precision, {{Precision::single, "single"}, {Precision::double_, "double"}},
                           {.meaning = "of the stored populations"});
+  visit.section("mean_velocity", fluid.mean_velocity,
+                {.meaning = "hold this flow by a body force along x, in place of gravity along x"});
 }
 
 static void describe_gravity(io::SectionVisitor& visit, GravityCase& gravity, bool with_fluid) {

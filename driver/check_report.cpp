@@ -31,7 +31,10 @@ constexpr double links_per_square_cell = 15.8;   // links of a sphere over its d
 
 bool fluid_in(const Case& c) { return c.system == SystemKind::resolved; }
 
-bool is_wall(const Face& face) { return face.type == FaceType::no_slip || face.type == FaceType::law_of_the_wall; }
+// Walls that take a share of the shear.
+bool is_wall(const Face& face) {
+  return face.type == FaceType::no_slip || face.type == FaceType::moving || face.slips();
+}
 
 double bytes_per_value(const Case& c) { return c.fluid.precision == Precision::single ? 4.0 : 8.0; }
 

@@ -41,7 +41,8 @@ std::array<Face, 6> faces_of(const BoundaryKeys& keys) {
 }
 
 const std::string face_forms =
-    "periodic, no_slip, free_slip, law_of_the_wall or {type: law_of_the_wall, coefficient: 8.36}";
+    "periodic, no_slip, free_slip, law_of_the_wall, or with its numbers, for example {type: law_of_the_wall, "
+    "coefficient: 8.36}, {type: navier_slip, slip_length: 1e-4} or {type: moving, velocity: [0.1, 0, 0]}";
 
 void check_axis(io::SectionVisitor& visit, const std::string& axis, const std::optional<Face>& both,
                 const std::optional<Face>& low, const std::optional<Face>& high) {
@@ -66,13 +67,37 @@ static void describe(io::SectionVisitor& visit, Face& face) {
                          {{FaceType::periodic, "periodic"},
                           {FaceType::no_slip, "no_slip"},
                           {FaceType::free_slip, "free_slip"},
-                          {FaceType::law_of_the_wall, "law_of_the_wall"}},
-                         {.meaning = "kind of face, all by half-link rules", .required = true});
+                          {FaceType::moving, "moving", "no slip on a wall that moves in its plane"},
+                          {FaceType::navier_slip, "navier_slip", "slip velocity = slip length x shear rate"},
+                          {FaceType::law_of_the_wall, "law_of_the_wall", "slip velocity = coefficient x friction velocity"},
+                          {FaceType::law_of_the_wall_as_printed, "law_of_the_wall_as_printed", "with coefficient 2.35"},
+                          {FaceType::velocity_inlet, "velocity_inlet"},
+                          {FaceType::pressure_outlet, "pressure_outlet"}},
+                         {.meaning = "kind of face, by half-link rules unless on_node", .required = true});
   if (face.type == FaceType::law_of_the_wall)
     visit.real("coefficient", face.coefficient,
                {.meaning = "slip velocity at the wall over the friction velocity", .above = 0.0});
   else
     visit.not_here("coefficient", "only a law_of_the_wall has a coefficient; remove it");
+  if (face.type == FaceType::navier_slip)
+    visit.real("slip_length", face.slip_length,
+               {.unit = "m", .meaning = "from the wall to where the profile would come to rest", .required = true,
+                .at_least = 0.0, .example = 1e-4});
+  else
+    visit.not_here("slip_length", "only a navier_slip wall has a slip length; remove it");
+  if (face.slips())
+    visit.flag("on_node", face.on_node, {.meaning = "the wall runs through the outermost cell centres, not beyond them"});
+  else
+    visit.not_here("on_node", "only slip walls can stand on the cell centres; remove it");
+  if (face.has_velocity())
+    visit.vec3("velocity", face.velocity, {.unit = "m/s", .meaning = "of the wall or of the fluid that enters",
+                                           .required = true, .example = 0.1});
+  else
+    visit.not_here("velocity", "only a moving wall or a velocity_inlet has a velocity; remove it");
+  if (face.type == FaceType::pressure_outlet)
+    visit.real("pressure", face.pressure, {.unit = "Pa", .meaning = "above the reference pressure"});
+  else
+    visit.not_here("pressure", "only a pressure_outlet has a pressure; remove it");
 }
 
 static void describe_boundaries(io::SectionVisitor& visit, BoundaryKeys& keys) {
@@ -95,6 +120,14 @@ static void describe_boundaries(io::SectionVisitor& visit, BoundaryKeys& keys) {
   visit.require(!half_periodic(keys.x_low, keys.x_high), "x_low", together);
   visit.require(!half_periodic(keys.y_low, keys.y_high), "y_low", together);
   visit.require(!half_periodic(keys.bottom, keys.top), "bottom", together);
+  const std::pair<const char*, const std::optional<Face>*> by_axis[3][3] = {
+      {{"x", &keys.x}, {"x_low", &keys.x_low}, {"x_high", &keys.x_high}},
+      {{"y", &keys.y}, {"y_low", &keys.y_low}, {"y_high", &keys.y_high}},
+      {{"bottom", &keys.bottom}, {"top", &keys.top}, {"top", &keys.top}}};
+  for (int axis = 0; axis < 3; ++axis)
+    for (const auto& [key, face_there] : by_axis[axis])
+      visit.require(!*face_there || (*face_there)->type != FaceType::moving || (*face_there)->velocity[axis] == 0.0, key,
+                    "a moving wall moves in its own plane; give it no velocity across, or make it a velocity_inlet");
 }
 
 void describe(io::SectionVisitor& visit, DomainCase& domain) {

@@ -73,6 +73,12 @@ void Fluid<Real>::exchange_halo() {
 }
 
 template <typename Real>
+void Fluid<Real>::set_force(const Vec3& force) {
+  for (int a = 0; a < 3; ++a) parameters_.force[a] = force[a];
+  walls_.set_force(force);
+}
+
+template <typename Real>
 void Fluid<Real>::control_flow(const FlowTarget& target) {
   control_.emplace(target);
 }
@@ -85,8 +91,9 @@ void Fluid<Real>::update_force() {
     const FluidTotals sums = totals();
     control_->update(sums.momentum[axis] / static_cast<double>(sums.cells) - 0.5 * parameters_.force[axis]);
   }
-  parameters_.force[axis] = control_->force();
-  walls_.set_force(Vec3(parameters_.force[0], parameters_.force[1], parameters_.force[2]));
+  Vec3 force(parameters_.force[0], parameters_.force[1], parameters_.force[2]);
+  force[axis] = control_->force();
+  set_force(force);
 }
 
 template <typename Real>
@@ -196,7 +203,9 @@ void Fluid<Real>::load(ArchiveReader& archive) {
   walls_.load(archive, decomposition_, block_);
   if (control_) {
     control_->load(archive);
-    parameters_.force[control_->target().axis] = control_->force();
+    Vec3 force(parameters_.force[0], parameters_.force[1], parameters_.force[2]);
+    force[control_->target().axis] = control_->force();
+    set_force(force);
   }
 }
 

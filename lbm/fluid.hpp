@@ -43,6 +43,9 @@ public:
   // Sets every cell to the equilibrium of the given state; the argument is the cell's centre in global lattice units.
   void initialise(const std::function<FluidState(const Vec3&)>& state);
 
+  // The force density of the collisions to come, the same everywhere. A caller who changes it in time must set it again
+  // after load().
+  void set_force(const Vec3& force);
   // Hands the force along one axis to a controller; its state is part of the checkpoint.
   void control_flow(const FlowTarget& target);
 

@@ -61,8 +61,8 @@ Walls<Real>::Walls(const Decomposition& decomposition, int rank, const CellIndex
 
 template <typename Real>
 bool Walls<Real>::follows_shear(int face) const {
-  return present_[face] && (faces_[face].type == FaceType::law_of_the_wall ||
-                            (faces_[face].type == FaceType::navier_slip && eddy_coefficient_ > 0.0));
+  return faces_[face].type == FaceType::law_of_the_wall ||
+         (faces_[face].type == FaceType::navier_slip && eddy_coefficient_ > 0.0);
 }
 
 template <typename Real>
@@ -81,9 +81,8 @@ template <typename Real>
 bool Walls<Real>::wants_shear(int y, int z) const {
   // The sweep with shear rates may round differently in the last bit, so which cells go through it must not depend on the
   // ranks: with such a wall across x, all rows of all ranks do.
-  const auto across_x = [&](int face) { return faces_[face].type == FaceType::law_of_the_wall; };
-  const auto wanted = [&](int face) { return follows_shear(face); };
-  return across_x(0) || across_x(1) || (y == 0 && wanted(2)) || (y == indexing_.size()[1] - 1 && wanted(3)) ||
+  const auto wanted = [&](int face) { return present_[face] && follows_shear(face); };
+  return follows_shear(0) || follows_shear(1) || (y == 0 && wanted(2)) || (y == indexing_.size()[1] - 1 && wanted(3)) ||
          (z == 0 && wanted(4)) || (z == indexing_.size()[2] - 1 && wanted(5));
 }
 
@@ -98,7 +97,7 @@ template <typename Real>
 void Walls<Real>::take_shear(int y, int z, const RowShear<Real>& shear, const CellMap& cells) {
   const Index3& n = indexing_.size();
   for (int face = 0; face < 6; ++face) {
-    if (!follows_shear(face)) continue;
+    if (!present_[face] || !follows_shear(face)) continue;
     const int axis = face / 2, wall_cell = face % 2 == 0 ? 0 : n[axis] - 1;
     if (axis == 0) take_cell(face, wall_cell, y, z, shear.normal_to[0][wall_cell], cells);
     else if ((axis == 1 ? y : z) == wall_cell)

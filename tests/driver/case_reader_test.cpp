@@ -122,6 +122,24 @@ void collect_keys(const YAML::Node& node, const std::string& path, std::vector<s
     for (const auto& item : node) collect_keys(item, path, keys);
 }
 
+TEST(CaseReader, ReadsEveryWallAndCollision) {
+  const Case c = read(flume, {"domain.boundaries={x_low: {type: velocity_inlet, velocity: [0.2, 0, 0]}, x_high: {type: "
+                              "pressure_outlet, pressure: 3}, y: {type: navier_slip, slip_length: 1e-4, on_node: true}, "
+                              "bottom: law_of_the_wall_as_printed, top: {type: moving, velocity: [0.1, 0, 0]}}",
+                              "fluid.collision=trt", "fluid.magic_parameter=0.25",
+                              "fluid.mean_velocity={velocity: 0.3, response_time: 0.05}"});
+  EXPECT_EQ(c.domain.faces[x_low].velocity, Vec3(0.2, 0, 0));
+  EXPECT_EQ(c.domain.faces[x_high].pressure, 3.0);
+  EXPECT_EQ(c.domain.faces[y_high].slip_length, 1e-4);
+  EXPECT_TRUE(c.domain.faces[y_low].on_node);
+  EXPECT_EQ(c.domain.faces[bottom].type, FaceType::law_of_the_wall_as_printed);
+  EXPECT_EQ(c.domain.faces[top].velocity, Vec3(0.1, 0, 0));
+  EXPECT_EQ(c.fluid.collision, Collision::trt);
+  EXPECT_EQ(c.fluid.magic_parameter, 0.25);
+  EXPECT_EQ(c.fluid.mean_velocity->response_time, 0.05);
+  EXPECT_EQ(read(resolved_yaml(c)), c);   // and writes them all
+}
+
 TEST(CaseReader, TheDefaultsAreValidAndNameEveryKey) {
   const std::string text = defaults_yaml("resolved");
   EXPECT_EQ(read(text).grains.at(0).placement.seed, 1);
@@ -164,10 +182,18 @@ INSTANTIATE_TEST_SUITE_P(
     All, BadCase,
     ::testing::Values(
         Bad{"system_not_built", {"system=continuum"}, {"system = \"continuum\": expected one of resolved, grains."}},
-        Bad{"collision_not_built", {"fluid.collision=trt"}, {"fluid.collision = \"trt\": expected bgk."}},
-        Bad{"face_not_built",
-            {"domain.boundaries.top=navier_slip"},
-            {"top.type = \"navier_slip\": expected one of periodic, no_slip, free_slip, law_of_the_wall."}},
+        Bad{"collision_not_built", {"fluid.collision=mrt"}, {"fluid.collision = \"mrt\": expected one of bgk, trt, regularised."}},
+        Bad{"face_not_built", {"domain.boundaries.top=porous"},
+            {"top.type = \"porous\": expected one of periodic, no_slip, free_slip, moving, navier_slip, law_of_the_wall, "
+             "law_of_the_wall_as_printed, velocity_inlet, pressure_outlet."}},
+        Bad{"magic_without_trt", {"fluid.magic_parameter=0.25"}, {"fluid.magic_parameter", "only collision trt"}},
+        Bad{"slip_length_missing", {"domain.boundaries.top=navier_slip"}, {"slip_length"}},
+        Bad{"wall_lifts_off", {"domain.boundaries.top={type: moving, velocity: [0.1, 0, 0.1]}"},
+            {"top", "a moving wall moves in its own plane"}},
+        Bad{"wall_too_fast", {"domain.boundaries.top={type: moving, velocity: [90, 0, 0]}"},
+            {"domain.boundaries", "cells a step"}},
+        Bad{"control_too_quick", {"fluid.mean_velocity={velocity: 0.3, response_time: 1e-5}"},
+            {"fluid.mean_velocity.response_time", "give at least"}},
         Bad{"unknown_key", {"fluid.densty=1000"}, {"fluid.densty = 1000: unknown key; did you mean fluid.density?"}},
         Bad{"text_for_number",
             {"fluid.density=water"},
