@@ -41,7 +41,16 @@ static void describe(io::SectionVisitor& visit, FluidCase& fluid) {
                 "expected_velocity");
   visit.require(!fluid.maximum_lattice_velocity || fluid.expected_velocity, "expected_velocity",
                 "maximum_lattice_velocity needs it; give the largest velocity expected in m/s, for example 0.5");
-  visit.choice<Collision>("collision", fluid.collision, {{Collision::bgk, "bgk"}}, {.meaning = "collision operator"});
+  visit.choice<Collision>("collision", fluid.collision,
+                          {{Collision::bgk, "bgk", "one relaxation time"},
+                           {Collision::trt, "trt", "two; walls stay in place at any viscosity"},
+                           {Collision::regularised, "regularised", "bgk without ghost modes, steadiest in water"}},
+                          {.meaning = "collision operator"});
+  if (fluid.collision == Collision::trt)
+    visit.real("magic_parameter", fluid.magic_parameter,
+               {.meaning = "of trt: (1/omega+ - 1/2)(1/omega- - 1/2); 3/16 puts walls exactly half way", .above = 0.0});
+  else
+    visit.not_here("magic_parameter", "only collision trt has a magic parameter; remove it");
   visit.choice<Precision>("precision", fluid.precision, {{Precision::single, "single"}, {Precision::double_, "double"}},
                           {.meaning = "of the stored populations"});
   visit.section("mean_velocity", fluid.mean_velocity,
