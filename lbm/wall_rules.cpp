@@ -22,6 +22,12 @@ int precedence(FaceType type) {
   }
 }
 
+// Walls that only mix what bounces back and what reflects.
+bool reflects(const FaceCondition& wall) {
+  return wall.type == FaceType::no_slip || wall.type == FaceType::free_slip ||
+         ((wall.type == FaceType::navier_slip || wall.type == FaceType::law_of_the_wall) && !wall.on_node);
+}
+
 bool has_velocity(FaceType type) { return type == FaceType::moving || type == FaceType::velocity_inlet; }
 
 double dot(int direction, const Vec3& v) {
@@ -72,6 +78,35 @@ Real Walls<Real>::at_pressure(const Populations<Real>& populations, int o, std::
                                (deviation + (1.0 + deviation) * (4.5 * cu * cu - 1.5 * u.squaredNorm())));
 }
 
+// The three common walls, in loops over plain arrays.
+template <typename Real>
+void Walls<Real>::reflect_run(Populations<Real>& populations, const CellMap& cells, const Run& run) const {
+  const int axis = run.face / 2, o = run.direction;
+  const int cu = D3Q19::c[o][first_axis(axis)], cv = D3Q19::c[o][second_axis(axis)];
+  const std::ptrdiff_t stride = run.stride, source = run.first - run.tangential;
+  Real* into = &populations.incoming(o, run.first);
+  const Real* own = &populations.post_collision(D3Q19::opposite(o), run.first);
+  const Real* other = &populations.post_collision(D3Q19::mirror(o, axis), source);
+  const std::int32_t* body = cells.bodies() + source;
+  switch (faces_[run.face].type) {
+    case FaceType::no_slip:
+      for (int u = run.begin; u < run.end; ++u) into[u * stride] = own[u * stride];
+      break;
+    case FaceType::free_slip:
+      for (int u = run.begin; u < run.end; ++u)
+        into[u * stride] = body[u * stride] == CellMap::fluid ? other[u * stride] : own[u * stride];
+      break;
+    default: {
+      const Real* r = bounced_[run.face].row(run.v);
+      const Real* r_source = bounced_[run.face].row(run.v - cv) - cu;
+      for (int u = run.begin; u < run.end; ++u) {
+        const Real mixed = r[u] * own[u * stride] + (Real(1) - r_source[u]) * other[u * stride];
+        into[u * stride] = body[u * stride] == CellMap::fluid ? mixed : own[u * stride];
+      }
+    }
+  }
+}
+
 template <typename Real>
 void Walls<Real>::apply_direction(Populations<Real>& populations, const CellMap& cells, int face, int o) const {
   const FaceCondition& wall = faces_[face];
@@ -83,30 +118,22 @@ void Walls<Real>::apply_direction(Populations<Real>& populations, const CellMap&
   const std::ptrdiff_t tangential = cu * stride + cv * axis_stride(indexing_, v_axis);
   const bool along_u = cu != 0, along_v = cv != 0;
 
-  // What an ordinary cell gets; u, v only matter to a slip wall.
+  // What an ordinary cell gets from a wall that does not merely reflect; u, v only matter to a slip wall.
   const auto ordinary = [&](std::ptrdiff_t cell, int u, int v) -> Real {
     const Real own = populations.post_collision(opposite, cell);
     switch (wall.type) {
       case FaceType::moving:
       case FaceType::velocity_inlet: return with_velocity(populations, o, cell, wall.velocity);
       case FaceType::pressure_outlet: return at_pressure(populations, o, cell, wall.density_deviation);
-      case FaceType::free_slip: {
-        const std::ptrdiff_t source = cell - tangential;
-        return cells.is_fluid(source) ? populations.post_collision(mirror, source) : own;
-      }
       case FaceType::navier_slip:
       case FaceType::law_of_the_wall: {
         const Real r = bounced_[face].at(u, v);
-        if (wall.on_node) {
-          const bool by_edge = (along_u && ((u == 0 && present(u_axis, false)) || (u == nu - 1 && present(u_axis, true)))) ||
-                               (along_v && ((v == 0 && present(v_axis, false)) || (v == nv - 1 && present(v_axis, true))));
-          const bool by_body = !cells.is_fluid(cell + indexing_.offset(o)) || !cells.is_fluid(cell - indexing_.offset(mirror));
-          if (by_edge || by_body) return own;
-          return r * populations.incoming(opposite, cell) + (Real(1) - r) * populations.incoming(mirror, cell);
-        }
-        const std::ptrdiff_t source = cell - tangential;
-        if (!cells.is_fluid(source)) return own;
-        return r * own + (Real(1) - bounced_[face].at(u - cu, v - cv)) * populations.post_collision(mirror, source);
+        const bool by_edge =
+            (along_u && ((u == 0 && present(u_axis, false)) || (u == nu - 1 && present(u_axis, true)))) ||
+            (along_v && ((v == 0 && present(v_axis, false)) || (v == nv - 1 && present(v_axis, true))));
+        const bool by_body = !cells.is_fluid(cell + indexing_.offset(o)) || !cells.is_fluid(cell - indexing_.offset(mirror));
+        if (by_edge || by_body) return own;
+        return r * populations.incoming(opposite, cell) + (Real(1) - r) * populations.incoming(mirror, cell);
       }
       default: return own;
     }
@@ -133,12 +160,23 @@ void Walls<Real>::apply_direction(Populations<Real>& populations, const CellMap&
     at[axis] = face % 2 == 0 ? 0 : indexing_.size()[axis] - 1;
     at[v_axis] = v;
     const std::ptrdiff_t first = indexing_.index(at[0], at[1], at[2]);
-    for (int u = 0; u < nu; ++u) {
-      const std::ptrdiff_t cell = first + u * stride;
-      const int other = edge_face(u, v);
-      if (other < 0) populations.incoming(o, cell) = ordinary(cell, u, v);
-      else if (decides_edge(face, other)) populations.incoming(o, cell) = from_edge(cell, other);
-    }
+    // Edges with the faces at the ends of the row, or with the face along the whole of it; the rest is one run.
+    const bool row_in_edge =
+        (cv > 0 && v == 0 && present(v_axis, false)) || (cv < 0 && v == nv - 1 && present(v_axis, true));
+    const int begin = row_in_edge ? nu : cu > 0 && present(u_axis, false) ? 1 : 0;
+    const int end = row_in_edge ? nu : cu < 0 && present(u_axis, true) ? nu - 1 : nu;
+    const auto edges = [&](int from, int to) {
+      for (int u = from; u < to; ++u) {
+        const std::ptrdiff_t cell = first + u * stride;
+        const int other = edge_face(u, v);
+        if (decides_edge(face, other)) populations.incoming(o, cell) = from_edge(cell, other);
+      }
+    };
+    edges(0, begin);
+    edges(end, nu);
+    if (reflects(wall)) reflect_run(populations, cells, {face, o, v, begin, end, first, stride, tangential});
+    else
+      for (int u = begin; u < end; ++u) populations.incoming(o, first + u * stride) = ordinary(first + u * stride, u, v);
   }
 }
 

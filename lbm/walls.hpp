@@ -81,8 +81,16 @@ public:
   void load(ArchiveReader& archive, const Decomposition& decomposition, const Block& block);
 
 private:
+  // Cells begin to end of a row along a face, for one direction that enters there: where the row's first cell is, and how
+  // far its cells, and each from the cell its mirrored population comes from, lie apart in memory.
+  struct Run {
+    int face, direction, v, begin, end;
+    std::ptrdiff_t first, stride, tangential;
+  };
+
   void apply_face(Populations<Real>& populations, const CellMap& cells, int face) const;
   void apply_direction(Populations<Real>& populations, const CellMap& cells, int face, int direction) const;
+  void reflect_run(Populations<Real>& populations, const CellMap& cells, const Run& run) const;
   void take_cell(int face, int x, int y, int z, double shear_rate, const CellMap& cells);
   bool decides_edge(int face, int other) const;
   bool follows_shear(int face) const;
