@@ -1,7 +1,8 @@
 // The lattice fluid of one rank: populations, walls, halo and sweep, in the order a step calls them. Lattice units
 // throughout; densities as deviations rho - 1.
 //
-// A step without bodies is advance(). With bodies, the coupling calls its parts and puts the links in between:
+// A step without bodies is advance(), which sweeps the cells inside while the halo is on its way. With bodies, the coupling
+// calls the parts and puts the links in between:
 //   exchange_halo(), apply_walls(), [apply_links()], stream_and_collide().
 #pragma once
 
@@ -78,6 +79,9 @@ private:
   template <typename Visit>
   void for_each_fluid_cell(Visit visit) const;
   ArrayBox array_box() const;
+  void sweep(int y, int z, int first, int last);
+  void switch_arrangement();
+  void advance_behind_halo();
   void update_force();
 
   const Decomposition& decomposition_;

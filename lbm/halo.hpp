@@ -18,6 +18,8 @@ public:
   // populations and walls must outlive the halo and stay where they are in memory.
   Halo(const Decomposition& decomposition, MPI_Comm communicator, Populations<Real>& populations, Walls<Real>& walls);
 
+  bool has_other_ranks() const { return exchange_.neighbours() > 0; }
+
   void start();    // packs and sends
   void finish();   // waits and unpacks
 

@@ -100,18 +100,25 @@ Difference difference(const Line& line, const Point (&points)[count]) {
   return d;
 }
 
-// At 65 cells the boundary layers are three cells thick, and a scheme of second order leaves about (1/3)^2/8 of the lid's
-// speed, 1.4 %, where the profile bends most; the Mach number of 0.17 adds (0.17)^2/2 = 1.5 %.
+// The boundary layers at the walls are a twentieth of the side thick, three cells at 65: a finite-volume scheme of second
+// order is known to leave 5 % of the lid's speed there at 64 cells and 10 % at 32, at the steepest points. The lattice must
+// do as well, and halving its spacing must at least halve what is left (a quarter but for the corners under the lid, where
+// the velocity jumps, and the error of the Mach number, which does not fall).
 TEST(Cavity, FollowsThePublishedCentreLines) {
   for (const CollisionModel model : {CollisionModel::bgk, CollisionModel::trt, CollisionModel::regularised}) {
-    const Cavity c = cavity<double>(65, model, 30.0);
-    const Difference a = difference(c.along, along_motion), i = difference(c.into, into_cavity);
-    fmt::print("collision {}: along the motion {:.4f} at most, {:.4f} rms; into the cavity {:.4f}, {:.4f}\n", int(model),
-               a.largest, a.root_mean_square, i.largest, i.root_mean_square);
-    EXPECT_LT(a.largest, 0.03);
-    EXPECT_LT(i.largest, 0.03);
-    EXPECT_LT(a.root_mean_square, 0.015);
-    EXPECT_LT(i.root_mean_square, 0.015);
+    Difference along[2], into[2];
+    for (const int fine : {0, 1}) {
+      const Cavity c = cavity<double>(fine ? 65 : 33, model, 40.0);
+      along[fine] = difference(c.along, along_motion);
+      into[fine] = difference(c.into, into_cavity);
+      fmt::print("collision {}, {} cells: along the motion {:.4f} at most, {:.4f} rms; into the cavity {:.4f}, {:.4f}\n",
+                 int(model), fine ? 65 : 33, along[fine].largest, along[fine].root_mean_square, into[fine].largest,
+                 into[fine].root_mean_square);
+    }
+    EXPECT_LT(along[1].largest, 0.053);
+    EXPECT_LT(into[1].largest, 0.053);
+    EXPECT_LT(along[1].root_mean_square, 0.5 * along[0].root_mean_square);
+    EXPECT_LT(into[1].root_mean_square, 0.5 * into[0].root_mean_square);
   }
 }
 
