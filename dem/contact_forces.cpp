@@ -1,5 +1,8 @@
 #include "dem/contact_forces.hpp"
 
+#include "dem/hertz_mindlin.hpp"
+#include "dem/spring_dashpot.hpp"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -51,6 +54,17 @@ public:
   static constexpr int capacity = 64;
   static constexpr int lanes = 8;   // whole vectors: the last one is filled up with copies of the first pair
 
+  // material: of every slot.
+  PairBatch(const MaterialTable& materials, std::span<const std::uint8_t> material)
+      : materials_(materials), material_(material) {
+    // One material's numbers are the same in all lanes, so they are put there once.
+    if (materials.count() > 1) return;
+    const ContactCoefficients& only = materials.pair(0, 0).coefficients;
+    std::fill_n(normal_, capacity, only.normal);
+    std::fill_n(tangential_, capacity, only.tangential);
+    std::fill_n(friction_, capacity, only.friction);
+  }
+
   bool full() const { return count_ == capacity; }
 
   // Keeps the pair if it touches. No branch: whether a pair within the skin touches cannot be foreseen.
@@ -60,12 +74,13 @@ public:
     count_ += touches;
   }
 
-  void evaluate_and_scatter(MovingGrains& grains, const SpringDashpotFriction& law, double friction) {
+  template <typename ContactLaw> void evaluate_and_scatter(MovingGrains& grains, const ContactLaw& law) {
     if (count_ == 0) return;
     const int rounded = (count_ + lanes - 1) / lanes * lanes;
     for (int k = count_; k < rounded; ++k) contact_[k] = contact_[0], separation_[k] = separation_[0];
     for (int k = 0; k < rounded; k += 4) gather(grains, k);
-    evaluate(law, friction, rounded);
+    if (materials_.count() > 1) gather_coefficients(rounded);
+    evaluate(law, rounded);
     for (int k = 0; k < count_; k += 4) scatter(grains, k);
     count_ = 0;
   }
@@ -100,8 +115,16 @@ private:
     store(spring, k, sx_, sy_, sz_, damping_);
   }
 
+  void gather_coefficients(int rounded) {
+    for (int k = 0; k < rounded; ++k) {
+      const PairContact& c = *contact_[k];
+      const ContactCoefficients& pair = materials_.pair(material_[c.first], material_[c.second]).coefficients;
+      normal_[k] = pair.normal, tangential_[k] = pair.tangential, friction_[k] = pair.friction;
+    }
+  }
+
   // Force on the first and turning moment per unit of lever arm on both: n x F_t, with the sign turned.
-  void evaluate(const SpringDashpotFriction& law, double friction, int rounded) {
+  template <typename ContactLaw> void evaluate(const ContactLaw& law, int rounded) {
     for (int k = 0; k < rounded; ++k) {
       const double distance = std::sqrt(x_[k] * x_[k] + y_[k] * y_[k] + z_[k] * z_[k]);
       const double inverse = 1.0 / distance, nx = inverse * x_[k], ny = inverse * y_[k], nz = inverse * z_[k];
@@ -109,8 +132,11 @@ private:
       // Surface velocity by rotation: -(l1 w1 + l2 w2) x n with the lever arms l = R - overlap/2.
       const double ax = rwx_[k] - half * wx_[k], ay = rwy_[k] - half * wy_[k], az = rwz_[k] - half * wz_[k];
       const ContactMotion motion{overlap, nx, ny, nz, vx_[k] - (ay * nz - az * ny), vy_[k] - (az * nx - ax * nz),
-                                 vz_[k] - (ax * ny - ay * nx)};
-      const ContactForce f = law(motion, damping_[k], friction, {sx_[k], sy_[k], sz_[k]});
+                                 vz_[k] - (ax * ny - ay * nx),
+                                 // R1 R2/(R1 + R2) of the sum and the difference of the radii
+                                 0.25 * (reach_[k] - difference_[k] * difference_[k] / reach_[k])};
+      const ContactForce f = law(motion, {normal_[k], tangential_[k], friction_[k]}, damping_[k],
+                                 {sx_[k], sy_[k], sz_[k]});
       x_[k] = f.normal * nx + f.tx, y_[k] = f.normal * ny + f.ty, z_[k] = f.normal * nz + f.tz;
       wx_[k] = f.ty * nz - f.tz * ny, wy_[k] = f.tz * nx - f.tx * nz, wz_[k] = f.tx * ny - f.ty * nx;
       sx_[k] = f.spring.x, sy_[k] = f.spring.y, sz_[k] = f.spring.z;
@@ -135,10 +161,13 @@ private:
     }
   }
 
+  const MaterialTable& materials_;
+  std::span<const std::uint8_t> material_;
   int count_ = 0;
   PairContact* contact_[capacity + 1];                   // one more: what is offered to a full batch is not kept
   Row separation_[capacity + 1];                         // from second to first
   alignas(64) Lane x_{}, y_{}, z_{}, difference_{};      // separation, difference of radii; then force, overlap/2
+  alignas(64) Lane normal_{}, tangential_{}, friction_{};
   alignas(64) Lane reach_{}, damping_{}, unused_{};
   alignas(64) Lane vx_{}, vy_{}, vz_{};                  // velocity of the first centre against the second
   alignas(64) Lane rwx_{}, rwy_{}, rwz_{};               // R1 w1 + R2 w2
@@ -146,24 +175,25 @@ private:
   alignas(64) Lane sx_{}, sy_{}, sz_{};                  // spring
 };
 
-void evaluate_pairs(MovingGrains& grains, std::vector<PairContact>& pairs, const PeriodicBox& box,
-                    const SpringDashpotFriction& law, double friction) {
+template <typename ContactLaw>
+void evaluate_pairs(MovingGrains& grains, std::vector<PairContact>& pairs, const PeriodicBox& box, PairBatch& batch,
+                    const ContactLaw& law) {
   static_assert(offsetof(PairContact, damping) == offsetof(PairContact, spring) + 3 * sizeof(double));
   const MinimumImage image(box);
-  PairBatch batch;
   for (PairContact& c : pairs) {
     const Row d = image(grains[c.first].position - grains[c.second].position), square = d * d;
     const bool touches = square[0] + square[1] + square[2] < c.reach * c.reach;
     const bool was_touching = (c.spring[0] != 0.0) | (c.spring[1] != 0.0) | (c.spring[2] != 0.0);
     if (!touches & was_touching) c.spring[0] = c.spring[1] = c.spring[2] = 0.0;
     batch.offer(c, d, touches);
-    if (batch.full()) batch.evaluate_and_scatter(grains, law, friction);
+    if (batch.full()) batch.evaluate_and_scatter(grains, law);
   }
-  batch.evaluate_and_scatter(grains, law, friction);
+  batch.evaluate_and_scatter(grains, law);
 }
 
+template <typename ContactLaw>
 void evaluate_walls(MovingGrains& grains, std::vector<WallContact>& contacts, std::span<const Plane> walls,
-                    const SpringDashpotFriction& law) {
+                    const MaterialTable& materials, std::span<const std::uint8_t> material, const ContactLaw& law) {
   for (WallContact& c : contacts) {
     MovingGrain& grain = grains[c.grain];
     const Plane& wall = walls[c.wall];
@@ -175,8 +205,10 @@ void evaluate_walls(MovingGrains& grains, std::vector<WallContact>& contacts, st
       continue;
     }
     const Vec3 v = vector_of(grain.velocity) - wall.velocity - height * vector_of(grain.spin).cross(n);
-    const ContactForce f = law({overlap, n[0], n[1], n[2], v[0], v[1], v[2]}, c.damping, wall.friction,
-                               {c.spring[0], c.spring[1], c.spring[2]});
+    ContactCoefficients coefficients = materials.wall(material[c.grain]).coefficients;
+    coefficients.friction = wall.friction;
+    const ContactForce f = law({overlap, n[0], n[1], n[2], v[0], v[1], v[2], grain.position[3]}, coefficients,
+                               c.damping, {c.spring[0], c.spring[1], c.spring[2]});
     c.spring[0] = f.spring.x, c.spring[1] = f.spring.y, c.spring[2] = f.spring.z;
     const Vec3 tangential(f.tx, f.ty, f.tz);
     grain.force += row_of(f.normal * n + tangential);
@@ -184,12 +216,24 @@ void evaluate_walls(MovingGrains& grains, std::vector<WallContact>& contacts, st
   }
 }
 
+template <typename ContactLaw>
+void evaluate_with(const ContactLaw& law, MovingGrains& grains, ContactList& list, const PeriodicBox& box,
+                   std::span<const Plane> walls, const MaterialTable& materials,
+                   std::span<const std::uint8_t> material) {
+  PairBatch batch(materials, material);
+  evaluate_pairs(grains, list.pairs, box, batch, law);
+  evaluate_walls(grains, list.walls, walls, materials, material, law);
+}
+
 }  // namespace
 
 void evaluate_contacts(MovingGrains& grains, ContactList& list, const PeriodicBox& box, std::span<const Plane> walls,
-                       const SpringDashpotFriction& law, double friction) {
-  evaluate_pairs(grains, list.pairs, box, law, friction);
-  evaluate_walls(grains, list.walls, walls, law);
+                       const MaterialTable& materials, std::span<const std::uint8_t> material, double time_step) {
+  const ContactManner manner = materials.manner(time_step);
+  if (materials.law() == Law::linear)
+    evaluate_with(SpringDashpotFriction(manner), grains, list, box, walls, materials, material);
+  else
+    evaluate_with(HertzMindlin(manner), grains, list, box, walls, materials, material);
 }
 
 }  // namespace thalweg::dem

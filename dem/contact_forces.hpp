@@ -2,16 +2,17 @@
 #pragma once
 
 #include "core/periodic_box.hpp"
-#include "dem/contact_law.hpp"
 #include "dem/contact_list.hpp"
+#include "dem/material.hpp"
 #include "dem/moving_grains.hpp"
 
 namespace thalweg::dem {
 
 // Adds the contact forces and torques that follow from positions and velocities, and advances the springs of the list.
 // The lever arm of a grain reaches to the middle of the overlap (to the plane of a wall), so that angular momentum is
-// conserved. Sums run over pairs in the order of the list, then over walls.
+// conserved. Sums run over pairs in the order of the list, then over walls. material: of every slot; time_step: s, with
+// 0 no spring grows.
 void evaluate_contacts(MovingGrains& grains, ContactList& list, const PeriodicBox& box, std::span<const Plane> walls,
-                       const SpringDashpotFriction& law, double friction);
+                       const MaterialTable& materials, std::span<const std::uint8_t> material, double time_step);
 
 }  // namespace thalweg::dem

@@ -1,12 +1,8 @@
-// The force of one contact: linear spring and dashpot along the normal, Cundall and Strack's spring with Coulomb's
-// limit across it (Cundall & Strack, Geotechnique 29 (1979) 47), no tangential dashpot.
-//
-//   F_n = k_n delta + gamma delta'                      delta: overlap, delta' = -v.n; without attraction F_n >= 0
-//   F_t = -k_t xi,   xi = integral of v_t dt            |F_t| <= mu |F_n|, xi shortened to it while the contact slides
+// What every contact law is made of: its arguments, its result, and the friction across the contact (Cundall & Strack,
+// Geotechnique 29 (1979) 47), which all laws share. A law is one functor: spring_dashpot.hpp, hertz_mindlin.hpp.
 //
 // v is the velocity of the first body's surface against the second's at the contact, n the unit normal from the second
-// body to the first; xi is turned into the present tangent plane, keeping its length, before v_t dt is added.
-// Force on the first body: F_n n + F_t. SI units.
+// body to the first, delta the overlap. Force on the first body: F_n n + F_t. SI units.
 #pragma once
 
 #include <cmath>
@@ -16,13 +12,21 @@ namespace thalweg::dem {
 
 // Plain values and no branches, so that a loop over contacts in arrays is vectorised by the compiler.
 struct ContactMotion {
-  double overlap;        // m
-  double nx, ny, nz;     // unit normal
-  double vx, vy, vz;     // m/s
+  double overlap;            // m
+  double nx, ny, nz;         // unit normal
+  double vx, vy, vz;         // m/s
+  double effective_radius;   // m, R1 R2/(R1 + R2); R against a wall
+};
+
+// Of a pair of materials; what the numbers mean is the law's business.
+struct ContactCoefficients {
+  double normal;         // linear: k_n, N/m;  Hertz: 4/3 E*, Pa
+  double tangential;     // linear: k_t, N/m;  Hertz: 8 G*, Pa
+  double friction;       // mu
 };
 
 struct TangentialSpring {
-  double x, y, z;        // m: the displacement xi
+  double x, y, z;        // linear: displacement xi, m;  Hertz: xi times contact radius, m^2
 };
 
 struct ContactForce {
@@ -31,38 +35,36 @@ struct ContactForce {
   TangentialSpring spring;
 };
 
-class SpringDashpotFriction {
-public:
-  // Stiffnesses in N/m. With time_step 0 (s) the spring does not grow: a force without history.
-  SpringDashpotFriction(double normal_stiffness, double tangential_stiffness, bool attraction, double time_step)
-      : kn_(normal_stiffness), kt_(tangential_stiffness), time_step_(time_step),
-        least_(attraction ? -std::numeric_limits<double>::infinity() : 0.0) {}
+// How contacts end, and what the tangential dashpot is.
+struct ContactManner {
+  bool attraction = true;            // whether the normal dashpot may pull
+  double tangential_damping = 0.0;   // tangential dashpot over normal dashpot
+  double time_step = 0.0;            // s; with 0 the springs do not grow: a force without history
 
-  // damping: kg/s; friction: mu; spring: as the last evaluation left it (zero in a new contact).
-  ContactForce operator()(const ContactMotion& c, double damping, double friction,
-                          const TangentialSpring& spring) const {
-    const double closing = -(c.vx * c.nx + c.vy * c.ny + c.vz * c.nz);
-    const double pressed = kn_ * c.overlap + damping * closing;
-    const double normal = pressed > least_ ? pressed : least_;
-
-    const double off = spring.x * c.nx + spring.y * c.ny + spring.z * c.nz;
-    const double px = spring.x - off * c.nx, py = spring.y - off * c.ny, pz = spring.z - off * c.nz;
-    const double length2 = spring.x * spring.x + spring.y * spring.y + spring.z * spring.z;
-    const double projected2 = px * px + py * py + pz * pz;
-    const double stretch = projected2 > 0.0 ? std::sqrt(length2 / projected2) : 0.0;
-    const double x = stretch * px + time_step_ * (c.vx + closing * c.nx);
-    const double y = stretch * py + time_step_ * (c.vy + closing * c.ny);
-    const double z = stretch * pz + time_step_ * (c.vz + closing * c.nz);
-
-    const double tangential = kt_ * std::sqrt(x * x + y * y + z * z);
-    const double limit = friction * std::fabs(normal);
-    const double hold = tangential > limit ? limit / tangential : 1.0;
-    const TangentialSpring held{hold * x, hold * y, hold * z};
-    return {normal, -kt_ * held.x, -kt_ * held.y, -kt_ * held.z, held};
-  }
-
-private:
-  double kn_, kt_, time_step_, least_;
+  double least_normal_force() const { return attraction ? -std::numeric_limits<double>::infinity() : 0.0; }
 };
+
+// The spring is turned into the present tangent plane, keeping its length (to the fourth order of the angle, which is
+// that of one sub-step), shortened by `keep` and grown by growth v_t; F_t = -stiffness xi - damping v_t, both shortened
+// to |F_t| <= mu |F_n| while the contact slides. closing: -v.n.
+inline ContactForce with_friction(const ContactMotion& c, double closing, double normal, double friction,
+                                  double stiffness, double damping, double keep, double growth,
+                                  const TangentialSpring& spring) {
+  const double off = spring.x * c.nx + spring.y * c.ny + spring.z * c.nz;
+  const double px = spring.x - off * c.nx, py = spring.y - off * c.ny, pz = spring.z - off * c.nz;
+  const double length2 = spring.x * spring.x + spring.y * spring.y + spring.z * spring.z;
+  // 1/sqrt(1 - q) of the square q of the angle's sine, to first order: never more than 3/2, whatever rounding left.
+  const double stretch = length2 > 0.0 ? keep * (1.0 + 0.5 * (off * off / length2)) : 0.0;
+  const double ux = c.vx + closing * c.nx, uy = c.vy + closing * c.ny, uz = c.vz + closing * c.nz;
+  const double x = stretch * px + growth * ux, y = stretch * py + growth * uy, z = stretch * pz + growth * uz;
+
+  const double fx = stiffness * x + damping * ux, fy = stiffness * y + damping * uy, fz = stiffness * z + damping * uz;
+  const double tangential = std::sqrt(fx * fx + fy * fy + fz * fz), limit = friction * std::fabs(normal);
+  const double hold = tangential > limit ? limit / tangential : 1.0;
+  // What is left of the spring when the dashpot keeps its share of the shortened force.
+  const double share = damping > 0.0 && stiffness > 0.0 ? (1.0 - hold) * damping / stiffness : 0.0;
+  return {normal, -hold * fx, -hold * fy, -hold * fz,
+          {hold * x - share * ux, hold * y - share * uy, hold * z - share * uz}};
+}
 
 }  // namespace thalweg::dem

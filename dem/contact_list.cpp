@@ -55,7 +55,7 @@ void merge(std::vector<Contact>& contacts, std::span<const ContactHistory> histo
 }  // namespace
 
 ContactList find_contacts(const GrainStore& store, const PeriodicBox& box, std::span<const Plane> walls,
-                          const Damping& damping, double skin, double largest_radius) {
+                          const MaterialTable& materials, double skin, double largest_radius) {
   ContactList list;
   const std::vector<Candidate> pairs = find_pairs(store, box, skin, largest_radius);
   list.pairs.reserve(pairs.size());
@@ -63,7 +63,8 @@ ContactList find_contacts(const GrainStore& store, const PeriodicBox& box, std::
     const double mass = effective_mass(store.mass[p.first], holds_translation(store.motion[p.first]),
                                        store.mass[p.second], holds_translation(store.motion[p.second]));
     list.pairs.push_back({p.first, p.second, store.radius[p.first] + store.radius[p.second],
-                          {0.0, 0.0, 0.0}, damping.coefficient(mass)});
+                          {0.0, 0.0, 0.0},
+                          materials.pair(store.material[p.first], store.material[p.second]).damping.coefficient(mass)});
   }
   for (std::size_t s = 0; s < store.owned; ++s)
     // From the last wall to the first: the keys -1 - wall then rise.
@@ -71,7 +72,7 @@ ContactList find_contacts(const GrainStore& store, const PeriodicBox& box, std::
       const double height = (store.position[s] - walls[w].point).dot(walls[w].normal);
       if (!(height <= store.radius[s] + skin)) continue;
       list.walls.push_back({static_cast<std::uint32_t>(s), static_cast<std::uint32_t>(w),
-                            damping.coefficient(store.mass[s]), {0.0, 0.0, 0.0}});
+                            materials.wall(store.material[s]).damping.coefficient(store.mass[s]), {0.0, 0.0, 0.0}});
     }
   return list;
 }

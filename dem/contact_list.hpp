@@ -21,7 +21,7 @@ struct PairContact {
   std::uint32_t first, second;   // slots of the lower and the higher id
   double reach;                  // m, sum of the radii
   double spring[3];              // m, xi of the first against the second; zero when they do not touch
-  double damping;                // kg/s; right behind the spring, so that one load takes both
+  double damping;                // of the law; right behind the spring, so that one load takes both
 };
 
 struct WallContact {
@@ -39,7 +39,7 @@ struct ContactList {
 // All pairs with at least one owned grain whose surfaces are closer than `skin` (m), and all owned grains closer than
 // that to a wall; springs zero. Positions must be wrapped. largest_radius: m, of all grains.
 ContactList find_contacts(const GrainStore& store, const PeriodicBox& box, std::span<const Plane> walls,
-                          const Damping& damping, double skin, double largest_radius);
+                          const MaterialTable& materials, double skin, double largest_radius);
 
 // The springs that are not zero, sorted by ids.
 std::vector<ContactHistory> histories_of(const ContactList& list, const GrainStore& store);

@@ -13,7 +13,7 @@ constexpr int motion_tag = 4101, attached_tag = 4102, values_tag = 4103;
 
 struct GhostRow {
   GlobalId id;
-  std::int64_t motion;
+  std::int64_t motion, material;
   double radius, mass;
   std::array<std::array<double, 3>, 3> value;   // position, velocity, angular velocity
   std::int64_t owner;
@@ -63,7 +63,8 @@ void GhostExchange::build(GrainStore& store) {
     for (std::size_t s = 0; s < store.owned; ++s) {
       if (!decomposition_.reaches(rank, store.position[s], reach_)) continue;
       neighbour.send.push_back(static_cast<std::uint32_t>(s));
-      rows.push_back({store.id[s], static_cast<std::int64_t>(store.motion[s]), store.radius[s], store.mass[s],
+      rows.push_back({store.id[s], static_cast<std::int64_t>(store.motion[s]), store.material[s], store.radius[s],
+                      store.mass[s],
                       {plain(store.position[s]), plain(store.velocity[s]), plain(store.angular_velocity[s])},
                       rank_of(communicator_)});
       row_to.push_back(rank);
@@ -79,7 +80,8 @@ void GhostExchange::build(GrainStore& store) {
   for (const GhostRow& g : ghosts) {
     while (neighbour->rank != g.owner) ++neighbour;
     if (neighbour->count++ == 0) neighbour->first = store.total();
-    store.append(g.id, g.radius, g.mass, static_cast<Motion>(g.motion), Vec3(g.value[0].data()));
+    store.append(g.id, g.radius, g.mass, static_cast<Motion>(g.motion), Vec3(g.value[0].data()),
+                 static_cast<int>(g.material));
     store.velocity.back() = Vec3(g.value[1].data());
     store.angular_velocity.back() = Vec3(g.value[2].data());
   }

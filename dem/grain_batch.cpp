@@ -31,7 +31,7 @@ GrainBatch owned_grains(const GrainStore& store) {
   GrainBatch batch;
   batch.rows.reserve(store.owned);
   for (std::size_t s = 0; s < store.owned; ++s)
-    batch.rows.push_back({store.id[s], static_cast<std::int64_t>(store.motion[s]), store.radius[s], store.mass[s],
+    batch.rows.push_back({store.id[s], static_cast<std::int64_t>(store.motion[s]), store.material[s], store.radius[s], store.mass[s],
                           {plain(store.position[s]), plain(store.velocity[s]), plain(store.angular_velocity[s]),
                            plain(store.contact_force[s]), plain(store.contact_torque[s]), plain(store.load_force[s]),
                            plain(store.load_torque[s])}});
@@ -45,7 +45,8 @@ void adopt(GrainStore& store, const GrainBatch& batch) {
   store.reserve(batch.rows.size());
   for (const GrainRow& row : batch.rows) {
     const auto vector = [&row](GrainRow::Vector which) { return Vec3(row.value[which].data()); };
-    store.append(row.id, row.radius, row.mass, static_cast<Motion>(row.motion), vector(GrainRow::position));
+    store.append(row.id, row.radius, row.mass, static_cast<Motion>(row.motion), vector(GrainRow::position),
+                 static_cast<int>(row.material));
     store.velocity.back() = vector(GrainRow::velocity);
     store.angular_velocity.back() = vector(GrainRow::angular_velocity);
     store.contact_force.back() = vector(GrainRow::contact_force);

@@ -17,7 +17,7 @@ struct GrainRow {
   enum Vector { position, velocity, angular_velocity, contact_force, contact_torque, load_force, load_torque, vectors };
 
   GlobalId id;
-  std::int64_t motion;
+  std::int64_t motion, material;
   double radius, mass;
   std::array<std::array<double, 3>, vectors> value;
 };

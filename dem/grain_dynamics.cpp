@@ -16,7 +16,6 @@ namespace thalweg::dem {
 namespace {
 
 const GrainParameters& checked(const GrainParameters& p) {
-  check(p.contact);
   for (const Plane& wall : p.walls) check(wall);
   if (p.sub_steps < 1)
     throw InputError(fmt::format("The number of grain sub-steps is {}; it must be positive.", p.sub_steps));
@@ -25,6 +24,13 @@ const GrainParameters& checked(const GrainParameters& p) {
   if (!(p.ghost_width >= 0.0))
     throw InputError(fmt::format("The ghost width of the grains is {:g} m; it must not be negative.", p.ghost_width));
   return p;
+}
+
+MaterialTable table_of(const GrainParameters& p) {
+  std::vector<ContactParameters> materials{p.contact};
+  materials.insert(materials.end(), p.other_materials.begin(), p.other_materials.end());
+  if (materials.size() > 255) throw InputError("There are more than 255 materials of grains; use fewer.");
+  return MaterialTable(materials, p.wall_contact);
 }
 
 double largest_radius_of(const std::vector<GrainSeed>& seeds) {
@@ -40,7 +46,7 @@ GrainBatch batch_of(const std::vector<GrainSeed>& seeds, const Decomposition& de
   for (const GrainSeed& seed : seeds) {
     const Vec3 x = box.wrapped(seed.position), &v = seed.velocity, &w = seed.angular_velocity;
     if (decomposition.owner_of(x) != rank) continue;
-    GrainRow row{seed.id, static_cast<std::int64_t>(seed.motion), seed.radius, seed.mass(), {}};
+    GrainRow row{seed.id, static_cast<std::int64_t>(seed.motion), seed.material, seed.radius, seed.mass(), {}};
     row.value[GrainRow::position] = {x[0], x[1], x[2]};
     row.value[GrainRow::velocity] = {v[0], v[1], v[2]};
     row.value[GrainRow::angular_velocity] = {w[0], w[1], w[2]};
@@ -55,22 +61,39 @@ enum class Trouble { none, not_finite, outside, too_fast, outran };
 
 }  // namespace
 
+void check_time_step(const GrainParameters& p, const LightestGrain& lightest, std::int64_t count) {
+  if (!std::isfinite(lightest.mass)) return;
+  // Two of the lightest grains have the shortest contact; a single grain has only walls to touch.
+  const double share = count > 1 ? 0.5 : 1.0;
+  check_time_step(p.contact, share * lightest.mass, share * lightest.radius, p.time_step);
+  for (const ContactParameters& other : p.other_materials)
+    check_time_step(other, share * lightest.mass, share * lightest.radius, p.time_step);
+  if (!p.wall_contact) return;
+  check_wall_time_step(p.contact, *p.wall_contact, lightest.mass, lightest.radius, p.time_step);
+  for (const ContactParameters& other : p.other_materials)
+    check_wall_time_step(other, *p.wall_contact, lightest.mass, lightest.radius, p.time_step);
+}
+
 GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm communicator,
                              const GrainParameters& parameters, const std::vector<GrainSeed>& seeds)
     : decomposition_(decomposition), box_(decomposition.box()), communicator_(communicator),
-      parameters_(checked(parameters)), damping_(parameters.contact), largest_radius_(largest_radius_of(seeds)),
+      parameters_(checked(parameters)), materials_(table_of(parameters)), largest_radius_(largest_radius_of(seeds)),
       global_count_(static_cast<std::int64_t>(seeds.size())), store_(parameters.attached_width),
       ghosts_(decomposition, communicator, ghost_reach()), lists_phase_(timer_.phase("contact lists")),
       forces_phase_(timer_.phase("contact forces")), motion_phase_(timer_.phase("motion")),
       messages_phase_(timer_.phase("messages")) {
   assert(decomposition.ranks() == size_of(communicator));
   check(seeds, box_, parameters_.walls, parameters_.initial_overlap);
-  double lightest = std::numeric_limits<double>::infinity();
-  for (const GrainSeed& seed : seeds)
-    if (!holds_translation(seed.motion)) lightest = std::min(lightest, seed.mass());
-  // Two of the lightest grains have the shortest contact; a single grain has only walls to touch.
-  if (std::isfinite(lightest))
-    check_time_step(parameters_.contact, seeds.size() > 1 ? 0.5 * lightest : lightest, parameters_.time_step);
+  LightestGrain lightest;
+  for (const GrainSeed& seed : seeds) {
+    if (seed.material < 0 || seed.material >= materials_.count())
+      throw InputError(fmt::format("Grain {} is of material {}, but there are {}.", seed.id, seed.material,
+                                   materials_.count()));
+    if (holds_translation(seed.motion)) continue;
+    lightest.mass = std::min(lightest.mass, seed.mass());
+    lightest.radius = std::min(lightest.radius, seed.radius);
+  }
+  check_time_step(parameters_, lightest, global_count_);
 
   adopt(store_, batch_of(seeds, decomposition_, rank_of(communicator_), store_.attached_width));
   settle_in({});
@@ -202,7 +225,7 @@ void GrainDynamics::migrate(std::vector<ContactHistory>& histories) {
 // Makes everything that follows from the owned grains: ghosts, contact list, body forces.
 void GrainDynamics::settle_in(const std::vector<ContactHistory>& histories) {
   ghosts_.build(store_);
-  list_ = find_contacts(store_, box_, parameters_.walls, damping_, parameters_.skin, largest_radius_);
+  list_ = find_contacts(store_, box_, parameters_.walls, materials_, parameters_.skin, largest_radius_);
   restore_histories(list_, store_, histories);
   const auto owned_end = static_cast<std::ptrdiff_t>(store_.owned);
   listed_position_.assign(store_.position.begin(), store_.position.begin() + owned_end);
@@ -214,9 +237,7 @@ void GrainDynamics::settle_in(const std::vector<ContactHistory>& histories) {
 
 void GrainDynamics::evaluate_forces(double time_step) {
   const auto scope = timer_.measure(forces_phase_);
-  const ContactParameters& c = parameters_.contact;
-  const SpringDashpotFriction law(c.normal_stiffness, c.tangential_stiffness, c.attraction, time_step);
-  evaluate_contacts(moving_, list_, box_, parameters_.walls, law, c.friction);
+  evaluate_contacts(moving_, list_, box_, parameters_.walls, materials_, store_.material, time_step);
 }
 
 void GrainDynamics::advance(int sub_steps) {

@@ -22,6 +22,8 @@
 #include <mpi.h>
 
 #include <functional>
+#include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,7 +31,9 @@
 namespace thalweg::dem {
 
 struct GrainParameters {
-  ContactParameters contact;
+  ContactParameters contact;                         // material 0
+  std::vector<ContactParameters> other_materials;    // 1, 2, ...: mixed with each other as material.hpp says
+  std::optional<ContactParameters> wall_contact;     // of grains with walls, where it differs (but for the friction)
   std::vector<Plane> walls;
   std::function<Vec3(double mass, double radius)> body_force;   // N of a grain (kg, m), constant; empty: none
   double time_step = 0.0;          // s, of a sub-step: at most a 20th of the shortest contact time
@@ -39,6 +43,15 @@ struct GrainParameters {
   int attached_width = 0;          // columns attached to every grain
   double initial_overlap = allowed_initial_overlap;   // diameters the seeds may overlap by: a settled bed's do
 };
+
+// The least mass (kg) and radius (m) of the grains that are free to move: they have the shortest contacts.
+struct LightestGrain {
+  double mass = std::numeric_limits<double>::infinity();
+  double radius = std::numeric_limits<double>::infinity();
+};
+
+// Throws InputError if the time step is too long for contacts among `count` grains, the lightest of which is given.
+void check_time_step(const GrainParameters& parameters, const LightestGrain& lightest, std::int64_t count);
 
 // Two grains in contact, or a grain and a wall.
 struct Contact {
@@ -118,7 +131,7 @@ private:
   PeriodicBox box_;
   MPI_Comm communicator_;
   GrainParameters parameters_;
-  Damping damping_;
+  MaterialTable materials_;
   double largest_radius_ = 0.0;
   std::int64_t global_count_ = 0;
   std::int64_t rebuilds_ = 0;

@@ -1,4 +1,4 @@
-// Saving and loading of GrainDynamics. Datasets, one row a grain in order of id: radius, mass, motion, position,
+// Saving and loading of GrainDynamics. Datasets, one row a grain in order of id: radius, mass, motion, material, position,
 // velocity, angular_velocity, contact_force, contact_torque, load_force, load_torque, attached. One row a contact,
 // sorted by ids: contact_ids (lower id; higher id, or -1 - w for wall w), contact_spring.
 #include "core/error.hpp"
@@ -46,15 +46,17 @@ int home_of(std::int64_t row, std::int64_t count, int ranks) {
 void write_grains(ArchiveWriter& archive, const std::string& group, const GrainBatch& batch, const Share& share,
                   int attached_width) {
   std::vector<double> radius, mass, vectors;
-  std::vector<std::int64_t> motion;
+  std::vector<std::int64_t> motion, material;
   for (const GrainRow& row : batch.rows) {
     radius.push_back(row.radius);
     mass.push_back(row.mass);
     motion.push_back(row.motion);
+    material.push_back(row.material);
   }
   archive.write(group + "/radius", radius, share.box());
   archive.write(group + "/mass", mass, share.box());
   archive.write(group + "/motion", motion, share.box());
+  archive.write(group + "/material", material, share.box());
   for (int v = 0; v < GrainRow::vectors; ++v) {
     vectors.clear();
     for (const GrainRow& row : batch.rows) vectors.insert(vectors.end(), row.value[v].begin(), row.value[v].end());
@@ -68,12 +70,13 @@ GrainBatch read_grains(ArchiveReader& archive, const std::string& group, const S
   GrainBatch batch;
   batch.rows.resize(rows);
   std::vector<double> radius(rows), mass(rows), vectors(3 * rows);
-  std::vector<std::int64_t> motion(rows);
+  std::vector<std::int64_t> motion(rows), material(rows);
   archive.read(group + "/radius", radius, share.box());
   archive.read(group + "/mass", mass, share.box());
   archive.read(group + "/motion", motion, share.box());
+  archive.read(group + "/material", material, share.box());
   for (std::size_t r = 0; r < rows; ++r)
-    batch.rows[r] = {share.first + static_cast<std::int64_t>(r), motion[r], radius[r], mass[r], {}};
+    batch.rows[r] = {share.first + static_cast<std::int64_t>(r), motion[r], material[r], radius[r], mass[r], {}};
   for (int v = 0; v < GrainRow::vectors; ++v) {
     archive.read(group + "/" + vector_names[v], vectors, share.box(3));
     for (std::size_t r = 0; r < rows; ++r)
@@ -171,16 +174,24 @@ void GrainDynamics::load(ArchiveReader& archive, const std::string& group) {
   global_count_ = static_cast<std::int64_t>(archive.shape(group + "/radius").at(0));
   GrainBatch batch = read_grains(archive, group, Share(global_count_, ranks, me), store_.attached_width);
 
-  double lightest = std::numeric_limits<double>::infinity(), largest = 0.0;
+  LightestGrain lightest;
+  double largest = 0.0;
   check_loaded(batch, box_, communicator_);
   for (const GrainRow& row : batch.rows) {
     largest = std::max(largest, row.radius);
-    if (!holds_translation(static_cast<Motion>(row.motion))) lightest = std::min(lightest, row.mass);
+    if (holds_translation(static_cast<Motion>(row.motion))) continue;
+    lightest.mass = std::min(lightest.mass, row.mass);
+    lightest.radius = std::min(lightest.radius, row.radius);
   }
+  const bool stranger = std::any_of(batch.rows.begin(), batch.rows.end(), [this](const GrainRow& row) {
+    return row.material < 0 || row.material >= materials_.count();
+  });
+  if (any_rank(communicator_, stranger))
+    throw InputError(fmt::format("The saved grains are of more materials than this case has, {}.", materials_.count()));
   largest_radius_ = max_over_ranks(communicator_, largest);
-  lightest = -max_over_ranks(communicator_, -lightest);
-  if (std::isfinite(lightest))
-    check_time_step(parameters_.contact, global_count_ > 1 ? 0.5 * lightest : lightest, parameters_.time_step);
+  lightest.mass = -max_over_ranks(communicator_, -lightest.mass);
+  lightest.radius = -max_over_ranks(communicator_, -lightest.radius);
+  check_time_step(parameters_, lightest, global_count_);
   ghosts_ = GhostExchange(decomposition_, communicator_, ghost_reach());
 
   // Grains to the rank of their centre; histories first to the rank that read the grain and so knows its owner.

@@ -17,6 +17,7 @@ struct GrainSeed {
   Vec3 position = Vec3::Zero();                  // m
   Vec3 velocity = Vec3::Zero();                  // m/s
   Vec3 angular_velocity = Vec3::Zero();          // rad/s
+  int material = 0;                              // number of its material
   Motion motion = Motion::free;                  // what is held keeps the velocities above
 
   double mass() const;                           // kg, of the full sphere

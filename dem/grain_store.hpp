@@ -29,6 +29,7 @@ struct GrainStore {
   std::vector<double> inverse_mass;        // 1/kg, 0 where the translation is held
   std::vector<double> inverse_inertia;     // 1/(kg m^2), 0 where the rotation is held
   std::vector<Motion> motion;
+  std::vector<std::uint8_t> material;      // number in the table of materials
   std::vector<Vec3> position;              // m, global and unshifted, also of ghosts
   std::vector<Vec3> velocity;              // m/s
   std::vector<Vec3> angular_velocity;      // rad/s
@@ -53,7 +54,8 @@ struct GrainStore {
   void clear();
   void reserve(std::size_t grains);
   // A grain at rest without forces at the end of the arrays; its attached columns are zero.
-  void append(GlobalId grain, double grain_radius, double grain_mass, Motion grain_motion, const Vec3& grain_position);
+  void append(GlobalId grain, double grain_radius, double grain_mass, Motion grain_motion, const Vec3& grain_position,
+              int grain_material = 0);
   void drop_ghosts();
 
 private:

@@ -21,9 +21,19 @@ bool finite_not_negative(double value) { return std::isfinite(value) && value >=
 }  // namespace
 
 void check(const ContactParameters& p) {
-  require(std::isfinite(p.normal_stiffness) && p.normal_stiffness > 0.0, "normal_stiffness", p.normal_stiffness, " N/m",
-          "positive");
-  require(finite_not_negative(p.tangential_stiffness), "tangential_stiffness", p.tangential_stiffness, " N/m",
+  if (p.law == Law::linear) {
+    require(std::isfinite(p.normal_stiffness) && p.normal_stiffness > 0.0, "normal_stiffness", p.normal_stiffness,
+            " N/m", "positive");
+    require(finite_not_negative(p.tangential_stiffness), "tangential_stiffness", p.tangential_stiffness, " N/m",
+            "zero or positive");
+  } else {
+    require(std::isfinite(p.youngs_modulus) && p.youngs_modulus > 0.0, "youngs_modulus", p.youngs_modulus, " Pa",
+            "positive");
+    require(p.poisson_ratio > -1.0 && p.poisson_ratio <= 0.5, "poisson_ratio", p.poisson_ratio, "",
+            "greater than -1 and at most 0.5");
+    if (p.damping) throw InputError("Contact parameter damping is for the linear law; give restitution instead.");
+  }
+  require(finite_not_negative(p.tangential_damping), "tangential_damping", p.tangential_damping, "",
           "zero or positive");
   require(finite_not_negative(p.friction), "friction", p.friction, "", "zero or positive");
   require(finite_not_negative(p.wall_friction), "wall_friction", p.wall_friction, "", "zero or positive");
@@ -64,15 +74,78 @@ double damping_ratio_of_restitution(double restitution, bool attraction) {
   }
 }
 
-Damping::Damping(const ContactParameters& parameters) : normal_stiffness_(parameters.normal_stiffness) {
-  if (parameters.damping)
-    constant_ = *parameters.damping;
+Damping::Damping(const ContactParameters& p) : Damping(coefficients_of(p, p), p) {}
+
+Damping::Damping(const ContactCoefficients& coefficients, const ContactParameters& p)
+    : stiffness_(p.law == Law::linear ? coefficients.normal : 1.25 * coefficients.normal) {
+  if (p.damping)
+    constant_ = *p.damping;
   else
-    damping_ratio_ = damping_ratio_of_restitution(*parameters.restitution, parameters.attraction);
+    damping_ratio_ = damping_ratio_of_restitution(*p.restitution, p.attraction);
 }
 
 double Damping::coefficient(double effective_mass) const {
-  return constant_ + 2.0 * damping_ratio_ * std::sqrt(normal_stiffness_ * effective_mass);
+  return constant_ + 2.0 * damping_ratio_ * std::sqrt(stiffness_ * effective_mass);
+}
+
+namespace {
+
+double harmonic_mean(double a, double b) { return a == b ? a : a > 0.0 && b > 0.0 ? 2.0 * a * b / (a + b) : 0.0; }
+double geometric_mean(double a, double b) { return a == b ? a : std::sqrt(a * b); }
+
+double shear_modulus(const ContactParameters& p) { return 0.5 * p.youngs_modulus / (1.0 + p.poisson_ratio); }
+
+}  // namespace
+
+ContactParameters mixed(const ContactParameters& a, const ContactParameters& b) {
+  if (a.law != b.law || a.attraction != b.attraction || a.tangential_damping != b.tangential_damping)
+    throw InputError("Two materials differ in contact law, attraction or tangential damping; give all the same.");
+  if (a.restitution.has_value() != b.restitution.has_value())
+    throw InputError("One material has a restitution and another a damping; give all materials the same of the two.");
+  ContactParameters m = a;
+  m.normal_stiffness = harmonic_mean(a.normal_stiffness, b.normal_stiffness);
+  m.tangential_stiffness = harmonic_mean(a.tangential_stiffness, b.tangential_stiffness);
+  if (a.damping) m.damping = harmonic_mean(*a.damping, *b.damping);
+  if (a.restitution) m.restitution = geometric_mean(*a.restitution, *b.restitution);
+  m.friction = geometric_mean(a.friction, b.friction);
+  return m;
+}
+
+ContactCoefficients coefficients_of(const ContactParameters& a, const ContactParameters& b) {
+  const double friction = geometric_mean(a.friction, b.friction);
+  if (a.law == Law::linear)
+    return {harmonic_mean(a.normal_stiffness, b.normal_stiffness),
+            harmonic_mean(a.tangential_stiffness, b.tangential_stiffness), friction};
+  const auto give = [](const ContactParameters& p) {
+    return (1.0 - p.poisson_ratio * p.poisson_ratio) / p.youngs_modulus;
+  };
+  const auto shear_give = [](const ContactParameters& p) { return (2.0 - p.poisson_ratio) / shear_modulus(p); };
+  return {4.0 / 3.0 / (give(a) + give(b)), 8.0 / (shear_give(a) + shear_give(b)), friction};
+}
+
+MaterialTable::MaterialTable(std::span<const ContactParameters> materials,
+                             const std::optional<ContactParameters>& walls)
+    : count_(static_cast<int>(materials.size())), law_(materials.front().law),
+      manner_{materials.front().attraction, materials.front().tangential_damping, 0.0} {
+  for (const ContactParameters& material : materials) check(material);
+  if (walls) check(*walls);
+  for (const ContactParameters& a : materials) {
+    for (const ContactParameters& b : materials) {
+      const ContactCoefficients coefficients = coefficients_of(a, b);
+      pairs_.push_back({coefficients, Damping(coefficients, mixed(a, b))});
+    }
+    // Linear stiffnesses are those of the contact with the wall; moduli those of the wall's material.
+    if (walls) mixed(a, *walls);
+    const ContactParameters& wall = walls ? *walls : a;
+    const ContactCoefficients coefficients = law_ == Law::linear ? coefficients_of(wall, wall) : coefficients_of(a, wall);
+    walls_.push_back({coefficients, Damping(coefficients, wall)});
+  }
+}
+
+ContactManner MaterialTable::manner(double time_step) const {
+  ContactManner manner = manner_;
+  manner.time_step = time_step;
+  return manner;
 }
 
 double effective_mass(double mass_1, bool held_1, double mass_2, bool held_2) {
@@ -87,16 +160,46 @@ double contact_time(double normal_stiffness, double effective_mass, double dampi
   return std::numbers::pi / (omega_0 * std::max(omega, zeta));
 }
 
-void check_time_step(const ContactParameters& parameters, double effective_mass, double time_step) {
-  const double damping = Damping(parameters).coefficient(effective_mass);
-  const double longest = contact_time(parameters.normal_stiffness, effective_mass, damping) / fewest_steps_per_contact;
+double contact_time(const ContactParameters& parameters, double effective_mass, double effective_radius) {
+  if (parameters.law == Law::linear)
+    return contact_time(parameters.normal_stiffness, effective_mass, Damping(parameters).coefficient(effective_mass));
+  return elastic_contact_time(coefficients_of(parameters, parameters), effective_mass, effective_radius);
+}
+
+double elastic_contact_time(const ContactCoefficients& coefficients, double effective_mass, double effective_radius) {
+  const double modulus = 0.75 * coefficients.normal;
+  return 2.868 * std::pow(effective_mass * effective_mass /
+                              (effective_radius * modulus * modulus * elastic_contact_speed), 0.2);
+}
+
+namespace {
+
+void refuse_longer(double time_step, double contact_time, const ContactParameters& parameters) {
+  const double longest = contact_time / fewest_steps_per_contact;
   if (!(time_step > 0.0))
     throw InputError(fmt::format("The time step of the grains is {:g} s; it must be positive.", time_step));
-  if (time_step > longest)
-    throw InputError(fmt::format("The time step of the grains, {:g} s, is too long for their contacts: it must be at "
-                                 "most {:g} s, a {:g}th of the shortest contact time; use more sub-steps or a lower "
-                                 "normal stiffness than {:g} N/m.",
-                                 time_step, longest, fewest_steps_per_contact, parameters.normal_stiffness));
+  if (time_step <= longest) return;
+  const std::string softer = parameters.law == Law::linear
+                                 ? fmt::format("normal stiffness than {:g} N/m", parameters.normal_stiffness)
+                                 : fmt::format("Young's modulus than {:g} Pa", parameters.youngs_modulus);
+  throw InputError(fmt::format("The time step of the grains, {:g} s, is too long for their contacts: it must be at "
+                               "most {:g} s, a {:g}th of the shortest contact time; use more sub-steps or a lower {}.",
+                               time_step, longest, fewest_steps_per_contact, softer));
+}
+
+}  // namespace
+
+void check_time_step(const ContactParameters& parameters, double effective_mass, double effective_radius,
+                     double time_step) {
+  refuse_longer(time_step, contact_time(parameters, effective_mass, effective_radius), parameters);
+}
+
+void check_wall_time_step(const ContactParameters& parameters, const ContactParameters& wall, double mass,
+                          double radius, double time_step) {
+  if (parameters.law == Law::linear)
+    refuse_longer(time_step, contact_time(wall, mass, radius), wall);
+  else
+    refuse_longer(time_step, elastic_contact_time(coefficients_of(parameters, wall), mass, radius), parameters);
 }
 
 }  // namespace thalweg::dem

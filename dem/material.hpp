@@ -7,20 +7,33 @@
 //   at zero force (no attraction):            e = exp{-(beta/omega) [pi - atan2(2 beta omega, omega^2 - beta^2)]},
 //                         for zeta > 1:       e = exp{-(beta/Omega) ln[(beta + Omega)/(beta - Omega)]},
 //                                             Omega = sqrt(beta^2 - omega_0^2).
+//
+// Elastic spheres (hertz_mindlin.hpp) have the same restitution with zeta of their own dashpot.
 #pragma once
 
+#include "dem/contact_law.hpp"
+
 #include <optional>
+#include <span>
+#include <vector>
 
 namespace thalweg::dem {
 
+enum class Law { linear, hertz_mindlin };
+
+// One material, in contact with itself.
 struct ContactParameters {
-  double normal_stiffness = 0.0;        // N/m, > 0
-  double tangential_stiffness = 0.0;    // N/m, >= 0
+  Law law = Law::linear;                // the same for all materials of a run, as are the last two
+  double normal_stiffness = 0.0;        // N/m, > 0; linear law
+  double tangential_stiffness = 0.0;    // N/m, >= 0; linear law
+  double youngs_modulus = 0.0;          // Pa, > 0; Hertz and Mindlin
+  double poisson_ratio = 0.0;           // > -1, at most 1/2; Hertz and Mindlin
   std::optional<double> restitution;    // 0 < e <= 1; exactly one of restitution and damping is given
-  std::optional<double> damping;        // kg/s, >= 0, of every contact
+  std::optional<double> damping;        // kg/s, >= 0, of every contact; linear law
   double friction = 0.0;                // between grains, >= 0
   double wall_friction = 0.0;           // between a grain and a wall, >= 0: the default of the planes in walls.hpp
   bool attraction = false;              // whether the dashpot may pull at the end of the contact
+  double tangential_damping = 0.0;      // dashpot across the contact over the one along the normal, >= 0
 };
 
 // Throws InputError naming the first parameter that is impossible.
@@ -32,18 +45,52 @@ double restitution_of_damping_ratio(double zeta, bool attraction);
 // The inverse: zeta of 0 < e <= 1. Without attraction by bisection, to the last bit.
 double damping_ratio_of_restitution(double restitution, bool attraction);
 
-// The dashpot coefficient of a contact (kg/s).
+// The dashpot coefficient of a contact: kg/s, or kg/(s m^1/2) of elastic spheres.
 class Damping {
 public:
   explicit Damping(const ContactParameters& parameters);   // parameters must have passed check()
+  Damping(const ContactCoefficients& coefficients, const ContactParameters& parameters);
 
   // effective_mass (kg): m1 m2/(m1 + m2) of two grains, m of a grain against a wall.
   double coefficient(double effective_mass) const;
 
 private:
-  double normal_stiffness_;
+  double stiffness_;             // of the square root: k_n, or 5/4 of 4/3 E*
   double constant_ = 0.0;        // kg/s, where the user gave it
   double damping_ratio_ = 0.0;   // zeta, where the user gave a restitution
+};
+
+// What two bodies of different materials make of each other. Springs in series: stiffnesses and dashpots by the harmonic
+// mean; friction and restitution by the geometric mean; moduli are kept apart (coefficients_of). Throws InputError where
+// one has a restitution and the other a damping, or where law, attraction or tangential damping differ.
+ContactParameters mixed(const ContactParameters& a, const ContactParameters& b);
+
+// k_n, k_t, mu; or 4/3 E*, 8 G*, mu with each body's own moduli.
+ContactCoefficients coefficients_of(const ContactParameters& a, const ContactParameters& b);
+
+// All pairs of materials, and each against the walls.
+class MaterialTable {
+public:
+  struct Entry {
+    ContactCoefficients coefficients;
+    Damping damping;
+  };
+
+  // walls: what walls are made of; empty: of each grain's own material. Their friction is the plane's. Throws InputError
+  // for a material that is impossible or cannot be mixed.
+  MaterialTable(std::span<const ContactParameters> materials, const std::optional<ContactParameters>& walls);
+
+  int count() const { return count_; }
+  const Entry& pair(int a, int b) const { return pairs_[static_cast<std::size_t>(a) * count_ + b]; }
+  const Entry& wall(int material) const { return walls_[material]; }
+  Law law() const { return law_; }
+  ContactManner manner(double time_step) const;
+
+private:
+  int count_;
+  Law law_;
+  ContactManner manner_;
+  std::vector<Entry> pairs_, walls_;
 };
 
 // m1 m2/(m1 + m2); a grain that is held moves as if its mass were infinite.
@@ -52,10 +99,22 @@ double effective_mass(double mass_1, bool held_1, double mass_2, bool held_2);
 // The time a contact must be resolved in (s): t_c = pi/omega, or pi/beta where the damping is faster than the spring.
 double contact_time(double normal_stiffness, double effective_mass, double damping);
 
+// The same of any law; elastic spheres, whose contact time falls with the fifth root of the speed, as if they met at
+// 1 m/s: 2.868 (m*^2/(R* E*^2 v))^(1/5) (Hertz, without damping). effective_radius: m, used by them only.
+double contact_time(const ContactParameters& parameters, double effective_mass, double effective_radius);
+double elastic_contact_time(const ContactCoefficients& coefficients, double effective_mass, double effective_radius);
+inline constexpr double elastic_contact_speed = 1.0;   // m/s
+
 // Sub-steps a contact time needs at least.
 inline constexpr double fewest_steps_per_contact = 20.0;
 
-// Throws InputError if the time step (s) is longer than t_c/20 of a contact with this effective mass (kg).
-void check_time_step(const ContactParameters& parameters, double effective_mass, double time_step);
+// Throws InputError if the time step (s) is longer than t_c/20 of a contact with this effective mass (kg) and, for
+// elastic spheres, effective radius (m).
+void check_time_step(const ContactParameters& parameters, double effective_mass, double effective_radius,
+                     double time_step);
+
+// The same of a contact with walls.
+void check_wall_time_step(const ContactParameters& parameters, const ContactParameters& wall, double mass,
+                          double radius, double time_step);
 
 }  // namespace thalweg::dem

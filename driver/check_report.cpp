@@ -92,7 +92,7 @@ void add_grains(const Case& c, Lines& lines) {
   for (const PopulationCase& population : c.grains) lightest = std::min(lightest, population.mass());
   const double effective = 0.5 * lightest;
   const double damping = dem::Damping(contact).coefficient(effective);
-  const double duration = dem::contact_time(contact.normal_stiffness, effective, damping);
+  const double duration = dem::contact_time(contact, effective, 0.25 * smallest_diameter(c));
   const double step = grain_time_step(c);
   lines.push_back(
       fmt::format("contact    lasts {:.3g} s: {:.3g} sub-steps of {:.3g} s (at least {:g}); damping {:.3g} kg/s",
@@ -127,7 +127,7 @@ void refuse_impossible_grains(const Case& c) {
   dem::check(parameters.contact);
   double lightest = c.grains.front().mass();
   for (const PopulationCase& population : c.grains) lightest = std::min(lightest, population.mass());
-  dem::check_time_step(parameters.contact, 0.5 * lightest, parameters.time_step);
+  dem::check_time_step(parameters, {lightest, 0.5 * smallest_diameter(c)}, grain_count(c));
   dem::check(grain_seeds(c), box, parameters.walls);
 }
 

@@ -85,9 +85,67 @@ TEST(ContactParameters, RefusesTheImpossible) {
 
 TEST(ContactParameters, TimeStepIsATwentiethOfTheContactTime) {
   const double mass = 1e-4, longest = std::numbers::pi * std::sqrt(mass / 20000.0) / 20.0;
-  EXPECT_NO_THROW(check_time_step(test::glass(1.0), mass, 0.999 * longest));
-  EXPECT_THROW(check_time_step(test::glass(1.0), mass, 1.001 * longest), InputError);
-  EXPECT_THROW(check_time_step(test::glass(1.0), mass, 0.0), InputError);
+  EXPECT_NO_THROW(check_time_step(test::glass(1.0), mass, test::glass_radius, 0.999 * longest));
+  EXPECT_THROW(check_time_step(test::glass(1.0), mass, test::glass_radius, 1.001 * longest), InputError);
+  EXPECT_THROW(check_time_step(test::glass(1.0), mass, test::glass_radius, 0.0), InputError);
+}
+
+TEST(Mixing, SpringsInSeriesAndGeometricMeans) {
+  ContactParameters a = test::glass(0.9), b = test::glass(0.4);
+  b.normal_stiffness = 60000.0;
+  b.tangential_stiffness = 0.0;
+  b.friction = 0.02;
+  const ContactParameters m = mixed(a, b);
+  EXPECT_NEAR(m.normal_stiffness, 30000.0, 1e-9);   // 2/(1/20000 + 1/60000)
+  EXPECT_EQ(m.tangential_stiffness, 0.0);
+  EXPECT_NEAR(*m.restitution, 0.6, 1e-15);
+  EXPECT_NEAR(m.friction, 0.1, 1e-15);
+  EXPECT_EQ(mixed(a, a).normal_stiffness, a.normal_stiffness);
+  EXPECT_EQ(mixed(a, a).friction, a.friction);
+  b.attraction = true;
+  EXPECT_THROW(mixed(a, b), InputError);
+}
+
+TEST(Mixing, ModuliKeepTheirOwners) {
+  // Steel on rubber is as stiff as rubber on a rigid body, up to the ratio of the moduli, 5e-5.
+  ContactParameters steel = test::glass(0.9), rubber = test::glass(0.9);
+  steel.law = rubber.law = Law::hertz_mindlin;
+  steel.youngs_modulus = 200e9, steel.poisson_ratio = 0.3;
+  rubber.youngs_modulus = 10e6, rubber.poisson_ratio = 0.5;
+  const ContactCoefficients c = coefficients_of(steel, rubber);
+  EXPECT_NEAR(c.normal, 4.0 / 3.0 * 10e6 / 0.75, 1e-4 * 1.8e7);
+  EXPECT_NEAR(c.tangential, 8.0 * (10e6 / 3.0) / 1.5, 1e-4 * 1.8e7);
+  rubber.damping = 0.1, rubber.restitution.reset();
+  EXPECT_THROW(check(rubber), InputError);
+}
+
+TEST(Mixing, GrainsOfTwoMaterialsAndAWallPartWithTheirRestitutions) {
+  // 0 on 1: sqrt(0.9 0.4) = 0.6; both on the wall: 0.7. Slow impacts at 1400 steps a contact: error of first order.
+  GrainParameters p;
+  p.contact = test::glass(0.9);
+  p.other_materials = {test::glass(0.4)};
+  p.wall_contact = test::glass(0.7);
+  p.walls = {face_plane(test::cube().box(), 2, false, 0.0)};
+  p.time_step = 1.5e-7;
+  p.sub_steps = 50;
+  p.skin = 1e-3;
+  const double apart = 2.0 * test::glass_radius + 1e-6;
+  std::vector<GrainSeed> seeds{test::glass_sphere(0, Vec3(0.01, 0.01, 0.02), Vec3(0.1, 0, 0)),
+                               test::glass_sphere(1, Vec3(0.01 + apart, 0.01, 0.02)),
+                               test::glass_sphere(2, Vec3(0.01, 0.03, 0.02), Vec3(0.1, 0, 0)),
+                               test::glass_sphere(3, Vec3(0.01 + apart, 0.03, 0.02)),
+                               test::glass_sphere(4, Vec3(0.04, 0.01, test::glass_radius + 1e-6), Vec3(0, 0, -0.1)),
+                               test::glass_sphere(5, Vec3(0.04, 0.03, test::glass_radius + 1e-6), Vec3(0, 0, -0.1))};
+  for (const int id : {1, 2, 3, 5}) seeds[id].material = 1;
+  GrainDynamics grains(test::cube(), MPI_COMM_SELF, p, seeds);
+  for (int n = 0; n < 120; ++n) test::step(grains);
+  const auto v = [&](int id, int axis) { return grains.store().velocity[id][axis]; };
+  EXPECT_NEAR(v(1, 0) - v(0, 0), 0.06, 3e-4);
+  EXPECT_NEAR(v(3, 0) - v(2, 0), 0.04, 3e-4);
+  EXPECT_NEAR(v(4, 2), 0.07, 3e-4);
+  EXPECT_NEAR(v(5, 2), 0.07, 3e-4);
+  seeds[3].material = 2;
+  EXPECT_THROW(GrainDynamics(test::cube(), MPI_COMM_SELF, p, seeds), InputError);
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ struct Case {
   int grains;
   Vec3 gravity;     // m/s^2
   Vec3 drift;       // m/s, of all grains at the start: a heap in contact crosses the borders between ranks
+  bool elastic = false;   // Hertz and Mindlin, two materials, tangential damping
 };
 
 // Grains of 3.2 to 5 mm, thrown about at up to 0.4 m/s an axis.
@@ -31,6 +32,7 @@ std::vector<GrainSeed> cloud(const Case& c) {
     GrainSeed seed =
         test::glass_sphere(i, places[i], c.drift + 0.4 * Vec3(draw(0), draw(1), draw(2)), radii[i]);
     seed.angular_velocity = 30.0 * Vec3(draw(3), draw(4), draw(5));
+    if (c.elastic) seed.material = i % 2;
     if (i % 17 == 3) {
       seed.motion = Motion::fixed;
       seed.velocity = i % 2 == 0 ? Vec3::Zero() : c.drift;
@@ -47,6 +49,15 @@ GrainParameters parameters_of(const Case& c) {
   // Soft grains: long contacts, so that many are open at any time, and long steps.
   p.contact.normal_stiffness = 500.0;
   p.contact.tangential_stiffness = 2.0 / 7.0 * 500.0;
+  if (c.elastic) {
+    p.contact.law = Law::hertz_mindlin;
+    p.contact.youngs_modulus = 1e5;   // about as soft
+    p.contact.poisson_ratio = 0.3;
+    p.contact.tangential_damping = 0.5;
+    p.other_materials = {p.contact};
+    p.other_materials[0].youngs_modulus = 3e5;
+    p.other_materials[0].friction = 0.1;
+  }
   p.walls = face_planes(box, p.contact);
   p.body_force = [g = c.gravity](double mass, double) { return Vec3(mass * g); };
   p.time_step = 2.5e-5;
@@ -174,6 +185,10 @@ TEST(Ranks, HeapBetweenWalls) {
 
 TEST(Ranks, HeapThatSlidesAcrossBorders) {
   compare({{16, 16, 16}, 1.5e-3, {true, true, false}, 60, Vec3(4.0, 2.0, -15.0), Vec3(0.4, 0.3, 0.0)}, 240);
+}
+
+TEST(Ranks, ElasticHeapOfTwoMaterials) {
+  compare({{16, 16, 16}, 1.5e-3, {true, true, false}, 60, Vec3(4.0, 2.0, -15.0), Vec3(0.4, 0.3, 0.0), true}, 240);
 }
 
 TEST(Ranks, ChannelTwoDiametersWide) {
