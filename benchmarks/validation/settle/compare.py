@@ -1,0 +1,71 @@
+#!/usr/bin/python3
+"""Compares settling runs with ten Cate et al. 2002: compare.py E1=RUN_FOLDER [E2=RUN_FOLDER] [--figure FILE]
+
+Prints for every run the largest settling velocity, the measured one, their difference, and pass or fail (2 %); draws
+velocity and height against time. Exit code 0 if all pass.
+"""
+import argparse
+import csv
+import sys
+import xml.etree.ElementTree as xml
+from pathlib import Path
+
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+from vtk import vtkXMLPolyDataReader
+
+ACCEPTED = 0.02
+RADIUS = 7.5e-3   # m
+
+
+def trajectory(run):
+    """Times (s), heights of the lowest point above the floor (m), velocities (m/s) of the only grain."""
+    times, heights, velocities = [], [], []
+    for entry in xml.parse(run / "grains.pvd").getroot().iter("DataSet"):
+        reader = vtkXMLPolyDataReader()
+        reader.SetFileName(str(run / entry.get("file")))
+        reader.Update()
+        grain = reader.GetOutput()
+        times.append(float(entry.get("timestep")))
+        heights.append(grain.GetPoint(0)[2] - RADIUS)
+        velocities.append(grain.GetPointData().GetArray("velocity").GetTuple3(0)[2])
+    return times, heights, velocities
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("runs", nargs="+", metavar="CASE=RUN_FOLDER")
+    parser.add_argument("--figure", default="settle.png")
+    arguments = parser.parse_args()
+
+    with open(Path(__file__).with_name("reference.csv")) as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    measured = {row["case"]: float(row["u_inf [m/s]"]) * float(row["u_max_over_u_inf [1]"]) for row in rows}
+
+    figure, (top, bottom) = plt.subplots(2, 1, sharex=True, figsize=(7, 6))
+    passed = True
+    for run in arguments.runs:
+        name, folder = run.split("=", 1)
+        case = name.split("_")[0]
+        times, heights, velocities = trajectory(Path(folder))
+        fastest = -min(velocities)
+        difference = fastest / measured[case] - 1.0
+        good = abs(difference) <= ACCEPTED
+        passed = passed and good
+        print(f"{name}: u_max {fastest:.5f} m/s, measured {measured[case]:.5f} m/s, difference {100 * difference:+.1f} %: "
+              f"{'pass' if good else 'FAIL'}")
+        line, = top.plot(times, velocities, label=name)
+        top.axhline(-measured[case], color=line.get_color(), linestyle="--", linewidth=0.8)
+        bottom.plot(times, [1e3 * h for h in heights], color=line.get_color())
+    top.set_ylabel("velocity [m/s]")
+    top.legend(title="dashed: largest measured")
+    bottom.set_ylabel("lowest point above the floor [mm]")
+    bottom.set_xlabel("time [s]")
+    figure.tight_layout()
+    figure.savefig(arguments.figure, dpi=110)
+    return 0 if passed else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
