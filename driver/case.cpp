@@ -1,5 +1,7 @@
 #include "driver/case.hpp"
 
+#include "dem/material.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -69,9 +71,20 @@ double grain_volume(const Case& c) {
 }
 
 double shortest_contact(const Case& c) {
-  double lightest = std::numeric_limits<double>::infinity();
-  for (const PopulationCase& population : c.grains) lightest = std::min(lightest, population.mass());
-  return std::numbers::pi * std::sqrt(0.5 * lightest / c.contact.normal_stiffness);
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const PopulationCase& population : c.grains) {
+    const double effective_mass = 0.5 * population.mass();
+    double time = std::numbers::pi * std::sqrt(effective_mass / c.contact.normal_stiffness);
+    if (c.contact.law == ContactLaw::hertz_mindlin) {
+      dem::ContactParameters contact;
+      contact.law = dem::Law::hertz_mindlin;
+      contact.youngs_modulus = c.contact.youngs_modulus;
+      contact.poisson_ratio = c.contact.poisson_ratio;
+      time = dem::contact_time(contact, effective_mass, 0.25 * population.diameter);
+    }
+    shortest = std::min(shortest, time);
+  }
+  return shortest;
 }
 
 double estimated_velocity(const Case& c) {

@@ -126,14 +126,19 @@ struct PopulationCase {
 };
 
 enum class Attraction { none, allowed };
+enum class ContactLaw { linear, hertz_mindlin };
 
 struct ContactCase {
-  double normal_stiffness = 20000.0;            // N/m
-  double tangential_stiffness = 5714.0;         // N/m
-  std::optional<double> restitution;            // 1; exactly one of restitution and damping is set
-  std::optional<double> damping;                // kg/s
-  double friction = 0.5;                        // grain on grain
-  double wall_friction = 0.45;                  // grain on wall
+  ContactLaw law = ContactLaw::linear;
+  double normal_stiffness = 20000.0;  // N/m
+  double tangential_stiffness = 5714.0;  // N/m
+  double youngs_modulus = 0.0;  // Pa; of hertz_mindlin, in place of the two stiffnesses
+  double poisson_ratio = 0.3;  // 1; of hertz_mindlin
+  double tangential_damping = 0.0;  // 1; dashpot along the contact over the one across it
+  std::optional<double> restitution;  // 1; exactly one of restitution and damping is set
+  std::optional<double> damping;  // kg/s
+  double friction = 0.5;  // grain on grain
+  double wall_friction = 0.45;  // grain on wall
   Attraction attraction = Attraction::allowed;  // allowed: the dashpot may pull grains together as they part
   bool operator==(const ContactCase&) const = default;
 };
@@ -247,8 +252,8 @@ double largest_diameter(const Case& c);   // m; 0 without grains
 double smallest_diameter(const Case& c);  // m; 0 without grains
 double grain_volume(const Case& c);       // m^3, of all grains
 
-// Half a period of the undamped spring between two grains of the lightest population, pi sqrt(m / 2 / k_n): the
-// shortest contact there can be (damping makes it longer). s; infinite without grains.
+// The shortest contact there can be (damping makes it longer), between two grains of one population: half a period of
+// the undamped spring, pi sqrt(m / 2 / k_n), or Hertz's contact at 1 m/s (dem/material.hpp). s; infinite without grains.
 double shortest_contact(const Case& c);
 
 // The speed (m/s) a flow driven by gravity along the bed can reach: that of a laminar film over the bed, or of the log

@@ -128,20 +128,39 @@ static void describe(io::SectionVisitor& visit, PopulationCase& grains) {
 }
 
 static void describe_contact(io::SectionVisitor& visit, ContactCase& contact, bool with_grains) {
-  visit.real("normal_stiffness", contact.normal_stiffness,
-             {.unit = "N/m", .meaning = "of the spring across a contact", .above = 0.0});
-  visit.real("tangential_stiffness", contact.tangential_stiffness,
-             {.unit = "N/m", .meaning = "of the spring along a contact", .above = 0.0});
+  visit.choice<ContactLaw>("law", contact.law,
+                           {{ContactLaw::linear, "linear", "spring and dashpot"},
+                            {ContactLaw::hertz_mindlin, "hertz_mindlin", "elastic spheres, by youngs_modulus"}},
+                           {.meaning = "force of a contact"});
+  if (contact.law == ContactLaw::linear) {
+    visit.real("normal_stiffness", contact.normal_stiffness,
+               {.unit = "N/m", .meaning = "of the spring across a contact", .above = 0.0});
+    visit.real("tangential_stiffness", contact.tangential_stiffness,
+               {.unit = "N/m", .meaning = "of the spring along a contact", .above = 0.0});
+    for (const char* key : {"youngs_modulus", "poisson_ratio"})
+      visit.not_here(key, "the linear law has stiffnesses; remove it or set law: hertz_mindlin");
+  } else {
+    visit.real("youngs_modulus", contact.youngs_modulus,
+               {.unit = "Pa", .meaning = "of grains and walls", .required = true, .above = 0.0, .example = 70e9});
+    visit.real("poisson_ratio", contact.poisson_ratio,
+               {.meaning = "of grains and walls", .at_least = 0.0, .at_most = 0.5});
+    for (const char* key : {"normal_stiffness", "tangential_stiffness", "damping"})
+      visit.not_here(key, "elastic spheres have youngs_modulus, poisson_ratio and restitution; remove it or set law: "
+                          "linear");
+  }
+  visit.real("tangential_damping", contact.tangential_damping,
+             {.meaning = "dashpot along a contact over the one across it", .at_least = 0.0});
   visit.real("restitution", contact.restitution,
              {.meaning = "speed after over speed before a dry collision; or give damping",
               .above = 0.0,
               .at_most = 1.0,
               .example = 0.93});
-  visit.real("damping", contact.damping,
-             {.unit = "kg/s",
-              .meaning = "of the dashpot across a contact, in place of restitution",
-              .at_least = 0.0,
-              .example = 0.09});
+  if (contact.law == ContactLaw::linear)
+    visit.real("damping", contact.damping,
+               {.unit = "kg/s",
+                .meaning = "of the dashpot across a contact, in place of restitution",
+                .at_least = 0.0,
+                .example = 0.09});
   visit.require(!(contact.restitution && contact.damping), "restitution",
                 "the loss in a collision is given twice; give either restitution or damping");
   visit.require(!with_grains || contact.restitution || contact.damping, "restitution",
@@ -294,7 +313,7 @@ void describe(io::SectionVisitor& visit, Case& c) {
                 [&](io::SectionVisitor& inside) { describe_gravity(inside, c.gravity, with_fluid); });
   visit.list("grains", c.grains, {.meaning = "populations of grains", .required = !with_fluid});
   visit.require(with_fluid || !c.grains.empty(), "grains", "a run of dry grains needs at least one population of them");
-  visit.section("contact", {.meaning = "linear spring and dashpot, with friction"},
+  visit.section("contact", {.meaning = "force between grains that touch, with friction"},
                 [&](io::SectionVisitor& inside) { describe_contact(inside, c.contact, !c.grains.empty()); });
   if (with_fluid) {
     visit.section("coupling", c.coupling, {.meaning = "how fluid and grains act on each other"});

@@ -63,6 +63,10 @@ std::vector<Vec3> place(const PopulationCase& population, const PeriodicBox& box
 
 dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box) {
   dem::GrainParameters parameters;
+  parameters.contact.law = c.contact.law == ContactLaw::linear ? dem::Law::linear : dem::Law::hertz_mindlin;
+  parameters.contact.youngs_modulus = c.contact.youngs_modulus;
+  parameters.contact.poisson_ratio = c.contact.poisson_ratio;
+  parameters.contact.tangential_damping = c.contact.tangential_damping;
   parameters.contact.normal_stiffness = c.contact.normal_stiffness;
   parameters.contact.tangential_stiffness = c.contact.tangential_stiffness;
   parameters.contact.restitution = c.contact.restitution;

@@ -105,6 +105,23 @@ TEST(CaseReader, DryGrainsTakeFiftyStepsAContact) {
   EXPECT_EQ(read(resolved_yaml(c)), c);
 }
 
+TEST(CaseReader, ElasticSpheresHaveModuliInPlaceOfStiffnesses) {
+  const std::string elastic = "contact={law: hertz_mindlin, youngs_modulus: 1e8, poisson_ratio: 0.25, restitution: 0.9, "
+                              "tangential_damping: 0.5}";
+  const Case c = read(defaults_yaml("grains"), {elastic, "run.time_step="});
+  EXPECT_EQ(c.contact.law, ContactLaw::hertz_mindlin);
+  EXPECT_EQ(c.contact.youngs_modulus, 1e8);
+  EXPECT_EQ(c.contact.poisson_ratio, 0.25);
+  EXPECT_EQ(c.contact.tangential_damping, 0.5);
+  EXPECT_EQ(read(resolved_yaml(c)), c);
+  // 2.868 (m*^2/(R* E*^2 v))^(1/5) at 1 m/s: m* = 8.1e-5 kg, R* = 1.2375 mm, E* = 5.33e7 Pa.
+  const double mass = 0.5 * c.grains[0].mass(), radius = 0.25 * c.grains[0].diameter, modulus = 1e8 / (2.0 * 0.9375);
+  EXPECT_NEAR(shortest_contact(c), 2.868 * std::pow(mass * mass / (radius * modulus * modulus), 0.2), 1e-15);
+  EXPECT_THROW(read(defaults_yaml("grains"), {elastic, "run.time_step=", "contact.normal_stiffness=20000"}), InputError);
+  EXPECT_THROW(read(defaults_yaml("grains"), {elastic, "run.time_step=", "contact.damping=0.1"}), InputError);
+  EXPECT_THROW(read(defaults_yaml("grains"), {"contact.youngs_modulus=1e8"}), InputError);
+}
+
 TEST(CaseReader, AFluidWithoutGrainsIsACase) {
   const Case c = read(flume, {"grains=[]", "contact=", "analysis="});
   EXPECT_EQ(grain_count(c), 0);
