@@ -1,6 +1,7 @@
 #include "driver/case.hpp"
 
 #include "dem/material.hpp"
+#include "driver/stability.hpp"
 
 #include <fmt/format.h>
 
@@ -120,11 +121,14 @@ std::vector<std::string> warnings(const Case& c) {
                     "is 0.173: consider a fluid.time_step of at most {:.2g} s.",
                     estimated_velocity(c), lattice_velocity, 0.1 * c.domain.spacing / estimated_velocity(c)));
   const double excess = relaxation_time(c) - 0.5;
-  if (excess < 5e-3 && c.fluid.smagorinsky_constant == 0.0)
-    found.push_back(
-        fmt::format("The relaxation time is only {:.2g} above 1/2 and there is no subgrid model, so the fluid may "
-                    "become unstable: consider fluid.smagorinsky_constant: 0.27.",
-                    excess));
+  const double fastest =
+      c.fluid.expected_velocity ? *c.fluid.expected_velocity / units_of(c).velocity() : lattice_velocity;
+  const double stable = stable_lattice_velocity(c.fluid.collision, excess);
+  if (c.fluid.smagorinsky_constant == 0.0 && (stable == 0.0 || fastest > stable))
+    found.push_back(fmt::format(
+        "The relaxation time is only {:.2g} above 1/2 and there is no subgrid model; turbulence was stable there {}: consider "
+        "fluid.smagorinsky_constant: 0.27 or fluid.collision: regularised.",
+        excess, stable == 0.0 ? std::string("at no velocity") : fmt::format("up to {:g} cells a step", stable)));
   if (excess > 1.0)
     found.push_back(
         fmt::format("The relaxation time, {:.2g}, is so large that walls and grains lose accuracy: consider a "

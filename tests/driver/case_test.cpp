@@ -1,5 +1,6 @@
 // The numbers that follow from a case, against the tables of the two papers' parameters.
 #include "driver/case.hpp"
+#include "driver/stability.hpp"
 
 #include <gtest/gtest.h>
 
@@ -72,6 +73,16 @@ TEST(Case, TheVelocityEstimateIsTheLaminarFilmInAThickFluid) {
   c.fluid.kinematic_viscosity = 1e-3;
   const double expected = 9.8 * std::sin(std::atan(0.016)) * 1e-4 / 2e-3;
   EXPECT_NEAR(estimated_velocity(c), expected, 1e-12);
+}
+
+// The map's own entries, and between them the entry on the safe side.
+TEST(Case, StabilityFollowsTheMap) {
+  EXPECT_EQ(stable_lattice_velocity(Collision::bgk, 0.003), 0.10);
+  EXPECT_EQ(stable_lattice_velocity(Collision::bgk, 0.0099), 0.10);
+  EXPECT_EQ(stable_lattice_velocity(Collision::trt, 0.0015), 0.0);
+  EXPECT_EQ(stable_lattice_velocity(Collision::regularised, 2e-4), 0.15);
+  EXPECT_EQ(stable_lattice_velocity(Collision::regularised, 5e-5), 0.0);
+  EXPECT_EQ(stable_lattice_velocity(Collision::trt, 0.5), 0.15);
 }
 
 TEST(Case, WarnsOfWhatDeservesASecondLookAndOfNothingElse) {

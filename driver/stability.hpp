@@ -1,0 +1,12 @@
+// How fast a fluid without subgrid model may flow before its collision becomes unstable: the map of docs/stability.md.
+#pragma once
+
+#include "driver/case.hpp"
+
+namespace thalweg {
+
+// The largest lattice velocity (cells a step) of the map that stayed stable at this distance of the relaxation time from
+// 1/2, looked up at the nearest smaller one of the map; 0 if none did. With a subgrid model all did, up to 0.15.
+double stable_lattice_velocity(Collision collision, double excess);
+
+}  // namespace thalweg
