@@ -1,6 +1,6 @@
 #include "analysis/grain_energy.hpp"
 
-#include "analysis/order_free_sum.hpp"
+#include "core/order_free_sum.hpp"
 
 namespace thalweg::analysis {
 
@@ -11,8 +11,8 @@ void GrainEnergy::observe(const Snapshot& snapshot) {
   for (std::size_t i = 0; i < grains.id.size(); ++i) {
     const double mass = grains.mass[i];
     const double inertia = 0.4 * mass * grains.radius[i] * grains.radius[i];
-    terms[i * columns] = 0.5 * mass * grains.velocity[i].squaredNorm() +
-                         0.5 * inertia * grains.angular_velocity[i].squaredNorm();
+    terms[i * columns] =
+        0.5 * mass * grains.velocity[i].squaredNorm() + 0.5 * inertia * grains.angular_velocity[i].squaredNorm();
     for (int axis = 0; axis < 3; ++axis) terms[i * columns + 1 + axis] = mass * grains.velocity[i][axis];
   }
   const std::vector<double> sums = order_free_sums(communicator_, terms, columns);

@@ -19,7 +19,7 @@ public:
   // grain_kinetic_energy (J), grain_momentum_x, _y, _z (kg m/s).
   std::vector<Figure> figures() const override;
 
-  void save(ArchiveWriter&) const override {}   // nothing is remembered between measurements
+  void save(ArchiveWriter&) const override {}  // nothing is remembered between measurements
   void load(ArchiveReader&) override {}
 
 private:

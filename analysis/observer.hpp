@@ -29,7 +29,7 @@ public:
 
   // Running sums, so that a restarted run reports the same means as one that was never interrupted. Collective.
   virtual void save(ArchiveWriter& archive) const = 0;
-  virtual void load(ArchiveReader& archive) = 0;   // does nothing if the archive holds no sums that fit
+  virtual void load(ArchiveReader& archive) = 0;  // does nothing if the archive holds no sums that fit
 };
 
 }  // namespace thalweg::analysis

@@ -1,7 +1,7 @@
 #include "analysis/transport_rate.hpp"
 
-#include "analysis/order_free_sum.hpp"
 #include "core/mpi_session.hpp"
+#include "core/order_free_sum.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -17,13 +17,13 @@
 namespace thalweg::analysis {
 
 struct TransportScales {
-  double grain_diameter;        // m, first population
-  double grain_density;         // kg/m^3, first population
-  double fluid_density = 0.0;   // kg/m^3; 0: dry grains
-  double gravity = 0.0;         // m/s^2, magnitude
+  double grain_diameter;       // m, first population
+  double grain_density;        // kg/m^3, first population
+  double fluid_density = 0.0;  // kg/m^3; 0: dry grains
+  double gravity = 0.0;        // m/s^2, magnitude
 
-  double flux() const;           // sqrt(|s - 1| g d^3), m^2/s; without a fluid sqrt(g d^3)
-  double moving_speed() const;   // m/s: 1 % of sqrt(|s - 1| g d), without a fluid of sqrt(g d)
+  double flux() const;          // sqrt(|s - 1| g d^3), m^2/s; without a fluid sqrt(g d^3)
+  double moving_speed() const;  // m/s: 1 % of sqrt(|s - 1| g d), without a fluid of sqrt(g d)
   bool have_q_star() const { return fluid_density > 0.0 && flux() > 0.0; }
 };
 
@@ -33,7 +33,7 @@ public:
   TransportRate(MPI_Comm communicator, const TransportScales& scales, double from);
 
   std::string name() const override { return "transport_rate"; }
-  void observe(const Snapshot& snapshot) override;   // a step seen before does not count again in the means
+  void observe(const Snapshot& snapshot) override;  // a step seen before does not count again in the means
 
   // q_s (m^2/s), q_star (1; only in a fluid), moving_grains (1: faster than moving_speed()), largest_grain_speed (m/s).
   std::vector<Figure> figures() const override;
@@ -43,7 +43,7 @@ public:
   std::vector<Figure> results() const override;
 
   void save(ArchiveWriter& archive) const override;
-  void load(ArchiveReader& archive) override;   // takes the sums over only if they were begun at the same `from`
+  void load(ArchiveReader& archive) override;  // takes the sums over only if they were begun at the same `from`
 
 private:
   MPI_Comm communicator_;

@@ -1,8 +1,8 @@
 // What a system writes its state to and reads it from, without knowing the file format (io/ has HDF5).
 //
-// A path is "group/name". A dataset is a global array of up to four dimensions, slowest first; every rank writes or reads
-// its own box of it. All calls are collective: every rank makes the same calls with the same paths and global shapes.
-// Nothing that depends on the number of ranks goes into an archive.
+// A path is "group/name". A dataset is a global array of up to four dimensions, slowest first; every rank writes or
+// reads its own box of it. All calls are collective: every rank makes the same calls with the same paths and global
+// shapes. Nothing that depends on the number of ranks goes into an archive.
 #pragma once
 
 #include <cstdint>
@@ -13,9 +13,9 @@
 namespace thalweg {
 
 struct ArrayBox {
-  std::vector<std::uint64_t> global_shape;   // of the whole dataset
-  std::vector<std::uint64_t> offset;         // of this rank's box in it
-  std::vector<std::uint64_t> shape;          // of this rank's box; a zero anywhere: this rank has nothing
+  std::vector<std::uint64_t> global_shape;  // of the whole dataset
+  std::vector<std::uint64_t> offset;        // of this rank's box in it
+  std::vector<std::uint64_t> shape;         // of this rank's box; a zero anywhere: this rank has nothing
 };
 
 class ArchiveWriter {

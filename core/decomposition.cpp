@@ -44,9 +44,10 @@ Index3 Decomposition::best_layout(const Index3& cells, int ranks) {
     }
   }
   if (best[0] == 0)
-    throw InputError(fmt::format("{} x {} x {} cells cannot be shared by {} ranks with at least {} cells a rank along "
-                                 "every cut axis; use fewer ranks or a larger domain.",
-                                 cells[0], cells[1], cells[2], ranks, min_cells_per_rank));
+    throw InputError(
+        fmt::format("{} x {} x {} cells cannot be shared by {} ranks with at least {} cells a rank along "
+                    "every cut axis; use fewer ranks or a larger domain.",
+                    cells[0], cells[1], cells[2], ranks, min_cells_per_rank));
   return best;
 }
 
@@ -54,9 +55,10 @@ Decomposition::Decomposition(const Index3& cells, double spacing, const std::arr
                              const Index3& layout)
     : cells_(cells), spacing_(spacing), periodic_(periodic), layout_(layout) {
   if (!fits(cells, layout))
-    throw InputError(fmt::format("Layout {},{},{} gives some rank fewer than {} of the {} x {} x {} cells along a cut "
-                                 "axis; use fewer ranks there.",
-                                 layout[0], layout[1], layout[2], min_cells_per_rank, cells[0], cells[1], cells[2]));
+    throw InputError(
+        fmt::format("Layout {},{},{} gives some rank fewer than {} of the {} x {} x {} cells along a cut "
+                    "axis; use fewer ranks there.",
+                    layout[0], layout[1], layout[2], min_cells_per_rank, cells[0], cells[1], cells[2]));
   for (int a = 0; a < 3; ++a)
     for (int slab = 0; slab <= layout[a]; ++slab)
       cuts_[a].push_back(static_cast<int>(static_cast<std::int64_t>(cells[a]) * slab / layout[a]));

@@ -1,7 +1,8 @@
 // Who owns which part of the box: a Cartesian grid of blocks of cells, one block a rank, shared by lattice and grains.
 //
 // Cell (i, j, k) covers [i, i+1) x [j, j+1) x [k, k+1) times the spacing; its centre, where the populations live, is at
-// (i+1/2, j+1/2, k+1/2) times the spacing. Walls stand on the outer faces of the box (half a link from the last centre).
+// (i+1/2, j+1/2, k+1/2) times the spacing. Walls stand on the outer faces of the box (half a link from the last
+// centre).
 #pragma once
 
 #include "core/periodic_box.hpp"
@@ -42,10 +43,10 @@ public:
   const std::array<bool, 3>& periodic() const { return periodic_; }
   const Index3& layout() const { return layout_; }
   int ranks() const { return layout_[0] * layout_[1] * layout_[2]; }
-  PeriodicBox box() const;   // in metres
+  PeriodicBox box() const;  // in metres
 
-  Index3 coordinates_of(int rank) const;            // position of a rank in the layout
-  int rank_at(const Index3& coordinates) const;     // -1 beyond a non-periodic face; wraps on periodic axes
+  Index3 coordinates_of(int rank) const;         // position of a rank in the layout
+  int rank_at(const Index3& coordinates) const;  // -1 beyond a non-periodic face; wraps on periodic axes
   Block block_of(int rank) const;
 
   // The rank whose block holds a position (m). Positions outside the box on a non-periodic axis belong to the nearest
@@ -60,7 +61,7 @@ private:
   double spacing_;
   std::array<bool, 3> periodic_;
   Index3 layout_;
-  std::array<std::vector<int>, 3> cuts_;   // first cell of each slab, and one past the last
+  std::array<std::vector<int>, 3> cuts_;  // first cell of each slab, and one past the last
 };
 
 }  // namespace thalweg

@@ -1,7 +1,8 @@
 // Sums whose result does not depend on the order of the terms.
 //
-// A floating-point number is turned into a 64-bit integer multiple of 2^-bits; integer addition is associative, so a sum
-// over links, threads or ranks has the same bits whatever the order. The rounding of one term is at most 2^-(bits+1).
+// A floating-point number is turned into a 64-bit integer multiple of 2^-bits; integer addition is associative, so a
+// sum over links, threads or ranks has the same bits whatever the order. The rounding of one term is at most
+// 2^-(bits+1).
 #pragma once
 
 #include "core/types.hpp"
@@ -15,7 +16,7 @@ template <int fraction_bits>
 struct FixedPoint {
   static constexpr double scale = static_cast<double>(std::int64_t{1} << fraction_bits);
   static constexpr double largest_term = 0x1p51 / scale;
-  static constexpr double largest_sum = 0x1p63 / scale;   // sums beyond this overflow
+  static constexpr double largest_sum = 0x1p63 / scale;  // sums beyond this overflow
   static constexpr double rounding_shift = 0x3p51;
 
   // Rounds to the nearest multiple, ties to even. |value| * scale must be below 2^51: adding 3 * 2^51 then leaves the
@@ -39,9 +40,7 @@ struct FixedVec3 {
     z += other.z;
     return *this;
   }
-  Vec3 to_vec3() const {
-    return {LatticeFixed::to_double(x), LatticeFixed::to_double(y), LatticeFixed::to_double(z)};
-  }
+  Vec3 to_vec3() const { return {LatticeFixed::to_double(x), LatticeFixed::to_double(y), LatticeFixed::to_double(z)}; }
 };
 
 }  // namespace thalweg

@@ -26,8 +26,8 @@ std::vector<Row> exchange_rows(MPI_Comm communicator, const std::vector<Row>& ro
   for (std::size_t i = 0; i < rows.size(); ++i) packed[next[destination[i]]++] = rows[i];
 
   std::vector<Row> received(receive_start.back() + receive_counts.back());
-  MPI_Alltoallv(packed.data(), send_counts.data(), send_start.data(), row_type, received.data(),
-                receive_counts.data(), receive_start.data(), row_type, communicator);
+  MPI_Alltoallv(packed.data(), send_counts.data(), send_start.data(), row_type, received.data(), receive_counts.data(),
+                receive_start.data(), row_type, communicator);
   MPI_Type_free(&row_type);
   return received;
 }

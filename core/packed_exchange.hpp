@@ -13,7 +13,7 @@ class PackedExchange {
 public:
   struct Neighbour {
     int rank;
-    int send_tag;               // must equal the receive_tag of the matching Neighbour on the other side
+    int send_tag;  // must equal the receive_tag of the matching Neighbour on the other side
     int receive_tag;
     std::size_t send_bytes;
     std::size_t receive_bytes;
@@ -30,8 +30,12 @@ public:
   std::size_t neighbours() const { return send_.size(); }
 
   // Fill every send buffer, then start(); the buffers must not be touched until finish() returns.
-  template <typename T> T* send_buffer(std::size_t n) { return reinterpret_cast<T*>(send_[n].data()); }
-  template <typename T> const T* receive_buffer(std::size_t n) const {
+  template <typename T>
+  T* send_buffer(std::size_t n) {
+    return reinterpret_cast<T*>(send_[n].data());
+  }
+  template <typename T>
+  const T* receive_buffer(std::size_t n) const {
     return reinterpret_cast<const T*>(receive_[n].data());
   }
   void start();

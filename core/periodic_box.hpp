@@ -7,7 +7,7 @@
 namespace thalweg {
 
 struct PeriodicBox {
-  Vec3 size = Vec3::Zero();                       // in the caller's unit of length
+  Vec3 size = Vec3::Zero();  // in the caller's unit of length
   std::array<bool, 3> periodic{false, false, false};
 
   // a - b, brought to the nearest periodic image. Needs |a - b| < 3/2 size on periodic axes.
@@ -15,8 +15,10 @@ struct PeriodicBox {
     Vec3 d = a - b;
     for (int axis = 0; axis < 3; ++axis) {
       if (!periodic[axis]) continue;
-      if (d[axis] > 0.5 * size[axis]) d[axis] -= size[axis];
-      else if (d[axis] < -0.5 * size[axis]) d[axis] += size[axis];
+      if (d[axis] > 0.5 * size[axis])
+        d[axis] -= size[axis];
+      else if (d[axis] < -0.5 * size[axis])
+        d[axis] += size[axis];
     }
     return d;
   }
@@ -25,8 +27,10 @@ struct PeriodicBox {
   Vec3 wrapped(Vec3 p) const {
     for (int axis = 0; axis < 3; ++axis) {
       if (!periodic[axis]) continue;
-      if (p[axis] >= size[axis]) p[axis] -= size[axis];
-      else if (p[axis] < 0.0) p[axis] += size[axis];
+      if (p[axis] >= size[axis])
+        p[axis] -= size[axis];
+      else if (p[axis] < 0.0)
+        p[axis] += size[axis];
       if (p[axis] >= size[axis]) p[axis] = 0.0;  // -1e-20 + size rounds to size
     }
     return p;

@@ -14,8 +14,8 @@ namespace thalweg {
 
 // A number worth a column in the progress line, the series and the summary.
 struct Figure {
-  std::string name;    // e.g. "largest_lattice_velocity"
-  std::string unit;    // e.g. "m/s", "1" for none
+  std::string name;  // e.g. "largest_lattice_velocity"
+  std::string unit;  // e.g. "m/s", "1" for none
   double value;
 };
 
@@ -23,20 +23,20 @@ class System {
 public:
   virtual ~System() = default;
 
-  virtual void advance() = 0;                          // one (fluid) step. Throws RunError.
-  virtual std::int64_t step() const = 0;               // steps done since the start of the run
-  virtual double time_step() const = 0;                // s
-  double time() const { return static_cast<double>(step()) * time_step(); }   // s
+  virtual void advance() = 0;                                                // one (fluid) step. Throws RunError.
+  virtual std::int64_t step() const = 0;                                     // steps done since the start of the run
+  virtual double time_step() const = 0;                                      // s
+  double time() const { return static_cast<double>(step()) * time_step(); }  // s
 
-  virtual Snapshot snapshot() const = 0;               // valid until the next advance()
-  virtual std::vector<Figure> figures() const = 0;     // state of health; collective, the same on every rank
+  virtual Snapshot snapshot() const = 0;            // valid until the next advance()
+  virtual std::vector<Figure> figures() const = 0;  // state of health; collective, the same on every rank
 
-  virtual void save(ArchiveWriter& archive) const = 0; // everything the next step depends on; collective
-  virtual void load(ArchiveReader& archive) = 0;       // collective
+  virtual void save(ArchiveWriter& archive) const = 0;  // everything the next step depends on; collective
+  virtual void load(ArchiveReader& archive) = 0;        // collective
 
   virtual PhaseTimer& timer() = 0;
-  virtual std::int64_t cells() const = 0;              // lattice cells in the whole domain; 0 without a fluid
-  virtual std::int64_t grain_steps_per_step() const = 0;   // grains times sub-steps in one step, over all ranks
+  virtual std::int64_t cells() const = 0;                 // lattice cells in the whole domain; 0 without a fluid
+  virtual std::int64_t grain_steps_per_step() const = 0;  // grains times sub-steps in one step, over all ranks
 };
 
 }  // namespace thalweg

@@ -2,15 +2,15 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>   // cross products
+#include <Eigen/Geometry>  // cross products
 
 #include <array>
 #include <cstdint>
 
 namespace thalweg {
 
-using Vec3 = Eigen::Vector3d;        // a vector in space: x streamwise, y cross-stream, z up
-using Index3 = std::array<int, 3>;   // cell counts or cell coordinates (x, y, z)
-using GlobalId = std::int64_t;       // a grain's name for life: 0 .. number of grains - 1
+using Vec3 = Eigen::Vector3d;       // a vector in space: x streamwise, y cross-stream, z up
+using Index3 = std::array<int, 3>;  // cell counts or cell coordinates (x, y, z)
+using GlobalId = std::int64_t;      // a grain's name for life: 0 .. number of grains - 1
 
 }  // namespace thalweg

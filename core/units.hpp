@@ -7,16 +7,16 @@
 namespace thalweg {
 
 struct Units {
-  double spacing;     // m
-  double time_step;   // s
-  double density;     // kg/m^3
+  double spacing;    // m
+  double time_step;  // s
+  double density;    // kg/m^3
 
-  double velocity() const { return spacing / time_step; }                              // m/s per lattice unit
-  double acceleration() const { return spacing / (time_step * time_step); }            // m/s^2 per lattice unit
-  double kinematic_viscosity() const { return spacing * spacing / time_step; }         // m^2/s per lattice unit
-  double stress() const { return density * velocity() * velocity(); }                  // Pa per lattice unit
-  double force() const { return stress() * spacing * spacing; }                        // N per lattice unit
-  double torque() const { return force() * spacing; }                                  // N m per lattice unit
+  double velocity() const { return spacing / time_step; }                       // m/s per lattice unit
+  double acceleration() const { return spacing / (time_step * time_step); }     // m/s^2 per lattice unit
+  double kinematic_viscosity() const { return spacing * spacing / time_step; }  // m^2/s per lattice unit
+  double stress() const { return density * velocity() * velocity(); }           // Pa per lattice unit
+  double force() const { return stress() * spacing * spacing; }                 // N per lattice unit
+  double torque() const { return force() * spacing; }                           // N m per lattice unit
 
   // BGK relaxation time of a fluid of kinematic viscosity nu (m^2/s): tau = 1/2 + 3 nu dt/dx^2.
   double relaxation_time(double nu) const { return 0.5 + 3.0 * nu / kinematic_viscosity(); }

@@ -9,13 +9,12 @@ using lbm::CellMap;
 
 namespace {
 
-constexpr double nowhere = -1e8;   // no grain's centre is below this
+constexpr double nowhere = -1e8;  // no grain's centre is below this
 
 }  // namespace
 
 GrainMap::GrainMap(const Decomposition& decomposition, const Block& block, CellMap& cells)
-    : local_cells_(decomposition, block),
-      cells_(cells) {}
+    : local_cells_(decomposition, block), cells_(cells) {}
 
 int GrainMap::slot_of(GlobalId id) const {
   const auto found = slot_of_id_.find(id);
@@ -59,15 +58,17 @@ void GrainMap::place(int slot, const Vec3& centre) {
           const bool inside = x.offset * x.offset + y.offset * y.offset + z.offset * z.offset < squared_radius;
           const std::ptrdiff_t cell = cells_.indexing().index(x.local, y.local, z.local);
           const bool held = cells_.body(cell) == slot;
-          if (inside && !held) take(slot, {x.local, y.local, z.local}, cell);
-          else if (held && !inside) release({x.local, y.local, z.local}, cell);
+          if (inside && !held)
+            take(slot, {x.local, y.local, z.local}, cell);
+          else if (held && !inside)
+            release({x.local, y.local, z.local}, cell);
         }
   };
   const Vec3 old = grain.centre;
   grain.centre = centre;
   drop_claims(slot);
   if (centre.x() > nowhere) sweep_around(centre);
-  if (old.x() > nowhere) sweep_around(old);   // cells left behind
+  if (old.x() > nowhere) sweep_around(old);  // cells left behind
   mark_for_relink(slot);
 }
 
@@ -104,8 +105,8 @@ void GrainMap::release(const Index3& local, std::ptrdiff_t cell) {
   const auto found = claimants_.find(cell);
   if (found != claimants_.end()) {
     std::vector<int>& waiting = found->second;
-    const auto lowest = std::min_element(waiting.begin(), waiting.end(),
-                                         [&](int a, int b) { return grains_[a].id < grains_[b].id; });
+    const auto lowest =
+        std::min_element(waiting.begin(), waiting.end(), [&](int a, int b) { return grains_[a].id < grains_[b].id; });
     heir = *lowest;
     auto& claims = grains_[heir].claims;
     claims.erase(std::find(claims.begin(), claims.end(), cell));
@@ -159,7 +160,8 @@ const std::vector<GrainMap::Change>& GrainMap::settle() {
   for (std::size_t k = 0; k < changes_.size();) {
     std::size_t last = k;
     while (last + 1 < changes_.size() && changes_[last + 1].cell == changes_[k].cell) ++last;
-    if (changes_[k].before != changes_[last].now) changes_[kept++] = {changes_[k].cell, changes_[k].before, changes_[last].now};
+    if (changes_[k].before != changes_[last].now)
+      changes_[kept++] = {changes_[k].cell, changes_[k].before, changes_[last].now};
     k = last + 1;
   }
   changes_.resize(kept);

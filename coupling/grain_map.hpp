@@ -1,8 +1,8 @@
 // Which cells each grain covers, kept up to date as grains move.
 //
-// A cell is solid if its centre is strictly inside a grain; where two overlapping grains claim a cell, the lower global id
-// has it, whatever the order of events. The map covers this rank's cells and one ghost layer. Grains live in slots that
-// stay theirs as long as the grain is in reach of this rank; slots index the lattice's LinkBody table as well.
+// A cell is solid if its centre is strictly inside a grain; where two overlapping grains claim a cell, the lower global
+// id has it, whatever the order of events. The map covers this rank's cells and one ghost layer. Grains live in slots
+// that stay theirs as long as the grain is in reach of this rank; slots index the lattice's LinkBody table as well.
 #pragma once
 
 #include "core/decomposition.hpp"
@@ -16,10 +16,10 @@
 namespace thalweg::coupling {
 
 struct MappedGrain {
-  GlobalId id = -1;                        // -1: the slot is free
-  double radius = 0.0;                     // lattice units
-  Vec3 centre = Vec3::Zero();              // for which cells and links stand; lattice units, global
-  std::vector<std::ptrdiff_t> claims;      // cells inside this grain that a lower id has
+  GlobalId id = -1;                    // -1: the slot is free
+  double radius = 0.0;                 // lattice units
+  Vec3 centre = Vec3::Zero();          // for which cells and links stand; lattice units, global
+  std::vector<std::ptrdiff_t> claims;  // cells inside this grain that a lower id has
 };
 
 class GrainMap {
@@ -27,18 +27,18 @@ public:
   // A cell whose cover changed in the present update; local coordinates, owned or ghost.
   struct Change {
     Index3 cell;
-    std::int32_t before, now;              // slots; CellMap::fluid
+    std::int32_t before, now;  // slots; CellMap::fluid
   };
 
   GrainMap(const Decomposition& decomposition, const Block& block, lbm::CellMap& cells);
 
   const std::vector<MappedGrain>& grains() const { return grains_; }
-  int slot_of(GlobalId id) const;          // -1 if the grain is not here
+  int slot_of(GlobalId id) const;  // -1 if the grain is not here
 
-  int add(GlobalId id, double radius);     // a new slot, covering nothing yet
-  void remove(int slot);                   // gives up the grain's cells
+  int add(GlobalId id, double radius);  // a new slot, covering nothing yet
+  void remove(int slot);                // gives up the grain's cells
 
-  void begin_update();                     // forgets the changes of the last update
+  void begin_update();  // forgets the changes of the last update
 
   // Moves a grain: its cells are those of a sphere at `centre`. Changes are collected until settle().
   void place(int slot, const Vec3& centre);
@@ -62,11 +62,11 @@ private:
   std::vector<MappedGrain> grains_;
   std::vector<int> free_slots_;
   std::unordered_map<GlobalId, int> slot_of_id_;
-  std::unordered_map<std::ptrdiff_t, std::vector<int>> claimants_;   // of cells that a lower id has
+  std::unordered_map<std::ptrdiff_t, std::vector<int>> claimants_;  // of cells that a lower id has
   std::vector<Change> changes_;
   std::vector<int> relink_;
-  std::vector<char> relink_marked_;        // by slot
-  std::vector<LocalCell> xs_, ys_, zs_;    // scratch
+  std::vector<char> relink_marked_;      // by slot
+  std::vector<LocalCell> xs_, ys_, zs_;  // scratch
 };
 
 }  // namespace thalweg::coupling

@@ -26,7 +26,7 @@ private:
 
   LocalCells local_cells_;
   const lbm::CellMap& cells_;
-  std::vector<LocalCell> xs_, ys_, zs_;   // scratch
+  std::vector<LocalCell> xs_, ys_, zs_;  // scratch
   std::vector<lbm::Link> links_;
   std::vector<int> planes_;
 };

@@ -10,22 +10,24 @@
 namespace thalweg::coupling {
 
 struct LocalCell {
-  int global;      // cell coordinate along one axis, not wrapped: near the point
-  int local;       // coordinate in the block: owned 0 .. n-1
-  double offset;   // of the cell's centre from the reference, nearest periodic image. The same bits on every rank
+  int global;     // cell coordinate along one axis, not wrapped: near the point
+  int local;      // coordinate in the block: owned 0 .. n-1
+  double offset;  // of the cell's centre from the reference, nearest periodic image. The same bits on every rank
 };
 
 class LocalCells {
 public:
   LocalCells(const Decomposition& decomposition, const Block& block) : decomposition_(decomposition), block_(block) {}
 
-  // Cells along an axis whose centres are within `reach` of `middle` (and perhaps one more), in memory on this rank out to
-  // `ghosts` layers; offsets are taken from `reference`. All in cells.
-  void along(int axis, double middle, double reach, double reference, int ghosts, std::vector<LocalCell>& places) const {
+  // Cells along an axis whose centres are within `reach` of `middle` (and perhaps one more), in memory on this rank out
+  // to `ghosts` layers; offsets are taken from `reference`. All in cells.
+  void along(int axis, double middle, double reach, double reference, int ghosts,
+             std::vector<LocalCell>& places) const {
     places.clear();
     const int cells = decomposition_.cells()[axis], n = block_.size()[axis];
     const bool periodic = decomposition_.periodic()[axis];
-    int first = static_cast<int>(std::floor(middle - reach - 0.5)), last = static_cast<int>(std::ceil(middle + reach - 0.5));
+    int first = static_cast<int>(std::floor(middle - reach - 0.5)),
+        last = static_cast<int>(std::ceil(middle + reach - 0.5));
     if (!periodic) {
       first = first < 0 ? 0 : first;
       last = last > cells - 1 ? cells - 1 : last;
@@ -38,8 +40,10 @@ public:
         const int wrapped = periodic ? (g % cells + cells) % cells : g;
         double offset = wrapped + 0.5 - reference;
         if (periodic) {
-          if (offset > 0.5 * cells) offset -= cells;
-          else if (offset < -0.5 * cells) offset += cells;
+          if (offset > 0.5 * cells)
+            offset -= cells;
+          else if (offset < -0.5 * cells)
+            offset += cells;
         }
         places.push_back({g, local, offset});
       }

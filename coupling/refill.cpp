@@ -34,9 +34,7 @@ Index3 Refill::wrapped(Index3 cell) const {
   return cell;
 }
 
-bool Refill::inside_box(const Index3& cell) const {
-  return Block{{0, 0, 0}, decomposition_.cells()}.contains(cell);
-}
+bool Refill::inside_box(const Index3& cell) const { return Block{{0, 0, 0}, decomposition_.cells()}.contains(cell); }
 
 int Refill::owner_of(const Index3& cell) const {
   const double h = decomposition_.spacing();
@@ -55,7 +53,8 @@ std::vector<int> Refill::owners_of_neighbours(const Index3& cell) const {
   return owners;
 }
 
-// Every uncovered cell in reach once, sorted by place in the box, so that all ranks list shared cells in the same order.
+// Every uncovered cell in reach once, sorted by place in the box, so that all ranks list shared cells in the same
+// order.
 std::vector<Refill::Uncovered> Refill::uncovered_cells(const std::vector<GrainMap::Change>& changes) const {
   std::vector<Uncovered> uncovered;
   for (const GrainMap::Change& change : changes) {
@@ -74,7 +73,8 @@ std::vector<Refill::Uncovered> Refill::uncovered_cells(const std::vector<GrainMa
 template <typename Real>
 void Refill::add_own_neighbours(const lbm::Fluid<Real>& fluid, std::vector<Uncovered>& uncovered) const {
   const auto fresh = [&](const Index3& global) {
-    const auto found = std::find_if(uncovered.begin(), uncovered.end(), [&](const auto& u) { return u.global == global; });
+    const auto found =
+        std::find_if(uncovered.begin(), uncovered.end(), [&](const auto& u) { return u.global == global; });
     return found != uncovered.end();
   };
   for (Uncovered& cell : uncovered)
@@ -142,8 +142,8 @@ RefillTotals Refill::equilibrium(lbm::Fluid<Real>& fluid, const std::vector<Grai
     const double density = cell.density.count > 0
                                ? LatticeFixed::to_double(cell.density.sum) / static_cast<double>(cell.density.count)
                                : 0.0;
-    const std::ptrdiff_t at = fluid.indexing().index(
-        cell.global[0] - block_.lower[0], cell.global[1] - block_.lower[1], cell.global[2] - block_.lower[2]);
+    const std::ptrdiff_t at = fluid.indexing().index(cell.global[0] - block_.lower[0], cell.global[1] - block_.lower[1],
+                                                     cell.global[2] - block_.lower[2]);
     for (int i = 0; i < D3Q19::directions; ++i) {
       const Real value = static_cast<Real>(lbm::equilibrium_deviation(i, density, velocity));
       fluid.populations().post_collision(i, at) = value;

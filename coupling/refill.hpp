@@ -1,8 +1,8 @@
-// Gives cells that a grain has just uncovered the populations of equilibrium: the mean density of their fluid neighbours
-// (those that were fluid before) and the velocity of the grain's surface motion at the cell.
+// Gives cells that a grain has just uncovered the populations of equilibrium: the mean density of their fluid
+// neighbours (those that were fluid before) and the velocity of the grain's surface motion at the cell.
 //
-// Neighbours may be on other ranks. Every rank that owns neighbours of an uncovered cell sees that cell in its ghost layer
-// too, so both sides know without asking who sends what; sums are exact, so the result is the same on any ranks.
+// Neighbours may be on other ranks. Every rank that owns neighbours of an uncovered cell sees that cell in its ghost
+// layer too, so both sides know without asking who sends what; sums are exact, so the result is the same on any ranks.
 #pragma once
 
 #include "core/decomposition.hpp"
@@ -17,8 +17,8 @@
 namespace thalweg::coupling {
 
 struct RefillTotals {
-  std::int64_t cells = 0;            // this rank's uncovered cells
-  Vec3 momentum = Vec3::Zero();      // they were given, lattice units
+  std::int64_t cells = 0;        // this rank's uncovered cells
+  Vec3 momentum = Vec3::Zero();  // they were given, lattice units
 };
 
 class Refill {
@@ -32,21 +32,21 @@ public:
                            const std::vector<lbm::LinkBody>& bodies);
 
 private:
-  struct DensitySum {                // of the fluid neighbours of one uncovered cell
-    std::int64_t sum = 0;            // LatticeFixed of rho - 1
+  struct DensitySum {      // of the fluid neighbours of one uncovered cell
+    std::int64_t sum = 0;  // LatticeFixed of rho - 1
     std::int64_t count = 0;
   };
   struct Uncovered {
-    Index3 global;                   // inside the box
-    Index3 local;                    // one of its places in memory
-    std::int32_t before;             // slot that covered it
+    Index3 global;        // inside the box
+    Index3 local;         // one of its places in memory
+    std::int32_t before;  // slot that covered it
     DensitySum density;
   };
 
   Index3 wrapped(Index3 cell) const;
   bool inside_box(const Index3& cell) const;
   int owner_of(const Index3& cell) const;
-  std::vector<int> owners_of_neighbours(const Index3& cell) const;   // other than this rank, sorted
+  std::vector<int> owners_of_neighbours(const Index3& cell) const;  // other than this rank, sorted
   std::vector<Uncovered> uncovered_cells(const std::vector<GrainMap::Change>& changes) const;
   template <typename Real>
   void add_own_neighbours(const lbm::Fluid<Real>& fluid, std::vector<Uncovered>& uncovered) const;

@@ -14,7 +14,9 @@ using lbm::CellMap;
 
 namespace {
 
-Vec3 vector_at(std::span<const double> columns, int first) { return {columns[first], columns[first + 1], columns[first + 2]}; }
+Vec3 vector_at(std::span<const double> columns, int first) {
+  return {columns[first], columns[first + 1], columns[first + 2]};
+}
 
 void set_vector(std::span<double> columns, int first, const Vec3& value) {
   for (int a = 0; a < 3; ++a) columns[first + a] = value[a];
@@ -95,7 +97,8 @@ void ResolvedSystem<Real>::update_bodies() {
   }
 }
 
-// Ghosts follow the same rule from the same numbers as their owners, so every rank moves a grain's cells in the same step.
+// Ghosts follow the same rule from the same numbers as their owners, so every rank moves a grain's cells in the same
+// step.
 template <typename Real>
 void ResolvedSystem<Real>::update_map() {
   dem::GrainStore& store = grains_->store();
@@ -112,8 +115,10 @@ void ResolvedSystem<Real>::update_map() {
 template <typename Real>
 void ResolvedSystem<Real>::build_links() {
   for (const int slot : map_.slots_to_relink()) {
-    if (map_.grains()[slot].id < 0) links_.remove(slot);
-    else link_builder_.build(slot, map_.grains()[slot], links_, bodies_[slot]);
+    if (map_.grains()[slot].id < 0)
+      links_.remove(slot);
+    else
+      link_builder_.build(slot, map_.grains()[slot], links_, bodies_[slot]);
   }
 }
 
@@ -124,7 +129,8 @@ void ResolvedSystem<Real>::exchange_momentum() {
   exchanged_.resize(6 * count);
   for (std::size_t g = 0; g < count; ++g) {
     const lbm::LinkBody& body = bodies_[map_slot_[g]];
-    const std::int64_t sums[6] = {body.force.x, body.force.y, body.force.z, body.torque.x, body.torque.y, body.torque.z};
+    const std::int64_t sums[6] = {body.force.x,  body.force.y,  body.force.z,
+                                  body.torque.x, body.torque.y, body.torque.z};
     std::copy(sums, sums + 6, exchanged_.begin() + 6 * g);
     step_totals_.link_momentum += body.force.to_vec3();
   }
@@ -160,8 +166,10 @@ void ResolvedSystem<Real>::advance() {
   {
     const auto scope = timer_.measure(phases_.map);
     map_.begin_update();
-    if (slots_changed) synchronise_slots();
-    else update_bodies();
+    if (slots_changed)
+      synchronise_slots();
+    else
+      update_bodies();
     update_map();
     map_.settle();
     account_for_covered_cells();
@@ -204,7 +212,8 @@ void ResolvedSystem<Real>::account_for_covered_cells() {
     const std::ptrdiff_t cell = fluid_.indexing().index(at[0], at[1], at[2]);
     for (int i = 0; i < lbm::D3Q19::directions; ++i)
       for (int a = 0; a < 3; ++a)
-        step_totals_.covered[a] += lbm::D3Q19::c[i][a] * static_cast<double>(fluid_.populations().post_collision(i, cell));
+        step_totals_.covered[a] +=
+            lbm::D3Q19::c[i][a] * static_cast<double>(fluid_.populations().post_collision(i, cell));
   }
 }
 
@@ -269,7 +278,8 @@ std::vector<Figure> ResolvedSystem<Real>::figures() const {
   speed = max_over_ranks(communicator_, std::isfinite(speed) ? speed : HUGE_VAL);
   return {{"largest_lattice_velocity", "1", speed},
           {"largest_fluid_speed", "m/s", speed * parameters_.units.velocity()},
-          {"mean_density_deviation", "1", totals.mass_deviation / static_cast<double>(std::max<std::int64_t>(1, totals.cells))},
+          {"mean_density_deviation", "1",
+           totals.mass_deviation / static_cast<double>(std::max<std::int64_t>(1, totals.cells))},
           {"fluid_cells", "1", static_cast<double>(totals.cells)},
           {"largest_overlap", "diameter", grains_->largest_overlap()}};
 }
@@ -286,8 +296,10 @@ template <typename Real>
 void ResolvedSystem<Real>::load(ArchiveReader& archive) {
   const double saved = archive.real_attribute("system/time_step");
   if (saved != time_step())
-    throw InputError(fmt::format("The checkpoint was made with {:.6g} s a step and this case has {:.6g} s: a run can only "
-                                 "go on with the same time step.", saved, time_step()));
+    throw InputError(
+        fmt::format("The checkpoint was made with {:.6g} s a step and this case has {:.6g} s: a run can only "
+                    "go on with the same time step.",
+                    saved, time_step()));
   step_ = archive.integer_attribute("system/step");
   map_.begin_update();
   for (std::size_t slot = 0; slot < map_.grains().size(); ++slot)

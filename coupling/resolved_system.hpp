@@ -19,26 +19,26 @@
 namespace thalweg::coupling {
 
 struct FluidInitialState {
-  double density_deviation = 0.0;    // relative: rho/rho_0 - 1
-  Vec3 velocity = Vec3::Zero();      // m/s
+  double density_deviation = 0.0;  // relative: rho/rho_0 - 1
+  Vec3 velocity = Vec3::Zero();    // m/s
 };
 
 struct ResolvedParameters {
-  Units units;                               // of the lattice
-  lbm::CollisionParameters collision;        // lattice units; force included
+  Units units;                         // of the lattice
+  lbm::CollisionParameters collision;  // lattice units; force included
   lbm::FaceConditions faces;
-  std::optional<lbm::FlowTarget> flow_target;   // a mean velocity to hold, in place of the force along its axis
+  std::optional<lbm::FlowTarget> flow_target;  // a mean velocity to hold, in place of the force along its axis
   lbm::LinkOptions links;
-  double link_tolerance = 1e-3;              // cells a grain may move before its links are built anew
-  int sub_steps = 50;                        // DEM steps per lattice step
-  std::function<FluidInitialState(const Vec3&)> initial_fluid;   // of a position in m; empty: at rest
+  double link_tolerance = 1e-3;  // cells a grain may move before its links are built anew
+  int sub_steps = 50;            // DEM steps per lattice step
+  std::function<FluidInitialState(const Vec3&)> initial_fluid;  // of a position in m; empty: at rest
 };
 
 // This rank's part of the sums that a momentum balance of the fluid needs (lattice units, of the step just done).
 struct ExchangeTotals {
-  Vec3 link_momentum = Vec3::Zero();     // force on the grains through this rank's links
-  Vec3 refilled = Vec3::Zero();          // given to uncovered cells
-  Vec3 covered = Vec3::Zero();           // lost in cells that became solid
+  Vec3 link_momentum = Vec3::Zero();  // force on the grains through this rank's links
+  Vec3 refilled = Vec3::Zero();       // given to uncovered cells
+  Vec3 covered = Vec3::Zero();        // lost in cells that became solid
 };
 
 template <typename Real>
@@ -46,8 +46,8 @@ class ResolvedSystem final : public System, private FluidSource {
 public:
   // The grains (already holding their seeds) must carry attached_width attached columns and reach ghost_reach() beyond
   // their block. Takes both over.
-  ResolvedSystem(std::unique_ptr<Decomposition> decomposition, MPI_Comm communicator, const ResolvedParameters& parameters,
-                 std::unique_ptr<dem::GrainDynamics> grains);
+  ResolvedSystem(std::unique_ptr<Decomposition> decomposition, MPI_Comm communicator,
+                 const ResolvedParameters& parameters, std::unique_ptr<dem::GrainDynamics> grains);
 
   // Attached columns of a grain: where its links were built (m), then force (N) and torque (N m) of the last exchange.
   enum Attached { link_position = 0, last_force = 3, last_torque = 6, has_load = 9, attached_width = 10 };
@@ -89,14 +89,14 @@ private:
   ResolvedParameters parameters_;
   lbm::Fluid<Real> fluid_;
   std::unique_ptr<dem::GrainDynamics> grains_;
-  PeriodicBox box_, lattice_box_;            // m, cells
+  PeriodicBox box_, lattice_box_;  // m, cells
   GrainMap map_;
   lbm::LinkTable links_;
   LinkBuilder link_builder_;
   Refill refill_;
-  std::vector<lbm::LinkBody> bodies_;        // by map slot
-  std::vector<int> map_slot_;                // of each grain of the store
-  std::vector<std::int64_t> exchanged_;      // force and torque sums of each grain of the store
+  std::vector<lbm::LinkBody> bodies_;    // by map slot
+  std::vector<int> map_slot_;            // of each grain of the store
+  std::vector<std::int64_t> exchanged_;  // force and torque sums of each grain of the store
   ExchangeTotals step_totals_;
   std::int64_t step_ = 0;
   PhaseTimer timer_;

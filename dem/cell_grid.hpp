@@ -37,14 +37,12 @@ private:
 
   int cell_along(int axis, double coordinate) const;
   Neighbours neighbours(int axis, int cell) const;
-  std::size_t index(int i, int j, int k) const {
-    return (static_cast<std::size_t>(k) * count_[1] + j) * count_[0] + i;
-  }
+  std::size_t index(int i, int j, int k) const { return (static_cast<std::size_t>(k) * count_[1] + j) * count_[0] + i; }
 
   PeriodicBox box_;
   Index3 count_{1, 1, 1};
-  std::vector<std::uint32_t> start_;     // first member of each cell, and one past the last
-  std::vector<std::uint32_t> members_;   // points by cell
+  std::vector<std::uint32_t> start_;    // first member of each cell, and one past the last
+  std::vector<std::uint32_t> members_;  // points by cell
 };
 
 }  // namespace thalweg::dem

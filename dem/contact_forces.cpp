@@ -52,7 +52,7 @@ inline void transpose(Row (&r)[4]) {
 class PairBatch {
 public:
   static constexpr int capacity = 64;
-  static constexpr int lanes = 8;   // whole vectors: the last one is filled up with copies of the first pair
+  static constexpr int lanes = 8;  // whole vectors: the last one is filled up with copies of the first pair
 
   // material: of every slot.
   PairBatch(const MaterialTable& materials, std::span<const std::uint8_t> material)
@@ -74,7 +74,8 @@ public:
     count_ += touches;
   }
 
-  template <typename ContactLaw> void evaluate_and_scatter(MovingGrains& grains, const ContactLaw& law) {
+  template <typename ContactLaw>
+  void evaluate_and_scatter(MovingGrains& grains, const ContactLaw& law) {
     if (count_ == 0) return;
     const int rounded = (count_ + lanes - 1) / lanes * lanes;
     for (int k = count_; k < rounded; ++k) contact_[k] = contact_[0], separation_[k] = separation_[0];
@@ -124,7 +125,8 @@ private:
   }
 
   // Force on the first and turning moment per unit of lever arm on both: n x F_t, with the sign turned.
-  template <typename ContactLaw> void evaluate(const ContactLaw& law, int rounded) {
+  template <typename ContactLaw>
+  void evaluate(const ContactLaw& law, int rounded) {
     for (int k = 0; k < rounded; ++k) {
       const double distance = std::sqrt(x_[k] * x_[k] + y_[k] * y_[k] + z_[k] * z_[k]);
       const double inverse = 1.0 / distance, nx = inverse * x_[k], ny = inverse * y_[k], nz = inverse * z_[k];
@@ -135,8 +137,8 @@ private:
                                  vz_[k] - (ax * ny - ay * nx),
                                  // R1 R2/(R1 + R2) of the sum and the difference of the radii
                                  0.25 * (reach_[k] - difference_[k] * difference_[k] / reach_[k])};
-      const ContactForce f = law(motion, {normal_[k], tangential_[k], friction_[k]}, damping_[k],
-                                 {sx_[k], sy_[k], sz_[k]});
+      const ContactForce f =
+          law(motion, {normal_[k], tangential_[k], friction_[k]}, damping_[k], {sx_[k], sy_[k], sz_[k]});
       x_[k] = f.normal * nx + f.tx, y_[k] = f.normal * ny + f.ty, z_[k] = f.normal * nz + f.tz;
       wx_[k] = f.ty * nz - f.tz * ny, wy_[k] = f.tz * nx - f.tx * nz, wz_[k] = f.tx * ny - f.ty * nx;
       sx_[k] = f.spring.x, sy_[k] = f.spring.y, sz_[k] = f.spring.z;
@@ -164,15 +166,15 @@ private:
   const MaterialTable& materials_;
   std::span<const std::uint8_t> material_;
   int count_ = 0;
-  PairContact* contact_[capacity + 1];                   // one more: what is offered to a full batch is not kept
-  Row separation_[capacity + 1];                         // from second to first
-  alignas(64) Lane x_{}, y_{}, z_{}, difference_{};      // separation, difference of radii; then force, overlap/2
+  PairContact* contact_[capacity + 1];               // one more: what is offered to a full batch is not kept
+  Row separation_[capacity + 1];                     // from second to first
+  alignas(64) Lane x_{}, y_{}, z_{}, difference_{};  // separation, difference of radii; then force, overlap/2
   alignas(64) Lane normal_{}, tangential_{}, friction_{};
   alignas(64) Lane reach_{}, damping_{}, unused_{};
-  alignas(64) Lane vx_{}, vy_{}, vz_{};                  // velocity of the first centre against the second
-  alignas(64) Lane rwx_{}, rwy_{}, rwz_{};               // R1 w1 + R2 w2
-  alignas(64) Lane wx_{}, wy_{}, wz_{};                  // w1 + w2; then the moment
-  alignas(64) Lane sx_{}, sy_{}, sz_{};                  // spring
+  alignas(64) Lane vx_{}, vy_{}, vz_{};     // velocity of the first centre against the second
+  alignas(64) Lane rwx_{}, rwy_{}, rwz_{};  // R1 w1 + R2 w2
+  alignas(64) Lane wx_{}, wy_{}, wz_{};     // w1 + w2; then the moment
+  alignas(64) Lane sx_{}, sy_{}, sz_{};     // spring
 };
 
 template <typename ContactLaw>

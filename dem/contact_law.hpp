@@ -12,34 +12,34 @@ namespace thalweg::dem {
 
 // Plain values and no branches, so that a loop over contacts in arrays is vectorised by the compiler.
 struct ContactMotion {
-  double overlap;            // m
-  double nx, ny, nz;         // unit normal
-  double vx, vy, vz;         // m/s
-  double effective_radius;   // m, R1 R2/(R1 + R2); R against a wall
+  double overlap;           // m
+  double nx, ny, nz;        // unit normal
+  double vx, vy, vz;        // m/s
+  double effective_radius;  // m, R1 R2/(R1 + R2); R against a wall
 };
 
 // Of a pair of materials; what the numbers mean is the law's business.
 struct ContactCoefficients {
-  double normal;         // linear: k_n, N/m;  Hertz: 4/3 E*, Pa
-  double tangential;     // linear: k_t, N/m;  Hertz: 8 G*, Pa
-  double friction;       // mu
+  double normal;      // linear: k_n, N/m;  Hertz: 4/3 E*, Pa
+  double tangential;  // linear: k_t, N/m;  Hertz: 8 G*, Pa
+  double friction;    // mu
 };
 
 struct TangentialSpring {
-  double x, y, z;        // linear: displacement xi, m;  Hertz: xi times contact radius, m^2
+  double x, y, z;  // linear: displacement xi, m;  Hertz: xi times contact radius, m^2
 };
 
 struct ContactForce {
-  double normal;         // N, positive pushes the bodies apart
-  double tx, ty, tz;     // N: F_t
+  double normal;      // N, positive pushes the bodies apart
+  double tx, ty, tz;  // N: F_t
   TangentialSpring spring;
 };
 
 // How contacts end, and what the tangential dashpot is.
 struct ContactManner {
-  bool attraction = true;            // whether the normal dashpot may pull
-  double tangential_damping = 0.0;   // tangential dashpot over normal dashpot
-  double time_step = 0.0;            // s; with 0 the springs do not grow: a force without history
+  bool attraction = true;           // whether the normal dashpot may pull
+  double tangential_damping = 0.0;  // tangential dashpot over normal dashpot
+  double time_step = 0.0;           // s; with 0 the springs do not grow: a force without history
 
   double least_normal_force() const { return attraction ? -std::numeric_limits<double>::infinity() : 0.0; }
 };
@@ -63,7 +63,10 @@ inline ContactForce with_friction(const ContactMotion& c, double closing, double
   const double hold = tangential > limit ? limit / tangential : 1.0;
   // What is left of the spring when the dashpot keeps its share of the shortened force.
   const double share = damping > 0.0 && stiffness > 0.0 ? (1.0 - hold) * damping / stiffness : 0.0;
-  return {normal, -hold * fx, -hold * fy, -hold * fz,
+  return {normal,
+          -hold * fx,
+          -hold * fy,
+          -hold * fz,
           {hold * x - share * ux, hold * y - share * uy, hold * z - share * uz}};
 }
 

@@ -62,7 +62,9 @@ ContactList find_contacts(const GrainStore& store, const PeriodicBox& box, std::
   for (const Candidate& p : pairs) {
     const double mass = effective_mass(store.mass[p.first], holds_translation(store.motion[p.first]),
                                        store.mass[p.second], holds_translation(store.motion[p.second]));
-    list.pairs.push_back({p.first, p.second, store.radius[p.first] + store.radius[p.second],
+    list.pairs.push_back({p.first,
+                          p.second,
+                          store.radius[p.first] + store.radius[p.second],
                           {0.0, 0.0, 0.0},
                           materials.pair(store.material[p.first], store.material[p.second]).damping.coefficient(mass)});
   }
@@ -71,8 +73,10 @@ ContactList find_contacts(const GrainStore& store, const PeriodicBox& box, std::
     for (std::size_t w = walls.size(); w-- > 0;) {
       const double height = (store.position[s] - walls[w].point).dot(walls[w].normal);
       if (!(height <= store.radius[s] + skin)) continue;
-      list.walls.push_back({static_cast<std::uint32_t>(s), static_cast<std::uint32_t>(w),
-                            materials.wall(store.material[s]).damping.coefficient(store.mass[s]), {0.0, 0.0, 0.0}});
+      list.walls.push_back({static_cast<std::uint32_t>(s),
+                            static_cast<std::uint32_t>(w),
+                            materials.wall(store.material[s]).damping.coefficient(store.mass[s]),
+                            {0.0, 0.0, 0.0}});
     }
   return list;
 }

@@ -18,14 +18,14 @@
 namespace thalweg::dem {
 
 struct PairContact {
-  std::uint32_t first, second;   // slots of the lower and the higher id
-  double reach;                  // m, sum of the radii
-  double spring[3];              // m, xi of the first against the second; zero when they do not touch
-  double damping;                // of the law; right behind the spring, so that one load takes both
+  std::uint32_t first, second;  // slots of the lower and the higher id
+  double reach;                 // m, sum of the radii
+  double spring[3];             // m, xi of the first against the second; zero when they do not touch
+  double damping;               // of the law; right behind the spring, so that one load takes both
 };
 
 struct WallContact {
-  std::uint32_t grain;           // slot
+  std::uint32_t grain;  // slot
   std::uint32_t wall;
   double damping;
   double spring[3];
@@ -33,7 +33,7 @@ struct WallContact {
 
 struct ContactList {
   std::vector<PairContact> pairs;
-  std::vector<WallContact> walls;   // of owned grains, sorted by id, then from the last wall to the first
+  std::vector<WallContact> walls;  // of owned grains, sorted by id, then from the last wall to the first
 };
 
 // All pairs with at least one owned grain whose surfaces are closer than `skin` (m), and all owned grains closer than

@@ -15,7 +15,7 @@ struct GhostRow {
   GlobalId id;
   std::int64_t motion, material;
   double radius, mass;
-  std::array<std::array<double, 3>, 3> value;   // position, velocity, angular velocity
+  std::array<std::array<double, 3>, 3> value;  // position, velocity, angular velocity
   std::int64_t owner;
 };
 
@@ -63,7 +63,10 @@ void GhostExchange::build(GrainStore& store) {
     for (std::size_t s = 0; s < store.owned; ++s) {
       if (!decomposition_.reaches(rank, store.position[s], reach_)) continue;
       neighbour.send.push_back(static_cast<std::uint32_t>(s));
-      rows.push_back({store.id[s], static_cast<std::int64_t>(store.motion[s]), store.material[s], store.radius[s],
+      rows.push_back({store.id[s],
+                      static_cast<std::int64_t>(store.motion[s]),
+                      store.material[s],
+                      store.radius[s],
                       store.mass[s],
                       {plain(store.position[s]), plain(store.velocity[s]), plain(store.angular_velocity[s])},
                       rank_of(communicator_)});
@@ -103,7 +106,8 @@ std::vector<PackedExchange::Neighbour> GhostExchange::messages(int tag, std::siz
 }
 
 // read(slot) gives what is sent of a grain, write(slot, row) takes it.
-template <typename Read, typename Write> void GhostExchange::exchange_motion(Read&& read, Write&& write) {
+template <typename Read, typename Write>
+void GhostExchange::exchange_motion(Read&& read, Write&& write) {
   for (std::size_t n = 0; n < neighbours_.size(); ++n) {
     auto* row = motion_.send_buffer<MotionRow>(n);
     for (const std::uint32_t s : neighbours_[n].send) *row++ = read(s);

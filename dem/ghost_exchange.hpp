@@ -40,16 +40,17 @@ private:
     std::size_t first = 0, count = 0;  // slots of the ghosts it owns
   };
 
-  template <typename Read, typename Write> void exchange_motion(Read&& read, Write&& write);
+  template <typename Read, typename Write>
+  void exchange_motion(Read&& read, Write&& write);
   std::vector<PackedExchange::Neighbour> messages(int tag, std::size_t bytes_per_grain) const;
 
   Decomposition decomposition_;
   MPI_Comm communicator_;
   double reach_;
-  std::vector<int> candidates_;         // ranks whose block is within reach of this rank's
-  std::vector<Neighbour> neighbours_;   // ranks grains are sent to or received from
+  std::vector<int> candidates_;        // ranks whose block is within reach of this rank's
+  std::vector<Neighbour> neighbours_;  // ranks grains are sent to or received from
   PackedExchange motion_, attached_, values_;
-  bool values_ready_ = false;           // values_ fits the present ghosts
+  bool values_ready_ = false;  // values_ fits the present ghosts
 };
 
 }  // namespace thalweg::dem

@@ -31,7 +31,11 @@ GrainBatch owned_grains(const GrainStore& store) {
   GrainBatch batch;
   batch.rows.reserve(store.owned);
   for (std::size_t s = 0; s < store.owned; ++s)
-    batch.rows.push_back({store.id[s], static_cast<std::int64_t>(store.motion[s]), store.material[s], store.radius[s], store.mass[s],
+    batch.rows.push_back({store.id[s],
+                          static_cast<std::int64_t>(store.motion[s]),
+                          store.material[s],
+                          store.radius[s],
+                          store.mass[s],
                           {plain(store.position[s]), plain(store.velocity[s]), plain(store.angular_velocity[s]),
                            plain(store.contact_force[s]), plain(store.contact_torque[s]), plain(store.load_force[s]),
                            plain(store.load_torque[s])}});

@@ -24,7 +24,7 @@ struct GrainRow {
 
 struct GrainBatch {
   std::vector<GrainRow> rows;
-  std::vector<double> attached;   // attached_width values a row
+  std::vector<double> attached;  // attached_width values a row
 };
 
 // Copies of the owned grains, in their order.
@@ -40,7 +40,7 @@ GrainBatch exchange_grains(MPI_Comm communicator, const GrainBatch& batch, const
 // The tangential spring of one contact. `second` is the higher id of two grains, or -1 - w for wall w.
 struct ContactHistory {
   GlobalId first, second;
-  std::array<double, 3> spring;   // m
+  std::array<double, 3> spring;  // m
 
   bool operator<(const ContactHistory& other) const {
     return first != other.first ? first < other.first : second < other.second;

@@ -76,19 +76,26 @@ void check_time_step(const GrainParameters& p, const LightestGrain& lightest, st
 
 GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm communicator,
                              const GrainParameters& parameters, const std::vector<GrainSeed>& seeds)
-    : decomposition_(decomposition), box_(decomposition.box()), communicator_(communicator),
-      parameters_(checked(parameters)), materials_(table_of(parameters)), largest_radius_(largest_radius_of(seeds)),
-      global_count_(static_cast<std::int64_t>(seeds.size())), store_(parameters.attached_width),
-      ghosts_(decomposition, communicator, ghost_reach()), lists_phase_(timer_.phase("contact lists")),
-      forces_phase_(timer_.phase("contact forces")), motion_phase_(timer_.phase("motion")),
+    : decomposition_(decomposition),
+      box_(decomposition.box()),
+      communicator_(communicator),
+      parameters_(checked(parameters)),
+      materials_(table_of(parameters)),
+      largest_radius_(largest_radius_of(seeds)),
+      global_count_(static_cast<std::int64_t>(seeds.size())),
+      store_(parameters.attached_width),
+      ghosts_(decomposition, communicator, ghost_reach()),
+      lists_phase_(timer_.phase("contact lists")),
+      forces_phase_(timer_.phase("contact forces")),
+      motion_phase_(timer_.phase("motion")),
       messages_phase_(timer_.phase("messages")) {
   assert(decomposition.ranks() == size_of(communicator));
   check(seeds, box_, parameters_.walls, parameters_.initial_overlap);
   LightestGrain lightest;
   for (const GrainSeed& seed : seeds) {
     if (seed.material < 0 || seed.material >= materials_.count())
-      throw InputError(fmt::format("Grain {} is of material {}, but there are {}.", seed.id, seed.material,
-                                   materials_.count()));
+      throw InputError(
+          fmt::format("Grain {} is of material {}, but there are {}.", seed.id, seed.material, materials_.count()));
     if (holds_translation(seed.motion)) continue;
     lightest.mass = std::min(lightest.mass, seed.mass());
     lightest.radius = std::min(lightest.radius, seed.radius);
@@ -135,8 +142,8 @@ bool GrainDynamics::prepare() {
     const double pull = (store_.load_force[s] + body_force_[s]).norm() * store_.inverse_mass[s];
     farthest = std::max(farthest, displacement);
     fastest = std::max(fastest, 2.0 * speed + pull * step_time());
-    trouble = trouble || trouble_of(store_, s, box_, displacement, speed, 0.5 * parameters_.skin, step_time()) !=
-                             Trouble::none;
+    trouble = trouble ||
+              trouble_of(store_, s, box_, displacement, speed, 0.5 * parameters_.skin, step_time()) != Trouble::none;
   }
   const double mine[3] = {farthest, fastest, trouble ? 1.0 : 0.0};
   double all[3];

@@ -31,17 +31,17 @@
 namespace thalweg::dem {
 
 struct GrainParameters {
-  ContactParameters contact;                         // material 0
-  std::vector<ContactParameters> other_materials;    // 1, 2, ...: mixed with each other as material.hpp says
-  std::optional<ContactParameters> wall_contact;     // of grains with walls, where it differs (but for the friction)
+  ContactParameters contact;                       // material 0
+  std::vector<ContactParameters> other_materials;  // 1, 2, ...: mixed with each other as material.hpp says
+  std::optional<ContactParameters> wall_contact;   // of grains with walls, where it differs (but for the friction)
   std::vector<Plane> walls;
-  std::function<Vec3(double mass, double radius)> body_force;   // N of a grain (kg, m), constant; empty: none
-  double time_step = 0.0;          // s, of a sub-step: at most a 20th of the shortest contact time
-  int sub_steps = 1;               // at most that many between two calls of prepare()
-  double skin = 0.0;               // m: the neighbour list holds until a grain has moved half of it
-  double ghost_width = 0.0;        // m: grains at least this near to a rank's block are its ghosts at all times
-  int attached_width = 0;          // columns attached to every grain
-  double initial_overlap = allowed_initial_overlap;   // diameters the seeds may overlap by: a settled bed's do
+  std::function<Vec3(double mass, double radius)> body_force;  // N of a grain (kg, m), constant; empty: none
+  double time_step = 0.0;    // s, of a sub-step: at most a 20th of the shortest contact time
+  int sub_steps = 1;         // at most that many between two calls of prepare()
+  double skin = 0.0;         // m: the neighbour list holds until a grain has moved half of it
+  double ghost_width = 0.0;  // m: grains at least this near to a rank's block are its ghosts at all times
+  int attached_width = 0;    // columns attached to every grain
+  double initial_overlap = allowed_initial_overlap;  // diameters the seeds may overlap by: a settled bed's do
 };
 
 // The least mass (kg) and radius (m) of the grains that are free to move: they have the shortest contacts.
@@ -55,10 +55,10 @@ void check_time_step(const GrainParameters& parameters, const LightestGrain& lig
 
 // Two grains in contact, or a grain and a wall.
 struct Contact {
-  GlobalId first, second;          // the higher id; -1 - w for wall w
-  double overlap;                  // m
-  Vec3 normal;                     // unit, from second to first
-  Vec3 spring;                     // m, tangential displacement at the last evaluation
+  GlobalId first, second;  // the higher id; -1 - w for wall w
+  double overlap;          // m
+  Vec3 normal;             // unit, from second to first
+  Vec3 spring;             // m, tangential displacement at the last evaluation
 };
 
 class GrainDynamics {
@@ -83,7 +83,7 @@ public:
 
   // After the sub-steps: wraps positions and gives ghosts the final velocities of their owners. Collective.
   void refresh_ghosts();
-  void refresh_ghost_attached();   // the attached columns of ghosts, if the caller changed those of owned grains
+  void refresh_ghost_attached();  // the attached columns of ghosts, if the caller changed those of owned grains
 
   // Adds what every rank has for its ghosts in `values` (width integers a grain of the store) to the owners' entries:
   // sums of loads over ranks, exact in any order. Collective.
@@ -92,24 +92,24 @@ public:
   // Loads and attached columns are the caller's to write; the rest is to be read.
   GrainStore& store() { return store_; }
   const GrainStore& store() const { return store_; }
-  const Vec3& body_force(std::size_t owned_slot) const { return body_force_[owned_slot]; }   // N
+  const Vec3& body_force(std::size_t owned_slot) const { return body_force_[owned_slot]; }  // N
   const GrainParameters& parameters() const { return parameters_; }
   const Decomposition& decomposition() const { return decomposition_; }
-  double largest_radius() const { return largest_radius_; }      // m, over all ranks
-  std::int64_t global_count() const { return global_count_; }    // grains over all ranks
-  std::int64_t rebuilds() const { return rebuilds_; }            // since construction or load
-  PhaseTimer& timer() { return timer_; }                         // contact lists, contact forces, motion, messages
+  double largest_radius() const { return largest_radius_; }    // m, over all ranks
+  std::int64_t global_count() const { return global_count_; }  // grains over all ranks
+  std::int64_t rebuilds() const { return rebuilds_; }          // since construction or load
+  PhaseTimer& timer() { return timer_; }                       // contact lists, contact forces, motion, messages
 
   // The touching pairs whose lower id is owned here, sorted by ids, then the touching walls of owned grains.
   std::vector<Contact> contacts() const;
 
   // Figures over all ranks, the same bits in any layout. Collective.
-  std::int64_t contact_count() const;         // touching pairs of grains
-  double largest_overlap() const;             // of two grains, in diameters of the smaller
-  double kinetic_energy() const;              // J, with rotation
-  Vec3 momentum() const;                      // kg m/s
-  double largest_speed() const;               // m/s
-  std::int64_t moving_count(double speed) const;   // free grains faster than speed (m/s)
+  std::int64_t contact_count() const;             // touching pairs of grains
+  double largest_overlap() const;                 // of two grains, in diameters of the smaller
+  double kinetic_energy() const;                  // J, with rotation
+  Vec3 momentum() const;                          // kg m/s
+  double largest_speed() const;                   // m/s
+  std::int64_t moving_count(double speed) const;  // free grains faster than speed (m/s)
 
   // Everything the next sub-step depends on, sorted by id, below `group`; collective. To be called after
   // refresh_ghosts(). Loading replaces all grains, whatever the seeds were; parameters stay those given at
@@ -139,9 +139,9 @@ private:
   GrainStore store_;
   GhostExchange ghosts_;
   ContactList list_;
-  MovingGrains moving_;                 // the state during the sub-steps
-  std::vector<Vec3> listed_position_;   // of owned grains, when the list was built
-  std::vector<Vec3> body_force_;        // of owned grains
+  MovingGrains moving_;                // the state during the sub-steps
+  std::vector<Vec3> listed_position_;  // of owned grains, when the list was built
+  std::vector<Vec3> body_force_;       // of owned grains
 
   PhaseTimer timer_;
   int lists_phase_, forces_phase_, motion_phase_, messages_phase_;

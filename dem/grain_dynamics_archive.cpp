@@ -1,6 +1,6 @@
-// Saving and loading of GrainDynamics. Datasets, one row a grain in order of id: radius, mass, motion, material, position,
-// velocity, angular_velocity, contact_force, contact_torque, load_force, load_torque, attached. One row a contact,
-// sorted by ids: contact_ids (lower id; higher id, or -1 - w for wall w), contact_spring.
+// Saving and loading of GrainDynamics. Datasets, one row a grain in order of id: radius, mass, motion, material,
+// position, velocity, angular_velocity, contact_force, contact_torque, load_force, load_torque, attached. One row a
+// contact, sorted by ids: contact_ids (lower id; higher id, or -1 - w for wall w), contact_spring.
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
 #include "dem/grain_batch.hpp"
@@ -15,9 +15,8 @@ namespace thalweg::dem {
 
 namespace {
 
-constexpr const char* vector_names[GrainRow::vectors] = {"position",      "velocity",       "angular_velocity",
-                                                         "contact_force", "contact_torque", "load_force",
-                                                         "load_torque"};
+constexpr const char* vector_names[GrainRow::vectors] = {
+    "position", "velocity", "angular_velocity", "contact_force", "contact_torque", "load_force", "load_torque"};
 
 // The rows [first, last) of `count` that a rank writes or reads.
 struct Share {
@@ -25,11 +24,13 @@ struct Share {
       : count(rows), first(rows * rank / ranks), last(rows * (rank + 1) / ranks) {}
 
   ArrayBox box(std::uint64_t columns) const {
-    return {{static_cast<std::uint64_t>(count), columns}, {static_cast<std::uint64_t>(first), 0},
+    return {{static_cast<std::uint64_t>(count), columns},
+            {static_cast<std::uint64_t>(first), 0},
             {static_cast<std::uint64_t>(last - first), columns}};
   }
   ArrayBox box() const {
-    return {{static_cast<std::uint64_t>(count)}, {static_cast<std::uint64_t>(first)},
+    return {{static_cast<std::uint64_t>(count)},
+            {static_cast<std::uint64_t>(first)},
             {static_cast<std::uint64_t>(last - first)}};
   }
 

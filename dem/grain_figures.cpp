@@ -1,7 +1,7 @@
 // Figures of the state of all grains: GrainDynamics looked at, never changed.
 #include "core/mpi_session.hpp"
+#include "core/order_free_sum.hpp"
 #include "dem/grain_dynamics.hpp"
-#include "dem/reproducible_sum.hpp"
 
 #include <algorithm>
 
@@ -56,17 +56,16 @@ double GrainDynamics::kinetic_energy() const {
   for (std::size_t s = 0; s < store_.owned; ++s)
     energy[s] = 0.5 * store_.mass[s] * store_.velocity[s].squaredNorm() +
                 0.5 * store_.inertia[s] * store_.angular_velocity[s].squaredNorm();
-  return reproducible_sum(communicator_, energy);
+  return order_free_sums(communicator_, energy, 1)[0];
 }
 
 Vec3 GrainDynamics::momentum() const {
-  Vec3 sum;
-  std::vector<double> term(store_.owned);
-  for (int axis = 0; axis < 3; ++axis) {
-    for (std::size_t s = 0; s < store_.owned; ++s) term[s] = store_.mass[s] * store_.velocity[s][axis];
-    sum[axis] = reproducible_sum(communicator_, term);
-  }
-  return sum;
+  std::vector<double> terms;
+  terms.reserve(3 * store_.owned);
+  for (std::size_t s = 0; s < store_.owned; ++s)
+    for (int axis = 0; axis < 3; ++axis) terms.push_back(store_.mass[s] * store_.velocity[s][axis]);
+  const std::vector<double> sums = order_free_sums(communicator_, terms, 3);
+  return {sums[0], sums[1], sums[2]};
 }
 
 double GrainDynamics::largest_speed() const {

@@ -26,8 +26,7 @@ void check_ids(std::span<const GrainSeed> seeds) {
   }
 }
 
-void check_alone(const GrainSeed& seed, const PeriodicBox& box, std::span<const Plane> walls,
-                 double allowed_overlap) {
+void check_alone(const GrainSeed& seed, const PeriodicBox& box, std::span<const Plane> walls, double allowed_overlap) {
   if (!(std::isfinite(seed.radius) && seed.radius > 0.0))
     throw InputError(fmt::format("Grain {} at {} has radius {:g} m; it must be positive.", seed.id,
                                  place(seed.position), seed.radius));
@@ -45,10 +44,10 @@ void check_alone(const GrainSeed& seed, const PeriodicBox& box, std::span<const 
   for (const Plane& wall : walls) {
     const double overlap = seed.radius - (seed.position - wall.point).dot(wall.normal);
     if (overlap > allowed_overlap * 2.0 * seed.radius)
-      throw InputError(fmt::format("Grain {} at {} with radius {:g} m reaches {:g} m into the wall with normal ({:g}, "
-                                   "{:g}, {:g}); move it away by that much.",
-                                   seed.id, place(seed.position), seed.radius, overlap, wall.normal[0], wall.normal[1],
-                                   wall.normal[2]));
+      throw InputError(fmt::format(
+          "Grain {} at {} with radius {:g} m reaches {:g} m into the wall with normal ({:g}, "
+          "{:g}, {:g}); move it away by that much.",
+          seed.id, place(seed.position), seed.radius, overlap, wall.normal[0], wall.normal[1], wall.normal[2]));
   }
 }
 
@@ -78,9 +77,10 @@ void check(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<c
   }
   for (int axis = 0; axis < 3; ++axis)
     if (box.periodic[axis] && box.size[axis] < 4.0 * largest)
-      throw InputError(fmt::format("The box is {:g} m along its periodic axis {}; it must be at least two of the "
-                                   "largest grain diameters, {:g} m, so that grains meet only once.",
-                                   box.size[axis], "xyz"[axis], 4.0 * largest));
+      throw InputError(
+          fmt::format("The box is {:g} m along its periodic axis {}; it must be at least two of the "
+                      "largest grain diameters, {:g} m, so that grains meet only once.",
+                      box.size[axis], "xyz"[axis], 4.0 * largest));
   if (sorted.empty()) return;
 
   std::vector<Vec3> points;
@@ -89,7 +89,9 @@ void check(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<c
   std::vector<std::uint32_t> near;
   for (std::uint32_t a = 0; a < sorted.size(); ++a) {
     near.clear();
-    grid.for_each_near(points[a], [&](std::uint32_t b) { if (b > a) near.push_back(b); });
+    grid.for_each_near(points[a], [&](std::uint32_t b) {
+      if (b > a) near.push_back(b);
+    });
     std::sort(near.begin(), near.end());
     for (const std::uint32_t b : near) check_pair(sorted[a], sorted[b], box, allowed_overlap);
   }

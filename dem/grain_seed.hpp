@@ -11,16 +11,16 @@
 namespace thalweg::dem {
 
 struct GrainSeed {
-  GlobalId id = 0;                               // 0 .. number of grains - 1, each once
-  double radius = 0.0;                           // m
-  double density = 0.0;                          // kg/m^3
-  Vec3 position = Vec3::Zero();                  // m
-  Vec3 velocity = Vec3::Zero();                  // m/s
-  Vec3 angular_velocity = Vec3::Zero();          // rad/s
-  int material = 0;                              // number of its material
-  Motion motion = Motion::free;                  // what is held keeps the velocities above
+  GlobalId id = 0;                       // 0 .. number of grains - 1, each once
+  double radius = 0.0;                   // m
+  double density = 0.0;                  // kg/m^3
+  Vec3 position = Vec3::Zero();          // m
+  Vec3 velocity = Vec3::Zero();          // m/s
+  Vec3 angular_velocity = Vec3::Zero();  // rad/s
+  int material = 0;                      // number of its material
+  Motion motion = Motion::free;          // what is held keeps the velocities above
 
-  double mass() const;                           // kg, of the full sphere
+  double mass() const;  // kg, of the full sphere
 };
 
 // Overlap at the start, in diameters of the smaller grain, that is taken for rounding.

@@ -2,7 +2,8 @@
 
 namespace thalweg::dem {
 
-template <typename Visitor> void GrainStore::for_each_column(Visitor&& visit) {
+template <typename Visitor>
+void GrainStore::for_each_column(Visitor&& visit) {
   visit(id), visit(radius), visit(mass), visit(inertia), visit(inverse_mass), visit(inverse_inertia), visit(motion);
   visit(material);
   visit(position), visit(velocity), visit(angular_velocity);

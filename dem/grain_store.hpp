@@ -23,20 +23,20 @@ struct GrainStore {
   std::size_t total() const { return id.size(); }
 
   std::vector<GlobalId> id;
-  std::vector<double> radius;              // m
-  std::vector<double> mass;                // kg
-  std::vector<double> inertia;             // kg m^2, 2/5 m R^2
-  std::vector<double> inverse_mass;        // 1/kg, 0 where the translation is held
-  std::vector<double> inverse_inertia;     // 1/(kg m^2), 0 where the rotation is held
+  std::vector<double> radius;           // m
+  std::vector<double> mass;             // kg
+  std::vector<double> inertia;          // kg m^2, 2/5 m R^2
+  std::vector<double> inverse_mass;     // 1/kg, 0 where the translation is held
+  std::vector<double> inverse_inertia;  // 1/(kg m^2), 0 where the rotation is held
   std::vector<Motion> motion;
-  std::vector<std::uint8_t> material;      // number in the table of materials
-  std::vector<Vec3> position;              // m, global and unshifted, also of ghosts
-  std::vector<Vec3> velocity;              // m/s
-  std::vector<Vec3> angular_velocity;      // rad/s
-  std::vector<Vec3> contact_force;         // N, sum over contacts at the last evaluation; of ghosts meaningless
-  std::vector<Vec3> contact_torque;        // N m
-  std::vector<Vec3> load_force;            // N, set from outside, constant during the sub-steps; of ghosts not used
-  std::vector<Vec3> load_torque;           // N m
+  std::vector<std::uint8_t> material;  // number in the table of materials
+  std::vector<Vec3> position;          // m, global and unshifted, also of ghosts
+  std::vector<Vec3> velocity;          // m/s
+  std::vector<Vec3> angular_velocity;  // rad/s
+  std::vector<Vec3> contact_force;     // N, sum over contacts at the last evaluation; of ghosts meaningless
+  std::vector<Vec3> contact_torque;    // N m
+  std::vector<Vec3> load_force;        // N, set from outside, constant during the sub-steps; of ghosts not used
+  std::vector<Vec3> load_torque;       // N m
 
   // Columns of the grains' keeper (for example the last fluid load): carried at migration, given to new ghosts, saved
   // and loaded, never interpreted here. Grain `slot` has attached_width values from slot * attached_width on.
@@ -59,7 +59,8 @@ struct GrainStore {
   void drop_ghosts();
 
 private:
-  template <typename Visitor> void for_each_column(Visitor&& visit);
+  template <typename Visitor>
+  void for_each_column(Visitor&& visit);
 };
 
 }  // namespace thalweg::dem

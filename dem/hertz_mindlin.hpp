@@ -23,7 +23,7 @@ public:
   ContactForce operator()(const ContactMotion& c, const ContactCoefficients& k, double damping,
                           const TangentialSpring& spring) const {
     const double closing = -(c.vx * c.nx + c.vy * c.ny + c.vz * c.nz);
-    const double overlap = c.overlap > 0.0 ? c.overlap : 0.0;   // rounding may leave a touch without one
+    const double overlap = c.overlap > 0.0 ? c.overlap : 0.0;  // rounding may leave a touch without one
     const double a = std::sqrt(c.effective_radius * overlap);
     const double dashpot = damping * std::sqrt(a);
     const double pressed = k.normal * a * overlap + dashpot * closing;

@@ -125,7 +125,8 @@ ContactCoefficients coefficients_of(const ContactParameters& a, const ContactPar
 
 MaterialTable::MaterialTable(std::span<const ContactParameters> materials,
                              const std::optional<ContactParameters>& walls)
-    : count_(static_cast<int>(materials.size())), law_(materials.front().law),
+    : count_(static_cast<int>(materials.size())),
+      law_(materials.front().law),
       manner_{materials.front().attraction, materials.front().tangential_damping, 0.0} {
   for (const ContactParameters& material : materials) check(material);
   if (walls) check(*walls);
@@ -137,7 +138,8 @@ MaterialTable::MaterialTable(std::span<const ContactParameters> materials,
     // Linear stiffnesses are those of the contact with the wall; moduli those of the wall's material.
     if (walls) mixed(a, *walls);
     const ContactParameters& wall = walls ? *walls : a;
-    const ContactCoefficients coefficients = law_ == Law::linear ? coefficients_of(wall, wall) : coefficients_of(a, wall);
+    const ContactCoefficients coefficients =
+        law_ == Law::linear ? coefficients_of(wall, wall) : coefficients_of(a, wall);
     walls_.push_back({coefficients, Damping(coefficients, wall)});
   }
 }
@@ -168,8 +170,9 @@ double contact_time(const ContactParameters& parameters, double effective_mass, 
 
 double elastic_contact_time(const ContactCoefficients& coefficients, double effective_mass, double effective_radius) {
   const double modulus = 0.75 * coefficients.normal;
-  return 2.868 * std::pow(effective_mass * effective_mass /
-                              (effective_radius * modulus * modulus * elastic_contact_speed), 0.2);
+  return 2.868 *
+         std::pow(effective_mass * effective_mass / (effective_radius * modulus * modulus * elastic_contact_speed),
+                  0.2);
 }
 
 namespace {
@@ -182,9 +185,10 @@ void refuse_longer(double time_step, double contact_time, const ContactParameter
   const std::string softer = parameters.law == Law::linear
                                  ? fmt::format("normal stiffness than {:g} N/m", parameters.normal_stiffness)
                                  : fmt::format("Young's modulus than {:g} Pa", parameters.youngs_modulus);
-  throw InputError(fmt::format("The time step of the grains, {:g} s, is too long for their contacts: it must be at "
-                               "most {:g} s, a {:g}th of the shortest contact time; use more sub-steps or a lower {}.",
-                               time_step, longest, fewest_steps_per_contact, softer));
+  throw InputError(
+      fmt::format("The time step of the grains, {:g} s, is too long for their contacts: it must be at "
+                  "most {:g} s, a {:g}th of the shortest contact time; use more sub-steps or a lower {}.",
+                  time_step, longest, fewest_steps_per_contact, softer));
 }
 
 }  // namespace

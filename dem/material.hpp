@@ -23,17 +23,17 @@ enum class Law { linear, hertz_mindlin };
 
 // One material, in contact with itself.
 struct ContactParameters {
-  Law law = Law::linear;                // the same for all materials of a run, as are the last two
-  double normal_stiffness = 0.0;        // N/m, > 0; linear law
-  double tangential_stiffness = 0.0;    // N/m, >= 0; linear law
-  double youngs_modulus = 0.0;          // Pa, > 0; Hertz and Mindlin
-  double poisson_ratio = 0.0;           // > -1, at most 1/2; Hertz and Mindlin
-  std::optional<double> restitution;    // 0 < e <= 1; exactly one of restitution and damping is given
-  std::optional<double> damping;        // kg/s, >= 0, of every contact; linear law
-  double friction = 0.0;                // between grains, >= 0
-  double wall_friction = 0.0;           // between a grain and a wall, >= 0: the default of the planes in walls.hpp
-  bool attraction = false;              // whether the dashpot may pull at the end of the contact
-  double tangential_damping = 0.0;      // dashpot across the contact over the one along the normal, >= 0
+  Law law = Law::linear;              // the same for all materials of a run, as are the last two
+  double normal_stiffness = 0.0;      // N/m, > 0; linear law
+  double tangential_stiffness = 0.0;  // N/m, >= 0; linear law
+  double youngs_modulus = 0.0;        // Pa, > 0; Hertz and Mindlin
+  double poisson_ratio = 0.0;         // > -1, at most 1/2; Hertz and Mindlin
+  std::optional<double> restitution;  // 0 < e <= 1; exactly one of restitution and damping is given
+  std::optional<double> damping;      // kg/s, >= 0, of every contact; linear law
+  double friction = 0.0;              // between grains, >= 0
+  double wall_friction = 0.0;         // between a grain and a wall, >= 0: the default of the planes in walls.hpp
+  bool attraction = false;            // whether the dashpot may pull at the end of the contact
+  double tangential_damping = 0.0;    // dashpot across the contact over the one along the normal, >= 0
 };
 
 // Throws InputError naming the first parameter that is impossible.
@@ -48,21 +48,22 @@ double damping_ratio_of_restitution(double restitution, bool attraction);
 // The dashpot coefficient of a contact: kg/s, or kg/(s m^1/2) of elastic spheres.
 class Damping {
 public:
-  explicit Damping(const ContactParameters& parameters);   // parameters must have passed check()
+  explicit Damping(const ContactParameters& parameters);  // parameters must have passed check()
   Damping(const ContactCoefficients& coefficients, const ContactParameters& parameters);
 
   // effective_mass (kg): m1 m2/(m1 + m2) of two grains, m of a grain against a wall.
   double coefficient(double effective_mass) const;
 
 private:
-  double stiffness_;             // of the square root: k_n, or 5/4 of 4/3 E*
-  double constant_ = 0.0;        // kg/s, where the user gave it
-  double damping_ratio_ = 0.0;   // zeta, where the user gave a restitution
+  double stiffness_;            // of the square root: k_n, or 5/4 of 4/3 E*
+  double constant_ = 0.0;       // kg/s, where the user gave it
+  double damping_ratio_ = 0.0;  // zeta, where the user gave a restitution
 };
 
-// What two bodies of different materials make of each other. Springs in series: stiffnesses and dashpots by the harmonic
-// mean; friction and restitution by the geometric mean; moduli are kept apart (coefficients_of). Throws InputError where
-// one has a restitution and the other a damping, or where law, attraction or tangential damping differ.
+// What two bodies of different materials make of each other. Springs in series: stiffnesses and dashpots by the
+// harmonic mean; friction and restitution by the geometric mean; moduli are kept apart (coefficients_of). Throws
+// InputError where one has a restitution and the other a damping, or where law, attraction or tangential damping
+// differ.
 ContactParameters mixed(const ContactParameters& a, const ContactParameters& b);
 
 // k_n, k_t, mu; or 4/3 E*, 8 G*, mu with each body's own moduli.
@@ -76,8 +77,8 @@ public:
     Damping damping;
   };
 
-  // walls: what walls are made of; empty: of each grain's own material. Their friction is the plane's. Throws InputError
-  // for a material that is impossible or cannot be mixed.
+  // walls: what walls are made of; empty: of each grain's own material. Their friction is the plane's. Throws
+  // InputError for a material that is impossible or cannot be mixed.
   MaterialTable(std::span<const ContactParameters> materials, const std::optional<ContactParameters>& walls);
 
   int count() const { return count_; }
@@ -103,7 +104,7 @@ double contact_time(double normal_stiffness, double effective_mass, double dampi
 // 1 m/s: 2.868 (m*^2/(R* E*^2 v))^(1/5) (Hertz, without damping). effective_radius: m, used by them only.
 double contact_time(const ContactParameters& parameters, double effective_mass, double effective_radius);
 double elastic_contact_time(const ContactCoefficients& coefficients, double effective_mass, double effective_radius);
-inline constexpr double elastic_contact_speed = 1.0;   // m/s
+inline constexpr double elastic_contact_speed = 1.0;  // m/s
 
 // Sub-steps a contact time needs at least.
 inline constexpr double fewest_steps_per_contact = 20.0;

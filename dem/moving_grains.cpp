@@ -7,7 +7,8 @@ namespace {
 constexpr Row zero{0.0, 0.0, 0.0, 0.0};
 constexpr Row first_three{1.0, 1.0, 1.0, 0.0};
 
-template <typename Load> inline void kick(MovingGrain& grain, const Load& load, double half) {
+template <typename Load>
+inline void kick(MovingGrain& grain, const Load& load, double half) {
   // The last entry of a load is the inverse mass or inertia, which is taken out again by the zero of first_three.
   grain.velocity += half * load.force[3] * first_three * (grain.force + load.force);
   grain.spin += half * load.torque[3] * first_three * (grain.torque + load.torque);

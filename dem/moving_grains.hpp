@@ -18,11 +18,11 @@ inline Row row_of(const Vec3& v, double last = 0.0) { return Row{v[0], v[1], v[2
 inline Vec3 vector_of(const Row& r) { return {r[0], r[1], r[2]}; }
 
 struct MovingGrain {
-  Row position;   // m; last: radius, m
-  Row velocity;   // m/s; last: 0
-  Row spin;       // rad/s; last: 0
-  Row force;      // N, of contacts; last: 0
-  Row torque;     // N m, of contacts; last: 0
+  Row position;  // m; last: radius, m
+  Row velocity;  // m/s; last: 0
+  Row spin;      // rad/s; last: 0
+  Row force;     // N, of contacts; last: 0
+  Row torque;    // N m, of contacts; last: 0
 };
 
 class MovingGrains {
@@ -47,8 +47,8 @@ public:
 private:
   // What pulls at an owned grain besides its contacts, and how readily it follows.
   struct Load {
-    Row force;    // N; last: 1/m, 1/kg
-    Row torque;   // N m; last: 1/I, 1/(kg m^2)
+    Row force;   // N; last: 1/m, 1/kg
+    Row torque;  // N m; last: 1/I, 1/(kg m^2)
   };
 
   std::vector<MovingGrain> grains_;

@@ -30,7 +30,7 @@ void check_region(const PeriodicBox& box, const Region& region) {
 
 struct Lattice {
   std::array<std::int64_t, 3> count{0, 0, 0};
-  double spacing = 0.0;   // m, the smallest of the three
+  double spacing = 0.0;  // m, the smallest of the three
 };
 
 // The lattice of at least `count` sites whose smallest spacing is widest; spacing 0 if none is as wide as a diameter.
@@ -41,7 +41,7 @@ Lattice widest_lattice(const Vec3& extent, std::int64_t count, const std::array<
       const std::int64_t nz = (count + nx * ny - 1) / (nx * ny);
       if (nz > most[2]) continue;
       const double spacing = std::min({extent[0] / static_cast<double>(nx), extent[1] / static_cast<double>(ny),
-                                      extent[2] / static_cast<double>(nz)});
+                                       extent[2] / static_cast<double>(nz)});
       // Of lattices with the same spacing, the one with fewest sites to spare is filled most evenly.
       const bool fewer = spacing == best.spacing && nx * ny * nz < best.count[0] * best.count[1] * best.count[2];
       if (spacing > best.spacing || fewer) best = {{nx, ny, nz}, spacing};

@@ -18,8 +18,8 @@ struct Region {
 inline Region whole(const PeriodicBox& box) { return {Vec3::Zero(), box.size}; }
 
 struct Sphere {
-  Vec3 position;   // m
-  double radius;   // m
+  Vec3 position;  // m
+  double radius;  // m
 };
 
 // Centres of `count` equal grains spread over the region as evenly as a cubic lattice allows: the lattice with the

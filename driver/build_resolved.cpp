@@ -13,15 +13,23 @@ namespace {
 
 lbm::FaceType face_type(FaceType type) {
   switch (type) {
-    case FaceType::periodic: return lbm::FaceType::periodic;
-    case FaceType::no_slip: return lbm::FaceType::no_slip;
-    case FaceType::free_slip: return lbm::FaceType::free_slip;
-    case FaceType::moving: return lbm::FaceType::moving;
-    case FaceType::navier_slip: return lbm::FaceType::navier_slip;
+    case FaceType::periodic:
+      return lbm::FaceType::periodic;
+    case FaceType::no_slip:
+      return lbm::FaceType::no_slip;
+    case FaceType::free_slip:
+      return lbm::FaceType::free_slip;
+    case FaceType::moving:
+      return lbm::FaceType::moving;
+    case FaceType::navier_slip:
+      return lbm::FaceType::navier_slip;
     case FaceType::law_of_the_wall:
-    case FaceType::law_of_the_wall_as_printed: return lbm::FaceType::law_of_the_wall;
-    case FaceType::velocity_inlet: return lbm::FaceType::velocity_inlet;
-    case FaceType::pressure_outlet: return lbm::FaceType::pressure_outlet;
+    case FaceType::law_of_the_wall_as_printed:
+      return lbm::FaceType::law_of_the_wall;
+    case FaceType::velocity_inlet:
+      return lbm::FaceType::velocity_inlet;
+    case FaceType::pressure_outlet:
+      return lbm::FaceType::pressure_outlet;
   }
   return lbm::FaceType::no_slip;
 }
@@ -32,21 +40,24 @@ lbm::FaceConditions face_conditions(const DomainCase& domain, const Units& units
     const Face& asked_for = domain.faces[face];
     lbm::FaceCondition& condition = conditions[face];
     condition.type = face_type(asked_for.type);
-    condition.slip_coefficient = asked_for.type == FaceType::law_of_the_wall_as_printed ? lbm::printed_slip_coefficient
-                                                                                         : asked_for.coefficient;
+    condition.slip_coefficient =
+        asked_for.type == FaceType::law_of_the_wall_as_printed ? lbm::printed_slip_coefficient : asked_for.coefficient;
     condition.slip_length = asked_for.slip_length / units.spacing;
     condition.on_node = asked_for.slips() && asked_for.on_node;
     condition.velocity = asked_for.velocity / units.velocity();
-    condition.density_deviation = 3.0 * asked_for.pressure / units.stress();   // p = rho/3 in lattice units
+    condition.density_deviation = 3.0 * asked_for.pressure / units.stress();  // p = rho/3 in lattice units
   }
   return conditions;
 }
 
 lbm::CollisionModel collision_model(Collision collision) {
   switch (collision) {
-    case Collision::bgk: return lbm::CollisionModel::bgk;
-    case Collision::trt: return lbm::CollisionModel::trt;
-    case Collision::regularised: return lbm::CollisionModel::regularised;
+    case Collision::bgk:
+      return lbm::CollisionModel::bgk;
+    case Collision::trt:
+      return lbm::CollisionModel::trt;
+    case Collision::regularised:
+      return lbm::CollisionModel::regularised;
   }
   return lbm::CollisionModel::bgk;
 }
@@ -90,9 +101,10 @@ std::unique_ptr<System> build(const Case& c, MPI_Comm communicator, const Index3
   parameters.collision = collision_parameters(c);
   parameters.faces = face_conditions(c.domain, parameters.units);
   if (c.fluid.mean_velocity)
-    parameters.flow_target = lbm::FlowTarget{.axis = 0,
-                                             .velocity = c.fluid.mean_velocity->velocity / parameters.units.velocity(),
-                                             .response_time = c.fluid.mean_velocity->response_time / parameters.units.time_step};
+    parameters.flow_target =
+        lbm::FlowTarget{.axis = 0,
+                        .velocity = c.fluid.mean_velocity->velocity / parameters.units.velocity(),
+                        .response_time = c.fluid.mean_velocity->response_time / parameters.units.time_step};
   parameters.links.momentum_exchange = c.coupling.momentum_exchange == MomentumExchange::classical
                                            ? lbm::MomentumExchange::classical
                                            : lbm::MomentumExchange::galilean_invariant;

@@ -27,8 +27,10 @@ constexpr Entry builders[] = {
 
 const char* name_of(SystemKind kind) {
   switch (kind) {
-    case SystemKind::resolved: return "resolved";
-    case SystemKind::grains: return "grains";
+    case SystemKind::resolved:
+      return "resolved";
+    case SystemKind::grains:
+      return "grains";
   }
   return "";
 }

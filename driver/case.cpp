@@ -126,7 +126,8 @@ std::vector<std::string> warnings(const Case& c) {
   const double stable = stable_lattice_velocity(c.fluid.collision, excess);
   if (c.fluid.smagorinsky_constant == 0.0 && (stable == 0.0 || fastest > stable))
     found.push_back(fmt::format(
-        "The relaxation time is only {:.2g} above 1/2 and there is no subgrid model; turbulence was stable there {}: consider "
+        "The relaxation time is only {:.2g} above 1/2 and there is no subgrid model; turbulence was stable there {}: "
+        "consider "
         "fluid.smagorinsky_constant: 0.27 or fluid.collision: regularised.",
         excess, stable == 0.0 ? std::string("at no velocity") : fmt::format("up to {:g} cells a step", stable)));
   if (excess > 1.0)

@@ -23,28 +23,28 @@ enum class FaceType {
   moving,
   navier_slip,
   law_of_the_wall,
-  law_of_the_wall_as_printed,   // the same with the coefficient the paper prints, 2.35
+  law_of_the_wall_as_printed,  // the same with the coefficient the paper prints, 2.35
   velocity_inlet,
   pressure_outlet
 };
 
 struct Face {
   FaceType type = FaceType::no_slip;
-  double coefficient = 8.36;   // law of the wall: slip velocity over friction velocity (numerics: U+ at the wall)
-  double slip_length = 0.0;          // m, navier_slip
-  bool on_node = false;              // of the two slips: the wall runs through the outermost cell centres
-  Vec3 velocity = Vec3::Zero();      // m/s, moving and velocity_inlet
-  double pressure = 0.0;             // Pa above the reference, pressure_outlet
+  double coefficient = 8.36;     // law of the wall: slip velocity over friction velocity (numerics: U+ at the wall)
+  double slip_length = 0.0;      // m, navier_slip
+  bool on_node = false;          // of the two slips: the wall runs through the outermost cell centres
+  Vec3 velocity = Vec3::Zero();  // m/s, moving and velocity_inlet
+  double pressure = 0.0;         // Pa above the reference, pressure_outlet
 
   bool slips() const {
     return type == FaceType::navier_slip || type == FaceType::law_of_the_wall ||
            type == FaceType::law_of_the_wall_as_printed;
   }
   bool has_velocity() const { return type == FaceType::moving || type == FaceType::velocity_inlet; }
-  bool operator==(const Face& other) const {   // what the type does not use does not count
+  bool operator==(const Face& other) const {  // what the type does not use does not count
     return type == other.type && (type != FaceType::law_of_the_wall || coefficient == other.coefficient) &&
-           (type != FaceType::navier_slip || slip_length == other.slip_length) && (!slips() || on_node == other.on_node) &&
-           (!has_velocity() || velocity == other.velocity) &&
+           (type != FaceType::navier_slip || slip_length == other.slip_length) &&
+           (!slips() || on_node == other.on_node) && (!has_velocity() || velocity == other.velocity) &&
            (type != FaceType::pressure_outlet || pressure == other.pressure);
   }
 };
@@ -64,8 +64,8 @@ enum class Precision { single, double_ };
 
 // A mean velocity of the fluid that the body force is steered to, in place of gravity along that axis.
 struct FlowTargetCase {
-  double velocity = 0.0;        // m/s, along x
-  double response_time = 0.0;   // s
+  double velocity = 0.0;       // m/s, along x
+  double response_time = 0.0;  // s
   bool operator==(const FlowTargetCase&) const = default;
 };
 
@@ -77,7 +77,7 @@ struct FluidCase {
   std::optional<double> maximum_lattice_velocity;  // cells per step
   std::optional<double> expected_velocity;         // m/s, the largest
   Collision collision = Collision::bgk;
-  double magic_parameter = 3.0 / 16.0;               // of trt
+  double magic_parameter = 3.0 / 16.0;  // of trt
   Precision precision = Precision::single;
   std::optional<FlowTargetCase> mean_velocity;
   bool operator==(const FluidCase&) const = default;
@@ -130,15 +130,15 @@ enum class ContactLaw { linear, hertz_mindlin };
 
 struct ContactCase {
   ContactLaw law = ContactLaw::linear;
-  double normal_stiffness = 20000.0;  // N/m
-  double tangential_stiffness = 5714.0;  // N/m
-  double youngs_modulus = 0.0;  // Pa; of hertz_mindlin, in place of the two stiffnesses
-  double poisson_ratio = 0.3;  // 1; of hertz_mindlin
-  double tangential_damping = 0.0;  // 1; dashpot along the contact over the one across it
-  std::optional<double> restitution;  // 1; exactly one of restitution and damping is set
-  std::optional<double> damping;  // kg/s
-  double friction = 0.5;  // grain on grain
-  double wall_friction = 0.45;  // grain on wall
+  double normal_stiffness = 20000.0;            // N/m
+  double tangential_stiffness = 5714.0;         // N/m
+  double youngs_modulus = 0.0;                  // Pa; of hertz_mindlin, in place of the two stiffnesses
+  double poisson_ratio = 0.3;                   // 1; of hertz_mindlin
+  double tangential_damping = 0.0;              // 1; dashpot along the contact over the one across it
+  std::optional<double> restitution;            // 1; exactly one of restitution and damping is set
+  std::optional<double> damping;                // kg/s
+  double friction = 0.5;                        // grain on grain
+  double wall_friction = 0.45;                  // grain on wall
   Attraction attraction = Attraction::allowed;  // allowed: the dashpot may pull grains together as they part
   bool operator==(const ContactCase&) const = default;
 };
@@ -253,7 +253,8 @@ double smallest_diameter(const Case& c);  // m; 0 without grains
 double grain_volume(const Case& c);       // m^3, of all grains
 
 // The shortest contact there can be (damping makes it longer), between two grains of one population: half a period of
-// the undamped spring, pi sqrt(m / 2 / k_n), or Hertz's contact at 1 m/s (dem/material.hpp). s; infinite without grains.
+// the undamped spring, pi sqrt(m / 2 / k_n), or Hertz's contact at 1 m/s (dem/material.hpp). s; infinite without
+// grains.
 double shortest_contact(const Case& c);
 
 // The speed (m/s) a flow driven by gravity along the bed can reach: that of a laminar film over the bed, or of the log

@@ -139,15 +139,20 @@ void check_fluid(const Case& c, const io::YamlDocument& document) {
                          "the relaxation time of the lattice comes to 1/2, where nothing "
                          "dissipates; give a larger viscosity in m^2/s or a longer step");
   if (fluid_time_step(c) > c.run.until)
-    throw document.error(step_key, fmt::format("the step of {:.4g} s is longer than the run; give a shorter step in s or a "
-                                               "later run.until", fluid_time_step(c)));
-  if (c.fluid.expected_velocity) check_lattice_velocity(c, document, "fluid.expected_velocity", *c.fluid.expected_velocity);
+    throw document.error(step_key,
+                         fmt::format("the step of {:.4g} s is longer than the run; give a shorter step in s or a "
+                                     "later run.until",
+                                     fluid_time_step(c)));
+  if (c.fluid.expected_velocity)
+    check_lattice_velocity(c, document, "fluid.expected_velocity", *c.fluid.expected_velocity);
   if (c.fluid.mean_velocity)
     check_lattice_velocity(c, document, "fluid.mean_velocity.velocity", std::abs(c.fluid.mean_velocity->velocity));
   if (c.fluid.mean_velocity && c.fluid.mean_velocity->response_time < 100.0 * fluid_time_step(c))
-    throw document.error("fluid.mean_velocity.response_time",
-                         fmt::format("the force is steered every 10 steps and needs ten times as long to answer; give at "
-                                     "least {:.3g} s", 100.0 * fluid_time_step(c)));
+    throw document.error(
+        "fluid.mean_velocity.response_time",
+        fmt::format("the force is steered every 10 steps and needs ten times as long to answer; give at "
+                    "least {:.3g} s",
+                    100.0 * fluid_time_step(c)));
   for (const Face& face : c.domain.faces)
     if (face.has_velocity()) check_lattice_velocity(c, document, "domain.boundaries", face.velocity.norm());
   check_initial_fluid(c, document);

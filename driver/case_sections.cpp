@@ -12,8 +12,11 @@ static void describe(io::SectionVisitor& visit, FlowTargetCase& target) {
   visit.real("velocity", target.velocity,
              {.unit = "m/s", .meaning = "mean over the fluid, along x", .required = true, .example = 0.3});
   visit.real("response_time", target.response_time,
-             {.unit = "s", .meaning = "in which the force answers; not longer than the flow needs to come to rest",
-              .required = true, .above = 0.0, .example = 0.1});
+             {.unit = "s",
+              .meaning = "in which the force answers; not longer than the flow needs to come to rest",
+              .required = true,
+              .above = 0.0,
+              .example = 0.1});
 }
 
 static void describe(io::SectionVisitor& visit, FluidCase& fluid) {
@@ -145,8 +148,9 @@ static void describe_contact(io::SectionVisitor& visit, ContactCase& contact, bo
     visit.real("poisson_ratio", contact.poisson_ratio,
                {.meaning = "of grains and walls", .at_least = 0.0, .at_most = 0.5});
     for (const char* key : {"normal_stiffness", "tangential_stiffness", "damping"})
-      visit.not_here(key, "elastic spheres have youngs_modulus, poisson_ratio and restitution; remove it or set law: "
-                          "linear");
+      visit.not_here(key,
+                     "elastic spheres have youngs_modulus, poisson_ratio and restitution; remove it or set law: "
+                     "linear");
   }
   visit.real("tangential_damping", contact.tangential_damping,
              {.meaning = "dashpot along a contact over the one across it", .at_least = 0.0});

@@ -27,7 +27,7 @@ constexpr double grain_steps_per_second = 2.5e6;
 // Bytes: per cell 19 populations, streamed in place, and flags; per link a record; per grain its columns, neighbours
 // and history.
 constexpr double flag_bytes = 8.0, link_bytes = 32.0, grain_bytes = 2000.0;
-constexpr double links_per_square_cell = 15.8;   // links of a sphere over its diameter in cells squared
+constexpr double links_per_square_cell = 15.8;  // links of a sphere over its diameter in cells squared
 
 bool fluid_in(const Case& c) { return c.system == SystemKind::resolved; }
 
@@ -134,8 +134,7 @@ void refuse_impossible_grains(const Case& c) {
 }  // namespace
 
 FlowNumbers flow_numbers(const Case& c) {
-  FlowNumbers flow{nothing, nothing, nothing, nothing, false,   nothing,
-                   nothing, nothing, nothing, nothing, nothing};
+  FlowNumbers flow{nothing, nothing, nothing, nothing, false, nothing, nothing, nothing, nothing, nothing, nothing};
   if (!fluid_in(c) || c.grains.empty()) return flow;
   const Vec3 gravity = gravity_vector(c.gravity);
   const double g = gravity.norm(), d = c.grains.front().diameter;
@@ -165,13 +164,13 @@ Cost cost_of(const Case& c, double bandwidth) {
   cost.steps = std::ceil(c.run.until / step_time(c) * (1.0 - 1e-12));
   cost.cell_updates = cost.cells * cost.steps;
   cost.grain_steps = static_cast<double>(grain_count(c) * c.coupling.grain_steps_per_fluid_step) * cost.steps;
-  cost.memory = cost.cells * (19.0 * bytes_per_value(c) + flag_bytes) +
-                static_cast<double>(grain_count(c)) * grain_bytes;
+  cost.memory =
+      cost.cells * (19.0 * bytes_per_value(c) + flag_bytes) + static_cast<double>(grain_count(c)) * grain_bytes;
   if (fluid_in(c))
     for (const PopulationCase& population : c.grains) {
       const double cells_across = population.diameter / c.domain.spacing;
-      cost.memory += static_cast<double>(population.count) * links_per_square_cell * cells_across * cells_across *
-                     link_bytes;
+      cost.memory +=
+          static_cast<double>(population.count) * links_per_square_cell * cells_across * cells_across * link_bytes;
     }
   const double updates_per_second =
       share_of_memory_bound * bandwidth / bytes_per_cell_update(static_cast<int>(bytes_per_value(c)));

@@ -12,7 +12,7 @@ inline constexpr double seconds_to_wait_for_others = 10.0;
 
 class FailureCouncil {
 public:
-  explicit FailureCouncil(MPI_Comm communicator);   // collective, while all is well
+  explicit FailureCouncil(MPI_Comm communicator);  // collective, while all is well
   ~FailureCouncil();
   FailureCouncil(const FailureCouncil&) = delete;
   FailureCouncil& operator=(const FailureCouncil&) = delete;

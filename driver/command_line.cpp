@@ -3,8 +3,8 @@
 #include "core/error.hpp"
 #include "driver/version.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <cstdio>
 #include <sstream>

@@ -11,21 +11,21 @@ namespace thalweg::driver {
 
 struct Command {
   enum class Kind { run, check, defaults, info } kind = Kind::run;
-  std::string path;                    // CASE.yaml of run and check; run folder or checkpoint of info
-  std::string system;                  // of defaults; empty: resolved
-  std::vector<std::string> settings;   // "key.sub=VALUE" of --set, in order
-  std::string out;                     // run folder; empty: "run" beside the case file
-  std::string restart;                 // run folder or checkpoint; empty: start anew
-  std::optional<double> until;         // s, instead of the case's run.until
-  double walltime = 0.0;               // s; 0: none
-  std::optional<Index3> layout;        // ranks along x, y, z
+  std::string path;                   // CASE.yaml of run and check; run folder or checkpoint of info
+  std::string system;                 // of defaults; empty: resolved
+  std::vector<std::string> settings;  // "key.sub=VALUE" of --set, in order
+  std::string out;                    // run folder; empty: "run" beside the case file
+  std::string restart;                // run folder or checkpoint; empty: start anew
+  std::optional<double> until;        // s, instead of the case's run.until
+  double walltime = 0.0;              // s; 0: none
+  std::optional<Index3> layout;       // ranks along x, y, z
   bool overwrite = false;
-  std::string line;                    // the command as given
+  std::string line;  // the command as given
 };
 
 struct CommandLine {
-  std::optional<Command> command;   // none: print `text` and end with `exit_code`
-  std::string text;                 // help or version (exit code 0), or what is wrong in one sentence (exit code 2)
+  std::optional<Command> command;  // none: print `text` and end with `exit_code`
+  std::string text;                // help or version (exit code 0), or what is wrong in one sentence (exit code 2)
   int exit_code = 0;
 };
 

@@ -63,17 +63,18 @@ bool half_periodic(const std::optional<Face>& a, const std::optional<Face>& b) {
 
 // Not in the unnamed namespace, where argument-dependent lookup would not find it.
 static void describe(io::SectionVisitor& visit, Face& face) {
-  visit.choice<FaceType>("type", face.type,
-                         {{FaceType::periodic, "periodic"},
-                          {FaceType::no_slip, "no_slip"},
-                          {FaceType::free_slip, "free_slip"},
-                          {FaceType::moving, "moving", "no slip on a wall that moves in its plane"},
-                          {FaceType::navier_slip, "navier_slip", "slip velocity = slip length x shear rate"},
-                          {FaceType::law_of_the_wall, "law_of_the_wall", "slip velocity = coefficient x friction velocity"},
-                          {FaceType::law_of_the_wall_as_printed, "law_of_the_wall_as_printed", "with coefficient 2.35"},
-                          {FaceType::velocity_inlet, "velocity_inlet"},
-                          {FaceType::pressure_outlet, "pressure_outlet"}},
-                         {.meaning = "kind of face, by half-link rules unless on_node", .required = true});
+  visit.choice<FaceType>(
+      "type", face.type,
+      {{FaceType::periodic, "periodic"},
+       {FaceType::no_slip, "no_slip"},
+       {FaceType::free_slip, "free_slip"},
+       {FaceType::moving, "moving", "no slip on a wall that moves in its plane"},
+       {FaceType::navier_slip, "navier_slip", "slip velocity = slip length x shear rate"},
+       {FaceType::law_of_the_wall, "law_of_the_wall", "slip velocity = coefficient x friction velocity"},
+       {FaceType::law_of_the_wall_as_printed, "law_of_the_wall_as_printed", "with coefficient 2.35"},
+       {FaceType::velocity_inlet, "velocity_inlet"},
+       {FaceType::pressure_outlet, "pressure_outlet"}},
+      {.meaning = "kind of face, by half-link rules unless on_node", .required = true});
   if (face.type == FaceType::law_of_the_wall)
     visit.real("coefficient", face.coefficient,
                {.meaning = "slip velocity at the wall over the friction velocity", .above = 0.0});
@@ -81,17 +82,21 @@ static void describe(io::SectionVisitor& visit, Face& face) {
     visit.not_here("coefficient", "only a law_of_the_wall has a coefficient; remove it");
   if (face.type == FaceType::navier_slip)
     visit.real("slip_length", face.slip_length,
-               {.unit = "m", .meaning = "from the wall to where the profile would come to rest", .required = true,
-                .at_least = 0.0, .example = 1e-4});
+               {.unit = "m",
+                .meaning = "from the wall to where the profile would come to rest",
+                .required = true,
+                .at_least = 0.0,
+                .example = 1e-4});
   else
     visit.not_here("slip_length", "only a navier_slip wall has a slip length; remove it");
   if (face.slips())
-    visit.flag("on_node", face.on_node, {.meaning = "the wall runs through the outermost cell centres, not beyond them"});
+    visit.flag("on_node", face.on_node,
+               {.meaning = "the wall runs through the outermost cell centres, not beyond them"});
   else
     visit.not_here("on_node", "only slip walls can stand on the cell centres; remove it");
   if (face.has_velocity())
-    visit.vec3("velocity", face.velocity, {.unit = "m/s", .meaning = "of the wall or of the fluid that enters",
-                                           .required = true, .example = 0.1});
+    visit.vec3("velocity", face.velocity,
+               {.unit = "m/s", .meaning = "of the wall or of the fluid that enters", .required = true, .example = 0.1});
   else
     visit.not_here("velocity", "only a moving wall or a velocity_inlet has a velocity; remove it");
   if (face.type == FaceType::pressure_outlet)
@@ -126,7 +131,8 @@ static void describe_boundaries(io::SectionVisitor& visit, BoundaryKeys& keys) {
       {{"bottom", &keys.bottom}, {"top", &keys.top}, {"top", &keys.top}}};
   for (int axis = 0; axis < 3; ++axis)
     for (const auto& [key, face_there] : by_axis[axis])
-      visit.require(!*face_there || (*face_there)->type != FaceType::moving || (*face_there)->velocity[axis] == 0.0, key,
+      visit.require(!*face_there || (*face_there)->type != FaceType::moving || (*face_there)->velocity[axis] == 0.0,
+                    key,
                     "a moving wall moves in its own plane; give it no velocity across, or make it a velocity_inlet");
 }
 

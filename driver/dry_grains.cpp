@@ -26,10 +26,12 @@ dem::GrainParameters dry_parameters(const Case& c, const Decomposition& decompos
 }  // namespace
 
 DryGrains::DryGrains(const Case& c, MPI_Comm communicator, const Decomposition& decomposition)
-    : decomposition_(decomposition), sub_steps_(static_cast<int>(c.coupling.grain_steps_per_fluid_step)),
+    : decomposition_(decomposition),
+      sub_steps_(static_cast<int>(c.coupling.grain_steps_per_fluid_step)),
       time_step_(grain_time_step(c) * sub_steps_),
       grains_(decomposition, communicator, dry_parameters(c, decomposition), grain_seeds(c)),
-      lists_(timer_.phase("grain lists")), motion_(timer_.phase("grain motion")) {}
+      lists_(timer_.phase("grain lists")),
+      motion_(timer_.phase("grain motion")) {}
 
 void DryGrains::advance() {
   const int most = grains_.parameters().sub_steps;

@@ -20,7 +20,7 @@ public:
   std::int64_t step() const override { return step_; }
   double time_step() const override { return time_step_; }
   Snapshot snapshot() const override;
-  std::vector<Figure> figures() const override;   // contacts, largest_overlap (in diameters)
+  std::vector<Figure> figures() const override;  // contacts, largest_overlap (in diameters)
   void save(ArchiveWriter& archive) const override;
   void load(ArchiveReader& archive) override;
   PhaseTimer& timer() override { return timer_; }
@@ -30,11 +30,11 @@ public:
 private:
   Decomposition decomposition_;
   int sub_steps_;
-  double time_step_;   // s, of sub_steps_ sub-steps
+  double time_step_;  // s, of sub_steps_ sub-steps
   dem::GrainDynamics grains_;
   std::int64_t step_ = 0;
   PhaseTimer timer_;
-  int lists_, motion_;   // phases
+  int lists_, motion_;  // phases
 };
 
 }  // namespace thalweg::driver

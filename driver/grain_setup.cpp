@@ -50,10 +50,12 @@ std::vector<Vec3> place(const PopulationCase& population, const PeriodicBox& box
   const double radius = 0.5 * population.diameter;
   const auto seed = static_cast<std::uint64_t>(placement.seed);
   switch (turn_of(placement)) {
-    case Turn::positions: return placement.positions;
+    case Turn::positions:
+      return placement.positions;
     case Turn::uniform:
       return dem::uniform_packing(box, region_of(placement, box), population.count, radius, 0.0, seed);
-    case Turn::random: break;
+    case Turn::random:
+      break;
   }
   const std::vector<double> radii(static_cast<std::size_t>(population.count), radius);
   return dem::random_packing(box, region_of(placement, box), radii, 0.0, seed, placed);

@@ -61,8 +61,8 @@ void add_summary(const fs::path& file, Lines& lines) {
                               value(summary, "until"), value(summary, "steps")));
   lines.push_back(fmt::format("size        {} cells, {} grains; {} ranks ({})", value(summary, "cells"),
                               value(summary, "grains"), value(summary, "ranks"), value(summary, "layout")));
-  lines.push_back(fmt::format("speed       {} steps/s, {} MLUPS", value(summary, "steps_per_second"),
-                              value(summary, "mlups")));
+  lines.push_back(
+      fmt::format("speed       {} steps/s, {} MLUPS", value(summary, "steps_per_second"), value(summary, "mlups")));
   lines.push_back("results");
   for (const auto& entry : summary)
     if (entry.second.IsMap() && entry.first.Scalar() != "phases" && entry.first.Scalar() != "largest")
@@ -90,11 +90,15 @@ std::vector<std::string> info_report(const fs::path& path) {
         fmt::format("{} is neither a run folder nor a checkpoint: give a folder that thalweg run has written, "
                     "or an .h5 file in its checkpoints.",
                     path.string()));
-  if (fs::exists(folder.summary(), ignored)) add_summary(folder.summary(), lines);
-  else lines.push_back("state       still running, or killed without notice");
+  if (fs::exists(folder.summary(), ignored))
+    add_summary(folder.summary(), lines);
+  else
+    lines.push_back("state       still running, or killed without notice");
   if (fs::exists(folder.log(), ignored)) lines.push_back("last line   " + last_line(folder.log()));
-  if (fs::exists(folder.checkpoints() / "latest", ignored)) add_checkpoint(folder.latest_checkpoint(), lines);
-  else lines.push_back("checkpoint  none yet");
+  if (fs::exists(folder.checkpoints() / "latest", ignored))
+    add_checkpoint(folder.latest_checkpoint(), lines);
+  else
+    lines.push_back("checkpoint  none yet");
   return lines;
 }
 

@@ -19,9 +19,11 @@ void Log::copy_to(const std::string& path) {
 void Log::line(const std::string& text) {
   if (!speaking_) return;
   std::fprintf(stdout, "%s\n", text.c_str());
-  std::fflush(stdout);   // a pipe to tee or a batch system's file must not lag behind
-  if (file_.is_open()) file_ << text << '\n' << std::flush;
-  else said_before_file_ += text + '\n';
+  std::fflush(stdout);  // a pipe to tee or a batch system's file must not lag behind
+  if (file_.is_open())
+    file_ << text << '\n' << std::flush;
+  else
+    said_before_file_ += text + '\n';
 }
 
 }  // namespace thalweg::driver

@@ -11,7 +11,7 @@ namespace thalweg::driver {
 double measure_bandwidth(MPI_Comm communicator) {
   // 256 MiB together, at least 32 MiB a rank: caches of a whole chip hold less than half of it.
   const std::size_t values = (std::size_t{1} << 25) / static_cast<std::size_t>(std::min(8, size_of(communicator)));
-  constexpr double patience = 0.08;                      // s
+  constexpr double patience = 0.08;  // s
   std::vector<double> array(values, 1.0);
   using Clock = std::chrono::steady_clock;
   const auto seconds_since = [](Clock::time_point start) {

@@ -10,12 +10,12 @@
 namespace thalweg::driver {
 
 struct ProgressState {
-  double time;               // s, simulated
-  double until;              // s
-  double share_done;         // 0 .. 1, of the whole run
-  double seconds_left;       // s of wall time; negative: not known yet
+  double time;          // s, simulated
+  double until;         // s
+  double share_done;    // 0 .. 1, of the whole run
+  double seconds_left;  // s of wall time; negative: not known yet
   double steps_per_second;
-  double mlups;              // million lattice cell updates a second; 0: no lattice
+  double mlups;  // million lattice cell updates a second; 0: no lattice
   std::vector<Figure> figures;
 };
 

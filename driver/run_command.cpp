@@ -27,9 +27,9 @@ namespace fs = std::filesystem;
 
 // Where a run starts and where it writes.
 struct Places {
-  fs::path checkpoint;        // to go on from; empty: from the start
+  fs::path checkpoint;  // to go on from; empty: from the start
   io::RunFolder folder;
-  bool same_folder = false;   // the checkpoint is the folder's own: its series go on
+  bool same_folder = false;  // the checkpoint is the folder's own: its series go on
 };
 
 // The run folder a checkpoint lies in; empty if it lies anywhere else.

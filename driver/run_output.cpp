@@ -12,7 +12,11 @@ namespace thalweg::driver {
 
 RunOutput::RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& folder, const System& system,
                      const Observers& observers, std::optional<double> continue_from)
-    : communicator_(communicator), case_(c), folder_(folder), system_(system), observers_(observers),
+    : communicator_(communicator),
+      case_(c),
+      folder_(folder),
+      system_(system),
+      observers_(observers),
       continue_from_(continue_from) {
   const Snapshot snapshot = system.snapshot();
   if (c.output.grains.every > 0.0 && snapshot.grains.global_count > 0)
@@ -49,9 +53,8 @@ void RunOutput::write_row(double time, const std::vector<Figure>& row) {
 
 void RunOutput::write_checkpoint() {
   write_checkpoint_file(communicator_, folder_.checkpoint(system_.step()), case_, system_, observers_);
-  on_first_rank(communicator_, [this] {
-    folder_.rotate_checkpoints(system_.step(), static_cast<int>(case_.output.checkpoint.keep));
-  });
+  on_first_rank(communicator_,
+                [this] { folder_.rotate_checkpoints(system_.step(), static_cast<int>(case_.output.checkpoint.keep)); });
 }
 
 void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c,
@@ -59,7 +62,7 @@ void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& p
   io::Hdf5Writer archive(communicator, path);
   archive.attribute("run/system", std::string(name_of(c.system)));
   archive.attribute("run/name", c.name);
-  archive.attribute("run/version", version_number());   // the commit would make equal states differ
+  archive.attribute("run/version", version_number());  // the commit would make equal states differ
   archive.attribute("run/step", system.step());
   archive.attribute("run/time", system.time());
   archive.attribute("run/time_step", system.time_step());

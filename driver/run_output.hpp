@@ -41,7 +41,7 @@ private:
   const System& system_;
   const Observers& observers_;
   std::optional<double> continue_from_;
-  std::unique_ptr<io::SeriesTable> series_;   // from the first row on: only then the columns are known
+  std::unique_ptr<io::SeriesTable> series_;  // from the first row on: only then the columns are known
   std::unique_ptr<io::GrainSeries> grains_;
   std::unique_ptr<io::FluidSeries> fluid_;
 };

@@ -5,8 +5,8 @@
 
 namespace thalweg {
 
-// The largest lattice velocity (cells a step) of the map that stayed stable at this distance of the relaxation time from
-// 1/2, looked up at the nearest smaller one of the map; 0 if none did. With a subgrid model all did, up to 0.15.
+// The largest lattice velocity (cells a step) of the map that stayed stable at this distance of the relaxation time
+// from 1/2, looked up at the nearest smaller one of the map; 0 if none did. With a subgrid model all did, up to 0.15.
 double stable_lattice_velocity(Collision collision, double excess);
 
 }  // namespace thalweg

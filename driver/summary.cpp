@@ -68,8 +68,8 @@ std::vector<PhaseShare> collect_phases(MPI_Comm communicator, System& system, Ti
 std::vector<std::string> phase_table(const std::vector<PhaseShare>& phases) {
   std::size_t width = 5;
   for (const PhaseShare& phase : phases) width = std::max(width, phase.name.size());
-  std::vector<std::string> lines{fmt::format("{:<{}}  {:>10}  {:>10}  {:>6}", "phase", width, "mean s", "slowest s",
-                                             "share")};
+  std::vector<std::string> lines{
+      fmt::format("{:<{}}  {:>10}  {:>10}  {:>6}", "phase", width, "mean s", "slowest s", "share")};
   for (const PhaseShare& phase : phases)
     lines.push_back(fmt::format("{:<{}}  {:>10.3f}  {:>10.3f}  {:>4.1f} %", phase.name, width, phase.mean_seconds,
                                 phase.largest_seconds, 100.0 * phase.share));
@@ -86,8 +86,8 @@ Speeds speeds_of(const System& system, const LoopRecord& record) {
 }
 
 io::JsonObject summary_of(const RunIdentity& identity, const System& system, const LoopRecord& record,
-                      const std::vector<std::unique_ptr<analysis::Observer>>& observers,
-                      const std::vector<PhaseShare>& phases) {
+                          const std::vector<std::unique_ptr<analysis::Observer>>& observers,
+                          const std::vector<PhaseShare>& phases) {
   const Speeds speeds = speeds_of(system, record);
   io::JsonObject summary;
   summary.set("finished", record.finished).set("reason", record.finished ? "" : record.reason);

@@ -15,7 +15,7 @@ namespace thalweg::driver {
 
 namespace {
 
-constexpr double seconds_between_conferences = 0.2;   // mpirun kills one second after its SIGTERM
+constexpr double seconds_between_conferences = 0.2;  // mpirun kills one second after its SIGTERM
 constexpr double seconds_between_lines = 1.0;
 constexpr std::int64_t most_steps_between_conferences = 100000;
 
@@ -25,8 +25,8 @@ double seconds_since(WallClock::time_point start) {
 
 }  // namespace
 
-TimeLoop::TimeLoop(MPI_Comm communicator, System& system,
-                   std::vector<std::unique_ptr<analysis::Observer>>& observers, const LoopPlan& plan, Log& log)
+TimeLoop::TimeLoop(MPI_Comm communicator, System& system, std::vector<std::unique_ptr<analysis::Observer>>& observers,
+                   const LoopPlan& plan, Log& log)
     : communicator_(communicator), system_(system), observers_(observers), plan_(plan), log_(log) {
   // Rounded up, except where the quotient misses a whole number of steps by round-off only.
   final_step_ = static_cast<std::int64_t>(std::ceil(plan.until / system.time_step() * (1.0 - 1e-12)));
@@ -108,7 +108,7 @@ void TimeLoop::write_what_is_due() {
 
 void TimeLoop::checkpoint() {
   if (!plan_.write_checkpoint || saved_step_ == system_.step()) return;
-  look_at_health();   // a broken state must not replace a good checkpoint
+  look_at_health();  // a broken state must not replace a good checkpoint
   const WallClock::time_point before = WallClock::now();
   {
     const auto scope = timer_.measure(timer_.phase("checkpoints"));

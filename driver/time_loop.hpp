@@ -25,35 +25,35 @@ using WallClock = std::chrono::steady_clock;
 
 // Something done with the state at regular simulated times, e.g. writing a picture.
 struct OutputTask {
-  std::string phase;                                 // its line in the table of phases
+  std::string phase;  // its line in the table of phases
   Schedule schedule;
-  std::function<void(const Snapshot&)> act;          // collective
+  std::function<void(const Snapshot&)> act;  // collective
 };
 
-using SeriesRow = std::function<void(double time, std::int64_t step, const std::vector<Figure>&)>;   // collective
-using WriteCheckpoint = std::function<void()>;                                                       // collective
+using SeriesRow = std::function<void(double time, std::int64_t step, const std::vector<Figure>&)>;  // collective
+using WriteCheckpoint = std::function<void()>;                                                      // collective
 
 struct LoopPlan {
-  double until = 0.0;                 // s, simulated
-  double walltime = 0.0;              // s of wall time from `started` on; 0: as long as it takes
-  WallClock::time_point started = WallClock::now();   // of the program
-  bool write_at_start = true;         // false where a run goes on: its first picture exists already
-  Schedule series;                    // when observers measure and a row of figures is written
-  Schedule checkpoint;                // a last one is written in any case
-  SeriesRow write_row;                // none: not written
-  WriteCheckpoint write_checkpoint;   // none: not written
+  double until = 0.0;                                // s, simulated
+  double walltime = 0.0;                             // s of wall time from `started` on; 0: as long as it takes
+  WallClock::time_point started = WallClock::now();  // of the program
+  bool write_at_start = true;                        // false where a run goes on: its first picture exists already
+  Schedule series;                                   // when observers measure and a row of figures is written
+  Schedule checkpoint;                               // a last one is written in any case
+  SeriesRow write_row;                               // none: not written
+  WriteCheckpoint write_checkpoint;                  // none: not written
   std::vector<OutputTask> outputs;
 };
 
 // What has become of a run so far.
 struct LoopRecord {
   bool finished = false;
-  std::string reason;                      // why it is not finished; empty if it is
+  std::string reason;  // why it is not finished; empty if it is
   std::int64_t first_step = 0, last_step = 0;
-  double wall_seconds = 0.0;               // in run(), this time
-  double advance_seconds = 0.0;            // of which in System::advance()
-  std::vector<Figure> figures;             // of the system, at the latest look
-  std::vector<Figure> largest;             // of the system: the largest value of each figure seen in this run
+  double wall_seconds = 0.0;     // in run(), this time
+  double advance_seconds = 0.0;  // of which in System::advance()
+  std::vector<Figure> figures;   // of the system, at the latest look
+  std::vector<Figure> largest;   // of the system: the largest value of each figure seen in this run
 };
 
 class TimeLoop {
@@ -68,7 +68,7 @@ public:
   void run();
 
   const LoopRecord& record() const { return record_; }
-  PhaseTimer& timer() { return timer_; }   // phases outside System::advance()
+  PhaseTimer& timer() { return timer_; }  // phases outside System::advance()
 
   static constexpr double stable_lattice_velocity = 0.3;
   static constexpr std::int64_t steps_between_health_checks = 200;
@@ -92,8 +92,8 @@ private:
   WallClock::time_point begin_;
   std::int64_t final_step_ = 0;
   std::int64_t looked_at_step_ = -1, saved_step_ = -1, next_conference_ = 0;
-  std::vector<Figure> measured_;            // by the observers, latest
-  double longest_checkpoint_ = 0.0;         // s
+  std::vector<Figure> measured_;     // by the observers, latest
+  double longest_checkpoint_ = 0.0;  // s
   // Rank 0's own: when and where the last line was printed and the last conference held.
   double printed_at_ = 0.0, conferred_at_ = 0.0;
   std::int64_t printed_step_ = 0, conferred_step_ = 0;

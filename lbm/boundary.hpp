@@ -9,26 +9,26 @@ namespace thalweg::lbm {
 
 enum class FaceType {
   periodic,
-  no_slip,           // half-link bounce-back: the wall is half a cell beyond the last cell centre
-  free_slip,         // half-link specular reflection: no tangential stress, mass conserving
-  moving,            // no slip on a wall that moves in its own plane
-  navier_slip,       // slip velocity = slip length times shear rate
-  law_of_the_wall,   // Navier slip whose slip velocity follows the local friction velocity
-  velocity_inlet,    // fluid of a given velocity enters (or leaves)
-  pressure_outlet    // fluid leaves (or enters) at a given density
+  no_slip,          // half-link bounce-back: the wall is half a cell beyond the last cell centre
+  free_slip,        // half-link specular reflection: no tangential stress, mass conserving
+  moving,           // no slip on a wall that moves in its own plane
+  navier_slip,      // slip velocity = slip length times shear rate
+  law_of_the_wall,  // Navier slip whose slip velocity follows the local friction velocity
+  velocity_inlet,   // fluid of a given velocity enters (or leaves)
+  pressure_outlet   // fluid leaves (or enters) at a given density
 };
 
-// Slip velocity over friction velocity of a law_of_the_wall. Zhang et al. (2022) print 2.35; their own recipe, the tangent
-// of u+ = ln(y+)/0.41 + 5 at y+ = 10.8 taken to the wall, gives 8.36.
+// Slip velocity over friction velocity of a law_of_the_wall. Zhang et al. (2022) print 2.35; their own recipe, the
+// tangent of u+ = ln(y+)/0.41 + 5 at y+ = 10.8 taken to the wall, gives 8.36.
 constexpr double derived_slip_coefficient = 8.36, printed_slip_coefficient = 2.35;
 
 struct FaceCondition {
   FaceType type = FaceType::periodic;
-  double slip_coefficient = derived_slip_coefficient;   // law_of_the_wall
-  double slip_length = 0.0;                             // navier_slip, cells
-  bool on_node = false;               // navier_slip, law_of_the_wall: the wall runs through the last cell centres
-  Vec3 velocity = Vec3::Zero();       // moving (in the plane of the face), velocity_inlet
-  double density_deviation = 0.0;     // pressure_outlet: rho - 1
+  double slip_coefficient = derived_slip_coefficient;  // law_of_the_wall
+  double slip_length = 0.0;                            // navier_slip, cells
+  bool on_node = false;            // navier_slip, law_of_the_wall: the wall runs through the last cell centres
+  Vec3 velocity = Vec3::Zero();    // moving (in the plane of the face), velocity_inlet
+  double density_deviation = 0.0;  // pressure_outlet: rho - 1
 };
 
 // Faces in the order x low, x high, y low, y high, z low, z high.

@@ -11,16 +11,16 @@ namespace {
 // Base pointers by direction to what a link reads and writes; the index of x_f is added.
 template <typename Real>
 struct LinkSlots {
-  const Real* into_body[D3Q19::directions];    // f_i^c(x_f)
-  const Real* second[2][D3Q19::directions];    // f_i'^c(x_f) for the far half of the link, f_i^c(x_ff) for the near half
-  Real* reflected[D3Q19::directions];          // where the sweep will look for f_i'(x_f)
+  const Real* into_body[D3Q19::directions];  // f_i^c(x_f)
+  const Real* second[2][D3Q19::directions];  // f_i'^c(x_f) for the far half of the link, f_i^c(x_ff) for the near half
+  Real* reflected[D3Q19::directions];        // where the sweep will look for f_i'(x_f)
 
   explicit LinkSlots(Populations<Real>& populations) {
     for (int i = 0; i < D3Q19::directions; ++i) {
       const int opposite = D3Q19::opposite(i);
       into_body[i] = &populations.post_collision(i, 0);
       second[0][i] = &populations.post_collision(opposite, 0);
-      second[1][i] = &populations.incoming(i, 0);   // also what a wall returned, if x_ff lies beyond one
+      second[1][i] = &populations.incoming(i, 0);  // also what a wall returned, if x_ff lies beyond one
       reflected[i] = &populations.incoming(opposite, 0);
     }
   }
@@ -30,12 +30,12 @@ struct LinkSlots {
 struct Batch {
   static constexpr int capacity = 128;
   alignas(64) double delta[capacity], weight[capacity], density[capacity];
-  alignas(64) double cx[capacity], cy[capacity], cz[capacity];      // c_i
-  alignas(64) double ax[capacity], ay[capacity], az[capacity];      // x_f from the body's centre; then the arm
-  alignas(64) double incident[capacity], second[capacity];          // f_i^c(x_f); f_i^c(x_ff) or f_i'^c(x_f)
+  alignas(64) double cx[capacity], cy[capacity], cz[capacity];  // c_i
+  alignas(64) double ax[capacity], ay[capacity], az[capacity];  // x_f from the body's centre; then the arm
+  alignas(64) double incident[capacity], second[capacity];      // f_i^c(x_f); f_i^c(x_ff) or f_i'^c(x_f)
   alignas(64) double reflected[capacity];
-  std::uint32_t cells[capacity];                                    // distinct fluid cells, in order
-  int cell_of[capacity];                                            // index into cells
+  std::uint32_t cells[capacity];  // distinct fluid cells, in order
+  int cell_of[capacity];          // index into cells
 };
 
 struct DirectionTable {
@@ -142,8 +142,8 @@ private:
                                   b.cz[k] * (vz + wx * b.ay[k] - wy * b.ax[k]);
       const double share = delta < 0.5 ? 2.0 * delta : 0.5 / delta;
       const double wall_factor = delta < 0.5 ? 6.0 : 6.0 * share;
-      b.reflected[k] = share * b.incident[k] + (1.0 - share) * b.second[k] -
-                       wall_factor * b.weight[k] * b.density[k] * towards_wall;
+      b.reflected[k] =
+          share * b.incident[k] + (1.0 - share) * b.second[k] - wall_factor * b.weight[k] * b.density[k] * towards_wall;
     }
   }
 
@@ -178,7 +178,7 @@ private:
     body.torque += torque;
   }
 
-  static constexpr int lookahead = 128;   // links
+  static constexpr int lookahead = 128;  // links
 
   LinkSlots<Real> slots_;
   const CellMap& cells_;
@@ -186,7 +186,7 @@ private:
   const LinkOptions& options_;
   std::vector<LinkBody>& bodies_;
   Batch batch_;
-  double local_density_[Batch::capacity];   // rho - 1 of the batch's distinct cells
+  double local_density_[Batch::capacity];  // rho - 1 of the batch's distinct cells
 };
 
 }  // namespace

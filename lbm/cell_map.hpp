@@ -10,7 +10,7 @@ namespace thalweg::lbm {
 
 class CellMap {
 public:
-  static constexpr std::int32_t fluid = -1;   // any other value: the id of the covering body
+  static constexpr std::int32_t fluid = -1;  // any other value: the id of the covering body
 
   explicit CellMap(const CellIndexing& indexing)
       : indexing_(indexing),

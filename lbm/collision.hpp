@@ -6,16 +6,18 @@
 //   f_i^eq = w_i {d + rho [3 c_i.u + 9/2 (c_i.u)^2 - 3/2 u.u]},  S_i = w_i [3 (c_i - u).F + 9 (c_i.u)(c_i.F)]
 //   tau = [tau_0 + sqrt(tau_0^2 + 18 sqrt(2) C_s^2 Q/rho)]/2,  Q = sqrt(Pi_ab Pi_ab),               (Hou et al. 1994)
 //   Pi_ab = sum c_ia c_ib (f_i - f_i^eq) + (u_a F_b + u_b F_a)/2,   S_ab = -3/(2 rho tau) Pi_ab.
-// The force term in Pi makes S exact to the order of the Chapman-Enskog expansion; C_s counts in cell sizes. Written out,
+// The force term in Pi makes S exact to the order of the Chapman-Enskog expansion; C_s counts in cell sizes. Written
+// out,
 //   Pi_ab = sum c_ia c_ib f_i - d/3 delta_ab - (m_a m_b - F_a F_b/4)/rho.
 //
 // With omega = 1/tau:
 //   bgk          f_i^c = f_i - omega (f_i - f_i^eq) + (1 - omega/2) S_i                               (Guo et al. 2002)
 //   trt          the same for the even part (f_i + f_i')/2; the odd part (f_i - f_i')/2 relaxes with omega', where
-//                (1/omega - 1/2)(1/omega' - 1/2) = magic parameter                                  (Ginzburg et al. 2008)
+//                (1/omega - 1/2)(1/omega' - 1/2) = magic parameter                                  (Ginzburg et al.
+//                2008)
 //   regularised  bgk after f_i - f_i^eq has been replaced by its projection on Hermite polynomials up to second order,
-//                w_i [-3/2 c_i.F + 9/2 (c_ia c_ib - delta_ab/3) sum_j c_ja c_jb (f_j - f_j^eq)]     (Latt and Chopard 2006;
-//                the first-order term is the half force, without which momentum would be lost)
+//                w_i [-3/2 c_i.F + 9/2 (c_ia c_ib - delta_ab/3) sum_j c_ja c_jb (f_j - f_j^eq)]     (Latt and Chopard
+//                2006; the first-order term is the half force, without which momentum would be lost)
 #pragma once
 
 #include "lbm/d3q19.hpp"
@@ -29,10 +31,10 @@ enum class CollisionModel { bgk, trt, regularised };
 
 struct CollisionParameters {
   CollisionModel model = CollisionModel::bgk;
-  double magic_parameter = 3.0 / 16.0;   // of trt; 3/16 puts half-link walls exactly half way
-  double relaxation_time = 1.0;          // tau_0 = 1/2 + 3 nu dt/dx^2
-  double smagorinsky_constant = 0.0;     // C_s; 0 switches the subgrid model off
-  double force[3] = {0.0, 0.0, 0.0};     // force density on the fluid
+  double magic_parameter = 3.0 / 16.0;  // of trt; 3/16 puts half-link walls exactly half way
+  double relaxation_time = 1.0;         // tau_0 = 1/2 + 3 nu dt/dx^2
+  double smagorinsky_constant = 0.0;    // C_s; 0 switches the subgrid model off
+  double force[3] = {0.0, 0.0, 0.0};    // force density on the fluid
 };
 
 // A symmetric tensor.
@@ -44,28 +46,30 @@ struct Symmetric {
 // What the relaxation needs to know of a cell, and a wall model may want.
 template <typename Number>
 struct CellMoments {
-  Number deviation;         // d
-  Number mx, my, mz;        // m, without the half force
+  Number deviation;   // d
+  Number mx, my, mz;  // m, without the half force
   Number inverse_rho;
-  Number omega;             // 1/tau
-  Symmetric<Number> pi;     // Pi; shear rate of a component: 2 |S_ab| = 3 |Pi_ab| omega/rho
+  Number omega;          // 1/tau
+  Symmetric<Number> pi;  // Pi; shear rate of a component: 2 |S_ab| = 3 |Pi_ab| omega/rho
 };
 
 // A constant in every lane, rounded once to the storage type.
 template <typename Number>
 [[gnu::always_inline]] inline Number pack_constant(double value) {
-  if constexpr (std::is_arithmetic_v<Number>) return static_cast<Number>(value);
-  else return Number(static_cast<typename Number::value_type>(value));
+  if constexpr (std::is_arithmetic_v<Number>)
+    return static_cast<Number>(value);
+  else
+    return Number(static_cast<typename Number::value_type>(value));
 }
 
 // The numbers a collision needs in every cell, ready in packs.
 template <typename Number>
 struct CollisionConstants {
-  Number tau0, tau0_squared, eddies;      // eddies = 18 sqrt(2) C_s^2
-  Number omega0, magic;                   // 1/tau_0;  2 magic parameter - 1/2
+  Number tau0, tau0_squared, eddies;  // eddies = 18 sqrt(2) C_s^2
+  Number omega0, magic;               // 1/tau_0;  2 magic parameter - 1/2
   Number force[3], half_force[3];
-  Symmetric<Number> quarter;              // F_a F_b/4
-  Number cross[3], odd[3];                // 9 w F and 3 w F with the diagonal weight w
+  Symmetric<Number> quarter;  // F_a F_b/4
+  Number cross[3], odd[3];    // 9 w F and 3 w F with the diagonal weight w
 
   [[gnu::always_inline]] explicit CollisionConstants(const CollisionParameters& p) {
     constexpr auto constant = pack_constant<Number>;
@@ -90,7 +94,7 @@ struct CollisionConstants {
 // `with_eddies` false: omega = 1/tau_0 whatever the smagorinsky_constant.
 template <bool with_eddies, typename Number>
 [[gnu::always_inline]] inline CellMoments<Number> moments_of(const Number (&f)[19],
-                                                              const CollisionConstants<Number>& constants) {
+                                                             const CollisionConstants<Number>& constants) {
   using std::sqrt;
   constexpr auto constant = pack_constant<Number>;
   const Number x = f[1] + f[2], y = f[3] + f[4], z = f[5] + f[6];
@@ -149,12 +153,18 @@ template <int i, typename Number>
 [[gnu::always_inline]] inline Number along(const Number& x, const Number& y, const Number& z) {
   constexpr int cx = D3Q19::c[i][0], cy = D3Q19::c[i][1], cz = D3Q19::c[i][2];
   static_assert(cx > 0 || (cx == 0 && (cy > 0 || (cy == 0 && cz > 0))), "the first direction of a pair");
-  if constexpr (cx == 1 && cy == 0 && cz == 0) return x;
-  else if constexpr (cx == 0 && cy == 1 && cz == 0) return y;
-  else if constexpr (cx == 0 && cy == 0) return z;
-  else if constexpr (cx == 1 && cz == 0) return cy > 0 ? x + y : x - y;
-  else if constexpr (cx == 1) return cz > 0 ? x + z : x - z;
-  else return cz > 0 ? y + z : y - z;
+  if constexpr (cx == 1 && cy == 0 && cz == 0)
+    return x;
+  else if constexpr (cx == 0 && cy == 1 && cz == 0)
+    return y;
+  else if constexpr (cx == 0 && cy == 0)
+    return z;
+  else if constexpr (cx == 1 && cz == 0)
+    return cy > 0 ? x + y : x - y;
+  else if constexpr (cx == 1)
+    return cz > 0 ? x + z : x - z;
+  else
+    return cz > 0 ? y + z : y - z;
 }
 
 // Equilibrium and force of a cell by pairs, each times its rate, both in units of the diagonal weight:
@@ -172,7 +182,8 @@ struct Target {
     constexpr auto constant = pack_constant<Number>;
     constexpr double w = D3Q19::diagonal_weight;
     const auto& force = constants.force;
-    const Number even_force = constant(1) - constant(0.5) * even_rate, odd_force = constant(1) - constant(0.5) * odd_rate;
+    const Number even_force = constant(1) - constant(0.5) * even_rate,
+                 odd_force = constant(1) - constant(0.5) * odd_rate;
     const Number jx = m.mx + constants.half_force[0], jy = m.my + constants.half_force[1],
                  jz = m.mz + constants.half_force[2];
     ux = jx * m.inverse_rho;
@@ -229,8 +240,7 @@ template <typename Number>
                                              const CollisionConstants<Number>& constants) {
   constexpr auto constant = pack_constant<Number>;
   // omega' = (2 - omega)/(1 + omega (2 magic - 1/2)).
-  const Number odd_rate =
-      (constant(2) - m.omega) / (constant(1) + constants.magic * m.omega);
+  const Number odd_rate = (constant(2) - m.omega) / (constant(1) + constants.magic * m.omega);
   const Number keep_even = constant(1) - m.omega, keep_odd = constant(1) - odd_rate;
   const Number same = constant(0.5) * (keep_even + keep_odd), swapped = constant(0.5) * (keep_even - keep_odd);
   const detail::Target<Number> target(m, constants, m.omega, odd_rate);
@@ -256,7 +266,8 @@ template <typename Number>
   const Number hx = nx * weight, hy = ny * weight, hz = nz * weight;
   const Symmetric<Number>& quarter = constants.quarter;
   // 9/2 w P, the off-diagonals twice as both of a pair count.
-  const Number pxx = keep * m.pi.xx + (nx * hx - quarter.xx * weight), pyy = keep * m.pi.yy + (ny * hy - quarter.yy * weight),
+  const Number pxx = keep * m.pi.xx + (nx * hx - quarter.xx * weight),
+               pyy = keep * m.pi.yy + (ny * hy - quarter.yy * weight),
                pzz = keep * m.pi.zz + (nz * hz - quarter.zz * weight);
   const Number twice = keep + keep;
   const auto doubled = [](const Number& a) { return a + a; };
@@ -288,9 +299,12 @@ template <typename Number>
 template <CollisionModel model, typename Number>
 [[gnu::always_inline]] inline void relax(Number (&f)[19], const CellMoments<Number>& m,
                                          const CollisionConstants<Number>& constants) {
-  if constexpr (model == CollisionModel::bgk) relax_bgk(f, m, constants);
-  else if constexpr (model == CollisionModel::trt) relax_trt(f, m, constants);
-  else relax_regularised(f, m, constants);
+  if constexpr (model == CollisionModel::bgk)
+    relax_bgk(f, m, constants);
+  else if constexpr (model == CollisionModel::trt)
+    relax_trt(f, m, constants);
+  else
+    relax_regularised(f, m, constants);
 }
 
 // Both steps at once; returns the moments before the collision.

@@ -11,12 +11,11 @@ namespace thalweg::lbm {
 struct D3Q19 {
   static constexpr int directions = 19;
 
-  static constexpr int c[19][3] = {
-      {0, 0, 0},                                                                // rest
-      {1, 0, 0},  {-1, 0, 0}, {0, 1, 0},  {0, -1, 0}, {0, 0, 1},  {0, 0, -1},   // axes
-      {1, 1, 0},  {-1, -1, 0}, {1, -1, 0}, {-1, 1, 0},                          // diagonals in x-y
-      {1, 0, 1},  {-1, 0, -1}, {1, 0, -1}, {-1, 0, 1},                          // diagonals in x-z
-      {0, 1, 1},  {0, -1, -1}, {0, 1, -1}, {0, -1, 1}};                         // diagonals in y-z
+  static constexpr int c[19][3] = {{0, 0, 0},                                                              // rest
+                                   {1, 0, 0}, {-1, 0, 0},  {0, 1, 0},  {0, -1, 0}, {0, 0, 1}, {0, 0, -1},  // axes
+                                   {1, 1, 0}, {-1, -1, 0}, {1, -1, 0}, {-1, 1, 0},   // diagonals in x-y
+                                   {1, 0, 1}, {-1, 0, -1}, {1, 0, -1}, {-1, 0, 1},   // diagonals in x-z
+                                   {0, 1, 1}, {0, -1, -1}, {0, 1, -1}, {0, -1, 1}};  // diagonals in y-z
 
   static constexpr double rest_weight = 1.0 / 3.0, axis_weight = 1.0 / 18.0, diagonal_weight = 1.0 / 36.0;
 

@@ -8,8 +8,10 @@ namespace thalweg::lbm {
 
 FlowControl::FlowControl(const FlowTarget& target) : target_(target) {
   if (target.interval < 1 || !(target.response_time >= 10.0 * target.interval))
-    throw InputError(fmt::format("The flow control looks every {} steps and responds in {} steps; it needs at least one step "
-                                 "and a response time of at least ten intervals.", target.interval, target.response_time));
+    throw InputError(
+        fmt::format("The flow control looks every {} steps and responds in {} steps; it needs at least one step "
+                    "and a response time of at least ten intervals.",
+                    target.interval, target.response_time));
 }
 
 void FlowControl::update(double mean_velocity) {

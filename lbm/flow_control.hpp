@@ -2,9 +2,9 @@
 //
 // With e = target - mean of rho u over the fluid cells, T the response time and k the interval between looks:
 //   integral += k e,   F = e/T + integral/(4 T^2).
-// On fluid that answers a force by du/dt = F this is the critically damped oscillator e'' + e'/T + e/(4 T^2) = 0; whatever
-// resists the flow is taken up by the integral, so that e vanishes in a steady state. With a drag F = -l u that takes a
-// time of 4 T^2 l if T l is above 1: choose T no longer than the flow itself needs to come to rest.
+// On fluid that answers a force by du/dt = F this is the critically damped oscillator e'' + e'/T + e/(4 T^2) = 0;
+// whatever resists the flow is taken up by the integral, so that e vanishes in a steady state. With a drag F = -l u
+// that takes a time of 4 T^2 l if T l is above 1: choose T no longer than the flow itself needs to come to rest.
 #pragma once
 
 #include "core/archive.hpp"

@@ -13,13 +13,14 @@ namespace thalweg::lbm {
 
 namespace {
 
-using CellSum = FixedPoint<36>;   // sums over cells: resolution 1.5e-11, range +-1e8
+using CellSum = FixedPoint<36>;  // sums over cells: resolution 1.5e-11, range +-1e8
 
 const CollisionParameters& checked(const CollisionParameters& parameters) {
   if (!(parameters.relaxation_time > 0.5))
-    throw InputError(fmt::format("The relaxation time is {}, but a fluid needs more than 1/2; raise the viscosity or the "
-                                 "time step.",
-                                 parameters.relaxation_time));
+    throw InputError(
+        fmt::format("The relaxation time is {}, but a fluid needs more than 1/2; raise the viscosity or the "
+                    "time step.",
+                    parameters.relaxation_time));
   return parameters;
 }
 
@@ -58,7 +59,8 @@ void Fluid<Real>::initialise(const std::function<FluidState(const Vec3&)>& state
   for (int z = 0; z < n[2]; ++z)
     for (int y = 0; y < n[1]; ++y)
       for (int x = 0; x < n[0]; ++x) {
-        const FluidState s = state(Vec3(block_.lower[0] + x + 0.5, block_.lower[1] + y + 0.5, block_.lower[2] + z + 0.5));
+        const FluidState s =
+            state(Vec3(block_.lower[0] + x + 0.5, block_.lower[1] + y + 0.5, block_.lower[2] + z + 0.5));
         const std::ptrdiff_t cell = indexing().index(x, y, z);
         for (int i = 0; i < D3Q19::directions; ++i)
           populations_.post_collision(i, cell) =
@@ -124,8 +126,8 @@ void Fluid<Real>::stream_and_collide() {
   switch_arrangement();
 }
 
-// A sweep of a cell touches the 19 slots of the cell and no other. Those of cells two or more away from the block's faces
-// are neither filled by the halo or a wall, nor read by a wall (which looks at all that its own cell sends out).
+// A sweep of a cell touches the 19 slots of the cell and no other. Those of cells two or more away from the block's
+// faces are neither filled by the halo or a wall, nor read by a wall (which looks at all that its own cell sends out).
 template <typename Real>
 void Fluid<Real>::advance_behind_halo() {
   constexpr int margin = 2;
@@ -180,7 +182,7 @@ double Fluid<Real>::largest_speed() const {
   double largest = 0.0;
   for_each_fluid_cell([&](std::ptrdiff_t cell, int, int, int) {
     const double speed = state_at(cell).velocity.squaredNorm();
-    if (!(speed <= largest)) largest = speed;   // lets NaN through
+    if (!(speed <= largest)) largest = speed;  // lets NaN through
   });
   return std::sqrt(largest);
 }

@@ -1,8 +1,8 @@
 // The lattice fluid of one rank: populations, walls, halo and sweep, in the order a step calls them. Lattice units
 // throughout; densities as deviations rho - 1.
 //
-// A step without bodies is advance(), which sweeps the cells inside while the halo is on its way. With bodies, the coupling
-// calls the parts and puts the links in between:
+// A step without bodies is advance(), which sweeps the cells inside while the halo is on its way. With bodies, the
+// coupling calls the parts and puts the links in between:
 //   exchange_halo(), apply_walls(), [apply_links()], stream_and_collide().
 #pragma once
 
@@ -29,8 +29,8 @@ struct FluidState {
 
 // Sums over all fluid cells of the domain; exact to 2^-37 a cell, in any order.
 struct FluidTotals {
-  double mass_deviation = 0.0;       // sum of rho - 1
-  Vec3 momentum = Vec3::Zero();      // sum of rho u after the collision: sum over c_i f_i^c
+  double mass_deviation = 0.0;   // sum of rho - 1
+  Vec3 momentum = Vec3::Zero();  // sum of rho u after the collision: sum over c_i f_i^c
   std::int64_t cells = 0;
 };
 
@@ -67,9 +67,9 @@ public:
   CellMap& cells() { return cells_; }
   const CellMap& cells() const { return cells_; }
 
-  FluidState state_at(std::ptrdiff_t cell) const;   // density and velocity (with the half force) of a cell
-  double largest_speed() const;                     // over this rank's fluid cells
-  FluidTotals totals() const;                       // collective
+  FluidState state_at(std::ptrdiff_t cell) const;  // density and velocity (with the half force) of a cell
+  double largest_speed() const;                    // over this rank's fluid cells
+  FluidTotals totals() const;                      // collective
 
   // Post-collision populations of every owned cell, zero in solid ones, and the walls' state. Collective.
   void save(ArchiveWriter& archive) const;

@@ -112,7 +112,7 @@ void Halo<Real>::add_wall_lines(std::vector<Run>& runs, const Index3& towards, b
   int axis = -1;
   for (int a = 0; a < 3; ++a)
     if (towards[a] != 0) axis = axis < 0 ? a : 3;
-  if (axis > 2) return;   // an edge neighbour
+  if (axis > 2) return;  // an edge neighbour
   for (int face = 0; face < 6; ++face) {
     FaceField<Real>& field = walls_.bounced(face);
     const int normal = face / 2;

@@ -1,5 +1,5 @@
-// Halo exchange of the populations: to each neighbouring block go exactly the populations that cross into it, five for a
-// face and one for an edge, in one packed message per neighbouring rank. A block that is its own periodic neighbour
+// Halo exchange of the populations: to each neighbouring block go exactly the populations that cross into it, five for
+// a face and one for an edge, in one packed message per neighbouring rank. A block that is its own periodic neighbour
 // copies to itself.
 #pragma once
 
@@ -20,8 +20,8 @@ public:
 
   bool has_other_ranks() const { return exchange_.neighbours() > 0; }
 
-  void start();    // packs and sends
-  void finish();   // waits and unpacks
+  void start();   // packs and sends
+  void finish();  // waits and unpacks
 
 private:
   // count Reals, stride apart; where they are in the swapped and in the moved arrangement.
@@ -45,8 +45,8 @@ private:
   Walls<Real>& walls_;
   Block block_;
   Index3 coordinates_;
-  std::vector<Message> messages_;   // the one to the own rank first, if any
-  int self_ = -1;                   // index of that one
+  std::vector<Message> messages_;  // the one to the own rank first, if any
+  int self_ = -1;                  // index of that one
   PackedExchange exchange_;
 };
 

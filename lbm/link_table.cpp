@@ -18,7 +18,7 @@ void LinkTable::replace(int body, std::span<const Link> links, std::span<const i
   for (std::size_t old = 0; old < places.size() || next < links.size();) {
     const int new_plane = next < links.size() ? plane_of[next] : static_cast<int>(planes_.size());
     const int old_plane = old < places.size() ? places[old].plane : static_cast<int>(planes_.size());
-    if (old_plane < new_plane) {   // no links left in this plane
+    if (old_plane < new_plane) {  // no links left in this plane
       Plane& plane = planes_[old_plane];
       Chunk& chunk = plane.chunks[places[old].chunk];
       plane.live -= chunk.count;
@@ -32,7 +32,7 @@ void LinkTable::replace(int body, std::span<const Link> links, std::span<const i
     std::size_t end = next;
     while (end < links.size() && plane_of[end] == new_plane) ++end;
     Plane& plane = planes_[new_plane];
-    if (old_plane != new_plane) {   // a plane newly reached
+    if (old_plane != new_plane) {  // a plane newly reached
       std::uint32_t fresh;
       if (plane.free_chunks.empty()) {
         fresh = static_cast<std::uint32_t>(plane.chunks.size());

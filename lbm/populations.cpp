@@ -26,8 +26,8 @@ void Populations<Real>::Free::operator()(void* memory) const {
 
 template <typename Real>
 Populations<Real>::Populations(const CellIndexing& indexing) : indexing_(indexing) {
-  constexpr std::size_t line = 64;                   // bytes in a cache line
-  constexpr std::size_t stagger = 9 * line / sizeof(Real);   // keeps the 19 streams out of each other's cache sets
+  constexpr std::size_t line = 64;                          // bytes in a cache line
+  constexpr std::size_t stagger = 9 * line / sizeof(Real);  // keeps the 19 streams out of each other's cache sets
   const std::size_t per_line = line / sizeof(Real);
   stride_ = (indexing.count() + per_line - 1) / per_line * per_line + stagger;
   const std::size_t bytes = stride_ * D3Q19::directions * sizeof(Real);
@@ -36,7 +36,7 @@ Populations<Real>::Populations(const CellIndexing& indexing) : indexing_(indexin
   void* memory = std::aligned_alloc(huge_page, (bytes + huge_page - 1) / huge_page * huge_page);
   if (!memory) throw std::bad_alloc();
 #if defined(__linux__)
-  madvise(memory, bytes, MADV_HUGEPAGE);   // a wish, not a need: its failure changes nothing
+  madvise(memory, bytes, MADV_HUGEPAGE);  // a wish, not a need: its failure changes nothing
 #endif
   memory_.reset(static_cast<Real*>(memory));
   std::fill_n(memory_.get(), stride_ * D3Q19::directions, Real(0));

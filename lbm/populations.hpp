@@ -27,18 +27,20 @@ public:
   // pack: SIMD width in cells; rows start on a pack boundary.
   CellIndexing(const Index3& size, int pack);
 
-  const Index3& size() const { return size_; }             // owned cells
+  const Index3& size() const { return size_; }  // owned cells
   int pack() const { return pack_; }
   int packs_per_row() const { return (size_[0] + pack_ - 1) / pack_; }
   std::ptrdiff_t row_stride() const { return row_stride_; }
   std::ptrdiff_t plane_stride() const { return plane_stride_; }
-  std::size_t count() const { return static_cast<std::size_t>(plane_stride_) * (size_[2] + 2); }   // with ghosts, padding
+  std::size_t count() const {
+    return static_cast<std::size_t>(plane_stride_) * (size_[2] + 2);
+  }  // with ghosts, padding
 
   // Local coordinates: owned 0 .. size-1, ghosts -1 and size.
   std::ptrdiff_t index(int x, int y, int z) const {
     return (z + 1) * plane_stride_ + (y + 1) * row_stride_ + (x + pack_);
   }
-  std::ptrdiff_t offset(int direction) const { return offset_[direction]; }   // index(x + c) - index(x)
+  std::ptrdiff_t offset(int direction) const { return offset_[direction]; }  // index(x + c) - index(x)
   bool owned(int x, int y, int z) const {
     return x >= 0 && y >= 0 && z >= 0 && x < size_[0] && y < size_[1] && z < size_[2];
   }
@@ -53,7 +55,7 @@ private:
 template <typename Real>
 class Populations {
 public:
-  explicit Populations(const CellIndexing& indexing);   // all deviations zero: fluid at rest, density 1
+  explicit Populations(const CellIndexing& indexing);  // all deviations zero: fluid at rest, density 1
 
   const CellIndexing& indexing() const { return indexing_; }
   Arrangement arrangement() const { return arrangement_; }
@@ -94,7 +96,7 @@ private:
 
   CellIndexing indexing_;
   Arrangement arrangement_ = Arrangement::swapped;
-  std::size_t stride_;                       // Reals from one direction's plane to the next
+  std::size_t stride_;  // Reals from one direction's plane to the next
   std::unique_ptr<Real[], Free> memory_;
   Real* planes_[D3Q19::directions];
 };

@@ -23,8 +23,8 @@ int pack_width() {
 namespace {
 
 // Where a pack finds its 19 populations and where it leaves them: base pointers per direction, to which the cell index
-// is added. From the swapped arrangement a cell pulls f_i from x - c_i and pushes f_i^c to x + c_i; from the moved one it
-// finds f_i at home and leaves f_i^c in the opposite slot.
+// is added. From the swapped arrangement a cell pulls f_i from x - c_i and pushes f_i^c to x + c_i; from the moved one
+// it finds f_i at home and leaves f_i^c in the opposite slot.
 template <typename Real>
 struct Streams {
   const Real* in[D3Q19::directions];
@@ -44,8 +44,8 @@ struct Streams {
   }
 };
 
-// What the first pass over a stretch of a row leaves for the second, pack by pack. Four packs of 19 populations stay in the
-// first-level cache between the passes with room to spare; eight and more were measured to be slower.
+// What the first pass over a stretch of a row leaves for the second, pack by pack. Four packs of 19 populations stay in
+// the first-level cache between the passes with room to spare; eight and more were measured to be slower.
 template <typename Real>
 struct Stretch {
   static constexpr int packs = 4;
@@ -116,8 +116,10 @@ template <CollisionModel model, typename Real>
   m.mz = s.mz[p];
   m.inverse_rho = s.inverse_rho[p];
   m.omega = s.omega[p];
-  if constexpr (model == CollisionModel::regularised) m.pi = {s.xx[p], s.yy[p], s.zz[p], s.xy[p], s.xz[p], s.yz[p]};
-  else load(f, streams, cell);
+  if constexpr (model == CollisionModel::regularised)
+    m.pi = {s.xx[p], s.yy[p], s.zz[p], s.xy[p], s.xz[p], s.yz[p]};
+  else
+    load(f, streams, cell);
   relax<model>(f, m, constants);
   for_each_direction([&]<int i>() __attribute__((always_inline)) {
     f[i].copy_to(streams.out[i] + cell, stdx::element_aligned);
@@ -137,8 +139,8 @@ template <typename Real>
 // Moments of a whole stretch first, then its relaxation: either pass alone is short enough for the processor to work on
 // several packs at once, while one long pass waits for its own divisions and roots.
 template <CollisionModel model, bool with_eddies, bool with_shear, typename Real>
-void sweep_packs(const Streams<Real>& streams, std::ptrdiff_t row, const std::uint8_t* fluid_in_packs, int begin, int end,
-                 const CollisionParameters& parameters, const RowShear<Real>* shear) {
+void sweep_packs(const Streams<Real>& streams, std::ptrdiff_t row, const std::uint8_t* fluid_in_packs, int begin,
+                 int end, const CollisionParameters& parameters, const RowShear<Real>* shear) {
   constexpr int width = static_cast<int>(Pack<Real>::size());
   constexpr bool with_diagonal = model == CollisionModel::regularised;
   const CollisionConstants<Pack<Real>> constants(parameters);
@@ -163,19 +165,23 @@ template <CollisionModel model, typename Real>
 void sweep_row_with(const Streams<Real>& streams, std::ptrdiff_t row, const std::uint8_t* fluid, int first, int last,
                     const CollisionParameters& parameters, const RowShear<Real>* shear) {
   if (parameters.smagorinsky_constant > 0.0) {
-    if (shear) sweep_packs<model, true, true>(streams, row, fluid, first, last, parameters, shear);
-    else sweep_packs<model, true, false>(streams, row, fluid, first, last, parameters, shear);
+    if (shear)
+      sweep_packs<model, true, true>(streams, row, fluid, first, last, parameters, shear);
+    else
+      sweep_packs<model, true, false>(streams, row, fluid, first, last, parameters, shear);
   } else {
-    if (shear) sweep_packs<model, false, true>(streams, row, fluid, first, last, parameters, shear);
-    else sweep_packs<model, false, false>(streams, row, fluid, first, last, parameters, shear);
+    if (shear)
+      sweep_packs<model, false, true>(streams, row, fluid, first, last, parameters, shear);
+    else
+      sweep_packs<model, false, false>(streams, row, fluid, first, last, parameters, shear);
   }
 }
 
 }  // namespace
 
 template <typename Real>
-void sweep_row(Populations<Real>& populations, const CellMap& cells, const CollisionParameters& parameters, int y, int z,
-               int first, int last, const RowShear<Real>* shear) {
+void sweep_row(Populations<Real>& populations, const CellMap& cells, const CollisionParameters& parameters, int y,
+               int z, int first, int last, const RowShear<Real>* shear) {
   const Streams<Real> streams(populations);
   const std::ptrdiff_t row = populations.indexing().index(0, y, z);
   const std::uint8_t* fluid = cells.fluid_in_packs(y, z);

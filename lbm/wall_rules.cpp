@@ -15,10 +15,14 @@ std::ptrdiff_t axis_stride(const CellIndexing& indexing, int axis) {
 // Who decides about a population that comes out of an edge: the larger number.
 int precedence(FaceType type) {
   switch (type) {
-    case FaceType::free_slip: return 0;
-    case FaceType::pressure_outlet: return 1;
-    case FaceType::velocity_inlet: return 2;
-    default: return 3;
+    case FaceType::free_slip:
+      return 0;
+    case FaceType::pressure_outlet:
+      return 1;
+    case FaceType::velocity_inlet:
+      return 2;
+    default:
+      return 3;
   }
 }
 
@@ -63,8 +67,9 @@ Real Walls<Real>::with_velocity(const Populations<Real>& populations, int o, std
 }
 
 template <typename Real>
-Real Walls<Real>::at_pressure(const Populations<Real>& populations, int o, std::ptrdiff_t cell, double deviation) const {
-  Vec3 momentum = -half_force_;   // a collision leaves the whole force in it; the velocity takes half
+Real Walls<Real>::at_pressure(const Populations<Real>& populations, int o, std::ptrdiff_t cell,
+                              double deviation) const {
+  Vec3 momentum = -half_force_;  // a collision leaves the whole force in it; the velocity takes half
   double density = 1.0;
   for (int i = 0; i < D3Q19::directions; ++i) {
     const double f = populations.post_collision(i, cell);
@@ -123,19 +128,23 @@ void Walls<Real>::apply_direction(Populations<Real>& populations, const CellMap&
     const Real own = populations.post_collision(opposite, cell);
     switch (wall.type) {
       case FaceType::moving:
-      case FaceType::velocity_inlet: return with_velocity(populations, o, cell, wall.velocity);
-      case FaceType::pressure_outlet: return at_pressure(populations, o, cell, wall.density_deviation);
+      case FaceType::velocity_inlet:
+        return with_velocity(populations, o, cell, wall.velocity);
+      case FaceType::pressure_outlet:
+        return at_pressure(populations, o, cell, wall.density_deviation);
       case FaceType::navier_slip:
       case FaceType::law_of_the_wall: {
         const Real r = bounced_[face].at(u, v);
         const bool by_edge =
             (along_u && ((u == 0 && present(u_axis, false)) || (u == nu - 1 && present(u_axis, true)))) ||
             (along_v && ((v == 0 && present(v_axis, false)) || (v == nv - 1 && present(v_axis, true))));
-        const bool by_body = !cells.is_fluid(cell + indexing_.offset(o)) || !cells.is_fluid(cell - indexing_.offset(mirror));
+        const bool by_body =
+            !cells.is_fluid(cell + indexing_.offset(o)) || !cells.is_fluid(cell - indexing_.offset(mirror));
         if (by_edge || by_body) return own;
         return r * populations.incoming(opposite, cell) + (Real(1) - r) * populations.incoming(mirror, cell);
       }
-      default: return own;
+      default:
+        return own;
     }
   };
   // What a cell gets out of the edge with another face.
@@ -174,9 +183,11 @@ void Walls<Real>::apply_direction(Populations<Real>& populations, const CellMap&
     };
     edges(0, begin);
     edges(end, nu);
-    if (reflects(wall)) reflect_run(populations, cells, {face, o, v, begin, end, first, stride, tangential});
+    if (reflects(wall))
+      reflect_run(populations, cells, {face, o, v, begin, end, first, stride, tangential});
     else
-      for (int u = begin; u < end; ++u) populations.incoming(o, first + u * stride) = ordinary(first + u * stride, u, v);
+      for (int u = begin; u < end; ++u)
+        populations.incoming(o, first + u * stride) = ordinary(first + u * stride, u, v);
   }
 }
 

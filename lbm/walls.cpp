@@ -13,18 +13,22 @@ namespace thalweg::lbm {
 namespace {
 
 constexpr const char* face_names[6] = {"x_low", "x_high", "y_low", "y_high", "z_low", "z_high"};
-constexpr double smallest_bounced_fraction = 1e-6;   // lets a wall without shear (a start from rest) take hold
+constexpr double smallest_bounced_fraction = 1e-6;  // lets a wall without shear (a start from rest) take hold
 
 bool slips(FaceType type) { return type == FaceType::navier_slip || type == FaceType::law_of_the_wall; }
 
 void check(const FaceCondition& wall, int axis, const char* name) {
   if (wall.type == FaceType::moving && wall.velocity[axis] != 0.0)
-    throw InputError(fmt::format("The moving wall at {} has a velocity of {} cells a step across its own plane; give it "
-                                 "zero there, or make the face a velocity inlet.", name, wall.velocity[axis]));
+    throw InputError(
+        fmt::format("The moving wall at {} has a velocity of {} cells a step across its own plane; give it "
+                    "zero there, or make the face a velocity inlet.",
+                    name, wall.velocity[axis]));
   if (wall.type == FaceType::navier_slip && !(wall.slip_length >= 0.0))
-    throw InputError(fmt::format("The slip length at {} is {} cells; it must not be negative.", name, wall.slip_length));
+    throw InputError(
+        fmt::format("The slip length at {} is {} cells; it must not be negative.", name, wall.slip_length));
   if (wall.type == FaceType::law_of_the_wall && !(wall.slip_coefficient > 0.0))
-    throw InputError(fmt::format("The slip coefficient at {} is {}; it must be positive.", name, wall.slip_coefficient));
+    throw InputError(
+        fmt::format("The slip coefficient at {} is {}; it must be positive.", name, wall.slip_coefficient));
 }
 
 // The box of a face field in its global dataset: ranks away from the face write nothing.
@@ -32,7 +36,8 @@ ArrayBox face_box(const Decomposition& decomposition, const Block& block, int fa
   const int u = first_axis(face / 2), v = second_axis(face / 2);
   const auto count = [&](int a) { return static_cast<std::uint64_t>(present ? block.size()[a] : 0); };
   return {{static_cast<std::uint64_t>(decomposition.cells()[v]), static_cast<std::uint64_t>(decomposition.cells()[u])},
-          {static_cast<std::uint64_t>(present ? block.lower[v] : 0), static_cast<std::uint64_t>(present ? block.lower[u] : 0)},
+          {static_cast<std::uint64_t>(present ? block.lower[v] : 0),
+           static_cast<std::uint64_t>(present ? block.lower[u] : 0)},
           {count(v), count(u)}};
 }
 
@@ -69,7 +74,7 @@ template <typename Real>
 double Walls<Real>::bounced_fraction(int face, double shear_rate) const {
   const FaceCondition& wall = faces_[face];
   const double viscosity = viscosity_ + eddy_coefficient_ * shear_rate;
-  const double scale = (wall.on_node ? 0.5 : 0.0) + 3.0 * viscosity;   // tau, or tau - 1/2
+  const double scale = (wall.on_node ? 0.5 : 0.0) + 3.0 * viscosity;  // tau, or tau - 1/2
   if (wall.type == FaceType::navier_slip) return scale / (scale + wall.slip_length);
   // Slip length A nu/u_tau, multiplied through by u_tau, which is zero in fluid at rest.
   const double friction_velocity = std::sqrt(viscosity * shear_rate);
@@ -79,8 +84,8 @@ double Walls<Real>::bounced_fraction(int face, double shear_rate) const {
 
 template <typename Real>
 bool Walls<Real>::wants_shear(int y, int z) const {
-  // The sweep with shear rates may round differently in the last bit, so which cells go through it must not depend on the
-  // ranks: with such a wall across x, all rows of all ranks do.
+  // The sweep with shear rates may round differently in the last bit, so which cells go through it must not depend on
+  // the ranks: with such a wall across x, all rows of all ranks do.
   const auto wanted = [&](int face) { return present_[face] && follows_shear(face); };
   return follows_shear(0) || follows_shear(1) || (y == 0 && wanted(2)) || (y == indexing_.size()[1] - 1 && wanted(3)) ||
          (z == 0 && wanted(4)) || (z == indexing_.size()[2] - 1 && wanted(5));
@@ -99,7 +104,8 @@ void Walls<Real>::take_shear(int y, int z, const RowShear<Real>& shear, const Ce
   for (int face = 0; face < 6; ++face) {
     if (!present_[face] || !follows_shear(face)) continue;
     const int axis = face / 2, wall_cell = face % 2 == 0 ? 0 : n[axis] - 1;
-    if (axis == 0) take_cell(face, wall_cell, y, z, shear.normal_to[0][wall_cell], cells);
+    if (axis == 0)
+      take_cell(face, wall_cell, y, z, shear.normal_to[0][wall_cell], cells);
     else if ((axis == 1 ? y : z) == wall_cell)
       for (int x = 0; x < n[0]; ++x) take_cell(face, x, y, z, shear.normal_to[axis][x], cells);
   }

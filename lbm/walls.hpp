@@ -11,7 +11,8 @@
 //                      the wall runs through the cell centre, and mass is conserved only where nothing varies along it.
 //
 // Slip length s and bounced fraction, exact in Couette flow for tau - 1/2 = 3 nu and nu with the eddies' share C_s^2 g,
-// g being the shear rate in the cell at the wall (Zhang et al. 2022, appendix A, whose A2 holds for the half-link wall):
+// g being the shear rate in the cell at the wall (Zhang et al. 2022, appendix A, whose A2 holds for the half-link
+// wall):
 //   half-link r = 1/[1 + s/(tau - 1/2)],   on_node r = 1/(1 + s/tau).
 // Law of the wall (the same, A3 to A5): slip velocity A u_tau with u_tau^2 = nu g, hence s = A nu/u_tau and, half-link,
 //   r = 3 u_tau/(3 u_tau + A).
@@ -67,8 +68,8 @@ public:
 
   // True if the shear rates of a row are wanted after the sweep.
   bool wants_shear(int y, int z) const;
-  // Takes the shear rates of a row, just swept, and updates the bounced fraction of the wall cells in it (solid cells have
-  // no shear rate; theirs goes back to the start value).
+  // Takes the shear rates of a row, just swept, and updates the bounced fraction of the wall cells in it (solid cells
+  // have no shear rate; theirs goes back to the start value).
   void take_shear(int y, int z, const RowShear<Real>& shear, const CellMap& cells);
 
   // The body force, where it changes with time.
@@ -81,8 +82,8 @@ public:
   void load(ArchiveReader& archive, const Decomposition& decomposition, const Block& block);
 
 private:
-  // Cells begin to end of a row along a face, for one direction that enters there: where the row's first cell is, and how
-  // far its cells, and each from the cell its mirrored population comes from, lie apart in memory.
+  // Cells begin to end of a row along a face, for one direction that enters there: where the row's first cell is, and
+  // how far its cells, and each from the cell its mirrored population comes from, lie apart in memory.
   struct Run {
     int face, direction, v, begin, end;
     std::ptrdiff_t first, stride, tangential;
@@ -95,12 +96,13 @@ private:
   bool decides_edge(int face, int other) const;
   bool follows_shear(int face) const;
   double bounced_fraction(int face, double shear_rate) const;
-  Real with_velocity(const Populations<Real>& populations, int direction, std::ptrdiff_t cell, const Vec3& velocity) const;
+  Real with_velocity(const Populations<Real>& populations, int direction, std::ptrdiff_t cell,
+                     const Vec3& velocity) const;
   Real at_pressure(const Populations<Real>& populations, int direction, std::ptrdiff_t cell, double deviation) const;
 
   CellIndexing indexing_;
   FaceConditions faces_;
-  double viscosity_, eddy_coefficient_;   // nu and C_s^2, lattice units
+  double viscosity_, eddy_coefficient_;  // nu and C_s^2, lattice units
   Vec3 half_force_;
   std::array<bool, 6> present_{};
   mutable std::array<FaceField<Real>, 6> bounced_;

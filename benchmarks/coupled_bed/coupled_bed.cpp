@@ -2,10 +2,10 @@
 //
 //   mpirun -n 2 coupled_bed [--box bed|box] [--steps N]
 //
-// bed: 240 x 80 x 200 cells and 2884 grains of 10 cells; box: 160 x 160 x 128 cells and 2250 grains. The grains settle dry
-// first, then water flows over them, fast enough to move the top ones, with 50 DEM sub-steps a step. Printed for single
-// and double storage: milliseconds a step by phase, MLUPS over all cells, links a grain, nanoseconds a link, and the ratio
-// to the pure lattice sweep over the same box in the same run. The last line is the same as JSON.
+// bed: 240 x 80 x 200 cells and 2884 grains of 10 cells; box: 160 x 160 x 128 cells and 2250 grains. The grains settle
+// dry first, then water flows over them, fast enough to move the top ones, with 50 DEM sub-steps a step. Printed for
+// single and double storage: milliseconds a step by phase, MLUPS over all cells, links a grain, nanoseconds a link, and
+// the ratio to the pure lattice sweep over the same box in the same run. The last line is the same as JSON.
 #include "core/mpi_session.hpp"
 #include "coupling/resolved_system.hpp"
 #include "dem/packing.hpp"
@@ -83,7 +83,8 @@ std::vector<dem::GrainSeed> settled(const Box& box, const Decomposition& decompo
   std::vector<double> positions(3 * seeds.size(), 0.0);
   for (std::size_t g = 0; g < grains.store().owned; ++g)
     for (int a = 0; a < 3; ++a) positions[3 * grains.store().id[g] + a] = grains.store().position[g][a];
-  MPI_Allreduce(MPI_IN_PLACE, positions.data(), static_cast<int>(positions.size()), MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+  MPI_Allreduce(MPI_IN_PLACE, positions.data(), static_cast<int>(positions.size()), MPI_DOUBLE, MPI_SUM,
+                MPI_COMM_WORLD);
   for (std::size_t g = 0; g < seeds.size(); ++g) {
     seeds[g].position = Vec3(&positions[3 * g]);
     seeds[g].radius = 0.5 * diameter;
@@ -107,7 +108,8 @@ std::unique_ptr<coupling::ResolvedSystem<Real>> flowing_bed(const Decomposition&
   p.initial_fluid = [bed](const Vec3& x) {
     const double height = x.z() - bed;
     const double u = height > 2e-4 ? 0.09 / 0.41 * std::log(height / 1.7e-4) : 0.0;
-    return coupling::FluidInitialState{0.0, Vec3(u, 0.05 * u * std::sin(400.0 * x.x()), 0.05 * u * std::cos(300.0 * x.y()))};
+    return coupling::FluidInitialState{0.0,
+                                       Vec3(u, 0.05 * u * std::sin(400.0 * x.x()), 0.05 * u * std::cos(300.0 * x.y()))};
   };
   // The top layer rolls from the start; the rest of the bed carries it.
   for (dem::GrainSeed& seed : seeds)
@@ -117,8 +119,8 @@ std::unique_ptr<coupling::ResolvedSystem<Real>> flowing_bed(const Decomposition&
   g.ghost_width = coupling::ResolvedSystem<Real>::ghost_reach(0.5 * diameter, spacing);
   g.attached_width = coupling::ResolvedSystem<Real>::attached_width;
   auto grains = std::make_unique<dem::GrainDynamics>(decomposition, MPI_COMM_WORLD, g, seeds);
-  return std::make_unique<coupling::ResolvedSystem<Real>>(std::make_unique<Decomposition>(decomposition), MPI_COMM_WORLD,
-                                                          p, std::move(grains));
+  return std::make_unique<coupling::ResolvedSystem<Real>>(std::make_unique<Decomposition>(decomposition),
+                                                          MPI_COMM_WORLD, p, std::move(grains));
 }
 
 // Best of the repetitions of a lattice step without grains, in seconds.
@@ -152,7 +154,7 @@ void measure(const Box& box, const Decomposition& decomposition, const std::vect
   for (int k = 0; k < 4; ++k) system->advance();
   system->timer().reset();
   double best = 1e9;
-  for (int k = 0; k < steps; k += 2) {   // pairs: the two kinds of lattice step differ
+  for (int k = 0; k < steps; k += 2) {  // pairs: the two kinds of lattice step differ
     MPI_Barrier(MPI_COMM_WORLD);
     const auto start = Clock::now();
     system->advance();
@@ -160,14 +162,14 @@ void measure(const Box& box, const Decomposition& decomposition, const std::vect
     best = std::min(best, max_over_ranks(MPI_COMM_WORLD, 0.5 * seconds_since(start)));
   }
   const double cells = static_cast<double>(system->cells());
-  const auto links = static_cast<double>(
-      sum_over_ranks(MPI_COMM_WORLD, static_cast<std::int64_t>(system->links().count())));
+  const auto links =
+      static_cast<double>(sum_over_ranks(MPI_COMM_WORLD, static_cast<std::int64_t>(system->links().count())));
   const std::int64_t moving = system->grains().moving_count(1e-3 * spacing / time_step);
   const double pure = pure_sweep<Real>(decomposition, 6);
   const double mlups = cells / best / 1e6;
   if (first_rank)
-    fmt::print("{} {}: {:.2f} ms a step (best), {:.1f} MLUPS, {:.2f} x the pure sweep ({:.1f} MLUPS)\n", box.name, storage,
-               1e3 * best, mlups, best / pure, cells / pure / 1e6);
+    fmt::print("{} {}: {:.2f} ms a step (best), {:.1f} MLUPS, {:.2f} x the pure sweep ({:.1f} MLUPS)\n", box.name,
+               storage, 1e3 * best, mlups, best / pure, cells / pure / 1e6);
   double link_seconds = 0.0;
   for (const auto& [phase, seconds] : system->timer().seconds()) {
     const double mean = sum_over_ranks(MPI_COMM_WORLD, seconds) / size_of(MPI_COMM_WORLD) / steps;

@@ -6,8 +6,8 @@
 #include "benchmarks/dem_contacts/settled_bed.hpp"
 #include "core/mpi_session.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -28,7 +28,7 @@ const std::map<int, Tiles> beds{{2884, {1, 1}}, {23072, {4, 2}}, {103824, {6, 6}
 struct Timing {
   double seconds_per_step = 0.0;
   std::int64_t contacts = 0;
-  std::vector<std::pair<std::string, double>> phases;   // of the fastest stretch, on the first rank
+  std::vector<std::pair<std::string, double>> phases;  // of the fastest stretch, on the first rank
 };
 
 void step(dem::GrainDynamics& grains) {
@@ -48,7 +48,7 @@ double timed_steps(dem::GrainDynamics& grains, int calls) {
 Timing measure(const std::vector<dem::GrainSeed>& seeds, const Tiles& tiles) {
   const Decomposition decomposition = bed_decomposition(tiles, size_of(MPI_COMM_WORLD));
   dem::GrainDynamics grains(decomposition, MPI_COMM_WORLD, bed_parameters(0.93, decomposition.box()), seeds);
-  timed_steps(grains, 2);   // the friction springs of a bed laid anew grow from zero, as in the peer's run
+  timed_steps(grains, 2);  // the friction springs of a bed laid anew grow from zero, as in the peer's run
   const double one = timed_steps(grains, 2) / 2.0;
   const int calls = std::max(1, static_cast<int>(seconds_per_stretch / one));
   Timing best;
@@ -64,8 +64,8 @@ Timing measure(const std::vector<dem::GrainSeed>& seeds, const Tiles& tiles) {
 }
 
 void print(int count, const Timing& t) {
-  fmt::print("{:7} grains, {:7} contacts: {:9.1f} us a step, {:6.2f} million grain-steps/s, {:5.1f} ns a contact;", count,
-             t.contacts, 1e6 * t.seconds_per_step, 1e-6 * count / t.seconds_per_step,
+  fmt::print("{:7} grains, {:7} contacts: {:9.1f} us a step, {:6.2f} million grain-steps/s, {:5.1f} ns a contact;",
+             count, t.contacts, 1e6 * t.seconds_per_step, 1e-6 * count / t.seconds_per_step,
              1e9 * t.seconds_per_step / static_cast<double>(t.contacts));
   double all = 0.0;
   for (const auto& [name, seconds] : t.phases) all += seconds;
@@ -78,8 +78,10 @@ void print(int count, const Timing& t) {
 void write_lammps(const std::string& path, const std::vector<dem::GrainSeed>& seeds, const PeriodicBox& box) {
   std::FILE* file = std::fopen(path.c_str(), "w");
   if (file == nullptr) throw CLI::FileError("cannot write " + path);
-  fmt::print(file, "Settled bed of glass spheres\n\n{} atoms\n1 atom types\n\n0 {:.17g} xlo xhi\n0 {:.17g} ylo yhi\n"
-                   "0 {:.17g} zlo zhi\n\nAtoms # sphere\n\n", seeds.size(), box.size[0], box.size[1], box.size[2]);
+  fmt::print(file,
+             "Settled bed of glass spheres\n\n{} atoms\n1 atom types\n\n0 {:.17g} xlo xhi\n0 {:.17g} ylo yhi\n"
+             "0 {:.17g} zlo zhi\n\nAtoms # sphere\n\n",
+             seeds.size(), box.size[0], box.size[1], box.size[2]);
   for (const dem::GrainSeed& s : seeds) {
     const Vec3 x = box.wrapped(s.position);
     fmt::print(file, "{} 1 {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n", s.id + 1, 2.0 * s.radius, s.density, x[0], x[1],
@@ -115,7 +117,8 @@ int main(int argc, char** argv) {
   CLI::App app{"Speed of the contacts of a settled bed of 5 mm glass spheres."};
   int grains = 0;
   std::string lammps_file;
-  app.add_option("--grains", grains, "only this bed: 2884, 23072 or 103824")->check(CLI::IsMember({2884, 23072, 103824}));
+  app.add_option("--grains", grains, "only this bed: 2884, 23072 or 103824")
+      ->check(CLI::IsMember({2884, 23072, 103824}));
   app.add_option("--write-lammps", lammps_file, "also write the bed as a LAMMPS data file; needs --grains")
       ->needs("--grains");
   CLI11_PARSE(app, argc, argv);

@@ -9,9 +9,9 @@ namespace thalweg::benchmark {
 
 namespace {
 
-constexpr double density = 2550.0;                  // kg/m^3
-constexpr Index3 tile_cells{24, 8, 32};             // of one diameter; high enough for the loose grains at the start
-constexpr double settling_time = 0.35;              // s; the highest grain falls 19 diameters in 0.14 s
+constexpr double density = 2550.0;       // kg/m^3
+constexpr Index3 tile_cells{24, 8, 32};  // of one diameter; high enough for the loose grains at the start
+constexpr double settling_time = 0.35;   // s; the highest grain falls 19 diameters in 0.14 s
 
 struct Place {
   GlobalId id;
@@ -51,7 +51,7 @@ dem::GrainParameters bed_parameters(double restitution, const PeriodicBox& box) 
   p.contact.tangential_stiffness = 5714.0;
   p.contact.restitution = restitution;
   p.contact.friction = p.contact.wall_friction = 0.5;
-  p.contact.attraction = true;   // as LAMMPS's law has it
+  p.contact.attraction = true;  // as LAMMPS's law has it
   p.walls = {dem::face_plane(box, 2, false, p.contact.wall_friction)};
   p.body_force = [](double mass, double) { return Vec3(0.0, 0.0, -gravity * mass); };
   p.time_step = 2e-6;
@@ -76,7 +76,7 @@ std::vector<dem::GrainSeed> settle_tile(MPI_Comm communicator) {
   dem::GrainParameters p = bed_parameters(0.3, box);
   p.time_step = 9e-6;
   p.sub_steps = 10;
-  p.skin = 0.4 * diameter;   // the grains arrive at 1.4 m/s
+  p.skin = 0.4 * diameter;  // the grains arrive at 1.4 m/s
   dem::GrainDynamics grains(decomposition, communicator, p, seeds);
   for (double time = 0.0; time < settling_time; time += p.time_step * p.sub_steps) {
     grains.prepare();

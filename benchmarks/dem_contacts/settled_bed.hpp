@@ -1,5 +1,5 @@
-// A settled bed of 5 mm glass spheres over a floor, periodic in plan, made by the program itself: the same grains on any
-// number of ranks and on any machine with the same arithmetic.
+// A settled bed of 5 mm glass spheres over a floor, periodic in plan, made by the program itself: the same grains on
+// any number of ranks and on any machine with the same arithmetic.
 #pragma once
 
 #include "core/decomposition.hpp"
@@ -12,9 +12,9 @@
 
 namespace thalweg::benchmark {
 
-inline constexpr double diameter = 5e-3;           // m
+inline constexpr double diameter = 5e-3;  // m
 inline constexpr int tile_grains = 2884;
-inline constexpr double gravity = 9.8;             // m/s^2
+inline constexpr double gravity = 9.8;  // m/s^2
 
 // How many copies of the tile, 24 x 8 diameters in plan and about 13 deep, lie side by side.
 using Tiles = std::array<int, 2>;

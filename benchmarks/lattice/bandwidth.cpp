@@ -29,7 +29,7 @@ double InPlaceBandwidth::measure(int passes) {
     MPI_Barrier(communicator_);
     const double start = MPI_Wtime();
     guard += update_in_place(values_);
-    MPI_Barrier(communicator_);   // all work lies between the first start and the last end
+    MPI_Barrier(communicator_);  // all work lies between the first start and the last end
     const double seconds = max_over_ranks(communicator_, MPI_Wtime() - start);
     const double bytes = 2.0 * sizeof(double) * static_cast<double>(values_.size()) * size_of(communicator_);
     best_ = std::max(best_, bytes / seconds);

@@ -7,13 +7,14 @@
 
 namespace thalweg::benchmark {
 
-// Updates a large array in place, a[i] = s a[i] + t, over and over: the traffic of a lattice that streams in place, without
-// its work. Each rank has its own array, far larger than its share of the caches.
+// Updates a large array in place, a[i] = s a[i] + t, over and over: the traffic of a lattice that streams in place,
+// without its work. Each rank has its own array, far larger than its share of the caches.
 class InPlaceBandwidth {
 public:
   explicit InPlaceBandwidth(MPI_Comm communicator);
 
-  // Best of so many passes so far and now: bytes read and written by all ranks per second, over the slowest rank's time.
+  // Best of so many passes so far and now: bytes read and written by all ranks per second, over the slowest rank's
+  // time.
   double measure(int passes);
 
 private:

@@ -2,10 +2,10 @@
 //
 //   mpirun -n RANKS benchmarks/lattice [NX NY NZ]
 //
-// Measures the bandwidth of an in-place update with all ranks at once, then the sweep with eddies and body force for every
-// storage and collision, in a periodic box and in a channel. A cell update moves 19 populations in and 19 out: 304 bytes
-// in double, 152 in single; the limit is the bandwidth over that. The best of many short runs counts, because whatever
-// else the machine does can only make a run slower. Ends with one line of JSON.
+// Measures the bandwidth of an in-place update with all ranks at once, then the sweep with eddies and body force for
+// every storage and collision, in a periodic box and in a channel. A cell update moves 19 populations in and 19 out:
+// 304 bytes in double, 152 in single; the limit is the bandwidth over that. The best of many short runs counts, because
+// whatever else the machine does can only make a run slower. Ends with one line of JSON.
 #include "benchmarks/lattice/bandwidth.hpp"
 #include "core/mpi_session.hpp"
 #include "lbm/fluid.hpp"
@@ -60,16 +60,16 @@ lbm::FluidState swirl(const Vec3& p) {
 
 struct Result {
   double million_updates_per_second = 0.0;
-  double bytes_per_cell = 0.0;   // of memory
+  double bytes_per_cell = 0.0;  // of memory
 };
 
-// Cell updates per second of all ranks, the best of many pairs of steps (one of each arrangement) within so many seconds.
+// Cell updates per second of all ranks, the best of many pairs of steps (one of each arrangement) within so many
+// seconds.
 template <typename Real>
 Result measure(const Index3& cells, const Box& box, const Collision& collision, double seconds) {
   std::array<bool, 3> periodic;
   for (int a = 0; a < 3; ++a) periodic[a] = box.faces[2 * a].type == lbm::FaceType::periodic;
-  const Decomposition decomposition(cells, 1.0, periodic,
-                                    Decomposition::best_layout(cells, size_of(MPI_COMM_WORLD)));
+  const Decomposition decomposition(cells, 1.0, periodic, Decomposition::best_layout(cells, size_of(MPI_COMM_WORLD)));
   lbm::Fluid<Real> fluid(decomposition, MPI_COMM_WORLD, water(collision.model), box.faces);
   fluid.initialise(swirl);
   double best = 1e30;
@@ -111,8 +111,8 @@ void run(const Index3& cells) {
   InPlaceBandwidth bandwidth(MPI_COMM_WORLD);
   const double first = bandwidth.measure(60);
   if (talks) {
-    fmt::print("{} ranks, {} x {} x {} cells, in-place bandwidth {:.1f} GB/s\n", size_of(MPI_COMM_WORLD), cells[0], cells[1],
-               cells[2], first * 1e-9);
+    fmt::print("{} ranks, {} x {} x {} cells, in-place bandwidth {:.1f} GB/s\n", size_of(MPI_COMM_WORLD), cells[0],
+               cells[1], cells[2], first * 1e-9);
     fmt::print("{:8} {:12} {:10} {:>9} {:>9} {:>9} {:>9} {:>10}\n", "storage", "collision", "box", "MLUPS", "B/update",
                "B/cell", "limit", "share");
   }
@@ -120,10 +120,11 @@ void run(const Index3& cells) {
   const double in_single = run_storage<float>("single", cells, bandwidth, talks);
   const double limit = bandwidth.measure(16);
   if (talks)
-    fmt::print("{{\"ranks\": {}, \"mlups_double\": {:.1f}, \"mlups_single\": {:.1f}, \"share_of_limit_double\": {:.3f}, "
-               "\"share_of_limit_single\": {:.3f}, \"bandwidth_gb_s\": {:.2f}}}\n",
-               size_of(MPI_COMM_WORLD), in_double, in_single, in_double * bytes_per_update<double> * 1e6 / limit,
-               in_single * bytes_per_update<float> * 1e6 / limit, limit * 1e-9);
+    fmt::print(
+        "{{\"ranks\": {}, \"mlups_double\": {:.1f}, \"mlups_single\": {:.1f}, \"share_of_limit_double\": {:.3f}, "
+        "\"share_of_limit_single\": {:.3f}, \"bandwidth_gb_s\": {:.2f}}}\n",
+        size_of(MPI_COMM_WORLD), in_double, in_single, in_double * bytes_per_update<double> * 1e6 / limit,
+        in_single * bytes_per_update<float> * 1e6 / limit, limit * 1e-9);
 }
 
 }  // namespace

@@ -2,10 +2,10 @@
 //
 //   bin/stability
 //
-// A Taylor-Green vortex of three dimensions in a periodic box of 32 cells with a lattice velocity u, for tau - 1/2 from 0.03
-// to 1e-4, with and without eddies, for so many turnover times that the flow has broken down to the size of a cell, which
-// is what an under-resolved flow does to a collision. Stable: the kinetic energy never grew beyond its start. Prints a
-// table in Markdown.
+// A Taylor-Green vortex of three dimensions in a periodic box of 32 cells with a lattice velocity u, for tau - 1/2 from
+// 0.03 to 1e-4, with and without eddies, for so many turnover times that the flow has broken down to the size of a
+// cell, which is what an under-resolved flow does to a collision. Stable: the kinetic energy never grew beyond its
+// start. Prints a table in Markdown.
 #include "core/mpi_session.hpp"
 #include "lbm/fluid.hpp"
 
@@ -19,8 +19,8 @@ namespace thalweg::benchmark {
 namespace {
 
 constexpr int side = 32;
-constexpr double turnovers = 12.0;   // the vortex breaks down after about nine
-constexpr double excesses[] = {3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4};   // tau - 1/2
+constexpr double turnovers = 12.0;                                   // the vortex breaks down after about nine
+constexpr double excesses[] = {3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4};  // tau - 1/2
 constexpr double velocities[] = {0.02, 0.05, 0.1, 0.15};
 
 struct Model {
@@ -75,8 +75,10 @@ void run() {
           if (!survives(m.model, excess, velocity, smagorinsky)) break;
           best = velocity;
         }
-        if (best == 0.0) fmt::print(" unstable |");
-        else fmt::print(" {:g} |", best);
+        if (best == 0.0)
+          fmt::print(" unstable |");
+        else
+          fmt::print(" {:g} |", best);
       }
       fmt::print("\n");
       std::fflush(stdout);

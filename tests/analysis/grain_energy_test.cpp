@@ -16,7 +16,7 @@ TEST(GrainEnergy, SumsMotionAndSpinOfSpheres) {
   GrainEnergy energy(MPI_COMM_WORLD);
   energy.observe(grains.snapshot(0.0));
   EXPECT_NEAR(value_of(energy.figures(), "grain_kinetic_energy"), 101 * 19.0, 101 * 19.0 * 1e-15);
-  EXPECT_EQ(value_of(energy.figures(), "grain_momentum_x"), 2.0);   // one grain more goes forward: m v, exact
+  EXPECT_EQ(value_of(energy.figures(), "grain_momentum_x"), 2.0);  // one grain more goes forward: m v, exact
   EXPECT_EQ(value_of(energy.figures(), "grain_momentum_y"), 4.0);
   EXPECT_EQ(value_of(energy.figures(), "grain_momentum_z"), -4.0);
 }

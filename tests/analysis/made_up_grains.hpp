@@ -20,7 +20,7 @@ public:
   MadeUpGrains(MPI_Comm communicator, GlobalId count, const std::function<MadeUpGrain(GlobalId)>& grain)
       : decomposition_({40, 20, 10}, 0.5, {true, true, false}, {1, 1, 1}), count_(count) {
     const int ranks = size_of(communicator), rank = rank_of(communicator);
-    for (GlobalId id = count - 1; id >= 0; --id) {   // descending, and scattered: never the order of one rank
+    for (GlobalId id = count - 1; id >= 0; --id) {  // descending, and scattered: never the order of one rank
       if ((id * 7 + id / 3) % ranks != rank) continue;
       const MadeUpGrain made = grain(id);
       id_.push_back(id);
@@ -32,10 +32,10 @@ public:
     }
   }
 
-  Snapshot snapshot(double time) const {   // domain of 20 m x 10 m x 5 m
+  Snapshot snapshot(double time) const {  // domain of 20 m x 10 m x 5 m
     Snapshot snapshot;
     snapshot.time = time;
-    snapshot.step = std::llround(100.0 * time);   // steps of 0.01 s
+    snapshot.step = std::llround(100.0 * time);  // steps of 0.01 s
     snapshot.decomposition = &decomposition_;
     snapshot.grains = {count_, id_, radius_, mass_, position_, velocity_, angular_velocity_, {}, {}, {}};
     return snapshot;

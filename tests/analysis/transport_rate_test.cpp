@@ -54,9 +54,9 @@ TEST(TransportRate, IsTheVolumeFluxOfAllGrainsPerWidth) {
 
   const double volume = std::numbers::pi / 6.0 * 0.25 * 0.25 * 0.25;
   const double q_s = volume * sum_of_speeds / (20.0 * 10.0);
-  EXPECT_NEAR(value_of(rate.figures(), "q_s"), q_s, 4e-16 * 1e3 * q_s);   // a few roundings a term
+  EXPECT_NEAR(value_of(rate.figures(), "q_s"), q_s, 4e-16 * 1e3 * q_s);  // a few roundings a term
   EXPECT_NEAR(value_of(rate.figures(), "q_star"), q_s / 0.75, 4e-16 * 1e3 * q_s);
-  EXPECT_EQ(value_of(rate.figures(), "moving_grains"), 200.0);             // 0.03 m/s itself is not moving
+  EXPECT_EQ(value_of(rate.figures(), "moving_grains"), 200.0);  // 0.03 m/s itself is not moving
   EXPECT_NEAR(value_of(rate.figures(), "largest_grain_speed"), std::sqrt(2.99 * 2.99 + 1.0), 1e-15 * 4);
 }
 
@@ -86,7 +86,7 @@ TEST(TransportRate, TakesTheMeanFromAGivenTimeAndCarriesItOverARestart) {
   TransportRate restarted(world, scales, 2.0), other_window(world, scales, 2.5);
   for (TransportRate* next : {&restarted, &other_window}) {
     next->load(checkpoint);
-    next->observe(grains(1.0).snapshot(2.0));   // what the checkpoint holds, seen again: it counts once
+    next->observe(grains(1.0).snapshot(2.0));  // what the checkpoint holds, seen again: it counts once
     next->observe(grains(3.0).snapshot(3.0));
   }
   // Measurements 1 and 3 times the same flux: mean 2, standard deviation 1.

@@ -41,7 +41,7 @@ TEST(Decomposition, WrapsRanksOnPeriodicAxesOnly) {
 
 TEST(Decomposition, ReachesAcrossThePeriodicFace) {
   const Decomposition d({40, 40, 40}, 0.5, {true, false, false}, {2, 1, 1});
-  EXPECT_TRUE(d.reaches(0, Vec3(19.7, 5.0, 5.0), 0.5));    // wraps round to the low face of rank 0
+  EXPECT_TRUE(d.reaches(0, Vec3(19.7, 5.0, 5.0), 0.5));  // wraps round to the low face of rank 0
   EXPECT_FALSE(d.reaches(0, Vec3(19.3, 5.0, 5.0), 0.5));
   EXPECT_TRUE(d.reaches(0, Vec3(10.4, 5.0, 5.0), 0.5));
   EXPECT_FALSE(d.reaches(0, Vec3(10.6, 5.0, 5.0), 0.5));

@@ -9,7 +9,9 @@ namespace {
 
 TEST(ExchangeRows, DeliversInOrderOfTheSendingRank) {
   const int rank = rank_of(MPI_COMM_WORLD), ranks = size_of(MPI_COMM_WORLD);
-  struct Row { int from, to, serial; };
+  struct Row {
+    int from, to, serial;
+  };
   std::vector<Row> rows;
   std::vector<int> destination;
   for (int serial = 0; serial < 3; ++serial)
@@ -30,7 +32,8 @@ TEST(PackedExchange, RingPassesAgainAndAgain) {
   const int rank = rank_of(MPI_COMM_WORLD), ranks = size_of(MPI_COMM_WORLD);
   const int left = (rank + ranks - 1) % ranks, right = (rank + 1) % ranks;
   // On one or two ranks both neighbours are the same rank; tags keep the two directions apart.
-  PackedExchange ring(MPI_COMM_WORLD, {{right, 0, 1, sizeof(int), sizeof(int)}, {left, 1, 0, sizeof(int), sizeof(int)}});
+  PackedExchange ring(MPI_COMM_WORLD,
+                      {{right, 0, 1, sizeof(int), sizeof(int)}, {left, 1, 0, sizeof(int), sizeof(int)}});
   for (int round = 0; round < 10; ++round) {
     *ring.send_buffer<int>(0) = 100 * rank + round;
     *ring.send_buffer<int>(1) = -100 * rank - round;

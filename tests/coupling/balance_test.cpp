@@ -19,8 +19,9 @@ Vec3 over_ranks(const Vec3& v) {
 std::vector<dem::GrainSeed> loose_grains() {
   std::vector<dem::GrainSeed> seeds;
   for (int k = 0; k < 12; ++k)
-    seeds.push_back(glass_sphere(k, Vec3(6.4e-3 * (k % 4) + 0.4e-3, 6.4e-3 * (k / 4 % 3) + 1.1e-3, 0.012 + 1.3e-3 * (k % 3)),
-                                 Vec3(0.3 - 0.05 * k, 0.1 * (k % 3) - 0.1, 0.02 * k - 0.1), 2.4e-3));
+    seeds.push_back(
+        glass_sphere(k, Vec3(6.4e-3 * (k % 4) + 0.4e-3, 6.4e-3 * (k / 4 % 3) + 1.1e-3, 0.012 + 1.3e-3 * (k % 3)),
+                     Vec3(0.3 - 0.05 * k, 0.1 * (k % 3) - 0.1, 0.02 * k - 0.1), 2.4e-3));
   return seeds;
 }
 
@@ -49,7 +50,7 @@ TEST(Momentum, OfTheFluidChangesOnlyByWhatItExchanges) {
     fluid_gain = (after.momentum - before.momentum).norm();
     before = after;
   }
-  EXPECT_GT(fluid_gain, 1e-4);   // there was something to balance
+  EXPECT_GT(fluid_gain, 1e-4);  // there was something to balance
 }
 
 // A grain gains exactly the impulse of its mean load and its weight. With dt the lattice step, m dv = (F + G) dt.
@@ -57,7 +58,8 @@ TEST(Momentum, OfAGrainIsTheImpulseOfItsLoad) {
   WaterBox box;
   box.gravity = Vec3(0.0, 0.0, -9.8);
   box.seeds = {glass_sphere(0, Vec3(0.0128, 0.0096, 0.0096), Vec3(0.1, 0.0, 0.0))};
-  const auto system = make_system<double>(box, MPI_COMM_WORLD, Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD)));
+  const auto system =
+      make_system<double>(box, MPI_COMM_WORLD, Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD)));
   Vec3 earlier_velocity(0.1, 0.0, 0.0);
   for (int step = 0; step < 40; ++step) {
     system->advance();
@@ -72,7 +74,7 @@ TEST(Momentum, OfAGrainIsTheImpulseOfItsLoad) {
     const double volume = 4.0 / 3.0 * std::numbers::pi * std::pow(2.5e-3, 3);
     const Vec3 weight(0.0, 0.0, -9.8 * 1550.0 * volume);
     const Vec3 gained = 2550.0 * volume * (velocity - earlier_velocity);
-    if (step > 0) {   // in the first sub-step's first half kick the load was not there yet
+    if (step > 0) {  // in the first sub-step's first half kick the load was not there yet
       EXPECT_NEAR((gained - (load + weight) * box.time_step).norm(), 0.0, 1e-3 * weight.norm() * box.time_step) << step;
     }
     earlier_velocity = velocity;
@@ -91,12 +93,13 @@ TEST_P(UniformMotion, ExertsNoForce) {
   box.viscosity = 2e-5;
   box.smagorinsky_constant = 0.0;
   box.links.momentum_exchange = GetParam();
-  const Vec3 velocity(0.35, -0.21, 0.13);   // m/s: 0.044, 0.026 and 0.016 cells a step
+  const Vec3 velocity(0.35, -0.21, 0.13);  // m/s: 0.044, 0.026 and 0.016 cells a step
   box.fluid_velocity = velocity;
   box.seeds = {glass_sphere(0, Vec3(0.0251, 0.0007, 0.0096), velocity)};
   if (!classical) box.seeds[0].motion = dem::Motion::held_rotation;
-  const auto system = make_system<double>(box, MPI_COMM_WORLD, Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD)));
-  const double scale = 0.5 * 1000.0 * velocity.squaredNorm() * std::numbers::pi * std::pow(2.5e-3, 2);   // 1/2 rho U^2 A
+  const auto system =
+      make_system<double>(box, MPI_COMM_WORLD, Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD)));
+  const double scale = 0.5 * 1000.0 * velocity.squaredNorm() * std::numbers::pi * std::pow(2.5e-3, 2);  // 1/2 rho U^2 A
   for (int step = 0; step < 300; ++step) {
     system->advance();
     const dem::GrainStore& store = system->grains().store();
@@ -110,7 +113,8 @@ TEST_P(UniformMotion, ExertsNoForce) {
 }
 
 INSTANTIATE_TEST_SUITE_P(BothExchanges, UniformMotion,
-                         ::testing::Values(lbm::MomentumExchange::galilean_invariant, lbm::MomentumExchange::classical));
+                         ::testing::Values(lbm::MomentumExchange::galilean_invariant,
+                                           lbm::MomentumExchange::classical));
 
 }  // namespace
 }  // namespace thalweg::coupling

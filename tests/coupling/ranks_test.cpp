@@ -1,5 +1,5 @@
-// Grains in a flow have the same bits on any number of ranks, however the box is cut: every rank runs the whole box alone
-// as well, and compares its own block and grains. Grains cross rank borders and periodic faces all the time.
+// Grains in a flow have the same bits on any number of ranks, however the box is cut: every rank runs the whole box
+// alone as well, and compares its own block and grains. Grains cross rank borders and periodic faces all the time.
 #include "tests/coupling/water_box.hpp"
 
 #include "core/mpi_session.hpp"
@@ -32,7 +32,8 @@ WaterBox crowded(const Index3& cells, const std::array<bool, 3>& periodic, int c
   box.gravity = Vec3(1.0, 0.3, -9.0);
   box.sub_steps = 20;
   box.initial = swirl;
-  const Index3 places{static_cast<int>(cells[0] * box.spacing / distance), static_cast<int>(cells[1] * box.spacing / distance),
+  const Index3 places{static_cast<int>(cells[0] * box.spacing / distance),
+                      static_cast<int>(cells[1] * box.spacing / distance),
                       static_cast<int>(cells[2] * box.spacing / distance)};
   for (int k = 0; k < count; ++k) {
     const Index3 at{k % places[0], k / places[0] % places[1], k / (places[0] * places[1])};

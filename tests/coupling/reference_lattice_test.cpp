@@ -163,8 +163,9 @@ TEST_P(LinksAgainstPlainLattice, AgreeToRoundOff) {
   EXPECT_GT(links.count(), 1000u);
 
   const auto state = [](const Vec3& p) {
-    return lbm::FluidState{0.01 * std::sin(0.7 * p.x()),
-                           Vec3(0.05 * std::sin(0.5 * p.y()), 0.03 * std::cos(0.6 * p.z()), 0.04 * std::sin(0.4 * p.x()))};
+    return lbm::FluidState{
+        0.01 * std::sin(0.7 * p.x()),
+        Vec3(0.05 * std::sin(0.5 * p.y()), 0.03 * std::cos(0.6 * p.z()), 0.04 * std::sin(0.4 * p.x()))};
   };
   fluid.initialise(state);
   const auto for_each_cell = [&](auto visit) {
@@ -178,8 +179,8 @@ TEST_P(LinksAgainstPlainLattice, AgreeToRoundOff) {
       plain.populations(c)[i] = lbm::equilibrium_deviation(i, s.density_deviation, s.velocity);
   });
 
-  const lbm::LinkOptions options{galilean ? lbm::MomentumExchange::galilean_invariant : lbm::MomentumExchange::classical,
-                                 lbm::WallDensity::local};
+  const lbm::LinkOptions options{
+      galilean ? lbm::MomentumExchange::galilean_invariant : lbm::MomentumExchange::classical, lbm::WallDensity::local};
   const PeriodicBox box{Vec3(cells[0], cells[1], cells[2]), {true, true, true}};
   for (int step = 0; step < 9; ++step) {
     fluid.exchange_halo();
@@ -188,10 +189,13 @@ TEST_P(LinksAgainstPlainLattice, AgreeToRoundOff) {
     lbm::apply_links(fluid.populations(), fluid.cells(), links, box, options, bodies);
     fluid.stream_and_collide();
     const std::vector<Load> loads = plain.step(galilean);
-    // Link distances are kept in single precision: 2^-25 of a link; populations near 0.01, a few hundred links a sphere.
+    // Link distances are kept in single precision: 2^-25 of a link; populations near 0.01, a few hundred links a
+    // sphere.
     for (std::size_t s = 0; s < spheres.size(); ++s) {
-      EXPECT_NEAR((bodies[s].force.to_vec3() - loads[s].force).norm(), 0.0, 1e-8) << "sphere " << s << ", step " << step;
-      EXPECT_NEAR((bodies[s].torque.to_vec3() - loads[s].torque).norm(), 0.0, 3e-8) << "sphere " << s << ", step " << step;
+      EXPECT_NEAR((bodies[s].force.to_vec3() - loads[s].force).norm(), 0.0, 1e-8)
+          << "sphere " << s << ", step " << step;
+      EXPECT_NEAR((bodies[s].torque.to_vec3() - loads[s].torque).norm(), 0.0, 3e-8)
+          << "sphere " << s << ", step " << step;
     }
   }
   double largest = 0.0;

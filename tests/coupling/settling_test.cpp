@@ -11,7 +11,7 @@ namespace thalweg::coupling {
 namespace {
 
 struct Place {
-  double height = 0.0, speed = 0.0;   // m, m/s upwards
+  double height = 0.0, speed = 0.0;  // m, m/s upwards
 };
 
 Place place_of_grain(const dem::GrainDynamics& grains) {
@@ -26,16 +26,17 @@ Place place_of_grain(const dem::GrainDynamics& grains) {
 TEST(Settling, SphereReachesItsTerminalSpeedAndRestsOnTheFloor) {
   WaterBox box;
   box.cells = {32, 32, 72};
-  box.spacing = 0.625e-3;                    // 8 cells a diameter
+  box.spacing = 0.625e-3;  // 8 cells a diameter
   box.periodic = {true, true, false};
   box.viscosity = 5e-5;
   box.smagorinsky_constant = 0.0;
   box.gravity = Vec3(0.0, 0.0, -9.8);
   box.sub_steps = 20;
   box.seeds = {glass_sphere(0, Vec3(0.0101, 0.0099, 0.040))};
-  const auto system = make_system<double>(box, MPI_COMM_WORLD, Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD)));
+  const auto system =
+      make_system<double>(box, MPI_COMM_WORLD, Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD)));
 
-  double terminal = 0.2;                     // m/s; solve C_d(Re) 1/2 rho u^2 A = submerged weight by iteration
+  double terminal = 0.2;  // m/s; solve C_d(Re) 1/2 rho u^2 A = submerged weight by iteration
   for (int k = 0; k < 200; ++k) {
     const double reynolds = terminal * 5e-3 / box.viscosity;
     const double drag = 24.0 / reynolds * (1.0 + 0.15 * std::pow(reynolds, 0.687));

@@ -12,9 +12,9 @@ namespace thalweg::coupling {
 struct WaterBox {
   Index3 cells{32, 24, 24};
   std::array<bool, 3> periodic{true, true, true};
-  double spacing = 0.8e-3;             // m
-  double time_step = 1e-4;             // s
-  double viscosity = 1e-6;             // m^2/s
+  double spacing = 0.8e-3;  // m
+  double time_step = 1e-4;  // s
+  double viscosity = 1e-6;  // m^2/s
   double smagorinsky_constant = 0.27;
   Vec3 gravity = Vec3(0.0, 0.0, 0.0);  // m/s^2; reduced: along z only the submerged weight counts
   Vec3 fluid_velocity = Vec3::Zero();  // m/s at the start
@@ -43,8 +43,10 @@ std::unique_ptr<ResolvedSystem<Real>> make_system(const WaterBox& box, MPI_Comm 
   p.links = box.links;
   p.link_tolerance = box.link_tolerance;
   p.sub_steps = box.sub_steps;
-  if (box.initial) p.initial_fluid = box.initial;
-  else p.initial_fluid = [u = box.fluid_velocity](const Vec3&) { return FluidInitialState{0.0, u}; };
+  if (box.initial)
+    p.initial_fluid = box.initial;
+  else
+    p.initial_fluid = [u = box.fluid_velocity](const Vec3&) { return FluidInitialState{0.0, u}; };
 
   dem::GrainParameters g;
   g.contact.normal_stiffness = 20000.0;

@@ -12,7 +12,8 @@
 namespace thalweg::dem {
 namespace {
 
-ContactParameters elastic(double youngs_modulus, double poisson_ratio, double friction = 0.0, double restitution = 1.0) {
+ContactParameters elastic(double youngs_modulus, double poisson_ratio, double friction = 0.0,
+                          double restitution = 1.0) {
   ContactParameters contact;
   contact.law = Law::hertz_mindlin;
   contact.youngs_modulus = youngs_modulus;
@@ -34,15 +35,13 @@ GrainSeed sphere(GlobalId id, const Vec3& position, const Vec3& velocity, double
 }
 
 // A cube ten radii wide with a floor.
-Decomposition room(double radius) {
-  return Decomposition({20, 20, 20}, 0.5 * radius, {true, true, false}, {1, 1, 1});
-}
+Decomposition room(double radius) { return Decomposition({20, 20, 20}, 0.5 * radius, {true, true, false}, {1, 1, 1}); }
 
 GrainParameters parameters_of(const ContactParameters& contact, const Decomposition& decomposition, double time_step) {
   GrainParameters p;
   p.contact = contact;
   p.walls = {face_plane(decomposition.box(), 2, false, contact.wall_friction)};
-  p.wall_contact = contact;   // rigid: so stiff that the wall gives way by less than rounding
+  p.wall_contact = contact;  // rigid: so stiff that the wall gives way by less than rounding
   p.wall_contact->youngs_modulus = 1e30;
   p.time_step = time_step;
   p.sub_steps = 1;
@@ -51,7 +50,7 @@ GrainParameters parameters_of(const ContactParameters& contact, const Decomposit
 }
 
 struct Impact {
-  double overlap = 0.0, force = 0.0, duration = 0.0;   // m, N, s
+  double overlap = 0.0, force = 0.0, duration = 0.0;  // m, N, s
 };
 
 // Steps until the grains have met and parted.
@@ -78,13 +77,15 @@ struct Material {
 
 TEST(ChungOoi, Test1TwoSpheresMeetHeadOn) {
   const double radius = 0.01, speed = 10.0;
-  const struct { Material material; double overlap, force, duration; } cases[] = {
-      {{48e9, 0.2, 2800.0}, 274.1e-6, 10.7e3, 40.3e-6},     // glass
-      {{20e9, 0.25, 2500.0}, 368.3e-6, 7.11e3, 54.2e-6}};   // limestone
+  const struct {
+    Material material;
+    double overlap, force, duration;
+  } cases[] = {{{48e9, 0.2, 2800.0}, 274.1e-6, 10.7e3, 40.3e-6},    // glass
+               {{20e9, 0.25, 2500.0}, 368.3e-6, 7.11e3, 54.2e-6}};  // limestone
   for (const auto& c : cases) {
     const Decomposition box = room(radius);
-    const GrainParameters p = parameters_of(elastic(c.material.youngs_modulus, c.material.poisson_ratio, 0.35), box,
-                                            c.duration / 2000.0);
+    const GrainParameters p =
+        parameters_of(elastic(c.material.youngs_modulus, c.material.poisson_ratio, 0.35), box, c.duration / 2000.0);
     const Vec3 centre(0.05, 0.05, 0.05), arm(radius + 1e-6, 0.0, 0.0);
     GrainDynamics grains(box, MPI_COMM_SELF, p,
                          {sphere(0, centre - arm, Vec3(speed, 0, 0), radius, c.material.density),
@@ -100,13 +101,15 @@ TEST(ChungOoi, Test1TwoSpheresMeetHeadOn) {
 
 TEST(ChungOoi, Test2SphereOnARigidPlane) {
   const double radius = 0.1, speed = 0.2;
-  const struct { Material material; double overlap, force, duration; } cases[] = {
-      {{70e9, 0.3, 2699.0}, 49.7e-6, 11.37e3, 732e-6},       // aluminium alloy
-      {{40e9, 0.35, 1800.0}, 52.1e-6, 7.23e3, 767e-6}};      // magnesium alloy
+  const struct {
+    Material material;
+    double overlap, force, duration;
+  } cases[] = {{{70e9, 0.3, 2699.0}, 49.7e-6, 11.37e3, 732e-6},   // aluminium alloy
+               {{40e9, 0.35, 1800.0}, 52.1e-6, 7.23e3, 767e-6}};  // magnesium alloy
   for (const auto& c : cases) {
     const Decomposition box = room(radius);
-    const GrainParameters p = parameters_of(elastic(c.material.youngs_modulus, c.material.poisson_ratio), box,
-                                            c.duration / 2000.0);
+    const GrainParameters p =
+        parameters_of(elastic(c.material.youngs_modulus, c.material.poisson_ratio), box, c.duration / 2000.0);
     GrainDynamics grains(box, MPI_COMM_SELF, p,
                          {sphere(0, Vec3(0.5, 0.5, radius + 1e-6), Vec3(0, 0, -speed), radius, c.material.density)});
     const Impact impact = watch(grains);
@@ -124,7 +127,7 @@ TEST(ChungOoi, Test3RestitutionIsTheOneGivenAtAnySpeed) {
         const Decomposition box = room(radius);
         ContactParameters contact = elastic(70e9, 0.33, 0.0, e);
         contact.attraction = attraction;
-        const double duration = 14e-6 * std::pow(speed / 3.9, -0.2);   // of an elastic impact, about
+        const double duration = 14e-6 * std::pow(speed / 3.9, -0.2);  // of an elastic impact, about
         GrainDynamics grains(box, MPI_COMM_SELF, parameters_of(contact, box, duration / 4000.0),
                              {sphere(0, Vec3(0.0125, 0.0125, radius + 1e-7), Vec3(0, 0, -speed), radius, 2699.0)});
         watch(grains);
@@ -141,7 +144,8 @@ struct Rebound {
 Rebound oblique(const ContactParameters& contact, double radius, double density, double vx, double vz, double spin,
                 double time_step) {
   const Decomposition box = room(radius);
-  GrainSeed seed = sphere(0, Vec3(5.0 * radius, 5.0 * radius, radius * (1.0 + 1e-6)), Vec3(vx, 0, -vz), radius, density);
+  GrainSeed seed =
+      sphere(0, Vec3(5.0 * radius, 5.0 * radius, radius * (1.0 + 1e-6)), Vec3(vx, 0, -vz), radius, density);
   seed.angular_velocity = Vec3(0.0, spin, 0.0);
   GrainDynamics grains(box, MPI_COMM_SELF, parameters_of(contact, box, time_step), {seed});
   watch(grains);
@@ -153,7 +157,8 @@ TEST(ChungOoi, Test4ObliqueImpactAtSeveralAngles) {
   // tangential speeds is exact: e_t = 1 - mu (1 + e)/tan(angle), spin 5 mu (1 + e) v_n/(2 R).
   const double radius = 2.5e-3, speed = 3.9, mu = 0.092, e = 0.98;
   // Published for 20, 30, 50, 70 degrees; sliding throughout beyond about 18 degrees.
-  const double published[][3] = {{20.0, 0.616, 511.0}, {30.0, 0.684, 617.0}, {50.0, 0.845, 457.0}, {70.0, 0.932, 246.0}};
+  const double published[][3] = {
+      {20.0, 0.616, 511.0}, {30.0, 0.684, 617.0}, {50.0, 0.845, 457.0}, {70.0, 0.932, 246.0}};
   for (const auto& [degrees, e_t, spin] : published) {
     const double angle = degrees * std::numbers::pi / 180.0;
     const double vx = speed * std::sin(angle), vn = speed * std::cos(angle);
@@ -163,7 +168,7 @@ TEST(ChungOoi, Test4ObliqueImpactAtSeveralAngles) {
       // The lever arm ends at the plane, an overlap of up to 0.8 % nearer than the undeformed radius of the theory.
       EXPECT_NEAR(r.vx / vx, sliding, 2e-3) << degrees;
       EXPECT_NEAR(r.spin / (2.5 * mu * (1.0 + e) * vn / radius), 0.996, 4e-3) << degrees;
-      EXPECT_NEAR(r.spin, spin, 2e-2 * spin) << degrees;   // read off a figure by others
+      EXPECT_NEAR(r.spin, spin, 2e-2 * spin) << degrees;  // read off a figure by others
     }
     EXPECT_NEAR(r.vx / vx, e_t, 0.02) << degrees;
     EXPECT_NEAR(r.vz, e * vn, 2e-3 * vn) << degrees;
@@ -176,7 +181,9 @@ TEST(ChungOoi, Test5SpinOfGlidingImpactReachesItsPlateau) {
   const double radius = 1e-5, vn = 5.0, mu = 0.3;
   const ContactParameters steel = elastic(208e9, 0.3, mu);
   // The lever arm ends at the plane, an overlap of up to 2 % nearer than the undeformed radius of the theory.
-  const auto spin_of = [&](double vx) { return radius * oblique(steel, radius, 7850.0, vx, vn, 0.0, 5e-12).spin / (mu * vn); };
+  const auto spin_of = [&](double vx) {
+    return radius * oblique(steel, radius, 7850.0, vx, vn, 0.0, 5e-12).spin / (mu * vn);
+  };
   EXPECT_NEAR(spin_of(12.5), 4.95, 0.05);
   EXPECT_NEAR(spin_of(25.0), 4.95, 0.05);
   EXPECT_LT(spin_of(2.0), 4.0);
@@ -184,12 +191,12 @@ TEST(ChungOoi, Test5SpinOfGlidingImpactReachesItsPlateau) {
 }
 
 TEST(ChungOoi, Test6BackspinOnAPlaneAndTest8OnAHeavySphere) {
-  // V_n = 0.2 m/s, mu = 0.4, e = 0.5, spinning only: |v_x'| = mu (1 + e) V_n, |w'| = w0 - 5 mu (1 + e) V_n/(2 R) while it
-  // slides throughout.
+  // V_n = 0.2 m/s, mu = 0.4, e = 0.5, spinning only: |v_x'| = mu (1 + e) V_n, |w'| = w0 - 5 mu (1 + e) V_n/(2 R) while
+  // it slides throughout.
   const double radius = 0.1, vn = 0.2, mu = 0.4, e = 0.5, w0 = 20.0;
   for (const ContactParameters& contact : {elastic(70e9, 0.33, mu, e), elastic(40e9, 0.35, mu, e)}) {
     ContactParameters ends_at_zero = contact;
-    ends_at_zero.attraction = false;   // a pull at the end would rub as well
+    ends_at_zero.attraction = false;  // a pull at the end would rub as well
     const Rebound r = oblique(ends_at_zero, radius, 2700.0, 0.0, vn, -w0, 2e-7);
     // The dashpot presses at once and the tangential spring only after it has stretched, so that the sphere sticks at
     // first: less than a hundredth of the impulse is missing.

@@ -6,8 +6,8 @@
 
 namespace thalweg::dem::test {
 
-inline constexpr double glass_density = 2550.0;   // kg/m^3
-inline constexpr double glass_radius = 2.5e-3;    // m
+inline constexpr double glass_density = 2550.0;  // kg/m^3
+inline constexpr double glass_radius = 2.5e-3;   // m
 
 inline ContactParameters glass(double restitution, bool attraction = false) {
   ContactParameters contact;

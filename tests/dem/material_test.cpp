@@ -15,7 +15,7 @@ namespace {
 double restitution_by_integration(double zeta, bool attraction) {
   const double h = 1e-4, gamma = 2.0 * zeta;
   const auto force = [&](double x, double v) {
-    const double pressed = x + gamma * v;   // x: overlap, v: its rate
+    const double pressed = x + gamma * v;  // x: overlap, v: its rate
     return attraction ? -pressed : -std::max(pressed, 0.0);
   };
   double x = 0.0, v = 1.0;
@@ -96,7 +96,7 @@ TEST(Mixing, SpringsInSeriesAndGeometricMeans) {
   b.tangential_stiffness = 0.0;
   b.friction = 0.02;
   const ContactParameters m = mixed(a, b);
-  EXPECT_NEAR(m.normal_stiffness, 30000.0, 1e-9);   // 2/(1/20000 + 1/60000)
+  EXPECT_NEAR(m.normal_stiffness, 30000.0, 1e-9);  // 2/(1/20000 + 1/60000)
   EXPECT_EQ(m.tangential_stiffness, 0.0);
   EXPECT_NEAR(*m.restitution, 0.6, 1e-15);
   EXPECT_NEAR(m.friction, 0.1, 1e-15);

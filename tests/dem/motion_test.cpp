@@ -1,7 +1,7 @@
 // Many grains: free flight of a colliding cloud, coming to rest, rolling, held grains, loads.
 #include "core/error.hpp"
+#include "core/order_free_sum.hpp"
 #include "dem/packing.hpp"
-#include "dem/reproducible_sum.hpp"
 #include "tests/dem/grain_cases.hpp"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ TEST(Cloud, ConservesMomentumToRoundOff) {
   const double energy = grains.kinetic_energy();
   const double scale = 80.0 * grains.largest_speed() * test::glass_sphere(0, Vec3::Zero()).mass();
   for (int n = 0; n < 300; ++n) test::step(grains);
-  EXPECT_LT(grains.kinetic_energy(), 0.9 * energy);   // they did collide
+  EXPECT_LT(grains.kinetic_energy(), 0.9 * energy);  // they did collide
   EXPECT_GT(grains.kinetic_energy(), 0.0);
   // 15000 half kicks, each rounded once per grain.
   EXPECT_LT((grains.momentum() - start).norm(), 15000.0 * 2.2e-16 * scale);
@@ -58,7 +58,7 @@ TEST(Settling, GrainsComeToRestAndTheFloorCarriesTheirWeight) {
   p.sub_steps = 20;
   p.skin = 1e-3;
   GrainDynamics grains(decomposition, MPI_COMM_WORLD, p, spread(decomposition.box(), 100, 0.1));
-  for (int n = 0; n < 3000; ++n) test::step(grains);   // 0.54 s; the highest falls 60 mm in 0.11 s
+  for (int n = 0; n < 3000; ++n) test::step(grains);  // 0.54 s; the highest falls 60 mm in 0.11 s
 
   const double diameter = 2.0 * test::glass_radius;
   // Nothing takes energy from rolling: a loose grain or two may still swing in their dimples by a small part of one.
@@ -71,11 +71,11 @@ TEST(Settling, GrainsComeToRestAndTheFloorCarriesTheirWeight) {
     carried.push_back(s.contact_force[i][2]);
     height.push_back(s.position[i][2]);
   }
-  const double weight = g * reproducible_sum(MPI_COMM_WORLD, mass);
-  EXPECT_NEAR(reproducible_sum(MPI_COMM_WORLD, carried) / weight, 1.0, 1e-2);
+  const double weight = g * order_free_sums(MPI_COMM_WORLD, mass, 1)[0];
+  EXPECT_NEAR(order_free_sums(MPI_COMM_WORLD, carried, 1)[0] / weight, 1.0, 1e-2);
   // 100 spheres on a plan of 36 square diameters: between the height of a dense and of a very loose bed.
-  EXPECT_GT(reproducible_sum(MPI_COMM_WORLD, height) / 100.0, 0.9 * diameter);
-  EXPECT_LT(reproducible_sum(MPI_COMM_WORLD, height) / 100.0, 2.0 * diameter);
+  EXPECT_GT(order_free_sums(MPI_COMM_WORLD, height, 1)[0] / 100.0, 0.9 * diameter);
+  EXPECT_LT(order_free_sums(MPI_COMM_WORLD, height, 1)[0] / 100.0, 2.0 * diameter);
   // At least the overlap of a column of three, at most a few times the mean pressure concentrated in one contact.
   const double unit = g * s.mass[0] / p.contact.normal_stiffness / diameter;
   EXPECT_GT(grains.largest_overlap(), unit);
@@ -92,13 +92,13 @@ TEST(Rolling, SlidingTurnsIntoRollingAtFiveSevenths) {
   p.time_step = 1e-5;
   p.sub_steps = 25;
   p.skin = 1e-3;
-  const double height = test::glass_radius - weight / p.contact.normal_stiffness * 0.06;   // within the allowed overlap
+  const double height = test::glass_radius - weight / p.contact.normal_stiffness * 0.06;  // within the allowed overlap
   GrainDynamics grains(test::cube(), MPI_COMM_SELF, p,
                        {test::glass_sphere(0, Vec3(0.01, 0.025, height), Vec3(u0, 0.0, 0.0))});
   for (int n = 0; n < 400; ++n) {
     test::step(grains);
     const double time = (n + 1) * 2.5e-4;
-    if (time > 4e-3 && time < 8e-3) {   // slides until 9.7 ms; the bounce of setting it down has died out
+    if (time > 4e-3 && time < 8e-3) {  // slides until 9.7 ms; the bounce of setting it down has died out
       EXPECT_NEAR(grains.store().velocity[0][0], u0 - 0.3 * g * time, 0.01 * u0) << time;
     }
   }
@@ -127,14 +127,14 @@ TEST(HeldGrains, KeepTheVelocityTheyWereGivenAndPushOthers) {
                         test::glass_sphere(4, Vec3(0.0151, 0.010, 0.025))});
   for (GlobalId id : {0, 2}) grains.store().load_force[id] = Vec3(0.0, 1e-5, 0.0);
   grains.store().load_torque[2] = Vec3(1e-6, 0.0, 0.0);
-  for (int n = 0; n < 20; ++n) test::step(grains);   // 2 ms
+  for (int n = 0; n < 20; ++n) test::step(grains);  // 2 ms
   const GrainStore& s = grains.store();
   EXPECT_EQ(s.position[0], still.position);
   EXPECT_EQ(s.velocity[0], Vec3::Zero());
   EXPECT_EQ(s.velocity[1], piston.velocity);
   EXPECT_NEAR(s.position[1][0], 0.010 + 0.2 * 2e-3, 1e-12);
   EXPECT_EQ(s.angular_velocity[2], spinning.angular_velocity);
-  EXPECT_NEAR(s.velocity[2][1], 1e-5 / s.mass[2] * 2e-3, 1e-12);   // free to move: a = F/m
+  EXPECT_NEAR(s.velocity[2][1], 1e-5 / s.mass[2] * 2e-3, 1e-12);  // free to move: a = F/m
   // Elastic impacts on a body of infinite mass: reversed, and thrown at twice the piston's speed. Verlet's error is
   // at most (pi/143)^2/8 of the speed of approach with 143 steps a contact.
   EXPECT_NEAR(s.velocity[3][0], -0.1, 6.1e-5 * 0.1);

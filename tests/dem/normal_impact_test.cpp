@@ -11,11 +11,11 @@
 namespace thalweg::dem {
 namespace {
 
-constexpr double impact_speed = 0.1;   // m/s
+constexpr double impact_speed = 0.1;  // m/s
 
 struct Outcome {
   double restitution;
-  double duration;   // s, in steps of the integrator
+  double duration;  // s, in steps of the integrator
 };
 
 GrainParameters impact_parameters(const ContactParameters& contact, double time_step) {
@@ -39,8 +39,10 @@ Outcome fall_on_wall(const ContactParameters& contact, double steps, double phas
   int touching = 0;
   for (int n = 0; n < 20 * steps; ++n) {
     test::step(grains);
-    if (!grains.contacts().empty()) ++touching;
-    else if (touching > 0) break;
+    if (!grains.contacts().empty())
+      ++touching;
+    else if (touching > 0)
+      break;
   }
   return {grains.store().velocity[0][2] / impact_speed, touching * dt};
 }
@@ -107,7 +109,7 @@ TEST(NormalImpact, SpheresOfDifferentSizePartWithTheRestitution) {
     GrainDynamics grains(test::cube(), MPI_COMM_SELF, p,
                          {test::glass_sphere(0, first, impact_speed * direction),
                           test::glass_sphere(1, box.wrapped(first + distance * direction), Vec3::Zero(), radius)});
-    for (int n = 0; n < 250; ++n) test::step(grains);   // 1 ms: about six contact times
+    for (int n = 0; n < 250; ++n) test::step(grains);  // 1 ms: about six contact times
     const GrainStore& s = grains.store();
     const Vec3 parting = s.velocity[1] - s.velocity[0];
     EXPECT_NEAR(parting.dot(direction), 0.8 * impact_speed, 1e-3 * impact_speed);

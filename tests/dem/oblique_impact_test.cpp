@@ -2,8 +2,8 @@
 // equal.
 #include "tests/dem/grain_cases.hpp"
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -12,13 +12,13 @@
 namespace thalweg::dem {
 namespace {
 
-constexpr double normal_speed = 5e-4;   // m/s: slow, so that the line of centres hardly turns and overlaps are small
+constexpr double normal_speed = 5e-4;  // m/s: slow, so that the line of centres hardly turns and overlaps are small
 
 GrainParameters parameters_of(const ContactParameters& contact) {
   GrainParameters p;
   p.contact = contact;
   p.walls = {face_plane(test::cube().box(), 2, false, contact.wall_friction)};
-  p.time_step = 2e-7;   // 1400 steps a contact on the wall, 1000 of a pair
+  p.time_step = 2e-7;  // 1400 steps a contact on the wall, 1000 of a pair
   p.sub_steps = 50;
   p.skin = 5e-4;
   return p;
@@ -30,7 +30,7 @@ double wall_rebound(const ContactParameters& contact, double ratio) {
   const Vec3 velocity = normal_speed * (ratio * along - Vec3::UnitZ());
   GrainDynamics grains(test::cube(), MPI_COMM_SELF, parameters_of(contact),
                        {test::glass_sphere(0, Vec3(0.025, 0.025, test::glass_radius + 1e-9), velocity)});
-  for (int n = 0; n < 100; ++n) test::step(grains);   // 1 ms
+  for (int n = 0; n < 100; ++n) test::step(grains);  // 1 ms
   EXPECT_GT(grains.store().velocity[0][2], 0.0);
   const Vec3 surface =
       grains.store().velocity[0] + grains.store().angular_velocity[0].cross(-test::glass_radius * Vec3::UnitZ());
@@ -39,7 +39,7 @@ double wall_rebound(const ContactParameters& contact, double ratio) {
 
 // The same of two equal spheres that meet with opposite velocities.
 double pair_rebound(const ContactParameters& contact, double ratio) {
-  const Vec3 n = Vec3(1.0, 2.0, 2.0) / 3.0, t = Vec3(2.0, 1.0, -2.0) / 3.0;   // from second to first; tangent
+  const Vec3 n = Vec3(1.0, 2.0, 2.0) / 3.0, t = Vec3(2.0, 1.0, -2.0) / 3.0;  // from second to first; tangent
   const Vec3 half = 0.5 * normal_speed * (ratio * t - n);
   const Vec3 centre(0.025, 0.025, 0.025);
   const Vec3 arm = (test::glass_radius + 5e-10) * n;
@@ -141,8 +141,8 @@ TEST(ObliqueImpact, AngularMomentumIsConserved) {
   };
   const Vec3 start = angular_momentum();
   for (int k = 0; k < 200; ++k) test::step(grains);
-  EXPECT_GT((grains.store().velocity[0] + v).norm(), 0.1);   // they did collide
-  EXPECT_NEAR((angular_momentum() - start).norm() / start.norm(), 0.0, 1e-11);   // round-off of 10^4 steps
+  EXPECT_GT((grains.store().velocity[0] + v).norm(), 0.1);                      // they did collide
+  EXPECT_NEAR((angular_momentum() - start).norm() / start.norm(), 0.0, 1e-11);  // round-off of 10^4 steps
 }
 
 }  // namespace

@@ -64,8 +64,7 @@ TEST(RandomPacking, KeepsClearOfWallsObstaclesAndEachOther) {
     ASSERT_GE(centres[i][2], 0.01 + radii[i] + 1e-3 - 1e-12);
     ASSERT_LE(centres[i][2], 0.1 - radii[i] - 1e-3 + 1e-12);
     ASSERT_GE(flume.difference(centres[i], obstacle.position).norm(), radii[i] + obstacle.radius);
-    for (std::size_t j = 0; j < i; ++j)
-      ASSERT_GE(flume.difference(centres[i], centres[j]).norm(), radii[i] + radii[j]);
+    for (std::size_t j = 0; j < i; ++j) ASSERT_GE(flume.difference(centres[i], centres[j]).norm(), radii[i] + radii[j]);
   }
 }
 

@@ -12,12 +12,12 @@ namespace {
 
 struct Case {
   Index3 cells;
-  double spacing;   // m
+  double spacing;  // m
   std::array<bool, 3> periodic;
   int grains;
-  Vec3 gravity;     // m/s^2
-  Vec3 drift;       // m/s, of all grains at the start: a heap in contact crosses the borders between ranks
-  bool elastic = false;   // Hertz and Mindlin, two materials, tangential damping
+  Vec3 gravity;          // m/s^2
+  Vec3 drift;            // m/s, of all grains at the start: a heap in contact crosses the borders between ranks
+  bool elastic = false;  // Hertz and Mindlin, two materials, tangential damping
 };
 
 // Grains of 3.2 to 5 mm, thrown about at up to 0.4 m/s an axis.
@@ -29,8 +29,7 @@ std::vector<GrainSeed> cloud(const Case& c) {
   std::vector<GrainSeed> seeds;
   for (int i = 0; i < c.grains; ++i) {
     const auto draw = [i](int n) { return 2.0 * uniform_random(2, i, n) - 1.0; };
-    GrainSeed seed =
-        test::glass_sphere(i, places[i], c.drift + 0.4 * Vec3(draw(0), draw(1), draw(2)), radii[i]);
+    GrainSeed seed = test::glass_sphere(i, places[i], c.drift + 0.4 * Vec3(draw(0), draw(1), draw(2)), radii[i]);
     seed.angular_velocity = 30.0 * Vec3(draw(3), draw(4), draw(5));
     if (c.elastic) seed.material = i % 2;
     if (i % 17 == 3) {
@@ -51,7 +50,7 @@ GrainParameters parameters_of(const Case& c) {
   p.contact.tangential_stiffness = 2.0 / 7.0 * 500.0;
   if (c.elastic) {
     p.contact.law = Law::hertz_mindlin;
-    p.contact.youngs_modulus = 1e5;   // about as soft
+    p.contact.youngs_modulus = 1e5;  // about as soft
     p.contact.poisson_ratio = 0.3;
     p.contact.tangential_damping = 0.5;
     p.other_materials = {p.contact};
@@ -115,8 +114,7 @@ void expect_true_ghosts(const GrainDynamics& grains, MPI_Comm communicator) {
              spin = values("grains/angular_velocity"), attached = values("grains/attached");
   const GrainStore& s = grains.store();
   for (std::size_t i = s.owned; i < s.total(); ++i) {
-    for (int a = 0; a < 2; ++a)
-      ASSERT_EQ(s.attached_of(i)[a], attached[static_cast<std::size_t>(2 * s.id[i] + a)]);
+    for (int a = 0; a < 2; ++a) ASSERT_EQ(s.attached_of(i)[a], attached[static_cast<std::size_t>(2 * s.id[i] + a)]);
     for (int a = 0; a < 3; ++a) {
       const std::size_t at = static_cast<std::size_t>(3 * s.id[i] + a);
       ASSERT_EQ(s.position[i][a], position[at]);
@@ -201,9 +199,9 @@ TEST(Ranks, StateSavedByAllIsLoadedByOne) {
   const Case c{{16, 8, 16}, 2.0e-3, {true, true, false}, 80, Vec3(0.0, 0.0, -15.0), Vec3(0.3, 0.2, 0.0)};
   const GrainParameters p = parameters_of(c);
   const Decomposition one(c.cells, c.spacing, c.periodic, {1, 1, 1});
-  GrainDynamics together(Decomposition(c.cells, c.spacing, c.periodic,
-                                       Decomposition::best_layout(c.cells, size_of(MPI_COMM_WORLD))),
-                         MPI_COMM_WORLD, p, cloud(c));
+  GrainDynamics together(
+      Decomposition(c.cells, c.spacing, c.periodic, Decomposition::best_layout(c.cells, size_of(MPI_COMM_WORLD))),
+      MPI_COMM_WORLD, p, cloud(c));
   run(together, 120);
   const thalweg::test::MemoryArchive half = saved(together, MPI_COMM_WORLD);
   run(together, 120);

@@ -24,7 +24,8 @@ GrainParameters usual() {
   return p;
 }
 
-template <typename Error> std::string message_of(const std::function<void()>& action) {
+template <typename Error>
+std::string message_of(const std::function<void()>& action) {
   try {
     action();
   } catch (const Error& error) {
@@ -64,7 +65,7 @@ TEST(Start, RefusesImpossibleParameters) {
   const std::vector<GrainSeed> seeds{test::glass_sphere(0, Vec3(0.02, 0.02, 0.02)),
                                      test::glass_sphere(1, Vec3(0.03, 0.03, 0.03))};
   GrainParameters p = usual();
-  p.time_step = 2e-5;   // t_c/20 of a pair is 1.015e-5 s
+  p.time_step = 2e-5;  // t_c/20 of a pair is 1.015e-5 s
   expect_names(start(seeds, p), {"2e-05 s", "too long", "1.015"});
   p = usual();
   p.skin = 0.0;

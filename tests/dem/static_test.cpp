@@ -10,7 +10,7 @@
 namespace thalweg::dem {
 namespace {
 
-constexpr double g = 9.8;   // m/s^2
+constexpr double g = 9.8;  // m/s^2
 
 double glass_mass() { return test::glass_sphere(0, Vec3::Zero()).mass(); }
 
@@ -32,12 +32,12 @@ TEST(Incline, SphereRollsOrSlidesWithTheAccelerationOfTheory) {
     for (const double angle : {0.2, 0.6}) {
       ContactParameters contact = test::glass(0.3);
       contact.wall_friction = friction;
-      contact.tangential_damping = 1.0;   // without it the tangential spring goes on swinging about the mean
+      contact.tangential_damping = 1.0;  // without it the tangential spring goes on swinging about the mean
       const Vec3 gravity = g * Vec3(std::sin(angle), 0.0, -std::cos(angle));
       const double sag = glass_mass() * g * std::cos(angle) / contact.normal_stiffness;
       GrainDynamics grains(test::cube(), MPI_COMM_SELF, on_floor(contact, gravity),
                            {test::glass_sphere(0, Vec3(0.01, 0.025, test::glass_radius - sag))});
-      for (int n = 0; n < 800; ++n) test::step(grains);   // 0.08 s
+      for (int n = 0; n < 800; ++n) test::step(grains);  // 0.08 s
       const double time = 0.08;
       const bool rolls = std::tan(angle) <= 3.5 * friction;
       const double a = rolls ? 5.0 / 7.0 * g * std::sin(angle) : g * (std::sin(angle) - friction * std::cos(angle));
@@ -59,7 +59,7 @@ TEST(Stack, TenSpheresCarryWhatLiesOnThem) {
     seeds.push_back(test::glass_sphere(i, Vec3(0.025, 0.025, test::glass_radius + i * spacing)));
   const Decomposition tower({20, 20, 24}, 2.5e-3, {true, true, false}, {1, 1, 1});
   GrainDynamics grains(tower, MPI_COMM_SELF, on_floor(contact, Vec3(0, 0, -g)), seeds);
-  for (int n = 0; n < 5000; ++n) test::step(grains);   // 0.5 s; the stack's slowest swing decays in some 0.01 s
+  for (int n = 0; n < 5000; ++n) test::step(grains);  // 0.5 s; the stack's slowest swing decays in some 0.01 s
   const std::vector<Contact> contacts = grains.contacts();
   ASSERT_EQ(contacts.size(), 10u);
   for (const Contact& c : contacts) {
@@ -96,7 +96,7 @@ TEST(Bounce, HeightsFallByTheSquareOfTheRestitution) {
 TEST(Drag, SphereSettlesAtTheTerminalVelocity) {
   // A linear load -gamma v: v = m g/gamma (1 - exp(-gamma t/m)), the load held during each step of the caller.
   GrainParameters p = on_floor(test::glass(0.9), Vec3(0, 0, -g));
-  const double mass = glass_mass(), gamma = mass * g / 0.1;   // terminal velocity 0.1 m/s
+  const double mass = glass_mass(), gamma = mass * g / 0.1;  // terminal velocity 0.1 m/s
   p.time_step = 1e-5;
   p.sub_steps = 1;
   GrainDynamics grains(test::cube(true), MPI_COMM_SELF, p, {test::glass_sphere(0, Vec3(0.025, 0.025, 0.045))});
@@ -116,7 +116,7 @@ TEST(Drag, SphereSettlesAtTheTerminalVelocity) {
 TEST(Bed, AtRestStaysAtRestForAMillionSteps) {
   // Twelve spheres in a close-packed corner of walls, with damping both ways: kinetic energy falls to round-off and no
   // grain creeps by 1e-9 diameters in the second half of a million steps.
-  const Decomposition pit({8, 8, 16}, 1.25e-3 * 1.02, {false, false, false}, {1, 1, 1});   // two by two diameters
+  const Decomposition pit({8, 8, 16}, 1.25e-3 * 1.02, {false, false, false}, {1, 1, 1});  // two by two diameters
   ContactParameters contact = test::glass(0.3);
   contact.tangential_damping = 1.0;
   GrainParameters p;

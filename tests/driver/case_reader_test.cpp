@@ -73,13 +73,13 @@ TEST(CaseReader, ReadsWhatTheFileSays) {
 }
 
 TEST(CaseReader, ReadsEveryFormOfFacesGravityStepAndStart) {
-  const Case c = read(
-      flume, {"domain.boundaries={x_low: no_slip, x_high: free_slip, y: periodic, bottom: "
-              "{type: no_slip}, top: law_of_the_wall}",
-              "gravity={vector: [0.1, 0, -9.8], mode: reduced}", "fluid.time_step=", "fluid.maximum_lattice_velocity=0.05",
-              "fluid.expected_velocity=1.0", "contact={damping: 0.09, attraction: none}",
-              "initial.fluid={log_profile: {bed_height: 0.05, shear_velocity: 0.06, roughness: 2e-4}}",
-              "grains.1.fixed=false", "grains.1.prescribed_angular_velocity=[0, 1, 0]"});
+  const Case c = read(flume, {"domain.boundaries={x_low: no_slip, x_high: free_slip, y: periodic, bottom: "
+                              "{type: no_slip}, top: law_of_the_wall}",
+                              "gravity={vector: [0.1, 0, -9.8], mode: reduced}",
+                              "fluid.time_step=", "fluid.maximum_lattice_velocity=0.05", "fluid.expected_velocity=1.0",
+                              "contact={damping: 0.09, attraction: none}",
+                              "initial.fluid={log_profile: {bed_height: 0.05, shear_velocity: 0.06, roughness: 2e-4}}",
+                              "grains.1.fixed=false", "grains.1.prescribed_angular_velocity=[0, 1, 0]"});
   EXPECT_EQ(c.domain.faces[x_low].type, FaceType::no_slip);
   EXPECT_EQ(c.domain.faces[x_high].type, FaceType::free_slip);
   EXPECT_EQ(c.domain.faces[top], (Face{FaceType::law_of_the_wall, 8.36}));
@@ -106,8 +106,9 @@ TEST(CaseReader, DryGrainsTakeFiftyStepsAContact) {
 }
 
 TEST(CaseReader, ElasticSpheresHaveModuliInPlaceOfStiffnesses) {
-  const std::string elastic = "contact={law: hertz_mindlin, youngs_modulus: 1e8, poisson_ratio: 0.25, restitution: 0.9, "
-                              "tangential_damping: 0.5}";
+  const std::string elastic =
+      "contact={law: hertz_mindlin, youngs_modulus: 1e8, poisson_ratio: 0.25, restitution: 0.9, "
+      "tangential_damping: 0.5}";
   const Case c = read(defaults_yaml("grains"), {elastic, "run.time_step="});
   EXPECT_EQ(c.contact.law, ContactLaw::hertz_mindlin);
   EXPECT_EQ(c.contact.youngs_modulus, 1e8);
@@ -117,7 +118,8 @@ TEST(CaseReader, ElasticSpheresHaveModuliInPlaceOfStiffnesses) {
   // 2.868 (m*^2/(R* E*^2 v))^(1/5) at 1 m/s: m* = 8.1e-5 kg, R* = 1.2375 mm, E* = 5.33e7 Pa.
   const double mass = 0.5 * c.grains[0].mass(), radius = 0.25 * c.grains[0].diameter, modulus = 1e8 / (2.0 * 0.9375);
   EXPECT_NEAR(shortest_contact(c), 2.868 * std::pow(mass * mass / (radius * modulus * modulus), 0.2), 1e-15);
-  EXPECT_THROW(read(defaults_yaml("grains"), {elastic, "run.time_step=", "contact.normal_stiffness=20000"}), InputError);
+  EXPECT_THROW(read(defaults_yaml("grains"), {elastic, "run.time_step=", "contact.normal_stiffness=20000"}),
+               InputError);
   EXPECT_THROW(read(defaults_yaml("grains"), {elastic, "run.time_step=", "contact.damping=0.1"}), InputError);
   EXPECT_THROW(read(defaults_yaml("grains"), {"contact.youngs_modulus=1e8"}), InputError);
 }
@@ -140,11 +142,12 @@ void collect_keys(const YAML::Node& node, const std::string& path, std::vector<s
 }
 
 TEST(CaseReader, ReadsEveryWallAndCollision) {
-  const Case c = read(flume, {"domain.boundaries={x_low: {type: velocity_inlet, velocity: [0.2, 0, 0]}, x_high: {type: "
-                              "pressure_outlet, pressure: 3}, y: {type: navier_slip, slip_length: 1e-4, on_node: true}, "
-                              "bottom: law_of_the_wall_as_printed, top: {type: moving, velocity: [0.1, 0, 0]}}",
-                              "fluid.collision=trt", "fluid.magic_parameter=0.25",
-                              "fluid.mean_velocity={velocity: 0.3, response_time: 0.05}"});
+  const Case c =
+      read(flume, {"domain.boundaries={x_low: {type: velocity_inlet, velocity: [0.2, 0, 0]}, x_high: {type: "
+                   "pressure_outlet, pressure: 3}, y: {type: navier_slip, slip_length: 1e-4, on_node: true}, "
+                   "bottom: law_of_the_wall_as_printed, top: {type: moving, velocity: [0.1, 0, 0]}}",
+                   "fluid.collision=trt", "fluid.magic_parameter=0.25",
+                   "fluid.mean_velocity={velocity: 0.3, response_time: 0.05}"});
   EXPECT_EQ(c.domain.faces[x_low].velocity, Vec3(0.2, 0, 0));
   EXPECT_EQ(c.domain.faces[x_high].pressure, 3.0);
   EXPECT_EQ(c.domain.faces[y_high].slip_length, 1e-4);
@@ -154,7 +157,7 @@ TEST(CaseReader, ReadsEveryWallAndCollision) {
   EXPECT_EQ(c.fluid.collision, Collision::trt);
   EXPECT_EQ(c.fluid.magic_parameter, 0.25);
   EXPECT_EQ(c.fluid.mean_velocity->response_time, 0.05);
-  EXPECT_EQ(read(resolved_yaml(c)), c);   // and writes them all
+  EXPECT_EQ(read(resolved_yaml(c)), c);  // and writes them all
 }
 
 TEST(CaseReader, TheDefaultsAreValidAndNameEveryKey) {
@@ -199,17 +202,24 @@ INSTANTIATE_TEST_SUITE_P(
     All, BadCase,
     ::testing::Values(
         Bad{"system_not_built", {"system=continuum"}, {"system = \"continuum\": expected one of resolved, grains."}},
-        Bad{"collision_not_built", {"fluid.collision=mrt"}, {"fluid.collision = \"mrt\": expected one of bgk, trt, regularised."}},
-        Bad{"face_not_built", {"domain.boundaries.top=porous"},
-            {"top.type = \"porous\": expected one of periodic, no_slip, free_slip, moving, navier_slip, law_of_the_wall, "
+        Bad{"collision_not_built",
+            {"fluid.collision=mrt"},
+            {"fluid.collision = \"mrt\": expected one of bgk, trt, regularised."}},
+        Bad{"face_not_built",
+            {"domain.boundaries.top=porous"},
+            {"top.type = \"porous\": expected one of periodic, no_slip, free_slip, moving, navier_slip, "
+             "law_of_the_wall, "
              "law_of_the_wall_as_printed, velocity_inlet, pressure_outlet."}},
         Bad{"magic_without_trt", {"fluid.magic_parameter=0.25"}, {"fluid.magic_parameter", "only collision trt"}},
         Bad{"slip_length_missing", {"domain.boundaries.top=navier_slip"}, {"slip_length"}},
-        Bad{"wall_lifts_off", {"domain.boundaries.top={type: moving, velocity: [0.1, 0, 0.1]}"},
+        Bad{"wall_lifts_off",
+            {"domain.boundaries.top={type: moving, velocity: [0.1, 0, 0.1]}"},
             {"top", "a moving wall moves in its own plane"}},
-        Bad{"wall_too_fast", {"domain.boundaries.top={type: moving, velocity: [90, 0, 0]}"},
+        Bad{"wall_too_fast",
+            {"domain.boundaries.top={type: moving, velocity: [90, 0, 0]}"},
             {"domain.boundaries", "cells a step"}},
-        Bad{"control_too_quick", {"fluid.mean_velocity={velocity: 0.3, response_time: 1e-5}"},
+        Bad{"control_too_quick",
+            {"fluid.mean_velocity={velocity: 0.3, response_time: 1e-5}"},
             {"fluid.mean_velocity.response_time", "give at least"}},
         Bad{"unknown_key", {"fluid.densty=1000"}, {"fluid.densty = 1000: unknown key; did you mean fluid.density?"}},
         Bad{"text_for_number",

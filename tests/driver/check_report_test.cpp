@@ -53,7 +53,7 @@ TEST(FlowNumbers, OfTheFlumeWithSideWalls) {
   for (const FaceType wall : {FaceType::no_slip, FaceType::law_of_the_wall}) {
     const FlowNumbers flow = flow_numbers(water_over_glass(4.95e-3, 0.0748, 0.0594, 0.0105, wall));
     EXPECT_TRUE(flow.side_walls);
-    EXPECT_NEAR(flow.shields_hydraulic, 0.047, 1e-4);   // S is printed with three digits
+    EXPECT_NEAR(flow.shields_hydraulic, 0.047, 1e-4);  // S is printed with three digits
     EXPECT_NEAR(flow.shields_depth / flow.shields_hydraulic, (2.0 * 59.4 + 10.5) / 10.5, 1e-9);
   }
 }
@@ -71,7 +71,7 @@ TEST(Cost, CountsCellsAndSteps) {
   c.domain.size = Vec3(0.120, 0.040, 0.106);
   const Cost cost = cost_of(c, 10e9);
   EXPECT_EQ(cost.cells, 240.0 * 80.0 * 212.0);
-  EXPECT_EQ(cost.steps, 1.5e6);   // 30 s of 2e-5 s
+  EXPECT_EQ(cost.steps, 1.5e6);  // 30 s of 2e-5 s
   EXPECT_EQ(cost.cell_updates, cost.cells * 1.5e6);
   EXPECT_EQ(cost.grain_steps, 1000.0 * 50.0 * 1.5e6);
   // At least 19 single-precision values a cell, and not more than twice that with flags and the links of 1000 grains.
@@ -79,7 +79,7 @@ TEST(Cost, CountsCellsAndSteps) {
   EXPECT_LT(cost.memory, cost.cells * 19 * 4 * 2);
   const Cost on_faster_memory = cost_of(c, 20e9);
   EXPECT_LT(on_faster_memory.core_seconds, cost.core_seconds);
-  EXPECT_GT(on_faster_memory.core_seconds, 0.5 * cost.core_seconds);   // the grains do not get faster
+  EXPECT_GT(on_faster_memory.core_seconds, 0.5 * cost.core_seconds);  // the grains do not get faster
 }
 
 }  // namespace

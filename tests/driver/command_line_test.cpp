@@ -48,10 +48,17 @@ TEST(CommandLine, HelpAndVersionEndWithZero) {
 }
 
 TEST(CommandLine, AnythingElseIsOneSentenceAndExitCodeTwo) {
-  const std::vector<std::vector<const char*>> wrong{
-      {}, {"fly"}, {"run"}, {"run", "a.yaml", "--no-such-option"}, {"run", "a.yaml", "--until", "soon"},
-      {"run", "a.yaml", "--walltime", "12"}, {"run", "a.yaml", "--walltime", "00:00:00"},
-      {"run", "a.yaml", "--layout", "2,2"}, {"run", "a.yaml", "--layout", "0,1,1"}, {"check"}, {"info"}};
+  const std::vector<std::vector<const char*>> wrong{{},
+                                                    {"fly"},
+                                                    {"run"},
+                                                    {"run", "a.yaml", "--no-such-option"},
+                                                    {"run", "a.yaml", "--until", "soon"},
+                                                    {"run", "a.yaml", "--walltime", "12"},
+                                                    {"run", "a.yaml", "--walltime", "00:00:00"},
+                                                    {"run", "a.yaml", "--layout", "2,2"},
+                                                    {"run", "a.yaml", "--layout", "0,1,1"},
+                                                    {"check"},
+                                                    {"info"}};
   for (const auto& words : wrong) {
     const CommandLine line = parse(words);
     EXPECT_FALSE(line.command);

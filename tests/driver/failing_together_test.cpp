@@ -37,7 +37,7 @@ TEST(FailureCouncil, AgreesWhenEveryRankHasFailed) {
   FailureCouncil council(world);
   std::this_thread::sleep_for(std::chrono::milliseconds(20 * rank_of(world)));
   EXPECT_TRUE(council.everybody_failed(30.0));
-  EXPECT_TRUE(council.everybody_failed(0.0));   // remembered
+  EXPECT_TRUE(council.everybody_failed(0.0));  // remembered
 }
 
 TEST(FailureCouncil, NoticesThatTheOthersDoNotCome) {
@@ -46,10 +46,10 @@ TEST(FailureCouncil, NoticesThatTheOthersDoNotCome) {
   FailureCouncil council(world);
   if (rank_of(world) == last) {
     EXPECT_FALSE(council.everybody_failed(0.05));
-    EXPECT_FALSE(council.everybody_failed(30.0));   // remembered, without waiting again
+    EXPECT_FALSE(council.everybody_failed(30.0));  // remembered, without waiting again
   }
-  MPI_Barrier(world);   // where the others wait for the failed rank
-  if (rank_of(world) != last) council.everybody_failed(30.0);   // completes the barrier the failed rank has left
+  MPI_Barrier(world);                                          // where the others wait for the failed rank
+  if (rank_of(world) != last) council.everybody_failed(30.0);  // completes the barrier the failed rank has left
 }
 
 }  // namespace

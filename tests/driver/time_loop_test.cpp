@@ -62,7 +62,7 @@ public:
 // What the loop did, and the loop itself.
 struct Bench {
   explicit Bench(double until, std::int64_t start = 0) : system(start) {
-    listen_for_stop_signals();   // forget the signal of an earlier test
+    listen_for_stop_signals();  // forget the signal of an earlier test
     plan.until = until;
     plan.series = Schedule(0.003, 0.001);
     plan.checkpoint = Schedule(0.004, 0.001);
@@ -117,7 +117,7 @@ TEST(TimeLoop, GoesOnFromALaterStepWithoutRepeatingWhatIsWritten) {
 
 TEST(TimeLoop, ReachesUntilInWholeStepsDespiteRoundOff) {
   Bench exact(0.3), between(0.0305);
-  EXPECT_EQ(exact.run().record().last_step, 300);   // 0.3/0.001 is 299.99999999999994 or 300 in floating point
+  EXPECT_EQ(exact.run().record().last_step, 300);  // 0.3/0.001 is 299.99999999999994 or 300 in floating point
   EXPECT_EQ(between.run().record().last_step, 31);
 }
 
@@ -127,7 +127,7 @@ TEST(TimeLoop, StopsAnUnstableRunAndKeepsTheLastGoodCheckpoint) {
   bench.plan.outputs.clear();
   bench.system.lattice_velocity = [](std::int64_t step) { return step < 398 ? 0.29 : 0.31; };
   EXPECT_THROW(bench.run(), RunError);
-  EXPECT_EQ(bench.system.step(), 400);               // noticed when the next checkpoint was due
+  EXPECT_EQ(bench.system.step(), 400);  // noticed when the next checkpoint was due
   EXPECT_EQ(bench.checkpoints.back(), 396);
   EXPECT_FALSE(bench.loop->record().finished);
 
@@ -152,7 +152,7 @@ TEST(TimeLoop, StopsAtTheSameStepEverywhereWhenTheWallTimeIsUp) {
   bench.system.on_advance = [](std::int64_t) { std::this_thread::sleep_for(std::chrono::microseconds(200)); };
   const auto start = WallClock::now();
   const LoopRecord& record = bench.run().record();
-  EXPECT_LT(std::chrono::duration<double>(WallClock::now() - start).count(), 2.0);   // 0.5 s and a busy machine
+  EXPECT_LT(std::chrono::duration<double>(WallClock::now() - start).count(), 2.0);  // 0.5 s and a busy machine
   EXPECT_FALSE(record.finished);
   EXPECT_NE(record.reason.find("wall time"), std::string::npos);
   EXPECT_EQ(bench.checkpoints, (Steps{record.last_step}));
@@ -187,9 +187,9 @@ TEST(Summary, AccountsForTheWholeWallTime) {
     }
     EXPECT_EQ(phases.front().name, "counting");
     EXPECT_EQ(phases.back().name, "other");
-    EXPECT_GE(phases.front().mean_seconds, 0.050);   // fifty times at least a millisecond
+    EXPECT_GE(phases.front().mean_seconds, 0.050);  // fifty times at least a millisecond
     EXPECT_NEAR(share, mean / loop.record().wall_seconds, 1e-9);
-    EXPECT_NEAR(mean, loop.record().wall_seconds, 0.2 * loop.record().wall_seconds);   // ranks start a little apart
+    EXPECT_NEAR(mean, loop.record().wall_seconds, 0.2 * loop.record().wall_seconds);  // ranks start a little apart
     EXPECT_EQ(phase_table(phases).size(), phases.size() + 1);
   }
   const Speeds speeds = speeds_of(bench.system, loop.record());

@@ -8,10 +8,10 @@
 namespace thalweg::lbm {
 
 struct Channel {
-  int height = 0;                       // cells
-  CollisionParameters collision;        // force[0]: along the flow, whatever its axis
-  FaceCondition low, high;              // velocity[0]: along the flow, whatever its axis
-  int normal = 1;                       // axis across the channel; the flow is along x (along y where x is the normal)
+  int height = 0;                 // cells
+  CollisionParameters collision;  // force[0]: along the flow, whatever its axis
+  FaceCondition low, high;        // velocity[0]: along the flow, whatever its axis
+  int normal = 1;                 // axis across the channel; the flow is along x (along y where x is the normal)
 };
 
 // Velocity along the flow in every cell across the channel.

@@ -39,11 +39,11 @@ TEST(Poiseuille, IsTheKnownParabolaAtEveryWallNormal) {
 // Free slip carries no stress: a force accelerates the fluid as a block, u = F t to round-off.
 TEST(FreeSlip, LetsTheFluidSlideAsABlock) {
   const std::vector<double> u = velocity_across(plain(9, 0.7, 1e-5, {FaceType::free_slip}), 500);
-  for (const double value : u) EXPECT_NEAR(value, 1e-5 * (500 - 0.5), 1e-14);   // half the last force is still to come
+  for (const double value : u) EXPECT_NEAR(value, 1e-5 * (500 - 0.5), 1e-14);  // half the last force is still to come
 }
 
-// Laminar flow between walls that obey u_slip = A u_tau. With F the force and h the height, the wall stress is F h/2; the
-// friction velocity is taken at the wall cell's centre, where the stress is smaller by 1 - 1/h:
+// Laminar flow between walls that obey u_slip = A u_tau. With F the force and h the height, the wall stress is F h/2;
+// the friction velocity is taken at the wall cell's centre, where the stress is smaller by 1 - 1/h:
 //   u(y) = A u_tau / sqrt(1 - 1/h) + F y (h - y)/(2 nu) + shift,   u_tau^2 = F h/2.
 TEST(LawOfTheWall, SlipsByItsCoefficientTimesTheFrictionVelocity) {
   const double tau = 0.55, nu = (tau - 0.5) / 3.0, force = 1e-7;

@@ -62,7 +62,7 @@ struct WrittenOut {
   double deviation, tau, q = 0.0;
   Vec3 u, force;
   double pi[3][3] = {};
-  double equilibrium[19], guo[19];   // guo without its prefactor
+  double equilibrium[19], guo[19];  // guo without its prefactor
 
   WrittenOut(const double (&f)[19], const CollisionParameters& p) : force(p.force[0], p.force[1], p.force[2]) {
     const Sums m = sums_of(f);
@@ -96,7 +96,8 @@ TEST_F(Collision, MomentsAgreeWithTheFormulasWrittenOut) {
   EXPECT_NEAR(m.pi.xz, w.pi[0][2], 1e-15);
   EXPECT_NEAR(m.pi.yz, w.pi[1][2], 1e-15);
   EXPECT_NEAR(m.omega, 1.0 / w.tau, 1e-15);
-  // tau = tau_0 + 3 C_s^2 |S| with |S| = sqrt(2 S:S) = sqrt(2) 3 Q/(2 rho tau): the closed form solves its own equation.
+  // tau = tau_0 + 3 C_s^2 |S| with |S| = sqrt(2 S:S) = sqrt(2) 3 Q/(2 rho tau): the closed form solves its own
+  // equation.
   const double cs2 = 0.27 * 0.27;
   EXPECT_NEAR(1.0 / m.omega - parameters.relaxation_time,
               3.0 * cs2 * std::sqrt(2.0) * 3.0 * w.q / (2.0 * (1.0 + w.deviation) * w.tau), 1e-15);
@@ -108,8 +109,10 @@ TEST_F(Collision, BgkAgreesWithTheFormulaWrittenOut) {
     const WrittenOut w(f, parameters);
     double g[19];
     std::copy(f, f + 19, g);
-    if (cs > 0.0) collide<CollisionModel::bgk, true>(g, parameters);
-    else collide<CollisionModel::bgk, false>(g, parameters);
+    if (cs > 0.0)
+      collide<CollisionModel::bgk, true>(g, parameters);
+    else
+      collide<CollisionModel::bgk, false>(g, parameters);
     for (int i = 0; i < 19; ++i)
       EXPECT_NEAR(g[i], f[i] - (f[i] - w.equilibrium[i]) / w.tau + (1.0 - 0.5 / w.tau) * w.guo[i], 1e-15);
   }
@@ -127,8 +130,9 @@ TEST_F(Collision, TrtAgreesWithTheFormulaWrittenOut) {
     const int o = D3Q19::opposite(i);
     const auto even = [&](const double* v) { return 0.5 * (v[i] + v[o]); };
     const auto odd = [&](const double* v) { return 0.5 * (v[i] - v[o]); };
-    const double expected = f[i] - even_rate * (even(f) - even(w.equilibrium)) - odd_rate * (odd(f) - odd(w.equilibrium)) +
-                            (1.0 - 0.5 * even_rate) * even(w.guo) + (1.0 - 0.5 * odd_rate) * odd(w.guo);
+    const double expected = f[i] - even_rate * (even(f) - even(w.equilibrium)) -
+                            odd_rate * (odd(f) - odd(w.equilibrium)) + (1.0 - 0.5 * even_rate) * even(w.guo) +
+                            (1.0 - 0.5 * odd_rate) * odd(w.guo);
     EXPECT_NEAR(g[i], expected, 1e-15);
   }
 }

@@ -35,14 +35,15 @@ double drift_in_closed_box(FaceType type, int steps) {
 class ClosedBox : public ::testing::TestWithParam<FaceType> {};
 
 TEST_P(ClosedBox, KeepsItsMass) {
-  // A collision rounds the density of a cell at most by a few units of 2^-53 (2^-24 of a deviation below 0.1 in single);
-  // errors of 3000 steps add up like a random walk over steps and cells, bounded here by the plain sum over steps.
+  // A collision rounds the density of a cell at most by a few units of 2^-53 (2^-24 of a deviation below 0.1 in
+  // single); errors of 3000 steps add up like a random walk over steps and cells, bounded here by the plain sum over
+  // steps.
   EXPECT_NEAR(drift_in_closed_box<double>(GetParam(), 3000), 0.0, 3000 * 4.0 * 0x1p-53);
   EXPECT_NEAR(drift_in_closed_box<float>(GetParam(), 3000), 0.0, 3000 * 4.0 * 0x1p-24 * 0.1);
 }
 
-// The long run, for the validation suite. The rounding errors of one cell add up like a random walk: 4 units in the last
-// place times the root of the number of steps, with a margin of ten for what is systematic.
+// The long run, for the validation suite. The rounding errors of one cell add up like a random walk: 4 units in the
+// last place times the root of the number of steps, with a margin of ten for what is systematic.
 TEST_P(ClosedBox, DISABLED_KeepsItsMassOverAHundredThousandSteps) {
   const double walk = 10.0 * 4.0 * std::sqrt(1e5);
   EXPECT_NEAR(drift_in_closed_box<double>(GetParam(), 100000), 0.0, walk * 0x1p-53);

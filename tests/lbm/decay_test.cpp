@@ -9,8 +9,8 @@
 namespace thalweg::lbm {
 namespace {
 
-// Runs u = U (-cos kx sin ky, sin kx cos ky) e^{-2 nu k^2 t} for a time of 1/(2 nu k^2); returns the relative L2 error of
-// the velocity. Diffusive scaling: U falls as 1/n so that the Mach number error is second order, too.
+// Runs u = U (-cos kx sin ky, sin kx cos ky) e^{-2 nu k^2 t} for a time of 1/(2 nu k^2); returns the relative L2 error
+// of the velocity. Diffusive scaling: U falls as 1/n so that the Mach number error is second order, too.
 double error_at(int n) {
   const Decomposition decomposition({n, n, 4}, 1.0, {true, true, true}, {1, 1, 1});
   CollisionParameters parameters;
@@ -43,7 +43,7 @@ TEST(TaylorGreen, ErrorFallsWithTheSquareOfTheSpacing) {
   const double coarse = error_at(16), middle = error_at(32), fine = error_at(64);
   EXPECT_NEAR(std::log2(coarse / middle), 2.0, 0.2);
   EXPECT_NEAR(std::log2(middle / fine), 2.0, 0.1);
-  EXPECT_LT(fine, 2e-3);   // far below one per cent at 64 cells a wavelength
+  EXPECT_LT(fine, 2e-3);  // far below one per cent at 64 cells a wavelength
 }
 
 // A uniform force in a periodic box: u = F t exactly, with the half force counted.

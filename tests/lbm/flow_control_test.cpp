@@ -17,14 +17,14 @@ FaceConditions plates() {
 
 CollisionParameters viscous() {
   CollisionParameters parameters;
-  parameters.model = CollisionModel::trt;   // no wall error
+  parameters.model = CollisionModel::trt;  // no wall error
   parameters.relaxation_time = 0.8;
   return parameters;
 }
 
 // In steady Poiseuille flow of mean U the force is 12 nu U/h^2; the mean over cell centres of the exact parabola is
-// larger than U by the factor 1 + 1/(2 h^2). With the drag 0.012 u and T = 50 the error decays as exp(-0.0035 t): nothing is
-// left after 20000 steps.
+// larger than U by the factor 1 + 1/(2 h^2). With the drag 0.012 u and T = 50 the error decays as exp(-0.0035 t):
+// nothing is left after 20000 steps.
 TEST(FlowControl, HoldsTheTargetWithTheForceOfPoiseuilleFlow) {
   const Decomposition decomposition({4, 10, 4}, 1.0, {true, false, true}, {1, 1, 1});
   Fluid<double> fluid(decomposition, MPI_COMM_SELF, viscous(), plates());
@@ -38,7 +38,8 @@ TEST(FlowControl, HoldsTheTargetWithTheForceOfPoiseuilleFlow) {
 }
 
 template <typename Real>
-test::MemoryArchive state_after(int steps, MPI_Comm communicator, const Index3& layout, const test::MemoryArchive* from) {
+test::MemoryArchive state_after(int steps, MPI_Comm communicator, const Index3& layout,
+                                const test::MemoryArchive* from) {
   const Decomposition decomposition({17, 16, 18}, 1.0, {true, false, true}, layout);
   Fluid<Real> fluid(decomposition, communicator, viscous(), plates());
   fluid.control_flow({0, 0.02, 50.0, 4});
@@ -56,7 +57,7 @@ test::MemoryArchive state_after(int steps, MPI_Comm communicator, const Index3& 
 TEST(FlowControl, RestartsToTheSameBitsOnAnyRanks) {
   const Index3 layout = Decomposition::best_layout({17, 16, 18}, size_of(MPI_COMM_WORLD));
   const test::MemoryArchive straight = state_after<float>(23, MPI_COMM_SELF, {1, 1, 1}, nullptr);
-  const test::MemoryArchive half = state_after<float>(9, MPI_COMM_WORLD, layout, nullptr);   // between two looks
+  const test::MemoryArchive half = state_after<float>(9, MPI_COMM_WORLD, layout, nullptr);  // between two looks
   const test::MemoryArchive resumed = state_after<float>(14, MPI_COMM_WORLD, layout, &half);
   EXPECT_EQ(test::first_difference(straight, resumed), "");
 }

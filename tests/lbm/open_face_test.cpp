@@ -36,21 +36,21 @@ TEST(OpenFaces, LeaveAUniformStreamAlone) {
       for (int y = 0; y < 6; ++y)
         for (int x = 0; x < 7; ++x) {
           const FluidState s = fluid.state_at(fluid.indexing().index(x, y, z));
-          EXPECT_NEAR((s.velocity - stream).norm(), 0.0, 1e-13);   // round-off of 500 steps
+          EXPECT_NEAR((s.velocity - stream).norm(), 0.0, 1e-13);  // round-off of 500 steps
           EXPECT_NEAR(s.density_deviation, 0.0, 1e-13);
         }
   }
 }
 
 // From a flat inlet profile the flow between plates develops into the parabola of the same flux, 3/2 of the mean in the
-// middle; at Re below 1 that takes less than one height of length, and the outlet reaches back as far. The pressure drop
-// 12 nu u L/h^2 makes the density fall by 3 * 12 * 0.144 * 0.004 * 40/100 = 0.8 % along the way, which
-// bounds the error of the flux; the profile at one place knows only the change over a height.
+// middle; at Re below 1 that takes less than one height of length, and the outlet reaches back as far. The pressure
+// drop 12 nu u L/h^2 makes the density fall by 3 * 12 * 0.144 * 0.004 * 40/100 = 0.8 % along the way, which bounds the
+// error of the flux; the profile at one place knows only the change over a height.
 TEST(OpenFaces, DevelopTheParabolaOfTheSameFlux) {
   constexpr int length = 40, height = 10;
   const Decomposition decomposition({length, height, 4}, 1.0, {false, false, true}, {1, 1, 1});
   CollisionParameters parameters;
-  parameters.relaxation_time = 0.5 + std::sqrt(3.0) / 4.0;   // no error of the half-link wall
+  parameters.relaxation_time = 0.5 + std::sqrt(3.0) / 4.0;  // no error of the half-link wall
   Fluid<double> fluid(decomposition, MPI_COMM_SELF, parameters, through_flow(0, FaceType::no_slip));
   fluid.initialise([](const Vec3&) { return FluidState{0.0, Vec3(speed, 0.0, 0.0)}; });
   for (int step = 0; step < 8000; ++step) fluid.advance();
@@ -60,7 +60,7 @@ TEST(OpenFaces, DevelopTheParabolaOfTheSameFlux) {
     for (int y = 0; y < height; ++y) sum += (1.0 + state(x, y).density_deviation) * state(x, y).velocity.x();
     return sum;
   };
-  for (int x = 1; x < length; ++x) EXPECT_NEAR(flux(x), flux(0), 1e-6 * flux(0));   // steady: one flux of mass
+  for (int x = 1; x < length; ++x) EXPECT_NEAR(flux(x), flux(0), 1e-6 * flux(0));  // steady: one flux of mass
   const double mean = flux(length / 2) / height;
   for (int y = 0; y < height; ++y) {
     const double eta = (y + 0.5) / height;
@@ -69,8 +69,8 @@ TEST(OpenFaces, DevelopTheParabolaOfTheSameFlux) {
     EXPECT_NEAR(momentum, 6.0 * mean * eta * (1.0 - eta) / (1.0 + 0.5 / (height * height)), 0.003 * mean);
   }
   EXPECT_NEAR(mean, speed, 0.01 * speed);
-  // The outlet's density is prescribed half a cell beyond the last centre, up to the viscous stress there, which is of the
-  // order of one cell's fall (3 nu du/dx): two cells' falls bound both.
+  // The outlet's density is prescribed half a cell beyond the last centre, up to the viscous stress there, which is of
+  // the order of one cell's fall (3 nu du/dx): two cells' falls bound both.
   EXPECT_NEAR(state(length - 1, height / 2).density_deviation, 0.0,
               2.0 * 3.0 * 12.0 * 0.144 * speed / (height * height));
 }

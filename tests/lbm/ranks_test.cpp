@@ -1,5 +1,5 @@
-// The fluid has the same bits on any number of ranks, however the box is cut: every rank runs the whole box alone as well
-// and compares its own block.
+// The fluid has the same bits on any number of ranks, however the box is cut: every rank runs the whole box alone as
+// well and compares its own block.
 #include "core/mpi_session.hpp"
 #include "lbm/fluid.hpp"
 
@@ -32,7 +32,7 @@ std::vector<Box> boxes() {
   const FaceCondition periodic{FaceType::periodic}, no_slip{FaceType::no_slip}, free_slip{FaceType::free_slip},
       law{FaceType::law_of_the_wall};
   FaceCondition slip{FaceType::navier_slip}, on_node = law, lid{FaceType::moving}, inlet{FaceType::velocity_inlet},
-      outlet{FaceType::pressure_outlet};
+                                             outlet{FaceType::pressure_outlet};
   slip.slip_length = 0.8;
   on_node.on_node = true;
   lid.velocity = Vec3(0.03, 0.02, 0.0);
@@ -60,7 +60,7 @@ void compare(const Box& box, CollisionModel model, const Index3& layout) {
   Fluid<Real> alone(whole, MPI_COMM_SELF, parameters, box.faces), shared(cut, MPI_COMM_WORLD, parameters, box.faces);
   alone.initialise(swirl);
   shared.initialise(swirl);
-  for (int step = 0; step < 7; ++step) {   // odd: ends in the other arrangement
+  for (int step = 0; step < 7; ++step) {  // odd: ends in the other arrangement
     alone.advance();
     shared.advance();
   }
@@ -70,8 +70,9 @@ void compare(const Box& box, CollisionModel model, const Index3& layout) {
     for (int y = 0; y < n[1]; ++y)
       for (int x = 0; x < n[0]; ++x)
         for (int i = 0; i < 19; ++i)
-          differing += shared.populations().post_collision(i, shared.indexing().index(x, y, z)) !=
-                       alone.populations().post_collision(i, alone.indexing().index(from[0] + x, from[1] + y, from[2] + z));
+          differing +=
+              shared.populations().post_collision(i, shared.indexing().index(x, y, z)) !=
+              alone.populations().post_collision(i, alone.indexing().index(from[0] + x, from[1] + y, from[2] + z));
   EXPECT_EQ(differing, 0) << box.name << ", layout " << layout[0] << "," << layout[1] << "," << layout[2];
   const FluidTotals a = alone.totals(), s = shared.totals();
   EXPECT_EQ(a.mass_deviation, s.mass_deviation);

@@ -33,7 +33,8 @@ void expect_couette(const FaceCondition& low, double from, double slip_length, C
   channel.normal = normal;
   const std::vector<double> u = velocity_across(channel, 20 * 81 * 8);
   for (int k = 0; k < channel.height; ++k)
-    EXPECT_NEAR(u[k], couette(k + 0.5, channel.height, from, slip_length), 1e-12) << "normal " << normal << " cell " << k;
+    EXPECT_NEAR(u[k], couette(k + 0.5, channel.height, from, slip_length), 1e-12)
+        << "normal " << normal << " cell " << k;
 }
 
 TEST(Couette, IsExactForEveryWallCollisionAndNormal) {
@@ -61,9 +62,9 @@ TEST(Couette, FreeSlipFollowsTheMovingWall) {
   for (const double u : velocity_across(channel, 20 * 36 * 6)) EXPECT_NEAR(u, wall_velocity, 1e-12);
 }
 
-// With eddies the slip length still counts: the fraction is taken with the viscosity of the cell at the wall. Taken with
-// the molecular viscosity alone, the slip would be short by 4 %. The eddies also see the lattice's error in the normal
-// stresses, u^2 or 1e-3 of the shear, which enters the eddy viscosity by its square times the eddies' share.
+// With eddies the slip length still counts: the fraction is taken with the viscosity of the cell at the wall. Taken
+// with the molecular viscosity alone, the slip would be short by 4 %. The eddies also see the lattice's error in the
+// normal stresses, u^2 or 1e-3 of the shear, which enters the eddy viscosity by its square times the eddies' share.
 TEST(Couette, SlipLengthHoldsWithEddies) {
   Channel channel;
   channel.height = 8;
@@ -89,7 +90,7 @@ double slip_over_gradient(double tau, double r, bool on_node) {
   channel.high = channel.low;
   const double h = on_node ? 20.0 : 21.0, first = on_node ? 0.0 : 0.5, nu = (tau - 0.5) / 3.0;
   const double gradient = channel.collision.force[0] * h / (2.0 * nu);
-  const double start = gradient * (channel.low.slip_length + h / 6.0);   // near the mean, or a long slip takes long
+  const double start = gradient * (channel.low.slip_length + h / 6.0);  // near the mean, or a long slip takes long
   const double slowest = h * h / (nu * 2.0) * (1.0 + 2.0 * channel.low.slip_length / h);
   const std::vector<double> u = velocity_across(channel, static_cast<int>(16.0 * slowest), start);
   return u[0] / gradient - first * (1.0 - first / h);
@@ -112,8 +113,8 @@ TEST(SlipTable, OnNode) {
   EXPECT_NEAR(slip_over_gradient(1.5, 0.3, true), 3.6167, 0.5e-4);
 }
 
-// The wall error of the half-link wall is F (16 L - 3)/(24 nu) with L the magic parameter (Ginzburg and d'Humieres 2003):
-// none at 3/16, at any viscosity.
+// The wall error of the half-link wall is F (16 L - 3)/(24 nu) with L the magic parameter (Ginzburg and d'Humieres
+// 2003): none at 3/16, at any viscosity.
 TEST(Poiseuille, IsExactForTrtWithMagicParameterThreeSixteenths) {
   for (const double magic : {3.0 / 16.0, 0.25})
     for (const double tau : {0.55, 0.8, 2.0}) {

@@ -12,11 +12,12 @@ namespace {
 
 using std::numbers::pi;
 
-// A shear wave u = b + a e sin(k.x), e normal to k, decays as exp(-nu k^2 t) and travels with the background velocity b:
-// its complex amplitude at time t over the one at the start is exp(-nu k^2 t - i k.b t), whatever the direction of k.
+// A shear wave u = b + a e sin(k.x), e normal to k, decays as exp(-nu k^2 t) and travels with the background velocity
+// b: its complex amplitude at time t over the one at the start is exp(-nu k^2 t - i k.b t), whatever the direction of
+// k.
 struct ShearWave {
-  Index3 waves;      // wave numbers in a box of 32 cells
-  Vec3 shear;        // e, a unit vector
+  Index3 waves;  // wave numbers in a box of 32 cells
+  Vec3 shear;    // e, a unit vector
   Vec3 background;
 };
 
@@ -44,7 +45,7 @@ std::pair<double, double> viscosity_and_speed(const ShearWave& wave, CollisionMo
   fluid.initialise([&](const Vec3& p) {
     return FluidState{0.0, wave.background + 1e-3 * std::sin(k.dot(p)) * wave.shear};
   });
-  for (int step = 0; step < 20; ++step) fluid.advance();   // until the stress belongs to the velocity
+  for (int step = 0; step < 20; ++step) fluid.advance();  // until the stress belongs to the velocity
   const std::complex<double> first = amplitude(fluid, wave, k, n);
   for (int step = 0; step < steps; ++step) fluid.advance();
   const std::complex<double> ratio = amplitude(fluid, wave, k, n) / first;
@@ -53,8 +54,8 @@ std::pair<double, double> viscosity_and_speed(const ShearWave& wave, CollisionMo
           travelled == 0.0 ? 1.0 : -std::arg(ratio) / travelled};
 }
 
-// Isotropy: the same viscosity in any direction, up to the fourth-order error of the lattice, relative size k^2/12, which is
-// 1.6 % for the shortest of these waves.
+// Isotropy: the same viscosity in any direction, up to the fourth-order error of the lattice, relative size k^2/12,
+// which is 1.6 % for the shortest of these waves.
 TEST(ShearWave, DecaysWithTheViscosityInAnyDirection) {
   const ShearWave waves[] = {{{1, 0, 0}, Vec3(0, 1, 0), Vec3::Zero()},
                              {{0, 1, 0}, Vec3(0, 0, 1), Vec3::Zero()},
@@ -68,8 +69,9 @@ TEST(ShearWave, DecaysWithTheViscosityInAnyDirection) {
           << int(model) << " " << wave.waves[0] << wave.waves[1] << wave.waves[2];
 }
 
-// Galilean invariance: a background velocity b changes the viscosity of the quadratic equilibrium by a relative amount of
-// -3 b^2 along the wave vector (Qian and Zhou 1998) on top of the above: 3 % at b = 0.1; and the wave travels with b.
+// Galilean invariance: a background velocity b changes the viscosity of the quadratic equilibrium by a relative amount
+// of -3 b^2 along the wave vector (Qian and Zhou 1998) on top of the above: 3 % at b = 0.1; and the wave travels with
+// b.
 TEST(ShearWave, TravelsWithTheBackgroundAndKeepsItsViscosity) {
   for (const CollisionModel model : {CollisionModel::bgk, CollisionModel::trt, CollisionModel::regularised}) {
     const ShearWave along{{1, 0, 0}, Vec3(0, 1, 0), Vec3(0.1, 0, 0)}, across{{1, 0, 0}, Vec3(0, 1, 0), Vec3(0, 0, 0.1)};
@@ -81,8 +83,8 @@ TEST(ShearWave, TravelsWithTheBackgroundAndKeepsItsViscosity) {
 }
 
 // A standing sound wave of length L oscillates with the period L sqrt(3) (c_s = 1/sqrt 3), here with so little damping
-// (relative frequency shift (nu k/c_s)^2 below 1e-4) that the zero crossings tell the speed; the lattice disperses sound by
-// k^2 of order 0.2 % at 48 cells.
+// (relative frequency shift (nu k/c_s)^2 below 1e-4) that the zero crossings tell the speed; the lattice disperses
+// sound by k^2 of order 0.2 % at 48 cells.
 TEST(Sound, TravelsAtOneOverTheRootOfThree) {
   constexpr int n = 48;
   for (const int axis : {0, 1, 2}) {
@@ -111,13 +113,13 @@ TEST(Sound, TravelsAtOneOverTheRootOfThree) {
       last = now;
       ASSERT_LT(step, 2000);
     }
-    const double period = (crossings.back() - crossings.front()) / 4.0;   // two crossings a period
+    const double period = (crossings.back() - crossings.front()) / 4.0;  // two crossings a period
     EXPECT_NEAR(n / period, 1.0 / std::sqrt(3.0), 0.005 / std::sqrt(3.0));
   }
 }
 
-// Womersley flow between plates: with the force G cos(w t) the velocity is Re{ i G/w [cosh(q y)/cosh(q h/2) - 1] e^{iwt} },
-// q = sqrt(i w/nu), y from the middle; here at the Womersley number h/2 sqrt(w/nu) = 4.
+// Womersley flow between plates: with the force G cos(w t) the velocity is Re{ i G/w [cosh(q y)/cosh(q h/2) - 1]
+// e^{iwt} }, q = sqrt(i w/nu), y from the middle; here at the Womersley number h/2 sqrt(w/nu) = 4.
 TEST(Womersley, AgreesWithinOnePerCent) {
   constexpr int h = 40;
   const double half = h / 2.0, tau = 0.9, nu = (tau - 0.5) / 3.0, omega = nu * 16.0 / (half * half), force = 1e-6;

@@ -25,7 +25,8 @@ struct MemoryArchive {
 };
 
 // Calls visit(index in the box, index in the whole) for every value of a box, in order.
-template <typename Visitor> void for_each_value(const ArrayBox& box, Visitor&& visit) {
+template <typename Visitor>
+void for_each_value(const ArrayBox& box, Visitor&& visit) {
   std::size_t count = 1;
   for (const auto n : box.shape) count *= n;
   for (std::size_t local = 0; local < count; ++local) {
@@ -73,7 +74,8 @@ public:
   void attribute(const std::string& path, const std::string& value) override { archive_.attributes[path] = value; }
 
 private:
-  template <typename T> void put(const std::string& path, std::span<const T> values, const ArrayBox& box) {
+  template <typename T>
+  void put(const std::string& path, std::span<const T> values, const ArrayBox& box) {
     struct Placed {
       std::uint64_t where;
       T value;
@@ -122,13 +124,15 @@ private:
     if (found == archive_.datasets.end()) throw InputError("The archive in memory has no dataset " + path + ".");
     return found->second;
   }
-  template <typename T> T attribute(const std::string& path) const {
+  template <typename T>
+  T attribute(const std::string& path) const {
     const auto found = archive_.attributes.find(path);
     if (found == archive_.attributes.end() || !std::holds_alternative<T>(found->second))
       throw InputError("The archive in memory has no such attribute " + path + ".");
     return std::get<T>(found->second);
   }
-  template <typename T> void take(const std::string& path, std::span<T> values, const ArrayBox& box) {
+  template <typename T>
+  void take(const std::string& path, std::span<T> values, const ArrayBox& box) {
     const MemoryArchive::Dataset& d = dataset(path);
     if (d.shape != box.global_shape || !std::holds_alternative<std::vector<T>>(d.values))
       throw InputError("The archive in memory has another shape or type of " + path + ".");

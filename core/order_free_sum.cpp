@@ -1,4 +1,4 @@
-#include "analysis/order_free_sum.hpp"
+#include "core/order_free_sum.hpp"
 
 #include "core/mpi_session.hpp"
 
@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace thalweg::analysis {
+namespace thalweg {
 
 namespace {
 
@@ -39,8 +39,7 @@ std::vector<double> order_free_sums(MPI_Comm communicator, std::span<const doubl
   for (std::size_t c = 0; c < columns; ++c) {
     if (largest[c] == 0.0 || std::isinf(largest[c])) continue;
     shift[c] = shift_for(largest[c], all_rows);
-    for (std::size_t row = 0; row < rows; ++row)
-      sums[c] += std::llrint(std::ldexp(terms[row * columns + c], shift[c]));
+    for (std::size_t row = 0; row < rows; ++row) sums[c] += std::llrint(std::ldexp(terms[row * columns + c], shift[c]));
   }
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(columns), MPI_INT64_T, MPI_SUM, communicator);
 
@@ -51,4 +50,4 @@ std::vector<double> order_free_sums(MPI_Comm communicator, std::span<const doubl
   return result;
 }
 
-}  // namespace thalweg::analysis
+}  // namespace thalweg

@@ -11,10 +11,10 @@
 #include <span>
 #include <vector>
 
-namespace thalweg::analysis {
+namespace thalweg {
 
 // terms: rows of `columns` values, one row a grain owned here (columns of a row together). Returns one sum a column,
 // the same on every rank; not-a-number for a column that holds a term which is not finite. Collective.
 std::vector<double> order_free_sums(MPI_Comm communicator, std::span<const double> terms, std::size_t columns);
 
-}  // namespace thalweg::analysis
+}  // namespace thalweg

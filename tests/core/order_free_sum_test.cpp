@@ -1,4 +1,4 @@
-#include "analysis/order_free_sum.hpp"
+#include "core/order_free_sum.hpp"
 
 #include "core/mpi_session.hpp"
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace thalweg::analysis {
+namespace thalweg {
 namespace {
 
 const MPI_Comm world = MPI_COMM_WORLD;
@@ -56,4 +56,4 @@ TEST(OrderFreeSum, OfNothingIsZeroAndOfNonsenseIsNotANumber) {
 }
 
 }  // namespace
-}  // namespace thalweg::analysis
+}  // namespace thalweg
