@@ -12,6 +12,13 @@ int PhaseTimer::phase(const std::string& name) {
   return static_cast<int>(names_.size()) - 1;
 }
 
+void PhaseTimer::switch_to(int phase) {
+  const Clock::time_point now = Clock::now();
+  if (running_ != none) seconds_[running_] += std::chrono::duration<double>(now - since_).count();
+  running_ = phase;
+  since_ = now;
+}
+
 std::vector<std::pair<std::string, double>> PhaseTimer::seconds() const {
   std::vector<std::pair<std::string, double>> table;
   for (std::size_t p = 0; p < names_.size(); ++p) table.emplace_back(names_[p], seconds_[p]);

@@ -15,18 +15,18 @@ public:
   // Index of the phase of that name, created on first use. Look it up once, outside the loop.
   int phase(const std::string& name);
 
-  // Adds the time from construction to destruction to a phase.
+  // Adds the time from construction to destruction to a phase. A scope inside another takes its time from the outer
+  // one, so that the phases add up to the whole.
   class Scope {
   public:
-    Scope(PhaseTimer& timer, int phase) : timer_(timer), phase_(phase), start_(Clock::now()) {}
-    ~Scope() { timer_.seconds_[phase_] += std::chrono::duration<double>(Clock::now() - start_).count(); }
+    Scope(PhaseTimer& timer, int phase) : timer_(timer), outer_(timer.running_) { timer_.switch_to(phase); }
+    ~Scope() { timer_.switch_to(outer_); }
     Scope(const Scope&) = delete;
     Scope& operator=(const Scope&) = delete;
 
   private:
     PhaseTimer& timer_;
-    int phase_;
-    Clock::time_point start_;
+    int outer_;
   };
   Scope measure(int phase) { return Scope(*this, phase); }
 
@@ -35,8 +35,13 @@ public:
   void reset();
 
 private:
+  static constexpr int none = -1;
+  void switch_to(int phase);
+
   std::vector<std::string> names_;
   std::vector<double> seconds_;
+  int running_ = none;
+  Clock::time_point since_;
 };
 
 }  // namespace thalweg

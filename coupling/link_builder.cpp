@@ -13,7 +13,6 @@ void LinkBuilder::build(int slot, const MappedGrain& grain, lbm::LinkTable& tabl
   links_.clear();
   planes_.clear();
   body.centre = grain.centre;
-  for (int a = 0; a < 3; ++a) body.origin[a] = static_cast<int>(std::floor(grain.centre[a]));
 
   local_cells_.along(0, grain.centre.x(), reach, grain.centre.x(), 0, xs_);
   local_cells_.along(1, grain.centre.y(), reach, grain.centre.y(), 0, ys_);
@@ -25,15 +24,14 @@ void LinkBuilder::build(int slot, const MappedGrain& grain, lbm::LinkTable& tabl
       if (from_axis >= reach * reach) continue;
       for (const LocalCell& x : xs_) {
         const double squared = x.offset * x.offset + from_axis;
-        if (squared >= grain.radius * grain.radius && squared < reach * reach)
-          add_links_of_cell(slot, grain, body, x, y, z);
+        if (squared >= grain.radius * grain.radius && squared < reach * reach) add_links_of_cell(slot, grain, x, y, z);
       }
     }
   table.replace(slot, links_, planes_);
 }
 
-void LinkBuilder::add_links_of_cell(int slot, const MappedGrain& grain, const lbm::LinkBody& body, const LocalCell& x,
-                                    const LocalCell& y, const LocalCell& z) {
+void LinkBuilder::add_links_of_cell(int slot, const MappedGrain& grain, const LocalCell& x, const LocalCell& y,
+                                    const LocalCell& z) {
   const lbm::CellIndexing& indexing = cells_.indexing();
   const std::ptrdiff_t cell = indexing.index(x.local, y.local, z.local);
   if (!cells_.is_fluid(cell)) return;
@@ -50,12 +48,11 @@ void LinkBuilder::add_links_of_cell(int slot, const MappedGrain& grain, const lb
     if (delta > 1.0 + 1e-9) continue;
     lbm::Link link;
     link.cell = static_cast<std::uint32_t>(cell);
-    link.offset[0] = static_cast<std::int16_t>(x.global - body.origin[0]);
-    link.offset[1] = static_cast<std::int16_t>(y.global - body.origin[1]);
-    link.offset[2] = static_cast<std::int16_t>(z.global - body.origin[2]);
-    link.direction = static_cast<std::uint8_t>(i);
-    link.upstream_solid = cells_.is_fluid(cell - indexing.offset(i)) ? 0 : 1;
+    link.direction = i;
+    link.upstream_solid = !cells_.is_fluid(cell - indexing.offset(i));
     link.distance = static_cast<float>(std::clamp(delta, 0.0, 1.0));
+    link.arm =
+        Vec3(x.offset + delta * D3Q19::c[i][0], y.offset + delta * D3Q19::c[i][1], z.offset + delta * D3Q19::c[i][2]);
     links_.push_back(link);
     planes_.push_back(z.local);
   }

@@ -17,12 +17,12 @@ public:
   LinkBuilder(const Decomposition& decomposition, const Block& block, const lbm::CellMap& cells)
       : local_cells_(decomposition, block), cells_(cells) {}
 
-  // Replaces the grain's links in the table and sets the centre and origin of its body.
+  // Replaces the grain's links in the table and sets the centre of its body.
   void build(int slot, const MappedGrain& grain, lbm::LinkTable& table, lbm::LinkBody& body);
 
 private:
-  void add_links_of_cell(int slot, const MappedGrain& grain, const lbm::LinkBody& body, const LocalCell& x,
-                         const LocalCell& y, const LocalCell& z);
+  void add_links_of_cell(int slot, const MappedGrain& grain, const LocalCell& x, const LocalCell& y,
+                         const LocalCell& z);
 
   LocalCells local_cells_;
   const lbm::CellMap& cells_;

@@ -41,7 +41,7 @@ ResolvedSystem<Real>::ResolvedSystem(std::unique_ptr<Decomposition> decompositio
       link_builder_(*decomposition_, fluid_.block(), fluid_.cells()),
       refill_(*decomposition_, communicator) {
   phases_ = {timer_.phase("grain map"), timer_.phase("refill"), timer_.phase("halo"),  timer_.phase("walls"),
-             timer_.phase("links"),     timer_.phase("sweep"),  timer_.phase("grains")};
+             timer_.phase("links"),     timer_.phase("sweep"),  timer_.phase("loads"), timer_.phase("grains")};
   if (parameters_.flow_target) fluid_.control_flow(*parameters_.flow_target);
   if (parameters_.initial_fluid)
     fluid_.initialise([&](const Vec3& cell_centre) {
@@ -123,8 +123,17 @@ void ResolvedSystem<Real>::build_links() {
 }
 
 template <typename Real>
-void ResolvedSystem<Real>::exchange_momentum() {
-  lbm::apply_links(fluid_.populations(), fluid_.cells(), links_, lattice_box_, parameters_.links, bodies_);
+void ResolvedSystem<Real>::sweep_behind_links() {
+  lbm::LinkPass<Real> links(fluid_.populations(), fluid_.cells(), links_, lattice_box_, parameters_.links, bodies_);
+  const auto sweep = timer_.measure(phases_.sweep);
+  fluid_.stream_and_collide([&](int plane) {
+    const auto scope = timer_.measure(phases_.links);
+    links.apply_plane(plane);
+  });
+}
+
+template <typename Real>
+void ResolvedSystem<Real>::collect_loads() {
   const std::size_t count = grains_->store().total();
   exchanged_.resize(6 * count);
   for (std::size_t g = 0; g < count; ++g) {
@@ -187,14 +196,11 @@ void ResolvedSystem<Real>::advance() {
     const auto scope = timer_.measure(phases_.walls);
     fluid_.apply_walls();
   }
+  sweep_behind_links();
   {
-    const auto scope = timer_.measure(phases_.links);
-    exchange_momentum();
+    const auto scope = timer_.measure(phases_.loads);
+    collect_loads();
     apply_loads();
-  }
-  {
-    const auto scope = timer_.measure(phases_.sweep);
-    fluid_.stream_and_collide();
   }
   {
     const auto scope = timer_.measure(phases_.grains);

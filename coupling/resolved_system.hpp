@@ -80,7 +80,8 @@ private:
   void update_bodies();
   void build_links();
   void account_for_covered_cells();
-  void exchange_momentum();
+  void sweep_behind_links();
+  void collect_loads();
   void apply_loads();
   Vec3 lattice_position(const Vec3& position) const { return position / parameters_.units.spacing; }
 
@@ -101,7 +102,7 @@ private:
   std::int64_t step_ = 0;
   PhaseTimer timer_;
   struct Phases {
-    int map, refill, halo, walls, links, sweep, grains;
+    int map, refill, halo, walls, links, sweep, loads, grains;
   } phases_;
 };
 

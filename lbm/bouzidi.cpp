@@ -1,213 +1,188 @@
 #include "lbm/bouzidi.hpp"
 
 #include "lbm/equilibrium.hpp"
+#include "lbm/sweep.hpp"
 
 #include <algorithm>
+#include <experimental/simd>
 
 namespace thalweg::lbm {
 
 namespace {
 
-// Base pointers by direction to what a link reads and writes; the index of x_f is added.
-template <typename Real>
-struct LinkSlots {
-  const Real* into_body[D3Q19::directions];  // f_i^c(x_f)
-  const Real* second[2][D3Q19::directions];  // f_i'^c(x_f) for the far half of the link, f_i^c(x_ff) for the near half
-  Real* reflected[D3Q19::directions];        // where the sweep will look for f_i'(x_f)
+namespace stdx = std::experimental;
 
-  explicit LinkSlots(Populations<Real>& populations) {
-    for (int i = 0; i < D3Q19::directions; ++i) {
-      const int opposite = D3Q19::opposite(i);
-      into_body[i] = &populations.post_collision(i, 0);
-      second[0][i] = &populations.post_collision(opposite, 0);
-      second[1][i] = &populations.incoming(i, 0);  // also what a wall returned, if x_ff lies beyond one
-      reflected[i] = &populations.incoming(opposite, 0);
-    }
-  }
-};
-
-// Links of one body on their way through the arithmetic, as arrays the compiler can vectorise over.
-struct Batch {
-  static constexpr int capacity = 128;
-  alignas(64) double delta[capacity], weight[capacity], density[capacity];
-  alignas(64) double cx[capacity], cy[capacity], cz[capacity];  // c_i
-  alignas(64) double ax[capacity], ay[capacity], az[capacity];  // x_f from the body's centre; then the arm
-  alignas(64) double incident[capacity], second[capacity];      // f_i^c(x_f); f_i^c(x_ff) or f_i'^c(x_f)
-  alignas(64) double reflected[capacity];
-  std::uint32_t cells[capacity];  // distinct fluid cells, in order
-  int cell_of[capacity];          // index into cells
-};
-
-struct DirectionTable {
-  double c[3][D3Q19::directions], weight[D3Q19::directions];
-  constexpr DirectionTable() : c(), weight() {
-    for (int i = 0; i < D3Q19::directions; ++i) {
-      for (int a = 0; a < 3; ++a) c[a][i] = D3Q19::c[i][a];
-      weight[i] = D3Q19::weight(i);
-    }
-  }
-};
-constexpr DirectionTable directions;
-
-template <typename Real>
-class LinkPass {
-public:
-  LinkPass(Populations<Real>& populations, const CellMap& cells, const PeriodicBox& box, const LinkOptions& options,
-           std::vector<LinkBody>& bodies)
-      : slots_(populations), cells_(cells), box_(box), options_(options), bodies_(bodies) {}
-
-  // links_end: end of the plane's records, valid to look ahead to.
-  void operator()(LinkBody& body, const Link* links, int count, const Link* links_end) {
-    for (int first = 0; first < count; first += Batch::capacity) {
-      const int n = std::min(Batch::capacity, count - first);
-      ask_for(links + first, n, links_end);
-      gather(body, links + first, n);
-      reflect(body, n);
-      scatter(links + first, n);
-      exchange(body, n);
-    }
-  }
-
-private:
-  // Asks the memory for what a later batch will need; the lines of the links between are on their way already.
-  void ask_for(const Link* links, int n, const Link* links_end) const {
-    const Link* first = links + lookahead;
-    const Link* last = std::min(first + n, links_end);
-    for (const Link* link = first; link < last; ++link) {
-      const int i = link->direction;
-      __builtin_prefetch(slots_.into_body[i] + link->cell, 0);
-      __builtin_prefetch(slots_.second[link->distance < 0.5f][i] + link->cell, 0);
-      __builtin_prefetch(slots_.reflected[i] + link->cell, 1);
-    }
-  }
-
-  void gather(const LinkBody& body, const Link* links, int n) {
-    Batch& b = batch_;
-    const double to_origin[3] = {body.origin[0] + 0.5 - body.centre.x(), body.origin[1] + 0.5 - body.centre.y(),
-                                 body.origin[2] + 0.5 - body.centre.z()};
-    int distinct = 0;
-    for (int k = 0; k < n; ++k) {
-      const Link& link = links[k];
-      const int i = link.direction;
-      if (distinct == 0 || b.cells[distinct - 1] != link.cell) b.cells[distinct++] = link.cell;
-      b.cell_of[k] = distinct - 1;
-      b.delta[k] = link.distance;
-      b.weight[k] = directions.weight[i];
-      b.cx[k] = directions.c[0][i];
-      b.cy[k] = directions.c[1][i];
-      b.cz[k] = directions.c[2][i];
-      b.ax[k] = to_origin[0] + link.offset[0];
-      b.ay[k] = to_origin[1] + link.offset[1];
-      b.az[k] = to_origin[2] + link.offset[2];
-      b.incident[k] = slots_.into_body[i][link.cell];
-      b.second[k] = slots_.second[link.distance < 0.5f][i][link.cell];
-    }
-    densities(n, distinct);
-    for (int k = 0; k < n; ++k)
-      if (links[k].upstream_solid && links[k].distance < 0.5f)
-        b.second[k] = covered_upstream(body, links[k], local_density_[b.cell_of[k]]);
-  }
-
-  // rho at the fluid cells of the batch. Links never change it: they write incoming slots of fluid cells, which hold no
-  // post-collision population of a fluid cell.
-  void densities(int n, int distinct) {
-    for (int d = 0; d < distinct; ++d) local_density_[d] = 0.0;
-    for (int i = 0; i < D3Q19::directions; ++i)
-      for (int d = 0; d < distinct; ++d) local_density_[d] += static_cast<double>(slots_.into_body[i][batch_.cells[d]]);
-    const bool local = options_.wall_density == WallDensity::local;
-    for (int k = 0; k < n; ++k) batch_.density[k] = local ? 1.0 + local_density_[batch_.cell_of[k]] : 1.0;
-  }
-
-  double covered_upstream(const LinkBody& body, const Link& link, double density_deviation) const {
-    const int i = link.direction;
-    const std::ptrdiff_t upstream = static_cast<std::ptrdiff_t>(link.cell) - cells_.indexing().offset(i);
-    const LinkBody& other = bodies_[cells_.body(upstream)];
-    Vec3 position;
-    for (int a = 0; a < 3; ++a) position[a] = body.origin[a] + link.offset[a] - D3Q19::c[i][a] + 0.5;
-    const Vec3 velocity = other.velocity + other.angular_velocity.cross(box_.difference(position, other.centre));
-    return equilibrium_deviation(i, density_deviation, velocity);
-  }
-
-  void reflect(const LinkBody& body, int n) {
-    Batch& b = batch_;
-    const double vx = body.velocity.x(), vy = body.velocity.y(), vz = body.velocity.z();
-    const double wx = body.angular_velocity.x(), wy = body.angular_velocity.y(), wz = body.angular_velocity.z();
-    for (int k = 0; k < n; ++k) {
-      const double delta = b.delta[k];
-      b.ax[k] += delta * b.cx[k];
-      b.ay[k] += delta * b.cy[k];
-      b.az[k] += delta * b.cz[k];
-      const double towards_wall = b.cx[k] * (vx + wy * b.az[k] - wz * b.ay[k]) +
-                                  b.cy[k] * (vy + wz * b.ax[k] - wx * b.az[k]) +
-                                  b.cz[k] * (vz + wx * b.ay[k] - wy * b.ax[k]);
-      const double share = delta < 0.5 ? 2.0 * delta : 0.5 / delta;
-      const double wall_factor = delta < 0.5 ? 6.0 : 6.0 * share;
-      b.reflected[k] =
-          share * b.incident[k] + (1.0 - share) * b.second[k] - wall_factor * b.weight[k] * b.density[k] * towards_wall;
-    }
-  }
-
-  // Stores the populations and keeps what the store rounded them to: the momentum must be that of what streams.
-  void scatter(const Link* links, int n) {
-    for (int k = 0; k < n; ++k) {
-      const Real stored = static_cast<Real>(batch_.reflected[k]);
-      slots_.reflected[links[k].direction][links[k].cell] = stored;
-      batch_.reflected[k] = stored;
-    }
-  }
-
-  void exchange(LinkBody& body, int n) {
-    const Batch& b = batch_;
-    const double vx = body.velocity.x(), vy = body.velocity.y(), vz = body.velocity.z();
-    const double wx = body.angular_velocity.x(), wy = body.angular_velocity.y(), wz = body.angular_velocity.z();
-    const double galilean = options_.momentum_exchange == MomentumExchange::galilean_invariant ? 1.0 : 0.0;
-    FixedVec3 force, torque;
-    for (int k = 0; k < n; ++k) {
-      const double sum = b.incident[k] + b.reflected[k], flux = galilean * (b.incident[k] - b.reflected[k]);
-      const double mx = sum * b.cx[k] - flux * (vx + wy * b.az[k] - wz * b.ay[k]);
-      const double my = sum * b.cy[k] - flux * (vy + wz * b.ax[k] - wx * b.az[k]);
-      const double mz = sum * b.cz[k] - flux * (vz + wx * b.ay[k] - wy * b.ax[k]);
-      force.x += LatticeFixed::from(mx);
-      force.y += LatticeFixed::from(my);
-      force.z += LatticeFixed::from(mz);
-      torque.x += LatticeFixed::from(b.ay[k] * mz - b.az[k] * my);
-      torque.y += LatticeFixed::from(b.az[k] * mx - b.ax[k] * mz);
-      torque.z += LatticeFixed::from(b.ax[k] * my - b.ay[k] * mx);
-    }
-    body.force += force;
-    body.torque += torque;
-  }
-
-  static constexpr int lookahead = 128;  // links
-
-  LinkSlots<Real> slots_;
-  const CellMap& cells_;
-  const PeriodicBox& box_;
-  const LinkOptions& options_;
-  std::vector<LinkBody>& bodies_;
-  Batch batch_;
-  double local_density_[Batch::capacity];  // rho - 1 of the batch's distinct cells
-};
+// The arithmetic runs over whole vectors of any machine; what it computes beyond the last link is zero.
+constexpr int whole = static_cast<int>(LinkTable::slack);
+int rounded_up(int count) { return (count + whole - 1) / whole * whole; }
 
 }  // namespace
 
 template <typename Real>
-void apply_links(Populations<Real>& populations, const CellMap& cells, const LinkTable& links, const PeriodicBox& box,
-                 const LinkOptions& options, std::vector<LinkBody>& bodies) {
-  LinkPass<Real> pass(populations, cells, box, options, bodies);
-  for (int z = 0; z < static_cast<int>(links.planes().size()); ++z) {
-    const LinkTable::Plane& plane = links.planes()[z];
-    for (const std::uint32_t c : links.chunks_in_order(z)) {
-      const LinkTable::Chunk& chunk = plane.chunks[c];
-      pass(bodies[chunk.body], plane.links.data() + chunk.first, static_cast<int>(chunk.count),
-           plane.links.data() + plane.links.size());
+LinkPass<Real>::LinkPass(Populations<Real>& populations, const CellMap& cells, const LinkTable& links,
+                         const PeriodicBox& box, const LinkOptions& options, std::vector<LinkBody>& bodies)
+    : cells_(cells),
+      links_(links),
+      box_(box),
+      options_(options),
+      bodies_(bodies) {
+  for (auto& plane : deviations_) plane.resize(static_cast<std::size_t>(populations.indexing().plane_stride()));
+  for (int i = 0; i < D3Q19::directions; ++i) {
+    const int opposite = D3Q19::opposite(i);
+    for (const std::uint32_t half : {0u, LinkTag::near}) {
+      const std::uint32_t slot = static_cast<std::uint32_t>(i) | half;
+      incident_[slot] = &populations.post_collision(i, 0);
+      // The incoming slot also has what a wall returned, if x_ff lies beyond one.
+      second_[slot] = half ? &populations.incoming(i, 0) : &populations.post_collision(opposite, 0);
+      reflected_[slot] = &populations.incoming(opposite, 0);
     }
   }
 }
 
-template void apply_links(Populations<float>&, const CellMap&, const LinkTable&, const PeriodicBox&, const LinkOptions&,
-                          std::vector<LinkBody>&);
-template void apply_links(Populations<double>&, const CellMap&, const LinkTable&, const PeriodicBox&,
-                          const LinkOptions&, std::vector<LinkBody>&);
+template <typename Real>
+void LinkPass<Real>::apply_plane(int z) {
+  // One plane ahead, because links reach for slots in the next plane: the straight pass for the densities brings them
+  // into the cache at the speed of memory.
+  if (z == 0) measure_densities(0);
+  measure_densities(z + 1);
+  plane_start_ = (z + 1) * cells_.indexing().plane_stride();
+  deviation_ = deviations_[z % 2].data();
+  const LinkTable::Plane& plane = links_.planes()[z];
+  const std::vector<std::uint32_t>& order = links_.chunks_in_order(z);
+  for (std::size_t c = 0; c < order.size(); ++c) {
+    if (c + 1 < order.size()) ask_for(plane.links, plane.chunks[order[c + 1]]);
+    const LinkTable::Chunk& chunk = plane.chunks[order[c]];
+    LinkBody& body = bodies_[chunk.body];
+    const std::size_t end = chunk.first + chunk.count;
+    for (std::size_t first = chunk.first; first < end; first += capacity) {
+      const int count = static_cast<int>(std::min<std::size_t>(capacity, end - first));
+      gather(body, plane.links, first, count);
+      reflect(body, plane.links, first, count);
+      scatter(plane.links, first, count);
+      add_momentum(body, count);
+    }
+  }
+}
+
+// Links never change a density: they write incoming slots of fluid cells, which hold no post-collision population of a
+// fluid cell.
+template <typename Real>
+void LinkPass<Real>::measure_densities(int z) {
+  using Pack = stdx::native_simd<Real>;
+  constexpr std::ptrdiff_t width = Pack::size(), ahead = prefetch_bytes / static_cast<std::ptrdiff_t>(sizeof(Real));
+  const CellIndexing& indexing = cells_.indexing();
+  if (z >= indexing.size()[2] || links_.planes()[z].live == 0) return;
+  const std::ptrdiff_t start = (z + 1) * indexing.plane_stride();
+  for (int y = 0; y < indexing.size()[1]; ++y) {
+    const std::uint8_t* fluid = cells_.fluid_in_packs(y, z);
+    for (int p = 0; p < indexing.packs_per_row(); ++p) {
+      if (fluid[p] == 0) continue;
+      const std::ptrdiff_t cell = indexing.index(0, y, z) + p * width;
+      Pack sum = 0;
+      for (int i = 0; i < D3Q19::directions; ++i) {
+        __builtin_prefetch(incident_[i] + cell + ahead, 1);
+        sum += Pack(incident_[i] + cell, stdx::element_aligned);
+      }
+      sum.copy_to(deviations_[z % 2].data() + (cell - start), stdx::element_aligned);
+    }
+  }
+}
+
+// Asks the cache for what the next chunk will need.
+template <typename Real>
+void LinkPass<Real>::ask_for(const LinkStream& links, const LinkTable::Chunk& chunk) const {
+  for (std::size_t k = chunk.first; k < chunk.first + chunk.count; ++k) {
+    const std::uint32_t slot = links.tag[k] & LinkTag::slot_mask, cell = links.cell[k];
+    __builtin_prefetch(incident_[slot] + cell, 0);
+    __builtin_prefetch(second_[slot] + cell, 0);
+    __builtin_prefetch(reflected_[slot] + cell, 1);
+  }
+}
+
+template <typename Real>
+void LinkPass<Real>::gather(LinkBody& body, const LinkStream& links, std::size_t first, int count) {
+  const bool local = options_.wall_density == WallDensity::local;
+  Batch& b = batch_;
+  for (int k = 0; k < count; ++k) {
+    const std::uint32_t tag = links.tag[first + k], cell = links.cell[first + k], slot = tag & LinkTag::slot_mask;
+    const Real deviation = deviation_[cell - plane_start_];
+    b.density[k] = local ? Real(1) + deviation : Real(1);
+    b.incident[k] = incident_[slot][cell];
+    b.second[k] = second_[slot][cell];
+    if (tag & LinkTag::covered_upstream) b.second[k] = covered_upstream(body, links, first + k, deviation);
+  }
+  for (int k = count; k < rounded_up(count); ++k) b.density[k] = b.incident[k] = b.second[k] = Real(0);
+}
+
+template <typename Real>
+Real LinkPass<Real>::covered_upstream(const LinkBody& body, const LinkStream& links, std::size_t link,
+                                      Real density_deviation) const {
+  const int i = static_cast<int>(links.tag[link] & LinkTag::direction_mask);
+  const std::ptrdiff_t upstream = static_cast<std::ptrdiff_t>(links.cell[link]) - cells_.indexing().offset(i);
+  const LinkBody& other = bodies_[cells_.body(upstream)];
+  Vec3 arm = box_.difference(body.centre, other.centre);
+  for (int a = 0; a < 3; ++a) arm[a] += links.arm[a][link] - (links.distance[link] + 1.0) * D3Q19::c[i][a];
+  const Vec3 velocity = other.velocity + other.angular_velocity.cross(arm);
+  return static_cast<Real>(equilibrium_deviation(i, static_cast<double>(density_deviation), velocity));
+}
+
+template <typename Real>
+void LinkPass<Real>::reflect(const LinkBody& body, const LinkStream& links, std::size_t first, int count) {
+  Batch& b = batch_;
+  const Real vx = Real(body.velocity.x()), vy = Real(body.velocity.y()), vz = Real(body.velocity.z());
+  const Real wx = Real(body.angular_velocity.x()), wy = Real(body.angular_velocity.y()),
+             wz = Real(body.angular_velocity.z());
+  const Real galilean = options_.momentum_exchange == MomentumExchange::galilean_invariant ? Real(1) : Real(0);
+  const std::uint32_t* tags = links.tag.data() + first;
+  const float* distance = links.distance.data() + first;
+  const float *arm_x = links.arm[0].data() + first, *arm_y = links.arm[1].data() + first,
+              *arm_z = links.arm[2].data() + first;
+  const int n = rounded_up(count);
+  for (int k = 0; k < n; ++k) {
+    const int tag = static_cast<int>(tags[k]);
+    const Real cx = Real((tag >> LinkTag::velocity_shift(0) & 3) - 1);
+    const Real cy = Real((tag >> LinkTag::velocity_shift(1) & 3) - 1);
+    const Real cz = Real((tag >> LinkTag::velocity_shift(2) & 3) - 1);
+    const Real weight = (Real(3) - (cx * cx + cy * cy + cz * cz)) * Real(1.0 / 36.0);
+    const Real ax = Real(arm_x[k]), ay = Real(arm_y[k]), az = Real(arm_z[k]), delta = Real(distance[k]);
+    const Real ux = vx + (wy * az - wz * ay), uy = vy + (wz * ax - wx * az), uz = vz + (wx * ay - wy * ax);
+    const Real towards_wall = cx * ux + cy * uy + cz * uz;
+    const Real share = delta < Real(0.5) ? Real(2) * delta : Real(0.5) / delta;
+    const Real wall_factor = delta < Real(0.5) ? Real(6) : Real(6) * share;
+    const Real incident = b.incident[k];
+    const Real reflected =
+        share * incident + (Real(1) - share) * b.second[k] - wall_factor * weight * b.density[k] * towards_wall;
+    b.reflected[k] = reflected;
+    const Real sum = incident + reflected, flux = galilean * (incident - reflected);
+    const Real mx = sum * cx - flux * ux, my = sum * cy - flux * uy, mz = sum * cz - flux * uz;
+    b.momentum[0][k] = mx;
+    b.momentum[1][k] = my;
+    b.momentum[2][k] = mz;
+    b.torque[0][k] = ay * mz - az * my;
+    b.torque[1][k] = az * mx - ax * mz;
+    b.torque[2][k] = ax * my - ay * mx;
+  }
+}
+
+template <typename Real>
+void LinkPass<Real>::scatter(const LinkStream& links, std::size_t first, int count) {
+  for (int k = 0; k < count; ++k)
+    reflected_[links.tag[first + k] & LinkTag::slot_mask][links.cell[first + k]] = batch_.reflected[k];
+}
+
+template <typename Real>
+void LinkPass<Real>::add_momentum(LinkBody& body, int count) const {
+  const int n = rounded_up(count);
+  const auto total = [n](const Real* terms) {
+    std::int64_t sum = 0;
+    for (int k = 0; k < n; ++k) sum += LatticeFixed::from(static_cast<double>(terms[k]));
+    return sum;
+  };
+  body.force += {total(batch_.momentum[0]), total(batch_.momentum[1]), total(batch_.momentum[2])};
+  body.torque += {total(batch_.torque[0]), total(batch_.torque[1]), total(batch_.torque[2])};
+}
+
+template class LinkPass<float>;
+template class LinkPass<double>;
 
 }  // namespace thalweg::lbm

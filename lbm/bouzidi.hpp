@@ -18,6 +18,7 @@
 #include "lbm/link_table.hpp"
 #include "lbm/populations.hpp"
 
+#include <cstddef>
 #include <vector>
 
 namespace thalweg::lbm {
@@ -30,11 +31,56 @@ struct LinkOptions {
   WallDensity wall_density = WallDensity::local;
 };
 
-// Writes, for every link, the population that the sweep will take from the solid side, and adds the momentum to
-// bodies[...].force and torque (which the caller has cleared). Walls and halo must be done. CellMap holds slots of
-// bodies. box: the domain in cells, for the minimum image between bodies.
+// Applies the links of one step, plane by plane. For every link it writes the population that the sweep will take from
+// the solid side, and adds the momentum to bodies[...].force and torque (which the caller has cleared). Walls and halo
+// must be done. CellMap holds slots of bodies. box: the domain in cells, for the minimum image between bodies. Whatever
+// is handed over must outlive the pass.
+//
+// The links of plane z read what cells of the planes z-1 to z+1 sent out, so they must be applied before any of these
+// planes is swept; Fluid::stream_and_collide(before_plane) does so while the planes are still in the cache.
 template <typename Real>
-void apply_links(Populations<Real>& populations, const CellMap& cells, const LinkTable& links, const PeriodicBox& box,
-                 const LinkOptions& options, std::vector<LinkBody>& bodies);
+class LinkPass {
+public:
+  LinkPass(Populations<Real>& populations, const CellMap& cells, const LinkTable& links, const PeriodicBox& box,
+           const LinkOptions& options, std::vector<LinkBody>& bodies);
+
+  void apply_plane(int z);
+
+private:
+  // Links of one body on their way through the arithmetic.
+  static constexpr int capacity = 256;
+  struct Batch {
+    alignas(64) Real density[capacity];                     // rho at x_f
+    alignas(64) Real incident[capacity], second[capacity];  // f_i^c(x_f); f_i^c(x_ff) or f_i'^c(x_f)
+    alignas(64) Real reflected[capacity];                   // f_i'(x_f, t+1)
+    alignas(64) Real momentum[3][capacity], torque[3][capacity];
+  };
+
+  void measure_densities(int z);
+  void ask_for(const LinkStream& links, const LinkTable::Chunk& chunk) const;
+  void gather(LinkBody& body, const LinkStream& links, std::size_t first, int count);
+  Real covered_upstream(const LinkBody& body, const LinkStream& links, std::size_t link, Real density) const;
+  void reflect(const LinkBody& body, const LinkStream& links, std::size_t first, int count);
+  void scatter(const LinkStream& links, std::size_t first, int count);
+  void add_momentum(LinkBody& body, int count) const;
+
+  const CellMap& cells_;
+  const LinkTable& links_;
+  const PeriodicBox& box_;
+  const LinkOptions& options_;
+  std::vector<LinkBody>& bodies_;
+
+  // Base pointers to what a link reads and writes, by LinkTag's slot; the index of x_f is added.
+  const Real* incident_[LinkTag::slot_mask + 1] = {};
+  const Real* second_[LinkTag::slot_mask + 1] = {};
+  Real* reflected_[LinkTag::slot_mask + 1] = {};
+
+  // rho - 1 of the cells of two neighbouring planes, even z and odd z.
+  std::vector<Real> deviations_[2];
+  const Real* deviation_ = nullptr;  // of the present plane, by the index of the cell less plane_start_
+  std::ptrdiff_t plane_start_ = 0;   // index of the first cell in memory of the present plane
+
+  Batch batch_;
+};
 
 }  // namespace thalweg::lbm

@@ -114,15 +114,18 @@ void Fluid<Real>::switch_arrangement() {
 }
 
 template <typename Real>
-void Fluid<Real>::stream_and_collide() {
+void Fluid<Real>::stream_and_collide(const std::function<void(int)>& before_plane) {
   if (control_) update_force();
   const Index3& n = indexing().size();
   const RowShear<Real> shear{{shear_rows_[0].data(), shear_rows_[1].data(), shear_rows_[2].data()}};
-  for (int z = 0; z < n[2]; ++z)
+  if (before_plane) before_plane(0);
+  for (int z = 0; z < n[2]; ++z) {
+    if (before_plane && z + 1 < n[2]) before_plane(z + 1);
     for (int y = 0; y < n[1]; ++y) {
       sweep(y, z, 0, indexing().packs_per_row());
       if (walls_.wants_shear(y, z)) walls_.take_shear(y, z, shear, cells_);
     }
+  }
   switch_arrangement();
 }
 

@@ -2,8 +2,8 @@
 // throughout; densities as deviations rho - 1.
 //
 // A step without bodies is advance(), which sweeps the cells inside while the halo is on its way. With bodies, the
-// coupling calls the parts and puts the links in between:
-//   exchange_halo(), apply_walls(), [apply_links()], stream_and_collide().
+// coupling calls the parts and lets the links of each plane go first:
+//   exchange_halo(), apply_walls(), stream_and_collide(links of a plane).
 #pragma once
 
 #include "core/archive.hpp"
@@ -56,7 +56,9 @@ public:
   void finish_halo_exchange() { halo_.finish(); }
   void exchange_halo();
   void apply_walls() { walls_.apply(populations_, cells_); }
-  void stream_and_collide();
+  // Calls before_plane(z), if given, for every plane z of the block from the bottom up, once the planes below z - 1 are
+  // swept and before z - 1 is.
+  void stream_and_collide(const std::function<void(int)>& before_plane = {});
   void advance();
 
   const Block& block() const { return block_; }

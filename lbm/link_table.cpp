@@ -4,6 +4,31 @@
 
 namespace thalweg::lbm {
 
+void LinkStream::resize(std::size_t links) {
+  cell.resize(links);
+  tag.resize(links);
+  distance.resize(links);
+  for (std::vector<float>& a : arm) a.resize(links);
+}
+
+void LinkStream::put(std::size_t at, const Link& link) {
+  cell[at] = link.cell;
+  tag[at] = LinkTag::of(link.direction, link.distance < 0.5f, link.upstream_solid);
+  distance[at] = link.distance;
+  for (int a = 0; a < 3; ++a) arm[a][at] = static_cast<float>(link.arm[a]);
+}
+
+void LinkStream::append(const LinkStream& other, std::size_t first, std::size_t count) {
+  const auto add = [&](auto& to, const auto& from) {
+    to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(first),
+              from.begin() + static_cast<std::ptrdiff_t>(first + count));
+  };
+  add(cell, other.cell);
+  add(tag, other.tag);
+  add(distance, other.distance);
+  for (int a = 0; a < 3; ++a) add(arm[a], other.arm[a]);
+}
+
 std::size_t LinkTable::count() const {
   std::size_t total = 0;
   for (const Plane& plane : planes_) total += plane.live;
@@ -58,7 +83,7 @@ const std::vector<std::uint32_t>& LinkTable::chunks_in_order(int plane) const {
     for (std::uint32_t c = 0; c < p.chunks.size(); ++c)
       if (p.chunks[c].count > 0) p.order.push_back(c);
     std::sort(p.order.begin(), p.order.end(), [&p](std::uint32_t a, std::uint32_t b) {
-      return p.links[p.chunks[a].first].cell < p.links[p.chunks[b].first].cell;
+      return p.links.cell[p.chunks[a].first] < p.links.cell[p.chunks[b].first];
     });
     p.in_order = true;
   }
@@ -70,24 +95,26 @@ void LinkTable::put(Plane& plane, Chunk& chunk, std::span<const Link> links) {
   plane.live -= chunk.count;
   if (links.size() > chunk.capacity) {
     chunk.count = 0;
-    chunk.first = static_cast<std::uint32_t>(plane.links.size());
+    chunk.first = static_cast<std::uint32_t>(plane.end);
     chunk.capacity = static_cast<std::uint32_t>(links.size() + links.size() / 4);
-    plane.links.resize(plane.links.size() + chunk.capacity);
+    plane.end += chunk.capacity;
+    plane.links.resize(plane.end + slack);
   }
-  std::copy(links.begin(), links.end(), plane.links.begin() + chunk.first);
+  for (std::size_t k = 0; k < links.size(); ++k) plane.links.put(chunk.first + k, links[k]);
   chunk.count = static_cast<std::uint32_t>(links.size());
-  if (plane.links.size() > 3 * plane.live + 4096) compact(plane);
+  if (plane.end > 3 * plane.live + 4096) compact(plane);
 }
 
 void LinkTable::compact(Plane& plane) {
-  std::vector<Link> packed;
-  packed.reserve(plane.live + plane.live / 4);
+  LinkStream packed;
   for (Chunk& chunk : plane.chunks) {
-    const std::uint32_t first = static_cast<std::uint32_t>(packed.size());
-    packed.insert(packed.end(), plane.links.begin() + chunk.first, plane.links.begin() + chunk.first + chunk.count);
-    chunk.first = first;
+    const std::size_t first = packed.size();
+    packed.append(plane.links, chunk.first, chunk.count);
+    chunk.first = static_cast<std::uint32_t>(first);
     chunk.capacity = chunk.count;
   }
+  plane.end = packed.size();
+  packed.resize(plane.end + slack);
   plane.links = std::move(packed);
 }
 

@@ -38,7 +38,7 @@ TEST(LinkTable, HoldsWhatWasPutInLast) {
     for (int plane = 0; plane < planes; ++plane)
       for (const LinkTable::Chunk& chunk : table.planes()[plane].chunks)
         for (std::uint32_t k = 0; k < chunk.count; ++k, ++count)
-          found[chunk.body].insert({plane, table.planes()[plane].links[chunk.first + k].cell});
+          found[chunk.body].insert({plane, table.planes()[plane].links.cell[chunk.first + k]});
     for (int b = 0; b < bodies; ++b) ASSERT_EQ(found[b], expected[b]) << "body " << b << " in round " << round;
     ASSERT_EQ(count, table.count());
   }
