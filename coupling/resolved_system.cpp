@@ -37,8 +37,8 @@ ResolvedSystem<Real>::ResolvedSystem(std::unique_ptr<Decomposition> decompositio
       box_(decomposition_->box()),
       lattice_box_{cells_as_vector(decomposition_->cells()), decomposition_->periodic()},
       map_(*decomposition_, fluid_.block(), fluid_.cells()),
-      links_(fluid_.block().size()[2]),
-      link_builder_(*decomposition_, fluid_.block(), fluid_.cells()),
+      links_(fluid_.tiles().count()),
+      link_builder_(*decomposition_, fluid_.block(), fluid_.cells(), fluid_.tiles()),
       refill_(*decomposition_, communicator) {
   phases_ = {timer_.phase("grain map"), timer_.phase("refill"), timer_.phase("halo"),  timer_.phase("walls"),
              timer_.phase("links"),     timer_.phase("sweep"),  timer_.phase("loads"), timer_.phase("grains")};
@@ -124,11 +124,12 @@ void ResolvedSystem<Real>::build_links() {
 
 template <typename Real>
 void ResolvedSystem<Real>::sweep_behind_links() {
-  lbm::LinkPass<Real> links(fluid_.populations(), fluid_.cells(), links_, lattice_box_, parameters_.links, bodies_);
+  lbm::LinkPass<Real> links(fluid_.populations(), fluid_.cells(), fluid_.tiles(), links_, lattice_box_,
+                            parameters_.links, bodies_);
   const auto sweep = timer_.measure(phases_.sweep);
-  fluid_.stream_and_collide([&](int plane) {
+  fluid_.stream_and_collide([&](int tile) {
     const auto scope = timer_.measure(phases_.links);
-    links.apply_plane(plane);
+    links.apply_tile(tile);
   });
 }
 

@@ -19,13 +19,10 @@ int rounded_up(int count) { return (count + whole - 1) / whole * whole; }
 }  // namespace
 
 template <typename Real>
-LinkPass<Real>::LinkPass(Populations<Real>& populations, const CellMap& cells, const LinkTable& links,
-                         const PeriodicBox& box, const LinkOptions& options, std::vector<LinkBody>& bodies)
-    : cells_(cells),
-      links_(links),
-      box_(box),
-      options_(options),
-      bodies_(bodies) {
+LinkPass<Real>::LinkPass(Populations<Real>& populations, const CellMap& cells, const RowTiles& tiles,
+                         const LinkTable& links, const PeriodicBox& box, const LinkOptions& options,
+                         std::vector<LinkBody>& bodies)
+    : cells_(cells), tiles_(tiles), links_(links), box_(box), options_(options), bodies_(bodies) {
   for (auto& plane : deviations_) plane.resize(static_cast<std::size_t>(populations.indexing().plane_stride()));
   for (int i = 0; i < D3Q19::directions; ++i) {
     const int opposite = D3Q19::opposite(i);
@@ -40,25 +37,29 @@ LinkPass<Real>::LinkPass(Populations<Real>& populations, const CellMap& cells, c
 }
 
 template <typename Real>
-void LinkPass<Real>::apply_plane(int z) {
+void LinkPass<Real>::apply_tile(int tile) {
+  const LinkTable::Tile& t = links_.tiles()[tile];
+  const std::vector<std::uint32_t>& order = links_.chunks_in_order(tile);
+  constexpr std::size_t ahead = 3;  // chunks
+  for (std::size_t c = 0; c < std::min(ahead, order.size()); ++c) ask_for_links(t.links, t.chunks[order[c]]);
   // One plane ahead, because links reach for slots in the next plane: the straight pass for the densities brings them
   // into the cache at the speed of memory.
-  if (z == 0) measure_densities(0);
-  measure_densities(z + 1);
+  const int z = tiles_.plane_of(tile);
+  if (z == 0) measure_densities(tile);
+  if (z + 1 < tiles_.planes()) measure_densities(tile + 1);
   plane_start_ = (z + 1) * cells_.indexing().plane_stride();
   deviation_ = deviations_[z % 2].data();
-  const LinkTable::Plane& plane = links_.planes()[z];
-  const std::vector<std::uint32_t>& order = links_.chunks_in_order(z);
   for (std::size_t c = 0; c < order.size(); ++c) {
-    if (c + 1 < order.size()) ask_for(plane.links, plane.chunks[order[c + 1]]);
-    const LinkTable::Chunk& chunk = plane.chunks[order[c]];
+    if (c + ahead < order.size()) ask_for_links(t.links, t.chunks[order[c + ahead]]);
+    if (c + 1 < order.size()) ask_for_slots(t.links, t.chunks[order[c + 1]]);
+    const LinkTable::Chunk& chunk = t.chunks[order[c]];
     LinkBody& body = bodies_[chunk.body];
     const std::size_t end = chunk.first + chunk.count;
     for (std::size_t first = chunk.first; first < end; first += capacity) {
       const int count = static_cast<int>(std::min<std::size_t>(capacity, end - first));
-      gather(body, plane.links, first, count);
-      reflect(body, plane.links, first, count);
-      scatter(plane.links, first, count);
+      gather(body, t.links, first, count);
+      reflect(body, t.links, first, count);
+      scatter(t.links, first, count);
       add_momentum(body, count);
     }
   }
@@ -67,13 +68,14 @@ void LinkPass<Real>::apply_plane(int z) {
 // Links never change a density: they write incoming slots of fluid cells, which hold no post-collision population of a
 // fluid cell.
 template <typename Real>
-void LinkPass<Real>::measure_densities(int z) {
+void LinkPass<Real>::measure_densities(int tile) {
   using Pack = stdx::native_simd<Real>;
   constexpr std::ptrdiff_t width = Pack::size(), ahead = prefetch_bytes / static_cast<std::ptrdiff_t>(sizeof(Real));
   const CellIndexing& indexing = cells_.indexing();
-  if (z >= indexing.size()[2] || links_.planes()[z].live == 0) return;
+  if (links_.tiles()[tile].live == 0) return;
+  const int z = tiles_.plane_of(tile), block = tiles_.block_of(tile);
   const std::ptrdiff_t start = (z + 1) * indexing.plane_stride();
-  for (int y = 0; y < indexing.size()[1]; ++y) {
+  for (int y = tiles_.first_row(block); y < tiles_.end_row(block); ++y) {
     const std::uint8_t* fluid = cells_.fluid_in_packs(y, z);
     for (int p = 0; p < indexing.packs_per_row(); ++p) {
       if (fluid[p] == 0) continue;
@@ -88,9 +90,24 @@ void LinkPass<Real>::measure_densities(int z) {
   }
 }
 
-// Asks the cache for what the next chunk will need.
+// Asks the memory for the links of a chunk to come. These two are inlined, because to the compiler a function that only
+// asks does nothing, and a call of it can go.
 template <typename Real>
-void LinkPass<Real>::ask_for(const LinkStream& links, const LinkTable::Chunk& chunk) const {
+[[gnu::always_inline]] inline void LinkPass<Real>::ask_for_links(const LinkStream& links,
+                                                                 const LinkTable::Chunk& chunk) const {
+  constexpr std::size_t line = 64 / sizeof(float);  // links in a cache line
+  for (std::size_t k = chunk.first; k < chunk.first + chunk.count + line; k += line) {
+    __builtin_prefetch(links.cell.data() + k);
+    __builtin_prefetch(links.tag.data() + k);
+    __builtin_prefetch(links.distance.data() + k);
+    for (const std::vector<float>& arm : links.arm) __builtin_prefetch(arm.data() + k);
+  }
+}
+
+// Asks the cache for what the links of a chunk will read and write.
+template <typename Real>
+[[gnu::always_inline]] inline void LinkPass<Real>::ask_for_slots(const LinkStream& links,
+                                                                 const LinkTable::Chunk& chunk) const {
   for (std::size_t k = chunk.first; k < chunk.first + chunk.count; ++k) {
     const std::uint32_t slot = links.tag[k] & LinkTag::slot_mask, cell = links.cell[k];
     __builtin_prefetch(incident_[slot] + cell, 0);
@@ -103,27 +120,30 @@ template <typename Real>
 void LinkPass<Real>::gather(LinkBody& body, const LinkStream& links, std::size_t first, int count) {
   const bool local = options_.wall_density == WallDensity::local;
   Batch& b = batch_;
+  int covered = 0;
   for (int k = 0; k < count; ++k) {
     const std::uint32_t tag = links.tag[first + k], cell = links.cell[first + k], slot = tag & LinkTag::slot_mask;
     const Real deviation = deviation_[cell - plane_start_];
     b.density[k] = local ? Real(1) + deviation : Real(1);
     b.incident[k] = incident_[slot][cell];
     b.second[k] = second_[slot][cell];
-    if (tag & LinkTag::covered_upstream) b.second[k] = covered_upstream(body, links, first + k, deviation);
+    covered_[covered] = k;
+    covered += static_cast<int>(tag >> LinkTag::covered_shift & 1);
   }
+  for (int c = 0; c < covered; ++c) b.second[covered_[c]] = covered_upstream(body, links, first + covered_[c]);
   for (int k = count; k < rounded_up(count); ++k) b.density[k] = b.incident[k] = b.second[k] = Real(0);
 }
 
 template <typename Real>
-Real LinkPass<Real>::covered_upstream(const LinkBody& body, const LinkStream& links, std::size_t link,
-                                      Real density_deviation) const {
-  const int i = static_cast<int>(links.tag[link] & LinkTag::direction_mask);
-  const std::ptrdiff_t upstream = static_cast<std::ptrdiff_t>(links.cell[link]) - cells_.indexing().offset(i);
-  const LinkBody& other = bodies_[cells_.body(upstream)];
+Real LinkPass<Real>::covered_upstream(const LinkBody& body, const LinkStream& links, std::size_t link) const {
+  const std::uint32_t tag = links.tag[link];
+  const int i = static_cast<int>(tag & LinkTag::direction_mask);
+  const LinkBody& other = bodies_[tag >> LinkTag::body_shift];
   Vec3 arm = box_.difference(body.centre, other.centre);
   for (int a = 0; a < 3; ++a) arm[a] += links.arm[a][link] - (links.distance[link] + 1.0) * D3Q19::c[i][a];
   const Vec3 velocity = other.velocity + other.angular_velocity.cross(arm);
-  return static_cast<Real>(equilibrium_deviation(i, static_cast<double>(density_deviation), velocity));
+  const double deviation = static_cast<double>(deviation_[links.cell[link] - plane_start_]);
+  return static_cast<Real>(equilibrium_deviation(i, deviation, velocity));
 }
 
 template <typename Real>

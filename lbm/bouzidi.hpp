@@ -17,6 +17,7 @@
 #include "lbm/cell_map.hpp"
 #include "lbm/link_table.hpp"
 #include "lbm/populations.hpp"
+#include "lbm/row_tiles.hpp"
 
 #include <cstddef>
 #include <vector>
@@ -31,20 +32,20 @@ struct LinkOptions {
   WallDensity wall_density = WallDensity::local;
 };
 
-// Applies the links of one step, plane by plane. For every link it writes the population that the sweep will take from
+// Applies the links of one step, tile by tile. For every link it writes the population that the sweep will take from
 // the solid side, and adds the momentum to bodies[...].force and torque (which the caller has cleared). Walls and halo
 // must be done. CellMap holds slots of bodies. box: the domain in cells, for the minimum image between bodies. Whatever
 // is handed over must outlive the pass.
 //
-// The links of plane z read what cells of the planes z-1 to z+1 sent out, so they must be applied before any of these
-// planes is swept; Fluid::stream_and_collide(before_plane) does so while the planes are still in the cache.
+// The links of a row read what cells of the rows around it sent out, so they must be applied before any of these rows
+// is swept; Fluid::stream_and_collide(before_tile) does so while the tile is still in the cache. Tiles in order.
 template <typename Real>
 class LinkPass {
 public:
-  LinkPass(Populations<Real>& populations, const CellMap& cells, const LinkTable& links, const PeriodicBox& box,
-           const LinkOptions& options, std::vector<LinkBody>& bodies);
+  LinkPass(Populations<Real>& populations, const CellMap& cells, const RowTiles& tiles, const LinkTable& links,
+           const PeriodicBox& box, const LinkOptions& options, std::vector<LinkBody>& bodies);
 
-  void apply_plane(int z);
+  void apply_tile(int tile);
 
 private:
   // Links of one body on their way through the arithmetic.
@@ -56,15 +57,17 @@ private:
     alignas(64) Real momentum[3][capacity], torque[3][capacity];
   };
 
-  void measure_densities(int z);
-  void ask_for(const LinkStream& links, const LinkTable::Chunk& chunk) const;
+  void measure_densities(int tile);
+  void ask_for_links(const LinkStream& links, const LinkTable::Chunk& chunk) const;
+  void ask_for_slots(const LinkStream& links, const LinkTable::Chunk& chunk) const;
   void gather(LinkBody& body, const LinkStream& links, std::size_t first, int count);
-  Real covered_upstream(const LinkBody& body, const LinkStream& links, std::size_t link, Real density) const;
+  Real covered_upstream(const LinkBody& body, const LinkStream& links, std::size_t link) const;
   void reflect(const LinkBody& body, const LinkStream& links, std::size_t first, int count);
   void scatter(const LinkStream& links, std::size_t first, int count);
   void add_momentum(LinkBody& body, int count) const;
 
   const CellMap& cells_;
+  const RowTiles& tiles_;
   const LinkTable& links_;
   const PeriodicBox& box_;
   const LinkOptions& options_;
@@ -81,6 +84,7 @@ private:
   std::ptrdiff_t plane_start_ = 0;   // index of the first cell in memory of the present plane
 
   Batch batch_;
+  int covered_[capacity];  // links of the batch whose second population is a covered cell's
 };
 
 }  // namespace thalweg::lbm

@@ -35,6 +35,7 @@ Fluid<Real>::Fluid(const Decomposition& decomposition, MPI_Comm communicator, co
       block_(decomposition.block_of(rank_of(communicator))),
       populations_(CellIndexing(block_.size(), pack_width<Real>())),
       cells_(populations_.indexing()),
+      tiles_(block_.size(), D3Q19::directions * sizeof(Real) * populations_.indexing().row_stride()),
       walls_(decomposition, rank_of(communicator), populations_.indexing(), faces, parameters),
       halo_(decomposition, communicator, populations_, walls_) {
   for (auto& row : shear_rows_) row.resize(populations_.indexing().packs_per_row() * populations_.indexing().pack());
@@ -114,16 +115,33 @@ void Fluid<Real>::switch_arrangement() {
 }
 
 template <typename Real>
-void Fluid<Real>::stream_and_collide(const std::function<void(int)>& before_plane) {
+void Fluid<Real>::sweep_whole_row(int y, int z) {
+  sweep(y, z, 0, indexing().packs_per_row());
+  const RowShear<Real> shear{{shear_rows_[0].data(), shear_rows_[1].data(), shear_rows_[2].data()}};
+  if (walls_.wants_shear(y, z)) walls_.take_shear(y, z, shear, cells_);
+}
+
+template <typename Real>
+void Fluid<Real>::stream_and_collide() {
   if (control_) update_force();
   const Index3& n = indexing().size();
-  const RowShear<Real> shear{{shear_rows_[0].data(), shear_rows_[1].data(), shear_rows_[2].data()}};
-  if (before_plane) before_plane(0);
-  for (int z = 0; z < n[2]; ++z) {
-    if (before_plane && z + 1 < n[2]) before_plane(z + 1);
-    for (int y = 0; y < n[1]; ++y) {
-      sweep(y, z, 0, indexing().packs_per_row());
-      if (walls_.wants_shear(y, z)) walls_.take_shear(y, z, shear, cells_);
+  for (int z = 0; z < n[2]; ++z)
+    for (int y = 0; y < n[1]; ++y) sweep_whole_row(y, z);
+  switch_arrangement();
+}
+
+// The sweep follows one plane and one row behind.
+template <typename Real>
+void Fluid<Real>::stream_and_collide(const std::function<void(int)>& before_tile) {
+  if (control_) update_force();
+  const int planes = tiles_.planes();
+  for (int block = 0; block < tiles_.blocks(); ++block) {
+    const bool last = block + 1 == tiles_.blocks();
+    const int first_row = block == 0 ? 0 : tiles_.first_row(block) - 1;
+    const int end_row = tiles_.end_row(block) - (last ? 0 : 1);
+    for (int z = -1; z < planes; ++z) {
+      if (z + 1 < planes) before_tile(block * planes + z + 1);
+      for (int y = first_row; z >= 0 && y < end_row; ++y) sweep_whole_row(y, z);
     }
   }
   switch_arrangement();

@@ -2,8 +2,8 @@
 // throughout; densities as deviations rho - 1.
 //
 // A step without bodies is advance(), which sweeps the cells inside while the halo is on its way. With bodies, the
-// coupling calls the parts and lets the links of each plane go first:
-//   exchange_halo(), apply_walls(), stream_and_collide(links of a plane).
+// coupling calls the parts and lets the links of each tile of rows go first:
+//   exchange_halo(), apply_walls(), stream_and_collide(links of a tile).
 #pragma once
 
 #include "core/archive.hpp"
@@ -15,6 +15,7 @@
 #include "lbm/flow_control.hpp"
 #include "lbm/halo.hpp"
 #include "lbm/populations.hpp"
+#include "lbm/row_tiles.hpp"
 #include "lbm/walls.hpp"
 
 #include <functional>
@@ -56,13 +57,15 @@ public:
   void finish_halo_exchange() { halo_.finish(); }
   void exchange_halo();
   void apply_walls() { walls_.apply(populations_, cells_); }
-  // Calls before_plane(z), if given, for every plane z of the block from the bottom up, once the planes below z - 1 are
-  // swept and before z - 1 is.
-  void stream_and_collide(const std::function<void(int)>& before_plane = {});
+  // Without bodies, row by row. before_tile: called with every tile of tiles() in order, before any row is swept that
+  // touches the tile's rows or a neighbour of them.
+  void stream_and_collide();
+  void stream_and_collide(const std::function<void(int)>& before_tile);
   void advance();
 
   const Block& block() const { return block_; }
   const CellIndexing& indexing() const { return populations_.indexing(); }
+  const RowTiles& tiles() const { return tiles_; }
   const CollisionParameters& parameters() const { return parameters_; }
   Populations<Real>& populations() { return populations_; }
   const Populations<Real>& populations() const { return populations_; }
@@ -82,6 +85,7 @@ private:
   void for_each_fluid_cell(Visit visit) const;
   ArrayBox array_box() const;
   void sweep(int y, int z, int first, int last);
+  void sweep_whole_row(int y, int z);
   void switch_arrangement();
   void advance_behind_halo();
   void update_force();
@@ -92,6 +96,7 @@ private:
   Block block_;
   Populations<Real> populations_;
   CellMap cells_;
+  RowTiles tiles_;
   Walls<Real> walls_;
   Halo<Real> halo_;
   std::optional<FlowControl> control_;

@@ -1,5 +1,9 @@
 #include "lbm/link_table.hpp"
 
+#include "core/error.hpp"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace thalweg::lbm {
@@ -13,7 +17,7 @@ void LinkStream::resize(std::size_t links) {
 
 void LinkStream::put(std::size_t at, const Link& link) {
   cell[at] = link.cell;
-  tag[at] = LinkTag::of(link.direction, link.distance < 0.5f, link.upstream_solid);
+  tag[at] = LinkTag::of(link.direction, link.distance < 0.5f, link.upstream_body);
   distance[at] = link.distance;
   for (int a = 0; a < 3; ++a) arm[a][at] = static_cast<float>(link.arm[a]);
 }
@@ -31,53 +35,56 @@ void LinkStream::append(const LinkStream& other, std::size_t first, std::size_t 
 
 std::size_t LinkTable::count() const {
   std::size_t total = 0;
-  for (const Plane& plane : planes_) total += plane.live;
+  for (const Tile& tile : tiles_) total += tile.live;
   return total;
 }
 
-void LinkTable::replace(int body, std::span<const Link> links, std::span<const int> plane_of) {
+void LinkTable::replace(int body, std::span<const Link> links, std::span<const int> tile_of) {
+  if (body >= LinkTag::bodies)
+    throw InputError(
+        fmt::format("One rank would hold the links of more than {} grains; use more ranks.", LinkTag::bodies));
   if (static_cast<std::size_t>(body) >= places_.size()) places_.resize(body + 1);
   std::vector<Place>& places = places_[body];
   std::size_t next = 0;
-  // Walk the old places and the new planes together; both ascend.
+  // Walk the old places and the new tiles together; both ascend.
   for (std::size_t old = 0; old < places.size() || next < links.size();) {
-    const int new_plane = next < links.size() ? plane_of[next] : static_cast<int>(planes_.size());
-    const int old_plane = old < places.size() ? places[old].plane : static_cast<int>(planes_.size());
-    if (old_plane < new_plane) {  // no links left in this plane
-      Plane& plane = planes_[old_plane];
-      Chunk& chunk = plane.chunks[places[old].chunk];
-      plane.live -= chunk.count;
-      plane.in_order = false;
+    const int new_tile = next < links.size() ? tile_of[next] : static_cast<int>(tiles_.size());
+    const int old_tile = old < places.size() ? places[old].tile : static_cast<int>(tiles_.size());
+    if (old_tile < new_tile) {  // no links left in this tile
+      Tile& tile = tiles_[old_tile];
+      Chunk& chunk = tile.chunks[places[old].chunk];
+      tile.live -= chunk.count;
+      tile.in_order = false;
       chunk.body = -1;
       chunk.count = 0;
-      plane.free_chunks.push_back(places[old].chunk);
+      tile.free_chunks.push_back(places[old].chunk);
       places.erase(places.begin() + old);
       continue;
     }
     std::size_t end = next;
-    while (end < links.size() && plane_of[end] == new_plane) ++end;
-    Plane& plane = planes_[new_plane];
-    if (old_plane != new_plane) {  // a plane newly reached
+    while (end < links.size() && tile_of[end] == new_tile) ++end;
+    Tile& tile = tiles_[new_tile];
+    if (old_tile != new_tile) {  // a tile newly reached
       std::uint32_t fresh;
-      if (plane.free_chunks.empty()) {
-        fresh = static_cast<std::uint32_t>(plane.chunks.size());
-        plane.chunks.emplace_back();
+      if (tile.free_chunks.empty()) {
+        fresh = static_cast<std::uint32_t>(tile.chunks.size());
+        tile.chunks.emplace_back();
       } else {
-        fresh = plane.free_chunks.back();
-        plane.free_chunks.pop_back();
+        fresh = tile.free_chunks.back();
+        tile.free_chunks.pop_back();
       }
-      plane.chunks[fresh].body = body;
-      plane.in_order = false;
-      places.insert(places.begin() + old, {new_plane, fresh});
+      tile.chunks[fresh].body = body;
+      tile.in_order = false;
+      places.insert(places.begin() + old, {new_tile, fresh});
     }
-    put(plane, plane.chunks[places[old].chunk], links.subspan(next, end - next));
+    put(tile, tile.chunks[places[old].chunk], links.subspan(next, end - next));
     ++old;
     next = end;
   }
 }
 
-const std::vector<std::uint32_t>& LinkTable::chunks_in_order(int plane) const {
-  Plane& p = planes_[plane];
+const std::vector<std::uint32_t>& LinkTable::chunks_in_order(int tile) const {
+  Tile& p = tiles_[tile];
   if (!p.in_order) {
     p.order.clear();
     for (std::uint32_t c = 0; c < p.chunks.size(); ++c)
@@ -90,32 +97,32 @@ const std::vector<std::uint32_t>& LinkTable::chunks_in_order(int plane) const {
   return p.order;
 }
 
-void LinkTable::put(Plane& plane, Chunk& chunk, std::span<const Link> links) {
-  plane.live += links.size();
-  plane.live -= chunk.count;
+void LinkTable::put(Tile& tile, Chunk& chunk, std::span<const Link> links) {
+  tile.live += links.size();
+  tile.live -= chunk.count;
   if (links.size() > chunk.capacity) {
     chunk.count = 0;
-    chunk.first = static_cast<std::uint32_t>(plane.end);
+    chunk.first = static_cast<std::uint32_t>(tile.end);
     chunk.capacity = static_cast<std::uint32_t>(links.size() + links.size() / 4);
-    plane.end += chunk.capacity;
-    plane.links.resize(plane.end + slack);
+    tile.end += chunk.capacity;
+    tile.links.resize(tile.end + slack);
   }
-  for (std::size_t k = 0; k < links.size(); ++k) plane.links.put(chunk.first + k, links[k]);
+  for (std::size_t k = 0; k < links.size(); ++k) tile.links.put(chunk.first + k, links[k]);
   chunk.count = static_cast<std::uint32_t>(links.size());
-  if (plane.end > 3 * plane.live + 4096) compact(plane);
+  if (tile.end > 3 * tile.live + 4096) compact(tile);
 }
 
-void LinkTable::compact(Plane& plane) {
+void LinkTable::compact(Tile& tile) {
   LinkStream packed;
-  for (Chunk& chunk : plane.chunks) {
+  for (Chunk& chunk : tile.chunks) {
     const std::size_t first = packed.size();
-    packed.append(plane.links, chunk.first, chunk.count);
+    packed.append(tile.links, chunk.first, chunk.count);
     chunk.first = static_cast<std::uint32_t>(first);
     chunk.capacity = chunk.count;
   }
-  plane.end = packed.size();
-  packed.resize(plane.end + slack);
-  plane.links = std::move(packed);
+  tile.end = packed.size();
+  packed.resize(tile.end + slack);
+  tile.links = std::move(packed);
 }
 
 }  // namespace thalweg::lbm

@@ -1,7 +1,7 @@
 // Cut lattice links: where a body's surface crosses the line from a fluid cell to its solid neighbour.
 //
-// Links are streams of packed words, kept plane by plane (z of the fluid cell) and, within a plane, body by body in
-// memory order. The links of one body in one plane are a chunk; a body that moves rewrites its own chunks and nobody
+// Links are streams of packed words, kept tile by tile (RowTiles, by the fluid cell) and, within a tile, body by body
+// in memory order. The links of one body in one tile are a chunk; a body that moves rewrites its own chunks and nobody
 // else's. The lattice knows bodies as rigid motions only, not their shapes.
 #pragma once
 
@@ -17,26 +17,29 @@ namespace thalweg::lbm {
 
 // A link as whoever finds it hands it over.
 struct Link {
-  std::uint32_t cell = 0;       // index of the fluid cell x_f (CellIndexing)
-  int direction = 0;            // i, pointing into the body
-  bool upstream_solid = false;  // x_f - c_i is covered by a body
-  float distance = 0.0f;        // delta in [0, 1]: fraction of the link from x_f to the surface
-  Vec3 arm = Vec3::Zero();      // where the link meets the surface, from the body's centre
+  std::uint32_t cell = 0;           // index of the fluid cell x_f (CellIndexing)
+  int direction = 0;                // i, pointing into the body
+  std::int32_t upstream_body = -1;  // the body that covers x_f - c_i; -1: it is no solid cell
+  float distance = 0.0f;            // delta in [0, 1]: fraction of the link from x_f to the surface
+  Vec3 arm = Vec3::Zero();          // where the link meets the surface, from the body's centre
 };
 
 // What a step needs of a link besides its cell, distance and arm, in one word.
 struct LinkTag {
-  static constexpr std::uint32_t direction_mask = 31;          // i
-  static constexpr std::uint32_t near = 32;                    // distance < 1/2
-  static constexpr std::uint32_t slot_mask = 63;               // both
-  static constexpr std::uint32_t covered_upstream = 1u << 12;  // near, and x_f - c_i is covered by a body
+  static constexpr std::uint32_t direction_mask = 31;  // i
+  static constexpr std::uint32_t near = 32;            // distance < 1/2
+  static constexpr std::uint32_t slot_mask = 63;       // both
+  static constexpr int covered_shift = 12;             // 1: near, and a body covers x_f - c_i
+  static constexpr int body_shift = 13;                // that body
+  static constexpr std::int32_t bodies = 1 << (32 - body_shift);
   // c_i + 1 of an axis, so that vector code needs no table.
   static constexpr int velocity_shift(int axis) { return 6 + 2 * axis; }
 
-  static constexpr std::uint32_t of(int direction, bool near_half, bool upstream_solid) {
+  static constexpr std::uint32_t of(int direction, bool near_half, std::int32_t upstream_body) {
     std::uint32_t tag = static_cast<std::uint32_t>(direction);
     if (near_half) tag |= near;
-    if (near_half && upstream_solid) tag |= covered_upstream;
+    if (near_half && upstream_body >= 0)
+      tag |= 1u << covered_shift | static_cast<std::uint32_t>(upstream_body) << body_shift;
     for (int a = 0; a < 3; ++a) tag |= static_cast<std::uint32_t>(D3Q19::c[direction][a] + 1) << velocity_shift(a);
     return tag;
   }
@@ -70,7 +73,7 @@ public:
     std::int32_t body = -1;  // slot of the body; -1: the chunk is free
     std::uint32_t first = 0, count = 0, capacity = 0;
   };
-  struct Plane {
+  struct Tile {
     LinkStream links;
     std::vector<Chunk> chunks;
     std::vector<std::uint32_t> free_chunks;
@@ -79,27 +82,28 @@ public:
     std::size_t live = 0, end = 0;  // links in use; first entry of the stream that no chunk has
   };
 
-  explicit LinkTable(int planes) : planes_(planes) {}
+  explicit LinkTable(int tiles) : tiles_(tiles) {}
 
-  const std::vector<Plane>& planes() const { return planes_; }
+  const std::vector<Tile>& tiles() const { return tiles_; }
 
-  // The chunks of a plane in memory order of the cells, so that neighbouring grains share what they load.
-  const std::vector<std::uint32_t>& chunks_in_order(int plane) const;
+  // The chunks of a tile in memory order of the cells, so that neighbouring grains share what they load.
+  const std::vector<std::uint32_t>& chunks_in_order(int tile) const;
   std::size_t count() const;  // all links
 
-  // Replaces all links of a body. links: sorted by plane; plane_of[k] the plane of links[k].
-  void replace(int body, std::span<const Link> links, std::span<const int> plane_of);
+  // Replaces all links of a body. Throws InputError if there are more bodies than a tag can tell. links: sorted by
+  // tile; tile_of[k] the tile of links[k].
+  void replace(int body, std::span<const Link> links, std::span<const int> tile_of);
   void remove(int body) { replace(body, {}, {}); }
 
 private:
   struct Place {
-    int plane;
+    int tile;
     std::uint32_t chunk;
   };
-  void put(Plane& plane, Chunk& chunk, std::span<const Link> links);
-  void compact(Plane& plane);
+  void put(Tile& tile, Chunk& chunk, std::span<const Link> links);
+  void compact(Tile& tile);
 
-  mutable std::vector<Plane> planes_;       // their order is made when it is asked for
+  mutable std::vector<Tile> tiles_;         // their order is made when it is asked for
   std::vector<std::vector<Place>> places_;  // of each body
 };
 

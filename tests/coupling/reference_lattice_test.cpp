@@ -149,8 +149,8 @@ TEST_P(LinksAgainstPlainLattice, AgreeToRoundOff) {
   const Decomposition decomposition(cells, 1.0, {true, true, true}, {1, 1, 1});
   lbm::Fluid<double> fluid(decomposition, MPI_COMM_SELF, parameters, {});
   GrainMap map(decomposition, fluid.block(), fluid.cells());
-  lbm::LinkTable links(cells[2]);
-  LinkBuilder builder(decomposition, fluid.block(), fluid.cells());
+  lbm::LinkTable links(fluid.tiles().count());
+  LinkBuilder builder(decomposition, fluid.block(), fluid.cells(), fluid.tiles());
   std::vector<lbm::LinkBody> bodies(spheres.size());
   map.begin_update();
   for (std::size_t s = 0; s < spheres.size(); ++s) {
@@ -186,8 +186,8 @@ TEST_P(LinksAgainstPlainLattice, AgreeToRoundOff) {
     fluid.exchange_halo();
     fluid.apply_walls();
     for (lbm::LinkBody& body : bodies) body.force = body.torque = {};
-    lbm::LinkPass<double> pass(fluid.populations(), fluid.cells(), links, box, options, bodies);
-    fluid.stream_and_collide([&](int plane) { pass.apply_plane(plane); });
+    lbm::LinkPass<double> pass(fluid.populations(), fluid.cells(), fluid.tiles(), links, box, options, bodies);
+    fluid.stream_and_collide([&](int tile) { pass.apply_tile(tile); });
     const std::vector<Load> loads = plain.step(galilean);
     // Links keep distance and arm in single precision. An arm of up to 4 cells is off by 2^-23 cells at most, so the
     // wall moves wrongly by up to 0.017 * 2^-23 = 2e-9 and reflects up to 1e-9 too much; the sum over 500 links goes
