@@ -31,7 +31,7 @@ int GrainMap::add(GlobalId id, double radius) {
     slot = free_slots_.back();
     free_slots_.pop_back();
   }
-  grains_[slot] = {id, radius, Vec3::Constant(2.0 * nowhere), {}};
+  grains_[slot] = {id, radius, Vec3::Constant(2.0 * nowhere)};
   slot_of_id_[id] = slot;
   return slot;
 }
@@ -45,31 +45,54 @@ void GrainMap::remove(int slot) {
 
 void GrainMap::place(int slot, const Vec3& centre) {
   MappedGrain& grain = grains_[slot];
-  const double squared_radius = grain.radius * grain.radius;
-  const auto sweep_around = [&](const Vec3& middle) {
-    std::vector<LocalCell>* places[3] = {&xs_, &ys_, &zs_};
-    for (int a = 0; a < 3; ++a) {
-      local_cells_.along(a, middle[a], grain.radius, centre[a], 1, *places[a]);
-      if (places[a]->empty()) return;
-    }
-    for (const LocalCell& z : zs_)
-      for (const LocalCell& y : ys_)
-        for (const LocalCell& x : xs_) {
-          const bool inside = x.offset * x.offset + y.offset * y.offset + z.offset * z.offset < squared_radius;
-          const std::ptrdiff_t cell = cells_.indexing().index(x.local, y.local, z.local);
-          const bool held = cells_.body(cell) == slot;
-          if (inside && !held)
-            take(slot, {x.local, y.local, z.local}, cell);
-          else if (held && !inside)
-            release({x.local, y.local, z.local}, cell);
-        }
-  };
   const Vec3 old = grain.centre;
   grain.centre = centre;
-  drop_claims(slot);
-  if (centre.x() > nowhere) sweep_around(centre);
-  if (old.x() > nowhere) sweep_around(old);  // cells left behind
+  const bool was_here = old.x() > nowhere, is_here = centre.x() > nowhere;
+  if (was_here && is_here && (centre - old).squaredNorm() < 1.0) {
+    turn_cells(slot, centre, grain.radius + 1.0, old, centre);
+  } else {
+    if (was_here) turn_cells(slot, old, grain.radius, old, centre);
+    if (is_here) turn_cells(slot, centre, grain.radius, old, centre);
+  }
   mark_for_relink(slot);
+}
+
+// Only cells that are inside at one of the two places and not at the other can change hands; what the grain holds or
+// claims of the others stays.
+void GrainMap::turn_cells(int slot, const Vec3& middle, double reach, const Vec3& old, const Vec3& now) {
+  const double squared_radius = grains_[slot].radius * grains_[slot].radius;
+  for (int a = 0; a < 3; ++a) {
+    local_cells_.along(a, middle[a], reach, old[a], 1, before_[a]);
+    local_cells_.along(a, middle[a], reach, now[a], 1, after_[a]);
+  }
+  const auto squared = [](const LocalCell& place) { return place.offset * place.offset; };
+  const std::size_t width = before_[0].size();
+  squares_before_.resize(width);
+  squares_after_.resize(width);
+  turns_.resize(width);
+  for (std::size_t k = 0; k < width; ++k) {
+    squares_before_[k] = squared(before_[0][k]);
+    squares_after_[k] = squared(after_[0][k]);
+  }
+  for (std::size_t z = 0; z < before_[2].size(); ++z)
+    for (std::size_t y = 0; y < before_[1].size(); ++y) {
+      const double y_before = squared(before_[1][y]), y_after = squared(after_[1][y]);
+      const double z_before = squared(before_[2][z]), z_after = squared(after_[2][z]);
+      if (y_before + z_before >= squared_radius && y_after + z_after >= squared_radius) continue;
+      unsigned any = 0;
+      for (std::size_t k = 0; k < width; ++k) {
+        const bool was_inside = squares_before_[k] + y_before + z_before < squared_radius;
+        const bool is_inside = squares_after_[k] + y_after + z_after < squared_radius;
+        turns_[k] = was_inside != is_inside;
+        any |= turns_[k];
+      }
+      for (std::size_t k = 0; any && k < width; ++k) {
+        if (!turns_[k]) continue;
+        const Index3 local{after_[0][k].local, after_[1][y].local, after_[2][z].local};
+        const bool enters = squares_after_[k] + y_after + z_after < squared_radius;
+        enters ? take(slot, local) : leave(slot, local);
+      }
+    }
 }
 
 void GrainMap::assign(const Index3& local, std::ptrdiff_t cell, std::int32_t slot) {
@@ -77,8 +100,10 @@ void GrainMap::assign(const Index3& local, std::ptrdiff_t cell, std::int32_t slo
   cells_.assign(local[0], local[1], local[2], slot);
 }
 
-void GrainMap::take(int slot, const Index3& local, std::ptrdiff_t cell) {
+void GrainMap::take(int slot, const Index3& local) {
+  const std::ptrdiff_t cell = cells_.indexing().index(local[0], local[1], local[2]);
   const std::int32_t holder = cells_.body(cell);
+  if (holder == slot) return;
   if (holder == CellMap::fluid) {
     assign(local, cell, slot);
     return;
@@ -86,45 +111,37 @@ void GrainMap::take(int slot, const Index3& local, std::ptrdiff_t cell) {
   const bool wins = grains_[slot].id < grains_[holder].id;
   const int loser = wins ? holder : slot;
   std::vector<int>& waiting = claimants_[cell];
-  if (std::find(waiting.begin(), waiting.end(), loser) == waiting.end()) {
-    waiting.push_back(loser);
-    grains_[loser].claims.push_back(cell);
-  }
+  if (std::find(waiting.begin(), waiting.end(), loser) == waiting.end()) waiting.push_back(loser);
   if (!wins) return;
-  const auto own = std::find(waiting.begin(), waiting.end(), slot);
-  if (own != waiting.end()) {
-    waiting.erase(own);
-    auto& claims = grains_[slot].claims;
-    claims.erase(std::find(claims.begin(), claims.end(), cell));
-  }
+  withdraw(slot, cell);
   assign(local, cell, slot);
 }
 
-void GrainMap::release(const Index3& local, std::ptrdiff_t cell) {
-  std::int32_t heir = CellMap::fluid;
+void GrainMap::leave(int slot, const Index3& local) {
+  const std::ptrdiff_t cell = cells_.indexing().index(local[0], local[1], local[2]);
   const auto found = claimants_.find(cell);
+  if (cells_.body(cell) != slot) {
+    if (found != claimants_.end()) withdraw(slot, cell);
+    return;
+  }
+  std::int32_t heir = CellMap::fluid;
   if (found != claimants_.end()) {
-    std::vector<int>& waiting = found->second;
-    const auto lowest =
-        std::min_element(waiting.begin(), waiting.end(), [&](int a, int b) { return grains_[a].id < grains_[b].id; });
-    heir = *lowest;
-    auto& claims = grains_[heir].claims;
-    claims.erase(std::find(claims.begin(), claims.end(), cell));
-    waiting.erase(lowest);
-    if (waiting.empty()) claimants_.erase(found);
+    const std::vector<int>& waiting = found->second;
+    heir =
+        *std::min_element(waiting.begin(), waiting.end(), [&](int a, int b) { return grains_[a].id < grains_[b].id; });
+    withdraw(heir, cell);
   }
   assign(local, cell, heir);
 }
 
-// Claims are made again by the sweep that follows.
-void GrainMap::drop_claims(int slot) {
-  for (const std::ptrdiff_t cell : grains_[slot].claims) {
-    const auto found = claimants_.find(cell);
-    std::vector<int>& waiting = found->second;
-    waiting.erase(std::find(waiting.begin(), waiting.end(), slot));
-    if (waiting.empty()) claimants_.erase(found);
-  }
-  grains_[slot].claims.clear();
+// Ends the claim of a grain to a cell, if it has one.
+void GrainMap::withdraw(int slot, std::ptrdiff_t cell) {
+  const auto found = claimants_.find(cell);
+  std::vector<int>& waiting = found->second;
+  const auto own = std::find(waiting.begin(), waiting.end(), slot);
+  if (own == waiting.end()) return;
+  waiting.erase(own);
+  if (waiting.empty()) claimants_.erase(found);
 }
 
 void GrainMap::mark_for_relink(int slot) {

@@ -16,10 +16,9 @@
 namespace thalweg::coupling {
 
 struct MappedGrain {
-  GlobalId id = -1;                    // -1: the slot is free
-  double radius = 0.0;                 // lattice units
-  Vec3 centre = Vec3::Zero();          // for which cells and links stand; lattice units, global
-  std::vector<std::ptrdiff_t> claims;  // cells inside this grain that a lower id has
+  GlobalId id = -1;            // -1: the slot is free
+  double radius = 0.0;         // lattice units
+  Vec3 centre = Vec3::Zero();  // for which cells and links stand; lattice units, global
 };
 
 class GrainMap {
@@ -51,9 +50,11 @@ public:
 
 private:
   void assign(const Index3& local, std::ptrdiff_t cell, std::int32_t slot);
-  void take(int slot, const Index3& local, std::ptrdiff_t cell);
-  void release(const Index3& local, std::ptrdiff_t cell);
-  void drop_claims(int slot);
+  // Turns the cells within reach of `middle` that are inside the grain at only one of the two places of its centre.
+  void turn_cells(int slot, const Vec3& middle, double reach, const Vec3& old, const Vec3& now);
+  void take(int slot, const Index3& local);
+  void leave(int slot, const Index3& local);
+  void withdraw(int slot, std::ptrdiff_t cell);
   void mark_for_relink(int slot);
   void mark_neighbours(const Index3& local);
 
@@ -65,8 +66,11 @@ private:
   std::unordered_map<std::ptrdiff_t, std::vector<int>> claimants_;  // of cells that a lower id has
   std::vector<Change> changes_;
   std::vector<int> relink_;
-  std::vector<char> relink_marked_;      // by slot
-  std::vector<LocalCell> xs_, ys_, zs_;  // scratch
+  std::vector<char> relink_marked_;  // by slot
+  // Scratch of turn_cells: cells along each axis from the two centres; of a row, squares of the offsets and who turns.
+  std::vector<LocalCell> before_[3], after_[3];
+  std::vector<double> squares_before_, squares_after_;
+  std::vector<unsigned> turns_;
 };
 
 }  // namespace thalweg::coupling

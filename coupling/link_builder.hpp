@@ -22,15 +22,31 @@ public:
   // Replaces the grain's links in the table and sets the centre of its body.
   void build(int slot, const MappedGrain& grain, lbm::LinkTable& table, lbm::LinkBody& body);
 
+  // Asks the memory for what build() will read of the cells around a grain.
+  void ask_for(const MappedGrain& grain);
+
 private:
-  void add_links_of_row(int slot, const MappedGrain& grain, const LocalCell& y, const LocalCell& z);
-  void add_links_of_cell(int slot, const MappedGrain& grain, const LocalCell& x, const LocalCell& y,
-                         const LocalCell& z);
+  // A link on its way: its cell, direction and tile, c_i.c_i, and of d = x_f - centre the vector, b = c_i.d and q.
+  struct Candidates {
+    std::vector<std::uint32_t> cell;
+    std::vector<int> direction, tile;
+    std::vector<double> d[3], a, b, q, distance;
+
+    void clear();
+    void resize_distance() { distance.resize(cell.size()); }
+    std::size_t size() const { return cell.size(); }
+  };
+
+  void find_in_row(int slot, const MappedGrain& grain, const LocalCell& y, const LocalCell& z);
+  void find_at_cell(int slot, const LocalCell& x, const LocalCell& y, const LocalCell& z, double q);
+  void measure_distances();
+  void hand_over(int slot, lbm::LinkTable& table);
 
   LocalCells local_cells_;
   const lbm::CellMap& cells_;
   const lbm::RowTiles& tiles_;
-  std::vector<LocalCell> xs_, ys_, zs_;  // scratch
+  std::vector<LocalCell> xs_, ys_, zs_;  // scratch from here on
+  Candidates found_;
   std::vector<lbm::Link> links_;
   std::vector<int> tile_of_;
 };

@@ -10,7 +10,6 @@
 namespace thalweg::coupling {
 
 struct LocalCell {
-  int global;     // cell coordinate along one axis, not wrapped: near the point
   int local;      // coordinate in the block: owned 0 .. n-1
   double offset;  // of the cell's centre from the reference, nearest periodic image. The same bits on every rank
 };
@@ -45,7 +44,7 @@ public:
           else if (offset < -0.5 * cells)
             offset += cells;
         }
-        places.push_back({g, local, offset});
+        places.push_back({local, offset});
       }
   }
 

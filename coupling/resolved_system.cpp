@@ -114,11 +114,16 @@ void ResolvedSystem<Real>::update_map() {
 
 template <typename Real>
 void ResolvedSystem<Real>::build_links() {
-  for (const int slot : map_.slots_to_relink()) {
-    if (map_.grains()[slot].id < 0)
-      links_.remove(slot);
+  const std::vector<int>& slots = map_.slots_to_relink();
+  for (std::size_t k = 0; k < slots.size(); ++k) {
+    if (k + 1 < slots.size()) {
+      link_builder_.ask_for(map_.grains()[slots[k + 1]]);
+      links_.ask_for(slots[k + 1]);
+    }
+    if (map_.grains()[slots[k]].id < 0)
+      links_.remove(slots[k]);
     else
-      link_builder_.build(slot, map_.grains()[slot], links_, bodies_[slot]);
+      link_builder_.build(slots[k], map_.grains()[slots[k]], links_, bodies_[slots[k]]);
   }
 }
 

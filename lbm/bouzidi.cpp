@@ -41,7 +41,8 @@ void LinkPass<Real>::apply_tile(int tile) {
   const LinkTable::Tile& t = links_.tiles()[tile];
   const std::vector<std::uint32_t>& order = links_.chunks_in_order(tile);
   constexpr std::size_t ahead = 3;  // chunks
-  for (std::size_t c = 0; c < std::min(ahead, order.size()); ++c) ask_for_links(t.links, t.chunks[order[c]]);
+  for (std::size_t c = 0; c < std::min(ahead, order.size()); ++c)
+    t.links.ask_for(t.chunks[order[c]].first, t.chunks[order[c]].count);
   // One plane ahead, because links reach for slots in the next plane: the straight pass for the densities brings them
   // into the cache at the speed of memory.
   const int z = tiles_.plane_of(tile);
@@ -50,7 +51,7 @@ void LinkPass<Real>::apply_tile(int tile) {
   plane_start_ = (z + 1) * cells_.indexing().plane_stride();
   deviation_ = deviations_[z % 2].data();
   for (std::size_t c = 0; c < order.size(); ++c) {
-    if (c + ahead < order.size()) ask_for_links(t.links, t.chunks[order[c + ahead]]);
+    if (c + ahead < order.size()) t.links.ask_for(t.chunks[order[c + ahead]].first, t.chunks[order[c + ahead]].count);
     if (c + 1 < order.size()) ask_for_slots(t.links, t.chunks[order[c + 1]]);
     const LinkTable::Chunk& chunk = t.chunks[order[c]];
     LinkBody& body = bodies_[chunk.body];
@@ -90,21 +91,8 @@ void LinkPass<Real>::measure_densities(int tile) {
   }
 }
 
-// Asks the memory for the links of a chunk to come. These two are inlined, because to the compiler a function that only
-// asks does nothing, and a call of it can go.
-template <typename Real>
-[[gnu::always_inline]] inline void LinkPass<Real>::ask_for_links(const LinkStream& links,
-                                                                 const LinkTable::Chunk& chunk) const {
-  constexpr std::size_t line = 64 / sizeof(float);  // links in a cache line
-  for (std::size_t k = chunk.first; k < chunk.first + chunk.count + line; k += line) {
-    __builtin_prefetch(links.cell.data() + k);
-    __builtin_prefetch(links.tag.data() + k);
-    __builtin_prefetch(links.distance.data() + k);
-    for (const std::vector<float>& arm : links.arm) __builtin_prefetch(arm.data() + k);
-  }
-}
-
-// Asks the cache for what the links of a chunk will read and write.
+// Asks the cache for what the links of a chunk will read and write. Inlined, because to the compiler a function that
+// only asks does nothing, and a call of it can go.
 template <typename Real>
 [[gnu::always_inline]] inline void LinkPass<Real>::ask_for_slots(const LinkStream& links,
                                                                  const LinkTable::Chunk& chunk) const {

@@ -58,7 +58,6 @@ private:
   };
 
   void measure_densities(int tile);
-  void ask_for_links(const LinkStream& links, const LinkTable::Chunk& chunk) const;
   void ask_for_slots(const LinkStream& links, const LinkTable::Chunk& chunk) const;
   void gather(LinkBody& body, const LinkStream& links, std::size_t first, int count);
   Real covered_upstream(const LinkBody& body, const LinkStream& links, std::size_t link) const;

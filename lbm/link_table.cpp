@@ -22,6 +22,16 @@ void LinkStream::put(std::size_t at, const Link& link) {
   for (int a = 0; a < 3; ++a) arm[a][at] = static_cast<float>(link.arm[a]);
 }
 
+void LinkStream::ask_for(std::size_t first, std::size_t count) const {
+  constexpr std::size_t line = 64 / sizeof(float);  // links in a cache line
+  for (std::size_t k = first; k < first + count + line; k += line) {
+    __builtin_prefetch(cell.data() + k);
+    __builtin_prefetch(tag.data() + k);
+    __builtin_prefetch(distance.data() + k);
+    for (const std::vector<float>& a : arm) __builtin_prefetch(a.data() + k);
+  }
+}
+
 void LinkStream::append(const LinkStream& other, std::size_t first, std::size_t count) {
   const auto add = [&](auto& to, const auto& from) {
     to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(first),
@@ -80,6 +90,15 @@ void LinkTable::replace(int body, std::span<const Link> links, std::span<const i
     put(tile, tile.chunks[places[old].chunk], links.subspan(next, end - next));
     ++old;
     next = end;
+  }
+}
+
+void LinkTable::ask_for(int body) const {
+  if (static_cast<std::size_t>(body) >= places_.size()) return;
+  for (const Place& place : places_[body]) {
+    const Tile& tile = tiles_[place.tile];
+    const Chunk& chunk = tile.chunks[place.chunk];
+    tile.links.ask_for(chunk.first, chunk.count);
   }
 }
 

@@ -54,6 +54,8 @@ struct LinkStream {
   void resize(std::size_t links);
   void put(std::size_t at, const Link& link);
   void append(const LinkStream& other, std::size_t first, std::size_t count);
+  // Asks the memory for these links. To the compiler this does nothing, so it must not look inside from the caller.
+  [[gnu::noipa]] void ask_for(std::size_t first, std::size_t count) const;
 };
 
 // A rigid body as the links see it; lattice units, global coordinates (cell centres at integer + 1/2).
@@ -94,6 +96,8 @@ public:
   // tile; tile_of[k] the tile of links[k].
   void replace(int body, std::span<const Link> links, std::span<const int> tile_of);
   void remove(int body) { replace(body, {}, {}); }
+  // Asks the memory for a body's links, which are about to be replaced.
+  [[gnu::noipa]] void ask_for(int body) const;
 
 private:
   struct Place {
