@@ -1,9 +1,7 @@
 #include "coupling/resolved_system.hpp"
 
-#include "core/error.hpp"
 #include "core/mpi_session.hpp"
-
-#include <fmt/format.h>
+#include "coupling/fluid_system.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -43,11 +41,7 @@ ResolvedSystem<Real>::ResolvedSystem(std::unique_ptr<Decomposition> decompositio
   phases_ = {timer_.phase("grain map"), timer_.phase("refill"), timer_.phase("halo"),  timer_.phase("walls"),
              timer_.phase("links"),     timer_.phase("sweep"),  timer_.phase("loads"), timer_.phase("grains")};
   if (parameters_.flow_target) fluid_.control_flow(*parameters_.flow_target);
-  if (parameters_.initial_fluid)
-    fluid_.initialise([&](const Vec3& cell_centre) {
-      const FluidInitialState s = parameters_.initial_fluid(cell_centre * parameters_.units.spacing);
-      return lbm::FluidState{s.density_deviation, s.velocity / parameters_.units.velocity()};
-    });
+  initialise(fluid_, parameters_);
   dem::GrainStore& store = grains_->store();
   for (std::size_t g = 0; g < store.total(); ++g) set_vector(store.attached_of(g), link_position, store.position[g]);
   initialise_map();
@@ -306,12 +300,7 @@ void ResolvedSystem<Real>::save(ArchiveWriter& archive) const {
 
 template <typename Real>
 void ResolvedSystem<Real>::load(ArchiveReader& archive) {
-  const double saved = archive.real_attribute("system/time_step");
-  if (saved != time_step())
-    throw InputError(
-        fmt::format("The checkpoint was made with {:.6g} s a step and this case has {:.6g} s: a run can only "
-                    "go on with the same time step.",
-                    saved, time_step()));
+  check_time_step(archive, time_step());
   step_ = archive.integer_attribute("system/step");
   map_.begin_update();
   for (std::size_t slot = 0; slot < map_.grains().size(); ++slot)

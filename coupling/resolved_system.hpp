@@ -3,35 +3,20 @@
 
 #include "core/decomposition.hpp"
 #include "core/system.hpp"
-#include "core/units.hpp"
+#include "coupling/fluid_parameters.hpp"
 #include "coupling/grain_map.hpp"
 #include "coupling/link_builder.hpp"
 #include "coupling/refill.hpp"
 #include "dem/grain_dynamics.hpp"
-#include "lbm/bouzidi.hpp"
-#include "lbm/fluid.hpp"
 
-#include <functional>
 #include <memory>
-#include <optional>
 #include <vector>
 
 namespace thalweg::coupling {
 
-struct FluidInitialState {
-  double density_deviation = 0.0;  // relative: rho/rho_0 - 1
-  Vec3 velocity = Vec3::Zero();    // m/s
-};
-
-struct ResolvedParameters {
-  Units units;                         // of the lattice
-  lbm::CollisionParameters collision;  // lattice units; force included
-  lbm::FaceConditions faces;
-  std::optional<lbm::FlowTarget> flow_target;  // a mean velocity to hold, in place of the force along its axis
-  lbm::LinkOptions links;
+struct ResolvedParameters : FluidParameters {
   double link_tolerance = 1e-3;  // cells a grain may move before its links are built anew
   int sub_steps = 50;            // DEM steps per lattice step
-  std::function<FluidInitialState(const Vec3&)> initial_fluid;  // of a position in m; empty: at rest
 };
 
 // This rank's part of the sums that a momentum balance of the fluid needs (lattice units, of the step just done).

@@ -20,6 +20,7 @@ struct Entry {
 
 constexpr Entry builders[] = {
     {SystemKind::resolved, build_resolved_system},
+    {SystemKind::fluid, build_fluid_system},
     {SystemKind::grains, build_grains_system},
 };
 
@@ -29,6 +30,8 @@ const char* name_of(SystemKind kind) {
   switch (kind) {
     case SystemKind::resolved:
       return "resolved";
+    case SystemKind::fluid:
+      return "fluid";
     case SystemKind::grains:
       return "grains";
   }

@@ -24,9 +24,10 @@ std::unique_ptr<System> build_system(const Case& c, MPI_Comm communicator, const
 
 // One builder a system; build_system() chooses.
 std::unique_ptr<System> build_resolved_system(const Case& c, MPI_Comm communicator, const Index3& layout);
+std::unique_ptr<System> build_fluid_system(const Case& c, MPI_Comm communicator, const Index3& layout);
 std::unique_ptr<System> build_grains_system(const Case& c, MPI_Comm communicator, const Index3& layout);
 
-// The name of a kind of system in a case file: "resolved", "grains".
+// The name of a kind of system in a case file: "resolved", "fluid", "grains".
 const char* name_of(SystemKind kind);
 
 }  // namespace thalweg::driver

@@ -14,6 +14,8 @@ namespace thalweg {
 
 double PopulationCase::mass() const { return density * std::numbers::pi / 6.0 * diameter * diameter * diameter; }
 
+bool has_fluid(const Case& c) { return c.system != SystemKind::grains; }
+
 Index3 cells_of(const DomainCase& domain) {
   Index3 cells;
   for (int axis = 0; axis < 3; ++axis)
@@ -95,7 +97,7 @@ double estimated_velocity(const Case& c) {
   const double along = std::hypot(gravity[0], gravity[1]);
   const double bed = grain_volume(c) / (bed_fraction * c.domain.size[0] * c.domain.size[1]);
   const double depth = c.domain.size[2] - bed;
-  if (c.system != SystemKind::resolved || along == 0.0 || depth <= 0.0) return 0.0;
+  if (!has_fluid(c) || along == 0.0 || depth <= 0.0) return 0.0;
   const double nu = c.fluid.kinematic_viscosity;
   const double laminar = along * depth * depth / (2.0 * nu);
   const double shear_velocity = std::sqrt(along * depth);
@@ -112,7 +114,7 @@ std::vector<std::string> warnings(const Case& c) {
         fmt::format("The mean transport rate begins at {} s, after the end of the run at {} s, so the summary "
                     "will have none: consider an earlier analysis.transport_rate.from.",
                     c.analysis.transport_rate->from, c.run.until));
-  if (c.system != SystemKind::resolved) return found;
+  if (!has_fluid(c)) return found;
   const double lattice_velocity = estimated_velocity(c) / units_of(c).velocity();
   if (!c.fluid.expected_velocity && lattice_velocity > 0.1)
     found.push_back(

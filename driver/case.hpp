@@ -14,7 +14,7 @@
 
 namespace thalweg {
 
-enum class SystemKind { resolved, grains };
+enum class SystemKind { resolved, fluid, grains };
 
 enum class FaceType {
   periodic,
@@ -238,6 +238,8 @@ struct Case {
 };
 
 // What follows from a case that read_case() has accepted.
+
+bool has_fluid(const Case& c);  // system: resolved or fluid
 
 Index3 cells_of(const DomainCase& domain);  // size over spacing
 std::array<bool, 3> periodic_axes(const DomainCase& domain);

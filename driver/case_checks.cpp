@@ -132,7 +132,7 @@ void check_initial_fluid(const Case& c, const io::YamlDocument& document) {
 }
 
 void check_fluid(const Case& c, const io::YamlDocument& document) {
-  if (c.system != SystemKind::resolved) return;
+  if (!has_fluid(c)) return;
   const std::string step_key = c.fluid.time_step ? "fluid.time_step" : "fluid.maximum_lattice_velocity";
   if (!(relaxation_time(c) > 0.5))
     throw document.error("fluid.kinematic_viscosity",

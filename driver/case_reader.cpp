@@ -9,6 +9,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
 namespace thalweg {
 namespace {
 
@@ -19,19 +23,21 @@ Case example_case(SystemKind system) {
   c.domain.size = {0.060, 0.0105, 0.075};
   c.domain.spacing = 0.5e-3;
   const Face periodic{FaceType::periodic}, floor{FaceType::no_slip}, lid{FaceType::free_slip};
-  const Face side{system == SystemKind::resolved ? FaceType::law_of_the_wall : FaceType::no_slip};
+  const Face side{has_fluid(c) ? FaceType::law_of_the_wall : FaceType::no_slip};
   c.domain.faces = {periodic, periodic, side, side, floor, lid};
   c.gravity.magnitude = 9.8;
   c.gravity.slope = 0.07;
-  PopulationCase glass;
-  glass.count = 200;
-  glass.diameter = 4.95e-3;
-  glass.density = 2550.0;
-  c.grains = {glass};
-  c.contact.restitution = 0.93;
   c.run.until = 3.0;
-  c.analysis.transport_rate.emplace();
-  if (system == SystemKind::resolved) {
+  if (system != SystemKind::fluid) {
+    PopulationCase glass;
+    glass.count = 200;
+    glass.diameter = 4.95e-3;
+    glass.density = 2550.0;
+    c.grains = {glass};
+    c.contact.restitution = 0.93;
+    c.analysis.transport_rate.emplace();
+  }
+  if (has_fluid(c)) {
     c.fluid.density = 1000.0;
     c.fluid.kinematic_viscosity = 1e-6;
     c.fluid.time_step = 2e-5;
@@ -55,9 +61,13 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
 std::string resolved_yaml(const Case& c) { return io::written(c, io::YamlStyle::plain); }
 
 std::string defaults_yaml(const std::string& system) {
-  if (system != "resolved" && system != "grains")
-    throw InputError(fmt::format("There is no system \"{}\": give one of resolved, grains.", system));
-  const Case example = example_case(system == "resolved" ? SystemKind::resolved : SystemKind::grains);
+  constexpr std::pair<const char*, SystemKind> systems[] = {
+      {"resolved", SystemKind::resolved}, {"fluid", SystemKind::fluid}, {"grains", SystemKind::grains}};
+  const auto found =
+      std::find_if(std::begin(systems), std::end(systems), [&](const auto& entry) { return entry.first == system; });
+  if (found == std::end(systems))
+    throw InputError(fmt::format("There is no system \"{}\": give one of resolved, fluid, grains.", system));
+  const Case example = example_case(found->second);
   return fmt::format(
              "# Every key of a case with system: {}, with its default. Comments give the unit, the range and the\n"
              "# meaning. What has no default (required keys and one of each set of alternatives) shows an\n"

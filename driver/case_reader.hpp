@@ -17,8 +17,8 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
 // The case with every default filled in, as YAML that read_case() reads back as the same case.
 std::string resolved_yaml(const Case& c);
 
-// Every key of a system ("resolved" or "grains"; InputError for another) with its default, unit and meaning: a valid
-// case, with plausible values for the keys that have no default, and the optional ones commented out.
+// Every key of a system ("resolved", "fluid" or "grains"; InputError for another) with its default, unit and meaning: a
+// valid case, with plausible values for the keys that have no default, and the optional ones commented out.
 std::string defaults_yaml(const std::string& system = "resolved");
 
 }  // namespace thalweg

@@ -280,13 +280,16 @@ static void describe(io::SectionVisitor& visit, CheckpointOutputCase& checkpoint
   visit.integer("keep", checkpoint.keep, {.meaning = "number of newest checkpoints that are kept", .at_least = 1});
 }
 
-static void describe_output(io::SectionVisitor& visit, OutputCase& output, bool with_fluid) {
+static void describe_output(io::SectionVisitor& visit, OutputCase& output, bool with_fluid, bool with_grains) {
   visit.section("series", output.series, {.meaning = "the table series.csv"});
   if (with_fluid)
     visit.section("fluid", output.fluid, {.meaning = "pictures of the fluid, fluid.pvd"});
   else
     visit.not_here("fluid", "a run without fluid has no pictures of it; remove the section");
-  visit.section("grains", output.grains, {.meaning = "pictures of the grains, grains.pvd"});
+  if (with_grains)
+    visit.section("grains", output.grains, {.meaning = "pictures of the grains, grains.pvd"});
+  else
+    visit.not_here("grains", "system: fluid has no grains; remove the section or set system: resolved");
   visit.section("checkpoint", output.checkpoint, {.meaning = "states from which the run can be continued"});
 }
 
@@ -294,18 +297,25 @@ static void describe(io::SectionVisitor& visit, TransportRateCase& rate) {
   visit.real("from", rate.from, {.unit = "s", .meaning = "start of the mean that summary.json gives", .at_least = 0.0});
 }
 
-static void describe(io::SectionVisitor& visit, AnalysisCase& analysis) {
-  visit.section("transport_rate", analysis.transport_rate, {.meaning = "the grains' flux q and q* along x"});
+static void describe_analysis(io::SectionVisitor& visit, AnalysisCase& analysis, bool with_grains) {
+  if (with_grains)
+    visit.section("transport_rate", analysis.transport_rate, {.meaning = "the grains' flux q and q* along x"});
+  else
+    visit.not_here("transport_rate", "system: fluid has no grains; remove the section or set system: resolved");
 }
 
 void describe(io::SectionVisitor& visit, Case& c) {
   visit.choice<SystemKind>("system", c.system,
                            {{SystemKind::resolved, "resolved", "fluid with grains in it, every grain resolved"},
+                            {SystemKind::fluid, "fluid", "fluid alone"},
                             {SystemKind::grains, "grains", "dry grains"}},
                            {.meaning = "what is simulated", .required = true});
-  const bool with_fluid = c.system == SystemKind::resolved;
+  const bool with_fluid = has_fluid(c), with_grains = c.system != SystemKind::fluid;
   const auto only_with_fluid = [&](const std::string& key) {
     visit.not_here(key, "system: grains has no fluid; remove the section or set system: resolved");
+  };
+  const auto only_with_grains = [&](const std::string& key) {
+    visit.not_here(key, "system: fluid has no grains; remove the section or set system: resolved");
   };
   visit.text("name", c.name, {.meaning = "what the run is called in its output"});
   visit.section("domain", c.domain, {.meaning = "the box, its cells and its faces", .required = true});
@@ -315,22 +325,32 @@ void describe(io::SectionVisitor& visit, Case& c) {
     only_with_fluid("fluid");
   visit.section("gravity", {.meaning = "given by magnitude and slope, or as a vector", .required = true},
                 [&](io::SectionVisitor& inside) { describe_gravity(inside, c.gravity, with_fluid); });
-  visit.list("grains", c.grains, {.meaning = "populations of grains", .required = !with_fluid});
-  visit.require(with_fluid || !c.grains.empty(), "grains", "a run of dry grains needs at least one population of them");
-  visit.section("contact", {.meaning = "force between grains that touch, with friction"},
-                [&](io::SectionVisitor& inside) { describe_contact(inside, c.contact, !c.grains.empty()); });
-  if (with_fluid) {
-    visit.section("coupling", c.coupling, {.meaning = "how fluid and grains act on each other"});
-    visit.section("initial", c.initial, {.meaning = "state at the start"});
+  if (with_grains) {
+    visit.list("grains", c.grains, {.meaning = "populations of grains", .required = !with_fluid});
+    visit.require(with_fluid || !c.grains.empty(), "grains",
+                  "a run of dry grains needs at least one population of them");
+    visit.section("contact", {.meaning = "force between grains that touch, with friction"},
+                  [&](io::SectionVisitor& inside) { describe_contact(inside, c.contact, !c.grains.empty()); });
   } else {
-    only_with_fluid("coupling");
-    only_with_fluid("initial");
+    only_with_grains("grains");
+    only_with_grains("contact");
   }
+  if (with_fluid && with_grains)
+    visit.section("coupling", c.coupling, {.meaning = "how fluid and grains act on each other"});
+  else if (with_fluid)
+    only_with_grains("coupling");
+  else
+    only_with_fluid("coupling");
+  if (with_fluid)
+    visit.section("initial", c.initial, {.meaning = "state at the start"});
+  else
+    only_with_fluid("initial");
   visit.section("run", {.meaning = "how long", .required = true},
                 [&](io::SectionVisitor& inside) { describe_run(inside, c.run, with_fluid); });
   visit.section("output", {.meaning = "what the run writes, besides run.log and summary.json"},
-                [&](io::SectionVisitor& inside) { describe_output(inside, c.output, with_fluid); });
-  visit.section("analysis", c.analysis, {.meaning = "what is measured while the run goes"});
+                [&](io::SectionVisitor& inside) { describe_output(inside, c.output, with_fluid, with_grains); });
+  visit.section("analysis", {.meaning = "what is measured while the run goes"},
+                [&](io::SectionVisitor& inside) { describe_analysis(inside, c.analysis, with_grains); });
 }
 
 }  // namespace thalweg

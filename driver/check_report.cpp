@@ -29,8 +29,6 @@ constexpr double grain_steps_per_second = 2.5e6;
 constexpr double flag_bytes = 8.0, link_bytes = 32.0, grain_bytes = 2000.0;
 constexpr double links_per_square_cell = 15.8;  // links of a sphere over its diameter in cells squared
 
-bool fluid_in(const Case& c) { return c.system == SystemKind::resolved; }
-
 // Walls that take a share of the shear.
 bool is_wall(const Face& face) {
   return face.type == FaceType::no_slip || face.type == FaceType::moving || face.slips();
@@ -39,8 +37,8 @@ bool is_wall(const Face& face) {
 double bytes_per_value(const Case& c) { return c.fluid.precision == Precision::single ? 4.0 : 8.0; }
 
 double step_time(const Case& c) {
-  return fluid_in(c) ? fluid_time_step(c)
-                     : grain_time_step(c) * static_cast<double>(c.coupling.grain_steps_per_fluid_step);
+  return has_fluid(c) ? fluid_time_step(c)
+                      : grain_time_step(c) * static_cast<double>(c.coupling.grain_steps_per_fluid_step);
 }
 
 using Lines = std::vector<std::string>;
@@ -52,7 +50,7 @@ void add_domain(const Case& c, Lines& lines) {
 }
 
 void add_fluid(const Case& c, Lines& lines) {
-  if (!fluid_in(c)) return;
+  if (!has_fluid(c)) return;
   const Units units = units_of(c);
   lines.push_back(fmt::format("fluid      {:g} kg/m^3, {:g} m^2/s; relaxation time 1/2 + {:.3g}; {:g} s a step",
                               c.fluid.density, c.fluid.kinematic_viscosity, relaxation_time(c) - 0.5, units.time_step));
@@ -83,7 +81,7 @@ void add_grains(const Case& c, Lines& lines) {
   for (const PopulationCase& population : c.grains) {
     lines.push_back(
         fmt::format("grains     {} of {:g} m, {:g} kg/m^3", population.count, population.diameter, population.density) +
-        (fluid_in(c) ? fmt::format(": {:.3g} cells a diameter", population.diameter / c.domain.spacing) : ""));
+        (has_fluid(c) ? fmt::format(": {:.3g} cells a diameter", population.diameter / c.domain.spacing) : ""));
   }
   if (c.grains.empty()) return;
   const PeriodicBox box{c.domain.size, periodic_axes(c.domain)};
@@ -97,7 +95,7 @@ void add_grains(const Case& c, Lines& lines) {
   lines.push_back(
       fmt::format("contact    lasts {:.3g} s: {:.3g} sub-steps of {:.3g} s (at least {:g}); damping {:.3g} kg/s",
                   duration, duration / step, step, dem::fewest_steps_per_contact, damping));
-  if (!fluid_in(c)) return;
+  if (!has_fluid(c)) return;
   lines.push_back(
       fmt::format("flight     a grain moves a fiftieth of a cell a step at {:.3g} m/s: faster ones are less exact",
                   0.02 * units_of(c).velocity()));
@@ -135,7 +133,7 @@ void refuse_impossible_grains(const Case& c) {
 
 FlowNumbers flow_numbers(const Case& c) {
   FlowNumbers flow{nothing, nothing, nothing, nothing, false, nothing, nothing, nothing, nothing, nothing, nothing};
-  if (!fluid_in(c) || c.grains.empty()) return flow;
+  if (!has_fluid(c) || c.grains.empty()) return flow;
   const Vec3 gravity = gravity_vector(c.gravity);
   const double g = gravity.norm(), d = c.grains.front().diameter;
   flow.density_ratio = c.grains.front().density / c.fluid.density;
@@ -160,13 +158,13 @@ FlowNumbers flow_numbers(const Case& c) {
 Cost cost_of(const Case& c, double bandwidth) {
   const Index3 n = cells_of(c.domain);
   Cost cost{};
-  cost.cells = fluid_in(c) ? static_cast<double>(n[0]) * n[1] * n[2] : 0.0;
+  cost.cells = has_fluid(c) ? static_cast<double>(n[0]) * n[1] * n[2] : 0.0;
   cost.steps = std::ceil(c.run.until / step_time(c) * (1.0 - 1e-12));
   cost.cell_updates = cost.cells * cost.steps;
   cost.grain_steps = static_cast<double>(grain_count(c) * c.coupling.grain_steps_per_fluid_step) * cost.steps;
   cost.memory =
       cost.cells * (19.0 * bytes_per_value(c) + flag_bytes) + static_cast<double>(grain_count(c)) * grain_bytes;
-  if (fluid_in(c))
+  if (has_fluid(c))
     for (const PopulationCase& population : c.grains) {
       const double cells_across = population.diameter / c.domain.spacing;
       cost.memory +=

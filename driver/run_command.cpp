@@ -57,7 +57,7 @@ Observers observers_of(const Case& c, MPI_Comm communicator) {
   if (c.grains.empty()) return observers;
   if (c.analysis.transport_rate) {
     const PopulationCase& first = c.grains.front();
-    const double fluid_density = c.system == SystemKind::grains ? 0.0 : c.fluid.density;
+    const double fluid_density = has_fluid(c) ? c.fluid.density : 0.0;
     const analysis::TransportScales scales{first.diameter, first.density, fluid_density,
                                            gravity_vector(c.gravity).norm()};
     observers.push_back(

@@ -124,6 +124,17 @@ TEST(CaseReader, ElasticSpheresHaveModuliInPlaceOfStiffnesses) {
   EXPECT_THROW(read(defaults_yaml("grains"), {"contact.youngs_modulus=1e8"}), InputError);
 }
 
+TEST(CaseReader, AFluidAloneHasNoKeysOfGrains) {
+  const std::string text = defaults_yaml("fluid");
+  const Case c = read(text);
+  EXPECT_EQ(c.system, SystemKind::fluid);
+  EXPECT_TRUE(c.grains.empty());
+  EXPECT_EQ(text.find("contact:"), std::string::npos);
+  EXPECT_EQ(read(resolved_yaml(c)), c);
+  for (const std::string key : {"grains=[]", "contact={restitution: 0.9}", "coupling={}", "output.grains={}"})
+    EXPECT_THROW(read(text, {key}), InputError) << key;
+}
+
 TEST(CaseReader, AFluidWithoutGrainsIsACase) {
   const Case c = read(flume, {"grains=[]", "contact=", "analysis="});
   EXPECT_EQ(grain_count(c), 0);
@@ -173,7 +184,7 @@ TEST(CaseReader, TheDefaultsAreValidAndNameEveryKey) {
   for (const std::string key : {"domain.boundaries.y.coefficient", "coupling.link_tolerance", "gravity.mode",
                                 "output.checkpoint.keep", "contact.attraction", "fluid.collision"})
     EXPECT_NE(std::find(keys.begin(), keys.end(), key), keys.end()) << key;
-  EXPECT_NE(message_of<InputError>([] { defaults_yaml("model_fluid"); }).find("give one of resolved, grains"),
+  EXPECT_NE(message_of<InputError>([] { defaults_yaml("model_fluid"); }).find("give one of resolved, fluid, grains"),
             std::string::npos);
 }
 
@@ -201,7 +212,7 @@ TEST_P(BadCase, IsRefusedInOneSentence) {
 INSTANTIATE_TEST_SUITE_P(
     All, BadCase,
     ::testing::Values(
-        Bad{"system_not_built", {"system=continuum"}, {"system = \"continuum\": expected one of resolved, grains."}},
+        Bad{"system_not_built", {"system=continuum"}, {"system = \"continuum\": expected one of resolved, fluid, grains."}},
         Bad{"collision_not_built",
             {"fluid.collision=mrt"},
             {"fluid.collision = \"mrt\": expected one of bgk, trt, regularised."}},

@@ -1,0 +1,108 @@
+#include "coupling/fluid_system.hpp"
+
+#include "core/error.hpp"
+#include "core/mpi_session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace thalweg::coupling {
+
+void check_time_step(ArchiveReader& archive, double time_step) {
+  const double saved = archive.real_attribute("system/time_step");
+  if (saved != time_step)
+    throw InputError(
+        fmt::format("The checkpoint was made with {:.6g} s a step and this case has {:.6g} s: a run can only "
+                    "go on with the same time step.",
+                    saved, time_step));
+}
+
+template <typename Real>
+FluidSystem<Real>::FluidSystem(std::unique_ptr<Decomposition> decomposition, MPI_Comm communicator,
+                               const FluidParameters& parameters)
+    : decomposition_(std::move(decomposition)),
+      communicator_(communicator),
+      parameters_(parameters),
+      fluid_(*decomposition_, communicator, parameters.collision, parameters.faces),
+      lattice_(timer_.phase("lattice")) {
+  if (parameters_.flow_target) fluid_.control_flow(*parameters_.flow_target);
+  initialise(fluid_, parameters_);
+}
+
+template <typename Real>
+void FluidSystem<Real>::advance() {
+  const auto scope = timer_.measure(lattice_);
+  fluid_.advance();
+  ++step_;
+}
+
+template <typename Real>
+std::int64_t FluidSystem<Real>::cells() const {
+  const Index3& n = decomposition_->cells();
+  return static_cast<std::int64_t>(n[0]) * n[1] * n[2];
+}
+
+template <typename Real>
+Snapshot FluidSystem<Real>::snapshot() const {
+  Snapshot s;
+  s.time = time();
+  s.step = step_;
+  s.decomposition = decomposition_.get();
+  s.fluid = this;
+  return s;
+}
+
+template <typename Real>
+FluidFields FluidSystem<Real>::sample() const {
+  const Index3& n = fluid_.indexing().size();
+  const double velocity_unit = parameters_.units.velocity(), pressure_unit = parameters_.units.stress() / 3.0;
+  FluidFields fields;
+  fields.block = fluid_.block();
+  for (int z = 0; z < n[2]; ++z)
+    for (int y = 0; y < n[1]; ++y)
+      for (int x = 0; x < n[0]; ++x) {
+        const lbm::FluidState state = fluid_.state_at(fluid_.indexing().index(x, y, z));
+        for (int a = 0; a < 3; ++a) fields.velocity.push_back(static_cast<float>(state.velocity[a] * velocity_unit));
+        fields.pressure.push_back(static_cast<float>(state.density_deviation * pressure_unit));
+        fields.grain_id.push_back(-1);
+      }
+  return fields;
+}
+
+template <typename Real>
+std::vector<Figure> FluidSystem<Real>::figures() const {
+  const lbm::FluidTotals totals = fluid_.totals();
+  const double cells = static_cast<double>(std::max<std::int64_t>(1, totals.cells));
+  const double force = fluid_.parameters().force[0];
+  double speed = fluid_.largest_speed();
+  // Not-a-number does not survive MPI_MAX; infinity does.
+  speed = max_over_ranks(communicator_, std::isfinite(speed) ? speed : HUGE_VAL);
+  const Units& units = parameters_.units;
+  return {{"largest_lattice_velocity", "1", speed},
+          {"largest_fluid_speed", "m/s", speed * units.velocity()},
+          {"mean_velocity_x", "m/s", (totals.momentum.x() / cells - 0.5 * force) * units.velocity()},
+          {"body_force_x", "N/m^3", force * units.density * units.acceleration()},
+          {"mean_density_deviation", "1", totals.mass_deviation / cells},
+          {"fluid_cells", "1", static_cast<double>(totals.cells)}};
+}
+
+template <typename Real>
+void FluidSystem<Real>::save(ArchiveWriter& archive) const {
+  archive.attribute("system/step", step_);
+  archive.attribute("system/time_step", time_step());
+  fluid_.save(archive);
+}
+
+template <typename Real>
+void FluidSystem<Real>::load(ArchiveReader& archive) {
+  check_time_step(archive, time_step());
+  step_ = archive.integer_attribute("system/step");
+  fluid_.load(archive);
+}
+
+template class FluidSystem<float>;
+template class FluidSystem<double>;
+
+}  // namespace thalweg::coupling

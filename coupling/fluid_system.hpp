@@ -1,0 +1,48 @@
+// A fluid without grains as a system: what the time loop drives, shows, saves and loads. One step is one lattice step.
+#pragma once
+
+#include "core/decomposition.hpp"
+#include "core/system.hpp"
+#include "coupling/fluid_parameters.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace thalweg::coupling {
+
+template <typename Real>
+class FluidSystem final : public System, private FluidSource {
+public:
+  FluidSystem(std::unique_ptr<Decomposition> decomposition, MPI_Comm communicator, const FluidParameters& parameters);
+
+  void advance() override;
+  std::int64_t step() const override { return step_; }
+  double time_step() const override { return parameters_.units.time_step; }
+  Snapshot snapshot() const override;
+  // largest_lattice_velocity (1), largest_fluid_speed (m/s), mean_velocity_x (m/s), body_force_x (N/m^3),
+  // mean_density_deviation (1), fluid_cells (1).
+  std::vector<Figure> figures() const override;
+  void save(ArchiveWriter& archive) const override;
+  void load(ArchiveReader& archive) override;
+  PhaseTimer& timer() override { return timer_; }
+  std::int64_t cells() const override;
+  std::int64_t grain_steps_per_step() const override { return 0; }
+
+  const lbm::Fluid<Real>& fluid() const { return fluid_; }
+
+private:
+  FluidFields sample() const override;
+
+  std::unique_ptr<Decomposition> decomposition_;
+  MPI_Comm communicator_;
+  FluidParameters parameters_;
+  lbm::Fluid<Real> fluid_;
+  std::int64_t step_ = 0;
+  PhaseTimer timer_;
+  int lattice_;  // phase
+};
+
+// The time step of a checkpoint must be that of the case. Throws InputError where it is not.
+void check_time_step(ArchiveReader& archive, double time_step);
+
+}  // namespace thalweg::coupling

@@ -1,0 +1,23 @@
+// From a case to a fluid without grains.
+#include "coupling/fluid_system.hpp"
+#include "driver/build_system.hpp"
+#include "driver/fluid_setup.hpp"
+
+namespace thalweg::driver {
+
+namespace {
+
+template <typename Real>
+std::unique_ptr<System> build(const Case& c, MPI_Comm communicator, const Index3& layout) {
+  return std::make_unique<coupling::FluidSystem<Real>>(std::make_unique<Decomposition>(decomposition_of(c, layout)),
+                                                       communicator, fluid_parameters(c));
+}
+
+}  // namespace
+
+std::unique_ptr<System> build_fluid_system(const Case& c, MPI_Comm communicator, const Index3& layout) {
+  return c.fluid.precision == Precision::single ? build<float>(c, communicator, layout)
+                                                : build<double>(c, communicator, layout);
+}
+
+}  // namespace thalweg::driver
