@@ -24,18 +24,33 @@ struct GrainView {
   std::span<const Vec3> contact_force;     // N, sum over contacts at the end of the step
 };
 
-// Fluid fields of this rank's block, x fastest, sampled on request.
+enum class FluidField { velocity, pressure, grain_id, density, shear_rate, eddy_viscosity, vorticity, q_criterion };
+
+// Fluid fields of this rank's block, x fastest, sampled on request; empty where not asked for. Zero in solid cells.
 struct FluidFields {
   Block block;
-  std::vector<float> velocity;         // m/s, three values a cell (x, y, z together); zero in solid cells
+  std::vector<float> velocity;         // m/s, three values a cell (x, y, z together)
   std::vector<float> pressure;         // Pa above the reference (without the hydrostatic part in reduced gravity)
   std::vector<std::int32_t> grain_id;  // id of the covering grain; -1 fluid
+  std::vector<float> density;          // kg/m^3
+  std::vector<float> shear_rate;       // 1/s, sqrt(2 S_ab S_ab) of the subgrid model
+  std::vector<float> eddy_viscosity;   // m^2/s
+  std::vector<float> vorticity;        // 1/s, three values a cell
+  std::vector<float> q_criterion;      // 1/s^2
 };
+
+constexpr int components_of(FluidField field) {
+  return field == FluidField::velocity || field == FluidField::vorticity ? 3 : 1;
+}
+
+// The values of any field but grain_id. Throws std::logic_error for that one.
+std::vector<float>& values_of(FluidFields& fields, FluidField field);
+const std::vector<float>& values_of(const FluidFields& fields, FluidField field);
 
 class FluidSource {
 public:
   virtual ~FluidSource() = default;
-  virtual FluidFields sample() const = 0;  // local; call on every rank for a consistent picture
+  virtual FluidFields sample(const std::vector<FluidField>& wanted) const = 0;  // collective
 };
 
 struct Snapshot {

@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
+#include "coupling/fluid_sample.hpp"
 
 #include <fmt/format.h>
 
@@ -55,20 +56,10 @@ Snapshot FluidSystem<Real>::snapshot() const {
 }
 
 template <typename Real>
-FluidFields FluidSystem<Real>::sample() const {
-  const Index3& n = fluid_.indexing().size();
-  const double velocity_unit = parameters_.units.velocity(), pressure_unit = parameters_.units.stress() / 3.0;
-  FluidFields fields;
-  fields.block = fluid_.block();
-  for (int z = 0; z < n[2]; ++z)
-    for (int y = 0; y < n[1]; ++y)
-      for (int x = 0; x < n[0]; ++x) {
-        const lbm::FluidState state = fluid_.state_at(fluid_.indexing().index(x, y, z));
-        for (int a = 0; a < 3; ++a) fields.velocity.push_back(static_cast<float>(state.velocity[a] * velocity_unit));
-        fields.pressure.push_back(static_cast<float>(state.density_deviation * pressure_unit));
-        fields.grain_id.push_back(-1);
-      }
-  return fields;
+FluidFields FluidSystem<Real>::sample(const std::vector<FluidField>& wanted) const {
+  SampleContext context;
+  context.units = parameters_.units;
+  return sample_fields(fluid_, context, wanted);
 }
 
 template <typename Real>

@@ -31,12 +31,12 @@ public:
   const lbm::Fluid<Real>& fluid() const { return fluid_; }
 
 private:
-  FluidFields sample() const override;
+  FluidFields sample(const std::vector<FluidField>& wanted) const override;
 
   std::unique_ptr<Decomposition> decomposition_;
   MPI_Comm communicator_;
   FluidParameters parameters_;
-  lbm::Fluid<Real> fluid_;
+  mutable lbm::Fluid<Real> fluid_;  // a sample fills slots that every step fills anew; see sample_fields()
   std::int64_t step_ = 0;
   PhaseTimer timer_;
   int lattice_;  // phase

@@ -1,6 +1,7 @@
 #include "coupling/resolved_system.hpp"
 
 #include "core/mpi_session.hpp"
+#include "coupling/fluid_sample.hpp"
 #include "coupling/fluid_system.hpp"
 
 #include <algorithm>
@@ -257,23 +258,17 @@ Snapshot ResolvedSystem<Real>::snapshot() const {
 }
 
 template <typename Real>
-FluidFields ResolvedSystem<Real>::sample() const {
-  const Index3& n = fluid_.indexing().size();
-  const double velocity_unit = parameters_.units.velocity(), pressure_unit = parameters_.units.stress() / 3.0;
-  FluidFields fields;
-  fields.block = fluid_.block();
-  for (int z = 0; z < n[2]; ++z)
-    for (int y = 0; y < n[1]; ++y)
-      for (int x = 0; x < n[0]; ++x) {
-        const std::ptrdiff_t cell = fluid_.indexing().index(x, y, z);
-        const std::int32_t slot = fluid_.cells().body(cell);
-        lbm::FluidState state;
-        if (slot == CellMap::fluid) state = fluid_.state_at(cell);
-        for (int a = 0; a < 3; ++a) fields.velocity.push_back(static_cast<float>(state.velocity[a] * velocity_unit));
-        fields.pressure.push_back(static_cast<float>(state.density_deviation * pressure_unit));
-        fields.grain_id.push_back(slot == CellMap::fluid ? -1 : static_cast<std::int32_t>(map_.grains()[slot].id));
-      }
-  return fields;
+FluidFields ResolvedSystem<Real>::sample(const std::vector<FluidField>& wanted) const {
+  SampleContext context;
+  context.units = parameters_.units;
+  context.grain_id = [this](std::int32_t slot) { return static_cast<std::int32_t>(map_.grains()[slot].id); };
+  context.apply_links = [this] {
+    std::vector<lbm::LinkBody> bodies = bodies_;  // takes up the momentum, which belongs to the next step
+    lbm::LinkPass<Real> links(fluid_.populations(), fluid_.cells(), fluid_.tiles(), links_, lattice_box_,
+                              parameters_.links, bodies);
+    for (int tile = 0; tile < fluid_.tiles().count(); ++tile) links.apply_tile(tile);
+  };
+  return sample_fields(fluid_, context, wanted);
 }
 
 template <typename Real>

@@ -57,7 +57,7 @@ public:
   const ExchangeTotals& step_totals() const { return step_totals_; }
 
 private:
-  FluidFields sample() const override;
+  FluidFields sample(const std::vector<FluidField>& wanted) const override;
 
   void initialise_map();
   void synchronise_slots();
@@ -73,7 +73,7 @@ private:
   std::unique_ptr<Decomposition> decomposition_;
   MPI_Comm communicator_;
   ResolvedParameters parameters_;
-  lbm::Fluid<Real> fluid_;
+  mutable lbm::Fluid<Real> fluid_;  // a sample fills slots that every step fills anew; see sample_fields()
   std::unique_ptr<dem::GrainDynamics> grains_;
   PeriodicBox box_, lattice_box_;  // m, cells
   GrainMap map_;

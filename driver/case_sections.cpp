@@ -263,10 +263,16 @@ static void describe(io::SectionVisitor& visit, FluidOutputCase& fluid) {
                              {FluidRegion::slice_y, "slice_y"},
                              {FluidRegion::slice_z, "slice_z"}},
                             {.meaning = "the whole box, or the middle layer of cells across an axis"});
-  visit.choice_list<FluidField>(
-      "fields", fluid.fields,
-      {{FluidField::velocity, "velocity"}, {FluidField::pressure, "pressure"}, {FluidField::grain_id, "grain_id"}},
-      {.meaning = "what the pictures show"});
+  visit.choice_list<FluidField>("fields", fluid.fields,
+                                {{FluidField::velocity, "velocity", "m/s"},
+                                 {FluidField::pressure, "pressure", "Pa above the reference"},
+                                 {FluidField::grain_id, "grain_id", "-1 in the fluid"},
+                                 {FluidField::density, "density", "kg/m^3"},
+                                 {FluidField::shear_rate, "shear_rate", "1/s, of the subgrid model"},
+                                 {FluidField::eddy_viscosity, "eddy_viscosity", "m^2/s, of the subgrid model"},
+                                 {FluidField::vorticity, "vorticity", "1/s"},
+                                 {FluidField::q_criterion, "q_criterion", "1/s^2, vortices where positive"}},
+                                {.meaning = "what the pictures show"});
 }
 
 static void describe(io::SectionVisitor& visit, GrainOutputCase& grains) {

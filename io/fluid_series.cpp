@@ -13,25 +13,30 @@
 #include <vtkXMLImageDataWriter.h>
 
 #include <algorithm>
+#include <cstring>
 #include <string>
 
 namespace thalweg::io {
 namespace {
 
-struct FieldInfo {
-  const char* name;
-  const char* vtk_type;
-  int components;
-};
-
-FieldInfo info_of(FluidField field) {
+const char* name_of(FluidField field) {
   switch (field) {
     case FluidField::velocity:
-      return {"velocity", "Float32", 3};
+      return "velocity";
     case FluidField::pressure:
-      return {"pressure", "Float32", 1};
+      return "pressure";
     case FluidField::grain_id:
-      return {"grain_id", "Int32", 1};
+      return "grain_id";
+    case FluidField::density:
+      return "density";
+    case FluidField::shear_rate:
+      return "shear_rate";
+    case FluidField::eddy_viscosity:
+      return "eddy_viscosity";
+    case FluidField::vorticity:
+      return "vorticity";
+    case FluidField::q_criterion:
+      return "q_criterion";
   }
   throw std::logic_error("unknown fluid field");
 }
@@ -68,40 +73,49 @@ std::size_t index_in(const Block& block, const Index3& cell) {
   return row + static_cast<std::size_t>(cell[0] - block.lower[0]);
 }
 
-// A cell on its way to rank 0.
+// One component of a field in a cell on its way to rank 0; a grain id travels as its bits.
 struct Row {
   Index3 cell;
-  std::int32_t grain_id;
-  float velocity[3];
-  float pressure;
+  std::int32_t component;
+  std::int32_t bits;
 };
 
-// The region's fields on rank 0; empty elsewhere.
-FluidFields gathered(MPI_Comm communicator, const FluidFields& fields, const Block& region) {
-  const Block part = intersection(fields.block, region);
+// One field of the region on rank 0, as bits; empty elsewhere.
+std::vector<std::int32_t> gathered(MPI_Comm communicator, const std::int32_t* values, int components,
+                                   const Block& block, const Block& region) {
+  const Block part = intersection(block, region);
   std::vector<Row> rows;
-  rows.reserve(volume(part));
   for (int k = part.lower[2]; k < part.upper[2]; ++k)
     for (int j = part.lower[1]; j < part.upper[1]; ++j)
-      for (int i = part.lower[0]; i < part.upper[0]; ++i) {
-        const std::size_t from = index_in(fields.block, {i, j, k});
-        Row row{{i, j, k}, fields.grain_id[from], {}, fields.pressure[from]};
-        std::copy_n(fields.velocity.data() + 3 * from, 3, row.velocity);
-        rows.push_back(row);
-      }
+      for (int i = part.lower[0]; i < part.upper[0]; ++i)
+        for (int c = 0; c < components; ++c)
+          rows.push_back({{i, j, k}, c, values[components * index_in(block, {i, j, k}) + c]});
   rows = exchange_rows(communicator, rows, std::vector<int>(rows.size(), 0));
-
-  FluidFields result;
+  std::vector<std::int32_t> result;
   if (rank_of(communicator) != 0) return result;
+  result.resize(components * volume(region));
+  for (const Row& row : rows) result[components * index_in(region, row.cell) + row.component] = row.bits;
+  return result;
+}
+
+// The region's fields on rank 0; empty elsewhere.
+FluidFields gathered(MPI_Comm communicator, const FluidFields& fields, const Block& region,
+                     const std::vector<FluidField>& wanted) {
+  FluidFields result;
   result.block = region;
-  result.velocity.resize(3 * volume(region));
-  result.pressure.resize(volume(region));
-  result.grain_id.resize(volume(region));
-  for (const Row& row : rows) {
-    const std::size_t to = index_in(region, row.cell);
-    std::copy_n(row.velocity, 3, result.velocity.data() + 3 * to);
-    result.pressure[to] = row.pressure;
-    result.grain_id[to] = row.grain_id;
+  for (const FluidField field : wanted) {
+    const int components = components_of(field);
+    if (field == FluidField::grain_id) {
+      result.grain_id = gathered(communicator, fields.grain_id.data(), components, fields.block, region);
+      continue;
+    }
+    const std::vector<float>& here = values_of(fields, field);
+    std::vector<std::int32_t> bits(here.size());
+    std::memcpy(bits.data(), here.data(), here.size() * sizeof(float));
+    bits = gathered(communicator, bits.data(), components, fields.block, region);
+    std::vector<float>& there = values_of(result, field);
+    there.resize(bits.size());
+    std::memcpy(there.data(), bits.data(), bits.size() * sizeof(float));
   }
   return result;
 }
@@ -114,14 +128,13 @@ void write_image(const std::filesystem::path& path, const FluidFields& fields, d
   image->SetSpacing(spacing, spacing, spacing);
   const auto count = static_cast<vtkIdType>(volume(block));
   for (const FluidField field : wanted) {
-    const FieldInfo info = info_of(field);
     if (field == FluidField::grain_id) {
-      auto array = new_array<vtkTypeInt32Array>(info.name, info.components, count);
+      auto array = new_array<vtkTypeInt32Array>(name_of(field), 1, count);
       std::copy(fields.grain_id.begin(), fields.grain_id.end(), array->GetPointer(0));
       image->GetCellData()->AddArray(array);
     } else {
-      const std::vector<float>& values = field == FluidField::velocity ? fields.velocity : fields.pressure;
-      auto array = new_array<vtkFloatArray>(info.name, info.components, count);
+      const std::vector<float>& values = values_of(fields, field);
+      auto array = new_array<vtkFloatArray>(name_of(field), components_of(field), count);
       std::copy(values.begin(), values.end(), array->GetPointer(0));
       image->GetCellData()->AddArray(array);
     }
@@ -147,9 +160,8 @@ std::string assembly(const Decomposition& decomposition, const std::string& piec
       "  <PImageData WholeExtent=\"{}\" GhostLevel=\"0\" Origin=\"0 0 0\" Spacing=\"{}\">\n    <PCellData>\n",
       extent_text({{0, 0, 0}, decomposition.cells()}), spacing);
   for (const FluidField field : wanted) {
-    const FieldInfo info = info_of(field);
-    text += fmt::format("      <PDataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\"/>\n", info.vtk_type,
-                        info.name, info.components);
+    text += fmt::format("      <PDataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\"/>\n",
+                        field == FluidField::grain_id ? "Int32" : "Float32", name_of(field), components_of(field));
   }
   text += "    </PCellData>\n";
   for (int rank = 0; rank < decomposition.ranks(); ++rank)
@@ -170,7 +182,7 @@ FluidSeries::FluidSeries(MPI_Comm communicator, const std::filesystem::path& run
 
 void FluidSeries::write(const Snapshot& snapshot) {
   if (!snapshot.fluid) return;
-  const FluidFields fields = snapshot.fluid->sample();
+  const FluidFields fields = snapshot.fluid->sample(fields_);
   const bool whole = region_ == FluidRegion::whole;
   const bool in_pieces = whole && size_of(communicator_) > 1;
   const std::string name = fmt::format("fluid_{:09d}", snapshot.step);
@@ -180,7 +192,7 @@ void FluidSeries::write(const Snapshot& snapshot) {
     if (rank_of(communicator_) == 0) make_folder(in_pieces ? pieces : folder_ / "fluid");
   });
   FluidFields region;
-  if (!whole) region = gathered(communicator_, fields, block_of(region_, snapshot.decomposition->cells()));
+  if (!whole) region = gathered(communicator_, fields, block_of(region_, snapshot.decomposition->cells()), fields_);
   agree([&] {
     const double spacing = snapshot.decomposition->spacing();
     if (in_pieces)

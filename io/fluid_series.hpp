@@ -14,10 +14,10 @@
 namespace thalweg::io {
 
 enum class FluidRegion { whole, slice_x, slice_y, slice_z };  // a slice: the middle layer of cells across that axis
-enum class FluidField { velocity, pressure, grain_id };
+using thalweg::FluidField;
 
 // Writes fluid/fluid_<step>.vti in the run folder, or, for the whole box on several ranks, fluid/fluid_<step>.pvti with
-// one .vti a rank in fluid/fluid_<step>/. Cell arrays velocity (m/s), pressure (Pa), grain_id (-1: fluid).
+// one .vti a rank in fluid/fluid_<step>/. The cell arrays have the names of FluidField and the units of FluidFields.
 // All calls are collective and throw RunError on every rank if a file cannot be written.
 class FluidSeries {
 public:

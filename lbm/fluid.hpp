@@ -63,6 +63,8 @@ public:
   void stream_and_collide(const std::function<void(int)>& before_tile);
   void advance();
 
+  const Decomposition& decomposition() const { return decomposition_; }
+  MPI_Comm communicator() const { return communicator_; }
   const Block& block() const { return block_; }
   const CellIndexing& indexing() const { return populations_.indexing(); }
   const RowTiles& tiles() const { return tiles_; }

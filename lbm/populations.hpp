@@ -75,6 +75,8 @@ public:
                                                 : planes_[i][cell];
   }
 
+  Real incoming(int i, std::ptrdiff_t cell) const { return const_cast<Populations*>(this)->incoming(i, cell); }
+
   // rho - 1 of a cell from its post-collision populations (collisions conserve it); summed in double.
   double density_deviation(std::ptrdiff_t cell) const {
     double sum = 0.0;

@@ -25,7 +25,7 @@ constexpr std::int64_t grain_count = 37;
 class CellNumbers final : public FluidSource {
 public:
   CellNumbers(Block block, double time) : block_(block), time_(time) {}
-  FluidFields sample() const override {
+  FluidFields sample(const std::vector<FluidField>&) const override {
     FluidFields fields;
     fields.block = block_;
     for (int k = block_.lower[2]; k < block_.upper[2]; ++k)

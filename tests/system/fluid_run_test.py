@@ -68,6 +68,25 @@ output: {series: {every: 0.005}, checkpoint: {every: 0.01, keep: 3}}
         self.run_well("run", self.case, "--out", "again", "--restart", half_way)
         self.assertEqual(self.last_checkpoint("again").read_bytes(), self.last_checkpoint("straight").read_bytes())
 
+    ALL_FIELDS = "[velocity, pressure, density, shear_rate, eddy_viscosity, vorticity, q_criterion]"
+
+    def test_all_fields_are_the_same_on_any_ranks_and_looking_changes_nothing(self):
+        short = ("--until", "0.005")
+        self.run_well("run", self.case, "--out", "unseen", *short)
+        for out, ranks in (("one", 1), ("four", 4)):
+            self.run_well("run", self.case, "--out", out, *short, "--set",
+                          f"output.fluid={{every: 1e-3, region: slice_y, fields: {self.ALL_FIELDS}}}", ranks=ranks)
+            self.assertEqual(self.last_checkpoint(out).read_bytes(), self.last_checkpoint("unseen").read_bytes())
+        one, four = (cell_data(self.folder / out / "fluid/fluid_000000100.vti") for out in ("one", "four"))
+        self.assertEqual(set(one), set(self.ALL_FIELDS[1:-1].split(", ")))
+        for name, values in one.items():
+            numpy.testing.assert_array_equal(values, four[name], name)
+        self.assertGreater(one["shear_rate"].max(), 10.0)   # 1/s; the mean alone has 0.4 m/s over 13 mm
+        # (C_s dx)^2 times the shear rate, in single precision.
+        numpy.testing.assert_allclose(one["eddy_viscosity"], (0.27 * 0.5e-3) ** 2 * one["shear_rate"], rtol=1e-6)
+        # rho = rho_0 + p/c_s^2 with c_s^2 = (dx/dt)^2/3, to the last places of a density in single precision.
+        numpy.testing.assert_allclose(one["density"], 1000 + one["pressure"] * 3 / 10.0 ** 2, rtol=1e-6)
+
     def test_grains_have_no_place_in_it(self):
         self.assert_refused("run", self.case, "--set", "grains=[{count: 1, diameter: 5e-3, density: 2550}]",
                             words=["grains", "system: fluid has no grains", "system: resolved"])

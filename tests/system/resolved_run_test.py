@@ -64,6 +64,13 @@ analysis:
         self.run_well("run", self.case, "--out", "again", "--restart", half_way, ranks=2)
         self.assertEqual(self.last_checkpoint("again").read_bytes(), self.last_checkpoint("straight").read_bytes())
 
+    def test_looking_at_every_field_changes_nothing(self):
+        fields = "[velocity, density, grain_id, shear_rate, eddy_viscosity, vorticity, q_criterion]"
+        self.run_well("run", self.case, "--out", "unseen", "--until", "0.025", "--set", "output.fluid.every=0")
+        self.run_well("run", self.case, "--out", "seen", "--until", "0.025", "--set",
+                      f"output.fluid={{every: 1e-3, region: slice_y, fields: {fields}}}", ranks=2)
+        self.assertEqual(self.last_checkpoint("seen").read_bytes(), self.last_checkpoint("unseen").read_bytes())
+
     def test_double_precision_has_the_same_bits_too(self):
         for out, ranks in (("one", 1), ("two", 2)):
             self.run_well("run", self.case, "--out", out, "--set", "fluid.precision=double", "--until", "0.025",

@@ -1,0 +1,99 @@
+#include "coupling/fluid_sample.hpp"
+
+#include "lbm/flow_fields.hpp"
+
+#include <algorithm>
+#include <initializer_list>
+
+namespace thalweg::coupling {
+
+namespace {
+
+// Calls visit(cell index, x, y, z, position in the arrays of the fields) for every owned cell.
+template <typename Real, typename Visit>
+void for_each_cell(const lbm::Fluid<Real>& fluid, Visit visit) {
+  const Index3& n = fluid.indexing().size();
+  std::size_t at = 0;
+  for (int z = 0; z < n[2]; ++z)
+    for (int y = 0; y < n[1]; ++y)
+      for (int x = 0; x < n[0]; ++x) visit(fluid.indexing().index(x, y, z), x, y, z, at++);
+}
+
+bool wants(const std::vector<FluidField>& wanted, std::initializer_list<FluidField> any) {
+  return std::find_first_of(wanted.begin(), wanted.end(), any.begin(), any.end()) != wanted.end();
+}
+
+void put(std::vector<float>& values, std::size_t at, const Vec3& v) {
+  for (int a = 0; a < 3; ++a) values[3 * at + a] = static_cast<float>(v[a]);
+}
+
+template <typename Real>
+void sample_states(const lbm::Fluid<Real>& fluid, const SampleContext& context, FluidFields& fields) {
+  const Units& units = context.units;
+  for_each_cell(fluid, [&](std::ptrdiff_t cell, int, int, int, std::size_t at) {
+    const std::int32_t body = fluid.cells().body(cell);
+    if (!fields.grain_id.empty()) fields.grain_id[at] = body == lbm::CellMap::fluid ? -1 : context.grain_id(body);
+    if (body != lbm::CellMap::fluid) return;
+    const lbm::FluidState state = fluid.state_at(cell);
+    if (!fields.velocity.empty()) put(fields.velocity, at, state.velocity * units.velocity());
+    if (!fields.pressure.empty())
+      fields.pressure[at] = static_cast<float>(state.density_deviation * (units.stress() / 3.0));
+    if (!fields.density.empty())
+      fields.density[at] = static_cast<float>((1.0 + state.density_deviation) * units.density);
+  });
+}
+
+template <typename Real>
+void sample_subgrid(lbm::Fluid<Real>& fluid, const SampleContext& context, FluidFields& fields) {
+  fluid.exchange_halo();
+  fluid.apply_walls();
+  if (context.apply_links) context.apply_links();
+  for_each_cell(fluid, [&](std::ptrdiff_t cell, int, int, int, std::size_t at) {
+    if (!fluid.cells().is_fluid(cell)) return;
+    const lbm::SubgridState state = lbm::subgrid_state(fluid, cell);
+    if (!fields.shear_rate.empty())
+      fields.shear_rate[at] = static_cast<float>(state.shear_rate / context.units.time_step);
+    if (!fields.eddy_viscosity.empty())
+      fields.eddy_viscosity[at] = static_cast<float>(state.eddy_viscosity * context.units.kinematic_viscosity());
+  });
+}
+
+template <typename Real>
+void sample_gradients(const lbm::Fluid<Real>& fluid, const SampleContext& context, FluidFields& fields) {
+  const GhostedField velocity = lbm::velocity_field(fluid);
+  const double rate = 1.0 / context.units.time_step;
+  for_each_cell(fluid, [&](std::ptrdiff_t cell, int x, int y, int z, std::size_t at) {
+    if (!fluid.cells().is_fluid(cell)) return;
+    const lbm::Gradient gradient = lbm::velocity_gradient(velocity, x, y, z);
+    if (!fields.vorticity.empty()) put(fields.vorticity, at, lbm::vorticity(gradient) * rate);
+    if (!fields.q_criterion.empty())
+      fields.q_criterion[at] = static_cast<float>(lbm::q_criterion(gradient) * rate * rate);
+  });
+}
+
+}  // namespace
+
+template <typename Real>
+FluidFields sample_fields(lbm::Fluid<Real>& fluid, const SampleContext& context,
+                          const std::vector<FluidField>& wanted) {
+  const Index3& n = fluid.indexing().size();
+  const std::size_t cells = static_cast<std::size_t>(n[0]) * n[1] * n[2];
+  FluidFields fields;
+  fields.block = fluid.block();
+  for (const FluidField field : wanted) {
+    if (field == FluidField::grain_id)
+      fields.grain_id.assign(cells, -1);
+    else
+      values_of(fields, field).assign(components_of(field) * cells, 0.0f);
+  }
+  using enum FluidField;
+  if (wants(wanted, {velocity, pressure, density, grain_id})) sample_states(fluid, context, fields);
+  if (wants(wanted, {vorticity, q_criterion})) sample_gradients(fluid, context, fields);
+  if (wants(wanted, {shear_rate, eddy_viscosity})) sample_subgrid(fluid, context, fields);
+  return fields;
+}
+
+template FluidFields sample_fields(lbm::Fluid<float>&, const SampleContext&, const std::vector<FluidField>&);
+template FluidFields sample_fields(lbm::Fluid<double>&, const SampleContext&, const std::vector<FluidField>&);
+
+}  // namespace thalweg::coupling

@@ -1,0 +1,25 @@
+// The fields of a lattice fluid in SI units, as snapshots show them.
+#pragma once
+
+#include "core/snapshot.hpp"
+#include "core/units.hpp"
+#include "lbm/fluid.hpp"
+
+#include <functional>
+#include <vector>
+
+namespace thalweg::coupling {
+
+// How a system looks at its fluid. Cells of bodies show zero.
+struct SampleContext {
+  Units units;
+  std::function<std::int32_t(std::int32_t body)> grain_id;  // of a body of the cell map
+  std::function<void()> apply_links;                        // of bodies, where there are any
+};
+
+// The wanted fields of this rank's block. Fills the slots that stream in from beyond walls and bodies, as the next step
+// will do again: no post-collision population changes. Collective.
+template <typename Real>
+FluidFields sample_fields(lbm::Fluid<Real>& fluid, const SampleContext& context, const std::vector<FluidField>& wanted);
+
+}  // namespace thalweg::coupling

@@ -1,0 +1,87 @@
+#include "lbm/flow_fields.hpp"
+
+#include "lbm/collision.hpp"
+
+#include <cmath>
+
+namespace thalweg::lbm {
+
+namespace {
+
+constexpr int fluid_flag = 3;  // component of a velocity_field after the velocity
+
+// The derivative along an axis from the cells at hand.
+Vec3 derivative(const GhostedField& velocity, const Index3& cell, int axis) {
+  const auto values = [&](int steps) {
+    Index3 at = cell;
+    at[axis] += steps;
+    return velocity.at(at[0], at[1], at[2]);
+  };
+  const auto u = [&](int steps) {
+    const double* v = values(steps);
+    return Vec3(v[0], v[1], v[2]);
+  };
+  const auto fluid = [&](int steps) { return values(steps)[fluid_flag] != 0.0; };
+  if (fluid(-1) && fluid(1)) return 0.5 * (u(1) - u(-1));
+  for (const int side : {1, -1}) {
+    if (!fluid(side)) continue;
+    if (fluid(2 * side)) return side * (2.0 * u(side) - 1.5 * u(0) - 0.5 * u(2 * side));
+    return side * (u(side) - u(0));
+  }
+  return Vec3::Zero();
+}
+
+}  // namespace
+
+template <typename Real>
+GhostedField velocity_field(const Fluid<Real>& fluid) {
+  GhostedField field(fluid.decomposition(), fluid.communicator(), fluid_flag + 1, 2);
+  const Index3& n = fluid.indexing().size();
+  for (int z = 0; z < n[2]; ++z)
+    for (int y = 0; y < n[1]; ++y)
+      for (int x = 0; x < n[0]; ++x) {
+        const std::ptrdiff_t cell = fluid.indexing().index(x, y, z);
+        if (!fluid.cells().is_fluid(cell)) continue;
+        const Vec3 u = fluid.state_at(cell).velocity;
+        double* values = field.at(x, y, z);
+        for (int a = 0; a < 3; ++a) values[a] = u[a];
+        values[fluid_flag] = 1.0;
+      }
+  field.exchange();
+  return field;
+}
+
+Gradient velocity_gradient(const GhostedField& velocity, int x, int y, int z) {
+  Gradient gradient;
+  for (int axis = 0; axis < 3; ++axis) gradient.col(axis) = derivative(velocity, {x, y, z}, axis);
+  return gradient;
+}
+
+Vec3 vorticity(const Gradient& g) { return {g(2, 1) - g(1, 2), g(0, 2) - g(2, 0), g(1, 0) - g(0, 1)}; }
+
+double q_criterion(const Gradient& g) {
+  const Gradient strain = 0.5 * (g + g.transpose()), rotation = 0.5 * (g - g.transpose());
+  return 0.5 * (rotation.squaredNorm() - strain.squaredNorm());
+}
+
+template <typename Real>
+SubgridState subgrid_state(const Fluid<Real>& fluid, std::ptrdiff_t cell) {
+  double f[D3Q19::directions];
+  for (int i = 0; i < D3Q19::directions; ++i) f[i] = static_cast<double>(fluid.populations().incoming(i, cell));
+  const CollisionParameters& parameters = fluid.parameters();
+  const CellMoments<double> m = moments_of<true>(f, CollisionConstants<double>(parameters));
+  const Symmetric<double>& pi = m.pi;
+  const double squared =
+      pi.xx * pi.xx + pi.yy * pi.yy + pi.zz * pi.zz + 2.0 * (pi.xy * pi.xy + pi.xz * pi.xz + pi.yz * pi.yz);
+  SubgridState state;
+  state.shear_rate = 1.5 * std::sqrt(2.0 * squared) * m.omega * m.inverse_rho;
+  state.eddy_viscosity = parameters.smagorinsky_constant * parameters.smagorinsky_constant * state.shear_rate;
+  return state;
+}
+
+template GhostedField velocity_field(const Fluid<float>&);
+template GhostedField velocity_field(const Fluid<double>&);
+template SubgridState subgrid_state(const Fluid<float>&, std::ptrdiff_t);
+template SubgridState subgrid_state(const Fluid<double>&, std::ptrdiff_t);
+
+}  // namespace thalweg::lbm

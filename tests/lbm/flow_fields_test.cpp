@@ -1,0 +1,168 @@
+// Vorticity, Q, shear rate and eddy viscosity against flows where they are known, and on any number of ranks.
+#include "lbm/flow_fields.hpp"
+#include "core/mpi_session.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace thalweg::lbm {
+namespace {
+
+Index3 layout_of_all_ranks(const Index3& cells) { return Decomposition::best_layout(cells, size_of(MPI_COMM_WORLD)); }
+
+template <typename Visit>
+void for_each_cell(const Index3& n, Visit visit) {
+  for (int z = 0; z < n[2]; ++z)
+    for (int y = 0; y < n[1]; ++y)
+      for (int x = 0; x < n[0]; ++x) visit(x, y, z);
+}
+
+struct Errors {
+  double vorticity = 0.0, q = 0.0;  // largest, in units of k U and (k U)^2
+};
+
+// Taylor and Green's vortices u = U (-cos kx sin ky, sin kx cos ky): w_z = 2 k U cos kx cos ky and
+// Q = (k U)^2 (cos^2 kx cos^2 ky - sin^2 kx sin^2 ky).
+Errors taylor_green_errors(int n) {
+  const Index3 cells{n, n, 4};
+  const Decomposition decomposition(cells, 1.0, {true, true, true}, layout_of_all_ranks(cells));
+  Fluid<double> fluid(decomposition, MPI_COMM_WORLD, {}, {});
+  const double k = 2.0 * std::numbers::pi / n, u = 0.05;
+  fluid.initialise([&](const Vec3& p) {
+    return FluidState{
+        0.0, u * Vec3(-std::cos(k * p.x()) * std::sin(k * p.y()), std::sin(k * p.x()) * std::cos(k * p.y()), 0.0)};
+  });
+  const GhostedField velocity = velocity_field(fluid);
+  Errors errors;
+  for_each_cell(fluid.indexing().size(), [&](int x, int y, int z) {
+    const double kx = k * (fluid.block().lower[0] + x + 0.5), ky = k * (fluid.block().lower[1] + y + 0.5);
+    const double cc = std::cos(kx) * std::cos(ky), ss = std::sin(kx) * std::sin(ky);
+    const Gradient gradient = velocity_gradient(velocity, x, y, z);
+    const Vec3 w = vorticity(gradient) / (k * u);
+    errors.vorticity = std::max({errors.vorticity, std::abs(w.z() - 2.0 * cc), std::abs(w.x()), std::abs(w.y())});
+    errors.q = std::max(errors.q, std::abs(q_criterion(gradient) / (k * u * k * u) - (cc * cc - ss * ss)));
+  });
+  return {max_over_ranks(MPI_COMM_WORLD, errors.vorticity), max_over_ranks(MPI_COMM_WORLD, errors.q)};
+}
+
+TEST(FlowFields, VorticityAndQOfTaylorGreenVorticesAreOfSecondOrder) {
+  // A central difference multiplies a harmonic by s = sin(k)/k = 1 - k^2/6 + ..., and the extrema lie half a cell from
+  // the nearest centres, so the errors are known: 2 (1 - s) cos^2(k/2) and (1 - s^2) cos(k).
+  for (const int n : {16, 32}) {
+    const Errors errors = taylor_green_errors(n);
+    const double k = 2.0 * std::numbers::pi / n, s = std::sin(k) / k;
+    EXPECT_NEAR(errors.vorticity, 2.0 * (1.0 - s) * std::pow(std::cos(0.5 * k), 2), 1e-12);
+    EXPECT_NEAR(errors.q, (1.0 - s * s) * std::cos(k), 1e-12);
+    EXPECT_LT(errors.vorticity, k * k / 3.0);
+    EXPECT_LT(errors.q, k * k / 3.0);
+  }
+}
+
+// A linear flow has exact gradients wherever there are neighbours to look at: at walls and beside solid cells too.
+TEST(FlowFields, GradientsOfALinearFlowAreExactAtWallsAndBesideSolidCells) {
+  const Index3 cells{12, 10, 14};
+  const Decomposition decomposition(cells, 1.0, {false, false, false}, layout_of_all_ranks(cells));
+  FaceConditions faces;
+  for (FaceCondition& face : faces) face.type = FaceType::no_slip;
+  Fluid<double> fluid(decomposition, MPI_COMM_WORLD, {}, faces);
+  Gradient exact;
+  exact << 1.0, 2.0, -3.0, 0.5, -4.0, 1.5, 2.5, -0.5, 3.0;
+  exact *= 1e-3;
+  fluid.initialise([&](const Vec3& p) { return FluidState{0.0, exact * p}; });
+  // A block of solid cells around the middle and a lone one that leaves one fluid cell to the wall.
+  const auto solid = [&](const Index3& g) {
+    return (g[0] >= 5 && g[0] < 7 && g[1] >= 4 && g[1] < 6 && g[2] >= 6 && g[2] < 8) || g == Index3{1, 1, 1};
+  };
+  const Index3 n = fluid.indexing().size(), from = fluid.block().lower;
+  for (int z = -1; z <= n[2]; ++z)
+    for (int y = -1; y <= n[1]; ++y)
+      for (int x = -1; x <= n[0]; ++x)
+        if (solid({from[0] + x, from[1] + y, from[2] + z})) fluid.cells().assign(x, y, z, 0);
+  const GhostedField velocity = velocity_field(fluid);
+  std::int64_t looked_at = 0;
+  for_each_cell(n, [&](int x, int y, int z) {
+    const Index3 g{from[0] + x, from[1] + y, from[2] + z};
+    if (solid(g)) return;
+    Gradient expected = exact;
+    if (g == Index3{0, 1, 1}) expected.col(0).setZero();  // between the wall and the lone cell: nothing to look at
+    if (g == Index3{1, 0, 1}) expected.col(1).setZero();
+    if (g == Index3{1, 1, 0}) expected.col(2).setZero();
+    EXPECT_NEAR((velocity_gradient(velocity, x, y, z) - expected).cwiseAbs().maxCoeff(), 0.0, 1e-15)
+        << g[0] << " " << g[1] << " " << g[2];
+    ++looked_at;
+  });
+  EXPECT_EQ(sum_over_ranks(MPI_COMM_WORLD, looked_at), 12 * 10 * 14 - 9);
+}
+
+// Between plates under a force F every cell balances its momentum: [nu + C_s^2 g] g = F |z - H/2|, with the subgrid
+// model and without, up to the normal components of the moment, which are smaller by g (in a step) and add in squares.
+TEST(FlowFields, ShearRateAndEddyViscosityOfPoiseuilleFlowCarryTheForce) {
+  for (const double smagorinsky : {0.0, 0.27}) {
+    constexpr int height = 16;
+    const Index3 cells{4, 4, height};
+    const Decomposition decomposition(cells, 1.0, {true, true, false}, layout_of_all_ranks(cells));
+    CollisionParameters parameters;
+    parameters.relaxation_time = 0.8;
+    parameters.smagorinsky_constant = smagorinsky;
+    parameters.force[0] = 1e-4;
+    FaceConditions faces;
+    faces[4].type = faces[5].type = FaceType::no_slip;
+    Fluid<double> fluid(decomposition, MPI_COMM_WORLD, parameters, faces);
+    const double nu = (parameters.relaxation_time - 0.5) / 3.0;
+    // 25 e-folding times H^2/(nu pi^2) of what the start differs by.
+    for (int step = 0; step < 25 * height * height / (nu * 9.87); ++step) fluid.advance();
+    fluid.exchange_halo();
+    fluid.apply_walls();
+    const double scale = parameters.force[0] * height / 2.0, steepest = scale / nu;  // 8e-4, 8e-3
+    for_each_cell(fluid.indexing().size(), [&](int x, int y, int z) {
+      const SubgridState state = subgrid_state(fluid, fluid.indexing().index(x, y, z));
+      const double stress = parameters.force[0] * std::abs(fluid.block().lower[2] + z + 0.5 - height / 2.0);
+      EXPECT_NEAR((nu + state.eddy_viscosity) * state.shear_rate, stress, steepest * steepest * scale)
+          << smagorinsky << " " << z;
+      EXPECT_NEAR(state.eddy_viscosity, smagorinsky * smagorinsky * state.shear_rate, 1e-15);
+    });
+  }
+}
+
+template <typename Real>
+void compare_with_one_rank() {
+  const Index3 cells{21, 13, 18};
+  const std::array<bool, 3> periodic{true, false, true};
+  const Decomposition whole(cells, 1.0, periodic, {1, 1, 1}), cut(cells, 1.0, periodic, layout_of_all_ranks(cells));
+  CollisionParameters parameters;
+  parameters.relaxation_time = 0.51;
+  parameters.smagorinsky_constant = 0.2;
+  FaceConditions faces;
+  faces[2].type = FaceType::no_slip;
+  faces[3].type = FaceType::law_of_the_wall;
+  Fluid<Real> alone(whole, MPI_COMM_SELF, parameters, faces), shared(cut, MPI_COMM_WORLD, parameters, faces);
+  for (Fluid<Real>* fluid : {&alone, &shared}) {
+    fluid->initialise([](const Vec3& p) {
+      return FluidState{0.0, 0.05 * Vec3(std::sin(0.5 * p.y()), std::cos(0.7 * p.x()), std::sin(0.4 * p.x() + p.z()))};
+    });
+    for (int step = 0; step < 3; ++step) fluid->advance();
+    fluid->exchange_halo();
+    fluid->apply_walls();
+  }
+  const GhostedField velocity_alone = velocity_field(alone), velocity_shared = velocity_field(shared);
+  const Index3 from = shared.block().lower;
+  int differing = 0;
+  for_each_cell(shared.indexing().size(), [&](int x, int y, int z) {
+    const SubgridState a = subgrid_state(alone, alone.indexing().index(from[0] + x, from[1] + y, from[2] + z));
+    const SubgridState s = subgrid_state(shared, shared.indexing().index(x, y, z));
+    differing += a.shear_rate != s.shear_rate || a.eddy_viscosity != s.eddy_viscosity;
+    differing += velocity_gradient(velocity_alone, from[0] + x, from[1] + y, from[2] + z) !=
+                 velocity_gradient(velocity_shared, x, y, z);
+  });
+  EXPECT_EQ(differing, 0);
+}
+
+TEST(FlowFields, AreTheSameOnAnyRanks) {
+  compare_with_one_rank<float>();
+  compare_with_one_rank<double>();
+}
+
+}  // namespace
+}  // namespace thalweg::lbm
