@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/archive.hpp"
+#include "core/profile.hpp"
 #include "core/snapshot.hpp"
 #include "core/system.hpp"
 
@@ -18,6 +19,9 @@ public:
   // Name of the group its results form in summary.json and in a checkpoint, e.g. "transport_rate".
   virtual std::string name() const = 0;
 
+  // Seconds of simulated time between its measurements; 0: with the rows of the series.
+  virtual double every() const { return 0.0; }
+
   // Takes one measurement. Collective: every rank calls it at the same steps.
   virtual void observe(const Snapshot& snapshot) = 0;
 
@@ -26,6 +30,9 @@ public:
 
   // What the run has come to so far, the same on every rank: means for the summary.
   virtual std::vector<Figure> results() const { return figures(); }
+
+  // The same as arrays, for profiles.h5.
+  virtual std::vector<Profile> profiles() const { return {}; }
 
   // Running sums, so that a restarted run reports the same means as one that was never interrupted. Collective.
   virtual void save(ArchiveWriter& archive) const = 0;

@@ -5,6 +5,7 @@
 #include "core/types.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -51,6 +52,10 @@ class FluidSource {
 public:
   virtual ~FluidSource() = default;
   virtual FluidFields sample(const std::vector<FluidField>& wanted) const = 0;  // collective
+
+  // Calls visit(cell, velocity) for every fluid cell this rank owns: global cell, m/s in full precision.
+  using VelocityVisitor = std::function<void(const Index3&, const Vec3&)>;
+  virtual void for_each_velocity(const VelocityVisitor& visit) const = 0;
 };
 
 struct Snapshot {

@@ -93,6 +93,17 @@ FluidFields sample_fields(lbm::Fluid<Real>& fluid, const SampleContext& context,
   return fields;
 }
 
+template <typename Real>
+void visit_velocities(const lbm::Fluid<Real>& fluid, const Units& units, const FluidSource::VelocityVisitor& visit) {
+  const Index3& from = fluid.block().lower;
+  for_each_cell(fluid, [&](std::ptrdiff_t cell, int x, int y, int z, std::size_t) {
+    if (fluid.cells().is_fluid(cell))
+      visit({from[0] + x, from[1] + y, from[2] + z}, fluid.state_at(cell).velocity * units.velocity());
+  });
+}
+
+template void visit_velocities(const lbm::Fluid<float>&, const Units&, const FluidSource::VelocityVisitor&);
+template void visit_velocities(const lbm::Fluid<double>&, const Units&, const FluidSource::VelocityVisitor&);
 template FluidFields sample_fields(lbm::Fluid<float>&, const SampleContext&, const std::vector<FluidField>&);
 template FluidFields sample_fields(lbm::Fluid<double>&, const SampleContext&, const std::vector<FluidField>&);
 

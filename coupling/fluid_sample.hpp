@@ -22,4 +22,8 @@ struct SampleContext {
 template <typename Real>
 FluidFields sample_fields(lbm::Fluid<Real>& fluid, const SampleContext& context, const std::vector<FluidField>& wanted);
 
+// Every owned fluid cell's velocity.
+template <typename Real>
+void visit_velocities(const lbm::Fluid<Real>& fluid, const Units& units, const FluidSource::VelocityVisitor& visit);
+
 }  // namespace thalweg::coupling

@@ -63,6 +63,11 @@ FluidFields FluidSystem<Real>::sample(const std::vector<FluidField>& wanted) con
 }
 
 template <typename Real>
+void FluidSystem<Real>::for_each_velocity(const VelocityVisitor& visit) const {
+  visit_velocities(fluid_, parameters_.units, visit);
+}
+
+template <typename Real>
 std::vector<Figure> FluidSystem<Real>::figures() const {
   const lbm::FluidTotals totals = fluid_.totals();
   const double cells = static_cast<double>(std::max<std::int64_t>(1, totals.cells));

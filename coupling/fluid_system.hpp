@@ -32,6 +32,7 @@ public:
 
 private:
   FluidFields sample(const std::vector<FluidField>& wanted) const override;
+  void for_each_velocity(const VelocityVisitor& visit) const override;
 
   std::unique_ptr<Decomposition> decomposition_;
   MPI_Comm communicator_;

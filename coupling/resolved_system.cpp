@@ -272,6 +272,11 @@ FluidFields ResolvedSystem<Real>::sample(const std::vector<FluidField>& wanted) 
 }
 
 template <typename Real>
+void ResolvedSystem<Real>::for_each_velocity(const VelocityVisitor& visit) const {
+  visit_velocities(fluid_, parameters_.units, visit);
+}
+
+template <typename Real>
 std::vector<Figure> ResolvedSystem<Real>::figures() const {
   const lbm::FluidTotals totals = fluid_.totals();
   double speed = fluid_.largest_speed();

@@ -58,6 +58,7 @@ public:
 
 private:
   FluidFields sample(const std::vector<FluidField>& wanted) const override;
+  void for_each_velocity(const VelocityVisitor& visit) const override;
 
   void initialise_map();
   void synchronise_slots();

@@ -115,6 +115,11 @@ std::vector<std::string> warnings(const Case& c) {
                     "will have none: consider an earlier analysis.transport_rate.from.",
                     c.analysis.transport_rate->from, c.run.until));
   if (!has_fluid(c)) return found;
+  if (c.analysis.fluid_statistics && c.analysis.fluid_statistics->from >= c.run.until)
+    found.push_back(
+        fmt::format("The means of the fluid begin at {} s, after the end of the run at {} s, so profiles.h5 will hold "
+                    "none: consider an earlier analysis.fluid_statistics.from.",
+                    c.analysis.fluid_statistics->from, c.run.until));
   const double lattice_velocity = estimated_velocity(c) / units_of(c).velocity();
   if (!c.fluid.expected_velocity && lattice_velocity > 0.1)
     found.push_back(

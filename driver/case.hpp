@@ -216,8 +216,15 @@ struct TransportRateCase {
   bool operator==(const TransportRateCase&) const = default;
 };
 
+struct FluidStatisticsCase {
+  double from = 0.0;    // s
+  double every = 0.01;  // s
+  bool operator==(const FluidStatisticsCase&) const = default;
+};
+
 struct AnalysisCase {
   std::optional<TransportRateCase> transport_rate;
+  std::optional<FluidStatisticsCase> fluid_statistics;
   bool operator==(const AnalysisCase&) const = default;
 };
 

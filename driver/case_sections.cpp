@@ -303,11 +303,22 @@ static void describe(io::SectionVisitor& visit, TransportRateCase& rate) {
   visit.real("from", rate.from, {.unit = "s", .meaning = "start of the mean that summary.json gives", .at_least = 0.0});
 }
 
-static void describe_analysis(io::SectionVisitor& visit, AnalysisCase& analysis, bool with_grains) {
+static void describe(io::SectionVisitor& visit, FluidStatisticsCase& statistics) {
+  visit.real("from", statistics.from, {.unit = "s", .meaning = "start of the means", .at_least = 0.0});
+  visit.real("every", statistics.every, {.unit = "s", .meaning = "between measurements", .above = 0.0});
+}
+
+static void describe_analysis(io::SectionVisitor& visit, AnalysisCase& analysis, bool with_fluid, bool with_grains) {
   if (with_grains)
     visit.section("transport_rate", analysis.transport_rate, {.meaning = "the grains' flux q and q* along x"});
   else
     visit.not_here("transport_rate", "system: fluid has no grains; remove the section or set system: resolved");
+  if (with_fluid)
+    visit.section("fluid_statistics", analysis.fluid_statistics,
+                  {.meaning = "mean velocity and Reynolds stresses in profiles.h5: over z, and over y and z between "
+                              "side walls"});
+  else
+    visit.not_here("fluid_statistics", "system: grains has no fluid; remove the section or set system: resolved");
 }
 
 void describe(io::SectionVisitor& visit, Case& c) {
@@ -356,7 +367,7 @@ void describe(io::SectionVisitor& visit, Case& c) {
   visit.section("output", {.meaning = "what the run writes, besides run.log and summary.json"},
                 [&](io::SectionVisitor& inside) { describe_output(inside, c.output, with_fluid, with_grains); });
   visit.section("analysis", {.meaning = "what is measured while the run goes"},
-                [&](io::SectionVisitor& inside) { describe_analysis(inside, c.analysis, with_grains); });
+                [&](io::SectionVisitor& inside) { describe_analysis(inside, c.analysis, with_fluid, with_grains); });
 }
 
 }  // namespace thalweg

@@ -1,5 +1,6 @@
 #include "driver/run_command.hpp"
 
+#include "analysis/fluid_statistics.hpp"
 #include "analysis/grain_energy.hpp"
 #include "analysis/transport_rate.hpp"
 #include "core/error.hpp"
@@ -52,8 +53,14 @@ Places places_of(const Command& command) {
   return {checkpoint, io::RunFolder(out), same};
 }
 
-Observers observers_of(const Case& c, MPI_Comm communicator) {
+Observers observers_of(const Case& c, const System& system, MPI_Comm communicator) {
   Observers observers;
+  if (c.analysis.fluid_statistics) {
+    const FluidStatisticsCase& asked_for = *c.analysis.fluid_statistics;
+    observers.push_back(std::make_unique<analysis::FluidStatistics>(
+        communicator, *system.snapshot().decomposition, units_of(c).velocity(),
+        analysis::StatisticsSchedule{asked_for.from, asked_for.every}, !periodic_axes(c.domain)[1]));
+  }
   if (c.grains.empty()) return observers;
   if (c.analysis.transport_rate) {
     const PopulationCase& first = c.grains.front();
@@ -133,7 +140,7 @@ void run_case(const Command& command, MPI_Comm communicator, WallClock::time_poi
   });
   const Index3 layout = choose_layout(c, size_of(communicator), command.layout);
   const std::unique_ptr<System> system = build_system(c, communicator, layout);
-  Observers observers = observers_of(c, communicator);
+  Observers observers = observers_of(c, *system, communicator);
   if (!places.checkpoint.empty()) read_checkpoint_file(communicator, places.checkpoint, c, *system, observers);
   if (system->time() > c.run.until * (1.0 + 1e-12))
     throw InputError(fmt::format("{} is at {:.6g} s already and the run ends at {:.6g} s: give a later --until.",

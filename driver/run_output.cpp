@@ -5,6 +5,7 @@
 #include "driver/on_first_rank.hpp"
 #include "driver/version.hpp"
 #include "io/hdf5_archive.hpp"
+#include "io/profile_file.hpp"
 
 #include <fmt/format.h>
 
@@ -51,10 +52,21 @@ void RunOutput::write_row(double time, const std::vector<Figure>& row) {
   series_->append(time, values);
 }
 
+// As often as the state is saved, and at the end.
+void RunOutput::write_profiles() {
+  io::ProfileGroups groups;
+  for (const auto& observer : observers_) {
+    std::vector<Profile> profiles = observer->profiles();
+    if (!profiles.empty()) groups.emplace_back(observer->name(), std::move(profiles));
+  }
+  if (!groups.empty()) io::write_profiles(communicator_, folder_.profiles(), system_.time(), groups);
+}
+
 void RunOutput::write_checkpoint() {
   write_checkpoint_file(communicator_, folder_.checkpoint(system_.step()), case_, system_, observers_);
   on_first_rank(communicator_,
                 [this] { folder_.rotate_checkpoints(system_.step(), static_cast<int>(case_.output.checkpoint.keep)); });
+  write_profiles();
 }
 
 void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c,

@@ -34,6 +34,7 @@ public:
 private:
   void write_row(double time, const std::vector<Figure>& row);
   void write_checkpoint();
+  void write_profiles();
 
   MPI_Comm communicator_;
   const Case& case_;

@@ -30,6 +30,10 @@ TimeLoop::TimeLoop(MPI_Comm communicator, System& system, std::vector<std::uniqu
     : communicator_(communicator), system_(system), observers_(observers), plan_(plan), log_(log) {
   // Rounded up, except where the quotient misses a whole number of steps by round-off only.
   final_step_ = static_cast<std::int64_t>(std::ceil(plan.until / system.time_step() * (1.0 - 1e-12)));
+  for (const auto& observer : observers) {
+    const double every = observer->every();
+    schedules_.push_back(every > 0.0 ? Schedule(every, system.time_step()) : plan.series);
+  }
   record_.first_step = record_.last_step = system.step();
 }
 
@@ -78,19 +82,25 @@ void TimeLoop::look_at_health() {
                     system_.time(), system_.step(), speed, stable_lattice_velocity));
 }
 
+void TimeLoop::measure() {
+  const std::int64_t step = system_.step();
+  const auto due = [step](const Schedule& schedule) { return schedule.due(step); };
+  if (std::none_of(schedules_.begin(), schedules_.end(), due)) return;
+  look_at_health();
+  const auto scope = timer_.measure(timer_.phase("observers"));
+  const Snapshot snapshot = system_.snapshot();
+  for (std::size_t o = 0; o < observers_.size(); ++o)
+    if (due(schedules_[o])) observers_[o]->observe(snapshot);
+}
+
 void TimeLoop::write_what_is_due() {
   const std::int64_t step = system_.step();
+  measure();
   if (plan_.series.due(step)) {
     look_at_health();
-    const Snapshot snapshot = system_.snapshot();
-    {
-      const auto scope = timer_.measure(timer_.phase("observers"));
-      measured_.clear();
-      for (const auto& observer : observers_) {
-        observer->observe(snapshot);
-        for (const Figure& figure : observer->figures()) measured_.push_back(figure);
-      }
-    }
+    measured_.clear();
+    for (const auto& observer : observers_)
+      for (const Figure& figure : observer->figures()) measured_.push_back(figure);
     if (plan_.write_row) {
       const auto scope = timer_.measure(timer_.phase("series"));
       std::vector<Figure> row = record_.figures;

@@ -77,6 +77,7 @@ private:
   enum class Verdict : int { go_on = 0, wall_time_is_up = 1, signal = 2 };
 
   void look_at_health();
+  void measure();
   void write_what_is_due();
   void checkpoint();
   Verdict confer();
@@ -89,6 +90,7 @@ private:
   Log& log_;
   PhaseTimer timer_;
   LoopRecord record_;
+  std::vector<Schedule> schedules_;  // of each observer
   WallClock::time_point begin_;
   std::int64_t final_step_ = 0;
   std::int64_t looked_at_step_ = -1, saved_step_ = -1, next_conference_ = 0;

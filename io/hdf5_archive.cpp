@@ -113,9 +113,9 @@ struct Hdf5Writer::File {
                                path.string()));
   }
 
-  // Opens a group, creating it and its parents where they are missing.
+  // Opens a group, or a dataset whose attributes are meant, creating groups where they are missing.
   Handle group(const std::string& name) const {
-    if (name == "/") return Handle(H5Gopen2(file, "/", H5P_DEFAULT), H5Gclose);
+    if (name == "/") return Handle(H5Oopen(file, "/", H5P_DEFAULT), H5Oclose);
     const Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
     H5Pset_obj_track_times(creation, false);
     Handle current;
@@ -123,7 +123,7 @@ struct Hdf5Writer::File {
       end = name.find('/', end + 1);
       const std::string part = name.substr(0, end);
       current = H5Lexists(file, part.c_str(), H5P_DEFAULT) > 0
-                    ? Handle(H5Gopen2(file, part.c_str(), H5P_DEFAULT), H5Gclose)
+                    ? Handle(H5Oopen(file, part.c_str(), H5P_DEFAULT), H5Oclose)
                     : Handle(H5Gcreate2(file, part.c_str(), H5P_DEFAULT, creation, H5P_DEFAULT), H5Gclose);
     }
     return current;

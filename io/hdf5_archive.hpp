@@ -14,7 +14,8 @@
 namespace thalweg::io {
 
 // Writes to `path` + ".partial" and gives the file its name in close(), so that the name never stands for half a file.
-// Paths are "group/name"; an attribute "group/name" is kept on the group. All calls are collective over the
+// Paths are "group/name"; an attribute "group/name" is kept on the group, and
+// "group/dataset/name" on a dataset written before. All calls are collective over the
 // communicator, and so are the errors: every call throws RunError on every rank if it failed on one (disk full, no
 // permission).
 class Hdf5Writer final : public ArchiveWriter {

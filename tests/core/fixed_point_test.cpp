@@ -1,4 +1,5 @@
 #include "core/fixed_point.hpp"
+#include "core/wide_sum.hpp"
 
 #include <gtest/gtest.h>
 
@@ -36,6 +37,24 @@ TEST(FixedPoint, RoundsToTheNearestAndTiesToEven) {
   EXPECT_EQ(Quarter::from(-0.375), -2);
   EXPECT_EQ(LatticeFixed::from(-100.0), -100 * (std::int64_t{1} << 44));
   EXPECT_EQ(LatticeFixed::to_double(LatticeFixed::from(100.0 + 0x1p-44)), 100.0 + 0x1p-44);
+}
+
+TEST(WideSum, GrowsBeyondSixtyFourBitsAndBack) {
+  constexpr std::int64_t large = std::int64_t{1} << 62;
+  WideSum sum;
+  for (int n = 0; n < 1000; ++n) sum.add(large);
+  EXPECT_EQ(sum.to_double(62), 1000.0);
+  sum.add(-1);
+  WideSum same;
+  same.add(-1);
+  for (int n = 0; n < 1000; ++n) same.add(large);
+  EXPECT_EQ(sum, same);  // whatever the order
+  for (int n = 0; n < 2000; ++n) sum.add(-large);
+  EXPECT_EQ(sum.to_double(62), -1000.0);
+  for (int n = 0; n < 1000; ++n) sum.add(large);
+  EXPECT_EQ(sum.to_double(0), -1.0);
+  sum.add(WideSum{0, 8});
+  EXPECT_EQ(sum.to_double(1), 3.5);
 }
 
 }  // namespace

@@ -38,6 +38,8 @@ public:
     return fields;
   }
 
+  void for_each_velocity(const VelocityVisitor&) const override {}
+
 private:
   Block block_;
   double time_;

@@ -6,6 +6,7 @@ Called by ctest: fluid_run_test.py THALWEG MPIEXEC [unittest arguments]
 import sys
 from pathlib import Path
 
+import h5py
 import numpy
 from vtk.util.numpy_support import vtk_to_numpy
 from vtk import vtkXMLImageDataReader
@@ -86,6 +87,24 @@ output: {series: {every: 0.005}, checkpoint: {every: 0.01, keep: 3}}
         numpy.testing.assert_allclose(one["eddy_viscosity"], (0.27 * 0.5e-3) ** 2 * one["shear_rate"], rtol=1e-6)
         # rho = rho_0 + p/c_s^2 with c_s^2 = (dx/dt)^2/3, to the last places of a density in single precision.
         numpy.testing.assert_allclose(one["density"], 1000 + one["pressure"] * 3 / 10.0 ** 2, rtol=1e-6)
+
+    def test_means_have_the_same_bits_on_any_ranks_and_after_a_restart(self):
+        means = ("--set", "analysis.fluid_statistics={from: 0.002, every: 0.001}")
+        self.run_well("run", self.case, "--out", "straight", *means)
+        half_way = self.folder / "straight/checkpoints/step_200.h5"
+        self.run_well("run", self.case, "--out", "again", "--restart", half_way, *means, ranks=4)
+        for file in ("profiles.h5", self.last_checkpoint("straight").relative_to(self.folder / "straight")):
+            self.assertEqual((self.folder / "again" / file).read_bytes(),
+                             (self.folder / "straight" / file).read_bytes(), file)
+        with h5py.File(self.folder / "straight/profiles.h5") as profiles:
+            group = profiles["fluid_statistics"]
+            self.assertEqual(group["velocity"].attrs["unit"], b"m/s")
+            self.assertEqual(group["reynolds_stress"].attrs["components"], b"xx yy zz xy xz yz")
+            self.assertEqual(group["section_velocity"].shape, (26, 21, 3))
+            numpy.testing.assert_allclose(group["section_velocity"][()].mean(axis=1), group["velocity"][()], atol=1e-11)
+            self.assertAlmostEqual(self.summary("again")["fluid_statistics"]["mean_velocity_x"],
+                                   group["velocity"][:, 0].mean(), delta=1e-11)
+        self.assertEqual(self.summary("again")["fluid_statistics"]["measurements"], 19)
 
     def test_grains_have_no_place_in_it(self):
         self.assert_refused("run", self.case, "--set", "grains=[{count: 1, diameter: 5e-3, density: 2550}]",

@@ -1,0 +1,145 @@
+#include "analysis/fluid_statistics.hpp"
+
+#include "core/fixed_point.hpp"
+#include "core/mpi_session.hpp"
+
+#include <algorithm>
+
+namespace thalweg::analysis {
+
+namespace {
+
+constexpr int fraction_bits = 40;
+using VelocitySum = FixedPoint<fraction_bits>;
+
+constexpr int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+const std::vector<std::string> components{"x", "y", "z"}, tensor{"xx", "yy", "zz", "xy", "xz", "yz"};
+
+}  // namespace
+
+FluidStatistics::FluidStatistics(MPI_Comm communicator, const Decomposition& decomposition, double velocity_unit,
+                                 const StatisticsSchedule& schedule, bool sections)
+    : communicator_(communicator),
+      cells_(decomposition.cells()),
+      spacing_(decomposition.spacing()),
+      velocity_unit_(velocity_unit),
+      schedule_(schedule),
+      sections_(sections),
+      sums_(static_cast<std::size_t>(bins()) * quantities) {}
+
+void FluidStatistics::observe(const Snapshot& snapshot) {
+  // A step that is due at `from` itself counts, whatever the last bit of its time.
+  if (!snapshot.fluid || snapshot.step <= counted_step_ || snapshot.time < schedule_.from * (1.0 - 1e-12)) return;
+  counted_step_ = snapshot.step;
+  ++measurements_;
+  std::vector<std::int64_t> sums(sums_.size(), 0);
+  snapshot.fluid->for_each_velocity([&](const Index3& cell, const Vec3& velocity_si) {
+    const int bin = sections_ ? cell[2] * cells_[1] + cell[1] : cell[2];
+    std::int64_t* columns = sums.data() + static_cast<std::size_t>(bin) * quantities;
+    const Vec3 u = velocity_si / velocity_unit_;
+    columns[count] += 1;
+    for (int a = 0; a < 3; ++a) columns[velocity + a] += VelocitySum::from(u[a]);
+    for (int p = 0; p < 6; ++p) columns[product + p] += VelocitySum::from(u[pairs[p][0]] * u[pairs[p][1]]);
+  });
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_INT64_T, MPI_SUM, communicator_);
+  for (std::size_t s = 0; s < sums.size(); ++s) sums_[s].add(sums[s]);
+}
+
+std::vector<WideSum> FluidStatistics::layer(int z) const {
+  const int lines = sections_ ? cells_[1] : 1;
+  std::vector<WideSum> sums(quantities);
+  for (int line = 0; line < lines; ++line)
+    for (int q = 0; q < quantities; ++q)
+      sums[q].add(sums_[(static_cast<std::size_t>(z) * lines + line) * quantities + q]);
+  return sums;
+}
+
+FluidStatistics::Means FluidStatistics::means_of(const WideSum* sums, double cells) const {
+  Means means;
+  const double n = sums[count].to_double(0);
+  if (n == 0.0) return means;
+  means.fluid_fraction = n / (cells * static_cast<double>(measurements_));
+  double u[3];
+  for (int a = 0; a < 3; ++a) {
+    u[a] = sums[velocity + a].to_double(fraction_bits) / n;
+    means.velocity[a] = u[a] * velocity_unit_;
+  }
+  for (int p = 0; p < 6; ++p)
+    means.stress[p] = (sums[product + p].to_double(fraction_bits) / n - u[pairs[p][0]] * u[pairs[p][1]]) *
+                      velocity_unit_ * velocity_unit_;
+  return means;
+}
+
+std::vector<Figure> FluidStatistics::results() const {
+  std::vector<WideSum> all(quantities);
+  for (int z = 0; z < cells_[2]; ++z) {
+    const std::vector<WideSum> sums = layer(z);
+    for (int q = 0; q < quantities; ++q) all[q].add(sums[q]);
+  }
+  return {{"mean_velocity_x", "m/s", means_of(all.data(), 1.0).velocity[0]},
+          {"mean_from", "s", schedule_.from},
+          {"measurements", "1", static_cast<double>(measurements_)}};
+}
+
+std::vector<Profile> FluidStatistics::profiles() const {
+  const auto nx = static_cast<double>(cells_[0]), ny = static_cast<double>(cells_[1]);
+  const auto heights = static_cast<std::uint64_t>(cells_[2]), widths = static_cast<std::uint64_t>(cells_[1]);
+  const auto centres = [&](const std::string& axis, int n) {
+    Profile profile{axis, "m", {}, {static_cast<std::uint64_t>(n)}, {}};
+    for (int k = 0; k < n; ++k) profile.values.push_back((k + 0.5) * spacing_);
+    return profile;
+  };
+  const auto add = [](std::vector<Profile>& to, const Means& means) {
+    to[0].values.insert(to[0].values.end(), means.velocity, means.velocity + 3);
+    to[1].values.insert(to[1].values.end(), means.stress, means.stress + 6);
+    to[2].values.push_back(means.fluid_fraction);
+  };
+  const auto empty = [](const std::string& prefix, std::vector<std::uint64_t> shape) {
+    std::vector<Profile> profiles{{prefix + "velocity", "m/s", components, shape, {}},
+                                  {prefix + "reynolds_stress", "m^2/s^2", tensor, shape, {}},
+                                  {prefix + "fluid_fraction", "1", {}, shape, {}}};
+    profiles[0].shape.push_back(3);
+    profiles[1].shape.push_back(6);
+    return profiles;
+  };
+  std::vector<Profile> layers = empty("", {heights});
+  for (int z = 0; z < cells_[2]; ++z) add(layers, means_of(layer(z).data(), nx * ny));
+  std::vector<Profile> all{centres("z", cells_[2])};
+  all.insert(all.end(), layers.begin(), layers.end());
+  if (!sections_) return all;
+  all.push_back(centres("y", cells_[1]));
+  std::vector<Profile> lines = empty("section_", {heights, widths});
+  for (int bin = 0; bin < bins(); ++bin)
+    add(lines, means_of(sums_.data() + static_cast<std::size_t>(bin) * quantities, nx));
+  all.insert(all.end(), lines.begin(), lines.end());
+  return all;
+}
+
+void FluidStatistics::save(ArchiveWriter& archive) const {
+  archive.attribute("fluid_statistics/mean_from", schedule_.from);
+  archive.attribute("fluid_statistics/measurements", measurements_);
+  archive.attribute("fluid_statistics/counted_step", counted_step_);
+  std::vector<std::int64_t> values;
+  const bool first = rank_of(communicator_) == 0;
+  if (first)
+    for (const WideSum& sum : sums_) values.insert(values.end(), {sum.high, sum.low});
+  const std::vector<std::uint64_t> shape{static_cast<std::uint64_t>(bins()), quantities, 2};
+  const std::vector<std::uint64_t> nothing(3, 0);
+  archive.write("fluid_statistics/sums", std::span<const std::int64_t>(values),
+                {shape, nothing, first ? shape : nothing});
+}
+
+void FluidStatistics::load(ArchiveReader& archive) {
+  const std::vector<std::uint64_t> shape{static_cast<std::uint64_t>(bins()), quantities, 2};
+  if (!archive.has("fluid_statistics/mean_from") ||
+      archive.real_attribute("fluid_statistics/mean_from") != schedule_.from ||
+      archive.shape("fluid_statistics/sums") != shape)
+    return;
+  measurements_ = archive.integer_attribute("fluid_statistics/measurements");
+  counted_step_ = archive.integer_attribute("fluid_statistics/counted_step");
+  std::vector<std::int64_t> values(2 * sums_.size());
+  archive.read("fluid_statistics/sums", std::span<std::int64_t>(values), {shape, {0, 0, 0}, shape});
+  for (std::size_t s = 0; s < sums_.size(); ++s) sums_[s] = {values[2 * s], values[2 * s + 1]};
+}
+
+}  // namespace thalweg::analysis

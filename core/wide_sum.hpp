@@ -1,0 +1,35 @@
+// A 128-bit integer sum of 64-bit integers: what fixed-point sums (fixed_point.hpp) grow into over a long run.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+namespace thalweg {
+
+struct WideSum {
+  std::int64_t high = 0;  // value = high 2^64 + low, low taken without sign
+  std::int64_t low = 0;
+
+  void add(std::int64_t value) { add(WideSum{value < 0 ? -1 : 0, value}); }
+  void add(const WideSum& other) {
+    const auto sum = static_cast<std::uint64_t>(low) + static_cast<std::uint64_t>(other.low);
+    high += other.high + (sum < static_cast<std::uint64_t>(other.low) ? 1 : 0);
+    low = static_cast<std::int64_t>(sum);
+  }
+
+  // Times 2^-fraction_bits, rounded to a double.
+  double to_double(int fraction_bits) const {
+    // The two halves of a number near zero would cancel and lose its digits: turned positive first.
+    if (high < 0) {
+      WideSum positive{~high, static_cast<std::int64_t>(~static_cast<std::uint64_t>(low))};
+      positive.add(1);
+      return -positive.to_double(fraction_bits);
+    }
+    return std::ldexp(static_cast<double>(high), 64 - fraction_bits) +
+           std::ldexp(static_cast<double>(static_cast<std::uint64_t>(low)), -fraction_bits);
+  }
+
+  bool operator==(const WideSum&) const = default;
+};
+
+}  // namespace thalweg

@@ -1,0 +1,22 @@
+// profiles.h5: what observers have come to, as arrays with their units.
+#pragma once
+
+#include "core/profile.hpp"
+
+#include <mpi.h>
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace thalweg::io {
+
+// The profiles of each observer, under its name.
+using ProfileGroups = std::vector<std::pair<std::string, std::vector<Profile>>>;
+
+// Writes a new file, or replaces one at once. One dataset a profile, float64, with the attributes `unit` and, where the
+// last dimension is one of components, `components`. Profiles must be the same on every rank. Collective; RunError.
+void write_profiles(MPI_Comm communicator, const std::filesystem::path& path, double time, const ProfileGroups& groups);
+
+}  // namespace thalweg::io
