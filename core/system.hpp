@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/archive.hpp"
+#include "core/error.hpp"
 #include "core/phase_timer.hpp"
 #include "core/snapshot.hpp"
 
@@ -33,6 +34,9 @@ public:
 
   virtual void save(ArchiveWriter& archive) const = 0;  // everything the next step depends on; collective
   virtual void load(ArchiveReader& archive) = 0;        // collective
+  // Takes the fluid's field alone from the state of another run on the same lattice, as an initial state. Throws
+  // InputError where it does not fit, or there is no fluid; collective.
+  virtual void take_fluid(ArchiveReader&) { throw InputError("this system has no fluid that could be taken over."); }
 
   virtual PhaseTimer& timer() = 0;
   virtual std::int64_t cells() const = 0;                 // lattice cells in the whole domain; 0 without a fluid

@@ -15,8 +15,8 @@ void check_time_step(ArchiveReader& archive, double time_step) {
   const double saved = archive.real_attribute("system/time_step");
   if (saved != time_step)
     throw InputError(
-        fmt::format("The checkpoint was made with {:.6g} s a step and this case has {:.6g} s: a run can only "
-                    "go on with the same time step.",
+        fmt::format("The checkpoint was made with {:.6g} s a step and this case has {:.6g} s: a state can only "
+                    "be taken over with the same time step.",
                     saved, time_step));
 }
 
@@ -96,6 +96,12 @@ void FluidSystem<Real>::load(ArchiveReader& archive) {
   check_time_step(archive, time_step());
   step_ = archive.integer_attribute("system/step");
   fluid_.load(archive);
+}
+
+template <typename Real>
+void FluidSystem<Real>::take_fluid(ArchiveReader& archive) {
+  check_time_step(archive, time_step());
+  fluid_.load_populations(archive);
 }
 
 template class FluidSystem<float>;

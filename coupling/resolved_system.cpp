@@ -312,6 +312,12 @@ void ResolvedSystem<Real>::load(ArchiveReader& archive) {
   initialise_map();
 }
 
+template <typename Real>
+void ResolvedSystem<Real>::take_fluid(ArchiveReader& archive) {
+  check_time_step(archive, time_step());
+  fluid_.load_populations(archive);
+}
+
 template class ResolvedSystem<float>;
 template class ResolvedSystem<double>;
 

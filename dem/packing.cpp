@@ -1,7 +1,7 @@
 #include "dem/packing.hpp"
 
+#include "core/counter_random.hpp"
 #include "core/error.hpp"
-#include "dem/counter_random.hpp"
 
 #include <fmt/format.h>
 

@@ -156,11 +156,19 @@ struct CouplingCase {
   bool operator==(const CouplingCase&) const = default;
 };
 
+// Random eddies without divergence on top of a profile.
+struct PerturbationCase {
+  double amplitude = 1.0;  // root mean square of a component over the shear velocity, away from walls
+  std::int64_t seed = 1;
+  bool operator==(const PerturbationCase&) const = default;
+};
+
 // u(z) = (shear_velocity / 0.41) ln((z - bed_height) / roughness) along x above the bed, zero below.
 struct LogProfileCase {
   double bed_height = 0.0;      // m above the bottom
   double shear_velocity = 0.0;  // m/s
   double roughness = 0.0;       // m, the height where the velocity is zero (for grains about d/30)
+  std::optional<PerturbationCase> perturbation;
   bool operator==(const LogProfileCase&) const = default;
 };
 
@@ -171,7 +179,11 @@ struct InitialFluidCase {
   bool operator==(const InitialFluidCase&) const = default;
 };
 
+enum class InitialField { fluid };
+
 struct InitialCase {
+  std::string from;  // run folder or checkpoint of another run, absolute once read; empty: none
+  std::vector<InitialField> fields{InitialField::fluid};  // what is taken from it
   InitialFluidCase fluid;
   bool operator==(const InitialCase&) const = default;
 };

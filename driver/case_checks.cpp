@@ -21,6 +21,8 @@ constexpr double fewest_cells_per_diameter = 5.0;
 constexpr double fewest_steps_per_contact = 20.0;
 // Decimal numbers such as 0.12 / 0.0005 are whole up to a few units in the last place.
 constexpr double whole_number_tolerance = 1e-6;
+// A component of the random eddies at the start stays below this many times its root mean square nearly everywhere.
+constexpr double strongest_gust = 4.0;
 constexpr double most_cells_along_axis = 1e6;
 
 void check_whole_cells(const DomainCase& domain, const io::YamlDocument& document) {
@@ -127,8 +129,10 @@ void check_initial_fluid(const Case& c, const io::YamlDocument& document) {
     throw document.error("initial.fluid.log_profile.bed_height",
                          fmt::format("no fluid is left above the bed; give a height in m below {:.6g}",
                                      c.domain.size[2] - profile.roughness));
-  check_lattice_velocity(c, document, "initial.fluid.log_profile.shear_velocity",
-                         profile.shear_velocity / 0.41 * std::log(depth / profile.roughness));
+  check_lattice_velocity(
+      c, document, "initial.fluid.log_profile.shear_velocity",
+      profile.shear_velocity * (std::log(depth / profile.roughness) / 0.41 +
+                                (profile.perturbation ? strongest_gust * profile.perturbation->amplitude : 0.0)));
 }
 
 void check_fluid(const Case& c, const io::YamlDocument& document) {

@@ -199,6 +199,13 @@ static void describe(io::SectionVisitor& visit, CouplingCase& coupling) {
                        {.meaning = "populations of a cell that a grain has uncovered"});
 }
 
+static void describe(io::SectionVisitor& visit, PerturbationCase& perturbation) {
+  visit.real(
+      "amplitude", perturbation.amplitude,
+      {.meaning = "root mean square of a velocity component away from walls, over shear_velocity", .above = 0.0});
+  visit.integer("seed", perturbation.seed, {.meaning = "another seed, other eddies", .at_least = 0});
+}
+
 static void describe(io::SectionVisitor& visit, LogProfileCase& profile) {
   visit.real("bed_height", profile.bed_height,
              {.unit = "m",
@@ -218,6 +225,7 @@ static void describe(io::SectionVisitor& visit, LogProfileCase& profile) {
               .required = true,
               .above = 0.0,
               .example = 3.3e-4});
+  visit.section("perturbation", profile.perturbation, {.meaning = "random eddies without divergence on top"});
 }
 
 static void describe(io::SectionVisitor& visit, InitialFluidCase& fluid) {
@@ -228,8 +236,14 @@ static void describe(io::SectionVisitor& visit, InitialFluidCase& fluid) {
 }
 
 static void describe(io::SectionVisitor& visit, InitialCase& initial) {
+  visit.text("from", initial.from,
+             {.meaning = "run folder or checkpoint of another run to begin from, relative to this file; \"\": none"});
+  visit.choice_list<InitialField>("fields", initial.fields, {{InitialField::fluid, "fluid"}},
+                                  {.meaning = "what is taken from it"});
   visit.section("fluid", initial.fluid,
                 {.meaning = "velocity at the start: rest, uniform or log_profile", .empty_name = "rest"});
+  visit.require(initial.from.empty() || !(initial.fluid.uniform || initial.fluid.log_profile), "from",
+                "the start of the fluid is given twice; remove either this key or the section fluid");
 }
 
 static void describe_run(io::SectionVisitor& visit, RunCase& run, bool with_fluid) {

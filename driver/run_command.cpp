@@ -141,7 +141,10 @@ void run_case(const Command& command, MPI_Comm communicator, WallClock::time_poi
   const Index3 layout = choose_layout(c, size_of(communicator), command.layout);
   const std::unique_ptr<System> system = build_system(c, communicator, layout);
   Observers observers = observers_of(c, *system, communicator);
-  if (!places.checkpoint.empty()) read_checkpoint_file(communicator, places.checkpoint, c, *system, observers);
+  if (places.checkpoint.empty())
+    take_initial_fields(communicator, c, *system);
+  else
+    read_checkpoint_file(communicator, places.checkpoint, c, *system, observers);
   if (system->time() > c.run.until * (1.0 + 1e-12))
     throw InputError(fmt::format("{} is at {:.6g} s already and the run ends at {:.6g} s: give a later --until.",
                                  places.checkpoint.string(), system->time(), c.run.until));

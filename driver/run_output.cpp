@@ -78,9 +78,26 @@ void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& p
   archive.attribute("run/step", system.step());
   archive.attribute("run/time", system.time());
   archive.attribute("run/time_step", system.time_step());
+  archive.attribute("run/spacing", c.domain.spacing);
   system.save(archive);
   for (const auto& observer : observers) observer->save(archive);
   archive.close();
+}
+
+void take_initial_fields(MPI_Comm communicator, const Case& c, System& system) {
+  if (c.initial.from.empty()) return;
+  try {
+    const std::filesystem::path path = io::checkpoint_at(c.initial.from);
+    io::Hdf5Reader archive(communicator, path);
+    if (!archive.has("fluid/populations_00"))
+      throw InputError(fmt::format("{} holds no fluid; give a run with system: resolved or fluid.", path.string()));
+    if (archive.has("run/spacing") && archive.real_attribute("run/spacing") != c.domain.spacing)
+      throw InputError(fmt::format("{} has cells of {:.6g} m and this case of {:.6g} m; use the same domain.spacing.",
+                                   path.string(), archive.real_attribute("run/spacing"), c.domain.spacing));
+    system.take_fluid(archive);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("initial.from = {}: {}", c.initial.from, error.what()));
+  }
 }
 
 void read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c, System& system,

@@ -254,8 +254,14 @@ void Fluid<Real>::save(ArchiveWriter& archive) const {
 }
 
 template <typename Real>
-void Fluid<Real>::load(ArchiveReader& archive) {
+void Fluid<Real>::load_populations(ArchiveReader& archive) {
   const Index3& n = indexing().size();
+  const std::vector<std::uint64_t> saved = archive.shape("fluid/populations_00"), here = array_box().global_shape;
+  if (saved != here)
+    throw InputError(
+        fmt::format("the state has {} x {} x {} cells, but here are {} x {} x {}; use the same domain.size "
+                    "and domain.spacing.",
+                    saved.at(2), saved.at(1), saved.at(0), here[2], here[1], here[0]));
   populations_.set_arrangement(Arrangement::swapped);
   std::vector<Real> values(static_cast<std::size_t>(n[0]) * n[1] * n[2]);
   for (int i = 0; i < D3Q19::directions; ++i) {
@@ -266,6 +272,11 @@ void Fluid<Real>::load(ArchiveReader& archive) {
           populations_.post_collision(i, indexing().index(x, y, z)) =
               values[(static_cast<std::size_t>(z) * n[1] + y) * n[0] + x];
   }
+}
+
+template <typename Real>
+void Fluid<Real>::load(ArchiveReader& archive) {
+  load_populations(archive);
   walls_.load(archive, decomposition_, block_);
   if (control_) {
     control_->load(archive);

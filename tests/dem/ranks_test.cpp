@@ -1,6 +1,6 @@
 // The same bits on any number of ranks, in any layout, and after saving and loading: the saved state (everything the
 // next step depends on) of a run on all ranks is compared with that of a run each rank does alone.
-#include "dem/counter_random.hpp"
+#include "core/counter_random.hpp"
 #include "dem/packing.hpp"
 #include "tests/dem/grain_cases.hpp"
 #include "tests/support/memory_archive.hpp"

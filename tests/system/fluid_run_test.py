@@ -48,7 +48,7 @@ fluid:
   precision: single
   mean_velocity: {velocity: 0.4, response_time: 0.01}
 gravity: {magnitude: 9.8, slope: 0.0}
-initial: {fluid: {log_profile: {bed_height: 0.0, shear_velocity: 0.03, roughness: 1.0e-5}}}
+initial: {fluid: {log_profile: {bed_height: 0.0, shear_velocity: 0.03, roughness: 1.0e-5, perturbation: {amplitude: 2, seed: 5}}}}
 run: {until: 0.02}
 output: {series: {every: 0.005}, checkpoint: {every: 0.01, keep: 3}}
 """
@@ -105,6 +105,47 @@ output: {series: {every: 0.005}, checkpoint: {every: 0.01, keep: 3}}
             self.assertAlmostEqual(self.summary("again")["fluid_statistics"]["mean_velocity_x"],
                                    group["velocity"][:, 0].mean(), delta=1e-11)
         self.assertEqual(self.summary("again")["fluid_statistics"]["measurements"], 19)
+
+    def test_the_start_is_a_log_profile_with_eddies_on_top(self):
+        calm = "initial.fluid={log_profile: {bed_height: 0.0, shear_velocity: 0.03, roughness: 1.0e-5}}"
+        pictures = ("--until", "1e-4", "--set", "output.fluid={every: 1e-4, fields: [velocity, pressure]}", "--set",
+                    "fluid.mean_velocity=")
+        self.run_well("run", self.case, "--out", "calm", *pictures, "--set", calm)
+        self.run_well("run", self.case, "--out", "lively", *pictures)
+        before, after = (cell_data(self.folder / out / "fluid/fluid_000000000.vti")["velocity"].astype(float)
+                         for out in ("calm", "lively"))
+        eddies = after - before
+        # Single precision of the populations: 1e-7 of the lattice velocity unit, 10 m/s.
+        numpy.testing.assert_allclose(eddies.mean(axis=2), 0, atol=2e-6)
+        middle = eddies[8:18, 6:15]
+        # Asked for are 0.06 m/s in a box of infinitely many eddies; here are a few dozen.
+        self.assertGreater(numpy.sqrt((middle ** 2).mean()), 0.03)
+        self.assertLess(numpy.sqrt((middle ** 2).mean()), 0.12)
+        numpy.testing.assert_allclose(before[:, 3, 5, 0], 0.03 / 0.41 * numpy.log((numpy.arange(26) + 0.5) * 50),
+                                      atol=2e-6)
+
+    def test_begins_from_the_field_of_another_run(self):
+        free = ("--set", "fluid.mean_velocity=", "--set", "output.fluid={every: 0.01, fields: [velocity, pressure]}")
+        self.run_well("run", self.case, "--out", "first", *free)
+        last = cell_data(self.folder / "first/fluid/fluid_000000400.vti")
+        begin = ("--set", "initial={from: first}", "--set", "gravity.slope=0.1")
+        for out, ranks in (("one", 0), ("four", 4)):
+            self.run_well("run", self.case, "--out", out, *free[2:], "--set", "output.fluid.region=slice_y", *begin,
+                          "--set", "fluid.mean_velocity=", "--until", "0.001", ranks=ranks)
+        self.assertEqual(self.last_checkpoint("one").read_bytes(), self.last_checkpoint("four").read_bytes())
+        start = cell_data(self.folder / "one/fluid/fluid_000000000.vti")
+        numpy.testing.assert_array_equal(start["pressure"][:, 0], last["pressure"][:, 10])
+        # The driving force of the new case acts from the start: half a step of 1 m/s^2, and single precision.
+        numpy.testing.assert_allclose(start["velocity"][:, 0], last["velocity"][:, 10], atol=2.5e-5 + 1e-6)
+
+        def refused(words, *settings):
+            self.assert_refused("run", self.case, "--out", "never", *begin, *settings, words=["initial.from"] + words)
+        refused(["40 x 21 x 26 cells", "40 x 21 x 28", "domain.size"], "--set", "domain.size=[0.020, 0.0105, 0.014]")
+        refused(["0.0005 m", "0.00025 m", "domain.spacing"], "--set", "domain.spacing=0.25e-3")
+        refused(["5e-05 s", "same time step"], "--set", "fluid.time_step=4e-5")
+        refused(["float32", "float64"], "--set", "fluid.precision=double")
+        refused(["nowhere", "give a checkpoint"], "--set", "initial.from=nowhere")
+        refused(["given twice"], "--set", "initial.fluid={uniform: [0.1, 0, 0]}")
 
     def test_grains_have_no_place_in_it(self):
         self.assert_refused("run", self.case, "--set", "grains=[{count: 1, diameter: 5e-3, density: 2550}]",

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace thalweg::dem {
+namespace thalweg {
 
 constexpr std::uint64_t mixed_bits(std::uint64_t x) {
   x += 0x9e3779b97f4a7c15u;
@@ -18,4 +18,4 @@ constexpr double uniform_random(std::uint64_t seed, std::uint64_t item, std::uin
   return static_cast<double>(mixed_bits(mixed_bits(mixed_bits(seed) ^ item) ^ draw) >> 11) * 0x1p-53;
 }
 
-}  // namespace thalweg::dem
+}  // namespace thalweg
