@@ -32,7 +32,7 @@ struct FluidFields {
   Block block;
   std::vector<float> velocity;         // m/s, three values a cell (x, y, z together)
   std::vector<float> pressure;         // Pa above the reference (without the hydrostatic part in reduced gravity)
-  std::vector<std::int32_t> grain_id;  // id of the covering grain; -1 fluid
+  std::vector<std::int32_t> grain_id;  // id of the covering grain; -1 fluid; -2, -3, ... static solids
   std::vector<float> density;          // kg/m^3
   std::vector<float> shear_rate;       // 1/s, sqrt(2 S_ab S_ab) of the subgrid model
   std::vector<float> eddy_viscosity;   // m^2/s

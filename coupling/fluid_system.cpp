@@ -22,21 +22,51 @@ void check_time_step(ArchiveReader& archive, double time_step) {
 
 template <typename Real>
 FluidSystem<Real>::FluidSystem(std::unique_ptr<Decomposition> decomposition, MPI_Comm communicator,
-                               const FluidParameters& parameters)
+                               const FluidParameters& parameters, const std::vector<SolidShape>& solids)
     : decomposition_(std::move(decomposition)),
       communicator_(communicator),
       parameters_(parameters),
       fluid_(*decomposition_, communicator, parameters.collision, parameters.faces),
-      lattice_(timer_.phase("lattice")) {
+      lattice_box_{Vec3(decomposition_->cells()[0], decomposition_->cells()[1], decomposition_->cells()[2]),
+                   decomposition_->periodic()} {
+  if (solids.empty())
+    phases_.lattice = timer_.phase("lattice");
+  else
+    phases_ = {0, timer_.phase("halo"), timer_.phase("walls"), timer_.phase("links"), timer_.phase("sweep")};
+  if (!solids.empty())
+    solids_ = std::make_unique<StaticSolids>(*decomposition_, communicator, fluid_.cells(), fluid_.tiles(), solids);
   if (parameters_.flow_target) fluid_.control_flow(*parameters_.flow_target);
   initialise(fluid_, parameters_);
 }
 
 template <typename Real>
 void FluidSystem<Real>::advance() {
-  const auto scope = timer_.measure(lattice_);
-  fluid_.advance();
+  if (solids_) {
+    advance_around_solids();
+  } else {
+    const auto scope = timer_.measure(phases_.lattice);
+    fluid_.advance();
+  }
   ++step_;
+}
+
+template <typename Real>
+void FluidSystem<Real>::advance_around_solids() {
+  {
+    const auto scope = timer_.measure(phases_.halo);
+    fluid_.exchange_halo();
+  }
+  {
+    const auto scope = timer_.measure(phases_.walls);
+    fluid_.apply_walls();
+  }
+  lbm::LinkPass<Real> links(fluid_.populations(), fluid_.cells(), fluid_.tiles(), solids_->links(), lattice_box_,
+                            parameters_.links, solids_->begin_step());
+  const auto sweep = timer_.measure(phases_.sweep);
+  fluid_.stream_and_collide([&](int tile) {
+    const auto scope = timer_.measure(phases_.links);
+    links.apply_tile(tile);
+  });
 }
 
 template <typename Real>
@@ -59,6 +89,14 @@ template <typename Real>
 FluidFields FluidSystem<Real>::sample(const std::vector<FluidField>& wanted) const {
   SampleContext context;
   context.units = parameters_.units;
+  context.grain_id = [](std::int32_t solid) { return -2 - solid; };
+  if (solids_)
+    context.apply_links = [this] {
+      std::vector<lbm::LinkBody> bodies = solids_->bodies();
+      lbm::LinkPass<Real> links(fluid_.populations(), fluid_.cells(), fluid_.tiles(), solids_->links(), lattice_box_,
+                                parameters_.links, bodies);
+      for (int tile = 0; tile < fluid_.tiles().count(); ++tile) links.apply_tile(tile);
+    };
   return sample_fields(fluid_, context, wanted);
 }
 
@@ -76,12 +114,19 @@ std::vector<Figure> FluidSystem<Real>::figures() const {
   // Not-a-number does not survive MPI_MAX; infinity does.
   speed = max_over_ranks(communicator_, std::isfinite(speed) ? speed : HUGE_VAL);
   const Units& units = parameters_.units;
-  return {{"largest_lattice_velocity", "1", speed},
-          {"largest_fluid_speed", "m/s", speed * units.velocity()},
-          {"mean_velocity_x", "m/s", (totals.momentum.x() / cells - 0.5 * force) * units.velocity()},
-          {"body_force_x", "N/m^3", force * units.density * units.acceleration()},
-          {"mean_density_deviation", "1", totals.mass_deviation / cells},
-          {"fluid_cells", "1", static_cast<double>(totals.cells)}};
+  std::vector<Figure> figures{
+      {"largest_lattice_velocity", "1", speed},
+      {"largest_fluid_speed", "m/s", speed * units.velocity()},
+      {"mean_velocity_x", "m/s", (totals.momentum.x() / cells - 0.5 * force) * units.velocity()},
+      {"body_force_x", "N/m^3", force * units.density * units.acceleration()},
+      {"mean_density_deviation", "1", totals.mass_deviation / cells},
+      {"fluid_cells", "1", static_cast<double>(totals.cells)}};
+  if (!solids_) return figures;
+  const std::vector<Vec3> forces = solids_->forces();
+  for (std::size_t s = 0; s < forces.size(); ++s)
+    for (int a = 0; a < 3; ++a)
+      figures.push_back({fmt::format("solid_{}_force_{}", s, "xyz"[a]), "N", forces[s][a] * units.force()});
+  return figures;
 }
 
 template <typename Real>
@@ -89,6 +134,7 @@ void FluidSystem<Real>::save(ArchiveWriter& archive) const {
   archive.attribute("system/step", step_);
   archive.attribute("system/time_step", time_step());
   fluid_.save(archive);
+  if (solids_) solids_->save(archive);
 }
 
 template <typename Real>
@@ -96,6 +142,7 @@ void FluidSystem<Real>::load(ArchiveReader& archive) {
   check_time_step(archive, time_step());
   step_ = archive.integer_attribute("system/step");
   fluid_.load(archive);
+  if (solids_) solids_->load(archive);
 }
 
 template <typename Real>

@@ -1,9 +1,11 @@
 // A fluid without grains as a system: what the time loop drives, shows, saves and loads. One step is one lattice step.
+// Solids that stand still may be in it.
 #pragma once
 
 #include "core/decomposition.hpp"
 #include "core/system.hpp"
 #include "coupling/fluid_parameters.hpp"
+#include "coupling/static_solids.hpp"
 
 #include <memory>
 #include <vector>
@@ -13,14 +15,17 @@ namespace thalweg::coupling {
 template <typename Real>
 class FluidSystem final : public System, private FluidSource {
 public:
-  FluidSystem(std::unique_ptr<Decomposition> decomposition, MPI_Comm communicator, const FluidParameters& parameters);
+  // solids: lattice units. Throws InputError where one covers no cell. Collective.
+  FluidSystem(std::unique_ptr<Decomposition> decomposition, MPI_Comm communicator, const FluidParameters& parameters,
+              const std::vector<SolidShape>& solids = {});
 
   void advance() override;
   std::int64_t step() const override { return step_; }
   double time_step() const override { return parameters_.units.time_step; }
   Snapshot snapshot() const override;
   // largest_lattice_velocity (1), largest_fluid_speed (m/s), mean_velocity_x (m/s), body_force_x (N/m^3),
-  // mean_density_deviation (1), fluid_cells (1).
+  // mean_density_deviation (1), fluid_cells (1), and of each solid solid_<n>_force_x, _y, _z (N), of the last step:
+  // what the fluid exerts on its surface, without the reference pressure.
   std::vector<Figure> figures() const override;
   void save(ArchiveWriter& archive) const override;
   void load(ArchiveReader& archive) override;
@@ -30,18 +35,24 @@ public:
   std::int64_t grain_steps_per_step() const override { return 0; }
 
   const lbm::Fluid<Real>& fluid() const { return fluid_; }
+  const StaticSolids* solids() const { return solids_.get(); }  // null: none
 
 private:
+  void advance_around_solids();
   FluidFields sample(const std::vector<FluidField>& wanted) const override;
   void for_each_velocity(const VelocityVisitor& visit) const override;
 
   std::unique_ptr<Decomposition> decomposition_;
   MPI_Comm communicator_;
   FluidParameters parameters_;
-  mutable lbm::Fluid<Real> fluid_;  // a sample fills slots that every step fills anew; see sample_fields()
+  mutable lbm::Fluid<Real> fluid_;        // a sample fills slots that every step fills anew; see sample_fields()
+  std::unique_ptr<StaticSolids> solids_;  // null: none
+  PeriodicBox lattice_box_;               // cells
   std::int64_t step_ = 0;
   PhaseTimer timer_;
-  int lattice_;  // phase
+  struct Phases {
+    int lattice, halo, walls, links, sweep;
+  } phases_{};
 };
 
 // The time step of a checkpoint must be that of the case. Throws InputError where it is not.

@@ -143,6 +143,21 @@ struct ContactCase {
   bool operator==(const ContactCase&) const = default;
 };
 
+struct SphereCase {
+  Vec3 centre = Vec3::Zero();  // m
+  double radius = 0.0;         // m
+  bool operator==(const SphereCase&) const = default;
+};
+
+// A body that stands still in a fluid without grains: a sphere, or the surface in an STL file.
+struct SolidCase {
+  std::optional<SphereCase> sphere;
+  std::string stl;                // file, absolute once read; empty: none
+  double scale = 1.0;             // m per unit of the file
+  Vec3 translate = Vec3::Zero();  // m, after scaling
+  bool operator==(const SolidCase&) const = default;
+};
+
 enum class MomentumExchange { galilean_invariant, classical };
 enum class WallDensity { local, reference };
 enum class Refill { equilibrium };
@@ -247,6 +262,7 @@ struct Case {
   FluidCase fluid;  // meaningless for dry grains, as are coupling and initial
   GravityCase gravity;
   std::vector<PopulationCase> grains;
+  std::vector<SolidCase> solids;  // of system: fluid
   ContactCase contact;
   CouplingCase coupling;
   InitialCase initial;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 
 namespace thalweg {
@@ -17,6 +18,8 @@ constexpr double densest_bed = 0.64;
 constexpr double largest_lattice_velocity = 0.173;
 // Fewer cells than this across a grain do not resolve the flow around it.
 constexpr double fewest_cells_per_diameter = 5.0;
+// A fixed sphere may be coarser, but must cover cells wherever it is: half the diagonal of a cell.
+constexpr double fewest_cells_per_radius = 0.87;
 // The shortest contact must last this many sub-steps for the dashpot and the spring to be integrated accurately.
 constexpr double fewest_steps_per_contact = 20.0;
 // Decimal numbers such as 0.12 / 0.0005 are whole up to a few units in the last place.
@@ -109,6 +112,20 @@ void check_placement(const Case& c, const io::YamlDocument& document) {
   }
 }
 
+void check_solids(const Case& c, const io::YamlDocument& document) {
+  for (std::size_t n = 0; n < c.solids.size(); ++n) {
+    const SolidCase& solid = c.solids[n];
+    const std::string key = fmt::format("solids.{}", n);
+    if (solid.sphere && solid.sphere->radius < fewest_cells_per_radius * c.domain.spacing)
+      throw document.error(key + ".sphere.radius",
+                           fmt::format("the sphere is smaller than the cells can show; give at least {:.4g} m",
+                                       fewest_cells_per_radius * c.domain.spacing));
+    std::error_code ignored;
+    if (!solid.stl.empty() && !std::filesystem::is_regular_file(solid.stl, ignored))
+      throw document.error(key + ".stl", "there is no such file; give an STL file, relative to the case");
+  }
+}
+
 void check_lattice_velocity(const Case& c, const io::YamlDocument& document, const std::string& key, double velocity) {
   const double lattice_velocity = velocity / units_of(c).velocity();
   if (lattice_velocity <= largest_lattice_velocity * (1.0 + whole_number_tolerance)) return;
@@ -197,6 +214,7 @@ void check_case(const Case& c, const io::YamlDocument& document) {
   check_resolution(c, document);
   check_room(c, document);
   check_placement(c, document);
+  check_solids(c, document);
   check_fluid(c, document);
   check_contact_steps(c, document);
   if (c.analysis.transport_rate && c.grains.empty())

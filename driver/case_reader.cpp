@@ -28,6 +28,7 @@ Case example_case(SystemKind system) {
   c.gravity.magnitude = 9.8;
   c.gravity.slope = 0.07;
   c.run.until = 3.0;
+  if (system == SystemKind::fluid) c.solids = {{SphereCase{{0.02, 0.00525, 0.02}, 2.5e-3}, {}, 1.0, Vec3::Zero()}};
   if (system != SystemKind::fluid) {
     PopulationCase glass;
     glass.count = 200;
@@ -56,6 +57,9 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
   if (c.system == SystemKind::grains && !c.run.time_step) c.run.time_step = shortest_contact(c) / steps_per_contact;
   if (!c.initial.from.empty())
     c.initial.from = (std::filesystem::absolute(path).parent_path() / c.initial.from).lexically_normal().string();
+  for (SolidCase& solid : c.solids)
+    if (!solid.stl.empty())
+      solid.stl = (std::filesystem::absolute(path).parent_path() / solid.stl).lexically_normal().string();
   check_case(c, document);
   return c;
 }

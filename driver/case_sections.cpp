@@ -130,6 +130,22 @@ static void describe(io::SectionVisitor& visit, PopulationCase& grains) {
                 "prescribed_angular_velocity already says how the grains turn; remove one of the two");
 }
 
+static void describe(io::SectionVisitor& visit, SphereCase& sphere) {
+  visit.vec3("centre", sphere.centre, {.unit = "m", .meaning = "of the sphere", .required = true, .example = 0.02});
+  visit.real("radius", sphere.radius,
+             {.unit = "m", .meaning = "of the sphere", .required = true, .above = 0.0, .example = 5e-3});
+}
+
+static void describe(io::SectionVisitor& visit, SolidCase& solid) {
+  visit.section("sphere", solid.sphere, {.meaning = "a sphere; or give stl"});
+  visit.text("stl", solid.stl, {.meaning = "file with a closed surface, relative to this file; \"\": none"});
+  visit.real("scale", solid.scale, {.unit = "m", .meaning = "length of one unit of the STL file", .above = 0.0});
+  visit.vec3("translate", solid.translate, {.unit = "m", .meaning = "shift of the STL surface once scaled"});
+  visit.require(solid.sphere.has_value() || !solid.stl.empty(), "sphere",
+                "the solid has no shape; give sphere: {centre: [x, y, z], radius: r} in m, or stl: FILE");
+  visit.require(!(solid.sphere && !solid.stl.empty()), "stl", "the solid has two shapes; remove either sphere or stl");
+}
+
 static void describe_contact(io::SectionVisitor& visit, ContactCase& contact, bool with_grains) {
   visit.choice<ContactLaw>("law", contact.law,
                            {{ContactLaw::linear, "linear", "spring and dashpot"},
@@ -376,6 +392,12 @@ void describe(io::SectionVisitor& visit, Case& c) {
     visit.section("initial", c.initial, {.meaning = "state at the start"});
   else
     only_with_fluid("initial");
+  if (!with_grains)
+    visit.list("solids", c.solids, {.meaning = "bodies that stand still in the fluid"});
+  else
+    visit.not_here("solids",
+                   "only system: fluid has them, because grains would not feel them; for spheres give a population of "
+                   "grains with fixed: true");
   visit.section("run", {.meaning = "how long", .required = true},
                 [&](io::SectionVisitor& inside) { describe_run(inside, c.run, with_fluid); });
   visit.section("output", {.meaning = "what the run writes, besides run.log and summary.json"},

@@ -160,6 +160,89 @@ output: {series: {every: 0.005}, checkpoint: {every: 0.01, keep: 3}}
         self.assertNotIn("grain-steps", report)
 
 
+def write_stl(path, low, high, leave_out=0):
+    """A box from corner to corner as a text STL, less some of its triangles."""
+    corner = [[(low, high)[n >> a & 1][a] for a in range(3)] for n in range(8)]
+    faces = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)]
+    triangles = [t for a, b, c, d in faces for t in ((a, b, c), (a, c, d))][leave_out:]
+    lines = ["solid box"]
+    for triangle in triangles:
+        lines += ["facet normal 0 0 0", "outer loop"]
+        lines += ["vertex %g %g %g" % tuple(corner[n]) for n in triangle] + ["endloop", "endfacet"]
+    path.write_text("\n".join(lines + ["endsolid box", ""]))
+
+
+class Solids(ProgramTest):
+    # A sphere across the periodic ends and a sill of STL, in millimetres, on the floor.
+    CASE = """
+system: fluid
+name: sphere and sill
+domain: {size: [0.024, 0.016, 0.012], spacing: 0.5e-3, boundaries: {x: periodic, y: periodic, bottom: no_slip, top: free_slip}}
+fluid: {density: 1000, kinematic_viscosity: 1.0e-5, time_step: 1.0e-3, collision: trt, precision: double}
+gravity: {vector: [0.02, 0.0, -9.8]}
+solids:
+  - {sphere: {centre: [0.0236, 0.008, 0.0065], radius: 2.2e-3}}
+  - {stl: sill.stl, scale: 1.0e-3, translate: [0.0102, 0.0, 0.0]}
+run: {until: 0.4}
+output:
+  series: {every: 0.05}
+  fluid: {every: 0.4, fields: [velocity, grain_id, shear_rate]}
+  checkpoint: {every: 0.2, keep: 3}
+"""
+
+    def setUp(self):
+        super().setUp()
+        write_stl(self.folder / "sill.stl", (0, -1, -1), (2.3, 17, 2.6))
+
+    def test_the_same_bits_on_any_ranks_and_after_a_restart(self):
+        self.run_well("run", self.case, "--out", "one")
+        for ranks, layout in ((2, "2,1,1"), (4, "2,1,2")):
+            out = "on_" + layout.replace(",", "x")
+            self.run_well("run", self.case, "--out", out, "--layout", layout, ranks=ranks)
+            self.assertEqual(self.last_checkpoint(out).read_bytes(), self.last_checkpoint("one").read_bytes(), out)
+            self.assertEqual((self.folder / out / "series.csv").read_bytes(),
+                             (self.folder / "one" / "series.csv").read_bytes(), out)
+        self.run_well("run", self.case, "--out", "again", "--restart", self.folder / "one/checkpoints/step_200.h5",
+                      ranks=2)
+        self.assertEqual(self.last_checkpoint("again").read_bytes(), self.last_checkpoint("one").read_bytes())
+        rows = [(self.folder / out / "series.csv").read_text().splitlines() for out in ("one", "again")]
+        self.assertEqual(rows[0][5:], rows[1][1:])   # the force of the step before is part of the state
+
+        header, last = rows[0][0].split(","), [float(v) for v in rows[0][-1].split(",")]
+        force = dict(zip(header, last))
+        # With all the push of gravity the flow is still speeding up; on the solids acts a part of it only.
+        push = 1000 * 0.02 * force["fluid_cells [1]"] * 0.5e-3 ** 3
+        self.assertGreater(force["solid_0_force_x [N]"], 0.01 * push)
+        self.assertGreater(force["solid_1_force_x [N]"], 0.01 * push)
+        self.assertLess(force["solid_0_force_x [N]"] + force["solid_1_force_x [N]"], push)
+
+        picture = cell_data(self.folder / "one/fluid/fluid_000000400.vti")
+        z, y, x = numpy.meshgrid(*((numpy.arange(n) + 0.5) * 0.5 for n in (24, 32, 48)), indexing="ij")   # mm
+        across = (x - 23.6 + 12) % 24 - 12
+        sphere = across ** 2 + (y - 8) ** 2 + (z - 6.5) ** 2 < 2.2 ** 2
+        sill = (x > 10.2) & (x < 12.5) & (z < 2.6)
+        numpy.testing.assert_array_equal(picture["grain_id"], numpy.where(sphere, -2, numpy.where(sill, -3, -1)))
+        self.assertTrue((picture["velocity"][sphere | sill] == 0).all())
+        self.assertTrue((picture["shear_rate"][~(sphere | sill)] > 0).all())
+
+    def test_a_bad_geometry_is_refused(self):
+        write_stl(self.folder / "open.stl", (0, -1, -1), (2.3, 17, 2.6), leave_out=1)
+        (self.folder / "text.stl").write_text("no geometry at all\n")
+        for file, words in (("open.stl", ["solids.1.stl", "open.stl", "3 edges belong to one triangle only"]),
+                            ("text.stl", ["solids.1.stl", "text.stl", "not an STL file"]),
+                            ("none.stl", ["case.yaml", "solids.1.stl", "no such file"])):
+            self.assert_refused("run", self.case, "--set", f"solids.1.stl={file}",
+                                words=[w for w in words if w != "case.yaml"])
+        self.assert_refused("run", self.case, "--set", "solids.1.translate=[0, 0, 1]", ranks=2,
+                            words=["solids.1 covers no cell"])
+        self.assert_refused("check", self.case, "--set", "solids.0.sphere.radius=1e-4",
+                            words=["solids.0.sphere.radius = 1e-4", "at least 0.000435 m"])
+        self.assert_refused("check", self.case, "--set", "solids.0={stl: sill.stl, sphere: {centre: [0, 0, 0], "
+                            "radius: 1}}", words=["solids.0", "two shapes"])
+        self.assert_refused("check", self.case, "--set", "solids.0={scale: 2}", words=["solids.0", "no shape"])
+        self.assert_refused("check", self.case, "--set", "system=resolved", words=["solids", "fixed: true"])
+
+
 class Poiseuille(ProgramTest):
     # Between two plates, H = 16 cells, until 30 e-folding times nu pi^2/H^2 of the start are over.
     CASE = """
