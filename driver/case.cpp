@@ -131,12 +131,14 @@ std::vector<std::string> warnings(const Case& c) {
   const double fastest =
       c.fluid.expected_velocity ? *c.fluid.expected_velocity / units_of(c).velocity() : lattice_velocity;
   const double stable = stable_lattice_velocity(c.fluid.collision, excess);
-  if (c.fluid.smagorinsky_constant == 0.0 && (stable == 0.0 || fastest > stable))
+  const bool eddies = c.fluid.smagorinsky_constant > 0.0, regularised = c.fluid.collision == Collision::regularised;
+  if ((!eddies || regularised) && (stable == 0.0 || fastest > stable))
     found.push_back(fmt::format(
-        "The relaxation time is only {:.2g} above 1/2 and there is no subgrid model; turbulence was stable there {}: "
-        "consider "
-        "fluid.smagorinsky_constant: 0.27 or fluid.collision: regularised.",
-        excess, stable == 0.0 ? std::string("at no velocity") : fmt::format("up to {:g} cells a step", stable)));
+        "The relaxation time is only {:.2g} above 1/2{}; the collision {} was stable there {}: consider {}{}.", excess,
+        eddies ? "" : " and there is no subgrid model", regularised ? "'regularised'" : "chosen",
+        stable == 0.0 ? std::string("at no velocity") : fmt::format("up to {:g} cells a step", stable),
+        eddies ? "" : "fluid.smagorinsky_constant: 0.27",
+        regularised ? (eddies ? "fluid.collision: trt" : " and fluid.collision: trt") : ""));
   if (excess > 1.0)
     found.push_back(
         fmt::format("The relaxation time, {:.2g}, is so large that walls and grains lose accuracy: consider a "

@@ -47,7 +47,7 @@ static void describe(io::SectionVisitor& visit, FluidCase& fluid) {
   visit.choice<Collision>("collision", fluid.collision,
                           {{Collision::bgk, "bgk", "one relaxation time"},
                            {Collision::trt, "trt", "two; walls stay in place at any viscosity"},
-                           {Collision::regularised, "regularised", "bgk without ghost modes, steadiest in water"}},
+                           {Collision::regularised, "regularised", "bgk without ghost modes; not near walls in water"}},
                           {.meaning = "collision operator"});
   if (fluid.collision == Collision::trt)
     visit.real("magic_parameter", fluid.magic_parameter,

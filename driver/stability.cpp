@@ -6,8 +6,8 @@ double stable_lattice_velocity(Collision collision, double excess) {
   struct Row {
     double excess, bgk, trt, regularised;
   };
-  constexpr Row map[] = {{3e-2, 0.15, 0.15, 0.15}, {1e-2, 0.15, 0.10, 0.15}, {3e-3, 0.10, 0.02, 0.15},
-                         {1e-3, 0.02, 0.0, 0.15},  {3e-4, 0.0, 0.0, 0.15},   {1e-4, 0.0, 0.0, 0.15}};
+  constexpr Row map[] = {{5e-2, 0.15, 0.15, 0.15}, {3e-2, 0.15, 0.15, 0.05}, {2e-2, 0.15, 0.15, 0.02},
+                         {1e-2, 0.15, 0.10, 0.02}, {3e-3, 0.05, 0.02, 0.0},  {1e-3, 0.02, 0.0, 0.0}};
   for (const Row& row : map) {
     if (excess < row.excess) continue;
     return collision == Collision::bgk ? row.bgk : collision == Collision::trt ? row.trt : row.regularised;
