@@ -78,8 +78,8 @@ Result sphere(double excess, double velocity) {
   parameters.force[0] = 3.0 * 3.0 * 3.14159 * nu * diameter * velocity / (side * side * side);
   lbm::Fluid<Real> fluid(decomposition, MPI_COMM_SELF, parameters, {});
   coupling::GrainMap map(decomposition, fluid.block(), fluid.cells());
-  lbm::LinkTable links(side);
-  coupling::LinkBuilder builder(decomposition, fluid.block(), fluid.cells());
+  lbm::LinkTable links(fluid.tiles().count());
+  coupling::LinkBuilder builder(decomposition, fluid.block(), fluid.cells(), fluid.tiles());
   std::vector<lbm::LinkBody> bodies(1);
   map.begin_update();
   map.place(map.add(0, 0.5 * diameter), Vec3(12.3, 11.9, 12.1));
@@ -87,15 +87,16 @@ Result sphere(double excess, double velocity) {
   for (const int slot : map.slots_to_relink()) builder.build(slot, map.grains()[slot], links, bodies[slot]);
   fluid.initialise([&](const Vec3&) { return lbm::FluidState{0.0, Vec3(velocity, 0.0, 0.0)}; });
   const PeriodicBox box{Vec3(side, side, side), {true, true, true}};
+  const lbm::LinkOptions options;
   const int steps = static_cast<int>(0.25 * side * side / nu);
   Result result;
   double drag = 0.0;
   for (int step = 0; step < steps; ++step) {
     fluid.exchange_halo();
     bodies[0].force = bodies[0].torque = {};
-    lbm::apply_links(fluid.populations(), fluid.cells(), links, box, {}, bodies);
+    lbm::LinkPass<Real> pass(fluid.populations(), fluid.cells(), fluid.tiles(), links, box, options, bodies);
+    fluid.stream_and_collide([&](int tile) { pass.apply_tile(tile); });
     drag = bodies[0].force.to_vec3().x();
-    fluid.stream_and_collide();
   }
   double sum = 0.0;
   for (int z = 0; z < side; ++z)
