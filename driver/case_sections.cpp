@@ -130,22 +130,6 @@ static void describe(io::SectionVisitor& visit, PopulationCase& grains) {
                 "prescribed_angular_velocity already says how the grains turn; remove one of the two");
 }
 
-static void describe(io::SectionVisitor& visit, SphereCase& sphere) {
-  visit.vec3("centre", sphere.centre, {.unit = "m", .meaning = "of the sphere", .required = true, .example = 0.02});
-  visit.real("radius", sphere.radius,
-             {.unit = "m", .meaning = "of the sphere", .required = true, .above = 0.0, .example = 5e-3});
-}
-
-static void describe(io::SectionVisitor& visit, SolidCase& solid) {
-  visit.section("sphere", solid.sphere, {.meaning = "a sphere; or give stl"});
-  visit.text("stl", solid.stl, {.meaning = "file with a closed surface, relative to this file; \"\": none"});
-  visit.real("scale", solid.scale, {.unit = "m", .meaning = "length of one unit of the STL file", .above = 0.0});
-  visit.vec3("translate", solid.translate, {.unit = "m", .meaning = "shift of the STL surface once scaled"});
-  visit.require(solid.sphere.has_value() || !solid.stl.empty(), "sphere",
-                "the solid has no shape; give sphere: {centre: [x, y, z], radius: r} in m, or stl: FILE");
-  visit.require(!(solid.sphere && !solid.stl.empty()), "stl", "the solid has two shapes; remove either sphere or stl");
-}
-
 static void describe_contact(io::SectionVisitor& visit, ContactCase& contact, bool with_grains) {
   visit.choice<ContactLaw>("law", contact.law,
                            {{ContactLaw::linear, "linear", "spring and dashpot"},
@@ -331,11 +315,6 @@ static void describe_output(io::SectionVisitor& visit, OutputCase& output, bool 
 
 static void describe(io::SectionVisitor& visit, TransportRateCase& rate) {
   visit.real("from", rate.from, {.unit = "s", .meaning = "start of the mean that summary.json gives", .at_least = 0.0});
-}
-
-static void describe(io::SectionVisitor& visit, FluidStatisticsCase& statistics) {
-  visit.real("from", statistics.from, {.unit = "s", .meaning = "start of the means", .at_least = 0.0});
-  visit.real("every", statistics.every, {.unit = "s", .meaning = "between measurements", .above = 0.0});
 }
 
 static void describe_analysis(io::SectionVisitor& visit, AnalysisCase& analysis, bool with_fluid, bool with_grains) {

@@ -9,5 +9,7 @@ namespace thalweg {
 
 void describe(io::SectionVisitor& visit, Case& c);
 void describe(io::SectionVisitor& visit, DomainCase& domain);
+void describe(io::SectionVisitor& visit, SolidCase& solid);
+void describe(io::SectionVisitor& visit, FluidStatisticsCase& statistics);
 
 }  // namespace thalweg

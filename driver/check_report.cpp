@@ -6,6 +6,7 @@
 #include "driver/grain_setup.hpp"
 #include "driver/machine.hpp"
 #include "driver/progress.hpp"
+#include "driver/solid_setup.hpp"
 
 #include <fmt/format.h>
 
@@ -101,6 +102,21 @@ void add_grains(const Case& c, Lines& lines) {
                   0.02 * units_of(c).velocity()));
 }
 
+void add_solids(const Case& c, Lines& lines) {
+  const std::vector<coupling::SolidShape> shapes = solid_shapes(c);
+  for (std::size_t n = 0; n < shapes.size(); ++n) {
+    const coupling::Extent extent = coupling::extent_of(shapes[n]);
+    const Vec3 cells = extent.upper - extent.lower, low = extent.lower * c.domain.spacing,
+               high = extent.upper * c.domain.spacing;
+    const auto* mesh = std::get_if<TriangleMesh>(&shapes[n]);
+    lines.push_back(
+        fmt::format("solid {:<4} {} from [{:.4g}, {:.4g}, {:.4g}] to [{:.4g}, {:.4g}, {:.4g}] m: {:.3g} x "
+                    "{:.3g} x {:.3g} cells",
+                    n, mesh ? fmt::format("{} triangles", mesh->triangles.size()) : "sphere", low[0], low[1], low[2],
+                    high[0], high[1], high[2], cells[0], cells[1], cells[2]));
+  }
+}
+
 std::string bytes_text(double bytes) {
   return bytes < 1e9 ? fmt::format("{:.3g} MB", bytes * 1e-6) : fmt::format("{:.3g} GB", bytes * 1e-9);
 }
@@ -182,6 +198,7 @@ std::vector<std::string> check_report(const Case& c, double bandwidth) {
   add_domain(c, lines);
   add_fluid(c, lines);
   add_grains(c, lines);
+  add_solids(c, lines);
   add_bed(c, lines);
   add_cost(c, bandwidth, lines);
   for (const std::string& warning : warnings(c)) lines.push_back("warning    " + warning);

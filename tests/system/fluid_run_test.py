@@ -225,14 +225,20 @@ output:
         self.assertTrue((picture["velocity"][sphere | sill] == 0).all())
         self.assertTrue((picture["shear_rate"][~(sphere | sill)] > 0).all())
 
+    def test_the_check_says_where_the_solids_are(self):
+        report = self.run_well("check", self.case).stdout
+        self.assertIn("solid 0    sphere from [0.0214, 0.0058, 0.0043]", report)
+        self.assertIn("solid 1    12 triangles from [0.0102, -0.001, -0.001] to [0.0125, 0.017, 0.0026] m: 4.6 x 36 x 7.2",
+                      report)
+
     def test_a_bad_geometry_is_refused(self):
         write_stl(self.folder / "open.stl", (0, -1, -1), (2.3, 17, 2.6), leave_out=1)
         (self.folder / "text.stl").write_text("no geometry at all\n")
         for file, words in (("open.stl", ["solids.1.stl", "open.stl", "3 edges belong to one triangle only"]),
                             ("text.stl", ["solids.1.stl", "text.stl", "not an STL file"]),
-                            ("none.stl", ["case.yaml", "solids.1.stl", "no such file"])):
-            self.assert_refused("run", self.case, "--set", f"solids.1.stl={file}",
-                                words=[w for w in words if w != "case.yaml"])
+                            ("none.stl", ["solids.1.stl", "no such file"])):
+            for command in ("run", "check"):
+                self.assert_refused(command, self.case, "--set", f"solids.1.stl={file}", words=words)
         self.assert_refused("run", self.case, "--set", "solids.1.translate=[0, 0, 1]", ranks=2,
                             words=["solids.1 covers no cell"])
         self.assert_refused("check", self.case, "--set", "solids.0.sphere.radius=1e-4",

@@ -1,0 +1,27 @@
+#include "driver/case_sections.hpp"
+
+// Sections of a fluid: solids in it, and means of it.
+namespace thalweg {
+
+static void describe(io::SectionVisitor& visit, SphereCase& sphere) {
+  visit.vec3("centre", sphere.centre, {.unit = "m", .meaning = "of the sphere", .required = true, .example = 0.02});
+  visit.real("radius", sphere.radius,
+             {.unit = "m", .meaning = "of the sphere", .required = true, .above = 0.0, .example = 5e-3});
+}
+
+void describe(io::SectionVisitor& visit, SolidCase& solid) {
+  visit.section("sphere", solid.sphere, {.meaning = "a sphere; or give stl"});
+  visit.text("stl", solid.stl, {.meaning = "file with a closed surface, relative to this file; \"\": none"});
+  visit.real("scale", solid.scale, {.unit = "m", .meaning = "length of one unit of the STL file", .above = 0.0});
+  visit.vec3("translate", solid.translate, {.unit = "m", .meaning = "shift of the STL surface once scaled"});
+  visit.require(solid.sphere.has_value() || !solid.stl.empty(), "sphere",
+                "the solid has no shape; give sphere: {centre: [x, y, z], radius: r} in m, or stl: FILE");
+  visit.require(!(solid.sphere && !solid.stl.empty()), "stl", "the solid has two shapes; remove either sphere or stl");
+}
+
+void describe(io::SectionVisitor& visit, FluidStatisticsCase& statistics) {
+  visit.real("from", statistics.from, {.unit = "s", .meaning = "start of the means", .at_least = 0.0});
+  visit.real("every", statistics.every, {.unit = "s", .meaning = "between measurements", .above = 0.0});
+}
+
+}  // namespace thalweg
