@@ -1,0 +1,26 @@
+#!/bin/sh
+# The flume's five wall stresses: run.sh PROGRAM FOLDER (half an hour on one core). Friction velocities in m/s; cells of
+# 0.5 mm and steps of 5e-5 s make them a tenth in cells a step; half the width is 5.25 mm, the viscosity 1e-6 m^2/s.
+program=$1
+mkdir -p "$2" && cd "$2" || exit 1
+run() {  # name, friction velocity, C_s, A, further options
+  name=$1 friction=$2 smagorinsky=$3 slip=$4
+  shift 4
+  "$program" --height 21 --length 64 --width 32 --wall law_of_the_wall --samples 10 --until 100 --average-from 40 \
+    --friction-velocity "$(echo "$friction/10" | bc -l)" --reynolds "$(echo "$friction*5250" | bc -l)" \
+    --smagorinsky "$smagorinsky" --slip-coefficient "$slip" --output "$name.csv" "$@"
+}
+# tau*, friction velocity, A of the tangent at the first cell's centre: ln(dx+/2)/0.41 + 5 - 1/0.41
+for case in 0.023:0.0434:8.38 0.028:0.0479:8.61 0.047:0.0620:9.25 0.063:0.0718:9.61 0.068:0.0746:9.70; do
+  stress=${case%%:*} rest=${case#*:}
+  run "tau_${stress}_A_8.36" "${rest%:*}" 0.27 8.36
+  run "tau_${stress}_A_${rest#*:}" "${rest%:*}" 0.27 "${rest#*:}"
+done
+# What the result depends on, at 0.047.
+run printed_A_2.35 0.0620 0.27 2.35
+run Cs_0.17 0.0620 0.17 8.36
+run Cs_0.22 0.0620 0.22 8.36
+run Cs_0.33 0.0620 0.33 8.36
+run trt 0.0620 0.27 8.36 --collision trt
+run larger_box 0.0620 0.27 8.36 --length 128 --width 64 --until 80
+run shorter_step 0.0620 0.27 8.36 --friction-velocity 0.00248 --until 80
