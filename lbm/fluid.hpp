@@ -1,7 +1,7 @@
 // The lattice fluid of one rank: populations, walls, halo and sweep, in the order a step calls them. Lattice units
 // throughout; densities as deviations rho - 1.
 //
-// A step without bodies is advance(), which sweeps the cells inside while the halo is on its way. With bodies, the
+// A step without bodies is advance(), which sweeps the rows inside while the halo is on its way. With bodies, the
 // coupling calls the parts and lets the links of each tile of rows go first:
 //   exchange_halo(), apply_walls(), stream_and_collide(links of a tile).
 #pragma once
@@ -89,8 +89,7 @@ private:
   template <typename Visit>
   void for_each_fluid_cell(Visit visit) const;
   ArrayBox array_box() const;
-  void sweep(int y, int z, int first, int last);
-  void sweep_whole_row(int y, int z);
+  void sweep(int y, int z);  // a row, and the shear rates its walls want
   void switch_arrangement();
   void advance_behind_halo();
   void update_force();

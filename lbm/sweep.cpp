@@ -135,14 +135,14 @@ template <typename Real>
 // Moments of a whole stretch first, then its relaxation: either pass alone is short enough for the processor to work on
 // several packs at once, while one long pass waits for its own divisions and roots.
 template <CollisionModel model, bool with_eddies, bool with_shear, typename Real>
-void sweep_packs(const Streams<Real>& streams, std::ptrdiff_t row, const std::uint8_t* fluid_in_packs, int begin,
-                 int end, const CollisionParameters& parameters, const RowShear<Real>* shear) {
+void sweep_packs(const Streams<Real>& streams, std::ptrdiff_t row, const std::uint8_t* fluid_in_packs, int packs,
+                 const CollisionParameters& parameters, const RowShear<Real>* shear) {
   constexpr int width = static_cast<int>(Pack<Real>::size());
   constexpr bool with_diagonal = model == CollisionModel::regularised;
   const CollisionConstants<Pack<Real>> constants(parameters);
   Stretch<Real> stretch;
-  for (int first = begin; first < end; first += Stretch<Real>::packs) {
-    const int count = std::min(Stretch<Real>::packs, end - first);
+  for (int first = 0; first < packs; first += Stretch<Real>::packs) {
+    const int count = std::min(Stretch<Real>::packs, packs - first);
     for (int p = 0; p < count; ++p) {
       if (fluid_in_packs[first + p] == 0) continue;
       measure_pack<with_eddies, with_diagonal, with_shear>(streams, row + (first + p) * width, constants, stretch, p);
@@ -158,18 +158,18 @@ void sweep_packs(const Streams<Real>& streams, std::ptrdiff_t row, const std::ui
 }
 
 template <CollisionModel model, typename Real>
-void sweep_row_with(const Streams<Real>& streams, std::ptrdiff_t row, const std::uint8_t* fluid, int first, int last,
+void sweep_row_with(const Streams<Real>& streams, std::ptrdiff_t row, const std::uint8_t* fluid, int packs,
                     const CollisionParameters& parameters, const RowShear<Real>* shear) {
   if (parameters.smagorinsky_constant > 0.0) {
     if (shear)
-      sweep_packs<model, true, true>(streams, row, fluid, first, last, parameters, shear);
+      sweep_packs<model, true, true>(streams, row, fluid, packs, parameters, shear);
     else
-      sweep_packs<model, true, false>(streams, row, fluid, first, last, parameters, shear);
+      sweep_packs<model, true, false>(streams, row, fluid, packs, parameters, shear);
   } else {
     if (shear)
-      sweep_packs<model, false, true>(streams, row, fluid, first, last, parameters, shear);
+      sweep_packs<model, false, true>(streams, row, fluid, packs, parameters, shear);
     else
-      sweep_packs<model, false, false>(streams, row, fluid, first, last, parameters, shear);
+      sweep_packs<model, false, false>(streams, row, fluid, packs, parameters, shear);
   }
 }
 
@@ -177,25 +177,26 @@ void sweep_row_with(const Streams<Real>& streams, std::ptrdiff_t row, const std:
 
 template <typename Real>
 void sweep_row(Populations<Real>& populations, const CellMap& cells, const CollisionParameters& parameters, int y,
-               int z, int first, int last, const RowShear<Real>* shear) {
+               int z, const RowShear<Real>* shear) {
   const Streams<Real> streams(populations);
   const std::ptrdiff_t row = populations.indexing().index(0, y, z);
   const std::uint8_t* fluid = cells.fluid_in_packs(y, z);
+  const int packs = populations.indexing().packs_per_row();
   switch (parameters.model) {
     case CollisionModel::bgk:
-      return sweep_row_with<CollisionModel::bgk>(streams, row, fluid, first, last, parameters, shear);
+      return sweep_row_with<CollisionModel::bgk>(streams, row, fluid, packs, parameters, shear);
     case CollisionModel::trt:
-      return sweep_row_with<CollisionModel::trt>(streams, row, fluid, first, last, parameters, shear);
+      return sweep_row_with<CollisionModel::trt>(streams, row, fluid, packs, parameters, shear);
     case CollisionModel::regularised:
-      return sweep_row_with<CollisionModel::regularised>(streams, row, fluid, first, last, parameters, shear);
+      return sweep_row_with<CollisionModel::regularised>(streams, row, fluid, packs, parameters, shear);
   }
 }
 
 template int pack_width<float>();
 template int pack_width<double>();
-template void sweep_row(Populations<float>&, const CellMap&, const CollisionParameters&, int, int, int, int,
+template void sweep_row(Populations<float>&, const CellMap&, const CollisionParameters&, int, int,
                         const RowShear<float>*);
-template void sweep_row(Populations<double>&, const CellMap&, const CollisionParameters&, int, int, int, int,
+template void sweep_row(Populations<double>&, const CellMap&, const CollisionParameters&, int, int,
                         const RowShear<double>*);
 
 }  // namespace thalweg::lbm

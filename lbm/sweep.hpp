@@ -22,10 +22,10 @@ struct RowShear {
   Real* normal_to[3];
 };
 
-// Sweeps the packs [first, last) of one owned row. shear: where to leave the shear rates, or null. The arrangement is
-// not switched: the caller does that once all rows are done.
+// Sweeps one owned row. shear: where to leave the shear rates, or null. The arrangement is not switched: the caller
+// does that once all rows are done.
 template <typename Real>
 void sweep_row(Populations<Real>& populations, const CellMap& cells, const CollisionParameters& parameters, int y,
-               int z, int first, int last, const RowShear<Real>* shear);
+               int z, const RowShear<Real>* shear);
 
 }  // namespace thalweg::lbm

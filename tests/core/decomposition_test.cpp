@@ -22,10 +22,12 @@ TEST(Decomposition, BlocksTileTheBox) {
   for (int count : owners) EXPECT_EQ(count, 1);
 }
 
-TEST(Decomposition, CutsTheStreamBeforeTheVertical) {
+// Cells on the cut faces, those of x four times and those of z 32 times: 4 * 13 * 90 < 72 * 90, and so on.
+TEST(Decomposition, CutsPlanBeforeTheVerticalAndLeavesLongRowsWhole) {
   EXPECT_EQ(Decomposition::best_layout({72, 13, 90}, 2), (Index3{2, 1, 1}));
-  EXPECT_EQ(Decomposition::best_layout({72, 13, 90}, 8), (Index3{8, 1, 1}));
-  EXPECT_EQ(Decomposition::best_layout({240, 80, 200}, 4)[2], 1);
+  EXPECT_EQ(Decomposition::best_layout({72, 13, 90}, 8), (Index3{4, 2, 1}));
+  EXPECT_EQ(Decomposition::best_layout({240, 80, 200}, 2), (Index3{1, 2, 1}));
+  EXPECT_EQ(Decomposition::best_layout({240, 80, 200}, 4), (Index3{2, 2, 1}));
 }
 
 TEST(Decomposition, RefusesMoreRanksThanCellsAllow) {
