@@ -32,6 +32,7 @@ public:
   std::filesystem::path series() const { return path_ / "series.csv"; }
   std::filesystem::path profiles() const { return path_ / "profiles.h5"; }
   std::filesystem::path tracks() const { return path_ / "tracks.h5"; }
+  std::filesystem::path bed() const { return path_ / "bed.h5"; }
   std::filesystem::path summary() const { return path_ / "summary.json"; }
   std::filesystem::path checkpoints() const { return path_ / "checkpoints"; }
   std::filesystem::path checkpoint(std::int64_t step) const;  // checkpoints/step_<step>.h5

@@ -90,8 +90,9 @@ SectionReader::SectionReader(const YamlDocument& document, std::string key_path,
     : document_(document), key_path_(std::move(key_path)), section_(section) {}
 
 void SectionReader::fail(const YamlNode& node, const std::string& key, const std::string& remedy) const {
-  throw InputError(fmt::format("{}: {} = {}: {}{}", node.place, joined_key(key_path_, key), shown(node), remedy,
-                               remedy.ends_with('?') ? "" : "."));
+  const std::string name = shorthand_ && key == *shorthand_ ? key_path_ : joined_key(key_path_, key);
+  throw InputError(
+      fmt::format("{}: {} = {}: {}{}", node.place, name, shown(node), remedy, remedy.ends_with('?') ? "" : "."));
 }
 
 // A missing key waits until finish(): most often it is there but misspelt, and the misspelling is the better complaint.
@@ -183,6 +184,28 @@ void SectionReader::integer(const std::string& key, std::int64_t& value, const I
   value = read;
 }
 
+void SectionReader::real_list(const std::string& key, std::vector<double>& values, const RealKey& about) {
+  const double example = about.example.value_or(1.0);
+  const std::string expectation = fmt::format("a list of numbers{}{}, for example [{}, {}]", unit_of(about),
+                                              range_of(about), shortest(example), shortest(example));
+  const YamlNode* node = look_up(key, about.required, expectation);
+  if (!node) return;
+  if (node->kind != YamlNode::Kind::list || node->items.empty()) fail(*node, key, "expected " + expectation);
+  values.clear();
+  for (std::size_t n = 0; n < node->items.size(); ++n)
+    values.push_back(real_from(node->items[n], fmt::format("{}.{}", key, n), about, expected_real(about, example)));
+}
+
+void SectionReader::text(const std::string& key, std::optional<std::string>& value, const TextKey& about) {
+  if (!section_.find(key)) {
+    look_up(key, about.required, "a text");
+    return;
+  }
+  std::string read;
+  text(key, read, about);
+  value = read;
+}
+
 void SectionReader::text(const std::string& key, std::string& value, const TextKey& about) {
   const YamlNode* node = look_up(key, about.required, "a text");
   if (!node) return;
@@ -214,6 +237,13 @@ void SectionReader::word(const std::string& key, std::size_t& index, const std::
   for (const Word& word : words) names.push_back(word.name);
   if (const YamlNode* node = look_up(key, about.required, fmt::format("one of {}", fmt::join(names, ", "))))
     index = word_from(*node, key, words);
+}
+
+void SectionReader::word(const std::string& key, std::optional<std::size_t>& index, const std::vector<Word>& words,
+                         const SectionKey& about) {
+  std::size_t read = 0;
+  word(key, read, words, about);
+  if (section_.find(key)) index = read;
 }
 
 void SectionReader::word_list(const std::string& key, std::vector<std::size_t>& indices, const std::vector<Word>& words,
@@ -262,12 +292,14 @@ void SectionReader::read_inside(const YamlNode& node, const std::string& key, co
   }
   if (inside.kind != YamlNode::Kind::section) fail(node, key, "expected a section of keys with values, not a list");
   SectionReader reader(document_, joined_key(key_path_, key), inside);
+  if (node.kind == YamlNode::Kind::scalar && !about.expected.empty()) reader.shorthand_ = about.shorthand;
   body(reader);
   reader.finish();
 }
 
 void SectionReader::nested(const std::string& key, bool given, const SectionKey& about, const Body& body) {
-  const YamlNode* node = look_up(key, about.required, "a section: " + about.meaning);
+  const YamlNode* node =
+      look_up(key, about.required, about.expected.empty() ? "a section: " + about.meaning : about.expected);
   if (node) return read_inside(*node, key, about, body);
   if (!given || about.required) return;
   YamlNode empty;

@@ -18,7 +18,9 @@ public:
   void vec3(const std::string& key, std::optional<Vec3>& value, const RealKey& about) override;
   void vec3_list(const std::string& key, std::vector<Vec3>& values, const RealKey& about) override;
   void integer(const std::string& key, std::int64_t& value, const IntegerKey& about) override;
+  void real_list(const std::string& key, std::vector<double>& values, const RealKey& about) override;
   void text(const std::string& key, std::string& value, const TextKey& about) override;
+  void text(const std::string& key, std::optional<std::string>& value, const TextKey& about) override;
   void flag(const std::string& key, bool& value, const TextKey& about) override;
   void not_here(const std::string& key, const std::string& reason) override;
   void require(bool condition, const std::string& key, const std::string& remedy) override;
@@ -28,6 +30,8 @@ public:
 
 private:
   void word(const std::string& key, std::size_t& index, const std::vector<Word>& words,
+            const SectionKey& about) override;
+  void word(const std::string& key, std::optional<std::size_t>& index, const std::vector<Word>& words,
             const SectionKey& about) override;
   void word_list(const std::string& key, std::vector<std::size_t>& indices, const std::vector<Word>& words,
                  const SectionKey& about) override;
@@ -49,8 +53,9 @@ private:
   const YamlDocument& document_;
   std::string key_path_;
   const YamlNode& section_;
-  std::vector<std::string> known_;  // every key asked for, in order
-  std::string missing_;             // the complaint about the first required key that is not given
+  std::optional<std::string> shorthand_;  // the key that a plain value in place of the section stands for
+  std::vector<std::string> known_;        // every key asked for, in order
+  std::string missing_;                   // the complaint about the first required key that is not given
 };
 
 // Reads a whole document into a struct described for SectionVisitor.

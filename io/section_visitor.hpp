@@ -42,6 +42,7 @@ struct IntegerKey {
 struct TextKey {
   std::string meaning = {};
   bool required = false;
+  std::string example = {};  // of an optional value, shown in the documentation
 };
 
 // A section, a list of sections, or a choice.
@@ -49,6 +50,7 @@ struct SectionKey {
   std::string meaning = {};
   bool required = false;
   std::string shorthand = {};   // a plain word in place of the section is the value of this key: x: no_slip
+  std::string expected = {};    // with shorthand: what is given in most cases, for complaints: "a number in m"
   std::string empty_name = {};  // this word in place of the section stands for the section without keys: fluid: rest
 };
 
@@ -70,7 +72,9 @@ public:
   virtual void vec3(const std::string& key, std::optional<Vec3>& value, const RealKey& about) = 0;
   virtual void vec3_list(const std::string& key, std::vector<Vec3>& values, const RealKey& about) = 0;
   virtual void integer(const std::string& key, std::int64_t& value, const IntegerKey& about) = 0;
+  virtual void real_list(const std::string& key, std::vector<double>& values, const RealKey& about) = 0;
   virtual void text(const std::string& key, std::string& value, const TextKey& about) = 0;
+  virtual void text(const std::string& key, std::optional<std::string>& value, const TextKey& about) = 0;
   virtual void flag(const std::string& key, bool& value, const TextKey& about) = 0;
 
   template <typename Choice>
@@ -79,6 +83,17 @@ public:
     std::size_t index = index_of(value, choices);
     word(key, index, words_of(choices), about);
     value = choices[index].value;
+  }
+
+  // Empty: not given.
+  template <typename Choice>
+  void choice(const std::string& key, std::optional<Choice>& value, const std::vector<NamedChoice<Choice>>& choices,
+              const SectionKey& about) {
+    std::optional<std::size_t> index;
+    if (value) index = index_of(*value, choices);
+    word(key, index, words_of(choices), about);
+    value.reset();
+    if (index) value = choices[*index].value;
   }
 
   template <typename Choice>
@@ -135,6 +150,8 @@ protected:
   };
 
   virtual void word(const std::string& key, std::size_t& index, const std::vector<Word>& words,
+                    const SectionKey& about) = 0;
+  virtual void word(const std::string& key, std::optional<std::size_t>& index, const std::vector<Word>& words,
                     const SectionKey& about) = 0;
   virtual void word_list(const std::string& key, std::vector<std::size_t>& indices, const std::vector<Word>& words,
                          const SectionKey& about) = 0;

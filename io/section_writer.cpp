@@ -82,6 +82,18 @@ void SectionWriter::integer(const std::string& key, std::int64_t& value, const I
       style_ == YamlStyle::plain ? "" : fmt::format("whole number, at least {}; {}", about.at_least, about.meaning));
 }
 
+void SectionWriter::real_list(const std::string& key, std::vector<double>& values, const RealKey& about) {
+  std::vector<std::string> texts;
+  for (const double value : values) texts.push_back(shortest(value));
+  if (values.empty()) texts.assign(2, shortest(about.example.value_or(1.0)));
+  put(!values.empty(), key, fmt::format("[{}]", fmt::join(texts, ", ")), comment_of(about));
+}
+
+void SectionWriter::text(const std::string& key, std::optional<std::string>& value, const TextKey& about) {
+  put(value.has_value(), key, quoted(value.value_or(about.example)),
+      style_ == YamlStyle::plain ? "" : "text; " + about.meaning);
+}
+
 void SectionWriter::text(const std::string& key, std::string& value, const TextKey& about) {
   put(true, key, quoted(value), style_ == YamlStyle::plain ? "" : "text; " + about.meaning);
 }
@@ -101,6 +113,11 @@ std::string SectionWriter::comment_of(const std::vector<Word>& words, const Sect
 void SectionWriter::word(const std::string& key, std::size_t& index, const std::vector<Word>& words,
                          const SectionKey& about) {
   put(true, key, words[index].name, comment_of(words, about));
+}
+
+void SectionWriter::word(const std::string& key, std::optional<std::size_t>& index, const std::vector<Word>& words,
+                         const SectionKey& about) {
+  put(index.has_value(), key, words[index.value_or(0)].name, comment_of(words, about));
 }
 
 void SectionWriter::word_list(const std::string& key, std::vector<std::size_t>& indices, const std::vector<Word>& words,

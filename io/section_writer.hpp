@@ -19,7 +19,9 @@ public:
   void vec3(const std::string& key, std::optional<Vec3>& value, const RealKey& about) override;
   void vec3_list(const std::string& key, std::vector<Vec3>& values, const RealKey& about) override;
   void integer(const std::string& key, std::int64_t& value, const IntegerKey& about) override;
+  void real_list(const std::string& key, std::vector<double>& values, const RealKey& about) override;
   void text(const std::string& key, std::string& value, const TextKey& about) override;
+  void text(const std::string& key, std::optional<std::string>& value, const TextKey& about) override;
   void flag(const std::string& key, bool& value, const TextKey& about) override;
   void not_here(const std::string&, const std::string&) override {}
   void require(bool, const std::string&, const std::string&) override {}
@@ -36,6 +38,8 @@ private:
   };
 
   void word(const std::string& key, std::size_t& index, const std::vector<Word>& words,
+            const SectionKey& about) override;
+  void word(const std::string& key, std::optional<std::size_t>& index, const std::vector<Word>& words,
             const SectionKey& about) override;
   void word_list(const std::string& key, std::vector<std::size_t>& indices, const std::vector<Word>& words,
                  const SectionKey& about) override;

@@ -1,0 +1,135 @@
+#include "io/bed_file.hpp"
+
+#include "core/error.hpp"
+#include "core/mpi_session.hpp"
+#include "io/hdf5_archive.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+#include <string>
+
+namespace thalweg::io {
+namespace {
+
+const std::string format = "thalweg bed 1";
+
+// One grain on its way to rank 0.
+struct Row {
+  GlobalId id;
+  double radius, density;
+  double position[3], velocity[3], angular_velocity[3];
+};
+
+void copy(const Vec3& from, double* to) { std::copy(from.data(), from.data() + 3, to); }
+
+std::vector<Row> gathered(MPI_Comm communicator, const GrainView& grains) {
+  std::vector<Row> rows(grains.id.size());
+  for (std::size_t n = 0; n < rows.size(); ++n) {
+    const double r = grains.radius[n];
+    rows[n] = {grains.id[n], r, grains.mass[n] / (4.0 / 3.0 * std::numbers::pi * r * r * r), {}, {}, {}};
+    copy(grains.position[n], rows[n].position);
+    copy(grains.velocity[n], rows[n].velocity);
+    copy(grains.angular_velocity[n], rows[n].angular_velocity);
+  }
+  rows = exchange_rows(communicator, rows, std::vector<int>(rows.size(), 0));
+  std::sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.id < b.id; });
+  return rows;
+}
+
+// What rank 0 alone has to write: all of it, or nothing.
+ArrayBox whole(bool mine, std::uint64_t rows, std::uint64_t columns) {
+  if (columns == 1) return {{rows}, {0}, {mine ? rows : 0}};
+  return {{rows, columns}, {0, 0}, {mine ? rows : 0, columns}};
+}
+
+class BedWriter {
+public:
+  BedWriter(MPI_Comm communicator, const std::filesystem::path& path, std::int64_t count)
+      : archive_(communicator, path), mine_(rank_of(communicator) == 0), count_(static_cast<std::uint64_t>(count)) {}
+
+  // values: of all grains, on rank 0.
+  template <typename Number>
+  void column(const std::string& name, const char* unit, const std::vector<Number>& values, std::uint64_t width = 1) {
+    archive_.write("grains/" + name, values, whole(mine_, count_, width));
+    archive_.attribute("grains/" + name + "/unit", std::string(unit));
+  }
+  void scalars(const std::vector<Row>& rows, const std::string& name, const char* unit, double Row::*field) {
+    std::vector<double> values;
+    for (const Row& row : rows) values.push_back(row.*field);
+    column(name, unit, values);
+  }
+  void vectors(const std::vector<Row>& rows, const std::string& name, const char* unit, double (Row::*field)[3]) {
+    std::vector<double> values;
+    for (const Row& row : rows) values.insert(values.end(), row.*field, row.*field + 3);
+    column(name, unit, values, 3);
+  }
+  template <typename Number>
+  void triple(const std::string& name, const char* unit, std::vector<Number> values) {
+    if (!mine_) values.clear();
+    archive_.write("bed/" + name, values, whole(mine_, 3, 1));
+    archive_.attribute("bed/" + name + "/unit", std::string(unit));
+  }
+  Hdf5Writer& archive() { return archive_; }
+
+private:
+  Hdf5Writer archive_;
+  bool mine_;
+  std::uint64_t count_;
+};
+
+template <typename Number>
+std::vector<Number> column(Hdf5Reader& file, const std::string& path, std::uint64_t rows, std::uint64_t width = 1) {
+  std::vector<Number> values(rows * width);
+  file.read(path, values, whole(true, rows, width));
+  return values;
+}
+
+}  // namespace
+
+void write_bed_file(MPI_Comm communicator, const std::filesystem::path& path, const Snapshot& snapshot) {
+  const std::vector<Row> rows = gathered(communicator, snapshot.grains);
+  const PeriodicBox box = snapshot.decomposition->box();
+  BedWriter writer(communicator, path, snapshot.grains.global_count);
+  writer.archive().attribute("bed/format", format);
+  writer.archive().attribute("bed/time", snapshot.time);
+  writer.triple<double>("box", "m", {box.size[0], box.size[1], box.size[2]});
+  writer.triple<std::int64_t>("periodic", "1", {box.periodic[0], box.periodic[1], box.periodic[2]});
+  std::vector<std::int64_t> ids;
+  for (const Row& row : rows) ids.push_back(row.id);
+  writer.column("id", "1", ids);
+  writer.scalars(rows, "radius", "m", &Row::radius);
+  writer.scalars(rows, "density", "kg/m^3", &Row::density);
+  writer.vectors(rows, "position", "m", &Row::position);
+  writer.vectors(rows, "velocity", "m/s", &Row::velocity);
+  writer.vectors(rows, "angular_velocity", "rad/s", &Row::angular_velocity);
+  writer.archive().close();
+}
+
+Bed read_bed_file(const std::filesystem::path& path) {
+  Hdf5Reader file(MPI_COMM_SELF, path);
+  if (!file.has("bed/format") || file.text_attribute("bed/format") != format)
+    throw InputError(fmt::format("{} is an HDF5 file but not a bed file of this program.", path.string()));
+  Bed bed;
+  bed.time = file.real_attribute("bed/time");
+  const std::vector<double> box = column<double>(file, "bed/box", 3);
+  const std::vector<std::int64_t> periodic = column<std::int64_t>(file, "bed/periodic", 3);
+  for (int axis = 0; axis < 3; ++axis) {
+    bed.box[axis] = box[static_cast<std::size_t>(axis)];
+    bed.periodic[static_cast<std::size_t>(axis)] = periodic[static_cast<std::size_t>(axis)] != 0;
+  }
+  const std::uint64_t count = file.shape("grains/id").at(0);
+  const auto id = column<std::int64_t>(file, "grains/id", count);
+  const auto radius = column<double>(file, "grains/radius", count);
+  const auto density = column<double>(file, "grains/density", count);
+  const auto position = column<double>(file, "grains/position", count, 3);
+  const auto velocity = column<double>(file, "grains/velocity", count, 3);
+  const auto spin = column<double>(file, "grains/angular_velocity", count, 3);
+  for (std::size_t n = 0; n < count; ++n)
+    bed.grains.push_back(
+        {id[n], radius[n], density[n], Vec3(&position[3 * n]), Vec3(&velocity[3 * n]), Vec3(&spin[3 * n])});
+  return bed;
+}
+
+}  // namespace thalweg::io
