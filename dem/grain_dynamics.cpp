@@ -61,17 +61,16 @@ enum class Trouble { none, not_finite, outside, too_fast, outran };
 
 }  // namespace
 
-void check_time_step(const GrainParameters& p, const LightestGrain& lightest, std::int64_t count) {
-  if (!std::isfinite(lightest.mass)) return;
+void check_time_step(const GrainParameters& p, std::span<const LightestGrain> lightest, std::int64_t count) {
   // Two of the lightest grains have the shortest contact; a single grain has only walls to touch.
   const double share = count > 1 ? 0.5 : 1.0;
-  check_time_step(p.contact, share * lightest.mass, share * lightest.radius, p.time_step);
-  for (const ContactParameters& other : p.other_materials)
-    check_time_step(other, share * lightest.mass, share * lightest.radius, p.time_step);
-  if (!p.wall_contact) return;
-  check_wall_time_step(p.contact, *p.wall_contact, lightest.mass, lightest.radius, p.time_step);
-  for (const ContactParameters& other : p.other_materials)
-    check_wall_time_step(other, *p.wall_contact, lightest.mass, lightest.radius, p.time_step);
+  for (std::size_t m = 0; m < lightest.size(); ++m) {
+    const ContactParameters& material = m == 0 ? p.contact : p.other_materials[m - 1];
+    const LightestGrain& grain = lightest[m];
+    if (!std::isfinite(grain.mass)) continue;
+    check_time_step(material, share * grain.mass, share * grain.radius, p.time_step);
+    if (p.wall_contact) check_wall_time_step(material, *p.wall_contact, grain.mass, grain.radius, p.time_step);
+  }
 }
 
 GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm communicator,
@@ -91,14 +90,13 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
       messages_phase_(timer_.phase("messages")) {
   assert(decomposition.ranks() == size_of(communicator));
   check(seeds, box_, parameters_.walls, parameters_.initial_overlap);
-  LightestGrain lightest;
+  std::vector<LightestGrain> lightest(static_cast<std::size_t>(materials_.count()));
   for (const GrainSeed& seed : seeds) {
     if (seed.material < 0 || seed.material >= materials_.count())
       throw InputError(
           fmt::format("Grain {} is of material {}, but there are {}.", seed.id, seed.material, materials_.count()));
     if (holds_translation(seed.motion)) continue;
-    lightest.mass = std::min(lightest.mass, seed.mass());
-    lightest.radius = std::min(lightest.radius, seed.radius);
+    lightest[static_cast<std::size_t>(seed.material)].include(seed.mass(), seed.radius);
   }
   check_time_step(parameters_, lightest, global_count_);
 

@@ -21,6 +21,7 @@
 
 #include <mpi.h>
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -44,14 +45,21 @@ struct GrainParameters {
   double initial_overlap = allowed_initial_overlap;  // diameters the seeds may overlap by: a settled bed's do
 };
 
-// The least mass (kg) and radius (m) of the grains that are free to move: they have the shortest contacts.
+// The least mass (kg) and radius (m) of the grains of a material that are free to move: their contacts are shortest.
+// (Of two materials' contact, m*/k lies between those within each, since springs add in series as masses do.)
 struct LightestGrain {
   double mass = std::numeric_limits<double>::infinity();
   double radius = std::numeric_limits<double>::infinity();
+
+  void include(double other_mass, double other_radius) {
+    mass = std::min(mass, other_mass);
+    radius = std::min(radius, other_radius);
+  }
 };
 
-// Throws InputError if the time step is too long for contacts among `count` grains, the lightest of which is given.
-void check_time_step(const GrainParameters& parameters, const LightestGrain& lightest, std::int64_t count);
+// Throws InputError if the time step is too long for contacts among `count` grains, the lightest of each material of
+// which are given.
+void check_time_step(const GrainParameters& parameters, std::span<const LightestGrain> lightest, std::int64_t count);
 
 // Two grains in contact, or a grain and a wall.
 struct Contact {
@@ -109,6 +117,8 @@ public:
   double kinetic_energy() const;                  // J, with rotation
   Vec3 momentum() const;                          // kg m/s
   double largest_speed() const;                   // m/s
+  double largest_free_speed() const;              // m/s, of grains that are free to move
+  double largest_acceleration() const;            // m/s^2, of the same, by all forces at the end of the last step
   std::int64_t moving_count(double speed) const;  // free grains faster than speed (m/s)
 
   // Everything the next sub-step depends on, sorted by id, below `group`; collective. To be called after

@@ -131,6 +131,17 @@ void check_loaded(const GrainBatch& batch, const PeriodicBox& box, MPI_Comm comm
                                "xyz"[stray.axis], stray.x, box.size[static_cast<int>(stray.axis)]));
 }
 
+// Of each material, over all ranks.
+std::vector<LightestGrain> lightest_of(const GrainBatch& batch, int materials, MPI_Comm communicator) {
+  std::vector<LightestGrain> lightest(static_cast<std::size_t>(materials));
+  for (const GrainRow& row : batch.rows)
+    if (!holds_translation(static_cast<Motion>(row.motion)))
+      lightest[static_cast<std::size_t>(row.material)].include(row.mass, row.radius);
+  for (LightestGrain& grain : lightest)
+    grain = {-max_over_ranks(communicator, -grain.mass), -max_over_ranks(communicator, -grain.radius)};
+  return lightest;
+}
+
 }  // namespace
 
 void GrainDynamics::save(ArchiveWriter& archive, const std::string& group) const {
@@ -175,24 +186,16 @@ void GrainDynamics::load(ArchiveReader& archive, const std::string& group) {
   global_count_ = static_cast<std::int64_t>(archive.shape(group + "/radius").at(0));
   GrainBatch batch = read_grains(archive, group, Share(global_count_, ranks, me), store_.attached_width);
 
-  LightestGrain lightest;
-  double largest = 0.0;
   check_loaded(batch, box_, communicator_);
-  for (const GrainRow& row : batch.rows) {
-    largest = std::max(largest, row.radius);
-    if (holds_translation(static_cast<Motion>(row.motion))) continue;
-    lightest.mass = std::min(lightest.mass, row.mass);
-    lightest.radius = std::min(lightest.radius, row.radius);
-  }
   const bool stranger = std::any_of(batch.rows.begin(), batch.rows.end(), [this](const GrainRow& row) {
     return row.material < 0 || row.material >= materials_.count();
   });
   if (any_rank(communicator_, stranger))
     throw InputError(fmt::format("The saved grains are of more materials than this case has, {}.", materials_.count()));
+  double largest = 0.0;
+  for (const GrainRow& row : batch.rows) largest = std::max(largest, row.radius);
   largest_radius_ = max_over_ranks(communicator_, largest);
-  lightest.mass = -max_over_ranks(communicator_, -lightest.mass);
-  lightest.radius = -max_over_ranks(communicator_, -lightest.radius);
-  check_time_step(parameters_, lightest, global_count_);
+  check_time_step(parameters_, lightest_of(batch, materials_.count(), communicator_), global_count_);
   ghosts_ = GhostExchange(decomposition_, communicator_, ghost_reach());
 
   // Grains to the rank of their centre; histories first to the rank that read the grain and so knows its owner.

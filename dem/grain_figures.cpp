@@ -74,6 +74,22 @@ double GrainDynamics::largest_speed() const {
   return max_over_ranks(communicator_, largest);
 }
 
+double GrainDynamics::largest_free_speed() const {
+  double largest = 0.0;
+  for (std::size_t s = 0; s < store_.owned; ++s)
+    if (!holds_translation(store_.motion[s])) largest = std::max(largest, store_.velocity[s].norm());
+  return max_over_ranks(communicator_, largest);
+}
+
+double GrainDynamics::largest_acceleration() const {
+  double largest = 0.0;
+  for (std::size_t s = 0; s < store_.owned; ++s) {
+    const Vec3 force = store_.contact_force[s] + store_.load_force[s] + body_force_[s];
+    largest = std::max(largest, force.norm() * store_.inverse_mass[s]);
+  }
+  return max_over_ranks(communicator_, largest);
+}
+
 std::int64_t GrainDynamics::moving_count(double speed) const {
   std::int64_t count = 0;
   for (std::size_t s = 0; s < store_.owned; ++s)
