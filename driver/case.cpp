@@ -1,6 +1,6 @@
 #include "driver/case.hpp"
 
-#include "dem/material.hpp"
+#include "driver/grain_materials.hpp"
 #include "driver/stability.hpp"
 
 #include <fmt/format.h>
@@ -11,8 +11,6 @@
 #include <numbers>
 
 namespace thalweg {
-
-double PopulationCase::mass() const { return density * std::numbers::pi / 6.0 * diameter * diameter * diameter; }
 
 bool has_fluid(const Case& c) { return c.system != SystemKind::grains; }
 
@@ -56,36 +54,39 @@ std::int64_t grain_count(const Case& c) {
 
 double largest_diameter(const Case& c) {
   double diameter = 0.0;
-  for (const PopulationCase& population : c.grains) diameter = std::max(diameter, population.diameter);
+  for (const PopulationCase& population : c.grains) diameter = std::max(diameter, population.largest_diameter());
   return diameter;
 }
 
 double smallest_diameter(const Case& c) {
   double diameter = largest_diameter(c);
-  for (const PopulationCase& population : c.grains) diameter = std::min(diameter, population.diameter);
+  for (const PopulationCase& population : c.grains) diameter = std::min(diameter, population.smallest_diameter());
   return diameter;
 }
 
 double grain_volume(const Case& c) {
   double volume = 0.0;
-  for (const PopulationCase& population : c.grains)
-    volume += static_cast<double>(population.count) * population.mass() / population.density;
+  for (const PopulationCase& population : c.grains) volume += population.volume();
   return volume;
 }
 
 double shortest_contact(const Case& c) {
+  const bool linear = c.contact.law == ContactLaw::linear;
+  const std::vector<dem::ContactParameters> materials = materials_of(c);
+  const std::optional<dem::ContactParameters> walls = wall_material_of(c.contact);
   double shortest = std::numeric_limits<double>::infinity();
-  for (const PopulationCase& population : c.grains) {
-    const double effective_mass = 0.5 * population.mass();
-    double time = std::numbers::pi * std::sqrt(effective_mass / c.contact.normal_stiffness);
-    if (c.contact.law == ContactLaw::hertz_mindlin) {
-      dem::ContactParameters contact;
-      contact.law = dem::Law::hertz_mindlin;
-      contact.youngs_modulus = c.contact.youngs_modulus;
-      contact.poisson_ratio = c.contact.poisson_ratio;
-      time = dem::contact_time(contact, effective_mass, 0.25 * population.diameter);
-    }
-    shortest = std::min(shortest, time);
+  for (std::size_t p = 0; p < c.grains.size(); ++p) {
+    const dem::ContactParameters& own = materials[static_cast<std::size_t>(material_of(c, p))];
+    const double mass = c.grains[p].lightest_mass(), radius = 0.5 * c.grains[p].smallest_diameter();
+    const auto undamped = [&](double stiffness, double effective) {
+      return std::numbers::pi * std::sqrt(effective / stiffness);
+    };
+    shortest = std::min(shortest, linear ? undamped(own.normal_stiffness, 0.5 * mass)
+                                         : dem::contact_time(own, 0.5 * mass, 0.5 * radius));
+    if (walls)
+      shortest =
+          std::min(shortest, linear ? undamped(walls->normal_stiffness, mass)
+                                    : dem::elastic_contact_time(dem::coefficients_of(own, *walls), mass, radius));
   }
   return shortest;
 }

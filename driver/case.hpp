@@ -4,6 +4,7 @@
 
 #include "core/types.hpp"
 #include "core/units.hpp"
+#include "driver/grain_case.hpp"
 #include "io/fluid_series.hpp"
 
 #include <array>
@@ -94,55 +95,6 @@ struct GravityCase {
   bool operator==(const GravityCase&) const = default;
 };
 
-enum class PlacementPattern { uniform, random };
-
-struct RegionCase {
-  Vec3 lower = Vec3::Zero();  // m
-  Vec3 upper = Vec3::Zero();  // m
-  bool operator==(const RegionCase&) const = default;
-};
-
-struct PlacementCase {
-  PlacementPattern pattern = PlacementPattern::uniform;  // unless there are positions
-  std::int64_t seed = 1;
-  std::optional<RegionCase> region;  // none: the whole box
-  std::vector<Vec3> positions;       // m; as many as the population counts, or none
-  bool operator==(const PlacementCase&) const = default;
-};
-
-struct PopulationCase {
-  std::int64_t count = 0;  // read as the number of positions where those are given
-  double diameter = 0.0;   // m
-  double density = 0.0;    // kg/m^3
-  PlacementCase placement;
-  Vec3 velocity = Vec3::Zero();                     // m/s, at the start
-  Vec3 angular_velocity = Vec3::Zero();             // rad/s, at the start
-  bool fixed = false;                               // never moves
-  std::optional<Vec3> prescribed_velocity;          // m/s, kept whatever the loads
-  std::optional<Vec3> prescribed_angular_velocity;  // rad/s
-  bool operator==(const PopulationCase&) const = default;
-
-  double mass() const;  // kg
-};
-
-enum class Attraction { none, allowed };
-enum class ContactLaw { linear, hertz_mindlin };
-
-struct ContactCase {
-  ContactLaw law = ContactLaw::linear;
-  double normal_stiffness = 20000.0;            // N/m
-  double tangential_stiffness = 5714.0;         // N/m
-  double youngs_modulus = 0.0;                  // Pa; of hertz_mindlin, in place of the two stiffnesses
-  double poisson_ratio = 0.3;                   // 1; of hertz_mindlin
-  double tangential_damping = 0.0;              // 1; dashpot along the contact over the one across it
-  std::optional<double> restitution;            // 1; exactly one of restitution and damping is set
-  std::optional<double> damping;                // kg/s
-  double friction = 0.5;                        // grain on grain
-  double wall_friction = 0.45;                  // grain on wall
-  Attraction attraction = Attraction::allowed;  // allowed: the dashpot may pull grains together as they part
-  bool operator==(const ContactCase&) const = default;
-};
-
 struct SphereCase {
   Vec3 centre = Vec3::Zero();  // m
   double radius = 0.0;         // m
@@ -203,8 +155,16 @@ struct InitialCase {
   bool operator==(const InitialCase&) const = default;
 };
 
+// Grains are at rest where both hold for all that are free to move, so that a grain at the top of its flight is not.
+struct AtRestCase {
+  double largest_speed = 1e-4;         // m/s
+  double largest_acceleration = 0.01;  // m/s^2, of all forces together
+  bool operator==(const AtRestCase&) const = default;
+};
+
 struct RunCase {
-  double until = 0.0;               // s
+  double until = 0.0;                       // s
+  std::optional<AtRestCase> until_at_rest;  // of dry grains: the run ends earlier when this holds
   std::optional<double> time_step;  // s, of dry grains; read as 1/50 of the shortest contact where it is not given
   bool operator==(const RunCase&) const = default;
 };
@@ -289,8 +249,9 @@ double largest_diameter(const Case& c);   // m; 0 without grains
 double smallest_diameter(const Case& c);  // m; 0 without grains
 double grain_volume(const Case& c);       // m^3, of all grains
 
-// The shortest contact there can be (damping makes it longer), between two grains of one population: half a period of
-// the undamped spring, pi sqrt(m / 2 / k_n), or Hertz's contact at 1 m/s (dem/material.hpp). s; infinite without
+// The shortest contact there can be (damping makes it longer), between two of the lightest grains of a population or
+// of one of them with a wall: half a period of the undamped spring, pi sqrt(m / 2 / k_n), or Hertz's contact at 1 m/s
+// (dem/material.hpp). Contacts between populations are never shorter than the shortest within one. s; infinite without
 // grains.
 double shortest_contact(const Case& c);
 

@@ -102,7 +102,8 @@ void check_placement(const Case& c, const io::YamlDocument& document) {
                            fmt::format("the region must lie in the box with lower below upper along every axis; give "
                                        "corners in m between [0, 0, 0] and {}",
                                        shown(c.domain.size)));
-    const double fraction = static_cast<double>(grains.count) * grains.mass() / grains.density / extent.prod();
+    if (grains.placement.file) continue;
+    const double fraction = grains.volume() / extent.prod();
     if (fraction > densest_bed)
       throw document.error(
           key + ".count",
@@ -180,7 +181,7 @@ void check_fluid(const Case& c, const io::YamlDocument& document) {
   for (std::size_t n = 0; n < c.grains.size(); ++n) {
     const PopulationCase& grains = c.grains[n];
     const std::string key = fmt::format("grains.{}.", n);
-    const double radius = 0.5 * grains.diameter;
+    const double radius = 0.5 * grains.largest_diameter();
     check_lattice_velocity(c, document, key + "velocity", grains.velocity.norm());
     check_lattice_velocity(c, document, key + "angular_velocity", grains.angular_velocity.norm() * radius);
     if (grains.prescribed_velocity)
@@ -207,6 +208,33 @@ void check_contact_steps(const Case& c, const io::YamlDocument& document) {
                                    reason, std::ceil(fluid_time_step(c) / longest)));
 }
 
+// What a population or the walls change must fit the law and the manner of loss of the section contact.
+void check_material(const Case& c, const io::YamlDocument& document, const std::string& key,
+                    const MaterialCase& material) {
+  const auto refuse = [&](bool given, const char* name, const std::string& remedy) {
+    if (given) throw document.error(key + "." + name, remedy);
+  };
+  if (c.contact.law == ContactLaw::linear) {
+    const std::string remedy = "contact.law is linear, which has stiffnesses; remove it or set hertz_mindlin there";
+    refuse(material.youngs_modulus.has_value(), "youngs_modulus", remedy);
+    refuse(material.poisson_ratio.has_value(), "poisson_ratio", remedy);
+  } else {
+    const std::string remedy = "contact.law is hertz_mindlin, which has moduli; remove it or set linear there";
+    refuse(material.normal_stiffness.has_value(), "normal_stiffness", remedy);
+    refuse(material.tangential_stiffness.has_value(), "tangential_stiffness", remedy);
+  }
+  refuse(material.damping && !c.contact.damping, "damping",
+         "the section contact gives a restitution; give restitution here, too");
+  refuse(material.restitution && !c.contact.restitution, "restitution",
+         "the section contact gives a damping; give damping in kg/s here, too");
+}
+
+void check_materials(const Case& c, const io::YamlDocument& document) {
+  for (std::size_t n = 0; n < c.grains.size(); ++n)
+    if (c.grains[n].contact) check_material(c, document, fmt::format("grains.{}.contact", n), *c.grains[n].contact);
+  if (c.contact.walls) check_material(c, document, "contact.walls", *c.contact.walls);
+}
+
 }  // namespace
 
 void check_case(const Case& c, const io::YamlDocument& document) {
@@ -216,6 +244,7 @@ void check_case(const Case& c, const io::YamlDocument& document) {
   check_placement(c, document);
   check_solids(c, document);
   check_fluid(c, document);
+  check_materials(c, document);
   check_contact_steps(c, document);
   if (c.analysis.transport_rate && c.grains.empty())
     throw document.error("analysis.transport_rate", "there are no grains to measure; remove the section or add grains");

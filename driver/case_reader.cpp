@@ -1,6 +1,7 @@
 #include "driver/case_reader.hpp"
 
 #include "core/error.hpp"
+#include "driver/bed_placement.hpp"
 #include "driver/case_checks.hpp"
 #include "driver/case_sections.hpp"
 #include "io/section_reader.hpp"
@@ -54,6 +55,7 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
   const io::YamlDocument document(path, overrides);
   Case c;
   io::read_document(document, c);
+  fill_in_grains(c, document);
   if (c.system == SystemKind::grains && !c.run.time_step) c.run.time_step = shortest_contact(c) / steps_per_contact;
   if (!c.initial.from.empty())
     c.initial.from = (std::filesystem::absolute(path).parent_path() / c.initial.from).lexically_normal().string();

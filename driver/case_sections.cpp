@@ -78,107 +78,6 @@ static void describe_gravity(io::SectionVisitor& visit, GravityCase& gravity, bo
     visit.not_here("mode", "a run without fluid has only one kind of gravity; remove the key");
 }
 
-static void describe(io::SectionVisitor& visit, RegionCase& region) {
-  visit.vec3("lower", region.lower, {.unit = "m", .meaning = "lower corner", .required = true, .example = 0.0});
-  visit.vec3("upper", region.upper, {.unit = "m", .meaning = "upper corner", .required = true, .example = 0.05});
-}
-
-static void describe(io::SectionVisitor& visit, PlacementCase& placement) {
-  visit.vec3_list("positions", placement.positions,
-                  {.unit = "m", .meaning = "centres of the grains, one by one, in place of the keys below"});
-  if (!placement.positions.empty()) {
-    for (const char* key : {"pattern", "seed", "region"})
-      visit.not_here(key, "the positions are given one by one; remove this key or the positions");
-    return;
-  }
-  visit.choice<PlacementPattern>("pattern", placement.pattern,
-                                 {{PlacementPattern::uniform, "uniform", "evenly spread, slightly disturbed"},
-                                  {PlacementPattern::random, "random", "at random without overlap"}},
-                                 {.meaning = "how the grains are spread over the region"});
-  visit.integer("seed", placement.seed, {.meaning = "another seed, another packing", .at_least = 0});
-  visit.section("region", placement.region, {.meaning = "where the grains are put; the whole box where not given"});
-}
-
-static void describe(io::SectionVisitor& visit, PopulationCase& grains) {
-  visit.real("diameter", grains.diameter,
-             {.unit = "m", .meaning = "of every grain", .required = true, .above = 0.0, .example = 5e-3});
-  visit.real("density", grains.density,
-             {.unit = "kg/m^3", .meaning = "of every grain", .required = true, .above = 0.0, .example = 2550.0});
-  visit.section("placement", grains.placement, {.meaning = "where the grains are at the start"});
-  const auto given = static_cast<std::int64_t>(grains.placement.positions.size());
-  if (visit.reading() && given > 0) grains.count = given;
-  visit.integer("count", grains.count,
-                {.meaning = "number of grains; not needed with positions", .at_least = 1, .example = 100});
-  visit.require(grains.count > 0, "count",
-                "the number of grains is missing; give a whole number, for example 100, or placement.positions");
-  visit.require(given == 0 || grains.count == given, "count",
-                fmt::format("there are {} positions; give this number or leave the key out", given));
-  visit.vec3("velocity", grains.velocity, {.unit = "m/s", .meaning = "at the start"});
-  visit.vec3("angular_velocity", grains.angular_velocity, {.unit = "rad/s", .meaning = "at the start"});
-  visit.flag("fixed", grains.fixed, {.meaning = "the grains never move"});
-  visit.vec3("prescribed_velocity", grains.prescribed_velocity,
-             {.unit = "m/s", .meaning = "kept whatever the forces", .example = 0.0});
-  visit.vec3("prescribed_angular_velocity", grains.prescribed_angular_velocity,
-             {.unit = "rad/s", .meaning = "kept whatever the torques", .example = 0.0});
-  visit.require(!grains.fixed || (!grains.prescribed_velocity && !grains.prescribed_angular_velocity), "fixed",
-                "a fixed grain cannot have a prescribed velocity; give one or the other");
-  visit.require(!grains.fixed || (grains.velocity.isZero(0.0) && grains.angular_velocity.isZero(0.0)), "fixed",
-                "a fixed grain cannot start with a velocity; remove fixed or the velocity");
-  visit.require(!grains.prescribed_velocity || grains.velocity.isZero(0.0), "velocity",
-                "prescribed_velocity already says how the grains move; remove one of the two");
-  visit.require(!grains.prescribed_angular_velocity || grains.angular_velocity.isZero(0.0), "angular_velocity",
-                "prescribed_angular_velocity already says how the grains turn; remove one of the two");
-}
-
-static void describe_contact(io::SectionVisitor& visit, ContactCase& contact, bool with_grains) {
-  visit.choice<ContactLaw>("law", contact.law,
-                           {{ContactLaw::linear, "linear", "spring and dashpot"},
-                            {ContactLaw::hertz_mindlin, "hertz_mindlin", "elastic spheres, by youngs_modulus"}},
-                           {.meaning = "force of a contact"});
-  if (contact.law == ContactLaw::linear) {
-    visit.real("normal_stiffness", contact.normal_stiffness,
-               {.unit = "N/m", .meaning = "of the spring across a contact", .above = 0.0});
-    visit.real("tangential_stiffness", contact.tangential_stiffness,
-               {.unit = "N/m", .meaning = "of the spring along a contact", .above = 0.0});
-    for (const char* key : {"youngs_modulus", "poisson_ratio"})
-      visit.not_here(key, "the linear law has stiffnesses; remove it or set law: hertz_mindlin");
-  } else {
-    visit.real("youngs_modulus", contact.youngs_modulus,
-               {.unit = "Pa", .meaning = "of grains and walls", .required = true, .above = 0.0, .example = 70e9});
-    visit.real("poisson_ratio", contact.poisson_ratio,
-               {.meaning = "of grains and walls", .at_least = 0.0, .at_most = 0.5});
-    for (const char* key : {"normal_stiffness", "tangential_stiffness", "damping"})
-      visit.not_here(key,
-                     "elastic spheres have youngs_modulus, poisson_ratio and restitution; remove it or set law: "
-                     "linear");
-  }
-  visit.real("tangential_damping", contact.tangential_damping,
-             {.meaning = "dashpot along a contact over the one across it", .at_least = 0.0});
-  visit.real("restitution", contact.restitution,
-             {.meaning = "speed after over speed before a dry collision; or give damping",
-              .above = 0.0,
-              .at_most = 1.0,
-              .example = 0.93});
-  if (contact.law == ContactLaw::linear)
-    visit.real("damping", contact.damping,
-               {.unit = "kg/s",
-                .meaning = "of the dashpot across a contact, in place of restitution",
-                .at_least = 0.0,
-                .example = 0.09});
-  visit.require(!(contact.restitution && contact.damping), "restitution",
-                "the loss in a collision is given twice; give either restitution or damping");
-  visit.require(!with_grains || contact.restitution || contact.damping, "restitution",
-                "the loss in a collision is missing; give restitution, for example 0.93, or damping in kg/s");
-  visit.real("friction", contact.friction, {.meaning = "coefficient between grains", .at_least = 0.0});
-  visit.real("wall_friction", contact.wall_friction,
-             {.meaning = "coefficient between grain and wall", .at_least = 0.0});
-  visit.choice<Attraction>(
-      "attraction", contact.attraction,
-      {{Attraction::none, "none", "the force never pulls"},
-       {Attraction::allowed, "allowed", "the dashpot may pull as grains part, as in the linear law"}},
-      {.meaning = "sign of the normal force"});
-}
-
 static void describe(io::SectionVisitor& visit, CouplingCase& coupling) {
   visit.integer("grain_steps_per_fluid_step", coupling.grain_steps_per_fluid_step,
                 {.meaning = "sub-steps of the grains in one step of the fluid", .at_least = 1});
@@ -246,6 +145,12 @@ static void describe(io::SectionVisitor& visit, InitialCase& initial) {
                 "the start of the fluid is given twice; remove either this key or the section fluid");
 }
 
+static void describe(io::SectionVisitor& visit, AtRestCase& rest) {
+  visit.real("largest_speed", rest.largest_speed, {.unit = "m/s", .meaning = "no free grain is faster", .above = 0.0});
+  visit.real("largest_acceleration", rest.largest_acceleration,
+             {.unit = "m/s^2", .meaning = "no free grain has more, of all forces together", .above = 0.0});
+}
+
 static void describe_run(io::SectionVisitor& visit, RunCase& run, bool with_fluid) {
   visit.real("until", run.until,
              {.unit = "s",
@@ -253,6 +158,11 @@ static void describe_run(io::SectionVisitor& visit, RunCase& run, bool with_flui
               .required = true,
               .above = 0.0,
               .example = 30.0});
+  if (with_fluid)
+    visit.not_here("until_at_rest", "grains in a fluid are never at rest; remove the section or set system: grains");
+  else
+    visit.section("until_at_rest", run.until_at_rest,
+                  {.meaning = "the run ends when all grains are at rest (looked at every 200 steps), or at run.until"});
   if (with_fluid)
     visit.not_here("time_step", "with a fluid the step is fluid.time_step; remove the key");
   else

@@ -11,5 +11,7 @@ void describe(io::SectionVisitor& visit, Case& c);
 void describe(io::SectionVisitor& visit, DomainCase& domain);
 void describe(io::SectionVisitor& visit, SolidCase& solid);
 void describe(io::SectionVisitor& visit, FluidStatisticsCase& statistics);
+void describe(io::SectionVisitor& visit, PopulationCase& grains);
+void describe_contact(io::SectionVisitor& visit, ContactCase& contact, bool with_grains);
 
 }  // namespace thalweg

@@ -3,6 +3,7 @@
 #include "dem/grain_seed.hpp"
 #include "dem/material.hpp"
 #include "driver/build_system.hpp"
+#include "driver/grain_materials.hpp"
 #include "driver/grain_setup.hpp"
 #include "driver/machine.hpp"
 #include "driver/progress.hpp"
@@ -78,24 +79,33 @@ void add_bed(const Case& c, Lines& lines) {
                               flow.particle_reynolds, flow.friction_velocity));
 }
 
+// Of the lightest two grains of each population.
+std::string damping_text(const Case& c) {
+  const std::vector<dem::ContactParameters> materials = materials_of(c);
+  std::string text;
+  for (std::size_t p = 0; p < c.grains.size(); ++p) {
+    if (p > 0 && !c.grains[p].contact && c.grains[p].lightest_mass() == c.grains[0].lightest_mass()) continue;
+    const dem::ContactParameters& material = materials[static_cast<std::size_t>(material_of(c, p))];
+    const double damping = dem::Damping(material).coefficient(0.5 * c.grains[p].lightest_mass());
+    text += fmt::format("{}{:.3g}", p > 0 ? ", " : "", damping);
+  }
+  return text + (c.contact.law == ContactLaw::linear ? " kg/s" : " kg/(s m^1/2)");
+}
+
 void add_grains(const Case& c, Lines& lines) {
   for (const PopulationCase& population : c.grains) {
-    lines.push_back(
-        fmt::format("grains     {} of {:g} m, {:g} kg/m^3", population.count, population.diameter, population.density) +
-        (has_fluid(c) ? fmt::format(": {:.3g} cells a diameter", population.diameter / c.domain.spacing) : ""));
+    const double smallest = population.smallest_diameter(), largest = population.largest_diameter();
+    const std::string sizes = smallest == largest ? fmt::format("{:g} m", smallest)
+                                                  : fmt::format("{:g} to {:g} m, median by mass {:g} m", smallest,
+                                                                largest, population.diameter);
+    lines.push_back(fmt::format("grains     {} of {}, {:g} kg/m^3", population.count, sizes, population.density) +
+                    (has_fluid(c) ? fmt::format(": {:.3g} cells a diameter", smallest / c.domain.spacing) : ""));
   }
   if (c.grains.empty()) return;
-  const PeriodicBox box{c.domain.size, periodic_axes(c.domain)};
-  const dem::ContactParameters contact = grain_parameters(c, box).contact;
-  double lightest = c.grains.front().mass();
-  for (const PopulationCase& population : c.grains) lightest = std::min(lightest, population.mass());
-  const double effective = 0.5 * lightest;
-  const double damping = dem::Damping(contact).coefficient(effective);
-  const double duration = dem::contact_time(contact, effective, 0.25 * smallest_diameter(c));
   const double step = grain_time_step(c);
-  lines.push_back(
-      fmt::format("contact    lasts {:.3g} s: {:.3g} sub-steps of {:.3g} s (at least {:g}); damping {:.3g} kg/s",
-                  duration, duration / step, step, dem::fewest_steps_per_contact, damping));
+  lines.push_back(fmt::format("contact    lasts {:.3g} s: {:.3g} sub-steps of {:.3g} s (at least {:g}); damping {}",
+                              shortest_contact(c), shortest_contact(c) / step, step, dem::fewest_steps_per_contact,
+                              damping_text(c)));
   if (!has_fluid(c)) return;
   lines.push_back(
       fmt::format("flight     a grain moves a fiftieth of a cell a step at {:.3g} m/s: faster ones are less exact",
@@ -139,10 +149,12 @@ void refuse_impossible_grains(const Case& c) {
   const PeriodicBox box{c.domain.size, periodic_axes(c.domain)};
   const dem::GrainParameters parameters = grain_parameters(c, box);
   dem::check(parameters.contact);
-  double lightest = c.grains.front().mass();
-  for (const PopulationCase& population : c.grains) lightest = std::min(lightest, population.mass());
-  dem::check_time_step(parameters, {lightest, 0.5 * smallest_diameter(c)}, grain_count(c));
-  dem::check(grain_seeds(c), box, parameters.walls);
+  std::vector<dem::LightestGrain> lightest(1 + parameters.other_materials.size());
+  const std::vector<dem::GrainSeed> seeds = grain_seeds(c);
+  for (const dem::GrainSeed& seed : seeds)
+    lightest[static_cast<std::size_t>(seed.material)].include(seed.mass(), seed.radius);
+  dem::check_time_step(parameters, lightest, grain_count(c));
+  dem::check(seeds, box, parameters.walls, parameters.initial_overlap);
 }
 
 }  // namespace

@@ -67,7 +67,9 @@ Snapshot DryGrains::snapshot() const {
 
 std::vector<Figure> DryGrains::figures() const {
   return {{"contacts", "1", static_cast<double>(grains_.contact_count())},
-          {"largest_overlap", "1", grains_.largest_overlap()}};
+          {"largest_overlap", "1", grains_.largest_overlap()},
+          {largest_speed_figure, "m/s", grains_.largest_free_speed()},
+          {largest_acceleration_figure, "m/s^2", grains_.largest_acceleration()}};
 }
 
 void DryGrains::save(ArchiveWriter& archive) const {

@@ -20,7 +20,10 @@ public:
   std::int64_t step() const override { return step_; }
   double time_step() const override { return time_step_; }
   Snapshot snapshot() const override;
-  std::vector<Figure> figures() const override;  // contacts, largest_overlap (in diameters)
+  // contacts, largest_overlap (in diameters), and of the free grains largest_grain_speed, largest_grain_acceleration
+  std::vector<Figure> figures() const override;
+  static constexpr const char* largest_speed_figure = "largest_grain_speed";
+  static constexpr const char* largest_acceleration_figure = "largest_grain_acceleration";
   void save(ArchiveWriter& archive) const override;
   void load(ArchiveReader& archive) override;
   PhaseTimer& timer() override { return timer_; }

@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "dem/packing.hpp"
+#include "driver/grain_materials.hpp"
 
 #include <fmt/format.h>
 
@@ -21,12 +22,21 @@ dem::Region region_of(const PlacementCase& placement, const PeriodicBox& box) {
   return {placement.region->lower, placement.region->upper};
 }
 
-dem::GrainSeed prototype(const PopulationCase& population) {
+dem::GrainSeed seed_of(const Case& c, std::size_t number, std::size_t grain, const Vec3& position) {
+  const PopulationCase& population = c.grains[number];
   dem::GrainSeed seed;
-  seed.radius = 0.5 * population.diameter;
-  seed.density = population.density;
-  seed.velocity = population.prescribed_velocity.value_or(population.velocity);
-  seed.angular_velocity = population.prescribed_angular_velocity.value_or(population.angular_velocity);
+  seed.radius = 0.5 * population.diameter_of(grain);
+  seed.density = population.density_of(grain);
+  seed.position = position;
+  seed.material = material_of(c, number);
+  Vec3 velocity = population.velocity, spin = population.angular_velocity;
+  if (!population.file.empty()) {
+    const bool kept = population.placement.velocities.value_or(FileVelocities::kept) == FileVelocities::kept;
+    velocity = kept ? population.file[grain].velocity : Vec3::Zero();
+    spin = kept ? population.file[grain].angular_velocity : Vec3::Zero();
+  }
+  seed.velocity = population.prescribed_velocity.value_or(velocity);
+  seed.angular_velocity = population.prescribed_angular_velocity.value_or(spin);
   if (population.prescribed_velocity) seed.motion = dem::Motion::held_translation;
   if (population.prescribed_angular_velocity)
     seed.motion = population.prescribed_velocity ? dem::Motion::fixed : dem::Motion::held_rotation;
@@ -37,27 +47,32 @@ dem::GrainSeed prototype(const PopulationCase& population) {
   return seed;
 }
 
-enum class Turn { positions, uniform, random };
+// Who is given a place first.
+enum class Turn { given, uniform, random };
 
 Turn turn_of(const PlacementCase& placement) {
-  if (!placement.positions.empty()) return Turn::positions;
+  if (placement.file || !placement.positions.empty()) return Turn::given;
   return placement.pattern == PlacementPattern::uniform ? Turn::uniform : Turn::random;
 }
 
 std::vector<Vec3> place(const PopulationCase& population, const PeriodicBox& box,
                         const std::vector<dem::Sphere>& placed) {
   const PlacementCase& placement = population.placement;
-  const double radius = 0.5 * population.diameter;
   const auto seed = static_cast<std::uint64_t>(placement.seed);
+  std::vector<Vec3> positions;
+  std::vector<double> radii;
   switch (turn_of(placement)) {
-    case Turn::positions:
-      return placement.positions;
+    case Turn::given:
+      for (const io::BedGrain& grain : population.file) positions.push_back(grain.position);
+      return placement.file ? positions : placement.positions;
     case Turn::uniform:
-      return dem::uniform_packing(box, region_of(placement, box), population.count, radius, 0.0, seed);
+      return dem::uniform_packing(box, region_of(placement, box), population.count, 0.5 * population.largest_diameter(),
+                                  0.0, seed);
     case Turn::random:
       break;
   }
-  const std::vector<double> radii(static_cast<std::size_t>(population.count), radius);
+  for (std::size_t n = 0; n < static_cast<std::size_t>(population.count); ++n)
+    radii.push_back(0.5 * population.diameter_of(n));
   return dem::random_packing(box, region_of(placement, box), radii, 0.0, seed, placed);
 }
 
@@ -65,21 +80,18 @@ std::vector<Vec3> place(const PopulationCase& population, const PeriodicBox& box
 
 dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box) {
   dem::GrainParameters parameters;
-  parameters.contact.law = c.contact.law == ContactLaw::linear ? dem::Law::linear : dem::Law::hertz_mindlin;
-  parameters.contact.youngs_modulus = c.contact.youngs_modulus;
-  parameters.contact.poisson_ratio = c.contact.poisson_ratio;
-  parameters.contact.tangential_damping = c.contact.tangential_damping;
-  parameters.contact.normal_stiffness = c.contact.normal_stiffness;
-  parameters.contact.tangential_stiffness = c.contact.tangential_stiffness;
-  parameters.contact.restitution = c.contact.restitution;
-  parameters.contact.damping = c.contact.damping;
-  parameters.contact.friction = c.contact.friction;
-  parameters.contact.wall_friction = c.contact.wall_friction;
-  parameters.contact.attraction = c.contact.attraction == Attraction::allowed;
+  const std::vector<dem::ContactParameters> materials = materials_of(c);
+  parameters.contact = materials.front();
+  parameters.other_materials.assign(materials.begin() + 1, materials.end());
+  parameters.wall_contact = wall_material_of(c.contact);
   parameters.walls = dem::face_planes(box, parameters.contact);
   parameters.time_step = grain_time_step(c);
   parameters.sub_steps = static_cast<int>(c.coupling.grain_steps_per_fluid_step);
   parameters.skin = skin_in_diameters * smallest_diameter(c);
+  for (const PopulationCase& population : c.grains)
+    if (population.placement.file)
+      parameters.initial_overlap = std::max(parameters.initial_overlap,
+                                            population.placement.largest_overlap.value_or(PlacementCase::bed_overlap));
   return parameters;
 }
 
@@ -87,7 +99,7 @@ std::vector<dem::GrainSeed> grain_seeds(const Case& c) {
   const PeriodicBox box = box_of(c);
   std::vector<std::vector<Vec3>> positions(c.grains.size());
   std::vector<dem::Sphere> placed;
-  for (const Turn turn : {Turn::positions, Turn::uniform, Turn::random})
+  for (const Turn turn : {Turn::given, Turn::uniform, Turn::random})
     for (std::size_t p = 0; p < c.grains.size(); ++p) {
       if (turn_of(c.grains[p].placement) != turn) continue;
       try {
@@ -95,15 +107,14 @@ std::vector<dem::GrainSeed> grain_seeds(const Case& c) {
       } catch (const InputError& error) {
         throw InputError(fmt::format("grains.{}: {}", p, error.what()));
       }
-      for (const Vec3& position : positions[p]) placed.push_back({position, 0.5 * c.grains[p].diameter});
+      for (std::size_t n = 0; n < positions[p].size(); ++n)
+        placed.push_back({positions[p][n], 0.5 * c.grains[p].diameter_of(n)});
     }
   std::vector<dem::GrainSeed> seeds;
   for (std::size_t p = 0; p < c.grains.size(); ++p)
-    for (const Vec3& position : positions[p]) {
-      dem::GrainSeed seed = prototype(c.grains[p]);
-      seed.id = static_cast<GlobalId>(seeds.size());
-      seed.position = position;
-      seeds.push_back(seed);
+    for (std::size_t n = 0; n < positions[p].size(); ++n) {
+      seeds.push_back(seed_of(c, p, n, positions[p][n]));
+      seeds.back().id = static_cast<GlobalId>(seeds.size() - 1);
     }
   return seeds;
 }

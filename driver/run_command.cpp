@@ -7,6 +7,7 @@
 #include "core/mpi_session.hpp"
 #include "driver/build_system.hpp"
 #include "driver/case_reader.hpp"
+#include "driver/dry_grains.hpp"
 #include "driver/machine.hpp"
 #include "driver/on_first_rank.hpp"
 #include "driver/progress.hpp"
@@ -15,6 +16,7 @@
 #include "driver/summary.hpp"
 #include "driver/version.hpp"
 #include "io/atomic_file.hpp"
+#include "io/bed_file.hpp"
 
 #include <fmt/format.h>
 
@@ -120,7 +122,8 @@ void say_how_it_ended(const RunIdentity& identity, const LoopRecord& record, con
   log.line(
       fmt::format("{} steps in {}: {}", record.last_step - record.first_step, clock_text(record.wall_seconds), speed));
   if (record.finished)
-    log.line(fmt::format("finished at {:.6g} s: {}", system.time(), folder.summary().string()));
+    log.line(fmt::format("finished{} at {:.6g} s: {}", record.early ? ", all grains at rest," : "", system.time(),
+                         folder.summary().string()));
   else
     log.line(fmt::format("not finished, {}: at {:.6g} s; to go on: --restart {}", record.reason, system.time(),
                          folder.path().string()));
@@ -156,6 +159,9 @@ void run_case(const Command& command, MPI_Comm communicator, WallClock::time_poi
                    places.same_folder ? std::optional<double>(system->time()) : std::nullopt);
   LoopPlan plan;
   plan.until = c.run.until;
+  if (c.run.until_at_rest)
+    plan.enough = {{DryGrains::largest_speed_figure, c.run.until_at_rest->largest_speed},
+                   {DryGrains::largest_acceleration_figure, c.run.until_at_rest->largest_acceleration}};
   plan.walltime = command.walltime;
   plan.started = started;
   plan.write_at_start = !places.same_folder;
@@ -170,6 +176,7 @@ void run_case(const Command& command, MPI_Comm communicator, WallClock::time_poi
       summary_of(identity, *system, record, observers, {}).write(places.folder.summary());
     throw;
   }
+  if (!c.grains.empty()) io::write_bed_file(communicator, places.folder.bed(), system->snapshot());
   const std::vector<PhaseShare> phases = collect_phases(communicator, *system, loop);
   say_how_it_ended(identity, loop.record(), *system, phases, places.folder, log);
   const io::JsonObject summary = summary_of(identity, *system, loop.record(), observers, phases);

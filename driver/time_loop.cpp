@@ -48,15 +48,18 @@ void TimeLoop::run() {
     record_.advance_seconds += seconds_since(before);
     record_.last_step = system_.step();
     record_.wall_seconds = seconds_since(begin_);
-    if (system_.step() % steps_between_health_checks == 0) look_at_health();
+    const bool looks = system_.step() % steps_between_health_checks == 0;
+    if (looks) look_at_health();
     write_what_is_due();
     if (plan_.checkpoint.due(system_.step())) checkpoint();
     if (system_.step() >= next_conference_) verdict = confer();
+    if (looks && has_enough()) verdict = Verdict::enough;  // at the same step on any ranks and after any restart
   }
   look_at_health();
   checkpoint();
   if (log_.speaking() && printed_step_ != system_.step()) report(seconds_since(begin_));
-  record_.finished = system_.step() >= final_step_;
+  record_.early = verdict == Verdict::enough;
+  record_.finished = record_.early || system_.step() >= final_step_;
   if (record_.finished) record_.reason.clear();
   record_.wall_seconds = seconds_since(begin_);
 }
@@ -91,6 +94,14 @@ void TimeLoop::measure() {
   const Snapshot snapshot = system_.snapshot();
   for (std::size_t o = 0; o < observers_.size(); ++o)
     if (due(schedules_[o])) observers_[o]->observe(snapshot);
+}
+
+bool TimeLoop::has_enough() const {
+  const auto below = [this](const FigureLimit& limit) {
+    const std::optional<double> value = find_figure(record_.figures, limit.figure);
+    return value && *value < limit.limit;
+  };
+  return !plan_.enough.empty() && std::all_of(plan_.enough.begin(), plan_.enough.end(), below);
 }
 
 void TimeLoop::write_what_is_due() {

@@ -33,8 +33,15 @@ struct OutputTask {
 using SeriesRow = std::function<void(double time, std::int64_t step, const std::vector<Figure>&)>;  // collective
 using WriteCheckpoint = std::function<void()>;                                                      // collective
 
+// A figure of the system and what it must fall below.
+struct FigureLimit {
+  std::string figure;
+  double limit;
+};
+
 struct LoopPlan {
   double until = 0.0;                                // s, simulated
+  std::vector<FigureLimit> enough;                   // the run is finished when all hold; none: at `until` only
   double walltime = 0.0;                             // s of wall time from `started` on; 0: as long as it takes
   WallClock::time_point started = WallClock::now();  // of the program
   bool write_at_start = true;                        // false where a run goes on: its first picture exists already
@@ -48,6 +55,7 @@ struct LoopPlan {
 // What has become of a run so far.
 struct LoopRecord {
   bool finished = false;
+  bool early = false;  // finished by LoopPlan::enough
   std::string reason;  // why it is not finished; empty if it is
   std::int64_t first_step = 0, last_step = 0;
   double wall_seconds = 0.0;     // in run(), this time
@@ -74,10 +82,11 @@ public:
   static constexpr std::int64_t steps_between_health_checks = 200;
 
 private:
-  enum class Verdict : int { go_on = 0, wall_time_is_up = 1, signal = 2 };
+  enum class Verdict : int { go_on = 0, wall_time_is_up = 1, signal = 2, enough = 3 };
 
   void look_at_health();
   void measure();
+  bool has_enough() const;
   void write_what_is_due();
   void checkpoint();
   Verdict confer();

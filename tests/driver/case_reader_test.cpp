@@ -8,6 +8,10 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 namespace thalweg {
 namespace {
 
@@ -116,7 +120,8 @@ TEST(CaseReader, ElasticSpheresHaveModuliInPlaceOfStiffnesses) {
   EXPECT_EQ(c.contact.tangential_damping, 0.5);
   EXPECT_EQ(read(resolved_yaml(c)), c);
   // 2.868 (m*^2/(R* E*^2 v))^(1/5) at 1 m/s: m* = 8.1e-5 kg, R* = 1.2375 mm, E* = 5.33e7 Pa.
-  const double mass = 0.5 * c.grains[0].mass(), radius = 0.25 * c.grains[0].diameter, modulus = 1e8 / (2.0 * 0.9375);
+  const double mass = 0.5 * c.grains[0].lightest_mass(), radius = 0.25 * c.grains[0].diameter,
+               modulus = 1e8 / (2.0 * 0.9375);
   EXPECT_NEAR(shortest_contact(c), 2.868 * std::pow(mass * mass / (radius * modulus * modulus), 0.2), 1e-15);
   EXPECT_THROW(read(defaults_yaml("grains"), {elastic, "run.time_step=", "contact.normal_stiffness=20000"}),
                InputError);
@@ -333,8 +338,89 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"log_profile_above_the_top",
             {"initial.fluid={log_profile: {bed_height: 0.08, shear_velocity: 0.06, roughness: 2e-4}}"},
             {"initial.fluid.log_profile.bed_height = 0.08: no fluid is left above the bed", "below 0.0748"}},
+        Bad{"no_diameter", {"grains.0.diameter="}, {"grains.0.diameter is missing: give a number in m above 0"}},
+        Bad{"diameter_with_unit",
+            {"grains.0.diameter=5 mm"},
+            {"grains.0.diameter = \"5 mm\": expected a number in m above 0, for example 0.005"}},
+        Bad{"two_kinds_of_sizes",
+            {"grains.0.diameter={value: 0.005, sizes: [0.004], fractions: [1]}"},
+            {"grains.0.diameter.value = 0.005: give exactly one of value in m, distribution, and sizes"}},
+        Bad{"half_a_distribution",
+            {"grains.0.diameter={distribution: lognormal, median: 0.005, minimum: 0.004, maximum: 0.006}"},
+            {"grains.0.diameter.distribution = \"lognormal\"", "needs median, minimum and maximum", "deviation"}},
+        Bad{"median_outside",
+            {"grains.0.diameter={distribution: lognormal, median: 0.007, geometric_deviation: 1.2, minimum: 0.004, "
+             "maximum: 0.006}"},
+            {"grains.0.diameter.median = 0.007: minimum, median and maximum must rise"}},
+        Bad{"cut_of_no_distribution",
+            {"grains.0.diameter={value: 0.005, maximum: 0.006}"},
+            {"grains.0.diameter.maximum = 0.006: only a distribution has it"}},
+        Bad{"sizes_without_fractions",
+            {"grains.0.diameter={sizes: [0.004, 0.005], fractions: [1]}"},
+            {"grains.0.diameter.sizes = [0.004, 0.005]", "as many fractions as sizes"}},
+        Bad{"fractions_of_what",
+            {"grains.0.diameter={sizes: [0.004, 0.005], fractions: [0.6, 0.6]}"},
+            {"grains.0.diameter.fractions = [0.6, 0.6]: the fractions add up to 1.2"}},
+        Bad{"modulus_of_springs",
+            {"grains.0.contact={youngs_modulus: 1e9}"},
+            {"grains.0.contact.youngs_modulus = 1e9: contact.law is linear"}},
+        Bad{"other_kind_of_loss",
+            {"contact.walls={damping: 0.1}"},
+            {"contact.walls.damping = 0.1: the section contact gives a restitution"}},
+        Bad{"friction_of_walls",
+            {"contact.walls={friction: 0.1}"},
+            {"contact.walls.friction = 0.1: the friction of walls is contact.wall_friction"}},
+        Bad{"wet_rest", {"run.until_at_rest={}"}, {"run.until_at_rest", "grains in a fluid are never at rest"}},
         Bad{"no_run", {"run="}, {"case.yaml:1: run is missing: give a section"}}),
     [](const auto& bad) { return bad.param.name; });
+
+// Grain n of a lognormal population of N lies at the share (n + 1/2)/N of the cut distribution, in order of size.
+TEST(CaseReader, SizesFollowTheirDistribution) {
+  const std::string sizes =
+      "grains.0.diameter={distribution: lognormal, median: 4.5e-3, geometric_deviation: 1.3, minimum: 3e-3, maximum: "
+      "6e-3}";
+  const Case c = read(flume, {sizes});
+  std::vector<double> d = c.grains[0].diameters;
+  ASSERT_EQ(d.size(), 150u);
+  EXPECT_FALSE(std::is_sorted(d.begin(), d.end()));  // the seed shuffles
+  std::sort(d.begin(), d.end());
+  const auto below = [](double diameter) {
+    return 0.5 * std::erfc(-std::log(diameter / 4.5e-3) / std::log(1.3) / std::sqrt(2.0));
+  };
+  for (std::size_t n = 0; n < d.size(); ++n)
+    EXPECT_NEAR((below(d[n]) - below(3e-3)) / (below(6e-3) - below(3e-3)), (n + 0.5) / 150.0, 1e-12);
+  // Half of the mass is finer than the population's diameter.
+  double finer = 0.0, all = 0.0;
+  for (const double diameter : d) {
+    all += std::pow(diameter, 3);
+    if (diameter <= c.grains[0].diameter) finer += std::pow(diameter, 3);
+  }
+  EXPECT_NEAR(finer / all, 0.5, std::pow(6e-3, 3) / all);
+  EXPECT_EQ(read(flume, {sizes, "grains.0.placement.seed=8"}).grains[0].smallest_diameter(), d.front());
+  EXPECT_NE(read(flume, {sizes, "grains.0.placement.seed=8"}).grains[0].diameters, c.grains[0].diameters);
+  EXPECT_EQ(read(resolved_yaml(c)), c) << resolved_yaml(c);
+}
+
+TEST(CaseReader, ListedSizesHaveTheirShareOfTheNumber) {
+  const Case c = read(flume, {"grains.0.diameter={sizes: [4e-3, 3e-3, 5e-3], fractions: [0.2, 0.3, 0.5]}"});
+  const std::vector<double>& d = c.grains[0].diameters;
+  EXPECT_EQ(std::count(d.begin(), d.end(), 4e-3), 30);
+  EXPECT_EQ(std::count(d.begin(), d.end(), 3e-3), 45);
+  EXPECT_EQ(std::count(d.begin(), d.end(), 5e-3), 75);
+  EXPECT_EQ(c.grains[0].diameter, 5e-3);
+  EXPECT_NEAR(c.grains[0].volume(), std::numbers::pi / 6.0 * (30 * 64e-9 + 45 * 27e-9 + 75 * 125e-9), 1e-20);
+  EXPECT_EQ(smallest_diameter(c), 3e-3);
+  EXPECT_EQ(read(resolved_yaml(c)), c) << resolved_yaml(c);
+}
+
+TEST(CaseReader, PopulationsAndWallsChangeTheMaterial) {
+  const Case c = read(flume, {"grains.1.contact={normal_stiffness: 5e4, friction: 0.2}",
+                              "contact.walls={restitution: 0.5, tangential_stiffness: 100}"});
+  EXPECT_FALSE(c.grains[0].contact.has_value());
+  EXPECT_EQ(*c.grains[1].contact->normal_stiffness, 5e4);
+  EXPECT_EQ(*c.contact.walls->restitution, 0.5);
+  EXPECT_EQ(read(resolved_yaml(c)), c) << resolved_yaml(c);
+}
 
 TEST(CaseReader, DryGrainsNeedGrains) {
   const std::string message = message_of<InputError>([] { read(defaults_yaml("grains"), {"grains=[]"}); });

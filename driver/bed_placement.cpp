@@ -1,0 +1,125 @@
+#include "driver/bed_placement.hpp"
+
+#include "core/error.hpp"
+#include "core/periodic_box.hpp"
+#include "dem/grain_seed.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+namespace thalweg {
+namespace {
+
+// Box sizes that differ by less are the same: decimal numbers read from two case files.
+constexpr double same_size = 1e-9;
+
+std::string without_period(std::string text) {
+  if (text.ends_with('.')) text.pop_back();
+  return text;
+}
+
+class BedPlacement {
+public:
+  BedPlacement(const Case& c, const io::YamlDocument& document, const std::string& key, const io::Bed& bed)
+      : case_(c), document_(document), key_(key), bed_(bed) {}
+
+  void check_box() const {
+    const std::array<bool, 3> periodic = periodic_axes(case_.domain);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!bed_.periodic[static_cast<std::size_t>(axis)]) continue;
+      const double made = bed_.box[axis], here = case_.domain.size[axis];
+      if (!periodic[static_cast<std::size_t>(axis)] || std::abs(made - here) > same_size * made)
+        throw document_.error(
+            key_, fmt::format("the bed was made in a box periodic along {} over {:g} m, and this case's is {} over "
+                              "{:g} m; give the same domain there, or make a bed for this one",
+                              "xyz"[axis], made, periodic[static_cast<std::size_t>(axis)] ? "periodic" : "not periodic",
+                              here));
+    }
+  }
+
+  void check_grains(const std::vector<io::BedGrain>& grains, double largest_overlap) const {
+    const PeriodicBox box{case_.domain.size, periodic_axes(case_.domain)};
+    std::vector<dem::GrainSeed> seeds;
+    for (const io::BedGrain& grain : grains) {
+      dem::GrainSeed seed;
+      seed.id = static_cast<GlobalId>(seeds.size());
+      seed.radius = grain.radius;
+      seed.density = grain.density;
+      seed.position = grain.position;
+      seeds.push_back(seed);
+      if ((grain.position.array() < 0.0).any() || (grain.position.array() > case_.domain.size.array()).any())
+        throw document_.error(
+            key_, fmt::format("grain {} of the file, at [{:g}, {:g}, {:g}] m, is outside this case's box; give a "
+                              "domain.size in m that holds the bed, or a placement.region to leave it out",
+                              grain.id, grain.position[0], grain.position[1], grain.position[2]));
+    }
+    try {
+      dem::check(seeds, box, {}, largest_overlap);
+    } catch (const InputError& error) {
+      throw document_.error(key_, fmt::format("{}; up to placement.largest_overlap: {:g} diameters are allowed",
+                                              without_period(error.what()), largest_overlap));
+    }
+  }
+
+private:
+  const Case& case_;
+  const io::YamlDocument& document_;
+  std::string key_;
+  const io::Bed& bed_;
+};
+
+bool inside(const Vec3& point, const RegionCase& region) {
+  return (point.array() >= region.lower.array()).all() && (point.array() <= region.upper.array()).all();
+}
+
+void take_from_file(Case& c, std::size_t number, const io::YamlDocument& document) {
+  PopulationCase& population = c.grains[number];
+  PlacementCase& placement = population.placement;
+  const std::string key = fmt::format("grains.{}.placement.file", number);
+  const std::filesystem::path path =
+      std::filesystem::absolute(document.path().parent_path() / *placement.file).lexically_normal();
+  if (!std::filesystem::is_regular_file(path))
+    throw document.error(key, fmt::format("there is no file {}; give the path of a bed file relative to the case file, "
+                                          "for example run/bed.h5 as thalweg run leaves it",
+                                          path.string()));
+  placement.file = path.string();
+  io::Bed bed;
+  try {
+    bed = io::read_bed_file(path);
+  } catch (const InputError& error) {
+    throw document.error(key, without_period(error.what()));
+  }
+  for (const io::BedGrain& grain : bed.grains)
+    if (!placement.region || inside(grain.position, *placement.region)) population.file.push_back(grain);
+  if (population.file.empty())
+    throw document.error(key, "the file has no grain in the region; give a placement.region in m that holds some");
+  const BedPlacement checks(c, document, key, bed);
+  checks.check_box();
+  checks.check_grains(population.file, placement.largest_overlap.value_or(PlacementCase::bed_overlap));
+
+  population.count = static_cast<std::int64_t>(population.file.size());
+  double mass = 0.0, volume = 0.0;
+  for (const io::BedGrain& grain : population.file) {
+    population.diameters.push_back(2.0 * grain.radius);
+    volume += std::pow(grain.radius, 3);
+    mass += grain.density * std::pow(grain.radius, 3);
+  }
+  population.diameter = median_by_volume(population.diameters);
+  population.density = mass / volume;
+}
+
+}  // namespace
+
+void fill_in_grains(Case& c, const io::YamlDocument& document) {
+  for (std::size_t n = 0; n < c.grains.size(); ++n) {
+    PopulationCase& population = c.grains[n];
+    if (population.placement.file) take_from_file(c, n, document);
+    if (!population.sizes.given()) continue;
+    population.diameters = sampled_diameters(population.sizes, population.count, population.placement.seed);
+    population.diameter = median_by_volume(population.diameters);
+  }
+}
+
+}  // namespace thalweg

@@ -1,0 +1,122 @@
+// The grains of a case as the user asked for them, in SI units: populations, where they are put, what they are made of.
+#pragma once
+
+#include "core/types.hpp"
+#include "io/bed_file.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace thalweg {
+
+enum class PlacementPattern { uniform, random };
+
+struct RegionCase {
+  Vec3 lower = Vec3::Zero();  // m
+  Vec3 upper = Vec3::Zero();  // m
+  bool operator==(const RegionCase&) const = default;
+};
+
+enum class FileVelocities { kept, zero };
+
+struct PlacementCase {
+  static constexpr double bed_overlap = 0.01;
+
+  PlacementPattern pattern = PlacementPattern::uniform;  // unless there are positions or a file
+  std::int64_t seed = 1;
+  std::optional<RegionCase> region;          // none: the whole box; of a file: the grains with their centre in it
+  std::vector<Vec3> positions;               // m; as many as the population counts, or none
+  std::optional<std::string> file;           // a bed file; relative to the case file, absolute once read
+  std::optional<double> largest_overlap;     // diameters the grains of the file may overlap by; else bed_overlap
+  std::optional<FileVelocities> velocities;  // of the file; else kept
+  bool operator==(const PlacementCase&) const = default;
+};
+
+enum class SizeDistribution { lognormal };
+
+// How the diameters of a population differ; nothing given: not at all.
+struct SizesCase {
+  std::optional<SizeDistribution> distribution;
+  std::optional<double> median;               // m, by number, before the tails are cut
+  std::optional<double> geometric_deviation;  // 1; exp of the standard deviation of ln d
+  std::optional<double> minimum, maximum;     // m, where the tails are cut
+  std::vector<double> sizes;                  // m, in place of a distribution
+  std::vector<double> fractions;              // of the number of grains, as many as sizes
+  bool operator==(const SizesCase&) const = default;
+
+  bool given() const { return distribution || !sizes.empty(); }
+};
+
+// What a population or the walls are made of, where it differs from the section `contact`.
+struct MaterialCase {
+  std::optional<double> normal_stiffness;      // N/m
+  std::optional<double> tangential_stiffness;  // N/m
+  std::optional<double> youngs_modulus;        // Pa
+  std::optional<double> poisson_ratio;         // 1
+  std::optional<double> restitution;           // 1
+  std::optional<double> damping;               // kg/s
+  std::optional<double> friction;              // 1; not of walls, whose friction is contact.wall_friction
+  bool operator==(const MaterialCase&) const = default;
+};
+
+struct WallMaterialCase : MaterialCase {
+  bool operator==(const WallMaterialCase&) const = default;
+};
+
+struct PopulationCase {
+  std::int64_t count = 0;  // read as the number of positions, or of grains in the file, where those are given
+  double diameter = 0.0;   // m; where they differ, the one that half of the mass is finer than
+  double density = 0.0;    // kg/m^3; from a file: mass over volume of all its grains
+  SizesCase sizes;
+  PlacementCase placement;
+  std::optional<MaterialCase> contact;
+  Vec3 velocity = Vec3::Zero();                     // m/s, at the start
+  Vec3 angular_velocity = Vec3::Zero();             // rad/s, at the start
+  bool fixed = false;                               // never moves
+  std::optional<Vec3> prescribed_velocity;          // m/s, kept whatever the loads
+  std::optional<Vec3> prescribed_angular_velocity;  // rad/s
+
+  // What read_case() makes of sizes and file.
+  std::vector<double> diameters;   // m, one a grain; empty: all `diameter`
+  std::vector<io::BedGrain> file;  // grains of placement.file, one by one
+
+  bool operator==(const PopulationCase&) const = default;
+
+  double diameter_of(std::size_t grain) const { return diameters.empty() ? diameter : diameters[grain]; }
+  double density_of(std::size_t grain) const { return file.empty() ? density : file[grain].density; }
+  double smallest_diameter() const;  // m
+  double largest_diameter() const;   // m
+  double lightest_mass() const;      // kg
+  double volume() const;             // m^3, of all its grains
+};
+
+// The diameter that half of the mass of these grains is finer than; m.
+double median_by_volume(std::vector<double> diameters);
+
+// One diameter (m) a grain. Every grain takes the place in the distribution that its random number has among those of
+// the population, so that the population follows the distribution as closely as its number allows, and the seed only
+// shuffles. fractions: each size gets its share of the number, rounded so that the sum is right.
+std::vector<double> sampled_diameters(const SizesCase& sizes, std::int64_t count, std::int64_t seed);
+
+enum class Attraction { none, allowed };
+enum class ContactLaw { linear, hertz_mindlin };
+
+struct ContactCase {
+  ContactLaw law = ContactLaw::linear;
+  double normal_stiffness = 20000.0;            // N/m
+  double tangential_stiffness = 5714.0;         // N/m
+  double youngs_modulus = 0.0;                  // Pa; of hertz_mindlin, in place of the two stiffnesses
+  double poisson_ratio = 0.3;                   // 1; of hertz_mindlin
+  double tangential_damping = 0.0;              // 1; dashpot along the contact over the one across it
+  std::optional<double> restitution;            // 1; exactly one of restitution and damping is set
+  std::optional<double> damping;                // kg/s
+  double friction = 0.5;                        // grain on grain
+  double wall_friction = 0.45;                  // grain on wall
+  Attraction attraction = Attraction::allowed;  // allowed: the dashpot may pull grains together as they part
+  std::optional<WallMaterialCase> walls;        // contact of grains with walls, where it differs
+  bool operator==(const ContactCase&) const = default;
+};
+
+}  // namespace thalweg

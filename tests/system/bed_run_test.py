@@ -1,0 +1,129 @@
+#!/usr/bin/python3
+"""Beds: poured until at rest, written to a file, and read by other cases.
+
+Called by ctest: bed_run_test.py THALWEG MPIEXEC [unittest arguments]
+"""
+import sys
+from pathlib import Path
+
+import h5py
+import numpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+import program
+from program import ProgramTest
+
+MASS = 2550 * numpy.pi / 6 * 5e-3 ** 3
+
+
+class BedRun(ProgramTest):
+    CASE = """
+system: grains
+name: pour
+domain:
+  size: [0.02, 0.015, 0.06]
+  spacing: 1.0e-3
+  boundaries: {x: periodic, y: no_slip, bottom: no_slip, top: no_slip}
+gravity: {magnitude: 9.8, slope: 0.05}
+grains:
+  - {count: 40, diameter: 5.0e-3, density: 2550, placement: {pattern: random, seed: 3}}
+contact: {restitution: 0.4, tangential_damping: 0.5}
+run: {until: 2.0, until_at_rest: {largest_speed: 2.0e-4, largest_acceleration: 0.01}}
+output: {series: {every: 0.02}}
+"""
+    FILE = "grains=[{placement: {file: run/bed.h5}}]"
+
+    def setUp(self):
+        super().setUp()
+        self.run_well("run", self.case)
+
+    def bed(self, run="run"):
+        with h5py.File(self.folder / run / "bed.h5") as file:
+            return {name: file["grains"][name][()] for name in file["grains"]}
+
+    def test_the_file_has_the_same_bytes_on_any_ranks(self):
+        for out, ranks, layout in (("one", 0, "1,1,1"), ("two", 2, "2,1,1"), ("four", 4, "2,1,2")):
+            self.run_well("run", self.case, "--out", out, "--layout", layout, "--set", "run={until: 0.02}", ranks=ranks)
+            self.assertEqual((self.folder / out / "bed.h5").read_bytes(), (self.folder / "one/bed.h5").read_bytes())
+
+    def test_the_grains_are_at_rest_on_each_other(self):
+        summary = self.summary("run")
+        self.assertTrue(summary["finished"])
+        self.assertLess(summary["simulated_time"], 1.9)
+        bed = self.bed()
+        self.assertEqual(bed["id"].tolist(), list(range(40)))
+        self.assertTrue((bed["radius"] == 2.5e-3).all())
+        numpy.testing.assert_allclose(bed["density"], 2550, rtol=1e-14)
+        self.assertLess(numpy.linalg.norm(bed["velocity"], axis=1).max(), 2e-4)
+        # All lie on each other: between the densest packing (0.74) and one too loose to stand (0.4) in a layer below
+        # the highest surface.
+        top = bed["position"][:, 2].max() + 2.5e-3
+        fraction = 40 * MASS / 2550 / (0.02 * 0.015 * top)
+        self.assertTrue(0.4 < fraction < 0.74, fraction)
+
+    def test_every_dataset_has_its_unit(self):
+        with h5py.File(self.folder / "run/bed.h5") as file:
+            units = {name: data.attrs["unit"].decode() for name, data in file["grains"].items()}
+            self.assertEqual(units, {"id": "1", "radius": "m", "density": "kg/m^3", "position": "m",
+                                     "velocity": "m/s", "angular_velocity": "rad/s"})
+            self.assertEqual(file["bed/box"][()].tolist(), [0.02, 0.015, 0.06])
+            self.assertEqual(file["bed/periodic"][()].tolist(), [1, 0, 0])
+
+    def test_another_run_begins_with_the_bed(self):
+        # One step of 2.04e-4 s: 4.1e-8 m at 2e-4 m/s, and g t^2/2 = 2.04e-7 m while the springs along the contacts, which
+        # the file does not keep, build up again.
+        self.run_well("run", self.case, "--out", "next", "--set", self.FILE, "--set", "run={until: 1.0e-4}", ranks=2)
+        before, after = self.bed(), self.bed("next")
+        numpy.testing.assert_allclose(after["position"], before["position"], rtol=0, atol=2.5e-7)
+        self.assertEqual(after["radius"].tolist(), before["radius"].tolist())
+        # ... and the bed stays where it is: far longer than a grain needs to fall a diameter (0.03 s).
+        self.run_well("run", self.case, "--out", "later", "--set", self.FILE, "--set", "run={until: 0.2}")
+        moved = numpy.linalg.norm(self.bed("later")["position"] - before["position"], axis=1)
+        self.assertLess(moved.max(), 0.02 * 5e-3)
+        # The case kept in the run folder is valid in itself: its path of the bed file is absolute.
+        self.run_well("run", self.folder / "next/case.yaml", "--out", "again")
+        self.assertEqual((self.folder / "again/bed.h5").read_bytes(), (self.folder / "next/bed.h5").read_bytes())
+
+    def test_two_populations_share_a_bed(self):
+        top = 0.06
+        shared = ("grains=[{placement: {file: run/bed.h5, region: {lower: [0, 0, 0], upper: [0.02, 0.015, 0.004]}}, "
+                  "fixed: true}, {placement: {file: run/bed.h5, velocities: zero, "
+                  f"region: {{lower: [0, 0, 0.004], upper: [0.02, 0.015, {top}]}}}}}}]")
+        self.run_well("run", self.case, "--out", "glued", "--set", shared, "--set", "run={until: 0.01}")
+        before, after = self.bed()["position"], self.bed("glued")["position"]
+        low = before[:, 2] < 0.004
+        numpy.testing.assert_array_equal(after[:low.sum()], before[low])
+        self.assertEqual(len(after), 40)
+
+    def test_a_resolved_case_begins_with_the_bed(self):
+        self.run_well("run", self.case, "--out", "wet", "--set", self.FILE, "--set", "system=resolved",
+                      "--set", "fluid={density: 1000, kinematic_viscosity: 1.0e-6, smagorinsky_constant: 0.27, "
+                      "time_step: 1.0e-4}", "--set", "run={until: 5.0e-4}")
+        # In 0.5 ms under gravity, grains not quite held by their contacts fall by g t^2/2 = 1.2e-6 m at most.
+        moved = numpy.linalg.norm(self.bed("wet")["position"] - self.bed()["position"], axis=1)
+        self.assertLess(moved.max(), 2e-6)
+
+    def test_beds_that_do_not_fit_are_refused(self):
+        place = "grains.0.placement.file"
+        for words, settings in (
+                (["there is no file", "no.h5", place], ["grains=[{placement: {file: no.h5}}]"]),
+                (["not a bed file", place], ["grains=[{placement: {file: run/checkpoints/"
+                                             + self.last_checkpoint("run").name + "}}]"]),
+                (["not an HDF5 file", place], ["grains=[{placement: {file: run/run.log}}]"]),
+                (["periodic along x over 0.02 m", "periodic over 0.03 m"], [self.FILE, "domain.size=[0.03, 0.015, 0.06]"]),
+                (["not periodic over 0.02 m"], [self.FILE, "domain.boundaries.x=no_slip"]),
+                (["outside this case's box", "domain.size"], [self.FILE, "domain.size=[0.02, 0.015, 0.006]"]),
+                (["overlap", "placement.largest_overlap: 1e-08", place],
+                 ["grains=[{placement: {file: run/bed.h5, largest_overlap: 1.0e-8}}]"]),
+                (["no grain in the region"], ["grains=[{placement: {file: run/bed.h5, region: {lower: [0, 0, 0.059], "
+                                              "upper: [0.02, 0.015, 0.06]}}}]"]),
+                (["grains.0.diameter", "the bed file gives it"],
+                 ["grains=[{placement: {file: run/bed.h5}, diameter: 4.0e-3}]"]),
+                (["grains.0.placement.velocities", "only a placement from a file"],
+                 ["grains.0.placement.velocities=zero"]),
+                (["run.until_at_rest.largest_speed", "above 0"], ["run.until_at_rest.largest_speed=0"])):
+            arguments = [a for setting in settings for a in ("--set", setting)]
+            self.assert_refused("check", self.case, *arguments, words=words)
+
+
+program.main()

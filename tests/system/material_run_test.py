@@ -1,0 +1,95 @@
+#!/usr/bin/python3
+"""Materials and sizes of populations, from the case file to what becomes of the grains.
+
+Called by ctest: material_run_test.py THALWEG MPIEXEC [unittest arguments]
+"""
+import sys
+from pathlib import Path
+
+import h5py
+import numpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+import program
+from program import ProgramTest
+
+
+class MaterialRun(ProgramTest):
+    # No gravity: what flies on the straight line between two impacts needs no theory. 400 steps a contact, at which the
+    # error of the restitution is below 1e-3 (2.6e-3 at 50 steps and e = 0.93, falling as 1/N; larger at low e).
+    CASE = """
+system: grains
+name: impact
+domain: {size: [0.04, 0.02, 0.02], spacing: 1.0e-3, boundaries: {x: periodic, y: periodic, bottom: no_slip, top: no_slip}}
+gravity: {magnitude: 0.0}
+grains:
+  - {diameter: 5.0e-3, density: 2550, placement: {positions: [[0.010, 0.01, 0.01]]}, velocity: [0.5, 0, 0]}
+  - {diameter: 5.0e-3, density: 2550, placement: {positions: [[0.016, 0.01, 0.01]]}, velocity: [-0.5, 0, 0]}
+contact: {restitution: 0.9, attraction: none, friction: 0.0}
+run: {until: 3.0e-3, time_step: 5.0e-7}
+"""
+
+    def velocities(self, *settings, ranks=0):
+        arguments = [a for setting in settings for a in ("--set", setting)]
+        self.run_well("run", self.case, "--overwrite", *arguments, ranks=ranks)
+        with h5py.File(self.folder / "run/bed.h5") as file:
+            return file["grains/velocity"][()]
+
+    def test_two_materials_meet_with_the_geometric_mean_of_their_restitutions(self):
+        for first, second, mixed in ((None, None, 0.9), (0.4, None, 0.6), (0.4, 0.9, 0.6), (0.64, 0.25, 0.4)):
+            settings = [f"grains.{n}.contact.restitution={e}" for n, e in enumerate((first, second)) if e]
+            v = self.velocities(*settings)
+            self.assertAlmostEqual(v[1, 0] - v[0, 0], mixed, delta=2e-3)
+
+    def test_friction_of_two_materials_is_the_geometric_mean(self):
+        # The first grain comes in at 45 degrees in a sliding impact: mu (1 + e) v_n m/2 of tangential momentum, half the
+        # relative speed after (Coulomb all the way: v_t/v_n = 1 > 7/2 mu (1 + e) = 0.665 for mu = 0.1).
+        v = self.velocities("grains.0.velocity=[0.5, 0.0, 0.0]", "grains.1.velocity=[-0.5, 1.0, 0.0]",
+                            "grains.1.placement.positions=[[0.0150001, 0.01, 0.01]]", "run.until=1.0e-3",
+                            "grains.0.contact.friction=0.2", "grains.1.contact.friction=0.05")
+        # Turning of the line of centres during the contact (1 m/s for 2e-4 s over 5 mm): 0.04 of either component.
+        self.assertAlmostEqual(v[0, 1], 0.1 * (1 + 0.9) * 1.0 / 2, delta=0.04)
+
+    def test_walls_have_their_own_restitution_and_stiffness(self):
+        falling = "grains=[{diameter: 5.0e-3, density: 2550, placement: {positions: [[0.01, 0.01, 0.003]]}, " \
+                  "velocity: [0, 0, -0.5]}]"
+        for walls, restitution in (("{restitution: 0.5}", 0.5), ("{normal_stiffness: 80000}", 0.9), ("{}", 0.9)):
+            v = self.velocities(falling, f"contact.walls={walls}")
+            self.assertAlmostEqual(v[0, 2], 0.5 * restitution, delta=1e-3)
+        # Half way through the contact with a wall four times as stiff the grain has been stopped in half the time:
+        # t_c/2 = pi/2 sqrt(m/k) = 1.13e-4 s; it touches after 5e-4 m / 0.5 m/s = 1e-3 s.
+        v = self.velocities(falling, "contact={restitution: 1.0}", "contact.walls={normal_stiffness: 80000}",
+                            "run.until=1.0720e-3")
+        mass = 2550 * numpy.pi / 6 * 5e-3 ** 3
+        steps = round(self.summary("run")["steps"]) * 50
+        phase = numpy.sqrt(80000 / mass) * (steps * 5e-7 - 1e-3)
+        self.assertAlmostEqual(v[0, 2], -0.5 * numpy.cos(phase), delta=1e-3)
+
+    def test_a_mixture_lies_in_the_box_as_asked_for(self):
+        mixture = "grains=[{count: 40, diameter: {sizes: [2.0e-3, 3.0e-3], fractions: [0.75, 0.25]}, density: 2550, " \
+                  "placement: {pattern: random}}, {count: 20, diameter: {distribution: lognormal, median: 2.0e-3, " \
+                  "geometric_deviation: 1.3, minimum: 1.5e-3, maximum: 3.0e-3}, density: 1000}]"
+        self.velocities(mixture, "run={until: 1.0e-4}")
+        first = (self.folder / "run/bed.h5").read_bytes()
+        with h5py.File(self.folder / "run/bed.h5") as file:
+            radius, density = file["grains/radius"][()], file["grains/density"][()]
+        self.assertEqual(sorted(set(radius[:40])), [1.0e-3, 1.5e-3])
+        self.assertEqual((radius[:40] == 1.0e-3).sum(), 30)
+        self.assertEqual(len(set(radius[40:])), 20)
+        self.assertTrue((radius[40:] >= 0.75e-3).all() and (radius[40:] <= 1.5e-3).all())
+        numpy.testing.assert_allclose(density, [2550] * 40 + [1000] * 20, rtol=1e-14)
+        self.velocities(mixture, "run={until: 1.0e-4}", ranks=4)
+        self.assertEqual((self.folder / "run/bed.h5").read_bytes(), first)
+
+    def test_the_step_must_suit_the_stiffest_contact(self):
+        # pi sqrt(m/2/k)/20 is 1.0e-5 s at 20000 N/m.
+        self.run_well("check", self.case, "--set", "run.time_step=9.0e-6")
+        self.assert_refused("check", self.case, "--set", "run.time_step=9.0e-6", "--set",
+                            "grains.1.contact.normal_stiffness=40000", words=["run.time_step", "7.17e-06"])
+        self.assert_refused("check", self.case, "--set", "run.time_step=9.0e-6", "--set",
+                            "contact.walls.normal_stiffness=80000", words=["run.time_step", "7.17e-06"])
+        self.assert_refused("check", self.case, "--set", "run.time_step=9.0e-6", "--set",
+                            "grains.0.diameter=4.0e-3", words=["run.time_step", "7.26e-06"])
+
+
+program.main()
