@@ -33,6 +33,10 @@ MaterialTable table_of(const GrainParameters& p) {
   return MaterialTable(materials, p.wall_contact);
 }
 
+int columns_of(const GrainParameters& p) {
+  return p.attached_width + (p.integrator == Integrator::gear ? GearPredictor::columns : 0);
+}
+
 double largest_radius_of(const std::vector<GrainSeed>& seeds) {
   double largest = 0.0;
   for (const GrainSeed& seed : seeds) largest = std::max(largest, seed.radius);
@@ -82,7 +86,7 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
       materials_(table_of(parameters)),
       largest_radius_(largest_radius_of(seeds)),
       global_count_(static_cast<std::int64_t>(seeds.size())),
-      store_(parameters.attached_width),
+      store_(columns_of(parameters)),
       ghosts_(decomposition, communicator, ghost_reach()),
       lists_phase_(timer_.phase("contact lists")),
       forces_phase_(timer_.phase("contact forces")),
@@ -247,13 +251,27 @@ void GrainDynamics::evaluate_forces(double time_step) {
 
 void GrainDynamics::advance(int sub_steps) {
   if (sub_steps < 1) return;
-  const double dt = parameters_.time_step;
-  const auto timed = [this](int phase, auto&& work) {
-    const auto scope = timer_.measure(phase);
-    work();
-  };
-  timed(motion_phase_, [&] {
+  {
+    const auto scope = timer_.measure(motion_phase_);
     moving_.load(store_, body_force_);
+  }
+  if (parameters_.integrator == Integrator::gear)
+    advance_by_gear(sub_steps);
+  else
+    advance_by_verlet(sub_steps);
+  const auto scope = timer_.measure(motion_phase_);
+  moving_.unload(store_);
+}
+
+template <typename Work>
+void GrainDynamics::timed(int phase, Work&& work) {
+  const auto scope = timer_.measure(phase);
+  work();
+}
+
+void GrainDynamics::advance_by_verlet(int sub_steps) {
+  const double dt = parameters_.time_step;
+  timed(motion_phase_, [&] {
     moving_.half_kick(dt);
     moving_.drift(dt);
   });
@@ -263,10 +281,19 @@ void GrainDynamics::advance(int sub_steps) {
     if (s + 1 == sub_steps) break;
     timed(motion_phase_, [&] { moving_.two_half_kicks_and_drift(dt); });
   }
-  timed(motion_phase_, [&] {
-    moving_.half_kick(dt);
-    moving_.unload(store_);
-  });
+  timed(motion_phase_, [&] { moving_.half_kick(dt); });
+}
+
+void GrainDynamics::advance_by_gear(int sub_steps) {
+  const double dt = parameters_.time_step;
+  timed(motion_phase_, [&] { gear_.load(store_, body_force_, dt); });
+  for (int s = 0; s < sub_steps; ++s) {
+    timed(motion_phase_, [&] { gear_.predict(moving_); });
+    timed(messages_phase_, [&] { ghosts_.refresh(moving_); });
+    evaluate_forces(dt);
+    timed(motion_phase_, [&] { gear_.correct(moving_); });
+  }
+  timed(motion_phase_, [&] { gear_.unload(store_); });
 }
 
 void GrainDynamics::refresh_ghosts() {

@@ -1,4 +1,5 @@
-// The grains of a run and their motion: velocity Verlet with contacts, on the blocks of a decomposition.
+// The grains of a run and their motion with contacts, on the blocks of a decomposition: velocity Verlet, or Gear's
+// predictor-corrector (gear_predictor.hpp). Velocity Verlet is
 //
 //   v(n+1/2) = v(n) + dt/2 a(n);  x(n+1) = x(n) + dt v(n+1/2);  forces from x(n+1), v(n+1/2);
 //   v(n+1) = v(n+1/2) + dt/2 a(n+1);  the same for the angular velocity with I = 2/5 m R^2.
@@ -12,6 +13,7 @@
 #include "core/decomposition.hpp"
 #include "core/phase_timer.hpp"
 #include "dem/contact_list.hpp"
+#include "dem/gear_predictor.hpp"
 #include "dem/ghost_exchange.hpp"
 #include "dem/grain_seed.hpp"
 #include "dem/grain_store.hpp"
@@ -31,17 +33,20 @@
 
 namespace thalweg::dem {
 
+enum class Integrator { velocity_verlet, gear };
+
 struct GrainParameters {
   ContactParameters contact;                       // material 0
   std::vector<ContactParameters> other_materials;  // 1, 2, ...: mixed with each other as material.hpp says
   std::optional<ContactParameters> wall_contact;   // of grains with walls, where it differs (but for the friction)
   std::vector<Plane> walls;
   std::function<Vec3(double mass, double radius)> body_force;  // N of a grain (kg, m), constant; empty: none
-  double time_step = 0.0;    // s, of a sub-step: at most a 20th of the shortest contact time
+  double time_step = 0.0;  // s, of a sub-step: at most a 20th of the shortest contact time
+  Integrator integrator = Integrator::velocity_verlet;
   int sub_steps = 1;         // at most that many between two calls of prepare()
   double skin = 0.0;         // m: the neighbour list holds until a grain has moved half of it
   double ghost_width = 0.0;  // m: grains at least this near to a rank's block are its ghosts at all times
-  int attached_width = 0;    // columns attached to every grain
+  int attached_width = 0;    // columns attached to every grain, the caller's (Gear's predictor has more after them)
   double initial_overlap = allowed_initial_overlap;  // diameters the seeds may overlap by: a settled bed's do
 };
 
@@ -86,7 +91,7 @@ public:
   // Collective.
   bool prepare();
 
-  // Velocity Verlet under the loads in store(). At most GrainParameters::sub_steps since prepare(). Collective.
+  // Moves the grains under the loads in store(). At most GrainParameters::sub_steps since prepare(). Collective.
   void advance(int sub_steps);
 
   // After the sub-steps: wraps positions and gives ghosts the final velocities of their owners. Collective.
@@ -136,6 +141,10 @@ private:
   void migrate(std::vector<ContactHistory>& histories);
   void settle_in(const std::vector<ContactHistory>& histories);
   void evaluate_forces(double time_step);
+  template <typename Work>
+  void timed(int phase, Work&& work);
+  void advance_by_verlet(int sub_steps);
+  void advance_by_gear(int sub_steps);
 
   Decomposition decomposition_;
   PeriodicBox box_;
@@ -149,6 +158,7 @@ private:
   GrainStore store_;
   GhostExchange ghosts_;
   ContactList list_;
+  GearPredictor gear_;
   MovingGrains moving_;                // the state during the sub-steps
   std::vector<Vec3> listed_position_;  // of owned grains, when the list was built
   std::vector<Vec3> body_force_;       // of owned grains

@@ -54,6 +54,10 @@ void MovingGrains::drift(double time_step) {
   for (std::size_t s = loads_.size(); s < grains_.size(); ++s) grains_[s].force = grains_[s].torque = zero;
 }
 
+void MovingGrains::forget_forces() {
+  for (MovingGrain& grain : grains_) grain.force = grain.torque = zero;
+}
+
 void MovingGrains::two_half_kicks_and_drift(double time_step) {
   const double half = 0.5 * time_step;
   for (std::size_t s = 0; s < loads_.size(); ++s) {

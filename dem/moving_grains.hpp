@@ -40,6 +40,9 @@ public:
   // half_kick(), half_kick(), drift(): from the end of one sub-step to the forces of the next, in one pass.
   void two_half_kicks_and_drift(double time_step);
 
+  // The contact forces of all grains begin anew at zero.
+  void forget_forces();
+
   MovingGrain* data() { return grains_.data(); }
   const MovingGrain& operator[](std::size_t slot) const { return grains_[slot]; }
   MovingGrain& operator[](std::size_t slot) { return grains_[slot]; }

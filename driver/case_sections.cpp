@@ -158,6 +158,10 @@ static void describe_run(io::SectionVisitor& visit, RunCase& run, bool with_flui
               .required = true,
               .above = 0.0,
               .example = 30.0});
+  visit.choice<GrainIntegrator>(
+      "grain_integrator", run.grain_integrator,
+      {{GrainIntegrator::velocity_verlet, "velocity_verlet"}, {GrainIntegrator::gear, "gear", "sixth order"}},
+      {.meaning = "how the grains are moved"});
   if (with_fluid)
     visit.not_here("until_at_rest", "grains in a fluid are never at rest; remove the section or set system: grains");
   else

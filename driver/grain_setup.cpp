@@ -86,6 +86,7 @@ dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box) {
   parameters.wall_contact = wall_material_of(c.contact);
   parameters.walls = dem::face_planes(box, parameters.contact);
   parameters.time_step = grain_time_step(c);
+  if (c.run.grain_integrator == GrainIntegrator::gear) parameters.integrator = dem::Integrator::gear;
   parameters.sub_steps = static_cast<int>(c.coupling.grain_steps_per_fluid_step);
   parameters.skin = skin_in_diameters * smallest_diameter(c);
   for (const PopulationCase& population : c.grains)

@@ -1,0 +1,52 @@
+// Gear's predictor-corrector of sixth order: the second way to move grains.
+//
+// Of every grain the position and its first five derivatives are kept, scaled: q_k = dt^k/k! d^k x/dt^k. A step
+// predicts them by Taylor's series, evaluates the forces once there, and corrects all by the difference between the
+// acceleration found and the one predicted, q_k += c_k (a - a_predicted) dt^2/2, with
+//   c = 3/16, 251/360, 1, 11/18, 1/6, 1/60,
+// the values for forces that depend on the velocity (Allen & Tildesley, Computer Simulation of Liquids, 1987, app. E;
+// Gear 1971). The rotation is treated in the same way, as an angle of which no value is kept. Smooth motion is followed
+// to a higher order than by velocity Verlet; where forces begin and end with a contact it is not, and it does not
+// conserve energy in the long run. SI units.
+#pragma once
+
+#include "dem/grain_store.hpp"
+#include "dem/moving_grains.hpp"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace thalweg::dem {
+
+class GearPredictor {
+public:
+  // Values a grain carries besides its position, velocity, spin and forces: the third to fifth of q, of position and
+  // angle. They are the last columns attached to every grain, zero at first: a grain starts with constant acceleration.
+  static constexpr int columns = 18;
+
+  // Owned grains: their higher derivatives, and their accelerations by the present forces.
+  void load(const GrainStore& store, std::span<const Vec3> body_force, double time_step);
+  void unload(GrainStore& store) const;
+
+  // Owned grains to the predicted state; the contact forces of all grains begin anew at zero.
+  void predict(MovingGrains& grains);
+  // Owned grains to the corrected state, by the forces at the predicted one.
+  void correct(MovingGrains& grains);
+
+private:
+  // q of the second to the fifth derivative of position (m) and angle (rad).
+  struct Derivatives {
+    Row q[4], angle[4];
+  };
+  // What pulls besides contacts; last: dt^2/2 over mass or moment of inertia.
+  struct Load {
+    Row force, torque;
+  };
+
+  double time_step_ = 0.0;
+  std::vector<Derivatives> derivatives_;
+  std::vector<Load> loads_;
+};
+
+}  // namespace thalweg::dem
