@@ -10,7 +10,7 @@ void GrainEnergy::observe(const Snapshot& snapshot) {
   std::vector<double> terms(grains.id.size() * columns);
   for (std::size_t i = 0; i < grains.id.size(); ++i) {
     const double mass = grains.mass[i];
-    const double inertia = 0.4 * mass * grains.radius[i] * grains.radius[i];
+    const double inertia = (grains.disk_thickness > 0.0 ? 0.5 : 0.4) * mass * grains.radius[i] * grains.radius[i];
     terms[i * columns] =
         0.5 * mass * grains.velocity[i].squaredNorm() + 0.5 * inertia * grains.angular_velocity[i].squaredNorm();
     for (int axis = 0; axis < 3; ++axis) terms[i * columns + 1 + axis] = mass * grains.velocity[i][axis];

@@ -14,6 +14,7 @@ namespace thalweg {
 // The grains this rank owns, in no particular order. Every span has one entry a grain.
 struct GrainView {
   std::int64_t global_count = 0;  // over all ranks
+  double disk_thickness = 0.0;    // m; 0: spheres
   std::span<const GlobalId> id;
   std::span<const double> radius;          // m
   std::span<const double> mass;            // kg

@@ -86,7 +86,7 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
       materials_(table_of(parameters)),
       largest_radius_(largest_radius_of(seeds)),
       global_count_(static_cast<std::int64_t>(seeds.size())),
-      store_(columns_of(parameters)),
+      store_(columns_of(parameters), parameters.disks ? GrainStore::of_disk : GrainStore::of_sphere),
       ghosts_(decomposition, communicator, ghost_reach()),
       lists_phase_(timer_.phase("contact lists")),
       forces_phase_(timer_.phase("contact forces")),
@@ -99,6 +99,9 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
     if (seed.material < 0 || seed.material >= materials_.count())
       throw InputError(
           fmt::format("Grain {} is of material {}, but there are {}.", seed.id, seed.material, materials_.count()));
+    if ((seed.thickness > 0.0) != parameters_.disks)
+      throw InputError(fmt::format("Grain {} is a {}, and the run is one of {}.", seed.id,
+                                   seed.thickness > 0.0 ? "disk" : "sphere", parameters_.disks ? "disks" : "spheres"));
     if (holds_translation(seed.motion)) continue;
     lightest[static_cast<std::size_t>(seed.material)].include(seed.mass(), seed.radius);
   }

@@ -2,7 +2,7 @@
 // predictor-corrector (gear_predictor.hpp). Velocity Verlet is
 //
 //   v(n+1/2) = v(n) + dt/2 a(n);  x(n+1) = x(n) + dt v(n+1/2);  forces from x(n+1), v(n+1/2);
-//   v(n+1) = v(n+1/2) + dt/2 a(n+1);  the same for the angular velocity with I = 2/5 m R^2.
+//   v(n+1) = v(n+1/2) + dt/2 a(n+1);  the same for the angular velocity with I = 2/5 m R^2 (disks 1/2 m R^2).
 //
 // SI units. The state after any number of steps is bitwise the same on any number of ranks, in any layout, and after
 // any save and load. A step of the caller (a fluid step) is
@@ -47,6 +47,7 @@ struct GrainParameters {
   double skin = 0.0;         // m: the neighbour list holds until a grain has moved half of it
   double ghost_width = 0.0;  // m: grains at least this near to a rank's block are its ghosts at all times
   int attached_width = 0;    // columns attached to every grain, the caller's (Gear's predictor has more after them)
+  bool disks = false;        // the grains are disks in an x-z plane: I = 1/2 m R^2
   double initial_overlap = allowed_initial_overlap;  // diameters the seeds may overlap by: a settled bed's do
 };
 

@@ -63,7 +63,34 @@ void check_pair(const GrainSeed& a, const GrainSeed& b, const PeriodicBox& box, 
 
 }  // namespace
 
-double GrainSeed::mass() const { return density * (4.0 / 3.0) * std::numbers::pi * radius * radius * radius; }
+namespace {
+
+// Nothing pushes a disk out of its plane as long as all are in it, to the last bit, and gravity is along it.
+void check_disks(std::span<const GrainSeed> seeds) {
+  for (const GrainSeed& seed : seeds) {
+    if (seed.thickness != seeds.front().thickness)
+      throw InputError(
+          fmt::format("Grain {} is {:g} m thick and grain {} {:g} m; all must be spheres (0) or disks of "
+                      "one thickness.",
+                      seed.id, seed.thickness, seeds.front().id, seeds.front().thickness));
+    if (seed.thickness == 0.0) continue;
+    if (seed.position[1] != seeds.front().position[1])
+      throw InputError(fmt::format("Disk {} at {} is not in the plane y = {:g} m of disk {}; put all in one plane.",
+                                   seed.id, place(seed.position), seeds.front().position[1], seeds.front().id));
+    if (seed.velocity[1] != 0.0 || seed.angular_velocity[0] != 0.0 || seed.angular_velocity[2] != 0.0)
+      throw InputError(
+          fmt::format("Disk {} moves or turns out of the x-z plane; its velocity along y and its angular "
+                      "velocity along x and z must be zero.",
+                      seed.id));
+  }
+}
+
+}  // namespace
+
+double GrainSeed::mass() const {
+  if (thickness > 0.0) return density * std::numbers::pi * radius * radius * thickness;
+  return density * (4.0 / 3.0) * std::numbers::pi * radius * radius * radius;
+}
 
 void check(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<const Plane> walls,
            double allowed_overlap) {
@@ -75,8 +102,10 @@ void check(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<c
     check_alone(seed, box, walls, allowed_overlap);
     largest = std::max(largest, seed.radius);
   }
+  check_disks(sorted);
+  const bool in_plane = !sorted.empty() && sorted.front().thickness > 0.0;
   for (int axis = 0; axis < 3; ++axis)
-    if (box.periodic[axis] && box.size[axis] < 4.0 * largest)
+    if (box.periodic[axis] && box.size[axis] < 4.0 * largest && !(in_plane && axis == 1))
       throw InputError(
           fmt::format("The box is {:g} m along its periodic axis {}; it must be at least two of the "
                       "largest grain diameters, {:g} m, so that grains meet only once.",

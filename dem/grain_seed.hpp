@@ -20,7 +20,9 @@ struct GrainSeed {
   int material = 0;                      // number of its material
   Motion motion = Motion::free;          // what is held keeps the velocities above
 
-  double mass() const;  // kg, of the full sphere
+  double thickness = 0.0;  // m, of a disk in the x-z plane; 0: a sphere
+
+  double mass() const;  // kg, of the full sphere or disk
 };
 
 // Overlap at the start, in diameters of the smaller grain, that is taken for rounding.
@@ -28,7 +30,8 @@ inline constexpr double allowed_initial_overlap = 1e-6;
 
 // Throws InputError naming the first grain (by id) with an id out of place, a radius or density that is not positive, a
 // centre outside the box, or an overlap with a wall or another grain of more than `allowed_overlap` diameters of the
-// smaller. Fixed grains may reach into walls and into each other. A periodic axis must be at least two of the largest
+// smaller; also disks among spheres, and disks that are not all in one plane or move or turn out of it. Fixed grains
+// may reach into walls and into each other. A periodic axis must be at least two of the largest
 // diameters long.
 void check(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<const Plane> walls,
            double allowed_overlap = allowed_initial_overlap);

@@ -25,7 +25,7 @@ void GrainStore::append(GlobalId grain, double grain_radius, double grain_mass, 
   id.push_back(grain);
   radius.push_back(grain_radius);
   mass.push_back(grain_mass);
-  inertia.push_back(0.4 * grain_mass * grain_radius * grain_radius);
+  inertia.push_back(shape * grain_mass * grain_radius * grain_radius);
   inverse_mass.push_back(holds_translation(grain_motion) ? 0.0 : 1.0 / grain_mass);
   inverse_inertia.push_back(holds_rotation(grain_motion) ? 0.0 : 1.0 / inertia.back());
   motion.push_back(grain_motion);

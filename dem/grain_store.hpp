@@ -17,7 +17,10 @@ inline bool holds_translation(Motion motion) { return (static_cast<unsigned>(mot
 inline bool holds_rotation(Motion motion) { return (static_cast<unsigned>(motion) & 2u) != 0; }
 
 struct GrainStore {
-  explicit GrainStore(int attached_columns = 0) : attached_width(attached_columns) {}
+  static constexpr double of_sphere = 0.4, of_disk = 0.5;  // I/(m R^2), of a disk about its axis
+
+  explicit GrainStore(int attached_columns = 0, double inertia_shape = of_sphere)
+      : attached_width(attached_columns), shape(inertia_shape) {}
 
   std::size_t owned = 0;
   std::size_t total() const { return id.size(); }
@@ -25,7 +28,7 @@ struct GrainStore {
   std::vector<GlobalId> id;
   std::vector<double> radius;           // m
   std::vector<double> mass;             // kg
-  std::vector<double> inertia;          // kg m^2, 2/5 m R^2
+  std::vector<double> inertia;          // kg m^2, 2/5 m R^2; disks 1/2 m R^2
   std::vector<double> inverse_mass;     // 1/kg, 0 where the translation is held
   std::vector<double> inverse_inertia;  // 1/(kg m^2), 0 where the rotation is held
   std::vector<Motion> motion;
@@ -41,6 +44,7 @@ struct GrainStore {
   // Columns of the grains' keeper (for example the last fluid load): carried at migration, given to new ghosts, saved
   // and loaded, never interpreted here. Grain `slot` has attached_width values from slot * attached_width on.
   int attached_width;
+  double shape;  // of all grains: of_sphere or of_disk
   std::vector<double> attached;
   std::span<double> attached_of(std::size_t slot) {
     return {attached.data() + slot * attached_width, static_cast<std::size_t>(attached_width)};

@@ -169,6 +169,10 @@ std::vector<Vec3> random_packing(const PeriodicBox& box, const Region& region, s
       Sphere trial{Vec3::Zero(), radii[grain]};
       bool room = true;
       for (int axis = 0; axis < 3; ++axis) {
+        if (region.plane && axis == 1) {
+          trial.position[1] = 0.5 * (region.lower[1] + region.upper[1]);
+          continue;
+        }
         const double margin = wraps(box, region, axis) ? 0.0 : radii[grain] + clearance;
         const double free = region.upper[axis] - region.lower[axis] - 2.0 * margin;
         room = room && free >= 0.0;

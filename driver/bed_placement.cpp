@@ -20,6 +20,10 @@ std::string without_period(std::string text) {
   return text;
 }
 
+std::string shape_text(double thickness) {
+  return thickness > 0.0 ? fmt::format("disks {:g} m thick", thickness) : std::string("spheres");
+}
+
 class BedPlacement {
 public:
   BedPlacement(const Case& c, const io::YamlDocument& document, const std::string& key, const io::Bed& bed)
@@ -28,7 +32,7 @@ public:
   void check_box() const {
     const std::array<bool, 3> periodic = periodic_axes(case_.domain);
     for (int axis = 0; axis < 3; ++axis) {
-      if (!bed_.periodic[static_cast<std::size_t>(axis)]) continue;
+      if (!bed_.periodic[static_cast<std::size_t>(axis)] || (bed_.disk_thickness > 0.0 && axis == 1)) continue;
       const double made = bed_.box[axis], here = case_.domain.size[axis];
       if (!periodic[static_cast<std::size_t>(axis)] || std::abs(made - here) > same_size * made)
         throw document_.error(
@@ -48,6 +52,7 @@ public:
       seed.radius = grain.radius;
       seed.density = grain.density;
       seed.position = grain.position;
+      seed.thickness = bed_.disk_thickness;
       seeds.push_back(seed);
       if ((grain.position.array() < 0.0).any() || (grain.position.array() > case_.domain.size.array()).any())
         throw document_.error(
@@ -96,6 +101,9 @@ void take_from_file(Case& c, std::size_t number, const io::YamlDocument& documen
   if (population.file.empty())
     throw document.error(key, "the file has no grain in the region; give a placement.region in m that holds some");
   const BedPlacement checks(c, document, key, bed);
+  if (bed.disk_thickness != population.thickness)
+    throw document.error(key, fmt::format("the bed is of {} and this case of {}; give the same disks.thickness in m",
+                                          shape_text(bed.disk_thickness), shape_text(population.thickness)));
   checks.check_box();
   checks.check_grains(population.file, placement.largest_overlap.value_or(PlacementCase::bed_overlap));
 
@@ -115,6 +123,7 @@ void take_from_file(Case& c, std::size_t number, const io::YamlDocument& documen
 void fill_in_grains(Case& c, const io::YamlDocument& document) {
   for (std::size_t n = 0; n < c.grains.size(); ++n) {
     PopulationCase& population = c.grains[n];
+    if (c.disks) population.thickness = c.disks->thickness;
     if (population.placement.file) take_from_file(c, n, document);
     if (!population.sizes.given()) continue;
     population.diameters = sampled_diameters(population.sizes, population.count, population.placement.seed);

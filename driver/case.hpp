@@ -218,12 +218,19 @@ struct AnalysisCase {
   bool operator==(const AnalysisCase&) const = default;
 };
 
+// Dry grains that are disks with their axis along y, all in the middle of the box.
+struct DisksCase {
+  double thickness = 0.0;  // m
+  bool operator==(const DisksCase&) const = default;
+};
+
 struct Case {
   SystemKind system = SystemKind::resolved;
   std::string name;
   DomainCase domain;
   FluidCase fluid;  // meaningless for dry grains, as are coupling and initial
   GravityCase gravity;
+  std::optional<DisksCase> disks;
   std::vector<PopulationCase> grains;
   std::vector<SolidCase> solids;  // of system: fluid
   ContactCase contact;

@@ -14,6 +14,7 @@ constexpr const char* axis_name[3] = {"x", "y", "z"};
 
 // Random close packing of equal spheres: no bed is denser.
 constexpr double densest_bed = 0.64;
+constexpr double densest_disks = 0.84;  // the same in two dimensions
 // True Mach number 0.3, beyond which the lattice fluid is compressible: 0.3 / sqrt(3) cells a step.
 constexpr double largest_lattice_velocity = 0.173;
 // Fewer cells than this across a grain do not resolve the flow around it.
@@ -62,6 +63,7 @@ void check_room(const Case& c, const io::YamlDocument& document) {
   const std::array<bool, 3> periodic = periodic_axes(c.domain);
   const double diameter = largest_diameter(c);
   for (int axis = 0; axis < 3; ++axis) {
+    if (c.disks && axis == 1) continue;
     const double least = (periodic[static_cast<std::size_t>(axis)] ? 2.0 : 1.0) * diameter;
     if (c.domain.size[axis] < least)
       throw document.error(
@@ -69,14 +71,14 @@ void check_room(const Case& c, const io::YamlDocument& document) {
                                      c.domain.size[axis], axis_name[axis], diameter, least,
                                      least > diameter ? "two diameters of a periodic axis" : "one diameter"));
   }
-  const double box = c.domain.size.prod();
-  const double fraction = grain_volume(c) / box;
-  if (fraction > densest_bed)
+  const double box = c.disks ? c.domain.size[0] * c.disks->thickness * c.domain.size[2] : c.domain.size.prod();
+  const double fraction = grain_volume(c) / box, densest = c.disks ? densest_disks : densest_bed;
+  if (fraction > densest)
     throw document.error(
         c.grains.size() == 1 ? "grains.0.count" : "grains",
         fmt::format("{} grains do not fit: they would fill {:.0f} % of the box, and at most {:.0f} % is "
                     "possible; give at most {:.0f}% of them or a larger domain.size in m",
-                    grain_count(c), 100.0 * fraction, 100.0 * densest_bed, std::floor(100.0 * densest_bed / fraction)));
+                    grain_count(c), 100.0 * fraction, 100.0 * densest, std::floor(100.0 * densest / fraction)));
 }
 
 bool inside(const Vec3& point, const DomainCase& domain) {
@@ -102,7 +104,7 @@ void check_placement(const Case& c, const io::YamlDocument& document) {
                            fmt::format("the region must lie in the box with lower below upper along every axis; give "
                                        "corners in m between [0, 0, 0] and {}",
                                        shown(c.domain.size)));
-    if (grains.placement.file) continue;
+    if (grains.placement.file || c.disks) continue;
     const double fraction = grains.volume() / extent.prod();
     if (fraction > densest_bed)
       throw document.error(
@@ -229,6 +231,34 @@ void check_material(const Case& c, const io::YamlDocument& document, const std::
          "the section contact gives a damping; give damping in kg/s here, too");
 }
 
+void check_disks(const Case& c, const io::YamlDocument& document) {
+  if (!c.disks) return;
+  if (c.analysis.transport_rate)
+    throw document.error("analysis.transport_rate", "the transport rate is that of spheres; remove the section");
+  if (c.domain.faces[y_low].type != FaceType::periodic)
+    throw document.error("domain.boundaries", "disks move in the plane x-z; give y: periodic");
+  if (gravity_vector(c.gravity).y() != 0.0)
+    throw document.error("gravity.vector", "disks move in the plane x-z; give a vector in m/s^2 with 0 along y");
+  for (std::size_t n = 0; n < c.grains.size(); ++n) {
+    const PopulationCase& grains = c.grains[n];
+    const std::string key = fmt::format("grains.{}.", n);
+    if (!grains.placement.file && grains.placement.positions.empty() &&
+        grains.placement.pattern == PlacementPattern::uniform)
+      throw document.error(key + "placement.pattern",
+                           "disks are placed at random, by positions or from a file; give "
+                           "pattern: random");
+    for (const Vec3& v : {grains.velocity, grains.prescribed_velocity.value_or(Vec3::Zero())})
+      if (v.y() != 0.0)
+        throw document.error(key + (grains.velocity.y() != 0.0 ? "velocity" : "prescribed_velocity"),
+                             "disks move in the plane x-z; give a vector in m/s with 0 along y");
+    for (const Vec3& w : {grains.angular_velocity, grains.prescribed_angular_velocity.value_or(Vec3::Zero())})
+      if (w.x() != 0.0 || w.z() != 0.0)
+        throw document.error(
+            key + (grains.prescribed_angular_velocity ? "prescribed_angular_velocity" : "angular_velocity"),
+            "disks turn about y; give a vector in rad/s with 0 along x and z");
+  }
+}
+
 void check_materials(const Case& c, const io::YamlDocument& document) {
   for (std::size_t n = 0; n < c.grains.size(); ++n)
     if (c.grains[n].contact) check_material(c, document, fmt::format("grains.{}.contact", n), *c.grains[n].contact);
@@ -244,6 +274,7 @@ void check_case(const Case& c, const io::YamlDocument& document) {
   check_placement(c, document);
   check_solids(c, document);
   check_fluid(c, document);
+  check_disks(c, document);
   check_materials(c, document);
   check_contact_steps(c, document);
   if (c.analysis.transport_rate && c.grains.empty())

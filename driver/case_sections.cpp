@@ -244,6 +244,11 @@ static void describe_analysis(io::SectionVisitor& visit, AnalysisCase& analysis,
     visit.not_here("fluid_statistics", "system: grains has no fluid; remove the section or set system: resolved");
 }
 
+static void describe(io::SectionVisitor& visit, DisksCase& disks) {
+  visit.real("thickness", disks.thickness,
+             {.unit = "m", .meaning = "along y: gives their mass", .required = true, .above = 0.0, .example = 5e-3});
+}
+
 void describe(io::SectionVisitor& visit, Case& c) {
   visit.choice<SystemKind>("system", c.system,
                            {{SystemKind::resolved, "resolved", "fluid with grains in it, every grain resolved"},
@@ -265,6 +270,11 @@ void describe(io::SectionVisitor& visit, Case& c) {
     only_with_fluid("fluid");
   visit.section("gravity", {.meaning = "given by magnitude and slope, or as a vector", .required = true},
                 [&](io::SectionVisitor& inside) { describe_gravity(inside, c.gravity, with_fluid); });
+  if (with_fluid)
+    visit.not_here("disks", "only dry grains can be disks; remove the section or set system: grains");
+  else
+    visit.section("disks", c.disks,
+                  {.meaning = "two dimensions: the grains are disks that move in the plane x-z, in the middle of y"});
   if (with_grains) {
     visit.list("grains", c.grains, {.meaning = "populations of grains", .required = !with_fluid});
     visit.require(with_fluid || !c.grains.empty(), "grains",

@@ -29,6 +29,7 @@ DryGrains::DryGrains(const Case& c, MPI_Comm communicator, const Decomposition& 
     : decomposition_(decomposition),
       sub_steps_(static_cast<int>(c.coupling.grain_steps_per_fluid_step)),
       time_step_(grain_time_step(c) * sub_steps_),
+      disk_thickness_(c.disks ? c.disks->thickness : 0.0),
       grains_(decomposition, communicator, dry_parameters(c, decomposition), grain_seeds(c)),
       lists_(timer_.phase("grain lists")),
       motion_(timer_.phase("grain motion")) {}
@@ -55,6 +56,7 @@ Snapshot DryGrains::snapshot() const {
   snapshot.step = step_;
   snapshot.decomposition = &decomposition_;
   snapshot.grains.global_count = grains_.global_count();
+  snapshot.grains.disk_thickness = disk_thickness_;
   snapshot.grains.id = {store.id.data(), owned};
   snapshot.grains.radius = {store.radius.data(), owned};
   snapshot.grains.mass = {store.mass.data(), owned};

@@ -33,7 +33,8 @@ public:
 private:
   Decomposition decomposition_;
   int sub_steps_;
-  double time_step_;  // s, of sub_steps_ sub-steps
+  double time_step_;       // s, of sub_steps_ sub-steps
+  double disk_thickness_;  // m; 0: spheres
   dem::GrainDynamics grains_;
   std::int64_t step_ = 0;
   PhaseTimer timer_;

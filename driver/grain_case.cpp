@@ -13,6 +13,10 @@ namespace {
 
 double sphere_volume(double diameter) { return std::numbers::pi / 6.0 * diameter * diameter * diameter; }
 
+double volume_of(double diameter, double thickness) {
+  return thickness > 0.0 ? std::numbers::pi / 4.0 * diameter * diameter * thickness : sphere_volume(diameter);
+}
+
 // The draw of counter_random.hpp that sizes use; placements use small numbers.
 constexpr std::uint64_t size_draw = std::uint64_t{1} << 40;
 
@@ -82,16 +86,17 @@ double PopulationCase::largest_diameter() const {
 }
 
 double PopulationCase::lightest_mass() const {
-  double lightest = file.empty() ? density * sphere_volume(smallest_diameter()) : std::numeric_limits<double>::max();
+  double lightest =
+      file.empty() ? density * volume_of(smallest_diameter(), thickness) : std::numeric_limits<double>::max();
   for (const io::BedGrain& grain : file)
-    lightest = std::min(lightest, grain.density * sphere_volume(2.0 * grain.radius));
+    lightest = std::min(lightest, grain.density * volume_of(2.0 * grain.radius, thickness));
   return lightest;
 }
 
 double PopulationCase::volume() const {
-  if (diameters.empty()) return static_cast<double>(count) * sphere_volume(diameter);
+  if (diameters.empty()) return static_cast<double>(count) * volume_of(diameter, thickness);
   double sum = 0.0;
-  for (const double d : diameters) sum += sphere_volume(d);
+  for (const double d : diameters) sum += volume_of(d, thickness);
   return sum;
 }
 

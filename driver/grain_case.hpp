@@ -78,7 +78,8 @@ struct PopulationCase {
   std::optional<Vec3> prescribed_velocity;          // m/s, kept whatever the loads
   std::optional<Vec3> prescribed_angular_velocity;  // rad/s
 
-  // What read_case() makes of sizes and file.
+  // What read_case() makes of disks, sizes and file.
+  double thickness = 0.0;          // m, of disks; 0: spheres
   std::vector<double> diameters;   // m, one a grain; empty: all `diameter`
   std::vector<io::BedGrain> file;  // grains of placement.file, one by one
 

@@ -28,6 +28,8 @@ dem::GrainSeed seed_of(const Case& c, std::size_t number, std::size_t grain, con
   seed.radius = 0.5 * population.diameter_of(grain);
   seed.density = population.density_of(grain);
   seed.position = position;
+  seed.thickness = population.thickness;
+  if (c.disks) seed.position[1] = 0.5 * c.domain.size[1];
   seed.material = material_of(c, number);
   Vec3 velocity = population.velocity, spin = population.angular_velocity;
   if (!population.file.empty()) {
@@ -73,7 +75,10 @@ std::vector<Vec3> place(const PopulationCase& population, const PeriodicBox& box
   }
   for (std::size_t n = 0; n < static_cast<std::size_t>(population.count); ++n)
     radii.push_back(0.5 * population.diameter_of(n));
-  return dem::random_packing(box, region_of(placement, box), radii, 0.0, seed, placed);
+  dem::Region region = region_of(placement, box);
+  region.plane = population.thickness > 0.0;
+  if (region.plane) region.lower[1] = 0.0, region.upper[1] = box.size[1];
+  return dem::random_packing(box, region, radii, 0.0, seed, placed);
 }
 
 }  // namespace
@@ -86,6 +91,7 @@ dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box) {
   parameters.wall_contact = wall_material_of(c.contact);
   parameters.walls = dem::face_planes(box, parameters.contact);
   parameters.time_step = grain_time_step(c);
+  parameters.disks = c.disks.has_value();
   if (c.run.grain_integrator == GrainIntegrator::gear) parameters.integrator = dem::Integrator::gear;
   parameters.sub_steps = static_cast<int>(c.coupling.grain_steps_per_fluid_step);
   parameters.skin = skin_in_diameters * smallest_diameter(c);
@@ -109,7 +115,9 @@ std::vector<dem::GrainSeed> grain_seeds(const Case& c) {
         throw InputError(fmt::format("grains.{}: {}", p, error.what()));
       }
       for (std::size_t n = 0; n < positions[p].size(); ++n)
-        placed.push_back({positions[p][n], 0.5 * c.grains[p].diameter_of(n)});
+        placed.push_back(
+            {c.disks ? Vec3(positions[p][n].x(), 0.5 * c.domain.size[1], positions[p][n].z()) : positions[p][n],
+             0.5 * c.grains[p].diameter_of(n)});
     }
   std::vector<dem::GrainSeed> seeds;
   for (std::size_t p = 0; p < c.grains.size(); ++p)

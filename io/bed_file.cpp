@@ -28,7 +28,8 @@ std::vector<Row> gathered(MPI_Comm communicator, const GrainView& grains) {
   std::vector<Row> rows(grains.id.size());
   for (std::size_t n = 0; n < rows.size(); ++n) {
     const double r = grains.radius[n];
-    rows[n] = {grains.id[n], r, grains.mass[n] / (4.0 / 3.0 * std::numbers::pi * r * r * r), {}, {}, {}};
+    const double height = grains.disk_thickness > 0.0 ? grains.disk_thickness : 4.0 / 3.0 * r;
+    rows[n] = {grains.id[n], r, grains.mass[n] / (height * std::numbers::pi * r * r), {}, {}, {}};
     copy(grains.position[n], rows[n].position);
     copy(grains.velocity[n], rows[n].velocity);
     copy(grains.angular_velocity[n], rows[n].angular_velocity);
@@ -94,6 +95,7 @@ void write_bed_file(MPI_Comm communicator, const std::filesystem::path& path, co
   BedWriter writer(communicator, path, snapshot.grains.global_count);
   writer.archive().attribute("bed/format", format);
   writer.archive().attribute("bed/time", snapshot.time);
+  writer.archive().attribute("bed/disk_thickness", snapshot.grains.disk_thickness);
   writer.triple<double>("box", "m", {box.size[0], box.size[1], box.size[2]});
   writer.triple<std::int64_t>("periodic", "1", {box.periodic[0], box.periodic[1], box.periodic[2]});
   std::vector<std::int64_t> ids;
@@ -113,6 +115,7 @@ Bed read_bed_file(const std::filesystem::path& path) {
     throw InputError(fmt::format("{} is an HDF5 file but not a bed file of this program.", path.string()));
   Bed bed;
   bed.time = file.real_attribute("bed/time");
+  bed.disk_thickness = file.real_attribute("bed/disk_thickness");
   const std::vector<double> box = column<double>(file, "bed/box", 3);
   const std::vector<std::int64_t> periodic = column<std::int64_t>(file, "bed/periodic", 3);
   for (int axis = 0; axis < 3; ++axis) {

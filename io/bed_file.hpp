@@ -1,8 +1,9 @@
 // Bed files: the grains of a run as its end left them, for another run to begin with.
 //
-// HDF5. Group `bed`: attributes format and time (s), datasets box (m) and periodic (0 or 1 along x, y, z). Group
-// `grains`, one row a grain in order of id: id, radius, density, position, velocity, angular_velocity. Every dataset
-// has its unit as attribute. The bytes depend on the grains alone, not on the number of ranks.
+// HDF5. Group `bed`: attributes format, time (s) and disk_thickness (m; 0: spheres), datasets box (m) and periodic (0
+// or 1 along x, y, z). Group `grains`, one row a grain in order of id: id, radius, density, position, velocity,
+// angular_velocity. Every dataset has its unit as attribute. The bytes depend on the grains alone, not on the number of
+// ranks.
 #pragma once
 
 #include "core/snapshot.hpp"
@@ -30,10 +31,11 @@ struct Bed {
   Vec3 box = Vec3::Zero();  // m
   std::array<bool, 3> periodic{};
   double time = 0.0;             // s, of the run that wrote it
+  double disk_thickness = 0.0;   // m; 0: spheres
   std::vector<BedGrain> grains;  // in order of id
 };
 
-// The density is the mass over the volume of the sphere. Collective; throws RunError on every rank.
+// The density is the mass over the volume of the sphere or disk. Collective; throws RunError on every rank.
 void write_bed_file(MPI_Comm communicator, const std::filesystem::path& path, const Snapshot& snapshot);
 
 // The whole bed, read by every rank that asks. Throws InputError where the file is missing or not a bed file.

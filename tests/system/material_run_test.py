@@ -81,6 +81,32 @@ run: {until: 3.0e-3, time_step: 5.0e-7}
         self.velocities(mixture, "run={until: 1.0e-4}", ranks=4)
         self.assertEqual((self.folder / "run/bed.h5").read_bytes(), first)
 
+    def test_disks_move_in_their_plane(self):
+        disks = ("disks={thickness: 4.0e-3}", "gravity={magnitude: 9.8}", "run={until: 0.02}",
+                 "domain.size=[0.04, 0.008, 0.04]",
+                 "grains=[{count: 12, diameter: 5.0e-3, density: 2550, placement: {pattern: random}, "
+                 "velocity: [0.5, 0, -0.5]}]")
+        self.velocities(*disks, ranks=2)
+        first = (self.folder / "run/bed.h5").read_bytes()
+        with h5py.File(self.folder / "run/bed.h5") as file:
+            self.assertTrue((file["grains/position"][:, 1] == 0.004).all())
+            self.assertTrue((file["grains/velocity"][:, 1] == 0).all())
+            numpy.testing.assert_allclose(file["grains/density"], 2550, rtol=1e-14)
+            self.assertEqual(file["bed"].attrs["disk_thickness"], 4e-3)
+        self.velocities(*disks)
+        self.assertEqual((self.folder / "run/bed.h5").read_bytes(), first)
+        (self.folder / "bed.h5").write_bytes(first)
+        self.velocities(*disks[:-1], "grains=[{placement: {file: bed.h5}}]", "run={until: 1.0e-4}")
+        all_of = [a for setting in disks for a in ("--set", setting)]
+        for words, change in ((["disks 0.004 m thick", "spheres"], "disks="),
+                              (["give y: periodic"], "domain.boundaries.y=no_slip"),
+                              (["gravity.vector", "0 along y"], "gravity={vector: [0, 1, -9.8]}"),
+                              (["grains.0.placement.pattern", "pattern: random"], "grains.0.placement.pattern=uniform"),
+                              (["grains.0.velocity", "0 along y"], "grains.0.velocity=[0, 1, 0]"),
+                              (["grains.0.angular_velocity", "0 along x and z"], "grains.0.angular_velocity=[1, 0, 0]")):
+            start = ["--set", "grains=[{placement: {file: bed.h5}}]"] if change == "disks=" else []
+            self.assert_refused("check", self.case, *all_of, *start, "--set", change, words=words)
+
     def test_the_step_must_suit_the_stiffest_contact(self):
         # pi sqrt(m/2/k)/20 is 1.0e-5 s at 20000 N/m.
         self.run_well("check", self.case, "--set", "run.time_step=9.0e-6")
