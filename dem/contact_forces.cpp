@@ -219,6 +219,28 @@ void evaluate_walls(MovingGrains& grains, std::vector<WallContact>& contacts, st
 }
 
 template <typename ContactLaw>
+std::vector<Vec3> wall_forces_with(const ContactLaw& law, const GrainStore& store, const ContactList& list,
+                                   std::span<const Plane> walls, const MaterialTable& materials) {
+  MovingGrains one;
+  std::vector<Vec3> forces;
+  std::vector<WallContact> contact(1);
+  GrainStore alone;
+  for (const WallContact& c : list.walls) {
+    alone.clear();
+    alone.append(store.id[c.grain], store.radius[c.grain], store.mass[c.grain], store.motion[c.grain],
+                 store.position[c.grain], store.material[c.grain]);
+    alone.velocity[0] = store.velocity[c.grain];
+    alone.angular_velocity[0] = store.angular_velocity[c.grain];
+    one.load(alone, {});
+    contact[0] = c;
+    contact[0].grain = 0;
+    evaluate_walls(one, contact, walls, materials, alone.material, law);
+    forces.push_back(vector_of(one[0].force));
+  }
+  return forces;
+}
+
+template <typename ContactLaw>
 void evaluate_with(const ContactLaw& law, MovingGrains& grains, ContactList& list, const PeriodicBox& box,
                    std::span<const Plane> walls, const MaterialTable& materials,
                    std::span<const std::uint8_t> material) {
@@ -236,6 +258,14 @@ void evaluate_contacts(MovingGrains& grains, ContactList& list, const PeriodicBo
     evaluate_with(SpringDashpotFriction(manner), grains, list, box, walls, materials, material);
   else
     evaluate_with(HertzMindlin(manner), grains, list, box, walls, materials, material);
+}
+
+std::vector<Vec3> wall_contact_forces(const GrainStore& store, const ContactList& list, std::span<const Plane> walls,
+                                      const MaterialTable& materials) {
+  const ContactManner manner = materials.manner(0.0);
+  if (materials.law() == Law::linear)
+    return wall_forces_with(SpringDashpotFriction(manner), store, list, walls, materials);
+  return wall_forces_with(HertzMindlin(manner), store, list, walls, materials);
 }
 
 }  // namespace thalweg::dem

@@ -15,4 +15,8 @@ namespace thalweg::dem {
 void evaluate_contacts(MovingGrains& grains, ContactList& list, const PeriodicBox& box, std::span<const Plane> walls,
                        const MaterialTable& materials, std::span<const std::uint8_t> material, double time_step);
 
+// The force (N) on each wall contact's grain, by the present positions, velocities and springs, which stay as they are.
+std::vector<Vec3> wall_contact_forces(const GrainStore& store, const ContactList& list, std::span<const Plane> walls,
+                                      const MaterialTable& materials);
+
 }  // namespace thalweg::dem

@@ -118,6 +118,7 @@ public:
   std::vector<Contact> contacts() const;
 
   // Figures over all ranks, the same bits in any layout. Collective.
+  std::vector<Vec3> wall_forces() const;          // N, of all grains on each of the walls, in their order
   std::int64_t contact_count() const;             // touching pairs of grains
   double largest_overlap() const;                 // of two grains, in diameters of the smaller
   double kinetic_energy() const;                  // J, with rotation

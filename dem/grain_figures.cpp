@@ -1,6 +1,7 @@
 // Figures of the state of all grains: GrainDynamics looked at, never changed.
 #include "core/mpi_session.hpp"
 #include "core/order_free_sum.hpp"
+#include "dem/contact_forces.hpp"
 #include "dem/grain_dynamics.hpp"
 
 #include <algorithm>
@@ -35,6 +36,19 @@ std::vector<Contact> GrainDynamics::contacts() const {
           {store_.id[c.grain], -1 - static_cast<GlobalId>(c.wall), overlap, wall.normal, Vec3(c.spring)});
   }
   return touching;
+}
+
+std::vector<Vec3> GrainDynamics::wall_forces() const {
+  const std::size_t walls = parameters_.walls.size();
+  const std::vector<Vec3> on_grains = wall_contact_forces(store_, list_, parameters_.walls, materials_);
+  std::vector<double> terms(3 * walls * on_grains.size(), 0.0);
+  for (std::size_t n = 0; n < on_grains.size(); ++n)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      terms[3 * walls * n + 3 * list_.walls[n].wall + axis] = -on_grains[n][static_cast<Eigen::Index>(axis)];
+  const std::vector<double> sums = order_free_sums(communicator_, terms, 3 * walls);
+  std::vector<Vec3> forces;
+  for (std::size_t w = 0; w < walls; ++w) forces.emplace_back(sums[3 * w], sums[3 * w + 1], sums[3 * w + 2]);
+  return forces;
 }
 
 std::int64_t GrainDynamics::contact_count() const {

@@ -212,7 +212,13 @@ struct FluidStatisticsCase {
   bool operator==(const FluidStatisticsCase&) const = default;
 };
 
+// Columns of series.csv; it has no keys.
+struct WallForcesCase {
+  bool operator==(const WallForcesCase&) const = default;
+};
+
 struct AnalysisCase {
+  std::optional<WallForcesCase> wall_forces;  // of dry grains
   std::optional<TransportRateCase> transport_rate;
   std::optional<FluidStatisticsCase> fluid_statistics;
   bool operator==(const AnalysisCase&) const = default;

@@ -231,6 +231,8 @@ static void describe(io::SectionVisitor& visit, TransportRateCase& rate) {
   visit.real("from", rate.from, {.unit = "s", .meaning = "start of the mean that summary.json gives", .at_least = 0.0});
 }
 
+static void describe(io::SectionVisitor&, WallForcesCase&) {}
+
 static void describe_analysis(io::SectionVisitor& visit, AnalysisCase& analysis, bool with_fluid, bool with_grains) {
   if (with_grains)
     visit.section("transport_rate", analysis.transport_rate, {.meaning = "the grains' flux q and q* along x"});
@@ -242,6 +244,11 @@ static void describe_analysis(io::SectionVisitor& visit, AnalysisCase& analysis,
                               "side walls"});
   else
     visit.not_here("fluid_statistics", "system: grains has no fluid; remove the section or set system: resolved");
+  if (with_fluid)
+    visit.not_here("wall_forces", "only dry grains have it yet; remove the section");
+  else
+    visit.section("wall_forces", analysis.wall_forces,
+                  {.meaning = "force of the grains on each wall, in series.csv; no keys: {}"});
 }
 
 static void describe(io::SectionVisitor& visit, DisksCase& disks) {

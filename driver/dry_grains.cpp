@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 namespace thalweg::driver {
 
@@ -23,12 +24,22 @@ dem::GrainParameters dry_parameters(const Case& c, const Decomposition& decompos
   return parameters;
 }
 
+// The faces that are walls, in the order of dem::face_planes(); none where their forces are not asked for.
+std::vector<std::string> measured_walls(const Case& c) {
+  constexpr std::array names{"x_low", "x_high", "y_low", "y_high", "bottom", "top"};
+  std::vector<std::string> walls;
+  for (std::size_t face = 0; face < names.size() && c.analysis.wall_forces; ++face)
+    if (c.domain.faces[face].type != FaceType::periodic) walls.emplace_back(names[face]);
+  return walls;
+}
+
 }  // namespace
 
 DryGrains::DryGrains(const Case& c, MPI_Comm communicator, const Decomposition& decomposition)
     : decomposition_(decomposition),
       sub_steps_(static_cast<int>(c.coupling.grain_steps_per_fluid_step)),
       time_step_(grain_time_step(c) * sub_steps_),
+      wall_names_(measured_walls(c)),
       disk_thickness_(c.disks ? c.disks->thickness : 0.0),
       grains_(decomposition, communicator, dry_parameters(c, decomposition), grain_seeds(c)),
       lists_(timer_.phase("grain lists")),
@@ -68,10 +79,16 @@ Snapshot DryGrains::snapshot() const {
 }
 
 std::vector<Figure> DryGrains::figures() const {
-  return {{"contacts", "1", static_cast<double>(grains_.contact_count())},
-          {"largest_overlap", "1", grains_.largest_overlap()},
-          {largest_speed_figure, "m/s", grains_.largest_free_speed()},
-          {largest_acceleration_figure, "m/s^2", grains_.largest_acceleration()}};
+  std::vector<Figure> figures{{"contacts", "1", static_cast<double>(grains_.contact_count())},
+                              {"largest_overlap", "1", grains_.largest_overlap()},
+                              {largest_speed_figure, "m/s", grains_.largest_free_speed()},
+                              {largest_acceleration_figure, "m/s^2", grains_.largest_acceleration()}};
+  if (wall_names_.empty()) return figures;
+  const std::vector<Vec3> forces = grains_.wall_forces();
+  for (std::size_t wall = 0; wall < forces.size(); ++wall)
+    for (int axis = 0; axis < 3; ++axis)
+      figures.push_back({fmt::format("wall_force_{}_{}", wall_names_[wall], "xyz"[axis]), "N", forces[wall][axis]});
+  return figures;
 }
 
 void DryGrains::save(ArchiveWriter& archive) const {

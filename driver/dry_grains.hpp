@@ -21,6 +21,7 @@ public:
   double time_step() const override { return time_step_; }
   Snapshot snapshot() const override;
   // contacts, largest_overlap (in diameters), and of the free grains largest_grain_speed, largest_grain_acceleration
+  // With analysis.wall_forces also three for each wall: wall_force_bottom_x ...
   std::vector<Figure> figures() const override;
   static constexpr const char* largest_speed_figure = "largest_grain_speed";
   static constexpr const char* largest_acceleration_figure = "largest_grain_acceleration";
@@ -33,8 +34,9 @@ public:
 private:
   Decomposition decomposition_;
   int sub_steps_;
-  double time_step_;       // s, of sub_steps_ sub-steps
-  double disk_thickness_;  // m; 0: spheres
+  double time_step_;                     // s, of sub_steps_ sub-steps
+  std::vector<std::string> wall_names_;  // whose forces are measured
+  double disk_thickness_;                // m; 0: spheres
   dem::GrainDynamics grains_;
   std::int64_t step_ = 0;
   PhaseTimer timer_;

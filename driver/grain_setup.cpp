@@ -90,6 +90,12 @@ dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box) {
   parameters.other_materials.assign(materials.begin() + 1, materials.end());
   parameters.wall_contact = wall_material_of(c.contact);
   parameters.walls = dem::face_planes(box, parameters.contact);
+  std::size_t wall = 0;
+  for (const Face& face : c.domain.faces) {  // face_planes() has the same order and leaves out the periodic ones
+    if (face.type == FaceType::periodic) continue;
+    if (face.type == FaceType::moving) parameters.walls[wall].velocity = face.velocity;
+    ++wall;
+  }
   parameters.time_step = grain_time_step(c);
   parameters.disks = c.disks.has_value();
   if (c.run.grain_integrator == GrainIntegrator::gear) parameters.integrator = dem::Integrator::gear;

@@ -69,6 +69,32 @@ TEST(Stack, TenSpheresCarryWhatLiesOnThem) {
   EXPECT_LT(grains.largest_speed(), 1e-9);
 }
 
+// The floor carries the weight of all, and each wall of a trough tilted by 45 degrees its share of one sphere.
+TEST(WallForces, AreTheWeightOfWhatLiesOnThem) {
+  GrainParameters p = on_floor(test::glass(0.3), Vec3(0, 0, -g));
+  std::vector<GrainSeed> seeds;
+  for (int i = 0; i < 9; ++i)
+    seeds.push_back(test::glass_sphere(i, Vec3(0.01 + 0.01 * (i % 3), 0.01 + 0.01 * (i / 3), test::glass_radius)));
+  seeds.push_back(test::glass_sphere(9, Vec3(0.01, 0.01, 3.0 * test::glass_radius)));
+  GrainDynamics grains(test::cube(), MPI_COMM_SELF, p, seeds);
+  for (int n = 0; n < 3000; ++n) test::step(grains);
+  const double weight = 10.0 * glass_mass() * g;
+  ASSERT_EQ(grains.wall_forces().size(), 1u);
+  EXPECT_NEAR(grains.wall_forces()[0][2], -weight, 1e-9 * weight);
+  EXPECT_NEAR(grains.wall_forces()[0][0], 0.0, 1e-9 * weight);
+
+  p = on_floor(test::glass(0.3), Vec3(0, 0, -g));
+  const double half = std::sqrt(0.5);
+  p.walls = {{Vec3(0.025, 0.025, 0), Vec3(half, 0, half), 0.0}, {Vec3(0.025, 0.025, 0), Vec3(-half, 0, half), 0.0}};
+  GrainDynamics trough(test::cube(), MPI_COMM_SELF, p,
+                       {test::glass_sphere(0, Vec3(0.025, 0.025, test::glass_radius / half))});
+  for (int n = 0; n < 3000; ++n) test::step(trough);
+  const double share = 0.5 * glass_mass() * g;  // down on each, and as much outwards
+  EXPECT_NEAR(trough.wall_forces()[0][2], -share, 1e-9 * share);
+  EXPECT_NEAR(trough.wall_forces()[0][0], -share, 1e-9 * share);
+  EXPECT_NEAR(trough.wall_forces()[1][0], share, 1e-9 * share);
+}
+
 TEST(Bounce, HeightsFallByTheSquareOfTheRestitution) {
   // h_n = e^(2n) h_0 of the gap below the sphere, for hard spheres; the contact's own depth is below 1e-3 of h_0.
   const double e = 0.9, h0 = 0.02;
