@@ -1,6 +1,6 @@
 #include "driver/grain_case.hpp"
 
-#include "dem/counter_random.hpp"
+#include "core/counter_random.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,7 @@ std::vector<std::size_t> shuffled_places(std::int64_t count, std::int64_t seed) 
   std::vector<std::size_t> order(static_cast<std::size_t>(count));
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto key = [&](std::size_t grain) {
-    return dem::uniform_random(static_cast<std::uint64_t>(seed), grain, size_draw);
+    return uniform_random(static_cast<std::uint64_t>(seed), grain, size_draw);
   };
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     const double ka = key(a), kb = key(b);
