@@ -37,7 +37,7 @@ public:
     snapshot.time = time;
     snapshot.step = std::llround(100.0 * time);  // steps of 0.01 s
     snapshot.decomposition = &decomposition_;
-    snapshot.grains = {count_, id_, radius_, mass_, position_, velocity_, angular_velocity_, {}, {}, {}};
+    snapshot.grains = {count_, 0.0, id_, radius_, mass_, position_, velocity_, angular_velocity_, {}, {}, {}};
     return snapshot;
   }
 
