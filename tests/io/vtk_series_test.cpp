@@ -67,7 +67,7 @@ struct Grains {
     }
   }
   GrainView view(bool with_fluid) const {
-    GrainView view{grain_count, id, radius, mass, position, velocity, angular_velocity, {}, {}, contact_force};
+    GrainView view{grain_count, 0.0, id, radius, mass, position, velocity, angular_velocity, {}, {}, contact_force};
     if (with_fluid) {
       view.fluid_force = fluid_force;
       view.fluid_torque = fluid_torque;
