@@ -59,7 +59,7 @@ def main():
         top.axhline(-measured[case], color=line.get_color(), linestyle="--", linewidth=0.8)
         bottom.plot(times, [1e3 * h for h in heights], color=line.get_color())
     top.set_ylabel("velocity [m/s]")
-    top.legend(title="dashed: largest measured")
+    top.legend(title="dashed: largest measured", loc="lower right")
     bottom.set_ylabel("lowest point above the floor [mm]")
     bottom.set_xlabel("time [s]")
     figure.tight_layout()
