@@ -91,9 +91,28 @@ double shortest_contact(const Case& c) {
   return shortest;
 }
 
+namespace {
+
+constexpr double karman = 0.41;
+
+// Smooth walls on either side carry their share of the weight: the stress is that of the hydraulic radius, and the law
+// of the wall holds over half the width.
+double velocity_between_side_walls(double along, double depth, double width, double nu) {
+  const double shear_velocity = std::sqrt(along * depth * width / (width + 2.0 * depth));
+  const double distance = 9.0 * shear_velocity * std::min(depth, 0.5 * width) / nu;
+  return distance > std::numbers::e ? shear_velocity / karman * std::log(distance)
+                                    : std::numeric_limits<double>::infinity();
+}
+
+bool holds_back(const Face& face) {
+  return face.type == FaceType::no_slip || face.type == FaceType::law_of_the_wall ||
+         face.type == FaceType::law_of_the_wall_as_printed;
+}
+
+}  // namespace
+
 double estimated_velocity(const Case& c) {
   constexpr double bed_fraction = 0.6;  // of a bed's volume that is grain
-  constexpr double karman = 0.41;
   const Vec3 gravity = gravity_vector(c.gravity);
   const double along = std::hypot(gravity[0], gravity[1]);
   const double bed = grain_volume(c) / (bed_fraction * c.domain.size[0] * c.domain.size[1]);
@@ -105,7 +124,9 @@ double estimated_velocity(const Case& c) {
   // Rough over grains (equivalent roughness two diameters), smooth over a bare floor.
   const double roughness = c.grains.empty() ? nu / (9.0 * shear_velocity) : largest_diameter(c) / 15.0;
   if (depth <= std::numbers::e * roughness) return laminar;
-  return std::min(laminar, shear_velocity / karman * std::log(depth / roughness));
+  const double over_bed = std::min(laminar, shear_velocity / karman * std::log(depth / roughness));
+  if (!holds_back(c.domain.faces[y_low]) || !holds_back(c.domain.faces[y_high])) return over_bed;
+  return std::min(over_bed, velocity_between_side_walls(along, depth, c.domain.size[1], nu));
 }
 
 std::vector<std::string> warnings(const Case& c) {

@@ -31,7 +31,7 @@ enum class FaceType {
 
 struct Face {
   FaceType type = FaceType::no_slip;
-  double coefficient = 8.36;     // law of the wall: slip velocity over friction velocity (numerics: U+ at the wall)
+  double coefficient = 8.36;     // law of the wall: slip velocity over friction velocity (U+ at the wall)
   double slip_length = 0.0;      // m, navier_slip
   bool on_node = false;          // of the two slips: the wall runs through the outermost cell centres
   Vec3 velocity = Vec3::Zero();  // m/s, moving and velocity_inlet

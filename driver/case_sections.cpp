@@ -151,17 +151,20 @@ static void describe(io::SectionVisitor& visit, AtRestCase& rest) {
              {.unit = "m/s^2", .meaning = "no free grain has more, of all forces together", .above = 0.0});
 }
 
-static void describe_run(io::SectionVisitor& visit, RunCase& run, bool with_fluid) {
+static void describe_run(io::SectionVisitor& visit, RunCase& run, bool with_fluid, bool with_grains) {
   visit.real("until", run.until,
              {.unit = "s",
               .meaning = "simulated time at which the run ends",
               .required = true,
               .above = 0.0,
               .example = 30.0});
-  visit.choice<GrainIntegrator>(
-      "grain_integrator", run.grain_integrator,
-      {{GrainIntegrator::velocity_verlet, "velocity_verlet"}, {GrainIntegrator::gear, "gear", "sixth order"}},
-      {.meaning = "how the grains are moved"});
+  if (with_grains)
+    visit.choice<GrainIntegrator>(
+        "grain_integrator", run.grain_integrator,
+        {{GrainIntegrator::velocity_verlet, "velocity_verlet"}, {GrainIntegrator::gear, "gear", "sixth order"}},
+        {.meaning = "how the grains are moved"});
+  else
+    visit.not_here("grain_integrator", "a fluid alone has no grains; remove the key");
   if (with_fluid)
     visit.not_here("until_at_rest", "grains in a fluid are never at rest; remove the section or set system: grains");
   else
@@ -309,7 +312,7 @@ void describe(io::SectionVisitor& visit, Case& c) {
                    "only system: fluid has them, because grains would not feel them; for spheres give a population of "
                    "grains with fixed: true");
   visit.section("run", {.meaning = "how long", .required = true},
-                [&](io::SectionVisitor& inside) { describe_run(inside, c.run, with_fluid); });
+                [&](io::SectionVisitor& inside) { describe_run(inside, c.run, with_fluid, with_grains); });
   visit.section("output", {.meaning = "what the run writes, besides run.log and summary.json"},
                 [&](io::SectionVisitor& inside) { describe_output(inside, c.output, with_fluid, with_grains); });
   visit.section("analysis", {.meaning = "what is measured while the run goes"},

@@ -65,6 +65,19 @@ TEST(Case, GravityLeansByTheAngleOfTheSlope) {
 // Printed estimate for this run: 0.94 m/s at the surface, u*/0.41 ln(30 H / 2 d) with u* = 0.080 m/s.
 TEST(Case, TheVelocityEstimateIsTheLogLawOverABed) { EXPECT_NEAR(estimated_velocity(wide_bed()), 0.94, 0.01); }
 
+// u* = sqrt(9.8 sin(atan 0.06) * 4.58 mm) = 0.0519 m/s, and 0.0519/0.41 ln(9 * 0.0519 * 5.25e-3/1e-6) by hand.
+TEST(Case, TheVelocityEstimateKnowsSideWalls) {
+  Case c = wide_bed();
+  c.grains.clear();
+  c.gravity.slope = 0.06;
+  c.domain.size = Vec3(0.048, 0.0105, 0.036);
+  c.domain.faces[y_low].type = FaceType::law_of_the_wall;
+  c.domain.faces[y_high].type = FaceType::no_slip;
+  EXPECT_NEAR(estimated_velocity(c), 0.988, 0.003);
+  c.domain.faces[y_high].type = FaceType::free_slip;
+  EXPECT_GT(estimated_velocity(c), 3.0);
+}
+
 // A film of oil: U = g sin(theta) H^2 / (2 nu) exactly.
 TEST(Case, TheVelocityEstimateIsTheLaminarFilmInAThickFluid) {
   Case c = wide_bed();
