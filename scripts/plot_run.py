@@ -3,6 +3,9 @@
 
     plot_run.py RUN_FOLDER [--out FOLDER] [--time SECONDS]
 
+Of a fluid alone: flow.png (the flow in the middle plane) and profiles.png (means over the height), as far as they were
+asked for in the case.
+
 Works on a finished run and on one that is still going. The interpreter is Debian's own, whose packages scripts/setup
 installs.
 """
@@ -13,6 +16,7 @@ import pathlib
 import sys
 import xml.etree.ElementTree as xml
 
+import h5py
 import matplotlib
 
 matplotlib.use("Agg")
@@ -177,6 +181,44 @@ def draw_bed(folder, case, time, path):
     plt.close(figure)
 
 
+def draw_flow(folder, case, time, path):
+    """The fluid's speed in the middle plane."""
+    fluid = picture_at(folder / "fluid.pvd", time)
+    layer = read_fluid_slice(fluid[1]) if fluid else None
+    if layer is None:
+        raise PlotError(f"{folder}: no picture of the velocity yet (output.fluid in the case).")
+    size = np.array(case["domain"]["size"], float)
+    flow, box = layer
+    figure, axes, bars = side_view(size)
+    water = axes.imshow(1e2 * without_holes(flow), origin="lower", extent=1e3 * np.array(box), cmap=FLUID_COLOURS,
+                        vmin=0.0, interpolation="bilinear")
+    figure.colorbar(water, cax=bars[0], label="fluid speed [cm/s]")
+    bars[1].remove()
+    axes.set(xlabel="x [mm]", ylabel="z [mm]")
+    axes.set_title(f"{case.get('name', folder.name)}, t = {fluid[0]:.3g} s", fontsize=11)
+    figure.savefig(path, dpi=150)
+    plt.close(figure)
+
+
+def draw_profiles(folder, case, path):
+    """Mean velocity along x and Reynolds stresses over the height."""
+    with h5py.File(folder / "profiles.h5") as file:
+        means = file["fluid_statistics"]
+        z, velocity, stress = 1e3 * means["z"][:], means["velocity"][:, 0], means["reynolds_stress"][:]
+    figure, (left, right) = plt.subplots(1, 2, figsize=(7.6, 3.8), sharey=True, constrained_layout=True)
+    left.plot(velocity, z, color="#14496e")
+    left.set(xlabel="mean velocity along x [m/s]", ylabel="z [mm]")
+    for column, label in ((0, "$u'u'$"), (1, "$v'v'$"), (2, "$w'w'$"), (4, "$u'w'$")):
+        right.plot(stress[:, column], z, label=label)
+    right.set(xlabel=r"Reynolds stress [m$^2$/s$^2$]")
+    right.legend(frameon=False, fontsize=9)
+    for axes in (left, right):
+        axes.grid(color="#e5e8ea", linewidth=0.8)
+    figure.suptitle(case.get("name", folder.name), fontsize=11)
+    figure.savefig(path, dpi=150)
+    plt.close(figure)
+
+
 def side_view(size):
     """A figure with axes to scale for x and z and two places for colour bars to the right; lengths in inches."""
     width, height = (7.0 * size[k] / max(size[0], size[2]) for k in (0, 2))
@@ -256,6 +298,20 @@ def draw_transport_rate(folder, case, path):
     plt.close(figure)
 
 
+def pictures_of(folder, case, time):
+    """Names of the pictures that the system and the case call for, and who draws them."""
+    analysis = case.get("analysis") or {}
+    if case.get("system") == "fluid":
+        pictures = [("flow.png", lambda path: draw_flow(folder, case, time, path))]
+        if "fluid_statistics" in analysis and (folder / "profiles.h5").exists():
+            pictures.append(("profiles.png", lambda path: draw_profiles(folder, case, path)))
+        return pictures
+    pictures = [("bed.png", lambda path: draw_bed(folder, case, time, path))]
+    if case.get("system") != "grains" or "transport_rate" in analysis:
+        pictures.append(("transport_rate.png", lambda path: draw_transport_rate(folder, case, path)))
+    return pictures
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("run_folder", type=pathlib.Path)
@@ -271,10 +327,9 @@ def main():
             raise PlotError(f"{folder}: there is no case.yaml in it; give the folder of a run.")
         case = yaml.safe_load((folder / "case.yaml").read_text())
         out.mkdir(parents=True, exist_ok=True)
-        draw_bed(folder, case, arguments.time, out / "bed.png")
-        print(out / "bed.png")
-        draw_transport_rate(folder, case, out / "transport_rate.png")
-        print(out / "transport_rate.png")
+        for name, draw in pictures_of(folder, case, arguments.time):
+            draw(out / name)
+            print(out / name)
     except PlotError as error:
         print(f"plot_run: {error}", file=sys.stderr)
         return 1

@@ -5,6 +5,7 @@ import sys
 import tempfile
 import unittest
 
+import h5py
 import matplotlib.image
 import numpy as np
 
@@ -35,6 +36,19 @@ class PlotRun(unittest.TestCase):
             pixels = matplotlib.image.imread(name)
             self.assertGreater(min(pixels.shape[:2]), 400)
             self.assertGreater(len(np.unique((pixels * 15).astype(int).reshape(-1, pixels.shape[2]), axis=0)), 10)
+
+    def test_draws_a_fluid_alone(self):
+        case = self.folder / "case.yaml"
+        text = case.read_text().replace("transport_rate: {from: 1.0}", "fluid_statistics: {from: 0}")
+        case.write_text("system: fluid\n" + text)
+        z = np.linspace(0.0, 0.07, 20)
+        with h5py.File(self.folder / "profiles.h5", "w") as file:
+            file["fluid_statistics/z"] = z
+            file["fluid_statistics/velocity"] = np.stack([z, 0 * z, 0 * z], axis=1)
+            file["fluid_statistics/reynolds_stress"] = np.outer(z, np.arange(6))
+        done = self.plot()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stdout.split(), [str(self.folder / name) for name in ("flow.png", "profiles.png")])
 
     def test_reads_what_was_written(self):
         time, path = plot_run.picture_at(self.folder / "grains.pvd", None)
