@@ -32,6 +32,7 @@ enum class FaceType {
 struct Face {
   FaceType type = FaceType::no_slip;
   double coefficient = 8.36;     // law of the wall: slip velocity over friction velocity (U+ at the wall)
+  bool of_first_cell = false;    // law of the wall: the coefficient follows from the first cell's distance instead
   double slip_length = 0.0;      // m, navier_slip
   bool on_node = false;          // of the two slips: the wall runs through the outermost cell centres
   Vec3 velocity = Vec3::Zero();  // m/s, moving and velocity_inlet
@@ -41,9 +42,12 @@ struct Face {
     return type == FaceType::navier_slip || type == FaceType::law_of_the_wall ||
            type == FaceType::law_of_the_wall_as_printed;
   }
+  bool same_coefficient(const Face& other) const {
+    return of_first_cell == other.of_first_cell && (of_first_cell || coefficient == other.coefficient);
+  }
   bool has_velocity() const { return type == FaceType::moving || type == FaceType::velocity_inlet; }
   bool operator==(const Face& other) const {  // what the type does not use does not count
-    return type == other.type && (type != FaceType::law_of_the_wall || coefficient == other.coefficient) &&
+    return type == other.type && (type != FaceType::law_of_the_wall || same_coefficient(other)) &&
            (type != FaceType::navier_slip || slip_length == other.slip_length) &&
            (!slips() || on_node == other.on_node) && (!has_velocity() || velocity == other.velocity) &&
            (type != FaceType::pressure_outlet || pressure == other.pressure);

@@ -75,11 +75,20 @@ static void describe(io::SectionVisitor& visit, Face& face) {
        {FaceType::velocity_inlet, "velocity_inlet"},
        {FaceType::pressure_outlet, "pressure_outlet"}},
       {.meaning = "kind of face, by half-link rules unless on_node", .required = true});
-  if (face.type == FaceType::law_of_the_wall)
-    visit.real("coefficient", face.coefficient,
-               {.meaning = "slip velocity at the wall over the friction velocity", .above = 0.0});
-  else
+  if (face.type == FaceType::law_of_the_wall) {
+    visit.flag(
+        "of_first_cell", face.of_first_cell,
+        {.meaning = "take the coefficient from the law of the wall at the first cell's centre, whose distance in "
+                    "wall units grows with the stress"});
+    if (face.of_first_cell)
+      visit.not_here("coefficient", "of_first_cell finds the coefficient; remove one of the two");
+    else
+      visit.real("coefficient", face.coefficient,
+                 {.meaning = "slip velocity at the wall over the friction velocity", .above = 0.0});
+  } else {
     visit.not_here("coefficient", "only a law_of_the_wall has a coefficient; remove it");
+    visit.not_here("of_first_cell", "only a law_of_the_wall has a coefficient; remove it");
+  }
   if (face.type == FaceType::navier_slip)
     visit.real("slip_length", face.slip_length,
                {.unit = "m",
@@ -89,7 +98,9 @@ static void describe(io::SectionVisitor& visit, Face& face) {
                 .example = 1e-4});
   else
     visit.not_here("slip_length", "only a navier_slip wall has a slip length; remove it");
-  if (face.slips())
+  if (face.of_first_cell)
+    visit.not_here("on_node", "of_first_cell needs the first cell half a cell from the wall; remove one of the two");
+  else if (face.slips())
     visit.flag("on_node", face.on_node,
                {.meaning = "the wall runs through the outermost cell centres, not beyond them"});
   else

@@ -40,6 +40,7 @@ lbm::FaceConditions face_conditions(const DomainCase& domain, const Units& units
     condition.type = face_type(asked_for.type);
     condition.slip_coefficient =
         asked_for.type == FaceType::law_of_the_wall_as_printed ? lbm::printed_slip_coefficient : asked_for.coefficient;
+    condition.slip_of_first_cell = asked_for.type == FaceType::law_of_the_wall && asked_for.of_first_cell;
     condition.slip_length = asked_for.slip_length / units.spacing;
     condition.on_node = asked_for.slips() && asked_for.on_node;
     condition.velocity = asked_for.velocity / units.velocity();

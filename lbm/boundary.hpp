@@ -4,6 +4,7 @@
 #include "core/types.hpp"
 
 #include <array>
+#include <cmath>
 
 namespace thalweg::lbm {
 
@@ -22,9 +23,16 @@ enum class FaceType {
 // tangent of u+ = ln(y+)/0.41 + 5 at y+ = 10.8 taken to the wall, gives 8.36.
 constexpr double derived_slip_coefficient = 8.36, printed_slip_coefficient = 2.35;
 
+// The same tangent taken at the centre of the first cell, y_plus away from the wall in wall units, where that is
+// further out than 10.8 and the velocity the cell knows lies on a flatter part of the profile.
+inline double slip_coefficient_at(double y_plus) {
+  return y_plus > 10.8 ? std::log(y_plus) / 0.41 + 5.0 - 1.0 / 0.41 : derived_slip_coefficient;
+}
+
 struct FaceCondition {
   FaceType type = FaceType::periodic;
   double slip_coefficient = derived_slip_coefficient;  // law_of_the_wall
+  bool slip_of_first_cell = false;                     // law_of_the_wall: slip_coefficient_at the first cell instead
   double slip_length = 0.0;                            // navier_slip, cells
   bool on_node = false;            // navier_slip, law_of_the_wall: the wall runs through the last cell centres
   Vec3 velocity = Vec3::Zero();    // moving (in the plane of the face), velocity_inlet

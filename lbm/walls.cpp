@@ -78,8 +78,10 @@ double Walls<Real>::bounced_fraction(int face, double shear_rate) const {
   if (wall.type == FaceType::navier_slip) return scale / (scale + wall.slip_length);
   // Slip length A nu/u_tau, multiplied through by u_tau, which is zero in fluid at rest.
   const double friction_velocity = std::sqrt(viscosity * shear_rate);
+  const double coefficient =
+      wall.slip_of_first_cell ? slip_coefficient_at(0.5 * friction_velocity / viscosity_) : wall.slip_coefficient;
   return std::max(smallest_bounced_fraction,
-                  scale * friction_velocity / (scale * friction_velocity + wall.slip_coefficient * viscosity));
+                  scale * friction_velocity / (scale * friction_velocity + coefficient * viscosity));
 }
 
 template <typename Real>

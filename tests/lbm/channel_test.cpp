@@ -64,5 +64,26 @@ TEST(LawOfTheWall, SlipsByItsCoefficientTimesTheFrictionVelocity) {
   }
 }
 
+// The tangent to u+ = ln(y+)/0.41 + 5 at 10.8 is 8.36 at the wall, and further out what the table of the side-wall
+// channel has: A = 9.25 and 9.70 at dx+ = 31.0 and 37.3 (to the digits of dx+).
+TEST(LawOfTheWall, TakesTheTangentAtTheFirstCell) {
+  EXPECT_EQ(slip_coefficient_at(3.0), 8.36);
+  EXPECT_NEAR(slip_coefficient_at(10.8 + 1e-9), 8.36, 0.01);
+  EXPECT_NEAR(slip_coefficient_at(0.5 * 31.0), 9.25, 0.01);
+  EXPECT_NEAR(slip_coefficient_at(0.5 * 37.3), 9.70, 0.01);
+}
+
+// Where the first cell is nearer than 10.8 the coefficient is the constant one; further away, larger, and the flow
+// faster.
+TEST(LawOfTheWall, OfTheFirstCellSlipsMoreUnderALargerStress) {
+  const auto speed = [](double tau, double force, bool first_cell) {
+    FaceCondition wall{FaceType::law_of_the_wall};
+    wall.slip_of_first_cell = first_cell;
+    return velocity_across(plain(8, tau, force, wall), 20000, 0.1)[0];
+  };
+  EXPECT_EQ(speed(0.55, 1e-7, true), speed(0.55, 1e-7, false));  // y+ = 0.5 sqrt(4e-7)/0.0167 = 0.02
+  EXPECT_GT(speed(0.5003, 1e-6, true), 1.001 * speed(0.5003, 1e-6, false));
+}
+
 }  // namespace
 }  // namespace thalweg::lbm

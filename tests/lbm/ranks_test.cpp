@@ -31,16 +31,17 @@ struct Box {
 std::vector<Box> boxes() {
   const FaceCondition periodic{FaceType::periodic}, no_slip{FaceType::no_slip}, free_slip{FaceType::free_slip},
       law{FaceType::law_of_the_wall};
-  FaceCondition slip{FaceType::navier_slip}, on_node = law, lid{FaceType::moving}, inlet{FaceType::velocity_inlet},
-                                             outlet{FaceType::pressure_outlet};
+  FaceCondition slip{FaceType::navier_slip}, first_cell = law, on_node = law, lid{FaceType::moving},
+                                             inlet{FaceType::velocity_inlet}, outlet{FaceType::pressure_outlet};
   slip.slip_length = 0.8;
+  first_cell.slip_of_first_cell = true;
   on_node.on_node = true;
   lid.velocity = Vec3(0.03, 0.02, 0.0);
   inlet.velocity = Vec3(0.03, 0.01, 0.0);
   outlet.density_deviation = 0.002;
   return {{"periodic", {periodic, periodic, periodic, periodic, periodic, periodic}},
           {"flume", {periodic, periodic, law, law, no_slip, free_slip}},
-          {"closed by three walls", {law, free_slip, no_slip, law, free_slip, law}},
+          {"closed by three walls", {law, free_slip, no_slip, first_cell, free_slip, first_cell}},
           {"under a lid", {slip, no_slip, law, slip, slip, lid}},
           {"walls through nodes", {periodic, periodic, on_node, on_node, slip, on_node}},
           {"open", {inlet, outlet, free_slip, slip, no_slip, free_slip}}};

@@ -15,6 +15,7 @@ for case in 0.023:0.0434:8.38 0.028:0.0479:8.61 0.047:0.0620:9.25 0.063:0.0718:9
   stress=${case%%:*} rest=${case#*:}
   run "tau_${stress}_A_8.36" "${rest%:*}" 0.27 8.36
   run "tau_${stress}_A_${rest#*:}" "${rest%:*}" 0.27 "${rest#*:}"
+  run "tau_${stress}_first_cell" "${rest%:*}" 0.27 8.36 --slip-of-first-cell
 done
 # What the result depends on, at 0.047.
 run printed_A_2.35 0.0620 0.27 2.35

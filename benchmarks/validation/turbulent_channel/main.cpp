@@ -32,6 +32,7 @@ struct Options {
   lbm::CollisionModel collision = lbm::CollisionModel::bgk;
   lbm::FaceType wall = lbm::FaceType::no_slip;
   double slip_coefficient = lbm::derived_slip_coefficient;
+  bool slip_of_first_cell = false;
   bool on_node = false;
   double until = 20.0;         // end, in h/u_tau
   double average_from = 10.0;  // h/u_tau
@@ -124,6 +125,7 @@ private:
     for (const int face : {4, 5}) {
       faces[face].type = o_.wall;
       faces[face].slip_coefficient = o_.slip_coefficient;
+      faces[face].slip_of_first_cell = o_.slip_of_first_cell;
       faces[face].on_node = o_.on_node;
     }
     return faces;
@@ -204,6 +206,7 @@ void read(Options& o, int argc, char** argv) {
   app.add_option("--magic", o.magic, "magic parameter of trt");
   app.add_option("--collision", o.collision)->transform(CLI::CheckedTransformer(collisions));
   app.add_option("--wall", o.wall)->transform(CLI::CheckedTransformer(walls));
+  app.add_flag("--slip-of-first-cell", o.slip_of_first_cell, "A from the first cell's distance from the wall");
   app.add_option("--slip-coefficient", o.slip_coefficient, "A of the law of the wall");
   app.add_flag("--on-node", o.on_node, "law of the wall: the plates run through the outermost cell centres");
   app.add_option("--until", o.until, "end, in h/u_tau");
