@@ -1,7 +1,7 @@
 #include "coupling/fluid_system.hpp"
 
-#include "core/error.hpp"
 #include "core/mpi_session.hpp"
+#include "core/same_time_step.hpp"
 #include "coupling/fluid_sample.hpp"
 
 #include <fmt/format.h>
@@ -10,15 +10,6 @@
 #include <cmath>
 
 namespace thalweg::coupling {
-
-void check_time_step(ArchiveReader& archive, double time_step) {
-  const double saved = archive.real_attribute("system/time_step");
-  if (saved != time_step)
-    throw InputError(
-        fmt::format("The checkpoint was made with {:.6g} s a step and this case has {:.6g} s: a state can only "
-                    "be taken over with the same time step.",
-                    saved, time_step));
-}
 
 template <typename Real>
 FluidSystem<Real>::FluidSystem(std::unique_ptr<Decomposition> decomposition, MPI_Comm communicator,
@@ -139,7 +130,7 @@ void FluidSystem<Real>::save(ArchiveWriter& archive) const {
 
 template <typename Real>
 void FluidSystem<Real>::load(ArchiveReader& archive) {
-  check_time_step(archive, time_step());
+  require_same_time_step(archive, time_step());
   step_ = archive.integer_attribute("system/step");
   fluid_.load(archive);
   if (solids_) solids_->load(archive);
@@ -147,7 +138,7 @@ void FluidSystem<Real>::load(ArchiveReader& archive) {
 
 template <typename Real>
 void FluidSystem<Real>::take_fluid(ArchiveReader& archive) {
-  check_time_step(archive, time_step());
+  require_same_time_step(archive, time_step());
   fluid_.load_populations(archive);
 }
 

@@ -55,7 +55,4 @@ private:
   } phases_{};
 };
 
-// The time step of a checkpoint must be that of the case. Throws InputError where it is not.
-void check_time_step(ArchiveReader& archive, double time_step);
-
 }  // namespace thalweg::coupling

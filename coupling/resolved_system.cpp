@@ -1,6 +1,7 @@
 #include "coupling/resolved_system.hpp"
 
 #include "core/mpi_session.hpp"
+#include "core/same_time_step.hpp"
 #include "coupling/fluid_sample.hpp"
 #include "coupling/fluid_system.hpp"
 
@@ -300,7 +301,7 @@ void ResolvedSystem<Real>::save(ArchiveWriter& archive) const {
 
 template <typename Real>
 void ResolvedSystem<Real>::load(ArchiveReader& archive) {
-  check_time_step(archive, time_step());
+  require_same_time_step(archive, time_step());
   step_ = archive.integer_attribute("system/step");
   map_.begin_update();
   for (std::size_t slot = 0; slot < map_.grains().size(); ++slot)
@@ -314,7 +315,7 @@ void ResolvedSystem<Real>::load(ArchiveReader& archive) {
 
 template <typename Real>
 void ResolvedSystem<Real>::take_fluid(ArchiveReader& archive) {
-  check_time_step(archive, time_step());
+  require_same_time_step(archive, time_step());
   fluid_.load_populations(archive);
 }
 

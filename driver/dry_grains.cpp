@@ -1,6 +1,6 @@
 #include "driver/dry_grains.hpp"
 
-#include "core/error.hpp"
+#include "core/same_time_step.hpp"
 #include "driver/build_system.hpp"
 #include "driver/grain_setup.hpp"
 
@@ -98,12 +98,7 @@ void DryGrains::save(ArchiveWriter& archive) const {
 }
 
 void DryGrains::load(ArchiveReader& archive) {
-  const double saved = archive.real_attribute("system/time_step");
-  if (saved != time_step_)
-    throw InputError(
-        fmt::format("The checkpoint was made with {:.6g} s a step and this case has {:.6g} s: a run can only "
-                    "go on with the same time step.",
-                    saved, time_step_));
+  require_same_time_step(archive, time_step_);
   step_ = archive.integer_attribute("system/step");
   grains_.load(archive);
 }
