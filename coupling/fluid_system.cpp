@@ -51,8 +51,7 @@ void FluidSystem<Real>::advance_around_solids() {
     const auto scope = timer_.measure(phases_.walls);
     fluid_.apply_walls();
   }
-  lbm::LinkPass<Real> links(fluid_.populations(), fluid_.cells(), fluid_.tiles(), solids_->links(), lattice_box_,
-                            parameters_.links, solids_->begin_step());
+  lbm::LinkPass<Real> links(fluid_, solids_->links(), lattice_box_, parameters_.links, solids_->begin_step());
   const auto sweep = timer_.measure(phases_.sweep);
   fluid_.stream_and_collide([&](int tile) {
     const auto scope = timer_.measure(phases_.links);
@@ -84,8 +83,7 @@ FluidFields FluidSystem<Real>::sample(const std::vector<FluidField>& wanted) con
   if (solids_)
     context.apply_links = [this] {
       std::vector<lbm::LinkBody> bodies = solids_->bodies();
-      lbm::LinkPass<Real> links(fluid_.populations(), fluid_.cells(), fluid_.tiles(), solids_->links(), lattice_box_,
-                                parameters_.links, bodies);
+      lbm::LinkPass<Real> links(fluid_, solids_->links(), lattice_box_, parameters_.links, bodies);
       for (int tile = 0; tile < fluid_.tiles().count(); ++tile) links.apply_tile(tile);
     };
   return sample_fields(fluid_, context, wanted);

@@ -26,7 +26,6 @@ int GrainMap::add(GlobalId id, double radius) {
   if (free_slots_.empty()) {
     slot = static_cast<int>(grains_.size());
     grains_.emplace_back();
-    relink_marked_.push_back(0);
   } else {
     slot = free_slots_.back();
     free_slots_.pop_back();
@@ -54,7 +53,6 @@ void GrainMap::place(int slot, const Vec3& centre) {
     if (was_here) turn_cells(slot, old, grain.radius, old, centre);
     if (is_here) turn_cells(slot, centre, grain.radius, old, centre);
   }
-  mark_for_relink(slot);
 }
 
 // Only cells that are inside at one of the two places and not at the other can change hands; what the grain holds or
@@ -144,29 +142,6 @@ void GrainMap::withdraw(int slot, std::ptrdiff_t cell) {
   if (waiting.empty()) claimants_.erase(found);
 }
 
-void GrainMap::mark_for_relink(int slot) {
-  if (relink_marked_[slot]) return;
-  relink_marked_[slot] = 1;
-  relink_.push_back(slot);
-}
-
-// A link is told by its fluid cell, its solid cell and the cell upstream: a change is felt up to two cells away.
-void GrainMap::mark_neighbours(const Index3& local) {
-  const Index3& n = cells_.indexing().size();
-  for (int i = 1; i < lbm::D3Q19::directions; ++i)
-    for (int steps = 1; steps <= 2; ++steps) {
-      Index3 at;
-      bool in_memory = true;
-      for (int a = 0; a < 3; ++a) {
-        at[a] = local[a] + steps * lbm::D3Q19::c[i][a];
-        in_memory = in_memory && at[a] >= -1 && at[a] <= n[a];
-      }
-      if (!in_memory) continue;
-      const std::int32_t slot = cells_.body(cells_.indexing().index(at[0], at[1], at[2]));
-      if (slot != CellMap::fluid) mark_for_relink(slot);
-    }
-}
-
 const std::vector<GrainMap::Change>& GrainMap::settle() {
   // One entry a cell: its first state before, its last now.
   const auto order = [](const Change& a, const Change& b) {
@@ -182,19 +157,9 @@ const std::vector<GrainMap::Change>& GrainMap::settle() {
     k = last + 1;
   }
   changes_.resize(kept);
-  for (const Change& change : changes_) {
-    if (change.before != CellMap::fluid) mark_for_relink(change.before);
-    if (change.now != CellMap::fluid) mark_for_relink(change.now);
-    mark_neighbours(change.cell);
-  }
-  std::sort(relink_.begin(), relink_.end());
   return changes_;
 }
 
-void GrainMap::begin_update() {
-  changes_.clear();
-  for (const int slot : relink_) relink_marked_[slot] = 0;
-  relink_.clear();
-}
+void GrainMap::begin_update() { changes_.clear(); }
 
 }  // namespace thalweg::coupling

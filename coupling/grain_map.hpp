@@ -18,7 +18,7 @@ namespace thalweg::coupling {
 struct MappedGrain {
   GlobalId id = -1;            // -1: the slot is free
   double radius = 0.0;         // lattice units
-  Vec3 centre = Vec3::Zero();  // for which cells and links stand; lattice units, global
+  Vec3 centre = Vec3::Zero();  // for which its cells stand; lattice units, global
 };
 
 class GrainMap {
@@ -42,11 +42,9 @@ public:
   // Moves a grain: its cells are those of a sphere at `centre`. Changes are collected until settle().
   void place(int slot, const Vec3& centre);
 
-  // Ends an update: returns what changed, each cell once, sorted, and the slots whose links must be built anew
-  // (grains placed or removed since, and grains that stand beside a changed cell), sorted. Valid until begin_update().
+  // Ends an update: returns what changed, each cell once, sorted. Valid until begin_update().
   const std::vector<Change>& settle();
   const std::vector<Change>& changes() const { return changes_; }
-  const std::vector<int>& slots_to_relink() const { return relink_; }
 
 private:
   void assign(const Index3& local, std::ptrdiff_t cell, std::int32_t slot);
@@ -55,8 +53,6 @@ private:
   void take(int slot, const Index3& local);
   void leave(int slot, const Index3& local);
   void withdraw(int slot, std::ptrdiff_t cell);
-  void mark_for_relink(int slot);
-  void mark_neighbours(const Index3& local);
 
   LocalCells local_cells_;
   lbm::CellMap& cells_;
@@ -65,8 +61,6 @@ private:
   std::unordered_map<GlobalId, int> slot_of_id_;
   std::unordered_map<std::ptrdiff_t, std::vector<int>> claimants_;  // of cells that a lower id has
   std::vector<Change> changes_;
-  std::vector<int> relink_;
-  std::vector<char> relink_marked_;  // by slot
   // Scratch of turn_cells: cells along each axis from the two centres; of a row, squares of the offsets and who turns.
   std::vector<LocalCell> before_[3], after_[3];
   std::vector<double> squares_before_, squares_after_;

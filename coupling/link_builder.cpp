@@ -1,146 +1,123 @@
 #include "coupling/link_builder.hpp"
 
+#include "core/error.hpp"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
-#include <cmath>
 
 namespace thalweg::coupling {
 
+using lbm::CellMap;
 using lbm::D3Q19;
 
 namespace {
 
 constexpr double longest_link = 1.4142135623730951;
 
-// The directions of the lattice in whole vectors, the last ones going nowhere.
-struct Directions {
-  static constexpr int padded = 24;
-  double c[3][padded] = {}, length_squared[padded] = {};
-
-  constexpr Directions() {
-    for (int i = 0; i < padded; ++i) {
-      length_squared[i] = 1e30;
-      if (i == 0 || i >= D3Q19::directions) continue;
-      for (int a = 0; a < 3; ++a) c[a][i] = D3Q19::c[i][a];
-      length_squared[i] = D3Q19::length_squared(i);
-    }
-  }
-};
-constexpr Directions directions;
-
 }  // namespace
 
-void LinkBuilder::Candidates::clear() {
-  cell.clear();
-  direction.clear();
-  tile.clear();
-  for (std::vector<double>* numbers : {&d[0], &d[1], &d[2], &a, &b, &q}) numbers->clear();
+LinkBuilder::LinkBuilder(const Decomposition& decomposition, const Block& block, const CellMap& cells,
+                         const lbm::RowTiles& tiles)
+    : local_cells_(decomposition, block), cells_(cells), tiles_(tiles) {
+  for (int a = 0; a < 2; ++a)
+    if (block.size()[a] > lbm::LinkPlace::largest)
+      throw InputError(fmt::format("A rank would hold {} cells along {}, more than {}; use more ranks.",
+                                   block.size()[a], "xy"[a], lbm::LinkPlace::largest));
 }
 
-void LinkBuilder::build(int slot, const MappedGrain& grain, lbm::LinkTable& table, lbm::LinkBody& body) {
-  const double reach = grain.radius + longest_link;
-  body.centre = grain.centre;
-  local_cells_.along(0, grain.centre.x(), reach, grain.centre.x(), 0, xs_);
-  local_cells_.along(1, grain.centre.y(), reach, grain.centre.y(), 0, ys_);
-  local_cells_.along(2, grain.centre.z(), reach, grain.centre.z(), 0, zs_);
-  const auto by_place = [](const LocalCell& p, const LocalCell& q) { return p.local < q.local; };
-  std::sort(ys_.begin(), ys_.end(), by_place);
-  std::sort(zs_.begin(), zs_.end(), by_place);
-  found_.clear();
-  // In the order of the tiles: block of rows, plane, row.
-  for (std::size_t block = 0; block < ys_.size();) {
-    std::size_t end = block;
-    while (end < ys_.size() && tiles_.tile_of(ys_[end].local, 0) == tiles_.tile_of(ys_[block].local, 0)) ++end;
-    for (const LocalCell& z : zs_)
-      for (std::size_t y = block; y < end; ++y) find_in_row(slot, grain, ys_[y], z);
-    block = end;
+void LinkBuilder::update(const GrainMap& map, lbm::LinkTable& table) {
+  stale_tiles_.resize(map.grains().size());
+  for (const GrainMap::Change& change : map.changes()) mark_around(change);
+  std::sort(stale_.begin(), stale_.end());
+  for (const int slot : stale_) {
+    if (map.grains()[slot].id < 0)
+      table.remove(slot);
+    else
+      rebuild(slot, map.grains()[slot], table);
+    stale_tiles_[slot].clear();
   }
-  measure_distances();
-  hand_over(slot, table);
+  stale_.clear();
 }
 
-void LinkBuilder::ask_for(const MappedGrain& grain) {
-  const double reach = grain.radius + longest_link;
-  std::vector<LocalCell>* places[3] = {&xs_, &ys_, &zs_};
-  for (int a = 0; a < 3; ++a) {
-    local_cells_.along(a, grain.centre[a], reach, grain.centre[a], 0, *places[a]);
-    if (places[a]->empty()) return;
+void LinkBuilder::mark(std::int32_t slot, int tile) {
+  std::vector<int>& tiles = stale_tiles_[slot];
+  if (std::find(tiles.rbegin(), tiles.rend(), tile) != tiles.rend()) return;
+  if (tiles.empty()) stale_.push_back(slot);
+  tiles.push_back(tile);
+}
+
+// A link is told by its fluid cell, its solid cell and the cell upstream, and a changed cell may be any of them. The
+// neighbours may have changed in the same update, so it does not count what they are now.
+void LinkBuilder::mark_around(const GrainMap::Change& change) {
+  const lbm::CellIndexing& indexing = cells_.indexing();
+  const Index3 &at = change.cell, &n = indexing.size();
+  const std::ptrdiff_t cell = indexing.index(at[0], at[1], at[2]);
+  const bool owned = indexing.owned(at[0], at[1], at[2]);
+  const auto in_memory = [&](const Index3& c) {
+    for (int a = 0; a < 3; ++a)
+      if (c[a] < -1 || c[a] > n[a]) return false;
+    return true;
+  };
+  for (int i = 1; i < D3Q19::directions; ++i) {
+    const Index3 next{at[0] + D3Q19::c[i][0], at[1] + D3Q19::c[i][1], at[2] + D3Q19::c[i][2]};
+    if (!in_memory(next)) continue;
+    const std::int32_t beside = cells_.body(cell + indexing.offset(i));
+    if (owned && beside != CellMap::fluid) mark(beside, tiles_.tile_of(at[1], at[2]));
+    if (!indexing.owned(next[0], next[1], next[2])) continue;
+    const int tile = tiles_.tile_of(next[1], next[2]);
+    if (change.before != CellMap::fluid) mark(change.before, tile);
+    if (change.now != CellMap::fluid) mark(change.now, tile);
+    const std::int32_t beyond = cells_.body(cell + 2 * indexing.offset(i));
+    if (beyond != CellMap::fluid) mark(beyond, tile);
   }
-  const std::int32_t* bodies = cells_.bodies();
-  for (const LocalCell& z : zs_)
-    for (const LocalCell& y : ys_) {
-      const std::ptrdiff_t row = cells_.indexing().index(0, y.local, z.local);
-      __builtin_prefetch(bodies + row + xs_.front().local);
-      __builtin_prefetch(bodies + row + xs_.back().local);
+}
+
+void LinkBuilder::rebuild(int slot, const MappedGrain& grain, lbm::LinkTable& table) {
+  const double reach = grain.radius + longest_link;
+  std::vector<LocalCell>* places[2] = {&xs_, &ys_};
+  const auto before = [](const LocalCell& p, const LocalCell& q) { return p.local < q.local; };
+  const auto same = [](const LocalCell& p, const LocalCell& q) { return p.local == q.local; };
+  for (int a = 0; a < 2; ++a) {
+    std::vector<LocalCell>& cells = *places[a];
+    local_cells_.along(a, grain.centre[a], reach, grain.centre[a], 0, cells);
+    std::sort(cells.begin(), cells.end(), before);
+    cells.erase(std::unique(cells.begin(), cells.end(), same), cells.end());
+  }
+  for (const int tile : stale_tiles_[slot]) {
+    const int z = tiles_.plane_of(tile), block = tiles_.block_of(tile);
+    links_.clear();
+    for (const LocalCell& y : ys_)
+      if (y.local >= tiles_.first_row(block) && y.local < tiles_.end_row(block)) find_in_row(slot, y.local, z);
+    table.replace(slot, tile, links_);
+  }
+}
+
+// The map alone tells where links are: all neighbours of the cells of a row are compared with the grain at once.
+void LinkBuilder::find_in_row(int slot, int y, int z) {
+  const lbm::CellIndexing& indexing = cells_.indexing();
+  for (std::size_t begin = 0; begin < xs_.size();) {
+    std::size_t end = begin + 1;  // of a run of neighbouring cells
+    while (end < xs_.size() && xs_[end].local == xs_[end - 1].local + 1) ++end;
+    const int count = static_cast<int>(end - begin), first = xs_[begin].local;
+    begin = end;
+    const std::int32_t* row = cells_.bodies() + indexing.index(first, y, z);
+    hits_.assign(count, 0);
+    std::uint32_t* hits = hits_.data();
+    for (int i = 1; i < D3Q19::directions; ++i) {
+      const std::int32_t* there = row + indexing.offset(i);
+      for (int k = 0; k < count; ++k) hits[k] |= static_cast<std::uint32_t>(there[k] == slot) << i;
     }
-}
-
-void LinkBuilder::find_in_row(int slot, const MappedGrain& grain, const LocalCell& y, const LocalCell& z) {
-  const double reach = grain.radius + longest_link, from_axis = y.offset * y.offset + z.offset * z.offset;
-  if (from_axis >= reach * reach) return;
-  for (const LocalCell& x : xs_) {
-    const double squared = x.offset * x.offset + from_axis, q = squared - grain.radius * grain.radius;
-    if (q >= 0.0 && squared < reach * reach) find_at_cell(slot, x, y, z, q);
+    for (int k = 0; k < count; ++k) {
+      if (hits[k] == 0 || row[k] != CellMap::fluid) continue;
+      const std::uint32_t place = lbm::LinkPlace::of(first + k, y);
+      for (std::uint32_t left = hits[k]; left != 0; left &= left - 1) {
+        const int i = std::countr_zero(left);
+        links_.push_back({place, lbm::LinkTag::of(i, row[k - indexing.offset(i)])});
+      }
+    }
   }
-}
-
-void LinkBuilder::find_at_cell(int slot, const LocalCell& x, const LocalCell& y, const LocalCell& z, double q) {
-  const lbm::CellIndexing& indexing = cells_.indexing();
-  const std::ptrdiff_t cell = indexing.index(x.local, y.local, z.local);
-  if (!cells_.is_fluid(cell)) return;
-  // The neighbour along i is inside the grain if q + 2 b + a < 0; in doubt the map is asked, which is right to the bit.
-  constexpr double doubt = 1e-6;
-  alignas(64) double b[Directions::padded];
-  std::uint32_t inside = 0;
-  for (int i = 0; i < Directions::padded; ++i)
-    b[i] = directions.c[0][i] * x.offset + directions.c[1][i] * y.offset + directions.c[2][i] * z.offset;
-  for (int i = 0; i < Directions::padded; ++i)
-    inside |= static_cast<std::uint32_t>(q + 2.0 * b[i] + directions.length_squared[i] < doubt) << i;
-  for (; inside != 0; inside &= inside - 1) {
-    const int i = std::countr_zero(inside);
-    // In a box hardly wider than the grain the solid cell may belong to its other periodic image, met elsewhere.
-    if (cells_.body(cell + indexing.offset(i)) != slot || b[i] >= 0.0) continue;
-    found_.cell.push_back(static_cast<std::uint32_t>(cell));
-    found_.direction.push_back(i);
-    found_.tile.push_back(tiles_.tile_of(y.local, z.local));
-    found_.d[0].push_back(x.offset);
-    found_.d[1].push_back(y.offset);
-    found_.d[2].push_back(z.offset);
-    found_.a.push_back(directions.length_squared[i]);
-    found_.b.push_back(b[i]);
-    found_.q.push_back(q);
-  }
-}
-
-void LinkBuilder::measure_distances() {
-  found_.resize_distance();
-  const double *a = found_.a.data(), *b = found_.b.data(), *q = found_.q.data();
-  double* distance = found_.distance.data();
-  const std::size_t n = found_.size();
-  for (std::size_t k = 0; k < n; ++k) {
-    const double discriminant = b[k] * b[k] - a[k] * q[k];
-    distance[k] = (-b[k] - std::sqrt(std::max(discriminant, 0.0))) / a[k];
-  }
-}
-
-void LinkBuilder::hand_over(int slot, lbm::LinkTable& table) {
-  const lbm::CellIndexing& indexing = cells_.indexing();
-  links_.clear();
-  tile_of_.clear();
-  for (std::size_t k = 0; k < found_.size(); ++k) {
-    const double delta = found_.distance[k];
-    if (delta > 1.0 + 1e-9) continue;  // the far image again
-    const int i = found_.direction[k];
-    lbm::Link link;
-    link.cell = found_.cell[k];
-    link.direction = i;
-    link.upstream_body = cells_.body(static_cast<std::ptrdiff_t>(link.cell) - indexing.offset(i));
-    link.distance = static_cast<float>(std::clamp(delta, 0.0, 1.0));
-    for (int axis = 0; axis < 3; ++axis) link.arm[axis] = found_.d[axis][k] + delta * D3Q19::c[i][axis];
-    links_.push_back(link);
-    tile_of_.push_back(found_.tile[k]);
-  }
-  table.replace(slot, links_, tile_of_);
 }
 
 }  // namespace thalweg::coupling

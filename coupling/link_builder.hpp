@@ -1,6 +1,6 @@
-// Builds the cut links of one grain: every lattice line from an owned fluid cell into a cell the grain covers, with the
-// exact distance to the sphere. With d = x_f - centre, a = c_i.c_i, b = c_i.d, q = d.d - R^2:
-//   delta = [-b - sqrt(b^2 - a q)] / a,  in [0, 1], a fraction of the link.
+// Keeps the cut links of all grains: every lattice line from an owned fluid cell into a cell that a grain covers. Links
+// follow from the map of the cells alone, so only those around cells that changed hands are found anew: the links of a
+// grain in one tile at a time.
 #pragma once
 
 #include "coupling/grain_map.hpp"
@@ -15,40 +15,27 @@ namespace thalweg::coupling {
 
 class LinkBuilder {
 public:
+  // Throws InputError where a block is too long for a link's place.
   LinkBuilder(const Decomposition& decomposition, const Block& block, const lbm::CellMap& cells,
-              const lbm::RowTiles& tiles)
-      : local_cells_(decomposition, block), cells_(cells), tiles_(tiles) {}
+              const lbm::RowTiles& tiles);
 
-  // Replaces the grain's links in the table and sets the centre of its body.
-  void build(int slot, const MappedGrain& grain, lbm::LinkTable& table, lbm::LinkBody& body);
-
-  // Asks the memory for what build() will read of the cells around a grain.
-  void ask_for(const MappedGrain& grain);
+  // Brings the table up to date with the map's changes since the last call.
+  void update(const GrainMap& map, lbm::LinkTable& table);
 
 private:
-  // A link on its way: its cell, direction and tile, c_i.c_i, and of d = x_f - centre the vector, b = c_i.d and q.
-  struct Candidates {
-    std::vector<std::uint32_t> cell;
-    std::vector<int> direction, tile;
-    std::vector<double> d[3], a, b, q, distance;
-
-    void clear();
-    void resize_distance() { distance.resize(cell.size()); }
-    std::size_t size() const { return cell.size(); }
-  };
-
-  void find_in_row(int slot, const MappedGrain& grain, const LocalCell& y, const LocalCell& z);
-  void find_at_cell(int slot, const LocalCell& x, const LocalCell& y, const LocalCell& z, double q);
-  void measure_distances();
-  void hand_over(int slot, lbm::LinkTable& table);
+  void mark_around(const GrainMap::Change& change);
+  void mark(std::int32_t slot, int tile);
+  void rebuild(int slot, const MappedGrain& grain, lbm::LinkTable& table);
+  void find_in_row(int slot, int y, int z);
 
   LocalCells local_cells_;
   const lbm::CellMap& cells_;
   const lbm::RowTiles& tiles_;
-  std::vector<LocalCell> xs_, ys_, zs_;  // scratch from here on
-  Candidates found_;
+  std::vector<std::vector<int>> stale_tiles_;  // of each slot
+  std::vector<int> stale_;                     // slots that have any
+  std::vector<LocalCell> xs_, ys_;             // scratch from here on
+  std::vector<std::uint32_t> hits_;            // of the cells of a row, the directions that end in the grain
   std::vector<lbm::Link> links_;
-  std::vector<int> tile_of_;
 };
 
 }  // namespace thalweg::coupling

@@ -55,7 +55,7 @@ void ResolvedSystem<Real>::initialise_map() {
   map_.begin_update();
   synchronise_slots();
   map_.settle();
-  build_links();
+  link_builder_.update(map_, links_);
 }
 
 template <typename Real>
@@ -86,6 +86,8 @@ void ResolvedSystem<Real>::update_bodies() {
   const dem::GrainStore& store = grains_->store();
   for (std::size_t g = 0; g < store.total(); ++g) {
     lbm::LinkBody& body = bodies_[map_slot_[g]];
+    body.centre = lattice_position(store.position[g]);
+    body.radius = store.radius[g] / parameters_.units.spacing;
     body.velocity = store.velocity[g] / parameters_.units.velocity();
     body.angular_velocity = store.angular_velocity[g] * parameters_.units.time_step;
     body.force = {};
@@ -93,8 +95,8 @@ void ResolvedSystem<Real>::update_bodies() {
   }
 }
 
-// Ghosts follow the same rule from the same numbers as their owners, so every rank moves a grain's cells in the same
-// step.
+// Cells follow a grain once it has moved by the tolerance; links know its place exactly all the same. Ghosts follow the
+// same rule from the same numbers as their owners, so every rank moves a grain's cells in the same step.
 template <typename Real>
 void ResolvedSystem<Real>::update_map() {
   dem::GrainStore& store = grains_->store();
@@ -109,24 +111,8 @@ void ResolvedSystem<Real>::update_map() {
 }
 
 template <typename Real>
-void ResolvedSystem<Real>::build_links() {
-  const std::vector<int>& slots = map_.slots_to_relink();
-  for (std::size_t k = 0; k < slots.size(); ++k) {
-    if (k + 1 < slots.size()) {
-      link_builder_.ask_for(map_.grains()[slots[k + 1]]);
-      links_.ask_for(slots[k + 1]);
-    }
-    if (map_.grains()[slots[k]].id < 0)
-      links_.remove(slots[k]);
-    else
-      link_builder_.build(slots[k], map_.grains()[slots[k]], links_, bodies_[slots[k]]);
-  }
-}
-
-template <typename Real>
 void ResolvedSystem<Real>::sweep_behind_links() {
-  lbm::LinkPass<Real> links(fluid_.populations(), fluid_.cells(), fluid_.tiles(), links_, lattice_box_,
-                            parameters_.links, bodies_);
+  lbm::LinkPass<Real> links(fluid_, links_, lattice_box_, parameters_.links, bodies_);
   const auto sweep = timer_.measure(phases_.sweep);
   fluid_.stream_and_collide([&](int tile) {
     const auto scope = timer_.measure(phases_.links);
@@ -184,7 +170,7 @@ void ResolvedSystem<Real>::advance() {
     update_map();
     map_.settle();
     account_for_covered_cells();
-    build_links();
+    link_builder_.update(map_, links_);
   }
   {
     const auto scope = timer_.measure(phases_.refill);
@@ -265,8 +251,7 @@ FluidFields ResolvedSystem<Real>::sample(const std::vector<FluidField>& wanted) 
   context.grain_id = [this](std::int32_t slot) { return static_cast<std::int32_t>(map_.grains()[slot].id); };
   context.apply_links = [this] {
     std::vector<lbm::LinkBody> bodies = bodies_;  // takes up the momentum, which belongs to the next step
-    lbm::LinkPass<Real> links(fluid_.populations(), fluid_.cells(), fluid_.tiles(), links_, lattice_box_,
-                              parameters_.links, bodies);
+    lbm::LinkPass<Real> links(fluid_, links_, lattice_box_, parameters_.links, bodies);
     for (int tile = 0; tile < fluid_.tiles().count(); ++tile) links.apply_tile(tile);
   };
   return sample_fields(fluid_, context, wanted);
@@ -307,7 +292,7 @@ void ResolvedSystem<Real>::load(ArchiveReader& archive) {
   for (std::size_t slot = 0; slot < map_.grains().size(); ++slot)
     if (map_.grains()[slot].id >= 0) map_.remove(static_cast<int>(slot));
   map_.settle();
-  build_links();
+  link_builder_.update(map_, links_);
   fluid_.load(archive);
   grains_->load(archive);
   initialise_map();

@@ -15,7 +15,7 @@
 namespace thalweg::coupling {
 
 struct ResolvedParameters : FluidParameters {
-  double link_tolerance = 1e-3;  // cells a grain may move before its links are built anew
+  double link_tolerance = 1e-3;  // cells a grain may move before the map of its cells follows
   int sub_steps = 50;            // DEM steps per lattice step
 };
 
@@ -34,7 +34,8 @@ public:
   ResolvedSystem(std::unique_ptr<Decomposition> decomposition, MPI_Comm communicator,
                  const ResolvedParameters& parameters, std::unique_ptr<dem::GrainDynamics> grains);
 
-  // Attached columns of a grain: where its links were built (m), then force (N) and torque (N m) of the last exchange.
+  // Attached columns of a grain: the place its cells stand for (m), then force (N) and torque (N m) of the last
+  // exchange.
   enum Attached { link_position = 0, last_force = 3, last_torque = 6, has_load = 9, attached_width = 10 };
 
   // How far beyond a block its grains must be known for the map, as a distance from the grain's centre (m).
@@ -55,6 +56,8 @@ public:
   const lbm::Fluid<Real>& fluid() const { return fluid_; }
   const dem::GrainDynamics& grains() const { return *grains_; }
   const lbm::LinkTable& links() const { return links_; }
+  const std::vector<lbm::LinkBody>& dbg() const { return bodies_; }
+  const GrainMap& dbgmap() const { return map_; }
   const ExchangeTotals& step_totals() const { return step_totals_; }
 
 private:
@@ -65,7 +68,6 @@ private:
   void synchronise_slots();
   void update_map();
   void update_bodies();
-  void build_links();
   void account_for_covered_cells();
   void sweep_behind_links();
   void collect_loads();

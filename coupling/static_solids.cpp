@@ -44,7 +44,7 @@ StaticSolids::StaticSolids(const Decomposition& decomposition, MPI_Comm communic
       communicator_(communicator),
       block_(decomposition.block_of(rank_of(communicator))),
       cells_(cells),
-      links_(tiles.count()),
+      links_(tiles.count(), true),
       bodies_(shapes.size()),
       covered_(shapes.size(), 0) {
   for (int a = 0; a < 3; ++a) {
@@ -205,48 +205,44 @@ void StaticSolids::measure(const SolidShape& shape) {
   });
 }
 
-std::vector<lbm::Link> StaticSolids::links_of_cell(const Index3& local) const {
+void StaticSolids::add_links_of_cell(const Index3& local, std::vector<SolidLinks>& links) const {
   const PeriodicBox box{Vec3(decomposition_.cells()[0], decomposition_.cells()[1], decomposition_.cells()[2]),
                         decomposition_.periodic()};
   const std::ptrdiff_t cell = cells_.indexing().index(local[0], local[1], local[2]);
-  std::vector<lbm::Link> links;
   const auto found = cut_.find(cell);
-  if (found == cut_.end()) return links;
+  if (found == cut_.end()) return;
   const Vec3 centre = centre_of({block_.lower[0] + local[0], block_.lower[1] + local[1], block_.lower[2] + local[2]});
   for (int i = 1; i < D3Q19::directions; ++i) {
     const std::int32_t solid = cells_.body(cell + cells_.indexing().offset(i));
     if (solid == CellMap::fluid) continue;
     // A link can only miss a surface that touches its end, by round-off.
     const double distance = std::min(found->second[i], 1.0);
-    lbm::Link link;
-    link.cell = static_cast<std::uint32_t>(cell);
-    link.direction = i;
-    link.upstream_body = cells_.body(cell - cells_.indexing().offset(i));
-    link.distance = static_cast<float>(distance);
-    link.arm = box.difference(centre + distance * velocity_of(i), bodies_[solid].centre);
-    links.push_back(link);
+    const Vec3 arm = box.difference(centre + distance * velocity_of(i), bodies_[solid].centre);
+    links[solid].links.push_back(
+        {lbm::LinkPlace::of(local[0], local[1]), lbm::LinkTag::of(i, cells_.body(cell - cells_.indexing().offset(i)))});
+    links[solid].crossings.push_back(
+        {static_cast<float>(distance),
+         {static_cast<float>(arm[0]), static_cast<float>(arm[1]), static_cast<float>(arm[2])}});
   }
-  return links;
 }
 
 // Tile by tile, and row by row in each, for every solid.
 void StaticSolids::build_links(const lbm::RowTiles& tiles) {
-  std::vector<std::vector<lbm::Link>> links(bodies_.size());
-  std::vector<std::vector<int>> tile_of(bodies_.size());
+  std::vector<SolidLinks> links(bodies_.size());
   std::vector<std::vector<Index3>> rows(static_cast<std::size_t>(tiles.count()));
   const Index3 n = block_.size();
   for (int z = 0; z < n[2]; ++z)
     for (int y = 0; y < n[1]; ++y) rows[tiles.tile_of(y, z)].push_back({0, y, z});
-  for (int tile = 0; tile < tiles.count(); ++tile)
+  for (int tile = 0; tile < tiles.count(); ++tile) {
     for (Index3 local : rows[tile])
-      for (local[0] = 0; local[0] < n[0]; ++local[0])
-        for (const lbm::Link& link : links_of_cell(local)) {
-          const std::int32_t solid = cells_.body(link.cell + cells_.indexing().offset(link.direction));
-          links[solid].push_back(link);
-          tile_of[solid].push_back(tile);
-        }
+      for (local[0] = 0; local[0] < n[0]; ++local[0]) add_links_of_cell(local, links);
+    for (std::size_t s = 0; s < bodies_.size(); ++s) {
+      links_.replace(static_cast<int>(s), tile, links[s].links, links[s].crossings);
+      links[s].links.clear();
+      links[s].crossings.clear();
+    }
+  }
   cut_.clear();
-  for (std::size_t s = 0; s < bodies_.size(); ++s) links_.replace(static_cast<int>(s), links[s], tile_of[s]);
 }
 
 std::vector<lbm::LinkBody>& StaticSolids::begin_step() {

@@ -43,6 +43,11 @@ public:
 private:
   using Distances = std::array<double, lbm::D3Q19::directions>;  // of the links of a fluid cell; 2: not met yet
 
+  struct SolidLinks {  // of one solid in one tile
+    std::vector<lbm::Link> links;
+    std::vector<lbm::LinkCrossing> crossings;
+  };
+
   void cover(int solid, const SolidShape& shape);
   void cover(int solid, const SolidSphere& sphere);
   void cover(int solid, const TriangleMesh& mesh);
@@ -50,7 +55,7 @@ private:
   void find_cut_cells();
   void measure(const SolidShape& shape);
   void build_links(const lbm::RowTiles& tiles);
-  std::vector<lbm::Link> links_of_cell(const Index3& local) const;
+  void add_links_of_cell(const Index3& local, std::vector<SolidLinks>& links) const;
   template <typename Visit>
   void for_each_image(const Extent& extent, Visit visit) const;
   template <typename Meets>

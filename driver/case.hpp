@@ -120,7 +120,7 @@ enum class Refill { equilibrium };
 
 struct CouplingCase {
   std::int64_t grain_steps_per_fluid_step = 50;
-  double link_tolerance = 1e-3;  // cells a grain may move before its links are built anew
+  double link_tolerance = 1e-3;  // cells a grain may move before the map of its cells follows
   MomentumExchange momentum_exchange = MomentumExchange::galilean_invariant;
   WallDensity wall_density = WallDensity::local;
   Refill refill = Refill::equilibrium;

@@ -83,7 +83,8 @@ static void describe(io::SectionVisitor& visit, CouplingCase& coupling) {
                 {.meaning = "sub-steps of the grains in one step of the fluid", .at_least = 1});
   visit.real("link_tolerance", coupling.link_tolerance,
              {.unit = "cells",
-              .meaning = "how far a grain may move before its surface is cut anew",
+              .meaning = "how far a grain may move before the map of its cells follows (the surface itself is cut "
+                         "exactly at all times)",
               .at_least = 0.0,
               .at_most = 0.1});
   visit.choice<MomentumExchange>("momentum_exchange", coupling.momentum_exchange,

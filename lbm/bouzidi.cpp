@@ -16,17 +16,28 @@ namespace stdx = std::experimental;
 constexpr int whole = static_cast<int>(LinkTable::slack);
 int rounded_up(int count) { return (count + whole - 1) / whole * whole; }
 
+template <int axis>
+int velocity(std::uint32_t tag) {
+  return static_cast<int>(tag >> LinkTag::velocity_shift(axis) & 3) - 1;
+}
+
 }  // namespace
 
 template <typename Real>
-LinkPass<Real>::LinkPass(Populations<Real>& populations, const CellMap& cells, const RowTiles& tiles,
-                         const LinkTable& links, const PeriodicBox& box, const LinkOptions& options,
+LinkPass<Real>::LinkPass(Fluid<Real>& fluid, const LinkTable& links, const PeriodicBox& box, const LinkOptions& options,
                          std::vector<LinkBody>& bodies)
-    : cells_(cells), tiles_(tiles), links_(links), box_(box), options_(options), bodies_(bodies) {
+    : cells_(fluid.cells()),
+      tiles_(fluid.tiles()),
+      links_(links),
+      box_(box),
+      options_(options),
+      bodies_(bodies),
+      block_(box, fluid.block().lower) {
+  Populations<Real>& populations = fluid.populations();
   for (auto& plane : deviations_) plane.resize(static_cast<std::size_t>(populations.indexing().plane_stride()));
   for (int i = 0; i < D3Q19::directions; ++i) {
     const int opposite = D3Q19::opposite(i);
-    for (const std::uint32_t half : {0u, LinkTag::near}) {
+    for (const std::uint32_t half : {0u, near}) {
       const std::uint32_t slot = static_cast<std::uint32_t>(i) | half;
       incident_[slot] = &populations.post_collision(i, 0);
       // The incoming slot also has what a wall returned, if x_ff lies beyond one.
@@ -38,11 +49,6 @@ LinkPass<Real>::LinkPass(Populations<Real>& populations, const CellMap& cells, c
 
 template <typename Real>
 void LinkPass<Real>::apply_tile(int tile) {
-  const LinkTable::Tile& t = links_.tiles()[tile];
-  const std::vector<std::uint32_t>& order = links_.chunks_in_order(tile);
-  constexpr std::size_t ahead = 3;  // chunks
-  for (std::size_t c = 0; c < std::min(ahead, order.size()); ++c)
-    t.links.ask_for(t.chunks[order[c]].first, t.chunks[order[c]].count);
   // One plane ahead, because links reach for slots in the next plane: the straight pass for the densities brings them
   // into the cache at the speed of memory.
   const int z = tiles_.plane_of(tile);
@@ -50,20 +56,23 @@ void LinkPass<Real>::apply_tile(int tile) {
   if (z + 1 < tiles_.planes()) measure_densities(tile + 1);
   plane_start_ = (z + 1) * cells_.indexing().plane_stride();
   deviation_ = deviations_[z % 2].data();
+
+  const LinkTable::Tile& t = links_.tiles()[tile];
+  const std::vector<std::uint32_t>& order = links_.chunks_in_order(tile);
+  constexpr std::size_t ahead = 3;  // chunks
+  for (std::size_t c = 0; c < std::min(ahead, order.size()); ++c)
+    t.links.ask_for(t.chunks[order[c]].first, t.chunks[order[c]].count);
+  int turn = 0;
+  batches_[0].count = batches_[1].count = 0;
   for (std::size_t c = 0; c < order.size(); ++c) {
     if (c + ahead < order.size()) t.links.ask_for(t.chunks[order[c + ahead]].first, t.chunks[order[c + ahead]].count);
-    if (c + 1 < order.size()) ask_for_slots(t.links, t.chunks[order[c + 1]]);
     const LinkTable::Chunk& chunk = t.chunks[order[c]];
-    LinkBody& body = bodies_[chunk.body];
-    const std::size_t end = chunk.first + chunk.count;
-    for (std::size_t first = chunk.first; first < end; first += capacity) {
-      const int count = static_cast<int>(std::min<std::size_t>(capacity, end - first));
-      gather(body, t.links, first, count);
-      reflect(body, t.links, first, count);
-      scatter(t.links, first, count);
-      add_momentum(body, count);
+    for (std::uint32_t first = 0; first < chunk.count; first += capacity, turn ^= 1) {
+      prepare(batches_[turn], t, z, chunk, chunk.first + first, std::min<int>(capacity, chunk.count - first));
+      finish(batches_[turn ^ 1]);
     }
   }
+  finish(batches_[turn ^ 1]);
 }
 
 // Links never change a density: they write incoming slots of fluid cells, which hold no post-collision population of a
@@ -91,13 +100,34 @@ void LinkPass<Real>::measure_densities(int tile) {
   }
 }
 
-// Asks the cache for what the links of a chunk will read and write. Inlined, because to the compiler a function that
-// only asks does nothing, and a call of it can go.
 template <typename Real>
-[[gnu::always_inline]] inline void LinkPass<Real>::ask_for_slots(const LinkStream& links,
-                                                                 const LinkTable::Chunk& chunk) const {
-  for (std::size_t k = chunk.first; k < chunk.first + chunk.count; ++k) {
-    const std::uint32_t slot = links.tag[k] & LinkTag::slot_mask, cell = links.cell[k];
+void LinkPass<Real>::prepare(Batch& b, const LinkTable::Tile& tile, int plane, const LinkTable::Chunk& chunk,
+                             std::uint32_t first, int count) const {
+  const CellIndexing& indexing = cells_.indexing();
+  const std::uint32_t *places = tile.links.place.data() + first, *tags = tile.links.tag.data() + first;
+  b.body = &bodies_[chunk.body];
+  b.tag = tags;
+  b.count = count;
+  const int n = rounded_up(count), start = static_cast<int>(indexing.index(0, 0, plane)),
+            row = static_cast<int>(indexing.row_stride());
+  if (b.body->radius > 0.0) {
+    cross_sphere(*b.body, block_, plane, places, tags, n, b.distance, b.arm[0], b.arm[1], b.arm[2]);
+  } else {
+    for (int k = 0; k < count; ++k) {
+      const LinkCrossing& crossing = tile.links.crossing[first + k];
+      b.distance[k] = Real(crossing.distance);
+      for (int a = 0; a < 3; ++a) b.arm[a][k] = Real(crossing.arm[a]);
+    }
+  }
+  for (int k = count; k < n; ++k) b.distance[k] = Real(1), b.arm[0][k] = b.arm[1][k] = b.arm[2][k] = Real(0);
+  for (int k = 0; k < n; ++k) {
+    const int place = static_cast<int>(places[k]);
+    b.cell[k] = start + (place >> LinkPlace::y_shift & 0xffff) * row + (place & 0xffff);
+    b.slot[k] = (tags[k] & LinkTag::direction_mask) | (b.distance[k] < Real(0.5) ? near : 0u);
+  }
+  for (int k = 0; k < count; ++k) {
+    const std::uint32_t slot = b.slot[k];
+    const std::ptrdiff_t cell = b.cell[k];
     __builtin_prefetch(incident_[slot] + cell, 0);
     __builtin_prefetch(second_[slot] + cell, 0);
     __builtin_prefetch(reflected_[slot] + cell, 1);
@@ -105,54 +135,76 @@ template <typename Real>
 }
 
 template <typename Real>
-void LinkPass<Real>::gather(LinkBody& body, const LinkStream& links, std::size_t first, int count) {
+void LinkPass<Real>::finish(Batch& b) {
+  if (b.count == 0) return;
+  gather(b);
+  reflect(b);
+  for (int k = 0; k < b.count; ++k) reflected_[b.slot[k]][b.cell[k]] = b.reflected[k];
+  add_momentum(b);
+}
+
+template <typename Real>
+void LinkPass<Real>::gather(Batch& b) {
   const bool local = options_.wall_density == WallDensity::local;
-  Batch& b = batch_;
   int covered = 0;
-  for (int k = 0; k < count; ++k) {
-    const std::uint32_t tag = links.tag[first + k], cell = links.cell[first + k], slot = tag & LinkTag::slot_mask;
-    const Real deviation = deviation_[cell - plane_start_];
-    b.density[k] = local ? Real(1) + deviation : Real(1);
+  for (int k = 0; k < b.count; ++k) {
+    const std::uint32_t slot = b.slot[k];
+    const std::ptrdiff_t cell = b.cell[k];
+    b.density[k] = deviation_[cell - plane_start_];
     b.incident[k] = incident_[slot][cell];
     b.second[k] = second_[slot][cell];
     covered_[covered] = k;
-    covered += static_cast<int>(tag >> LinkTag::covered_shift & 1);
+    covered += static_cast<int>((slot & near) != 0) & static_cast<int>(b.tag[k] >> LinkTag::covered_shift & 1);
   }
-  for (int c = 0; c < covered; ++c) b.second[covered_[c]] = covered_upstream(body, links, first + covered_[c]);
-  for (int k = count; k < rounded_up(count); ++k) b.density[k] = b.incident[k] = b.second[k] = Real(0);
+  if (covered > 0) fill_from_covered_cells(b, covered);
+  for (int k = 0; k < rounded_up(b.count); ++k) b.density[k] = local ? Real(1) + b.density[k] : Real(1);
+  for (int k = b.count; k < rounded_up(b.count); ++k) b.density[k] = b.incident[k] = b.second[k] = Real(0);
+}
+
+// The equilibrium at the density of x_f and the velocity that the covering body has at x_ff.
+template <typename Real>
+void LinkPass<Real>::fill_from_covered_cells(Batch& b, int covered) const {
+  double from[3][capacity], v[3][capacity], w[3][capacity], deviation[capacity], result[capacity];
+  std::uint32_t tags[capacity];
+  for (int c = 0; c < covered; ++c) {
+    const int k = covered_[c];
+    const LinkBody& other = bodies_[b.tag[k] >> LinkTag::body_shift];
+    const Vec3 apart = box_.difference(b.body->centre, other.centre);
+    tags[c] = b.tag[k];
+    deviation[c] = static_cast<double>(b.density[k]);
+    for (int a = 0; a < 3; ++a) {
+      // x_ff from the other's centre: the arm, back by the distance to x_f and one link more.
+      from[a][c] = apart[a] + static_cast<double>(b.arm[a][k]);
+      v[a][c] = other.velocity[a];
+      w[a][c] = other.angular_velocity[a];
+    }
+    result[c] = static_cast<double>(b.distance[k]) + 1.0;
+  }
+  for (int c = 0; c < covered; ++c) {
+    const double cx = velocity<0>(tags[c]), cy = velocity<1>(tags[c]), cz = velocity<2>(tags[c]), back = result[c];
+    const double x = from[0][c] - back * cx, y = from[1][c] - back * cy, z = from[2][c] - back * cz;
+    const double ux = v[0][c] + (w[1][c] * z - w[2][c] * y), uy = v[1][c] + (w[2][c] * x - w[0][c] * z),
+                 uz = v[2][c] + (w[0][c] * y - w[1][c] * x);
+    const double cu = cx * ux + cy * uy + cz * uz, uu = ux * ux + uy * uy + uz * uz;
+    const double weight = (3.0 - (cx * cx + cy * cy + cz * cz)) * (1.0 / 36.0);
+    result[c] = weight * (deviation[c] + (1.0 + deviation[c]) * (3.0 * cu + 4.5 * cu * cu - 1.5 * uu));
+  }
+  for (int c = 0; c < covered; ++c) b.second[covered_[c]] = static_cast<Real>(result[c]);
 }
 
 template <typename Real>
-Real LinkPass<Real>::covered_upstream(const LinkBody& body, const LinkStream& links, std::size_t link) const {
-  const std::uint32_t tag = links.tag[link];
-  const int i = static_cast<int>(tag & LinkTag::direction_mask);
-  const LinkBody& other = bodies_[tag >> LinkTag::body_shift];
-  Vec3 arm = box_.difference(body.centre, other.centre);
-  for (int a = 0; a < 3; ++a) arm[a] += links.arm[a][link] - (links.distance[link] + 1.0) * D3Q19::c[i][a];
-  const Vec3 velocity = other.velocity + other.angular_velocity.cross(arm);
-  const double deviation = static_cast<double>(deviation_[links.cell[link] - plane_start_]);
-  return static_cast<Real>(equilibrium_deviation(i, deviation, velocity));
-}
-
-template <typename Real>
-void LinkPass<Real>::reflect(const LinkBody& body, const LinkStream& links, std::size_t first, int count) {
-  Batch& b = batch_;
+void LinkPass<Real>::reflect(Batch& b) const {
+  const LinkBody& body = *b.body;
   const Real vx = Real(body.velocity.x()), vy = Real(body.velocity.y()), vz = Real(body.velocity.z());
   const Real wx = Real(body.angular_velocity.x()), wy = Real(body.angular_velocity.y()),
              wz = Real(body.angular_velocity.z());
   const Real galilean = options_.momentum_exchange == MomentumExchange::galilean_invariant ? Real(1) : Real(0);
-  const std::uint32_t* tags = links.tag.data() + first;
-  const float* distance = links.distance.data() + first;
-  const float *arm_x = links.arm[0].data() + first, *arm_y = links.arm[1].data() + first,
-              *arm_z = links.arm[2].data() + first;
-  const int n = rounded_up(count);
+  const std::uint32_t* tags = b.tag;
+  const int n = rounded_up(b.count);
   for (int k = 0; k < n; ++k) {
-    const int tag = static_cast<int>(tags[k]);
-    const Real cx = Real((tag >> LinkTag::velocity_shift(0) & 3) - 1);
-    const Real cy = Real((tag >> LinkTag::velocity_shift(1) & 3) - 1);
-    const Real cz = Real((tag >> LinkTag::velocity_shift(2) & 3) - 1);
+    const Real cx = Real(velocity<0>(tags[k])), cy = Real(velocity<1>(tags[k])), cz = Real(velocity<2>(tags[k]));
     const Real weight = (Real(3) - (cx * cx + cy * cy + cz * cz)) * Real(1.0 / 36.0);
-    const Real ax = Real(arm_x[k]), ay = Real(arm_y[k]), az = Real(arm_z[k]), delta = Real(distance[k]);
+    const Real ax = b.arm[0][k], ay = b.arm[1][k], az = b.arm[2][k], delta = b.distance[k];
     const Real ux = vx + (wy * az - wz * ay), uy = vy + (wz * ax - wx * az), uz = vz + (wx * ay - wy * ax);
     const Real towards_wall = cx * ux + cy * uy + cz * uz;
     const Real share = delta < Real(0.5) ? Real(2) * delta : Real(0.5) / delta;
@@ -173,21 +225,15 @@ void LinkPass<Real>::reflect(const LinkBody& body, const LinkStream& links, std:
 }
 
 template <typename Real>
-void LinkPass<Real>::scatter(const LinkStream& links, std::size_t first, int count) {
-  for (int k = 0; k < count; ++k)
-    reflected_[links.tag[first + k] & LinkTag::slot_mask][links.cell[first + k]] = batch_.reflected[k];
-}
-
-template <typename Real>
-void LinkPass<Real>::add_momentum(LinkBody& body, int count) const {
-  const int n = rounded_up(count);
+void LinkPass<Real>::add_momentum(const Batch& b) const {
+  const int n = rounded_up(b.count);
   const auto total = [n](const Real* terms) {
     std::int64_t sum = 0;
     for (int k = 0; k < n; ++k) sum += LatticeFixed::from(static_cast<double>(terms[k]));
     return sum;
   };
-  body.force += {total(batch_.momentum[0]), total(batch_.momentum[1]), total(batch_.momentum[2])};
-  body.torque += {total(batch_.torque[0]), total(batch_.torque[1]), total(batch_.torque[2])};
+  b.body->force += {total(b.momentum[0]), total(b.momentum[1]), total(b.momentum[2])};
+  b.body->torque += {total(b.torque[0]), total(b.torque[1]), total(b.torque[2])};
 }
 
 template class LinkPass<float>;

@@ -14,10 +14,9 @@
 #pragma once
 
 #include "core/periodic_box.hpp"
-#include "lbm/cell_map.hpp"
+#include "lbm/fluid.hpp"
+#include "lbm/link_crossings.hpp"
 #include "lbm/link_table.hpp"
-#include "lbm/populations.hpp"
-#include "lbm/row_tiles.hpp"
 
 #include <cstddef>
 #include <vector>
@@ -34,36 +33,46 @@ struct LinkOptions {
 
 // Applies the links of one step, tile by tile. For every link it writes the population that the sweep will take from
 // the solid side, and adds the momentum to bodies[...].force and torque (which the caller has cleared). Walls and halo
-// must be done. CellMap holds slots of bodies. box: the domain in cells, for the minimum image between bodies. Whatever
-// is handed over must outlive the pass.
+// must be done. The map of the cells holds slots of bodies. box: the domain in cells, for the minimum image between
+// bodies. Whatever is handed over must outlive the pass.
 //
 // The links of a row read what cells of the rows around it sent out, so they must be applied before any of these rows
 // is swept; Fluid::stream_and_collide(before_tile) does so while the tile is still in the cache. Tiles in order.
+//
+// Links go through in batches of one body: prepare() finds where they cross the surface and asks the cache for what
+// they read and write, and finish(), one batch later, does the exchange.
 template <typename Real>
 class LinkPass {
 public:
-  LinkPass(Populations<Real>& populations, const CellMap& cells, const RowTiles& tiles, const LinkTable& links,
-           const PeriodicBox& box, const LinkOptions& options, std::vector<LinkBody>& bodies);
+  LinkPass(Fluid<Real>& fluid, const LinkTable& links, const PeriodicBox& box, const LinkOptions& options,
+           std::vector<LinkBody>& bodies);
 
   void apply_tile(int tile);
 
 private:
-  // Links of one body on their way through the arithmetic.
-  static constexpr int capacity = 256;
+  static constexpr int capacity = 64;
   struct Batch {
+    LinkBody* body = nullptr;
+    const std::uint32_t* tag = nullptr;
+    int count = 0;
+    alignas(64) std::int32_t cell[capacity];   // index of x_f
+    alignas(64) std::uint32_t slot[capacity];  // direction, and `near` where delta < 1/2
+    alignas(64) Real distance[capacity], arm[3][capacity];
     alignas(64) Real density[capacity];                     // rho at x_f
     alignas(64) Real incident[capacity], second[capacity];  // f_i^c(x_f); f_i^c(x_ff) or f_i'^c(x_f)
     alignas(64) Real reflected[capacity];                   // f_i'(x_f, t+1)
     alignas(64) Real momentum[3][capacity], torque[3][capacity];
   };
+  static constexpr std::uint32_t near = 32, slots = 64;
 
   void measure_densities(int tile);
-  void ask_for_slots(const LinkStream& links, const LinkTable::Chunk& chunk) const;
-  void gather(LinkBody& body, const LinkStream& links, std::size_t first, int count);
-  Real covered_upstream(const LinkBody& body, const LinkStream& links, std::size_t link) const;
-  void reflect(const LinkBody& body, const LinkStream& links, std::size_t first, int count);
-  void scatter(const LinkStream& links, std::size_t first, int count);
-  void add_momentum(LinkBody& body, int count) const;
+  void prepare(Batch& batch, const LinkTable::Tile& tile, int plane, const LinkTable::Chunk& chunk, std::uint32_t first,
+               int count) const;
+  void finish(Batch& batch);
+  void gather(Batch& batch);
+  void fill_from_covered_cells(Batch& batch, int covered) const;
+  void reflect(Batch& batch) const;
+  void add_momentum(const Batch& batch) const;
 
   const CellMap& cells_;
   const RowTiles& tiles_;
@@ -71,18 +80,19 @@ private:
   const PeriodicBox& box_;
   const LinkOptions& options_;
   std::vector<LinkBody>& bodies_;
+  BlockPlace block_;
 
-  // Base pointers to what a link reads and writes, by LinkTag's slot; the index of x_f is added.
-  const Real* incident_[LinkTag::slot_mask + 1] = {};
-  const Real* second_[LinkTag::slot_mask + 1] = {};
-  Real* reflected_[LinkTag::slot_mask + 1] = {};
+  // Base pointers to what a link reads and writes, by its slot; the index of x_f is added.
+  const Real* incident_[slots] = {};
+  const Real* second_[slots] = {};
+  Real* reflected_[slots] = {};
 
   // rho - 1 of the cells of two neighbouring planes, even z and odd z.
   std::vector<Real> deviations_[2];
   const Real* deviation_ = nullptr;  // of the present plane, by the index of the cell less plane_start_
   std::ptrdiff_t plane_start_ = 0;   // index of the first cell in memory of the present plane
 
-  Batch batch_;
+  Batch batches_[2];
   int covered_[capacity];  // links of the batch whose second population is a covered cell's
 };
 

@@ -1,8 +1,10 @@
 // Cut lattice links: where a body's surface crosses the line from a fluid cell to its solid neighbour.
 //
-// Links are streams of packed words, kept tile by tile (RowTiles, by the fluid cell) and, within a tile, body by body
-// in memory order. The links of one body in one tile are a chunk; a body that moves rewrites its own chunks and nobody
-// else's. The lattice knows bodies as rigid motions only, not their shapes.
+// A link is two words, place and tag, and says which cells it joins; where the surface crosses it follows from the
+// body's present place when the link is applied (spheres), or is kept beside it (bodies of any shape that stand still).
+// So a link changes only when a cell changes hands, however its body moves. Links are kept tile by tile (RowTiles, by
+// the fluid cell) and, within a tile, body by body in memory order: the links of one body in one tile are a chunk. The
+// lattice knows bodies as rigid motions of spheres or of stored distances, and nothing of grains.
 #pragma once
 
 #include "core/fixed_point.hpp"
@@ -15,54 +17,60 @@
 
 namespace thalweg::lbm {
 
-// A link as whoever finds it hands it over.
-struct Link {
-  std::uint32_t cell = 0;           // index of the fluid cell x_f (CellIndexing)
-  int direction = 0;                // i, pointing into the body
-  std::int32_t upstream_body = -1;  // the body that covers x_f - c_i; -1: it is no solid cell
-  float distance = 0.0f;            // delta in [0, 1]: fraction of the link from x_f to the surface
-  Vec3 arm = Vec3::Zero();          // where the link meets the surface, from the body's centre
+// The fluid cell x_f of a link in its plane: owned local coordinates x and y.
+struct LinkPlace {
+  static constexpr int y_shift = 16;
+  static constexpr std::uint32_t x_mask = 0xffff;
+  static constexpr int largest = 0xffff;
+
+  static constexpr std::uint32_t of(int x, int y) {
+    return static_cast<std::uint32_t>(x) | static_cast<std::uint32_t>(y) << y_shift;
+  }
 };
 
-// What a step needs of a link besides its cell, distance and arm, in one word.
+// The rest of it in one word.
 struct LinkTag {
-  static constexpr std::uint32_t direction_mask = 31;  // i
-  static constexpr std::uint32_t near = 32;            // distance < 1/2
-  static constexpr std::uint32_t slot_mask = 63;       // both
-  static constexpr int covered_shift = 12;             // 1: near, and a body covers x_f - c_i
+  static constexpr std::uint32_t direction_mask = 31;  // i, from the fluid cell into the body
+  static constexpr int covered_shift = 12;             // 1: a body covers x_f - c_i
   static constexpr int body_shift = 13;                // that body
   static constexpr std::int32_t bodies = 1 << (32 - body_shift);
   // c_i + 1 of an axis, so that vector code needs no table.
   static constexpr int velocity_shift(int axis) { return 6 + 2 * axis; }
 
-  static constexpr std::uint32_t of(int direction, bool near_half, std::int32_t upstream_body) {
+  // upstream_body: which covers x_f - c_i; -1: none.
+  static constexpr std::uint32_t of(int direction, std::int32_t upstream_body) {
     std::uint32_t tag = static_cast<std::uint32_t>(direction);
-    if (near_half) tag |= near;
-    if (near_half && upstream_body >= 0)
-      tag |= 1u << covered_shift | static_cast<std::uint32_t>(upstream_body) << body_shift;
+    if (upstream_body >= 0) tag |= 1u << covered_shift | static_cast<std::uint32_t>(upstream_body) << body_shift;
     for (int a = 0; a < 3; ++a) tag |= static_cast<std::uint32_t>(D3Q19::c[direction][a] + 1) << velocity_shift(a);
     return tag;
   }
 };
 
-// Links side by side, one array a word.
-struct LinkStream {
-  std::vector<std::uint32_t> cell, tag;
-  std::vector<float> distance, arm[3];
+struct Link {
+  std::uint32_t place = 0, tag = 0;
+};
 
-  std::size_t size() const { return cell.size(); }
-  void resize(std::size_t links);
-  void put(std::size_t at, const Link& link);
-  void append(const LinkStream& other, std::size_t first, std::size_t count);
+// Where a link meets a surface that has no formula.
+struct LinkCrossing {
+  float distance = 0.0f;  // delta in [0, 1]: fraction of the link from x_f to the surface
+  float arm[3] = {};      // the crossing from the body's centre, cells
+};
+
+// Links side by side, one array a word; crossings only in tables that store them.
+struct LinkStream {
+  std::vector<std::uint32_t> place, tag;
+  std::vector<LinkCrossing> crossing;
+
   // Asks the memory for these links. To the compiler this does nothing, so it must not look inside from the caller.
   [[gnu::noipa]] void ask_for(std::size_t first, std::size_t count) const;
 };
 
 // A rigid body as the links see it; lattice units, global coordinates (cell centres at integer + 1/2).
 struct LinkBody {
-  Vec3 centre = Vec3::Zero();  // where its links were built for
+  Vec3 centre = Vec3::Zero();
   Vec3 velocity = Vec3::Zero();
   Vec3 angular_velocity = Vec3::Zero();
+  double radius = 0.0;      // of a sphere; 0: the links have their crossings stored
   FixedVec3 force, torque;  // sums over this rank's links in the present step
 };
 
@@ -84,7 +92,7 @@ public:
     std::size_t live = 0, end = 0;  // links in use; first entry of the stream that no chunk has
   };
 
-  explicit LinkTable(int tiles) : tiles_(tiles) {}
+  explicit LinkTable(int tiles, bool stores_crossings = false) : stores_crossings_(stores_crossings), tiles_(tiles) {}
 
   const std::vector<Tile>& tiles() const { return tiles_; }
 
@@ -92,21 +100,24 @@ public:
   const std::vector<std::uint32_t>& chunks_in_order(int tile) const;
   std::size_t count() const;  // all links
 
-  // Replaces all links of a body. Throws InputError if there are more bodies than a tag can tell. links: sorted by
-  // tile; tile_of[k] the tile of links[k].
-  void replace(int body, std::span<const Link> links, std::span<const int> tile_of);
-  void remove(int body) { replace(body, {}, {}); }
-  // Asks the memory for a body's links, which are about to be replaced.
-  [[gnu::noipa]] void ask_for(int body) const;
+  // Replaces the links of a body in a tile; crossings: one a link if the table stores them, else empty. Throws
+  // InputError if there are more bodies than a tag can tell.
+  void replace(int body, int tile, std::span<const Link> links, std::span<const LinkCrossing> crossings = {});
+  // Drops the links of a body in all tiles.
+  void remove(int body);
 
 private:
   struct Place {
     int tile;
     std::uint32_t chunk;
   };
-  void put(Tile& tile, Chunk& chunk, std::span<const Link> links);
-  void compact(Tile& tile);
+  std::uint32_t new_chunk(Tile& tile, int body);
+  void drop_chunk(Tile& tile, std::uint32_t chunk);
+  void put(Tile& tile, Chunk& chunk, std::span<const Link> links, std::span<const LinkCrossing> crossings);
+  void resize(LinkStream& links, std::size_t size) const;
+  void compact(Tile& tile) const;
 
+  bool stores_crossings_;
   mutable std::vector<Tile> tiles_;         // their order is made when it is asked for
   std::vector<std::vector<Place>> places_;  // of each body
 };

@@ -155,11 +155,13 @@ TEST_P(LinksAgainstPlainLattice, AgreeToRoundOff) {
   map.begin_update();
   for (std::size_t s = 0; s < spheres.size(); ++s) {
     map.place(map.add(static_cast<GlobalId>(s), spheres[s].radius), spheres[s].centre);
+    bodies[s].centre = spheres[s].centre;
+    bodies[s].radius = spheres[s].radius;
     bodies[s].velocity = spheres[s].velocity;
     bodies[s].angular_velocity = spheres[s].spin;
   }
   map.settle();
-  for (const int slot : map.slots_to_relink()) builder.build(slot, map.grains()[slot], links, bodies[slot]);
+  builder.update(map, links);
   EXPECT_GT(links.count(), 1000u);
 
   const auto state = [](const Vec3& p) {
@@ -186,17 +188,15 @@ TEST_P(LinksAgainstPlainLattice, AgreeToRoundOff) {
     fluid.exchange_halo();
     fluid.apply_walls();
     for (lbm::LinkBody& body : bodies) body.force = body.torque = {};
-    lbm::LinkPass<double> pass(fluid.populations(), fluid.cells(), fluid.tiles(), links, box, options, bodies);
+    lbm::LinkPass<double> pass(fluid, links, box, options, bodies);
     fluid.stream_and_collide([&](int tile) { pass.apply_tile(tile); });
     const std::vector<Load> loads = plain.step(galilean);
-    // Links keep distance and arm in single precision. An arm of up to 4 cells is off by 2^-23 cells at most, so the
-    // wall moves wrongly by up to 0.017 * 2^-23 = 2e-9 and reflects up to 1e-9 too much; the sum over 500 links goes
-    // with their root, and three times that is 7e-8. Torque: 3 cells times that, and the arms' own error times momenta
-    // of 0.02, 3 * 22 * 2^-23 * 0.02 = 2e-7.
+    // The sum over 600 links rounds each of its terms by 2^-45, so it is off by 1.7e-11 at most; a torque, whose terms
+    // are rounded alike, no more. What the links themselves lose is some hundred times 1e-16.
     for (std::size_t s = 0; s < spheres.size(); ++s) {
-      EXPECT_NEAR((bodies[s].force.to_vec3() - loads[s].force).norm(), 0.0, 7e-8)
+      EXPECT_NEAR((bodies[s].force.to_vec3() - loads[s].force).norm(), 0.0, 2e-11)
           << "sphere " << s << ", step " << step;
-      EXPECT_NEAR((bodies[s].torque.to_vec3() - loads[s].torque).norm(), 0.0, 4e-7)
+      EXPECT_NEAR((bodies[s].torque.to_vec3() - loads[s].torque).norm(), 0.0, 2e-11)
           << "sphere " << s << ", step " << step;
     }
   }
@@ -207,7 +207,7 @@ TEST_P(LinksAgainstPlainLattice, AgreeToRoundOff) {
     for (int i = 0; i < 19; ++i)
       largest = std::max(largest, std::abs(fluid.populations().post_collision(i, cell) - plain.populations(c)[i]));
   });
-  EXPECT_LT(largest, 1e-9);
+  EXPECT_LT(largest, 1e-13);
 }
 
 INSTANTIATE_TEST_SUITE_P(BothExchanges, LinksAgainstPlainLattice, ::testing::Bool());

@@ -71,13 +71,19 @@ struct CutLink {
   double distance;
   Vec3 arm;
 };
-std::map<std::pair<std::uint32_t, int>, CutLink> links_of(const FluidSystem<double>& system) {
-  std::map<std::pair<std::uint32_t, int>, CutLink> all;
-  for (const auto& tile : system.solids()->links().tiles())
+// By tile, place in it and direction.
+std::map<std::tuple<int, std::uint32_t, int>, CutLink> links_of(const FluidSystem<double>& system) {
+  std::map<std::tuple<int, std::uint32_t, int>, CutLink> all;
+  int number = 0;
+  for (const auto& tile : system.solids()->links().tiles()) {
     for (const auto& chunk : tile.chunks)
-      for (std::uint32_t k = chunk.first; chunk.body >= 0 && k < chunk.first + chunk.count; ++k)
-        all[{tile.links.cell[k], static_cast<int>(tile.links.tag[k] & lbm::LinkTag::direction_mask)}] = {
-            tile.links.distance[k], {tile.links.arm[0][k], tile.links.arm[1][k], tile.links.arm[2][k]}};
+      for (std::uint32_t k = chunk.first; chunk.body >= 0 && k < chunk.first + chunk.count; ++k) {
+        const lbm::LinkCrossing& crossing = tile.links.crossing[k];
+        all[{number, tile.links.place[k], static_cast<int>(tile.links.tag[k] & lbm::LinkTag::direction_mask)}] = {
+            crossing.distance, {crossing.arm[0], crossing.arm[1], crossing.arm[2]}};
+      }
+    ++number;
+  }
   return all;
 }
 
@@ -95,7 +101,7 @@ TEST(StaticSolids, ASphereOfTrianglesIsCutLikeASphere) {
     const auto other = found.find(key);
     if (other == found.end()) continue;
     ++common;
-    const int i = key.second;
+    const int i = std::get<2>(key);
     const Vec3 c(lbm::D3Q19::c[i][0], lbm::D3Q19::c[i][1], lbm::D3Q19::c[i][2]);
     const double steepness = -c.dot(link.arm) / radius;  // |c| times the cosine to the normal
     if (steepness < 0.3) continue;                       // grazing: the sag counts many times

@@ -12,34 +12,42 @@ namespace {
 // Random bodies come, change and go; the table must hold exactly what was put in last.
 TEST(LinkTable, HoldsWhatWasPutInLast) {
   constexpr int tiles = 9, bodies = 6;
-  LinkTable table(tiles);
-  std::map<int, std::multiset<std::pair<int, std::uint32_t>>> expected;
+  LinkTable table(tiles, true);
+  using Held = std::multiset<std::pair<std::uint32_t, std::uint32_t>>;
+  std::map<std::pair<int, int>, Held> expected;  // by body and tile
   std::mt19937 generator(11);
   std::uint32_t serial = 0;
-  for (int round = 0; round < 3000; ++round) {
-    const int body = static_cast<int>(generator() % bodies);
+  for (int round = 0; round < 10000; ++round) {
+    const int body = static_cast<int>(generator() % bodies), tile = static_cast<int>(generator() % tiles);
+    if (generator() % 20 == 0) {
+      table.remove(body);
+      for (int t = 0; t < tiles; ++t) expected.erase({body, t});
+    }
     std::vector<Link> links;
-    std::vector<int> tile_of;
-    expected[body].clear();
-    const bool gone = generator() % 5 == 0;
-    const int first = static_cast<int>(generator() % tiles);
-    for (int tile = first; tile < tiles && !gone; tile += 1 + static_cast<int>(generator() % 2))
-      for (unsigned k = 0; k < generator() % 40; ++k) {
-        Link link{};
-        link.cell = serial++;
-        links.push_back(link);
-        tile_of.push_back(tile);
-        expected[body].insert({tile, link.cell});
-      }
-    table.replace(body, links, tile_of);
+    std::vector<LinkCrossing> crossings;
+    expected.erase({body, tile});
+    for (unsigned k = 0, n = generator() % 3 == 0 ? 0 : generator() % 60; k < n; ++k) {
+      links.push_back({serial, ~serial});
+      crossings.push_back({static_cast<float>(serial % 1000), {}});
+      expected[{body, tile}].insert({serial, ~serial});
+      ++serial;
+    }
+    table.replace(body, tile, links, crossings);
 
-    std::map<int, std::multiset<std::pair<int, std::uint32_t>>> found;
+    std::map<std::pair<int, int>, Held> found;
     std::size_t count = 0;
-    for (int tile = 0; tile < tiles; ++tile)
-      for (const LinkTable::Chunk& chunk : table.tiles()[tile].chunks)
-        for (std::uint32_t k = 0; k < chunk.count; ++k, ++count)
-          found[chunk.body].insert({tile, table.tiles()[tile].links.cell[chunk.first + k]});
-    for (int b = 0; b < bodies; ++b) ASSERT_EQ(found[b], expected[b]) << "body " << b << " in round " << round;
+    for (int t = 0; t < tiles; ++t) {
+      const LinkTable::Tile& there = table.tiles()[t];
+      std::size_t in_order = 0;
+      for (const std::uint32_t c : table.chunks_in_order(t)) in_order += there.chunks[c].count;
+      ASSERT_EQ(in_order, there.live);
+      for (const LinkTable::Chunk& chunk : there.chunks)
+        for (std::uint32_t k = chunk.first; k < chunk.first + chunk.count; ++k, ++count) {
+          found[{chunk.body, t}].insert({there.links.place[k], there.links.tag[k]});
+          ASSERT_EQ(there.links.crossing[k].distance, static_cast<float>(there.links.place[k] % 1000));
+        }
+    }
+    ASSERT_EQ(found, expected) << "in round " << round;
     ASSERT_EQ(count, table.count());
   }
 }

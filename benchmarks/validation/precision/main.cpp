@@ -82,9 +82,11 @@ Result sphere(double excess, double velocity) {
   coupling::LinkBuilder builder(decomposition, fluid.block(), fluid.cells(), fluid.tiles());
   std::vector<lbm::LinkBody> bodies(1);
   map.begin_update();
-  map.place(map.add(0, 0.5 * diameter), Vec3(12.3, 11.9, 12.1));
+  bodies[0].centre = Vec3(12.3, 11.9, 12.1);
+  bodies[0].radius = 0.5 * diameter;
+  map.place(map.add(0, bodies[0].radius), bodies[0].centre);
   map.settle();
-  for (const int slot : map.slots_to_relink()) builder.build(slot, map.grains()[slot], links, bodies[slot]);
+  builder.update(map, links);
   fluid.initialise([&](const Vec3&) { return lbm::FluidState{0.0, Vec3(velocity, 0.0, 0.0)}; });
   const PeriodicBox box{Vec3(side, side, side), {true, true, true}};
   const lbm::LinkOptions options;
@@ -94,7 +96,7 @@ Result sphere(double excess, double velocity) {
   for (int step = 0; step < steps; ++step) {
     fluid.exchange_halo();
     bodies[0].force = bodies[0].torque = {};
-    lbm::LinkPass<Real> pass(fluid.populations(), fluid.cells(), fluid.tiles(), links, box, options, bodies);
+    lbm::LinkPass<Real> pass(fluid, links, box, options, bodies);
     fluid.stream_and_collide([&](int tile) { pass.apply_tile(tile); });
     drag = bodies[0].force.to_vec3().x();
   }

@@ -1,0 +1,75 @@
+// Where links cross the surface of a sphere. With d = x_f - centre, b = c_i.d, q = d.d - R^2, a = c_i.c_i:
+//   delta = q / (sqrt(b^2 - a q) - b),  in [0, 1], a fraction of the link;  arm = d + delta c_i.
+// (The usual root, written so that nothing cancels.) The cells may be those of a place of the sphere up to a small
+// tolerance away: then a crossing just beyond an end is put at the end.
+#pragma once
+
+#include "core/periodic_box.hpp"
+#include "lbm/link_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace thalweg::lbm {
+
+// The cells of a block as integers, with the nearest periodic image.
+struct BlockPlace {
+  int lower[3];   // of the block in the domain
+  int period[3];  // cells of the domain; 0: not periodic
+  int half[3];
+
+  BlockPlace(const PeriodicBox& box, const Index3& block_lower) {
+    for (int a = 0; a < 3; ++a) {
+      lower[a] = block_lower[a];
+      period[a] = box.periodic[a] ? static_cast<int>(box.size[a]) : 0;
+      half[a] = box.periodic[a] ? period[a] / 2 : std::numeric_limits<int>::max();
+    }
+  }
+};
+
+// Of links [0, count) of one body in the plane z (owned local coordinate), in the arithmetic of Real, which is the same
+// for every link whatever its place in the arrays. Cells count from whole numbers near the centre, so that nothing is
+// lost far from the origin; the nearest image is that of the solid cell, which is inside.
+template <typename Real>
+inline void cross_sphere(const LinkBody& body, const BlockPlace& block, int z, const std::uint32_t* __restrict places,
+                         const std::uint32_t* __restrict tags, int count, Real* __restrict distance,
+                         Real* __restrict arm_x, Real* __restrict arm_y, Real* __restrict arm_z) {
+  int from[3];
+  Real rest[3];
+  for (int a = 0; a < 3; ++a) {
+    const double whole = std::floor(body.centre[a]);
+    from[a] = block.lower[a] - static_cast<int>(whole);
+    rest[a] = static_cast<Real>(0.5 - (body.centre[a] - whole));
+  }
+  const int from_x = from[0], from_y = from[1], from_z = from[2] + z;
+  const int half_x = block.half[0], half_y = block.half[1], half_z = block.half[2];
+  const int period_x = block.period[0], period_y = block.period[1], period_z = block.period[2];
+  const Real squared_radius = static_cast<Real>(body.radius * body.radius);
+  const auto nearest = [](int cell, int half, int period) {
+    return cell - (cell > half ? period : 0) + (cell < -half ? period : 0);
+  };
+  for (int k = 0; k < count; ++k) {
+    const int tag = static_cast<int>(tags[k]), place = static_cast<int>(places[k]);
+    const int cx = (tag >> LinkTag::velocity_shift(0) & 3) - 1, cy = (tag >> LinkTag::velocity_shift(1) & 3) - 1,
+              cz = (tag >> LinkTag::velocity_shift(2) & 3) - 1;
+    const int x = static_cast<int>(place & static_cast<int>(LinkPlace::x_mask)),
+              y = place >> LinkPlace::y_shift & static_cast<int>(LinkPlace::x_mask);
+    const Real dx = Real(nearest(x + from_x + cx, half_x, period_x) - cx) + rest[0];
+    const Real dy = Real(nearest(y + from_y + cy, half_y, period_y) - cy) + rest[1];
+    const Real dz = Real(nearest(from_z + cz, half_z, period_z) - cz) + rest[2];
+    const Real b = Real(cx) * dx + Real(cy) * dy + Real(cz) * dz;
+    const Real q = dx * dx + dy * dy + dz * dz - squared_radius;
+    const Real a = Real(cx * cx + cy * cy + cz * cz);
+    const Real discriminant = b * b - a * q;
+    const Real root = std::sqrt(discriminant > Real(0) ? discriminant : Real(0));
+    const Real delta = q / (root - b);
+    const Real inside = delta > Real(0) ? (delta < Real(1) ? delta : Real(1)) : Real(0);
+    distance[k] = inside;
+    arm_x[k] = dx + inside * Real(cx);
+    arm_y[k] = dy + inside * Real(cy);
+    arm_z[k] = dz + inside * Real(cz);
+  }
+}
+
+}  // namespace thalweg::lbm

@@ -1,0 +1,82 @@
+// Links kept up to date against links found anew.
+#include "coupling/link_builder.hpp"
+
+#include "coupling/grain_map.hpp"
+#include "lbm/fluid.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <random>
+#include <set>
+
+namespace thalweg::coupling {
+namespace {
+
+// Every link there must be by the map of the cells, and no other, in the words of the table.
+std::set<std::array<std::uint32_t, 4>> links_by_definition(const lbm::Fluid<double>& fluid) {
+  std::set<std::array<std::uint32_t, 4>> links;  // body, tile, place, tag
+  const Index3& n = fluid.indexing().size();
+  const lbm::CellMap& cells = fluid.cells();
+  for (int z = 0; z < n[2]; ++z)
+    for (int y = 0; y < n[1]; ++y)
+      for (int x = 0; x < n[0]; ++x) {
+        const std::ptrdiff_t cell = fluid.indexing().index(x, y, z);
+        for (int i = 1; i < 19; ++i) {
+          const std::int32_t body = cells.body(cell + fluid.indexing().offset(i));
+          if (!cells.is_fluid(cell) || body == lbm::CellMap::fluid) continue;
+          const std::int32_t upstream = cells.body(cell - fluid.indexing().offset(i));
+          links.insert({static_cast<std::uint32_t>(body), static_cast<std::uint32_t>(fluid.tiles().tile_of(y, z)),
+                        lbm::LinkPlace::of(x, y), lbm::LinkTag::of(i, upstream)});
+        }
+      }
+  return links;
+}
+
+// Spheres wander, jump, vanish and appear, through each other and the periodic faces, many cells changing hands at
+// once: what the builder keeps up to date must be what it would find anew.
+TEST(LinkBuilder, FollowsTheMapThroughAnyMoves) {
+  const Index3 cells{21, 18, 17};
+  const Decomposition decomposition(cells, 1.0, {true, true, false}, {1, 1, 1});
+  lbm::Fluid<double> fluid(decomposition, MPI_COMM_SELF, {}, {});
+  GrainMap map(decomposition, fluid.block(), fluid.cells());
+  lbm::LinkTable table(fluid.tiles().count());
+  LinkBuilder builder(decomposition, fluid.block(), fluid.cells(), fluid.tiles());
+  std::mt19937 generator(8);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  const auto anywhere = [&] {
+    return Vec3(cells[0] * uniform(generator), cells[1] * uniform(generator), cells[2] * uniform(generator));
+  };
+  constexpr GlobalId grains = 12;
+  for (int round = 0; round < 300; ++round) {
+    map.begin_update();
+    for (GlobalId id = 0; id < grains; ++id) {
+      const int slot = map.slot_of(id);
+      if (slot < 0) {
+        if (uniform(generator) < 0.5) map.place(map.add(id, 2.0 + 1.5 * uniform(generator)), anywhere());
+      } else if (uniform(generator) < 0.05) {
+        map.remove(slot);
+      } else if (uniform(generator) < 0.7) {
+        const Vec3 step =
+            0.3 * (Vec3(uniform(generator), uniform(generator), uniform(generator)) - Vec3::Constant(0.5));
+        const PeriodicBox box{Vec3(cells[0], cells[1], cells[2]), {true, true, false}};
+        map.place(slot, uniform(generator) < 0.9 ? box.wrapped(map.grains()[slot].centre + step) : anywhere());
+      }
+    }
+    map.settle();
+    builder.update(map, table);
+    std::set<std::array<std::uint32_t, 4>> kept;
+    for (int tile = 0; tile < fluid.tiles().count(); ++tile) {
+      const lbm::LinkTable::Tile& t = table.tiles()[tile];
+      for (const lbm::LinkTable::Chunk& chunk : t.chunks)
+        for (std::uint32_t k = chunk.first; k < chunk.first + chunk.count; ++k)
+          kept.insert({static_cast<std::uint32_t>(chunk.body), static_cast<std::uint32_t>(tile), t.links.place[k],
+                       t.links.tag[k]});
+    }
+    ASSERT_EQ(kept.size(), table.count()) << "a link twice, round " << round;
+    ASSERT_EQ(kept, links_by_definition(fluid)) << "round " << round;
+  }
+}
+
+}  // namespace
+}  // namespace thalweg::coupling
