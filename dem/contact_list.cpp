@@ -23,7 +23,7 @@ std::vector<Candidate> find_pairs(const GrainStore& store, const PeriodicBox& bo
   for (std::size_t a = 0; a < store.owned; ++a)
     grid.for_each_near(store.position[a], [&](std::uint32_t b) {
       const bool mine_to_list = store.is_ghost(b) || store.id[a] < store.id[b];
-      if (b == a || !mine_to_list) return;
+      if (b == a || !mine_to_list || (store.clump[a] >= 0 && store.clump[a] == store.clump[b])) return;
       const double range = store.radius[a] + store.radius[b] + skin;
       if (!(box.difference(store.position[a], store.position[b]).squaredNorm() <= range * range)) return;
       const auto slot = static_cast<std::uint32_t>(a);

@@ -37,7 +37,8 @@ struct ContactList {
 };
 
 // All pairs with at least one owned grain whose surfaces are closer than `skin` (m), and all owned grains closer than
-// that to a wall; springs zero. Positions must be wrapped. largest_radius: m, of all grains.
+// that to a wall, but no two members of one clump; springs zero. Positions must be wrapped. largest_radius: m, of all
+// grains.
 ContactList find_contacts(const GrainStore& store, const PeriodicBox& box, std::span<const Plane> walls,
                           const MaterialTable& materials, double skin, double largest_radius);
 

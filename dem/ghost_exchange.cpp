@@ -14,6 +14,7 @@ constexpr int motion_tag = 4101, attached_tag = 4102, values_tag = 4103;
 struct GhostRow {
   GlobalId id;
   std::int64_t motion, material;
+  GlobalId clump;
   double radius, mass;
   std::array<std::array<double, 3>, 3> value;  // position, velocity, angular velocity
   std::int64_t owner;
@@ -43,12 +44,12 @@ bool blocks_near(const Decomposition& d, int rank_1, int rank_2, double distance
 
 }  // namespace
 
-GhostExchange::GhostExchange(const Decomposition& decomposition, MPI_Comm communicator, double reach)
-    : decomposition_(decomposition), communicator_(communicator), reach_(reach) {
+GhostExchange::GhostExchange(const Decomposition& decomposition, MPI_Comm communicator, double reach, double overhang)
+    : decomposition_(decomposition), communicator_(communicator), reach_(reach + overhang) {
   const int me = rank_of(communicator);
   for (int rank = 0; rank < decomposition.ranks(); ++rank)
     // A little further than the grains' own test, so that rounding cannot make this one the stricter.
-    if (rank != me && blocks_near(decomposition, me, rank, 1.001 * reach)) candidates_.push_back(rank);
+    if (rank != me && blocks_near(decomposition, me, rank, 1.001 * (reach_ + overhang))) candidates_.push_back(rank);
 }
 
 void GhostExchange::build(GrainStore& store) {
@@ -66,6 +67,7 @@ void GhostExchange::build(GrainStore& store) {
       rows.push_back({store.id[s],
                       static_cast<std::int64_t>(store.motion[s]),
                       store.material[s],
+                      store.clump[s],
                       store.radius[s],
                       store.mass[s],
                       {plain(store.position[s]), plain(store.velocity[s]), plain(store.angular_velocity[s])},
@@ -85,6 +87,7 @@ void GhostExchange::build(GrainStore& store) {
     if (neighbour->count++ == 0) neighbour->first = store.total();
     store.append(g.id, g.radius, g.mass, static_cast<Motion>(g.motion), Vec3(g.value[0].data()),
                  static_cast<int>(g.material));
+    store.clump.back() = g.clump;
     store.velocity.back() = Vec3(g.value[1].data());
     store.angular_velocity.back() = Vec3(g.value[2].data());
   }

@@ -15,8 +15,10 @@ namespace thalweg::dem {
 
 class GhostExchange {
 public:
-  // Every grain becomes a ghost of every other rank whose block it is within `reach` (m) of, once a rank.
-  GhostExchange(const Decomposition& decomposition, MPI_Comm communicator, double reach);
+  // Every grain becomes a ghost of every other rank whose block, or one of whose grains, may be within `reach` (m) of
+  // it, once a rank. overhang: m, how far grains may be outside the block of the rank that owns them, because the
+  // centre of their clump is inside.
+  GhostExchange(const Decomposition& decomposition, MPI_Comm communicator, double reach, double overhang = 0.0);
 
   // Drops the store's ghosts and makes new ones from their owners' present state, sorted by owning rank, then id.
   // Positions must be wrapped. Collective.

@@ -38,7 +38,9 @@ GrainBatch owned_grains(const GrainStore& store) {
                           store.mass[s],
                           {plain(store.position[s]), plain(store.velocity[s]), plain(store.angular_velocity[s]),
                            plain(store.contact_force[s]), plain(store.contact_torque[s]), plain(store.load_force[s]),
-                           plain(store.load_torque[s])}});
+                           plain(store.load_torque[s])},
+                          store.clump[s],
+                          plain(store.offset[s])});
   batch.attached.assign(store.attached.begin(),
                         store.attached.begin() + static_cast<std::ptrdiff_t>(store.owned * store.attached_width));
   return batch;
@@ -57,6 +59,8 @@ void adopt(GrainStore& store, const GrainBatch& batch) {
     store.contact_torque.back() = vector(GrainRow::contact_torque);
     store.load_force.back() = vector(GrainRow::load_force);
     store.load_torque.back() = vector(GrainRow::load_torque);
+    store.clump.back() = row.clump;
+    store.offset.back() = Vec3(row.offset.data());
   }
   store.attached = batch.attached;
   store.owned = batch.rows.size();

@@ -20,6 +20,8 @@ struct GrainRow {
   std::int64_t motion, material;
   double radius, mass;
   std::array<std::array<double, 3>, vectors> value;
+  GlobalId clump = -1;
+  std::array<double, 3> offset{};
 };
 
 struct GrainBatch {

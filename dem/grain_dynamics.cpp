@@ -37,20 +37,48 @@ int columns_of(const GrainParameters& p) {
   return p.attached_width + (p.integrator == Integrator::gear ? GearPredictor::columns : 0);
 }
 
-double largest_radius_of(const std::vector<GrainSeed>& seeds) {
+struct IdOrder {
+  bool operator()(const Clump& clump, GlobalId id) const { return clump.id < id; }
+  bool operator()(GlobalId id, const Clump& clump) const { return id < clump.id; }
+};
+
+double largest_radius_of(const std::vector<GrainSeed>& seeds, const std::vector<ClumpSeed>& clumps) {
   double largest = 0.0;
   for (const GrainSeed& seed : seeds) largest = std::max(largest, seed.radius);
+  for (const ClumpSeed& clump : clumps)
+    for (const Sphere& member : clump.shape->members) largest = std::max(largest, member.radius);
   return largest;
 }
 
-// The seeds of one rank, sorted by id, positions wrapped.
-GrainBatch batch_of(const std::vector<GrainSeed>& seeds, const Decomposition& decomposition, int rank, int width) {
+double largest_offset_of(const std::vector<ClumpSeed>& clumps) {
+  double largest = 0.0;
+  for (const ClumpSeed& clump : clumps)
+    for (const Sphere& member : clump.shape->members) largest = std::max(largest, member.position.norm());
+  return largest;
+}
+
+std::int64_t member_count_of(const std::vector<ClumpSeed>& clumps) {
+  std::int64_t count = 0;
+  for (const ClumpSeed& clump : clumps) count += static_cast<std::int64_t>(clump.shape->members.size());
+  return count;
+}
+
+// The seeds of one rank, sorted by id, positions wrapped. clumps: those of this rank, sorted by id.
+GrainBatch batch_of(const std::vector<GrainSeed>& seeds, const std::vector<Clump>& clumps,
+                    const Decomposition& decomposition, int rank, int width) {
   const PeriodicBox box = decomposition.box();
+  const auto mine = [&](const GrainSeed& seed, const Vec3& x) {
+    if (seed.clump < 0) return decomposition.owner_of(x) == rank;
+    return std::binary_search(clumps.begin(), clumps.end(), seed.clump, IdOrder());
+  };
   GrainBatch batch;
   for (const GrainSeed& seed : seeds) {
-    const Vec3 x = box.wrapped(seed.position), &v = seed.velocity, &w = seed.angular_velocity;
-    if (decomposition.owner_of(x) != rank) continue;
-    GrainRow row{seed.id, static_cast<std::int64_t>(seed.motion), seed.material, seed.radius, seed.mass(), {}};
+    const Vec3 x = box.wrapped(seed.position), &v = seed.velocity, &w = seed.angular_velocity, &r = seed.offset;
+    if (!mine(seed, x)) continue;
+    GrainRow row{seed.id,       static_cast<std::int64_t>(seed.motion),
+                 seed.material, seed.radius,
+                 seed.mass(),   {},
+                 seed.clump,    {r[0], r[1], r[2]}};
     row.value[GrainRow::position] = {x[0], x[1], x[2]};
     row.value[GrainRow::velocity] = {v[0], v[1], v[2]};
     row.value[GrainRow::angular_velocity] = {w[0], w[1], w[2]};
@@ -59,6 +87,16 @@ GrainBatch batch_of(const std::vector<GrainSeed>& seeds, const Decomposition& de
   std::sort(batch.rows.begin(), batch.rows.end(), [](const GrainRow& a, const GrainRow& b) { return a.id < b.id; });
   batch.attached.assign(batch.rows.size() * width, 0.0);
   return batch;
+}
+
+std::vector<Clump> clumps_of(const std::vector<ClumpSeed>& seeds, const Decomposition& decomposition, int rank) {
+  std::vector<Clump> clumps;
+  for (const ClumpSeed& seed : seeds) {
+    const Clump clump = clump_of(seed, decomposition.box());
+    if (decomposition.owner_of(clump.centre) == rank) clumps.push_back(clump);
+  }
+  std::sort(clumps.begin(), clumps.end(), [](const Clump& a, const Clump& b) { return a.id < b.id; });
+  return clumps;
 }
 
 enum class Trouble { none, not_finite, outside, too_fast, outran };
@@ -78,22 +116,29 @@ void check_time_step(const GrainParameters& p, std::span<const LightestGrain> li
 }
 
 GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm communicator,
-                             const GrainParameters& parameters, const std::vector<GrainSeed>& seeds)
+                             const GrainParameters& parameters, const std::vector<GrainSeed>& grains,
+                             const std::vector<ClumpSeed>& clumps)
     : decomposition_(decomposition),
       box_(decomposition.box()),
       communicator_(communicator),
       parameters_(checked(parameters)),
       materials_(table_of(parameters)),
-      largest_radius_(largest_radius_of(seeds)),
-      global_count_(static_cast<std::int64_t>(seeds.size())),
+      largest_radius_(largest_radius_of(grains, clumps)),
+      largest_offset_(largest_offset_of(clumps)),
+      global_count_(static_cast<std::int64_t>(grains.size()) + member_count_of(clumps)),
+      clump_count_(static_cast<std::int64_t>(clumps.size())),
+      member_count_(member_count_of(clumps)),
       store_(columns_of(parameters), parameters.disks ? GrainStore::of_disk : GrainStore::of_sphere),
-      ghosts_(decomposition, communicator, ghost_reach()),
+      ghosts_(decomposition, communicator, ghost_reach(), largest_offset_),
       lists_phase_(timer_.phase("contact lists")),
       forces_phase_(timer_.phase("contact forces")),
       motion_phase_(timer_.phase("motion")),
       messages_phase_(timer_.phase("messages")) {
   assert(decomposition.ranks() == size_of(communicator));
+  const std::vector<GrainSeed> seeds = with_members(grains, clumps, box_);
+  check(clumps, box_);
   check(seeds, box_, parameters_.walls, parameters_.initial_overlap);
+  refuse_gear_of_clumps();
   std::vector<LightestGrain> lightest(static_cast<std::size_t>(materials_.count()));
   for (const GrainSeed& seed : seeds) {
     if (seed.material < 0 || seed.material >= materials_.count())
@@ -102,16 +147,29 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
     if ((seed.thickness > 0.0) != parameters_.disks)
       throw InputError(fmt::format("Grain {} is a {}, and the run is one of {}.", seed.id,
                                    seed.thickness > 0.0 ? "disk" : "sphere", parameters_.disks ? "disks" : "spheres"));
-    if (holds_translation(seed.motion)) continue;
+    if (holds_translation(seed.motion) || is_member(seed.motion)) continue;
     lightest[static_cast<std::size_t>(seed.material)].include(seed.mass(), seed.radius);
   }
+  for (const ClumpSeed& clump : clumps)
+    for (const Sphere& member : clump.shape->members)
+      if (!holds_translation(clump.motion))
+        lightest[static_cast<std::size_t>(clump.material)].include(clump.shape->least_contact_mass(clump.density),
+                                                                   member.radius);
   check_time_step(parameters_, lightest, global_count_);
 
-  adopt(store_, batch_of(seeds, decomposition_, rank_of(communicator_), store_.attached_width));
+  const int me = rank_of(communicator_);
+  const std::vector<Clump> mine = clumps_of(clumps, decomposition_, me);
+  adopt(store_, batch_of(seeds, mine, decomposition_, me, store_.attached_width));
+  clumps_.adopt(mine);
   settle_in({});
   moving_.load(store_, body_force_);
   evaluate_forces(0.0);
   moving_.unload(store_);
+}
+
+void GrainDynamics::refuse_gear_of_clumps() const {
+  if (clump_count_ > 0 && parameters_.integrator == Integrator::gear)
+    throw InputError("Clumps are moved by velocity Verlet, not by Gear's predictor-corrector; use the former.");
 }
 
 double GrainDynamics::ghost_reach() const {
@@ -150,6 +208,7 @@ bool GrainDynamics::prepare() {
     trouble = trouble ||
               trouble_of(store_, s, box_, displacement, speed, 0.5 * parameters_.skin, step_time()) != Trouble::none;
   }
+  fastest = std::max(fastest, fastest_member());
   const double mine[3] = {farthest, fastest, trouble ? 1.0 : 0.0};
   double all[3];
   MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_MAX, communicator_);
@@ -157,6 +216,15 @@ bool GrainDynamics::prepare() {
   if (all[0] + all[1] * step_time() <= 0.5 * parameters_.skin) return false;
   rebuild();
   return true;
+}
+
+// A hit off the centre throws the far end of a clump faster than the near one.
+double GrainDynamics::fastest_member() const {
+  double speed = 0.0;
+  for (std::size_t n = 0; n < clumps_.size(); ++n)
+    for (std::int64_t m = 0; m < clumps_[n].members; ++m)
+      speed = std::max(speed, store_.velocity[clumps_.first_slot(n) + static_cast<std::size_t>(m)].norm());
+  return 3.0 * speed + clumps_.largest_pull(store_) * step_time();
 }
 
 void GrainDynamics::throw_trouble() const {
@@ -200,6 +268,7 @@ void GrainDynamics::throw_trouble() const {
 
 void GrainDynamics::wrap_positions() {
   for (Vec3& x : store_.position) x = box_.wrapped(x);
+  clumps_.wrap(box_);
 }
 
 void GrainDynamics::rebuild() {
@@ -213,6 +282,7 @@ void GrainDynamics::migrate(std::vector<ContactHistory>& histories) {
   const int me = rank_of(communicator_);
   std::vector<int> owner(store_.owned);
   for (std::size_t s = 0; s < store_.owned; ++s) owner[s] = decomposition_.owner_of(store_.position[s]);
+  clumps_.assign_owners(decomposition_, owner);
 
   // Both grains of a contact take its history along. Ids of ghosts and walls are not found: not this rank's to move.
   const auto new_owner = [&](GlobalId id) {
@@ -232,6 +302,7 @@ void GrainDynamics::migrate(std::vector<ContactHistory>& histories) {
   histories.insert(histories.end(), arrived.begin(), arrived.end());
   sort_histories(histories);
   adopt(store_, exchange_grains(communicator_, owned_grains(store_), owner, store_.attached_width));
+  if (clump_count_ > 0) clumps_.migrate(decomposition_, communicator_);
 }
 
 // Makes everything that follows from the owned grains: ghosts, contact list, body forces.
@@ -242,9 +313,10 @@ void GrainDynamics::settle_in(const std::vector<ContactHistory>& histories) {
   const auto owned_end = static_cast<std::ptrdiff_t>(store_.owned);
   listed_position_.assign(store_.position.begin(), store_.position.begin() + owned_end);
   body_force_.assign(store_.owned, Vec3::Zero());
+  clumps_.settle_in(store_, parameters_.body_force);
   if (!parameters_.body_force) return;
   for (std::size_t s = 0; s < store_.owned; ++s)
-    body_force_[s] = parameters_.body_force(store_.mass[s], store_.radius[s]);
+    if (store_.clump[s] < 0) body_force_[s] = parameters_.body_force(store_.mass[s], store_.radius[s]);
 }
 
 void GrainDynamics::evaluate_forces(double time_step) {
@@ -257,6 +329,7 @@ void GrainDynamics::advance(int sub_steps) {
   {
     const auto scope = timer_.measure(motion_phase_);
     moving_.load(store_, body_force_);
+    clumps_.load(store_);
   }
   if (parameters_.integrator == Integrator::gear)
     advance_by_gear(sub_steps);
@@ -274,17 +347,31 @@ void GrainDynamics::timed(int phase, Work&& work) {
 
 void GrainDynamics::advance_by_verlet(int sub_steps) {
   const double dt = parameters_.time_step;
+  const auto drift_clumps = [&] {
+    clumps_.drift(dt);
+    clumps_.place(moving_, box_);
+  };
   timed(motion_phase_, [&] {
+    clumps_.half_kicks(moving_, dt, 1);  // before the others, whose drift forgets the forces
     moving_.half_kick(dt);
     moving_.drift(dt);
+    drift_clumps();
   });
   for (int s = 0;; ++s) {
     timed(messages_phase_, [&] { ghosts_.refresh(moving_); });
     evaluate_forces(dt);
     if (s + 1 == sub_steps) break;
-    timed(motion_phase_, [&] { moving_.two_half_kicks_and_drift(dt); });
+    timed(motion_phase_, [&] {
+      clumps_.half_kicks(moving_, dt, 2);
+      moving_.two_half_kicks_and_drift(dt);
+      drift_clumps();
+    });
   }
-  timed(motion_phase_, [&] { moving_.half_kick(dt); });
+  timed(motion_phase_, [&] {
+    clumps_.half_kicks(moving_, dt, 1);
+    moving_.half_kick(dt);
+    clumps_.place(moving_, box_);
+  });
 }
 
 void GrainDynamics::advance_by_gear(int sub_steps) {

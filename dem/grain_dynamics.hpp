@@ -4,6 +4,7 @@
 //   v(n+1/2) = v(n) + dt/2 a(n);  x(n+1) = x(n) + dt v(n+1/2);  forces from x(n+1), v(n+1/2);
 //   v(n+1) = v(n+1/2) + dt/2 a(n+1);  the same for the angular velocity with I = 2/5 m R^2 (disks 1/2 m R^2).
 //
+// Clumps, rigid grains of several spheres, move as clumps.hpp says; their members are rows of the store like spheres.
 // SI units. The state after any number of steps is bitwise the same on any number of ranks, in any layout, and after
 // any save and load. A step of the caller (a fluid step) is
 //   prepare();  ... loads into store() ...;  advance(sub_steps);  refresh_ghosts();
@@ -12,6 +13,8 @@
 #include "core/archive.hpp"
 #include "core/decomposition.hpp"
 #include "core/phase_timer.hpp"
+#include "dem/clump_seed.hpp"
+#include "dem/clumps.hpp"
 #include "dem/contact_list.hpp"
 #include "dem/gear_predictor.hpp"
 #include "dem/ghost_exchange.hpp"
@@ -40,7 +43,8 @@ struct GrainParameters {
   std::vector<ContactParameters> other_materials;  // 1, 2, ...: mixed with each other as material.hpp says
   std::optional<ContactParameters> wall_contact;   // of grains with walls, where it differs (but for the friction)
   std::vector<Plane> walls;
-  std::function<Vec3(double mass, double radius)> body_force;  // N of a grain (kg, m), constant; empty: none
+  // N of a grain (kg, m; of a clump the radius of the sphere of its volume), constant; empty: none
+  std::function<Vec3(double mass, double radius)> body_force;
   double time_step = 0.0;  // s, of a sub-step: at most a 20th of the shortest contact time
   Integrator integrator = Integrator::velocity_verlet;
   int sub_steps = 1;         // at most that many between two calls of prepare()
@@ -77,11 +81,12 @@ struct Contact {
 
 class GrainDynamics {
 public:
-  // seeds: the same full list on every rank; each rank keeps the grains it owns. Throws InputError, on every rank, for
-  // impossible parameters, a time step too long, or impossible seeds (grain_seed.hpp). Contact forces are evaluated
-  // (without moving any spring), so that the first half kick has its forces. Collective.
+  // seeds and clumps: the same full lists on every rank; each rank keeps the grains it owns. The ids of grains and of
+  // members together are 0 .. their number - 1. Throws InputError, on every rank, for impossible parameters, a time
+  // step too long, or impossible seeds (grain_seed.hpp, clump_seed.hpp). Contact forces are evaluated (without moving
+  // any spring), so that the first half kick has its forces. Collective.
   GrainDynamics(const Decomposition& decomposition, MPI_Comm communicator, const GrainParameters& parameters,
-                const std::vector<GrainSeed>& seeds);
+                const std::vector<GrainSeed>& seeds, const std::vector<ClumpSeed>& clumps = {});
   GrainDynamics(const GrainDynamics&) = delete;
   GrainDynamics& operator=(const GrainDynamics&) = delete;
 
@@ -106,18 +111,23 @@ public:
   // Loads and attached columns are the caller's to write; the rest is to be read.
   GrainStore& store() { return store_; }
   const GrainStore& store() const { return store_; }
-  const Vec3& body_force(std::size_t owned_slot) const { return body_force_[owned_slot]; }  // N
+  // N; of a clump's member zero
+  const Vec3& body_force(std::size_t owned_slot) const { return body_force_[owned_slot]; }
+  const Clumps& clumps() const { return clumps_; }  // those owned here
   const GrainParameters& parameters() const { return parameters_; }
   const Decomposition& decomposition() const { return decomposition_; }
   double largest_radius() const { return largest_radius_; }    // m, over all ranks
-  std::int64_t global_count() const { return global_count_; }  // grains over all ranks
+  std::int64_t global_count() const { return global_count_; }  // rows over all ranks: grains and members of clumps
+  std::int64_t clump_count() const { return clump_count_; }    // over all ranks
+  std::int64_t member_count() const { return member_count_; }  // members of clumps over all ranks
   std::int64_t rebuilds() const { return rebuilds_; }          // since construction or load
   PhaseTimer& timer() { return timer_; }                       // contact lists, contact forces, motion, messages
 
   // The touching pairs whose lower id is owned here, sorted by ids, then the touching walls of owned grains.
   std::vector<Contact> contacts() const;
 
-  // Figures over all ranks, the same bits in any layout. Collective.
+  // Figures over all ranks, the same bits in any layout; a clump is one grain, with the velocity of its centre, but
+  // overlap and contacts are those of its members. Collective.
   std::vector<Vec3> wall_forces() const;          // N, of all grains on each of the walls, in their order
   std::int64_t contact_count() const;             // touching pairs of grains
   double largest_overlap() const;                 // of two grains, in diameters of the smaller
@@ -137,10 +147,16 @@ public:
 private:
   double step_time() const { return parameters_.time_step * parameters_.sub_steps; }
   double ghost_reach() const;
+  template <typename Visitor>
+  void for_each_body(Visitor&& visit) const;
+  void refuse_gear_of_clumps() const;
   void wrap_positions();
+  double fastest_member() const;
   void throw_trouble() const;
   void rebuild();
   void migrate(std::vector<ContactHistory>& histories);
+  std::vector<Clump> load_clumps(ArchiveReader& archive, const std::string& group, const GrainBatch& batch,
+                                 std::vector<int>& owner);
   void settle_in(const std::vector<ContactHistory>& histories);
   void evaluate_forces(double time_step);
   template <typename Work>
@@ -154,14 +170,16 @@ private:
   GrainParameters parameters_;
   MaterialTable materials_;
   double largest_radius_ = 0.0;
-  std::int64_t global_count_ = 0;
+  double largest_offset_ = 0.0;  // m, of any member from its clump's centre, over all ranks
+  std::int64_t global_count_ = 0, clump_count_ = 0, member_count_ = 0;
   std::int64_t rebuilds_ = 0;
 
   GrainStore store_;
   GhostExchange ghosts_;
   ContactList list_;
   GearPredictor gear_;
-  MovingGrains moving_;                // the state during the sub-steps
+  MovingGrains moving_;  // the state during the sub-steps
+  Clumps clumps_;
   std::vector<Vec3> listed_position_;  // of owned grains, when the list was built
   std::vector<Vec3> body_force_;       // of owned grains
 

@@ -1,6 +1,8 @@
 // Saving and loading of GrainDynamics. Datasets, one row a grain in order of id: radius, mass, motion, material,
 // position, velocity, angular_velocity, contact_force, contact_torque, load_force, load_torque, attached. One row a
-// contact, sorted by ids: contact_ids (lower id; higher id, or -1 - w for wall w), contact_spring.
+// contact, sorted by ids: contact_ids (lower id; higher id, or -1 - w for wall w), contact_spring. Where there are
+// clumps also, of each grain, clump (its clump's id, or -1) and offset, and one row a clump, sorted by id: clump_id,
+// clump_members, clump_motion, clump_mass and so on with the names of struct ClumpRow.
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
 #include "dem/grain_batch.hpp"
@@ -10,6 +12,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
+#include <utility>
 
 namespace thalweg::dem {
 
@@ -45,7 +49,7 @@ int home_of(std::int64_t row, std::int64_t count, int ranks) {
 }
 
 void write_grains(ArchiveWriter& archive, const std::string& group, const GrainBatch& batch, const Share& share,
-                  int attached_width) {
+                  int attached_width, bool with_clumps) {
   std::vector<double> radius, mass, vectors;
   std::vector<std::int64_t> motion, material;
   for (const GrainRow& row : batch.rows) {
@@ -64,6 +68,15 @@ void write_grains(ArchiveWriter& archive, const std::string& group, const GrainB
     archive.write(group + "/" + vector_names[v], vectors, share.box(3));
   }
   if (attached_width > 0) archive.write(group + "/attached", batch.attached, share.box(attached_width));
+  if (!with_clumps) return;
+  std::vector<std::int64_t> clump;
+  vectors.clear();
+  for (const GrainRow& row : batch.rows) {
+    clump.push_back(row.clump);
+    vectors.insert(vectors.end(), row.offset.begin(), row.offset.end());
+  }
+  archive.write(group + "/clump", clump, share.box());
+  archive.write(group + "/offset", vectors, share.box(3));
 }
 
 GrainBatch read_grains(ArchiveReader& archive, const std::string& group, const Share& share, int attached_width) {
@@ -85,7 +98,73 @@ GrainBatch read_grains(ArchiveReader& archive, const std::string& group, const S
   }
   batch.attached.resize(rows * attached_width);
   if (attached_width > 0) archive.read(group + "/attached", batch.attached, share.box(attached_width));
+  if (!archive.has(group + "/clump")) return batch;
+  std::vector<std::int64_t> clump(rows);
+  archive.read(group + "/clump", clump, share.box());
+  archive.read(group + "/offset", vectors, share.box(3));
+  for (std::size_t r = 0; r < rows; ++r) {
+    batch.rows[r].clump = clump[r];
+    batch.rows[r].offset = {vectors[3 * r], vectors[3 * r + 1], vectors[3 * r + 2]};
+  }
   return batch;
+}
+
+// The columns of a clump: of whole numbers, and of reals with their width.
+constexpr std::pair<const char*, std::int64_t ClumpRow::*> clump_numbers[] = {
+    {"clump_id", &ClumpRow::id}, {"clump_members", &ClumpRow::members}, {"clump_motion", &ClumpRow::motion}};
+
+struct RealColumn {
+  const char* name;
+  std::uint64_t width;
+  double* (*values)(ClumpRow&);
+};
+
+constexpr RealColumn clump_reals[] = {
+    {"clump_mass", 1, [](ClumpRow& row) { return &row.mass; }},
+    {"clump_volume", 1, [](ClumpRow& row) { return &row.volume; }},
+    {"clump_moments", 3, [](ClumpRow& row) -> double* { return row.moments; }},
+    {"clump_orientation", 4, [](ClumpRow& row) -> double* { return row.orientation; }},
+    {"clump_centre", 3, [](ClumpRow& row) -> double* { return row.centre; }},
+    {"clump_velocity", 3, [](ClumpRow& row) -> double* { return row.velocity; }},
+    {"clump_angular_momentum", 3, [](ClumpRow& row) -> double* { return row.angular_momentum; }},
+    {"clump_angular_velocity", 3, [](ClumpRow& row) -> double* { return row.angular_velocity; }}};
+
+void write_clumps(ArchiveWriter& archive, const std::string& group, std::vector<ClumpRow> rows, const Share& share) {
+  std::sort(rows.begin(), rows.end(), [](const ClumpRow& a, const ClumpRow& b) { return a.id < b.id; });
+  for (const auto& [name, field] : clump_numbers) {
+    std::vector<std::int64_t> values;
+    for (const ClumpRow& row : rows) values.push_back(row.*field);
+    archive.write(group + "/" + name, values, share.box());
+  }
+  for (const RealColumn& column : clump_reals) {
+    std::vector<double> values;
+    for (ClumpRow& row : rows) values.insert(values.end(), column.values(row), column.values(row) + column.width);
+    archive.write(group + "/" + column.name, values, share.box(column.width));
+  }
+}
+
+std::vector<ClumpRow> read_clumps(ArchiveReader& archive, const std::string& group, const Share& share) {
+  std::vector<ClumpRow> rows(static_cast<std::size_t>(share.last - share.first));
+  for (const auto& [name, field] : clump_numbers) {
+    std::vector<std::int64_t> values(rows.size());
+    archive.read(group + "/" + name, values, share.box());
+    for (std::size_t r = 0; r < rows.size(); ++r) rows[r].*field = values[r];
+  }
+  for (const RealColumn& column : clump_reals) {
+    std::vector<double> values(column.width * rows.size());
+    archive.read(group + "/" + column.name, values, share.box(column.width));
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(column.width * r), column.width, column.values(rows[r]));
+  }
+  return rows;
+}
+
+// Rows that this rank holds one after the other of all ranks' rows.
+Share share_of(std::int64_t rows, MPI_Comm communicator) {
+  Share share(sum_over_ranks(communicator, rows), 1, 0);
+  MPI_Scan(&rows, &share.last, 1, MPI_INT64_T, MPI_SUM, communicator);
+  share.first = share.last - rows;
+  return share;
 }
 
 // A contact history on its way to the owner of grain `to`.
@@ -131,12 +210,23 @@ void check_loaded(const GrainBatch& batch, const PeriodicBox& box, MPI_Comm comm
                                "xyz"[stray.axis], stray.x, box.size[static_cast<int>(stray.axis)]));
 }
 
-// Of each material, over all ranks.
-std::vector<LightestGrain> lightest_of(const GrainBatch& batch, int materials, MPI_Comm communicator) {
+// Of each material, over all ranks: grains, and clumps as their contacts feel them.
+std::vector<LightestGrain> lightest_of(const GrainStore& store, const std::vector<Clump>& clumps, int materials,
+                                       MPI_Comm communicator) {
   std::vector<LightestGrain> lightest(static_cast<std::size_t>(materials));
-  for (const GrainRow& row : batch.rows)
-    if (!holds_translation(static_cast<Motion>(row.motion)))
-      lightest[static_cast<std::size_t>(row.material)].include(row.mass, row.radius);
+  for (std::size_t s = 0; s < store.owned; ++s)
+    if (store.motion[s] == Motion::free || store.motion[s] == Motion::held_rotation)
+      lightest[store.material[s]].include(store.mass[s], store.radius[s]);
+  for (const Clump& clump : clumps) {
+    if (holds_translation(clump.motion)) continue;
+    const auto first = static_cast<std::size_t>(
+        std::lower_bound(store.id.begin(), store.id.begin() + static_cast<std::ptrdiff_t>(store.owned), clump.id) -
+        store.id.begin());
+    const std::span<const Vec3> offsets(&store.offset[first], static_cast<std::size_t>(clump.members));
+    const double mass = least_contact_mass(clump.mass, clump.moments, offsets);
+    for (std::size_t m = first; m < first + offsets.size(); ++m)
+      lightest[store.material[m]].include(mass, store.radius[m]);
+  }
   for (LightestGrain& grain : lightest)
     grain = {-max_over_ranks(communicator, -grain.mass), -max_over_ranks(communicator, -grain.radius)};
   return lightest;
@@ -150,7 +240,18 @@ void GrainDynamics::save(ArchiveWriter& archive, const std::string& group) const
   std::vector<int> home;
   for (std::size_t s = 0; s < store_.owned; ++s) home.push_back(home_of(store_.id[s], global_count_, ranks));
   write_grains(archive, group, exchange_grains(communicator_, owned_grains(store_), home, store_.attached_width),
-               Share(global_count_, ranks, me), store_.attached_width);
+               Share(global_count_, ranks, me), store_.attached_width, clump_count_ > 0);
+  if (clump_count_ > 0) {
+    std::vector<ClumpRow> clumps;
+    home.clear();
+    for (std::size_t n = 0; n < clumps_.size(); ++n) {
+      clumps.push_back(row_of(clumps_[n]));
+      home.push_back(home_of(clumps.back().id, global_count_, ranks));
+    }
+    clumps = exchange_rows(communicator_, clumps, home);
+    const Share clump_share = share_of(static_cast<std::int64_t>(clumps.size()), communicator_);
+    write_clumps(archive, group, std::move(clumps), clump_share);
+  }
 
   // A pair known to two ranks is written by the owner of its lower id.
   std::vector<ContactHistory> mine = histories_of(list_, store_);
@@ -162,10 +263,7 @@ void GrainDynamics::save(ArchiveWriter& archive, const std::string& group) const
   std::vector<ContactHistory> rows = exchange_rows(communicator_, mine, home);
   sort_histories(rows);
 
-  const auto here = static_cast<std::int64_t>(rows.size());
-  Share share(sum_over_ranks(communicator_, here), 1, 0);
-  MPI_Scan(&here, &share.last, 1, MPI_INT64_T, MPI_SUM, communicator_);
-  share.first = share.last - here;
+  const Share share = share_of(static_cast<std::int64_t>(rows.size()), communicator_);
   std::vector<std::int64_t> ids;
   std::vector<double> springs;
   for (const ContactHistory& h : rows) {
@@ -192,11 +290,17 @@ void GrainDynamics::load(ArchiveReader& archive, const std::string& group) {
   });
   if (any_rank(communicator_, stranger))
     throw InputError(fmt::format("The saved grains are of more materials than this case has, {}.", materials_.count()));
-  double largest = 0.0;
-  for (const GrainRow& row : batch.rows) largest = std::max(largest, row.radius);
+  double largest = 0.0, largest_offset = 0.0;
+  std::int64_t members = 0;
+  for (const GrainRow& row : batch.rows) {
+    largest = std::max(largest, row.radius);
+    largest_offset = std::max(largest_offset, Vec3(row.offset.data()).norm());
+    members += row.clump >= 0;
+  }
   largest_radius_ = max_over_ranks(communicator_, largest);
-  check_time_step(parameters_, lightest_of(batch, materials_.count(), communicator_), global_count_);
-  ghosts_ = GhostExchange(decomposition_, communicator_, ghost_reach());
+  largest_offset_ = max_over_ranks(communicator_, largest_offset);
+  member_count_ = sum_over_ranks(communicator_, members);
+  ghosts_ = GhostExchange(decomposition_, communicator_, ghost_reach(), largest_offset_);
 
   // Grains to the rank of their centre; histories first to the rank that read the grain and so knows its owner.
   std::vector<int> owner;
@@ -205,6 +309,7 @@ void GrainDynamics::load(ArchiveReader& archive, const std::string& group) {
     row.value[GrainRow::position] = {x[0], x[1], x[2]};
     owner.push_back(decomposition_.owner_of(x));
   }
+  const std::vector<Clump> clumps = load_clumps(archive, group, batch, owner);
   const Share contacts(static_cast<std::int64_t>(archive.shape(group + "/contact_ids").at(0)), ranks, me);
   std::vector<Addressed> read = read_histories(archive, group, contacts);
   std::vector<int> to;
@@ -221,8 +326,48 @@ void GrainDynamics::load(ArchiveReader& archive, const std::string& group) {
   sort_histories(histories);
 
   adopt(store_, exchange_grains(communicator_, batch, owner, store_.attached_width));
+  check_time_step(parameters_, lightest_of(store_, clumps, materials_.count(), communicator_), global_count_);
+  clumps_.adopt(clumps);
   settle_in(histories);
   rebuilds_ = 0;
+}
+
+// The clumps with their centre here. Members go to the rank of their clump's centre: `owner` of the rows of `batch` is
+// set to it.
+std::vector<Clump> GrainDynamics::load_clumps(ArchiveReader& archive, const std::string& group, const GrainBatch& batch,
+                                              std::vector<int>& owner) {
+  const int ranks = size_of(communicator_), me = rank_of(communicator_);
+  clump_count_ = 0;
+  if (!archive.has(group + "/clump_id")) return {};
+  clump_count_ = static_cast<std::int64_t>(archive.shape(group + "/clump_id").at(0));
+  refuse_gear_of_clumps();
+  // Every rank that read a member is told of the clump; the one that read the first member passes it on.
+  const std::vector<ClumpRow> read = read_clumps(archive, group, Share(clump_count_, ranks, me));
+  std::vector<ClumpRow> sent;
+  std::vector<int> to;
+  for (const ClumpRow& row : read)
+    for (int rank = home_of(row.id, global_count_, ranks);
+         rank <= home_of(row.id + row.members - 1, global_count_, ranks); ++rank) {
+      sent.push_back(row);
+      to.push_back(rank);
+    }
+  const std::int64_t first = Share(global_count_, ranks, me).first;
+  const auto last = first + static_cast<std::int64_t>(batch.rows.size());
+  std::vector<ClumpRow> passed;
+  std::vector<int> destination;
+  for (const ClumpRow& row : exchange_rows(communicator_, sent, to)) {
+    const int centre_owner = decomposition_.owner_of(box_.wrapped(Vec3(row.centre)));
+    for (std::int64_t id = std::max(row.id, first); id < std::min(row.id + row.members, last); ++id)
+      owner[static_cast<std::size_t>(id - first)] = centre_owner;
+    if (row.id < first) continue;
+    passed.push_back(row);
+    destination.push_back(centre_owner);
+  }
+  passed = exchange_rows(communicator_, passed, destination);
+  std::sort(passed.begin(), passed.end(), [](const ClumpRow& a, const ClumpRow& b) { return a.id < b.id; });
+  std::vector<Clump> clumps;
+  for (const ClumpRow& row : passed) clumps.push_back(clump_of(row));
+  return clumps;
 }
 
 }  // namespace thalweg::dem

@@ -65,49 +65,67 @@ double GrainDynamics::largest_overlap() const {
   return max_over_ranks(communicator_, largest);
 }
 
+// Calls visit(mass, velocity, kinetic energy, motion, force) for every grain and clump owned here; force: N, of all
+// kinds, calculated only where the visitor calls it.
+template <typename Visitor>
+void GrainDynamics::for_each_body(Visitor&& visit) const {
+  for (std::size_t s = 0; s < store_.owned; ++s) {
+    if (store_.clump[s] >= 0) continue;
+    const double energy = 0.5 * store_.mass[s] * store_.velocity[s].squaredNorm() +
+                          0.5 * store_.inertia[s] * store_.angular_velocity[s].squaredNorm();
+    visit(store_.mass[s], store_.velocity[s], energy, store_.motion[s],
+          [&]() -> Vec3 { return store_.contact_force[s] + store_.load_force[s] + body_force_[s]; });
+  }
+  for (std::size_t n = 0; n < clumps_.size(); ++n) {
+    const Clump& clump = clumps_[n];
+    visit(clump.mass, clump.velocity, clump.kinetic_energy(), clump.motion, [&] { return clumps_.force(n, store_); });
+  }
+}
+
 double GrainDynamics::kinetic_energy() const {
-  std::vector<double> energy(store_.owned);
-  for (std::size_t s = 0; s < store_.owned; ++s)
-    energy[s] = 0.5 * store_.mass[s] * store_.velocity[s].squaredNorm() +
-                0.5 * store_.inertia[s] * store_.angular_velocity[s].squaredNorm();
-  return order_free_sums(communicator_, energy, 1)[0];
+  std::vector<double> energies;
+  for_each_body([&](double, const Vec3&, double energy, Motion, auto&&) { energies.push_back(energy); });
+  return order_free_sums(communicator_, energies, 1)[0];
 }
 
 Vec3 GrainDynamics::momentum() const {
   std::vector<double> terms;
   terms.reserve(3 * store_.owned);
-  for (std::size_t s = 0; s < store_.owned; ++s)
-    for (int axis = 0; axis < 3; ++axis) terms.push_back(store_.mass[s] * store_.velocity[s][axis]);
+  for_each_body([&](double mass, const Vec3& velocity, double, Motion, auto&&) {
+    for (int axis = 0; axis < 3; ++axis) terms.push_back(mass * velocity[axis]);
+  });
   const std::vector<double> sums = order_free_sums(communicator_, terms, 3);
   return {sums[0], sums[1], sums[2]};
 }
 
 double GrainDynamics::largest_speed() const {
   double largest = 0.0;
-  for (std::size_t s = 0; s < store_.owned; ++s) largest = std::max(largest, store_.velocity[s].norm());
+  for_each_body(
+      [&](double, const Vec3& velocity, double, Motion, auto&&) { largest = std::max(largest, velocity.norm()); });
   return max_over_ranks(communicator_, largest);
 }
 
 double GrainDynamics::largest_free_speed() const {
   double largest = 0.0;
-  for (std::size_t s = 0; s < store_.owned; ++s)
-    if (!holds_translation(store_.motion[s])) largest = std::max(largest, store_.velocity[s].norm());
+  for_each_body([&](double, const Vec3& velocity, double, Motion motion, auto&&) {
+    if (!holds_translation(motion)) largest = std::max(largest, velocity.norm());
+  });
   return max_over_ranks(communicator_, largest);
 }
 
 double GrainDynamics::largest_acceleration() const {
   double largest = 0.0;
-  for (std::size_t s = 0; s < store_.owned; ++s) {
-    const Vec3 force = store_.contact_force[s] + store_.load_force[s] + body_force_[s];
-    largest = std::max(largest, force.norm() * store_.inverse_mass[s]);
-  }
+  for_each_body([&](double mass, const Vec3&, double, Motion motion, auto&& force) {
+    if (!holds_translation(motion)) largest = std::max(largest, force().norm() * (1.0 / mass));
+  });
   return max_over_ranks(communicator_, largest);
 }
 
 std::int64_t GrainDynamics::moving_count(double speed) const {
   std::int64_t count = 0;
-  for (std::size_t s = 0; s < store_.owned; ++s)
-    if (!holds_translation(store_.motion[s]) && store_.velocity[s].norm() > speed) ++count;
+  for_each_body([&](double, const Vec3& velocity, double, Motion motion, auto&&) {
+    if (!holds_translation(motion) && velocity.norm() > speed) ++count;
+  });
   return sum_over_ranks(communicator_, count);
 }
 

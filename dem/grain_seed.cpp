@@ -40,7 +40,7 @@ void check_alone(const GrainSeed& seed, const PeriodicBox& box, std::span<const 
       throw InputError(
           fmt::format("Grain {} at {} has its centre outside the box; its {} must be between 0 and {:g} m.", seed.id,
                       place(seed.position), "xyz"[axis], box.size[axis]));
-  if (seed.motion == Motion::fixed) return;
+  if (is_fixed(seed.motion)) return;
   for (const Plane& wall : walls) {
     const double overlap = seed.radius - (seed.position - wall.point).dot(wall.normal);
     if (overlap > allowed_overlap * 2.0 * seed.radius)
@@ -52,7 +52,8 @@ void check_alone(const GrainSeed& seed, const PeriodicBox& box, std::span<const 
 }
 
 void check_pair(const GrainSeed& a, const GrainSeed& b, const PeriodicBox& box, double allowed_overlap) {
-  if (a.motion == Motion::fixed && b.motion == Motion::fixed) return;
+  if (is_fixed(a.motion) && is_fixed(b.motion)) return;
+  if (a.clump >= 0 && a.clump == b.clump) return;
   const double overlap = a.radius + b.radius - box.difference(a.position, b.position).norm();
   if (overlap > allowed_overlap * 2.0 * std::min(a.radius, b.radius))
     throw InputError(
@@ -88,6 +89,7 @@ void check_disks(std::span<const GrainSeed> seeds) {
 }  // namespace
 
 double GrainSeed::mass() const {
+  if (clump >= 0) return clump_mass;
   if (thickness > 0.0) return density * std::numbers::pi * radius * radius * thickness;
   return density * (4.0 / 3.0) * std::numbers::pi * radius * radius * radius;
 }

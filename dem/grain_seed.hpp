@@ -22,7 +22,12 @@ struct GrainSeed {
 
   double thickness = 0.0;  // m, of a disk in the x-z plane; 0: a sphere
 
-  double mass() const;  // kg, of the full sphere or disk
+  // Of a member of a clump, as with_members() of clump_seed.hpp fills them in.
+  GlobalId clump = -1;         // its id; -1: the grain is one of its own
+  double clump_mass = 0.0;     // kg
+  Vec3 offset = Vec3::Zero();  // m, from the clump's centre in the frame of its principal axes
+
+  double mass() const;  // kg, of the full sphere or disk; of a member that of the clump
 };
 
 // Overlap at the start, in diameters of the smaller grain, that is taken for rounding.
@@ -31,8 +36,8 @@ inline constexpr double allowed_initial_overlap = 1e-6;
 // Throws InputError naming the first grain (by id) with an id out of place, a radius or density that is not positive, a
 // centre outside the box, or an overlap with a wall or another grain of more than `allowed_overlap` diameters of the
 // smaller; also disks among spheres, and disks that are not all in one plane or move or turn out of it. Fixed grains
-// may reach into walls and into each other. A periodic axis must be at least two of the largest
-// diameters long.
+// may reach into walls and into each other, and so may members of one clump. A periodic axis must be at least two of
+// the largest diameters long.
 void check(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<const Plane> walls,
            double allowed_overlap = allowed_initial_overlap);
 

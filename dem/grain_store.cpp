@@ -5,7 +5,7 @@ namespace thalweg::dem {
 template <typename Visitor>
 void GrainStore::for_each_column(Visitor&& visit) {
   visit(id), visit(radius), visit(mass), visit(inertia), visit(inverse_mass), visit(inverse_inertia), visit(motion);
-  visit(material);
+  visit(material), visit(clump), visit(offset);
   visit(position), visit(velocity), visit(angular_velocity);
   visit(contact_force), visit(contact_torque), visit(load_force), visit(load_torque);
 }
@@ -26,10 +26,12 @@ void GrainStore::append(GlobalId grain, double grain_radius, double grain_mass, 
   radius.push_back(grain_radius);
   mass.push_back(grain_mass);
   inertia.push_back(shape * grain_mass * grain_radius * grain_radius);
-  inverse_mass.push_back(holds_translation(grain_motion) ? 0.0 : 1.0 / grain_mass);
-  inverse_inertia.push_back(holds_rotation(grain_motion) ? 0.0 : 1.0 / inertia.back());
+  inverse_mass.push_back(holds_translation(grain_motion) || is_member(grain_motion) ? 0.0 : 1.0 / grain_mass);
+  inverse_inertia.push_back(holds_rotation(grain_motion) || is_member(grain_motion) ? 0.0 : 1.0 / inertia.back());
   motion.push_back(grain_motion);
   material.push_back(static_cast<std::uint8_t>(grain_material));
+  clump.push_back(-1);
+  offset.push_back(Vec3::Zero());
   position.push_back(grain_position);
   for (auto* column : {&velocity, &angular_velocity, &contact_force, &contact_torque, &load_force, &load_torque})
     column->push_back(Vec3::Zero());

@@ -10,11 +10,15 @@
 
 namespace thalweg::dem {
 
-// What the forces may change. A held component keeps the velocity it was given (zero: it does not move).
-enum class Motion : std::uint8_t { free = 0, held_translation = 1, held_rotation = 2, fixed = 3 };
+// What the forces may change. A held component keeps the velocity it was given (zero: it does not move). A member of a
+// clump (clumps.hpp) is moved by it; what is held is held of the clump.
+enum class Motion : std::uint8_t { free = 0, held_translation = 1, held_rotation = 2, fixed = 3, member = 4 };
 
 inline bool holds_translation(Motion motion) { return (static_cast<unsigned>(motion) & 1u) != 0; }
 inline bool holds_rotation(Motion motion) { return (static_cast<unsigned>(motion) & 2u) != 0; }
+inline bool is_fixed(Motion motion) { return holds_translation(motion) && holds_rotation(motion); }
+inline bool is_member(Motion motion) { return (static_cast<unsigned>(motion) & 4u) != 0; }
+inline Motion member_of(Motion clump) { return static_cast<Motion>(static_cast<unsigned>(clump) | 4u); }
 
 struct GrainStore {
   static constexpr double of_sphere = 0.4, of_disk = 0.5;  // I/(m R^2), of a disk about its axis
@@ -27,11 +31,13 @@ struct GrainStore {
 
   std::vector<GlobalId> id;
   std::vector<double> radius;           // m
-  std::vector<double> mass;             // kg
-  std::vector<double> inertia;          // kg m^2, 2/5 m R^2; disks 1/2 m R^2
-  std::vector<double> inverse_mass;     // 1/kg, 0 where the translation is held
-  std::vector<double> inverse_inertia;  // 1/(kg m^2), 0 where the rotation is held
+  std::vector<double> mass;             // kg; of a clump's member: of the clump, which is what contacts feel
+  std::vector<double> inertia;          // kg m^2, 2/5 m R^2; disks 1/2 m R^2; of a clump's member without meaning
+  std::vector<double> inverse_mass;     // 1/kg, 0 where the translation is held, and of a clump's members
+  std::vector<double> inverse_inertia;  // 1/(kg m^2), 0 where the rotation is held, and of a clump's members
   std::vector<Motion> motion;
+  std::vector<GlobalId> clump;         // id of the clump the grain is a member of: that of its first member; else -1
+  std::vector<Vec3> offset;            // m, of a clump's member: from its centre, in the frame of its principal axes
   std::vector<std::uint8_t> material;  // number in the table of materials
   std::vector<Vec3> position;          // m, global and unshifted, also of ghosts
   std::vector<Vec3> velocity;          // m/s

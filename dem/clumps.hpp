@@ -1,0 +1,109 @@
+// The clumps a rank owns, and how they move: rigid bodies whose members are rows of GrainStore.
+//
+// Contacts, ghosts and fluid see the members as spheres that move as points of the body, v_m = V + w x r_m, all with
+// its angular velocity w. Forces and torques on members go to the centre of mass, in the order of ids,
+//   F = sum F_m,   T = sum (T_m + r_m x F_m),
+// and move it by the velocity Verlet of grain_dynamics.hpp: half kicks of V and of the angular momentum L, a drift of
+// the centre, and the free rotation of rigid_rotation.hpp in between. A clump is owned by the rank of its centre, and
+// with it are its members, wherever they are. SI units.
+#pragma once
+
+#include "core/decomposition.hpp"
+#include "core/periodic_box.hpp"
+#include "core/types.hpp"
+#include "dem/clump_seed.hpp"
+#include "dem/grain_store.hpp"
+#include "dem/moving_grains.hpp"
+
+#include <mpi.h>
+
+#include <functional>
+#include <utility>
+#include <vector>
+
+namespace thalweg::dem {
+
+struct Clump {
+  GlobalId id;  // of its first member; members have consecutive ids
+  std::int64_t members;
+  Motion motion;
+  double mass, volume;     // kg, m^3
+  Vec3 moments;            // kg m^2, about the principal axes
+  Quaternion orientation;  // of the principal axes
+  Vec3 centre;             // m, global
+  Vec3 velocity;           // m/s, of the centre
+  Vec3 angular_momentum;   // kg m^2/s, about the centre
+  Vec3 angular_velocity;   // rad/s
+
+  double kinetic_energy() const {
+    return 0.5 * mass * velocity.squaredNorm() + 0.5 * angular_velocity.dot(angular_momentum);
+  }
+};
+
+// A clump on its way between ranks and files.
+struct ClumpRow {
+  GlobalId id;
+  std::int64_t members, motion;
+  double mass, volume;
+  double moments[3], orientation[4], centre[3], velocity[3], angular_momentum[3], angular_velocity[3];
+};
+
+ClumpRow row_of(const Clump& clump);
+Clump clump_of(const ClumpRow& row);
+Clump clump_of(const ClumpSeed& seed, const PeriodicBox& box);
+
+class Clumps {
+public:
+  bool empty() const { return clumps_.empty(); }
+  std::size_t size() const { return clumps_.size(); }
+  const Clump& operator[](std::size_t n) const { return clumps_[n]; }
+  std::size_t first_slot(std::size_t n) const { return first_slot_[n]; }  // of its members in the store
+
+  // Replaces all clumps by those whose ids rise; settle_in() must follow.
+  void adopt(std::vector<Clump> clumps) { clumps_ = std::move(clumps); }
+
+  // Finds the members among the owned grains of the store. body_force: as in GrainParameters, of a clump's mass and the
+  // radius of the sphere of its volume.
+  void settle_in(const GrainStore& store, const std::function<Vec3(double, double)>& body_force);
+
+  void wrap(const PeriodicBox& box);
+
+  // Sets the owner (a rank) of every member to that of its clump's centre.
+  void assign_owners(const Decomposition& decomposition, std::vector<int>& owner_of_slot) const;
+  // Sends every clump to the rank of its centre. Collective.
+  void migrate(const Decomposition& decomposition, MPI_Comm communicator);
+
+  // Before the sub-steps: the loads of the store, about the centres as the members are now.
+  void load(const GrainStore& store);
+  // One or two half kicks by the members' present forces.
+  void half_kicks(const MovingGrains& grains, double time_step, int count);
+  void drift(double time_step);
+  // Writes position, velocity and spin of all members.
+  void place(MovingGrains& grains, const PeriodicBox& box) const;
+
+  // Of all contacts, loads and the body force, by the store: N and N m about the centre.
+  Vec3 force(std::size_t n, const GrainStore& store) const;
+  Vec3 torque(std::size_t n, const GrainStore& store) const;
+
+  // The largest acceleration (m/s^2) that loads and body forces give any member of a clump that is free to move.
+  double largest_pull(const GrainStore& store) const;
+
+private:
+  Vec3 arm(std::size_t n, std::size_t member) const { return arms_[first_arm_[n] + member]; }
+  std::size_t count(std::size_t n) const { return static_cast<std::size_t>(clumps_[n].members); }
+  void turn_arms(std::size_t n);
+  void add_loads(std::size_t n, const GrainStore& store, Vec3& force, Vec3& torque) const;
+
+  // What pulls at a clump besides contacts, about its centre.
+  struct Load {
+    Vec3 force, torque;
+  };
+
+  std::vector<Clump> clumps_;  // sorted by id
+  std::vector<std::size_t> first_slot_, first_arm_;
+  std::vector<Vec3> offsets_, arms_;  // m, centre to member: in the frame of the principal axes, in space
+  std::vector<Vec3> body_force_;      // N
+  std::vector<Load> loads_;
+};
+
+}  // namespace thalweg::dem
