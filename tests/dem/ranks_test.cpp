@@ -2,7 +2,7 @@
 // next step depends on) of a run on all ranks is compared with that of a run each rank does alone.
 #include "core/counter_random.hpp"
 #include "dem/packing.hpp"
-#include "tests/dem/grain_cases.hpp"
+#include "tests/dem/clump_cases.hpp"
 #include "tests/support/memory_archive.hpp"
 
 #include <gtest/gtest.h>
@@ -19,27 +19,53 @@ struct Case {
   Vec3 drift;            // m/s, of all grains at the start: a heap in contact crosses the borders between ranks
   bool elastic = false;  // Hertz and Mindlin, two materials, tangential damping
   Integrator integrator = Integrator::velocity_verlet;
+  bool clumps = false;  // every other grain is one
 };
 
+struct Cloud {
+  std::vector<GrainSeed> grains;
+  std::vector<ClumpSeed> clumps;
+};
+
+// A rod of four spheres, 9 mm long, a stout pair, or a pebble without symmetry.
+std::shared_ptr<const ClumpShape> shape_for(int i) {
+  static const auto rod = test::shape_of(
+      {{{-3e-3, 0, 0}, 1.5e-3}, {{-1e-3, 0, 0}, 1.5e-3}, {{1e-3, 0, 0}, 1.5e-3}, {{3e-3, 0, 0}, 1.5e-3}});
+  static const auto pair = test::dumbbell(), pebble = test::pebble();
+  return i % 3 == 0 ? rod : i % 3 == 1 ? pair : pebble;
+}
+
 // Grains of 3.2 to 5 mm, thrown about at up to 0.4 m/s an axis.
-std::vector<GrainSeed> cloud(const Case& c) {
+Cloud cloud(const Case& c) {
   const PeriodicBox box = Decomposition(c.cells, c.spacing, c.periodic, {1, 1, 1}).box();
+  const auto is_clump = [&c](int i) { return c.clumps && i % 2 == 1; };
   std::vector<double> radii;
-  for (int i = 0; i < c.grains; ++i) radii.push_back(1.6e-3 + 0.9e-3 * uniform_random(1, i, 0));
+  for (int i = 0; i < c.grains; ++i)
+    radii.push_back(is_clump(i) ? shape_for(i)->bounding_radius : 1.6e-3 + 0.9e-3 * uniform_random(1, i, 0));
   const std::vector<Vec3> places = random_packing(box, whole(box), radii, 1e-5, 3);
-  std::vector<GrainSeed> seeds;
+  Cloud all;
+  GlobalId id = 0;
   for (int i = 0; i < c.grains; ++i) {
     const auto draw = [i](int n) { return 2.0 * uniform_random(2, i, n) - 1.0; };
-    GrainSeed seed = test::glass_sphere(i, places[i], c.drift + 0.4 * Vec3(draw(0), draw(1), draw(2)), radii[i]);
+    GrainSeed seed = test::glass_sphere(id, places[i], c.drift + 0.4 * Vec3(draw(0), draw(1), draw(2)), radii[i]);
     seed.angular_velocity = 30.0 * Vec3(draw(3), draw(4), draw(5));
     if (c.elastic) seed.material = i % 2;
     if (i % 17 == 3) {
       seed.motion = Motion::fixed;
       seed.velocity = i % 2 == 0 ? Vec3::Zero() : c.drift;
     }
-    seeds.push_back(seed);
+    if (is_clump(i)) {
+      ClumpSeed clump = test::glass_clump(id, shape_for(i), places[i], seed.velocity, seed.angular_velocity);
+      clump.orientation = test::some_orientation(i);
+      clump.motion = seed.motion;
+      all.clumps.push_back(clump);
+      id += static_cast<GlobalId>(clump.shape->members.size());
+    } else {
+      all.grains.push_back(seed);
+      ++id;
+    }
   }
-  return seeds;
+  return all;
 }
 
 GrainParameters parameters_of(const Case& c) {
@@ -127,19 +153,33 @@ void expect_true_ghosts(const GrainDynamics& grains, MPI_Comm communicator) {
   }
 }
 
-int moved_to_another_octant(const Case& c, const std::vector<GrainSeed>& seeds, const GrainDynamics& grains) {
+int moved_to_another_octant(const Case& c, const Cloud& seeds, const GrainDynamics& grains) {
   const Decomposition octants(c.cells, c.spacing, c.periodic, {2, 2, 2});
   int count = 0;
-  for (std::size_t i = 0; i < seeds.size(); ++i)
-    if (octants.owner_of(seeds[i].position) != octants.owner_of(grains.store().position[i])) ++count;
+  for (const GrainSeed& seed : with_members(seeds.grains, seeds.clumps, octants.box()))
+    if (octants.owner_of(seed.position) != octants.owner_of(grains.store().position[static_cast<std::size_t>(seed.id)]))
+      ++count;
+  return count;
+}
+
+// Members that are in another octant than the centre of their clump, which says whose they are.
+int members_abroad(const Case& c, const GrainDynamics& grains) {
+  const Decomposition octants(c.cells, c.spacing, c.periodic, {2, 2, 2});
+  int count = 0;
+  for (std::size_t n = 0; n < grains.clumps().size(); ++n)
+    for (std::int64_t m = 0; m < grains.clumps()[n].members; ++m)
+      if (octants.owner_of(grains.store().position[grains.clumps().first_slot(n) + static_cast<std::size_t>(m)]) !=
+          octants.owner_of(grains.clumps()[n].centre))
+        ++count;
   return count;
 }
 
 void compare(const Case& c, int steps) {
-  const std::vector<GrainSeed> seeds = cloud(c);
+  const Cloud seeds = cloud(c);
   const GrainParameters p = parameters_of(c);
   const int ranks = size_of(MPI_COMM_WORLD);
-  GrainDynamics alone(Decomposition(c.cells, c.spacing, c.periodic, {1, 1, 1}), MPI_COMM_SELF, p, seeds);
+  GrainDynamics alone(Decomposition(c.cells, c.spacing, c.periodic, {1, 1, 1}), MPI_COMM_SELF, p, seeds.grains,
+                      seeds.clumps);
   const double energy = alone.kinetic_energy();
   run(alone, steps / 2);
   const thalweg::test::MemoryArchive half = saved(alone, MPI_COMM_SELF);
@@ -147,14 +187,15 @@ void compare(const Case& c, int steps) {
   const thalweg::test::MemoryArchive reference = saved(alone, MPI_COMM_SELF);
   // The run is worth comparing: grains collided, touch with friction, and have crossed borders.
   EXPECT_LT(alone.kinetic_energy(), 0.9 * energy);
-  EXPECT_GT(half.datasets.at("grains/contact_ids").shape[0], 10u);
+  EXPECT_GT(half.datasets.at("grains/contact_ids").shape[0], c.clumps ? 4u : 10u);
   EXPECT_GT(alone.rebuilds(), 3);
   EXPECT_GT(moved_to_another_octant(c, seeds, alone), c.grains / 10);
+  if (c.clumps) EXPECT_GT(members_abroad(c, alone), c.grains / 10);
 
   for (const Index3& layout : layouts(c.cells, ranks)) {
     const std::string name = fmt::format("layout {},{},{}", layout[0], layout[1], layout[2]);
     const Decomposition decomposition(c.cells, c.spacing, c.periodic, layout);
-    GrainDynamics grains(decomposition, MPI_COMM_WORLD, p, seeds);
+    GrainDynamics grains(decomposition, MPI_COMM_WORLD, p, seeds.grains, seeds.clumps);
     run(grains, steps / 2);
     EXPECT_EQ(thalweg::test::first_difference(saved(grains, MPI_COMM_WORLD), half), "") << name;
     expect_true_ghosts(grains, MPI_COMM_WORLD);
@@ -198,6 +239,18 @@ TEST(Ranks, HeapMovedByGearsPredictor) {
   compare(c, 240);
 }
 
+TEST(Ranks, CloudOfClumpsInAPeriodicBox) {
+  Case c{{16, 16, 16}, 2.0e-3, {true, true, true}, 110, Vec3::Zero(), Vec3(0.2, -0.3, 0.4)};
+  c.clumps = true;
+  compare(c, 80);
+}
+
+TEST(Ranks, HeapOfClumpsThatSlidesAcrossBorders) {
+  Case c{{16, 16, 16}, 1.5e-3, {true, true, false}, 30, Vec3(4.0, 2.0, -30.0), Vec3(0.4, 0.3, 0.0)};
+  c.clumps = true;
+  compare(c, 320);
+}
+
 TEST(Ranks, ChannelTwoDiametersWide) {
   // 10.5 mm, 2.1 of the largest diameters, periodic and cut; and short along x as well, where everything is near.
   compare({{32, 8, 16}, 1.3125e-3, {true, true, false}, 40, Vec3(4.0, 0.0, -15.0), Vec3(0.2, 0.4, 0.0)}, 320);
@@ -210,7 +263,7 @@ TEST(Ranks, StateSavedByAllIsLoadedByOne) {
   const Decomposition one(c.cells, c.spacing, c.periodic, {1, 1, 1});
   GrainDynamics together(
       Decomposition(c.cells, c.spacing, c.periodic, Decomposition::best_layout(c.cells, size_of(MPI_COMM_WORLD))),
-      MPI_COMM_WORLD, p, cloud(c));
+      MPI_COMM_WORLD, p, cloud(c).grains);
   run(together, 120);
   const thalweg::test::MemoryArchive half = saved(together, MPI_COMM_WORLD);
   run(together, 120);
