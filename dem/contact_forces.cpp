@@ -1,6 +1,7 @@
 #include "dem/contact_forces.hpp"
 
 #include "dem/hertz_mindlin.hpp"
+#include "dem/rolling_pass.hpp"
 #include "dem/spring_dashpot.hpp"
 
 #include <Eigen/Geometry>
@@ -258,6 +259,7 @@ void evaluate_contacts(MovingGrains& grains, ContactList& list, const PeriodicBo
     evaluate_with(SpringDashpotFriction(manner), grains, list, box, walls, materials, material);
   else
     evaluate_with(HertzMindlin(manner), grains, list, box, walls, materials, material);
+  evaluate_rolling(grains, list, box, walls, materials, material, time_step);
 }
 
 std::vector<Vec3> wall_contact_forces(const GrainStore& store, const ContactList& list, std::span<const Plane> walls,

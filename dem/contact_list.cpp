@@ -36,20 +36,56 @@ std::vector<Candidate> find_pairs(const GrainStore& store, const PeriodicBox& bo
   return pairs;
 }
 
-bool is_zero(const double (&spring)[3]) { return spring[0] == 0.0 && spring[1] == 0.0 && spring[2] == 0.0; }
-
 GlobalId wall_key(std::uint32_t wall) { return -1 - static_cast<GlobalId>(wall); }
 
-// Walks sorted contacts and sorted histories together.
-template <typename Contact, typename Key>
-void merge(std::vector<Contact>& contacts, std::span<const ContactHistory> histories, Key&& key_of) {
+// Walks sorted contacts and sorted histories together: give(contact number, history).
+template <typename Contact, typename Key, typename Give>
+void merge(const std::vector<Contact>& contacts, std::span<const ContactHistory> histories, Key&& key_of, Give&& give) {
   std::size_t h = 0;
-  for (Contact& contact : contacts) {
-    const ContactHistory key = key_of(contact);
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const ContactHistory key = key_of(contacts[c]);
     while (h < histories.size() && histories[h] < key) ++h;
     if (h == histories.size()) return;
-    if (!(key < histories[h])) std::copy(histories[h].spring.begin(), histories[h].spring.end(), contact.spring);
+    if (!(key < histories[h])) give(c, histories[h]);
   }
+}
+
+// I_r of rolling_friction.hpp.
+double rolling_inertia(const GrainStore& store, std::uint32_t slot) {
+  return store.inertia[slot] + store.mass[slot] * store.radius[slot] * store.radius[slot];
+}
+
+void add_rolling(ContactList& list, const GrainStore& store, std::span<const Plane> walls,
+                 const MaterialTable& materials) {
+  const bool on_walls =
+      std::any_of(walls.begin(), walls.end(), [](const Plane& wall) { return wall.rolling_friction > 0.0; });
+  if (materials.rolling_friction())
+    for (const PairContact& c : list.pairs)
+      list.rolling_pairs.push_back(
+          {{0.0, 0.0, 0.0},
+           materials.pair(store.material[c.first], store.material[c.second]).rolling_friction,
+           effective_mass(rolling_inertia(store, c.first), holds_rotation(store.motion[c.first]),
+                          rolling_inertia(store, c.second), holds_rotation(store.motion[c.second]))});
+  if (on_walls)
+    for (const WallContact& c : list.walls)
+      list.rolling_walls.push_back({{0.0, 0.0, 0.0}, walls[c.wall].rolling_friction, rolling_inertia(store, c.grain)});
+}
+
+void add_history(std::vector<ContactHistory>& histories, GlobalId first, GlobalId second, const double (&spring)[3],
+                 const std::vector<RollingContact>& rolling, std::size_t number) {
+  ContactHistory history{first, second, {spring[0], spring[1], spring[2]}, {0.0, 0.0, 0.0}};
+  if (!rolling.empty()) std::copy_n(rolling[number].spring, 3, history.rolling.begin());
+  const auto some = [](double x) { return x != 0.0; };
+  if (std::any_of(history.spring.begin(), history.spring.end(), some) ||
+      std::any_of(history.rolling.begin(), history.rolling.end(), some))
+    histories.push_back(history);
+}
+
+template <typename Contact>
+void take_history(std::vector<Contact>& contacts, std::vector<RollingContact>& rolling, std::size_t number,
+                  const ContactHistory& history) {
+  std::copy(history.spring.begin(), history.spring.end(), contacts[number].spring);
+  if (!rolling.empty()) std::copy(history.rolling.begin(), history.rolling.end(), rolling[number].spring);
 }
 
 }  // namespace
@@ -78,28 +114,37 @@ ContactList find_contacts(const GrainStore& store, const PeriodicBox& box, std::
                             materials.wall(store.material[s]).damping.coefficient(store.mass[s]),
                             {0.0, 0.0, 0.0}});
     }
+  add_rolling(list, store, walls, materials);
   return list;
 }
 
 std::vector<ContactHistory> histories_of(const ContactList& list, const GrainStore& store) {
   std::vector<ContactHistory> histories;
-  for (const PairContact& c : list.pairs)
-    if (!is_zero(c.spring))
-      histories.push_back({store.id[c.first], store.id[c.second], {c.spring[0], c.spring[1], c.spring[2]}});
-  for (const WallContact& c : list.walls)
-    if (!is_zero(c.spring))
-      histories.push_back({store.id[c.grain], wall_key(c.wall), {c.spring[0], c.spring[1], c.spring[2]}});
+  for (std::size_t p = 0; p < list.pairs.size(); ++p) {
+    const PairContact& c = list.pairs[p];
+    add_history(histories, store.id[c.first], store.id[c.second], c.spring, list.rolling_pairs, p);
+  }
+  for (std::size_t w = 0; w < list.walls.size(); ++w) {
+    const WallContact& c = list.walls[w];
+    add_history(histories, store.id[c.grain], wall_key(c.wall), c.spring, list.rolling_walls, w);
+  }
   sort_histories(histories);
   return histories;
 }
 
 void restore_histories(ContactList& list, const GrainStore& store, std::span<const ContactHistory> histories) {
-  merge(list.pairs, histories, [&](const PairContact& c) {
-    return ContactHistory{store.id[c.first], store.id[c.second], {}};
-  });
-  merge(list.walls, histories, [&](const WallContact& c) {
-    return ContactHistory{store.id[c.grain], wall_key(c.wall), {}};
-  });
+  merge(
+      list.pairs, histories,
+      [&](const PairContact& c) {
+        return ContactHistory{store.id[c.first], store.id[c.second], {}, {}};
+      },
+      [&](std::size_t p, const ContactHistory& h) { take_history(list.pairs, list.rolling_pairs, p, h); });
+  merge(
+      list.walls, histories,
+      [&](const WallContact& c) {
+        return ContactHistory{store.id[c.grain], wall_key(c.wall), {}, {}};
+      },
+      [&](std::size_t w, const ContactHistory& h) { take_history(list.walls, list.rolling_walls, w, h); });
 }
 
 }  // namespace thalweg::dem

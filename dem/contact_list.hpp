@@ -31,9 +31,19 @@ struct WallContact {
   double spring[3];
 };
 
+// What rolling friction adds to a contact.
+struct RollingContact {
+  double spring[3];  // theta of the first against the second (rolling_friction.hpp); zero when they do not touch
+  double friction;
+  double inertia;  // kg m^2, I_r
+};
+
 struct ContactList {
   std::vector<PairContact> pairs;
   std::vector<WallContact> walls;  // of owned grains, sorted by id, then from the last wall to the first
+
+  // One each contact, in their order; empty without rolling friction.
+  std::vector<RollingContact> rolling_pairs, rolling_walls;
 };
 
 // All pairs with at least one owned grain whose surfaces are closer than `skin` (m), and all owned grains closer than

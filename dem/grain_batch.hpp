@@ -39,10 +39,11 @@ void adopt(GrainStore& store, const GrainBatch& batch);
 GrainBatch exchange_grains(MPI_Comm communicator, const GrainBatch& batch, const std::vector<int>& destination,
                            int attached_width);
 
-// The tangential spring of one contact. `second` is the higher id of two grains, or -1 - w for wall w.
+// The springs of one contact. `second` is the higher id of two grains, or -1 - w for wall w.
 struct ContactHistory {
   GlobalId first, second;
-  std::array<double, 3> spring;  // m
+  std::array<double, 3> spring;   // m, tangential
+  std::array<double, 3> rolling;  // rad, zero without rolling friction
 
   bool operator<(const ContactHistory& other) const {
     return first != other.first ? first < other.first : second < other.second;

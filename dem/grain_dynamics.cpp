@@ -266,6 +266,12 @@ void GrainDynamics::throw_trouble() const {
   }
 }
 
+// Of the parameters, so the same on every rank.
+bool GrainDynamics::rolling_friction() const {
+  return materials_.rolling_friction() || std::any_of(parameters_.walls.begin(), parameters_.walls.end(),
+                                                      [](const Plane& wall) { return wall.rolling_friction > 0.0; });
+}
+
 void GrainDynamics::wrap_positions() {
   for (Vec3& x : store_.position) x = box_.wrapped(x);
   clumps_.wrap(box_);

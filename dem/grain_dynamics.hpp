@@ -145,6 +145,7 @@ public:
   void load(ArchiveReader& archive, const std::string& group = "grains");
 
 private:
+  bool rolling_friction() const;
   double step_time() const { return parameters_.time_step * parameters_.sub_steps; }
   double ghost_reach() const;
   template <typename Visitor>

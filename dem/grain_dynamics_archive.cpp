@@ -1,8 +1,9 @@
 // Saving and loading of GrainDynamics. Datasets, one row a grain in order of id: radius, mass, motion, material,
 // position, velocity, angular_velocity, contact_force, contact_torque, load_force, load_torque, attached. One row a
-// contact, sorted by ids: contact_ids (lower id; higher id, or -1 - w for wall w), contact_spring. Where there are
-// clumps also, of each grain, clump (its clump's id, or -1) and offset, and one row a clump, sorted by id: clump_id,
-// clump_members, clump_motion, clump_mass and so on with the names of struct ClumpRow.
+// contact, sorted by ids: contact_ids (lower id; higher id, or -1 - w for wall w), contact_spring; with rolling
+// friction contact_rolling. Where there are clumps also, of each grain, clump (its clump's id, or -1) and offset, and
+// one row a clump, sorted by id: clump_id, clump_members, clump_motion, clump_mass and so on with the names of struct
+// ClumpRow.
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
 #include "dem/grain_batch.hpp"
@@ -179,9 +180,14 @@ std::vector<Addressed> read_histories(ArchiveReader& archive, const std::string&
   std::vector<double> springs(3 * rows);
   archive.read(group + "/contact_ids", ids, share.box(2));
   archive.read(group + "/contact_spring", springs, share.box(3));
+  std::vector<double> rolling(3 * rows, 0.0);
+  if (archive.has(group + "/contact_rolling")) archive.read(group + "/contact_rolling", rolling, share.box(3));
   std::vector<Addressed> addressed;
   for (std::size_t r = 0; r < rows; ++r) {
-    const ContactHistory h{ids[2 * r], ids[2 * r + 1], {springs[3 * r], springs[3 * r + 1], springs[3 * r + 2]}};
+    const ContactHistory h{ids[2 * r],
+                           ids[2 * r + 1],
+                           {springs[3 * r], springs[3 * r + 1], springs[3 * r + 2]},
+                           {rolling[3 * r], rolling[3 * r + 1], rolling[3 * r + 2]}};
     addressed.push_back({h.first, h});
     if (h.second >= 0) addressed.push_back({h.second, h});
   }
@@ -265,13 +271,15 @@ void GrainDynamics::save(ArchiveWriter& archive, const std::string& group) const
 
   const Share share = share_of(static_cast<std::int64_t>(rows.size()), communicator_);
   std::vector<std::int64_t> ids;
-  std::vector<double> springs;
+  std::vector<double> springs, rolling;
   for (const ContactHistory& h : rows) {
     ids.insert(ids.end(), {h.first, h.second});
     springs.insert(springs.end(), h.spring.begin(), h.spring.end());
+    rolling.insert(rolling.end(), h.rolling.begin(), h.rolling.end());
   }
   archive.write(group + "/contact_ids", ids, share.box(2));
   archive.write(group + "/contact_spring", springs, share.box(3));
+  if (rolling_friction()) archive.write(group + "/contact_rolling", rolling, share.box(3));
 }
 
 void GrainDynamics::load(ArchiveReader& archive, const std::string& group) {

@@ -10,7 +10,7 @@
 // Elliott, EPL 94 (2011) 50004), so both closed forms of material.hpp hold exactly. SI units.
 #pragma once
 
-#include "dem/contact_law.hpp"
+#include "dem/rolling_friction.hpp"
 
 namespace thalweg::dem {
 
@@ -28,12 +28,22 @@ public:
     const double dashpot = damping * std::sqrt(a);
     const double pressed = k.normal * a * overlap + dashpot * closing;
     const double normal = pressed > least_ ? pressed : least_;
-    const double opening = closing < 0.0 ? -closing * time_step_ : 0.0;
-    const double keep = opening > 0.0 ? std::sqrt(overlap / (overlap + opening)) : 1.0;
-    return with_friction(c, closing, normal, k.friction, k.tangential, share_ * dashpot, keep, a * time_step_, spring);
+    return with_friction(c, closing, normal, k.friction, k.tangential, share_ * dashpot, kept(closing, overlap),
+                         a * time_step_, spring);
+  }
+
+  NormalSpring normal_spring(const ContactMotion& c, const ContactCoefficients& k) const {
+    const double overlap = c.overlap > 0.0 ? c.overlap : 0.0, a = std::sqrt(c.effective_radius * overlap);
+    return {1.5 * k.normal, a, a * time_step_, kept(-(c.vx * c.nx + c.vy * c.ny + c.vz * c.nz), overlap)};
   }
 
 private:
+  // a/a_before where the contact opens.
+  double kept(double closing, double overlap) const {
+    const double opening = closing < 0.0 ? -closing * time_step_ : 0.0;
+    return opening > 0.0 ? std::sqrt(overlap / (overlap + opening)) : 1.0;
+  }
+
   double least_, share_, time_step_;
 };
 

@@ -37,6 +37,10 @@ void check(const ContactParameters& p) {
           "zero or positive");
   require(finite_not_negative(p.friction), "friction", p.friction, "", "zero or positive");
   require(finite_not_negative(p.wall_friction), "wall_friction", p.wall_friction, "", "zero or positive");
+  require(finite_not_negative(p.rolling_friction), "rolling_friction", p.rolling_friction, "", "zero or positive");
+  require(finite_not_negative(p.wall_rolling_friction), "wall_rolling_friction", p.wall_rolling_friction, "",
+          "zero or positive");
+  require(finite_not_negative(p.rolling_damping), "rolling_damping", p.rolling_damping, "", "zero or positive");
   if (p.restitution.has_value() == p.damping.has_value())
     throw InputError(p.restitution ? "Contact parameters restitution and damping are both given; give exactly one."
                                    : "Contact parameters restitution and damping are both missing; give exactly one.");
@@ -98,8 +102,10 @@ double shear_modulus(const ContactParameters& p) { return 0.5 * p.youngs_modulus
 }  // namespace
 
 ContactParameters mixed(const ContactParameters& a, const ContactParameters& b) {
-  if (a.law != b.law || a.attraction != b.attraction || a.tangential_damping != b.tangential_damping)
-    throw InputError("Two materials differ in contact law, attraction or tangential damping; give all the same.");
+  if (a.law != b.law || a.attraction != b.attraction || a.tangential_damping != b.tangential_damping ||
+      a.rolling_damping != b.rolling_damping)
+    throw InputError(
+        "Two materials differ in contact law, attraction, tangential or rolling damping; give all the same.");
   if (a.restitution.has_value() != b.restitution.has_value())
     throw InputError("One material has a restitution and another a damping; give all materials the same of the two.");
   ContactParameters m = a;
@@ -108,6 +114,7 @@ ContactParameters mixed(const ContactParameters& a, const ContactParameters& b) 
   if (a.damping) m.damping = harmonic_mean(*a.damping, *b.damping);
   if (a.restitution) m.restitution = geometric_mean(*a.restitution, *b.restitution);
   m.friction = geometric_mean(a.friction, b.friction);
+  m.rolling_friction = geometric_mean(a.rolling_friction, b.rolling_friction);
   return m;
 }
 
@@ -127,20 +134,23 @@ MaterialTable::MaterialTable(std::span<const ContactParameters> materials,
                              const std::optional<ContactParameters>& walls)
     : count_(static_cast<int>(materials.size())),
       law_(materials.front().law),
-      manner_{materials.front().attraction, materials.front().tangential_damping, 0.0} {
+      manner_{materials.front().attraction, materials.front().tangential_damping, 0.0},
+      rolling_damping_(materials.front().rolling_damping) {
   for (const ContactParameters& material : materials) check(material);
   if (walls) check(*walls);
   for (const ContactParameters& a : materials) {
     for (const ContactParameters& b : materials) {
       const ContactCoefficients coefficients = coefficients_of(a, b);
-      pairs_.push_back({coefficients, Damping(coefficients, mixed(a, b))});
+      const ContactParameters both = mixed(a, b);
+      pairs_.push_back({coefficients, Damping(coefficients, both), both.rolling_friction});
+      rolling_friction_ = rolling_friction_ || both.rolling_friction > 0.0;
     }
     // Linear stiffnesses are those of the contact with the wall; moduli those of the wall's material.
     if (walls) mixed(a, *walls);
     const ContactParameters& wall = walls ? *walls : a;
     const ContactCoefficients coefficients =
         law_ == Law::linear ? coefficients_of(wall, wall) : coefficients_of(a, wall);
-    walls_.push_back({coefficients, Damping(coefficients, wall)});
+    walls_.push_back({coefficients, Damping(coefficients, wall), 0.0});  // the plane's, as its friction
   }
 }
 

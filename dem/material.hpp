@@ -23,17 +23,20 @@ enum class Law { linear, hertz_mindlin };
 
 // One material, in contact with itself.
 struct ContactParameters {
-  Law law = Law::linear;              // the same for all materials of a run, as are the last two
-  double normal_stiffness = 0.0;      // N/m, > 0; linear law
-  double tangential_stiffness = 0.0;  // N/m, >= 0; linear law
-  double youngs_modulus = 0.0;        // Pa, > 0; Hertz and Mindlin
-  double poisson_ratio = 0.0;         // > -1, at most 1/2; Hertz and Mindlin
-  std::optional<double> restitution;  // 0 < e <= 1; exactly one of restitution and damping is given
-  std::optional<double> damping;      // kg/s, >= 0, of every contact; linear law
-  double friction = 0.0;              // between grains, >= 0
-  double wall_friction = 0.0;         // between a grain and a wall, >= 0: the default of the planes in walls.hpp
-  bool attraction = false;            // whether the dashpot may pull at the end of the contact
-  double tangential_damping = 0.0;    // dashpot across the contact over the one along the normal, >= 0
+  Law law = Law::linear;               // the same for all materials of a run, as are the last two
+  double normal_stiffness = 0.0;       // N/m, > 0; linear law
+  double tangential_stiffness = 0.0;   // N/m, >= 0; linear law
+  double youngs_modulus = 0.0;         // Pa, > 0; Hertz and Mindlin
+  double poisson_ratio = 0.0;          // > -1, at most 1/2; Hertz and Mindlin
+  std::optional<double> restitution;   // 0 < e <= 1; exactly one of restitution and damping is given
+  std::optional<double> damping;       // kg/s, >= 0, of every contact; linear law
+  double friction = 0.0;               // between grains, >= 0
+  double wall_friction = 0.0;          // between a grain and a wall, >= 0: the default of the planes in walls.hpp
+  double rolling_friction = 0.0;       // between grains, >= 0; 0: none (rolling_friction.hpp)
+  double wall_rolling_friction = 0.0;  // between a grain and a wall, >= 0: the default of the planes
+  double rolling_damping = 0.3;        // over the critical one, >= 0; the same for all materials of a run
+  bool attraction = false;             // whether the dashpot may pull at the end of the contact
+  double tangential_damping = 0.0;     // dashpot across the contact over the one along the normal, >= 0
 };
 
 // Throws InputError naming the first parameter that is impossible.
@@ -61,9 +64,9 @@ private:
 };
 
 // What two bodies of different materials make of each other. Springs in series: stiffnesses and dashpots by the
-// harmonic mean; friction and restitution by the geometric mean; moduli are kept apart (coefficients_of). Throws
-// InputError where one has a restitution and the other a damping, or where law, attraction or tangential damping
-// differ.
+// harmonic mean; frictions and restitution by the geometric mean; moduli are kept apart (coefficients_of). Throws
+// InputError where one has a restitution and the other a damping, or where law, attraction, tangential or rolling
+// damping differ.
 ContactParameters mixed(const ContactParameters& a, const ContactParameters& b);
 
 // k_n, k_t, mu; or 4/3 E*, 8 G*, mu with each body's own moduli.
@@ -75,6 +78,7 @@ public:
   struct Entry {
     ContactCoefficients coefficients;
     Damping damping;
+    double rolling_friction;
   };
 
   // walls: what walls are made of; empty: of each grain's own material. Their friction is the plane's. Throws
@@ -86,11 +90,15 @@ public:
   const Entry& wall(int material) const { return walls_[material]; }
   Law law() const { return law_; }
   ContactManner manner(double time_step) const;
+  bool rolling_friction() const { return rolling_friction_; }  // whether any pair of grains has it
+  double rolling_damping() const { return rolling_damping_; }
 
 private:
   int count_;
   Law law_;
   ContactManner manner_;
+  bool rolling_friction_ = false;
+  double rolling_damping_;
   std::vector<Entry> pairs_, walls_;
 };
 

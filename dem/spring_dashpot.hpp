@@ -4,7 +4,7 @@
 //   F_t = -k_t xi - c gamma v_t,  xi = integral of v_t dt,  |F_t| <= mu |F_n|       c: tangential damping, 0 by default
 #pragma once
 
-#include "dem/contact_law.hpp"
+#include "dem/rolling_friction.hpp"
 
 namespace thalweg::dem {
 
@@ -20,6 +20,10 @@ public:
     const double pressed = k.normal * c.overlap + damping * closing;
     const double normal = pressed > least_ ? pressed : least_;
     return with_friction(c, closing, normal, k.friction, k.tangential, share_ * damping, 1.0, time_step_, spring);
+  }
+
+  NormalSpring normal_spring(const ContactMotion&, const ContactCoefficients& k) const {
+    return {k.normal, 1.0, time_step_, 1.0};
   }
 
 private:

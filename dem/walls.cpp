@@ -22,7 +22,10 @@ std::vector<Plane> face_planes(const PeriodicBox& box, const ContactParameters& 
   std::vector<Plane> planes;
   for (int axis = 0; axis < 3; ++axis) {
     if (box.periodic[axis]) continue;
-    for (const bool upper : {false, true}) planes.push_back(face_plane(box, axis, upper, contact.wall_friction));
+    for (const bool upper : {false, true}) {
+      planes.push_back(face_plane(box, axis, upper, contact.wall_friction));
+      planes.back().rolling_friction = contact.wall_rolling_friction;
+    }
   }
   return planes;
 }
@@ -34,6 +37,9 @@ void check(const Plane& plane) {
                                  n[2], n.norm()));
   if (!(plane.friction >= 0.0))
     throw InputError(fmt::format("The friction of a wall is {:g}; it must be zero or positive.", plane.friction));
+  if (!(plane.rolling_friction >= 0.0))
+    throw InputError(
+        fmt::format("The rolling friction of a wall is {:g}; it must be zero or positive.", plane.rolling_friction));
   if (!(std::abs(plane.velocity.dot(n)) <= 1e-12 * plane.velocity.norm()))
     throw InputError(fmt::format("A wall moves at {:g} m/s along its normal; it may move in its own plane only.",
                                  plane.velocity.dot(n)));

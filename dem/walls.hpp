@@ -10,10 +10,11 @@
 namespace thalweg::dem {
 
 struct Plane {
-  Vec3 point = Vec3::Zero();     // m, any point on it
-  Vec3 normal = Vec3::UnitZ();   // unit, into the side where the grains are
-  double friction = 0.0;         // against grains
-  Vec3 velocity = Vec3::Zero();  // m/s of the wall's surface, in its plane: the plane itself stays where it is
+  Vec3 point = Vec3::Zero();      // m, any point on it
+  Vec3 normal = Vec3::UnitZ();    // unit, into the side where the grains are
+  double friction = 0.0;          // against grains
+  double rolling_friction = 0.0;  // against grains
+  Vec3 velocity = Vec3::Zero();   // m/s of the wall's surface, in its plane: the plane itself stays where it is
 };
 
 // The face of the box across `axis` (0, 1, 2) at its lower or upper end.

@@ -58,6 +58,7 @@ struct MaterialCase {
   std::optional<double> restitution;           // 1
   std::optional<double> damping;               // kg/s
   std::optional<double> friction;              // 1; not of walls, whose friction is contact.wall_friction
+  std::optional<double> rolling_friction;      // 1; likewise
   bool operator==(const MaterialCase&) const = default;
 };
 
@@ -115,6 +116,9 @@ struct ContactCase {
   std::optional<double> damping;                // kg/s
   double friction = 0.5;                        // grain on grain
   double wall_friction = 0.45;                  // grain on wall
+  double rolling_friction = 0.0;                // grain on grain; 0: none
+  double wall_rolling_friction = 0.0;           // grain on wall
+  double rolling_damping = 0.3;                 // of the rolling spring, over the critical damping
   Attraction attraction = Attraction::allowed;  // allowed: the dashpot may pull grains together as they part
   std::optional<WallMaterialCase> walls;        // contact of grains with walls, where it differs
   bool operator==(const ContactCase&) const = default;

@@ -15,6 +15,9 @@ dem::ContactParameters base_material(const ContactCase& contact) {
   p.damping = contact.damping;
   p.friction = contact.friction;
   p.wall_friction = contact.wall_friction;
+  p.rolling_friction = contact.rolling_friction;
+  p.wall_rolling_friction = contact.wall_rolling_friction;
+  p.rolling_damping = contact.rolling_damping;
   p.attraction = contact.attraction == Attraction::allowed;
   return p;
 }
@@ -27,6 +30,7 @@ dem::ContactParameters changed(dem::ContactParameters p, const MaterialCase& mat
   if (material.restitution) p.restitution = material.restitution;
   if (material.damping) p.damping = material.damping;
   p.friction = material.friction.value_or(p.friction);
+  p.rolling_friction = material.rolling_friction.value_or(p.rolling_friction);
   return p;
 }
 

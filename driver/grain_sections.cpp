@@ -104,10 +104,14 @@ static void describe_material(io::SectionVisitor& visit, MaterialCase& material,
              {.meaning = "where the section contact has one", .above = 0.0, .at_most = 1.0, .example = 0.93});
   visit.real("damping", material.damping,
              {.unit = "kg/s", .meaning = "where the section contact has one", .at_least = 0.0, .example = 0.09});
-  if (walls)
+  if (walls) {
     visit.not_here("friction", "the friction of walls is contact.wall_friction; give it there");
-  else
-    visit.real("friction", material.friction, {.meaning = "between grains", .at_least = 0.0, .example = 0.5});
+    visit.not_here("rolling_friction", "give contact.wall_rolling_friction instead, which is that of walls");
+    return;
+  }
+  visit.real("friction", material.friction, {.meaning = "between grains", .at_least = 0.0, .example = 0.5});
+  visit.real("rolling_friction", material.rolling_friction,
+             {.meaning = "between grains", .at_least = 0.0, .example = 0.05});
 }
 
 static void describe(io::SectionVisitor& visit, MaterialCase& material) { describe_material(visit, material, false); }
@@ -206,6 +210,14 @@ void describe_contact(io::SectionVisitor& visit, ContactCase& contact, bool with
   visit.real("friction", contact.friction, {.meaning = "coefficient between grains", .at_least = 0.0});
   visit.real("wall_friction", contact.wall_friction,
              {.meaning = "coefficient between grain and wall", .at_least = 0.0});
+  visit.real(
+      "rolling_friction", contact.rolling_friction,
+      {.meaning = "moment against rolling over normal force and radius (R1 R2/(R1 + R2)), between grains; 0: none",
+       .at_least = 0.0});
+  visit.real("wall_rolling_friction", contact.wall_rolling_friction,
+             {.meaning = "the same between grain and wall", .at_least = 0.0});
+  visit.real("rolling_damping", contact.rolling_damping,
+             {.meaning = "of the rolling spring, over the critical damping", .at_least = 0.0});
   visit.section("walls", contact.walls,
                 {.meaning = "contact of grains with walls where it differs from that between grains"});
   visit.choice<Attraction>(

@@ -20,6 +20,7 @@ struct Case {
   bool elastic = false;  // Hertz and Mindlin, two materials, tangential damping
   Integrator integrator = Integrator::velocity_verlet;
   bool clumps = false;  // every other grain is one
+  double rolling = 0.0;  // rolling friction
 };
 
 struct Cloud {
@@ -75,6 +76,7 @@ GrainParameters parameters_of(const Case& c) {
   // Soft grains: long contacts, so that many are open at any time, and long steps.
   p.contact.normal_stiffness = 500.0;
   p.contact.tangential_stiffness = 2.0 / 7.0 * 500.0;
+  p.contact.rolling_friction = p.contact.wall_rolling_friction = c.rolling;
   if (c.elastic) {
     p.contact.law = Law::hertz_mindlin;
     p.contact.youngs_modulus = 1e5;  // about as soft
@@ -249,6 +251,14 @@ TEST(Ranks, HeapOfClumpsThatSlidesAcrossBorders) {
   Case c{{16, 16, 16}, 1.5e-3, {true, true, false}, 30, Vec3(4.0, 2.0, -30.0), Vec3(0.4, 0.3, 0.0)};
   c.clumps = true;
   compare(c, 320);
+}
+
+TEST(Ranks, HeapWithRollingFriction) {
+  Case c{{16, 16, 16}, 1.5e-3, {true, true, false}, 60, Vec3(4.0, 2.0, -15.0), Vec3(0.4, 0.3, 0.0)};
+  c.rolling = 0.1;
+  compare(c, 240);
+  c.elastic = true;
+  compare(c, 240);
 }
 
 TEST(Ranks, ChannelTwoDiametersWide) {

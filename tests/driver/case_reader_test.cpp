@@ -2,6 +2,7 @@
 // it.
 #include "driver/case_reader.hpp"
 #include "core/error.hpp"
+#include "tests/driver/case_texts.hpp"
 #include "tests/io/scratch_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -15,42 +16,12 @@
 namespace thalweg {
 namespace {
 
+using testing::flume;
 using testing::message_of;
 using testing::ScratchFolder;
 
-const std::string flume = R"(system: resolved
-name: "small flume"
-domain:
-  size: [0.060, 0.0105, 0.075]
-  spacing: 0.5e-3
-  boundaries: {x: periodic, y: {type: law_of_the_wall, coefficient: 2.35}, bottom: no_slip, top: free_slip}
-fluid:
-  density: 1000
-  kinematic_viscosity: 1.0e-6
-  smagorinsky_constant: 0.27
-  time_step: 2.0e-5
-gravity: {magnitude: 9.8, slope: 0.07}
-grains:
-  - count: 150
-    diameter: 4.95e-3
-    density: 2550
-    placement: {pattern: random, seed: 7, region: {lower: [0, 0, 0], upper: [0.06, 0.0105, 0.05]}}
-  - {diameter: 4.0e-3, density: 2550, placement: {positions: [[0.01, 0.005, 0.06], [0.02, 0.005, 0.06]]}, fixed: true}
-contact:
-  restitution: 0.93
-run: {until: 3.0}
-output:
-  series: {every: 0.02}
-  fluid: {every: 0.1, region: slice_y, fields: [velocity]}
-  checkpoint: {every: 1.0, keep: 3}
-analysis:
-  transport_rate: {from: 1.0}
-)";
-
 Case read(const std::string& yaml, const std::vector<std::string>& overrides = {}) {
-  const ScratchFolder folder;
-  testing::put(folder / "case.yaml", yaml);
-  return read_case(folder / "case.yaml", overrides);
+  return testing::read_text(yaml, overrides);
 }
 
 TEST(CaseReader, ReadsWhatTheFileSays) {
@@ -100,33 +71,6 @@ TEST(CaseReader, ReadsEveryFormOfFacesGravityStepAndStart) {
 TEST(CaseReader, TheResolvedCaseReadsBackAsTheSameCase) {
   const Case c = read(flume);
   EXPECT_EQ(read(resolved_yaml(c)), c) << resolved_yaml(c);
-}
-
-TEST(CaseReader, DryGrainsTakeFiftyStepsAContact) {
-  const Case c = read(defaults_yaml("grains"));
-  EXPECT_EQ(c.system, SystemKind::grains);
-  EXPECT_EQ(grain_time_step(c), shortest_contact(c) / 50.0);
-  EXPECT_EQ(read(resolved_yaml(c)), c);
-}
-
-TEST(CaseReader, ElasticSpheresHaveModuliInPlaceOfStiffnesses) {
-  const std::string elastic =
-      "contact={law: hertz_mindlin, youngs_modulus: 1e8, poisson_ratio: 0.25, restitution: 0.9, "
-      "tangential_damping: 0.5}";
-  const Case c = read(defaults_yaml("grains"), {elastic, "run.time_step="});
-  EXPECT_EQ(c.contact.law, ContactLaw::hertz_mindlin);
-  EXPECT_EQ(c.contact.youngs_modulus, 1e8);
-  EXPECT_EQ(c.contact.poisson_ratio, 0.25);
-  EXPECT_EQ(c.contact.tangential_damping, 0.5);
-  EXPECT_EQ(read(resolved_yaml(c)), c);
-  // 2.868 (m*^2/(R* E*^2 v))^(1/5) at 1 m/s: m* = 8.1e-5 kg, R* = 1.2375 mm, E* = 5.33e7 Pa.
-  const double mass = 0.5 * c.grains[0].lightest_mass(), radius = 0.25 * c.grains[0].diameter,
-               modulus = 1e8 / (2.0 * 0.9375);
-  EXPECT_NEAR(shortest_contact(c), 2.868 * std::pow(mass * mass / (radius * modulus * modulus), 0.2), 1e-15);
-  EXPECT_THROW(read(defaults_yaml("grains"), {elastic, "run.time_step=", "contact.normal_stiffness=20000"}),
-               InputError);
-  EXPECT_THROW(read(defaults_yaml("grains"), {elastic, "run.time_step=", "contact.damping=0.1"}), InputError);
-  EXPECT_THROW(read(defaults_yaml("grains"), {"contact.youngs_modulus=1e8"}), InputError);
 }
 
 TEST(CaseReader, AFluidAloneHasNoKeysOfGrains) {
@@ -217,7 +161,9 @@ TEST_P(BadCase, IsRefusedInOneSentence) {
 INSTANTIATE_TEST_SUITE_P(
     All, BadCase,
     ::testing::Values(
-        Bad{"system_not_built", {"system=continuum"}, {"system = \"continuum\": expected one of resolved, fluid, grains."}},
+        Bad{"system_not_built",
+            {"system=continuum"},
+            {"system = \"continuum\": expected one of resolved, fluid, grains."}},
         Bad{"collision_not_built",
             {"fluid.collision=mrt"},
             {"fluid.collision = \"mrt\": expected one of bgk, trt, regularised."}},
@@ -373,69 +319,6 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"wet_rest", {"run.until_at_rest={}"}, {"run.until_at_rest", "grains in a fluid are never at rest"}},
         Bad{"no_run", {"run="}, {"case.yaml:1: run is missing: give a section"}}),
     [](const auto& bad) { return bad.param.name; });
-
-// Grain n of a lognormal population of N lies at the share (n + 1/2)/N of the cut distribution, in order of size.
-TEST(CaseReader, SizesFollowTheirDistribution) {
-  const std::string sizes =
-      "grains.0.diameter={distribution: lognormal, median: 4.5e-3, geometric_deviation: 1.3, minimum: 3e-3, maximum: "
-      "6e-3}";
-  const Case c = read(flume, {sizes});
-  std::vector<double> d = c.grains[0].diameters;
-  ASSERT_EQ(d.size(), 150u);
-  EXPECT_FALSE(std::is_sorted(d.begin(), d.end()));  // the seed shuffles
-  std::sort(d.begin(), d.end());
-  const auto below = [](double diameter) {
-    return 0.5 * std::erfc(-std::log(diameter / 4.5e-3) / std::log(1.3) / std::sqrt(2.0));
-  };
-  for (std::size_t n = 0; n < d.size(); ++n)
-    EXPECT_NEAR((below(d[n]) - below(3e-3)) / (below(6e-3) - below(3e-3)), (n + 0.5) / 150.0, 1e-12);
-  // Half of the mass is finer than the population's diameter.
-  double finer = 0.0, all = 0.0;
-  for (const double diameter : d) {
-    all += std::pow(diameter, 3);
-    if (diameter <= c.grains[0].diameter) finer += std::pow(diameter, 3);
-  }
-  EXPECT_NEAR(finer / all, 0.5, std::pow(6e-3, 3) / all);
-  EXPECT_EQ(read(flume, {sizes, "grains.0.placement.seed=8"}).grains[0].smallest_diameter(), d.front());
-  EXPECT_NE(read(flume, {sizes, "grains.0.placement.seed=8"}).grains[0].diameters, c.grains[0].diameters);
-  EXPECT_EQ(read(resolved_yaml(c)), c) << resolved_yaml(c);
-}
-
-TEST(CaseReader, ListedSizesHaveTheirShareOfTheNumber) {
-  const Case c = read(flume, {"grains.0.diameter={sizes: [4e-3, 3e-3, 5e-3], fractions: [0.2, 0.3, 0.5]}"});
-  const std::vector<double>& d = c.grains[0].diameters;
-  EXPECT_EQ(std::count(d.begin(), d.end(), 4e-3), 30);
-  EXPECT_EQ(std::count(d.begin(), d.end(), 3e-3), 45);
-  EXPECT_EQ(std::count(d.begin(), d.end(), 5e-3), 75);
-  EXPECT_EQ(c.grains[0].diameter, 5e-3);
-  EXPECT_NEAR(c.grains[0].volume(), std::numbers::pi / 6.0 * (30 * 64e-9 + 45 * 27e-9 + 75 * 125e-9), 1e-20);
-  EXPECT_EQ(smallest_diameter(c), 3e-3);
-  EXPECT_EQ(read(resolved_yaml(c)), c) << resolved_yaml(c);
-}
-
-TEST(CaseReader, PopulationsAndWallsChangeTheMaterial) {
-  const Case c = read(flume, {"grains.1.contact={normal_stiffness: 5e4, friction: 0.2}",
-                              "contact.walls={restitution: 0.5, tangential_stiffness: 100}"});
-  EXPECT_FALSE(c.grains[0].contact.has_value());
-  EXPECT_EQ(*c.grains[1].contact->normal_stiffness, 5e4);
-  EXPECT_EQ(*c.contact.walls->restitution, 0.5);
-  EXPECT_EQ(read(resolved_yaml(c)), c) << resolved_yaml(c);
-}
-
-TEST(CaseReader, DryGrainsNeedGrains) {
-  const std::string message = message_of<InputError>([] { read(defaults_yaml("grains"), {"grains=[]"}); });
-  EXPECT_NE(message.find("--set grains=[]: grains = []: a run of dry grains needs at least one"), std::string::npos)
-      << message;
-}
-
-TEST(CaseReader, DryGrainsRefuseAStepTooLong) {
-  const std::string message = message_of<InputError>([] { read(defaults_yaml("grains"), {"run.time_step=1e-4"}); });
-  EXPECT_NE(
-      message.find("--set run.time_step=1e-4: run.time_step = 1e-4: a step of the grains of 0.0001 s is longer than "
-                   "1/20 of their shortest contact (0.0001999 s); give at most 9.99e-06 s."),
-      std::string::npos)
-      << message;
-}
 
 }  // namespace
 }  // namespace thalweg

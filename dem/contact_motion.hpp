@@ -1,0 +1,48 @@
+// Two grains, or a grain and a plane, one at a time: how their surfaces move at the contact. For what looks at single
+// contacts; the loop over all pairs of a sub-step has the same formulas for many at once (contact_forces.cpp).
+//
+// The lever arm of a grain reaches to the middle of the overlap (to the plane of a wall): l = R - delta/2.
+#pragma once
+
+#include "core/types.hpp"
+#include "dem/contact_law.hpp"
+#include "dem/grain_store.hpp"
+#include "dem/moving_grains.hpp"
+#include "dem/walls.hpp"
+
+#include <Eigen/Geometry>
+
+namespace thalweg::dem {
+
+struct ContactBody {
+  Vec3 velocity;  // m/s
+  Vec3 spin;      // rad/s
+  double radius;  // m
+};
+
+inline ContactBody body_of(const MovingGrain& grain) {
+  return {vector_of(grain.velocity), vector_of(grain.spin), grain.position[3]};
+}
+inline ContactBody body_of(const GrainStore& store, std::size_t slot) {
+  return {store.velocity[slot], store.angular_velocity[slot], store.radius[slot]};
+}
+
+// separation: from the second centre to the first, m, not zero. They touch where the overlap is positive.
+inline ContactMotion motion_of(const ContactBody& first, const ContactBody& second, const Vec3& separation) {
+  const double distance = separation.norm(), reach = first.radius + second.radius;
+  const Vec3 n = separation / distance;
+  const double overlap = reach - distance, half = 0.5 * overlap;
+  const Vec3 turning = (first.radius - half) * first.spin + (second.radius - half) * second.spin;
+  const Vec3 v = first.velocity - second.velocity - turning.cross(n);
+  return {overlap, n[0], n[1], n[2], v[0], v[1], v[2], first.radius * second.radius / reach};
+}
+
+inline ContactMotion motion_of(const ContactBody& grain, const Plane& wall, const Vec3& position) {
+  const double height = (position - wall.point).dot(wall.normal);
+  const Vec3 v = grain.velocity - wall.velocity - height * grain.spin.cross(wall.normal);
+  return {grain.radius - height, wall.normal[0], wall.normal[1], wall.normal[2], v[0], v[1], v[2], grain.radius};
+}
+
+inline Vec3 normal_of(const ContactMotion& c) { return {c.nx, c.ny, c.nz}; }
+
+}  // namespace thalweg::dem

@@ -1,0 +1,126 @@
+// Case files of grains: sizes, materials, dry grains.
+#include "core/error.hpp"
+#include "driver/case_reader.hpp"
+#include "tests/driver/case_texts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace thalweg {
+namespace {
+
+using testing::flume;
+using testing::message_of;
+
+Case read(const std::string& yaml, const std::vector<std::string>& overrides = {}) {
+  return testing::read_text(yaml, overrides);
+}
+
+TEST(GrainCaseReader, DryGrainsTakeFiftyStepsAContact) {
+  const Case c = read(defaults_yaml("grains"));
+  EXPECT_EQ(c.system, SystemKind::grains);
+  EXPECT_EQ(grain_time_step(c), shortest_contact(c) / 50.0);
+  EXPECT_EQ(read(resolved_yaml(c)), c);
+}
+
+TEST(GrainCaseReader, ElasticSpheresHaveModuliInPlaceOfStiffnesses) {
+  const std::string elastic =
+      "contact={law: hertz_mindlin, youngs_modulus: 1e8, poisson_ratio: 0.25, restitution: 0.9, "
+      "tangential_damping: 0.5}";
+  const Case c = read(defaults_yaml("grains"), {elastic, "run.time_step="});
+  EXPECT_EQ(c.contact.law, ContactLaw::hertz_mindlin);
+  EXPECT_EQ(c.contact.youngs_modulus, 1e8);
+  EXPECT_EQ(c.contact.poisson_ratio, 0.25);
+  EXPECT_EQ(c.contact.tangential_damping, 0.5);
+  EXPECT_EQ(read(resolved_yaml(c)), c);
+  // 2.868 (m*^2/(R* E*^2 v))^(1/5) at 1 m/s: m* = 8.1e-5 kg, R* = 1.2375 mm, E* = 5.33e7 Pa.
+  const double mass = 0.5 * c.grains[0].lightest_mass(), radius = 0.25 * c.grains[0].diameter,
+               modulus = 1e8 / (2.0 * 0.9375);
+  EXPECT_NEAR(shortest_contact(c), 2.868 * std::pow(mass * mass / (radius * modulus * modulus), 0.2), 1e-15);
+  EXPECT_THROW(read(defaults_yaml("grains"), {elastic, "run.time_step=", "contact.normal_stiffness=20000"}),
+               InputError);
+  EXPECT_THROW(read(defaults_yaml("grains"), {elastic, "run.time_step=", "contact.damping=0.1"}), InputError);
+  EXPECT_THROW(read(defaults_yaml("grains"), {"contact.youngs_modulus=1e8"}), InputError);
+}
+
+// Grain n of a lognormal population of N lies at the share (n + 1/2)/N of the cut distribution, in order of size.
+TEST(GrainCaseReader, SizesFollowTheirDistribution) {
+  const std::string sizes =
+      "grains.0.diameter={distribution: lognormal, median: 4.5e-3, geometric_deviation: 1.3, minimum: 3e-3, maximum: "
+      "6e-3}";
+  const Case c = read(flume, {sizes});
+  std::vector<double> d = c.grains[0].diameters;
+  ASSERT_EQ(d.size(), 150u);
+  EXPECT_FALSE(std::is_sorted(d.begin(), d.end()));  // the seed shuffles
+  std::sort(d.begin(), d.end());
+  const auto below = [](double diameter) {
+    return 0.5 * std::erfc(-std::log(diameter / 4.5e-3) / std::log(1.3) / std::sqrt(2.0));
+  };
+  for (std::size_t n = 0; n < d.size(); ++n)
+    EXPECT_NEAR((below(d[n]) - below(3e-3)) / (below(6e-3) - below(3e-3)), (n + 0.5) / 150.0, 1e-12);
+  // Half of the mass is finer than the population's diameter.
+  double finer = 0.0, all = 0.0;
+  for (const double diameter : d) {
+    all += std::pow(diameter, 3);
+    if (diameter <= c.grains[0].diameter) finer += std::pow(diameter, 3);
+  }
+  EXPECT_NEAR(finer / all, 0.5, std::pow(6e-3, 3) / all);
+  EXPECT_EQ(read(flume, {sizes, "grains.0.placement.seed=8"}).grains[0].smallest_diameter(), d.front());
+  EXPECT_NE(read(flume, {sizes, "grains.0.placement.seed=8"}).grains[0].diameters, c.grains[0].diameters);
+  EXPECT_EQ(read(resolved_yaml(c)), c) << resolved_yaml(c);
+}
+
+TEST(GrainCaseReader, ListedSizesHaveTheirShareOfTheNumber) {
+  const Case c = read(flume, {"grains.0.diameter={sizes: [4e-3, 3e-3, 5e-3], fractions: [0.2, 0.3, 0.5]}"});
+  const std::vector<double>& d = c.grains[0].diameters;
+  EXPECT_EQ(std::count(d.begin(), d.end(), 4e-3), 30);
+  EXPECT_EQ(std::count(d.begin(), d.end(), 3e-3), 45);
+  EXPECT_EQ(std::count(d.begin(), d.end(), 5e-3), 75);
+  EXPECT_EQ(c.grains[0].diameter, 5e-3);
+  EXPECT_NEAR(c.grains[0].volume(), std::numbers::pi / 6.0 * (30 * 64e-9 + 45 * 27e-9 + 75 * 125e-9), 1e-20);
+  EXPECT_EQ(smallest_diameter(c), 3e-3);
+  EXPECT_EQ(read(resolved_yaml(c)), c) << resolved_yaml(c);
+}
+
+TEST(GrainCaseReader, PopulationsAndWallsChangeTheMaterial) {
+  const Case c = read(flume, {"grains.1.contact={normal_stiffness: 5e4, friction: 0.2}",
+                              "contact.walls={restitution: 0.5, tangential_stiffness: 100}"});
+  EXPECT_FALSE(c.grains[0].contact.has_value());
+  EXPECT_EQ(*c.grains[1].contact->normal_stiffness, 5e4);
+  EXPECT_EQ(*c.contact.walls->restitution, 0.5);
+  EXPECT_EQ(read(resolved_yaml(c)), c) << resolved_yaml(c);
+}
+
+TEST(GrainCaseReader, DryGrainsNeedGrains) {
+  const std::string message = message_of<InputError>([] { read(defaults_yaml("grains"), {"grains=[]"}); });
+  EXPECT_NE(message.find("--set grains=[]: grains = []: a run of dry grains needs at least one"), std::string::npos)
+      << message;
+}
+
+TEST(GrainCaseReader, DryGrainsRefuseAStepTooLong) {
+  const std::string message = message_of<InputError>([] { read(defaults_yaml("grains"), {"run.time_step=1e-4"}); });
+  EXPECT_NE(
+      message.find("--set run.time_step=1e-4: run.time_step = 1e-4: a step of the grains of 0.0001 s is longer than "
+                   "1/20 of their shortest contact (0.0001999 s); give at most 9.99e-06 s."),
+      std::string::npos)
+      << message;
+}
+
+TEST(GrainCaseReader, RollingFrictionIsAPartOfTheMaterial) {
+  const Case c = read(flume, {"contact.rolling_friction=0.1", "contact.wall_rolling_friction=0.05",
+                              "contact.rolling_damping=0.5", "grains.1.contact={rolling_friction: 0.2}"});
+  EXPECT_EQ(c.contact.rolling_friction, 0.1);
+  EXPECT_EQ(c.contact.wall_rolling_friction, 0.05);
+  EXPECT_EQ(c.contact.rolling_damping, 0.5);
+  EXPECT_EQ(*c.grains[1].contact->rolling_friction, 0.2);
+  EXPECT_EQ(read(resolved_yaml(c)), c) << resolved_yaml(c);
+  EXPECT_EQ(read(flume).contact.rolling_friction, 0.0);
+  const std::string message = message_of<InputError>([] { read(flume, {"contact.walls={rolling_friction: 0.1}"}); });
+  EXPECT_NE(message.find("give contact.wall_rolling_friction"), std::string::npos) << message;
+}
+
+}  // namespace
+}  // namespace thalweg
