@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
 #include "dem/contact_forces.hpp"
+#include "dem/grain_space.hpp"
 
 #include <fmt/format.h>
 
@@ -99,7 +100,7 @@ std::vector<Clump> clumps_of(const std::vector<ClumpSeed>& seeds, const Decompos
   return clumps;
 }
 
-enum class Trouble { none, not_finite, outside, too_fast, outran };
+enum class Trouble { none, not_finite, outside, beyond_wall, too_fast, outran };
 
 }  // namespace
 
@@ -128,6 +129,9 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
       global_count_(static_cast<std::int64_t>(grains.size()) + member_count_of(clumps)),
       clump_count_(static_cast<std::int64_t>(clumps.size())),
       member_count_(member_count_of(clumps)),
+      walls_change_(std::any_of(parameters.walls.begin(), parameters.walls.end(),
+                                [](const Plane& wall) { return wall.changes(); })),
+      assemblies_(parameters.assemblies, grains),
       store_(columns_of(parameters), parameters.disks ? GrainStore::of_disk : GrainStore::of_sphere),
       ghosts_(decomposition, communicator, ghost_reach(), largest_offset_),
       lists_phase_(timer_.phase("contact lists")),
@@ -156,6 +160,9 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
         lightest[static_cast<std::size_t>(clump.material)].include(clump.shape->least_contact_mass(clump.density),
                                                                    member.radius);
   check_time_step(parameters_, lightest, global_count_);
+  check_prescribed_speed();
+  planes_ = parameters_.walls;
+  if (walls_change_) place_walls(0.0, 0.0);
 
   const int me = rank_of(communicator_);
   const std::vector<Clump> mine = clumps_of(clumps, decomposition_, me);
@@ -163,6 +170,7 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
   clumps_.adopt(mine);
   settle_in({});
   moving_.load(store_, body_force_);
+  assemblies_.place(moving_, box_, 0.0, 0.0);
   evaluate_forces(0.0);
   moving_.unload(store_);
 }
@@ -172,6 +180,22 @@ void GrainDynamics::refuse_gear_of_clumps() const {
     throw InputError("Clumps are moved by velocity Verlet, not by Gear's predictor-corrector; use the former.");
 }
 
+// The contact list must outlast a step.
+void GrainDynamics::check_prescribed_speed() const {
+  const double speed = largest_prescribed_speed();
+  if (speed * step_time() <= 0.5 * parameters_.skin) return;
+  throw InputError(fmt::format(
+      "Walls or rigid assemblies of grains move at up to {:g} m/s, further than half the skin of the contact "
+      "list, {:g} m, in a step of {:g} s; give them a lower speed or the run a shorter step.",
+      speed, parameters_.skin, step_time()));
+}
+
+double GrainDynamics::largest_prescribed_speed() const {
+  double largest = assemblies_.largest_speed();
+  for (const Plane& wall : parameters_.walls) largest = std::max(largest, wall.largest_normal_speed());
+  return largest;
+}
+
 double GrainDynamics::ghost_reach() const {
   // A grain may come half a skin nearer before the ghosts are made anew.
   return std::max(parameters_.ghost_width + 0.5 * parameters_.skin, 2.0 * largest_radius_ + parameters_.skin);
@@ -179,13 +203,12 @@ double GrainDynamics::ghost_reach() const {
 
 namespace {
 
-Trouble trouble_of(const GrainStore& store, std::size_t s, const PeriodicBox& box, double displacement, double speed,
+Trouble trouble_of(const GrainStore& store, std::size_t s, const GrainSpace& space, double displacement, double speed,
                    double half_skin, double step_time) {
   const Vec3& x = store.position[s];
   if (!x.allFinite() || !std::isfinite(speed)) return Trouble::not_finite;
-  for (int axis = 0; axis < 3; ++axis)
-    if (!box.periodic[axis] && (x[axis] < -store.radius[s] || x[axis] > box.size[axis] + store.radius[s]))
-      return Trouble::outside;
+  if (!space.holds(x, store.radius[s])) return Trouble::outside;
+  if (!holds_translation(store.motion[s]) && space.beyond_moving_wall(x, store.radius[s])) return Trouble::beyond_wall;
   if (speed * step_time > store.radius[s]) return Trouble::too_fast;
   return displacement > half_skin ? Trouble::outran : Trouble::none;
 }
@@ -197,8 +220,11 @@ bool GrainDynamics::prepare() {
   wrap_positions();
   // What may still happen before the next call: a grain at rest can be thrown at no more than about twice the largest
   // speed, and the loads accelerate it.
-  double farthest = 0.0, fastest = 0.0;
+  double farthest = 0.0, fastest = largest_prescribed_speed();
   bool trouble = false;
+  const GrainSpace space(box_, planes_);
+  for (std::size_t w = 0; w < planes_.size(); ++w)
+    farthest = std::max(farthest, std::abs((planes_[w].point - listed_planes_[w].point).dot(planes_[w].normal)));
   for (std::size_t s = 0; s < store_.owned; ++s) {
     const double displacement = box_.difference(store_.position[s], listed_position_[s]).norm();
     const double speed = store_.velocity[s].norm();
@@ -206,7 +232,7 @@ bool GrainDynamics::prepare() {
     farthest = std::max(farthest, displacement);
     fastest = std::max(fastest, 2.0 * speed + pull * step_time());
     trouble = trouble ||
-              trouble_of(store_, s, box_, displacement, speed, 0.5 * parameters_.skin, step_time()) != Trouble::none;
+              trouble_of(store_, s, space, displacement, speed, 0.5 * parameters_.skin, step_time()) != Trouble::none;
   }
   fastest = std::max(fastest, fastest_member());
   const double mine[3] = {farthest, fastest, trouble ? 1.0 : 0.0};
@@ -233,10 +259,11 @@ void GrainDynamics::throw_trouble() const {
     Trouble trouble = Trouble::none;
     double x[3] = {}, speed = 0.0;
   } report;
+  const GrainSpace space(box_, planes_);
   for (std::size_t s = 0; s < store_.owned && report.trouble == Trouble::none; ++s) {
     const double displacement = box_.difference(store_.position[s], listed_position_[s]).norm();
     const double speed = store_.velocity[s].norm();
-    const Trouble t = trouble_of(store_, s, box_, displacement, speed, 0.5 * parameters_.skin, step_time());
+    const Trouble t = trouble_of(store_, s, space, displacement, speed, 0.5 * parameters_.skin, step_time());
     const Vec3& x = store_.position[s];
     if (t != Trouble::none) report = {store_.id[s], t, {x[0], x[1], x[2]}, speed};
   }
@@ -255,6 +282,8 @@ void GrainDynamics::throw_trouble() const {
                      " has a position or velocity that is not a number; its load or its contacts have blown up.");
     case Trouble::outside:
       throw RunError(grain + " is more than its radius beyond a face of the box that is not periodic.");
+    case Trouble::beyond_wall:
+      throw RunError(grain + " is more than its radius beyond a wall that moves.");
     case Trouble::too_fast:
       throw RunError(fmt::format("{} moves more than its radius in one step of {:g} s; use a shorter time step.", grain,
                                  step_time()));
@@ -314,7 +343,9 @@ void GrainDynamics::migrate(std::vector<ContactHistory>& histories) {
 // Makes everything that follows from the owned grains: ghosts, contact list, body forces.
 void GrainDynamics::settle_in(const std::vector<ContactHistory>& histories) {
   ghosts_.build(store_);
-  list_ = find_contacts(store_, box_, parameters_.walls, materials_, parameters_.skin, largest_radius_);
+  assemblies_.find(store_);
+  listed_planes_ = planes_;
+  list_ = find_contacts(store_, box_, planes_, materials_, parameters_.skin, largest_radius_);
   restore_histories(list_, store_, histories);
   const auto owned_end = static_cast<std::ptrdiff_t>(store_.owned);
   listed_position_.assign(store_.position.begin(), store_.position.begin() + owned_end);
@@ -327,7 +358,17 @@ void GrainDynamics::settle_in(const std::vector<ContactHistory>& histories) {
 
 void GrainDynamics::evaluate_forces(double time_step) {
   const auto scope = timer_.measure(forces_phase_);
-  evaluate_contacts(moving_, list_, box_, parameters_.walls, materials_, store_.material, time_step);
+  evaluate_contacts(moving_, list_, box_, planes_, materials_, store_.material, time_step);
+}
+
+void GrainDynamics::place_walls(double time, double time_of_velocity) {
+  for (std::size_t w = 0; w < planes_.size(); ++w)
+    if (parameters_.walls[w].changes()) planes_[w] = parameters_.walls[w].at(time, time_of_velocity);
+}
+
+void GrainDynamics::place_prescribed(double time, double time_of_velocity) {
+  if (walls_change_) place_walls(time, time_of_velocity);
+  assemblies_.place(moving_, box_, time, time_of_velocity);
 }
 
 void GrainDynamics::advance(int sub_steps) {
@@ -364,6 +405,9 @@ void GrainDynamics::advance_by_verlet(int sub_steps) {
     drift_clumps();
   });
   for (int s = 0;; ++s) {
+    ++steps_done_;
+    // Forces see velocities of the middle of the step, so those of what is prescribed are taken there as well.
+    place_prescribed(time(), time() - 0.5 * dt);
     timed(messages_phase_, [&] { ghosts_.refresh(moving_); });
     evaluate_forces(dt);
     if (s + 1 == sub_steps) break;
@@ -378,6 +422,7 @@ void GrainDynamics::advance_by_verlet(int sub_steps) {
     moving_.half_kick(dt);
     clumps_.place(moving_, box_);
   });
+  place_prescribed(time(), time());
 }
 
 void GrainDynamics::advance_by_gear(int sub_steps) {
@@ -385,10 +430,13 @@ void GrainDynamics::advance_by_gear(int sub_steps) {
   timed(motion_phase_, [&] { gear_.load(store_, body_force_, dt); });
   for (int s = 0; s < sub_steps; ++s) {
     timed(motion_phase_, [&] { gear_.predict(moving_); });
+    ++steps_done_;
+    place_prescribed(time(), time());
     timed(messages_phase_, [&] { ghosts_.refresh(moving_); });
     evaluate_forces(dt);
     timed(motion_phase_, [&] { gear_.correct(moving_); });
   }
+  place_prescribed(time(), time());
   timed(motion_phase_, [&] { gear_.unload(store_); });
 }
 

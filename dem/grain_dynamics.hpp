@@ -13,6 +13,7 @@
 #include "core/archive.hpp"
 #include "core/decomposition.hpp"
 #include "core/phase_timer.hpp"
+#include "dem/assemblies.hpp"
 #include "dem/clump_seed.hpp"
 #include "dem/clumps.hpp"
 #include "dem/contact_list.hpp"
@@ -43,6 +44,7 @@ struct GrainParameters {
   std::vector<ContactParameters> other_materials;  // 1, 2, ...: mixed with each other as material.hpp says
   std::optional<ContactParameters> wall_contact;   // of grains with walls, where it differs (but for the friction)
   std::vector<Plane> walls;
+  std::vector<PrescribedMotion> assemblies;  // of the rigid assemblies the seeds name
   // N of a grain (kg, m; of a clump the radius of the sphere of its volume), constant; empty: none
   std::function<Vec3(double mass, double radius)> body_force;
   double time_step = 0.0;  // s, of a sub-step: at most a 20th of the shortest contact time
@@ -93,8 +95,8 @@ public:
   // Before the sub-steps of a fluid step: wraps positions and, where some grain may leave its half skin during the
   // coming sub-steps, moves grains to the rank of their centre and rebuilds ghosts and contact list. True if slots
   // changed. Throws RunError, on every rank, where a grain has outrun its half skin, moves more than its radius in one
-  // fluid step, is beyond a non-periodic face by more than its radius, or is no longer a number. One reduction.
-  // Collective.
+  // fluid step, is beyond a wall or a non-periodic face by more than its radius, or is no longer a number. One
+  // reduction. Collective.
   bool prepare();
 
   // Moves the grains under the loads in store(). At most GrainParameters::sub_steps since prepare(). Collective.
@@ -116,7 +118,9 @@ public:
   const Clumps& clumps() const { return clumps_; }  // those owned here
   const GrainParameters& parameters() const { return parameters_; }
   const Decomposition& decomposition() const { return decomposition_; }
-  double largest_radius() const { return largest_radius_; }    // m, over all ranks
+  const std::vector<Plane>& walls() const { return planes_; }                               // where they are now
+  double time() const { return static_cast<double>(steps_done_) * parameters_.time_step; }  // s, since the start
+  double largest_radius() const { return largest_radius_; }                                 // m, over all ranks
   std::int64_t global_count() const { return global_count_; }  // rows over all ranks: grains and members of clumps
   std::int64_t clump_count() const { return clump_count_; }    // over all ranks
   std::int64_t member_count() const { return member_count_; }  // members of clumps over all ranks
@@ -146,6 +150,10 @@ public:
 
 private:
   bool rolling_friction() const;
+  void place_walls(double time, double time_of_velocity);
+  void place_prescribed(double time, double time_of_velocity);
+  double largest_prescribed_speed() const;
+  void check_prescribed_speed() const;
   double step_time() const { return parameters_.time_step * parameters_.sub_steps; }
   double ghost_reach() const;
   template <typename Visitor>
@@ -175,6 +183,11 @@ private:
   std::int64_t global_count_ = 0, clump_count_ = 0, member_count_ = 0;
   std::int64_t rebuilds_ = 0;
 
+  std::int64_t steps_done_ = 0;  // sub-steps since the start of the run
+  std::vector<Plane> planes_;    // the walls where they are now
+  bool walls_change_;
+  Assemblies assemblies_;
+
   GrainStore store_;
   GhostExchange ghosts_;
   ContactList list_;
@@ -182,7 +195,8 @@ private:
   MovingGrains moving_;  // the state during the sub-steps
   Clumps clumps_;
   std::vector<Vec3> listed_position_;  // of owned grains, when the list was built
-  std::vector<Vec3> body_force_;       // of owned grains
+  std::vector<Plane> listed_planes_;
+  std::vector<Vec3> body_force_;  // of owned grains
 
   PhaseTimer timer_;
   int lists_phase_, forces_phase_, motion_phase_, messages_phase_;

@@ -8,6 +8,7 @@
 #include "core/mpi_session.hpp"
 #include "dem/grain_batch.hpp"
 #include "dem/grain_dynamics.hpp"
+#include "dem/grain_space.hpp"
 
 #include <fmt/format.h>
 
@@ -195,7 +196,7 @@ std::vector<Addressed> read_histories(ArchiveReader& archive, const std::string&
 }
 
 // Throws on every rank, naming the same grain, the one with the lowest id.
-void check_loaded(const GrainBatch& batch, const PeriodicBox& box, MPI_Comm communicator) {
+void check_loaded(const GrainBatch& batch, const GrainSpace& space, MPI_Comm communicator) {
   struct Stray {
     std::int64_t id = std::numeric_limits<std::int64_t>::max(), axis = 0;
     double x = 0.0;
@@ -203,7 +204,7 @@ void check_loaded(const GrainBatch& batch, const PeriodicBox& box, MPI_Comm comm
   for (const GrainRow& row : batch.rows)
     for (int axis = 0; axis < 3; ++axis) {
       const double x = row.value[GrainRow::position][axis];
-      const bool inside = x >= -row.radius && x <= box.size[axis] + row.radius;
+      const bool inside = x >= space.lower()[axis] - row.radius && x <= space.upper()[axis] + row.radius;
       if (!inside && row.id < stray.id) stray = {row.id, axis, x};
     }
   std::int64_t lowest = 0;
@@ -212,8 +213,9 @@ void check_loaded(const GrainBatch& batch, const PeriodicBox& box, MPI_Comm comm
   int teller = stray.id == lowest ? rank_of(communicator) : 0, root = 0;
   MPI_Allreduce(&teller, &root, 1, MPI_INT, MPI_MAX, communicator);
   MPI_Bcast(&stray, sizeof(Stray), MPI_BYTE, root, communicator);
-  throw InputError(fmt::format("Grain {} of the saved state has {} = {:g} m, outside the box of 0 to {:g} m.", stray.id,
-                               "xyz"[stray.axis], stray.x, box.size[static_cast<int>(stray.axis)]));
+  throw InputError(fmt::format("Grain {} of the saved state has {} = {:g} m, outside the box of {:g} to {:g} m.",
+                               stray.id, "xyz"[stray.axis], stray.x, space.lower()[static_cast<int>(stray.axis)],
+                               space.upper()[static_cast<int>(stray.axis)]));
 }
 
 // Of each material, over all ranks: grains, and clumps as their contacts feel them.
@@ -243,6 +245,8 @@ std::vector<LightestGrain> lightest_of(const GrainStore& store, const std::vecto
 void GrainDynamics::save(ArchiveWriter& archive, const std::string& group) const {
   const int ranks = size_of(communicator_), me = rank_of(communicator_);
   archive.attribute(group + "/walls", static_cast<std::int64_t>(parameters_.walls.size()));
+  archive.attribute(group + "/sub_steps", steps_done_);
+  assemblies_.save(archive, group, communicator_);
   std::vector<int> home;
   for (std::size_t s = 0; s < store_.owned; ++s) home.push_back(home_of(store_.id[s], global_count_, ranks));
   write_grains(archive, group, exchange_grains(communicator_, owned_grains(store_), home, store_.attached_width),
@@ -292,7 +296,12 @@ void GrainDynamics::load(ArchiveReader& archive, const std::string& group) {
   global_count_ = static_cast<std::int64_t>(archive.shape(group + "/radius").at(0));
   GrainBatch batch = read_grains(archive, group, Share(global_count_, ranks, me), store_.attached_width);
 
-  check_loaded(batch, box_, communicator_);
+  // A state saved before walls could move has no count, and no need of one.
+  steps_done_ = archive.has(group + "/sub_steps") ? archive.integer_attribute(group + "/sub_steps") : 0;
+  assemblies_.load(archive, group);
+  check_prescribed_speed();
+  if (walls_change_) place_walls(time(), time());
+  check_loaded(batch, GrainSpace(box_, planes_), communicator_);
   const bool stranger = std::any_of(batch.rows.begin(), batch.rows.end(), [this](const GrainRow& row) {
     return row.material < 0 || row.material >= materials_.count();
   });

@@ -20,6 +20,8 @@ struct GrainSeed {
   int material = 0;                      // number of its material
   Motion motion = Motion::free;          // what is held keeps the velocities above
 
+  int assembly = -1;  // number of the rigid assembly it belongs to (assemblies.hpp); -1: none
+
   double thickness = 0.0;  // m, of a disk in the x-z plane; 0: a sphere
 
   // Of a member of a clump, as with_members() of clump_seed.hpp fills them in.

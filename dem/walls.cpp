@@ -8,6 +8,31 @@
 
 namespace thalweg::dem {
 
+namespace {
+
+PrescribedMotion motion_of(const Plane& plane) {
+  PrescribedMotion motion;
+  motion.velocity = plane.velocity;
+  motion.oscillation = plane.oscillation;
+  return motion;
+}
+
+}  // namespace
+
+bool Plane::changes() const {
+  return velocity.dot(normal) != 0.0 || (oscillation.frequency > 0.0 && !oscillation.amplitude.isZero(0.0));
+}
+
+Plane Plane::at(double time, double time_of_velocity) const {
+  const PrescribedMotion motion = motion_of(*this);
+  Plane now = *this;
+  now.point = motion.place(point, time);
+  now.velocity = motion.velocity_of(point, time_of_velocity);
+  return now;
+}
+
+double Plane::largest_normal_speed() const { return motion_of(*this).largest_speed_along(normal); }
+
 Plane face_plane(const PeriodicBox& box, int axis, bool upper, double friction, const Vec3& velocity) {
   Plane plane;
   plane.normal = Vec3::Zero();
@@ -40,9 +65,7 @@ void check(const Plane& plane) {
   if (!(plane.rolling_friction >= 0.0))
     throw InputError(
         fmt::format("The rolling friction of a wall is {:g}; it must be zero or positive.", plane.rolling_friction));
-  if (!(std::abs(plane.velocity.dot(n)) <= 1e-12 * plane.velocity.norm()))
-    throw InputError(fmt::format("A wall moves at {:g} m/s along its normal; it may move in its own plane only.",
-                                 plane.velocity.dot(n)));
+  check(motion_of(plane));
 }
 
 }  // namespace thalweg::dem

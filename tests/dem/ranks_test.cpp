@@ -21,6 +21,7 @@ struct Case {
   Integrator integrator = Integrator::velocity_verlet;
   bool clumps = false;  // every other grain is one
   double rolling = 0.0;  // rolling friction
+  bool moving = false;   // the floor swings, and the held grains turn about an axis that moves
 };
 
 struct Cloud {
@@ -54,6 +55,7 @@ Cloud cloud(const Case& c) {
     if (i % 17 == 3) {
       seed.motion = Motion::fixed;
       seed.velocity = i % 2 == 0 ? Vec3::Zero() : c.drift;
+      if (c.moving) seed.assembly = 0;
     }
     if (is_clump(i)) {
       ClumpSeed clump = test::glass_clump(id, shape_for(i), places[i], seed.velocity, seed.angular_velocity);
@@ -87,6 +89,16 @@ GrainParameters parameters_of(const Case& c) {
     p.other_materials[0].friction = 0.1;
   }
   p.walls = face_planes(box, p.contact);
+  if (c.moving) {
+    for (Plane& wall : p.walls)
+      if (wall.normal[2] > 0.0) wall.oscillation = {Vec3(1e-3, 0.0, 1e-3), 30.0, 0.0};
+    PrescribedMotion turning;
+    turning.centre = 0.5 * box.size;
+    turning.axis = Vec3(0.6, 0.0, 0.8);
+    turning.angular_velocity = 20.0;
+    turning.velocity = Vec3(0.3, -0.2, 0.0);
+    p.assemblies = {turning};
+  }
   p.body_force = [g = c.gravity](double mass, double) { return Vec3(mass * g); };
   p.time_step = 2.5e-5;
   p.sub_steps = 10;
@@ -258,6 +270,14 @@ TEST(Ranks, HeapWithRollingFriction) {
   c.rolling = 0.1;
   compare(c, 240);
   c.elastic = true;
+  compare(c, 240);
+}
+
+TEST(Ranks, HeapOnAMovingFloorWithARigidAssembly) {
+  Case c{{16, 16, 16}, 1.5e-3, {true, true, false}, 80, Vec3(4.0, 2.0, -25.0), Vec3(0.4, 0.3, 0.0)};
+  c.moving = true;
+  compare(c, 240);
+  c.integrator = Integrator::gear;
   compare(c, 240);
 }
 

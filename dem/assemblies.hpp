@@ -1,0 +1,58 @@
+// Rigid assemblies: grains that move as one by a prescribed motion, whatever pushes them.
+#pragma once
+
+#include "core/archive.hpp"
+#include "core/periodic_box.hpp"
+#include "dem/grain_seed.hpp"
+#include "dem/grain_store.hpp"
+#include "dem/moving_grains.hpp"
+#include "dem/prescribed_motion.hpp"
+
+#include <mpi.h>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace thalweg::dem {
+
+class Assemblies {
+public:
+  // motions: one an assembly, by the numbers in the seeds. Throws InputError for an impossible motion, or a seed whose
+  // assembly there is not or that is not fixed.
+  Assemblies(const std::vector<PrescribedMotion>& motions, std::span<const GrainSeed> seeds);
+
+  bool any() const { return !members_.empty(); }
+  double largest_speed() const { return largest_speed_; }  // m/s, of any member at any time
+
+  // Finds the members among the owned grains; to be called when slots have changed.
+  void find(const GrainStore& store);
+
+  // Members that are owned: where they are at one time (s), wrapped into the box, and how they move at another.
+  void place(MovingGrains& grains, const PeriodicBox& box, double time, double time_of_velocity) const;
+
+  // Their places at the start; every rank knows all. Loading replaces those of the seeds. Collective.
+  void save(ArchiveWriter& archive, const std::string& group, MPI_Comm communicator) const;
+  void load(ArchiveReader& archive, const std::string& group);
+
+private:
+  struct Member {
+    GlobalId id;
+    std::int64_t assembly;
+    Vec3 at_start;  // m
+  };
+  struct Here {
+    std::uint32_t slot;
+    std::size_t member;
+  };
+
+  void find_largest_speed();
+
+  std::vector<PrescribedMotion> motions_;
+  std::vector<Member> members_;  // sorted by id
+  std::vector<Here> here_;       // of this rank
+  double largest_speed_ = 0.0;
+};
+
+}  // namespace thalweg::dem

@@ -1,0 +1,48 @@
+// Where grains may be: the box, and what walls that have moved add to it or take from it.
+#pragma once
+
+#include "core/periodic_box.hpp"
+#include "dem/walls.hpp"
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+namespace thalweg::dem {
+
+class GrainSpace {
+public:
+  // walls: where they are now.
+  GrainSpace(const PeriodicBox& box, std::span<const Plane> walls) : periodic_(box.periodic), upper_(box.size) {
+    for (const Plane& wall : walls) {
+      if (wall.changes()) moving_.push_back(wall);
+      for (int axis = 0; axis < 3; ++axis) {  // a face that has moved outwards
+        if (wall.normal == Vec3::Unit(axis)) lower_[axis] = std::min(lower_[axis], wall.point[axis]);
+        if (wall.normal == -Vec3::Unit(axis)) upper_[axis] = std::max(upper_[axis], wall.point[axis]);
+      }
+    }
+  }
+
+  const Vec3& lower() const { return lower_; }  // m
+  const Vec3& upper() const { return upper_; }
+
+  // Not beyond an end of the box by more than its radius.
+  bool holds(const Vec3& position, double radius) const {
+    for (int axis = 0; axis < 3; ++axis)
+      if (!periodic_[axis] && (position[axis] < lower_[axis] - radius || position[axis] > upper_[axis] + radius))
+        return false;
+    return true;
+  }
+
+  bool beyond_moving_wall(const Vec3& position, double radius) const {
+    return std::any_of(moving_.begin(), moving_.end(),
+                       [&](const Plane& wall) { return (position - wall.point).dot(wall.normal) < -radius; });
+  }
+
+private:
+  std::array<bool, 3> periodic_;
+  Vec3 lower_ = Vec3::Zero(), upper_;
+  std::vector<Plane> moving_;
+};
+
+}  // namespace thalweg::dem
