@@ -144,12 +144,27 @@ void ResolvedSystem<Real>::apply_loads() {
     const Vec3 torque = FixedVec3{sums[3], sums[4], sums[5]}.to_vec3() * parameters_.units.torque();
     const std::span<double> columns = store.attached_of(g);
     const bool first = columns[has_load] == 0.0;
-    store.load_force[g] = first ? force : Vec3(0.5 * (force + vector_at(columns, last_force)));
-    store.load_torque[g] = first ? torque : Vec3(0.5 * (torque + vector_at(columns, last_torque)));
+    set_load(g, first ? force : Vec3(0.5 * (force + vector_at(columns, last_force))),
+             first ? torque : Vec3(0.5 * (torque + vector_at(columns, last_torque))), first);
     set_vector(columns, last_force, force);
     set_vector(columns, last_torque, torque);
     columns[has_load] = 1.0;
   }
+}
+
+// What the store has is what the grain got in the step before.
+template <typename Real>
+void ResolvedSystem<Real>::set_load(std::size_t grain, const Vec3& force, const Vec3& torque, bool first) {
+  dem::GrainStore& store = grains_->store();
+  if (!parameters_.virtual_mass || dem::holds_translation(store.motion[grain])) {
+    store.load_force[grain] = force;
+    store.load_torque[grain] = torque;
+    return;
+  }
+  const double share = parameters_.virtual_mass->share(store.mass[grain], store.radius[grain]);
+  const Vec3 body = grains_->body_force(grain), before = first ? Vec3::Zero() : Vec3(store.load_force[grain] + body);
+  store.load_force[grain] = VirtualMass::filtered(before, force + body, share) - body;
+  store.load_torque[grain] = VirtualMass::filtered(store.load_torque[grain], torque, share);
 }
 
 template <typename Real>

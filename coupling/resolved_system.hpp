@@ -7,16 +7,19 @@
 #include "coupling/grain_map.hpp"
 #include "coupling/link_builder.hpp"
 #include "coupling/refill.hpp"
+#include "coupling/virtual_mass.hpp"
 #include "dem/grain_dynamics.hpp"
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace thalweg::coupling {
 
 struct ResolvedParameters : FluidParameters {
-  double link_tolerance = 1e-3;  // cells a grain may move before the map of its cells follows
-  int sub_steps = 50;            // DEM steps per lattice step
+  double link_tolerance = 1e-3;             // cells a grain may move before the map of its cells follows
+  int sub_steps = 50;                       // DEM steps per lattice step
+  std::optional<VirtualMass> virtual_mass;  // of light grains
 };
 
 // This rank's part of the sums that a momentum balance of the fluid needs (lattice units, of the step just done).
@@ -72,6 +75,7 @@ private:
   void sweep_behind_links();
   void collect_loads();
   void apply_loads();
+  void set_load(std::size_t grain, const Vec3& force, const Vec3& torque, bool first);
   Vec3 lattice_position(const Vec3& position) const { return position / parameters_.units.spacing; }
 
   std::unique_ptr<Decomposition> decomposition_;

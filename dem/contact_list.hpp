@@ -2,7 +2,7 @@
 //
 // Pairs are sorted by (lower id, higher id) and always seen from the lower id, so that every rank that knows a pair
 // computes the same bits, and a grain's forces add up in the order of its neighbours' ids. A pair too far apart to
-// touch adds nothing, so it does not matter which of those a rank's list holds.
+// act adds nothing, so it does not matter which of those a rank's list holds.
 #pragma once
 
 #include "core/periodic_box.hpp"

@@ -163,6 +163,7 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
   check_prescribed_speed();
   planes_ = parameters_.walls;
   if (walls_change_) place_walls(0.0, 0.0);
+  if (parameters_.lubrication) check(*parameters_.lubrication, grains, box_, parameters_.time_step);
 
   const int me = rank_of(communicator_);
   const std::vector<Clump> mine = clumps_of(clumps, decomposition_, me);
@@ -198,7 +199,12 @@ double GrainDynamics::largest_prescribed_speed() const {
 
 double GrainDynamics::ghost_reach() const {
   // A grain may come half a skin nearer before the ghosts are made anew.
-  return std::max(parameters_.ghost_width + 0.5 * parameters_.skin, 2.0 * largest_radius_ + parameters_.skin);
+  return std::max(parameters_.ghost_width + 0.5 * parameters_.skin, 2.0 * largest_radius_ + list_range());
+}
+
+// The gap up to which pairs are listed: what acts across a gap must be known there until the list is made anew.
+double GrainDynamics::list_range() const {
+  return parameters_.skin + (parameters_.lubrication ? parameters_.lubrication->reach() : 0.0);
 }
 
 namespace {
@@ -345,7 +351,7 @@ void GrainDynamics::settle_in(const std::vector<ContactHistory>& histories) {
   ghosts_.build(store_);
   assemblies_.find(store_);
   listed_planes_ = planes_;
-  list_ = find_contacts(store_, box_, planes_, materials_, parameters_.skin, largest_radius_);
+  list_ = find_contacts(store_, box_, planes_, materials_, list_range(), largest_radius_);
   restore_histories(list_, store_, histories);
   const auto owned_end = static_cast<std::ptrdiff_t>(store_.owned);
   listed_position_.assign(store_.position.begin(), store_.position.begin() + owned_end);
@@ -359,6 +365,7 @@ void GrainDynamics::settle_in(const std::vector<ContactHistory>& histories) {
 void GrainDynamics::evaluate_forces(double time_step) {
   const auto scope = timer_.measure(forces_phase_);
   evaluate_contacts(moving_, list_, box_, planes_, materials_, store_.material, time_step);
+  if (parameters_.lubrication) add_lubrication(moving_, list_, box_, planes_, *parameters_.lubrication);
 }
 
 void GrainDynamics::place_walls(double time, double time_of_velocity) {

@@ -21,6 +21,7 @@
 #include "dem/ghost_exchange.hpp"
 #include "dem/grain_seed.hpp"
 #include "dem/grain_store.hpp"
+#include "dem/lubrication.hpp"
 #include "dem/material.hpp"
 #include "dem/moving_grains.hpp"
 #include "dem/walls.hpp"
@@ -53,7 +54,8 @@ struct GrainParameters {
   double skin = 0.0;         // m: the neighbour list holds until a grain has moved half of it
   double ghost_width = 0.0;  // m: grains at least this near to a rank's block are its ghosts at all times
   int attached_width = 0;    // columns attached to every grain, the caller's (Gear's predictor has more after them)
-  bool disks = false;        // the grains are disks in an x-z plane: I = 1/2 m R^2
+  std::optional<LubricationParameters> lubrication;  // between near surfaces, in every sub-step
+  bool disks = false;                                // the grains are disks in an x-z plane: I = 1/2 m R^2
   double initial_overlap = allowed_initial_overlap;  // diameters the seeds may overlap by: a settled bed's do
 };
 
@@ -159,6 +161,7 @@ private:
   template <typename Visitor>
   void for_each_body(Visitor&& visit) const;
   void refuse_gear_of_clumps() const;
+  double list_range() const;
   void wrap_positions();
   double fastest_member() const;
   void throw_trouble() const;

@@ -118,12 +118,28 @@ enum class MomentumExchange { galilean_invariant, classical };
 enum class WallDensity { local, reference };
 enum class Refill { equilibrium };
 
+// The part of the lubrication force between near surfaces that the cells cannot resolve.
+struct LubricationCase {
+  double normal_cut_off = 2.0 / 3.0;  // cells, the gap below which the squeezing flow is not resolved
+  double tangential_cut_off = 0.5;    // cells, the same of sliding and rolling
+  double minimum_gap = 1e-3;          // radii: gaps count as at least this wide
+  bool operator==(const LubricationCase&) const = default;
+};
+
+// Keeps light grains stable.
+struct VirtualMassCase {
+  double coefficient = 0.5;  // of the mass of the displaced fluid
+  bool operator==(const VirtualMassCase&) const = default;
+};
+
 struct CouplingCase {
   std::int64_t grain_steps_per_fluid_step = 50;
   double link_tolerance = 1e-3;  // cells a grain may move before the map of its cells follows
   MomentumExchange momentum_exchange = MomentumExchange::galilean_invariant;
   WallDensity wall_density = WallDensity::local;
   Refill refill = Refill::equilibrium;
+  std::optional<LubricationCase> lubrication;
+  std::optional<VirtualMassCase> virtual_mass;
   bool operator==(const CouplingCase&) const = default;
 };
 

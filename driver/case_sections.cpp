@@ -78,6 +78,27 @@ static void describe_gravity(io::SectionVisitor& visit, GravityCase& gravity, bo
     visit.not_here("mode", "a run without fluid has only one kind of gravity; remove the key");
 }
 
+static void describe(io::SectionVisitor& visit, LubricationCase& lubrication) {
+  visit.real(
+      "normal_cut_off", lubrication.normal_cut_off,
+      {.unit = "cells", .meaning = "gap below which the squeezing flow is not resolved", .above = 0.0, .at_most = 2.0});
+  visit.real("tangential_cut_off", lubrication.tangential_cut_off,
+             {.unit = "cells",
+              .meaning = "the same of sliding and rolling; 0: none of these",
+              .at_least = 0.0,
+              .at_most = 2.0});
+  visit.real("minimum_gap", lubrication.minimum_gap,
+             {.unit = "radii",
+              .meaning = "gaps count as at least this wide: the roughness of the grains",
+              .at_least = 1e-6,
+              .at_most = 0.1});
+}
+
+static void describe(io::SectionVisitor& visit, VirtualMassCase& virtual_mass) {
+  visit.real("coefficient", virtual_mass.coefficient,
+             {.meaning = "of the mass of the displaced fluid; 1/2 is that of a sphere", .above = 0.0, .at_most = 10.0});
+}
+
 static void describe(io::SectionVisitor& visit, CouplingCase& coupling) {
   visit.integer("grain_steps_per_fluid_step", coupling.grain_steps_per_fluid_step,
                 {.meaning = "sub-steps of the grains in one step of the fluid", .at_least = 1});
@@ -97,6 +118,11 @@ static void describe(io::SectionVisitor& visit, CouplingCase& coupling) {
                             {.meaning = "density in the moving-wall term"});
   visit.choice<Refill>("refill", coupling.refill, {{Refill::equilibrium, "equilibrium"}},
                        {.meaning = "populations of a cell that a grain has uncovered"});
+  visit.section(
+      "lubrication", coupling.lubrication,
+      {.meaning = "adds the force between near surfaces that the cells do not resolve, in every sub-step; {}"});
+  visit.section("virtual_mass", coupling.virtual_mass,
+                {.meaning = "for grains much lighter than the fluid: filters their load; {}"});
 }
 
 static void describe(io::SectionVisitor& visit, PerturbationCase& perturbation) {

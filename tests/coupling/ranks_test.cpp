@@ -86,6 +86,13 @@ TEST(Ranks, DoNotChangeOneBitOfABedInAFlume) {
   for (const Index3& layout : layouts_of(size_of(MPI_COMM_WORLD))) compare<float>(box, layout, 25);
 }
 
+TEST(Ranks, DoNotChangeOneBitWithLubricationAndVirtualMass) {
+  WaterBox box = crowded({48, 36, 36}, {true, false, false}, 100, 5.4e-3);  // half a cell between the grains
+  box.lubrication = box.virtual_mass = true;
+  box.viscosity = 1e-5;
+  compare<double>(box, Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD)), 25);
+}
+
 TEST(Ranks, DoNotChangeOneBitOfACloudInAPeriodicBox) {
   const WaterBox box = crowded({33, 34, 35}, {true, true, true}, 60, 5.4e-3);
   for (const Index3& layout : layouts_of(size_of(MPI_COMM_WORLD))) compare<double>(box, layout, 25);

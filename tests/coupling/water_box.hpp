@@ -22,6 +22,9 @@ struct WaterBox {
   lbm::LinkOptions links;
   double link_tolerance = 1e-3;
   int sub_steps = 50;
+  lbm::CollisionModel collision = lbm::CollisionModel::bgk;
+  bool lubrication = false;  // with the cut-offs of the case's defaults, at the floor alone
+  bool virtual_mass = false;
   std::vector<dem::GrainSeed> seeds;
 };
 
@@ -33,6 +36,7 @@ std::unique_ptr<ResolvedSystem<Real>> make_system(const WaterBox& box, MPI_Comm 
   ResolvedParameters p;
   p.units = {box.spacing, box.time_step, fluid_density};
   p.collision.relaxation_time = p.units.relaxation_time(box.viscosity);
+  p.collision.model = box.collision;
   p.collision.smagorinsky_constant = box.smagorinsky_constant;
   for (int a = 0; a < 2; ++a) p.collision.force[a] = box.gravity[a] / p.units.acceleration();
   for (int face = 0; face < 6; ++face)
@@ -43,6 +47,7 @@ std::unique_ptr<ResolvedSystem<Real>> make_system(const WaterBox& box, MPI_Comm 
   p.links = box.links;
   p.link_tolerance = box.link_tolerance;
   p.sub_steps = box.sub_steps;
+  if (box.virtual_mass) p.virtual_mass = VirtualMass{0.5, fluid_density};
   if (box.initial)
     p.initial_fluid = box.initial;
   else
@@ -65,6 +70,11 @@ std::unique_ptr<ResolvedSystem<Real>> make_system(const WaterBox& box, MPI_Comm 
   for (const dem::GrainSeed& seed : box.seeds) largest = std::max(largest, seed.radius);
   g.skin = 0.2 * largest;
   g.ghost_width = ResolvedSystem<Real>::ghost_reach(largest, box.spacing);
+  if (box.lubrication) {
+    dem::LubricationParameters lubrication{fluid_density * box.viscosity, 2.0 / 3.0 * box.spacing, 0.5 * box.spacing};
+    for (const dem::Plane& wall : g.walls) lubrication.walls.push_back(wall.normal.z() == 1.0);
+    g.lubrication = lubrication;
+  }
   g.attached_width = ResolvedSystem<Real>::attached_width;
   auto grains = std::make_unique<dem::GrainDynamics>(*decomposition, communicator, g, box.seeds);
   return std::make_unique<ResolvedSystem<Real>>(std::move(decomposition), communicator, p, std::move(grains));

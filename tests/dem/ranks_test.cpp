@@ -19,9 +19,10 @@ struct Case {
   Vec3 drift;            // m/s, of all grains at the start: a heap in contact crosses the borders between ranks
   bool elastic = false;  // Hertz and Mindlin, two materials, tangential damping
   Integrator integrator = Integrator::velocity_verlet;
-  bool clumps = false;  // every other grain is one
+  bool clumps = false;   // every other grain is one
   double rolling = 0.0;  // rolling friction
   bool moving = false;   // the floor swings, and the held grains turn about an axis that moves
+  bool lubricated = false;
 };
 
 struct Cloud {
@@ -105,6 +106,8 @@ GrainParameters parameters_of(const Case& c) {
   p.skin = 1e-3;
   p.ghost_width = 3e-3;
   p.integrator = c.integrator;
+  if (c.lubricated)
+    p.lubrication = LubricationParameters{0.02, 6e-4, 4e-4, 1e-2, std::vector<bool>(p.walls.size(), true)};
   p.attached_width = 2;
   return p;
 }
@@ -278,6 +281,12 @@ TEST(Ranks, HeapOnAMovingFloorWithARigidAssembly) {
   c.moving = true;
   compare(c, 240);
   c.integrator = Integrator::gear;
+  compare(c, 240);
+}
+
+TEST(Ranks, HeapWithLubrication) {
+  Case c{{16, 16, 16}, 1.5e-3, {true, true, false}, 60, Vec3(4.0, 2.0, -15.0), Vec3(0.4, 0.3, 0.0)};
+  c.lubricated = true;
   compare(c, 240);
 }
 
