@@ -116,6 +116,7 @@ struct SolidCase {
 
 enum class MomentumExchange { galilean_invariant, classical };
 enum class WallDensity { local, reference };
+enum class LinkRule { bouzidi, cli };
 enum class Refill { equilibrium };
 
 // The part of the lubrication force between near surfaces that the cells cannot resolve.
@@ -137,6 +138,7 @@ struct CouplingCase {
   double link_tolerance = 1e-3;  // cells a grain may move before the map of its cells follows
   MomentumExchange momentum_exchange = MomentumExchange::galilean_invariant;
   WallDensity wall_density = WallDensity::local;
+  LinkRule links = LinkRule::bouzidi;
   Refill refill = Refill::equilibrium;
   std::optional<LubricationCase> lubrication;
   std::optional<VirtualMassCase> virtual_mass;

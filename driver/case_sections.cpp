@@ -99,7 +99,17 @@ static void describe(io::SectionVisitor& visit, VirtualMassCase& virtual_mass) {
              {.meaning = "of the mass of the displaced fluid; 1/2 is that of a sphere", .above = 0.0, .at_most = 10.0});
 }
 
-static void describe(io::SectionVisitor& visit, CouplingCase& coupling) {
+static void describe_coupling(io::SectionVisitor& visit, CouplingCase& coupling, bool with_grains) {
+  visit.choice<LinkRule>("links", coupling.links,
+                         {{LinkRule::bouzidi, "bouzidi", "Bouzidi et al. 2001"},
+                          {LinkRule::cli, "cli", "Ginzburg et al. 2008; with collision trt"}},
+                         {.meaning = "how populations come back from a surface"});
+  if (!with_grains) {
+    for (const char* key :
+         {"grain_steps_per_fluid_step", "link_tolerance", "momentum_exchange", "wall_density", "refill"})
+      visit.not_here(key, "system: fluid has no grains; remove the key or set system: resolved");
+    return;
+  }
   visit.integer("grain_steps_per_fluid_step", coupling.grain_steps_per_fluid_step,
                 {.meaning = "sub-steps of the grains in one step of the fluid", .at_least = 1});
   visit.real("link_tolerance", coupling.link_tolerance,
@@ -322,10 +332,9 @@ void describe(io::SectionVisitor& visit, Case& c) {
     only_with_grains("grains");
     only_with_grains("contact");
   }
-  if (with_fluid && with_grains)
-    visit.section("coupling", c.coupling, {.meaning = "how fluid and grains act on each other"});
-  else if (with_fluid)
-    only_with_grains("coupling");
+  if (with_fluid)
+    visit.section("coupling", {.meaning = "how fluid and grains, or solids, act on each other"},
+                  [&](io::SectionVisitor& inside) { describe_coupling(inside, c.coupling, with_grains); });
   else
     only_with_fluid("coupling");
   if (with_fluid)

@@ -121,6 +121,7 @@ coupling::FluidParameters fluid_parameters(const Case& c) {
                                            : lbm::MomentumExchange::galilean_invariant;
   parameters.links.wall_density =
       c.coupling.wall_density == WallDensity::reference ? lbm::WallDensity::reference : lbm::WallDensity::local;
+  parameters.links.rule = c.coupling.links == LinkRule::cli ? lbm::LinkRule::cli : lbm::LinkRule::bouzidi;
   parameters.initial_fluid = initial_fluid(c);
   return parameters;
 }

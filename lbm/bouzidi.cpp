@@ -1,5 +1,7 @@
 #include "lbm/bouzidi.hpp"
 
+#include "lbm/bouzidi_link.hpp"
+#include "lbm/cli_link.hpp"
 #include "lbm/equilibrium.hpp"
 #include "lbm/sweep.hpp"
 
@@ -49,6 +51,15 @@ LinkPass<Real>::LinkPass(Fluid<Real>& fluid, const LinkTable& links, const Perio
 
 template <typename Real>
 void LinkPass<Real>::apply_tile(int tile) {
+  if (options_.rule == LinkRule::cli)
+    apply_links<CliLink>(tile);
+  else
+    apply_links<BouzidiLink>(tile);
+}
+
+template <typename Real>
+template <typename Rule>
+void LinkPass<Real>::apply_links(int tile) {
   // One plane ahead, because links reach for slots in the next plane: the straight pass for the densities brings them
   // into the cache at the speed of memory.
   const int z = tiles_.plane_of(tile);
@@ -69,10 +80,10 @@ void LinkPass<Real>::apply_tile(int tile) {
     const LinkTable::Chunk& chunk = t.chunks[order[c]];
     for (std::uint32_t first = 0; first < chunk.count; first += capacity, turn ^= 1) {
       prepare(batches_[turn], t, z, chunk, chunk.first + first, std::min<int>(capacity, chunk.count - first));
-      finish(batches_[turn ^ 1]);
+      finish<Rule>(batches_[turn ^ 1]);
     }
   }
-  finish(batches_[turn ^ 1]);
+  finish<Rule>(batches_[turn ^ 1]);
 }
 
 // Links never change a density: they write incoming slots of fluid cells, which hold no post-collision population of a
@@ -135,15 +146,17 @@ void LinkPass<Real>::prepare(Batch& b, const LinkTable::Tile& tile, int plane, c
 }
 
 template <typename Real>
+template <typename Rule>
 void LinkPass<Real>::finish(Batch& b) {
   if (b.count == 0) return;
-  gather(b);
-  reflect(b);
+  gather<Rule>(b);
+  reflect<Rule>(b);
   for (int k = 0; k < b.count; ++k) reflected_[b.slot[k]][b.cell[k]] = b.reflected[k];
   add_momentum(b);
 }
 
 template <typename Real>
+template <typename Rule>
 void LinkPass<Real>::gather(Batch& b) {
   const bool local = options_.wall_density == WallDensity::local;
   int covered = 0;
@@ -157,6 +170,7 @@ void LinkPass<Real>::gather(Batch& b) {
     covered += static_cast<int>((slot & near) != 0) & static_cast<int>(b.tag[k] >> LinkTag::covered_shift & 1);
   }
   if (covered > 0) fill_from_covered_cells(b, covered);
+  if constexpr (Rule::needs_both) look_upstream(b);
   for (int k = 0; k < rounded_up(b.count); ++k) b.density[k] = local ? Real(1) + b.density[k] : Real(1);
   for (int k = b.count; k < rounded_up(b.count); ++k) b.density[k] = b.incident[k] = b.second[k] = Real(0);
 }
@@ -192,7 +206,20 @@ void LinkPass<Real>::fill_from_covered_cells(Batch& b, int covered) const {
   for (int c = 0; c < covered; ++c) b.second[covered_[c]] = static_cast<Real>(result[c]);
 }
 
+// For a rule that needs both: what of the batch has no x_ff keeps the second value of Bouzidi's rule.
 template <typename Real>
+void LinkPass<Real>::look_upstream(Batch& b) const {
+  for (int k = 0; k < b.count; ++k) {
+    const std::uint32_t i = b.tag[k] & LinkTag::direction_mask;
+    const bool covered = (b.tag[k] >> LinkTag::covered_shift & 1) != 0;
+    b.covered[k] = covered ? Real(1) : Real(0);
+    if (!covered) b.second[k] = second_[i | near][b.cell[k]] - second_[i][b.cell[k]];
+  }
+  for (int k = b.count; k < rounded_up(b.count); ++k) b.covered[k] = Real(0);
+}
+
+template <typename Real>
+template <typename Rule>
 void LinkPass<Real>::reflect(Batch& b) const {
   const LinkBody& body = *b.body;
   const Real vx = Real(body.velocity.x()), vy = Real(body.velocity.y()), vz = Real(body.velocity.z());
@@ -207,11 +234,17 @@ void LinkPass<Real>::reflect(Batch& b) const {
     const Real ax = b.arm[0][k], ay = b.arm[1][k], az = b.arm[2][k], delta = b.distance[k];
     const Real ux = vx + (wy * az - wz * ay), uy = vy + (wz * ax - wx * az), uz = vz + (wx * ay - wy * ax);
     const Real towards_wall = cx * ux + cy * uy + cz * uz;
-    const Real share = delta < Real(0.5) ? Real(2) * delta : Real(0.5) / delta;
-    const Real wall_factor = delta < Real(0.5) ? Real(6) : Real(6) * share;
+    LinkWeights<Real> rule = Rule::weights(delta);
+    if constexpr (Rule::needs_both) {
+      const LinkWeights<Real> without = BouzidiLink::weights(delta);
+      const bool covered = b.covered[k] != Real(0);
+      rule.incident = covered ? without.incident : rule.incident;
+      rule.second = covered ? without.second : rule.second;
+      rule.wall = covered ? without.wall : rule.wall;
+    }
     const Real incident = b.incident[k];
     const Real reflected =
-        share * incident + (Real(1) - share) * b.second[k] - wall_factor * weight * b.density[k] * towards_wall;
+        rule.incident * incident + rule.second * b.second[k] - rule.wall * weight * b.density[k] * towards_wall;
     b.reflected[k] = reflected;
     const Real sum = incident + reflected, flux = galilean * (incident - reflected);
     const Real mx = sum * cx - flux * ux, my = sum * cy - flux * uy, mz = sum * cz - flux * uz;

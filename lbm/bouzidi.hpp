@@ -1,10 +1,8 @@
-// Interpolated bounce-back on moving bodies (Bouzidi, Firdaouss and Lallemand 2001) and the momentum it exchanges.
+// Interpolated bounce-back on moving bodies and the momentum it exchanges.
 //
-// For a link from the fluid cell x_f along c_i into a body, i' the opposite, delta the distance to the surface, f^c
-// post-collision, x_ff = x_f - c_i, u_w the velocity of the surface where the link meets it:
-//   delta < 1/2:  f_i'(x_f, t+1) = 2 delta f_i^c(x_f) + (1 - 2 delta) f_i^c(x_ff)              - 6 w_i rho c_i.u_w
-//   else:         f_i'(x_f, t+1) = f_i^c(x_f)/(2 delta) + (2 delta - 1)/(2 delta) f_i'^c(x_f) - (3/delta) w_i rho
-//   c_i.u_w
+// A link runs from the fluid cell x_f along c_i into a body; i' is the opposite, delta the distance to the surface, f^c
+// post-collision, x_ff = x_f - c_i, u_w the velocity of the surface where the link meets it. What comes back, f_i'(x_f,
+// t+1), is told by a rule: bouzidi_link.hpp or cli_link.hpp.
 // If x_ff is covered by a body, f_i^c(x_ff) is the equilibrium at the density of x_f and that body's velocity at x_ff
 // (Zhang et al. 2022). If it lies beyond a wall, the population that the wall returns to x_f stands in.
 //
@@ -25,10 +23,12 @@ namespace thalweg::lbm {
 
 enum class MomentumExchange { galilean_invariant, classical };
 enum class WallDensity { local, reference };  // rho in the moving-wall term: of x_f, or 1
+enum class LinkRule { bouzidi, cli };
 
 struct LinkOptions {
   MomentumExchange momentum_exchange = MomentumExchange::galilean_invariant;
   WallDensity wall_density = WallDensity::local;
+  LinkRule rule = LinkRule::bouzidi;
 };
 
 // Applies the links of one step, tile by tile. For every link it writes the population that the sweep will take from
@@ -59,18 +59,25 @@ private:
     alignas(64) std::uint32_t slot[capacity];  // direction, and `near` where delta < 1/2
     alignas(64) Real distance[capacity], arm[3][capacity];
     alignas(64) Real density[capacity];                     // rho at x_f
-    alignas(64) Real incident[capacity], second[capacity];  // f_i^c(x_f); f_i^c(x_ff) or f_i'^c(x_f)
+    alignas(64) Real incident[capacity], second[capacity];  // f_i^c(x_f); the rule's other value
+    alignas(64) Real covered[capacity];                     // of a rule that needs both: 1 where a body covers x_ff
     alignas(64) Real reflected[capacity];                   // f_i'(x_f, t+1)
     alignas(64) Real momentum[3][capacity], torque[3][capacity];
   };
   static constexpr std::uint32_t near = 32, slots = 64;
 
+  template <typename Rule>
+  void apply_links(int tile);
   void measure_densities(int tile);
   void prepare(Batch& batch, const LinkTable::Tile& tile, int plane, const LinkTable::Chunk& chunk, std::uint32_t first,
                int count) const;
+  template <typename Rule>
   void finish(Batch& batch);
+  template <typename Rule>
   void gather(Batch& batch);
   void fill_from_covered_cells(Batch& batch, int covered) const;
+  void look_upstream(Batch& batch) const;
+  template <typename Rule>
   void reflect(Batch& batch) const;
   void add_momentum(const Batch& batch) const;
 

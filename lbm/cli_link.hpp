@@ -1,0 +1,26 @@
+// Interpolated bounce-back in one formula for all distances, the central linear interpolation (CLI) of Ginzburg,
+// Verhaeghe and d'Humieres (2008), on a moving wall. Lattice units; symbols as in bouzidi.hpp.
+//   f_i'(x_f, t+1) = f_i^c(x_f) + k [f_i^c(x_ff) - f_i'^c(x_f)] - 12/(1 + 2 delta) w_i rho c_i.u_w,
+//   k = (1 - 2 delta)/(1 + 2 delta).
+// Exact in a fluid that moves with the wall. In plane flow it sets u + delta u' + 2/3 (tau+ - 1/2)(tau- - 1/2) u'' =
+// u_w with derivatives towards the wall, so that with two relaxation times and a fixed magic parameter a steady flow
+// does not depend on the viscosity. Where a body covers x_ff, which here counts at every distance, the link falls back
+// to Bouzidi's rule: an equilibrium there would make a single cell between two bodies unstable.
+#pragma once
+
+#include "lbm/link_weights.hpp"
+
+namespace thalweg::lbm {
+
+struct CliLink {
+  // The second value is f_i^c(x_ff) - f_i'^c(x_f).
+  static constexpr bool needs_both = true;
+
+  template <typename Real>
+  [[gnu::always_inline]] static LinkWeights<Real> weights(Real delta) {
+    const Real twice = Real(2) * delta, inverse = Real(1) / (Real(1) + twice);
+    return {Real(1), (Real(1) - twice) * inverse, Real(12) * inverse};
+  }
+};
+
+}  // namespace thalweg::lbm
