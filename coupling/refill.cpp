@@ -4,6 +4,7 @@
 #include "lbm/equilibrium.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace thalweg::coupling {
@@ -17,13 +18,40 @@ Index3 step_from(const Index3& cell, int direction) {
   return {cell[0] + D3Q19::c[direction][0], cell[1] + D3Q19::c[direction][1], cell[2] + D3Q19::c[direction][2]};
 }
 
+std::array<int, 3> key(const Index3& cell) { return {cell[2], cell[1], cell[0]}; }
+
+Vec3 centre_of(const Index3& cell) { return {cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5}; }
+
+Vec3 velocity_of(int direction) {
+  return {double(D3Q19::c[direction][0]), double(D3Q19::c[direction][1]), double(D3Q19::c[direction][2])};
+}
+
+constexpr int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+
 }  // namespace
 
-Refill::Refill(const Decomposition& decomposition, MPI_Comm communicator)
+Refill::Refill(const Decomposition& decomposition, MPI_Comm communicator, RefillRule rule)
     : decomposition_(decomposition),
       communicator_(communicator),
+      rule_(rule),
       rank_(rank_of(communicator)),
-      block_(decomposition.block_of(rank_)) {}
+      block_(decomposition.block_of(rank_)),
+      box_{Vec3(decomposition.cells()[0], decomposition.cells()[1], decomposition.cells()[2]),
+           decomposition.periodic()} {}
+
+// Of two donors the better one; the lower direction where both are as good.
+void Refill::Neighbours::add(const Neighbours& others) {
+  count += others.count;
+  density += others.density;
+  for (std::size_t k = 0; k < stress.size(); ++k) stress[k] += others.stress[k];
+  if (others.donor == 0) return;
+  const bool better =
+      donor == 0 || others.alignment > alignment || (others.alignment == alignment && others.donor < donor);
+  if (!better) return;
+  donor = others.donor;
+  alignment = others.alignment;
+  non_equilibrium = others.non_equilibrium;
+}
 
 Index3 Refill::wrapped(Index3 cell) const {
   for (int a = 0; a < 3; ++a)
@@ -53,6 +81,10 @@ std::vector<int> Refill::owners_of_neighbours(const Index3& cell) const {
   return owners;
 }
 
+std::ptrdiff_t Refill::index_of(const lbm::CellIndexing& indexing, const Index3& global) const {
+  return indexing.index(global[0] - block_.lower[0], global[1] - block_.lower[1], global[2] - block_.lower[2]);
+}
+
 // Every uncovered cell in reach once, sorted by place in the box, so that all ranks list shared cells in the same
 // order.
 std::vector<Refill::Uncovered> Refill::uncovered_cells(const std::vector<GrainMap::Change>& changes) const {
@@ -61,36 +93,58 @@ std::vector<Refill::Uncovered> Refill::uncovered_cells(const std::vector<GrainMa
     if (change.now != CellMap::fluid) continue;
     Index3 global;
     for (int a = 0; a < 3; ++a) global[a] = block_.lower[a] + change.cell[a];
-    uncovered.push_back({wrapped(global), change.cell, change.before, {}});
+    uncovered.push_back({wrapped(global), change.before, {}});
   }
-  const auto key = [](const Uncovered& u) { return std::array<int, 3>{u.global[2], u.global[1], u.global[0]}; };
-  std::sort(uncovered.begin(), uncovered.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
+  std::sort(uncovered.begin(), uncovered.end(),
+            [](const auto& a, const auto& b) { return key(a.global) < key(b.global); });
   const auto same = [](const Uncovered& a, const Uncovered& b) { return a.global == b.global; };
   uncovered.erase(std::unique(uncovered.begin(), uncovered.end(), same), uncovered.end());
   return uncovered;
 }
 
 template <typename Real>
-void Refill::add_own_neighbours(const lbm::Fluid<Real>& fluid, std::vector<Uncovered>& uncovered) const {
+Refill::Neighbours Refill::look_at(const lbm::Fluid<Real>& fluid, std::ptrdiff_t cell, int direction,
+                                   const Vec3& normal) const {
+  Neighbours one;
+  one.count = 1;
+  one.density = LatticeFixed::from(fluid.populations().density_deviation(cell));
+  if (rule_ == RefillRule::equilibrium) return one;
+  const lbm::FluidState state = fluid.state_at(cell);
+  for (int i = 0; i < D3Q19::directions; ++i)
+    one.non_equilibrium[i] = static_cast<double>(fluid.populations().post_collision(i, cell)) -
+                             lbm::equilibrium_deviation(i, state.density_deviation, state.velocity);
+  for (std::size_t k = 0; k < one.stress.size(); ++k) {
+    double moment = 0.0;
+    for (int i = 1; i < D3Q19::directions; ++i)
+      moment += D3Q19::c[i][pairs[k][0]] * D3Q19::c[i][pairs[k][1]] * one.non_equilibrium[i];
+    one.stress[k] = LatticeFixed::from(moment);
+  }
+  one.donor = direction;
+  one.alignment = velocity_of(direction).dot(normal) / std::sqrt(double(D3Q19::length_squared(direction)));
+  return one;
+}
+
+template <typename Real>
+void Refill::add_own_neighbours(const lbm::Fluid<Real>& fluid, const std::vector<lbm::LinkBody>& bodies,
+                                std::vector<Uncovered>& uncovered) const {
   const auto fresh = [&](const Index3& global) {
-    const auto found =
-        std::find_if(uncovered.begin(), uncovered.end(), [&](const auto& u) { return u.global == global; });
-    return found != uncovered.end();
+    const auto found = std::lower_bound(uncovered.begin(), uncovered.end(), key(global),
+                                        [](const Uncovered& u, const auto& k) { return key(u.global) < k; });
+    return found != uncovered.end() && found->global == global;
   };
-  for (Uncovered& cell : uncovered)
+  for (Uncovered& cell : uncovered) {
+    const Vec3 normal = box_.difference(centre_of(cell.global), bodies[cell.before].centre);
     for (int i = 1; i < D3Q19::directions; ++i) {
       const Index3 neighbour = wrapped(step_from(cell.global, i));
       if (!block_.contains(neighbour)) continue;
-      const std::ptrdiff_t at = fluid.indexing().index(neighbour[0] - block_.lower[0], neighbour[1] - block_.lower[1],
-                                                       neighbour[2] - block_.lower[2]);
-      if (!fluid.cells().is_fluid(at) || fresh(neighbour)) continue;
-      cell.density.sum += LatticeFixed::from(fluid.populations().density_deviation(at));
-      ++cell.density.count;
+      const std::ptrdiff_t at = index_of(fluid.indexing(), neighbour);
+      if (fluid.cells().is_fluid(at) && !fresh(neighbour)) cell.neighbours.add(look_at(fluid, at, i, normal));
     }
+  }
 }
 
-void Refill::exchange_sums(std::vector<Uncovered>& uncovered) const {
-  std::map<int, std::vector<DensitySum>> outgoing, incoming;
+void Refill::exchange(std::vector<Uncovered>& uncovered) const {
+  std::map<int, std::vector<Neighbours>> outgoing, incoming;
   std::map<int, std::vector<std::size_t>> expected;
   for (std::size_t k = 0; k < uncovered.size(); ++k) {
     const Uncovered& cell = uncovered[k];
@@ -99,64 +153,88 @@ void Refill::exchange_sums(std::vector<Uncovered>& uncovered) const {
     } else {
       bool mine = false;
       for (int i = 1; i < D3Q19::directions; ++i) mine = mine || block_.contains(wrapped(step_from(cell.global, i)));
-      if (mine) outgoing[owner_of(cell.global)].push_back(cell.density);
+      if (mine) outgoing[owner_of(cell.global)].push_back(cell.neighbours);
     }
   }
   if (outgoing.empty() && expected.empty()) return;
   constexpr int tag = 17;
   std::vector<MPI_Request> requests;
+  const auto bytes = [](const std::vector<Neighbours>& cells) {
+    return static_cast<int>(sizeof(Neighbours) * cells.size());
+  };
   for (auto& [from, cells] : expected) {
     incoming[from].resize(cells.size());
     requests.emplace_back();
-    MPI_Irecv(incoming[from].data(), static_cast<int>(2 * cells.size()), MPI_INT64_T, from, tag, communicator_,
-              &requests.back());
+    MPI_Irecv(incoming[from].data(), bytes(incoming[from]), MPI_BYTE, from, tag, communicator_, &requests.back());
   }
-  for (auto& [to, sums] : outgoing) {
+  for (auto& [to, cells] : outgoing) {
     requests.emplace_back();
-    MPI_Isend(sums.data(), static_cast<int>(2 * sums.size()), MPI_INT64_T, to, tag, communicator_, &requests.back());
+    MPI_Isend(cells.data(), bytes(cells), MPI_BYTE, to, tag, communicator_, &requests.back());
   }
   MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
   for (auto& [from, cells] : expected)
-    for (std::size_t k = 0; k < cells.size(); ++k) {
-      uncovered[cells[k]].density.sum += incoming[from][k].sum;
-      uncovered[cells[k]].density.count += incoming[from][k].count;
+    for (std::size_t k = 0; k < cells.size(); ++k) uncovered[cells[k]].neighbours.add(incoming[from][k]);
+}
+
+std::array<double, 19> Refill::populations_of(const Neighbours& n, const Vec3& velocity, const Vec3& force) const {
+  const auto mean = [&n](std::int64_t sum) {
+    return n.count > 0 ? LatticeFixed::to_double(sum) / static_cast<double>(n.count) : 0.0;
+  };
+  const double density = mean(n.density);
+  std::array<double, 6> stress;
+  for (std::size_t k = 0; k < stress.size(); ++k) stress[k] = mean(n.stress[k]);
+  const double trace = (stress[0] + stress[1] + stress[2]) / 3.0;
+  std::array<double, 19> f;
+  for (int i = 0; i < D3Q19::directions; ++i) {
+    f[i] = lbm::equilibrium_deviation(i, density, velocity);
+    if (rule_ == RefillRule::non_equilibrium && n.donor != 0) {
+      f[i] += n.non_equilibrium[i];
+      continue;
     }
+    f[i] += 1.5 * D3Q19::weight(i) * velocity_of(i).dot(force);
+    if (rule_ != RefillRule::grad) continue;
+    double projected = -trace;
+    for (std::size_t k = 0; k < stress.size(); ++k)
+      projected += (k < 3 ? 1.0 : 2.0) * D3Q19::c[i][pairs[k][0]] * D3Q19::c[i][pairs[k][1]] * stress[k];
+    f[i] += 4.5 * D3Q19::weight(i) * projected;
+  }
+  return f;
 }
 
 template <typename Real>
-RefillTotals Refill::equilibrium(lbm::Fluid<Real>& fluid, const std::vector<GrainMap::Change>& changes,
-                                 const std::vector<lbm::LinkBody>& bodies) {
+RefillTotals Refill::fill(lbm::Fluid<Real>& fluid, const std::vector<GrainMap::Change>& changes,
+                          const std::vector<lbm::LinkBody>& bodies) {
   RefillTotals totals;
   std::vector<Uncovered> uncovered = uncovered_cells(changes);
   if (uncovered.empty()) return totals;
-  add_own_neighbours(fluid, uncovered);
-  exchange_sums(uncovered);
+  add_own_neighbours(fluid, bodies, uncovered);
+  exchange(uncovered);
 
-  const PeriodicBox box{Vec3(decomposition_.cells()[0], decomposition_.cells()[1], decomposition_.cells()[2]),
-                        decomposition_.periodic()};
+  const double(&f)[3] = fluid.parameters().force;
+  const Vec3 force(f[0], f[1], f[2]);
   for (const Uncovered& cell : uncovered) {
     if (!block_.contains(cell.global)) continue;
     const lbm::LinkBody& body = bodies[cell.before];
-    const Vec3 position(cell.global[0] + 0.5, cell.global[1] + 0.5, cell.global[2] + 0.5);
-    const Vec3 velocity = body.velocity + body.angular_velocity.cross(box.difference(position, body.centre));
-    const double density = cell.density.count > 0
-                               ? LatticeFixed::to_double(cell.density.sum) / static_cast<double>(cell.density.count)
-                               : 0.0;
-    const std::ptrdiff_t at = fluid.indexing().index(cell.global[0] - block_.lower[0], cell.global[1] - block_.lower[1],
-                                                     cell.global[2] - block_.lower[2]);
+    const Vec3 position = centre_of(cell.global);
+    const Vec3 velocity = body.velocity + body.angular_velocity.cross(box_.difference(position, body.centre));
+    const std::array<double, 19> values = populations_of(cell.neighbours, velocity, force);
+    const std::ptrdiff_t at = index_of(fluid.indexing(), cell.global);
+    Vec3 momentum = Vec3::Zero();
     for (int i = 0; i < D3Q19::directions; ++i) {
-      const Real value = static_cast<Real>(lbm::equilibrium_deviation(i, density, velocity));
+      const Real value = static_cast<Real>(values[i]);
       fluid.populations().post_collision(i, at) = value;
-      for (int a = 0; a < 3; ++a) totals.momentum[a] += D3Q19::c[i][a] * static_cast<double>(value);
+      momentum += static_cast<double>(value) * velocity_of(i);
     }
+    totals.momentum += momentum;
+    totals.angular_momentum += position.cross(momentum);
     ++totals.cells;
   }
   return totals;
 }
 
-template RefillTotals Refill::equilibrium(lbm::Fluid<float>&, const std::vector<GrainMap::Change>&,
-                                          const std::vector<lbm::LinkBody>&);
-template RefillTotals Refill::equilibrium(lbm::Fluid<double>&, const std::vector<GrainMap::Change>&,
-                                          const std::vector<lbm::LinkBody>&);
+template RefillTotals Refill::fill(lbm::Fluid<float>&, const std::vector<GrainMap::Change>&,
+                                   const std::vector<lbm::LinkBody>&);
+template RefillTotals Refill::fill(lbm::Fluid<double>&, const std::vector<GrainMap::Change>&,
+                                   const std::vector<lbm::LinkBody>&);
 
 }  // namespace thalweg::coupling

@@ -1,8 +1,18 @@
-// Gives cells that a grain has just uncovered the populations of equilibrium: the mean density of their fluid
-// neighbours (those that were fluid before) and the velocity of the grain's surface motion at the cell.
+// Gives cells that a grain has just uncovered their populations. With n the mean over the neighbours that were fluid
+// before, u_w the velocity of the grain's rigid motion at the cell, F the body force:
+//   equilibrium      f_i^c = f_i^eq(rho_n, u_w) + 3/2 w_i c_i.F
+//   non_equilibrium  f_i^c = f_i^eq(rho_n, u_w) + [f_i^c - f_i^eq](donor); the donor is the one of these neighbours
+//   whose
+//                    direction is nearest to the outward normal                                          (Caiazzo 2008)
+//   grad             f_i^c = f_i^eq(rho_n, u_w) + 3/2 w_i c_i.F + 9/2 w_i (c_ia c_ib - delta_ab/3) P_ab, where P_ab is
+//   the
+//                    mean over these neighbours of sum c_ia c_ib (f_i^c - f_i^eq)      (Chikatamarla, Ansumali and
+//                    Karlin 2006, with the neighbours' stress)
+// All populations are post-collision ones, whose momentum is rho u + F/2. Lattice units.
 //
 // Neighbours may be on other ranks. Every rank that owns neighbours of an uncovered cell sees that cell in its ghost
-// layer too, so both sides know without asking who sends what; sums are exact, so the result is the same on any ranks.
+// layer too, so both sides know without asking who sends what; sums are exact and the choice of the donor is the same
+// from any side, so the result is the same on any ranks.
 #pragma once
 
 #include "core/decomposition.hpp"
@@ -12,50 +22,66 @@
 
 #include <mpi.h>
 
+#include <array>
 #include <vector>
 
 namespace thalweg::coupling {
 
+enum class RefillRule { equilibrium, non_equilibrium, grad };
+
 struct RefillTotals {
-  std::int64_t cells = 0;        // this rank's uncovered cells
-  Vec3 momentum = Vec3::Zero();  // they were given, lattice units
+  std::int64_t cells = 0;                // this rank's uncovered cells
+  Vec3 momentum = Vec3::Zero();          // they were given, lattice units
+  Vec3 angular_momentum = Vec3::Zero();  // the same about the origin
 };
 
 class Refill {
 public:
-  Refill(const Decomposition& decomposition, MPI_Comm communicator);
+  Refill(const Decomposition& decomposition, MPI_Comm communicator, RefillRule rule = RefillRule::equilibrium);
 
-  // changes: from GrainMap::settle(); bodies: motion of the slots. Call after the map is settled and before the halo
-  // exchange. Every rank calls it each step.
+  // changes: from GrainMap::settle(); bodies: centre and motion of the slots. Call after the map is settled and before
+  // the halo exchange. Every rank calls it each step.
   template <typename Real>
-  RefillTotals equilibrium(lbm::Fluid<Real>& fluid, const std::vector<GrainMap::Change>& changes,
-                           const std::vector<lbm::LinkBody>& bodies);
+  RefillTotals fill(lbm::Fluid<Real>& fluid, const std::vector<GrainMap::Change>& changes,
+                    const std::vector<lbm::LinkBody>& bodies);
 
 private:
-  struct DensitySum {      // of the fluid neighbours of one uncovered cell
-    std::int64_t sum = 0;  // LatticeFixed of rho - 1
-    std::int64_t count = 0;
+  // What the fluid neighbours of one uncovered cell tell; a message between ranks as it stands.
+  struct Neighbours {
+    std::int64_t count = 0, density = 0;       // LatticeFixed sum of rho - 1
+    std::array<std::int64_t, 6> stress{};      // LatticeFixed sums of P: xx, yy, zz, xy, xz, yz
+    std::int64_t donor = 0;                    // its direction from the cell; 0: none
+    double alignment = 0.0;                    // cosine of that direction to the normal, times the normal's length
+    std::array<double, 19> non_equilibrium{};  // of the donor
+
+    void add(const Neighbours& others);
   };
   struct Uncovered {
     Index3 global;        // inside the box
-    Index3 local;         // one of its places in memory
     std::int32_t before;  // slot that covered it
-    DensitySum density;
+    Neighbours neighbours;
   };
 
   Index3 wrapped(Index3 cell) const;
   bool inside_box(const Index3& cell) const;
   int owner_of(const Index3& cell) const;
   std::vector<int> owners_of_neighbours(const Index3& cell) const;  // other than this rank, sorted
+  std::ptrdiff_t index_of(const lbm::CellIndexing& indexing, const Index3& global) const;
   std::vector<Uncovered> uncovered_cells(const std::vector<GrainMap::Change>& changes) const;
   template <typename Real>
-  void add_own_neighbours(const lbm::Fluid<Real>& fluid, std::vector<Uncovered>& uncovered) const;
-  void exchange_sums(std::vector<Uncovered>& uncovered) const;
+  void add_own_neighbours(const lbm::Fluid<Real>& fluid, const std::vector<lbm::LinkBody>& bodies,
+                          std::vector<Uncovered>& uncovered) const;
+  template <typename Real>
+  Neighbours look_at(const lbm::Fluid<Real>& fluid, std::ptrdiff_t cell, int direction, const Vec3& normal) const;
+  void exchange(std::vector<Uncovered>& uncovered) const;
+  std::array<double, 19> populations_of(const Neighbours& neighbours, const Vec3& velocity, const Vec3& force) const;
 
   const Decomposition& decomposition_;
   MPI_Comm communicator_;
+  RefillRule rule_;
   int rank_;
   Block block_;
+  PeriodicBox box_;  // cells
 };
 
 }  // namespace thalweg::coupling

@@ -39,7 +39,7 @@ ResolvedSystem<Real>::ResolvedSystem(std::unique_ptr<Decomposition> decompositio
       map_(*decomposition_, fluid_.block(), fluid_.cells()),
       links_(fluid_.tiles().count()),
       link_builder_(*decomposition_, fluid_.block(), fluid_.cells(), fluid_.tiles()),
-      refill_(*decomposition_, communicator) {
+      refill_(*decomposition_, communicator, parameters.refill) {
   phases_ = {timer_.phase("grain map"), timer_.phase("refill"), timer_.phase("halo"),  timer_.phase("walls"),
              timer_.phase("links"),     timer_.phase("sweep"),  timer_.phase("loads"), timer_.phase("grains")};
   if (parameters_.flow_target) fluid_.control_flow(*parameters_.flow_target);
@@ -189,7 +189,7 @@ void ResolvedSystem<Real>::advance() {
   }
   {
     const auto scope = timer_.measure(phases_.refill);
-    step_totals_.refilled = refill_.equilibrium(fluid_, map_.changes(), bodies_).momentum;
+    step_totals_.refilled = refill_.fill(fluid_, map_.changes(), bodies_).momentum;
   }
   {
     const auto scope = timer_.measure(phases_.halo);

@@ -20,6 +20,7 @@ struct ResolvedParameters : FluidParameters {
   double link_tolerance = 1e-3;             // cells a grain may move before the map of its cells follows
   int sub_steps = 50;                       // DEM steps per lattice step
   std::optional<VirtualMass> virtual_mass;  // of light grains
+  RefillRule refill = RefillRule::equilibrium;
 };
 
 // This rank's part of the sums that a momentum balance of the fluid needs (lattice units, of the step just done).

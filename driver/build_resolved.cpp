@@ -30,11 +30,24 @@ dem::LubricationParameters lubrication_parameters(const Case& c) {
   return parameters;
 }
 
+coupling::RefillRule refill_rule(Refill refill) {
+  switch (refill) {
+    case Refill::equilibrium:
+      return coupling::RefillRule::equilibrium;
+    case Refill::non_equilibrium:
+      return coupling::RefillRule::non_equilibrium;
+    case Refill::grad:
+      return coupling::RefillRule::grad;
+  }
+  return coupling::RefillRule::equilibrium;
+}
+
 template <typename Real>
 std::unique_ptr<System> build(const Case& c, MPI_Comm communicator, const Index3& layout) {
   auto decomposition = std::make_unique<Decomposition>(decomposition_of(c, layout));
   coupling::ResolvedParameters parameters{fluid_parameters(c)};
   parameters.link_tolerance = c.coupling.link_tolerance;
+  parameters.refill = refill_rule(c.coupling.refill);
   parameters.sub_steps = static_cast<int>(c.coupling.grain_steps_per_fluid_step);
 
   if (c.coupling.virtual_mass)

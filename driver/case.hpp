@@ -117,7 +117,7 @@ struct SolidCase {
 enum class MomentumExchange { galilean_invariant, classical };
 enum class WallDensity { local, reference };
 enum class LinkRule { bouzidi, cli };
-enum class Refill { equilibrium };
+enum class Refill { equilibrium, non_equilibrium, grad };
 
 // The part of the lubrication force between near surfaces that the cells cannot resolve.
 struct LubricationCase {

@@ -126,7 +126,10 @@ static void describe_coupling(io::SectionVisitor& visit, CouplingCase& coupling,
                             {{WallDensity::local, "local", "of the fluid cell"},
                              {WallDensity::reference, "reference", "of the fluid at rest"}},
                             {.meaning = "density in the moving-wall term"});
-  visit.choice<Refill>("refill", coupling.refill, {{Refill::equilibrium, "equilibrium"}},
+  visit.choice<Refill>("refill", coupling.refill,
+                       {{Refill::equilibrium, "equilibrium"},
+                        {Refill::non_equilibrium, "non_equilibrium", "with that of the neighbour along the normal"},
+                        {Refill::grad, "grad", "with the mean stress of the neighbours"}},
                        {.meaning = "populations of a cell that a grain has uncovered"});
   visit.section(
       "lubrication", coupling.lubrication,

@@ -25,6 +25,7 @@ struct WaterBox {
   lbm::CollisionModel collision = lbm::CollisionModel::bgk;
   bool lubrication = false;  // with the cut-offs of the case's defaults, at the floor alone
   bool virtual_mass = false;
+  RefillRule refill = RefillRule::equilibrium;
   std::vector<dem::GrainSeed> seeds;
 };
 
@@ -48,6 +49,7 @@ std::unique_ptr<ResolvedSystem<Real>> make_system(const WaterBox& box, MPI_Comm 
   p.link_tolerance = box.link_tolerance;
   p.sub_steps = box.sub_steps;
   if (box.virtual_mass) p.virtual_mass = VirtualMass{0.5, fluid_density};
+  p.refill = box.refill;
   if (box.initial)
     p.initial_fluid = box.initial;
   else
