@@ -80,7 +80,7 @@ TEST(CaseReader, AFluidAloneHasNoKeysOfGrains) {
   EXPECT_TRUE(c.grains.empty());
   EXPECT_EQ(text.find("contact:"), std::string::npos);
   EXPECT_EQ(read(resolved_yaml(c)), c);
-  for (const std::string key : {"grains=[]", "contact={restitution: 0.9}", "coupling={}", "output.grains={}"})
+  for (const std::string key : {"grains=[]", "contact={restitution: 0.9}", "coupling={refill: grad}", "output.grains={}"})
     EXPECT_THROW(read(text, {key}), InputError) << key;
 }
 
