@@ -24,6 +24,7 @@ struct GrainView {
   std::span<const Vec3> fluid_force;       // N, as applied during the last step; empty without a fluid
   std::span<const Vec3> fluid_torque;      // N m
   std::span<const Vec3> contact_force;     // N, sum over contacts at the end of the step
+  std::span<const Vec3> contact_torque;    // N m, about the grain's centre
 };
 
 enum class FluidField { velocity, pressure, grain_id, density, shear_rate, eddy_viscosity, vorticity, q_criterion };

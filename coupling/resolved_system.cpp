@@ -256,6 +256,7 @@ Snapshot ResolvedSystem<Real>::snapshot() const {
   s.grains.fluid_force = {store.load_force.data(), n};
   s.grains.fluid_torque = {store.load_torque.data(), n};
   s.grains.contact_force = {store.contact_force.data(), n};
+  s.grains.contact_torque = {store.contact_torque.data(), n};
   return s;
 }
 

@@ -37,6 +37,7 @@ struct Face {
   bool on_node = false;          // of the two slips: the wall runs through the outermost cell centres
   Vec3 velocity = Vec3::Zero();  // m/s, moving and velocity_inlet
   double pressure = 0.0;         // Pa above the reference, pressure_outlet
+  std::optional<OscillationCase> oscillation = {};  // moving; dry grains only
 
   bool slips() const {
     return type == FaceType::navier_slip || type == FaceType::law_of_the_wall ||
@@ -50,6 +51,7 @@ struct Face {
     return type == other.type && (type != FaceType::law_of_the_wall || same_coefficient(other)) &&
            (type != FaceType::navier_slip || slip_length == other.slip_length) &&
            (!slips() || on_node == other.on_node) && (!has_velocity() || velocity == other.velocity) &&
+           (type != FaceType::moving || oscillation == other.oscillation) &&
            (type != FaceType::pressure_outlet || pressure == other.pressure);
   }
 };
@@ -239,7 +241,13 @@ struct WallForcesCase {
   bool operator==(const WallForcesCase&) const = default;
 };
 
+// Columns of series.csv; it has no keys.
+struct PopulationLoadsCase {
+  bool operator==(const PopulationLoadsCase&) const = default;
+};
+
 struct AnalysisCase {
+  std::optional<PopulationLoadsCase> population_loads;
   std::optional<WallForcesCase> wall_forces;  // of dry grains
   std::optional<TransportRateCase> transport_rate;
   std::optional<FluidStatisticsCase> fluid_statistics;
@@ -260,6 +268,7 @@ struct Case {
   GravityCase gravity;
   std::optional<DisksCase> disks;
   std::vector<PopulationCase> grains;
+  std::vector<WallCase> walls;    // of dry grains, besides the faces
   std::vector<SolidCase> solids;  // of system: fluid
   ContactCase contact;
   CouplingCase coupling;

@@ -1,6 +1,7 @@
 #include "driver/case_checks.hpp"
 
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -155,6 +156,24 @@ void check_initial_fluid(const Case& c, const io::YamlDocument& document) {
                                 (profile.perturbation ? strongest_gust * profile.perturbation->amplitude : 0.0)));
 }
 
+// That any grain of a rigid population may have, wherever in its region or the box it is; m/s.
+double largest_speed(const Case& c, const PopulationCase& grains) {
+  const MotionCase& motion = *grains.motion;
+  double speed = motion.velocity.norm();
+  if (motion.oscillation)
+    speed += 2.0 * std::numbers::pi * motion.oscillation->frequency * motion.oscillation->amplitude.norm();
+  if (!motion.rotation) return speed;
+  std::vector<Vec3> places = grains.placement.positions;
+  const RegionCase room = grains.placement.region.value_or(RegionCase{Vec3::Zero(), c.domain.size});
+  for (int corner = 0; corner < 8 && grains.placement.positions.empty(); ++corner)
+    places.emplace_back((corner & 1 ? room.upper : room.lower)[0], (corner & 2 ? room.upper : room.lower)[1],
+                        (corner & 4 ? room.upper : room.lower)[2]);
+  double distance = 0.0;
+  for (const Vec3& place : places)
+    distance = std::max(distance, motion.rotation->axis.normalized().cross(place - motion.rotation->point).norm());
+  return speed + std::abs(motion.rotation->angular_velocity) * (distance + 0.5 * grains.largest_diameter());
+}
+
 void check_fluid(const Case& c, const io::YamlDocument& document) {
   if (!has_fluid(c)) return;
   const std::string step_key = c.fluid.time_step ? "fluid.time_step" : "fluid.maximum_lattice_velocity";
@@ -191,6 +210,7 @@ void check_fluid(const Case& c, const io::YamlDocument& document) {
     if (grains.prescribed_angular_velocity)
       check_lattice_velocity(c, document, key + "prescribed_angular_velocity",
                              grains.prescribed_angular_velocity->norm() * radius);
+    if (grains.motion) check_lattice_velocity(c, document, key + "motion", largest_speed(c, grains));
   }
 }
 
@@ -231,6 +251,11 @@ void check_material(const Case& c, const io::YamlDocument& document, const std::
          "the section contact gives a damping; give damping in kg/s here, too");
 }
 
+bool stays_in_plane(const MotionCase& motion) {
+  const bool turns_in_it = !motion.rotation || (motion.rotation->axis.x() == 0.0 && motion.rotation->axis.z() == 0.0);
+  return turns_in_it && motion.velocity.y() == 0.0 && (!motion.oscillation || motion.oscillation->amplitude.y() == 0.0);
+}
+
 void check_disks(const Case& c, const io::YamlDocument& document) {
   if (!c.disks) return;
   if (c.analysis.transport_rate)
@@ -239,6 +264,10 @@ void check_disks(const Case& c, const io::YamlDocument& document) {
     throw document.error("domain.boundaries", "disks move in the plane x-z; give y: periodic");
   if (gravity_vector(c.gravity).y() != 0.0)
     throw document.error("gravity.vector", "disks move in the plane x-z; give a vector in m/s^2 with 0 along y");
+  for (std::size_t n = 0; n < c.walls.size(); ++n)
+    if (c.walls[n].normal.y() != 0.0)
+      throw document.error(fmt::format("walls.{}.normal", n),
+                           "disks move in the plane x-z; give a normal with 0 along y");
   for (std::size_t n = 0; n < c.grains.size(); ++n) {
     const PopulationCase& grains = c.grains[n];
     const std::string key = fmt::format("grains.{}.", n);
@@ -251,6 +280,10 @@ void check_disks(const Case& c, const io::YamlDocument& document) {
       if (v.y() != 0.0)
         throw document.error(key + (grains.velocity.y() != 0.0 ? "velocity" : "prescribed_velocity"),
                              "disks move in the plane x-z; give a vector in m/s with 0 along y");
+    if (grains.motion && !stays_in_plane(*grains.motion))
+      throw document.error(key + "motion",
+                           "disks move in the plane x-z and turn about y; give vectors with 0 along y and a "
+                           "rotation.axis along y");
     for (const Vec3& w : {grains.angular_velocity, grains.prescribed_angular_velocity.value_or(Vec3::Zero())})
       if (w.x() != 0.0 || w.z() != 0.0)
         throw document.error(

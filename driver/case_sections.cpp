@@ -275,12 +275,18 @@ static void describe(io::SectionVisitor& visit, TransportRateCase& rate) {
 }
 
 static void describe(io::SectionVisitor&, WallForcesCase&) {}
+static void describe(io::SectionVisitor&, PopulationLoadsCase&) {}
 
 static void describe_analysis(io::SectionVisitor& visit, AnalysisCase& analysis, bool with_fluid, bool with_grains) {
   if (with_grains)
     visit.section("transport_rate", analysis.transport_rate, {.meaning = "the grains' flux q and q* along x"});
   else
     visit.not_here("transport_rate", "system: fluid has no grains; remove the section or set system: resolved");
+  if (with_grains)
+    visit.section("population_loads", analysis.population_loads,
+                  {.meaning = "force and torque on each population of grains, in series.csv; no keys: {}"});
+  else
+    visit.not_here("population_loads", "system: fluid has no grains; remove the section or set system: resolved");
   if (with_fluid)
     visit.section("fluid_statistics", analysis.fluid_statistics,
                   {.meaning = "mean velocity and Reynolds stresses in profiles.h5: over z, and over y and z between "
@@ -313,7 +319,8 @@ void describe(io::SectionVisitor& visit, Case& c) {
     visit.not_here(key, "system: fluid has no grains; remove the section or set system: resolved");
   };
   visit.text("name", c.name, {.meaning = "what the run is called in its output"});
-  visit.section("domain", c.domain, {.meaning = "the box, its cells and its faces", .required = true});
+  visit.section("domain", {.meaning = "the box, its cells and its faces", .required = true},
+                [&](io::SectionVisitor& inside) { describe_domain(inside, c.domain, with_fluid); });
   if (with_fluid)
     visit.section("fluid", c.fluid, {.meaning = "what fills the box", .required = true});
   else
@@ -325,6 +332,10 @@ void describe(io::SectionVisitor& visit, Case& c) {
   else
     visit.section("disks", c.disks,
                   {.meaning = "two dimensions: the grains are disks that move in the plane x-z, in the middle of y"});
+  if (with_fluid)
+    visit.not_here("walls", "with a fluid there are only the faces of the box; remove the section");
+  else
+    visit.list("walls", c.walls, {.meaning = "planes the grains bounce off, besides the faces of the box"});
   if (with_grains) {
     visit.list("grains", c.grains, {.meaning = "populations of grains", .required = !with_fluid});
     visit.require(with_fluid || !c.grains.empty(), "grains",

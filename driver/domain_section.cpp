@@ -68,7 +68,7 @@ static void describe(io::SectionVisitor& visit, Face& face) {
       {{FaceType::periodic, "periodic"},
        {FaceType::no_slip, "no_slip"},
        {FaceType::free_slip, "free_slip"},
-       {FaceType::moving, "moving", "no slip on a wall that moves in its plane"},
+       {FaceType::moving, "moving", "no slip on a wall that moves, with a fluid in its plane"},
        {FaceType::navier_slip, "navier_slip", "slip velocity = slip length x shear rate"},
        {FaceType::law_of_the_wall, "law_of_the_wall", "slip velocity = coefficient x friction velocity"},
        {FaceType::law_of_the_wall_as_printed, "law_of_the_wall_as_printed", "with coefficient 2.35"},
@@ -110,13 +110,17 @@ static void describe(io::SectionVisitor& visit, Face& face) {
                {.unit = "m/s", .meaning = "of the wall or of the fluid that enters", .required = true, .example = 0.1});
   else
     visit.not_here("velocity", "only a moving wall or a velocity_inlet has a velocity; remove it");
+  if (face.type == FaceType::moving)
+    visit.section("oscillation", face.oscillation, {.meaning = "dry grains only: on top of the velocity"});
+  else
+    visit.not_here("oscillation", "only a moving wall swings; remove it");
   if (face.type == FaceType::pressure_outlet)
     visit.real("pressure", face.pressure, {.unit = "Pa", .meaning = "above the reference pressure"});
   else
     visit.not_here("pressure", "only a pressure_outlet has a pressure; remove it");
 }
 
-static void describe_boundaries(io::SectionVisitor& visit, BoundaryKeys& keys) {
+static void describe_boundaries(io::SectionVisitor& visit, BoundaryKeys& keys, bool with_fluid) {
   const auto face = [&](const std::string& key, std::optional<Face>& value, const std::string& meaning) {
     visit.section(key, value, {.meaning = meaning, .shorthand = "type"});
   };
@@ -140,14 +144,17 @@ static void describe_boundaries(io::SectionVisitor& visit, BoundaryKeys& keys) {
       {{"x", &keys.x}, {"x_low", &keys.x_low}, {"x_high", &keys.x_high}},
       {{"y", &keys.y}, {"y_low", &keys.y_low}, {"y_high", &keys.y_high}},
       {{"bottom", &keys.bottom}, {"top", &keys.top}, {"top", &keys.top}}};
-  for (int axis = 0; axis < 3; ++axis)
-    for (const auto& [key, face_there] : by_axis[axis])
+  for (int axis = 0; axis < 3 && with_fluid; ++axis)
+    for (const auto& [key, face_there] : by_axis[axis]) {
+      visit.require(!*face_there || !(*face_there)->oscillation, key,
+                    "only dry grains have walls that swing; remove the oscillation");
       visit.require(!*face_there || (*face_there)->type != FaceType::moving || (*face_there)->velocity[axis] == 0.0,
                     key,
                     "a moving wall moves in its own plane; give it no velocity across, or make it a velocity_inlet");
+    }
 }
 
-void describe(io::SectionVisitor& visit, DomainCase& domain) {
+void describe_domain(io::SectionVisitor& visit, DomainCase& domain, bool with_fluid) {
   visit.vec3("size", domain.size,
              {.unit = "m",
               .meaning = "length streamwise (x), cross-stream (y), upwards (z)",
@@ -163,7 +170,7 @@ void describe(io::SectionVisitor& visit, DomainCase& domain) {
               .example = 0.5e-3});
   BoundaryKeys keys = keys_of(domain.faces);
   visit.section("boundaries", {.meaning = "what stands at each face: " + face_forms, .required = true},
-                [&](io::SectionVisitor& inside) { describe_boundaries(inside, keys); });
+                [&](io::SectionVisitor& inside) { describe_boundaries(inside, keys, with_fluid); });
   if (visit.reading()) domain.faces = faces_of(keys);
 }
 

@@ -24,12 +24,14 @@ dem::GrainParameters dry_parameters(const Case& c, const Decomposition& decompos
   return parameters;
 }
 
-// The faces that are walls, in the order of dem::face_planes(); none where their forces are not asked for.
+// The walls in the order of grain_parameters(); none where their forces are not asked for.
 std::vector<std::string> measured_walls(const Case& c) {
   constexpr std::array names{"x_low", "x_high", "y_low", "y_high", "bottom", "top"};
   std::vector<std::string> walls;
   for (std::size_t face = 0; face < names.size() && c.analysis.wall_forces; ++face)
     if (c.domain.faces[face].type != FaceType::periodic) walls.emplace_back(names[face]);
+  for (std::size_t wall = 0; wall < c.walls.size() && c.analysis.wall_forces; ++wall)
+    walls.push_back(fmt::format("wall_{}", wall));
   return walls;
 }
 
@@ -75,6 +77,7 @@ Snapshot DryGrains::snapshot() const {
   snapshot.grains.velocity = {store.velocity.data(), owned};
   snapshot.grains.angular_velocity = {store.angular_velocity.data(), owned};
   snapshot.grains.contact_force = {store.contact_force.data(), owned};
+  snapshot.grains.contact_torque = {store.contact_torque.data(), owned};
   return snapshot;
 }
 

@@ -21,7 +21,7 @@ public:
   double time_step() const override { return time_step_; }
   Snapshot snapshot() const override;
   // contacts, largest_overlap (in diameters), and of the free grains largest_grain_speed, largest_grain_acceleration
-  // With analysis.wall_forces also three for each wall: wall_force_bottom_x ...
+  // With analysis.wall_forces also three for each wall: wall_force_bottom_x ..., wall_force_wall_0_x ...
   std::vector<Figure> figures() const override;
   static constexpr const char* largest_speed_figure = "largest_grain_speed";
   static constexpr const char* largest_acceleration_figure = "largest_grain_acceleration";

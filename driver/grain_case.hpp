@@ -11,6 +11,40 @@
 
 namespace thalweg {
 
+// On top of a velocity: amplitude [sin(2 pi frequency t + phase) - sin(phase)].
+struct OscillationCase {
+  Vec3 amplitude = Vec3::Zero();  // m
+  double frequency = 0.0;         // Hz
+  double phase = 0.0;             // rad
+  bool operator==(const OscillationCase&) const = default;
+};
+
+struct RotationCase {
+  Vec3 point = Vec3::Zero();      // m, on the axis, at the start
+  Vec3 axis = Vec3::UnitY();      // any length but zero
+  double angular_velocity = 0.0;  // rad/s
+  bool operator==(const RotationCase&) const = default;
+};
+
+// Of a population that moves as one rigid body.
+struct MotionCase {
+  Vec3 velocity = Vec3::Zero();  // m/s
+  std::optional<OscillationCase> oscillation;
+  std::optional<RotationCase> rotation;  // about an axis that moves along
+  bool operator==(const MotionCase&) const = default;
+};
+
+// A plane wall besides the faces of the box.
+struct WallCase {
+  Vec3 point = Vec3::Zero();               // m
+  Vec3 normal = Vec3::UnitZ();             // into the side of the grains; any length but zero
+  std::optional<double> friction;          // else contact.wall_friction
+  std::optional<double> rolling_friction;  // else contact.wall_rolling_friction
+  Vec3 velocity = Vec3::Zero();            // m/s
+  std::optional<OscillationCase> oscillation;
+  bool operator==(const WallCase&) const = default;
+};
+
 enum class PlacementPattern { uniform, random };
 
 struct RegionCase {
@@ -78,6 +112,7 @@ struct PopulationCase {
   bool fixed = false;                               // never moves
   std::optional<Vec3> prescribed_velocity;          // m/s, kept whatever the loads
   std::optional<Vec3> prescribed_angular_velocity;  // rad/s
+  std::optional<MotionCase> motion;                 // all together, as one body
 
   // What read_case() makes of disks, sizes and file.
   double thickness = 0.0;          // m, of disks; 0: spheres

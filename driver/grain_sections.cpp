@@ -158,6 +158,12 @@ void describe(io::SectionVisitor& visit, PopulationCase& grains) {
              {.unit = "m/s", .meaning = "kept whatever the forces", .example = 0.0});
   visit.vec3("prescribed_angular_velocity", grains.prescribed_angular_velocity,
              {.unit = "rad/s", .meaning = "kept whatever the torques", .example = 0.0});
+  visit.section("motion", grains.motion,
+                {.meaning = "all grains move as one rigid body, whatever the forces (a bumpy wall, a plate, a drum)"});
+  visit.require(
+      !grains.motion || (!grains.fixed && !grains.prescribed_velocity && !grains.prescribed_angular_velocity &&
+                         grains.velocity.isZero(0.0) && grains.angular_velocity.isZero(0.0)),
+      "motion", "it already says how the grains move; remove fixed and all velocities beside it");
   visit.require(!grains.fixed || (!grains.prescribed_velocity && !grains.prescribed_angular_velocity), "fixed",
                 "a fixed grain cannot have a prescribed velocity; give one or the other");
   visit.require(!grains.fixed || (grains.velocity.isZero(0.0) && grains.angular_velocity.isZero(0.0)), "fixed",

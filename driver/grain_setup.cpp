@@ -22,6 +22,50 @@ dem::Region region_of(const PlacementCase& placement, const PeriodicBox& box) {
   return {placement.region->lower, placement.region->upper};
 }
 
+dem::Oscillation oscillation_of(const std::optional<OscillationCase>& oscillation) {
+  if (!oscillation) return {};
+  return {oscillation->amplitude, oscillation->frequency, oscillation->phase};
+}
+
+// Number in the list of assemblies; -1: none.
+int assembly_of(const Case& c, std::size_t population) {
+  if (!c.grains[population].motion) return -1;
+  int number = -1;
+  for (std::size_t p = 0; p <= population; ++p) number += c.grains[p].motion.has_value();
+  return number;
+}
+
+std::vector<dem::PrescribedMotion> assemblies_of(const Case& c) {
+  std::vector<dem::PrescribedMotion> motions;
+  for (const PopulationCase& population : c.grains)
+    if (population.motion) motions.push_back(prescribed_motion(*population.motion));
+  return motions;
+}
+
+// The faces that are no periodic ones, then the walls of the case.
+std::vector<dem::Plane> planes_of(const Case& c, const PeriodicBox& box, const dem::ContactParameters& contact) {
+  std::vector<dem::Plane> planes = dem::face_planes(box, contact);
+  std::size_t number = 0;
+  for (const Face& face : c.domain.faces) {  // face_planes() has the same order and leaves out the periodic ones
+    if (face.type == FaceType::periodic) continue;
+    dem::Plane& plane = planes[number++];
+    if (face.type != FaceType::moving) continue;
+    plane.velocity = face.velocity;
+    plane.oscillation = oscillation_of(face.oscillation);
+  }
+  for (const WallCase& wall : c.walls) {
+    dem::Plane plane;
+    plane.point = wall.point;
+    plane.normal = wall.normal.normalized();
+    plane.friction = wall.friction.value_or(contact.wall_friction);
+    plane.rolling_friction = wall.rolling_friction.value_or(contact.wall_rolling_friction);
+    plane.velocity = wall.velocity;
+    plane.oscillation = oscillation_of(wall.oscillation);
+    planes.push_back(plane);
+  }
+  return planes;
+}
+
 dem::GrainSeed seed_of(const Case& c, std::size_t number, std::size_t grain, const Vec3& position) {
   const PopulationCase& population = c.grains[number];
   dem::GrainSeed seed;
@@ -42,7 +86,8 @@ dem::GrainSeed seed_of(const Case& c, std::size_t number, std::size_t grain, con
   if (population.prescribed_velocity) seed.motion = dem::Motion::held_translation;
   if (population.prescribed_angular_velocity)
     seed.motion = population.prescribed_velocity ? dem::Motion::fixed : dem::Motion::held_rotation;
-  if (population.fixed) {
+  seed.assembly = assembly_of(c, number);
+  if (population.fixed || population.motion) {
     seed.motion = dem::Motion::fixed;
     seed.velocity = seed.angular_velocity = Vec3::Zero();
   }
@@ -83,19 +128,25 @@ std::vector<Vec3> place(const PopulationCase& population, const PeriodicBox& box
 
 }  // namespace
 
+dem::PrescribedMotion prescribed_motion(const MotionCase& c) {
+  dem::PrescribedMotion motion;
+  motion.velocity = c.velocity;
+  motion.oscillation = oscillation_of(c.oscillation);
+  if (!c.rotation) return motion;
+  motion.centre = c.rotation->point;
+  motion.axis = c.rotation->axis.normalized();
+  motion.angular_velocity = c.rotation->angular_velocity;
+  return motion;
+}
+
 dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box) {
   dem::GrainParameters parameters;
   const std::vector<dem::ContactParameters> materials = materials_of(c);
   parameters.contact = materials.front();
   parameters.other_materials.assign(materials.begin() + 1, materials.end());
   parameters.wall_contact = wall_material_of(c.contact);
-  parameters.walls = dem::face_planes(box, parameters.contact);
-  std::size_t wall = 0;
-  for (const Face& face : c.domain.faces) {  // face_planes() has the same order and leaves out the periodic ones
-    if (face.type == FaceType::periodic) continue;
-    if (face.type == FaceType::moving) parameters.walls[wall].velocity = face.velocity;
-    ++wall;
-  }
+  parameters.walls = planes_of(c, box, parameters.contact);
+  parameters.assemblies = assemblies_of(c);
   parameters.time_step = grain_time_step(c);
   parameters.disks = c.disks.has_value();
   if (c.run.grain_integrator == GrainIntegrator::gear) parameters.integrator = dem::Integrator::gear;

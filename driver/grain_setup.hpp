@@ -8,8 +8,11 @@
 
 namespace thalweg::driver {
 
-// Contact law, time step, sub-steps, skin, and a plane with the walls' friction at every non-periodic face. The body
-// force, ghost width and attached columns are left to the caller.
+dem::PrescribedMotion prescribed_motion(const MotionCase& c);
+
+// Contact law, time step, sub-steps, skin, rigid assemblies, and the walls: a plane with the walls' friction at every
+// non-periodic face, in the order of the case's faces, then those of the section walls. The body force, ghost width and
+// attached columns are left to the caller.
 dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box);
 
 // All grains at the start. Ids run through the populations in the order of the case. Given positions are taken first,

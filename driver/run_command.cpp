@@ -2,12 +2,14 @@
 
 #include "analysis/fluid_statistics.hpp"
 #include "analysis/grain_energy.hpp"
+#include "analysis/population_loads.hpp"
 #include "analysis/transport_rate.hpp"
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
 #include "driver/build_system.hpp"
 #include "driver/case_reader.hpp"
 #include "driver/dry_grains.hpp"
+#include "driver/grain_setup.hpp"
 #include "driver/machine.hpp"
 #include "driver/on_first_rank.hpp"
 #include "driver/progress.hpp"
@@ -55,6 +57,23 @@ Places places_of(const Command& command) {
   return {checkpoint, io::RunFolder(out), same};
 }
 
+// The ids of grains count population by population (grain_seeds()).
+std::vector<analysis::Population> populations_of(const Case& c) {
+  std::vector<analysis::Population> populations;
+  GlobalId first = 0;
+  for (std::size_t p = 0; p < c.grains.size(); ++p) {
+    const PopulationCase& grains = c.grains[p];
+    std::function<Vec3(double)> pivot = [centre = Vec3(0.5 * c.domain.size)](double) { return centre; };
+    if (grains.motion && grains.motion->rotation)
+      pivot = [motion = prescribed_motion(*grains.motion)](double time) -> Vec3 {
+        return motion.centre + motion.displacement(time);
+      };
+    populations.push_back({fmt::format("grains_{}", p), first, first + grains.count, pivot});
+    first += grains.count;
+  }
+  return populations;
+}
+
 Observers observers_of(const Case& c, const System& system, MPI_Comm communicator) {
   Observers observers;
   if (c.analysis.fluid_statistics) {
@@ -72,6 +91,9 @@ Observers observers_of(const Case& c, const System& system, MPI_Comm communicato
     observers.push_back(
         std::make_unique<analysis::TransportRate>(communicator, scales, c.analysis.transport_rate->from));
   }
+  if (c.analysis.population_loads)
+    observers.push_back(std::make_unique<analysis::PopulationLoads>(
+        communicator, system.snapshot().decomposition->box(), populations_of(c), has_fluid(c)));
   observers.push_back(std::make_unique<analysis::GrainEnergy>(communicator));
   return observers;
 }

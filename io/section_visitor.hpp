@@ -132,6 +132,9 @@ public:
     const std::size_t size = begin_list(key, values.size(), about);
     values.resize(size);
     for (std::size_t n = 0; n < size; ++n) item(key, n, [&](SectionVisitor& inside) { describe(inside, values[n]); });
+    if (size > 0) return;
+    Section example{};
+    example_item([&](SectionVisitor& inside) { describe(inside, example); });
   }
 
   // The key belongs to this section but not to this case; reading it is an error that gives the reason.
@@ -159,6 +162,7 @@ protected:
   virtual void nested(const std::string& key, bool given, const SectionKey& about, const Body& body) = 0;
   virtual std::size_t begin_list(const std::string& key, std::size_t size, const SectionKey& about) = 0;
   virtual void item(const std::string& key, std::size_t index, const Body& body) = 0;
+  virtual void example_item(const Body&) {}  // of a list that is empty
 
 private:
   template <typename Choice>

@@ -165,13 +165,24 @@ void SectionWriter::item(const std::string&, std::size_t, const Body& body) {
   depth_ -= 2;
 }
 
+void SectionWriter::example_item(const Body& body) {
+  if (style_ == YamlStyle::plain) return;
+  const bool given_outside = given_;
+  given_ = false;
+  const std::size_t first = lines_.size();
+  item("", 0, body);
+  given_ = given_outside;
+  if (lines_.size() > first) lines_[first].example = true;
+}
+
 std::string SectionWriter::yaml() const {
   std::string result;
   for (const Line& line : lines_) {
     const std::size_t indent = 2 * static_cast<std::size_t>(line.depth - (line.item && !line.key.empty() ? 1 : 0));
     std::string text(indent, ' ');
+    if (line.example) text += "# ";
     if (line.item) text += "- ";
-    if (!line.given) text += "# ";
+    if (!line.given && !line.example) text += "# ";
     if (!line.key.empty()) text += line.key + ":" + (line.value.empty() ? "" : " ");
     text += line.value;
     if (!line.comment.empty()) {

@@ -35,6 +35,7 @@ private:
     bool item;   // the first line of an entry of a list
     int depth;   // in sections
     std::string key, value, comment;
+    bool example = false;  // with item: of an entry that is a comment altogether
   };
 
   void word(const std::string& key, std::size_t& index, const std::vector<Word>& words,
@@ -47,6 +48,7 @@ private:
   void nested(const std::string& key, bool given, const SectionKey& about, const Body& body) override;
   std::size_t begin_list(const std::string& key, std::size_t size, const SectionKey& about) override;
   void item(const std::string& key, std::size_t index, const Body& body) override;
+  void example_item(const Body& body) override;
 
   void put(bool given, const std::string& key, const std::string& value, const std::string& comment);
   std::string comment_of(const RealKey& about) const;

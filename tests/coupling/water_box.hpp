@@ -27,6 +27,7 @@ struct WaterBox {
   bool virtual_mass = false;
   RefillRule refill = RefillRule::equilibrium;
   std::vector<dem::GrainSeed> seeds;
+  std::vector<dem::PrescribedMotion> assemblies;
 };
 
 template <typename Real>
@@ -66,6 +67,7 @@ std::unique_ptr<ResolvedSystem<Real>> make_system(const WaterBox& box, MPI_Comm 
     const double displaced = fluid_density * 4.0 / 3.0 * 3.14159265358979323846 * radius * radius * radius;
     return Vec3(mass * gravity.x(), mass * gravity.y(), (mass - displaced) * gravity.z());
   };
+  g.assemblies = box.assemblies;
   g.time_step = box.time_step / box.sub_steps;
   g.sub_steps = box.sub_steps;
   double largest = 0.0;

@@ -122,5 +122,30 @@ TEST(GrainCaseReader, RollingFrictionIsAPartOfTheMaterial) {
   EXPECT_NE(message.find("give contact.wall_rolling_friction"), std::string::npos) << message;
 }
 
+TEST(GrainCaseReader, WallsAndPopulationsMove) {
+  const std::vector<std::string> settings{
+      "domain.boundaries.bottom={type: moving, velocity: [0, 0, 0.1], oscillation: {amplitude: [0, 0, 1e-3], "
+      "frequency: "
+      "20, phase: 1.5}}",
+      "walls=[{point: [0.01, 0, 0], normal: [1, 0, 1], friction: 0.2, velocity: [0.1, 0, 0]}]",
+      "grains.0.motion={velocity: [0.1, 0, 0], rotation: {point: [0.03, 0, 0.03], angular_velocity: 2}}"};
+  const Case c = read(defaults_yaml("grains"), settings);
+  EXPECT_EQ(c.domain.faces[bottom].oscillation->phase, 1.5);
+  EXPECT_EQ(c.walls.at(0).normal, Vec3(1.0, 0.0, 1.0));
+  EXPECT_EQ(*c.walls[0].friction, 0.2);
+  EXPECT_EQ(c.grains[0].motion->rotation->axis, Vec3::UnitY());
+  EXPECT_EQ(read(resolved_yaml(c)), c) << resolved_yaml(c);
+  const auto refused = [](const std::string& setting) {
+    return message_of<InputError>([&] { read(flume, {setting}); });
+  };
+  EXPECT_NE(refused(settings[0]).find("only dry grains have walls that swing"), std::string::npos);
+  EXPECT_NE(refused("domain.boundaries.bottom={type: moving, velocity: [0, 0, 0.1]}").find("moves in its own plane"),
+            std::string::npos);
+  EXPECT_NE(refused(settings[1]).find("only the faces of the box"), std::string::npos);
+  // 40 rad/s, 40 mm away: 1.6 m/s and more; the lattice takes 0.173 cells a step, 4.3 m/s, at 20 us.
+  EXPECT_NE(refused("grains.0.motion={rotation: {point: [0.03, 0, 0.03], angular_velocity: 200}}").find("cells a step"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace thalweg

@@ -1,0 +1,100 @@
+#!/usr/bin/python3
+"""Walls and rigid populations that move, from the case file to the forces on them.
+
+Called by ctest: motion_run_test.py THALWEG MPIEXEC [unittest arguments]
+"""
+import csv
+import sys
+from pathlib import Path
+
+import h5py
+import numpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+import program
+from program import ProgramTest
+
+WEIGHT = 9.8 * 2550 * numpy.pi / 6 * 5e-3 ** 3
+
+
+class MotionRun(ProgramTest):
+    # A lift: a plate of nine glued grains rises at 0.02 m/s with a grain in the dimple at its middle; beside it a floor
+    # that swings and a slanted plane.
+    CASE = """
+system: grains
+name: lift
+domain:
+  size: [0.04, 0.03, 0.04]
+  spacing: 1.0e-3
+  boundaries:
+    x: no_slip
+    y: no_slip
+    bottom: {type: moving, velocity: [0, 0, 0], oscillation: {amplitude: [0, 0, 1.0e-3], frequency: 20}}
+    top: no_slip
+walls:
+  - {point: [0.025, 0, 0], normal: [-1, 0, 1], friction: 0.1}
+gravity: {magnitude: 9.8}
+grains:
+  - diameter: 5.0e-3
+    density: 2550
+    placement:
+      positions: [[0.006, 0.011, 0.01], [0.010, 0.011, 0.01], [0.014, 0.011, 0.01],
+                  [0.006, 0.015, 0.01], [0.010, 0.015, 0.01], [0.014, 0.015, 0.01],
+                  [0.006, 0.019, 0.01], [0.010, 0.019, 0.01], [0.014, 0.019, 0.01]]
+    motion: {velocity: [0, 0, 0.02]}
+  - {diameter: 5.0e-3, density: 2550, placement: {positions: [[0.012, 0.013, 0.0146]]}}
+contact: {restitution: 0.3, friction: 0.5, rolling_friction: 0.1}
+run: {until: 0.4}
+output: {series: {every: 0.02}}
+analysis: {population_loads: {}, wall_forces: {}}
+"""
+
+    def bed(self, run="run"):
+        with h5py.File(self.folder / run / "bed.h5") as file:
+            return file["grains/position"][()], file["grains/velocity"][()]
+
+    def series(self, run="run"):
+        with open(self.folder / run / "series.csv") as file:
+            rows = list(csv.reader(line for line in file if not line.startswith("#")))
+        names = [name.split()[0] for name in rows[0]]
+        return {name: numpy.array([float(row[n]) for row in rows[1:]]) for n, name in enumerate(names)}
+
+    def test_a_lift_carries_its_grain_and_feels_its_weight(self):
+        self.run_well("run", self.case, "--set", "walls=[]")
+        position, velocity = self.bed()
+        time = self.summary("run")["simulated_time"]
+        numpy.testing.assert_allclose(position[:9, 2], 0.01 + 0.02 * time, atol=1e-15)
+        # In the dimple: diagonal of the 4 mm square over 2 beside it, up to the overlaps of a weight over 20 kN/m.
+        self.assertAlmostEqual(position[9, 2] - position[0, 2], numpy.sqrt(25 - 8) * 1e-3, delta=1e-6)
+        self.assertAlmostEqual(velocity[9, 2], 0.02, delta=1e-5)
+        series = self.series()
+        self.assertAlmostEqual(series["grains_0_contact_force_z"][-1], -WEIGHT, delta=1e-2 * WEIGHT)
+        self.assertAlmostEqual(series["grains_1_contact_force_z"][-1], WEIGHT, delta=1e-2 * WEIGHT)
+        # About the middle of the box, 20 and 15 mm along x and y: the weight at 12 and 13 mm.
+        self.assertAlmostEqual(series["grains_0_contact_torque_x"][-1], 0.002 * WEIGHT, delta=1e-2 * 0.002 * WEIGHT)
+        self.assertAlmostEqual(series["grains_0_contact_torque_y"][-1], -0.008 * WEIGHT, delta=1e-2 * 0.008 * WEIGHT)
+
+    def test_a_restart_finds_walls_and_plate_where_they_were(self):
+        loose = "grains.1.placement.positions=[[0.012, 0.013, 0.0146], [0.03, 0.015, 0.01]]"
+        whole = ["--set", loose, "--set", "run.until=0.05"]
+        self.run_well("run", self.case, *whole)
+        half = [a.replace("0.05", "0.023") if a.startswith("run.until") else a for a in whole]
+        self.run_well("run", self.case, *half, "--out", "half")
+        self.run_well("run", self.case, *whole, "--restart", "half", "--out", "rest", ranks=2)
+        self.assertEqual((self.folder / "run/bed.h5").read_bytes(), (self.folder / "rest/bed.h5").read_bytes())
+        # What lay on the swinging floor has been thrown about, and has not passed the slanted plane.
+        position, _ = self.bed()
+        height = (position[10, 2] - (position[10, 0] - 0.025)) / numpy.sqrt(2)
+        self.assertGreater(height, 2.4e-3)
+
+    def test_what_cannot_be_is_refused(self):
+        self.assert_refused("check", self.case, "--set", "walls.0.normal=[0, 0, 0]", words=["walls.0.normal", "[0, 0, 1]"])
+        self.assert_refused("check", self.case, "--set", "grains.0.fixed=true", words=["grains.0.motion", "remove fixed"])
+        self.assert_refused("check", self.case, "--set", "grains.0.motion.oscillation={amplitude: [0, 0, 1]}",
+                            words=["frequency"])
+        self.assert_refused("run", self.case, "--set", "grains.0.motion.velocity=[0, 0, 20]",
+                            words=["20 m/s", "half the skin"])
+
+
+if __name__ == "__main__":
+    program.main()
