@@ -28,6 +28,7 @@ struct WaterBox {
   RefillRule refill = RefillRule::equilibrium;
   std::vector<dem::GrainSeed> seeds;
   std::vector<dem::PrescribedMotion> assemblies;
+  std::vector<dem::ClumpSeed> clumps;
 };
 
 template <typename Real>
@@ -72,6 +73,8 @@ std::unique_ptr<ResolvedSystem<Real>> make_system(const WaterBox& box, MPI_Comm 
   g.sub_steps = box.sub_steps;
   double largest = 0.0;
   for (const dem::GrainSeed& seed : box.seeds) largest = std::max(largest, seed.radius);
+  for (const dem::ClumpSeed& clump : box.clumps)
+    for (const dem::Sphere& member : clump.shape->members) largest = std::max(largest, member.radius);
   g.skin = 0.2 * largest;
   g.ghost_width = ResolvedSystem<Real>::ghost_reach(largest, box.spacing);
   if (box.lubrication) {
@@ -80,7 +83,7 @@ std::unique_ptr<ResolvedSystem<Real>> make_system(const WaterBox& box, MPI_Comm 
     g.lubrication = lubrication;
   }
   g.attached_width = ResolvedSystem<Real>::attached_width;
-  auto grains = std::make_unique<dem::GrainDynamics>(*decomposition, communicator, g, box.seeds);
+  auto grains = std::make_unique<dem::GrainDynamics>(*decomposition, communicator, g, box.seeds, box.clumps);
   return std::make_unique<ResolvedSystem<Real>>(std::move(decomposition), communicator, p, std::move(grains));
 }
 
@@ -93,6 +96,23 @@ inline dem::GrainSeed glass_sphere(GlobalId id, const Vec3& position, const Vec3
   seed.position = position;
   seed.velocity = velocity;
   return seed;
+}
+
+inline dem::ClumpSeed glass_clump(GlobalId id, const std::vector<dem::Sphere>& members, const Vec3& position,
+                                  const Vec3& velocity = Vec3::Zero(), const Vec3& angular_velocity = Vec3::Zero()) {
+  dem::ClumpSeed seed;
+  seed.id = id;
+  seed.shape = std::make_shared<const dem::ClumpShape>(dem::clump_shape(members));
+  seed.density = 2550.0;
+  seed.position = position;
+  seed.velocity = velocity;
+  seed.angular_velocity = angular_velocity;
+  return seed;
+}
+
+// Three spheres of 4.4, 3.6 and 4 mm that overlap, none of them in a row.
+inline std::vector<dem::Sphere> pebble() {
+  return {{{0, 0, 0}, 2.2e-3}, {{2.4e-3, 0.3e-3, 0.2e-3}, 1.8e-3}, {{-0.5e-3, 2.0e-3, 0.8e-3}, 2.0e-3}};
 }
 
 }  // namespace thalweg::coupling
