@@ -7,14 +7,19 @@ namespace thalweg::analysis {
 void GrainEnergy::observe(const Snapshot& snapshot) {
   const GrainView& grains = snapshot.grains;
   constexpr std::size_t columns = 4;
-  std::vector<double> terms(grains.id.size() * columns);
+  std::vector<double> terms;
+  terms.reserve(grains.id.size() * columns);
+  const auto add = [&terms](double energy, double mass, const Vec3& velocity) {
+    terms.insert(terms.end(), {energy, mass * velocity[0], mass * velocity[1], mass * velocity[2]});
+  };
   for (std::size_t i = 0; i < grains.id.size(); ++i) {
+    if (grains.is_member(i)) continue;
     const double mass = grains.mass[i];
     const double inertia = (grains.disk_thickness > 0.0 ? 0.5 : 0.4) * mass * grains.radius[i] * grains.radius[i];
-    terms[i * columns] =
-        0.5 * mass * grains.velocity[i].squaredNorm() + 0.5 * inertia * grains.angular_velocity[i].squaredNorm();
-    for (int axis = 0; axis < 3; ++axis) terms[i * columns + 1 + axis] = mass * grains.velocity[i][axis];
+    add(0.5 * mass * grains.velocity[i].squaredNorm() + 0.5 * inertia * grains.angular_velocity[i].squaredNorm(), mass,
+        grains.velocity[i]);
   }
+  for (const ClumpState& clump : grains.clumps) add(clump.kinetic_energy, clump.mass, clump.velocity);
   const std::vector<double> sums = order_free_sums(communicator_, terms, columns);
   energy_ = sums[0];
   momentum_ = Vec3(sums[1], sums[2], sums[3]);

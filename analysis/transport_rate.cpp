@@ -32,15 +32,18 @@ TransportRate::TransportRate(MPI_Comm communicator, const TransportScales& scale
 void TransportRate::observe(const Snapshot& snapshot) {
   const GrainView& grains = snapshot.grains;
   const double threshold = scales_.moving_speed();
-  std::vector<double> flux(grains.id.size());
+  std::vector<double> flux;
   std::int64_t moving = 0;
   double largest_squared = 0.0;
-  for (std::size_t i = 0; i < flux.size(); ++i) {
-    flux[i] = sphere_volume(grains.radius[i]) * grains.velocity[i].x();
-    const double speed_squared = grains.velocity[i].squaredNorm();
+  const auto add = [&](double volume, const Vec3& velocity) {
+    flux.push_back(volume * velocity.x());
+    const double speed_squared = velocity.squaredNorm();
     if (speed_squared > threshold * threshold) ++moving;
     largest_squared = std::max(largest_squared, speed_squared);
-  }
+  };
+  for (std::size_t i = 0; i < grains.id.size(); ++i)
+    if (!grains.is_member(i)) add(sphere_volume(grains.radius[i]), grains.velocity[i]);
+  for (const ClumpState& clump : grains.clumps) add(clump.volume, clump.velocity);
   const Vec3 size = snapshot.decomposition->box().size;
   q_s_ = order_free_sums(communicator_, flux, 1)[0] / (size.x() * size.y());
   moving_ = sum_over_ranks(communicator_, moving);

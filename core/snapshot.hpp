@@ -11,7 +11,18 @@
 
 namespace thalweg {
 
-// The grains this rank owns, in no particular order. Every span has one entry a grain.
+// A clump: a rigid grain of several spheres.
+struct ClumpState {
+  GlobalId id;            // that of its first member
+  double mass, volume;    // kg, m^3
+  Vec3 position;          // m, of its centre, inside the box
+  Vec3 velocity;          // m/s, of its centre
+  double kinetic_energy;  // J, with rotation
+};
+
+// The grains this rank owns, in no particular order. Every span has one entry a grain. Members of clumps are among them
+// as spheres that move with it, but their mass is the whole clump's: what is summed over grains takes is_member() out
+// and `clumps` in.
 struct GrainView {
   std::int64_t global_count = 0;  // over all ranks
   double disk_thickness = 0.0;    // m; 0: spheres
@@ -25,6 +36,13 @@ struct GrainView {
   std::span<const Vec3> fluid_torque;      // N m
   std::span<const Vec3> contact_force;     // N, sum over contacts at the end of the step
   std::span<const Vec3> contact_torque;    // N m, about the grain's centre
+
+  // Where there are clumps:
+  std::int64_t clump_count = 0, member_count = 0;  // over all ranks
+  std::span<const GlobalId> clump;                 // id of a member's clump; -1: no member. Empty: there are no clumps
+  std::vector<ClumpState> clumps;                  // owned by this rank as are their members, in order of id
+  bool is_member(std::size_t grain) const { return !clump.empty() && clump[grain] >= 0; }
+  std::int64_t body_count() const { return global_count - member_count + clump_count; }  // a clump counts once
 };
 
 enum class FluidField { velocity, pressure, grain_id, density, shear_rate, eddy_viscosity, vorticity, q_criterion };

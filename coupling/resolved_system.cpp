@@ -257,6 +257,7 @@ Snapshot ResolvedSystem<Real>::snapshot() const {
   s.grains.fluid_torque = {store.load_torque.data(), n};
   s.grains.contact_force = {store.contact_force.data(), n};
   s.grains.contact_torque = {store.contact_torque.data(), n};
+  grains_->show_clumps(s.grains);
   return s;
 }
 

@@ -13,6 +13,7 @@
 #include "core/archive.hpp"
 #include "core/decomposition.hpp"
 #include "core/phase_timer.hpp"
+#include "core/snapshot.hpp"
 #include "dem/assemblies.hpp"
 #include "dem/clump_seed.hpp"
 #include "dem/clumps.hpp"
@@ -126,8 +127,10 @@ public:
   std::int64_t global_count() const { return global_count_; }  // rows over all ranks: grains and members of clumps
   std::int64_t clump_count() const { return clump_count_; }    // over all ranks
   std::int64_t member_count() const { return member_count_; }  // members of clumps over all ranks
-  std::int64_t rebuilds() const { return rebuilds_; }          // since construction or load
-  PhaseTimer& timer() { return timer_; }                       // contact lists, contact forces, motion, messages
+  std::int64_t body_count() const { return global_count_ - member_count_ + clump_count_; }  // a clump counts once
+  void show_clumps(GrainView& view) const;             // the entries of the view that clumps have
+  std::int64_t rebuilds() const { return rebuilds_; }  // since construction or load
+  PhaseTimer& timer() { return timer_; }               // contact lists, contact forces, motion, messages
 
   // The touching pairs whose lower id is owned here, sorted by ids, then the touching walls of owned grains.
   std::vector<Contact> contacts() const;

@@ -343,7 +343,7 @@ void GrainDynamics::load(ArchiveReader& archive, const std::string& group) {
   sort_histories(histories);
 
   adopt(store_, exchange_grains(communicator_, batch, owner, store_.attached_width));
-  check_time_step(parameters_, lightest_of(store_, clumps, materials_.count(), communicator_), global_count_);
+  check_time_step(parameters_, lightest_of(store_, clumps, materials_.count(), communicator_), body_count());
   clumps_.adopt(clumps);
   settle_in(histories);
   rebuilds_ = 0;

@@ -82,6 +82,17 @@ void GrainDynamics::for_each_body(Visitor&& visit) const {
   }
 }
 
+void GrainDynamics::show_clumps(GrainView& view) const {
+  if (clump_count_ == 0) return;
+  view.clump_count = clump_count_;
+  view.member_count = member_count_;
+  view.clump = {store_.clump.data(), store_.owned};
+  for (std::size_t n = 0; n < clumps_.size(); ++n) {
+    const Clump& clump = clumps_[n];
+    view.clumps.push_back({clump.id, clump.mass, clump.volume, clump.centre, clump.velocity, clump.kinetic_energy()});
+  }
+}
+
 double GrainDynamics::kinetic_energy() const {
   std::vector<double> energies;
   for_each_body([&](double, const Vec3&, double energy, Motion, auto&&) { energies.push_back(energy); });

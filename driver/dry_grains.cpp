@@ -78,6 +78,7 @@ Snapshot DryGrains::snapshot() const {
   snapshot.grains.angular_velocity = {store.angular_velocity.data(), owned};
   snapshot.grains.contact_force = {store.contact_force.data(), owned};
   snapshot.grains.contact_torque = {store.contact_torque.data(), owned};
+  grains_.show_clumps(snapshot.grains);
   return snapshot;
 }
 

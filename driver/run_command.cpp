@@ -105,7 +105,7 @@ void greet(const Case& c, RunIdentity& identity, const System& system, const Pla
   log.line(
       fmt::format("{} on {} rank{}, layout {} x {} x {}; {} grains, {} cells; {:.6g} s a step, {:.0f} steps to {:g} s",
                   identity.system, identity.ranks, identity.ranks == 1 ? "" : "s", identity.layout[0],
-                  identity.layout[1], identity.layout[2], system.snapshot().grains.global_count, system.cells(),
+                  identity.layout[1], identity.layout[2], system.snapshot().grains.body_count(), system.cells(),
                   system.time_step(), c.run.until / system.time_step(), c.run.until));
   if (!places.checkpoint.empty())
     log.line(fmt::format("going on from {} at {:.6g} s", places.checkpoint.string(), system.time()));

@@ -98,7 +98,7 @@ io::JsonObject summary_of(const RunIdentity& identity, const System& system, con
   summary.set("steps", record.last_step).set("steps_in_this_session", record.last_step - record.first_step);
   summary.set("ranks", identity.ranks);
   summary.set("layout", fmt::format("{},{},{}", identity.layout[0], identity.layout[1], identity.layout[2]));
-  summary.set("cells", system.cells()).set("grains", system.snapshot().grains.global_count);
+  summary.set("cells", system.cells()).set("grains", system.snapshot().grains.body_count());
   summary.set("wall_seconds", record.wall_seconds).set("steps_per_second", speeds.steps_per_second);
   summary.set("mlups", speeds.mlups).set("mlups_advancing", speeds.mlups_advancing);
   if (identity.memory_bound_mlups > 0.0)

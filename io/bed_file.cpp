@@ -17,19 +17,30 @@ const std::string format = "thalweg bed 1";
 
 // One grain on its way to rank 0.
 struct Row {
-  GlobalId id;
+  GlobalId id, clump;
   double radius, density;
   double position[3], velocity[3], angular_velocity[3];
 };
 
 void copy(const Vec3& from, double* to) { std::copy(from.data(), from.data() + 3, to); }
 
+double clump_density(const GrainView& grains, GlobalId id) {
+  // In order of id, and with its members here.
+  const auto clump = std::lower_bound(grains.clumps.begin(), grains.clumps.end(), id,
+                                      [](const ClumpState& state, GlobalId wanted) { return state.id < wanted; });
+  return clump->mass / clump->volume;
+}
+
 std::vector<Row> gathered(MPI_Comm communicator, const GrainView& grains) {
   std::vector<Row> rows(grains.id.size());
   for (std::size_t n = 0; n < rows.size(); ++n) {
     const double r = grains.radius[n];
     const double height = grains.disk_thickness > 0.0 ? grains.disk_thickness : 4.0 / 3.0 * r;
-    rows[n] = {grains.id[n], r, grains.mass[n] / (height * std::numbers::pi * r * r), {}, {}, {}};
+    rows[n] = {grains.id[n], -1, r, grains.mass[n] / (height * std::numbers::pi * r * r), {}, {}, {}};
+    if (grains.is_member(n)) {
+      rows[n].clump = grains.clump[n];
+      rows[n].density = clump_density(grains, grains.clump[n]);
+    }
     copy(grains.position[n], rows[n].position);
     copy(grains.velocity[n], rows[n].velocity);
     copy(grains.angular_velocity[n], rows[n].angular_velocity);
@@ -98,9 +109,13 @@ void write_bed_file(MPI_Comm communicator, const std::filesystem::path& path, co
   writer.archive().attribute("bed/disk_thickness", snapshot.grains.disk_thickness);
   writer.triple<double>("box", "m", {box.size[0], box.size[1], box.size[2]});
   writer.triple<std::int64_t>("periodic", "1", {box.periodic[0], box.periodic[1], box.periodic[2]});
-  std::vector<std::int64_t> ids;
-  for (const Row& row : rows) ids.push_back(row.id);
+  std::vector<std::int64_t> ids, clumps;
+  for (const Row& row : rows) {
+    ids.push_back(row.id);
+    clumps.push_back(row.clump);
+  }
   writer.column("id", "1", ids);
+  if (snapshot.grains.clump_count > 0) writer.column("clump", "1", clumps);
   writer.scalars(rows, "radius", "m", &Row::radius);
   writer.scalars(rows, "density", "kg/m^3", &Row::density);
   writer.vectors(rows, "position", "m", &Row::position);
@@ -129,9 +144,11 @@ Bed read_bed_file(const std::filesystem::path& path) {
   const auto position = column<double>(file, "grains/position", count, 3);
   const auto velocity = column<double>(file, "grains/velocity", count, 3);
   const auto spin = column<double>(file, "grains/angular_velocity", count, 3);
+  const auto clump = file.has("grains/clump") ? column<std::int64_t>(file, "grains/clump", count)
+                                              : std::vector<std::int64_t>(count, -1);
   for (std::size_t n = 0; n < count; ++n)
     bed.grains.push_back(
-        {id[n], radius[n], density[n], Vec3(&position[3 * n]), Vec3(&velocity[3 * n]), Vec3(&spin[3 * n])});
+        {id[n], radius[n], density[n], Vec3(&position[3 * n]), Vec3(&velocity[3 * n]), Vec3(&spin[3 * n]), clump[n]});
   return bed;
 }
 

@@ -2,8 +2,9 @@
 //
 // HDF5. Group `bed`: attributes format, time (s) and disk_thickness (m; 0: spheres), datasets box (m) and periodic (0
 // or 1 along x, y, z). Group `grains`, one row a grain in order of id: id, radius, density, position, velocity,
-// angular_velocity. Every dataset has its unit as attribute. The bytes depend on the grains alone, not on the number of
-// ranks.
+// angular_velocity; where there are clumps, also clump: the id of the clump a member belongs to, -1 for others. A clump
+// is the union of its members; their density is its own. Every dataset has its unit as attribute. The bytes depend on
+// the grains alone, not on the number of ranks.
 #pragma once
 
 #include "core/snapshot.hpp"
@@ -24,6 +25,7 @@ struct BedGrain {
   Vec3 position = Vec3::Zero();          // m
   Vec3 velocity = Vec3::Zero();          // m/s
   Vec3 angular_velocity = Vec3::Zero();  // rad/s
+  GlobalId clump = -1;                   // id of the clump it is a member of; members follow each other
   bool operator==(const BedGrain&) const = default;
 };
 
@@ -35,7 +37,8 @@ struct Bed {
   std::vector<BedGrain> grains;  // in order of id
 };
 
-// The density is the mass over the volume of the sphere or disk. Collective; throws RunError on every rank.
+// The density is the mass over the volume of the sphere or disk, or of the clump. Collective; throws RunError on every
+// rank.
 void write_bed_file(MPI_Comm communicator, const std::filesystem::path& path, const Snapshot& snapshot);
 
 // The whole bed, read by every rank that asks. Throws InputError where the file is missing or not a bed file.

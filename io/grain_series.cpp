@@ -22,7 +22,7 @@ namespace {
 
 // One grain on its way to rank 0.
 struct Row {
-  std::int64_t id;
+  std::int64_t id, clump;
   double radius;
   double position[3], velocity[3], angular_velocity[3], fluid_force[3], contact_force[3];
 };
@@ -34,6 +34,7 @@ std::vector<Row> gathered(MPI_Comm communicator, const GrainView& grains) {
   for (std::size_t n = 0; n < rows.size(); ++n) {
     rows[n] = Row{};
     rows[n].id = grains.id[n];
+    rows[n].clump = grains.is_member(n) ? grains.clump[n] : -1;
     rows[n].radius = grains.radius[n];
     copy(grains.position[n], rows[n].position);
     copy(grains.velocity[n], rows[n].velocity);
@@ -52,7 +53,7 @@ void add_vectors(vtkPolyData& points, const std::vector<Row>& rows, const char* 
   points.GetPointData()->AddArray(array);
 }
 
-vtkSmartPointer<vtkPolyData> picture_of(const std::vector<Row>& rows, bool with_fluid) {
+vtkSmartPointer<vtkPolyData> picture_of(const std::vector<Row>& rows, bool with_fluid, bool with_clumps) {
   const auto count = static_cast<vtkIdType>(rows.size());
   auto picture = vtkSmartPointer<vtkPolyData>::New();
   auto points = vtkSmartPointer<vtkPoints>::New();
@@ -73,6 +74,11 @@ vtkSmartPointer<vtkPolyData> picture_of(const std::vector<Row>& rows, bool with_
   picture->SetPoints(points);
   picture->SetVerts(vertices);
   picture->GetPointData()->AddArray(id);
+  if (with_clumps) {
+    auto clump = new_array<vtkTypeInt64Array>("clump", 1, count);
+    for (vtkIdType n = 0; n < count; ++n) clump->SetValue(n, rows[static_cast<std::size_t>(n)].clump);
+    picture->GetPointData()->AddArray(clump);
+  }
   picture->GetPointData()->AddArray(radius);
   picture->GetPointData()->AddArray(speed);
   add_vectors(*picture, rows, "velocity", &Row::velocity);
@@ -96,7 +102,7 @@ void GrainSeries::write(const Snapshot& snapshot) {
     try {
       make_folder(folder_ / "grains");
       const auto file = std::filesystem::path("grains") / fmt::format("grains_{:09d}.vtp", snapshot.step);
-      const auto picture = picture_of(rows, with_fluid);
+      const auto picture = picture_of(rows, with_fluid, snapshot.grains.clump_count > 0);
       auto writer = vtkSmartPointer<vtkXMLPolyDataWriter>::New();
       writer->SetInputData(picture);
       write_vtk_file(*writer, folder_ / file);

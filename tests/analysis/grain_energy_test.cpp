@@ -21,5 +21,19 @@ TEST(GrainEnergy, SumsMotionAndSpinOfSpheres) {
   EXPECT_EQ(value_of(energy.figures(), "grain_momentum_z"), -4.0);
 }
 
+TEST(GrainEnergy, TakesAClumpForOneGrain) {
+  // Three spheres as above and five members, whose mass is that of their clump: 7 kg at 2 m/s, 30 J.
+  MadeUpGrains grains(MPI_COMM_WORLD, 8, [](GlobalId id) {
+    return MadeUpGrain{0.5, id < 3 ? 2.0 : 7.0, Vec3(1.0, 2.0, -2.0), Vec3(0.0, 6.0, 8.0)};
+  });
+  grains.bind(5, {3, 7.0, 1.0, Vec3::Zero(), Vec3(0.0, 0.0, 2.0), 30.0});
+  GrainEnergy energy(MPI_COMM_WORLD);
+  energy.observe(grains.snapshot(0.0));
+  EXPECT_NEAR(value_of(energy.figures(), "grain_kinetic_energy"), 3 * 19.0 + 30.0, 87.0 * 1e-15);
+  EXPECT_EQ(value_of(energy.figures(), "grain_momentum_x"), 6.0);
+  EXPECT_EQ(value_of(energy.figures(), "grain_momentum_z"), -12.0 + 14.0);
+  EXPECT_EQ(grains.snapshot(0.0).grains.body_count(), 4);
+}
+
 }  // namespace
 }  // namespace thalweg::analysis

@@ -32,12 +32,27 @@ public:
     }
   }
 
+  // Makes the last `members` grains members of one clump, which the rank of the first of them owns.
+  void bind(GlobalId members, const ClumpState& clump) {
+    members_ = members;
+    clump_.assign(id_.size(), -1);
+    for (std::size_t n = 0; n < id_.size(); ++n) {
+      if (id_[n] >= count_ - members) clump_[n] = count_ - members;
+      if (id_[n] == count_ - members) clumps_ = {clump};
+    }
+  }
+
   Snapshot snapshot(double time) const {  // domain of 20 m x 10 m x 5 m
     Snapshot snapshot;
     snapshot.time = time;
     snapshot.step = std::llround(100.0 * time);  // steps of 0.01 s
     snapshot.decomposition = &decomposition_;
     snapshot.grains = {count_, 0.0, id_, radius_, mass_, position_, velocity_, angular_velocity_, {}, {}, {}};
+    if (members_ == 0) return snapshot;
+    snapshot.grains.clump_count = 1;
+    snapshot.grains.member_count = members_;
+    snapshot.grains.clump = clump_;
+    snapshot.grains.clumps = clumps_;
     return snapshot;
   }
 
@@ -47,6 +62,9 @@ private:
   std::vector<GlobalId> id_;
   std::vector<double> radius_, mass_;
   std::vector<Vec3> position_, velocity_, angular_velocity_;
+  GlobalId members_ = 0;
+  std::vector<GlobalId> clump_;
+  std::vector<ClumpState> clumps_;
 };
 
 // The value of a figure by name; fails loudly when there is none.

@@ -60,6 +60,20 @@ TEST(TransportRate, IsTheVolumeFluxOfAllGrainsPerWidth) {
   EXPECT_NEAR(value_of(rate.figures(), "largest_grain_speed"), std::sqrt(2.99 * 2.99 + 1.0), 1e-15 * 4);
 }
 
+TEST(TransportRate, TakesAClumpForOneGrainWithItsVolumeAtItsCentre) {
+  // The last six of the grains, ids 294 to 299, are one clump of 0.05 m^3 at 0.5 m/s; four of them moved.
+  MadeUpGrains grains(world, 300, [](GlobalId id) { return runner(id, 1.0); });
+  grains.bind(6, {294, 1.0, 0.05, Vec3::Zero(), Vec3(0.5, 0.0, 0.0), 0.0});
+  TransportRate rate(world, scales, 0.0);
+  rate.observe(grains.snapshot(0.0));
+  const double volume = std::numbers::pi / 6.0 * 0.25 * 0.25 * 0.25;
+  const double gone = (295.0 + 296.0 + 298.0 + 299.0) / 100.0;
+  const double q_s = (volume * (sum_of_speeds - gone) + 0.05 * 0.5) / (20.0 * 10.0);
+  EXPECT_NEAR(value_of(rate.figures(), "q_s"), q_s, 4e-16 * 1e3 * q_s);
+  EXPECT_EQ(value_of(rate.figures(), "moving_grains"), 197.0);
+  EXPECT_NEAR(value_of(rate.figures(), "largest_grain_speed"), std::sqrt(2.93 * 2.93 + 1.0), 1e-15 * 4);
+}
+
 TEST(TransportRate, HasTheSameBitsOnAnyNumberOfRanks) {
   const auto made = [](GlobalId id) {
     const double phase = static_cast<double>(id);
