@@ -161,7 +161,7 @@ void ResolvedSystem<Real>::set_load(std::size_t grain, const Vec3& force, const 
     store.load_torque[grain] = torque;
     return;
   }
-  const double share = parameters_.virtual_mass->share(store.mass[grain], store.radius[grain]);
+  const double share = parameters_.virtual_mass->share(store.mass[grain], grains_->volume_radius(grain));
   const Vec3 body = grains_->body_force(grain), before = first ? Vec3::Zero() : Vec3(store.load_force[grain] + body);
   store.load_force[grain] = VirtualMass::filtered(before, force + body, share) - body;
   store.load_torque[grain] = VirtualMass::filtered(store.load_torque[grain], torque, share);

@@ -90,6 +90,7 @@ std::vector<GrainSeed> with_members(const std::vector<GrainSeed>& grains, std::s
   std::vector<GrainSeed> all = grains;
   for (const ClumpSeed& clump : clumps) {
     const Eigen::Matrix3d turn = rotation_matrix(clump.principal_orientation());
+    const double least_mass = clump.shape->least_contact_mass(clump.density);
     GlobalId id = clump.id;
     for (const Sphere& member : clump.shape->members) {
       const Vec3 arm = turn * member.position;
@@ -105,6 +106,7 @@ std::vector<GrainSeed> with_members(const std::vector<GrainSeed>& grains, std::s
       seed.thickness = clump.shape->thickness;
       seed.clump = clump.id;
       seed.clump_mass = clump.mass();
+      seed.clump_least_mass = least_mass;
       seed.offset = member.position;
       all.push_back(seed);
     }

@@ -15,6 +15,8 @@ namespace {
 
 void copy(const Vec3& from, double (&to)[3]) { std::copy(from.data(), from.data() + 3, to); }
 
+double radius_of_volume(double volume) { return std::cbrt(0.75 * volume / std::numbers::pi); }
+
 }  // namespace
 
 ClumpRow row_of(const Clump& clump) {
@@ -80,8 +82,7 @@ void Clumps::settle_in(const GrainStore& store, const std::function<Vec3(double,
     first_arm_.push_back(offsets_.size());
     for (std::int64_t m = 0; m < clump.members; ++m)
       offsets_.push_back(store.offset[first_slot_.back() + static_cast<std::size_t>(m)]);
-    const double radius = std::cbrt(0.75 * clump.volume / std::numbers::pi);
-    body_force_.push_back(body_force ? body_force(clump.mass, radius) : Vec3(Vec3::Zero()));
+    body_force_.push_back(body_force ? body_force(clump.mass, radius_of_volume(clump.volume)) : Vec3(Vec3::Zero()));
   }
   arms_.resize(offsets_.size());
   for (std::size_t n = 0; n < clumps_.size(); ++n) turn_arms(n);
@@ -91,6 +92,18 @@ void Clumps::turn_arms(std::size_t n) {
   const Eigen::Matrix3d turn = rotation_matrix(clumps_[n].orientation);
   const std::size_t first = first_arm_[n];
   for (std::size_t m = first; m < first + count(n); ++m) arms_[m] = turn * offsets_[m];
+}
+
+void Clumps::share_body_force(std::vector<Vec3>& of_slot) const {
+  for (std::size_t n = 0; n < clumps_.size(); ++n)
+    std::fill_n(of_slot.begin() + static_cast<std::ptrdiff_t>(first_slot_[n]), count(n),
+                Vec3(body_force_[n] / static_cast<double>(clumps_[n].members)));
+}
+
+double Clumps::volume_radius(GlobalId id) const {
+  const auto clump = std::lower_bound(clumps_.begin(), clumps_.end(), id,
+                                      [](const Clump& c, GlobalId wanted) { return c.id < wanted; });
+  return radius_of_volume(clump->volume);
 }
 
 void Clumps::wrap(const PeriodicBox& box) {

@@ -66,6 +66,11 @@ public:
   // radius of the sphere of its volume.
   void settle_in(const GrainStore& store, const std::function<Vec3(double, double)>& body_force);
 
+  // Gives every member an equal share of its clump's body force.
+  void share_body_force(std::vector<Vec3>& of_slot) const;
+
+  double volume_radius(GlobalId clump) const;  // m, of the sphere of the volume of a clump owned here
+
   void wrap(const PeriodicBox& box);
 
   // Sets the owner (a rank) of every member to that of its clump's centre.

@@ -90,19 +90,14 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
     if ((seed.thickness > 0.0) != parameters_.disks)
       throw InputError(fmt::format("Grain {} is a {}, and the run is one of {}.", seed.id,
                                    seed.thickness > 0.0 ? "disk" : "sphere", parameters_.disks ? "disks" : "spheres"));
-    if (holds_translation(seed.motion) || is_member(seed.motion)) continue;
-    lightest[static_cast<std::size_t>(seed.material)].include(seed.mass(), seed.radius);
+    if (holds_translation(seed.motion)) continue;
+    lightest[static_cast<std::size_t>(seed.material)].include(seed.contact_mass(), seed.radius);
   }
-  for (const ClumpSeed& clump : clumps)
-    for (const Sphere& member : clump.shape->members)
-      if (!holds_translation(clump.motion))
-        lightest[static_cast<std::size_t>(clump.material)].include(clump.shape->least_contact_mass(clump.density),
-                                                                   member.radius);
   check_time_step(parameters_, lightest, body_count());
   check_prescribed_speed();
   planes_ = parameters_.walls;
   if (walls_change_) place_walls(0.0, 0.0);
-  if (parameters_.lubrication) check(*parameters_.lubrication, grains, box_, parameters_.time_step);
+  if (parameters_.lubrication) check(*parameters_.lubrication, seeds, box_, parameters_.time_step);
 
   const int me = rank_of(communicator_);
   const std::vector<Clump> mine = clumps_of(clumps, decomposition_, me);
@@ -299,6 +294,7 @@ void GrainDynamics::settle_in(const std::vector<ContactHistory>& histories) {
   if (!parameters_.body_force) return;
   for (std::size_t s = 0; s < store_.owned; ++s)
     if (store_.clump[s] < 0) body_force_[s] = parameters_.body_force(store_.mass[s], store_.radius[s]);
+  clumps_.share_body_force(body_force_);
 }
 
 void GrainDynamics::evaluate_forces(double time_step) {

@@ -116,8 +116,12 @@ public:
   // Loads and attached columns are the caller's to write; the rest is to be read.
   GrainStore& store() { return store_; }
   const GrainStore& store() const { return store_; }
-  // N; of a clump's member zero
+  // N; of a clump's member an equal share of the clump's
   const Vec3& body_force(std::size_t owned_slot) const { return body_force_[owned_slot]; }
+  // m, of the sphere with the volume of a grain, or of a member's whole clump
+  double volume_radius(std::size_t owned_slot) const {
+    return store_.clump[owned_slot] < 0 ? store_.radius[owned_slot] : clumps_.volume_radius(store_.clump[owned_slot]);
+  }
   const Clumps& clumps() const { return clumps_; }  // those owned here
   const GrainParameters& parameters() const { return parameters_; }
   const Decomposition& decomposition() const { return decomposition_; }

@@ -94,6 +94,8 @@ double GrainSeed::mass() const {
   return density * (4.0 / 3.0) * std::numbers::pi * radius * radius * radius;
 }
 
+double GrainSeed::contact_mass() const { return clump >= 0 ? clump_least_mass : mass(); }
+
 void check(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<const Plane> walls,
            double allowed_overlap) {
   check_ids(seeds);

@@ -29,7 +29,8 @@ struct GrainSeed {
   double clump_mass = 0.0;     // kg
   Vec3 offset = Vec3::Zero();  // m, from the clump's centre in the frame of its principal axes
 
-  double mass() const;  // kg, of the full sphere or disk; of a member that of the clump
+  double mass() const;          // kg, of the full sphere or disk; of a member that of the clump
+  double contact_mass() const;  // kg, the least that a contact feels
 };
 
 // Overlap at the start, in diameters of the smaller grain, that is taken for rounding.

@@ -104,7 +104,7 @@ void check(const LubricationParameters& parameters, std::span<const GrainSeed> s
                         box.size[axis], "xyz"[axis], seed.id, shortest));
     if (holds_translation(seed.motion)) continue;
     const double rate =
-        6.0 * std::numbers::pi * parameters.viscosity * seed.radius / (parameters.minimum_gap * seed.mass());
+        6.0 * std::numbers::pi * parameters.viscosity * seed.radius / (parameters.minimum_gap * seed.contact_mass());
     if (rate * time_step <= largest_damping_a_step) continue;
     throw InputError(
         fmt::format("A step of the grains of {:g} s is too long for the lubrication force on grain {}; give "
