@@ -1,0 +1,38 @@
+#!/usr/bin/python3
+"""Prints the options of `thalweg run case.yaml` for an impact at a Stokes number: restitution.py ST [CELLS_A_DIAMETER]
+
+The sphere falls at its terminal velocity V by Schiller and Naumann's drag; the viscosity is the one for which
+St = rho_s V d/(9 eta). The step of the fluid lets V cover 0.04 cells.
+"""
+import math
+import sys
+
+DIAMETER, SOLID, FLUID, GRAVITY = 6.0e-3, 7800.0, 950.0, 9.81
+
+
+def terminal(viscosity):
+    velocity = 0.1
+    for _ in range(500):
+        reynolds = velocity * DIAMETER / viscosity
+        drag = 24.0 / reynolds * (1.0 + 0.15 * reynolds ** 0.687)
+        velocity = math.sqrt(velocity * math.sqrt(4.0 * (SOLID / FLUID - 1.0) * GRAVITY * DIAMETER / (3.0 * drag)))
+    return velocity
+
+
+def main():
+    stokes = float(sys.argv[1])
+    cells = float(sys.argv[2]) if len(sys.argv) > 2 else 10.0
+    low, high = 1e-7, 1e-2
+    for _ in range(100):
+        viscosity = math.sqrt(low * high)
+        if SOLID * terminal(viscosity) * DIAMETER / (9.0 * FLUID * viscosity) > stokes:
+            low = viscosity
+        else:
+            high = viscosity
+    velocity, spacing = terminal(viscosity), DIAMETER / cells
+    print(f"--set domain.spacing={spacing:.8g} --set fluid.kinematic_viscosity={viscosity:.6g} "
+          f"--set fluid.time_step={0.04 * spacing / velocity:.6g} --set grains.0.velocity=[0,0,{-velocity:.5g}] "
+          f"--set output.grains.every={0.3 * spacing / velocity:.5g} --until {7.0 * DIAMETER / velocity:.5g}")
+
+
+main()
