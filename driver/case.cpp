@@ -169,11 +169,14 @@ std::vector<std::string> warnings(const Case& c) {
   if (!c.grains.empty() && smallest_diameter(c) < 5.99 * c.domain.spacing)
     found.push_back(fmt::format("A grain is only {:.2g} cells across; drag is accurate to a few percent from about 8.",
                                 smallest_diameter(c) / c.domain.spacing));
+  // The reaction of the fluid to a grain's acceleration, half its own mass, acts a step or two later.
+  constexpr double light = 0.5;  // of the fluid's density; a sphere of 0.2 is still stable, one of 0.05 is not
   for (const PopulationCase& population : c.grains)
-    if (!population.fixed && !population.prescribed_velocity && population.density < 1.2 * c.fluid.density)
+    if (!c.coupling.virtual_mass && !population.fixed && !population.prescribed_velocity &&
+        population.density < light * c.fluid.density)
       found.push_back(
-          fmt::format("Grains of {} kg/m^3 are nearly as light as the fluid; the explicit coupling may become "
-                      "unstable below 1.2 times its density.",
+          fmt::format("Grains of {} kg/m^3 are so light that the explicit coupling may become unstable: consider "
+                      "coupling.virtual_mass: {{}}.",
                       population.density));
   return found;
 }
