@@ -32,7 +32,7 @@ def main():
     velocity, spacing = terminal(viscosity), DIAMETER / cells
     print(f"--set domain.spacing={spacing:.8g} --set fluid.kinematic_viscosity={viscosity:.6g} "
           f"--set fluid.time_step={0.04 * spacing / velocity:.6g} --set grains.0.velocity=[0,0,{-velocity:.5g}] "
-          f"--set output.grains.every={0.3 * spacing / velocity:.5g} --until {7.0 * DIAMETER / velocity:.5g}")
+          f"--set output.grains.every={0.2 * spacing / velocity:.5g} --until {4.5 * DIAMETER / velocity:.5g}")
 
 
 main()
