@@ -1,0 +1,66 @@
+#!/usr/bin/python3
+"""Compares the spin of a free sphere in simple shear with half the shear rate: compare.py RUN_FOLDER... [--figure FILE]
+
+Prints the spin over the shear rate at the end of every run, the reference, their difference, and pass or fail (3 %); draws
+the spin against time. Exit code 0 if all pass.
+"""
+import argparse
+import sys
+import xml.etree.ElementTree as xml
+from pathlib import Path
+
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import yaml
+from vtk import vtkXMLPolyDataReader
+
+ACCEPTED = 0.03
+
+
+def spins(run):
+    """Times (s) and angular velocities about y (rad/s) of the only grain."""
+    times, values = [], []
+    for entry in xml.parse(run / "grains.pvd").getroot().iter("DataSet"):
+        reader = vtkXMLPolyDataReader()
+        reader.SetFileName(str(run / entry.get("file")))
+        reader.Update()
+        times.append(float(entry.get("timestep")))
+        values.append(reader.GetOutput().GetPointData().GetArray("angular_velocity").GetTuple3(0)[1])
+    return times, values
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("runs", nargs="+", type=Path, metavar="RUN_FOLDER")
+    parser.add_argument("--figure", default="shear_spin.png")
+    arguments = parser.parse_args()
+
+    plt.figure(figsize=(6, 3.5))
+    passed = True
+    for run in arguments.runs:
+        case = yaml.safe_load((run / "case.yaml").read_text())
+        top, bottom = (case["domain"]["boundaries"][face]["velocity"][0] for face in ("top", "bottom"))
+        rate = (top - bottom) / case["domain"]["size"][2]
+        radius = 0.5 * case["grains"][0]["diameter"]
+        reynolds = rate * radius ** 2 / case["fluid"]["kinematic_viscosity"]
+        reference = 0.5 - 0.1538 * reynolds ** 1.5
+        times, values = spins(run)
+        ratio = values[-1] / rate
+        good = abs(ratio / reference - 1.0) <= ACCEPTED
+        passed = passed and good
+        print(f"{run.name}: Reynolds number {reynolds:.3g}, spin {ratio:.4f} of the shear rate, reference {reference:.4f}, "
+              f"difference {100 * (ratio / reference - 1):+.2f} %: {'pass' if good else 'FAIL'}")
+        plt.plot(times, [v / rate for v in values], label=f"Re {reynolds:.2g}")
+    plt.axhline(0.5, color="k", linestyle=":", label="Jeffery 1922")
+    plt.xlabel("time [s]")
+    plt.ylabel("spin / shear rate")
+    plt.ylim(0, 0.6)
+    plt.legend(loc="lower right")
+    plt.tight_layout()
+    plt.savefig(arguments.figure, dpi=110)
+    return 0 if passed else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
