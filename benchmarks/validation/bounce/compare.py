@@ -1,0 +1,109 @@
+#!/usr/bin/python3
+"""Restitution of spheres that rebound in a liquid: compare.py RUN_FOLDER... [--figure FILE]
+
+Every impact of a run counts, up to three, above the Stokes number 8. Its velocity is the largest since the last one; the velocity of the rebound is
+that when sound has gone around the sphere after the end of the contact (pi R/c_s, 27 steps at ten cells a diameter),
+before which the fluid has not answered to the turn. Prints Stokes number, restitution over the dry one, exp(-35/St), their difference, and pass or
+fail (0.1). Exit code 0 if
+all pass.
+"""
+import argparse
+import math
+import sys
+import xml.etree.ElementTree as xml
+from pathlib import Path
+
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import yaml
+from vtk import vtkXMLPolyDataReader
+
+ACCEPTED = 0.1
+CONTACT_GAP = 0.02        # diameters: closer than this, a turn is an impact
+IMPACTS = 3
+SLOWEST = 8.0             # Stokes number below which nothing rebounds and nothing more is counted
+
+
+def trajectory(run, radius):
+    """Times (s), gaps (diameters) and velocities upwards (m/s) of the only grain."""
+    times, gaps, velocities = [], [], []
+    for entry in xml.parse(run / "grains.pvd").getroot().iter("DataSet"):
+        reader = vtkXMLPolyDataReader()
+        reader.SetFileName(str(run / entry.get("file")))
+        reader.Update()
+        grain = reader.GetOutput()
+        times.append(float(entry.get("timestep")))
+        gaps.append((grain.GetPoint(0)[2] - radius) / (2.0 * radius))
+        velocities.append(grain.GetPointData().GetArray("velocity").GetTuple3(0)[2])
+    return times, gaps, velocities
+
+
+def impacts(times, gaps, velocities, answer):
+    """Velocities before and after each impact; the fall from the start counts from two diameters on. answer: s."""
+    begin, found = next(k for k, gap in enumerate(gaps) if gap < 2.0), []
+    while len(found) < IMPACTS:
+        near = next((k for k in range(begin, len(gaps)) if gaps[k] < CONTACT_GAP), None)
+        left = near and next((k for k in range(near + 1, len(gaps)) if velocities[k] > 0.0), None)
+        later = left and next((k for k in range(left, len(gaps)) if times[k] >= times[left] + answer), None)
+        if later is None:
+            break
+        share = (times[left] + answer - times[later - 1]) / (times[later] - times[later - 1])
+        after = velocities[later - 1] + share * (velocities[later] - velocities[later - 1])
+        found.append((max(-v for v in velocities[begin:near + 1]), max(0.0, after)))
+        begin = next((k for k in range(left, len(gaps)) if velocities[k] < 0.0), len(gaps))
+    return found
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("runs", nargs="+", type=Path, metavar="RUN_FOLDER")
+    parser.add_argument("--figure", default="bounce.png")
+    arguments = parser.parse_args()
+
+    figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4))
+    passed, colours, shown = True, {}, set()
+    for run in arguments.runs:
+        case = yaml.safe_load((run / "case.yaml").read_text())
+        diameter, density = case["grains"][0]["diameter"], case["grains"][0]["density"]
+        viscosity = case["fluid"]["density"] * case["fluid"]["kinematic_viscosity"]
+        option = (case.get("coupling") or {}).get("lubrication")
+        kind = f"lubrication, gaps from {option['minimum_gap']:g} R" if option else "no lubrication"
+        colour = colours.setdefault(kind, f"C{len(colours)}")
+        times, gaps, velocities = trajectory(run, 0.5 * diameter)
+        answer = math.pi * 0.5 * diameter * math.sqrt(3.0) * case["fluid"]["time_step"] / case["domain"]["spacing"]
+        for number, (before, after) in enumerate(impacts(times, gaps, velocities, answer)):
+            stokes = density * before * diameter / (9.0 * viscosity)
+            ratio, reference = after / before / case["contact"]["restitution"], math.exp(-35.0 / stokes)
+            if stokes < SLOWEST:
+                break
+            good = abs(ratio - reference) <= ACCEPTED
+            passed = passed and good
+            print(f"{run.name}: impact {number + 1}, St {stokes:.1f}, {kind}: "
+                  f"e/e_dry {ratio:.3f}, reference {reference:.3f}, difference {ratio - reference:+.3f}: "
+                  f"{'pass' if good else 'FAIL'}")
+            if not case["name"].startswith("Three"):
+                left.semilogx(stokes, ratio, "o", color=colour, label=None if kind in shown else kind)
+                shown.add(kind)
+        if case["name"].startswith("Three"):
+            right.plot(times, gaps, color=colour, label=kind)
+    stokes = [8.0 * 1.1 ** k for k in range(50)]
+    curve = [math.exp(-35.0 / s) for s in stokes]
+    left.fill_between(stokes, [c - ACCEPTED for c in curve], [c + ACCEPTED for c in curve], color="0.9")
+    left.plot(stokes, curve, "k-", linewidth=0.8, label="exp(-35/St), within 0.1")
+    left.set_xlabel("Stokes number of the impact")
+    left.set_ylabel("restitution / dry restitution")
+    left.set_ylim(-0.1, 1.1)
+    left.legend(loc="lower right", fontsize=8)
+    right.set_xlabel("time [s]")
+    right.set_ylabel("gap [diameters]")
+    right.set_xlim(0.0, 0.3)
+    if right.get_lines():
+        right.legend(fontsize=8)
+    figure.tight_layout()
+    figure.savefig(arguments.figure, dpi=100)
+    return 0 if passed else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
