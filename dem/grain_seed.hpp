@@ -25,9 +25,10 @@ struct GrainSeed {
   double thickness = 0.0;  // m, of a disk in the x-z plane; 0: a sphere
 
   // Of a member of a clump, as with_members() of clump_seed.hpp fills them in.
-  GlobalId clump = -1;         // its id; -1: the grain is one of its own
-  double clump_mass = 0.0;     // kg
-  Vec3 offset = Vec3::Zero();  // m, from the clump's centre in the frame of its principal axes
+  GlobalId clump = -1;            // its id; -1: the grain is one of its own
+  double clump_mass = 0.0;        // kg
+  double clump_least_mass = 0.0;  // kg, the least that its contacts feel
+  Vec3 offset = Vec3::Zero();     // m, from the clump's centre in the frame of its principal axes
 
   double mass() const;          // kg, of the full sphere or disk; of a member that of the clump
   double contact_mass() const;  // kg, the least that a contact feels
