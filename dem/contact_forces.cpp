@@ -49,15 +49,19 @@ inline void transpose(Row (&r)[4]) {
   r[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
 }
 
-// Touching pairs, gathered into arrays so that the law is evaluated for several at once, and scattered in their order.
+// Near pairs, gathered into arrays so that the law is evaluated for several at once, and scattered in their order. A
+// pair that does not touch goes along with a force of zero: nearly all touch, and adding zero changes no bit (no sum
+// here is ever -0, since it began at +0).
 class PairBatch {
 public:
   static constexpr int capacity = 64;
   static constexpr int lanes = 8;  // whole vectors: the last one is filled up with copies of the first pair
 
   // material: of every slot.
-  PairBatch(const MaterialTable& materials, std::span<const std::uint8_t> material)
-      : materials_(materials), material_(material) {
+  PairBatch(MovingGrains& grains, std::vector<PairContact>& pairs, const PeriodicBox& box,
+            const MaterialTable& materials, std::span<const std::uint8_t> material)
+      : grains_(grains), pairs_(pairs), image_(box), materials_(materials), material_(material) {
+    static_assert(offsetof(PairContact, damping) == offsetof(PairContact, spring) + 3 * sizeof(double));
     // One material's numbers are the same in all lanes, so they are put there once.
     if (materials.count() > 1) return;
     const ContactCoefficients& only = materials.pair(0, 0).coefficients;
@@ -66,25 +70,20 @@ public:
     std::fill_n(friction_, capacity, only.friction);
   }
 
-  bool full() const { return count_ == capacity; }
-
-  // Keeps the pair if it touches. No branch: whether a pair within the skin touches cannot be foreseen.
-  void offer(PairContact& c, const Row& separation, bool touches) {
-    contact_[count_] = &c;
-    separation_[count_] = separation;
-    count_ += touches;
-  }
-
-  template <typename ContactLaw>
-  void evaluate_and_scatter(MovingGrains& grains, const ContactLaw& law) {
-    if (count_ == 0) return;
-    const int rounded = (count_ + lanes - 1) / lanes * lanes;
-    for (int k = count_; k < rounded; ++k) contact_[k] = contact_[0], separation_[k] = separation_[0];
-    for (int k = 0; k < rounded; k += 4) gather(grains, k);
+  // near: at most `capacity`. fetch: whether to ask for grains and contacts of `ahead` pairs behind these.
+  template <bool fetch, typename ContactLaw>
+  void evaluate(std::span<const NearPair> near, std::span<const NearPair> behind, const ContactLaw& law) {
+    const int count = static_cast<int>(near.size()), rounded = (count + lanes - 1) / lanes * lanes;
+    std::copy(near.begin(), near.end(), pair_);
+    std::fill(pair_ + count, pair_ + rounded, near[0]);
+    for (int k = 0; k < rounded; k += 4) {
+      if constexpr (fetch)
+        for (std::size_t n = k; n < std::min<std::size_t>(k + 4, behind.size()); ++n) ask_for(behind[n]);
+      gather(k);
+    }
     if (materials_.count() > 1) gather_coefficients(rounded);
     evaluate(law, rounded);
-    for (int k = 0; k < count_; k += 4) scatter(grains, k);
-    count_ = 0;
+    for (int k = 0; k < count; k += 4) scatter(k, std::min(4, count - k));
   }
 
 private:
@@ -97,18 +96,27 @@ private:
     std::memcpy(last + k, &r[3], sizeof(Row));
   }
 
-  void gather(const MovingGrains& grains, int k) {
-    Row v[4], rw[4], w[4], spring[4];
+  // Inlined, because to the compiler a function that only asks does nothing, and a call of it can go.
+  [[gnu::always_inline]] void ask_for(const NearPair& next) const {
+    __builtin_prefetch(&pairs_[next.pair], 1);
+    for (const std::uint32_t slot : {next.first, next.second}) {
+      const char* grain = reinterpret_cast<const char*>(&grains_[slot]);
+      for (std::size_t line = 0; line < sizeof(MovingGrain); line += 64) __builtin_prefetch(grain + line, 1);
+    }
+  }
+
+  void gather(int k) {
+    Row separation[4], v[4], rw[4], w[4], spring[4];
     for (int m = 0; m < 4; ++m) {
-      const PairContact& c = *contact_[k + m];
-      const MovingGrain &first = grains[c.first], &second = grains[c.second];
+      const PairContact& c = pairs_[pair_[k + m].pair];
+      const MovingGrain &first = grains_[pair_[k + m].first], &second = grains_[pair_[k + m].second];
+      separation[m] = image_(first.position - second.position);
       v[m] = first.velocity - second.velocity;
       rw[m] = last_everywhere(first.position) * first.spin + last_everywhere(second.position) * second.spin;
       w[m] = first.spin + second.spin;
       spring[m] = row_at(c.spring);
       reach_[k + m] = c.reach;
     }
-    Row separation[4] = {separation_[k], separation_[k + 1], separation_[k + 2], separation_[k + 3]};
     transpose(separation), transpose(v), transpose(rw), transpose(w), transpose(spring);
     store(separation, k, x_, y_, z_, difference_);
     store(v, k, vx_, vy_, vz_, unused_);
@@ -119,8 +127,8 @@ private:
 
   void gather_coefficients(int rounded) {
     for (int k = 0; k < rounded; ++k) {
-      const PairContact& c = *contact_[k];
-      const ContactCoefficients& pair = materials_.pair(material_[c.first], material_[c.second]).coefficients;
+      const ContactCoefficients& pair =
+          materials_.pair(material_[pair_[k].first], material_[pair_[k].second]).coefficients;
       normal_[k] = pair.normal, tangential_[k] = pair.tangential, friction_[k] = pair.friction;
     }
   }
@@ -129,7 +137,9 @@ private:
   template <typename ContactLaw>
   void evaluate(const ContactLaw& law, int rounded) {
     for (int k = 0; k < rounded; ++k) {
-      const double distance = std::sqrt(x_[k] * x_[k] + y_[k] * y_[k] + z_[k] * z_[k]);
+      const double squared = x_[k] * x_[k] + y_[k] * y_[k] + z_[k] * z_[k];
+      const bool touches = squared < reach_[k] * reach_[k];
+      const double distance = std::sqrt(squared);
       const double inverse = 1.0 / distance, nx = inverse * x_[k], ny = inverse * y_[k], nz = inverse * z_[k];
       const double overlap = reach_[k] - distance, half = 0.5 * overlap;
       // Surface velocity by rotation: -(l1 w1 + l2 w2) x n with the lever arms l = R - overlap/2.
@@ -140,22 +150,27 @@ private:
                                  0.25 * (reach_[k] - difference_[k] * difference_[k] / reach_[k])};
       const ContactForce f =
           law(motion, {normal_[k], tangential_[k], friction_[k]}, damping_[k], {sx_[k], sy_[k], sz_[k]});
-      x_[k] = f.normal * nx + f.tx, y_[k] = f.normal * ny + f.ty, z_[k] = f.normal * nz + f.tz;
-      wx_[k] = f.ty * nz - f.tz * ny, wy_[k] = f.tz * nx - f.tx * nz, wz_[k] = f.tx * ny - f.ty * nx;
-      sx_[k] = f.spring.x, sy_[k] = f.spring.y, sz_[k] = f.spring.z;
+      const auto if_touching = [touches](double value) { return touches ? value : 0.0; };
+      x_[k] = if_touching(f.normal * nx + f.tx);
+      y_[k] = if_touching(f.normal * ny + f.ty);
+      z_[k] = if_touching(f.normal * nz + f.tz);
+      wx_[k] = if_touching(f.ty * nz - f.tz * ny);
+      wy_[k] = if_touching(f.tz * nx - f.tx * nz);
+      wz_[k] = if_touching(f.tx * ny - f.ty * nx);
+      sx_[k] = if_touching(f.spring.x), sy_[k] = if_touching(f.spring.y), sz_[k] = if_touching(f.spring.z);
       difference_[k] = half;
     }
   }
 
-  void scatter(MovingGrains& grains, int k) {
+  void scatter(int k, int count) {
     Row force[4] = {row_at(x_ + k), row_at(y_ + k), row_at(z_ + k), row_at(difference_ + k)};
     Row turn[4] = {row_at(wx_ + k), row_at(wy_ + k), row_at(wz_ + k), Row{}};
     Row spring[4] = {row_at(sx_ + k), row_at(sy_ + k), row_at(sz_ + k), row_at(damping_ + k)};
     transpose(force), transpose(turn), transpose(spring);
-    for (int m = 0; m < 4 && k + m < count_; ++m) {
-      PairContact& c = *contact_[k + m];
-      std::memcpy(c.spring, &spring[m], sizeof(Row));
-      MovingGrain &first = grains[c.first], &second = grains[c.second];
+    for (int m = 0; m < count; ++m) {
+      const NearPair& pair = pair_[k + m];
+      std::memcpy(pairs_[pair.pair].spring, &spring[m], sizeof(Row));
+      MovingGrain &first = grains_[pair.first], &second = grains_[pair.second];
       const Row half = last_everywhere(force[m]), f = force[m] * Row{1.0, 1.0, 1.0, 0.0};
       first.force += f;
       second.force -= f;
@@ -164,11 +179,12 @@ private:
     }
   }
 
+  MovingGrains& grains_;
+  std::vector<PairContact>& pairs_;
+  const MinimumImage image_;
   const MaterialTable& materials_;
   std::span<const std::uint8_t> material_;
-  int count_ = 0;
-  PairContact* contact_[capacity + 1];               // one more: what is offered to a full batch is not kept
-  Row separation_[capacity + 1];                     // from second to first
+  NearPair pair_[capacity];
   alignas(64) Lane x_{}, y_{}, z_{}, difference_{};  // separation, difference of radii; then force, overlap/2
   alignas(64) Lane normal_{}, tangential_{}, friction_{};
   alignas(64) Lane reach_{}, damping_{}, unused_{};
@@ -178,20 +194,41 @@ private:
   alignas(64) Lane sx_{}, sy_{}, sz_{};     // spring
 };
 
-template <typename ContactLaw>
-void evaluate_pairs(MovingGrains& grains, std::vector<PairContact>& pairs, const PeriodicBox& box, PairBatch& batch,
-                    const ContactLaw& law) {
-  static_assert(offsetof(PairContact, damping) == offsetof(PairContact, spring) + 3 * sizeof(double));
-  const MinimumImage image(box);
-  for (PairContact& c : pairs) {
+// Finds the near ones of all pairs; springs of pairs that do not touch are zero.
+void look_for_near_pairs(const MovingGrains& grains, ContactList& list, const MinimumImage& image) {
+  list.near.begin();
+  const double range = list.near.range();
+  for (std::size_t p = 0; p < list.pairs.size(); ++p) {
+    PairContact& c = list.pairs[p];
     const Row d = image(grains[c.first].position - grains[c.second].position), square = d * d;
-    const bool touches = square[0] + square[1] + square[2] < c.reach * c.reach;
-    const bool was_touching = (c.spring[0] != 0.0) | (c.spring[1] != 0.0) | (c.spring[2] != 0.0);
-    if (!touches & was_touching) c.spring[0] = c.spring[1] = c.spring[2] = 0.0;
-    batch.offer(c, d, touches);
-    if (batch.full()) batch.evaluate_and_scatter(grains, law);
+    const double squared = square[0] + square[1] + square[2], limit = c.reach + range;
+    if (squared < limit * limit)
+      list.near.add({c.first, c.second, static_cast<std::uint32_t>(p)});
+    else
+      c.spring[0] = c.spring[1] = c.spring[2] = 0.0;
   }
-  batch.evaluate_and_scatter(grains, law);
+}
+
+template <bool fetch, typename ContactLaw>
+void evaluate_near_pairs(const std::vector<NearPair>& near, PairBatch& batch, const ContactLaw& law) {
+  const std::span<const NearPair> all(near);
+  constexpr std::size_t size = PairBatch::capacity, ahead = 24;
+  for (std::size_t n = 0; n < all.size(); n += size)
+    batch.evaluate<fetch>(all.subspan(n, std::min(size, all.size() - n)), all.subspan(std::min(n + ahead, all.size())),
+                          law);
+}
+
+template <typename ContactLaw>
+void evaluate_pairs(MovingGrains& grains, ContactList& list, const PeriodicBox& box, PairBatch& batch,
+                    const ContactLaw& law) {
+  if (list.near.stale()) look_for_near_pairs(grains, list, MinimumImage(box));
+  // What does not stay in the cache from one sub-step to the next is asked for ahead.
+  constexpr std::size_t cached = 2 << 20;  // bytes
+  const std::vector<NearPair>& near = list.near.pairs();
+  if (near.size() * sizeof(PairContact) + grains.size() * sizeof(MovingGrain) > cached)
+    evaluate_near_pairs<true>(near, batch, law);
+  else
+    evaluate_near_pairs<false>(near, batch, law);
 }
 
 template <typename ContactLaw>
@@ -245,8 +282,8 @@ template <typename ContactLaw>
 void evaluate_with(const ContactLaw& law, MovingGrains& grains, ContactList& list, const PeriodicBox& box,
                    std::span<const Plane> walls, const MaterialTable& materials,
                    std::span<const std::uint8_t> material) {
-  PairBatch batch(materials, material);
-  evaluate_pairs(grains, list.pairs, box, batch, law);
+  PairBatch batch(grains, list.pairs, box, materials, material);
+  evaluate_pairs(grains, list, box, batch, law);
   evaluate_walls(grains, list.walls, walls, materials, material, law);
 }
 

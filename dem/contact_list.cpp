@@ -93,6 +93,8 @@ void take_history(std::vector<Contact>& contacts, std::vector<RollingContact>& r
 ContactList find_contacts(const GrainStore& store, const PeriodicBox& box, std::span<const Plane> walls,
                           const MaterialTable& materials, double skin, double largest_radius) {
   ContactList list;
+  constexpr double near_share = 0.03;  // of the skin
+  list.near = NearPairs(near_share * skin);
   const std::vector<Candidate> pairs = find_pairs(store, box, skin, largest_radius);
   list.pairs.reserve(pairs.size());
   for (const Candidate& p : pairs) {

@@ -9,6 +9,7 @@
 #include "dem/grain_batch.hpp"
 #include "dem/grain_store.hpp"
 #include "dem/material.hpp"
+#include "dem/near_pairs.hpp"
 #include "dem/walls.hpp"
 
 #include <cstdint>
@@ -40,6 +41,7 @@ struct RollingContact {
 
 struct ContactList {
   std::vector<PairContact> pairs;
+  NearPairs near;                  // of the pairs; kept by evaluate_contacts()
   std::vector<WallContact> walls;  // of owned grains, sorted by id, then from the last wall to the first
 
   // One each contact, in their order; empty without rolling friction.

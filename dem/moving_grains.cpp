@@ -1,5 +1,7 @@
 #include "dem/moving_grains.hpp"
 
+#include <cmath>
+
 namespace thalweg::dem {
 
 namespace {
@@ -13,6 +15,8 @@ inline void kick(MovingGrain& grain, const Load& load, double half) {
   grain.velocity += half * load.force[3] * first_three * (grain.force + load.force);
   grain.spin += half * load.torque[3] * first_three * (grain.torque + load.torque);
 }
+
+inline Row larger(const Row& a, const Row& b) { return a > b ? a : b; }
 
 inline void move(MovingGrain& grain, double time_step) {
   grain.position += time_step * grain.velocity;
@@ -50,8 +54,19 @@ void MovingGrains::half_kick(double time_step) {
 }
 
 void MovingGrains::drift(double time_step) {
-  for (std::size_t s = 0; s < loads_.size(); ++s) move(grains_[s], time_step);
+  fastest_ = zero;
+  for (std::size_t s = 0; s < loads_.size(); ++s) {
+    move(grains_[s], time_step);
+    fastest_ = larger(fastest_, grains_[s].velocity * grains_[s].velocity);
+  }
   for (std::size_t s = loads_.size(); s < grains_.size(); ++s) grains_[s].force = grains_[s].torque = zero;
+}
+
+double MovingGrains::speed_bound(bool written) const {
+  Row fastest = fastest_;
+  for (std::size_t s = written ? 0 : loads_.size(); s < grains_.size(); ++s)
+    fastest = larger(fastest, grains_[s].velocity * grains_[s].velocity);
+  return std::sqrt(fastest[0] + fastest[1] + fastest[2]);
 }
 
 void MovingGrains::forget_forces() {
@@ -60,13 +75,16 @@ void MovingGrains::forget_forces() {
 
 void MovingGrains::two_half_kicks_and_drift(double time_step) {
   const double half = 0.5 * time_step;
+  Row fastest = zero;
   for (std::size_t s = 0; s < loads_.size(); ++s) {
     MovingGrain grain = grains_[s];
     kick(grain, loads_[s], half);
     kick(grain, loads_[s], half);
     move(grain, time_step);
+    fastest = larger(fastest, grain.velocity * grain.velocity);
     grains_[s] = grain;
   }
+  fastest_ = fastest;
   for (std::size_t s = loads_.size(); s < grains_.size(); ++s) grains_[s].force = grains_[s].torque = zero;
 }
 

@@ -43,6 +43,11 @@ public:
   // The contact forces of all grains begin anew at zero.
   void forget_forces();
 
+  // A bound of the speed (m/s) of every grain now: those of owned grains from the last drift, unless `written` says
+  // that somebody has written velocities since, and those of ghosts.
+  double speed_bound(bool written) const;
+
+  std::size_t size() const { return grains_.size(); }
   MovingGrain* data() { return grains_.data(); }
   const MovingGrain& operator[](std::size_t slot) const { return grains_[slot]; }
   MovingGrain& operator[](std::size_t slot) { return grains_[slot]; }
@@ -56,6 +61,7 @@ private:
 
   std::vector<MovingGrain> grains_;
   std::vector<Load> loads_;
+  Row fastest_{};  // of the last drift: the largest squares of the components of a velocity
 };
 
 }  // namespace thalweg::dem
