@@ -3,11 +3,14 @@
 #include "core/error.hpp"
 #include "core/periodic_box.hpp"
 #include "dem/grain_seed.hpp"
+#include "driver/clump_setup.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <filesystem>
+#include <numbers>
+#include <span>
 
 namespace thalweg {
 namespace {
@@ -53,6 +56,7 @@ public:
       seed.density = grain.density;
       seed.position = grain.position;
       seed.thickness = bed_.disk_thickness;
+      seed.clump = grain.clump;
       seeds.push_back(seed);
       if ((grain.position.array() < 0.0).any() || (grain.position.array() > case_.domain.size.array()).any())
         throw document_.error(
@@ -79,6 +83,42 @@ bool inside(const Vec3& point, const RegionCase& region) {
   return (point.array() >= region.lower.array()).all() && (point.array() <= region.upper.array()).all();
 }
 
+// Of the grains of a bed file, a clump being one.
+struct BedSizes {
+  std::vector<double> diameters;  // m, of a clump that of the sphere of its volume
+  double mass = 0.0, volume = 0.0;
+};
+
+// Takes over the grains with their centre in the region.
+BedSizes take_bodies(PopulationCase& population, const io::Bed& bed) {
+  const PeriodicBox box{bed.box, bed.periodic};
+  const std::optional<RegionCase>& region = population.placement.region;
+  BedSizes sizes;
+  for (const std::span<const io::BedGrain> body : bodies_of(bed.grains)) {
+    const io::BedGrain& first = body.front();
+    double volume = 0.0, radius = first.radius;
+    if (first.clump < 0) {
+      if (region && !inside(first.position, *region)) continue;
+      volume = bed.disk_thickness > 0.0 ? std::numbers::pi * radius * radius * bed.disk_thickness
+                                        : 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
+    } else {
+      const dem::ClumpSeed clump = clump_from(body, box, bed.disk_thickness);
+      if (region && !inside(clump.position, *region)) continue;
+      add_clumps(population.clumps, *clump.shape, clump.density, 1);
+      volume = clump.shape->volume;
+      radius = clump.shape->equivalent_radius();
+    }
+    sizes.diameters.push_back(2.0 * radius);
+    sizes.volume += volume;
+    sizes.mass += first.density * volume;
+    for (const io::BedGrain& grain : body) {
+      population.file.push_back(grain);
+      population.diameters.push_back(2.0 * grain.radius);
+    }
+  }
+  return sizes;
+}
+
 void take_from_file(Case& c, std::size_t number, const io::YamlDocument& document) {
   PopulationCase& population = c.grains[number];
   PlacementCase& placement = population.placement;
@@ -96,8 +136,7 @@ void take_from_file(Case& c, std::size_t number, const io::YamlDocument& documen
   } catch (const InputError& error) {
     throw document.error(key, without_period(error.what()));
   }
-  for (const io::BedGrain& grain : bed.grains)
-    if (!placement.region || inside(grain.position, *placement.region)) population.file.push_back(grain);
+  const BedSizes sizes = take_bodies(population, bed);
   if (population.file.empty())
     throw document.error(key, "the file has no grain in the region; give a placement.region in m that holds some");
   const BedPlacement checks(c, document, key, bed);
@@ -107,15 +146,21 @@ void take_from_file(Case& c, std::size_t number, const io::YamlDocument& documen
   checks.check_box();
   checks.check_grains(population.file, placement.largest_overlap.value_or(PlacementCase::bed_overlap));
 
-  population.count = static_cast<std::int64_t>(population.file.size());
-  double mass = 0.0, volume = 0.0;
-  for (const io::BedGrain& grain : population.file) {
-    population.diameters.push_back(2.0 * grain.radius);
-    volume += std::pow(grain.radius, 3);
-    mass += grain.density * std::pow(grain.radius, 3);
+  population.count = static_cast<std::int64_t>(sizes.diameters.size());
+  population.diameter = median_by_volume(sizes.diameters);
+  population.density = sizes.mass / sizes.volume;
+}
+
+// Grains that are clumps, where the case gives their shape.
+void take_shape(Case& c, std::size_t number, const io::YamlDocument& document) {
+  PopulationCase& population = c.grains[number];
+  try {
+    const auto shape = clump_shape_of(population);
+    add_clumps(population.clumps, *shape, population.density, population.count);
+    population.diameter = 2.0 * shape->equivalent_radius();
+  } catch (const InputError& error) {
+    throw document.error(fmt::format("grains.{}.shape.clump", number), without_period(error.what()));
   }
-  population.diameter = median_by_volume(population.diameters);
-  population.density = mass / volume;
 }
 
 }  // namespace
@@ -125,6 +170,7 @@ void fill_in_grains(Case& c, const io::YamlDocument& document) {
     PopulationCase& population = c.grains[n];
     if (c.disks) population.thickness = c.disks->thickness;
     if (population.placement.file) take_from_file(c, n, document);
+    if (population.shape) take_shape(c, n, document);
     if (!population.sizes.given()) continue;
     population.diameters = sampled_diameters(population.sizes, population.count, population.placement.seed);
     population.diameter = median_by_volume(population.diameters);

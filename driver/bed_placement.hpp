@@ -1,5 +1,5 @@
 // Fills in what follows from the grains' sections but is not in the case file itself: grains from bed files, sizes of a
-// distribution.
+// distribution, figures of clumps.
 #pragma once
 
 #include "driver/case.hpp"

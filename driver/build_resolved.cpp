@@ -61,7 +61,9 @@ std::unique_ptr<System> build(const Case& c, MPI_Comm communicator, const Index3
   grains.ghost_width = System::ghost_reach(0.5 * largest_diameter(c), c.domain.spacing);
   grains.attached_width = System::attached_width;
   if (c.coupling.lubrication) grains.lubrication = lubrication_parameters(c);
-  auto dynamics = std::make_unique<dem::GrainDynamics>(*decomposition, communicator, grains, grain_seeds(c));
+  const GrainSeeds seeds = grain_seeds(c);
+  auto dynamics =
+      std::make_unique<dem::GrainDynamics>(*decomposition, communicator, grains, seeds.grains, seeds.clumps);
   return std::make_unique<System>(std::move(decomposition), communicator, parameters, std::move(dynamics));
 }
 

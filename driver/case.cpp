@@ -58,6 +58,12 @@ double largest_diameter(const Case& c) {
   return diameter;
 }
 
+double largest_extent(const Case& c) {
+  double extent = 0.0;
+  for (const PopulationCase& population : c.grains) extent = std::max(extent, population.largest_extent());
+  return extent;
+}
+
 double smallest_diameter(const Case& c) {
   double diameter = largest_diameter(c);
   for (const PopulationCase& population : c.grains) diameter = std::min(diameter, population.smallest_diameter());

@@ -293,6 +293,7 @@ double relaxation_time(const Case& c);            // BGK, without the subgrid mo
 
 std::int64_t grain_count(const Case& c);  // of all populations
 double largest_diameter(const Case& c);   // m; 0 without grains
+double largest_extent(const Case& c);     // m, the same with clumps as they are long
 double smallest_diameter(const Case& c);  // m; 0 without grains
 double grain_volume(const Case& c);       // m^3, of all grains
 

@@ -71,6 +71,12 @@ void check_room(const Case& c, const io::YamlDocument& document) {
           "domain.size", fmt::format("the {} m along {} are too narrow for grains of {} m; give at least {:.6g} m ({})",
                                      c.domain.size[axis], axis_name[axis], diameter, least,
                                      least > diameter ? "two diameters of a periodic axis" : "one diameter"));
+    const double extent = 1.005 * largest_extent(c);
+    if (periodic[static_cast<std::size_t>(axis)] && c.domain.size[axis] < extent)
+      throw document.error("domain.size",
+                           fmt::format("the {} m along {}, which is periodic, are so short that a clump would touch "
+                                       "itself; give at least {:.6g} m",
+                                       c.domain.size[axis], axis_name[axis], extent));
   }
   const double box = c.disks ? c.domain.size[0] * c.disks->thickness * c.domain.size[2] : c.domain.size.prod();
   const double fraction = grain_volume(c) / box, densest = c.disks ? densest_disks : densest_bed;
@@ -202,7 +208,7 @@ void check_fluid(const Case& c, const io::YamlDocument& document) {
   for (std::size_t n = 0; n < c.grains.size(); ++n) {
     const PopulationCase& grains = c.grains[n];
     const std::string key = fmt::format("grains.{}.", n);
-    const double radius = 0.5 * grains.largest_diameter();
+    const double radius = 0.5 * grains.largest_extent();
     check_lattice_velocity(c, document, key + "velocity", grains.velocity.norm());
     check_lattice_velocity(c, document, key + "angular_velocity", grains.angular_velocity.norm() * radius);
     if (grains.prescribed_velocity)
@@ -280,6 +286,8 @@ void check_disks(const Case& c, const io::YamlDocument& document) {
       if (v.y() != 0.0)
         throw document.error(key + (grains.velocity.y() != 0.0 ? "velocity" : "prescribed_velocity"),
                              "disks move in the plane x-z; give a vector in m/s with 0 along y");
+    if (grains.orientation && (grains.orientation->axis.x() != 0.0 || grains.orientation->axis.z() != 0.0))
+      throw document.error(key + "orientation.axis", "disks turn about y; give a vector with 0 along x and z");
     if (grains.motion && !stays_in_plane(*grains.motion))
       throw document.error(key + "motion",
                            "disks move in the plane x-z and turn about y; give vectors with 0 along y and a "
@@ -289,6 +297,18 @@ void check_disks(const Case& c, const io::YamlDocument& document) {
         throw document.error(
             key + (grains.prescribed_angular_velocity ? "prescribed_angular_velocity" : "angular_velocity"),
             "disks turn about y; give a vector in rad/s with 0 along x and z");
+  }
+}
+
+void check_clumps(const Case& c, const io::YamlDocument& document) {
+  for (std::size_t n = 0; n < c.grains.size(); ++n) {
+    if (c.grains[n].clumps.count == 0) continue;
+    if (c.run.grain_integrator == GrainIntegrator::gear)
+      throw document.error("run.grain_integrator", "clumps are moved by velocity_verlet; give that or no clumps");
+    if (c.grains[n].motion)
+      throw document.error(fmt::format("grains.{}.motion", n),
+                           "grains that move together as one body must be spheres, and this bed has clumps; use "
+                           "prescribed_velocity or another bed");
   }
 }
 
@@ -308,6 +328,7 @@ void check_case(const Case& c, const io::YamlDocument& document) {
   check_solids(c, document);
   check_fluid(c, document);
   check_disks(c, document);
+  check_clumps(c, document);
   check_materials(c, document);
   check_contact_steps(c, document);
   if (c.analysis.transport_rate && c.grains.empty())

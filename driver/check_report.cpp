@@ -98,7 +98,13 @@ void add_grains(const Case& c, Lines& lines) {
     const std::string sizes = smallest == largest ? fmt::format("{:g} m", smallest)
                                                   : fmt::format("{:g} to {:g} m, median by mass {:g} m", smallest,
                                                                 largest, population.diameter);
-    lines.push_back(fmt::format("grains     {} of {}, {:g} kg/m^3", population.count, sizes, population.density) +
+    const std::string what = population.shape
+                                 ? fmt::format("clumps of {} spheres, {:.4g} m long", population.shape->clump.size(),
+                                               population.clumps.largest_extent)
+                             : population.clumps.count > 0 ? fmt::format("({} of them clumps)", population.clumps.count)
+                                                           : std::string();
+    lines.push_back(fmt::format("grains     {} {}of {}, {:g} kg/m^3", population.count, what.empty() ? "" : what + ", ",
+                                sizes, population.density) +
                     (has_fluid(c) ? fmt::format(": {:.3g} cells a diameter", smallest / c.domain.spacing) : ""));
   }
   if (c.grains.empty()) return;
@@ -150,9 +156,11 @@ void refuse_impossible_grains(const Case& c) {
   const dem::GrainParameters parameters = grain_parameters(c, box);
   dem::check(parameters.contact);
   std::vector<dem::LightestGrain> lightest(1 + parameters.other_materials.size());
-  const std::vector<dem::GrainSeed> seeds = grain_seeds(c);
+  const GrainSeeds start = grain_seeds(c);
+  dem::check(start.clumps, box);
+  const std::vector<dem::GrainSeed> seeds = dem::with_members(start.grains, start.clumps, box);
   for (const dem::GrainSeed& seed : seeds)
-    lightest[static_cast<std::size_t>(seed.material)].include(seed.mass(), seed.radius);
+    lightest[static_cast<std::size_t>(seed.material)].include(seed.contact_mass(), seed.radius);
   dem::check_time_step(parameters, lightest, grain_count(c));
   dem::check(seeds, box, parameters.walls, parameters.initial_overlap);
 }

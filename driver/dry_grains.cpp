@@ -35,6 +35,11 @@ std::vector<std::string> measured_walls(const Case& c) {
   return walls;
 }
 
+dem::GrainDynamics dry_dynamics(const Case& c, MPI_Comm communicator, const Decomposition& decomposition) {
+  const GrainSeeds seeds = grain_seeds(c);
+  return {decomposition, communicator, dry_parameters(c, decomposition), seeds.grains, seeds.clumps};
+}
+
 }  // namespace
 
 DryGrains::DryGrains(const Case& c, MPI_Comm communicator, const Decomposition& decomposition)
@@ -43,7 +48,7 @@ DryGrains::DryGrains(const Case& c, MPI_Comm communicator, const Decomposition& 
       time_step_(grain_time_step(c) * sub_steps_),
       wall_names_(measured_walls(c)),
       disk_thickness_(c.disks ? c.disks->thickness : 0.0),
-      grains_(decomposition, communicator, dry_parameters(c, decomposition), grain_seeds(c)),
+      grains_(dry_dynamics(c, communicator, decomposition)),
       lists_(timer_.phase("grain lists")),
       motion_(timer_.phase("grain motion")) {}
 

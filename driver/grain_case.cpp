@@ -77,26 +77,42 @@ std::vector<double> listed_diameters(const SizesCase& sizes, std::int64_t count,
 
 }  // namespace
 
+std::int64_t PopulationCase::row_count() const {
+  if (!file.empty()) return static_cast<std::int64_t>(file.size());
+  return shape ? count * static_cast<std::int64_t>(shape->clump.size()) : count;
+}
+
 double PopulationCase::smallest_diameter() const {
-  return diameters.empty() ? diameter : *std::min_element(diameters.begin(), diameters.end());
+  if (!shape) return diameters.empty() ? diameter : *std::min_element(diameters.begin(), diameters.end());
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const MemberCase& member : shape->clump) smallest = std::min(smallest, member.diameter);
+  return smallest;
 }
 
 double PopulationCase::largest_diameter() const {
-  return diameters.empty() ? diameter : *std::max_element(diameters.begin(), diameters.end());
+  if (!shape) return diameters.empty() ? diameter : *std::max_element(diameters.begin(), diameters.end());
+  double largest = 0.0;
+  for (const MemberCase& member : shape->clump) largest = std::max(largest, member.diameter);
+  return largest;
 }
 
+double PopulationCase::largest_extent() const { return std::max(largest_diameter(), clumps.largest_extent); }
+
 double PopulationCase::lightest_mass() const {
-  double lightest =
-      file.empty() ? density * volume_of(smallest_diameter(), thickness) : std::numeric_limits<double>::max();
+  if (shape) return clumps.least_contact_mass;
+  if (file.empty()) return density * volume_of(smallest_diameter(), thickness);
+  double lightest = clumps.count > 0 ? clumps.least_contact_mass : std::numeric_limits<double>::max();
   for (const io::BedGrain& grain : file)
-    lightest = std::min(lightest, grain.density * volume_of(2.0 * grain.radius, thickness));
+    if (grain.clump < 0) lightest = std::min(lightest, grain.density * volume_of(2.0 * grain.radius, thickness));
   return lightest;
 }
 
 double PopulationCase::volume() const {
+  if (shape) return clumps.volume;
   if (diameters.empty()) return static_cast<double>(count) * volume_of(diameter, thickness);
-  double sum = 0.0;
-  for (const double d : diameters) sum += volume_of(d, thickness);
+  double sum = clumps.volume;
+  for (std::size_t n = 0; n < diameters.size(); ++n)
+    if (file.empty() || file[n].clump < 0) sum += volume_of(diameters[n], thickness);
   return sum;
 }
 

@@ -100,11 +100,43 @@ struct WallMaterialCase : MaterialCase {
   bool operator==(const WallMaterialCase&) const = default;
 };
 
+// A sphere of a clump, or a disk.
+struct MemberCase {
+  Vec3 position = Vec3::Zero();  // m, from any origin
+  double diameter = 0.0;         // m
+  bool operator==(const MemberCase&) const = default;
+};
+
+// What grains are that are no spheres.
+struct ShapeCase {
+  std::vector<MemberCase> clump;
+  bool operator==(const ShapeCase&) const = default;
+};
+
+// Turned about the axis from how the shape is given.
+struct OrientationCase {
+  Vec3 axis = Vec3::UnitY();  // of any length
+  double angle = 0.0;         // rad
+  bool operator==(const OrientationCase&) const = default;
+};
+
+// What there is to know of the clumps of a population.
+struct ClumpFigures {
+  std::int64_t count = 0;
+  double volume = 0.0;              // m^3, of all
+  double least_contact_mass = 0.0;  // kg, the least that a contact of any of them feels
+  double largest_extent = 0.0;      // m, diameter of the sphere about its centre that holds the largest
+  bool operator==(const ClumpFigures&) const = default;
+};
+
 struct PopulationCase {
   std::int64_t count = 0;  // read as the number of positions, or of grains in the file, where those are given
-  double diameter = 0.0;   // m; where they differ, the one that half of the mass is finer than
+  double diameter = 0.0;   // m; where they differ, the one that half of the mass is finer than; of the sphere of a
+                           // clump's volume
   double density = 0.0;    // kg/m^3; from a file: mass over volume of all its grains
   SizesCase sizes;
+  std::optional<ShapeCase> shape;
+  std::optional<OrientationCase> orientation;  // of all its clumps; none: each at random
   PlacementCase placement;
   std::optional<MaterialCase> contact;
   Vec3 velocity = Vec3::Zero();                     // m/s, at the start
@@ -116,16 +148,22 @@ struct PopulationCase {
 
   // What read_case() makes of disks, sizes and file.
   double thickness = 0.0;          // m, of disks; 0: spheres
-  std::vector<double> diameters;   // m, one a grain; empty: all `diameter`
-  std::vector<io::BedGrain> file;  // grains of placement.file, one by one
+  std::vector<double> diameters;   // m, one a grain or row of the file; empty: all `diameter`
+  std::vector<io::BedGrain> file;  // rows of placement.file: grains, and members of clumps one after the other
+  ClumpFigures clumps;             // of shape or file
 
   bool operator==(const PopulationCase&) const = default;
 
+  std::int64_t row_count() const;  // ids that its grains take, one each, but one each member of a clump
   double diameter_of(std::size_t grain) const { return diameters.empty() ? diameter : diameters[grain]; }
+  // m, of the sphere that a grain of its own, not from a file, needs where it is put
+  double room_of(std::size_t grain) const { return shape ? clumps.largest_extent : diameter_of(grain); }
+  double room_of_all() const { return shape ? clumps.largest_extent : largest_diameter(); }  // the same of the largest
   double density_of(std::size_t grain) const { return file.empty() ? density : file[grain].density; }
-  double smallest_diameter() const;  // m
+  double smallest_diameter() const;  // m, of spheres and members
   double largest_diameter() const;   // m
-  double lightest_mass() const;      // kg
+  double largest_extent() const;     // m, of spheres and clumps
+  double lightest_mass() const;      // kg, the least that a contact feels
   double volume() const;             // m^3, of all its grains
 };
 

@@ -117,16 +117,33 @@ static void describe_material(io::SectionVisitor& visit, MaterialCase& material,
 static void describe(io::SectionVisitor& visit, MaterialCase& material) { describe_material(visit, material, false); }
 static void describe(io::SectionVisitor& visit, WallMaterialCase& walls) { describe_material(visit, walls, true); }
 
-// Position, number, size and density, which a bed file gives all at once.
-static void describe_grains_themselves(io::SectionVisitor& visit, PopulationCase& grains) {
-  visit.section("placement", grains.placement, {.meaning = "where the grains are at the start"});
-  if (grains.placement.file) {
-    for (const char* key : {"diameter", "density", "count"})
-      visit.not_here(key, "the bed file gives it; remove this key or placement.file");
-    for (const char* key : {"velocity", "angular_velocity"})
-      visit.not_here(key,
-                     "the bed file gives it; remove this key or placement.file (placement.velocities: zero leaves "
-                     "them out)");
+static void describe(io::SectionVisitor& visit, MemberCase& member) {
+  visit.vec3("position", member.position, {.unit = "m", .meaning = "from any origin", .required = true});
+  visit.real("diameter", member.diameter,
+             {.unit = "m", .meaning = "of the sphere", .required = true, .above = 0.0, .example = 4e-3});
+}
+
+static void describe(io::SectionVisitor& visit, ShapeCase& shape) {
+  visit.list("clump", shape.clump,
+             {.meaning = "spheres that may overlap and move as one rigid grain", .required = true});
+  visit.require(!shape.clump.empty(), "clump",
+                "a clump needs at least one sphere; give its position and diameter in m");
+}
+
+static void describe(io::SectionVisitor& visit, OrientationCase& orientation) {
+  visit.vec3("axis", orientation.axis, {.meaning = "along the axis, of any length"});
+  visit.real("angle", orientation.angle, {.unit = "rad", .meaning = "right-handed about it from the shape as given"});
+  visit.require(!orientation.axis.isZero(0.0), "axis", "a direction cannot be zero; give for example [0, 1, 0]");
+}
+
+// Diameter, or shape.
+static void describe_size(io::SectionVisitor& visit, PopulationCase& grains) {
+  visit.section("shape", grains.shape, {.meaning = "in place of a diameter, for grains that are no spheres"});
+  if (!grains.shape) visit.not_here("orientation", "spheres have none; give a shape or remove the key");
+  if (grains.shape || !visit.reading())
+    visit.section("orientation", grains.orientation, {.meaning = "of all clumps; each at random where not given"});
+  if (grains.shape) {
+    visit.not_here("diameter", "the members of the shape have diameters; remove this key or the shape");
     return;
   }
   visit.section("diameter",
@@ -135,6 +152,21 @@ static void describe_grains_themselves(io::SectionVisitor& visit, PopulationCase
                  .shorthand = "value",
                  .expected = "a number in m above 0, for example 0.005"},
                 [&](io::SectionVisitor& inside) { describe_diameter(inside, grains); });
+}
+
+// Position, number, size and density, which a bed file gives all at once.
+static void describe_grains_themselves(io::SectionVisitor& visit, PopulationCase& grains) {
+  visit.section("placement", grains.placement, {.meaning = "where the grains are at the start"});
+  if (grains.placement.file) {
+    for (const char* key : {"diameter", "shape", "orientation", "density", "count"})
+      visit.not_here(key, "the bed file gives it; remove this key or placement.file");
+    for (const char* key : {"velocity", "angular_velocity"})
+      visit.not_here(key,
+                     "the bed file gives it; remove this key or placement.file (placement.velocities: zero leaves "
+                     "them out)");
+    return;
+  }
+  describe_size(visit, grains);
   visit.real("density", grains.density,
              {.unit = "kg/m^3", .meaning = "of every grain", .required = true, .above = 0.0, .example = 2550.0});
   const auto given = static_cast<std::int64_t>(grains.placement.positions.size());
@@ -164,6 +196,9 @@ void describe(io::SectionVisitor& visit, PopulationCase& grains) {
       !grains.motion || (!grains.fixed && !grains.prescribed_velocity && !grains.prescribed_angular_velocity &&
                          grains.velocity.isZero(0.0) && grains.angular_velocity.isZero(0.0)),
       "motion", "it already says how the grains move; remove fixed and all velocities beside it");
+  visit.require(
+      !grains.shape || !grains.motion, "motion",
+      "grains that move together as one body need no clumps; give the spheres as grains, or remove the shape");
   visit.require(!grains.fixed || (!grains.prescribed_velocity && !grains.prescribed_angular_velocity), "fixed",
                 "a fixed grain cannot have a prescribed velocity; give one or the other");
   visit.require(!grains.fixed || (grains.velocity.isZero(0.0) && grains.angular_velocity.isZero(0.0)), "fixed",

@@ -2,12 +2,14 @@
 
 #include "core/error.hpp"
 #include "dem/packing.hpp"
+#include "driver/clump_setup.hpp"
 #include "driver/grain_materials.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace thalweg::driver {
 
@@ -94,6 +96,17 @@ dem::GrainSeed seed_of(const Case& c, std::size_t number, std::size_t grain, con
   return seed;
 }
 
+// A clump moves and is held as its population says a grain is; of a file it has what its members tell.
+dem::ClumpSeed clump_seed_of(const dem::GrainSeed& as_grain, dem::ClumpSeed clump) {
+  clump.id = as_grain.id;
+  clump.density = as_grain.density;
+  clump.velocity = as_grain.velocity;
+  clump.angular_velocity = as_grain.angular_velocity;
+  clump.material = as_grain.material;
+  clump.motion = as_grain.motion;
+  return clump;
+}
+
 // Who is given a place first.
 enum class Turn { given, uniform, random };
 
@@ -113,17 +126,59 @@ std::vector<Vec3> place(const PopulationCase& population, const PeriodicBox& box
       for (const io::BedGrain& grain : population.file) positions.push_back(grain.position);
       return placement.file ? positions : placement.positions;
     case Turn::uniform:
-      return dem::uniform_packing(box, region_of(placement, box), population.count, 0.5 * population.largest_diameter(),
-                                  0.0, seed);
+      return dem::uniform_packing(box, region_of(placement, box), population.count, 0.5 * population.room_of_all(), 0.0,
+                                  seed);
     case Turn::random:
       break;
   }
   for (std::size_t n = 0; n < static_cast<std::size_t>(population.count); ++n)
-    radii.push_back(0.5 * population.diameter_of(n));
+    radii.push_back(0.5 * population.room_of(n));
   dem::Region region = region_of(placement, box);
   region.plane = population.thickness > 0.0;
   if (region.plane) region.lower[1] = 0.0, region.upper[1] = box.size[1];
   return dem::random_packing(box, region, radii, 0.0, seed, placed);
+}
+
+// The grains of a population at their positions, or from the rows of its file; returns the id that comes next.
+GlobalId add_seeds(const Case& c, std::size_t number, const std::vector<Vec3>& positions, GlobalId next,
+                   GrainSeeds& seeds) {
+  const PopulationCase& population = c.grains[number];
+  const auto with_id = [&](std::size_t grain, const Vec3& position) {
+    dem::GrainSeed seed = seed_of(c, number, grain, position);
+    seed.id = next;
+    return seed;
+  };
+  if (population.shape) {
+    dem::ClumpSeed clump;
+    clump.shape = clump_shape_of(population);
+    for (std::size_t n = 0; n < positions.size(); ++n) {
+      const dem::GrainSeed as_grain = with_id(n, positions[n]);
+      clump.position = as_grain.position;
+      clump.orientation = orientation_of(population, n);
+      seeds.clumps.push_back(clump_seed_of(as_grain, clump));
+      next += static_cast<GlobalId>(clump.shape->members.size());
+    }
+    return next;
+  }
+  if (population.file.empty()) {
+    for (std::size_t n = 0; n < positions.size(); ++n, ++next) seeds.grains.push_back(with_id(n, positions[n]));
+    return next;
+  }
+  std::size_t row = 0;
+  for (const std::span<const io::BedGrain> body : bodies_of(population.file)) {
+    dem::GrainSeed seed = with_id(row, body.front().position);
+    if (body.front().clump < 0) {
+      seeds.grains.push_back(seed);
+    } else {
+      dem::ClumpSeed clump = clump_from(body, box_of(c), population.thickness);
+      const bool kept = population.placement.velocities.value_or(FileVelocities::kept) == FileVelocities::kept;
+      if (kept && !dem::holds_translation(seed.motion)) seed.velocity = clump.velocity;  // of the centre
+      seeds.clumps.push_back(clump_seed_of(seed, clump));
+    }
+    next += static_cast<GlobalId>(body.size());
+    row += body.size();
+  }
+  return next;
 }
 
 }  // namespace
@@ -159,7 +214,7 @@ dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box) {
   return parameters;
 }
 
-std::vector<dem::GrainSeed> grain_seeds(const Case& c) {
+GrainSeeds grain_seeds(const Case& c) {
   const PeriodicBox box = box_of(c);
   std::vector<std::vector<Vec3>> positions(c.grains.size());
   std::vector<dem::Sphere> placed;
@@ -174,14 +229,11 @@ std::vector<dem::GrainSeed> grain_seeds(const Case& c) {
       for (std::size_t n = 0; n < positions[p].size(); ++n)
         placed.push_back(
             {c.disks ? Vec3(positions[p][n].x(), 0.5 * c.domain.size[1], positions[p][n].z()) : positions[p][n],
-             0.5 * c.grains[p].diameter_of(n)});
+             0.5 * c.grains[p].room_of(n)});
     }
-  std::vector<dem::GrainSeed> seeds;
-  for (std::size_t p = 0; p < c.grains.size(); ++p)
-    for (std::size_t n = 0; n < positions[p].size(); ++n) {
-      seeds.push_back(seed_of(c, p, n, positions[p][n]));
-      seeds.back().id = static_cast<GlobalId>(seeds.size() - 1);
-    }
+  GrainSeeds seeds;
+  GlobalId next = 0;
+  for (std::size_t p = 0; p < c.grains.size(); ++p) next = add_seeds(c, p, positions[p], next, seeds);
   return seeds;
 }
 

@@ -15,9 +15,13 @@ dem::PrescribedMotion prescribed_motion(const MotionCase& c);
 // attached columns are left to the caller.
 dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box);
 
-// All grains at the start. Ids run through the populations in the order of the case. Given positions are taken first,
-// then uniform patterns, then random ones, which keep clear of all others. Throws InputError where they do not fit.
-// The same on every rank, without communication.
-std::vector<dem::GrainSeed> grain_seeds(const Case& c);
+// All grains at the start, a clump with its centre at its place. Ids run through the populations in the order of the
+// case. Given positions are taken first, then uniform patterns, then random ones, which keep clear of all others.
+// Throws InputError where they do not fit. The same on every rank, without communication.
+struct GrainSeeds {
+  std::vector<dem::GrainSeed> grains;
+  std::vector<dem::ClumpSeed> clumps;  // whose members have ids of their own
+};
+GrainSeeds grain_seeds(const Case& c);
 
 }  // namespace thalweg::driver

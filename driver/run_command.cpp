@@ -68,8 +68,8 @@ std::vector<analysis::Population> populations_of(const Case& c) {
       pivot = [motion = prescribed_motion(*grains.motion)](double time) -> Vec3 {
         return motion.centre + motion.displacement(time);
       };
-    populations.push_back({fmt::format("grains_{}", p), first, first + grains.count, pivot});
-    first += grains.count;
+    populations.push_back({fmt::format("grains_{}", p), first, first + grains.row_count(), pivot});
+    first += grains.row_count();
   }
   return populations;
 }

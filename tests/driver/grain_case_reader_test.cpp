@@ -46,6 +46,28 @@ TEST(GrainCaseReader, ElasticSpheresHaveModuliInPlaceOfStiffnesses) {
   EXPECT_THROW(read(defaults_yaml("grains"), {"contact.youngs_modulus=1e8"}), InputError);
 }
 
+// Two spheres of radius R whose centres are R apart: 4/3 pi R^3 each, less the lens of 5 pi/12 R^3 once.
+TEST(GrainCaseReader, ClumpsHaveTheVolumeOfTheirUnion) {
+  const std::vector<std::string> twins{
+      "grains=[{shape: {clump: [{position: [0, 0, 0], diameter: 4.0e-3}, {position: [0, 0, 2.0e-3], diameter: "
+      "4.0e-3}]}, "
+      "density: 2500, count: 20, orientation: {axis: [0, 1, 0], angle: 0.3}}]"};
+  const Case c = read(flume, twins);
+  const double volume = (8.0 / 3.0 - 5.0 / 12.0) * std::numbers::pi * 8e-9;
+  EXPECT_NEAR(c.grains[0].volume() / (20.0 * volume), 1.0, 1e-12);
+  EXPECT_NEAR(c.grains[0].diameter / std::cbrt(6.0 * volume / std::numbers::pi), 1.0, 1e-12);
+  EXPECT_NEAR(c.grains[0].largest_extent(), 6e-3, 1e-14);
+  EXPECT_EQ(c.grains[0].largest_diameter(), 4e-3);
+  EXPECT_EQ(c.grains[0].row_count(), 40);
+  // The ends are lighter to the touch than the whole, but not lighter than a point of half the mass turning alone.
+  EXPECT_LT(c.grains[0].lightest_mass(), 2500.0 * volume);
+  EXPECT_GT(c.grains[0].lightest_mass(), 0.25 * 2500.0 * volume);
+  EXPECT_EQ(read(resolved_yaml(c)), c);
+  EXPECT_THROW(read(flume, {twins[0], "grains.0.diameter=4e-3"}), InputError);
+  EXPECT_THROW(read(flume, {twins[0], "grains.0.orientation.axis=[0, 0, 0]"}), InputError);
+  EXPECT_THROW(read(flume, {twins[0], "grains.0.motion={velocity: [0.1, 0, 0]}"}), InputError);
+}
+
 // Grain n of a lognormal population of N lies at the share (n + 1/2)/N of the cut distribution, in order of size.
 TEST(GrainCaseReader, SizesFollowTheirDistribution) {
   const std::string sizes =
