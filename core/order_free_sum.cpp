@@ -23,7 +23,13 @@ int shift_for(double largest, std::int64_t terms) {
 }  // namespace
 
 std::vector<double> order_free_sums(MPI_Comm communicator, std::span<const double> terms, std::size_t columns) {
-  const std::size_t rows = columns == 0 ? 0 : terms.size() / columns;
+  const std::vector<int> all_in_one(columns == 0 ? 0 : terms.size() / columns, 0);
+  return order_free_sums_by_bin(communicator, all_in_one, 1, terms, columns);
+}
+
+std::vector<double> order_free_sums_by_bin(MPI_Comm communicator, std::span<const int> bin_of_row, int bins,
+                                           std::span<const double> terms, std::size_t columns) {
+  const std::size_t rows = bin_of_row.size();
   // One reduction for the largest term of every column; infinity stands for anything not finite.
   std::vector<double> largest(columns, 0.0);
   for (std::size_t row = 0; row < rows; ++row)
@@ -34,19 +40,24 @@ std::vector<double> order_free_sums(MPI_Comm communicator, std::span<const doubl
   MPI_Allreduce(MPI_IN_PLACE, largest.data(), static_cast<int>(columns), MPI_DOUBLE, MPI_MAX, communicator);
   const std::int64_t all_rows = sum_over_ranks(communicator, static_cast<std::int64_t>(rows));
 
-  std::vector<std::int64_t> sums(columns, 0);
+  const std::size_t entries = columns * static_cast<std::size_t>(bins);
+  std::vector<std::int64_t> sums(entries, 0);
   std::vector<int> shift(columns, 0);
   for (std::size_t c = 0; c < columns; ++c) {
     if (largest[c] == 0.0 || std::isinf(largest[c])) continue;
     shift[c] = shift_for(largest[c], all_rows);
-    for (std::size_t row = 0; row < rows; ++row) sums[c] += std::llrint(std::ldexp(terms[row * columns + c], shift[c]));
+    for (std::size_t row = 0; row < rows; ++row)
+      sums[static_cast<std::size_t>(bin_of_row[row]) * columns + c] +=
+          std::llrint(std::ldexp(terms[row * columns + c], shift[c]));
   }
-  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(columns), MPI_INT64_T, MPI_SUM, communicator);
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(entries), MPI_INT64_T, MPI_SUM, communicator);
 
-  std::vector<double> result(columns, 0.0);
-  for (std::size_t c = 0; c < columns; ++c)
-    result[c] = std::isinf(largest[c]) ? std::numeric_limits<double>::quiet_NaN()
-                                       : std::ldexp(static_cast<double>(sums[c]), -shift[c]);
+  std::vector<double> result(entries, 0.0);
+  for (std::size_t e = 0; e < entries; ++e) {
+    const std::size_t c = e % columns;
+    result[e] = std::isinf(largest[c]) ? std::numeric_limits<double>::quiet_NaN()
+                                       : std::ldexp(static_cast<double>(sums[e]), -shift[c]);
+  }
   return result;
 }
 

@@ -17,4 +17,9 @@ namespace thalweg {
 // the same on every rank; not-a-number for a column that holds a term which is not finite. Collective.
 std::vector<double> order_free_sums(MPI_Comm communicator, std::span<const double> terms, std::size_t columns);
 
+// The same for rows that each belong to one of `bins` bins, and may lie in any number on any rank: `columns` sums a
+// bin, bin by bin.
+std::vector<double> order_free_sums_by_bin(MPI_Comm communicator, std::span<const int> bin_of_row, int bins,
+                                           std::span<const double> terms, std::size_t columns);
+
 }  // namespace thalweg

@@ -78,12 +78,25 @@ public:
   virtual void for_each_velocity(const VelocityVisitor& visit) const = 0;
 };
 
+// The contacts of the grains, as each grain feels them.
+class ContactSource {
+public:
+  virtual ~ContactSource() = default;
+
+  // Calls visit(grain, arm, force) for every contact of every grain of the GrainView (its number there), in the order
+  // of its neighbours' ids, then of its walls: m from its centre to the contact, N on the grain. A contact of two
+  // grains comes up once for each of them.
+  using ContactVisitor = std::function<void(std::size_t, const Vec3&, const Vec3&)>;
+  virtual void for_each_contact(const ContactVisitor& visit) const = 0;
+};
+
 struct Snapshot {
   double time = 0.0;  // s
   std::int64_t step = 0;
   const Decomposition* decomposition = nullptr;
-  GrainView grains;                    // global_count 0: no grains
-  const FluidSource* fluid = nullptr;  // null: no fluid
+  GrainView grains;                         // global_count 0: no grains
+  const FluidSource* fluid = nullptr;       // null: no fluid
+  const ContactSource* contacts = nullptr;  // null: no grains
 };
 
 }  // namespace thalweg

@@ -246,6 +246,7 @@ Snapshot ResolvedSystem<Real>::snapshot() const {
   s.step = step_;
   s.decomposition = decomposition_.get();
   s.fluid = this;
+  s.contacts = this;
   s.grains.global_count = grains_->global_count();
   s.grains.id = {store.id.data(), n};
   s.grains.radius = {store.radius.data(), n};

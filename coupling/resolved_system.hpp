@@ -31,7 +31,7 @@ struct ExchangeTotals {
 };
 
 template <typename Real>
-class ResolvedSystem final : public System, private FluidSource {
+class ResolvedSystem final : public System, private FluidSource, private ContactSource {
 public:
   // The grains (already holding their seeds) must carry attached_width attached columns and reach ghost_reach() beyond
   // their block. Takes both over.
@@ -67,6 +67,7 @@ public:
 private:
   FluidFields sample(const std::vector<FluidField>& wanted) const override;
   void for_each_velocity(const VelocityVisitor& visit) const override;
+  void for_each_contact(const ContactVisitor& visit) const override { grains_->for_each_contact(visit); }
 
   void initialise_map();
   void synchronise_slots();

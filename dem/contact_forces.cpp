@@ -1,5 +1,6 @@
 #include "dem/contact_forces.hpp"
 
+#include "dem/contact_motion.hpp"
 #include "dem/hertz_mindlin.hpp"
 #include "dem/rolling_pass.hpp"
 #include "dem/spring_dashpot.hpp"
@@ -279,6 +280,35 @@ std::vector<Vec3> wall_forces_with(const ContactLaw& law, const GrainStore& stor
 }
 
 template <typename ContactLaw>
+void visit_ends_with(const ContactLaw& law, const GrainStore& store, const ContactList& list, const PeriodicBox& box,
+                     std::span<const Plane> walls, const MaterialTable& materials, const ContactEndVisitor& visit) {
+  const auto force_of = [&](const ContactMotion& motion, const ContactCoefficients& k, double damping,
+                            const double(&spring)[3]) -> Vec3 {
+    const ContactForce f = law(motion, k, damping, {spring[0], spring[1], spring[2]});
+    return f.normal * normal_of(motion) + Vec3(f.tx, f.ty, f.tz);
+  };
+  for (const PairContact& c : list.pairs) {
+    const ContactMotion motion = motion_of(body_of(store, c.first), body_of(store, c.second),
+                                           box.difference(store.position[c.first], store.position[c.second]));
+    if (!(motion.overlap > 0.0)) continue;
+    const Vec3 n = normal_of(motion);
+    const Vec3 force = force_of(motion, materials.pair(store.material[c.first], store.material[c.second]).coefficients,
+                                c.damping, c.spring);
+    const double half = 0.5 * motion.overlap;
+    if (!store.is_ghost(c.first)) visit(c.first, -(store.radius[c.first] - half) * n, force);
+    if (!store.is_ghost(c.second)) visit(c.second, (store.radius[c.second] - half) * n, -force);
+  }
+  for (const WallContact& c : list.walls) {
+    const ContactMotion motion = motion_of(body_of(store, c.grain), walls[c.wall], store.position[c.grain]);
+    if (!(motion.overlap > 0.0)) continue;
+    ContactCoefficients coefficients = materials.wall(store.material[c.grain]).coefficients;
+    coefficients.friction = walls[c.wall].friction;
+    visit(c.grain, (motion.overlap - store.radius[c.grain]) * normal_of(motion),
+          force_of(motion, coefficients, c.damping, c.spring));
+  }
+}
+
+template <typename ContactLaw>
 void evaluate_with(const ContactLaw& law, MovingGrains& grains, ContactList& list, const PeriodicBox& box,
                    std::span<const Plane> walls, const MaterialTable& materials,
                    std::span<const std::uint8_t> material) {
@@ -305,6 +335,16 @@ std::vector<Vec3> wall_contact_forces(const GrainStore& store, const ContactList
   if (materials.law() == Law::linear)
     return wall_forces_with(SpringDashpotFriction(manner), store, list, walls, materials);
   return wall_forces_with(HertzMindlin(manner), store, list, walls, materials);
+}
+
+void for_each_contact_end(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
+                          std::span<const Plane> walls, const MaterialTable& materials,
+                          const ContactEndVisitor& visit) {
+  const ContactManner manner = materials.manner(0.0);
+  if (materials.law() == Law::linear)
+    visit_ends_with(SpringDashpotFriction(manner), store, list, box, walls, materials, visit);
+  else
+    visit_ends_with(HertzMindlin(manner), store, list, box, walls, materials, visit);
 }
 
 }  // namespace thalweg::dem

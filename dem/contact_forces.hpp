@@ -6,6 +6,8 @@
 #include "dem/material.hpp"
 #include "dem/moving_grains.hpp"
 
+#include <functional>
+
 namespace thalweg::dem {
 
 // Adds the contact forces and torques that follow from positions and velocities, those of rolling friction among them,
@@ -19,5 +21,11 @@ void evaluate_contacts(MovingGrains& grains, ContactList& list, const PeriodicBo
 // The force (N) on each wall contact's grain, by the present positions, velocities and springs, which stay as they are.
 std::vector<Vec3> wall_contact_forces(const GrainStore& store, const ContactList& list, std::span<const Plane> walls,
                                       const MaterialTable& materials);
+
+// Calls visit(slot, arm, force) for every contact of every owned grain, in the order of the list, pairs first: m from
+// its centre to the contact, N on the grain. By the present positions, velocities and springs, which stay as they are.
+using ContactEndVisitor = std::function<void(std::size_t slot, const Vec3& arm, const Vec3& force)>;
+void for_each_contact_end(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
+                          std::span<const Plane> walls, const MaterialTable& materials, const ContactEndVisitor& visit);
 
 }  // namespace thalweg::dem

@@ -139,6 +139,10 @@ public:
   // The touching pairs whose lower id is owned here, sorted by ids, then the touching walls of owned grains.
   std::vector<Contact> contacts() const;
 
+  // Every contact of every owned grain, as it feels it (contact_forces.hpp); of a clump's member, with the arm from the
+  // clump's centre.
+  void for_each_contact(const std::function<void(std::size_t slot, const Vec3& arm, const Vec3& force)>& visit) const;
+
   // Figures over all ranks, the same bits in any layout; a clump is one grain, with the velocity of its centre, but
   // overlap and contacts are those of its members. Collective.
   std::vector<Vec3> wall_forces() const;          // N, of all grains on each of the walls, in their order

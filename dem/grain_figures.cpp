@@ -38,6 +38,20 @@ std::vector<Contact> GrainDynamics::contacts() const {
   return touching;
 }
 
+void GrainDynamics::for_each_contact(
+    const std::function<void(std::size_t slot, const Vec3& arm, const Vec3& force)>& visit) const {
+  std::vector<Vec3> from_centre(clumps_.empty() ? 0 : store_.owned, Vec3::Zero());
+  for (std::size_t n = 0; n < clumps_.size(); ++n)
+    for (std::size_t m = 0; m < static_cast<std::size_t>(clumps_[n].members); ++m) {
+      const std::size_t slot = clumps_.first_slot(n) + m;
+      from_centre[slot] = box_.difference(store_.position[slot], clumps_[n].centre);
+    }
+  for_each_contact_end(store_, list_, box_, planes_, materials_,
+                       [&](std::size_t slot, const Vec3& arm, const Vec3& force) {
+                         visit(slot, from_centre.empty() ? arm : Vec3(arm + from_centre[slot]), force);
+                       });
+}
+
 std::vector<Vec3> GrainDynamics::wall_forces() const {
   const std::size_t walls = planes_.size();
   const std::vector<Vec3> on_grains = wall_contact_forces(store_, list_, planes_, materials_);

@@ -246,7 +246,15 @@ struct PopulationLoadsCase {
   bool operator==(const PopulationLoadsCase&) const = default;
 };
 
+struct GrainProfilesCase {
+  double from = 0.0;            // s
+  double every = 0.01;          // s
+  std::optional<double> layer;  // m; else half of the largest diameter
+  bool operator==(const GrainProfilesCase&) const = default;
+};
+
 struct AnalysisCase {
+  std::optional<GrainProfilesCase> grain_profiles;
   std::optional<PopulationLoadsCase> population_loads;
   std::optional<WallForcesCase> wall_forces;  // of dry grains
   std::optional<TransportRateCase> transport_rate;

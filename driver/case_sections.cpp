@@ -274,6 +274,17 @@ static void describe(io::SectionVisitor& visit, TransportRateCase& rate) {
   visit.real("from", rate.from, {.unit = "s", .meaning = "start of the mean that summary.json gives", .at_least = 0.0});
 }
 
+static void describe(io::SectionVisitor& visit, GrainProfilesCase& profiles) {
+  visit.real("from", profiles.from, {.unit = "s", .meaning = "start of the means", .at_least = 0.0});
+  visit.real("every", profiles.every, {.unit = "s", .meaning = "between measurements", .above = 0.0});
+  visit.real("layer", profiles.layer,
+             {.unit = "m",
+              .meaning = "height of a layer, of which a whole number fills the box; half of the largest diameter where "
+                         "not given",
+              .above = 0.0,
+              .example = 2.5e-3});
+}
+
 static void describe(io::SectionVisitor&, WallForcesCase&) {}
 static void describe(io::SectionVisitor&, PopulationLoadsCase&) {}
 
@@ -282,6 +293,13 @@ static void describe_analysis(io::SectionVisitor& visit, AnalysisCase& analysis,
     visit.section("transport_rate", analysis.transport_rate, {.meaning = "the grains' flux q and q* along x"});
   else
     visit.not_here("transport_rate", "system: fluid has no grains; remove the section or set system: resolved");
+  if (with_grains)
+    visit.section(
+        "grain_profiles", analysis.grain_profiles,
+        {.meaning = "mean solid fraction, velocity, flux, granular temperature and stresses of the grains over "
+                    "z, in profiles.h5"});
+  else
+    visit.not_here("grain_profiles", "system: fluid has no grains; remove the section or set system: resolved");
   if (with_grains)
     visit.section("population_loads", analysis.population_loads,
                   {.meaning = "force and torque on each population of grains, in series.csv; no keys: {}"});

@@ -73,6 +73,7 @@ Snapshot DryGrains::snapshot() const {
   snapshot.time = time();
   snapshot.step = step_;
   snapshot.decomposition = &decomposition_;
+  snapshot.contacts = this;
   snapshot.grains.global_count = grains_.global_count();
   snapshot.grains.disk_thickness = disk_thickness_;
   snapshot.grains.id = {store.id.data(), owned};

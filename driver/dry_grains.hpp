@@ -11,7 +11,7 @@
 
 namespace thalweg::driver {
 
-class DryGrains final : public System {
+class DryGrains final : public System, private ContactSource {
 public:
   // Throws InputError where the grains do not fit or the time step is too long. Collective.
   DryGrains(const Case& c, MPI_Comm communicator, const Decomposition& decomposition);
@@ -32,6 +32,8 @@ public:
   std::int64_t grain_steps_per_step() const override { return grains_.global_count() * sub_steps_; }
 
 private:
+  void for_each_contact(const ContactVisitor& visit) const override { grains_.for_each_contact(visit); }
+
   Decomposition decomposition_;
   int sub_steps_;
   double time_step_;                     // s, of sub_steps_ sub-steps

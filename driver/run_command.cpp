@@ -2,6 +2,7 @@
 
 #include "analysis/fluid_statistics.hpp"
 #include "analysis/grain_energy.hpp"
+#include "analysis/grain_profiles.hpp"
 #include "analysis/population_loads.hpp"
 #include "analysis/transport_rate.hpp"
 #include "core/error.hpp"
@@ -90,6 +91,12 @@ Observers observers_of(const Case& c, const System& system, MPI_Comm communicato
                                            gravity_vector(c.gravity).norm()};
     observers.push_back(
         std::make_unique<analysis::TransportRate>(communicator, scales, c.analysis.transport_rate->from));
+  }
+  if (c.analysis.grain_profiles) {
+    const GrainProfilesCase& asked_for = *c.analysis.grain_profiles;
+    observers.push_back(std::make_unique<analysis::GrainProfiles>(
+        communicator, *system.snapshot().decomposition, asked_for.layer.value_or(0.5 * largest_diameter(c)),
+        analysis::ProfileSchedule{asked_for.from, asked_for.every}));
   }
   if (c.analysis.population_loads)
     observers.push_back(std::make_unique<analysis::PopulationLoads>(

@@ -1,0 +1,126 @@
+#include "analysis/grain_profiles.hpp"
+
+#include "analysis/sphere_in_layer.hpp"
+#include "core/mpi_session.hpp"
+#include "core/order_free_sum.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace thalweg::analysis {
+
+namespace {
+
+constexpr int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+
+// sum over contacts of F_a r_b (N m) of every grain of the snapshot, rows a, columns b.
+std::vector<Eigen::Matrix3d> contact_moments(const Snapshot& snapshot) {
+  std::vector<Eigen::Matrix3d> moments(snapshot.grains.id.size(), Eigen::Matrix3d::Zero());
+  if (snapshot.contacts)
+    snapshot.contacts->for_each_contact(
+        [&](std::size_t grain, const Vec3& arm, const Vec3& force) { moments[grain] += force * arm.transpose(); });
+  return moments;
+}
+
+}  // namespace
+
+GrainProfiles::GrainProfiles(MPI_Comm communicator, const Decomposition& decomposition, double layer,
+                             const ProfileSchedule& schedule)
+    : communicator_(communicator),
+      box_(decomposition.box()),
+      layers_(std::max(1, static_cast<int>(std::lround(box_.size[2] / layer)))),
+      thickness_(box_.size[2] / layers_),
+      schedule_(schedule),
+      sums_(static_cast<std::size_t>(layers_) * quantities, 0.0) {}
+
+void GrainProfiles::observe(const Snapshot& snapshot) {
+  // A step that is due at `from` itself counts, whatever the last bit of its time.
+  if (snapshot.step <= counted_step_ || snapshot.time < schedule_.from * (1.0 - 1e-12)) return;
+  counted_step_ = snapshot.step;
+  ++measurements_;
+  const GrainView& grains = snapshot.grains;
+  const std::vector<Eigen::Matrix3d> moments = contact_moments(snapshot);
+  std::vector<int> layer_of_row;
+  std::vector<double> terms;
+  for (std::size_t i = 0; i < grains.id.size(); ++i) {
+    const double radius = grains.radius[i], bottom = grains.position[i][2] - radius;
+    const double whole = volume_of(radius, grains.disk_thickness);
+    const Vec3& v = grains.velocity[i];
+    const int first = static_cast<int>(std::floor(bottom / thickness_));
+    const int last = static_cast<int>(std::floor((bottom + 2.0 * radius) / thickness_));
+    for (int layer = first; layer <= last; ++layer) {
+      const int inside = box_.periodic[2] ? (layer % layers_ + layers_) % layers_ : layer;
+      if (inside < 0 || inside >= layers_) continue;
+      const double part =
+          volume_between(radius, grains.disk_thickness, layer * thickness_ - bottom, (layer + 1) * thickness_ - bottom);
+      const double share = part / whole, m = share * grains.mass[i];
+      layer_of_row.push_back(inside);
+      terms.insert(terms.end(), {part, m, m * v[0], m * v[1], m * v[2]});
+      for (const auto& [a, b] : pairs) terms.push_back(m * v[a] * v[b]);
+      terms.insert(terms.end(), {part * v[0], part * v[1], part * v[2]});
+      for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b) terms.push_back(share * moments[i](a, b));
+    }
+  }
+  const std::vector<double> sums = order_free_sums_by_bin(communicator_, layer_of_row, layers_, terms, quantities);
+  for (std::size_t s = 0; s < sums.size(); ++s) sums_[s] += sums[s];
+}
+
+std::vector<Figure> GrainProfiles::results() const {
+  return {{"mean_from", "s", schedule_.from}, {"measurements", "1", static_cast<double>(measurements_)}};
+}
+
+std::vector<Profile> GrainProfiles::profiles() const {
+  const auto n = static_cast<std::uint64_t>(layers_);
+  const std::vector<std::string> components{"x", "y", "z"};
+  Profile z{"z", "m", {}, {n}, {}}, fraction{"solid_fraction", "1", {}, {n}, {}};
+  Profile velocity{"velocity", "m/s", components, {n, 3}, {}}, volume_flux{"flux", "m/s", components, {n, 3}, {}};
+  Profile temperature{"granular_temperature", "m^2/s^2", {}, {n}, {}};
+  Profile contact_stress{"contact_stress", "Pa", {"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"}, {n, 9}, {}};
+  Profile kinetic_stress{"kinetic_stress", "Pa", {"xx", "yy", "zz", "xy", "xz", "yz"}, {n, 6}, {}};
+  // Of all measurements together.
+  const double room =
+      box_.size[0] * box_.size[1] * thickness_ * static_cast<double>(std::max<std::int64_t>(1, measurements_));
+  for (int layer = 0; layer < layers_; ++layer) {
+    const double* sum = sums_.data() + static_cast<std::size_t>(layer) * quantities;
+    z.values.push_back((layer + 0.5) * thickness_);
+    fraction.values.push_back(sum[volume] / room);
+    Vec3 u = Vec3::Zero();
+    double square = 0.0;
+    if (sum[mass] > 0.0) {
+      u = Vec3(sum + momentum) / sum[mass];
+      square = (sum[product] + sum[product + 1] + sum[product + 2]) / sum[mass];
+    }
+    temperature.values.push_back(std::max(0.0, (square - u.squaredNorm()) / 3.0));
+    for (int a = 0; a < 3; ++a) velocity.values.push_back(u[a]);
+    for (int a = 0; a < 3; ++a) volume_flux.values.push_back(sum[flux + a] / room);
+    for (int c = 0; c < 9; ++c) contact_stress.values.push_back(sum[contact + c] / room);
+    for (int p = 0; p < 6; ++p)
+      kinetic_stress.values.push_back(-(sum[product + p] - sum[mass] * u[pairs[p][0]] * u[pairs[p][1]]) / room);
+  }
+  return {z, fraction, velocity, volume_flux, temperature, contact_stress, kinetic_stress};
+}
+
+void GrainProfiles::save(ArchiveWriter& archive) const {
+  archive.attribute("grain_profiles/mean_from", schedule_.from);
+  archive.attribute("grain_profiles/measurements", measurements_);
+  archive.attribute("grain_profiles/counted_step", counted_step_);
+  const bool first = rank_of(communicator_) == 0;
+  const std::vector<std::uint64_t> shape{static_cast<std::uint64_t>(layers_), quantities}, nothing(2, 0);
+  const std::vector<double> none;
+  archive.write("grain_profiles/sums", std::span<const double>(first ? sums_ : none),
+                {shape, nothing, first ? shape : nothing});
+}
+
+void GrainProfiles::load(ArchiveReader& archive) {
+  const std::vector<std::uint64_t> shape{static_cast<std::uint64_t>(layers_), quantities};
+  if (!archive.has("grain_profiles/mean_from") ||
+      archive.real_attribute("grain_profiles/mean_from") != schedule_.from ||
+      archive.shape("grain_profiles/sums") != shape)
+    return;
+  measurements_ = archive.integer_attribute("grain_profiles/measurements");
+  counted_step_ = archive.integer_attribute("grain_profiles/counted_step");
+  archive.read("grain_profiles/sums", std::span<double>(sums_), {shape, {0, 0}, shape});
+}
+
+}  // namespace thalweg::analysis
