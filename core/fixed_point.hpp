@@ -7,6 +7,7 @@
 
 #include "core/types.hpp"
 
+#include <array>
 #include <bit>
 #include <cstdint>
 
@@ -41,6 +42,17 @@ struct FixedVec3 {
     return *this;
   }
   Vec3 to_vec3() const { return {LatticeFixed::to_double(x), LatticeFixed::to_double(y), LatticeFixed::to_double(z)}; }
+};
+
+// A tensor of fixed-point sums, row by row.
+struct FixedTensor {
+  std::array<std::int64_t, 9> sums{};
+
+  Mat3 to_mat3() const {
+    Mat3 m;
+    for (int k = 0; k < 9; ++k) m(k / 3, k % 3) = LatticeFixed::to_double(sums[static_cast<std::size_t>(k)]);
+    return m;
+  }
 };
 
 }  // namespace thalweg

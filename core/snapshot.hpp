@@ -43,6 +43,7 @@ struct GrainView {
   std::vector<ClumpState> clumps;                  // owned by this rank as are their members, in order of id
   bool is_member(std::size_t grain) const { return !clump.empty() && clump[grain] >= 0; }
   std::int64_t body_count() const { return global_count - member_count + clump_count; }  // a clump counts once
+  std::span<const Mat3> fluid_stress;  // Pa, of the fluid on the grain: sum F_a x_b over the surface, over the volume
 };
 
 enum class FluidField { velocity, pressure, grain_id, density, shear_rate, eddy_viscosity, vorticity, q_criterion };

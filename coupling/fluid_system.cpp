@@ -2,6 +2,7 @@
 
 #include "core/mpi_session.hpp"
 #include "core/same_time_step.hpp"
+#include "coupling/fluid_mass.hpp"
 #include "coupling/fluid_sample.hpp"
 
 #include <fmt/format.h>
@@ -18,6 +19,7 @@ FluidSystem<Real>::FluidSystem(std::unique_ptr<Decomposition> decomposition, MPI
       communicator_(communicator),
       parameters_(parameters),
       fluid_(*decomposition_, communicator, parameters.collision, parameters.faces),
+      rest_(rest_state(parameters, *decomposition_)),
       lattice_box_{Vec3(decomposition_->cells()[0], decomposition_->cells()[1], decomposition_->cells()[2]),
                    decomposition_->periodic()} {
   if (solids.empty())
@@ -26,12 +28,15 @@ FluidSystem<Real>::FluidSystem(std::unique_ptr<Decomposition> decomposition, MPI
     phases_ = {0, timer_.phase("halo"), timer_.phase("walls"), timer_.phase("links"), timer_.phase("sweep")};
   if (!solids.empty())
     solids_ = std::make_unique<StaticSolids>(*decomposition_, communicator, fluid_.cells(), fluid_.tiles(), solids);
+  parameters_.links.rest_gradient = rest_.gradient;
   if (parameters_.flow_target) fluid_.control_flow(*parameters_.flow_target);
-  initialise(fluid_, parameters_);
+  initialise(fluid_, parameters_, rest_);
 }
 
 template <typename Real>
 void FluidSystem<Real>::advance() {
+  if (parameters_.mass_correction > 0 && step_ > 0 && step_ % parameters_.mass_correction == 0)
+    add_density(fluid_, -mean_density_deviation(fluid_, rest_));
   if (solids_) {
     advance_around_solids();
   } else {
@@ -108,7 +113,7 @@ std::vector<Figure> FluidSystem<Real>::figures() const {
       {"largest_fluid_speed", "m/s", speed * units.velocity()},
       {"mean_velocity_x", "m/s", (totals.momentum.x() / cells - 0.5 * force) * units.velocity()},
       {"body_force_x", "N/m^3", force * units.density * units.acceleration()},
-      {"mean_density_deviation", "1", totals.mass_deviation / cells},
+      {"mean_density_deviation", "1", mean_density_deviation(fluid_, rest_)},
       {"fluid_cells", "1", static_cast<double>(totals.cells)}};
   if (!solids_) return figures;
   const std::vector<Vec3> forces = solids_->forces();

@@ -47,7 +47,8 @@ private:
   FluidParameters parameters_;
   mutable lbm::Fluid<Real> fluid_;        // a sample fills slots that every step fills anew; see sample_fields()
   std::unique_ptr<StaticSolids> solids_;  // null: none
-  PeriodicBox lattice_box_;               // cells
+  Hydrostatic rest_;
+  PeriodicBox lattice_box_;  // cells
   std::int64_t step_ = 0;
   PhaseTimer timer_;
   struct Phases {

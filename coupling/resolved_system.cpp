@@ -2,11 +2,13 @@
 
 #include "core/mpi_session.hpp"
 #include "core/same_time_step.hpp"
+#include "coupling/fluid_mass.hpp"
 #include "coupling/fluid_sample.hpp"
 #include "coupling/fluid_system.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace thalweg::coupling {
 
@@ -36,17 +38,22 @@ ResolvedSystem<Real>::ResolvedSystem(std::unique_ptr<Decomposition> decompositio
       grains_(std::move(grains)),
       box_(decomposition_->box()),
       lattice_box_{cells_as_vector(decomposition_->cells()), decomposition_->periodic()},
+      rest_(rest_state(parameters, *decomposition_)),
       map_(*decomposition_, fluid_.block(), fluid_.cells()),
       links_(fluid_.tiles().count()),
       link_builder_(*decomposition_, fluid_.block(), fluid_.cells(), fluid_.tiles()),
+      hidden_links_(*decomposition_, fluid_.block(), fluid_.cells(), {parameters.paper_near_contact, rest_},
+                    parameters.links.momentum_exchange),
       refill_(*decomposition_, communicator, parameters.refill) {
   phases_ = {timer_.phase("grain map"), timer_.phase("refill"), timer_.phase("halo"),  timer_.phase("walls"),
              timer_.phase("links"),     timer_.phase("sweep"),  timer_.phase("loads"), timer_.phase("grains")};
+  parameters_.links.rest_gradient = rest_.gradient;
   if (parameters_.flow_target) fluid_.control_flow(*parameters_.flow_target);
-  initialise(fluid_, parameters_);
+  initialise(fluid_, parameters_, rest_);
   dem::GrainStore& store = grains_->store();
   for (std::size_t g = 0; g < store.total(); ++g) set_vector(store.attached_of(g), link_position, store.position[g]);
   initialise_map();
+  show_stresses();
 }
 
 // The cells covered at the start (of a run or after loading) were never fluid: nothing to refill.
@@ -56,6 +63,7 @@ void ResolvedSystem<Real>::initialise_map() {
   synchronise_slots();
   map_.settle();
   link_builder_.update(map_, links_);
+  hidden_links_.update(map_);
 }
 
 template <typename Real>
@@ -93,6 +101,7 @@ void ResolvedSystem<Real>::update_bodies() {
     body.force = {};
     body.torque = {};
   }
+  if (parameters_.grain_stress) moments_.assign(bodies_.size(), {});
 }
 
 // Cells follow a grain once it has moved by the tolerance; links know its place exactly all the same. Ghosts follow the
@@ -112,26 +121,37 @@ void ResolvedSystem<Real>::update_map() {
 
 template <typename Real>
 void ResolvedSystem<Real>::sweep_behind_links() {
-  lbm::LinkPass<Real> links(fluid_, links_, lattice_box_, parameters_.links, bodies_);
+  lbm::LinkPass<Real> links(fluid_, links_, lattice_box_, parameters_.links, bodies_,
+                            parameters_.grain_stress ? &moments_ : nullptr);
   const auto sweep = timer_.measure(phases_.sweep);
   fluid_.stream_and_collide([&](int tile) {
     const auto scope = timer_.measure(phases_.links);
     links.apply_tile(tile);
   });
+  const auto scope = timer_.measure(phases_.links);
+  hidden_links_.apply(bodies_, parameters_.grain_stress ? &moments_ : nullptr);
 }
 
 template <typename Real>
 void ResolvedSystem<Real>::collect_loads() {
   const std::size_t count = grains_->store().total();
-  exchanged_.resize(6 * count);
+  const int width = sums_per_grain();
+  exchanged_.resize(static_cast<std::size_t>(width) * count);
   for (std::size_t g = 0; g < count; ++g) {
     const lbm::LinkBody& body = bodies_[map_slot_[g]];
     const std::int64_t sums[6] = {body.force.x,  body.force.y,  body.force.z,
                                   body.torque.x, body.torque.y, body.torque.z};
-    std::copy(sums, sums + 6, exchanged_.begin() + 6 * g);
-    step_totals_.link_momentum += body.force.to_vec3();
+    const auto into = exchanged_.begin() + static_cast<std::ptrdiff_t>(width * g);
+    std::copy(sums, sums + 6, into);
+    if (parameters_.grain_stress) {
+      const FixedTensor& moments = moments_[map_slot_[g]];
+      std::copy(moments.sums.begin(), moments.sums.end(), into + 6);
+    }
+    const Vec3 force = body.force.to_vec3();
+    step_totals_.link_momentum += force;
+    step_totals_.link_angular_momentum += body.centre.cross(force) + body.torque.to_vec3();
   }
-  grains_->add_ghost_values(exchanged_, 6);
+  grains_->add_ghost_values(exchanged_, width);
 }
 
 // The mean of the last two exchanges drives the grains: it damps the two-step oscillation of the lattice (Ladd 1994).
@@ -139,7 +159,7 @@ template <typename Real>
 void ResolvedSystem<Real>::apply_loads() {
   dem::GrainStore& store = grains_->store();
   for (std::size_t g = 0; g < store.owned; ++g) {
-    const std::int64_t* sums = &exchanged_[6 * g];
+    const std::int64_t* sums = &exchanged_[sums_per_grain() * g];
     const Vec3 force = FixedVec3{sums[0], sums[1], sums[2]}.to_vec3() * parameters_.units.force();
     const Vec3 torque = FixedVec3{sums[3], sums[4], sums[5]}.to_vec3() * parameters_.units.torque();
     const std::span<double> columns = store.attached_of(g);
@@ -148,8 +168,33 @@ void ResolvedSystem<Real>::apply_loads() {
              first ? torque : Vec3(0.5 * (torque + vector_at(columns, last_torque))), first);
     set_vector(columns, last_force, force);
     set_vector(columns, last_torque, torque);
+    if (parameters_.grain_stress) apply_stress(g, first);
     columns[has_load] = 1.0;
   }
+  show_stresses();
+}
+
+// sigma_ab = (1/V) sum F_a x_b over the surface (Zhang et al. 2022, eq. 13), averaged as the load is.
+template <typename Real>
+void ResolvedSystem<Real>::apply_stress(std::size_t grain, bool first) {
+  dem::GrainStore& store = grains_->store();
+  const double volume = 4.0 / 3.0 * std::numbers::pi * std::pow(store.radius[grain], 3);
+  const std::int64_t* sums = &exchanged_[sums_per_grain() * grain + 6];
+  const std::span<double> columns = store.attached_of(grain);
+  for (int k = 0; k < 9; ++k) {
+    const double stress = LatticeFixed::to_double(sums[k]) * (parameters_.units.torque() / volume);
+    columns[mean_stress + k] = first ? stress : 0.5 * (stress + columns[last_stress + k]);
+    columns[last_stress + k] = stress;
+  }
+}
+
+template <typename Real>
+void ResolvedSystem<Real>::show_stresses() {
+  if (!parameters_.grain_stress) return;
+  const dem::GrainStore& store = grains_->store();
+  fluid_stress_.resize(store.owned);
+  for (std::size_t g = 0; g < store.owned; ++g)
+    for (int k = 0; k < 9; ++k) fluid_stress_[g](k / 3, k % 3) = store.attached_of(g)[mean_stress + k];
 }
 
 // What the store has is what the grain got in the step before.
@@ -186,10 +231,14 @@ void ResolvedSystem<Real>::advance() {
     map_.settle();
     account_for_covered_cells();
     link_builder_.update(map_, links_);
+    hidden_links_.update(map_);
   }
   {
     const auto scope = timer_.measure(phases_.refill);
-    step_totals_.refilled = refill_.fill(fluid_, map_.changes(), bodies_).momentum;
+    const RefillTotals totals = refill_.fill(fluid_, map_.changes(), bodies_);
+    step_totals_.refilled = totals.momentum;
+    step_totals_.refilled_angular_momentum = totals.angular_momentum;
+    correct_mass();
   }
   {
     const auto scope = timer_.measure(phases_.halo);
@@ -214,15 +263,25 @@ void ResolvedSystem<Real>::advance() {
 }
 
 template <typename Real>
+void ResolvedSystem<Real>::correct_mass() {
+  if (parameters_.mass_correction > 0 && step_ > 0 && step_ % parameters_.mass_correction == 0)
+    add_density(fluid_, -mean_density_deviation(fluid_, rest_));
+}
+
+template <typename Real>
 void ResolvedSystem<Real>::account_for_covered_cells() {
+  const Index3& lower = fluid_.block().lower;
   for (const GrainMap::Change& change : map_.changes()) {
     const Index3& at = change.cell;
     if (change.before != CellMap::fluid || !fluid_.indexing().owned(at[0], at[1], at[2])) continue;
     const std::ptrdiff_t cell = fluid_.indexing().index(at[0], at[1], at[2]);
+    Vec3 momentum = Vec3::Zero();
     for (int i = 0; i < lbm::D3Q19::directions; ++i)
       for (int a = 0; a < 3; ++a)
-        step_totals_.covered[a] +=
-            lbm::D3Q19::c[i][a] * static_cast<double>(fluid_.populations().post_collision(i, cell));
+        momentum[a] += lbm::D3Q19::c[i][a] * static_cast<double>(fluid_.populations().post_collision(i, cell));
+    const Vec3 position(lower[0] + at[0] + 0.5, lower[1] + at[1] + 0.5, lower[2] + at[2] + 0.5);
+    step_totals_.covered += momentum;
+    step_totals_.covered_angular_momentum += position.cross(momentum);
   }
 }
 
@@ -256,6 +315,7 @@ Snapshot ResolvedSystem<Real>::snapshot() const {
   s.grains.angular_velocity = {store.angular_velocity.data(), n};
   s.grains.fluid_force = {store.load_force.data(), n};
   s.grains.fluid_torque = {store.load_torque.data(), n};
+  if (parameters_.grain_stress) s.grains.fluid_stress = {fluid_stress_.data(), n};
   s.grains.contact_force = {store.contact_force.data(), n};
   s.grains.contact_torque = {store.contact_torque.data(), n};
   grains_->show_clumps(s.grains);
@@ -288,8 +348,7 @@ std::vector<Figure> ResolvedSystem<Real>::figures() const {
   speed = max_over_ranks(communicator_, std::isfinite(speed) ? speed : HUGE_VAL);
   return {{"largest_lattice_velocity", "1", speed},
           {"largest_fluid_speed", "m/s", speed * parameters_.units.velocity()},
-          {"mean_density_deviation", "1",
-           totals.mass_deviation / static_cast<double>(std::max<std::int64_t>(1, totals.cells))},
+          {"mean_density_deviation", "1", mean_density_deviation(fluid_, rest_)},
           {"fluid_cells", "1", static_cast<double>(totals.cells)},
           {"largest_overlap", "diameter", grains_->largest_overlap()}};
 }
@@ -311,9 +370,11 @@ void ResolvedSystem<Real>::load(ArchiveReader& archive) {
     if (map_.grains()[slot].id >= 0) map_.remove(static_cast<int>(slot));
   map_.settle();
   link_builder_.update(map_, links_);
+  hidden_links_.update(map_);
   fluid_.load(archive);
   grains_->load(archive);
   initialise_map();
+  show_stresses();
 }
 
 template <typename Real>

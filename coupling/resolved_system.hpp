@@ -5,6 +5,7 @@
 #include "core/system.hpp"
 #include "coupling/fluid_parameters.hpp"
 #include "coupling/grain_map.hpp"
+#include "coupling/hidden_links.hpp"
 #include "coupling/link_builder.hpp"
 #include "coupling/refill.hpp"
 #include "coupling/virtual_mass.hpp"
@@ -21,6 +22,8 @@ struct ResolvedParameters : FluidParameters {
   int sub_steps = 50;                       // DEM steps per lattice step
   std::optional<VirtualMass> virtual_mass;  // of light grains
   RefillRule refill = RefillRule::equilibrium;
+  bool grain_stress = false;        // the stress of the fluid on every grain is measured
+  bool paper_near_contact = false;  // hidden_links.hpp
 };
 
 // This rank's part of the sums that a momentum balance of the fluid needs (lattice units, of the step just done).
@@ -28,19 +31,31 @@ struct ExchangeTotals {
   Vec3 link_momentum = Vec3::Zero();  // force on the grains through this rank's links
   Vec3 refilled = Vec3::Zero();       // given to uncovered cells
   Vec3 covered = Vec3::Zero();        // lost in cells that became solid
+  // The same about the origin. Angular momentum has a meaning only in a box without periodic faces.
+  Vec3 link_angular_momentum = Vec3::Zero();
+  Vec3 refilled_angular_momentum = Vec3::Zero();
+  Vec3 covered_angular_momentum = Vec3::Zero();
 };
 
 template <typename Real>
 class ResolvedSystem final : public System, private FluidSource, private ContactSource {
 public:
-  // The grains (already holding their seeds) must carry attached_width attached columns and reach ghost_reach() beyond
-  // their block. Takes both over.
+  // The grains (already holding their seeds) must carry attached_width() attached columns and reach ghost_reach()
+  // beyond their block. Takes both over.
   ResolvedSystem(std::unique_ptr<Decomposition> decomposition, MPI_Comm communicator,
                  const ResolvedParameters& parameters, std::unique_ptr<dem::GrainDynamics> grains);
 
   // Attached columns of a grain: the place its cells stand for (m), then force (N) and torque (N m) of the last
-  // exchange.
-  enum Attached { link_position = 0, last_force = 3, last_torque = 6, has_load = 9, attached_width = 10 };
+  // exchange; where asked for, the stress (Pa, row by row) of the last exchange and the mean of the last two.
+  enum Attached {
+    link_position = 0,
+    last_force = 3,
+    last_torque = 6,
+    has_load = 9,
+    last_stress = 10,
+    mean_stress = 19
+  };
+  static int attached_width(const ResolvedParameters& parameters) { return parameters.grain_stress ? 28 : 10; }
 
   // How far beyond a block its grains must be known for the map, as a distance from the grain's centre (m).
   static double ghost_reach(double largest_radius, double spacing) { return largest_radius + 2.5 * spacing; }
@@ -74,10 +89,14 @@ private:
   void update_map();
   void update_bodies();
   void account_for_covered_cells();
+  void correct_mass();
   void sweep_behind_links();
   void collect_loads();
   void apply_loads();
   void set_load(std::size_t grain, const Vec3& force, const Vec3& torque, bool first);
+  void apply_stress(std::size_t grain, bool first);
+  void show_stresses();
+  int sums_per_grain() const { return parameters_.grain_stress ? 15 : 6; }
   Vec3 lattice_position(const Vec3& position) const { return position / parameters_.units.spacing; }
 
   std::unique_ptr<Decomposition> decomposition_;
@@ -86,13 +105,17 @@ private:
   mutable lbm::Fluid<Real> fluid_;  // a sample fills slots that every step fills anew; see sample_fields()
   std::unique_ptr<dem::GrainDynamics> grains_;
   PeriodicBox box_, lattice_box_;  // m, cells
+  Hydrostatic rest_;
   GrainMap map_;
   lbm::LinkTable links_;
   LinkBuilder link_builder_;
+  HiddenLinks hidden_links_;
   Refill refill_;
   std::vector<lbm::LinkBody> bodies_;    // by map slot
   std::vector<int> map_slot_;            // of each grain of the store
-  std::vector<std::int64_t> exchanged_;  // force and torque sums of each grain of the store
+  std::vector<FixedTensor> moments_;     // by map slot; empty unless asked for
+  std::vector<std::int64_t> exchanged_;  // force and torque sums of each grain of the store, and those of moments
+  std::vector<Mat3> fluid_stress_;       // Pa, of owned grains; empty unless asked for
   ExchangeTotals step_totals_;
   std::int64_t step_ = 0;
   PhaseTimer timer_;

@@ -48,6 +48,8 @@ std::unique_ptr<System> build(const Case& c, MPI_Comm communicator, const Index3
   coupling::ResolvedParameters parameters{fluid_parameters(c)};
   parameters.link_tolerance = c.coupling.link_tolerance;
   parameters.refill = refill_rule(c.coupling.refill);
+  parameters.paper_near_contact = c.coupling.near_contact == NearContact::paper;
+  parameters.grain_stress = c.coupling.grain_stress;
   parameters.sub_steps = static_cast<int>(c.coupling.grain_steps_per_fluid_step);
 
   if (c.coupling.virtual_mass)
@@ -55,11 +57,13 @@ std::unique_ptr<System> build(const Case& c, MPI_Comm communicator, const Index3
 
   using System = coupling::ResolvedSystem<Real>;
   dem::GrainParameters grains = grain_parameters(c, decomposition->box());
-  grains.body_force = [gravity = gravity_vector(c.gravity), density = c.fluid.density](double mass, double radius) {
-    return reduced_weight(gravity, density, mass, radius);
+  const bool full = c.gravity.mode == GravityMode::full;
+  grains.body_force = [gravity = gravity_vector(c.gravity), density = c.fluid.density, full](double mass,
+                                                                                             double radius) {
+    return full ? Vec3(mass * gravity) : reduced_weight(gravity, density, mass, radius);
   };
   grains.ghost_width = System::ghost_reach(0.5 * largest_diameter(c), c.domain.spacing);
-  grains.attached_width = System::attached_width;
+  grains.attached_width = System::attached_width(parameters);
   if (c.coupling.lubrication) grains.lubrication = lubrication_parameters(c);
   const GrainSeeds seeds = grain_seeds(c);
   auto dynamics =

@@ -155,6 +155,13 @@ std::vector<std::string> warnings(const Case& c) {
                     "and the limit "
                     "is 0.173: consider a fluid.time_step of at most {:.2g} s.",
                     estimated_velocity(c), lattice_velocity, 0.1 * c.domain.spacing / estimated_velocity(c)));
+  const double compression =
+      3.0 * std::abs(gravity_vector(c.gravity).z()) / units_of(c).acceleration() * c.domain.size[2] / c.domain.spacing;
+  if (c.gravity.mode == GravityMode::full && compression > 0.05)
+    found.push_back(
+        fmt::format("The weight of the fluid compresses it by {:.2g} % from top to bottom: consider a fluid.time_step "
+                    "of at most {:.2g} s or gravity.mode: reduced.",
+                    100.0 * compression, fluid_time_step(c) * std::sqrt(0.05 / compression)));
   const double excess = relaxation_time(c) - 0.5;
   const double fastest =
       c.fluid.expected_velocity ? *c.fluid.expected_velocity / units_of(c).velocity() : lattice_velocity;

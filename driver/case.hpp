@@ -90,8 +90,10 @@ struct FluidCase {
   bool operator==(const FluidCase&) const = default;
 };
 
-// reduced: the fluid is driven by rho g_x, _y alone and the grains feel their submerged weight.
-enum class GravityMode { reduced };
+// reduced: the fluid is driven by rho g_x, _y alone and the grains feel their submerged weight. full: the fluid has its
+// weight and its hydrostatic pressure, which carries the grains through the links, and the grains have their whole
+// weight.
+enum class GravityMode { reduced, full };
 
 struct GravityCase {
   std::optional<double> magnitude;  // m/s^2, with slope ...
@@ -119,6 +121,7 @@ struct SolidCase {
 enum class MomentumExchange { galilean_invariant, classical };
 enum class WallDensity { local, reference };
 enum class LinkRule { bouzidi, cli };
+enum class NearContact { subtracted, paper };
 enum class Refill { equilibrium, non_equilibrium, grad };
 
 // The part of the lubrication force between near surfaces that the cells cannot resolve.
@@ -141,9 +144,12 @@ struct CouplingCase {
   MomentumExchange momentum_exchange = MomentumExchange::galilean_invariant;
   WallDensity wall_density = WallDensity::local;
   LinkRule links = LinkRule::bouzidi;
+  NearContact near_contact = NearContact::subtracted;
   Refill refill = Refill::equilibrium;
   std::optional<LubricationCase> lubrication;
   std::optional<VirtualMassCase> virtual_mass;
+  bool grain_stress = false;         // measure the fluid's stress on every grain
+  std::int64_t mass_correction = 0;  // steps between corrections of the fluid's mass; 0: none
   bool operator==(const CouplingCase&) const = default;
 };
 

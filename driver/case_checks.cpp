@@ -220,6 +220,29 @@ void check_fluid(const Case& c, const io::YamlDocument& document) {
   }
 }
 
+void check_gravity(const Case& c, const io::YamlDocument& document) {
+  const auto any = [&c](FaceType type) {
+    return std::any_of(c.domain.faces.begin(), c.domain.faces.end(), [type](const Face& f) { return f.type == type; });
+  };
+  if (has_fluid(c) && c.coupling.mass_correction > 0 &&
+      (any(FaceType::pressure_outlet) || any(FaceType::velocity_inlet)))
+    throw document.error("coupling.mass_correction",
+                         "fluid that enters and leaves has no mass to hold; remove the key");
+  if (!has_fluid(c) || c.gravity.mode != GravityMode::full) return;
+  if (c.domain.faces[bottom].type == FaceType::periodic)
+    throw document.error("gravity.mode",
+                         "a box that is periodic along z has no hydrostatic pressure; give domain.boundaries a bottom "
+                         "and a top, or set mode: reduced");
+  if (any(FaceType::pressure_outlet))
+    throw document.error("gravity.mode",
+                         "an outlet of one pressure contradicts the hydrostatic pressure; set mode: reduced or remove "
+                         "the outlet");
+  if (!c.initial.from.empty())
+    throw document.error("gravity.mode",
+                         "full gravity begins with its own hydrostatic pressure; remove initial.from or set mode: "
+                         "reduced");
+}
+
 void check_contact_steps(const Case& c, const io::YamlDocument& document) {
   if (c.grains.empty()) return;
   const double longest = shortest_contact(c) / fewest_steps_per_contact;
@@ -327,6 +350,7 @@ void check_case(const Case& c, const io::YamlDocument& document) {
   check_placement(c, document);
   check_solids(c, document);
   check_fluid(c, document);
+  check_gravity(c, document);
   check_disks(c, document);
   check_clumps(c, document);
   check_materials(c, document);

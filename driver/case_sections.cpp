@@ -72,7 +72,8 @@ static void describe_gravity(io::SectionVisitor& visit, GravityCase& gravity, bo
                 "gravity is missing; give magnitude in m/s^2, for example 9.8, with slope, or vector");
   if (with_fluid)
     visit.choice<GravityMode>("mode", gravity.mode,
-                              {{GravityMode::reduced, "reduced", "hydrostatic pressure left out"}},
+                              {{GravityMode::reduced, "reduced", "hydrostatic pressure left out"},
+                               {GravityMode::full, "full", "in the fluid, and buoyancy from it"}},
                               {.meaning = "how the weight of the resting fluid is treated"});
   else
     visit.not_here("mode", "a run without fluid has only one kind of gravity; remove the key");
@@ -104,9 +105,11 @@ static void describe_coupling(io::SectionVisitor& visit, CouplingCase& coupling,
                          {{LinkRule::bouzidi, "bouzidi", "Bouzidi et al. 2001"},
                           {LinkRule::cli, "cli", "Ginzburg et al. 2008; with collision trt"}},
                          {.meaning = "how populations come back from a surface"});
+  visit.integer("mass_correction", coupling.mass_correction,
+                {.meaning = "steps after which the drift of the fluid's mass is taken back; 0: never", .at_least = 0});
   if (!with_grains) {
-    for (const char* key :
-         {"grain_steps_per_fluid_step", "link_tolerance", "momentum_exchange", "wall_density", "refill"})
+    for (const char* key : {"grain_steps_per_fluid_step", "link_tolerance", "momentum_exchange", "wall_density",
+                            "near_contact", "refill", "grain_stress"})
       visit.not_here(key, "system: fluid has no grains; remove the key or set system: resolved");
     return;
   }
@@ -126,6 +129,10 @@ static void describe_coupling(io::SectionVisitor& visit, CouplingCase& coupling,
                             {{WallDensity::local, "local", "of the fluid cell"},
                              {WallDensity::reference, "reference", "of the fluid at rest"}},
                             {.meaning = "density in the moving-wall term"});
+  visit.choice<NearContact>("near_contact", coupling.near_contact,
+                            {{NearContact::subtracted, "subtracted", "reference pressure taken out of every link"},
+                             {NearContact::paper, "paper", "and the paper's links between grains"}},
+                            {.meaning = "patches of its surface that a grain's neighbours hide"});
   visit.choice<Refill>("refill", coupling.refill,
                        {{Refill::equilibrium, "equilibrium"},
                         {Refill::non_equilibrium, "non_equilibrium", "with that of the neighbour along the normal"},
@@ -136,6 +143,8 @@ static void describe_coupling(io::SectionVisitor& visit, CouplingCase& coupling,
       {.meaning = "adds the force between near surfaces that the cells do not resolve, in every sub-step; {}"});
   visit.section("virtual_mass", coupling.virtual_mass,
                 {.meaning = "for grains much lighter than the fluid: filters their load; {}"});
+  visit.flag("grain_stress", coupling.grain_stress,
+             {.meaning = "measure the fluid's stress on every grain, for its pictures: fluid_stress"});
 }
 
 static void describe(io::SectionVisitor& visit, PerturbationCase& perturbation) {

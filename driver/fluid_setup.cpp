@@ -61,7 +61,8 @@ lbm::CollisionModel collision_model(Collision collision) {
   return lbm::CollisionModel::bgk;
 }
 
-// Reduced gravity: the hydrostatic pressure is taken out of the flow. The fluid is driven along the bed only.
+// Reduced gravity: the hydrostatic pressure is taken out of the flow. The fluid is driven along the bed only. Full
+// gravity: all of it acts on the fluid.
 lbm::CollisionParameters collision_parameters(const Case& c) {
   lbm::CollisionParameters parameters;
   parameters.model = collision_model(c.fluid.collision);
@@ -69,7 +70,8 @@ lbm::CollisionParameters collision_parameters(const Case& c) {
   parameters.relaxation_time = relaxation_time(c);
   parameters.smagorinsky_constant = c.fluid.smagorinsky_constant;
   const Vec3 gravity = gravity_vector(c.gravity);
-  for (int a = 0; a < 2; ++a) parameters.force[a] = gravity[a] / units_of(c).acceleration();
+  const int axes = c.gravity.mode == GravityMode::full ? 3 : 2;
+  for (int a = 0; a < axes; ++a) parameters.force[a] = gravity[a] / units_of(c).acceleration();
   return parameters;
 }
 
@@ -110,6 +112,8 @@ coupling::FluidParameters fluid_parameters(const Case& c) {
   coupling::FluidParameters parameters;
   parameters.units = units_of(c);
   parameters.collision = collision_parameters(c);
+  parameters.full_gravity = c.gravity.mode == GravityMode::full;
+  parameters.mass_correction = static_cast<int>(c.coupling.mass_correction);
   parameters.faces = face_conditions(c.domain, parameters.units);
   if (c.fluid.mean_velocity)
     parameters.flow_target =

@@ -24,7 +24,7 @@ namespace {
 struct Row {
   std::int64_t id, clump;
   double radius;
-  double position[3], velocity[3], angular_velocity[3], fluid_force[3], contact_force[3];
+  double position[3], velocity[3], angular_velocity[3], fluid_force[3], contact_force[3], fluid_stress[9];
 };
 
 void copy(const Vec3& from, double* to) { std::copy(from.data(), from.data() + 3, to); }
@@ -40,6 +40,8 @@ std::vector<Row> gathered(MPI_Comm communicator, const GrainView& grains) {
     copy(grains.velocity[n], rows[n].velocity);
     copy(grains.angular_velocity[n], rows[n].angular_velocity);
     if (!grains.fluid_force.empty()) copy(grains.fluid_force[n], rows[n].fluid_force);
+    if (!grains.fluid_stress.empty())
+      for (int k = 0; k < 9; ++k) rows[n].fluid_stress[k] = grains.fluid_stress[n](k / 3, k % 3);
     if (!grains.contact_force.empty()) copy(grains.contact_force[n], rows[n].contact_force);
   }
   rows = exchange_rows(communicator, rows, std::vector<int>(rows.size(), 0));
@@ -47,13 +49,16 @@ std::vector<Row> gathered(MPI_Comm communicator, const GrainView& grains) {
   return rows;
 }
 
-void add_vectors(vtkPolyData& points, const std::vector<Row>& rows, const char* name, const double (Row::*field)[3]) {
-  auto array = new_array<vtkDoubleArray>(name, 3, static_cast<vtkIdType>(rows.size()));
+template <int components>
+void add_values(vtkPolyData& points, const std::vector<Row>& rows, const char* name,
+                const double (Row::*field)[components]) {
+  auto array = new_array<vtkDoubleArray>(name, components, static_cast<vtkIdType>(rows.size()));
   for (std::size_t n = 0; n < rows.size(); ++n) array->SetTuple(static_cast<vtkIdType>(n), rows[n].*field);
   points.GetPointData()->AddArray(array);
 }
 
-vtkSmartPointer<vtkPolyData> picture_of(const std::vector<Row>& rows, bool with_fluid, bool with_clumps) {
+vtkSmartPointer<vtkPolyData> picture_of(const std::vector<Row>& rows, bool with_fluid, bool with_clumps,
+                                        bool with_stress) {
   const auto count = static_cast<vtkIdType>(rows.size());
   auto picture = vtkSmartPointer<vtkPolyData>::New();
   auto points = vtkSmartPointer<vtkPoints>::New();
@@ -81,10 +86,11 @@ vtkSmartPointer<vtkPolyData> picture_of(const std::vector<Row>& rows, bool with_
   }
   picture->GetPointData()->AddArray(radius);
   picture->GetPointData()->AddArray(speed);
-  add_vectors(*picture, rows, "velocity", &Row::velocity);
-  add_vectors(*picture, rows, "angular_velocity", &Row::angular_velocity);
-  add_vectors(*picture, rows, "contact_force", &Row::contact_force);
-  if (with_fluid) add_vectors(*picture, rows, "fluid_force", &Row::fluid_force);
+  add_values(*picture, rows, "velocity", &Row::velocity);
+  add_values(*picture, rows, "angular_velocity", &Row::angular_velocity);
+  add_values(*picture, rows, "contact_force", &Row::contact_force);
+  if (with_fluid) add_values(*picture, rows, "fluid_force", &Row::fluid_force);
+  if (with_stress) add_values(*picture, rows, "fluid_stress", &Row::fluid_stress);
   return picture;
 }
 
@@ -96,13 +102,14 @@ GrainSeries::GrainSeries(MPI_Comm communicator, const std::filesystem::path& run
 
 void GrainSeries::write(const Snapshot& snapshot) {
   const bool with_fluid = any_rank(communicator_, !snapshot.grains.fluid_force.empty());
+  const bool with_stress = any_rank(communicator_, !snapshot.grains.fluid_stress.empty());
   const std::vector<Row> rows = gathered(communicator_, snapshot.grains);
   std::string failure;
   if (rank_of(communicator_) == 0) {
     try {
       make_folder(folder_ / "grains");
       const auto file = std::filesystem::path("grains") / fmt::format("grains_{:09d}.vtp", snapshot.step);
-      const auto picture = picture_of(rows, with_fluid, snapshot.grains.clump_count > 0);
+      const auto picture = picture_of(rows, with_fluid, snapshot.grains.clump_count > 0, with_stress);
       auto writer = vtkSmartPointer<vtkXMLPolyDataWriter>::New();
       writer->SetInputData(picture);
       write_vtk_file(*writer, folder_ / file);

@@ -23,17 +23,25 @@ int velocity(std::uint32_t tag) {
   return static_cast<int>(tag >> LinkTag::velocity_shift(axis) & 3) - 1;
 }
 
+template <typename Real>
+std::int64_t total(const Real* terms, int n) {
+  std::int64_t sum = 0;
+  for (int k = 0; k < n; ++k) sum += LatticeFixed::from(static_cast<double>(terms[k]));
+  return sum;
+}
+
 }  // namespace
 
 template <typename Real>
 LinkPass<Real>::LinkPass(Fluid<Real>& fluid, const LinkTable& links, const PeriodicBox& box, const LinkOptions& options,
-                         std::vector<LinkBody>& bodies)
+                         std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments)
     : cells_(fluid.cells()),
       tiles_(fluid.tiles()),
       links_(links),
       box_(box),
       options_(options),
       bodies_(bodies),
+      moments_(moments),
       block_(box, fluid.block().lower) {
   Populations<Real>& populations = fluid.populations();
   for (auto& plane : deviations_) plane.resize(static_cast<std::size_t>(populations.indexing().plane_stride()));
@@ -52,13 +60,13 @@ LinkPass<Real>::LinkPass(Fluid<Real>& fluid, const LinkTable& links, const Perio
 template <typename Real>
 void LinkPass<Real>::apply_tile(int tile) {
   if (options_.rule == LinkRule::cli)
-    apply_links<CliLink>(tile);
+    moments_ ? apply_links<CliLink, true>(tile) : apply_links<CliLink, false>(tile);
   else
-    apply_links<BouzidiLink>(tile);
+    moments_ ? apply_links<BouzidiLink, true>(tile) : apply_links<BouzidiLink, false>(tile);
 }
 
 template <typename Real>
-template <typename Rule>
+template <typename Rule, bool with_moments>
 void LinkPass<Real>::apply_links(int tile) {
   // One plane ahead, because links reach for slots in the next plane: the straight pass for the densities brings them
   // into the cache at the speed of memory.
@@ -80,10 +88,10 @@ void LinkPass<Real>::apply_links(int tile) {
     const LinkTable::Chunk& chunk = t.chunks[order[c]];
     for (std::uint32_t first = 0; first < chunk.count; first += capacity, turn ^= 1) {
       prepare(batches_[turn], t, z, chunk, chunk.first + first, std::min<int>(capacity, chunk.count - first));
-      finish<Rule>(batches_[turn ^ 1]);
+      finish<Rule, with_moments>(batches_[turn ^ 1]);
     }
   }
-  finish<Rule>(batches_[turn ^ 1]);
+  finish<Rule, with_moments>(batches_[turn ^ 1]);
 }
 
 // Links never change a density: they write incoming slots of fluid cells, which hold no post-collision population of a
@@ -146,13 +154,14 @@ void LinkPass<Real>::prepare(Batch& b, const LinkTable::Tile& tile, int plane, c
 }
 
 template <typename Real>
-template <typename Rule>
+template <typename Rule, bool with_moments>
 void LinkPass<Real>::finish(Batch& b) {
   if (b.count == 0) return;
   gather<Rule>(b);
-  reflect<Rule>(b);
+  reflect<Rule, with_moments>(b);
   for (int k = 0; k < b.count; ++k) reflected_[b.slot[k]][b.cell[k]] = b.reflected[k];
   add_momentum(b);
+  if constexpr (with_moments) add_moments(b);
 }
 
 template <typename Real>
@@ -175,11 +184,13 @@ void LinkPass<Real>::gather(Batch& b) {
   for (int k = b.count; k < rounded_up(b.count); ++k) b.density[k] = b.incident[k] = b.second[k] = Real(0);
 }
 
-// The equilibrium at the density of x_f and the velocity that the covering body has at x_ff.
+// The equilibrium at the density of x_f and the velocity that the covering body has at x_ff. With a hydrostatic
+// gradient c_i.gradient = 3 c_i.F: the density a cell further out, and 3/2 w_i c_i.F.
 template <typename Real>
 void LinkPass<Real>::fill_from_covered_cells(Batch& b, int covered) const {
   double from[3][capacity], v[3][capacity], w[3][capacity], deviation[capacity], result[capacity];
   std::uint32_t tags[capacity];
+  const Vec3& gradient = options_.rest_gradient;
   for (int c = 0; c < covered; ++c) {
     const int k = covered_[c];
     const LinkBody& other = bodies_[b.tag[k] >> LinkTag::body_shift];
@@ -201,7 +212,8 @@ void LinkPass<Real>::fill_from_covered_cells(Batch& b, int covered) const {
                  uz = v[2][c] + (w[0][c] * y - w[1][c] * x);
     const double cu = cx * ux + cy * uy + cz * uz, uu = ux * ux + uy * uy + uz * uz;
     const double weight = (3.0 - (cx * cx + cy * cy + cz * cz)) * (1.0 / 36.0);
-    result[c] = weight * (deviation[c] + (1.0 + deviation[c]) * (3.0 * cu + 4.5 * cu * cu - 1.5 * uu));
+    const double along = cx * gradient.x() + cy * gradient.y() + cz * gradient.z(), d = deviation[c] - along;
+    result[c] = weight * (d + (1.0 + d) * (3.0 * cu + 4.5 * cu * cu - 1.5 * uu) + 0.5 * along);
   }
   for (int c = 0; c < covered; ++c) b.second[covered_[c]] = static_cast<Real>(result[c]);
 }
@@ -219,7 +231,7 @@ void LinkPass<Real>::look_upstream(Batch& b) const {
 }
 
 template <typename Real>
-template <typename Rule>
+template <typename Rule, bool with_moments>
 void LinkPass<Real>::reflect(Batch& b) const {
   const LinkBody& body = *b.body;
   const Real vx = Real(body.velocity.x()), vy = Real(body.velocity.y()), vz = Real(body.velocity.z());
@@ -254,19 +266,31 @@ void LinkPass<Real>::reflect(Batch& b) const {
     b.torque[0][k] = ay * mz - az * my;
     b.torque[1][k] = az * mx - ax * mz;
     b.torque[2][k] = ax * my - ay * mx;
+    if constexpr (with_moments) {
+      b.moment[0][k] = mx * ax;
+      b.moment[1][k] = mx * ay;
+      b.moment[2][k] = mx * az;
+      b.moment[3][k] = my * ax;
+      b.moment[4][k] = my * ay;
+      b.moment[5][k] = my * az;
+      b.moment[6][k] = mz * ax;
+      b.moment[7][k] = mz * ay;
+      b.moment[8][k] = mz * az;
+    }
   }
 }
 
 template <typename Real>
 void LinkPass<Real>::add_momentum(const Batch& b) const {
   const int n = rounded_up(b.count);
-  const auto total = [n](const Real* terms) {
-    std::int64_t sum = 0;
-    for (int k = 0; k < n; ++k) sum += LatticeFixed::from(static_cast<double>(terms[k]));
-    return sum;
-  };
-  b.body->force += {total(b.momentum[0]), total(b.momentum[1]), total(b.momentum[2])};
-  b.body->torque += {total(b.torque[0]), total(b.torque[1]), total(b.torque[2])};
+  b.body->force += {total(b.momentum[0], n), total(b.momentum[1], n), total(b.momentum[2], n)};
+  b.body->torque += {total(b.torque[0], n), total(b.torque[1], n), total(b.torque[2], n)};
+}
+
+template <typename Real>
+void LinkPass<Real>::add_moments(const Batch& b) const {
+  FixedTensor& moments = (*moments_)[static_cast<std::size_t>(b.body - bodies_.data())];
+  for (std::size_t k = 0; k < 9; ++k) moments.sums[k] += total(b.moment[k], rounded_up(b.count));
 }
 
 template class LinkPass<float>;

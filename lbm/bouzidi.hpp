@@ -4,7 +4,8 @@
 // post-collision, x_ff = x_f - c_i, u_w the velocity of the surface where the link meets it. What comes back, f_i'(x_f,
 // t+1), is told by a rule: bouzidi_link.hpp or cli_link.hpp.
 // If x_ff is covered by a body, f_i^c(x_ff) is the equilibrium at the density of x_f and that body's velocity at x_ff
-// (Zhang et al. 2022). If it lies beyond a wall, the population that the wall returns to x_f stands in.
+// (Zhang et al. 2022); with a hydrostatic gradient, of the density that follows at x_ff, and with the half force that a
+// collision leaves. If it lies beyond a wall, the population that the wall returns to x_f stands in.
 //
 // Force on the body per step: the Galilean-invariant exchange of Wen et al. 2014, sum (c_i - u_w) f_i^c - (c_i' - u_w)
 // f_i', or the classical one of Mei et al. 2002, sum c_i (f_i^c + f_i'). Populations count less their weight w_i, so
@@ -29,6 +30,7 @@ struct LinkOptions {
   MomentumExchange momentum_exchange = MomentumExchange::galilean_invariant;
   WallDensity wall_density = WallDensity::local;
   LinkRule rule = LinkRule::bouzidi;
+  Vec3 rest_gradient = Vec3::Zero();  // of rho a cell, in a fluid at rest: the hydrostatic one, or none
 };
 
 // Applies the links of one step, tile by tile. For every link it writes the population that the sweep will take from
@@ -41,11 +43,14 @@ struct LinkOptions {
 //
 // Links go through in batches of one body: prepare() finds where they cross the surface and asks the cache for what
 // they read and write, and finish(), one batch later, does the exchange.
+//
+// moments: where given, one for each body, to which sum F_a x_b is added, F the momentum of a link and x its arm; the
+// torque is its antisymmetric part.
 template <typename Real>
 class LinkPass {
 public:
   LinkPass(Fluid<Real>& fluid, const LinkTable& links, const PeriodicBox& box, const LinkOptions& options,
-           std::vector<LinkBody>& bodies);
+           std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments = nullptr);
 
   void apply_tile(int tile);
 
@@ -63,23 +68,25 @@ private:
     alignas(64) Real covered[capacity];                     // of a rule that needs both: 1 where a body covers x_ff
     alignas(64) Real reflected[capacity];                   // f_i'(x_f, t+1)
     alignas(64) Real momentum[3][capacity], torque[3][capacity];
+    alignas(64) Real moment[9][capacity];
   };
   static constexpr std::uint32_t near = 32, slots = 64;
 
-  template <typename Rule>
+  template <typename Rule, bool with_moments>
   void apply_links(int tile);
   void measure_densities(int tile);
   void prepare(Batch& batch, const LinkTable::Tile& tile, int plane, const LinkTable::Chunk& chunk, std::uint32_t first,
                int count) const;
-  template <typename Rule>
+  template <typename Rule, bool with_moments>
   void finish(Batch& batch);
   template <typename Rule>
   void gather(Batch& batch);
   void fill_from_covered_cells(Batch& batch, int covered) const;
   void look_upstream(Batch& batch) const;
-  template <typename Rule>
+  template <typename Rule, bool with_moments>
   void reflect(Batch& batch) const;
   void add_momentum(const Batch& batch) const;
+  void add_moments(const Batch& batch) const;
 
   const CellMap& cells_;
   const RowTiles& tiles_;
@@ -87,6 +94,7 @@ private:
   const PeriodicBox& box_;
   const LinkOptions& options_;
   std::vector<LinkBody>& bodies_;
+  std::vector<FixedTensor>* moments_;  // null: nobody asks
   BlockPlace block_;
 
   // Base pointers to what a link reads and writes, by its slot; the index of x_f is added.

@@ -54,7 +54,7 @@ void Fluid<Real>::for_each_fluid_cell(Visit visit) const {
 }
 
 template <typename Real>
-void Fluid<Real>::initialise(const std::function<FluidState(const Vec3&)>& state) {
+void Fluid<Real>::initialise(const std::function<FluidState(const Vec3&)>& state, const Vec3& force) {
   populations_.set_arrangement(Arrangement::swapped);
   const Index3& n = indexing().size();
   for (int z = 0; z < n[2]; ++z)
@@ -63,9 +63,11 @@ void Fluid<Real>::initialise(const std::function<FluidState(const Vec3&)>& state
         const FluidState s =
             state(Vec3(block_.lower[0] + x + 0.5, block_.lower[1] + y + 0.5, block_.lower[2] + z + 0.5));
         const std::ptrdiff_t cell = indexing().index(x, y, z);
-        for (int i = 0; i < D3Q19::directions; ++i)
-          populations_.post_collision(i, cell) =
-              static_cast<Real>(equilibrium_deviation(i, s.density_deviation, s.velocity));
+        for (int i = 0; i < D3Q19::directions; ++i) {
+          const double along = D3Q19::c[i][0] * force.x() + D3Q19::c[i][1] * force.y() + D3Q19::c[i][2] * force.z();
+          populations_.post_collision(i, cell) = static_cast<Real>(
+              equilibrium_deviation(i, s.density_deviation, s.velocity) + 1.5 * D3Q19::weight(i) * along);
+        }
       }
 }
 

@@ -43,7 +43,8 @@ public:
         const FaceConditions& faces);
 
   // Sets every cell to the equilibrium of the given state; the argument is the cell's centre in global lattice units.
-  void initialise(const std::function<FluidState(const Vec3&)>& state);
+  // force: density of a force whose half the populations carry, as a collision leaves it.
+  void initialise(const std::function<FluidState(const Vec3&)>& state, const Vec3& force = Vec3::Zero());
 
   // The force density of the collisions to come, the same everywhere. A caller who changes it in time must set it again
   // after load().

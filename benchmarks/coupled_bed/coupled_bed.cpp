@@ -117,7 +117,7 @@ std::unique_ptr<coupling::ResolvedSystem<Real>> flowing_bed(const Decomposition&
 
   dem::GrainParameters g = grain_parameters(decomposition.box(), time_step / sub_steps, water);
   g.ghost_width = coupling::ResolvedSystem<Real>::ghost_reach(0.5 * diameter, spacing);
-  g.attached_width = coupling::ResolvedSystem<Real>::attached_width;
+  g.attached_width = coupling::ResolvedSystem<Real>::attached_width(p);
   auto grains = std::make_unique<dem::GrainDynamics>(decomposition, MPI_COMM_WORLD, g, seeds);
   return std::make_unique<coupling::ResolvedSystem<Real>>(std::make_unique<Decomposition>(decomposition),
                                                           MPI_COMM_WORLD, p, std::move(grains));

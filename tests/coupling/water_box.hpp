@@ -16,16 +16,22 @@ struct WaterBox {
   double time_step = 1e-4;  // s
   double viscosity = 1e-6;  // m^2/s
   double smagorinsky_constant = 0.27;
+  lbm::CollisionModel collision = lbm::CollisionModel::bgk;
   Vec3 gravity = Vec3(0.0, 0.0, 0.0);  // m/s^2; reduced: along z only the submerged weight counts
   Vec3 fluid_velocity = Vec3::Zero();  // m/s at the start
+  double plate_velocity = 0.0;         // m/s along x: where not zero, top and bottom are plates that move, top along x
   FluidInitialState (*initial)(const Vec3&) = nullptr;
+  bool frictionless_floor = false;  // bottom: free slip, for fluid and grains
   lbm::LinkOptions links;
   double link_tolerance = 1e-3;
   int sub_steps = 50;
-  lbm::CollisionModel collision = lbm::CollisionModel::bgk;
   bool lubrication = false;  // with the cut-offs of the case's defaults, at the floor alone
   bool virtual_mass = false;
   RefillRule refill = RefillRule::equilibrium;
+  bool grain_stress = false;
+  bool full_gravity = false;  // gravity acts on everything, and buoyancy comes from the fluid
+  bool paper_near_contact = false;
+  int mass_correction = 0;
   std::vector<dem::GrainSeed> seeds;
   std::vector<dem::PrescribedMotion> assemblies;
   std::vector<dem::ClumpSeed> clumps;
@@ -41,17 +47,27 @@ std::unique_ptr<ResolvedSystem<Real>> make_system(const WaterBox& box, MPI_Comm 
   p.collision.relaxation_time = p.units.relaxation_time(box.viscosity);
   p.collision.model = box.collision;
   p.collision.smagorinsky_constant = box.smagorinsky_constant;
-  for (int a = 0; a < 2; ++a) p.collision.force[a] = box.gravity[a] / p.units.acceleration();
+  for (int a = 0; a < (box.full_gravity ? 3 : 2); ++a) p.collision.force[a] = box.gravity[a] / p.units.acceleration();
   for (int face = 0; face < 6; ++face)
     p.faces[face].type = box.periodic[face / 2] ? lbm::FaceType::periodic
                          : face == 5            ? lbm::FaceType::free_slip
                          : face == 4            ? lbm::FaceType::no_slip
                                                 : lbm::FaceType::law_of_the_wall;
+  if (box.frictionless_floor) p.faces[4].type = lbm::FaceType::free_slip;
+  for (const int face : {4, 5}) {
+    if (box.plate_velocity == 0.0) continue;
+    p.faces[face].type = lbm::FaceType::moving;
+    p.faces[face].velocity = Vec3((face == 5 ? 1.0 : -1.0) * box.plate_velocity / p.units.velocity(), 0.0, 0.0);
+  }
   p.links = box.links;
   p.link_tolerance = box.link_tolerance;
   p.sub_steps = box.sub_steps;
   if (box.virtual_mass) p.virtual_mass = VirtualMass{0.5, fluid_density};
   p.refill = box.refill;
+  p.grain_stress = box.grain_stress;
+  p.full_gravity = box.full_gravity;
+  p.paper_near_contact = box.paper_near_contact;
+  p.mass_correction = box.mass_correction;
   if (box.initial)
     p.initial_fluid = box.initial;
   else
@@ -62,10 +78,10 @@ std::unique_ptr<ResolvedSystem<Real>> make_system(const WaterBox& box, MPI_Comm 
   g.contact.tangential_stiffness = 5714.0;
   g.contact.restitution = 0.93;
   g.contact.friction = 0.5;
-  g.contact.wall_friction = 0.45;
+  g.contact.wall_friction = box.frictionless_floor ? 0.0 : 0.45;
   g.walls = dem::face_planes(decomposition->box(), g.contact);
-  g.body_force = [gravity = box.gravity](double mass, double radius) {
-    const double displaced = fluid_density * 4.0 / 3.0 * 3.14159265358979323846 * radius * radius * radius;
+  g.body_force = [gravity = box.gravity, full = box.full_gravity](double mass, double radius) {
+    const double displaced = full ? 0.0 : fluid_density * 4.0 / 3.0 * 3.14159265358979323846 * radius * radius * radius;
     return Vec3(mass * gravity.x(), mass * gravity.y(), (mass - displaced) * gravity.z());
   };
   g.assemblies = box.assemblies;
@@ -75,14 +91,14 @@ std::unique_ptr<ResolvedSystem<Real>> make_system(const WaterBox& box, MPI_Comm 
   for (const dem::GrainSeed& seed : box.seeds) largest = std::max(largest, seed.radius);
   for (const dem::ClumpSeed& clump : box.clumps)
     for (const dem::Sphere& member : clump.shape->members) largest = std::max(largest, member.radius);
-  g.skin = 0.2 * largest;
+  g.skin = largest > 0.0 ? 0.2 * largest : box.spacing;
   g.ghost_width = ResolvedSystem<Real>::ghost_reach(largest, box.spacing);
   if (box.lubrication) {
     dem::LubricationParameters lubrication{fluid_density * box.viscosity, 2.0 / 3.0 * box.spacing, 0.5 * box.spacing};
     for (const dem::Plane& wall : g.walls) lubrication.walls.push_back(wall.normal.z() == 1.0);
     g.lubrication = lubrication;
   }
-  g.attached_width = ResolvedSystem<Real>::attached_width;
+  g.attached_width = ResolvedSystem<Real>::attached_width(p);
   auto grains = std::make_unique<dem::GrainDynamics>(*decomposition, communicator, g, box.seeds, box.clumps);
   return std::make_unique<ResolvedSystem<Real>>(std::move(decomposition), communicator, p, std::move(grains));
 }

@@ -36,7 +36,7 @@ def arrays(data):
     return {data.GetArrayName(n): vtk_to_numpy(data.GetArray(n)) for n in range(data.GetNumberOfArrays())}
 
 
-def check_grains(name, with_fluid):
+def check_grains(name, with_fluid, with_stress=False):
     for time, path in pictures(FOLDER / name / "grains.pvd"):
         data = read(vtkXMLPolyDataReader(), path)
         n = np.arange(GRAINS)
@@ -54,6 +54,8 @@ def check_grains(name, with_fluid):
         }
         if with_fluid:
             expected["fluid_force"] = np.stack([zero, n, one], axis=1)
+        if with_stress:
+            expected["fluid_stress"] = np.stack([n] + [k * one for k in range(1, 9)], axis=1)
         found = arrays(data.GetPointData())
         assert found.keys() == expected.keys(), found.keys()
         for key, values in expected.items():
@@ -82,6 +84,7 @@ def check_fluid(name, fields, lower, upper, in_pieces):
 
 
 check_grains("wet", True)
+check_grains("stressed", True, True)
 check_grains("dry", False)
 check_fluid("whole", ["velocity", "pressure", "grain_id"], (0, 0, 0), CELLS, RANKS > 1)
 check_fluid("slice_y", ["pressure", "velocity"], (0, 4, 0), (12, 5, 8), False)

@@ -50,6 +50,7 @@ struct Grains {
   std::vector<GlobalId> id;
   std::vector<double> radius, mass;
   std::vector<Vec3> position, velocity, angular_velocity, fluid_force, fluid_torque, contact_force;
+  std::vector<Mat3> fluid_stress;
 
   explicit Grains(double time) {
     for (std::int64_t n = grain_count - 1; n >= 0; --n) {
@@ -64,10 +65,13 @@ struct Grains {
       fluid_force.emplace_back(0.0, x, 1.0);
       fluid_torque.emplace_back(0.0, 0.0, 0.0);
       contact_force.emplace_back(1.0, 2.0, x);
+      Mat3 stress;
+      stress << x, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0;
+      fluid_stress.push_back(stress);
     }
   }
   GrainView view(bool with_fluid) const {
-    GrainView view{grain_count, 0.0, id, radius, mass, position, velocity, angular_velocity, {}, {}, contact_force};
+    GrainView view{grain_count, 0.0, id, radius, mass, position, velocity, angular_velocity, {}, {}, contact_force, {}};
     if (with_fluid) {
       view.fluid_force = fluid_force;
       view.fluid_torque = fluid_torque;
@@ -90,6 +94,8 @@ public:
     Snapshot snapshot{time, step, &decomposition, grains.view(true), &fluid};
 
     series<GrainSeries>("wet", continue_from, snapshot);
+    snapshot.grains.fluid_stress = grains.fluid_stress;
+    series<GrainSeries>("stressed", continue_from, snapshot);
     series<FluidSeries>("whole", continue_from, snapshot, FluidRegion::whole,
                         std::vector<FluidField>{FluidField::velocity, FluidField::pressure, FluidField::grain_id});
     series<FluidSeries>("slice_y", continue_from, snapshot, FluidRegion::slice_y,

@@ -1,0 +1,123 @@
+// How rough the force on a moving grain is with each refill of the cells it uncovers: bin/refill
+//
+// A sphere of ten cells moves at constant velocity, not along the lattice and without turning, through fluid at rest in
+// a periodic box of 56 x 48 x 48 cells: at Re_p = 20 (tau = 0.55, no subgrid model), and as a grain in water at the
+// flume's step (tau - 1/2 = 2.4e-4, 0.012 cells a step, C_s = 0.27). It crosses 12 diameters; the last 8 count. Noise
+// of the force is given over the mean drag, of the torque over drag times radius, in two measures: the root mean square
+// of the change from one exchange to the next, and of what a mean over the time of crossing a cell leaves of the load
+// that the grains feel (the mean of two exchanges). Prints a table in Markdown.
+#include "core/mpi_session.hpp"
+#include "coupling/resolved_system.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <vector>
+
+namespace thalweg::benchmark {
+namespace {
+
+using coupling::RefillRule;
+
+struct Regime {
+  const char* name;
+  double relaxation_time, smagorinsky_constant, speed;  // lattice units
+};
+
+constexpr double radius = 5.0;
+
+std::unique_ptr<coupling::ResolvedSystem<double>> make(const Regime& regime, const Vec3& velocity, RefillRule rule) {
+  const Index3 cells{56, 48, 48};
+  auto decomposition =
+      std::make_unique<Decomposition>(cells, 1.0, std::array<bool, 3>{true, true, true}, Index3{1, 1, 1});
+  coupling::ResolvedParameters p;
+  p.units = {1.0, 1.0, 1.0};
+  p.collision.relaxation_time = regime.relaxation_time;
+  p.collision.smagorinsky_constant = regime.smagorinsky_constant;
+  p.refill = rule;
+  p.sub_steps = 1;
+  dem::GrainSeed seed;
+  seed.radius = radius;
+  seed.density = 2.55;
+  seed.position = Vec3(28.13, 24.37, 23.71);
+  seed.velocity = velocity;
+  seed.motion = dem::Motion::fixed;
+  dem::GrainParameters g;
+  g.contact.normal_stiffness = g.contact.tangential_stiffness = 1.0;
+  g.contact.restitution = 0.9;
+  g.time_step = 1.0;
+  g.skin = 1.0;
+  g.ghost_width = coupling::ResolvedSystem<double>::ghost_reach(radius, 1.0);
+  g.attached_width = coupling::ResolvedSystem<double>::attached_width(p);
+  auto grains =
+      std::make_unique<dem::GrainDynamics>(*decomposition, MPI_COMM_SELF, g, std::vector<dem::GrainSeed>{seed});
+  return std::make_unique<coupling::ResolvedSystem<double>>(std::move(decomposition), MPI_COMM_SELF, p,
+                                                            std::move(grains));
+}
+
+double step_to_step(const std::vector<Vec3>& values) {
+  double sum = 0.0;
+  for (std::size_t n = 1; n < values.size(); ++n) sum += (values[n] - values[n - 1]).squaredNorm();
+  return std::sqrt(sum / static_cast<double>(values.size() - 1));
+}
+
+// Root mean square of what a mean over 2 half + 1 steps leaves.
+double roughness(const std::vector<Vec3>& values, int half) {
+  double sum = 0.0;
+  int count = 0;
+  for (int n = half; n + half < static_cast<int>(values.size()); ++n) {
+    Vec3 mean = Vec3::Zero();
+    for (int k = n - half; k <= n + half; ++k) mean += values[static_cast<std::size_t>(k)];
+    sum += (values[static_cast<std::size_t>(n)] - mean / (2 * half + 1)).squaredNorm();
+    ++count;
+  }
+  return std::sqrt(sum / count);
+}
+
+void measure(const Regime& regime, RefillRule rule, const char* name) {
+  const Vec3 along = Vec3(1.0, 0.37, 0.21).normalized();
+  const auto system = make(regime, regime.speed * along, rule);
+  const int crossing = static_cast<int>(1.0 / regime.speed), steps = static_cast<int>(120.0 / regime.speed);
+  std::vector<Vec3> force, torque, load, load_torque;
+  Vec3 total = Vec3::Zero();
+  using System = coupling::ResolvedSystem<double>;
+  for (int step = 0; step < steps; ++step) {
+    system->advance();
+    if (step < steps / 3) continue;
+    const dem::GrainStore& store = system->grains().store();
+    const auto columns = store.attached_of(0);
+    force.emplace_back(columns[System::last_force], columns[System::last_force + 1], columns[System::last_force + 2]);
+    torque.emplace_back(columns[System::last_torque], columns[System::last_torque + 1],
+                        columns[System::last_torque + 2]);
+    load.push_back(store.load_force[0]);
+    load_torque.push_back(store.load_torque[0]);
+    total += load.back();
+  }
+  const double drag = -total.dot(along) / static_cast<double>(load.size()), moment = drag * radius;
+  const int half = crossing / 2;
+  std::printf("%s\n", fmt::format("| {} | {} | {:.4f} | {:.4f} | {:.4f} | {:.4f} | {:.5g} |", regime.name, name,
+                                  step_to_step(force) / drag, roughness(load, half) / drag,
+                                  step_to_step(torque) / moment, roughness(load_torque, half) / moment, drag)
+                          .c_str());
+  std::fflush(stdout);
+}
+
+}  // namespace
+}  // namespace thalweg::benchmark
+
+int main(int argc, char** argv) {
+  using namespace thalweg;
+  MpiSession session(argc, argv);
+  std::printf(
+      "| flow | refill | force, step to step | within a cell | torque, step to step | within a cell | drag |\n");
+  std::printf("|---|---|---|---|---|---|---|\n");
+  for (const benchmark::Regime& regime : {benchmark::Regime{"Re_p = 20", 0.55, 0.0, 20.0 * 0.05 / 3.0 / 10.0},
+                                          benchmark::Regime{"water", 0.50024, 0.27, 0.012}}) {
+    measure(regime, coupling::RefillRule::equilibrium, "equilibrium");
+    measure(regime, coupling::RefillRule::non_equilibrium, "non_equilibrium");
+    measure(regime, coupling::RefillRule::grad, "grad");
+  }
+  return 0;
+}

@@ -1,0 +1,150 @@
+#include "coupling/hidden_links.hpp"
+
+#include "lbm/bouzidi_link.hpp"
+#include "lbm/equilibrium.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace thalweg::coupling {
+
+using lbm::CellMap;
+using lbm::D3Q19;
+
+namespace {
+
+Vec3 velocity_of(int direction) {
+  return {double(D3Q19::c[direction][0]), double(D3Q19::c[direction][1]), double(D3Q19::c[direction][2])};
+}
+
+}  // namespace
+
+HiddenLinks::HiddenLinks(const Decomposition& decomposition, const Block& block, const CellMap& cells,
+                         const HiddenLinkOptions& options, lbm::MomentumExchange exchange)
+    : decomposition_(decomposition),
+      block_(block),
+      local_cells_(decomposition, block),
+      cells_(cells),
+      options_(options),
+      galilean_(exchange == lbm::MomentumExchange::galilean_invariant),
+      box_{Vec3(decomposition.cells()[0], decomposition.cells()[1], decomposition.cells()[2]),
+           decomposition.periodic()} {}
+
+std::size_t HiddenLinks::count() const {
+  std::size_t total = 0;
+  for (const std::vector<Link>& links : links_) total += links.size();
+  return total;
+}
+
+void HiddenLinks::update(const GrainMap& map) {
+  if (!wanted()) return;
+  links_.resize(map.grains().size());
+  is_stale_.resize(map.grains().size(), 0);
+  for (const GrainMap::Change& change : map.changes()) {
+    mark(change.before);
+    mark(change.now);
+    mark_around(change.cell);
+  }
+  std::sort(stale_.begin(), stale_.end());
+  for (const int slot : stale_) {
+    rebuild(slot, map.grains()[static_cast<std::size_t>(slot)]);
+    is_stale_[static_cast<std::size_t>(slot)] = 0;
+  }
+  stale_.clear();
+}
+
+void HiddenLinks::mark(std::int32_t slot) {
+  if (slot == CellMap::fluid || is_stale_[static_cast<std::size_t>(slot)]) return;
+  is_stale_[static_cast<std::size_t>(slot)] = 1;
+  stale_.push_back(slot);
+}
+
+void HiddenLinks::mark_around(const Index3& local) {
+  const Index3& n = cells_.indexing().size();
+  for (int i = 1; i < D3Q19::directions; ++i) {
+    Index3 at;
+    bool in_memory = true;
+    for (int a = 0; a < 3; ++a) {
+      at[a] = local[a] + D3Q19::c[i][a];
+      in_memory = in_memory && at[a] >= -1 && at[a] <= n[a];
+    }
+    if (in_memory) mark(cells_.body(cells_.indexing().index(at[0], at[1], at[2])));
+  }
+}
+
+void HiddenLinks::rebuild(int slot, const MappedGrain& grain) {
+  links_[static_cast<std::size_t>(slot)].clear();
+  if (grain.id < 0) return;
+  for (int a = 0; a < 3; ++a) local_cells_.along(a, grain.centre[a], grain.radius, grain.centre[a], 0, places_[a]);
+  for (const LocalCell& z : places_[2])
+    for (const LocalCell& y : places_[1])
+      for (const LocalCell& x : places_[0]) {
+        const Index3 local{x.local, y.local, z.local};
+        if (cells_.body(cells_.indexing().index(local[0], local[1], local[2])) == slot) find_at_cell(slot, local);
+      }
+}
+
+void HiddenLinks::find_at_cell(int slot, const Index3& local) {
+  const std::ptrdiff_t cell = cells_.indexing().index(local[0], local[1], local[2]);
+  for (int i = 1; i < D3Q19::directions; ++i) {
+    bool beyond_wall = false;
+    Vec3 from;
+    for (int a = 0; a < 3; ++a) {
+      const int global = block_.lower[a] + local[a] - D3Q19::c[i][a];
+      from[a] = global + 0.5;
+      beyond_wall =
+          beyond_wall || (!decomposition_.periodic()[a] && (global < 0 || global >= decomposition_.cells()[a]));
+    }
+    const std::int32_t other = beyond_wall ? CellMap::fluid : cells_.body(cell - cells_.indexing().offset(i));
+    if (other != slot && (other != CellMap::fluid || beyond_wall))
+      links_[static_cast<std::size_t>(slot)].push_back({i, other, from});
+  }
+}
+
+// from: x_f from the body's centre.
+Vec3 HiddenLinks::momentum_of(const Link& link, const Vec3& from, double distance, const lbm::LinkBody& body,
+                              const std::vector<lbm::LinkBody>& bodies) const {
+  const Vec3 c = velocity_of(link.direction);
+  const double weight = D3Q19::weight(link.direction), density = options_.rest.deviation(link.from + distance * c);
+  if (!options_.moving || link.other == CellMap::fluid) return (2.0 * weight * density) * c;
+  const lbm::LinkBody& other = bodies[static_cast<std::size_t>(link.other)];
+  const Vec3 between = box_.difference(body.centre, other.centre);
+  const auto equilibrium = [&](int direction, const Vec3& at) {
+    const Vec3 velocity = other.velocity + other.angular_velocity.cross(between + at);
+    return lbm::equilibrium_deviation(direction, density, velocity);
+  };
+  const double incident = equilibrium(link.direction, from);
+  const double second =
+      distance < 0.5 ? equilibrium(link.direction, from - c) : equilibrium(D3Q19::opposite(link.direction), from);
+  const Vec3 surface = body.velocity + body.angular_velocity.cross(from + distance * c);
+  const lbm::LinkWeights<double> rule = lbm::BouzidiLink::weights(distance);
+  const double reflected =
+      rule.incident * incident + rule.second * second - rule.wall * weight * (1.0 + density) * c.dot(surface);
+  Vec3 momentum = (incident + reflected) * c;
+  if (galilean_) momentum -= (incident - reflected) * surface;
+  return momentum;
+}
+
+void HiddenLinks::apply(std::vector<lbm::LinkBody>& bodies, std::vector<FixedTensor>* moments) const {
+  const auto fixed = [](const Vec3& v) {
+    return FixedVec3{LatticeFixed::from(v.x()), LatticeFixed::from(v.y()), LatticeFixed::from(v.z())};
+  };
+  for (std::size_t slot = 0; slot < links_.size(); ++slot)
+    for (const Link& link : links_[slot]) {
+      lbm::LinkBody& body = bodies[slot];
+      const Vec3 c = velocity_of(link.direction), from = box_.difference(link.from, body.centre);
+      const double a = D3Q19::length_squared(link.direction), b = c.dot(from),
+                   q = from.squaredNorm() - body.radius * body.radius;
+      // Where grains overlap, x_f can be inside this one, too.
+      const double met = q > 0.0 ? (-b - std::sqrt(std::max(b * b - a * q, 0.0))) / a : 0.0;
+      const double distance = std::clamp(met, 0.0, 1.0);
+      const Vec3 momentum = momentum_of(link, from, distance, body, bodies), arm = from + distance * c;
+      body.force += fixed(momentum);
+      body.torque += fixed(arm.cross(momentum));
+      for (std::size_t k = 0; moments && k < 9; ++k)
+        (*moments)[slot].sums[k] +=
+            LatticeFixed::from(momentum[static_cast<int>(k / 3)] * arm[static_cast<int>(k % 3)]);
+    }
+}
+
+}  // namespace thalweg::coupling

@@ -1,0 +1,74 @@
+// Links without a fluid cell: where another grain or a wall of the box hides a patch of a grain's surface from the
+// fluid.
+//
+// A lattice line enters a cell of grain p from a cell x_f that grain q covers, or that is beyond a wall. No population
+// runs there, but in between a fluid would press. Populations count less their weight in the exchange (bouzidi.hpp), so
+// that the reference pressure needs no such links. What is left:
+//   full gravity        the hydrostatic density above the reference, rho_g - 1 on the surface: momentum 2 w_i (rho_g -
+//   1) c_i,
+//                       without which a grain that touches others or the floor would lose part of its buoyancy;
+//   near_contact paper  a link with equilibrium populations at x_f and x_ff, of density rho_g and q's rigid motion
+//   there
+//                       (Zhang et al. 2022), between grains only.
+// Both go through the rule of Bouzidi and the momentum exchange chosen. Lattice units.
+#pragma once
+
+#include "core/decomposition.hpp"
+#include "coupling/grain_map.hpp"
+#include "coupling/hydrostatic.hpp"
+#include "coupling/local_cells.hpp"
+#include "lbm/bouzidi.hpp"
+
+#include <vector>
+
+namespace thalweg::coupling {
+
+struct HiddenLinkOptions {
+  bool moving = false;  // near_contact paper
+  Hydrostatic rest;
+};
+
+class HiddenLinks {
+public:
+  HiddenLinks(const Decomposition& decomposition, const Block& block, const lbm::CellMap& cells,
+              const HiddenLinkOptions& options, lbm::MomentumExchange exchange);
+
+  bool wanted() const { return options_.moving || !options_.rest.none(); }
+
+  // Finds anew the hidden links around cells that changed hands since the last call; does nothing where nobody wants
+  // them. A link belongs to the rank that owns its solid cell.
+  void update(const GrainMap& map);
+
+  // Adds the momentum of all hidden links to their bodies, and sum F_a x_b to moments, where given.
+  void apply(std::vector<lbm::LinkBody>& bodies, std::vector<FixedTensor>* moments) const;
+
+  std::size_t count() const;
+
+private:
+  struct Link {
+    int direction;       // into the grain
+    std::int32_t other;  // slot of the grain that covers x_f; CellMap::fluid: a wall
+    Vec3 from;           // x_f, global
+  };
+
+  void mark(std::int32_t slot);
+  void mark_around(const Index3& local);
+  void rebuild(int slot, const MappedGrain& grain);
+  void find_at_cell(int slot, const Index3& local);
+  Vec3 momentum_of(const Link& link, const Vec3& from, double distance, const lbm::LinkBody& body,
+                   const std::vector<lbm::LinkBody>& bodies) const;
+
+  const Decomposition& decomposition_;
+  Block block_;
+  LocalCells local_cells_;
+  const lbm::CellMap& cells_;
+  HiddenLinkOptions options_;
+  bool galilean_;
+  PeriodicBox box_;                       // cells
+  std::vector<std::vector<Link>> links_;  // by slot
+  std::vector<int> stale_;                // slots to look at anew
+  std::vector<char> is_stale_;            // by slot
+  std::vector<LocalCell> places_[3];      // scratch
+};
+
+}  // namespace thalweg::coupling
