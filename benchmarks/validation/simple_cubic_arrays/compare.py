@@ -1,0 +1,63 @@
+#!/usr/bin/python3
+"""Compares the drag on simple cubic arrays with Zick and Homsy: compare.py DRAG_CSV... [--figure FILE]
+
+Takes the tables that run.py writes, prints for every kind of links, solid fraction and diameter the mean drag over the
+places between the cells, the reference, the difference, how far the places are apart, and pass or fail (5 % at ten cells a
+diameter and more), and draws the convergence. Exit code 0 if all pass.
+"""
+import argparse
+import csv
+import sys
+from pathlib import Path
+
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+ACCEPTED, FROM_CELLS = 0.05, 10.0
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("tables", nargs="+", type=Path, metavar="DRAG_CSV")
+    parser.add_argument("--figure", default="simple_cubic_arrays.png")
+    arguments = parser.parse_args()
+
+    with open(Path(__file__).with_name("reference.csv")) as file:
+        rows = csv.DictReader(line for line in file if not line.startswith("#"))
+        reference = {row["solid_fraction [1]"]: float(row["drag [1]"]) for row in rows}
+    drags = {}
+    for table in arguments.tables:
+        with open(table) as file:
+            for row in csv.DictReader(file):
+                group = drags.setdefault((row["links"], row["solid_fraction [1]"]), {})
+                group.setdefault(float(row["diameter [cells]"]), []).append(float(row["drag [1]"]))
+
+    plt.figure(figsize=(6, 4))
+    passed = True
+    for (links, fraction), group in drags.items():
+        exact, points = reference[fraction], []
+        for diameter, values in sorted(group.items()):
+            error = sum(values) / len(values) / exact - 1.0
+            spread = (max(values) - min(values)) / exact
+            good = diameter < FROM_CELLS or abs(error) <= ACCEPTED
+            passed = passed and good
+            points.append((diameter, 100.0 * abs(error)))
+            print(f"{links}, solid fraction {fraction}, {diameter:.1f} cells: drag {exact * (1 + error):.3f}, reference {exact}, "
+                  f"difference {100 * error:+.2f} %, {len(values)} places {100 * spread:.2f} % apart: "
+                  f"{'pass' if good else 'FAIL'}")
+        plt.loglog(*zip(*points), "o-", label=f"{links}, {fraction}")
+    plt.loglog([6, 20], [6, 6 * 6 / 20], "k:", label="first order")
+    plt.loglog([6, 20], [6, 6 * (6 / 20) ** 2], "k--", label="second order")
+    plt.xticks([6, 8, 10, 12, 16, 20], ["6", "8", "10", "12", "16", "20"], minor=False)
+    plt.minorticks_off()
+    plt.xlabel("cells a diameter")
+    plt.ylabel("drag: difference from Zick and Homsy [%]")
+    plt.legend(fontsize=8)
+    plt.tight_layout()
+    plt.savefig(arguments.figure, dpi=110)
+    return 0 if passed else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
