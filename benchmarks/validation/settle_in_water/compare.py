@@ -1,0 +1,71 @@
+#!/usr/bin/python3
+"""Compares spheres settling in water with Schiller and Naumann: compare.py RUN_FOLDER... [--figure FILE]
+
+The terminal velocity is the mean over the fall from the tenth diameter to three diameters above the floor. Prints it, the
+reference, the difference, the drag coefficient, and pass or fail (10 %). Exit code 0 if all pass.
+"""
+import argparse
+import csv
+import sys
+import xml.etree.ElementTree as xml
+from pathlib import Path
+
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import yaml
+from vtk import vtkXMLPolyDataReader
+
+ACCEPTED = 0.10
+
+
+def trajectory(run):
+    """Times (s), heights of the centre (m), velocities upwards (m/s) of the only grain."""
+    times, heights, velocities = [], [], []
+    for entry in xml.parse(run / "grains.pvd").getroot().iter("DataSet"):
+        reader = vtkXMLPolyDataReader()
+        reader.SetFileName(str(run / entry.get("file")))
+        reader.Update()
+        grain = reader.GetOutput()
+        times.append(float(entry.get("timestep")))
+        heights.append(grain.GetPoint(0)[2])
+        velocities.append(grain.GetPointData().GetArray("velocity").GetTuple3(0)[2])
+    return times, heights, velocities
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("runs", nargs="+", type=Path, metavar="RUN_FOLDER")
+    parser.add_argument("--figure", default="settle_in_water.png")
+    arguments = parser.parse_args()
+
+    with open(Path(__file__).with_name("reference.csv")) as file:
+        rows = csv.DictReader(line for line in file if not line.startswith("#"))
+        reference = float(next(rows)["velocity [m/s]"])
+    plt.figure(figsize=(6, 3.5))
+    passed = True
+    for run in arguments.runs:
+        grain = yaml.safe_load((run / "case.yaml").read_text())["grains"][0]
+        diameter = grain["diameter"]
+        times, heights, velocities = trajectory(run)
+        steady = [k for k, z in enumerate(heights) if heights[0] - z > 10 * diameter and z > 3.5 * diameter]
+        first, last = steady[0], steady[-1]
+        velocity = (heights[first] - heights[last]) / (times[last] - times[first])
+        drag = 4.0 * (grain["density"] / 1000.0 - 1.0) * 9.8 * diameter / (3.0 * velocity ** 2)
+        good = abs(velocity / reference - 1.0) <= ACCEPTED
+        passed = passed and good
+        print(f"{run.name}: {velocity:.4f} m/s over {(heights[first] - heights[last]) / diameter:.1f} diameters, reference "
+              f"{reference:.3f} m/s, difference {100 * (velocity / reference - 1):+.1f} %, drag coefficient {drag:.3f}: "
+              f"{'pass' if good else 'FAIL'}")
+        plt.plot(times, [-v for v in velocities], label=run.name)
+    plt.axhline(reference, color="k", linestyle="--", label="Schiller and Naumann")
+    plt.xlabel("time [s]")
+    plt.ylabel("settling velocity [m/s]")
+    plt.legend(loc="lower right")
+    plt.tight_layout()
+    plt.savefig(arguments.figure, dpi=110)
+    return 0 if passed else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
