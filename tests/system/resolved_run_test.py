@@ -77,6 +77,16 @@ analysis:
                           ranks=ranks)
         self.assertEqual(self.last_checkpoint("one").read_bytes(), self.last_checkpoint("two").read_bytes())
 
+    def test_options_of_the_coupling_have_the_same_bits_after_a_restart(self):
+        options = ["--set", "coupling.lubrication={}", "--set", "coupling.virtual_mass={}",
+                   "--set", "fluid.kinematic_viscosity=1e-5", "--set", "output.checkpoint.every=0.01", "--until", "0.02"]
+        self.run_well("run", self.case, "--out", "straight", *options)
+        half_way = self.folder / "straight/checkpoints/step_100.h5"
+        self.run_well("run", self.case, "--out", "again", "--restart", half_way, *options, ranks=2)
+        self.assertEqual(self.last_checkpoint("again").read_bytes(), self.last_checkpoint("straight").read_bytes())
+        self.run_well("run", self.case, "--out", "without", "--until", "0.02")
+        self.assertNotEqual(self.last_checkpoint("without").read_bytes(), self.last_checkpoint("straight").read_bytes())
+
     def test_what_it_writes_can_be_opened(self):
         self.run_well("run", self.case, ranks=2)
         run = self.folder / "run"
