@@ -106,6 +106,7 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
   settle_in({});
   moving_.load(store_, body_force_);
   assemblies_.place(moving_, box_, 0.0, 0.0);
+  ghosts_.refresh(moving_);
   evaluate_forces(0.0);
   moving_.unload(store_);
 }
