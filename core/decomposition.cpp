@@ -66,6 +66,25 @@ Decomposition::Decomposition(const Index3& cells, double spacing, const std::arr
       cuts_[a].push_back(static_cast<int>(static_cast<std::int64_t>(cells[a]) * slab / layout[a]));
 }
 
+Decomposition Decomposition::balanced(const std::array<std::vector<std::int64_t>, 3>& weights) const {
+  Decomposition result = *this;
+  for (int a = 0; a < 3; ++a) {
+    const int slabs = layout_[a];
+    std::vector<int>& cuts = result.cuts_[a];
+    std::int64_t total = 0, sum = 0;
+    for (const std::int64_t weight : weights[a]) total += weight;
+    for (int slab = 1, k = 0; slab < slabs; ++slab) {
+      // Before the cell that reaches the share, or behind it, whichever is nearer.
+      while (k < cells_[a] && (sum + weights[a][k]) * slabs <= total * slab) sum += weights[a][k++];
+      const bool behind = k < cells_[a] && (2 * sum + weights[a][k]) * slabs < 2 * total * slab;
+      cuts[slab] = behind ? k + 1 : k;
+    }
+    for (int slab = 1; slab < slabs; ++slab) cuts[slab] = std::max(cuts[slab], cuts[slab - 1] + min_cells_per_rank);
+    for (int slab = slabs - 1; slab > 0; --slab) cuts[slab] = std::min(cuts[slab], cuts[slab + 1] - min_cells_per_rank);
+  }
+  return result;
+}
+
 PeriodicBox Decomposition::box() const {
   return {Vec3(cells_[0] * spacing_, cells_[1] * spacing_, cells_[2] * spacing_), periodic_};
 }

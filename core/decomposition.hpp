@@ -9,6 +9,7 @@
 #include "core/types.hpp"
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 namespace thalweg {
@@ -37,6 +38,11 @@ public:
   // The layout for `ranks` ranks that cuts x and y before z (a bed is alike everywhere in plan, so columns balance)
   // and then has the smallest surface between blocks. Throws InputError if none fits.
   static Index3 best_layout(const Index3& cells, int ranks);
+
+  // The same layout with cuts that share weights as evenly as whole cells allow: weights[a][k], not negative, of the
+  // cells with coordinate k along axis a. No rank gets fewer than min_cells_per_rank cells along an axis that is cut.
+  Decomposition balanced(const std::array<std::vector<std::int64_t>, 3>& weights) const;
+  bool operator==(const Decomposition& other) const = default;
 
   const Index3& cells() const { return cells_; }
   double spacing() const { return spacing_; }

@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
 #include "dem/contact_forces.hpp"
+#include "dem/grain_balance.hpp"
 #include "dem/grain_space.hpp"
 #include "dem/grain_start.hpp"
 
@@ -249,9 +250,19 @@ void GrainDynamics::wrap_positions() {
 
 void GrainDynamics::rebuild() {
   std::vector<ContactHistory> histories = histories_of(list_, store_);
-  if (size_of(communicator_) > 1) migrate(histories);
+  if (size_of(communicator_) > 1) {
+    if (parameters_.movable_cuts) move_cuts();
+    migrate(histories);
+  }
   settle_in(histories);
   ++rebuilds_;
+}
+
+void GrainDynamics::move_cuts() {
+  const std::optional<Decomposition> moved = balanced_cuts(decomposition_, store_, communicator_);
+  if (!moved) return;
+  decomposition_ = *moved;
+  ghosts_ = GhostExchange(decomposition_, communicator_, ghost_reach(), largest_offset_);
 }
 
 void GrainDynamics::migrate(std::vector<ContactHistory>& histories) {

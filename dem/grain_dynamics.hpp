@@ -57,6 +57,7 @@ struct GrainParameters {
   int attached_width = 0;    // columns attached to every grain, the caller's (Gear's predictor has more after them)
   std::optional<LubricationParameters> lubrication;  // between near surfaces, in every sub-step
   bool disks = false;                                // the grains are disks in an x-z plane: I = 1/2 m R^2
+  bool movable_cuts = false;                         // whether the cuts between ranks follow the grains
   double initial_overlap = allowed_initial_overlap;  // diameters the seeds may overlap by: a settled bed's do
 };
 
@@ -124,8 +125,8 @@ public:
   }
   const Clumps& clumps() const { return clumps_; }  // those owned here
   const GrainParameters& parameters() const { return parameters_; }
-  const Decomposition& decomposition() const { return decomposition_; }
-  const std::vector<Plane>& walls() const { return planes_; }                               // where they are now
+  const Decomposition& decomposition() const { return decomposition_; }  // as it is now, if cuts move
+  const std::vector<Plane>& walls() const { return planes_; }            // where they are now
   double time() const { return static_cast<double>(steps_done_) * parameters_.time_step; }  // s, since the start
   double largest_radius() const { return largest_radius_; }                                 // m, over all ranks
   std::int64_t global_count() const { return global_count_; }  // rows over all ranks: grains and members of clumps
@@ -177,6 +178,7 @@ private:
   double fastest_member() const;
   void throw_trouble() const;
   void rebuild();
+  void move_cuts();
   void migrate(std::vector<ContactHistory>& histories);
   std::vector<Clump> load_clumps(ArchiveReader& archive, const std::string& group, const GrainBatch& batch,
                                  std::vector<int>& owner);

@@ -19,6 +19,7 @@ constexpr int sub_steps_between_list_checks = 10;
 dem::GrainParameters dry_parameters(const Case& c, const Decomposition& decomposition) {
   dem::GrainParameters parameters = grain_parameters(c, decomposition.box());
   parameters.sub_steps = std::min(parameters.sub_steps, sub_steps_between_list_checks);
+  parameters.movable_cuts = true;
   const Vec3 gravity = gravity_vector(c.gravity);
   parameters.body_force = [gravity](double mass, double) -> Vec3 { return mass * gravity; };
   return parameters;
@@ -43,8 +44,7 @@ dem::GrainDynamics dry_dynamics(const Case& c, MPI_Comm communicator, const Deco
 }  // namespace
 
 DryGrains::DryGrains(const Case& c, MPI_Comm communicator, const Decomposition& decomposition)
-    : decomposition_(decomposition),
-      sub_steps_(static_cast<int>(c.coupling.grain_steps_per_fluid_step)),
+    : sub_steps_(static_cast<int>(c.coupling.grain_steps_per_fluid_step)),
       time_step_(grain_time_step(c) * sub_steps_),
       wall_names_(measured_walls(c)),
       disk_thickness_(c.disks ? c.disks->thickness : 0.0),
@@ -72,7 +72,7 @@ Snapshot DryGrains::snapshot() const {
   Snapshot snapshot;
   snapshot.time = time();
   snapshot.step = step_;
-  snapshot.decomposition = &decomposition_;
+  snapshot.decomposition = &grains_.decomposition();
   snapshot.contacts = this;
   snapshot.grains.global_count = grains_.global_count();
   snapshot.grains.disk_thickness = disk_thickness_;

@@ -34,7 +34,6 @@ public:
 private:
   void for_each_contact(const ContactVisitor& visit) const override { grains_.for_each_contact(visit); }
 
-  Decomposition decomposition_;
   int sub_steps_;
   double time_step_;                     // s, of sub_steps_ sub-steps
   std::vector<std::string> wall_names_;  // whose forces are measured

@@ -63,5 +63,43 @@ TEST(PeriodicBox, WrapNeverReturnsTheUpperFace) {
   EXPECT_LT(box.wrapped(Vec3(-1e-20, 1.0, 0.5)).maxCoeff(), 1.0);
 }
 
+// A cut that must stand between cells is off by half the heaviest plane at most, so a slab holds no more than its share
+// and one such plane.
+TEST(Decomposition, BalancedCutsShareTheWeights) {
+  const Index3 cells{60, 40, 37};
+  const Decomposition even(cells, 1.0, {true, true, false}, {5, 1, 3});
+  std::array<std::vector<std::int64_t>, 3> weights;
+  for (int a = 0; a < 3; ++a)
+    for (int k = 0; k < cells[a]; ++k) weights[a].push_back(a == 0 ? 3 + k % 4 : std::max(0, 30 - k));
+  const Decomposition cut = even.balanced(weights);
+  for (int a = 0; a < 3; ++a) {
+    std::int64_t total = 0, heaviest = 0;
+    for (const std::int64_t weight : weights[a]) total += weight, heaviest = std::max(heaviest, weight);
+    for (int rank = 0; rank < cut.ranks(); ++rank) {
+      const Block block = cut.block_of(rank);
+      std::int64_t sum = 0;
+      for (int k = block.lower[a]; k < block.upper[a]; ++k) sum += weights[a][k];
+      EXPECT_LE(sum * cut.layout()[a], total + heaviest * cut.layout()[a]);
+      EXPECT_GE(block.size()[a], Decomposition::min_cells_per_rank);
+    }
+  }
+  // Along z the lower third of the weight takes less than a third of the height.
+  EXPECT_LT(cut.block_of(0).upper[2], even.block_of(0).upper[2]);
+  EXPECT_EQ(even.balanced({std::vector<std::int64_t>(60, 1), std::vector<std::int64_t>(40, 1),
+                           std::vector<std::int64_t>(37, 1)})
+                .block_of(7)
+                .lower[0],
+            even.block_of(7).lower[0]);
+}
+
+TEST(Decomposition, BalancedCutsLeaveEveryRankItsLeastCells) {
+  const Decomposition even({40, 8, 8}, 1.0, {true, true, true}, {8, 1, 1});
+  std::array<std::vector<std::int64_t>, 3> weights{std::vector<std::int64_t>(40, 0), std::vector<std::int64_t>(8, 1),
+                                                   std::vector<std::int64_t>(8, 1)};
+  weights[0][39] = 100;  // all in the last plane
+  const Decomposition cut = even.balanced(weights);
+  for (int rank = 0; rank < 8; ++rank) EXPECT_GE(cut.block_of(rank).size()[0], Decomposition::min_cells_per_rank);
+}
+
 }  // namespace
 }  // namespace thalweg
