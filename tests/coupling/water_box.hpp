@@ -21,6 +21,7 @@ struct WaterBox {
   Vec3 fluid_velocity = Vec3::Zero();  // m/s at the start
   double plate_velocity = 0.0;         // m/s along x: where not zero, top and bottom are plates that move, top along x
   FluidInitialState (*initial)(const Vec3&) = nullptr;
+  bool closed = false;              // no slip at all faces that are not periodic
   bool frictionless_floor = false;  // bottom: free slip, for fluid and grains
   lbm::LinkOptions links;
   double link_tolerance = 1e-3;
@@ -53,6 +54,8 @@ std::unique_ptr<ResolvedSystem<Real>> make_system(const WaterBox& box, MPI_Comm 
                          : face == 5            ? lbm::FaceType::free_slip
                          : face == 4            ? lbm::FaceType::no_slip
                                                 : lbm::FaceType::law_of_the_wall;
+  for (int face = 0; box.closed && face < 6; ++face)
+    if (!box.periodic[face / 2]) p.faces[face].type = lbm::FaceType::no_slip;
   if (box.frictionless_floor) p.faces[4].type = lbm::FaceType::free_slip;
   for (const int face : {4, 5}) {
     if (box.plate_velocity == 0.0) continue;
