@@ -21,8 +21,7 @@ struct WaterBox {
   Vec3 fluid_velocity = Vec3::Zero();  // m/s at the start
   double plate_velocity = 0.0;         // m/s along x: where not zero, top and bottom are plates that move, top along x
   FluidInitialState (*initial)(const Vec3&) = nullptr;
-  bool closed = false;              // no slip at all faces that are not periodic
-  bool frictionless_floor = false;  // bottom: free slip, for fluid and grains
+  bool closed = false;  // no slip at all faces that are not periodic
   lbm::LinkOptions links;
   double link_tolerance = 1e-3;
   int sub_steps = 50;
@@ -56,7 +55,6 @@ std::unique_ptr<ResolvedSystem<Real>> make_system(const WaterBox& box, MPI_Comm 
                                                 : lbm::FaceType::law_of_the_wall;
   for (int face = 0; box.closed && face < 6; ++face)
     if (!box.periodic[face / 2]) p.faces[face].type = lbm::FaceType::no_slip;
-  if (box.frictionless_floor) p.faces[4].type = lbm::FaceType::free_slip;
   for (const int face : {4, 5}) {
     if (box.plate_velocity == 0.0) continue;
     p.faces[face].type = lbm::FaceType::moving;
@@ -81,7 +79,7 @@ std::unique_ptr<ResolvedSystem<Real>> make_system(const WaterBox& box, MPI_Comm 
   g.contact.tangential_stiffness = 5714.0;
   g.contact.restitution = 0.93;
   g.contact.friction = 0.5;
-  g.contact.wall_friction = box.frictionless_floor ? 0.0 : 0.45;
+  g.contact.wall_friction = 0.45;
   g.walls = dem::face_planes(decomposition->box(), g.contact);
   g.body_force = [gravity = box.gravity, full = box.full_gravity](double mass, double radius) {
     const double displaced = full ? 0.0 : fluid_density * 4.0 / 3.0 * 3.14159265358979323846 * radius * radius * radius;
