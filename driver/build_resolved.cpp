@@ -17,19 +17,6 @@ Vec3 reduced_weight(const Vec3& gravity, double fluid_density, double mass, doub
   return {mass * gravity.x(), mass * gravity.y(), (mass - displaced) * gravity.z()};
 }
 
-dem::LubricationParameters lubrication_parameters(const Case& c) {
-  const LubricationCase& asked_for = *c.coupling.lubrication;
-  dem::LubricationParameters parameters;
-  parameters.viscosity = c.fluid.density * c.fluid.kinematic_viscosity;
-  parameters.normal_cut_off = asked_for.normal_cut_off * c.domain.spacing;
-  parameters.tangential_cut_off = asked_for.tangential_cut_off * c.domain.spacing;
-  parameters.minimum_gap = asked_for.minimum_gap;
-  for (const Face& face : c.domain.faces)  // the planes of the grains have this order, without periodic faces
-    if (face.type != FaceType::periodic)
-      parameters.walls.push_back(face.type == FaceType::no_slip || face.type == FaceType::moving);
-  return parameters;
-}
-
 coupling::RefillRule refill_rule(Refill refill) {
   switch (refill) {
     case Refill::equilibrium:
@@ -64,7 +51,6 @@ std::unique_ptr<System> build(const Case& c, MPI_Comm communicator, const Index3
   };
   grains.ghost_width = System::ghost_reach(0.5 * largest_diameter(c), c.domain.spacing);
   grains.attached_width = System::attached_width(parameters);
-  if (c.coupling.lubrication) grains.lubrication = lubrication_parameters(c);
   const GrainSeeds seeds = grain_seeds(c);
   auto dynamics =
       std::make_unique<dem::GrainDynamics>(*decomposition, communicator, grains, seeds.grains, seeds.clumps);

@@ -163,6 +163,7 @@ void refuse_impossible_grains(const Case& c) {
     lightest[static_cast<std::size_t>(seed.material)].include(seed.contact_mass(), seed.radius);
   dem::check_time_step(parameters, lightest, grain_count(c));
   dem::check(seeds, box, parameters.walls, parameters.initial_overlap);
+  if (parameters.lubrication) dem::check(*parameters.lubrication, seeds, box, parameters.time_step);
 }
 
 }  // namespace

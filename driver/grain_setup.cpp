@@ -44,6 +44,21 @@ std::vector<dem::PrescribedMotion> assemblies_of(const Case& c) {
   return motions;
 }
 
+// Faces the fluid sticks to; the other walls of the case are not the fluid's.
+dem::LubricationParameters lubrication_parameters(const Case& c, std::size_t walls) {
+  const LubricationCase& asked_for = *c.coupling.lubrication;
+  dem::LubricationParameters parameters;
+  parameters.viscosity = c.fluid.density * c.fluid.kinematic_viscosity;
+  parameters.normal_cut_off = asked_for.normal_cut_off * c.domain.spacing;
+  parameters.tangential_cut_off = asked_for.tangential_cut_off * c.domain.spacing;
+  parameters.minimum_gap = asked_for.minimum_gap;
+  for (const Face& face : c.domain.faces)  // in the order of planes_of()
+    if (face.type != FaceType::periodic)
+      parameters.walls.push_back(face.type == FaceType::no_slip || face.type == FaceType::moving);
+  parameters.walls.resize(walls, false);
+  return parameters;
+}
+
 // The faces that are no periodic ones, then the walls of the case.
 std::vector<dem::Plane> planes_of(const Case& c, const PeriodicBox& box, const dem::ContactParameters& contact) {
   std::vector<dem::Plane> planes = dem::face_planes(box, contact);
@@ -202,6 +217,7 @@ dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box) {
   parameters.wall_contact = wall_material_of(c.contact);
   parameters.walls = planes_of(c, box, parameters.contact);
   parameters.assemblies = assemblies_of(c);
+  if (c.coupling.lubrication) parameters.lubrication = lubrication_parameters(c, parameters.walls.size());
   parameters.time_step = grain_time_step(c);
   parameters.disks = c.disks.has_value();
   if (c.run.grain_integrator == GrainIntegrator::gear) parameters.integrator = dem::Integrator::gear;
