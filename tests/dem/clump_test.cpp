@@ -171,6 +171,26 @@ TEST(Clump, DumbbellThatHitsAPlaneOffItsCentre) {
   EXPECT_EQ(clump.velocity.y(), 0.0);
 }
 
+TEST(Clump, MeetsAnotherHeadOnWithTheRestitutionOfTheirMasses) {
+  // Two dumbbells along x on one axis: nothing turns, and the contact of their ends moves whole clumps. 450 steps a
+  // contact, whose integration is off by less than 2e-3 in e (as that of spheres in normal_impact_test.cpp).
+  const double speed = 0.1, restitution = 0.6;
+  GrainParameters p = free_flight(4e-7, 50);
+  p.contact = glass(restitution);
+  std::vector<ClumpSeed> clumps;
+  for (const double side : {-1.0, 1.0}) {
+    clumps.push_back(glass_clump(side < 0.0 ? 0 : 2, dumbbell(), Vec3(0.025 + side * 3.51e-3, 0.02, 0.02),
+                                 Vec3(-side * speed, 0.0, 0.0)));
+    clumps.back().orientation = {std::sqrt(0.5), 0.0, std::sqrt(0.5), 0.0};
+  }
+  GrainDynamics grains(room(), MPI_COMM_SELF, p, {}, clumps);
+  for (int n = 0; n < 40; ++n) step(grains);
+  ASSERT_EQ(grains.contact_count(), 0);
+  const Vec3 apart = grains.clumps()[1].velocity - grains.clumps()[0].velocity;
+  EXPECT_NEAR(apart.x() / (2.0 * speed), restitution, 2e-3);
+  EXPECT_LT(grains.clumps()[0].angular_velocity.norm() * 2e-3, 1e-12 * speed);
+}
+
 TEST(Clump, AtRestOnAFloorStays) {
   // A dumbbell lying on two feet, each under half the weight: overlap mg/(2 k). It begins there and stays there.
   const Decomposition tray({20, 20, 20}, 2.5e-3, {true, true, false}, {1, 1, 1});

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import h5py
 import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 import program
@@ -73,6 +75,13 @@ analysis: {transport_rate: {}}
         for axis, name in enumerate("xyz"):
             self.assertAlmostEqual(last[f"grain_momentum_{name}"], momentum[axis], delta=1e-9 * abs(momentum[2]))
         self.assertAlmostEqual(last["q_s"], flux, delta=1e-9 * abs(flux))
+
+        # Pictures show the members and whose they are.
+        reader = vtkXMLPolyDataReader()
+        reader.SetFileName(str(sorted((self.folder / "run/grains").glob("*.vtp"))[-1]))
+        reader.Update()
+        shown = vtk_to_numpy(reader.GetOutput().GetPointData().GetArray("clump"))
+        self.assertTrue((shown == bed["clump"]).all())
 
         # Taken up again and not moved, the bed is the same, member by member, to the rounding of the clump's frame.
         self.run_well("run", self.case, "--out", "again", "--set", self.FILE, "--set", "run.until=1.0e-9",
