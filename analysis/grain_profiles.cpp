@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace thalweg::analysis {
 
@@ -13,13 +14,43 @@ namespace {
 
 constexpr int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
 
-// sum over contacts of F_a r_b (N m) of every grain of the snapshot, rows a, columns b.
-std::vector<Eigen::Matrix3d> contact_moments(const Snapshot& snapshot) {
-  std::vector<Eigen::Matrix3d> moments(snapshot.grains.id.size(), Eigen::Matrix3d::Zero());
+// A grain as the sums take it. The members of a clump share its volume, mass and contact moment as their own volumes
+// are to each other, and move with its centre, so that its parts add up to the clump.
+struct Weighed {
+  double spheres = 0.0;                              // m^3, of all spheres that share what follows: one, or the members
+  double volume = 0.0, mass = 0.0;                   // m^3, kg
+  Vec3 velocity = Vec3::Zero();                      // m/s
+  Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();  // N m, sum over contacts of F_a r_b, rows a, columns b
+};
+
+// In the order of the grains; the arms r of the snapshot are from the centre of the grain or of the clump.
+std::vector<Weighed> weighed(const Snapshot& snapshot) {
+  const GrainView& grains = snapshot.grains;
+  std::vector<Weighed> result(grains.id.size());
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const double volume = volume_of(grains.radius[i], grains.disk_thickness);
+    result[i] = {volume, volume, grains.mass[i], grains.velocity[i], Eigen::Matrix3d::Zero()};
+  }
   if (snapshot.contacts)
-    snapshot.contacts->for_each_contact(
-        [&](std::size_t grain, const Vec3& arm, const Vec3& force) { moments[grain] += force * arm.transpose(); });
-  return moments;
+    snapshot.contacts->for_each_contact([&](std::size_t grain, const Vec3& arm, const Vec3& force) {
+      result[grain].moment += force * arm.transpose();
+    });
+  std::map<GlobalId, Weighed> sums;
+  for (std::size_t i = 0; i < result.size(); ++i)
+    if (grains.is_member(i)) {
+      Weighed& sum = sums[grains.clump[i]];
+      sum.spheres += result[i].spheres;
+      sum.moment += result[i].moment;
+    }
+  for (const ClumpState& clump : grains.clumps) {  // owned here, and so are their members
+    Weighed& sum = sums.at(clump.id);
+    sum.volume = clump.volume;
+    sum.mass = clump.mass;
+    sum.velocity = clump.velocity;
+  }
+  for (std::size_t i = 0; i < result.size(); ++i)
+    if (grains.is_member(i)) result[i] = sums.at(grains.clump[i]);
+  return result;
 }
 
 }  // namespace
@@ -39,13 +70,13 @@ void GrainProfiles::observe(const Snapshot& snapshot) {
   counted_step_ = snapshot.step;
   ++measurements_;
   const GrainView& grains = snapshot.grains;
-  const std::vector<Eigen::Matrix3d> moments = contact_moments(snapshot);
+  const std::vector<Weighed> bodies = weighed(snapshot);
   std::vector<int> layer_of_row;
   std::vector<double> terms;
   for (std::size_t i = 0; i < grains.id.size(); ++i) {
     const double radius = grains.radius[i], bottom = grains.position[i][2] - radius;
-    const double whole = volume_of(radius, grains.disk_thickness);
-    const Vec3& v = grains.velocity[i];
+    const Weighed& body = bodies[i];
+    const Vec3& v = body.velocity;
     const int first = static_cast<int>(std::floor(bottom / thickness_));
     const int last = static_cast<int>(std::floor((bottom + 2.0 * radius) / thickness_));
     for (int layer = first; layer <= last; ++layer) {
@@ -53,13 +84,14 @@ void GrainProfiles::observe(const Snapshot& snapshot) {
       if (inside < 0 || inside >= layers_) continue;
       const double part =
           volume_between(radius, grains.disk_thickness, layer * thickness_ - bottom, (layer + 1) * thickness_ - bottom);
-      const double share = part / whole, m = share * grains.mass[i];
+      const double share = part / body.spheres, m = share * body.mass;
+      const double inside_it = grains.is_member(i) ? share * body.volume : part;
       layer_of_row.push_back(inside);
-      terms.insert(terms.end(), {part, m, m * v[0], m * v[1], m * v[2]});
+      terms.insert(terms.end(), {inside_it, m, m * v[0], m * v[1], m * v[2]});
       for (const auto& [a, b] : pairs) terms.push_back(m * v[a] * v[b]);
-      terms.insert(terms.end(), {part * v[0], part * v[1], part * v[2]});
+      terms.insert(terms.end(), {inside_it * v[0], inside_it * v[1], inside_it * v[2]});
       for (int a = 0; a < 3; ++a)
-        for (int b = 0; b < 3; ++b) terms.push_back(share * moments[i](a, b));
+        for (int b = 0; b < 3; ++b) terms.push_back(share * body.moment(a, b));
     }
   }
   const std::vector<double> sums = order_free_sums_by_bin(communicator_, layer_of_row, layers_, terms, quantities);

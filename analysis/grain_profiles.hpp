@@ -13,6 +13,8 @@
 // (1981) 339). Stresses are positive in tension: a bed under its weight has s_zz = -(weight above)/A, and
 // rho dU/dt = div(s + k) + rho g. The mean over measurements is that of the sums, so U, T and k count what differs from
 // one time to another as well. Held and free grains count alike.
+// A clump's volume, mass and contacts (with arms from its centre) are spread over its members as their volumes are to
+// each other, and it moves as its centre does.
 //
 // The sums of a measurement have the same bits on any number of ranks (core/order_free_sum.hpp), and so have the means,
 // also after a restart.

@@ -21,7 +21,7 @@ int GrainMap::slot_of(GlobalId id) const {
   return found == slot_of_id_.end() ? -1 : found->second;
 }
 
-int GrainMap::add(GlobalId id, double radius) {
+int GrainMap::add(GlobalId id, double radius, GlobalId clump) {
   int slot;
   if (free_slots_.empty()) {
     slot = static_cast<int>(grains_.size());
@@ -30,7 +30,7 @@ int GrainMap::add(GlobalId id, double radius) {
     slot = free_slots_.back();
     free_slots_.pop_back();
   }
-  grains_[slot] = {id, radius, Vec3::Constant(2.0 * nowhere)};
+  grains_[slot] = {id, clump, radius, Vec3::Constant(2.0 * nowhere)};
   slot_of_id_[id] = slot;
   return slot;
 }

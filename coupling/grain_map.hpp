@@ -17,6 +17,7 @@ namespace thalweg::coupling {
 
 struct MappedGrain {
   GlobalId id = -1;            // -1: the slot is free
+  GlobalId clump = -1;         // it is a member of; -1: none
   double radius = 0.0;         // lattice units
   Vec3 centre = Vec3::Zero();  // for which its cells stand; lattice units, global
 };
@@ -34,8 +35,8 @@ public:
   const std::vector<MappedGrain>& grains() const { return grains_; }
   int slot_of(GlobalId id) const;  // -1 if the grain is not here
 
-  int add(GlobalId id, double radius);  // a new slot, covering nothing yet
-  void remove(int slot);                // gives up the grain's cells
+  int add(GlobalId id, double radius, GlobalId clump = -1);  // a new slot, covering nothing yet
+  void remove(int slot);                                     // gives up the grain's cells
 
   void begin_update();  // forgets the changes of the last update
 

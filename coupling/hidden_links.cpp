@@ -47,7 +47,7 @@ void HiddenLinks::update(const GrainMap& map) {
   }
   std::sort(stale_.begin(), stale_.end());
   for (const int slot : stale_) {
-    rebuild(slot, map.grains()[static_cast<std::size_t>(slot)]);
+    rebuild(slot, map.grains());
     is_stale_[static_cast<std::size_t>(slot)] = 0;
   }
   stale_.clear();
@@ -72,7 +72,8 @@ void HiddenLinks::mark_around(const Index3& local) {
   }
 }
 
-void HiddenLinks::rebuild(int slot, const MappedGrain& grain) {
+void HiddenLinks::rebuild(int slot, const std::vector<MappedGrain>& grains) {
+  const MappedGrain& grain = grains[static_cast<std::size_t>(slot)];
   links_[static_cast<std::size_t>(slot)].clear();
   if (grain.id < 0) return;
   for (int a = 0; a < 3; ++a) local_cells_.along(a, grain.centre[a], grain.radius, grain.centre[a], 0, places_[a]);
@@ -80,11 +81,13 @@ void HiddenLinks::rebuild(int slot, const MappedGrain& grain) {
     for (const LocalCell& y : places_[1])
       for (const LocalCell& x : places_[0]) {
         const Index3 local{x.local, y.local, z.local};
-        if (cells_.body(cells_.indexing().index(local[0], local[1], local[2])) == slot) find_at_cell(slot, local);
+        if (cells_.body(cells_.indexing().index(local[0], local[1], local[2])) == slot)
+          find_at_cell(slot, local, grains);
       }
 }
 
-void HiddenLinks::find_at_cell(int slot, const Index3& local) {
+void HiddenLinks::find_at_cell(int slot, const Index3& local, const std::vector<MappedGrain>& grains) {
+  const GlobalId clump = grains[static_cast<std::size_t>(slot)].clump;
   const std::ptrdiff_t cell = cells_.indexing().index(local[0], local[1], local[2]);
   for (int i = 1; i < D3Q19::directions; ++i) {
     bool beyond_wall = false;
@@ -96,7 +99,8 @@ void HiddenLinks::find_at_cell(int slot, const Index3& local) {
           beyond_wall || (!decomposition_.periodic()[a] && (global < 0 || global >= decomposition_.cells()[a]));
     }
     const std::int32_t other = beyond_wall ? CellMap::fluid : cells_.body(cell - cells_.indexing().offset(i));
-    if (other != slot && (other != CellMap::fluid || beyond_wall))
+    const bool same_body = clump >= 0 && other >= 0 && grains[static_cast<std::size_t>(other)].clump == clump;
+    if (other != slot && !same_body && (other != CellMap::fluid || beyond_wall))
       links_[static_cast<std::size_t>(slot)].push_back({i, other, from});
   }
 }

@@ -10,7 +10,8 @@
 //   near_contact paper  a link with equilibrium populations at x_f and x_ff, of density rho_g and q's rigid motion
 //   there
 //                       (Zhang et al. 2022), between grains only.
-// Both go through the rule of Bouzidi and the momentum exchange chosen. Lattice units.
+// Between members of one clump is no surface, and so no such link. Both go through the rule of Bouzidi and the momentum
+// exchange chosen. Lattice units.
 #pragma once
 
 #include "core/decomposition.hpp"
@@ -53,8 +54,8 @@ private:
 
   void mark(std::int32_t slot);
   void mark_around(const Index3& local);
-  void rebuild(int slot, const MappedGrain& grain);
-  void find_at_cell(int slot, const Index3& local);
+  void rebuild(int slot, const std::vector<MappedGrain>& grains);
+  void find_at_cell(int slot, const Index3& local, const std::vector<MappedGrain>& grains);
   Vec3 momentum_of(const Link& link, const Vec3& from, double distance, const lbm::LinkBody& body,
                    const std::vector<lbm::LinkBody>& bodies) const;
 

@@ -80,7 +80,7 @@ void ResolvedSystem<Real>::synchronise_slots() {
   for (std::size_t g = 0; g < store.total(); ++g) {
     int slot = map_.slot_of(store.id[g]);
     if (slot < 0) {
-      slot = map_.add(store.id[g], store.radius[g] / parameters_.units.spacing);
+      slot = map_.add(store.id[g], store.radius[g] / parameters_.units.spacing, store.clump[g]);
       map_.place(slot, lattice_position(vector_at(store.attached_of(g), link_position)));
     }
     map_slot_[g] = slot;

@@ -4,6 +4,7 @@
 
 #include "analysis/sphere_in_layer.hpp"
 #include "core/order_free_sum.hpp"
+#include "dem/clump_seed.hpp"
 #include "tests/dem/grain_cases.hpp"
 #include "tests/support/memory_archive.hpp"
 
@@ -40,6 +41,7 @@ public:
     shown.grains.position = {s.position.data(), s.owned};
     shown.grains.velocity = {s.velocity.data(), s.owned};
     shown.grains.angular_velocity = {s.angular_velocity.data(), s.owned};
+    grains_.show_clumps(shown.grains);
     return shown;
   }
 
@@ -65,6 +67,42 @@ GrainParameters plain() {
 
 Decomposition box_of(const Index3& cells, double spacing, bool periodic_z) {
   return {cells, spacing, {true, true, periodic_z}, Decomposition::best_layout(cells, size_of(MPI_COMM_WORLD))};
+}
+
+// Two spheres of radius R that share half a radius each, 2R to 3R long as they lie: the clump's volume, momentum and
+// weight are in the layers once, whatever its members share, and it carries its weight through its foot.
+TEST(GrainProfiles, AClumpIsItsUnionOnce) {
+  const Decomposition decomposition = box_of({16, 16, 16}, 1.5e-3, false);
+  const double r = dem::test::glass_radius;
+  const std::vector<dem::Sphere> pair{{Vec3::Zero(), r}, {Vec3(0.0, 0.0, r), r}};
+  dem::ClumpSeed seed;
+  seed.shape = std::make_shared<const dem::ClumpShape>(dem::clump_shape(pair));
+  seed.density = dem::test::glass_density;
+  const double weight = seed.mass() * g, overlap = weight / 20000.0;
+  seed.position = Vec3(0.011, 0.013, 1.5 * r - overlap);
+  seed.velocity = Vec3(0.2, -0.1, 0.0);
+  GrainParameters p = plain();
+  p.initial_overlap = 1e-2;
+  p.walls = {dem::face_plane(decomposition.box(), 2, false, 0.0)};
+  p.body_force = [](double mass, double) { return Vec3(0.0, 0.0, -g * mass); };
+  const GrainDynamics grains(decomposition, MPI_COMM_WORLD, p, {}, {seed});
+  GrainProfiles profiles(MPI_COMM_WORLD, decomposition, 1e-3, {});
+  profiles.observe(Shown(grains).snapshot());
+  const auto values = by_name(profiles);
+  const double layer = 0.024 * 0.024 * 1e-3;
+  double volume = 0.0, along = 0.0, stress = 0.0;
+  for (std::size_t n = 0; n < values.at("z").size(); ++n) {
+    volume += values.at("solid_fraction")[n] * layer;
+    along += values.at("flux")[3 * n] * layer;
+    stress += values.at("contact_stress")[9 * n + 8] * layer;
+  }
+  // 4/3 pi R^3 twice, less the lens 5 pi/12 R^3; the parts of a sphere in layers are differences rounded to 1e-16 of
+  // it, the part below the floor, 1e-4 of it, is in no layer.
+  const double exact = (8.0 / 3.0 - 5.0 / 12.0) * std::numbers::pi * r * r * r;
+  EXPECT_NEAR(volume / exact, 1.0, 1e-6);
+  EXPECT_NEAR(along / (0.2 * exact), 1.0, 1e-6);
+  // F_z = m g at the foot, 3/2 R below the centre.
+  EXPECT_NEAR(stress / (-weight * (1.5 * r - overlap)), 1.0, 1e-6);
 }
 
 TEST(SphereInLayer, PartsAddUpAndHalfIsHalf) {
