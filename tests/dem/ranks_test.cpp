@@ -266,7 +266,7 @@ TEST(Ranks, CloudOfClumpsInAPeriodicBox) {
 
 TEST(Ranks, HeapOfClumpsThatSlidesAcrossBorders) {
   Case c{{16, 16, 16}, 1.5e-3, {true, true, false}, 30, Vec3(4.0, 2.0, -30.0), Vec3(0.4, 0.3, 0.0)};
-  c.clumps = true;
+  c.clumps = c.movable_cuts = c.lubricated = true;
   compare(c, 320);
 }
 
