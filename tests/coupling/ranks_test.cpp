@@ -134,7 +134,7 @@ TEST(Ranks, DoNotChangeOneBitWithFullGravityAndEveryOtherChoiceInAFlume) {
   box.links.rule = lbm::LinkRule::cli;
   box.refill = RefillRule::grad;
   box.mass_correction = 6;
-  for (const Index3& layout : two_layouts_of(size_of(MPI_COMM_WORLD))) compare<float>(box, layout, 14);
+  for (const Index3& layout : two_layouts_of(size_of(MPI_COMM_WORLD))) compare<float>(box, layout, 8);
 }
 
 TEST(Ranks, DoNotChangeOneBitWithTheOtherRefillInAPeriodicBox) {
