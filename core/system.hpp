@@ -38,6 +38,10 @@ public:
   // InputError where it does not fit, or there is no fluid; collective.
   virtual void take_fluid(ArchiveReader&) { throw InputError("this system has no fluid that could be taken over."); }
 
+  // The same of the grains alone, with their contact springs, of a run that has as many; velocities are kept, the time
+  // is not. To be called before take_fluid().
+  virtual void take_grains(ArchiveReader&) { throw InputError("this system has no grains that could be taken over."); }
+
   virtual PhaseTimer& timer() = 0;
   virtual std::int64_t cells() const = 0;                 // lattice cells in the whole domain; 0 without a fluid
   virtual std::int64_t grain_steps_per_step() const = 0;  // grains times sub-steps in one step, over all ranks

@@ -6,6 +6,8 @@
 #include "coupling/fluid_sample.hpp"
 #include "coupling/fluid_system.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -346,11 +348,32 @@ std::vector<Figure> ResolvedSystem<Real>::figures() const {
   double speed = fluid_.largest_speed();
   // Not-a-number does not survive MPI_MAX; infinity does.
   speed = max_over_ranks(communicator_, std::isfinite(speed) ? speed : HUGE_VAL);
-  return {{"largest_lattice_velocity", "1", speed},
-          {"largest_fluid_speed", "m/s", speed * parameters_.units.velocity()},
-          {"mean_density_deviation", "1", mean_density_deviation(fluid_, rest_)},
-          {"fluid_cells", "1", static_cast<double>(totals.cells)},
-          {"largest_overlap", "diameter", grains_->largest_overlap()}};
+  std::vector<Figure> figures{{"largest_lattice_velocity", "1", speed},
+                              {"largest_fluid_speed", "m/s", speed * parameters_.units.velocity()},
+                              {"mean_density_deviation", "1", mean_density_deviation(fluid_, rest_)},
+                              {"fluid_cells", "1", static_cast<double>(totals.cells)},
+                              {"largest_overlap", "diameter", grains_->largest_overlap()}};
+  if (parameters_.wall_forces) add_wall_forces(figures);
+  return figures;
+}
+
+// Of the grains at the end of the step; of the fluid what the walls take from it in the step to come.
+template <typename Real>
+void ResolvedSystem<Real>::add_wall_forces(std::vector<Figure>& figures) const {
+  const std::vector<Vec3> of_grains = grains_->wall_forces();
+  const std::array<Vec3, 6> of_fluid = fluid_.wall_forces();
+  std::size_t wall = 0;
+  for (std::size_t face = 0; face < of_fluid.size(); ++face) {
+    if (box_.periodic[face / 2]) continue;
+    const Vec3 fluid_force = of_fluid[face] * parameters_.units.force();
+    for (int axis = 0; axis < 3; ++axis)
+      figures.push_back(
+          {fmt::format("wall_force_{}_{}", dem::face_names[face], "xyz"[axis]), "N", of_grains[wall][axis]});
+    for (int axis = 0; axis < 3; ++axis)
+      figures.push_back(
+          {fmt::format("fluid_wall_force_{}_{}", dem::face_names[face], "xyz"[axis]), "N", fluid_force[axis]});
+    ++wall;
+  }
 }
 
 template <typename Real>
@@ -362,15 +385,20 @@ void ResolvedSystem<Real>::save(ArchiveWriter& archive) const {
 }
 
 template <typename Real>
-void ResolvedSystem<Real>::load(ArchiveReader& archive) {
-  require_same_time_step(archive, time_step());
-  step_ = archive.integer_attribute("system/step");
+void ResolvedSystem<Real>::forget_map() {
   map_.begin_update();
   for (std::size_t slot = 0; slot < map_.grains().size(); ++slot)
     if (map_.grains()[slot].id >= 0) map_.remove(static_cast<int>(slot));
   map_.settle();
   link_builder_.update(map_, links_);
   hidden_links_.update(map_);
+}
+
+template <typename Real>
+void ResolvedSystem<Real>::load(ArchiveReader& archive) {
+  require_same_time_step(archive, time_step());
+  step_ = archive.integer_attribute("system/step");
+  forget_map();
   fluid_.load(archive);
   grains_->load(archive);
   initialise_map();
@@ -381,6 +409,18 @@ template <typename Real>
 void ResolvedSystem<Real>::take_fluid(ArchiveReader& archive) {
   require_same_time_step(archive, time_step());
   fluid_.load_populations(archive);
+}
+
+// Grains of a resolved run keep the places their links were cut at, others begin where they are.
+template <typename Real>
+void ResolvedSystem<Real>::take_grains(ArchiveReader& archive) {
+  forget_map();
+  grains_->take(archive);
+  dem::GrainStore& store = grains_->store();
+  for (std::size_t g = 0; g < store.total(); ++g)
+    if (store.attached_of(g)[has_load] == 0.0) set_vector(store.attached_of(g), link_position, store.position[g]);
+  initialise_map();
+  show_stresses();
 }
 
 template class ResolvedSystem<float>;

@@ -20,6 +20,7 @@ namespace thalweg::coupling {
 struct ResolvedParameters : FluidParameters {
   double link_tolerance = 1e-3;             // cells a grain may move before the map of its cells follows
   int sub_steps = 50;                       // DEM steps per lattice step
+  bool wall_forces = false;                 // whether the figures include the forces on walls
   std::optional<VirtualMass> virtual_mass;  // of light grains
   RefillRule refill = RefillRule::equilibrium;
   bool grain_stress = false;        // the stress of the fluid on every grain is measured
@@ -68,6 +69,7 @@ public:
   void save(ArchiveWriter& archive) const override;
   void load(ArchiveReader& archive) override;
   void take_fluid(ArchiveReader& archive) override;
+  void take_grains(ArchiveReader& archive) override;
   PhaseTimer& timer() override { return timer_; }
   std::int64_t cells() const override;
   std::int64_t grain_steps_per_step() const override;
@@ -84,6 +86,8 @@ private:
   void for_each_velocity(const VelocityVisitor& visit) const override;
   void for_each_contact(const ContactVisitor& visit) const override { grains_->for_each_contact(visit); }
 
+  void add_wall_forces(std::vector<Figure>& figures) const;
+  void forget_map();
   void initialise_map();
   void synchronise_slots();
   void update_map();

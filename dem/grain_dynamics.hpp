@@ -162,7 +162,14 @@ public:
   void save(ArchiveWriter& archive, const std::string& group = "grains") const;
   void load(ArchiveReader& archive, const std::string& group = "grains");
 
+  // Takes the grains of another run as a start: with their velocities, held or not, and contact springs (those with
+  // walls only where there are as many walls), but not its time. Attached columns are taken where there are as many,
+  // else zero. Throws InputError where there are not as many grains as here, or where this run has rigid assemblies.
+  // Collective.
+  void take(ArchiveReader& archive, const std::string& group = "grains");
+
 private:
+  void restore(ArchiveReader& archive, const std::string& group, bool as_start);
   bool rolling_friction() const;
   void place_walls(double time, double time_of_velocity);
   void place_prescribed(double time, double time_of_velocity);

@@ -169,6 +169,12 @@ Share share_of(std::int64_t rows, MPI_Comm communicator) {
   return share;
 }
 
+// Attached columns of a saved grain.
+int saved_width(const ArchiveReader& archive, const std::string& group) {
+  const std::string name = group + "/attached";
+  return archive.has(name) ? static_cast<int>(archive.shape(name).at(1)) : 0;
+}
+
 // A contact history on its way to the owner of grain `to`.
 struct Addressed {
   GlobalId to;
@@ -286,19 +292,37 @@ void GrainDynamics::save(ArchiveWriter& archive, const std::string& group) const
   if (rolling_friction()) archive.write(group + "/contact_rolling", rolling, share.box(3));
 }
 
-void GrainDynamics::load(ArchiveReader& archive, const std::string& group) {
+void GrainDynamics::load(ArchiveReader& archive, const std::string& group) { restore(archive, group, false); }
+
+void GrainDynamics::take(ArchiveReader& archive, const std::string& group) {
+  const auto saved = static_cast<std::int64_t>(archive.shape(group + "/radius").at(0));
+  if (saved != global_count_)
+    throw InputError(
+        fmt::format("There are {} grains, but this case has {}; give populations with as many.", saved, global_count_));
+  if (assemblies_.any())
+    throw InputError("A case with rigid populations (motion) cannot take over grains; give their placements instead.");
+  restore(archive, group, true);
+}
+
+void GrainDynamics::restore(ArchiveReader& archive, const std::string& group, bool as_start) {
   const int ranks = size_of(communicator_), me = rank_of(communicator_);
   const std::int64_t walls = archive.integer_attribute(group + "/walls");
-  if (walls != static_cast<std::int64_t>(parameters_.walls.size()))
+  const bool same_walls = walls == static_cast<std::int64_t>(parameters_.walls.size());
+  if (!same_walls && !as_start)
     throw InputError(
         fmt::format("The saved grains had {} walls, but this case has {}; the boundaries must be the same.", walls,
                     parameters_.walls.size()));
   global_count_ = static_cast<std::int64_t>(archive.shape(group + "/radius").at(0));
-  GrainBatch batch = read_grains(archive, group, Share(global_count_, ranks, me), store_.attached_width);
+  // A start may be that of another kind of run, whose columns mean something else.
+  const bool same_columns = !as_start || saved_width(archive, group) == store_.attached_width;
+  GrainBatch batch =
+      read_grains(archive, group, Share(global_count_, ranks, me), same_columns ? store_.attached_width : 0);
+  if (!same_columns) batch.attached.assign(batch.rows.size() * store_.attached_width, 0.0);
 
   // A state saved before walls could move has no count, and no need of one.
-  steps_done_ = archive.has(group + "/sub_steps") ? archive.integer_attribute(group + "/sub_steps") : 0;
-  assemblies_.load(archive, group);
+  const bool timed = !as_start && archive.has(group + "/sub_steps");
+  steps_done_ = timed ? archive.integer_attribute(group + "/sub_steps") : 0;
+  if (!as_start) assemblies_.load(archive, group);
   check_prescribed_speed();
   if (walls_change_) place_walls(time(), time());
   check_loaded(batch, GrainSpace(box_, planes_), communicator_);
@@ -336,6 +360,7 @@ void GrainDynamics::load(ArchiveReader& archive, const std::string& group) {
   const std::int64_t first = Share(global_count_, ranks, me).first;
   std::vector<ContactHistory> histories;
   for (const Addressed& a : read) {
+    if (!same_walls && a.history.second < 0) continue;
     histories.push_back(a.history);
     to.push_back(owner[static_cast<std::size_t>(a.to - first)]);
   }

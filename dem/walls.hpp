@@ -6,6 +6,7 @@
 #include "dem/material.hpp"
 #include "dem/prescribed_motion.hpp"
 
+#include <array>
 #include <vector>
 
 namespace thalweg::dem {
@@ -24,6 +25,9 @@ struct Plane {
   Plane at(double time, double time_of_velocity) const;
   double largest_normal_speed() const;  // m/s, at any time
 };
+
+// The faces in the order of all lists of them, as cases and figures name them.
+inline constexpr std::array<const char*, 6> face_names{"x_low", "x_high", "y_low", "y_high", "bottom", "top"};
 
 // The face of the box across `axis` (0, 1, 2) at its lower or upper end.
 Plane face_plane(const PeriodicBox& box, int axis, bool upper, double friction, const Vec3& velocity = Vec3::Zero());

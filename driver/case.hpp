@@ -176,7 +176,7 @@ struct InitialFluidCase {
   bool operator==(const InitialFluidCase&) const = default;
 };
 
-enum class InitialField { fluid };
+enum class InitialField { fluid, grains };
 
 struct InitialCase {
   std::string from;  // run folder or checkpoint of another run, absolute once read; empty: none
@@ -262,7 +262,7 @@ struct GrainProfilesCase {
 struct AnalysisCase {
   std::optional<GrainProfilesCase> grain_profiles;
   std::optional<PopulationLoadsCase> population_loads;
-  std::optional<WallForcesCase> wall_forces;  // of dry grains
+  std::optional<WallForcesCase> wall_forces;
   std::optional<TransportRateCase> transport_rate;
   std::optional<FluidStatisticsCase> fluid_statistics;
   bool operator==(const AnalysisCase&) const = default;

@@ -183,11 +183,18 @@ static void describe(io::SectionVisitor& visit, InitialFluidCase& fluid) {
                 "the start is given twice; give either uniform or log_profile");
 }
 
-static void describe(io::SectionVisitor& visit, InitialCase& initial) {
+static void describe_initial(io::SectionVisitor& visit, InitialCase& initial, bool with_fluid, bool with_grains) {
   visit.text("from", initial.from,
              {.meaning = "run folder or checkpoint of another run to begin from, relative to this file; \"\": none"});
-  visit.choice_list<InitialField>("fields", initial.fields, {{InitialField::fluid, "fluid"}},
-                                  {.meaning = "what is taken from it"});
+  if (!with_fluid && initial.fields == InitialCase{}.fields) initial.fields = {InitialField::grains};
+  std::vector<io::NamedChoice<InitialField>> fields;
+  if (with_fluid) fields.push_back({InitialField::fluid, "fluid"});
+  if (with_grains) fields.push_back({InitialField::grains, "grains", "as many as the populations have"});
+  visit.choice_list<InitialField>("fields", initial.fields, fields, {.meaning = "what is taken from it"});
+  if (!with_fluid) {
+    visit.not_here("fluid", "system: grains has no fluid; remove the section or set system: resolved");
+    return;
+  }
   visit.section("fluid", initial.fluid,
                 {.meaning = "velocity at the start: rest, uniform or log_profile", .empty_name = "rest"});
   visit.require(initial.from.empty() || !(initial.fluid.uniform || initial.fluid.log_profile), "from",
@@ -320,11 +327,11 @@ static void describe_analysis(io::SectionVisitor& visit, AnalysisCase& analysis,
                               "side walls"});
   else
     visit.not_here("fluid_statistics", "system: grains has no fluid; remove the section or set system: resolved");
-  if (with_fluid)
-    visit.not_here("wall_forces", "only dry grains have it yet; remove the section");
-  else
+  if (with_grains)
     visit.section("wall_forces", analysis.wall_forces,
-                  {.meaning = "force of the grains on each wall, in series.csv; no keys: {}"});
+                  {.meaning = "force of grains and of the fluid on each wall, in series.csv; no keys: {}"});
+  else
+    visit.not_here("wall_forces", "system: fluid has no grains; remove the section or set system: resolved");
 }
 
 static void describe(io::SectionVisitor& visit, DisksCase& disks) {
@@ -378,10 +385,8 @@ void describe(io::SectionVisitor& visit, Case& c) {
                   [&](io::SectionVisitor& inside) { describe_coupling(inside, c.coupling, with_grains); });
   else
     only_with_fluid("coupling");
-  if (with_fluid)
-    visit.section("initial", c.initial, {.meaning = "state at the start"});
-  else
-    only_with_fluid("initial");
+  visit.section("initial", {.meaning = "state at the start"},
+                [&](io::SectionVisitor& inside) { describe_initial(inside, c.initial, with_fluid, with_grains); });
   if (!with_grains)
     visit.list("solids", c.solids, {.meaning = "bodies that stand still in the fluid"});
   else

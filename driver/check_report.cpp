@@ -1,5 +1,6 @@
 #include "driver/check_report.hpp"
 
+#include "core/error.hpp"
 #include "dem/grain_seed.hpp"
 #include "dem/material.hpp"
 #include "driver/build_system.hpp"
@@ -8,6 +9,7 @@
 #include "driver/machine.hpp"
 #include "driver/progress.hpp"
 #include "driver/solid_setup.hpp"
+#include "io/run_folder.hpp"
 
 #include <fmt/format.h>
 
@@ -18,6 +20,16 @@
 namespace thalweg::driver {
 
 namespace {
+
+// A restart may do without it, so reading a case does not ask.
+void refuse_missing_start(const Case& c) {
+  if (c.initial.from.empty()) return;
+  try {
+    io::checkpoint_at(c.initial.from);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("initial.from = {}: {}", c.initial.from, error.what()));
+  }
+}
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
@@ -214,6 +226,7 @@ Cost cost_of(const Case& c, double bandwidth) {
 }
 
 std::vector<std::string> check_report(const Case& c, double bandwidth) {
+  refuse_missing_start(c);
   refuse_impossible_grains(c);
   Lines lines{fmt::format("{} (system: {})", c.name, name_of(c.system))};
   add_domain(c, lines);

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 namespace thalweg::driver {
 
@@ -27,10 +26,9 @@ dem::GrainParameters dry_parameters(const Case& c, const Decomposition& decompos
 
 // The walls in the order of grain_parameters(); none where their forces are not asked for.
 std::vector<std::string> measured_walls(const Case& c) {
-  constexpr std::array names{"x_low", "x_high", "y_low", "y_high", "bottom", "top"};
   std::vector<std::string> walls;
-  for (std::size_t face = 0; face < names.size() && c.analysis.wall_forces; ++face)
-    if (c.domain.faces[face].type != FaceType::periodic) walls.emplace_back(names[face]);
+  for (std::size_t face = 0; face < dem::face_names.size() && c.analysis.wall_forces; ++face)
+    if (c.domain.faces[face].type != FaceType::periodic) walls.emplace_back(dem::face_names[face]);
   for (std::size_t wall = 0; wall < c.walls.size() && c.analysis.wall_forces; ++wall)
     walls.push_back(fmt::format("wall_{}", wall));
   return walls;
@@ -111,6 +109,14 @@ void DryGrains::load(ArchiveReader& archive) {
   require_same_time_step(archive, time_step_);
   step_ = archive.integer_attribute("system/step");
   grains_.load(archive);
+}
+
+// Whatever a fluid did to them is over.
+void DryGrains::take_grains(ArchiveReader& archive) {
+  grains_.take(archive);
+  dem::GrainStore& store = grains_.store();
+  std::fill(store.load_force.begin(), store.load_force.end(), Vec3::Zero());
+  std::fill(store.load_torque.begin(), store.load_torque.end(), Vec3::Zero());
 }
 
 std::unique_ptr<System> build_grains_system(const Case& c, MPI_Comm communicator, const Index3& layout) {

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace thalweg::driver {
 
 RunOutput::RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& folder, const System& system,
@@ -89,6 +91,15 @@ void take_initial_fields(MPI_Comm communicator, const Case& c, System& system) {
   try {
     const std::filesystem::path path = io::checkpoint_at(c.initial.from);
     io::Hdf5Reader archive(communicator, path);
+    const auto wanted = [&c](InitialField field) {
+      return std::find(c.initial.fields.begin(), c.initial.fields.end(), field) != c.initial.fields.end();
+    };
+    if (wanted(InitialField::grains)) {
+      if (!archive.has("grains/radius"))
+        throw InputError(fmt::format("{} holds no grains; give a run with system: resolved or grains.", path.string()));
+      system.take_grains(archive);
+    }
+    if (!wanted(InitialField::fluid)) return;
     if (!archive.has("fluid/populations_00"))
       throw InputError(fmt::format("{} holds no fluid; give a run with system: resolved or fluid.", path.string()));
     if (archive.has("run/spacing") && archive.real_attribute("run/spacing") != c.domain.spacing)

@@ -102,6 +102,18 @@ void Fluid<Real>::update_force() {
 }
 
 template <typename Real>
+std::array<Vec3, 6> Fluid<Real>::wall_forces() {
+  exchange_halo();
+  apply_walls();
+  std::array<FixedVec3, 6> sums = walls_.forces(populations_, cells_);
+  static_assert(sizeof(sums) == 18 * sizeof(std::int64_t));
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), 18, MPI_INT64_T, MPI_SUM, communicator_);
+  std::array<Vec3, 6> forces;
+  std::transform(sums.begin(), sums.end(), forces.begin(), [](const FixedVec3& sum) { return sum.to_vec3(); });
+  return forces;
+}
+
+template <typename Real>
 void Fluid<Real>::switch_arrangement() {
   populations_.set_arrangement(populations_.arrangement() == Arrangement::swapped ? Arrangement::moved
                                                                                   : Arrangement::swapped);

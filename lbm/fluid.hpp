@@ -79,6 +79,10 @@ public:
   double largest_speed() const;                    // over this rank's fluid cells
   FluidTotals totals() const;                      // collective
 
+  // Force on each face (lattice units, without the reference pressure) in the step to come. Fills halo and walls, which
+  // every step does anew. Collective.
+  std::array<Vec3, 6> wall_forces();
+
   // Post-collision populations of every owned cell, zero in solid ones, and the walls' state. Collective.
   void save(ArchiveWriter& archive) const;
   void load(ArchiveReader& archive);

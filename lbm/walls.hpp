@@ -26,6 +26,7 @@
 
 #include "core/archive.hpp"
 #include "core/decomposition.hpp"
+#include "core/fixed_point.hpp"
 #include "lbm/boundary.hpp"
 #include "lbm/cell_map.hpp"
 #include "lbm/collision.hpp"
@@ -66,6 +67,10 @@ public:
   // to date.
   void apply(Populations<Real>& populations, const CellMap& cells) const;
 
+  // The momentum that each face takes from this rank's fluid in the step to come, after apply(): with what leaves and
+  // what comes in as f - w, so without the reference pressure.
+  std::array<FixedVec3, 6> forces(const Populations<Real>& populations, const CellMap& cells) const;
+
   // True if the shear rates of a row are wanted after the sweep.
   bool wants_shear(int y, int z) const;
   // Takes the shear rates of a row, just swept, and updates the bounced fraction of the wall cells in it (solid cells
@@ -94,6 +99,7 @@ private:
   void reflect_run(Populations<Real>& populations, const CellMap& cells, const Run& run) const;
   void take_cell(int face, int x, int y, int z, double shear_rate, const CellMap& cells);
   bool decides_edge(int face, int other) const;
+  int face_of_population(int face, int direction, const Index3& at) const;
   bool follows_shear(int face) const;
   double bounced_fraction(int face, double shear_rate) const;
   Real with_velocity(const Populations<Real>& populations, int direction, std::ptrdiff_t cell,

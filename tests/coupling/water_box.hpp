@@ -25,6 +25,7 @@ struct WaterBox {
   lbm::LinkOptions links;
   double link_tolerance = 1e-3;
   int sub_steps = 50;
+  bool wall_forces = false;
   bool lubrication = false;  // with the cut-offs of the case's defaults, at the floor alone
   bool virtual_mass = false;
   RefillRule refill = RefillRule::equilibrium;
@@ -63,6 +64,7 @@ std::unique_ptr<ResolvedSystem<Real>> make_system(const WaterBox& box, MPI_Comm 
   p.links = box.links;
   p.link_tolerance = box.link_tolerance;
   p.sub_steps = box.sub_steps;
+  p.wall_forces = box.wall_forces;
   if (box.virtual_mass) p.virtual_mass = VirtualMass{0.5, fluid_density};
   p.refill = box.refill;
   p.grain_stress = box.grain_stress;

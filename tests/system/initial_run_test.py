@@ -1,0 +1,87 @@
+#!/usr/bin/python3
+"""Grains of another run as a start: the same as if that run had gone on.
+
+Called by ctest: initial_run_test.py THALWEG MPIEXEC [unittest arguments]
+"""
+import sys
+from pathlib import Path
+
+import h5py
+import numpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+import program
+from program import ProgramTest
+
+
+class InitialRun(ProgramTest):
+    CASE = """
+system: resolved
+name: a few grains in water
+domain:
+  size: [0.0128, 0.0128, 0.0192]
+  spacing: 0.8e-3
+  boundaries: {x: periodic, y: periodic, bottom: no_slip, top: free_slip}
+fluid: {density: 1000, kinematic_viscosity: 1.0e-5, time_step: 1.0e-4, precision: double}
+gravity: {magnitude: 9.8, slope: 0.1}
+grains: [{count: 6, diameter: 5.0e-3, density: 2550, placement: {pattern: uniform, region: {lower: [0, 0, 0], upper: [0.0128, 0.0128, 0.012]}}}]
+contact: {restitution: 0.5, friction: 0.5, rolling_friction: 0.05}
+run: {until: 0.02}
+analysis: {wall_forces: {}}
+"""
+    DRY = """
+system: grains
+name: a few dry grains
+domain: {size: [0.0128, 0.0128, 0.0192], spacing: 0.8e-3, boundaries: {x: periodic, y: periodic, bottom: no_slip, top: no_slip}}
+gravity: {magnitude: 9.8, slope: 0.1}
+grains: [{count: 6, diameter: 5.0e-3, density: 2550, placement: {pattern: uniform, region: {lower: [0, 0, 0], upper: [0.0128, 0.0128, 0.012]}}}]
+contact: {restitution: 0.5, friction: 0.5, rolling_friction: 0.05}
+run: {until: 0.1}
+"""
+
+    def grains(self, run):
+        with h5py.File(self.folder / run / "bed.h5") as file:
+            return {name: file["grains"][name][()] for name in ("position", "velocity", "angular_velocity")}
+
+    def assert_goes_on(self, time, *settings, ranks=0):
+        """A run begun from the last checkpoint of another ends as that other run does when it is continued."""
+        end = self.summary("first")["simulated_time"]
+        self.run_well("run", self.case, "--restart", "first", "--until", f"{end + time}", "--out", "continued")
+        self.run_well("run", self.case, "--set", "initial.from=first", *settings, "--until", f"{time}", "--out",
+                      "begun", ranks=ranks)
+        continued, begun = self.grains("continued"), self.grains("begun")
+        for name, values in continued.items():
+            numpy.testing.assert_array_equal(begun[name], values, err_msg=name)
+        return continued
+
+    def test_grains_and_fluid_go_on(self):
+        self.run_well("run", self.case, "--out", "first")
+        self.assert_goes_on(0.00505, "--set", "initial.fields=[grains, fluid]", ranks=2)
+        # Without the fluid it is another flow.
+        self.run_well("run", self.case, "--set", "initial={from: first, fields: [grains]}", "--until", "0.00505", "--out",
+                      "alone")
+        self.assertGreater(abs(self.grains("alone")["velocity"] - self.grains("continued")["velocity"]).max(), 1e-4)
+
+    def test_dry_grains_go_on_with_their_springs_and_into_a_fluid(self):
+        wet = self.folder / "wet.yaml"
+        wet.write_text(self.CASE)
+        self.case.write_text(self.DRY)
+        self.run_well("run", self.case, "--out", "first")
+        moved = self.assert_goes_on(0.01)
+        self.assertGreater(len(moved["position"]), 5)
+        self.run_well("run", wet, "--set", "initial={from: first, fields: [grains]}", "--until", "0.0001", "--out", "wet")
+        # A step or two of 1e-4 s at less than 0.25 m/s.
+        numpy.testing.assert_allclose(self.grains("wet")["position"], self.grains("first")["position"], atol=5e-5)
+
+    def test_what_does_not_fit_is_refused(self):
+        self.case.write_text(self.DRY)
+        self.run_well("run", self.case, "--until", "0.001", "--out", "first")
+        begin = ("--set", "initial.from=first", "--out", "never")
+        self.assert_refused("run", self.case, *begin, "--set", "grains.0.count=5", words=["6 grains", "has 5"])
+        self.assert_refused("run", self.case, *begin, "--set", "grains.0.motion={}", words=["rigid populations"])
+        self.assert_refused("run", self.case, *begin, "--set", "initial.fields=[fluid]", words=["initial.fields"])
+        self.assert_refused("check", self.case, "--set", "initial.from=nowhere", words=["initial.from", "nowhere"])
+
+
+if __name__ == "__main__":
+    program.main()
