@@ -1,5 +1,6 @@
 #include "analysis/transport_rate.hpp"
 
+#include "analysis/sphere_in_layer.hpp"
 #include "core/mpi_session.hpp"
 #include "core/order_free_sum.hpp"
 
@@ -12,8 +13,6 @@ namespace thalweg::analysis {
 namespace {
 
 constexpr double share_of_fall_speed_that_counts_as_moving = 0.01;
-
-double sphere_volume(double radius) { return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius; }
 
 }  // namespace
 
@@ -42,10 +41,11 @@ void TransportRate::observe(const Snapshot& snapshot) {
     largest_squared = std::max(largest_squared, speed_squared);
   };
   for (std::size_t i = 0; i < grains.id.size(); ++i)
-    if (!grains.is_member(i)) add(sphere_volume(grains.radius[i]), grains.velocity[i]);
+    if (!grains.is_member(i)) add(volume_of(grains.radius[i], grains.disk_thickness), grains.velocity[i]);
   for (const ClumpState& clump : grains.clumps) add(clump.volume, clump.velocity);
   const Vec3 size = snapshot.decomposition->box().size;
-  q_s_ = order_free_sums(communicator_, flux, 1)[0] / (size.x() * size.y());
+  const double width = grains.disk_thickness > 0.0 ? grains.disk_thickness : size.y();
+  q_s_ = order_free_sums(communicator_, flux, 1)[0] / (size.x() * width);
   moving_ = sum_over_ranks(communicator_, moving);
   largest_speed_ = std::sqrt(max_over_ranks(communicator_, largest_squared));
 

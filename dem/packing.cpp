@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace thalweg::dem {
@@ -58,6 +59,10 @@ std::vector<Vec3> uniform_packing(const PeriodicBox& box, const Region& region, 
   Vec3 lower = region.lower, extent = region.upper - region.lower;
   std::array<std::int64_t, 3> most{};
   for (int axis = 0; axis < 3; ++axis) {
+    if (region.plane && axis == 1) {
+      most[1] = 1;  // one sheet, in the middle
+      continue;
+    }
     if (!wraps(box, region, axis)) {
       lower[axis] += clearance;
       extent[axis] -= 2.0 * clearance;
@@ -72,7 +77,9 @@ std::vector<Vec3> uniform_packing(const PeriodicBox& box, const Region& region, 
                     count, diameter, extent[0], extent[1], extent[2], most[0] * most[1] * most[2]));
   if (count == 0) return {};
 
-  const Lattice lattice = widest_lattice(extent, count, most);
+  Vec3 between = extent;
+  if (region.plane) between[1] = std::numeric_limits<double>::infinity();
+  const Lattice lattice = widest_lattice(between, count, most);
   const double room = std::max(0.0, 0.5 * (lattice.spacing - diameter));
   const double jitter = std::min(0.01 * diameter, 0.999 * room);
   const std::int64_t sites = lattice.count[0] * lattice.count[1] * lattice.count[2];
@@ -83,6 +90,10 @@ std::vector<Vec3> uniform_packing(const PeriodicBox& box, const Region& region, 
                                    site / (lattice.count[0] * lattice.count[1])};
     Vec3 centre;
     for (int axis = 0; axis < 3; ++axis) {
+      if (region.plane && axis == 1) {
+        centre[1] = 0.5 * (region.lower[1] + region.upper[1]);
+        continue;
+      }
       const double step = extent[axis] / static_cast<double>(lattice.count[axis]);
       const double draw = uniform_random(seed, static_cast<std::uint64_t>(i), axis);
       centre[axis] = lower[axis] + (static_cast<double>(along[axis]) + 0.5) * step + jitter * (2.0 * draw - 1.0);

@@ -13,7 +13,7 @@ namespace thalweg::dem {
 // A part of the box, m. On a periodic axis that it spans whole, grains may sit across the face.
 struct Region {
   Vec3 lower, upper;
-  bool plane = false;  // centres in the middle of the region's y only: disks. Random packings only.
+  bool plane = false;  // centres in the middle of the region's y only: disks
 };
 
 inline Region whole(const PeriodicBox& box) { return {Vec3::Zero(), box.size}; }

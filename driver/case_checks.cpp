@@ -287,8 +287,6 @@ bool stays_in_plane(const MotionCase& motion) {
 
 void check_disks(const Case& c, const io::YamlDocument& document) {
   if (!c.disks) return;
-  if (c.analysis.transport_rate)
-    throw document.error("analysis.transport_rate", "the transport rate is that of spheres; remove the section");
   if (c.domain.faces[y_low].type != FaceType::periodic)
     throw document.error("domain.boundaries", "disks move in the plane x-z; give y: periodic");
   if (gravity_vector(c.gravity).y() != 0.0)
@@ -300,11 +298,6 @@ void check_disks(const Case& c, const io::YamlDocument& document) {
   for (std::size_t n = 0; n < c.grains.size(); ++n) {
     const PopulationCase& grains = c.grains[n];
     const std::string key = fmt::format("grains.{}.", n);
-    if (!grains.placement.file && grains.placement.positions.empty() &&
-        grains.placement.pattern == PlacementPattern::uniform)
-      throw document.error(key + "placement.pattern",
-                           "disks are placed at random, by positions or from a file; give "
-                           "pattern: random");
     for (const Vec3& v : {grains.velocity, grains.prescribed_velocity.value_or(Vec3::Zero())})
       if (v.y() != 0.0)
         throw document.error(key + (grains.velocity.y() != 0.0 ? "velocity" : "prescribed_velocity"),

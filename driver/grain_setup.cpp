@@ -136,21 +136,20 @@ std::vector<Vec3> place(const PopulationCase& population, const PeriodicBox& box
   const auto seed = static_cast<std::uint64_t>(placement.seed);
   std::vector<Vec3> positions;
   std::vector<double> radii;
+  dem::Region region = region_of(placement, box);
+  region.plane = population.thickness > 0.0;
+  if (region.plane) region.lower[1] = 0.0, region.upper[1] = box.size[1];
   switch (turn_of(placement)) {
     case Turn::given:
       for (const io::BedGrain& grain : population.file) positions.push_back(grain.position);
       return placement.file ? positions : placement.positions;
     case Turn::uniform:
-      return dem::uniform_packing(box, region_of(placement, box), population.count, 0.5 * population.room_of_all(), 0.0,
-                                  seed);
+      return dem::uniform_packing(box, region, population.count, 0.5 * population.room_of_all(), 0.0, seed);
     case Turn::random:
       break;
   }
   for (std::size_t n = 0; n < static_cast<std::size_t>(population.count); ++n)
     radii.push_back(0.5 * population.room_of(n));
-  dem::Region region = region_of(placement, box);
-  region.plane = population.thickness > 0.0;
-  if (region.plane) region.lower[1] = 0.0, region.upper[1] = box.size[1];
   return dem::random_packing(box, region, radii, 0.0, seed, placed);
 }
 

@@ -53,6 +53,21 @@ TEST(UniformPacking, TakesExactlyAsManyAsFitAndNamesThem) {
   EXPECT_NE(message.find("4032 would"), std::string::npos) << message;
 }
 
+TEST(UniformPacking, SpreadsDisksOverTheMiddlePlane) {
+  // 12 x 10 disks of 5 mm fill 60 x 50 mm; one more does not fit.
+  const PeriodicBox tray{Vec3(0.06, 0.02, 0.05), {true, true, false}};
+  Region sheet = whole(tray);
+  sheet.plane = true;
+  for (const int count : {1, 7, 100, 120}) {
+    const std::vector<Vec3> centres = uniform_packing(tray, sheet, count, 2.5e-3, 0.0, 1);
+    ASSERT_EQ(centres.size(), static_cast<std::size_t>(count));
+    EXPECT_TRUE(std::all_of(centres.begin(), centres.end(), [](const Vec3& x) { return x[1] == 0.01; }));
+    EXPECT_NO_THROW(check(seeds_at(centres, 2.5e-3), tray, face_planes(tray, test::glass(0.9))));
+  }
+  const std::string message = refusal([&] { uniform_packing(tray, sheet, 121, 2.5e-3, 0.0, 1); });
+  EXPECT_NE(message.find("120 would"), std::string::npos) << message;
+}
+
 TEST(RandomPacking, KeepsClearOfWallsObstaclesAndEachOther) {
   std::vector<double> radii;
   for (int i = 0; i < 1200; ++i) radii.push_back(i % 3 == 0 ? 3.0e-3 : 2.0e-3);

@@ -95,13 +95,20 @@ run: {until: 3.0e-3, time_step: 5.0e-7}
             self.assertEqual(file["bed"].attrs["disk_thickness"], 4e-3)
         self.velocities(*disks)
         self.assertEqual((self.folder / "run/bed.h5").read_bytes(), first)
+        # Evenly spread as well; and the transport rate is that of the volume of disks over their thickness: 12 disks of
+        # pi d^2/4 at 0.5 m/s over 40 mm.
+        self.velocities(*disks[:-1], disks[-1].replace("random", "uniform").replace(", -0.5", ", 0"),
+                        "analysis.transport_rate={}", "gravity={magnitude: 0}", "run={until: 1.0e-4}")
+        with h5py.File(self.folder / "run/bed.h5") as file:
+            self.assertTrue((file["grains/position"][:, 1] == 0.004).all())
+        self.assertAlmostEqual(self.summary("run")["transport_rate"]["q_s_mean"], 12 * numpy.pi / 4 * 25e-6 * 0.5 / 0.04,
+                               delta=1e-12)
         (self.folder / "bed.h5").write_bytes(first)
         self.velocities(*disks[:-1], "grains=[{placement: {file: bed.h5}}]", "run={until: 1.0e-4}")
         all_of = [a for setting in disks for a in ("--set", setting)]
         for words, change in ((["disks 0.004 m thick", "spheres"], "disks="),
                               (["give y: periodic"], "domain.boundaries.y=no_slip"),
                               (["gravity.vector", "0 along y"], "gravity={vector: [0, 1, -9.8]}"),
-                              (["grains.0.placement.pattern", "pattern: random"], "grains.0.placement.pattern=uniform"),
                               (["grains.0.velocity", "0 along y"], "grains.0.velocity=[0, 1, 0]"),
                               (["grains.0.angular_velocity", "0 along x and z"], "grains.0.angular_velocity=[1, 0, 0]")):
             start = ["--set", "grains=[{placement: {file: bed.h5}}]"] if change == "disks=" else []
