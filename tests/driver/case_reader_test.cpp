@@ -80,7 +80,8 @@ TEST(CaseReader, AFluidAloneHasNoKeysOfGrains) {
   EXPECT_TRUE(c.grains.empty());
   EXPECT_EQ(text.find("contact:"), std::string::npos);
   EXPECT_EQ(read(resolved_yaml(c)), c);
-  for (const std::string key : {"grains=[]", "contact={restitution: 0.9}", "coupling={refill: grad}", "output.grains={}"})
+  for (const std::string key :
+       {"grains=[]", "contact={restitution: 0.9}", "coupling={refill: grad}", "output.grains={}"})
     EXPECT_THROW(read(text, {key}), InputError) << key;
 }
 
@@ -107,7 +108,12 @@ TEST(CaseReader, ReadsEveryWallAndCollision) {
                    "pressure_outlet, pressure: 3}, y: {type: navier_slip, slip_length: 1e-4, on_node: true}, "
                    "bottom: law_of_the_wall_as_printed, top: {type: moving, velocity: [0.1, 0, 0]}}",
                    "fluid.collision=trt", "fluid.magic_parameter=0.25",
-                   "fluid.mean_velocity={velocity: 0.3, response_time: 0.05}"});
+                   "fluid.mean_velocity={velocity: 0.3, response_time: 0.05}", "coupling.links=cli",
+                   "coupling.near_contact=paper", "coupling.refill=grad", "coupling.grain_stress=true"});
+  EXPECT_EQ(c.coupling.links, LinkRule::cli);
+  EXPECT_EQ(c.coupling.near_contact, NearContact::paper);
+  EXPECT_EQ(c.coupling.refill, Refill::grad);
+  EXPECT_TRUE(c.coupling.grain_stress);
   EXPECT_EQ(c.domain.faces[x_low].velocity, Vec3(0.2, 0, 0));
   EXPECT_EQ(c.domain.faces[x_high].pressure, 3.0);
   EXPECT_EQ(c.domain.faces[y_high].slip_length, 1e-4);
@@ -183,6 +189,22 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"control_too_quick",
             {"fluid.mean_velocity={velocity: 0.3, response_time: 1e-5}"},
             {"fluid.mean_velocity.response_time", "give at least"}},
+        Bad{"full_gravity_without_a_floor",
+            {"gravity.mode=full", "domain.boundaries.bottom=periodic", "domain.boundaries.top=periodic"},
+            {"gravity.mode", "periodic along z has no hydrostatic pressure"}},
+        Bad{"full_gravity_with_an_outlet",
+            {"gravity.mode=full",
+             "domain.boundaries={x_low: {type: velocity_inlet, velocity: [0.2, 0, 0]}, x_high: pressure_outlet, "
+             "y: no_slip, bottom: no_slip, top: free_slip}"},
+            {"gravity.mode", "an outlet of one pressure"}},
+        Bad{"full_gravity_from_another_run",
+            {"gravity.mode=full", "initial.from=other"},
+            {"gravity.mode", "its own hydrostatic pressure"}},
+        Bad{"mass_held_with_an_outlet",
+            {"coupling.mass_correction=100",
+             "domain.boundaries={x_low: {type: velocity_inlet, velocity: [0.2, 0, 0]}, x_high: pressure_outlet, "
+             "y: no_slip, bottom: no_slip, top: free_slip}"},
+            {"coupling.mass_correction", "has no mass to hold"}},
         Bad{"unknown_key", {"fluid.densty=1000"}, {"fluid.densty = 1000: unknown key; did you mean fluid.density?"}},
         Bad{"text_for_number",
             {"fluid.density=water"},
