@@ -1,6 +1,7 @@
 #include "analysis/grain_profiles.hpp"
 
 #include "analysis/sphere_in_layer.hpp"
+#include "core/contact_stress.hpp"
 #include "core/mpi_session.hpp"
 #include "core/order_free_sum.hpp"
 
@@ -17,24 +18,21 @@ constexpr int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
 // A grain as the sums take it. The members of a clump share its volume, mass and contact moment as their own volumes
 // are to each other, and move with its centre, so that its parts add up to the clump.
 struct Weighed {
-  double spheres = 0.0;                              // m^3, of all spheres that share what follows: one, or the members
-  double volume = 0.0, mass = 0.0;                   // m^3, kg
-  Vec3 velocity = Vec3::Zero();                      // m/s
-  Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();  // N m, sum over contacts of F_a r_b, rows a, columns b
+  double spheres = 0.0;             // m^3, of all spheres that share what follows: one, or the members
+  double volume = 0.0, mass = 0.0;  // m^3, kg
+  Vec3 velocity = Vec3::Zero();     // m/s
+  Mat3 moment = Mat3::Zero();       // N m, sum over contacts of F_a r_b, rows a, columns b
 };
 
 // In the order of the grains; the arms r of the snapshot are from the centre of the grain or of the clump.
 std::vector<Weighed> weighed(const Snapshot& snapshot) {
   const GrainView& grains = snapshot.grains;
+  const std::vector<Mat3> moments = contact_moments(snapshot);
   std::vector<Weighed> result(grains.id.size());
   for (std::size_t i = 0; i < result.size(); ++i) {
     const double volume = volume_of(grains.radius[i], grains.disk_thickness);
-    result[i] = {volume, volume, grains.mass[i], grains.velocity[i], Eigen::Matrix3d::Zero()};
+    result[i] = {volume, volume, grains.mass[i], grains.velocity[i], moments[i]};
   }
-  if (snapshot.contacts)
-    snapshot.contacts->for_each_contact([&](std::size_t grain, const Vec3& arm, const Vec3& force) {
-      result[grain].moment += force * arm.transpose();
-    });
   std::map<GlobalId, Weighed> sums;
   for (std::size_t i = 0; i < result.size(); ++i)
     if (grains.is_member(i)) {

@@ -1,5 +1,6 @@
 #include "io/grain_series.hpp"
 
+#include "core/contact_stress.hpp"
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
 #include "io/atomic_file.hpp"
@@ -24,12 +25,19 @@ namespace {
 struct Row {
   std::int64_t id, clump;
   double radius;
-  double position[3], velocity[3], angular_velocity[3], fluid_force[3], contact_force[3], fluid_stress[9];
+  double position[3], velocity[3], angular_velocity[3], fluid_force[3], contact_force[3], fluid_stress[9],
+      contact_stress[9];
 };
 
 void copy(const Vec3& from, double* to) { std::copy(from.data(), from.data() + 3, to); }
 
-std::vector<Row> gathered(MPI_Comm communicator, const GrainView& grains) {
+void copy(const Mat3& from, double* to) {
+  for (int k = 0; k < 9; ++k) to[k] = from(k / 3, k % 3);
+}
+
+std::vector<Row> gathered(MPI_Comm communicator, const Snapshot& snapshot) {
+  const GrainView& grains = snapshot.grains;
+  const std::vector<Mat3> contact_stress = contact_stresses(snapshot);
   std::vector<Row> rows(grains.id.size());
   for (std::size_t n = 0; n < rows.size(); ++n) {
     rows[n] = Row{};
@@ -40,8 +48,8 @@ std::vector<Row> gathered(MPI_Comm communicator, const GrainView& grains) {
     copy(grains.velocity[n], rows[n].velocity);
     copy(grains.angular_velocity[n], rows[n].angular_velocity);
     if (!grains.fluid_force.empty()) copy(grains.fluid_force[n], rows[n].fluid_force);
-    if (!grains.fluid_stress.empty())
-      for (int k = 0; k < 9; ++k) rows[n].fluid_stress[k] = grains.fluid_stress[n](k / 3, k % 3);
+    if (!grains.fluid_stress.empty()) copy(grains.fluid_stress[n], rows[n].fluid_stress);
+    copy(contact_stress[n], rows[n].contact_stress);
     if (!grains.contact_force.empty()) copy(grains.contact_force[n], rows[n].contact_force);
   }
   rows = exchange_rows(communicator, rows, std::vector<int>(rows.size(), 0));
@@ -89,6 +97,7 @@ vtkSmartPointer<vtkPolyData> picture_of(const std::vector<Row>& rows, bool with_
   add_values(*picture, rows, "velocity", &Row::velocity);
   add_values(*picture, rows, "angular_velocity", &Row::angular_velocity);
   add_values(*picture, rows, "contact_force", &Row::contact_force);
+  add_values(*picture, rows, "contact_stress", &Row::contact_stress);
   if (with_fluid) add_values(*picture, rows, "fluid_force", &Row::fluid_force);
   if (with_stress) add_values(*picture, rows, "fluid_stress", &Row::fluid_stress);
   return picture;
@@ -103,7 +112,7 @@ GrainSeries::GrainSeries(MPI_Comm communicator, const std::filesystem::path& run
 void GrainSeries::write(const Snapshot& snapshot) {
   const bool with_fluid = any_rank(communicator_, !snapshot.grains.fluid_force.empty());
   const bool with_stress = any_rank(communicator_, !snapshot.grains.fluid_stress.empty());
-  const std::vector<Row> rows = gathered(communicator_, snapshot.grains);
+  const std::vector<Row> rows = gathered(communicator_, snapshot);
   std::string failure;
   if (rank_of(communicator_) == 0) {
     try {

@@ -12,10 +12,10 @@
 namespace thalweg::io {
 
 // Writes grains/grains_<step>.vtp in the run folder: a point a grain, ordered by id, with the point arrays id, radius
-// (m), velocity (m/s), speed (m/s), angular_velocity (rad/s), contact_force (N), with a fluid fluid_force (N), where it
-// is measured fluid_stress (Pa; nine components, row by row: xx, xy, xz, yx, ...) and, where there are clumps, clump
-// (id of the clump a member belongs to, -1 for others). All calls are collective and throw RunError on every rank if a
-// file cannot be written.
+// (m), velocity (m/s), speed (m/s), angular_velocity (rad/s), contact_force (N), contact_stress (Pa; nine components,
+// row by row: xx, xy, xz, yx, ...; core/contact_stress.hpp), with a fluid fluid_force (N), where it is measured
+// fluid_stress (Pa, nine components as well) and, where there are clumps, clump (id of the clump a member belongs to,
+// -1 for others). All calls are collective and throw RunError on every rank if a file cannot be written.
 class GrainSeries {
 public:
   // continue_from: simulated time (s) at which a restarted run takes up an existing series; later pictures leave the

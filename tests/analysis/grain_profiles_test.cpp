@@ -3,6 +3,7 @@
 #include "analysis/grain_profiles.hpp"
 
 #include "analysis/sphere_in_layer.hpp"
+#include "core/contact_stress.hpp"
 #include "core/order_free_sum.hpp"
 #include "dem/clump_seed.hpp"
 #include "tests/dem/grain_cases.hpp"
@@ -165,6 +166,10 @@ TEST(GrainProfiles, OfACompressedLatticeIsItsPressure) {
     for (int c = 0; c < 9; ++c)
       EXPECT_NEAR(mean.at("contact_stress")[9 * layer + c], c % 4 == 0 ? -pressure : 0.0, 1e-10 * pressure);
   }
+  // Of every grain that of the lattice over its share of the volume.
+  const double of_grain = pressure * a * a * a / volume_of(2.5e-3, 0.0);
+  for (const Mat3& stress : contact_stresses(Shown(grains).snapshot()))
+    EXPECT_LT((stress + of_grain * Mat3::Identity()).norm(), 1e-10 * of_grain);
 }
 
 TEST(GrainProfiles, OfAColumnIsTheWeightAboveIt) {

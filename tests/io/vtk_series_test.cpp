@@ -80,6 +80,19 @@ struct Grains {
   }
 };
 
+// Every grain has one contact at the end of its radius along x, with the force (-1, 0, id) N.
+class Pressed : public ContactSource {
+public:
+  explicit Pressed(const GrainView& grains) : grains_(grains) {}
+  void for_each_contact(const ContactVisitor& visit) const override {
+    for (std::size_t i = 0; i < grains_.id.size(); ++i)
+      visit(i, Vec3(grains_.radius[i], 0.0, 0.0), Vec3(-1.0, 0.0, static_cast<double>(grains_.id[i])));
+  }
+
+private:
+  const GrainView& grains_;
+};
+
 class Pictures {
 public:
   explicit Pictures(const std::filesystem::path& folder) : folder_(folder) {}
@@ -95,7 +108,10 @@ public:
 
     series<GrainSeries>("wet", continue_from, snapshot);
     snapshot.grains.fluid_stress = grains.fluid_stress;
+    const Pressed pressed(snapshot.grains);
+    snapshot.contacts = &pressed;
     series<GrainSeries>("stressed", continue_from, snapshot);
+    snapshot.contacts = nullptr;
     series<FluidSeries>("whole", continue_from, snapshot, FluidRegion::whole,
                         std::vector<FluidField>{FluidField::velocity, FluidField::pressure, FluidField::grain_id});
     series<FluidSeries>("slice_y", continue_from, snapshot, FluidRegion::slice_y,

@@ -1,0 +1,35 @@
+#include "core/contact_stress.hpp"
+
+#include <map>
+#include <numbers>
+#include <utility>
+
+namespace thalweg {
+
+std::vector<Mat3> contact_moments(const Snapshot& snapshot) {
+  std::vector<Mat3> moments(snapshot.grains.id.size(), Mat3::Zero());
+  if (snapshot.contacts)
+    snapshot.contacts->for_each_contact(
+        [&](std::size_t grain, const Vec3& arm, const Vec3& force) { moments[grain] += force * arm.transpose(); });
+  return moments;
+}
+
+std::vector<Mat3> contact_stresses(const Snapshot& snapshot) {
+  const GrainView& grains = snapshot.grains;
+  std::vector<Mat3> stresses = contact_moments(snapshot);
+  std::map<GlobalId, Mat3> of_clump;
+  for (std::size_t i = 0; i < stresses.size(); ++i) {
+    if (grains.is_member(i)) {
+      of_clump.try_emplace(grains.clump[i], Mat3::Zero()).first->second += stresses[i];
+      continue;
+    }
+    const double r = grains.radius[i], thickness = grains.disk_thickness;
+    stresses[i] /= std::numbers::pi * r * r * (thickness > 0.0 ? thickness : 4.0 / 3.0 * r);
+  }
+  for (const ClumpState& clump : grains.clumps) of_clump.at(clump.id) /= clump.volume;
+  for (std::size_t i = 0; i < stresses.size(); ++i)
+    if (grains.is_member(i)) stresses[i] = of_clump.at(grains.clump[i]);
+  return stresses;
+}
+
+}  // namespace thalweg
