@@ -32,7 +32,8 @@ coupling::RefillRule refill_rule(Refill refill) {
 template <typename Real>
 std::unique_ptr<System> build(const Case& c, MPI_Comm communicator, const Index3& layout) {
   auto decomposition = std::make_unique<Decomposition>(decomposition_of(c, layout));
-  coupling::ResolvedParameters parameters{fluid_parameters(c)};
+  coupling::ResolvedParameters parameters;
+  static_cast<coupling::FluidParameters&>(parameters) = fluid_parameters(c);
   parameters.link_tolerance = c.coupling.link_tolerance;
   parameters.refill = refill_rule(c.coupling.refill);
   parameters.paper_near_contact = c.coupling.near_contact == NearContact::paper;

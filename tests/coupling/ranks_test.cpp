@@ -85,11 +85,11 @@ void compare(const WaterBox& box, const Index3& layout, int steps) {
   }
   std::map<GlobalId, std::size_t> place;
   const dem::Clumps &clumps = alone->grains().clumps(), &here = shared->grains().clumps();
-  for (std::size_t n = 0; n < clumps.size(); ++n) place[clumps[n].id] = n;
-  for (std::size_t n = 0; n < here.size(); ++n) {
-    const dem::Clump& other = clumps[place.at(here[n].id)];
-    differing += here[n].centre != other.centre || here[n].velocity != other.velocity ||
-                 here[n].orientation.w != other.orientation.w || here[n].angular_momentum != other.angular_momentum;
+  for (std::size_t k = 0; k < clumps.size(); ++k) place[clumps[k].id] = k;
+  for (std::size_t k = 0; k < here.size(); ++k) {
+    const dem::Clump& other = clumps[place.at(here[k].id)];
+    differing += here[k].centre != other.centre || here[k].velocity != other.velocity ||
+                 here[k].orientation.w != other.orientation.w || here[k].angular_momentum != other.angular_momentum;
   }
   EXPECT_EQ(sum_over_ranks(MPI_COMM_WORLD, static_cast<std::int64_t>(here.size())),
             static_cast<std::int64_t>(box.clumps.size()));

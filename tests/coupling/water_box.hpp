@@ -97,7 +97,10 @@ std::unique_ptr<ResolvedSystem<Real>> make_system(const WaterBox& box, MPI_Comm 
   g.skin = largest > 0.0 ? 0.2 * largest : box.spacing;
   g.ghost_width = ResolvedSystem<Real>::ghost_reach(largest, box.spacing);
   if (box.lubrication) {
-    dem::LubricationParameters lubrication{fluid_density * box.viscosity, 2.0 / 3.0 * box.spacing, 0.5 * box.spacing};
+    dem::LubricationParameters lubrication;
+    lubrication.viscosity = fluid_density * box.viscosity;
+    lubrication.normal_cut_off = 2.0 / 3.0 * box.spacing;
+    lubrication.tangential_cut_off = 0.5 * box.spacing;
     for (const dem::Plane& wall : g.walls) lubrication.walls.push_back(wall.normal.z() == 1.0);
     g.lubrication = lubrication;
   }

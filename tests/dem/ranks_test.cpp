@@ -209,7 +209,9 @@ void compare(const Case& c, int steps) {
   EXPECT_GT(half.datasets.at("grains/contact_ids").shape[0], c.clumps ? 4u : 10u);
   EXPECT_GT(alone.rebuilds(), 3);
   EXPECT_GT(moved_to_another_octant(c, seeds, alone), c.grains / 10);
-  if (c.clumps) EXPECT_GT(members_abroad(c, alone), c.grains / 10);
+  if (c.clumps) {
+    EXPECT_GT(members_abroad(c, alone), c.grains / 10);
+  }
 
   for (const Index3& layout : layouts(c.cells, ranks)) {
     const std::string name = fmt::format("layout {},{},{}", layout[0], layout[1], layout[2]);
@@ -300,7 +302,9 @@ TEST(Ranks, CutsFollowTheGrainsAndChangeNothing) {
     return max_over_ranks(MPI_COMM_WORLD, static_cast<double>(grains.store().owned));
   };
   const double even = fullest(false), followed = fullest(true);
-  if (size_of(MPI_COMM_WORLD) > 1) EXPECT_LT(followed, 0.9 * even);
+  if (size_of(MPI_COMM_WORLD) > 1) {
+    EXPECT_LT(followed, 0.9 * even);
+  }
 }
 
 TEST(Ranks, HeapWithLubrication) {

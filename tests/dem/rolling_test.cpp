@@ -54,7 +54,9 @@ TEST(RollingFriction, SlowsARollingSphereByFiveSeventhsOfItsFriction) {
       const double time = (n + 1) * 2.5e-4;
       if (n == 199) v1 = v[0];
       // From 0.05 s on the setting down has died out; it stands at v0/a = 0.286 s.
-      if (n > 199) EXPECT_NEAR(v[0], v1 - a * (time - 0.05), 2e-3 * v0) << time;
+      if (n > 199) {
+        EXPECT_NEAR(v[0], v1 - a * (time - 0.05), 2e-3 * v0) << time;
+      }
     }
     // What comes before that is the setting down: the moment is that of the force, whose mean is the weight.
     EXPECT_NEAR(v1, v0 - a * 0.05, 5e-3 * v0);

@@ -85,7 +85,10 @@ TEST(WallForces, AreTheWeightOfWhatLiesOnThem) {
 
   p = on_floor(test::glass(0.3), Vec3(0, 0, -g));
   const double half = std::sqrt(0.5);
-  p.walls = {{Vec3(0.025, 0.025, 0), Vec3(half, 0, half), 0.0}, {Vec3(0.025, 0.025, 0), Vec3(-half, 0, half), 0.0}};
+  p.walls.resize(2);
+  for (Plane& wall : p.walls) wall.point = Vec3(0.025, 0.025, 0);
+  p.walls[0].normal = Vec3(half, 0, half);
+  p.walls[1].normal = Vec3(-half, 0, half);
   GrainDynamics trough(test::cube(), MPI_COMM_SELF, p,
                        {test::glass_sphere(0, Vec3(0.025, 0.025, test::glass_radius / half))});
   for (int n = 0; n < 3000; ++n) test::step(trough);

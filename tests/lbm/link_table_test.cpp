@@ -26,7 +26,8 @@ TEST(LinkTable, HoldsWhatWasPutInLast) {
     std::vector<Link> links;
     std::vector<LinkCrossing> crossings;
     expected.erase({body, tile});
-    for (unsigned k = 0, n = generator() % 3 == 0 ? 0 : generator() % 60; k < n; ++k) {
+    const bool none = generator() % 3 == 0;
+    for (auto left = none ? 0 : generator() % 60; left > 0; --left) {
       links.push_back({serial, ~serial});
       crossings.push_back({static_cast<float>(serial % 1000), {}});
       expected[{body, tile}].insert({serial, ~serial});
