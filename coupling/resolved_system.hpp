@@ -77,8 +77,6 @@ public:
   const lbm::Fluid<Real>& fluid() const { return fluid_; }
   const dem::GrainDynamics& grains() const { return *grains_; }
   const lbm::LinkTable& links() const { return links_; }
-  const std::vector<lbm::LinkBody>& dbg() const { return bodies_; }
-  const GrainMap& dbgmap() const { return map_; }
   const ExchangeTotals& step_totals() const { return step_totals_; }
 
 private:
