@@ -1,5 +1,6 @@
 #include "coupling/hidden_links.hpp"
 
+#include "coupling/lattice_vectors.hpp"
 #include "lbm/bouzidi_link.hpp"
 #include "lbm/equilibrium.hpp"
 
@@ -10,14 +11,6 @@ namespace thalweg::coupling {
 
 using lbm::CellMap;
 using lbm::D3Q19;
-
-namespace {
-
-Vec3 velocity_of(int direction) {
-  return {double(D3Q19::c[direction][0]), double(D3Q19::c[direction][1]), double(D3Q19::c[direction][2])};
-}
-
-}  // namespace
 
 HiddenLinks::HiddenLinks(const Decomposition& decomposition, const Block& block, const CellMap& cells,
                          const HiddenLinkOptions& options, lbm::MomentumExchange exchange)

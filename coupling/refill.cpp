@@ -1,6 +1,7 @@
 #include "coupling/refill.hpp"
 
 #include "core/mpi_session.hpp"
+#include "coupling/lattice_vectors.hpp"
 #include "lbm/equilibrium.hpp"
 
 #include <algorithm>
@@ -19,12 +20,6 @@ Index3 step_from(const Index3& cell, int direction) {
 }
 
 std::array<int, 3> key(const Index3& cell) { return {cell[2], cell[1], cell[0]}; }
-
-Vec3 centre_of(const Index3& cell) { return {cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5}; }
-
-Vec3 velocity_of(int direction) {
-  return {double(D3Q19::c[direction][0]), double(D3Q19::c[direction][1]), double(D3Q19::c[direction][2])};
-}
 
 constexpr int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
 

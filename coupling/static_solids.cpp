@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
+#include "coupling/lattice_vectors.hpp"
 
 #include <fmt/format.h>
 
@@ -16,12 +17,6 @@ using lbm::D3Q19;
 namespace {
 
 constexpr double not_met = 2.0;
-
-Vec3 centre_of(const Index3& cell) { return {cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5}; }
-
-Vec3 velocity_of(int direction) {
-  return {double(D3Q19::c[direction][0]), double(D3Q19::c[direction][1]), double(D3Q19::c[direction][2])};
-}
 
 Corners corners_of(const TriangleMesh& mesh, const std::array<int, 3>& triangle, const Vec3& shift) {
   return {mesh.points[triangle[0]] + shift, mesh.points[triangle[1]] + shift, mesh.points[triangle[2]] + shift};
