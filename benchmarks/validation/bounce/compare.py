@@ -10,33 +10,20 @@ all pass.
 import argparse
 import math
 import sys
-import xml.etree.ElementTree as xml
 from pathlib import Path
 
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import yaml
-from vtk import vtkXMLPolyDataReader
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from grain_pictures import trajectory
 
 ACCEPTED = 0.1
 CONTACT_GAP = 0.02        # diameters: closer than this, a turn is an impact
 IMPACTS = 3
 SLOWEST = 8.0             # Stokes number below which nothing rebounds and nothing more is counted
-
-
-def trajectory(run, radius):
-    """Times (s), gaps (diameters) and velocities upwards (m/s) of the only grain."""
-    times, gaps, velocities = [], [], []
-    for entry in xml.parse(run / "grains.pvd").getroot().iter("DataSet"):
-        reader = vtkXMLPolyDataReader()
-        reader.SetFileName(str(run / entry.get("file")))
-        reader.Update()
-        grain = reader.GetOutput()
-        times.append(float(entry.get("timestep")))
-        gaps.append((grain.GetPoint(0)[2] - radius) / (2.0 * radius))
-        velocities.append(grain.GetPointData().GetArray("velocity").GetTuple3(0)[2])
-    return times, gaps, velocities
 
 
 def impacts(times, gaps, velocities, answer):
@@ -70,7 +57,8 @@ def main():
         option = (case.get("coupling") or {}).get("lubrication")
         kind = f"lubrication, gaps from {option['minimum_gap']:g} R" if option else "no lubrication"
         colour = colours.setdefault(kind, f"C{len(colours)}")
-        times, gaps, velocities = trajectory(run, 0.5 * diameter)
+        times, heights, velocities = trajectory(run)
+        gaps = [(h - 0.5 * diameter) / diameter for h in heights]   # diameters
         answer = math.pi * 0.5 * diameter * math.sqrt(3.0) * case["fluid"]["time_step"] / case["domain"]["spacing"]
         for number, (before, after) in enumerate(impacts(times, gaps, velocities, answer)):
             stokes = density * before * diameter / (9.0 * viscosity)

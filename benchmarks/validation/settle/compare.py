@@ -7,30 +7,17 @@ velocity and height against time. Exit code 0 if all pass.
 import argparse
 import csv
 import sys
-import xml.etree.ElementTree as xml
 from pathlib import Path
 
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
-from vtk import vtkXMLPolyDataReader
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from grain_pictures import trajectory
 
 ACCEPTED = 0.02
 RADIUS = 7.5e-3   # m
-
-
-def trajectory(run):
-    """Times (s), heights of the lowest point above the floor (m), velocities (m/s) of the only grain."""
-    times, heights, velocities = [], [], []
-    for entry in xml.parse(run / "grains.pvd").getroot().iter("DataSet"):
-        reader = vtkXMLPolyDataReader()
-        reader.SetFileName(str(run / entry.get("file")))
-        reader.Update()
-        grain = reader.GetOutput()
-        times.append(float(entry.get("timestep")))
-        heights.append(grain.GetPoint(0)[2] - RADIUS)
-        velocities.append(grain.GetPointData().GetArray("velocity").GetTuple3(0)[2])
-    return times, heights, velocities
 
 
 def main():
@@ -48,7 +35,7 @@ def main():
     for run in arguments.runs:
         name, folder = run.split("=", 1)
         case = name.split("_")[0]
-        times, heights, velocities = trajectory(Path(folder))
+        times, heights, velocities = trajectory(folder)
         fastest = -min(velocities)
         difference = fastest / measured[case] - 1.0
         good = abs(difference) <= ACCEPTED
@@ -57,7 +44,7 @@ def main():
               f"{'pass' if good else 'FAIL'}")
         line, = top.plot(times, velocities, label=name)
         top.axhline(-measured[case], color=line.get_color(), linestyle="--", linewidth=0.8)
-        bottom.plot(times, [1e3 * h for h in heights], color=line.get_color())
+        bottom.plot(times, [1e3 * (h - RADIUS) for h in heights], color=line.get_color())
     top.set_ylabel("velocity [m/s]")
     top.legend(title="dashed: largest measured", loc="lower right")
     bottom.set_ylabel("lowest point above the floor [mm]")

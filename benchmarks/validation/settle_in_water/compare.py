@@ -7,30 +7,17 @@ reference, the difference, the drag coefficient, and pass or fail (10 %). Exit c
 import argparse
 import csv
 import sys
-import xml.etree.ElementTree as xml
 from pathlib import Path
 
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import yaml
-from vtk import vtkXMLPolyDataReader
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from grain_pictures import trajectory
 
 ACCEPTED = 0.10
-
-
-def trajectory(run):
-    """Times (s), heights of the centre (m), velocities upwards (m/s) of the only grain."""
-    times, heights, velocities = [], [], []
-    for entry in xml.parse(run / "grains.pvd").getroot().iter("DataSet"):
-        reader = vtkXMLPolyDataReader()
-        reader.SetFileName(str(run / entry.get("file")))
-        reader.Update()
-        grain = reader.GetOutput()
-        times.append(float(entry.get("timestep")))
-        heights.append(grain.GetPoint(0)[2])
-        velocities.append(grain.GetPointData().GetArray("velocity").GetTuple3(0)[2])
-    return times, heights, velocities
 
 
 def main():

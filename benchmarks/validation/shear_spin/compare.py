@@ -6,28 +6,23 @@ the spin against time. Exit code 0 if all pass.
 """
 import argparse
 import sys
-import xml.etree.ElementTree as xml
 from pathlib import Path
 
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import yaml
-from vtk import vtkXMLPolyDataReader
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from grain_pictures import pictures
 
 ACCEPTED = 0.03
 
 
 def spins(run):
     """Times (s) and angular velocities about y (rad/s) of the only grain."""
-    times, values = [], []
-    for entry in xml.parse(run / "grains.pvd").getroot().iter("DataSet"):
-        reader = vtkXMLPolyDataReader()
-        reader.SetFileName(str(run / entry.get("file")))
-        reader.Update()
-        times.append(float(entry.get("timestep")))
-        values.append(reader.GetOutput().GetPointData().GetArray("angular_velocity").GetTuple3(0)[1])
-    return times, values
+    found = [(time, grain.GetPointData().GetArray("angular_velocity").GetTuple3(0)[1]) for time, grain in pictures(run)]
+    return [time for time, _ in found], [spin for _, spin in found]
 
 
 def main():
