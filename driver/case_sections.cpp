@@ -305,33 +305,26 @@ static void describe(io::SectionVisitor&, WallForcesCase&) {}
 static void describe(io::SectionVisitor&, PopulationLoadsCase&) {}
 
 static void describe_analysis(io::SectionVisitor& visit, AnalysisCase& analysis, bool with_fluid, bool with_grains) {
-  if (with_grains)
-    visit.section("transport_rate", analysis.transport_rate, {.meaning = "the grains' flux q and q* along x"});
-  else
-    visit.not_here("transport_rate", "system: fluid has no grains; remove the section or set system: resolved");
-  if (with_grains)
-    visit.section(
-        "grain_profiles", analysis.grain_profiles,
-        {.meaning = "mean solid fraction, velocity, flux, granular temperature and stresses of the grains over "
-                    "z, in profiles.h5"});
-  else
-    visit.not_here("grain_profiles", "system: fluid has no grains; remove the section or set system: resolved");
-  if (with_grains)
-    visit.section("population_loads", analysis.population_loads,
-                  {.meaning = "force and torque on each population of grains, in series.csv; no keys: {}"});
-  else
-    visit.not_here("population_loads", "system: fluid has no grains; remove the section or set system: resolved");
+  const auto of_grains = [&](const char* key, auto& section, const io::SectionKey& about) {
+    if (with_grains)
+      visit.section(key, section, about);
+    else
+      visit.not_here(key, "system: fluid has no grains; remove the section or set system: resolved");
+  };
+  of_grains("transport_rate", analysis.transport_rate, {.meaning = "the grains' flux q and q* along x"});
+  of_grains("grain_profiles", analysis.grain_profiles,
+            {.meaning = "mean solid fraction, velocity, flux, granular temperature and stresses of the grains over "
+                        "z, in profiles.h5"});
+  of_grains("population_loads", analysis.population_loads,
+            {.meaning = "force and torque on each population of grains, in series.csv; no keys: {}"});
   if (with_fluid)
     visit.section("fluid_statistics", analysis.fluid_statistics,
                   {.meaning = "mean velocity and Reynolds stresses in profiles.h5: over z, and over y and z between "
                               "side walls"});
   else
     visit.not_here("fluid_statistics", "system: grains has no fluid; remove the section or set system: resolved");
-  if (with_grains)
-    visit.section("wall_forces", analysis.wall_forces,
-                  {.meaning = "force of grains and of the fluid on each wall, in series.csv; no keys: {}"});
-  else
-    visit.not_here("wall_forces", "system: fluid has no grains; remove the section or set system: resolved");
+  of_grains("wall_forces", analysis.wall_forces,
+            {.meaning = "force of grains and of the fluid on each wall, in series.csv; no keys: {}"});
 }
 
 static void describe(io::SectionVisitor& visit, DisksCase& disks) {
