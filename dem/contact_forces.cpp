@@ -238,8 +238,7 @@ void evaluate_walls(MovingGrains& grains, std::vector<WallContact>& contacts, st
   for (WallContact& c : contacts) {
     MovingGrain& grain = grains[c.grain];
     const Plane& wall = walls[c.wall];
-    const Vec3& n = wall.normal;
-    const double height = (vector_of(grain.position) - wall.point).dot(n);
+    const auto [height, n] = wall.seen_from(vector_of(grain.position));
     const double overlap = grain.position[3] - height;
     if (!(overlap > 0.0)) {
       c.spring[0] = c.spring[1] = c.spring[2] = 0.0;

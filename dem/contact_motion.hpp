@@ -1,7 +1,7 @@
-// Two grains, or a grain and a plane, one at a time: how their surfaces move at the contact. For what looks at single
+// Two grains, or a grain and a wall, one at a time: how their surfaces move at the contact. For what looks at single
 // contacts; the loop over all pairs of a sub-step has the same formulas for many at once (contact_forces.cpp).
 //
-// The lever arm of a grain reaches to the middle of the overlap (to the plane of a wall): l = R - delta/2.
+// The lever arm of a grain reaches to the middle of the overlap (to the surface of a wall): l = R - delta/2.
 #pragma once
 
 #include "core/types.hpp"
@@ -38,9 +38,9 @@ inline ContactMotion motion_of(const ContactBody& first, const ContactBody& seco
 }
 
 inline ContactMotion motion_of(const ContactBody& grain, const Plane& wall, const Vec3& position) {
-  const double height = (position - wall.point).dot(wall.normal);
-  const Vec3 v = grain.velocity - wall.velocity - height * grain.spin.cross(wall.normal);
-  return {grain.radius - height, wall.normal[0], wall.normal[1], wall.normal[2], v[0], v[1], v[2], grain.radius};
+  const auto [distance, n] = wall.seen_from(position);
+  const Vec3 v = grain.velocity - wall.velocity - distance * grain.spin.cross(n);
+  return {grain.radius - distance, n[0], n[1], n[2], v[0], v[1], v[2], grain.radius};
 }
 
 inline Vec3 normal_of(const ContactMotion& c) { return {c.nx, c.ny, c.nz}; }

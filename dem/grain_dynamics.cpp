@@ -40,7 +40,7 @@ int columns_of(const GrainParameters& p) {
   return p.attached_width + (p.integrator == Integrator::gear ? GearPredictor::columns : 0);
 }
 
-enum class Trouble { none, not_finite, outside, beyond_wall, too_fast, outran };
+enum class Trouble { none, not_finite, outside, beyond_wall, in_plate, too_fast, outran };
 
 }  // namespace
 
@@ -129,7 +129,7 @@ void GrainDynamics::check_prescribed_speed() const {
 
 double GrainDynamics::largest_prescribed_speed() const {
   double largest = assemblies_.largest_speed();
-  for (const Plane& wall : parameters_.walls) largest = std::max(largest, wall.largest_normal_speed());
+  for (const Plane& wall : parameters_.walls) largest = std::max(largest, wall.largest_speed());
   return largest;
 }
 
@@ -150,7 +150,10 @@ Trouble trouble_of(const GrainStore& store, std::size_t s, const GrainSpace& spa
   const Vec3& x = store.position[s];
   if (!x.allFinite() || !std::isfinite(speed)) return Trouble::not_finite;
   if (!space.holds(x, store.radius[s])) return Trouble::outside;
-  if (!holds_translation(store.motion[s]) && space.beyond_moving_wall(x, store.radius[s])) return Trouble::beyond_wall;
+  if (!holds_translation(store.motion[s])) {
+    if (space.beyond_moving_wall(x, store.radius[s])) return Trouble::beyond_wall;
+    if (space.deep_in_plate(x, store.radius[s])) return Trouble::in_plate;
+  }
   if (speed * step_time > store.radius[s]) return Trouble::too_fast;
   return displacement > half_skin ? Trouble::outran : Trouble::none;
 }
@@ -166,7 +169,7 @@ bool GrainDynamics::prepare() {
   bool trouble = false;
   const GrainSpace space(box_, planes_);
   for (std::size_t w = 0; w < planes_.size(); ++w)
-    farthest = std::max(farthest, std::abs((planes_[w].point - listed_planes_[w].point).dot(planes_[w].normal)));
+    farthest = std::max(farthest, planes_[w].moved_since(listed_planes_[w]));
   for (std::size_t s = 0; s < store_.owned; ++s) {
     const double displacement = box_.difference(store_.position[s], listed_position_[s]).norm();
     const double speed = store_.velocity[s].norm();
@@ -226,6 +229,8 @@ void GrainDynamics::throw_trouble() const {
       throw RunError(grain + " is more than its radius beyond a face of the box that is not periodic.");
     case Trouble::beyond_wall:
       throw RunError(grain + " is more than its radius beyond a wall that moves.");
+    case Trouble::in_plate:
+      throw RunError(grain + " is more than half its radius deep in a plate; use stiffer contacts or less load.");
     case Trouble::too_fast:
       throw RunError(fmt::format("{} moves more than its radius in one step of {:g} s; use a shorter time step.", grain,
                                  step_time()));

@@ -29,8 +29,8 @@ std::vector<Contact> GrainDynamics::contacts() const {
     touching.push_back({store_.id[c.first], store_.id[c.second], overlap, separation.normalized(), Vec3(c.spring)});
   });
   for (const WallContact& c : list_.walls) {
-    const Plane& wall = planes_[c.wall];
-    const double overlap = store_.radius[c.grain] - (store_.position[c.grain] - wall.point).dot(wall.normal);
+    const WallSight wall = planes_[c.wall].seen_from(store_.position[c.grain]);
+    const double overlap = store_.radius[c.grain] - wall.distance;
     if (overlap > 0.0)
       touching.push_back(
           {store_.id[c.grain], -1 - static_cast<GlobalId>(c.wall), overlap, wall.normal, Vec3(c.spring)});

@@ -42,7 +42,7 @@ void check_alone(const GrainSeed& seed, const PeriodicBox& box, std::span<const 
                       place(seed.position), "xyz"[axis], box.size[axis]));
   if (is_fixed(seed.motion)) return;
   for (const Plane& wall : walls) {
-    const double overlap = seed.radius - (seed.position - wall.point).dot(wall.normal);
+    const double overlap = seed.radius - wall.seen_from(seed.position).distance;
     if (overlap > allowed_overlap * 2.0 * seed.radius)
       throw InputError(fmt::format(
           "Grain {} at {} with radius {:g} m reaches {:g} m into the wall with normal ({:g}, "

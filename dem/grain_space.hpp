@@ -15,6 +15,10 @@ public:
   // walls: where they are now.
   GrainSpace(const PeriodicBox& box, std::span<const Plane> walls) : periodic_(box.periodic), upper_(box.size) {
     for (const Plane& wall : walls) {
+      if (wall.plate) {
+        plates_.push_back(wall);
+        continue;
+      }
       if (wall.changes()) moving_.push_back(wall);
       for (int axis = 0; axis < 3; ++axis) {  // a face that has moved outwards
         if (wall.normal == Vec3::Unit(axis)) lower_[axis] = std::min(lower_[axis], wall.point[axis]);
@@ -39,10 +43,16 @@ public:
                        [&](const Plane& wall) { return (position - wall.point).dot(wall.normal) < -radius; });
   }
 
+  // Half its radius is left on the one side of a plate: it may come out on the other.
+  bool deep_in_plate(const Vec3& position, double radius) const {
+    return std::any_of(plates_.begin(), plates_.end(),
+                       [&](const Plane& plate) { return plate.seen_from(position).distance < 0.5 * radius; });
+  }
+
 private:
   std::array<bool, 3> periodic_;
   Vec3 lower_ = Vec3::Zero(), upper_;
-  std::vector<Plane> moving_;
+  std::vector<Plane> moving_, plates_;
 };
 
 }  // namespace thalweg::dem

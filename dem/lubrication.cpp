@@ -53,14 +53,14 @@ void add_to_pair(MovingGrain& first, MovingGrain& second, const Vec3& separation
 }
 
 void add_to_wall(MovingGrain& grain, const Plane& wall, const LubricationParameters& parameters) {
-  const double height = (vector_of(grain.position) - wall.point).dot(wall.normal);
+  const auto [height, n] = wall.seen_from(vector_of(grain.position));
   const double gap = height - grain.position[3];
   if (!(gap > 0.0 && gap < parameters.reach())) return;
   const Vec3 approach = vector_of(grain.velocity) - wall.velocity, spin = vector_of(grain.spin);
-  const LubricationLoad load = load_of(lubrication_resistance(parameters, grain.position[3], 0.0, gap), wall.normal,
-                                       approach, approach - height * spin.cross(wall.normal), spin);
+  const LubricationLoad load = load_of(lubrication_resistance(parameters, grain.position[3], 0.0, gap), n, approach,
+                                       approach - height * spin.cross(n), spin);
   grain.force += row_of(load.force);
-  grain.torque += row_of(height * load.force.cross(wall.normal) + load.couple);
+  grain.torque += row_of(height * load.force.cross(n) + load.couple);
 }
 
 }  // namespace

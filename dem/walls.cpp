@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+
+#include <algorithm>
 #include <cmath>
 
 namespace thalweg::dem {
@@ -17,10 +20,32 @@ PrescribedMotion motion_of(const Plane& plane) {
   return motion;
 }
 
+void check_plate(const PlateExtent& plate, const Vec3& normal) {
+  const Vec3& a = plate.along;
+  if (!(std::abs(a.norm() - 1.0) < 1e-12) || !(std::abs(a.dot(normal)) < 1e-12))
+    throw InputError(fmt::format("The direction ({:g}, {:g}, {:g}) of a plate must have length 1 and lie in its plane.",
+                                 a[0], a[1], a[2]));
+  if (!(plate.half_length > 0.0 && plate.half_width > 0.0))
+    throw InputError(fmt::format("A plate reaches {:g} m along and {:g} m across its direction; both must be positive.",
+                                 plate.half_length, plate.half_width));
+}
+
 }  // namespace
 
 bool Plane::changes() const {
-  return velocity.dot(normal) != 0.0 || (oscillation.frequency > 0.0 && !oscillation.amplitude.isZero(0.0));
+  const bool moves = plate ? !velocity.isZero(0.0) : velocity.dot(normal) != 0.0;
+  return moves || (oscillation.frequency > 0.0 && !oscillation.amplitude.isZero(0.0));
+}
+
+WallSight Plane::seen_as_plate(const Vec3& from_point) const {
+  const Vec3 across = normal.cross(plate->along);
+  const double height = from_point.dot(normal), u = from_point.dot(plate->along), v = from_point.dot(across);
+  const double past_end = u - std::clamp(u, -plate->half_length, plate->half_length);
+  const double past_side = v - std::clamp(v, -plate->half_width, plate->half_width);
+  if (past_end == 0.0 && past_side == 0.0) return {std::abs(height), height < 0.0 ? Vec3(-normal) : normal};
+  const Vec3 from_edge = height * normal + past_end * plate->along + past_side * across;
+  const double distance = from_edge.norm();
+  return {distance, from_edge / distance};
 }
 
 Plane Plane::at(double time, double time_of_velocity) const {
@@ -31,7 +56,15 @@ Plane Plane::at(double time, double time_of_velocity) const {
   return now;
 }
 
-double Plane::largest_normal_speed() const { return motion_of(*this).largest_speed_along(normal); }
+double Plane::largest_speed() const {
+  const PrescribedMotion motion = motion_of(*this);
+  return plate ? motion.largest_speed(0.0) : motion.largest_speed_along(normal);
+}
+
+double Plane::moved_since(const Plane& earlier) const {
+  const Vec3 way = point - earlier.point;
+  return plate ? way.norm() : std::abs(way.dot(normal));
+}
 
 Plane face_plane(const PeriodicBox& box, int axis, bool upper, double friction, const Vec3& velocity) {
   Plane plane;
@@ -65,6 +98,7 @@ void check(const Plane& plane) {
   if (!(plane.rolling_friction >= 0.0))
     throw InputError(
         fmt::format("The rolling friction of a wall is {:g}; it must be zero or positive.", plane.rolling_friction));
+  if (plane.plate) check_plate(*plane.plate, n);
   check(motion_of(plane));
 }
 

@@ -1,4 +1,5 @@
-// Plane walls grains bounce off. They may move as a given function of time (prescribed_motion.hpp).
+// Walls grains bounce off: planes, with the grains on one side, and plates, parts of planes with two sides and edges.
+// They may move as a given function of time (prescribed_motion.hpp).
 #pragma once
 
 #include "core/periodic_box.hpp"
@@ -7,9 +8,24 @@
 #include "dem/prescribed_motion.hpp"
 
 #include <array>
+#include <optional>
 #include <vector>
 
 namespace thalweg::dem {
+
+// What makes a plane a plate: how far it goes from its point, along one direction in the plane and across it. A plate
+// has no thickness and, in a periodic box, no images.
+struct PlateExtent {
+  Vec3 along = Vec3::UnitX();  // unit, normal to the plane's normal
+  double half_length = 0.0;    // m, along it
+  double half_width = 0.0;     // m, across it
+};
+
+// A wall as a grain sees it.
+struct WallSight {
+  double distance;  // m, of the nearest point of the wall; of a plane negative beyond it
+  Vec3 normal;      // unit, from there to the grain
+};
 
 struct Plane {
   Vec3 point = Vec3::Zero();      // m, any point on it; of a wall that moves: at the start
@@ -18,12 +34,21 @@ struct Plane {
   double rolling_friction = 0.0;  // against grains
   Vec3 velocity = Vec3::Zero();   // m/s
   Oscillation oscillation;        // on top of the velocity
+  std::optional<PlateExtent> plate;
 
-  // Whether its place or its velocity changes with time: a velocity in its own plane alone changes neither.
+  WallSight seen_from(const Vec3& position) const {
+    const Vec3 from_point = position - point;
+    return plate ? seen_as_plate(from_point) : WallSight{from_point.dot(normal), normal};
+  }
+  // Whether its place or its velocity changes with time: of a plane, a velocity in itself alone changes neither.
   bool changes() const;
   // The wall as it is at one time (s), with the velocity of another.
   Plane at(double time, double time_of_velocity) const;
-  double largest_normal_speed() const;  // m/s, at any time
+  double largest_speed() const;                    // m/s, at which it nears grains at any time
+  double moved_since(const Plane& earlier) const;  // m: no grain is nearer or further by more than this
+
+private:
+  WallSight seen_as_plate(const Vec3& from_point) const;
 };
 
 // The faces in the order of all lists of them, as cases and figures name them.
@@ -35,7 +60,8 @@ Plane face_plane(const PeriodicBox& box, int axis, bool upper, double friction, 
 // Every non-periodic face of the box, with the walls' friction: x lower, x upper, y lower, ...
 std::vector<Plane> face_planes(const PeriodicBox& box, const ContactParameters& contact);
 
-// Throws InputError unless the normal is a unit vector, the frictions are not negative and the motion is possible.
+// Throws InputError unless the normal is a unit vector, the frictions are not negative, the motion is possible and a
+// plate has positive lengths along its plane.
 void check(const Plane& plane);
 
 }  // namespace thalweg::dem

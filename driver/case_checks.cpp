@@ -285,6 +285,30 @@ bool stays_in_plane(const MotionCase& motion) {
   return turns_in_it && motion.velocity.y() == 0.0 && (!motion.oscillation || motion.oscillation->amplitude.y() == 0.0);
 }
 
+void check_plates(const Case& c, const io::YamlDocument& document) {
+  for (std::size_t n = 0; n < c.walls.size(); ++n) {
+    const WallCase& wall = c.walls[n];
+    constexpr double rounded = 1e-3;  // numbers with a few digits are welcome
+    if (wall.plate && !(std::abs(wall.plate->along.normalized().dot(wall.normal.normalized())) < rounded))
+      throw document.error(fmt::format("walls.{}.plate.along", n),
+                           "a plate lies in the plane of its wall; give a direction at right angles to normal");
+  }
+}
+
+// An edge across y would push disks out of their plane.
+void check_plates_of_disks(const Case& c, const io::YamlDocument& document) {
+  for (std::size_t n = 0; n < c.walls.size(); ++n) {
+    if (!c.walls[n].plate) continue;
+    const PlateCase& plate = *c.walls[n].plate;
+    if (plate.along.y() != 0.0)
+      throw document.error(fmt::format("walls.{}.plate.along", n),
+                           "disks move in the plane x-z; give a direction with 0 along y");
+    if (!(std::abs(0.5 * c.domain.size.y() - c.walls[n].point.y()) < 0.5 * plate.width))
+      throw document.error(fmt::format("walls.{}.plate.width", n),
+                           "disks are in the middle of the box; give a width in m that reaches there");
+  }
+}
+
 void check_disks(const Case& c, const io::YamlDocument& document) {
   if (!c.disks) return;
   if (c.domain.faces[y_low].type != FaceType::periodic)
@@ -295,6 +319,7 @@ void check_disks(const Case& c, const io::YamlDocument& document) {
     if (c.walls[n].normal.y() != 0.0)
       throw document.error(fmt::format("walls.{}.normal", n),
                            "disks move in the plane x-z; give a normal with 0 along y");
+  check_plates_of_disks(c, document);
   for (std::size_t n = 0; n < c.grains.size(); ++n) {
     const PopulationCase& grains = c.grains[n];
     const std::string key = fmt::format("grains.{}.", n);
@@ -344,6 +369,7 @@ void check_case(const Case& c, const io::YamlDocument& document) {
   check_solids(c, document);
   check_fluid(c, document);
   check_gravity(c, document);
+  check_plates(c, document);
   check_disks(c, document);
   check_clumps(c, document);
   check_materials(c, document);

@@ -34,7 +34,15 @@ struct MotionCase {
   bool operator==(const MotionCase&) const = default;
 };
 
-// A plane wall besides the faces of the box.
+// What makes a wall a plate around its point, with two sides and edges.
+struct PlateCase {
+  Vec3 along = Vec3::UnitX();  // in the plane of the wall; any length but zero
+  double length = 0.0;         // m, along it
+  double width = 0.0;          // m, across it
+  bool operator==(const PlateCase&) const = default;
+};
+
+// A plane wall besides the faces of the box, or a plate.
 struct WallCase {
   Vec3 point = Vec3::Zero();               // m
   Vec3 normal = Vec3::UnitZ();             // into the side of the grains; any length but zero
@@ -42,6 +50,7 @@ struct WallCase {
   std::optional<double> rolling_friction;  // else contact.wall_rolling_friction
   Vec3 velocity = Vec3::Zero();            // m/s
   std::optional<OscillationCase> oscillation;
+  std::optional<PlateCase> plate;
   bool operator==(const WallCase&) const = default;
 };
 

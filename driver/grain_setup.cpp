@@ -78,6 +78,11 @@ std::vector<dem::Plane> planes_of(const Case& c, const PeriodicBox& box, const d
     plane.rolling_friction = wall.rolling_friction.value_or(contact.wall_rolling_friction);
     plane.velocity = wall.velocity;
     plane.oscillation = oscillation_of(wall.oscillation);
+    if (wall.plate) {
+      const Vec3& along = wall.plate->along;
+      const Vec3 in_plane = (along - along.dot(plane.normal) * plane.normal).normalized();
+      plane.plate = {in_plane, 0.5 * wall.plate->length, 0.5 * wall.plate->width};
+    }
     planes.push_back(plane);
   }
   return planes;

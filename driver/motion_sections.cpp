@@ -1,6 +1,6 @@
 #include "driver/case_sections.hpp"
 
-// Sections of what moves as a given function of time: walls and populations.
+// Sections of walls besides the faces, and of what moves as a given function of time.
 namespace thalweg {
 
 void describe(io::SectionVisitor& visit, OscillationCase& oscillation) {
@@ -29,6 +29,23 @@ void describe(io::SectionVisitor& visit, MotionCase& motion) {
   visit.section("rotation", motion.rotation, {.meaning = "about an axis that moves along"});
 }
 
+static void describe(io::SectionVisitor& visit, PlateCase& plate) {
+  visit.vec3("along", plate.along, {.meaning = "direction of its length in the plane of the wall, of any length"});
+  visit.real("length", plate.length,
+             {.unit = "m",
+              .meaning = "along it, half on either side of point",
+              .required = true,
+              .above = 0.0,
+              .example = 0.05});
+  visit.real("width", plate.width,
+             {.unit = "m",
+              .meaning = "across it, half on either side of point",
+              .required = true,
+              .above = 0.0,
+              .example = 0.02});
+  visit.require(!plate.along.isZero(0.0), "along", "a direction cannot be zero; give for example [1, 0, 0]");
+}
+
 void describe(io::SectionVisitor& visit, WallCase& wall) {
   visit.vec3("point", wall.point,
              {.unit = "m", .meaning = "on the plane, at the start", .required = true, .example = 0.0});
@@ -39,6 +56,8 @@ void describe(io::SectionVisitor& visit, WallCase& wall) {
              {.meaning = "contact.wall_rolling_friction where not given", .at_least = 0.0, .example = 0.05});
   visit.vec3("velocity", wall.velocity, {.unit = "m/s", .meaning = "constant"});
   visit.section("oscillation", wall.oscillation, {.meaning = "on top of the velocity"});
+  visit.section("plate", wall.plate,
+                {.meaning = "only this part of the plane, with grains on both sides and round its edges"});
   visit.require(!wall.normal.isZero(0.0), "normal", "a direction cannot be zero; give for example [0, 0, 1]");
 }
 

@@ -75,8 +75,11 @@ analysis: {population_loads: {}, wall_forces: {}}
         self.assertAlmostEqual(series["grains_0_contact_torque_y"][-1], -0.008 * WEIGHT, delta=1e-2 * 0.008 * WEIGHT)
 
     def test_a_restart_finds_walls_and_plate_where_they_were(self):
-        loose = "grains.1.placement.positions=[[0.012, 0.013, 0.0146], [0.03, 0.015, 0.01]]"
-        whole = ["--set", loose, "--set", "run.until=0.05"]
+        loose = "grains.1.placement.positions=[[0.012, 0.013, 0.0146], [0.03, 0.015, 0.01], [0.02, 0.015, 0.03]]"
+        swinging = ("walls=[{point: [0.025, 0, 0], normal: [-1, 0, 1], friction: 0.1}, {point: [0.02, 0.015, 0.027], "
+                    "normal: [0, 0, 1], velocity: [-0.1, 0, 0], oscillation: {amplitude: [0, 0, 1.0e-3], "
+                    "frequency: 30}, plate: {length: 0.01, width: 0.02}}]")
+        whole = ["--set", loose, "--set", swinging, "--set", "run.until=0.05"]
         self.run_well("run", self.case, *whole)
         half = [a.replace("0.05", "0.023") if a.startswith("run.until") else a for a in whole]
         self.run_well("run", self.case, *half, "--out", "half")
@@ -87,8 +90,22 @@ analysis: {population_loads: {}, wall_forces: {}}
         height = (position[10, 2] - (position[10, 0] - 0.025)) / numpy.sqrt(2)
         self.assertGreater(height, 2.4e-3)
 
+    def test_a_plate_bears_a_grain_and_another_falls_past_its_edge(self):
+        plate = "walls=[{point: [0.03, 0.015, 0.02], normal: [0, 0, 1], plate: {along: [0, 1, 0], length: 0.012, width: 0.008}}]"
+        # Past the edge by more than a radius, on the side where the plate is 4 mm wide.
+        places = "grains.1.placement.positions=[[0.03, 0.015, 0.0226], [0.0231, 0.015, 0.0226]]"
+        still = "domain.boundaries.bottom=no_slip"
+        self.run_well("run", self.case, "--set", plate, "--set", places, "--set", still)
+        position, _ = self.bed()
+        self.assertAlmostEqual(position[9, 2], 0.0225 - WEIGHT / 20000.0, delta=1e-8)
+        self.assertLess(position[10, 2], 0.0176)  # below the plate's edge by more than its radius
+        self.assertAlmostEqual(self.series()["wall_force_wall_0_z"][-1], -WEIGHT, delta=1e-3 * WEIGHT)
+
     def test_what_cannot_be_is_refused(self):
         self.assert_refused("check", self.case, "--set", "walls.0.normal=[0, 0, 0]", words=["walls.0.normal", "[0, 0, 1]"])
+        self.assert_refused("check", self.case, "--set", "walls.0.plate={length: 0.01}", words=["walls.0.plate", "width"])
+        self.assert_refused("check", self.case, "--set", "walls.0.plate={length: 0.01, width: 0.01}",
+                            words=["walls.0.plate.along", "right angles to normal"])
         self.assert_refused("check", self.case, "--set", "grains.0.fixed=true", words=["grains.0.motion", "remove fixed"])
         self.assert_refused("check", self.case, "--set", "grains.0.motion.oscillation={amplitude: [0, 0, 1]}",
                             words=["frequency"])
