@@ -12,7 +12,7 @@ namespace thalweg::dem {
 
 // Adds the contact forces and torques that follow from positions and velocities, those of rolling friction among them,
 // and advances the springs of the list.
-// The lever arm of a grain reaches to the middle of the overlap (to the plane of a wall), so that angular momentum is
+// The lever arm of a grain reaches to the middle of the overlap (to the surface of a wall), so that angular momentum is
 // conserved. Sums run over pairs in the order of the list, then over walls. material: of every slot; time_step: s, with
 // 0 no spring grows.
 void evaluate_contacts(MovingGrains& grains, ContactList& list, const PeriodicBox& box, std::span<const Plane> walls,

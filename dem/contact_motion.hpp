@@ -37,10 +37,13 @@ inline ContactMotion motion_of(const ContactBody& first, const ContactBody& seco
   return {overlap, n[0], n[1], n[2], v[0], v[1], v[2], first.radius * second.radius / reach};
 }
 
+inline ContactMotion motion_of(const ContactBody& grain, const WallSight& wall, const Vec3& wall_velocity) {
+  const Vec3& n = wall.normal;
+  const Vec3 v = grain.velocity - wall_velocity - wall.distance * grain.spin.cross(n);
+  return {grain.radius - wall.distance, n[0], n[1], n[2], v[0], v[1], v[2], grain.radius};
+}
 inline ContactMotion motion_of(const ContactBody& grain, const Plane& wall, const Vec3& position) {
-  const auto [distance, n] = wall.seen_from(position);
-  const Vec3 v = grain.velocity - wall.velocity - distance * grain.spin.cross(n);
-  return {grain.radius - distance, n[0], n[1], n[2], v[0], v[1], v[2], grain.radius};
+  return motion_of(grain, wall.seen_from(position), wall.velocity);
 }
 
 inline Vec3 normal_of(const ContactMotion& c) { return {c.nx, c.ny, c.nz}; }

@@ -184,7 +184,10 @@ bool GrainDynamics::prepare() {
   double all[3];
   MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_MAX, communicator_);
   if (all[2] != 0.0) throw_trouble();
-  if (all[0] + all[1] * step_time() <= 0.5 * parameters_.skin) return false;
+  const double half_skin = 0.5 * parameters_.skin;
+  const double steps_to_leave = half_skin / (all[1] * parameters_.time_step);  // infinite at rest
+  allowed_sub_steps_ = static_cast<int>(std::clamp(steps_to_leave, 1.0, static_cast<double>(parameters_.sub_steps)));
+  if (all[0] + all[1] * step_time() <= half_skin) return false;
   rebuild();
   return true;
 }

@@ -103,6 +103,10 @@ public:
   // reduction. Collective.
   bool prepare();
 
+  // How many sub-steps the grains may take from prepare() to the next: fewer than GrainParameters::sub_steps where they
+  // are so fast that one leaves its half skin sooner. Of the state at prepare() alone, whatever the age of the list.
+  int allowed_sub_steps() const { return allowed_sub_steps_; }
+
   // Moves the grains under the loads in store(). At most GrainParameters::sub_steps since prepare(). Collective.
   void advance(int sub_steps);
 
@@ -207,6 +211,7 @@ private:
   std::int64_t rebuilds_ = 0;
 
   std::int64_t steps_done_ = 0;  // sub-steps since the start of the run
+  int allowed_sub_steps_ = 1;
   std::vector<Plane> planes_;    // the walls where they are now
   bool walls_change_;
   Assemblies assemblies_;

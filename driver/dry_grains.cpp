@@ -51,15 +51,16 @@ DryGrains::DryGrains(const Case& c, MPI_Comm communicator, const Decomposition& 
       motion_(timer_.phase("grain motion")) {}
 
 void DryGrains::advance() {
-  const int most = grains_.parameters().sub_steps;
-  for (int done = 0; done < sub_steps_; done += most) {
+  for (int done = 0; done < sub_steps_;) {
     {
       const auto scope = timer_.measure(lists_);
       grains_.prepare();
     }
     const auto scope = timer_.measure(motion_);
-    grains_.advance(std::min(most, sub_steps_ - done));
+    const int now = std::min(grains_.allowed_sub_steps(), sub_steps_ - done);
+    grains_.advance(now);
     grains_.refresh_ghosts();
+    done += now;
   }
   ++step_;
 }

@@ -15,7 +15,9 @@ namespace thalweg::driver {
 
 namespace {
 
-constexpr double skin_in_diameters = 0.1;
+// A wide skin costs nothing where grains are alone, and falling grains wear out a narrow one; with every new list the
+// links of a fluid have to be looked at again, and its grains are slower.
+constexpr double skin_in_diameters = 0.1, dry_skin_in_diameters = 0.5;
 
 PeriodicBox box_of(const Case& c) { return {c.domain.size, periodic_axes(c.domain)}; }
 
@@ -226,7 +228,7 @@ dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box) {
   parameters.disks = c.disks.has_value();
   if (c.run.grain_integrator == GrainIntegrator::gear) parameters.integrator = dem::Integrator::gear;
   parameters.sub_steps = static_cast<int>(c.coupling.grain_steps_per_fluid_step);
-  parameters.skin = skin_in_diameters * smallest_diameter(c);
+  parameters.skin = (has_fluid(c) ? skin_in_diameters : dry_skin_in_diameters) * smallest_diameter(c);
   for (const PopulationCase& population : c.grains)
     if (population.placement.file)
       parameters.initial_overlap = std::max(parameters.initial_overlap,

@@ -1,6 +1,6 @@
 // How fast the contacts of a settled bed are computed: beds of 2884, 23072 and 103824 glass spheres at rest.
 //
-//   mpirun -n RANKS dem_contacts [--grains N] [--write-lammps FILE]
+//   mpirun -n RANKS dem_contacts [--grains N] [--rolling-friction MU] [--write-lammps FILE]
 //
 // The machine may be shared, so each figure is the fastest of several stretches. The last line is JSON.
 #include "benchmarks/dem_contacts/settled_bed.hpp"
@@ -45,9 +45,11 @@ double timed_steps(dem::GrainDynamics& grains, int calls) {
   return max_over_ranks(MPI_COMM_WORLD, std::chrono::duration<double>(Clock::now() - start).count());
 }
 
-Timing measure(const std::vector<dem::GrainSeed>& seeds, const Tiles& tiles) {
+Timing measure(const std::vector<dem::GrainSeed>& seeds, const Tiles& tiles, double rolling_friction) {
   const Decomposition decomposition = bed_decomposition(tiles, size_of(MPI_COMM_WORLD));
-  dem::GrainDynamics grains(decomposition, MPI_COMM_WORLD, bed_parameters(0.93, decomposition.box()), seeds);
+  dem::GrainParameters parameters = bed_parameters(0.93, decomposition.box());
+  parameters.contact.rolling_friction = parameters.walls[0].rolling_friction = rolling_friction;
+  dem::GrainDynamics grains(decomposition, MPI_COMM_WORLD, parameters, seeds);
   timed_steps(grains, 2);  // the friction springs of a bed laid anew grow from zero, as in the peer's run
   const double one = timed_steps(grains, 2) / 2.0;
   const int calls = std::max(1, static_cast<int>(seconds_per_stretch / one));
@@ -90,7 +92,7 @@ void write_lammps(const std::string& path, const std::vector<dem::GrainSeed>& se
   std::fclose(file);
 }
 
-void run(int only, const std::string& lammps_file) {
+void run(int only, double rolling_friction, const std::string& lammps_file) {
   const bool first = rank_of(MPI_COMM_WORLD) == 0;
   const std::vector<dem::GrainSeed> tile = settle_tile(MPI_COMM_WORLD);
   std::string json;
@@ -100,7 +102,7 @@ void run(int only, const std::string& lammps_file) {
     const std::vector<dem::GrainSeed> seeds = lay_tiles(tile, tiles);
     if (!lammps_file.empty() && first)
       write_lammps(lammps_file, seeds, bed_decomposition(tiles, size_of(MPI_COMM_WORLD)).box());
-    const Timing t = measure(seeds, tiles);
+    const Timing t = measure(seeds, tiles, rolling_friction);
     if (first) print(count, t);
     json += fmt::format("\"million_grain_steps_per_second_{}\": {:.3f}, ", count, 1e-6 * count / t.seconds_per_step);
     if (ns_per_contact == 0.0) ns_per_contact = 1e9 * t.seconds_per_step / static_cast<double>(t.contacts);
@@ -116,12 +118,15 @@ int main(int argc, char** argv) {
   thalweg::MpiSession session(argc, argv);
   CLI::App app{"Speed of the contacts of a settled bed of 5 mm glass spheres."};
   int grains = 0;
+  double rolling_friction = 0.0;
   std::string lammps_file;
   app.add_option("--grains", grains, "only this bed: 2884, 23072 or 103824")
       ->check(CLI::IsMember({2884, 23072, 103824}));
+  app.add_option("--rolling-friction", rolling_friction, "of grains and floor; none by default")
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--write-lammps", lammps_file, "also write the bed as a LAMMPS data file; needs --grains")
       ->needs("--grains");
   CLI11_PARSE(app, argc, argv);
-  thalweg::benchmark::run(grains, lammps_file);
+  thalweg::benchmark::run(grains, rolling_friction, lammps_file);
   return 0;
 }
