@@ -2,12 +2,16 @@
 
 A test script is called THE_SCRIPT THALWEG MPIEXEC [unittest arguments]; it ends with program.main().
 """
+import csv
 import json
 import subprocess
 import sys
 import tempfile
 import unittest
 from pathlib import Path
+
+import h5py
+import numpy
 
 THALWEG, MPIEXEC = sys.argv[1:3]
 
@@ -41,6 +45,18 @@ class ProgramTest(unittest.TestCase):
 
     def summary(self, run):
         return json.loads((self.folder / run / "summary.json").read_text())
+
+    def bed(self, run="run"):
+        """The columns of bed.h5 by name, in the order of ids."""
+        with h5py.File(self.folder / run / "bed.h5") as file:
+            return {name: data[()] for name, data in file["grains"].items()}
+
+    def series(self, run="run"):
+        """The columns of series.csv by name, without units."""
+        with open(self.folder / run / "series.csv", newline="") as file:
+            header, *rows = csv.reader(file)
+        columns = numpy.array([[float(value) for value in row] for row in rows]).T
+        return {name.split()[0].split("[")[0]: column for name, column in zip(header, columns)}
 
     def last_checkpoint(self, run):
         checkpoints = self.folder / run / "checkpoints"

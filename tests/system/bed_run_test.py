@@ -37,10 +37,6 @@ output: {series: {every: 0.02}}
         super().setUp()
         self.run_well("run", self.case)
 
-    def bed(self, run="run"):
-        with h5py.File(self.folder / run / "bed.h5") as file:
-            return {name: file["grains"][name][()] for name in file["grains"]}
-
     def test_the_file_has_the_same_bytes_on_any_ranks(self):
         for out, ranks, layout in (("one", 0, "1,1,1"), ("two", 2, "2,1,1"), ("four", 4, "2,1,2")):
             self.run_well("run", self.case, "--out", out, "--layout", layout, "--set", "run={until: 0.02}", ranks=ranks)

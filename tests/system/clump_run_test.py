@@ -6,7 +6,6 @@ Called by ctest: clump_run_test.py THALWEG MPIEXEC [unittest arguments]
 import sys
 from pathlib import Path
 
-import h5py
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
@@ -41,15 +40,6 @@ analysis: {transport_rate: {}}
 """
     FILE = "grains=[{placement: {file: run/bed.h5}}]"
 
-    def bed(self, run="run"):
-        with h5py.File(self.folder / run / "bed.h5") as file:
-            return {name: file[f"grains/{name}"][()] for name in file["grains"]}
-
-    def figures(self, run="run"):
-        header, *rows = (self.folder / run / "series.csv").read_text().splitlines()
-        names = [name.split(" ")[0].split("[")[0] for name in header.split(",")]
-        return [dict(zip(names, map(float, row.split(",")))) for row in rows]
-
     def test_a_bed_of_clumps_is_written_measured_and_taken_up_again(self):
         self.run_well("run", self.case, "--set", "output.series.every=1.0e-5")   # a row every step
         bed = self.bed()
@@ -71,7 +61,7 @@ analysis: {transport_rate: {}}
         centre_velocity = 0.5 * (bed["velocity"][1:48:2] + bed["velocity"][0:48:2])
         momentum = 2550.0 * TWIN_VOLUME * centre_velocity.sum(axis=0) + 2000.0 * sphere * bed["velocity"][48:].sum(axis=0)
         flux = (TWIN_VOLUME * centre_velocity[:, 0].sum() + sphere * bed["velocity"][48:, 0].sum()) / 4.0e-4
-        last = self.figures()[-1]
+        last = {name: column[-1] for name, column in self.series().items()}
         for axis, name in enumerate("xyz"):
             self.assertAlmostEqual(last[f"grain_momentum_{name}"], momentum[axis], delta=1e-9 * abs(momentum[2]))
         self.assertAlmostEqual(last["q_s"], flux, delta=1e-9 * abs(flux))
@@ -160,9 +150,8 @@ run: {until: 0.01}
         self.run_well("run", self.case)
         self.run_well("run", self.case, "--out", "two", ranks=2)
         self.assertEqual(self.last_checkpoint("run").read_bytes(), self.last_checkpoint("two").read_bytes())
-        with h5py.File(self.folder / "run/bed.h5") as file:
-            velocity = file["grains/velocity"][()].mean(axis=0)
-            spin = file["grains/angular_velocity"][0]
+        bed = self.bed()
+        velocity, spin = bed["velocity"].mean(axis=0), bed["angular_velocity"][0]
         # Slower than without drag, (1 - rho_f/rho_s) g t with added mass left out, and on its way; it drifts and turns
         # about y alone, because it lies askew in the plane x-z.
         self.assertLess(velocity[2], -0.01)

@@ -6,7 +6,6 @@ Called by ctest: initial_run_test.py THALWEG MPIEXEC [unittest arguments]
 import sys
 from pathlib import Path
 
-import h5py
 import numpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
@@ -40,8 +39,8 @@ run: {until: 0.1}
 """
 
     def grains(self, run):
-        with h5py.File(self.folder / run / "bed.h5") as file:
-            return {name: file["grains"][name][()] for name in ("position", "velocity", "angular_velocity")}
+        bed = self.bed(run)
+        return {name: bed[name] for name in ("position", "velocity", "angular_velocity")}
 
     def assert_goes_on(self, time, *settings, ranks=0):
         """A run begun from the last checkpoint of another ends as that other run does when it is continued."""

@@ -32,8 +32,7 @@ run: {until: 3.0e-3, time_step: 5.0e-7}
     def velocities(self, *settings, ranks=0):
         arguments = [a for setting in settings for a in ("--set", setting)]
         self.run_well("run", self.case, "--overwrite", *arguments, ranks=ranks)
-        with h5py.File(self.folder / "run/bed.h5") as file:
-            return file["grains/velocity"][()]
+        return self.bed()["velocity"]
 
     def test_two_materials_meet_with_the_geometric_mean_of_their_restitutions(self):
         for first, second, mixed in ((None, None, 0.9), (0.4, None, 0.6), (0.4, 0.9, 0.6), (0.64, 0.25, 0.4)):
@@ -71,8 +70,8 @@ run: {until: 3.0e-3, time_step: 5.0e-7}
                   "geometric_deviation: 1.3, minimum: 1.5e-3, maximum: 3.0e-3}, density: 1000}]"
         self.velocities(mixture, "run={until: 1.0e-4}")
         first = (self.folder / "run/bed.h5").read_bytes()
-        with h5py.File(self.folder / "run/bed.h5") as file:
-            radius, density = file["grains/radius"][()], file["grains/density"][()]
+        bed = self.bed()
+        radius, density = bed["radius"], bed["density"]
         self.assertEqual(sorted(set(radius[:40])), [1.0e-3, 1.5e-3])
         self.assertEqual((radius[:40] == 1.0e-3).sum(), 30)
         self.assertEqual(len(set(radius[40:])), 20)

@@ -3,11 +3,9 @@
 
 Called by ctest: motion_run_test.py THALWEG MPIEXEC [unittest arguments]
 """
-import csv
 import sys
 from pathlib import Path
 
-import h5py
 import numpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
@@ -49,19 +47,10 @@ output: {series: {every: 0.02}}
 analysis: {population_loads: {}, wall_forces: {}}
 """
 
-    def bed(self, run="run"):
-        with h5py.File(self.folder / run / "bed.h5") as file:
-            return file["grains/position"][()], file["grains/velocity"][()]
-
-    def series(self, run="run"):
-        with open(self.folder / run / "series.csv") as file:
-            rows = list(csv.reader(line for line in file if not line.startswith("#")))
-        names = [name.split()[0] for name in rows[0]]
-        return {name: numpy.array([float(row[n]) for row in rows[1:]]) for n, name in enumerate(names)}
-
     def test_a_lift_carries_its_grain_and_feels_its_weight(self):
         self.run_well("run", self.case, "--set", "walls=[]")
-        position, velocity = self.bed()
+        bed = self.bed()
+        position, velocity = bed["position"], bed["velocity"]
         time = self.summary("run")["simulated_time"]
         numpy.testing.assert_allclose(position[:9, 2], 0.01 + 0.02 * time, atol=1e-15)
         # In the dimple: diagonal of the 4 mm square over 2 beside it, up to the overlaps of a weight over 20 kN/m.
@@ -86,7 +75,7 @@ analysis: {population_loads: {}, wall_forces: {}}
         self.run_well("run", self.case, *whole, "--restart", "half", "--out", "rest", ranks=2)
         self.assertEqual((self.folder / "run/bed.h5").read_bytes(), (self.folder / "rest/bed.h5").read_bytes())
         # What lay on the swinging floor has been thrown about, and has not passed the slanted plane.
-        position, _ = self.bed()
+        position = self.bed()["position"]
         height = (position[10, 2] - (position[10, 0] - 0.025)) / numpy.sqrt(2)
         self.assertGreater(height, 2.4e-3)
 
@@ -96,7 +85,7 @@ analysis: {population_loads: {}, wall_forces: {}}
         places = "grains.1.placement.positions=[[0.03, 0.015, 0.0226], [0.0231, 0.015, 0.0226]]"
         still = "domain.boundaries.bottom=no_slip"
         self.run_well("run", self.case, "--set", plate, "--set", places, "--set", still)
-        position, _ = self.bed()
+        position = self.bed()["position"]
         self.assertAlmostEqual(position[9, 2], 0.0225 - WEIGHT / 20000.0, delta=1e-8)
         self.assertLess(position[10, 2], 0.0176)  # below the plate's edge by more than its radius
         self.assertAlmostEqual(self.series()["wall_force_wall_0_z"][-1], -WEIGHT, delta=1e-3 * WEIGHT)
@@ -109,7 +98,7 @@ analysis: {population_loads: {}, wall_forces: {}}
         self.run_well("run", self.case, "--set", flying, "--set", periodic, "--set", "walls=[]",
                       "--set", "analysis={}", "--set", "run.until=0.03", ranks=2)
         time = self.summary("run")["simulated_time"]
-        position, _ = self.bed()
+        position = self.bed()["position"]
         self.assertAlmostEqual(position[0, 0], (0.01 + 40 * time) % 0.04, delta=1e-12)
         self.assertAlmostEqual(position[0, 2], 0.03 - 4.9 * time ** 2, delta=1e-12)
 
