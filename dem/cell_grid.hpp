@@ -1,5 +1,5 @@
-// Points sorted into the cells of a grid over the box, to find all neighbours within a distance. Knows periodic axes,
-// also those with fewer than three cells: every neighbouring cell is visited once.
+// Points sorted into the cells of a grid over the box, to find all pairs within a distance. Knows periodic axes, also
+// those with fewer than three cells: every pair is visited once.
 #pragma once
 
 #include "core/periodic_box.hpp"
@@ -16,17 +16,17 @@ public:
   // Points (m) must lie in the box on periodic axes; beyond a non-periodic face they count to the outermost cells.
   CellGrid(const PeriodicBox& box, double distance, std::span<const Vec3> points);
 
-  // Calls visit(index) for every point that may be within `distance` of `point`, itself included if it is one of them.
+  // The points cell by cell, so that those of a cell are neighbours in memory too if their data are laid out like this.
+  std::span<const std::uint32_t> order() const { return members_; }
+
+  // Calls visit(m, n) for every pair of points order()[m], order()[n] that may be within `distance` of each other.
   template <typename Visitor>
-  void for_each_near(const Vec3& point, Visitor&& visit) const {
-    std::array<Neighbours, 3> near;
-    for (int axis = 0; axis < 3; ++axis) near[axis] = neighbours(axis, cell_along(axis, point[axis]));
-    for (int k = 0; k < near[2].count; ++k)
-      for (int j = 0; j < near[1].count; ++j)
-        for (int i = 0; i < near[0].count; ++i) {
-          const std::size_t cell = index(near[0].cell[i], near[1].cell[j], near[2].cell[k]);
-          for (std::uint32_t m = start_[cell]; m < start_[cell + 1]; ++m) visit(members_[m]);
-        }
+  void for_each_near_pair(Visitor&& visit) const {
+    for (int k = 0; k < count_[2]; ++k)
+      for (int j = 0; j < count_[1]; ++j)
+        for (int i = 0; i < count_[0]; ++i)
+          if (const std::size_t cell = index(i, j, k); start_[cell] < start_[cell + 1])
+            visit_pairs_of(cell, {neighbours(0, i), neighbours(1, j), neighbours(2, k)}, visit);
   }
 
 private:
@@ -34,6 +34,19 @@ private:
     int count = 0;
     std::array<int, 3> cell{};
   };
+
+  // Of two neighbouring cells, the one with the lower number sees to their pairs.
+  template <typename Visitor>
+  void visit_pairs_of(std::size_t cell, const std::array<Neighbours, 3>& near, Visitor&& visit) const {
+    for (int k = 0; k < near[2].count; ++k)
+      for (int j = 0; j < near[1].count; ++j)
+        for (int i = 0; i < near[0].count; ++i) {
+          const std::size_t other = index(near[0].cell[i], near[1].cell[j], near[2].cell[k]);
+          if (other < cell) continue;
+          for (std::uint32_t m = start_[cell]; m < start_[cell + 1]; ++m)
+            for (std::uint32_t n = other == cell ? m + 1 : start_[other]; n < start_[other + 1]; ++n) visit(m, n);
+        }
+  }
 
   int cell_along(int axis, double coordinate) const;
   Neighbours neighbours(int axis, int cell) const;

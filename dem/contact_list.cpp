@@ -1,8 +1,10 @@
 #include "dem/contact_list.hpp"
 
 #include "dem/cell_grid.hpp"
+#include "dem/minimum_image.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace thalweg::dem {
 
@@ -20,18 +22,21 @@ struct Candidate {
 std::vector<Candidate> find_pairs(const GrainStore& store, const PeriodicBox& box, double skin, double largest_radius) {
   std::vector<Candidate> pairs;
   const CellGrid grid(box, 2.0 * largest_radius + skin, store.position);
-  for (std::size_t a = 0; a < store.owned; ++a)
-    grid.for_each_near(store.position[a], [&](std::uint32_t b) {
-      const bool mine_to_list = store.is_ghost(b) || store.id[a] < store.id[b];
-      if (b == a || !mine_to_list || (store.clump[a] >= 0 && store.clump[a] == store.clump[b])) return;
-      const double range = store.radius[a] + store.radius[b] + skin;
-      if (!(box.difference(store.position[a], store.position[b]).squaredNorm() <= range * range)) return;
-      const auto slot = static_cast<std::uint32_t>(a);
-      if (store.id[a] < store.id[b])
-        pairs.push_back({store.id[a], store.id[b], slot, b});
-      else
-        pairs.push_back({store.id[b], store.id[a], b, slot});
-    });
+  const MinimumImage image(box);
+  const std::span<const std::uint32_t> slot = grid.order();
+  std::vector<Row> spheres;
+  spheres.reserve(slot.size());
+  for (const std::uint32_t s : slot) spheres.push_back(row_of(store.position[s], store.radius[s]));
+  grid.for_each_near_pair([&](std::uint32_t m, std::uint32_t n) {
+    const Row d = image(spheres[m] - spheres[n]), square = d * d;
+    const double range = spheres[m][3] + spheres[n][3] + skin;
+    if (!(square[0] + square[1] + square[2] <= range * range)) return;
+    std::uint32_t first = slot[m], second = slot[n];
+    if (store.is_ghost(first) && store.is_ghost(second)) return;
+    if (store.clump[first] >= 0 && store.clump[first] == store.clump[second]) return;
+    if (store.id[first] > store.id[second]) std::swap(first, second);
+    pairs.push_back({store.id[first], store.id[second], first, second});
+  });
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }

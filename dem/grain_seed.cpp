@@ -119,15 +119,14 @@ void check(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<c
   std::vector<Vec3> points;
   for (const GrainSeed& seed : sorted) points.push_back(box.wrapped(seed.position));
   const CellGrid grid(box, 2.0 * largest, points);
-  std::vector<std::uint32_t> near;
-  for (std::uint32_t a = 0; a < sorted.size(); ++a) {
-    near.clear();
-    grid.for_each_near(points[a], [&](std::uint32_t b) {
-      if (b > a) near.push_back(b);
-    });
-    std::sort(near.begin(), near.end());
-    for (const std::uint32_t b : near) check_pair(sorted[a], sorted[b], box, allowed_overlap);
-  }
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> touching;
+  grid.for_each_near_pair([&](std::uint32_t m, std::uint32_t n) {
+    const std::uint32_t a = grid.order()[m], b = grid.order()[n];
+    const double reach = sorted[a].radius + sorted[b].radius;
+    if (box.difference(points[a], points[b]).squaredNorm() <= reach * reach) touching.push_back(std::minmax(a, b));
+  });
+  std::sort(touching.begin(), touching.end());  // so that every rank tells of the same pair
+  for (const auto& [a, b] : touching) check_pair(sorted[a], sorted[b], box, allowed_overlap);
 }
 
 }  // namespace thalweg::dem

@@ -9,6 +9,7 @@
 #include "dem/contact_law.hpp"
 #include "dem/contact_list.hpp"
 #include "dem/material.hpp"
+#include "dem/minimum_image.hpp"
 #include "dem/moving_grains.hpp"
 #include "dem/rolling_friction.hpp"
 
@@ -16,27 +17,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
-#include <limits>
 #include <span>
 #include <type_traits>
 #include <vector>
 
 namespace thalweg::dem {
-
-// The minimum image of core/periodic_box.hpp (same bits), all axes at once and with their rules turned into numbers.
-class MinimumImage {
-public:
-  explicit MinimumImage(const PeriodicBox& box) {
-    for (int axis = 0; axis < 3; ++axis) {
-      size_[axis] = box.periodic[axis] ? box.size[axis] : 0.0;
-      half_[axis] = box.periodic[axis] ? 0.5 * box.size[axis] : std::numeric_limits<double>::infinity();
-    }
-  }
-  Row operator()(const Row& d) const { return d > half_ ? d - size_ : d < -half_ ? d + size_ : d; }
-
-private:
-  Row size_{}, half_{0.0, 0.0, 0.0, std::numeric_limits<double>::infinity()};
-};
 
 inline Row last_everywhere(const Row& r) { return Row{r[3], r[3], r[3], r[3]}; }
 
