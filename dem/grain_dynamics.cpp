@@ -4,15 +4,14 @@
 #include "core/mpi_session.hpp"
 #include "dem/contact_forces.hpp"
 #include "dem/grain_balance.hpp"
-#include "dem/grain_space.hpp"
 #include "dem/grain_start.hpp"
+#include "dem/grain_watch.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 
 namespace thalweg::dem {
 
@@ -39,8 +38,6 @@ MaterialTable table_of(const GrainParameters& p) {
 int columns_of(const GrainParameters& p) {
   return p.attached_width + (p.integrator == Integrator::gear ? GearPredictor::columns : 0);
 }
-
-enum class Trouble { none, not_finite, outside, beyond_wall, in_plate, too_fast, outran };
 
 }  // namespace
 
@@ -143,23 +140,6 @@ double GrainDynamics::list_range() const {
   return parameters_.skin + (parameters_.lubrication ? parameters_.lubrication->reach() : 0.0);
 }
 
-namespace {
-
-Trouble trouble_of(const GrainStore& store, std::size_t s, const GrainSpace& space, double displacement, double speed,
-                   double half_skin, double step_time) {
-  const Vec3& x = store.position[s];
-  if (!x.allFinite() || !std::isfinite(speed)) return Trouble::not_finite;
-  if (!space.holds(x, store.radius[s])) return Trouble::outside;
-  if (!holds_translation(store.motion[s])) {
-    if (space.beyond_moving_wall(x, store.radius[s])) return Trouble::beyond_wall;
-    if (space.deep_in_plate(x, store.radius[s])) return Trouble::in_plate;
-  }
-  if (speed * step_time > store.radius[s]) return Trouble::too_fast;
-  return displacement > half_skin ? Trouble::outran : Trouble::none;
-}
-
-}  // namespace
-
 bool GrainDynamics::prepare() {
   const auto scope = timer_.measure(lists_phase_);
   wrap_positions();
@@ -167,7 +147,7 @@ bool GrainDynamics::prepare() {
   // speed, and the loads accelerate it.
   double farthest = 0.0, fastest = largest_prescribed_speed();
   bool trouble = false;
-  const GrainSpace space(box_, planes_);
+  const GrainWatch watch{GrainSpace(box_, planes_), parameters_.skin, step_time()};
   for (std::size_t w = 0; w < planes_.size(); ++w)
     farthest = std::max(farthest, planes_[w].moved_since(listed_planes_[w]));
   for (std::size_t s = 0; s < store_.owned; ++s) {
@@ -176,14 +156,13 @@ bool GrainDynamics::prepare() {
     const double pull = (store_.load_force[s] + body_force_[s]).norm() * store_.inverse_mass[s];
     farthest = std::max(farthest, displacement);
     fastest = std::max(fastest, 2.0 * speed + pull * step_time());
-    trouble = trouble ||
-              trouble_of(store_, s, space, displacement, speed, 0.5 * parameters_.skin, step_time()) != Trouble::none;
+    trouble = trouble || watch.trouble_of(store_, s, displacement) != GrainTrouble::none;
   }
   fastest = std::max(fastest, fastest_member());
   const double mine[3] = {farthest, fastest, trouble ? 1.0 : 0.0};
   double all[3];
   MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_MAX, communicator_);
-  if (all[2] != 0.0) throw_trouble();
+  if (all[2] != 0.0) watch.throw_first(store_, box_, listed_position_, communicator_);
   const double half_skin = 0.5 * parameters_.skin;
   const double steps_to_leave = half_skin / (all[1] * parameters_.time_step);  // infinite at rest
   allowed_sub_steps_ = static_cast<int>(std::clamp(steps_to_leave, 1.0, static_cast<double>(parameters_.sub_steps)));
@@ -199,50 +178,6 @@ double GrainDynamics::fastest_member() const {
     for (std::int64_t m = 0; m < clumps_[n].members; ++m)
       speed = std::max(speed, store_.velocity[clumps_.first_slot(n) + static_cast<std::size_t>(m)].norm());
   return 3.0 * speed + clumps_.largest_pull(store_) * step_time();
-}
-
-void GrainDynamics::throw_trouble() const {
-  struct Report {
-    std::int64_t id = std::numeric_limits<std::int64_t>::max();
-    Trouble trouble = Trouble::none;
-    double x[3] = {}, speed = 0.0;
-  } report;
-  const GrainSpace space(box_, planes_);
-  for (std::size_t s = 0; s < store_.owned && report.trouble == Trouble::none; ++s) {
-    const double displacement = box_.difference(store_.position[s], listed_position_[s]).norm();
-    const double speed = store_.velocity[s].norm();
-    const Trouble t = trouble_of(store_, s, space, displacement, speed, 0.5 * parameters_.skin, step_time());
-    const Vec3& x = store_.position[s];
-    if (t != Trouble::none) report = {store_.id[s], t, {x[0], x[1], x[2]}, speed};
-  }
-  // Every rank tells of the same grain: the one with the lowest id.
-  std::int64_t lowest = 0;
-  MPI_Allreduce(&report.id, &lowest, 1, MPI_INT64_T, MPI_MIN, communicator_);
-  int teller = report.id == lowest ? rank_of(communicator_) : 0, root = 0;
-  MPI_Allreduce(&teller, &root, 1, MPI_INT, MPI_MAX, communicator_);
-  MPI_Bcast(&report, sizeof(Report), MPI_BYTE, root, communicator_);
-
-  const std::string grain = fmt::format("Grain {} at ({:g}, {:g}, {:g}) m, moving at {:g} m/s,", report.id, report.x[0],
-                                        report.x[1], report.x[2], report.speed);
-  switch (report.trouble) {
-    case Trouble::not_finite:
-      throw RunError(grain +
-                     " has a position or velocity that is not a number; its load or its contacts have blown up.");
-    case Trouble::outside:
-      throw RunError(grain + " is more than its radius beyond a face of the box that is not periodic.");
-    case Trouble::beyond_wall:
-      throw RunError(grain + " is more than its radius beyond a wall that moves.");
-    case Trouble::in_plate:
-      throw RunError(grain + " is more than half its radius deep in a plate; use stiffer contacts or less load.");
-    case Trouble::too_fast:
-      throw RunError(fmt::format("{} moves more than its radius in one step of {:g} s; use a shorter time step.", grain,
-                                 step_time()));
-    default:
-      throw RunError(
-          fmt::format("{} has gone more than half the skin of {:g} m since the contact list was built; use a "
-                      "shorter time step or a wider skin.",
-                      grain, parameters_.skin));
-  }
 }
 
 // Of the parameters, so the same on every rank.

@@ -187,7 +187,6 @@ private:
   double list_range() const;
   void wrap_positions();
   double fastest_member() const;
-  void throw_trouble() const;
   void rebuild();
   void move_cuts();
   void migrate(std::vector<ContactHistory>& histories);

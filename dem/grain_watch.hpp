@@ -1,0 +1,32 @@
+// What must not happen to a grain in a run, looked for at every prepare() of the grains: better a run that stops with
+// the grain's id, place and speed than a wrong number.
+#pragma once
+
+#include "core/periodic_box.hpp"
+#include "dem/grain_space.hpp"
+#include "dem/grain_store.hpp"
+
+#include <mpi.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace thalweg::dem {
+
+enum class GrainTrouble { none, not_finite, outside, beyond_wall, in_plate, too_fast, outran };
+
+struct GrainWatch {
+  GrainSpace space;
+  double skin;       // m, of the contact list: a grain may go half of it
+  double step_time;  // s, of the caller's step, in which a grain may move its radius
+
+  // displacement: m, since the contact list was built.
+  GrainTrouble trouble_of(const GrainStore& store, std::size_t owned_slot, double displacement) const;
+
+  // Throws RunError, the same on every rank: of all grains in trouble, about the one with the lowest id. listed: places
+  // of owned grains when the list was built. There must be one. Collective.
+  [[noreturn]] void throw_first(const GrainStore& store, const PeriodicBox& box, const std::vector<Vec3>& listed,
+                                MPI_Comm communicator) const;
+};
+
+}  // namespace thalweg::dem
