@@ -70,13 +70,13 @@ void add_rolling_on_wall(MovingGrain& grain, const ContactMotion& motion, const 
 // rolling: of every contact, or of none.
 template <typename ContactLaw>
 void evaluate_walls(MovingGrains& grains, std::vector<WallContact>& contacts, std::span<RollingContact> rolling,
-                    std::span<const Plane> walls, const MaterialTable& materials,
+                    const PeriodicBox& box, std::span<const Plane> walls, const MaterialTable& materials,
                     std::span<const std::uint8_t> material, const ContactLaw& law) {
   for (std::size_t number = 0; number < contacts.size(); ++number) {
     WallContact& c = contacts[number];
     MovingGrain& grain = grains[c.grain];
     const Plane& wall = walls[c.wall];
-    const WallSight sight = wall.seen_from(vector_of(grain.position));
+    const WallSight sight = wall.seen_from(vector_of(grain.position), box);
     const ContactMotion motion = motion_of(body_of(grain), sight, wall.velocity);
     if (!(motion.overlap > 0.0)) {
       std::fill_n(c.spring, 3, 0.0);
@@ -97,7 +97,8 @@ void evaluate_walls(MovingGrains& grains, std::vector<WallContact>& contacts, st
 
 template <typename ContactLaw>
 std::vector<Vec3> wall_forces_with(const ContactLaw& law, const GrainStore& store, const ContactList& list,
-                                   std::span<const Plane> walls, const MaterialTable& materials) {
+                                   const PeriodicBox& box, std::span<const Plane> walls,
+                                   const MaterialTable& materials) {
   MovingGrains one;
   std::vector<Vec3> forces;
   std::vector<WallContact> contact(1);
@@ -111,7 +112,7 @@ std::vector<Vec3> wall_forces_with(const ContactLaw& law, const GrainStore& stor
     one.load(alone, {});
     contact[0] = c;
     contact[0].grain = 0;
-    evaluate_walls(one, contact, {}, walls, materials, alone.material, law);
+    evaluate_walls(one, contact, {}, box, walls, materials, alone.material, law);
     forces.push_back(vector_of(one[0].force));
   }
   return forces;
@@ -137,7 +138,8 @@ void visit_ends_with(const ContactLaw& law, const GrainStore& store, const Conta
     if (!store.is_ghost(c.second)) visit(c.second, (store.radius[c.second] - half) * n, -force);
   }
   for (const WallContact& c : list.walls) {
-    const ContactMotion motion = motion_of(body_of(store, c.grain), walls[c.wall], store.position[c.grain]);
+    const ContactMotion motion = motion_of(
+        body_of(store, c.grain), walls[c.wall].seen_from(store.position[c.grain], box), walls[c.wall].velocity);
     if (!(motion.overlap > 0.0)) continue;
     ContactCoefficients coefficients = materials.wall(store.material[c.grain]).coefficients;
     coefficients.friction = walls[c.wall].friction;
@@ -154,7 +156,7 @@ void evaluate_with(const ContactLaw& law, MovingGrains& grains, ContactList& lis
     evaluate_pairs<false>(grains, list, box, materials, material, law);
   else
     evaluate_pairs<true>(grains, list, box, materials, material, law);
-  evaluate_walls(grains, list.walls, list.rolling_walls, walls, materials, material, law);
+  evaluate_walls(grains, list.walls, list.rolling_walls, box, walls, materials, material, law);
 }
 
 }  // namespace
@@ -168,12 +170,12 @@ void evaluate_contacts(MovingGrains& grains, ContactList& list, const PeriodicBo
     evaluate_with(HertzMindlin(manner), grains, list, box, walls, materials, material);
 }
 
-std::vector<Vec3> wall_contact_forces(const GrainStore& store, const ContactList& list, std::span<const Plane> walls,
-                                      const MaterialTable& materials) {
+std::vector<Vec3> wall_contact_forces(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
+                                      std::span<const Plane> walls, const MaterialTable& materials) {
   const ContactManner manner = materials.manner(0.0);
   if (materials.law() == Law::linear)
-    return wall_forces_with(SpringDashpotFriction(manner), store, list, walls, materials);
-  return wall_forces_with(HertzMindlin(manner), store, list, walls, materials);
+    return wall_forces_with(SpringDashpotFriction(manner), store, list, box, walls, materials);
+  return wall_forces_with(HertzMindlin(manner), store, list, box, walls, materials);
 }
 
 void for_each_contact_end(const GrainStore& store, const ContactList& list, const PeriodicBox& box,

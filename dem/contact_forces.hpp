@@ -19,8 +19,8 @@ void evaluate_contacts(MovingGrains& grains, ContactList& list, const PeriodicBo
                        const MaterialTable& materials, std::span<const std::uint8_t> material, double time_step);
 
 // The force (N) on each wall contact's grain, by the present positions, velocities and springs, which stay as they are.
-std::vector<Vec3> wall_contact_forces(const GrainStore& store, const ContactList& list, std::span<const Plane> walls,
-                                      const MaterialTable& materials);
+std::vector<Vec3> wall_contact_forces(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
+                                      std::span<const Plane> walls, const MaterialTable& materials);
 
 // Calls visit(slot, arm, force) for every contact of every owned grain, in the order of the list, pairs first: m from
 // its centre to the contact, N on the grain. By the present positions, velocities and springs, which stay as they are.

@@ -114,7 +114,7 @@ ContactList find_contacts(const GrainStore& store, const PeriodicBox& box, std::
   for (std::size_t s = 0; s < store.owned; ++s)
     // From the last wall to the first: the keys -1 - wall then rise.
     for (std::size_t w = walls.size(); w-- > 0;) {
-      if (!(walls[w].seen_from(store.position[s]).distance <= store.radius[s] + skin)) continue;
+      if (!(walls[w].seen_from(store.position[s], box).distance <= store.radius[s] + skin)) continue;
       list.walls.push_back({static_cast<std::uint32_t>(s),
                             static_cast<std::uint32_t>(w),
                             materials.wall(store.material[s]).damping.coefficient(store.mass[s]),

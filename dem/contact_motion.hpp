@@ -1,5 +1,5 @@
 // Two grains, or a grain and a wall, one at a time: how their surfaces move at the contact. For what looks at single
-// contacts; the loop over all pairs of a sub-step has the same formulas for many at once (contact_forces.cpp).
+// contacts; the loop over all pairs of a sub-step has the same formulas for many at once (pair_batch.hpp).
 //
 // The lever arm of a grain reaches to the middle of the overlap (to the surface of a wall): l = R - delta/2.
 #pragma once
@@ -41,9 +41,6 @@ inline ContactMotion motion_of(const ContactBody& grain, const WallSight& wall, 
   const Vec3& n = wall.normal;
   const Vec3 v = grain.velocity - wall_velocity - wall.distance * grain.spin.cross(n);
   return {grain.radius - wall.distance, n[0], n[1], n[2], v[0], v[1], v[2], grain.radius};
-}
-inline ContactMotion motion_of(const ContactBody& grain, const Plane& wall, const Vec3& position) {
-  return motion_of(grain, wall.seen_from(position), wall.velocity);
 }
 
 inline Vec3 normal_of(const ContactMotion& c) { return {c.nx, c.ny, c.nz}; }

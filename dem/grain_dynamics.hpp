@@ -99,15 +99,16 @@ public:
   // Before the sub-steps of a fluid step: wraps positions and, where some grain may leave its half skin during the
   // coming sub-steps, moves grains to the rank of their centre and rebuilds ghosts and contact list. True if slots
   // changed. Throws RunError, on every rank, where a grain has outrun its half skin, moves more than its radius in one
-  // fluid step, is beyond a wall or a non-periodic face by more than its radius, or is no longer a number. One
-  // reduction. Collective.
+  // fluid step, is beyond a wall or a non-periodic face by more than its radius or half its radius deep in a plate, or
+  // is no longer a number. One reduction. Collective.
   bool prepare();
 
   // How many sub-steps the grains may take from prepare() to the next: fewer than GrainParameters::sub_steps where they
   // are so fast that one leaves its half skin sooner. Of the state at prepare() alone, whatever the age of the list.
   int allowed_sub_steps() const { return allowed_sub_steps_; }
 
-  // Moves the grains under the loads in store(). At most GrainParameters::sub_steps since prepare(). Collective.
+  // Moves the grains under the loads in store(). At most GrainParameters::sub_steps since prepare(); after more than
+  // allowed_sub_steps() a grain may have outrun its list, which the next prepare() refuses. Collective.
   void advance(int sub_steps);
 
   // After the sub-steps: wraps positions and gives ghosts the final velocities of their owners. Collective.
@@ -211,7 +212,7 @@ private:
 
   std::int64_t steps_done_ = 0;  // sub-steps since the start of the run
   int allowed_sub_steps_ = 1;
-  std::vector<Plane> planes_;    // the walls where they are now
+  std::vector<Plane> planes_;  // the walls where they are now
   bool walls_change_;
   Assemblies assemblies_;
 

@@ -29,7 +29,7 @@ std::vector<Contact> GrainDynamics::contacts() const {
     touching.push_back({store_.id[c.first], store_.id[c.second], overlap, separation.normalized(), Vec3(c.spring)});
   });
   for (const WallContact& c : list_.walls) {
-    const WallSight wall = planes_[c.wall].seen_from(store_.position[c.grain]);
+    const WallSight wall = planes_[c.wall].seen_from(store_.position[c.grain], box_);
     const double overlap = store_.radius[c.grain] - wall.distance;
     if (overlap > 0.0)
       touching.push_back(
@@ -54,7 +54,7 @@ void GrainDynamics::for_each_contact(
 
 std::vector<Vec3> GrainDynamics::wall_forces() const {
   const std::size_t walls = planes_.size();
-  const std::vector<Vec3> on_grains = wall_contact_forces(store_, list_, planes_, materials_);
+  const std::vector<Vec3> on_grains = wall_contact_forces(store_, list_, box_, planes_, materials_);
   std::vector<double> terms(3 * walls * on_grains.size(), 0.0);
   for (std::size_t n = 0; n < on_grains.size(); ++n)
     for (std::size_t axis = 0; axis < 3; ++axis)

@@ -13,7 +13,7 @@ namespace thalweg::dem {
 class GrainSpace {
 public:
   // walls: where they are now.
-  GrainSpace(const PeriodicBox& box, std::span<const Plane> walls) : periodic_(box.periodic), upper_(box.size) {
+  GrainSpace(const PeriodicBox& box, std::span<const Plane> walls) : box_(box), upper_(box.size) {
     for (const Plane& wall : walls) {
       if (wall.plate) {
         plates_.push_back(wall);
@@ -33,7 +33,7 @@ public:
   // Not beyond an end of the box by more than its radius.
   bool holds(const Vec3& position, double radius) const {
     for (int axis = 0; axis < 3; ++axis)
-      if (!periodic_[axis] && (position[axis] < lower_[axis] - radius || position[axis] > upper_[axis] + radius))
+      if (!box_.periodic[axis] && (position[axis] < lower_[axis] - radius || position[axis] > upper_[axis] + radius))
         return false;
     return true;
   }
@@ -43,14 +43,14 @@ public:
                        [&](const Plane& wall) { return (position - wall.point).dot(wall.normal) < -radius; });
   }
 
-  // Half its radius is left on the one side of a plate: it may come out on the other.
+  // Its centre is nearer to a plate than half its radius: it might come out on the other side.
   bool deep_in_plate(const Vec3& position, double radius) const {
     return std::any_of(plates_.begin(), plates_.end(),
-                       [&](const Plane& plate) { return plate.seen_from(position).distance < 0.5 * radius; });
+                       [&](const Plane& plate) { return plate.seen_from(position, box_).distance < 0.5 * radius; });
   }
 
 private:
-  std::array<bool, 3> periodic_;
+  PeriodicBox box_;
   Vec3 lower_ = Vec3::Zero(), upper_;
   std::vector<Plane> moving_, plates_;
 };

@@ -52,8 +52,9 @@ void add_to_pair(MovingGrain& first, MovingGrain& second, const Vec3& separation
   second.torque += second_arm * turn - couple;
 }
 
-void add_to_wall(MovingGrain& grain, const Plane& wall, const LubricationParameters& parameters) {
-  const auto [height, n] = wall.seen_from(vector_of(grain.position));
+void add_to_wall(MovingGrain& grain, const Plane& wall, const PeriodicBox& box,
+                 const LubricationParameters& parameters) {
+  const auto [height, n] = wall.seen_from(vector_of(grain.position), box);
   const double gap = height - grain.position[3];
   if (!(gap > 0.0 && gap < parameters.reach())) return;
   const Vec3 approach = vector_of(grain.velocity) - wall.velocity, spin = vector_of(grain.spin);
@@ -121,7 +122,7 @@ void add_lubrication(MovingGrains& grains, const ContactList& list, const Period
     add_to_pair(first, second, box.difference(vector_of(first.position), vector_of(second.position)), parameters);
   }
   for (const WallContact& c : list.walls)
-    if (parameters.walls[c.wall]) add_to_wall(grains[c.grain], walls[c.wall], parameters);
+    if (parameters.walls[c.wall]) add_to_wall(grains[c.grain], walls[c.wall], box, parameters);
 }
 
 }  // namespace thalweg::dem

@@ -37,7 +37,9 @@ bool Plane::changes() const {
   return moves || (oscillation.frequency > 0.0 && !oscillation.amplitude.isZero(0.0));
 }
 
-WallSight Plane::seen_as_plate(const Vec3& from_point) const {
+WallSight Plane::seen_as_plate(Vec3 from_point, const PeriodicBox& box) const {
+  for (int axis = 0; axis < 3; ++axis)
+    if (box.periodic[axis]) from_point[axis] -= box.size[axis] * std::round(from_point[axis] / box.size[axis]);
   const Vec3 across = normal.cross(plate->along);
   const double height = from_point.dot(normal), u = from_point.dot(plate->along), v = from_point.dot(across);
   const double past_end = u - std::clamp(u, -plate->half_length, plate->half_length);
@@ -100,6 +102,22 @@ void check(const Plane& plane) {
         fmt::format("The rolling friction of a wall is {:g}; it must be zero or positive.", plane.rolling_friction));
   if (plane.plate) check_plate(*plane.plate, n);
   check(motion_of(plane));
+}
+
+void check_images(const Plane& plane, const PeriodicBox& box, double largest_radius) {
+  if (!plane.plate) return;
+  const PlateExtent& plate = *plane.plate;
+  const Vec3 across = plane.normal.cross(plate.along);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double u = std::abs(plate.along[axis]), v = std::abs(across[axis]);
+    const bool askew = std::min(u, v) > 1e-9;
+    const double reach = u * plate.half_length + v * plate.half_width;
+    if (box.periodic[axis] && askew && reach + largest_radius > 0.5 * box.size[axis])
+      throw InputError(fmt::format(
+          "A plate askew to the periodic axis {} reaches {:g} m to either side of its middle; with a grain of radius "
+          "{:g} m that must be less than half the box, {:g} m, or the plate be turned along the axis.",
+          "xyz"[axis], reach, largest_radius, 0.5 * box.size[axis]));
+  }
 }
 
 }  // namespace thalweg::dem

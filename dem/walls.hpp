@@ -13,8 +13,8 @@
 
 namespace thalweg::dem {
 
-// What makes a plane a plate: how far it goes from its point, along one direction in the plane and across it. A plate
-// has no thickness and, in a periodic box, no images.
+// What makes a plane a plate: how far it goes from its middle, along one direction in the plane and across it. A plate
+// has no thickness. In a periodic box there are its images too; one as long as the box has no ends there.
 struct PlateExtent {
   Vec3 along = Vec3::UnitX();  // unit, normal to the plane's normal
   double half_length = 0.0;    // m, along it
@@ -28,17 +28,17 @@ struct WallSight {
 };
 
 struct Plane {
-  Vec3 point = Vec3::Zero();      // m, any point on it; of a wall that moves: at the start
-  Vec3 normal = Vec3::UnitZ();    // unit, into the side where the grains are
+  Vec3 point = Vec3::Zero();      // m, any point on it, of a plate its middle; of a wall that moves: at the start
+  Vec3 normal = Vec3::UnitZ();    // unit, into the side where the grains are; of a plate either way
   double friction = 0.0;          // against grains
   double rolling_friction = 0.0;  // against grains
   Vec3 velocity = Vec3::Zero();   // m/s
   Oscillation oscillation;        // on top of the velocity
   std::optional<PlateExtent> plate;
 
-  WallSight seen_from(const Vec3& position) const {
+  WallSight seen_from(const Vec3& position, const PeriodicBox& box) const {
     const Vec3 from_point = position - point;
-    return plate ? seen_as_plate(from_point) : WallSight{from_point.dot(normal), normal};
+    return plate ? seen_as_plate(from_point, box) : WallSight{from_point.dot(normal), normal};
   }
   // Whether its place or its velocity changes with time: of a plane, a velocity in itself alone changes neither.
   bool changes() const;
@@ -48,7 +48,7 @@ struct Plane {
   double moved_since(const Plane& earlier) const;  // m: no grain is nearer or further by more than this
 
 private:
-  WallSight seen_as_plate(const Vec3& from_point) const;
+  WallSight seen_as_plate(Vec3 from_point, const PeriodicBox& box) const;
 };
 
 // The faces in the order of all lists of them, as cases and figures name them.
@@ -63,5 +63,10 @@ std::vector<Plane> face_planes(const PeriodicBox& box, const ContactParameters& 
 // Throws InputError unless the normal is a unit vector, the frictions are not negative, the motion is possible and a
 // plate has positive lengths along its plane.
 void check(const Plane& plane);
+
+// Throws InputError if the nearest image of a plate is not sure to be the one whose middle is nearest: each of its
+// edges must be along or across every periodic axis, or half of the plate and a grain (m) must fit into half of the
+// box.
+void check_images(const Plane& plane, const PeriodicBox& box, double largest_radius);
 
 }  // namespace thalweg::dem

@@ -315,10 +315,18 @@ void check_disks(const Case& c, const io::YamlDocument& document) {
     throw document.error("domain.boundaries", "disks move in the plane x-z; give y: periodic");
   if (gravity_vector(c.gravity).y() != 0.0)
     throw document.error("gravity.vector", "disks move in the plane x-z; give a vector in m/s^2 with 0 along y");
-  for (std::size_t n = 0; n < c.walls.size(); ++n)
-    if (c.walls[n].normal.y() != 0.0)
+  for (std::size_t n = 0; n < c.walls.size(); ++n) {
+    const WallCase& wall = c.walls[n];
+    if (wall.normal.y() != 0.0)
       throw document.error(fmt::format("walls.{}.normal", n),
                            "disks move in the plane x-z; give a normal with 0 along y");
+    if (wall.velocity.y() != 0.0)
+      throw document.error(fmt::format("walls.{}.velocity", n),
+                           "disks move in the plane x-z; give a vector in m/s with 0 along y");
+    if (wall.oscillation && wall.oscillation->amplitude.y() != 0.0)
+      throw document.error(fmt::format("walls.{}.oscillation.amplitude", n),
+                           "disks move in the plane x-z; give a vector in m with 0 along y");
+  }
   check_plates_of_disks(c, document);
   for (std::size_t n = 0; n < c.grains.size(); ++n) {
     const PopulationCase& grains = c.grains[n];

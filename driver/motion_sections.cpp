@@ -47,9 +47,11 @@ static void describe(io::SectionVisitor& visit, PlateCase& plate) {
 }
 
 void describe(io::SectionVisitor& visit, WallCase& wall) {
-  visit.vec3("point", wall.point,
-             {.unit = "m", .meaning = "on the plane, at the start", .required = true, .example = 0.0});
-  visit.vec3("normal", wall.normal, {.meaning = "into the side of the grains, of any length", .required = true});
+  visit.vec3(
+      "point", wall.point,
+      {.unit = "m", .meaning = "on the plane, of a plate its middle, at the start", .required = true, .example = 0.0});
+  visit.vec3("normal", wall.normal,
+             {.meaning = "into the side of the grains, of a plate either way; of any length", .required = true});
   visit.real("friction", wall.friction,
              {.meaning = "contact.wall_friction where not given", .at_least = 0.0, .example = 0.3});
   visit.real("rolling_friction", wall.rolling_friction,

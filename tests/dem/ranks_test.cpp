@@ -22,6 +22,7 @@ struct Case {
   bool clumps = false;   // every other grain is one
   double rolling = 0.0;  // rolling friction
   bool moving = false;   // the floor swings, and the held grains turn about an axis that moves
+  bool plate = false;    // comes up from below the floor, across the end of the box along x
   bool lubricated = false;
   bool movable_cuts = false;
 };
@@ -91,6 +92,12 @@ GrainParameters parameters_of(const Case& c) {
     p.other_materials[0].friction = 0.1;
   }
   p.walls = face_planes(box, p.contact);
+  if (c.plate) {
+    Plane plate = face_plane(box, 2, false, 0.5, Vec3(0.05, 0.0, 0.15));
+    plate.point = Vec3(0.0, 0.5 * box.size[1], -3e-3);
+    plate.plate = {Vec3::UnitX(), 6e-3, 5e-3};
+    p.walls.push_back(plate);
+  }
   if (c.moving) {
     for (Plane& wall : p.walls)
       if (wall.normal[2] > 0.0) wall.oscillation = {Vec3(1e-3, 0.0, 1e-3), 30.0, 0.0};
@@ -212,6 +219,9 @@ void compare(const Case& c, int steps) {
   if (c.clumps) {
     EXPECT_GT(members_abroad(c, alone), c.grains / 10);
   }
+  if (c.plate) {
+    EXPECT_LT(alone.wall_forces().back()[2], 0.0);
+  }
 
   for (const Index3& layout : layouts(c.cells, ranks)) {
     const std::string name = fmt::format("layout {},{},{}", layout[0], layout[1], layout[2]);
@@ -286,6 +296,16 @@ TEST(Ranks, HeapOnAMovingFloorWithARigidAssembly) {
   compare(c, 240);
   c.integrator = Integrator::gear;
   compare(c, 240);
+}
+
+TEST(Ranks, HeapLiftedByAPlate) {
+  Case c{{16, 16, 16}, 1.5e-3, {true, true, false}, 80, Vec3(4.0, 2.0, -25.0), Vec3(0.4, 0.3, 0.0)};
+  c.plate = true;
+  compare(c, 240);
+  c.clumps = true;
+  c.gravity = Vec3(4.0, 2.0, -30.0);
+  c.grains = 30;
+  compare(c, 320);
 }
 
 // Everything falls into one corner of a closed box, so that even cuts leave some ranks nearly without grains.
