@@ -95,57 +95,60 @@ void evaluate_walls(MovingGrains& grains, std::vector<WallContact>& contacts, st
   }
 }
 
+// What observers see: the force on the first body, with springs as they are.
+template <typename ContactLaw>
+Vec3 force_of(const ContactLaw& law, const ContactMotion& motion, const ContactCoefficients& coefficients,
+              double damping, const double (&spring)[3]) {
+  const ContactForce f = law(motion, coefficients, damping, {spring[0], spring[1], spring[2]});
+  return f.normal * normal_of(motion) + Vec3(f.tx, f.ty, f.tz);
+}
+
+// Calls visit(contact, motion, force on the grain) for every wall contact of the list that touches.
+template <typename ContactLaw, typename Visitor>
+void visit_walls_with(const ContactLaw& law, const GrainStore& store, const ContactList& list, const PeriodicBox& box,
+                      std::span<const Plane> walls, const MaterialTable& materials, Visitor&& visit) {
+  for (const WallContact& c : list.walls) {
+    const Plane& wall = walls[c.wall];
+    const ContactMotion motion =
+        motion_of(body_of(store, c.grain), wall.seen_from(store.position[c.grain], box), wall.velocity);
+    if (!(motion.overlap > 0.0)) continue;
+    ContactCoefficients coefficients = materials.wall(store.material[c.grain]).coefficients;
+    coefficients.friction = wall.friction;
+    visit(c, motion, force_of(law, motion, coefficients, c.damping, c.spring));
+  }
+}
+
 template <typename ContactLaw>
 std::vector<Vec3> wall_forces_with(const ContactLaw& law, const GrainStore& store, const ContactList& list,
                                    const PeriodicBox& box, std::span<const Plane> walls,
                                    const MaterialTable& materials) {
-  MovingGrains one;
-  std::vector<Vec3> forces;
-  std::vector<WallContact> contact(1);
-  GrainStore alone;
-  for (const WallContact& c : list.walls) {
-    alone.clear();
-    alone.append(store.id[c.grain], store.radius[c.grain], store.mass[c.grain], store.motion[c.grain],
-                 store.position[c.grain], store.material[c.grain]);
-    alone.velocity[0] = store.velocity[c.grain];
-    alone.angular_velocity[0] = store.angular_velocity[c.grain];
-    one.load(alone, {});
-    contact[0] = c;
-    contact[0].grain = 0;
-    evaluate_walls(one, contact, {}, box, walls, materials, alone.material, law);
-    forces.push_back(vector_of(one[0].force));
-  }
+  std::vector<Vec3> forces(list.walls.size(), Vec3::Zero());
+  visit_walls_with(law, store, list, box, walls, materials,
+                   [&](const WallContact& c, const ContactMotion&, const Vec3& force) {
+                     forces[static_cast<std::size_t>(&c - list.walls.data())] = force;
+                   });
   return forces;
 }
 
 template <typename ContactLaw>
 void visit_ends_with(const ContactLaw& law, const GrainStore& store, const ContactList& list, const PeriodicBox& box,
                      std::span<const Plane> walls, const MaterialTable& materials, const ContactEndVisitor& visit) {
-  const auto force_of = [&](const ContactMotion& motion, const ContactCoefficients& k, double damping,
-                            const double(&spring)[3]) -> Vec3 {
-    const ContactForce f = law(motion, k, damping, {spring[0], spring[1], spring[2]});
-    return f.normal * normal_of(motion) + Vec3(f.tx, f.ty, f.tz);
-  };
   for (const PairContact& c : list.pairs) {
     const ContactMotion motion = motion_of(body_of(store, c.first), body_of(store, c.second),
                                            box.difference(store.position[c.first], store.position[c.second]));
     if (!(motion.overlap > 0.0)) continue;
     const Vec3 n = normal_of(motion);
-    const Vec3 force = force_of(motion, materials.pair(store.material[c.first], store.material[c.second]).coefficients,
-                                c.damping, c.spring);
+    const Vec3 force =
+        force_of(law, motion, materials.pair(store.material[c.first], store.material[c.second]).coefficients, c.damping,
+                 c.spring);
     const double half = 0.5 * motion.overlap;
     if (!store.is_ghost(c.first)) visit(c.first, -(store.radius[c.first] - half) * n, force);
     if (!store.is_ghost(c.second)) visit(c.second, (store.radius[c.second] - half) * n, -force);
   }
-  for (const WallContact& c : list.walls) {
-    const ContactMotion motion = motion_of(
-        body_of(store, c.grain), walls[c.wall].seen_from(store.position[c.grain], box), walls[c.wall].velocity);
-    if (!(motion.overlap > 0.0)) continue;
-    ContactCoefficients coefficients = materials.wall(store.material[c.grain]).coefficients;
-    coefficients.friction = walls[c.wall].friction;
-    visit(c.grain, (motion.overlap - store.radius[c.grain]) * normal_of(motion),
-          force_of(motion, coefficients, c.damping, c.spring));
-  }
+  visit_walls_with(law, store, list, box, walls, materials,
+                   [&](const WallContact& c, const ContactMotion& motion, const Vec3& force) {
+                     visit(c.grain, (motion.overlap - store.radius[c.grain]) * normal_of(motion), force);
+                   });
 }
 
 template <typename ContactLaw>

@@ -95,7 +95,6 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
   check_prescribed_speed();
   planes_ = parameters_.walls;
   if (walls_change_) place_walls(0.0, 0.0);
-  for (const Plane& wall : parameters_.walls) check_images(wall, box_, largest_radius_);
   if (parameters_.lubrication) check(*parameters_.lubrication, seeds, box_, parameters_.time_step);
 
   const int me = rank_of(communicator_);

@@ -107,6 +107,7 @@ void check(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<c
     check_alone(seed, box, walls, allowed_overlap);
     largest = std::max(largest, seed.radius);
   }
+  for (const Plane& wall : walls) check_images(wall, box, largest);
   check_disks(sorted);
   const bool in_plane = !sorted.empty() && sorted.front().thickness > 0.0;
   for (int axis = 0; axis < 3; ++axis)

@@ -41,7 +41,7 @@ inline constexpr double allowed_initial_overlap = 1e-6;
 // centre outside the box, or an overlap with a wall or another grain of more than `allowed_overlap` diameters of the
 // smaller; also disks among spheres, and disks that are not all in one plane or move or turn out of it. Fixed grains
 // may reach into walls and into each other, and so may members of one clump. A periodic axis must be at least two of
-// the largest diameters long.
+// the largest diameters long, and plates short enough for check_images().
 void check(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<const Plane> walls,
            double allowed_overlap = allowed_initial_overlap);
 
