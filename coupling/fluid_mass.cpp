@@ -2,7 +2,7 @@
 
 #include "core/fixed_point.hpp"
 
-#include <algorithm>
+#include <cmath>
 
 namespace thalweg::coupling {
 
@@ -24,7 +24,7 @@ void for_each_fluid_cell(const lbm::Fluid<Real>& fluid, Visit visit) {
 }  // namespace
 
 template <typename Real>
-double mean_density_deviation(const lbm::Fluid<Real>& fluid, const Hydrostatic& rest) {
+ExcessMass excess_mass(const lbm::Fluid<Real>& fluid, const Hydrostatic& rest) {
   const Index3& lower = fluid.block().lower;
   std::int64_t sums[2] = {0, 0};
   for_each_fluid_cell(fluid, [&](std::ptrdiff_t cell, const Index3& at) {
@@ -33,21 +33,23 @@ double mean_density_deviation(const lbm::Fluid<Real>& fluid, const Hydrostatic& 
     ++sums[1];
   });
   MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_INT64_T, MPI_SUM, fluid.communicator());
-  return CellSum::to_double(sums[0]) / static_cast<double>(std::max<std::int64_t>(1, sums[1]));
+  return {CellSum::to_double(sums[0]), sums[1]};
 }
 
 template <typename Real>
-void add_density(lbm::Fluid<Real>& fluid, double density) {
+double add_density(lbm::Fluid<Real>& fluid, double density) {
+  if (sizeof(Real) == sizeof(float) && std::abs(density) < 1e-7) return 0.0;
   lbm::Populations<Real>& populations = fluid.populations();
   for_each_fluid_cell(fluid, [&](std::ptrdiff_t cell, const Index3&) {
     for (int i = 0; i < lbm::D3Q19::directions; ++i)
       populations.post_collision(i, cell) += static_cast<Real>(lbm::D3Q19::weight(i) * density);
   });
+  return density;
 }
 
-template double mean_density_deviation(const lbm::Fluid<float>&, const Hydrostatic&);
-template double mean_density_deviation(const lbm::Fluid<double>&, const Hydrostatic&);
-template void add_density(lbm::Fluid<float>&, double);
-template void add_density(lbm::Fluid<double>&, double);
+template ExcessMass excess_mass(const lbm::Fluid<float>&, const Hydrostatic&);
+template ExcessMass excess_mass(const lbm::Fluid<double>&, const Hydrostatic&);
+template double add_density(lbm::Fluid<float>&, double);
+template double add_density(lbm::Fluid<double>&, double);
 
 }  // namespace thalweg::coupling

@@ -1,18 +1,28 @@
-// Mass of the fluid. Covering and uncovering cells does not conserve it, so that it drifts; the drift can be taken back
-// by adding the same density to all fluid cells, w_i (rho_0 - <rho>) to each population, which gives no momentum.
+// Excess mass of the fluid (mass_account.hpp), measured and changed cell by cell.
 #pragma once
 
 #include "coupling/hydrostatic.hpp"
 #include "lbm/fluid.hpp"
 
+#include <algorithm>
+#include <cstdint>
+
 namespace thalweg::coupling {
 
-// Mean over all fluid cells of rho - 1, less that of a fluid at rest. The same bits on any ranks. Collective.
-template <typename Real>
-double mean_density_deviation(const lbm::Fluid<Real>& fluid, const Hydrostatic& rest);
+struct ExcessMass {
+  double sum = 0.0;  // over all fluid cells, of rho less that of the fluid at rest
+  std::int64_t cells = 0;
 
-// Adds a density to every fluid cell of this rank.
+  double mean() const { return sum / static_cast<double>(std::max<std::int64_t>(1, cells)); }
+};
+
+// Over all ranks, the same bits on any. Collective.
 template <typename Real>
-void add_density(lbm::Fluid<Real>& fluid, double density);
+ExcessMass excess_mass(const lbm::Fluid<Real>& fluid, const Hydrostatic& rest);
+
+// Adds a density to every fluid cell of this rank, w_i of it to each population, which gives no momentum. Returns what
+// was added: nothing where it would drown in the round-off of single storage, below 1e-7.
+template <typename Real>
+double add_density(lbm::Fluid<Real>& fluid, double density);
 
 }  // namespace thalweg::coupling

@@ -23,7 +23,6 @@ struct FluidParameters {
   std::optional<lbm::FlowTarget> flow_target;  // a mean velocity to hold, in place of the force along its axis
   lbm::LinkOptions links;
   bool full_gravity = false;  // the force acts across walls, too: the fluid begins with its hydrostatic density
-  int mass_correction = 0;    // steps between corrections of the fluid's mass; 0: none
   std::function<FluidInitialState(const Vec3&)> initial_fluid;  // of a position in m; empty: at rest
 };
 

@@ -35,8 +35,6 @@ FluidSystem<Real>::FluidSystem(std::unique_ptr<Decomposition> decomposition, MPI
 
 template <typename Real>
 void FluidSystem<Real>::advance() {
-  if (parameters_.mass_correction > 0 && step_ > 0 && step_ % parameters_.mass_correction == 0)
-    add_density(fluid_, -mean_density_deviation(fluid_, rest_));
   if (solids_) {
     advance_around_solids();
   } else {
@@ -113,7 +111,7 @@ std::vector<Figure> FluidSystem<Real>::figures() const {
       {"largest_fluid_speed", "m/s", speed * units.velocity()},
       {"mean_velocity_x", "m/s", (totals.momentum.x() / cells - 0.5 * force) * units.velocity()},
       {"body_force_x", "N/m^3", force * units.density * units.acceleration()},
-      {"mean_density_deviation", "1", mean_density_deviation(fluid_, rest_)},
+      {"mean_density_deviation", "1", excess_mass(fluid_, rest_).mean()},
       {"fluid_cells", "1", static_cast<double>(totals.cells)}};
   if (!solids_) return figures;
   const std::vector<Vec3> forces = solids_->forces();

@@ -14,7 +14,7 @@ constexpr double nowhere = -1e8;  // no grain's centre is below this
 }  // namespace
 
 GrainMap::GrainMap(const Decomposition& decomposition, const Block& block, CellMap& cells)
-    : local_cells_(decomposition, block), cells_(cells) {}
+    : local_cells_(decomposition, block), cells_(cells), hidden_patches_(decomposition, block, cells) {}
 
 int GrainMap::slot_of(GlobalId id) const {
   const auto found = slot_of_id_.find(id);
@@ -95,6 +95,7 @@ void GrainMap::turn_cells(int slot, const Vec3& middle, double reach, const Vec3
 
 void GrainMap::assign(const Index3& local, std::ptrdiff_t cell, std::int32_t slot) {
   changes_.push_back({local, cells_.body(cell), slot});
+  hidden_patches_.cell_changes(local, slot);
   cells_.assign(local[0], local[1], local[2], slot);
 }
 

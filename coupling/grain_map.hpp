@@ -6,6 +6,7 @@
 #pragma once
 
 #include "core/decomposition.hpp"
+#include "coupling/hidden_patches.hpp"
 #include "coupling/local_cells.hpp"
 #include "lbm/cell_map.hpp"
 #include "lbm/link_table.hpp"
@@ -47,6 +48,8 @@ public:
   const std::vector<Change>& settle();
   const std::vector<Change>& changes() const { return changes_; }
 
+  const HiddenPatches& hidden_patches() const { return hidden_patches_; }  // of the grains' present cells
+
 private:
   void assign(const Index3& local, std::ptrdiff_t cell, std::int32_t slot);
   // Turns the cells within reach of `middle` that are inside the grain at only one of the two places of its centre.
@@ -57,6 +60,7 @@ private:
 
   LocalCells local_cells_;
   lbm::CellMap& cells_;
+  HiddenPatches hidden_patches_;
   std::vector<MappedGrain> grains_;
   std::vector<int> free_slots_;
   std::unordered_map<GlobalId, int> slot_of_id_;

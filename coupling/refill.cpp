@@ -198,7 +198,8 @@ std::array<double, 19> Refill::populations_of(const Neighbours& n, const Vec3& v
 
 template <typename Real>
 RefillTotals Refill::fill(lbm::Fluid<Real>& fluid, const std::vector<GrainMap::Change>& changes,
-                          const std::vector<lbm::LinkBody>& bodies) {
+                          const std::vector<lbm::LinkBody>& bodies, const Hydrostatic& rest,
+                          std::vector<std::int64_t>& mass) {
   RefillTotals totals;
   std::vector<Uncovered> uncovered = uncovered_cells(changes);
   if (uncovered.empty()) return totals;
@@ -220,6 +221,10 @@ RefillTotals Refill::fill(lbm::Fluid<Real>& fluid, const std::vector<GrainMap::C
       fluid.populations().post_collision(i, at) = value;
       momentum += static_cast<double>(value) * velocity_of(i);
     }
+    const std::int64_t brought =
+        LatticeFixed::from(fluid.populations().density_deviation(at) - rest.deviation(position));
+    mass[static_cast<std::size_t>(cell.before)] += brought;
+    totals.mass += brought;
     totals.momentum += momentum;
     totals.angular_momentum += position.cross(momentum);
     ++totals.cells;
@@ -228,8 +233,8 @@ RefillTotals Refill::fill(lbm::Fluid<Real>& fluid, const std::vector<GrainMap::C
 }
 
 template RefillTotals Refill::fill(lbm::Fluid<float>&, const std::vector<GrainMap::Change>&,
-                                   const std::vector<lbm::LinkBody>&);
+                                   const std::vector<lbm::LinkBody>&, const Hydrostatic&, std::vector<std::int64_t>&);
 template RefillTotals Refill::fill(lbm::Fluid<double>&, const std::vector<GrainMap::Change>&,
-                                   const std::vector<lbm::LinkBody>&);
+                                   const std::vector<lbm::LinkBody>&, const Hydrostatic&, std::vector<std::int64_t>&);
 
 }  // namespace thalweg::coupling

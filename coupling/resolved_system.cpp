@@ -2,6 +2,7 @@
 
 #include "core/mpi_session.hpp"
 #include "core/same_time_step.hpp"
+#include "coupling/attached_vector.hpp"
 #include "coupling/fluid_mass.hpp"
 #include "coupling/fluid_sample.hpp"
 #include "coupling/fluid_system.hpp"
@@ -18,12 +19,10 @@ using lbm::CellMap;
 
 namespace {
 
-Vec3 vector_at(std::span<const double> columns, int first) {
-  return {columns[first], columns[first + 1], columns[first + 2]};
-}
-
-void set_vector(std::span<double> columns, int first, const Vec3& value) {
-  for (int a = 0; a < 3; ++a) columns[first + a] = value[a];
+bool closed(const lbm::FaceConditions& faces) {
+  return std::none_of(faces.begin(), faces.end(), [](const lbm::FaceCondition& face) {
+    return face.type == lbm::FaceType::velocity_inlet || face.type == lbm::FaceType::pressure_outlet;
+  });
 }
 
 Vec3 cells_as_vector(const Index3& cells) { return {double(cells[0]), double(cells[1]), double(cells[2])}; }
@@ -46,15 +45,19 @@ ResolvedSystem<Real>::ResolvedSystem(std::unique_ptr<Decomposition> decompositio
       link_builder_(*decomposition_, fluid_.block(), fluid_.cells(), fluid_.tiles()),
       hidden_links_(*decomposition_, fluid_.block(), fluid_.cells(), {parameters.paper_near_contact, rest_},
                     parameters.links.momentum_exchange),
-      refill_(*decomposition_, communicator, parameters.refill) {
+      refill_(*decomposition_, communicator, parameters.refill),
+      mass_(communicator),
+      closed_(closed(parameters.faces)) {
   phases_ = {timer_.phase("grain map"), timer_.phase("refill"), timer_.phase("halo"),  timer_.phase("walls"),
              timer_.phase("links"),     timer_.phase("sweep"),  timer_.phase("loads"), timer_.phase("grains")};
   parameters_.links.rest_gradient = rest_.gradient;
+  parameters_.links.rest_middle = rest_.middle;
   if (parameters_.flow_target) fluid_.control_flow(*parameters_.flow_target);
   initialise(fluid_, parameters_, rest_);
   dem::GrainStore& store = grains_->store();
   for (std::size_t g = 0; g < store.total(); ++g) set_vector(store.attached_of(g), link_position, store.position[g]);
   initialise_map();
+  mass_.set_start(excess_mass(fluid_, rest_).sum);
   show_stresses();
 }
 
@@ -88,6 +91,7 @@ void ResolvedSystem<Real>::synchronise_slots() {
     map_slot_[g] = slot;
   }
   bodies_.resize(map_.grains().size());
+  surrounding_.resize(map_.grains().size());
   update_bodies();
 }
 
@@ -96,14 +100,20 @@ void ResolvedSystem<Real>::update_bodies() {
   const dem::GrainStore& store = grains_->store();
   for (std::size_t g = 0; g < store.total(); ++g) {
     lbm::LinkBody& body = bodies_[map_slot_[g]];
+    const std::span<const double> columns = store.attached_of(g);
     body.centre = lattice_position(store.position[g]);
     body.radius = store.radius[g] / parameters_.units.spacing;
     body.velocity = store.velocity[g] / parameters_.units.velocity();
     body.angular_velocity = store.angular_velocity[g] * parameters_.units.time_step;
+    body.returned = columns[returned];
+    body.returned_slope = vector_at(columns, returned_slope);
+    surrounding_[map_slot_[g]] = columns[surrounding];
     body.force = {};
     body.torque = {};
+    body.mass = body.pressure = 0;
   }
-  if (parameters_.grain_stress) moments_.assign(bodies_.size(), {});
+  cell_mass_.assign(bodies_.size(), 0);
+  if (parameters_.grain_stress || parameters_.mass_balance) moments_.assign(bodies_.size(), {});
 }
 
 // Cells follow a grain once it has moved by the tolerance; links know its place exactly all the same. Ghosts follow the
@@ -123,100 +133,25 @@ void ResolvedSystem<Real>::update_map() {
 
 template <typename Real>
 void ResolvedSystem<Real>::sweep_behind_links() {
-  lbm::LinkPass<Real> links(fluid_, links_, lattice_box_, parameters_.links, bodies_,
-                            parameters_.grain_stress ? &moments_ : nullptr);
+  std::vector<FixedTensor>* moments = moments_.empty() ? nullptr : &moments_;
+  lbm::LinkBalance balance;
+  lbm::LinkPass<Real> links(fluid_, links_, lattice_box_, parameters_.links, bodies_, moments,
+                            parameters_.mass_balance ? &balance : nullptr);
   const auto sweep = timer_.measure(phases_.sweep);
   fluid_.stream_and_collide([&](int tile) {
     const auto scope = timer_.measure(phases_.links);
     links.apply_tile(tile);
   });
   const auto scope = timer_.measure(phases_.links);
-  hidden_links_.apply(bodies_, parameters_.grain_stress ? &moments_ : nullptr);
-}
-
-template <typename Real>
-void ResolvedSystem<Real>::collect_loads() {
-  const std::size_t count = grains_->store().total();
-  const int width = sums_per_grain();
-  exchanged_.resize(static_cast<std::size_t>(width) * count);
-  for (std::size_t g = 0; g < count; ++g) {
-    const lbm::LinkBody& body = bodies_[map_slot_[g]];
-    const std::int64_t sums[6] = {body.force.x,  body.force.y,  body.force.z,
-                                  body.torque.x, body.torque.y, body.torque.z};
-    const auto into = exchanged_.begin() + static_cast<std::ptrdiff_t>(width * g);
-    std::copy(sums, sums + 6, into);
-    if (parameters_.grain_stress) {
-      const FixedTensor& moments = moments_[map_slot_[g]];
-      std::copy(moments.sums.begin(), moments.sums.end(), into + 6);
-    }
-    const Vec3 force = body.force.to_vec3();
-    step_totals_.link_momentum += force;
-    step_totals_.link_angular_momentum += body.centre.cross(force) + body.torque.to_vec3();
-  }
-  grains_->add_ghost_values(exchanged_, width);
-}
-
-// The mean of the last two exchanges drives the grains: it damps the two-step oscillation of the lattice (Ladd 1994).
-template <typename Real>
-void ResolvedSystem<Real>::apply_loads() {
-  dem::GrainStore& store = grains_->store();
-  for (std::size_t g = 0; g < store.owned; ++g) {
-    const std::int64_t* sums = &exchanged_[sums_per_grain() * g];
-    const Vec3 force = FixedVec3{sums[0], sums[1], sums[2]}.to_vec3() * parameters_.units.force();
-    const Vec3 torque = FixedVec3{sums[3], sums[4], sums[5]}.to_vec3() * parameters_.units.torque();
-    const std::span<double> columns = store.attached_of(g);
-    const bool first = columns[has_load] == 0.0;
-    set_load(g, first ? force : Vec3(0.5 * (force + vector_at(columns, last_force))),
-             first ? torque : Vec3(0.5 * (torque + vector_at(columns, last_torque))), first);
-    set_vector(columns, last_force, force);
-    set_vector(columns, last_torque, torque);
-    if (parameters_.grain_stress) apply_stress(g, first);
-    columns[has_load] = 1.0;
-  }
-  show_stresses();
-}
-
-// sigma_ab = (1/V) sum F_a x_b over the surface (Zhang et al. 2022, eq. 13), averaged as the load is.
-template <typename Real>
-void ResolvedSystem<Real>::apply_stress(std::size_t grain, bool first) {
-  dem::GrainStore& store = grains_->store();
-  const double volume = 4.0 / 3.0 * std::numbers::pi * std::pow(store.radius[grain], 3);
-  const std::int64_t* sums = &exchanged_[sums_per_grain() * grain + 6];
-  const std::span<double> columns = store.attached_of(grain);
-  for (int k = 0; k < 9; ++k) {
-    const double stress = LatticeFixed::to_double(sums[k]) * (parameters_.units.torque() / volume);
-    columns[mean_stress + k] = first ? stress : 0.5 * (stress + columns[last_stress + k]);
-    columns[last_stress + k] = stress;
-  }
-}
-
-template <typename Real>
-void ResolvedSystem<Real>::show_stresses() {
-  if (!parameters_.grain_stress) return;
-  const dem::GrainStore& store = grains_->store();
-  fluid_stress_.resize(store.owned);
-  for (std::size_t g = 0; g < store.owned; ++g)
-    for (int k = 0; k < 9; ++k) fluid_stress_[g](k / 3, k % 3) = store.attached_of(g)[mean_stress + k];
-}
-
-// What the store has is what the grain got in the step before.
-template <typename Real>
-void ResolvedSystem<Real>::set_load(std::size_t grain, const Vec3& force, const Vec3& torque, bool first) {
-  dem::GrainStore& store = grains_->store();
-  if (!parameters_.virtual_mass || dem::holds_translation(store.motion[grain])) {
-    store.load_force[grain] = force;
-    store.load_torque[grain] = torque;
-    return;
-  }
-  const double share = parameters_.virtual_mass->share(store.mass[grain], grains_->volume_radius(grain));
-  const Vec3 body = grains_->body_force(grain), before = first ? Vec3::Zero() : Vec3(store.load_force[grain] + body);
-  store.load_force[grain] = VirtualMass::filtered(before, force + body, share) - body;
-  store.load_torque[grain] = VirtualMass::filtered(store.load_torque[grain], torque, share);
+  hidden_links_.apply(bodies_, moments);
+  map_.hidden_patches().apply(map_.grains(), surrounding_, parameters_.links.reference_density, bodies_, moments);
+  if (parameters_.mass_balance) mass_.book(balance);
 }
 
 template <typename Real>
 void ResolvedSystem<Real>::advance() {
   step_totals_ = {};
+  correct_mass();
   bool slots_changed = false;
   {
     const auto scope = timer_.measure(phases_.grains);
@@ -237,10 +172,10 @@ void ResolvedSystem<Real>::advance() {
   }
   {
     const auto scope = timer_.measure(phases_.refill);
-    const RefillTotals totals = refill_.fill(fluid_, map_.changes(), bodies_);
+    const RefillTotals totals = refill_.fill(fluid_, map_.changes(), bodies_, rest_, cell_mass_);
+    step_totals_.refilled_mass = totals.mass;
     step_totals_.refilled = totals.momentum;
     step_totals_.refilled_angular_momentum = totals.angular_momentum;
-    correct_mass();
   }
   {
     const auto scope = timer_.measure(phases_.halo);
@@ -265,12 +200,6 @@ void ResolvedSystem<Real>::advance() {
 }
 
 template <typename Real>
-void ResolvedSystem<Real>::correct_mass() {
-  if (parameters_.mass_correction > 0 && step_ > 0 && step_ % parameters_.mass_correction == 0)
-    add_density(fluid_, -mean_density_deviation(fluid_, rest_));
-}
-
-template <typename Real>
 void ResolvedSystem<Real>::account_for_covered_cells() {
   const Index3& lower = fluid_.block().lower;
   for (const GrainMap::Change& change : map_.changes()) {
@@ -284,6 +213,10 @@ void ResolvedSystem<Real>::account_for_covered_cells() {
     const Vec3 position(lower[0] + at[0] + 0.5, lower[1] + at[1] + 0.5, lower[2] + at[2] + 0.5);
     step_totals_.covered += momentum;
     step_totals_.covered_angular_momentum += position.cross(momentum);
+    const std::int64_t mass =
+        LatticeFixed::from(rest_.deviation(position) - fluid_.populations().density_deviation(cell));
+    cell_mass_[static_cast<std::size_t>(change.now)] += mass;
+    step_totals_.covered_mass += mass;
   }
 }
 
@@ -344,15 +277,17 @@ void ResolvedSystem<Real>::for_each_velocity(const VelocityVisitor& visit) const
 
 template <typename Real>
 std::vector<Figure> ResolvedSystem<Real>::figures() const {
-  const lbm::FluidTotals totals = fluid_.totals();
+  const ExcessMass excess = excess_mass(fluid_, rest_);
   double speed = fluid_.largest_speed();
   // Not-a-number does not survive MPI_MAX; infinity does.
   speed = max_over_ranks(communicator_, std::isfinite(speed) ? speed : HUGE_VAL);
   std::vector<Figure> figures{{"largest_lattice_velocity", "1", speed},
                               {"largest_fluid_speed", "m/s", speed * parameters_.units.velocity()},
-                              {"mean_density_deviation", "1", mean_density_deviation(fluid_, rest_)},
-                              {"fluid_cells", "1", static_cast<double>(totals.cells)},
+                              {"mean_density_deviation", "1", excess.mean()},
+                              {"fluid_cells", "1", static_cast<double>(excess.cells)},
                               {"largest_overlap", "diameter", grains_->largest_overlap()}};
+  for (const Figure& figure : mass_.figures(excess.sum, mass_owed(), parameters_.units, parameters_.mass_balance))
+    figures.push_back(figure);
   if (parameters_.wall_forces) add_wall_forces(figures);
   return figures;
 }
@@ -382,6 +317,8 @@ void ResolvedSystem<Real>::save(ArchiveWriter& archive) const {
   archive.attribute("system/time_step", time_step());
   fluid_.save(archive);
   grains_->save(archive);
+  mass_.save(archive);
+  archive.attribute("mass/reference", parameters_.links.reference_density);
 }
 
 template <typename Real>
@@ -401,6 +338,8 @@ void ResolvedSystem<Real>::load(ArchiveReader& archive) {
   forget_map();
   fluid_.load(archive);
   grains_->load(archive);
+  mass_.load(archive);
+  parameters_.links.reference_density = archive.real_attribute("mass/reference");
   initialise_map();
   show_stresses();
 }
@@ -409,6 +348,7 @@ template <typename Real>
 void ResolvedSystem<Real>::take_fluid(ArchiveReader& archive) {
   require_same_time_step(archive, time_step());
   fluid_.load_populations(archive);
+  mass_.set_start(excess_mass(fluid_, rest_).sum);
 }
 
 // Grains of a resolved run keep the places their links were cut at, others begin where they are.
@@ -418,8 +358,9 @@ void ResolvedSystem<Real>::take_grains(ArchiveReader& archive) {
   grains_->take(archive);
   dem::GrainStore& store = grains_->store();
   for (std::size_t g = 0; g < store.total(); ++g)
-    if (store.attached_of(g)[has_load] == 0.0) set_vector(store.attached_of(g), link_position, store.position[g]);
+    if (store.attached_of(g)[exchanges] == 0.0) set_vector(store.attached_of(g), link_position, store.position[g]);
   initialise_map();
+  mass_.set_start(excess_mass(fluid_, rest_).sum);
   show_stresses();
 }
 

@@ -7,6 +7,8 @@
 #include "coupling/grain_map.hpp"
 #include "coupling/hidden_links.hpp"
 #include "coupling/link_builder.hpp"
+#include "coupling/load_rule.hpp"
+#include "coupling/mass_account.hpp"
 #include "coupling/refill.hpp"
 #include "coupling/virtual_mass.hpp"
 #include "dem/grain_dynamics.hpp"
@@ -23,8 +25,10 @@ struct ResolvedParameters : FluidParameters {
   bool wall_forces = false;                 // whether the figures include the forces on walls
   std::optional<VirtualMass> virtual_mass;  // of light grains
   RefillRule refill = RefillRule::equilibrium;
+  LoadRule load = LoadRule::extrapolated;
   bool grain_stress = false;        // the stress of the fluid on every grain is measured
   bool paper_near_contact = false;  // hidden_links.hpp
+  bool mass_balance = false;        // the figures include where the links' mass comes from
 };
 
 // This rank's part of the sums that a momentum balance of the fluid needs (lattice units, of the step just done).
@@ -36,6 +40,8 @@ struct ExchangeTotals {
   Vec3 link_angular_momentum = Vec3::Zero();
   Vec3 refilled_angular_momentum = Vec3::Zero();
   Vec3 covered_angular_momentum = Vec3::Zero();
+  // Gained by the fluid, LatticeFixed sums (mass_account.hpp).
+  std::int64_t link_mass = 0, refilled_mass = 0, covered_mass = 0;
 };
 
 template <typename Real>
@@ -46,17 +52,25 @@ public:
   ResolvedSystem(std::unique_ptr<Decomposition> decomposition, MPI_Comm communicator,
                  const ResolvedParameters& parameters, std::unique_ptr<dem::GrainDynamics> grains);
 
-  // Attached columns of a grain: the place its cells stand for (m), then force (N) and torque (N m) of the last
-  // exchange; where asked for, the stress (Pa, row by row) of the last exchange and the mean of the last two.
+  // Attached columns of a grain: the place its cells stand for (m), force (N) and torque (N m) of the last exchange and
+  // the one before, how many there have been (2: or more); in lattice units the mass owed to the fluid, what the links
+  // return in the coming step (MassReturn), and rho - rho_rest of the fluid around the grain in the last one; where
+  // asked for, the stress (Pa, row by row) of the last exchange and the mean of the last two.
   enum Attached {
     link_position = 0,
     last_force = 3,
     last_torque = 6,
-    has_load = 9,
-    last_stress = 10,
-    mean_stress = 19
+    earlier_force = 9,
+    earlier_torque = 12,
+    exchanges = 15,
+    owed_mass = 16,
+    returned = 17,
+    returned_slope = 18,
+    surrounding = 21,
+    last_stress = 22,
+    mean_stress = 31
   };
-  static int attached_width(const ResolvedParameters& parameters) { return parameters.grain_stress ? 28 : 10; }
+  static int attached_width(const ResolvedParameters& parameters) { return parameters.grain_stress ? 40 : 22; }
 
   // How far beyond a block its grains must be known for the map, as a distance from the grain's centre (m).
   static double ghost_reach(double largest_radius, double spacing) { return largest_radius + 2.5 * spacing; }
@@ -92,13 +106,17 @@ private:
   void update_bodies();
   void account_for_covered_cells();
   void correct_mass();
+  void settle_mass(std::size_t grain, std::span<const std::int64_t> sums);
+  double mass_owed() const;
   void sweep_behind_links();
   void collect_loads();
   void apply_loads();
   void set_load(std::size_t grain, const Vec3& force, const Vec3& torque, bool first);
   void apply_stress(std::size_t grain, bool first);
   void show_stresses();
-  int sums_per_grain() const { return parameters_.grain_stress ? 15 : 6; }
+  // Of a grain: force, torque, mass, pressure, LinkSums, mass of cells; where asked for, moments.
+  static constexpr int plain_sums = 9 + lbm::LinkSums::size;
+  int sums_per_grain() const { return plain_sums + (parameters_.grain_stress ? 9 : 0); }
   Vec3 lattice_position(const Vec3& position) const { return position / parameters_.units.spacing; }
 
   std::unique_ptr<Decomposition> decomposition_;
@@ -115,10 +133,14 @@ private:
   Refill refill_;
   std::vector<lbm::LinkBody> bodies_;    // by map slot
   std::vector<int> map_slot_;            // of each grain of the store
-  std::vector<FixedTensor> moments_;     // by map slot; empty unless asked for
+  std::vector<std::int64_t> cell_mass_;  // by cells that changed hands in this step (LatticeFixed), by map slot
+  std::vector<double> surrounding_;      // rho - rho_rest around the grain, by map slot
+  std::vector<FixedTensor> moments_;     // by map slot; empty unless measured
   std::vector<std::int64_t> exchanged_;  // force and torque sums of each grain of the store, and those of moments
   std::vector<Mat3> fluid_stress_;       // Pa, of owned grains; empty unless asked for
   ExchangeTotals step_totals_;
+  MassAccount mass_;
+  bool closed_;  // no face lets fluid in or out
   std::int64_t step_ = 0;
   PhaseTimer timer_;
   struct Phases {

@@ -35,6 +35,9 @@ std::unique_ptr<System> build(const Case& c, MPI_Comm communicator, const Index3
   coupling::ResolvedParameters parameters;
   static_cast<coupling::FluidParameters&>(parameters) = fluid_parameters(c);
   parameters.link_tolerance = c.coupling.link_tolerance;
+  parameters.load =
+      c.coupling.load == GrainLoad::mean ? coupling::LoadRule::mean : coupling::LoadRule::extrapolated;
+  parameters.mass_balance = c.coupling.mass_balance;
   parameters.refill = refill_rule(c.coupling.refill);
   parameters.paper_near_contact = c.coupling.near_contact == NearContact::paper;
   parameters.grain_stress = c.coupling.grain_stress;

@@ -123,6 +123,7 @@ enum class WallDensity { local, reference };
 enum class LinkRule { bouzidi, cli };
 enum class NearContact { subtracted, paper };
 enum class Refill { equilibrium, non_equilibrium, grad };
+enum class GrainLoad { extrapolated, mean };
 
 // The part of the lubrication force between near surfaces that the cells cannot resolve.
 struct LubricationCase {
@@ -146,10 +147,11 @@ struct CouplingCase {
   LinkRule links = LinkRule::bouzidi;
   NearContact near_contact = NearContact::subtracted;
   Refill refill = Refill::equilibrium;
+  GrainLoad load = GrainLoad::extrapolated;
   std::optional<LubricationCase> lubrication;
   std::optional<VirtualMassCase> virtual_mass;
   bool grain_stress = false;         // measure the fluid's stress on every grain
-  std::int64_t mass_correction = 0;  // steps between corrections of the fluid's mass; 0: none
+  bool mass_balance = false;         // show what the links' mass is made of
   bool operator==(const CouplingCase&) const = default;
 };
 

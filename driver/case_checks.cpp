@@ -224,10 +224,6 @@ void check_gravity(const Case& c, const io::YamlDocument& document) {
   const auto any = [&c](FaceType type) {
     return std::any_of(c.domain.faces.begin(), c.domain.faces.end(), [type](const Face& f) { return f.type == type; });
   };
-  if (has_fluid(c) && c.coupling.mass_correction > 0 &&
-      (any(FaceType::pressure_outlet) || any(FaceType::velocity_inlet)))
-    throw document.error("coupling.mass_correction",
-                         "fluid that enters and leaves has no mass to hold; remove the key");
   if (!has_fluid(c) || c.gravity.mode != GravityMode::full) return;
   if (c.domain.faces[bottom].type == FaceType::periodic)
     throw document.error("gravity.mode",

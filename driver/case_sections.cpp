@@ -105,11 +105,10 @@ static void describe_coupling(io::SectionVisitor& visit, CouplingCase& coupling,
                          {{LinkRule::bouzidi, "bouzidi", "Bouzidi et al. 2001"},
                           {LinkRule::cli, "cli", "Ginzburg et al. 2008; with collision trt"}},
                          {.meaning = "how populations come back from a surface"});
-  visit.integer("mass_correction", coupling.mass_correction,
-                {.meaning = "steps after which the drift of the fluid's mass is taken back; 0: never", .at_least = 0});
+  visit.not_here("mass_correction", "the fluid's mass is always kept; remove the key");
   if (!with_grains) {
     for (const char* key : {"grain_steps_per_fluid_step", "link_tolerance", "momentum_exchange", "wall_density",
-                            "near_contact", "refill", "grain_stress"})
+                            "near_contact", "refill", "load", "grain_stress", "mass_balance"})
       visit.not_here(key, "system: fluid has no grains; remove the key or set system: resolved");
     return;
   }
@@ -138,6 +137,10 @@ static void describe_coupling(io::SectionVisitor& visit, CouplingCase& coupling,
                         {Refill::non_equilibrium, "non_equilibrium", "with that of the neighbour along the normal"},
                         {Refill::grad, "grad", "with the mean stress of the neighbours"}},
                        {.meaning = "populations of a cell that a grain has uncovered"});
+  visit.choice<GrainLoad>("load", coupling.load,
+                          {{GrainLoad::extrapolated, "extrapolated", "from the last three exchanges, without lag"},
+                           {GrainLoad::mean, "mean", "of the last two, as published; a bed may shake"}},
+                          {.meaning = "the force and torque of the fluid that move a grain in a step"});
   visit.section(
       "lubrication", coupling.lubrication,
       {.meaning = "adds the force between near surfaces that the cells do not resolve, in every sub-step; {}"});
@@ -145,6 +148,8 @@ static void describe_coupling(io::SectionVisitor& visit, CouplingCase& coupling,
                 {.meaning = "for grains much lighter than the fluid: filters their load; {}"});
   visit.flag("grain_stress", coupling.grain_stress,
              {.meaning = "measure the fluid's stress on every grain, for its pictures: fluid_stress"});
+  visit.flag("mass_balance", coupling.mass_balance,
+             {.meaning = "show in series.csv which part of the link rule gives and takes the fluid's mass"});
 }
 
 static void describe(io::SectionVisitor& visit, PerturbationCase& perturbation) {

@@ -113,7 +113,6 @@ coupling::FluidParameters fluid_parameters(const Case& c) {
   parameters.units = units_of(c);
   parameters.collision = collision_parameters(c);
   parameters.full_gravity = c.gravity.mode == GravityMode::full;
-  parameters.mass_correction = static_cast<int>(c.coupling.mass_correction);
   parameters.faces = face_conditions(c.domain, parameters.units);
   if (c.fluid.mean_velocity)
     parameters.flow_target =

@@ -30,11 +30,20 @@ std::int64_t total(const Real* terms, int n) {
   return sum;
 }
 
+// Of the differences, which are exact in double: single storage loses nothing here.
+template <typename Real>
+std::int64_t total_difference(const Real* terms, const Real* less, int n) {
+  std::int64_t sum = 0;
+  for (int k = 0; k < n; ++k)
+    sum += LatticeFixed::from(static_cast<double>(terms[k]) - static_cast<double>(less[k]));
+  return sum;
+}
+
 }  // namespace
 
 template <typename Real>
 LinkPass<Real>::LinkPass(Fluid<Real>& fluid, const LinkTable& links, const PeriodicBox& box, const LinkOptions& options,
-                         std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments)
+                         std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments, LinkBalance* balance)
     : cells_(fluid.cells()),
       tiles_(fluid.tiles()),
       links_(links),
@@ -42,6 +51,7 @@ LinkPass<Real>::LinkPass(Fluid<Real>& fluid, const LinkTable& links, const Perio
       options_(options),
       bodies_(bodies),
       moments_(moments),
+      balance_(balance),
       block_(box, fluid.block().lower) {
   Populations<Real>& populations = fluid.populations();
   for (auto& plane : deviations_) plane.resize(static_cast<std::size_t>(populations.indexing().plane_stride()));
@@ -59,14 +69,22 @@ LinkPass<Real>::LinkPass(Fluid<Real>& fluid, const LinkTable& links, const Perio
 
 template <typename Real>
 void LinkPass<Real>::apply_tile(int tile) {
+  const auto apply = [&]<typename Rule>() {
+    if (balance_)
+      apply_links<Rule, Extra::moments_and_balance>(tile);
+    else if (moments_)
+      apply_links<Rule, Extra::moments>(tile);
+    else
+      apply_links<Rule, Extra::none>(tile);
+  };
   if (options_.rule == LinkRule::cli)
-    moments_ ? apply_links<CliLink, true>(tile) : apply_links<CliLink, false>(tile);
+    apply.template operator()<CliLink>();
   else
-    moments_ ? apply_links<BouzidiLink, true>(tile) : apply_links<BouzidiLink, false>(tile);
+    apply.template operator()<BouzidiLink>();
 }
 
 template <typename Real>
-template <typename Rule, bool with_moments>
+template <typename Rule, typename LinkPass<Real>::Extra extra>
 void LinkPass<Real>::apply_links(int tile) {
   // One plane ahead, because links reach for slots in the next plane: the straight pass for the densities brings them
   // into the cache at the speed of memory.
@@ -88,10 +106,10 @@ void LinkPass<Real>::apply_links(int tile) {
     const LinkTable::Chunk& chunk = t.chunks[order[c]];
     for (std::uint32_t first = 0; first < chunk.count; first += capacity, turn ^= 1) {
       prepare(batches_[turn], t, z, chunk, chunk.first + first, std::min<int>(capacity, chunk.count - first));
-      finish<Rule, with_moments>(batches_[turn ^ 1]);
+      finish<Rule, extra>(batches_[turn ^ 1]);
     }
   }
-  finish<Rule, with_moments>(batches_[turn ^ 1]);
+  finish<Rule, extra>(batches_[turn ^ 1]);
 }
 
 // Links never change a density: they write incoming slots of fluid cells, which hold no post-collision population of a
@@ -154,14 +172,15 @@ void LinkPass<Real>::prepare(Batch& b, const LinkTable::Tile& tile, int plane, c
 }
 
 template <typename Real>
-template <typename Rule, bool with_moments>
+template <typename Rule, typename LinkPass<Real>::Extra extra>
 void LinkPass<Real>::finish(Batch& b) {
   if (b.count == 0) return;
   gather<Rule>(b);
-  reflect<Rule, with_moments>(b);
+  reflect<Rule, extra>(b);
   for (int k = 0; k < b.count; ++k) reflected_[b.slot[k]][b.cell[k]] = b.reflected[k];
   add_momentum(b);
-  if constexpr (with_moments) add_moments(b);
+  if constexpr (extra != Extra::none) add_moments(b);
+  if constexpr (extra == Extra::moments_and_balance) add_balance<Rule>(b);
 }
 
 template <typename Real>
@@ -180,8 +199,22 @@ void LinkPass<Real>::gather(Batch& b) {
   }
   if (covered > 0) fill_from_covered_cells(b, covered);
   if constexpr (Rule::needs_both) look_upstream(b);
-  for (int k = 0; k < rounded_up(b.count); ++k) b.density[k] = local ? Real(1) + b.density[k] : Real(1);
   for (int k = b.count; k < rounded_up(b.count); ++k) b.density[k] = b.incident[k] = b.second[k] = Real(0);
+  for (int k = 0; k < rounded_up(b.count); ++k) b.excess[k] = b.density[k];
+  for (int k = 0; k < rounded_up(b.count); ++k) b.density[k] = local ? Real(1) + b.density[k] : Real(1);
+  if (!options_.rest_gradient.isZero(0.0)) subtract_rest(b);
+}
+
+// x_f from the body's centre: the arm, back by the distance.
+template <typename Real>
+void LinkPass<Real>::subtract_rest(Batch& b) const {
+  const Vec3& gradient = options_.rest_gradient;
+  const double at_centre = gradient.dot(b.body->centre - options_.rest_middle);
+  for (int k = 0; k < b.count; ++k) {
+    const Vec3 c(velocity<0>(b.tag[k]), velocity<1>(b.tag[k]), velocity<2>(b.tag[k]));
+    const Vec3 arm(b.arm[0][k], b.arm[1][k], b.arm[2][k]);
+    b.excess[k] -= static_cast<Real>(at_centre + gradient.dot(arm - static_cast<double>(b.distance[k]) * c));
+  }
 }
 
 // The equilibrium at the density of x_f and the velocity that the covering body has at x_ff. With a hydrostatic
@@ -231,18 +264,20 @@ void LinkPass<Real>::look_upstream(Batch& b) const {
 }
 
 template <typename Real>
-template <typename Rule, bool with_moments>
+template <typename Rule, typename LinkPass<Real>::Extra extra>
 void LinkPass<Real>::reflect(Batch& b) const {
   const LinkBody& body = *b.body;
   const Real vx = Real(body.velocity.x()), vy = Real(body.velocity.y()), vz = Real(body.velocity.z());
   const Real wx = Real(body.angular_velocity.x()), wy = Real(body.angular_velocity.y()),
              wz = Real(body.angular_velocity.z());
   const Real galilean = options_.momentum_exchange == MomentumExchange::galilean_invariant ? Real(1) : Real(0);
+  const Real returned = Real(body.returned), sx = Real(body.returned_slope.x()), sy = Real(body.returned_slope.y()),
+             sz = Real(body.returned_slope.z()), reference = Real(2.0 * options_.reference_density);
   const std::uint32_t* tags = b.tag;
-  const int n = rounded_up(b.count);
+  const int n = rounded_up(b.count), count = b.count;
   for (int k = 0; k < n; ++k) {
     const Real cx = Real(velocity<0>(tags[k])), cy = Real(velocity<1>(tags[k])), cz = Real(velocity<2>(tags[k]));
-    const Real weight = (Real(3) - (cx * cx + cy * cy + cz * cz)) * Real(1.0 / 36.0);
+    const Real weight = k < count ? (Real(3) - (cx * cx + cy * cy + cz * cz)) * Real(1.0 / 36.0) : Real(0);
     const Real ax = b.arm[0][k], ay = b.arm[1][k], az = b.arm[2][k], delta = b.distance[k];
     const Real ux = vx + (wy * az - wz * ay), uy = vy + (wz * ax - wx * az), uz = vz + (wx * ay - wy * ax);
     const Real towards_wall = cx * ux + cy * uy + cz * uz;
@@ -255,10 +290,12 @@ void LinkPass<Real>::reflect(Batch& b) const {
       rule.wall = covered ? without.wall : rule.wall;
     }
     const Real incident = b.incident[k];
-    const Real reflected =
-        rule.incident * incident + rule.second * b.second[k] - rule.wall * weight * b.density[k] * towards_wall;
+    const Real interpolated = rule.incident * incident + rule.second * b.second[k];
+    const Real moving_wall = rule.wall * weight * b.density[k] * towards_wall;
+    const Real reflected = interpolated - moving_wall + weight * (returned + (cx * sx + cy * sy + cz * sz));
     b.reflected[k] = reflected;
-    const Real sum = incident + reflected, flux = galilean * (incident - reflected);
+    b.pressure[k] = weight * b.excess[k];
+    const Real sum = incident + reflected - reference * weight, flux = galilean * (incident - reflected);
     const Real mx = sum * cx - flux * ux, my = sum * cy - flux * uy, mz = sum * cz - flux * uz;
     b.momentum[0][k] = mx;
     b.momentum[1][k] = my;
@@ -266,7 +303,11 @@ void LinkPass<Real>::reflect(Batch& b) const {
     b.torque[0][k] = ay * mz - az * my;
     b.torque[1][k] = az * mx - ax * mz;
     b.torque[2][k] = ax * my - ay * mx;
-    if constexpr (with_moments) {
+    if constexpr (extra == Extra::moments_and_balance) {
+      b.interpolated[k] = interpolated - incident;
+      b.moving_wall[k] = -moving_wall;
+    }
+    if constexpr (extra != Extra::none) {
       b.moment[0][k] = mx * ax;
       b.moment[1][k] = mx * ay;
       b.moment[2][k] = mx * az;
@@ -285,12 +326,26 @@ void LinkPass<Real>::add_momentum(const Batch& b) const {
   const int n = rounded_up(b.count);
   b.body->force += {total(b.momentum[0], n), total(b.momentum[1], n), total(b.momentum[2], n)};
   b.body->torque += {total(b.torque[0], n), total(b.torque[1], n), total(b.torque[2], n)};
+  b.body->mass += total_difference(b.reflected, b.incident, n);
+  b.body->pressure += total(b.pressure, n);
 }
 
 template <typename Real>
 void LinkPass<Real>::add_moments(const Batch& b) const {
   FixedTensor& moments = (*moments_)[static_cast<std::size_t>(b.body - bodies_.data())];
   for (std::size_t k = 0; k < 9; ++k) moments.sums[k] += total(b.moment[k], rounded_up(b.count));
+}
+
+template <typename Real>
+template <typename Rule>
+void LinkPass<Real>::add_balance(const Batch& b) const {
+  for (int k = 0; k < b.count; ++k) {
+    const bool near_wall = (b.slot[k] & near) != 0, has_covered = (b.tag[k] >> LinkTag::covered_shift & 1) != 0;
+    const bool reads_upstream = Rule::needs_both ? near_wall || !has_covered : near_wall;
+    std::int64_t& part = !reads_upstream ? balance_->same_cell : has_covered ? balance_->covered : balance_->upstream;
+    part += LatticeFixed::from(static_cast<double>(b.interpolated[k]));
+    balance_->moving_wall += LatticeFixed::from(static_cast<double>(b.moving_wall[k]));
+  }
 }
 
 template class LinkPass<float>;

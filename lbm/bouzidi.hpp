@@ -8,8 +8,11 @@
 // collision leaves. If it lies beyond a wall, the population that the wall returns to x_f stands in.
 //
 // Force on the body per step: the Galilean-invariant exchange of Wen et al. 2014, sum (c_i - u_w) f_i^c - (c_i' - u_w)
-// f_i', or the classical one of Mei et al. 2002, sum c_i (f_i^c + f_i'). Populations count less their weight w_i, so
-// that touching bodies feel no false attraction from the cells they hide from each other.
+// f_i', or the classical one of Mei et al. 2002, sum c_i (f_i^c + f_i'). Populations count less w_i times a reference
+// density, so that touching bodies feel no false attraction from the cells they hide from each other.
+//
+// Mass: a link takes f_i^c and gives f_i', which is not the same. What a body's links have taken more than given comes
+// back in the next steps as w_i (a + b.c_i) on top of f_i', with LinkBody's a and b.
 #pragma once
 
 #include "core/periodic_box.hpp"
@@ -30,7 +33,19 @@ struct LinkOptions {
   MomentumExchange momentum_exchange = MomentumExchange::galilean_invariant;
   WallDensity wall_density = WallDensity::local;
   LinkRule rule = LinkRule::bouzidi;
-  Vec3 rest_gradient = Vec3::Zero();  // of rho a cell, in a fluid at rest: the hydrostatic one, or none
+  // In a fluid at rest rho = 1 + rest_gradient.(x - rest_middle): the hydrostatic one, or 1.
+  Vec3 rest_gradient = Vec3::Zero();  // of rho a cell
+  Vec3 rest_middle = Vec3::Zero();    // cells
+  double reference_density = 0.0;     // rho - 1 that presses on nothing: force and torque count what is beyond it
+};
+
+// Where the mass comes from that links give to the fluid (LatticeFixed sums over a rank's links in one step), by what
+// the rule reads besides f_i^c(x_f). What is returned (LinkBody) is the rest of LinkBody::mass.
+struct LinkBalance {
+  std::int64_t upstream = 0;     // f_i^c(x_ff): Bouzidi's rule below a half, cli
+  std::int64_t same_cell = 0;    // f_i'^c(x_f): Bouzidi's rule from a half on
+  std::int64_t covered = 0;      // the equilibrium in an x_ff that a body covers
+  std::int64_t moving_wall = 0;  // the term with c_i.u_w
 };
 
 // Applies the links of one step, tile by tile. For every link it writes the population that the sweep will take from
@@ -45,12 +60,13 @@ struct LinkOptions {
 // they read and write, and finish(), one batch later, does the exchange.
 //
 // moments: where given, one for each body, to which sum F_a x_b is added, F the momentum of a link and x its arm; the
-// torque is its antisymmetric part.
+// torque is its antisymmetric part. balance: where given (with moments), what the mass is made of is added to it.
 template <typename Real>
 class LinkPass {
 public:
   LinkPass(Fluid<Real>& fluid, const LinkTable& links, const PeriodicBox& box, const LinkOptions& options,
-           std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments = nullptr);
+           std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments = nullptr,
+           LinkBalance* balance = nullptr);
 
   void apply_tile(int tile);
 
@@ -63,30 +79,37 @@ private:
     alignas(64) std::int32_t cell[capacity];   // index of x_f
     alignas(64) std::uint32_t slot[capacity];  // direction, and `near` where delta < 1/2
     alignas(64) Real distance[capacity], arm[3][capacity];
-    alignas(64) Real density[capacity];                     // rho at x_f
+    alignas(64) Real density[capacity];                     // rho at x_f, or what stands for it
+    alignas(64) Real excess[capacity];                      // rho - rho_rest at x_f
     alignas(64) Real incident[capacity], second[capacity];  // f_i^c(x_f); the rule's other value
     alignas(64) Real covered[capacity];                     // of a rule that needs both: 1 where a body covers x_ff
     alignas(64) Real reflected[capacity];                   // f_i'(x_f, t+1)
+    alignas(64) Real pressure[capacity];                    // w_i (rho - rho_rest)(x_f)
     alignas(64) Real momentum[3][capacity], torque[3][capacity];
     alignas(64) Real moment[9][capacity];
+    alignas(64) Real interpolated[capacity], moving_wall[capacity];  // parts of f_i' - f_i^c
   };
+  enum class Extra { none, moments, moments_and_balance };  // what is measured besides force, torque and mass
   static constexpr std::uint32_t near = 32, slots = 64;
 
-  template <typename Rule, bool with_moments>
+  template <typename Rule, Extra extra>
   void apply_links(int tile);
   void measure_densities(int tile);
   void prepare(Batch& batch, const LinkTable::Tile& tile, int plane, const LinkTable::Chunk& chunk, std::uint32_t first,
                int count) const;
-  template <typename Rule, bool with_moments>
+  template <typename Rule, Extra extra>
   void finish(Batch& batch);
   template <typename Rule>
   void gather(Batch& batch);
   void fill_from_covered_cells(Batch& batch, int covered) const;
   void look_upstream(Batch& batch) const;
-  template <typename Rule, bool with_moments>
+  void subtract_rest(Batch& batch) const;
+  template <typename Rule, Extra extra>
   void reflect(Batch& batch) const;
   void add_momentum(const Batch& batch) const;
   void add_moments(const Batch& batch) const;
+  template <typename Rule>
+  void add_balance(const Batch& batch) const;
 
   const CellMap& cells_;
   const RowTiles& tiles_;
@@ -94,7 +117,8 @@ private:
   const PeriodicBox& box_;
   const LinkOptions& options_;
   std::vector<LinkBody>& bodies_;
-  std::vector<FixedTensor>* moments_;  // null: nobody asks
+  std::vector<FixedTensor>* moments_;  // null: not measured
+  LinkBalance* balance_;               // null: not measured
   BlockPlace block_;
 
   // Base pointers to what a link reads and writes, by its slot; the index of x_f is added.

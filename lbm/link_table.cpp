@@ -8,6 +8,31 @@
 
 namespace thalweg::lbm {
 
+void LinkSums::add(int direction) {
+  const auto& c = D3Q19::c[direction];
+  const int weight = 3 - D3Q19::length_squared(direction);
+  const int terms[size] = {1,           c[0],        c[1],        c[2],        c[0] * c[0],
+                           c[1] * c[1], c[2] * c[2], c[0] * c[1], c[0] * c[2], c[1] * c[2]};
+  for (std::size_t k = 0; k < size; ++k) sums[k] += weight * terms[k];
+}
+
+LinkSums& LinkSums::operator+=(const LinkSums& other) {
+  for (std::size_t k = 0; k < size; ++k) sums[k] += other.sums[k];
+  return *this;
+}
+
+LinkSums& LinkSums::operator-=(const LinkSums& other) {
+  for (std::size_t k = 0; k < size; ++k) sums[k] -= other.sums[k];
+  return *this;
+}
+
+Mat3 LinkSums::second() const {
+  const auto at = [this](std::size_t k) { return static_cast<double>(sums[k]) / 36.0; };
+  Mat3 m;
+  m << at(4), at(7), at(8), at(7), at(5), at(9), at(8), at(9), at(6);
+  return m;
+}
+
 void LinkStream::ask_for(std::size_t first, std::size_t count) const {
   constexpr std::size_t line = 64 / sizeof(std::uint32_t);  // links in a cache line
   for (std::size_t k = first; k < first + count + line; k += line) {
@@ -20,6 +45,11 @@ std::size_t LinkTable::count() const {
   std::size_t total = 0;
   for (const Tile& tile : tiles_) total += tile.live;
   return total;
+}
+
+const LinkSums& LinkTable::sums_of(int body) const {
+  static const LinkSums none;
+  return static_cast<std::size_t>(body) < sums_.size() ? sums_[static_cast<std::size_t>(body)] : none;
 }
 
 std::uint32_t LinkTable::new_chunk(Tile& tile, int body) {
@@ -37,6 +67,8 @@ std::uint32_t LinkTable::new_chunk(Tile& tile, int body) {
 }
 
 void LinkTable::drop_chunk(Tile& tile, std::uint32_t chunk) {
+  sums_[static_cast<std::size_t>(tile.chunks[chunk].body)] -= tile.chunks[chunk].sums;
+  tile.chunks[chunk].sums = {};
   tile.live -= tile.chunks[chunk].count;
   tile.chunks[chunk].body = -1;
   tile.chunks[chunk].count = 0;
@@ -48,7 +80,10 @@ void LinkTable::replace(int body, int tile, std::span<const Link> links, std::sp
   if (body >= LinkTag::bodies)
     throw InputError(
         fmt::format("One rank would hold the links of more than {} grains; use more ranks.", LinkTag::bodies));
-  if (static_cast<std::size_t>(body) >= places_.size()) places_.resize(body + 1);
+  if (static_cast<std::size_t>(body) >= places_.size()) {
+    places_.resize(body + 1);
+    sums_.resize(body + 1);
+  }
   std::vector<Place>& places = places_[body];
   const auto place = std::find_if(places.begin(), places.end(), [tile](const Place& p) { return p.tile == tile; });
   Tile& t = tiles_[tile];
@@ -99,10 +134,15 @@ void LinkTable::put(Tile& tile, Chunk& chunk, std::span<const Link> links, std::
     tile.end += chunk.capacity;
     resize(tile.links, tile.end + slack);
   }
+  LinkSums& sums = sums_[static_cast<std::size_t>(chunk.body)];
+  sums -= chunk.sums;
+  chunk.sums = {};
   for (std::size_t k = 0; k < links.size(); ++k) {
     tile.links.place[chunk.first + k] = links[k].place;
     tile.links.tag[chunk.first + k] = links[k].tag;
+    chunk.sums.add(static_cast<int>(links[k].tag & LinkTag::direction_mask));
   }
+  sums += chunk.sums;
   std::copy(crossings.begin(), crossings.end(), tile.links.crossing.begin() + (stores_crossings_ ? chunk.first : 0));
   chunk.count = static_cast<std::uint32_t>(links.size());
   if (tile.end > 3 * tile.live + 4096) compact(tile);

@@ -11,6 +11,7 @@
 #include "core/types.hpp"
 #include "lbm/d3q19.hpp"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -70,8 +71,33 @@ struct LinkBody {
   Vec3 centre = Vec3::Zero();
   Vec3 velocity = Vec3::Zero();
   Vec3 angular_velocity = Vec3::Zero();
-  double radius = 0.0;      // of a sphere; 0: the links have their crossings stored
-  FixedVec3 force, torque;  // sums over this rank's links in the present step
+  double radius = 0.0;  // of a sphere; 0: the links have their crossings stored
+
+  // What the links add to the populations that come back, w_i (returned + returned_slope.c_i), to give the fluid mass
+  // that it lost at this body.
+  double returned = 0.0;
+  Vec3 returned_slope = Vec3::Zero();
+
+  // Sums over this rank's links in the present step.
+  FixedVec3 force, torque;
+  std::int64_t mass = 0;      // LatticeFixed: given to the fluid, sum f_i' - f_i^c
+  std::int64_t pressure = 0;  // LatticeFixed: sum w_i (rho - rho_rest)(x_f), rho_rest that of the fluid at rest
+};
+
+// What the links of a body add up to whatever flows: integers, in 36ths, so that they can be kept up to date.
+struct LinkSums {
+  static constexpr int size = 10;
+  std::array<std::int64_t, size> sums{};  // w_i;  w_i c_i: x, y, z;  w_i c_ia c_ib: xx, yy, zz, xy, xz, yz
+
+  void add(int direction);
+  LinkSums& operator+=(const LinkSums& other);
+  LinkSums& operator-=(const LinkSums& other);
+
+  double weight() const { return static_cast<double>(sums[0]) / 36.0; }
+  Vec3 normal() const {
+    return Vec3(static_cast<double>(sums[1]), static_cast<double>(sums[2]), static_cast<double>(sums[3])) / 36.0;
+  }
+  Mat3 second() const;
 };
 
 class LinkTable {
@@ -82,6 +108,7 @@ public:
   struct Chunk {
     std::int32_t body = -1;  // slot of the body; -1: the chunk is free
     std::uint32_t first = 0, count = 0, capacity = 0;
+    LinkSums sums;
   };
   struct Tile {
     LinkStream links;
@@ -99,6 +126,7 @@ public:
   // The chunks of a tile in memory order of the cells, so that neighbouring grains share what they load.
   const std::vector<std::uint32_t>& chunks_in_order(int tile) const;
   std::size_t count() const;  // all links
+  const LinkSums& sums_of(int body) const;  // over its links in all tiles; zero for a body without links
 
   // Replaces the links of a body in a tile; crossings: one a link if the table stores them, else empty. Throws
   // InputError if there are more bodies than a tag can tell.
@@ -120,6 +148,7 @@ private:
   bool stores_crossings_;
   mutable std::vector<Tile> tiles_;         // their order is made when it is asked for
   std::vector<std::vector<Place>> places_;  // of each body
+  std::vector<LinkSums> sums_;              // of each body
 };
 
 }  // namespace thalweg::lbm

@@ -1,0 +1,62 @@
+// The patches of a grain's surface that other grains or walls of the box hide from the fluid, as vectors.
+//
+// A lattice line that enters a cell of grain p from a cell of grain q, or from beyond a wall, has no fluid on it. What
+// such lines would add to the force in a fluid of uniform excess density D is 2 D h, with h = sum w_i c_i over them and
+// c_i into p: about a sixth of the hidden area, along the normal into p. Over the whole surface of p, seen and hidden
+// lines together, sum w_i c_i = 0. A fluid presses between grains as well, where the lattice has no cell for it; its
+// density there is interpolated between those around the two grains, linearly between their centres, so that
+//   F_p += 2 D h,   D = D_p + (D_q - D_p) R_p/(R_p + R_q),   and F_q -= the same,
+// D = D_p at a wall. Without this term touching grains would be drawn together or pushed apart by any pressure but the
+// reference. Between members of one clump is no surface.
+//
+// Kept up to date with every cell that changes hands; the sums are integers, so that their history does not matter.
+// Lattice units.
+#pragma once
+
+#include "core/decomposition.hpp"
+#include "lbm/cell_map.hpp"
+#include "lbm/link_table.hpp"
+
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+namespace thalweg::coupling {
+
+struct MappedGrain;
+
+class HiddenPatches {
+public:
+  HiddenPatches(const Decomposition& decomposition, const Block& block, const lbm::CellMap& cells);
+
+  // To be called before the map gives a cell in reach (local coordinates) to `now`, a slot or CellMap::fluid.
+  void cell_changes(const Index3& local, std::int32_t now);
+
+  // Adds to the bodies the force of the fluid on what is hidden here, where solid cell and rank go together, and sum
+  // F_a x_b to moments, where given. surrounding: rho - rho_rest around each slot's grain; reference: that presses on
+  // nothing (lbm/bouzidi.hpp).
+  void apply(const std::vector<MappedGrain>& grains, const std::vector<double>& surrounding, double reference,
+             std::vector<lbm::LinkBody>& bodies, std::vector<FixedTensor>* moments) const;
+
+  // h of p towards q (CellMap::fluid: towards walls), of this rank's cells of p.
+  Vec3 patch(std::int32_t p, std::int32_t q) const;
+
+private:
+  struct Patch {
+    std::array<std::int32_t, 3> sum{};  // of w_i c_i, in 36ths
+    std::int32_t lines = 0;
+  };
+  static std::uint64_t key(std::int32_t p, std::int32_t q) {
+    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(p)) << 32 | static_cast<std::uint32_t>(q);
+  }
+  void count(std::int32_t p, std::int32_t q, int direction, int lines);
+
+  PeriodicBox box_;  // cells
+  Block block_;
+  std::array<bool, 3> wall_below_, wall_above_;  // whether the block ends at a wall, along each axis
+  const lbm::CellMap& cells_;
+  std::unordered_map<std::uint64_t, Patch> patches_;
+};
+
+}  // namespace thalweg::coupling

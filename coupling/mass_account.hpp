@@ -1,0 +1,59 @@
+// The balance of the water's mass. What counts is the excess E = sum over the fluid cells of rho - rho_rest (rho_rest =
+// 1, or the hydrostatic density): the volume that grains cover on the lattice is a staircase that gains and loses a
+// tenth of a per cent of the cells from step to step, and the sum of rho follows it; the excess, which is the pressure,
+// must not. From one step to the next
+//   E changes by  links:       sum over links of f_i' - f_i^c, what is returned (mass_return.hpp) among it
+//                 covered:     less rho - rho_rest of every cell that becomes solid
+//                 uncovered:   rho - rho_rest of every cell that becomes fluid
+//                 corrections: what every so many steps is added to all cells (ResolvedSystem)
+//                 walls:       what passes through the faces; nothing, to round-off, where none is open
+// in exact integers, so that the first four are the same on any ranks. Lattice units.
+#pragma once
+
+#include "core/archive.hpp"
+#include "core/system.hpp"
+#include "core/units.hpp"
+#include "core/wide_sum.hpp"
+#include "lbm/bouzidi.hpp"
+
+#include <mpi.h>
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace thalweg::coupling {
+
+class MassAccount {
+public:
+  enum Entry { links, covered, uncovered, corrections, upstream, same_cell, covered_upstream, moving_wall, entries };
+
+  explicit MassAccount(MPI_Comm communicator) : communicator_(communicator) {}
+
+  // What this rank adds, a LatticeFixed sum. Corrections are the whole run's and are booked by one rank.
+  void book(Entry entry, std::int64_t mass) { sums_[entry].add(mass); }
+  void book(const lbm::LinkBalance& balance);
+
+  // Since the start of the run, over all ranks, by Entry; all at once because a reduction is shared. Collective.
+  std::array<double, entries> totals() const;
+
+  void set_start(double excess) { start_ = excess; }
+  double start() const { return start_; }  // E at the start of the run
+
+  // Columns of the series (kg): excess: E as measured; owed: what is still to be returned, over all ranks; with_parts:
+  // with the entries of the link rules. Collective.
+  std::vector<Figure> figures(double excess, double owed, const Units& units, bool with_parts) const;
+
+  void save(ArchiveWriter& archive) const;
+  void load(ArchiveReader& archive);
+
+private:
+  std::array<WideSum, entries> totals_exact() const;
+
+  MPI_Comm communicator_;
+  std::array<WideSum, entries> sums_{};  // this rank's
+  double start_ = 0.0;
+};
+
+}  // namespace thalweg::coupling

@@ -1,0 +1,155 @@
+// What the links of a step come to: loads on the grains, and the mass that they owe to the fluid.
+#include "core/mpi_session.hpp"
+#include "coupling/attached_vector.hpp"
+#include "coupling/fluid_mass.hpp"
+#include "coupling/mass_return.hpp"
+#include "coupling/resolved_system.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace thalweg::coupling {
+
+namespace {
+
+// Steps between two looks at the mass of the whole fluid.
+constexpr std::int64_t steps_between_corrections = 1000;
+
+}  // namespace
+
+template <typename Real>
+void ResolvedSystem<Real>::collect_loads() {
+  const std::size_t count = grains_->store().total();
+  const int width = sums_per_grain();
+  exchanged_.resize(static_cast<std::size_t>(width) * count);
+  for (std::size_t g = 0; g < count; ++g) {
+    const lbm::LinkBody& body = bodies_[map_slot_[g]];
+    const std::int64_t sums[8] = {body.force.x,  body.force.y,  body.force.z, body.torque.x,
+                                  body.torque.y, body.torque.z, body.mass,    body.pressure};
+    auto into = std::copy(sums, sums + 8, exchanged_.begin() + static_cast<std::ptrdiff_t>(width * g));
+    const lbm::LinkSums& link_sums = links_.sums_of(map_slot_[g]);
+    into = std::copy(link_sums.sums.begin(), link_sums.sums.end(), into);
+    *into++ = cell_mass_[map_slot_[g]];
+    if (parameters_.grain_stress) {
+      const FixedTensor& moments = moments_[map_slot_[g]];
+      std::copy(moments.sums.begin(), moments.sums.end(), into);
+    }
+    step_totals_.link_mass += body.mass;
+    const Vec3 force = body.force.to_vec3();
+    step_totals_.link_momentum += force;
+    step_totals_.link_angular_momentum += body.centre.cross(force) + body.torque.to_vec3();
+  }
+  mass_.book(MassAccount::links, step_totals_.link_mass);
+  mass_.book(MassAccount::uncovered, step_totals_.refilled_mass);
+  mass_.book(MassAccount::covered, step_totals_.covered_mass);
+  grains_->add_ghost_values(exchanged_, width);
+}
+
+template <typename Real>
+void ResolvedSystem<Real>::apply_loads() {
+  dem::GrainStore& store = grains_->store();
+  for (std::size_t g = 0; g < store.owned; ++g) {
+    const std::int64_t* sums = &exchanged_[sums_per_grain() * g];
+    const Vec3 force = FixedVec3{sums[0], sums[1], sums[2]}.to_vec3() * parameters_.units.force();
+    const Vec3 torque = FixedVec3{sums[3], sums[4], sums[5]}.to_vec3() * parameters_.units.torque();
+    const std::span<double> columns = store.attached_of(g);
+    const int before = static_cast<int>(columns[exchanges]);
+    const auto load = [&](const Vec3& now, int last, int before_last) {
+      return load_of(parameters_.load, before, now, vector_at(columns, last), vector_at(columns, before_last));
+    };
+    set_load(g, load(force, last_force, earlier_force), load(torque, last_torque, earlier_torque), before == 0);
+    set_vector(columns, earlier_force, vector_at(columns, last_force));
+    set_vector(columns, earlier_torque, vector_at(columns, last_torque));
+    set_vector(columns, last_force, force);
+    set_vector(columns, last_torque, torque);
+    if (parameters_.grain_stress) apply_stress(g, before == 0);
+    settle_mass(g, {sums + 6, plain_sums - 6});
+    columns[exchanges] = std::min(before + 1, 2);
+  }
+  grains_->refresh_ghost_attached();
+  show_stresses();
+}
+
+// sums: mass, pressure, LinkSums, mass of cells. What the links lost in this step, besides what they returned, they are
+// likely to lose in the next one, too.
+template <typename Real>
+void ResolvedSystem<Real>::settle_mass(std::size_t grain, std::span<const std::int64_t> sums) {
+  const std::span<double> columns = grains_->store().attached_of(grain);
+  lbm::LinkSums links;
+  std::copy_n(sums.begin() + 2, lbm::LinkSums::size, links.sums.begin());
+  const double by_links = LatticeFixed::to_double(sums[0]), by_cells = LatticeFixed::to_double(sums.back());
+  const MassReturn last{columns[returned], vector_at(columns, returned_slope)};
+  columns[owed_mass] -= by_links + by_cells;
+  const MassReturn next = mass_return(columns[owed_mass] + last.mass(links) - by_links, links);
+  columns[returned] = next.density;
+  set_vector(columns, returned_slope, next.slope);
+  // A grain without links has no fluid around it: what was there last stays.
+  if (links.weight() > 0.0) columns[surrounding] = LatticeFixed::to_double(sums[1]) / links.weight();
+}
+
+// Multiples of 2^-44 below 500, whose sum in any order is exact.
+template <typename Real>
+double ResolvedSystem<Real>::mass_owed() const {
+  std::int64_t owed = 0;
+  for (std::size_t g = 0; g < grains_->store().owned; ++g)
+    owed += LatticeFixed::from(grains_->store().attached_of(g)[owed_mass]);
+  MPI_Allreduce(MPI_IN_PLACE, &owed, 1, MPI_INT64_T, MPI_SUM, communicator_);
+  return LatticeFixed::to_double(owed);
+}
+
+// sigma_ab = (1/V) sum F_a x_b over the surface (Zhang et al. 2022, eq. 13), the mean of two exchanges.
+template <typename Real>
+void ResolvedSystem<Real>::apply_stress(std::size_t grain, bool first) {
+  dem::GrainStore& store = grains_->store();
+  const double volume = 4.0 / 3.0 * std::numbers::pi * std::pow(store.radius[grain], 3);
+  const std::int64_t* sums = &exchanged_[sums_per_grain() * grain + plain_sums];
+  const std::span<double> columns = store.attached_of(grain);
+  for (int k = 0; k < 9; ++k) {
+    const double stress = LatticeFixed::to_double(sums[k]) * (parameters_.units.torque() / volume);
+    columns[mean_stress + k] = first ? stress : 0.5 * (stress + columns[last_stress + k]);
+    columns[last_stress + k] = stress;
+  }
+}
+
+template <typename Real>
+void ResolvedSystem<Real>::show_stresses() {
+  if (!parameters_.grain_stress) return;
+  const dem::GrainStore& store = grains_->store();
+  fluid_stress_.resize(store.owned);
+  for (std::size_t g = 0; g < store.owned; ++g)
+    for (int k = 0; k < 9; ++k) fluid_stress_[g](k / 3, k % 3) = store.attached_of(g)[mean_stress + k];
+}
+
+// What the store has is what the grain got in the step before.
+template <typename Real>
+void ResolvedSystem<Real>::set_load(std::size_t grain, const Vec3& force, const Vec3& torque, bool first) {
+  dem::GrainStore& store = grains_->store();
+  if (!parameters_.virtual_mass || dem::holds_translation(store.motion[grain])) {
+    store.load_force[grain] = force;
+    store.load_torque[grain] = torque;
+    return;
+  }
+  const double share = parameters_.virtual_mass->share(store.mass[grain], grains_->volume_radius(grain));
+  const Vec3 body = grains_->body_force(grain), before = first ? Vec3::Zero() : Vec3(store.load_force[grain] + body);
+  store.load_force[grain] = VirtualMass::filtered(before, force + body, share) - body;
+  store.load_torque[grain] = VirtualMass::filtered(store.load_torque[grain], torque, share);
+}
+
+// What no body owes: round-off, and walls that do not conserve mass.
+template <typename Real>
+void ResolvedSystem<Real>::correct_mass() {
+  if (step_ % steps_between_corrections != 0) return;
+  const ExcessMass excess = excess_mass(fluid_, rest_);
+  parameters_.links.reference_density = excess.mean();
+  if (!closed_) return;
+  const double missing = mass_.start() - mass_owed() - excess.sum;
+  const double added = add_density(fluid_, missing / static_cast<double>(excess.cells));
+  if (rank_of(communicator_) == 0)
+    mass_.book(MassAccount::corrections, LatticeFixed::from(added * static_cast<double>(excess.cells)));
+}
+
+template class ResolvedSystem<float>;
+template class ResolvedSystem<double>;
+
+}  // namespace thalweg::coupling
