@@ -3,30 +3,34 @@
 #include <Eigen/LU>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace thalweg::coupling {
 
-MassReturn mass_return(double mass, const lbm::LinkSums& links) {
+MassReturn MassReturn::scaled(double times) const {
   constexpr double largest_density = 0.01;
-  MassReturn r;
+  const double largest = density == 0.0 ? 0.0 : largest_density / std::abs(density);
+  const double factor = std::clamp(times, -largest, largest);
+  return {factor * density, factor * slope};
+}
+
+MassReturn unit_mass_return(const lbm::LinkSums& links) {
   const double weight = links.weight();
-  if (mass == 0.0 || weight == 0.0) return r;
+  if (weight == 0.0) return {};
   const Vec3 normal = links.normal();
   const Mat3 second = links.second();
-  // A few links in a plane, or none in some direction: without the second condition.
-  Vec3 x = Vec3::Zero();
-  double even = weight;
-  if (second.determinant() > 1e-3 * weight * weight * weight / 27.0) {
-    x = second.inverse() * normal;
-    even = weight - normal.dot(x);
-  }
-  if (even < 0.1 * weight) {
-    x.setZero();
-    even = weight;
-  }
-  r.density = std::clamp(mass / even, -largest_density, largest_density);
-  r.slope = -r.density * x;
-  return r;
+  // With a few links in a plane, or none in some direction, there is no such x: then evenly.
+  constexpr double least_determinant = 1e-3 / 27.0, least_share = 0.1;
+  if (second.determinant() <= least_determinant * weight * weight * weight) return {1.0 / weight, Vec3::Zero()};
+  const Vec3 x = second.inverse() * normal;
+  const double share = weight - normal.dot(x);
+  if (share < least_share * weight) return {1.0 / weight, Vec3::Zero()};
+  return {1.0 / share, -x / share};
+}
+
+double loss_of_motion(const Vec3& normal, const Vec3& velocity) {
+  return 3.0 * (1.0 + std::numbers::ln2) * normal.dot(velocity);
 }
 
 }  // namespace thalweg::coupling

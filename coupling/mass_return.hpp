@@ -15,15 +15,22 @@
 
 namespace thalweg::coupling {
 
+// a and b.
 struct MassReturn {
-  double density = 0.0;       // a
-  Vec3 slope = Vec3::Zero();  // b
+  double density = 0.0;
+  Vec3 slope = Vec3::Zero();
 
   double mass(const lbm::LinkSums& links) const { return density * links.weight() + slope.dot(links.normal()); }
+
+  // For `times` the mass; at most a density of 1 %, so that where a body has hardly any links the rest has to wait.
+  MassReturn scaled(double times) const;
 };
 
-// What returns a mass over the links of a body (over all ranks), with a density of at most 1 % a step: where a body has
-// hardly any links, the rest has to wait.
-MassReturn mass_return(double mass, const lbm::LinkSums& links);
+// For a unit of mass; links: of the body, over all ranks. Zero for a body without links.
+MassReturn unit_mass_return(const lbm::LinkSums& links);
+
+// What the moving surface of a body takes from the fluid in a step, because the part that others hide does not push:
+// 6 k A.v, where k = (1 + ln 2)/2 is the mean over the length of a link of Bouzidi's weight of the wall term over 6.
+double loss_of_motion(const Vec3& normal, const Vec3& velocity);
 
 }  // namespace thalweg::coupling

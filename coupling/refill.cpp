@@ -198,8 +198,7 @@ std::array<double, 19> Refill::populations_of(const Neighbours& n, const Vec3& v
 
 template <typename Real>
 RefillTotals Refill::fill(lbm::Fluid<Real>& fluid, const std::vector<GrainMap::Change>& changes,
-                          const std::vector<lbm::LinkBody>& bodies, const Hydrostatic& rest,
-                          std::vector<std::int64_t>& mass) {
+                          const Hydrostatic& rest, std::vector<lbm::LinkBody>& bodies) {
   RefillTotals totals;
   std::vector<Uncovered> uncovered = uncovered_cells(changes);
   if (uncovered.empty()) return totals;
@@ -210,7 +209,7 @@ RefillTotals Refill::fill(lbm::Fluid<Real>& fluid, const std::vector<GrainMap::C
   const Vec3 force(f[0], f[1], f[2]);
   for (const Uncovered& cell : uncovered) {
     if (!block_.contains(cell.global)) continue;
-    const lbm::LinkBody& body = bodies[cell.before];
+    lbm::LinkBody& body = bodies[cell.before];
     const Vec3 position = centre_of(cell.global);
     const Vec3 velocity = body.velocity + body.angular_velocity.cross(box_.difference(position, body.centre));
     const std::array<double, 19> values = populations_of(cell.neighbours, velocity, force);
@@ -223,7 +222,7 @@ RefillTotals Refill::fill(lbm::Fluid<Real>& fluid, const std::vector<GrainMap::C
     }
     const std::int64_t brought =
         LatticeFixed::from(fluid.populations().density_deviation(at) - rest.deviation(position));
-    mass[static_cast<std::size_t>(cell.before)] += brought;
+    body.mass += brought;
     totals.mass += brought;
     totals.momentum += momentum;
     totals.angular_momentum += position.cross(momentum);
@@ -233,8 +232,8 @@ RefillTotals Refill::fill(lbm::Fluid<Real>& fluid, const std::vector<GrainMap::C
 }
 
 template RefillTotals Refill::fill(lbm::Fluid<float>&, const std::vector<GrainMap::Change>&,
-                                   const std::vector<lbm::LinkBody>&, const Hydrostatic&, std::vector<std::int64_t>&);
+                                   const Hydrostatic&, std::vector<lbm::LinkBody>&);
 template RefillTotals Refill::fill(lbm::Fluid<double>&, const std::vector<GrainMap::Change>&,
-                                   const std::vector<lbm::LinkBody>&, const Hydrostatic&, std::vector<std::int64_t>&);
+                                   const Hydrostatic&, std::vector<lbm::LinkBody>&);
 
 }  // namespace thalweg::coupling

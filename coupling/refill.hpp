@@ -34,20 +34,19 @@ struct RefillTotals {
   std::int64_t cells = 0;                // this rank's uncovered cells
   Vec3 momentum = Vec3::Zero();          // they were given, lattice units
   Vec3 angular_momentum = Vec3::Zero();  // the same about the origin
-  std::int64_t mass = 0;                 // the sum of what was added to mass
+  std::int64_t mass = 0;                 // LatticeFixed: the sum of what the bodies' masses got
 };
 
 class Refill {
 public:
   Refill(const Decomposition& decomposition, MPI_Comm communicator, RefillRule rule = RefillRule::equilibrium);
 
-  // changes: from GrainMap::settle(); bodies: centre and motion of the slots; mass, by slot: to which rho - rho_rest of
-  // the cells that each has uncovered is added (LatticeFixed). Call after the map is settled and before the halo
-  // exchange. Every rank calls it each step.
+  // changes: from GrainMap::settle(); bodies: centre and motion of the slots, to whose mass rho - rho_rest of the cells
+  // that each has uncovered is added. Call after the map is settled and before the halo exchange. Every rank calls it
+  // each step.
   template <typename Real>
-  RefillTotals fill(lbm::Fluid<Real>& fluid, const std::vector<GrainMap::Change>& changes,
-                    const std::vector<lbm::LinkBody>& bodies, const Hydrostatic& rest,
-                    std::vector<std::int64_t>& mass);
+  RefillTotals fill(lbm::Fluid<Real>& fluid, const std::vector<GrainMap::Change>& changes, const Hydrostatic& rest,
+                    std::vector<lbm::LinkBody>& bodies);
 
 private:
   // What the fluid neighbours of one uncovered cell tell; a message between ranks as it stands.

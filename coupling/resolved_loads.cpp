@@ -18,6 +18,23 @@ constexpr std::int64_t steps_between_corrections = 1000;
 
 }  // namespace
 
+// Before anything is added that the fluid does not feel.
+template <typename Real>
+void ResolvedSystem<Real>::book_links(const lbm::LinkBalance& balance) {
+  for (std::size_t g = 0; g < grains_->store().total(); ++g) {
+    const lbm::LinkBody& body = bodies_[map_slot_[g]];
+    const Vec3 force = body.force.to_vec3();
+    step_totals_.link_momentum += force;
+    step_totals_.link_angular_momentum += body.centre.cross(force) + body.torque.to_vec3();
+    step_totals_.link_mass += body.mass;
+  }
+  step_totals_.link_mass -= step_totals_.refilled_mass + step_totals_.covered_mass;
+  mass_.book(MassAccount::links, step_totals_.link_mass);
+  mass_.book(MassAccount::uncovered, step_totals_.refilled_mass);
+  mass_.book(MassAccount::covered, step_totals_.covered_mass);
+  if (parameters_.mass_balance) mass_.book(balance);
+}
+
 template <typename Real>
 void ResolvedSystem<Real>::collect_loads() {
   const std::size_t count = grains_->store().total();
@@ -30,19 +47,11 @@ void ResolvedSystem<Real>::collect_loads() {
     auto into = std::copy(sums, sums + 8, exchanged_.begin() + static_cast<std::ptrdiff_t>(width * g));
     const lbm::LinkSums& link_sums = links_.sums_of(map_slot_[g]);
     into = std::copy(link_sums.sums.begin(), link_sums.sums.end(), into);
-    *into++ = cell_mass_[map_slot_[g]];
     if (parameters_.grain_stress) {
       const FixedTensor& moments = moments_[map_slot_[g]];
       std::copy(moments.sums.begin(), moments.sums.end(), into);
     }
-    step_totals_.link_mass += body.mass;
-    const Vec3 force = body.force.to_vec3();
-    step_totals_.link_momentum += force;
-    step_totals_.link_angular_momentum += body.centre.cross(force) + body.torque.to_vec3();
   }
-  mass_.book(MassAccount::links, step_totals_.link_mass);
-  mass_.book(MassAccount::uncovered, step_totals_.refilled_mass);
-  mass_.book(MassAccount::covered, step_totals_.covered_mass);
   grains_->add_ghost_values(exchanged_, width);
 }
 
@@ -64,28 +73,67 @@ void ResolvedSystem<Real>::apply_loads() {
     set_vector(columns, last_force, force);
     set_vector(columns, last_torque, torque);
     if (parameters_.grain_stress) apply_stress(g, before == 0);
-    settle_mass(g, {sums + 6, plain_sums - 6});
     columns[exchanges] = std::min(before + 1, 2);
   }
+  settle_masses();
   grains_->refresh_ghost_attached();
   show_stresses();
 }
 
-// sums: mass, pressure, LinkSums, mass of cells. What the links lost in this step, besides what they returned, they are
-// likely to lose in the next one, too.
 template <typename Real>
-void ResolvedSystem<Real>::settle_mass(std::size_t grain, std::span<const std::int64_t> sums) {
-  const std::span<double> columns = grains_->store().attached_of(grain);
+lbm::LinkSums ResolvedSystem<Real>::link_sums_of(std::size_t grain) const {
   lbm::LinkSums links;
-  std::copy_n(sums.begin() + 2, lbm::LinkSums::size, links.sums.begin());
-  const double by_links = LatticeFixed::to_double(sums[0]), by_cells = LatticeFixed::to_double(sums.back());
-  const MassReturn last{columns[returned], vector_at(columns, returned_slope)};
-  columns[owed_mass] -= by_links + by_cells;
-  const MassReturn next = mass_return(columns[owed_mass] + last.mass(links) - by_links, links);
-  columns[returned] = next.density;
-  set_vector(columns, returned_slope, next.slope);
-  // A grain without links has no fluid around it: what was there last stays.
-  if (links.weight() > 0.0) columns[surrounding] = LatticeFixed::to_double(sums[1]) / links.weight();
+  std::copy_n(&exchanged_[sums_per_grain() * grain + plain_sums - lbm::LinkSums::size], lbm::LinkSums::size,
+              links.sums.begin());
+  return links;
+}
+
+// Of a grain, or of all members of a clump, in slots from `first` on. Besides what is owed, the links return what they
+// are likely to lose in the next step: by the motion that they then have (update_bodies), and otherwise as much as in
+// the last ones, a mean that leaves out the steps in which single cells change hands.
+template <typename Real>
+void ResolvedSystem<Real>::settle_mass(std::size_t first, std::size_t count) {
+  constexpr double share_of_last_step = 0.125;
+  dem::GrainStore& store = grains_->store();
+  lbm::LinkSums links;
+  std::int64_t sum = 0;
+  double returned = 0.0;
+  for (std::size_t g = first; g < first + count; ++g) {
+    const lbm::LinkSums of_grain = link_sums_of(g);
+    const lbm::LinkBody& body = bodies_[map_slot_[g]];
+    const std::int64_t* sums = &exchanged_[sums_per_grain() * g + 6];
+    links += of_grain;
+    sum += sums[0];
+    returned += MassReturn{body.returned, body.returned_slope}.mass(of_grain);
+    // A grain without links has no fluid around it: what was there last stays.
+    if (of_grain.weight() > 0.0)
+      store.attached_of(g)[surrounding] = LatticeFixed::to_double(sums[1]) / of_grain.weight();
+  }
+  // The members of a clump turn about its centre: their motion is not foreseen.
+  const Vec3 normal = count == 1 ? links.normal() : Vec3(Vec3::Zero());
+  const double given = LatticeFixed::to_double(sum);
+  const double by_motion = loss_of_motion(normal, bodies_[map_slot_[first]].velocity);
+  const MassReturn unit = unit_mass_return(links);
+  const std::span<double> own = store.attached_of(first);
+  own[owed_mass] -= given;
+  own[other_loss] += share_of_last_step * (returned - given - by_motion - own[other_loss]);
+  for (std::size_t g = first; g < first + count; ++g) {
+    const std::span<double> columns = store.attached_of(g);
+    columns[due_mass] = own[owed_mass] + own[other_loss];
+    columns[unit_density] = unit.density;
+    set_vector(columns, unit_slope, unit.slope);
+    set_vector(columns, open_normal, normal);
+  }
+}
+
+template <typename Real>
+void ResolvedSystem<Real>::settle_masses() {
+  const dem::GrainStore& store = grains_->store();
+  for (std::size_t g = 0; g < store.owned; ++g)
+    if (store.clump[g] < 0) settle_mass(g, 1);
+  const dem::Clumps& clumps = grains_->clumps();
+  for (std::size_t n = 0; n < clumps.size(); ++n)
+    settle_mass(clumps.first_slot(n), static_cast<std::size_t>(clumps[n].members));
 }
 
 // Multiples of 2^-44 below 500, whose sum in any order is exact.
@@ -142,6 +190,9 @@ void ResolvedSystem<Real>::correct_mass() {
   if (step_ % steps_between_corrections != 0) return;
   const ExcessMass excess = excess_mass(fluid_, rest_);
   parameters_.links.reference_density = excess.mean();
+  dem::GrainStore& store = grains_->store();
+  for (std::size_t g = 0; g < store.total(); ++g)
+    if (const auto columns = store.attached_of(g); columns[exchanges] == 0.0) columns[surrounding] = excess.mean();
   if (!closed_) return;
   const double missing = mass_.start() - mass_owed() - excess.sum;
   const double added = add_density(fluid_, missing / static_cast<double>(excess.cells));

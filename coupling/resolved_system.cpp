@@ -6,6 +6,7 @@
 #include "coupling/fluid_mass.hpp"
 #include "coupling/fluid_sample.hpp"
 #include "coupling/fluid_system.hpp"
+#include "coupling/mass_return.hpp"
 
 #include <fmt/format.h>
 
@@ -105,14 +106,15 @@ void ResolvedSystem<Real>::update_bodies() {
     body.radius = store.radius[g] / parameters_.units.spacing;
     body.velocity = store.velocity[g] / parameters_.units.velocity();
     body.angular_velocity = store.angular_velocity[g] * parameters_.units.time_step;
-    body.returned = columns[returned];
-    body.returned_slope = vector_at(columns, returned_slope);
+    const double mass = columns[due_mass] + loss_of_motion(vector_at(columns, open_normal), body.velocity);
+    const MassReturn back = MassReturn{columns[unit_density], vector_at(columns, unit_slope)}.scaled(mass);
+    body.returned = back.density;
+    body.returned_slope = back.slope;
     surrounding_[map_slot_[g]] = columns[surrounding];
     body.force = {};
     body.torque = {};
     body.mass = body.pressure = 0;
   }
-  cell_mass_.assign(bodies_.size(), 0);
   if (parameters_.grain_stress || parameters_.mass_balance) moments_.assign(bodies_.size(), {});
 }
 
@@ -143,9 +145,9 @@ void ResolvedSystem<Real>::sweep_behind_links() {
     links.apply_tile(tile);
   });
   const auto scope = timer_.measure(phases_.links);
+  book_links(balance);
   hidden_links_.apply(bodies_, moments);
   map_.hidden_patches().apply(map_.grains(), surrounding_, parameters_.links.reference_density, bodies_, moments);
-  if (parameters_.mass_balance) mass_.book(balance);
 }
 
 template <typename Real>
@@ -172,7 +174,7 @@ void ResolvedSystem<Real>::advance() {
   }
   {
     const auto scope = timer_.measure(phases_.refill);
-    const RefillTotals totals = refill_.fill(fluid_, map_.changes(), bodies_, rest_, cell_mass_);
+    const RefillTotals totals = refill_.fill(fluid_, map_.changes(), rest_, bodies_);
     step_totals_.refilled_mass = totals.mass;
     step_totals_.refilled = totals.momentum;
     step_totals_.refilled_angular_momentum = totals.angular_momentum;
@@ -215,7 +217,7 @@ void ResolvedSystem<Real>::account_for_covered_cells() {
     step_totals_.covered_angular_momentum += position.cross(momentum);
     const std::int64_t mass =
         LatticeFixed::from(rest_.deviation(position) - fluid_.populations().density_deviation(cell));
-    cell_mass_[static_cast<std::size_t>(change.now)] += mass;
+    bodies_[static_cast<std::size_t>(change.now)].mass += mass;
     step_totals_.covered_mass += mass;
   }
 }
@@ -296,7 +298,7 @@ std::vector<Figure> ResolvedSystem<Real>::figures() const {
 template <typename Real>
 void ResolvedSystem<Real>::add_wall_forces(std::vector<Figure>& figures) const {
   const std::vector<Vec3> of_grains = grains_->wall_forces();
-  const std::array<Vec3, 6> of_fluid = fluid_.wall_forces();
+  const std::array<Vec3, 6> of_fluid = fluid_.wall_forces(parameters_.links.reference_density);
   std::size_t wall = 0;
   for (std::size_t face = 0; face < of_fluid.size(); ++face) {
     if (box_.periodic[face / 2]) continue;

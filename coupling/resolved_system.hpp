@@ -53,9 +53,10 @@ public:
                  const ResolvedParameters& parameters, std::unique_ptr<dem::GrainDynamics> grains);
 
   // Attached columns of a grain: the place its cells stand for (m), force (N) and torque (N m) of the last exchange and
-  // the one before, how many there have been (2: or more); in lattice units the mass owed to the fluid, what the links
-  // return in the coming step (MassReturn), and rho - rho_rest of the fluid around the grain in the last one; where
-  // asked for, the stress (Pa, row by row) of the last exchange and the mean of the last two.
+  // the one before, how many there have been (2: or more). In lattice units: the mass owed to the fluid (of a clump in
+  // its first member's), the mean loss a step by anything but motion, what follows from the two for the coming step,
+  // the return of a unit of mass, A of the links (mass_return.hpp), and rho - rho_rest of the fluid around the grain.
+  // Where asked for, the stress (Pa, row by row) of the last exchange and the mean of the last two.
   enum Attached {
     link_position = 0,
     last_force = 3,
@@ -64,13 +65,16 @@ public:
     earlier_torque = 12,
     exchanges = 15,
     owed_mass = 16,
-    returned = 17,
-    returned_slope = 18,
-    surrounding = 21,
-    last_stress = 22,
-    mean_stress = 31
+    other_loss = 17,
+    due_mass = 18,
+    unit_density = 19,
+    unit_slope = 20,
+    open_normal = 23,
+    surrounding = 26,
+    last_stress = 27,
+    mean_stress = 36
   };
-  static int attached_width(const ResolvedParameters& parameters) { return parameters.grain_stress ? 40 : 22; }
+  static int attached_width(const ResolvedParameters& parameters) { return parameters.grain_stress ? 45 : 27; }
 
   // How far beyond a block its grains must be known for the map, as a distance from the grain's centre (m).
   static double ghost_reach(double largest_radius, double spacing) { return largest_radius + 2.5 * spacing; }
@@ -106,7 +110,10 @@ private:
   void update_bodies();
   void account_for_covered_cells();
   void correct_mass();
-  void settle_mass(std::size_t grain, std::span<const std::int64_t> sums);
+  void book_links(const lbm::LinkBalance& balance);
+  lbm::LinkSums link_sums_of(std::size_t grain) const;
+  void settle_masses();
+  void settle_mass(std::size_t first, std::size_t count);
   double mass_owed() const;
   void sweep_behind_links();
   void collect_loads();
@@ -114,8 +121,8 @@ private:
   void set_load(std::size_t grain, const Vec3& force, const Vec3& torque, bool first);
   void apply_stress(std::size_t grain, bool first);
   void show_stresses();
-  // Of a grain: force, torque, mass, pressure, LinkSums, mass of cells; where asked for, moments.
-  static constexpr int plain_sums = 9 + lbm::LinkSums::size;
+  // Of a grain: force, torque, mass, pressure, LinkSums; where asked for, moments.
+  static constexpr int plain_sums = 8 + lbm::LinkSums::size;
   int sums_per_grain() const { return plain_sums + (parameters_.grain_stress ? 9 : 0); }
   Vec3 lattice_position(const Vec3& position) const { return position / parameters_.units.spacing; }
 
@@ -133,7 +140,6 @@ private:
   Refill refill_;
   std::vector<lbm::LinkBody> bodies_;    // by map slot
   std::vector<int> map_slot_;            // of each grain of the store
-  std::vector<std::int64_t> cell_mass_;  // by cells that changed hands in this step (LatticeFixed), by map slot
   std::vector<double> surrounding_;      // rho - rho_rest around the grain, by map slot
   std::vector<FixedTensor> moments_;     // by map slot; empty unless measured
   std::vector<std::int64_t> exchanged_;  // force and torque sums of each grain of the store, and those of moments

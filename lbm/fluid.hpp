@@ -79,9 +79,9 @@ public:
   double largest_speed() const;                    // over this rank's fluid cells
   FluidTotals totals() const;                      // collective
 
-  // Force on each face (lattice units, without the reference pressure) in the step to come. Fills halo and walls, which
-  // every step does anew. Collective.
-  std::array<Vec3, 6> wall_forces();
+  // Force on each face (lattice units) in the step to come, without that of a fluid at rest with rho = 1 + reference.
+  // Fills halo and walls, which every step does anew. Collective.
+  std::array<Vec3, 6> wall_forces(double reference = 0.0);
 
   // Post-collision populations of every owned cell, zero in solid ones, and the walls' state. Collective.
   void save(ArchiveWriter& archive) const;

@@ -25,7 +25,8 @@ int Walls<Real>::face_of_population(int face, int o, const Index3& at) const {
 }
 
 template <typename Real>
-std::array<FixedVec3, 6> Walls<Real>::forces(const Populations<Real>& populations, const CellMap& cells) const {
+std::array<FixedVec3, 6> Walls<Real>::forces(const Populations<Real>& populations, const CellMap& cells,
+                                             double reference) const {
   std::array<FixedVec3, 6> sums{};
   const Index3& n = indexing_.size();
   for (int face = 0; face < 6; ++face) {
@@ -44,7 +45,8 @@ std::array<FixedVec3, 6> Walls<Real>::forces(const Populations<Real>& population
             if (!cells.is_fluid(cell) || face_of_population(face, o, at) != face) continue;
             const std::int64_t lost =
                 LatticeFixed::from(static_cast<double>(populations.post_collision(D3Q19::opposite(o), cell)) +
-                                   static_cast<double>(populations.incoming(o, cell)));
+                                   static_cast<double>(populations.incoming(o, cell)) -
+                                   2.0 * D3Q19::weight(o) * reference);
             sums[face] += {-D3Q19::c[o][0] * lost, -D3Q19::c[o][1] * lost, -D3Q19::c[o][2] * lost};
           }
     }

@@ -68,8 +68,8 @@ public:
   void apply(Populations<Real>& populations, const CellMap& cells) const;
 
   // The momentum that each face takes from this rank's fluid in the step to come, after apply(): with what leaves and
-  // what comes in as f - w, so without the reference pressure.
-  std::array<FixedVec3, 6> forces(const Populations<Real>& populations, const CellMap& cells) const;
+  // what comes in as f - w (1 + reference): a fluid at rest with rho = 1 + reference presses on nothing.
+  std::array<FixedVec3, 6> forces(const Populations<Real>& populations, const CellMap& cells, double reference) const;
 
   // True if the shear rates of a row are wanted after the sweep.
   bool wants_shear(int y, int z) const;

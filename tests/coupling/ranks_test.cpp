@@ -133,7 +133,6 @@ TEST(Ranks, DoNotChangeOneBitWithFullGravityAndEveryOtherChoiceInAFlume) {
   box.full_gravity = box.grain_stress = box.paper_near_contact = true;
   box.links.rule = lbm::LinkRule::cli;
   box.refill = RefillRule::grad;
-  box.mass_correction = 6;
   for (const Index3& layout : two_layouts_of(size_of(MPI_COMM_WORLD))) compare<float>(box, layout, 8);
 }
 
@@ -142,7 +141,6 @@ TEST(Ranks, DoNotChangeOneBitWithTheOtherRefillInAPeriodicBox) {
   box.refill = RefillRule::non_equilibrium;
   box.paper_near_contact = box.grain_stress = true;
   box.links.momentum_exchange = lbm::MomentumExchange::classical;
-  box.mass_correction = 7;
   for (const Index3& layout : two_layouts_of(size_of(MPI_COMM_WORLD))) compare<double>(box, layout, 14);
 }
 

@@ -32,7 +32,7 @@ struct WaterBox {
   bool grain_stress = false;
   bool full_gravity = false;  // gravity acts on everything, and buoyancy comes from the fluid
   bool paper_near_contact = false;
-  int mass_correction = 0;
+  LoadRule load = LoadRule::extrapolated;
   std::vector<dem::GrainSeed> seeds;
   std::vector<dem::PrescribedMotion> assemblies;
   std::vector<dem::ClumpSeed> clumps;
@@ -70,7 +70,7 @@ std::unique_ptr<ResolvedSystem<Real>> make_system(const WaterBox& box, MPI_Comm 
   p.grain_stress = box.grain_stress;
   p.full_gravity = box.full_gravity;
   p.paper_near_contact = box.paper_near_contact;
-  p.mass_correction = box.mass_correction;
+  p.load = box.load;
   if (box.initial)
     p.initial_fluid = box.initial;
   else
