@@ -3,13 +3,18 @@
 #pragma once
 
 #include "coupling/hydrostatic.hpp"
-#include "lbm/fluid.hpp"
+#include "lbm/fluid_survey.hpp"
+
+#include <algorithm>
+#include <cstdint>
 
 namespace thalweg::coupling {
 
-// Mean over all fluid cells of rho - 1, less that of a fluid at rest. The same bits on any ranks. Collective.
-template <typename Real>
-double mean_density_deviation(const lbm::Fluid<Real>& fluid, const Hydrostatic& rest);
+// Mean over all fluid cells of rho - 1, less that of a fluid at rest. The same bits on any ranks.
+inline double mean_density_deviation(const lbm::FluidSurvey& survey, const Hydrostatic& rest) {
+  const auto cells = static_cast<double>(std::max<std::int64_t>(1, survey.totals.cells));
+  return (survey.totals.mass_deviation - rest.gradient.dot(survey.lever)) / cells;
+}
 
 // Adds a density to every fluid cell of this rank.
 template <typename Real>

@@ -2,6 +2,7 @@
 
 #include "core/mpi_session.hpp"
 #include "core/same_time_step.hpp"
+#include "coupling/fluid_figures.hpp"
 #include "coupling/fluid_mass.hpp"
 #include "coupling/fluid_sample.hpp"
 #include "coupling/fluid_system.hpp"
@@ -267,7 +268,7 @@ void ResolvedSystem<Real>::advance() {
 template <typename Real>
 void ResolvedSystem<Real>::correct_mass() {
   if (parameters_.mass_correction > 0 && step_ > 0 && step_ % parameters_.mass_correction == 0)
-    add_density(fluid_, -mean_density_deviation(fluid_, rest_));
+    add_density(fluid_, -mean_density_deviation(survey_of(fluid_), rest_));
 }
 
 template <typename Real>
@@ -344,17 +345,22 @@ void ResolvedSystem<Real>::for_each_velocity(const VelocityVisitor& visit) const
 
 template <typename Real>
 std::vector<Figure> ResolvedSystem<Real>::figures() const {
-  const lbm::FluidTotals totals = fluid_.totals();
-  double speed = fluid_.largest_speed();
-  // Not-a-number does not survive MPI_MAX; infinity does.
-  speed = max_over_ranks(communicator_, std::isfinite(speed) ? speed : HUGE_VAL);
-  std::vector<Figure> figures{{"largest_lattice_velocity", "1", speed},
-                              {"largest_fluid_speed", "m/s", speed * parameters_.units.velocity()},
-                              {"mean_density_deviation", "1", mean_density_deviation(fluid_, rest_)},
-                              {"fluid_cells", "1", static_cast<double>(totals.cells)},
-                              {"largest_overlap", "diameter", grains_->largest_overlap()}};
+  const lbm::FluidSurvey survey = survey_of(fluid_);
+  std::vector<Figure> figures = speed_figures(survey, parameters_.units);
+  figures.push_back({"mean_density_deviation", "1", mean_density_deviation(survey, rest_)});
+  figures.push_back({"fluid_cells", "1", static_cast<double>(survey.totals.cells)});
+  figures.push_back({"largest_overlap", "diameter", grains_->largest_overlap()});
   if (parameters_.wall_forces) add_wall_forces(figures);
+  add_extremes(survey, figures);
+  figures.push_back({"largest_grain_speed", "m/s", grains_->largest_speed()});
   return figures;
+}
+
+template <typename Real>
+std::optional<Place> ResolvedSystem<Real>::place_of(const std::string& figure) const {
+  if (figure == "largest_overlap") return grains_->place_of_deepest_overlap();
+  if (figure == "largest_grain_speed") return grains_->place_of_fastest();
+  return place_in_fluid(survey_of(fluid_), parameters_.units, figure);
 }
 
 // Of the grains at the end of the step; of the fluid what the walls take from it in the step to come.

@@ -62,11 +62,11 @@ TEST(FluidMass, CorrectionGivesNoMomentum) {
     return lbm::FluidState{0.01 * std::sin(p.x()), Vec3(0.05 * std::sin(p.y()), 0.02, 0.01 * std::cos(p.z()))};
   });
   const lbm::FluidTotals before = fluid.totals();
-  const double mean = mean_density_deviation(fluid, {});
+  const double mean = mean_density_deviation(survey_of(fluid), {});
   EXPECT_NEAR(mean, before.mass_deviation / 960.0, 1e-15);
   add_density(fluid, -mean);
   const lbm::FluidTotals after = fluid.totals();
-  EXPECT_NEAR(mean_density_deviation(fluid, {}), 0.0, 1e-11);  // cells are summed to 2^-37
+  EXPECT_NEAR(mean_density_deviation(survey_of(fluid), {}), 0.0, 1e-11);  // cells are summed to 2^-37
   EXPECT_NEAR((after.momentum - before.momentum).norm(), 0.0, 960.0 * 0x1p-36);
 }
 
