@@ -4,9 +4,11 @@
 #include "core/archive.hpp"
 #include "core/error.hpp"
 #include "core/phase_timer.hpp"
+#include "core/place.hpp"
 #include "core/snapshot.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,6 +33,10 @@ public:
 
   virtual Snapshot snapshot() const = 0;            // valid until the next advance()
   virtual std::vector<Figure> figures() const = 0;  // state of health; collective, the same on every rank
+
+  // Where the figure of that name, one of figures(), has its value; empty where it belongs to no place. Collective, the
+  // same on every rank; may cost as much as figures().
+  virtual std::optional<Place> place_of(const std::string&) const { return std::nullopt; }
 
   virtual void save(ArchiveWriter& archive) const = 0;  // everything the next step depends on; collective
   virtual void load(ArchiveReader& archive) = 0;        // collective

@@ -2,6 +2,7 @@
 
 #include "core/mpi_session.hpp"
 #include "core/same_time_step.hpp"
+#include "coupling/fluid_figures.hpp"
 #include "coupling/fluid_mass.hpp"
 #include "coupling/fluid_sample.hpp"
 
@@ -99,26 +100,28 @@ void FluidSystem<Real>::for_each_velocity(const VelocityVisitor& visit) const {
 
 template <typename Real>
 std::vector<Figure> FluidSystem<Real>::figures() const {
-  const lbm::FluidTotals totals = fluid_.totals();
-  const double cells = static_cast<double>(std::max<std::int64_t>(1, totals.cells));
+  const lbm::FluidSurvey survey = survey_of(fluid_);
+  const double cells = static_cast<double>(std::max<std::int64_t>(1, survey.totals.cells));
   const double force = fluid_.parameters().force[0];
-  double speed = fluid_.largest_speed();
-  // Not-a-number does not survive MPI_MAX; infinity does.
-  speed = max_over_ranks(communicator_, std::isfinite(speed) ? speed : HUGE_VAL);
   const Units& units = parameters_.units;
-  std::vector<Figure> figures{
-      {"largest_lattice_velocity", "1", speed},
-      {"largest_fluid_speed", "m/s", speed * units.velocity()},
-      {"mean_velocity_x", "m/s", (totals.momentum.x() / cells - 0.5 * force) * units.velocity()},
-      {"body_force_x", "N/m^3", force * units.density * units.acceleration()},
-      {"mean_density_deviation", "1", excess_mass(fluid_, rest_).mean()},
-      {"fluid_cells", "1", static_cast<double>(totals.cells)}};
-  if (!solids_) return figures;
-  const std::vector<Vec3> forces = solids_->forces();
-  for (std::size_t s = 0; s < forces.size(); ++s)
-    for (int a = 0; a < 3; ++a)
-      figures.push_back({fmt::format("solid_{}_force_{}", s, "xyz"[a]), "N", forces[s][a] * units.force()});
+  std::vector<Figure> figures = speed_figures(survey, units);
+  figures.push_back({"mean_velocity_x", "m/s", (survey.totals.momentum.x() / cells - 0.5 * force) * units.velocity()});
+  figures.push_back({"body_force_x", "N/m^3", force * units.density * units.acceleration()});
+  figures.push_back({"mean_density_deviation", "1", excess_mass(survey, rest_).mean()});
+  figures.push_back({"fluid_cells", "1", static_cast<double>(survey.totals.cells)});
+  if (solids_) {
+    const std::vector<Vec3> forces = solids_->forces();
+    for (std::size_t s = 0; s < forces.size(); ++s)
+      for (int a = 0; a < 3; ++a)
+        figures.push_back({fmt::format("solid_{}_force_{}", s, "xyz"[a]), "N", forces[s][a] * units.force()});
+  }
+  add_extremes(survey, figures);
   return figures;
+}
+
+template <typename Real>
+std::optional<Place> FluidSystem<Real>::place_of(const std::string& figure) const {
+  return place_in_fluid(survey_of(fluid_), parameters_.units, figure);
 }
 
 template <typename Real>

@@ -24,9 +24,10 @@ public:
   double time_step() const override { return parameters_.units.time_step; }
   Snapshot snapshot() const override;
   // largest_lattice_velocity (1), largest_fluid_speed (m/s), mean_velocity_x (m/s), body_force_x (N/m^3),
-  // mean_density_deviation (1), fluid_cells (1), and of each solid solid_<n>_force_x, _y, _z (N), of the last step:
-  // what the fluid exerts on its surface, without the reference pressure.
+  // mean_density_deviation (1), fluid_cells (1), of each solid solid_<n>_force_x, _y, _z (N), of the last step: what the
+  // fluid exerts on its surface, without the reference pressure, and those of add_extremes() (fluid_figures.hpp).
   std::vector<Figure> figures() const override;
+  std::optional<Place> place_of(const std::string& figure) const override;
   void save(ArchiveWriter& archive) const override;
   void load(ArchiveReader& archive) override;
   void take_fluid(ArchiveReader& archive) override;

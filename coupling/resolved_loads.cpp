@@ -188,7 +188,7 @@ void ResolvedSystem<Real>::set_load(std::size_t grain, const Vec3& force, const 
 template <typename Real>
 void ResolvedSystem<Real>::correct_mass() {
   if (step_ % steps_between_corrections != 0) return;
-  const ExcessMass excess = excess_mass(fluid_, rest_);
+  const ExcessMass excess = excess_mass(survey_of(fluid_), rest_);
   parameters_.links.reference_density = excess.mean();
   dem::GrainStore& store = grains_->store();
   for (std::size_t g = 0; g < store.total(); ++g)

@@ -3,6 +3,7 @@
 #include "core/mpi_session.hpp"
 #include "core/same_time_step.hpp"
 #include "coupling/attached_vector.hpp"
+#include "coupling/fluid_figures.hpp"
 #include "coupling/fluid_mass.hpp"
 #include "coupling/fluid_sample.hpp"
 #include "coupling/fluid_system.hpp"
@@ -58,7 +59,7 @@ ResolvedSystem<Real>::ResolvedSystem(std::unique_ptr<Decomposition> decompositio
   dem::GrainStore& store = grains_->store();
   for (std::size_t g = 0; g < store.total(); ++g) set_vector(store.attached_of(g), link_position, store.position[g]);
   initialise_map();
-  mass_.set_start(excess_mass(fluid_, rest_).sum);
+  mass_.set_start(excess_mass(survey_of(fluid_), rest_).sum);
   show_stresses();
 }
 
@@ -279,19 +280,25 @@ void ResolvedSystem<Real>::for_each_velocity(const VelocityVisitor& visit) const
 
 template <typename Real>
 std::vector<Figure> ResolvedSystem<Real>::figures() const {
-  const ExcessMass excess = excess_mass(fluid_, rest_);
-  double speed = fluid_.largest_speed();
-  // Not-a-number does not survive MPI_MAX; infinity does.
-  speed = max_over_ranks(communicator_, std::isfinite(speed) ? speed : HUGE_VAL);
-  std::vector<Figure> figures{{"largest_lattice_velocity", "1", speed},
-                              {"largest_fluid_speed", "m/s", speed * parameters_.units.velocity()},
-                              {"mean_density_deviation", "1", excess.mean()},
-                              {"fluid_cells", "1", static_cast<double>(excess.cells)},
-                              {"largest_overlap", "diameter", grains_->largest_overlap()}};
+  const lbm::FluidSurvey survey = survey_of(fluid_);
+  const ExcessMass excess = excess_mass(survey, rest_);
+  std::vector<Figure> figures = speed_figures(survey, parameters_.units);
+  figures.push_back({"mean_density_deviation", "1", excess.mean()});
+  figures.push_back({"fluid_cells", "1", static_cast<double>(excess.cells)});
+  figures.push_back({"largest_overlap", "diameter", grains_->largest_overlap()});
+  if (parameters_.wall_forces) add_wall_forces(figures);
+  add_extremes(survey, figures);
+  figures.push_back({"largest_grain_speed", "m/s", grains_->largest_speed()});
   for (const Figure& figure : mass_.figures(excess.sum, mass_owed(), parameters_.units, parameters_.mass_balance))
     figures.push_back(figure);
-  if (parameters_.wall_forces) add_wall_forces(figures);
   return figures;
+}
+
+template <typename Real>
+std::optional<Place> ResolvedSystem<Real>::place_of(const std::string& figure) const {
+  if (figure == "largest_overlap") return grains_->place_of_deepest_overlap();
+  if (figure == "largest_grain_speed") return grains_->place_of_fastest();
+  return place_in_fluid(survey_of(fluid_), parameters_.units, figure);
 }
 
 // Of the grains at the end of the step; of the fluid what the walls take from it in the step to come.
@@ -350,7 +357,7 @@ template <typename Real>
 void ResolvedSystem<Real>::take_fluid(ArchiveReader& archive) {
   require_same_time_step(archive, time_step());
   fluid_.load_populations(archive);
-  mass_.set_start(excess_mass(fluid_, rest_).sum);
+  mass_.set_start(excess_mass(survey_of(fluid_), rest_).sum);
 }
 
 // Grains of a resolved run keep the places their links were cut at, others begin where they are.
@@ -362,7 +369,7 @@ void ResolvedSystem<Real>::take_grains(ArchiveReader& archive) {
   for (std::size_t g = 0; g < store.total(); ++g)
     if (store.attached_of(g)[exchanges] == 0.0) set_vector(store.attached_of(g), link_position, store.position[g]);
   initialise_map();
-  mass_.set_start(excess_mass(fluid_, rest_).sum);
+  mass_.set_start(excess_mass(survey_of(fluid_), rest_).sum);
   show_stresses();
 }
 

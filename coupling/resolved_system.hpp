@@ -84,6 +84,7 @@ public:
   double time_step() const override { return parameters_.units.time_step; }
   Snapshot snapshot() const override;
   std::vector<Figure> figures() const override;
+  std::optional<Place> place_of(const std::string& figure) const override;
   void save(ArchiveWriter& archive) const override;
   void load(ArchiveReader& archive) override;
   void take_fluid(ArchiveReader& archive) override;

@@ -13,6 +13,7 @@
 #include "core/archive.hpp"
 #include "core/decomposition.hpp"
 #include "core/phase_timer.hpp"
+#include "core/place.hpp"
 #include "core/snapshot.hpp"
 #include "dem/assemblies.hpp"
 #include "dem/clump_seed.hpp"
@@ -153,13 +154,18 @@ public:
   // overlap and contacts are those of its members. Collective.
   std::vector<Vec3> wall_forces() const;          // N, of all grains on each of the walls, in their order
   std::int64_t contact_count() const;             // touching pairs of grains
-  double largest_overlap() const;                 // of two grains, in diameters of the smaller
+  double largest_overlap() const;                 // of two grains, not both held, in diameters of the smaller
   double kinetic_energy() const;                  // J, with rotation
   Vec3 momentum() const;                          // kg m/s
   double largest_speed() const;                   // m/s
   double largest_free_speed() const;              // m/s, of grains that are free to move
   double largest_acceleration() const;            // m/s^2, of the same, by all forces at the end of the last step
   std::int64_t moving_count(double speed) const;  // free grains faster than speed (m/s)
+
+  // Where these two figures have their values: the pair that overlaps most, and the grain or clump (by its first member)
+  // that largest_speed() belongs to; of several, those with the lowest ids. Empty where there are none. Collective.
+  std::optional<Place> place_of_deepest_overlap() const;
+  std::optional<Place> place_of_fastest() const;
 
   // Everything the next sub-step depends on, sorted by id, below `group`; collective. To be called after
   // refresh_ghosts(). Loading replaces all grains, whatever the seeds were; parameters stay those given at

@@ -2,6 +2,7 @@
 #include "core/mpi_session.hpp"
 #include "core/order_free_sum.hpp"
 #include "dem/contact_forces.hpp"
+#include "dem/extreme.hpp"
 #include "dem/grain_dynamics.hpp"
 
 #include <algorithm>
@@ -19,6 +20,12 @@ void for_each_touching(const ContactList& list, const GrainStore& store, const P
     const double overlap = c.reach - separation.norm();
     if (overlap > 0.0) visit(c, overlap, separation);
   }
+}
+
+// Grains that are held may overlap each other as they like: a bumpy wall does.
+double overlap_in_diameters(const GrainStore& store, const PairContact& c, double overlap) {
+  if (holds_translation(store.motion[c.first]) && holds_translation(store.motion[c.second])) return 0.0;
+  return overlap / (2.0 * std::min(store.radius[c.first], store.radius[c.second]));
 }
 
 }  // namespace
@@ -74,9 +81,27 @@ std::int64_t GrainDynamics::contact_count() const {
 double GrainDynamics::largest_overlap() const {
   double largest = 0.0;
   for_each_touching(list_, store_, box_, [&](const PairContact& c, double overlap, const Vec3&) {
-    largest = std::max(largest, overlap / (2.0 * std::min(store_.radius[c.first], store_.radius[c.second])));
+    largest = std::max(largest, overlap_in_diameters(store_, c, overlap));
   });
   return max_over_ranks(communicator_, largest);
+}
+
+std::optional<Place> GrainDynamics::place_of_deepest_overlap() const {
+  Extreme deepest;
+  for_each_touching(list_, store_, box_, [&](const PairContact& c, double overlap, const Vec3& separation) {
+    deepest.consider({overlap_in_diameters(store_, c, overlap), store_.id[c.first], store_.id[c.second],
+                      box_.wrapped(store_.position[c.second] + 0.5 * separation)});
+  });
+  return deepest.place_over_ranks(communicator_);
+}
+
+std::optional<Place> GrainDynamics::place_of_fastest() const {
+  Extreme fastest;
+  for (std::size_t s = 0; s < store_.owned; ++s)
+    if (store_.clump[s] < 0) fastest.consider({store_.velocity[s].norm(), store_.id[s], -1, store_.position[s]});
+  for (std::size_t n = 0; n < clumps_.size(); ++n)
+    fastest.consider({clumps_[n].velocity.norm(), clumps_[n].id, -1, clumps_[n].centre});
+  return fastest.place_over_ranks(communicator_);
 }
 
 // Calls visit(mass, velocity, kinetic energy, motion, force) for every grain and clump owned here; force: N, of all

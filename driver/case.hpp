@@ -196,10 +196,13 @@ struct AtRestCase {
 
 enum class GrainIntegrator { velocity_verlet, gear };
 
+enum class WatchdogAction { stop, warn };
+
 struct RunCase {
   double until = 0.0;  // s
   GrainIntegrator grain_integrator = GrainIntegrator::velocity_verlet;
   std::optional<AtRestCase> until_at_rest;  // of dry grains: the run ends earlier when this holds
+  WatchdogAction watchdog = WatchdogAction::stop;
   std::optional<double> time_step;  // s, of dry grains; read as 1/50 of the shortest contact where it is not given
   bool operator==(const RunCase&) const = default;
 };

@@ -226,6 +226,10 @@ static void describe_run(io::SectionVisitor& visit, RunCase& run, bool with_flui
         {.meaning = "how the grains are moved"});
   else
     visit.not_here("grain_integrator", "a fluid alone has no grains; remove the key");
+  visit.choice<WatchdogAction>("watchdog", run.watchdog,
+                               {{WatchdogAction::stop, "stop", "the run, with exit code 1"},
+                                {WatchdogAction::warn, "warn", "and go on while there are numbers"}},
+                               {.meaning = "what to do when a figure leaves its bounds (docs/stability.md)"});
   if (with_fluid)
     visit.not_here("until_at_rest", "grains in a fluid are never at rest; remove the section or set system: grains");
   else

@@ -100,6 +100,12 @@ std::vector<Figure> DryGrains::figures() const {
   return figures;
 }
 
+std::optional<Place> DryGrains::place_of(const std::string& figure) const {
+  if (figure == "largest_overlap") return grains_.place_of_deepest_overlap();
+  if (figure == largest_speed_figure) return grains_.place_of_fastest();
+  return std::nullopt;
+}
+
 void DryGrains::save(ArchiveWriter& archive) const {
   archive.attribute("system/step", step_);
   archive.attribute("system/time_step", time_step_);

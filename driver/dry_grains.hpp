@@ -23,6 +23,7 @@ public:
   // contacts, largest_overlap (in diameters), and of the free grains largest_grain_speed, largest_grain_acceleration
   // With analysis.wall_forces also three for each wall: wall_force_bottom_x ..., wall_force_wall_0_x ...
   std::vector<Figure> figures() const override;
+  std::optional<Place> place_of(const std::string& figure) const override;
   static constexpr const char* largest_speed_figure = "largest_grain_speed";
   static constexpr const char* largest_acceleration_figure = "largest_grain_acceleration";
   void save(ArchiveWriter& archive) const override;

@@ -31,6 +31,7 @@ std::string progress_line(const ProgressState& state) {
   if (const auto q_star = find_figure(state.figures, "q_star")) line += fmt::format("  q* {:<9.3g}", *q_star);
   if (const auto speed = find_figure(state.figures, "largest_lattice_velocity"))
     line += fmt::format("  u_max {:.3g}", *speed);
+  if (!state.notice.empty()) line += "  warning: " + state.notice;
   return line.substr(0, line.find_last_not_of(' ') + 1);
 }
 

@@ -158,6 +158,18 @@ void say_how_it_ended(const RunIdentity& identity, const LoopRecord& record, con
                          folder.path().string()));
 }
 
+// Which checkpoint a run that has failed can go on from, in a sentence.
+std::string last_good(const Places& places) {
+  fs::path checkpoint = places.checkpoint;
+  try {
+    checkpoint = places.folder.latest_checkpoint();
+  } catch (const InputError&) {  // none has been written in this folder
+  }
+  if (checkpoint.empty())
+    return "There is no checkpoint to go on from: output.checkpoint.every (s) says how often one is written.";
+  return fmt::format("The last good checkpoint is {}.", checkpoint.string());
+}
+
 }  // namespace
 
 void run_case(const Command& command, MPI_Comm communicator, WallClock::time_point started, FailureCouncil& council,
@@ -191,6 +203,8 @@ void run_case(const Command& command, MPI_Comm communicator, WallClock::time_poi
   if (c.run.until_at_rest)
     plan.enough = {{DryGrains::largest_speed_figure, c.run.until_at_rest->largest_speed},
                    {DryGrains::largest_acceleration_figure, c.run.until_at_rest->largest_acceleration}};
+  plan.watch = watch_rules(c);
+  plan.out_of_bounds = c.run.watchdog == WatchdogAction::stop ? OutOfBounds::stop : OutOfBounds::warn;
   plan.walltime = command.walltime;
   plan.started = started;
   plan.write_at_start = !places.same_folder;
@@ -199,11 +213,12 @@ void run_case(const Command& command, MPI_Comm communicator, WallClock::time_poi
   try {
     loop.run();
   } catch (const RunError& error) {
+    const RunError told(fmt::format("{} {}", error.what(), last_good(places)));
     LoopRecord record = loop.record();
-    record.reason = error.what();
+    record.reason = told.what();
     if (!council.everybody_failed(seconds_to_wait_for_others) || log.speaking())
       summary_of(identity, *system, record, observers, {}).write(places.folder.summary());
-    throw;
+    throw told;
   }
   if (!c.grains.empty()) io::write_bed_file(communicator, places.folder.bed(), system->snapshot());
   const std::vector<PhaseShare> phases = collect_phases(communicator, *system, loop);

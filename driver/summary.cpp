@@ -112,6 +112,7 @@ io::JsonObject summary_of(const RunIdentity& identity, const System& system, con
                               .set("largest_seconds", phase.largest_seconds)
                               .set("share", phase.share));
   summary.set("phases", table);
+  summary.set("warnings", record.warnings);
   summary.set("figures", figures_as_json(record.figures)).set("largest", figures_as_json(record.largest));
   for (const auto& observer : observers) summary.set(observer->name(), figures_as_json(observer->results()));
   return summary;

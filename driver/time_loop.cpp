@@ -27,7 +27,12 @@ double seconds_since(WallClock::time_point start) {
 
 TimeLoop::TimeLoop(MPI_Comm communicator, System& system, std::vector<std::unique_ptr<analysis::Observer>>& observers,
                    const LoopPlan& plan, Log& log)
-    : communicator_(communicator), system_(system), observers_(observers), plan_(plan), log_(log) {
+    : communicator_(communicator),
+      system_(system),
+      observers_(observers),
+      plan_(plan),
+      log_(log),
+      watchdog_(communicator, system, plan.watch, plan.out_of_bounds) {
   // Rounded up, except where the quotient misses a whole number of steps by round-off only.
   final_step_ = static_cast<std::int64_t>(std::ceil(plan.until / system.time_step() * (1.0 - 1e-12)));
   for (const auto& observer : observers) {
@@ -48,12 +53,12 @@ void TimeLoop::run() {
     record_.advance_seconds += seconds_since(before);
     record_.last_step = system_.step();
     record_.wall_seconds = seconds_since(begin_);
-    const bool looks = system_.step() % steps_between_health_checks == 0;
-    if (looks) look_at_health();
+    if (system_.step() % steps_between_health_checks == 0) look_at_health();
     write_what_is_due();
     if (plan_.checkpoint.due(system_.step())) checkpoint();
     if (system_.step() >= next_conference_) verdict = confer();
-    if (looks && has_enough()) verdict = Verdict::enough;  // at the same step on any ranks and after any restart
+    // At the same step on any ranks and after any restart.
+    if (system_.step() % steps_between_looks_for_enough == 0 && has_enough()) verdict = Verdict::enough;
   }
   look_at_health();
   checkpoint();
@@ -70,19 +75,12 @@ void TimeLoop::look_at_health() {
   const auto scope = timer_.measure(timer_.phase("figures"));
   record_.figures = system_.figures();
   if (record_.largest.empty()) record_.largest = record_.figures;
-  for (std::size_t f = 0; f < record_.figures.size(); ++f) {
-    const Figure& figure = record_.figures[f];
-    if (!std::isfinite(figure.value))
-      throw RunError(fmt::format("The run broke down before {:.6g} s (step {}): {} is not a finite number.",
-                                 system_.time(), system_.step(), figure.name));
-    record_.largest[f].value = std::max(record_.largest[f].value, figure.value);
+  for (const std::string& warning : watchdog_.judge(record_.figures)) {
+    ++record_.warnings;
+    log_.line("warning: " + warning);
   }
-  const double speed = find_figure(record_.figures, "largest_lattice_velocity").value_or(0.0);
-  if (speed > stable_lattice_velocity)
-    throw RunError(
-        fmt::format("The fluid became unstable at {:.6g} s (step {}): its largest velocity is {:.3g} in "
-                    "lattice units, and beyond {} the method breaks down; a shorter fluid.time_step lowers it.",
-                    system_.time(), system_.step(), speed, stable_lattice_velocity));
+  for (std::size_t f = 0; f < record_.figures.size(); ++f)
+    record_.largest[f].value = std::max(record_.largest[f].value, record_.figures[f].value);
 }
 
 void TimeLoop::measure() {
@@ -115,7 +113,8 @@ void TimeLoop::write_what_is_due() {
     if (plan_.write_row) {
       const auto scope = timer_.measure(timer_.phase("series"));
       std::vector<Figure> row = record_.figures;
-      row.insert(row.end(), measured_.begin(), measured_.end());
+      for (const Figure& figure : measured_)
+        if (!find_figure(record_.figures, figure.name)) row.push_back(figure);  // a column a name
       plan_.write_row(system_.time(), step, row);
     }
   }
@@ -165,10 +164,7 @@ TimeLoop::Verdict TimeLoop::confer() {
   if (agreed == Verdict::signal)
     record_.reason = fmt::format("stopped by {}", signal_name(static_cast<int>(opinion[signal])));
   if (agreed == Verdict::wall_time_is_up) record_.reason = "the wall time is nearly up";
-  if (opinion[print] != 0) {
-    look_at_health();
-    report(now);
-  }
+  if (opinion[print] != 0) report(now);
   return agreed;
 }
 
@@ -185,6 +181,7 @@ void TimeLoop::report(double now) {
   state.mlups = state.steps_per_second * static_cast<double>(system_.cells()) * 1e-6;
   state.figures = record_.figures;
   state.figures.insert(state.figures.end(), measured_.begin(), measured_.end());
+  state.notice = watchdog_.notice();
   log_.line(progress_line(state));
   printed_at_ = now;
   printed_step_ = system_.step();

@@ -1,14 +1,16 @@
 // Drives any system through time: measures, writes, saves, reports, and stops in good order.
 //
-// A step is: advance; look at the system's health if due; measure and write what is due; checkpoint if due; and every
-// few steps the ranks agree (one small reduction) whether to print a progress line or to stop early. Those decisions
-// never touch the state, so the clock cannot change one bit of the run.
+// A step is: advance; look at the system's health if due (watchdog.hpp judges it); measure and write what is due;
+// checkpoint if due; and every few steps the ranks agree (one small reduction) whether to print a progress line or to
+// stop early. Those decisions never touch the state, so the clock cannot change one bit of the run; nor does it decide
+// when to look: a progress line shows the figures of the latest look.
 #pragma once
 
 #include "analysis/observer.hpp"
 #include "core/schedule.hpp"
 #include "core/system.hpp"
 #include "driver/log.hpp"
+#include "driver/watchdog.hpp"
 
 #include <mpi.h>
 
@@ -42,6 +44,8 @@ struct FigureLimit {
 struct LoopPlan {
   double until = 0.0;                                // s, simulated
   std::vector<FigureLimit> enough;                   // the run is finished when all hold; none: at `until` only
+  std::vector<WatchRule> watch;                      // what may not happen to the figures of the system
+  OutOfBounds out_of_bounds = OutOfBounds::stop;     // what becomes of the run if it does
   double walltime = 0.0;                             // s of wall time from `started` on; 0: as long as it takes
   WallClock::time_point started = WallClock::now();  // of the program
   bool write_at_start = true;                        // false where a run goes on: its first picture exists already
@@ -61,7 +65,8 @@ struct LoopRecord {
   double wall_seconds = 0.0;     // in run(), this time
   double advance_seconds = 0.0;  // of which in System::advance()
   std::vector<Figure> figures;   // of the system, at the latest look
-  std::vector<Figure> largest;   // of the system: the largest value of each figure seen in this run
+  std::vector<Figure> largest;   // of the system: the largest value of each figure at any look of this run
+  std::int64_t warnings = 0;     // of the watchdog
 };
 
 class TimeLoop {
@@ -71,15 +76,15 @@ public:
            const LoopPlan& plan, Log& log);
 
   // Runs to plan.until, or until a stop signal or the end of the wall time (record().finished is false then).
-  // Throws RunError when a figure is not finite, or largest_lattice_velocity exceeds stable_lattice_velocity; nothing
-  // of such a state is written. The record is valid then, too.
+  // Throws RunError when the watchdog does; nothing of such a state is written. The record is valid then, too.
   void run();
 
   const LoopRecord& record() const { return record_; }
   PhaseTimer& timer() { return timer_; }  // phases outside System::advance()
 
-  static constexpr double stable_lattice_velocity = 0.3;
-  static constexpr std::int64_t steps_between_health_checks = 200;
+  // A look costs less than a step (lbm/fluid_survey.hpp), so that these cost below 1 %.
+  static constexpr std::int64_t steps_between_health_checks = 100;
+  static constexpr std::int64_t steps_between_looks_for_enough = 200;
 
 private:
   enum class Verdict : int { go_on = 0, wall_time_is_up = 1, signal = 2, enough = 3 };
@@ -98,6 +103,7 @@ private:
   const LoopPlan& plan_;
   Log& log_;
   PhaseTimer timer_;
+  Watchdog watchdog_;
   LoopRecord record_;
   std::vector<Schedule> schedules_;  // of each observer
   WallClock::time_point begin_;

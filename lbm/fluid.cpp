@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
 #include "lbm/equilibrium.hpp"
+#include "lbm/fluid_survey.hpp"
 
 #include <fmt/format.h>
 
@@ -12,8 +13,6 @@
 namespace thalweg::lbm {
 
 namespace {
-
-using CellSum = FixedPoint<36>;  // sums over cells: resolution 1.5e-11, range +-1e8
 
 const CollisionParameters& checked(const CollisionParameters& parameters) {
   if (!(parameters.relaxation_time > 0.5))
@@ -203,32 +202,8 @@ FluidState Fluid<Real>::state_at(std::ptrdiff_t cell) const {
 }
 
 template <typename Real>
-double Fluid<Real>::largest_speed() const {
-  double largest = 0.0;
-  for_each_fluid_cell([&](std::ptrdiff_t cell, int, int, int) {
-    const double speed = state_at(cell).velocity.squaredNorm();
-    if (!(speed <= largest)) largest = speed;  // lets NaN through
-  });
-  return std::sqrt(largest);
-}
-
-template <typename Real>
 FluidTotals Fluid<Real>::totals() const {
-  std::int64_t sums[5] = {0, 0, 0, 0, 0};
-  for_each_fluid_cell([&](std::ptrdiff_t cell, int, int, int) {
-    double density = 0.0, momentum[3] = {0.0, 0.0, 0.0};
-    for (int i = 0; i < D3Q19::directions; ++i) {
-      const double f = populations_.post_collision(i, cell);
-      density += f;
-      for (int a = 0; a < 3; ++a) momentum[a] += D3Q19::c[i][a] * f;
-    }
-    sums[0] += CellSum::from(density);
-    for (int a = 0; a < 3; ++a) sums[1 + a] += CellSum::from(momentum[a]);
-    ++sums[4];
-  });
-  MPI_Allreduce(MPI_IN_PLACE, sums, 5, MPI_INT64_T, MPI_SUM, communicator_);
-  return {CellSum::to_double(sums[0]),
-          Vec3(CellSum::to_double(sums[1]), CellSum::to_double(sums[2]), CellSum::to_double(sums[3])), sums[4]};
+  return survey_of(*this).totals;
 }
 
 template <typename Real>

@@ -28,7 +28,7 @@ struct FluidState {
   Vec3 velocity = Vec3::Zero();
 };
 
-// Sums over all fluid cells of the domain; exact to 2^-37 a cell, in any order.
+// Sums over all fluid cells of the domain, however many; exact to 2^-37 a cell, in any order.
 struct FluidTotals {
   double mass_deviation = 0.0;   // sum of rho - 1
   Vec3 momentum = Vec3::Zero();  // sum of rho u after the collision: sum over c_i f_i^c
@@ -76,8 +76,7 @@ public:
   const CellMap& cells() const { return cells_; }
 
   FluidState state_at(std::ptrdiff_t cell) const;  // density and velocity (with the half force) of a cell
-  double largest_speed() const;                    // over this rank's fluid cells
-  FluidTotals totals() const;                      // collective
+  FluidTotals totals() const;                      // those of survey_of(*this) (fluid_survey.hpp); collective
 
   // Force on each face (lattice units) in the step to come, without that of a fluid at rest with rho = 1 + reference.
   // Fills halo and walls, which every step does anew. Collective.

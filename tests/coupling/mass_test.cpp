@@ -143,12 +143,12 @@ TEST(WaterMass, AddingDensityGivesNoMomentum) {
     return lbm::FluidState{0.01 * std::sin(p.x()), Vec3(0.05 * std::sin(p.y()), 0.02, 0.01 * std::cos(p.z()))};
   });
   const lbm::FluidTotals before = fluid.totals();
-  const ExcessMass excess = excess_mass(fluid, {});
+  const ExcessMass excess = excess_mass(survey_of(fluid), {});
   EXPECT_EQ(excess.cells, 960);
   EXPECT_NEAR(excess.mean(), before.mass_deviation / 960.0, 1e-15);
   EXPECT_EQ(add_density(fluid, -excess.mean()), -excess.mean());
   const lbm::FluidTotals after = fluid.totals();
-  EXPECT_NEAR(excess_mass(fluid, {}).mean(), 0.0, 1e-11);  // cells are summed to 2^-37
+  EXPECT_NEAR(excess_mass(survey_of(fluid), {}).mean(), 0.0, 1e-11);  // cells are summed to 2^-37
   EXPECT_NEAR((after.momentum - before.momentum).norm(), 0.0, 960.0 * 0x1p-36);
 }
 

@@ -14,6 +14,8 @@ TEST(Progress, ShowsWhatAPersonWantsToSee) {
   EXPECT_EQ(progress_line(state),
             "t 1.25      of 3 s   42 %  left 1:23          812 steps/s    12.3 MLUPS  moving 23      q* 0.0123     "
             "u_max 0.081");
+  state.notice = "mean_density_deviation -0.0031";
+  EXPECT_TRUE(progress_line(state).ends_with("u_max 0.081  warning: mean_density_deviation -0.0031"));
 }
 
 TEST(Progress, LeavesOutWhatIsNotThere) {

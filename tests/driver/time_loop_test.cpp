@@ -64,6 +64,11 @@ struct Bench {
   explicit Bench(double until, std::int64_t start = 0) : system(start) {
     listen_for_stop_signals();  // forget the signal of an earlier test
     plan.until = until;
+    plan.watch = {{"largest_lattice_velocity", WatchRule::Side::above,
+                   [](const std::vector<Figure>&) {
+                     return WatchLimits{0.2, 0.3};
+                   },
+                   "the speed", "Slow down."}};
     plan.series = Schedule(0.003, 0.001);
     plan.checkpoint = Schedule(0.004, 0.001);
     plan.write_row = [this](double, std::int64_t step, const std::vector<Figure>& row) {
@@ -138,9 +143,20 @@ TEST(TimeLoop, StopsAnUnstableRunAndKeepsTheLastGoodCheckpoint) {
     return step < 250 ? 0.29 : std::numeric_limits<double>::quiet_NaN();
   };
   EXPECT_THROW(rare.run(), RunError);
-  // Looked at every 200 steps at the latest (and, by chance of the clock, when a progress line is due).
-  EXPECT_TRUE(rare.system.step() > 250 && rare.system.step() <= 400) << rare.system.step();
+  EXPECT_EQ(rare.system.step(), 300);  // looked at every 100 steps, whatever the clock says
   EXPECT_TRUE(rare.checkpoints.empty());
+}
+
+TEST(TimeLoop, RecordsWarningsAndTheLargestOfItsOwnLooks) {
+  Bench bench(1.0);
+  bench.plan.series = bench.plan.checkpoint = Schedule();
+  bench.plan.outputs.clear();
+  // Above 0.2 at one look, at step 700; larger still where nobody looks.
+  bench.system.lattice_velocity = [](std::int64_t step) { return step == 750 ? 0.29 : step == 700 ? 0.25 : 0.05; };
+  bench.system.on_advance = [](std::int64_t) { std::this_thread::sleep_for(std::chrono::microseconds(1500)); };
+  const LoopRecord& record = bench.run().record();
+  EXPECT_EQ(record.warnings, 1);
+  EXPECT_EQ(record.largest.front().value, 0.25);
 }
 
 TEST(TimeLoop, StopsAtTheSameStepEverywhereWhenTheWallTimeIsUp) {

@@ -9,6 +9,7 @@
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
 #include "io/hdf5_archive.hpp"
+#include "lbm/fluid_survey.hpp"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -158,7 +159,7 @@ private:
     // From the first two cells and the plate at rest, of second order; meaningless where the plate slips.
     const double shear =
         0.5 * (9 * m.velocity[0] - m.velocity[1] + 9 * m.velocity[o_.cells[2] - 1] - m.velocity[o_.cells[2] - 2]) / 3.0;
-    const double largest = max_over_ranks(MPI_COMM_WORLD, fluid_.largest_speed());
+    const double largest = lbm::survey_of(fluid_).fastest.value;
     if (!(largest < 0.5)) throw RunError(fmt::format("The flow became unstable: a cell moves at {}.", largest));
     if (rank_of(MPI_COMM_WORLD) == 0) {
       fmt::print(

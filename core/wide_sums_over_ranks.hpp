@@ -1,0 +1,16 @@
+// Sums of 128-bit integers over all ranks: exact, so the same whatever the ranks.
+#pragma once
+
+#include "core/wide_sum.hpp"
+
+#include <mpi.h>
+
+#include <span>
+
+namespace thalweg {
+
+// Replaces every sum by its total over the ranks, on every rank. Sums must be below 2^94 in size, ranks fewer than
+// 2^31. Collective.
+void sum_over_ranks(MPI_Comm communicator, std::span<WideSum> sums);
+
+}  // namespace thalweg

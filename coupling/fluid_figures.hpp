@@ -1,0 +1,26 @@
+// What a survey of the lattice says about the health of a fluid, as figures in the units of a run.
+#pragma once
+
+#include "core/place.hpp"
+#include "core/system.hpp"
+#include "core/units.hpp"
+#include "lbm/fluid_survey.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace thalweg::coupling {
+
+// largest_lattice_velocity (1) and largest_fluid_speed (m/s); infinite where a cell is broken.
+std::vector<Figure> speed_figures(const lbm::FluidSurvey& survey, const Units& units);
+
+// Appends smallest_density_deviation and largest_density_deviation (of rho/rho_0 - 1, with the hydrostatic part of full
+// gravity), and fast_cell_fraction: the share of fluid cells with a lattice velocity above FluidSurvey::fast (all 1).
+void add_extremes(const lbm::FluidSurvey& survey, std::vector<Figure>& figures);
+
+// Where the survey found the extreme value of one of these figures; where cells are broken, the first of them for any
+// name. Empty for a name that belongs to no place.
+std::optional<Place> place_in_fluid(const lbm::FluidSurvey& survey, const Units& units, const std::string& figure);
+
+}  // namespace thalweg::coupling

@@ -1,0 +1,34 @@
+#include "dem/extreme.hpp"
+
+#include "core/mpi_session.hpp"
+
+#include <tuple>
+
+namespace thalweg::dem {
+
+void Extreme::consider(const Extreme& candidate) {
+  if (candidate.value > value ||
+      (candidate.value == value && first >= 0 && std::tie(candidate.first, candidate.second) < std::tie(first, second)))
+    *this = candidate;
+}
+
+std::optional<Place> Extreme::place_over_ranks(MPI_Comm communicator) const {
+  const int ranks = size_of(communicator);
+  struct Row {
+    double value, position[3];
+    GlobalId first, second;
+  };
+  const Row mine{value, {position[0], position[1], position[2]}, first, second};
+  std::vector<Row> rows(static_cast<std::size_t>(ranks));
+  MPI_Allgather(&mine, sizeof(Row), MPI_BYTE, rows.data(), sizeof(Row), MPI_BYTE, communicator);
+  Extreme largest;
+  for (const Row& row : rows)
+    if (row.first >= 0)
+      largest.consider({row.value, row.first, row.second, Vec3(row.position[0], row.position[1], row.position[2])});
+  if (largest.first < 0) return std::nullopt;
+  Place place{largest.position, {largest.first}};
+  if (largest.second >= 0) place.grains.push_back(largest.second);
+  return place;
+}
+
+}  // namespace thalweg::dem

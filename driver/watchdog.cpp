@@ -1,0 +1,78 @@
+#include "driver/watchdog.hpp"
+
+#include "core/error.hpp"
+#include "driver/progress.hpp"
+#include "driver/whereabouts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace thalweg::driver {
+
+namespace {
+
+constexpr double growth_between_warnings = 1.5;
+
+std::string with_unit(const Figure& figure, double value) {
+  const bool bare = figure.unit == "1" || figure.unit == "diameter";
+  return fmt::format("{:.3g}{}", value, bare ? "" : " " + figure.unit);
+}
+
+}  // namespace
+
+Watchdog::Watchdog(MPI_Comm communicator, const System& system, std::vector<WatchRule> rules, OutOfBounds out_of_bounds)
+    : communicator_(communicator), system_(system), out_of_bounds_(out_of_bounds) {
+  for (WatchRule& rule : rules) watched_.push_back({std::move(rule)});
+}
+
+std::string Watchdog::moment() const { return fmt::format("{:.6g} s (step {})", system_.time(), system_.step()); }
+
+std::string Watchdog::place_of(const std::string& figure) const {
+  const std::optional<Place> place = system_.place_of(figure);
+  return place ? ", " + whereabouts(communicator_, *place, system_.snapshot()) : "";
+}
+
+std::vector<std::string> Watchdog::judge(const std::vector<Figure>& figures) {
+  for (const Figure& figure : figures)
+    if (!std::isfinite(figure.value))
+      throw RunError(fmt::format(
+          "The run broke down before {}: {} is not a finite number{}. Shorten the time step, or restart from "
+          "an earlier checkpoint with a shorter output.series.every to see how it comes about.",
+          moment(), figure.name, place_of(figure.name)));
+  std::vector<std::string> warnings;
+  for (Watched& watched : watched_) {
+    const WatchRule& rule = watched.rule;
+    const auto figure =
+        std::find_if(figures.begin(), figures.end(), [&](const Figure& f) { return f.name == rule.figure; });
+    if (figure == figures.end()) continue;
+    const WatchLimits limits = rule.limits(figures);
+    const double badness = rule.badness(figure->value);
+    watched.value = figure->value;
+    watched.suspicious = badness > limits.warn;
+    if (badness > limits.stop && out_of_bounds_ == OutOfBounds::stop)
+      throw RunError(fmt::format("The run has gone wrong at {}: {} is {}, beyond the limit of {}{}. {}", moment(),
+                                 rule.meaning, with_unit(*figure, figure->value), with_unit(*figure, limits.stop),
+                                 place_of(rule.figure), rule.advice));
+    if (!watched.suspicious || badness < growth_between_warnings * watched.warned) continue;
+    watched.warned = badness;
+    const std::string stops = std::isfinite(limits.stop) && out_of_bounds_ == OutOfBounds::stop
+                                  ? fmt::format(" (the run stops at {})", with_unit(*figure, limits.stop))
+                                  : "";
+    warnings.push_back(fmt::format("At {} {} is {}, beyond {}{}{}. {}", moment(), rule.meaning,
+                                   with_unit(*figure, figure->value), with_unit(*figure, limits.warn), stops,
+                                   place_of(rule.figure), rule.advice));
+  }
+  return warnings;
+}
+
+std::string Watchdog::notice() const {
+  std::string text;
+  for (const Watched& watched : watched_)
+    if (watched.suspicious)
+      text += fmt::format("{}{} {:.3g}", text.empty() ? "" : ", ", watched.rule.figure, watched.value);
+  return text;
+}
+
+}  // namespace thalweg::driver

@@ -1,0 +1,50 @@
+// Stops a run that is going wrong, and says so beforehand: compares the figures of the system with the limits of its
+// rules whenever the time loop looks.
+//
+// A figure beyond its first limit is worth a warning: once, and again whenever it has grown by half. Beyond the second
+// the run ends. A figure that is not a finite number ends it in any case.
+#pragma once
+
+#include "core/system.hpp"
+#include "driver/watch_rule.hpp"
+
+#include <mpi.h>
+
+#include <string>
+#include <vector>
+
+namespace thalweg::driver {
+
+enum class OutOfBounds { stop, warn };  // what becomes of a run beyond the second limit
+
+class Watchdog {
+public:
+  // The system must outlive it.
+  Watchdog(MPI_Comm communicator, const System& system, std::vector<WatchRule> rules, OutOfBounds out_of_bounds);
+
+  // Judges the figures of the present state; returns new warnings, whole sentences. Throws RunError, with value, limit,
+  // time, step, place, cause and remedy. Collective, the same on every rank.
+  std::vector<std::string> judge(const std::vector<Figure>& figures);
+
+  // The figures that were beyond their first limit when last judged, e.g. "mean_density_deviation -0.0031"; empty:
+  // none.
+  std::string notice() const;
+
+private:
+  struct Watched {
+    WatchRule rule;
+    double warned = 0.0;  // the badness of the latest warning; 0: none so far
+    double value = 0.0;
+    bool suspicious = false;
+  };
+
+  std::string moment() const;
+  std::string place_of(const std::string& figure) const;
+
+  MPI_Comm communicator_;
+  const System& system_;
+  std::vector<Watched> watched_;
+  OutOfBounds out_of_bounds_;
+};
+
+}  // namespace thalweg::driver

@@ -1,0 +1,59 @@
+#include "driver/whereabouts.hpp"
+
+#include "core/mpi_session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+namespace thalweg::driver {
+
+namespace {
+
+constexpr double near_in_cells = 2.0;
+constexpr std::size_t most_named = 4;
+
+// Ids of all grains with a surface near a position (m), in rising order.
+std::vector<GlobalId> grains_near(MPI_Comm communicator, const Vec3& position, const Snapshot& snapshot) {
+  const PeriodicBox& box = snapshot.decomposition->box();
+  const double reach = near_in_cells * snapshot.decomposition->spacing();
+  std::vector<GlobalId> mine;
+  for (std::size_t g = 0; g < snapshot.grains.id.size(); ++g)
+    if (box.difference(snapshot.grains.position[g], position).norm() < snapshot.grains.radius[g] + reach)
+      mine.push_back(snapshot.grains.id[g]);
+  std::vector<int> counts(static_cast<std::size_t>(size_of(communicator))), starts(counts.size(), 0);
+  const int count = static_cast<int>(mine.size());
+  MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, communicator);
+  std::partial_sum(counts.begin(), counts.end() - 1, starts.begin() + 1);
+  std::vector<GlobalId> all(static_cast<std::size_t>(starts.back() + counts.back()));
+  MPI_Allgatherv(mine.data(), count, MPI_INT64_T, all.data(), counts.data(), starts.data(), MPI_INT64_T, communicator);
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+// "3", "3 and 7", "3, 7 and 12"
+std::string listed(const std::vector<GlobalId>& ids) {
+  std::string text;
+  const std::size_t named = std::min(ids.size(), most_named);
+  for (std::size_t n = 0; n < named; ++n)
+    text += fmt::format("{}{}", n == 0 ? "" : n + 1 == named ? " and " : ", ", ids[n]);
+  return text;
+}
+
+}  // namespace
+
+std::string whereabouts(MPI_Comm communicator, const Place& place, const Snapshot& snapshot) {
+  const std::string point =
+      fmt::format("at ({:.6g}, {:.6g}, {:.6g}) m", place.position.x(), place.position.y(), place.position.z());
+  if (!place.grains.empty())
+    return fmt::format("grain{} {} {}", place.grains.size() > 1 ? "s" : "", listed(place.grains), point);
+  std::string text = "in the cell " + point;
+  if (snapshot.grains.global_count == 0) return text;
+  const std::vector<GlobalId> near = grains_near(communicator, place.position, snapshot);
+  if (near.empty()) return text + ", in open water";
+  return text + (near.size() == 1 ? ", beside grain " : ", in the pore between grains ") + listed(near);
+}
+
+}  // namespace thalweg::driver
