@@ -92,6 +92,7 @@ private:
   void update_bodies();
   void account_for_covered_cells();
   void correct_mass();
+  void set_gravity_of(std::int64_t step);
   void sweep_behind_links();
   void collect_loads();
   void apply_loads();
