@@ -46,6 +46,12 @@ Units units_of(const Case& c) { return {c.domain.spacing, fluid_time_step(c), c.
 
 double relaxation_time(const Case& c) { return units_of(c).relaxation_time(c.fluid.kinematic_viscosity); }
 
+double bulk_viscosity(const Case& c) {
+  const double time = c.fluid.bulk_relaxation_time > 0.0 ? c.fluid.bulk_relaxation_time : relaxation_time(c);
+  const Units units = units_of(c);
+  return 2.0 / 9.0 * (time - 0.5) * units.spacing * units.velocity();
+}
+
 std::int64_t grain_count(const Case& c) {
   std::int64_t count = 0;
   for (const PopulationCase& population : c.grains) count += population.count;

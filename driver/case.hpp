@@ -85,6 +85,7 @@ struct FluidCase {
   std::optional<double> expected_velocity;         // m/s, the largest
   Collision collision = Collision::bgk;
   double magic_parameter = 3.0 / 16.0;  // of trt
+  double bulk_relaxation_time = 0.0;    // 1, of the trace of the stress; 0: as the shear's
   Precision precision = Precision::single;
   std::optional<FlowTargetCase> mean_velocity;
   bool operator==(const FluidCase&) const = default;
@@ -198,6 +199,7 @@ struct RunCase {
   double until = 0.0;  // s
   GrainIntegrator grain_integrator = GrainIntegrator::velocity_verlet;
   std::optional<AtRestCase> until_at_rest;  // of dry grains: the run ends earlier when this holds
+  double ramp = 0.0;                        // s in which gravity rises from zero, with a fluid
   std::optional<double> time_step;  // s, of dry grains; read as 1/50 of the shortest contact where it is not given
   bool operator==(const RunCase&) const = default;
 };
@@ -304,6 +306,7 @@ double grain_time_step(const Case& c);            // s: a sub-step, or the step 
 Vec3 gravity_vector(const GravityCase& gravity);  // m/s^2: (g sin, 0, -g cos) of atan(slope)
 Units units_of(const Case& c);                    // of a resolved run
 double relaxation_time(const Case& c);            // BGK, without the subgrid model
+double bulk_viscosity(const Case& c);             // m^2/s: 2/9 (tau_b - 1/2), without the subgrid model
 
 std::int64_t grain_count(const Case& c);  // of all populations
 double largest_diameter(const Case& c);   // m; 0 without grains
