@@ -180,6 +180,12 @@ std::vector<std::string> warnings(const Case& c) {
         stable == 0.0 ? std::string("at no velocity") : fmt::format("up to {:g} cells a step", stable),
         eddies ? "" : "fluid.smagorinsky_constant: 0.27",
         regularised ? (eddies ? "fluid.collision: trt" : " and fluid.collision: trt") : ""));
+  if (!eddies && c.fluid.collision == Collision::trt && c.fluid.bulk_relaxation_time > 0.0 && excess < 0.0299)
+    found.push_back(
+        fmt::format("With a bulk relaxation time of its own and no subgrid model the collision trt is unstable at a "
+                    "relaxation time only {:.2g} above 1/2: consider fluid.collision: bgk or "
+                    "fluid.bulk_relaxation_time: 0.",
+                    excess));
   if (excess > 1.0)
     found.push_back(
         fmt::format("The relaxation time, {:.2g}, is so large that walls and grains lose accuracy: consider a "
