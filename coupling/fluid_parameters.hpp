@@ -1,6 +1,7 @@
 // What the lattice fluid of a system is made of: shared by the fluid alone and the fluid with grains.
 #pragma once
 
+#include "core/ramp.hpp"
 #include "core/units.hpp"
 #include "coupling/hydrostatic.hpp"
 #include "lbm/bouzidi.hpp"
@@ -23,8 +24,30 @@ struct FluidParameters {
   std::optional<lbm::FlowTarget> flow_target;  // a mean velocity to hold, in place of the force along its axis
   lbm::LinkOptions links;
   bool full_gravity = false;  // the force acts across walls, too: the fluid begins with its hydrostatic density
+  double ramp = 0.0;          // steps in which gravity rises from zero; 0: it is there at once
   std::function<FluidInitialState(const Vec3&)> initial_fluid;  // of a position in m; empty: at rest
 };
+
+// The part of gravity that acts in a step, numbered from 1: the mean of the ramp over it. 0 for the number 0, before
+// the first.
+inline double gravity_factor(const FluidParameters& parameters, std::int64_t step) {
+  const auto end = static_cast<double>(step);
+  return ramp_mean(end - 1.0, end, parameters.ramp);
+}
+
+// Gives the fluid the force of that step; what a flow target steers stays as it is.
+template <typename Real>
+void set_gravity(lbm::Fluid<Real>& fluid, const FluidParameters& parameters, std::int64_t step) {
+  if (parameters.ramp == 0.0) return;
+  const double factor = gravity_factor(parameters, step);
+  Vec3 force;
+  for (int a = 0; a < 3; ++a) force[a] = factor * parameters.collision.force[a];
+  if (parameters.flow_target) {
+    const int axis = parameters.flow_target->axis;
+    force[axis] = fluid.parameters().force[axis];
+  }
+  fluid.set_force(force);
+}
 
 // The rest state of the fluid; no density of its own in reduced gravity.
 inline Hydrostatic rest_state(const FluidParameters& parameters, const Decomposition& decomposition) {

@@ -32,10 +32,12 @@ FluidSystem<Real>::FluidSystem(std::unique_ptr<Decomposition> decomposition, MPI
   parameters_.links.rest_gradient = rest_.gradient;
   if (parameters_.flow_target) fluid_.control_flow(*parameters_.flow_target);
   initialise(fluid_, parameters_, rest_);
+  set_gravity(fluid_, parameters_, step_);
 }
 
 template <typename Real>
 void FluidSystem<Real>::advance() {
+  set_gravity(fluid_, parameters_, step_ + 1);
   if (solids_) {
     advance_around_solids();
   } else {
@@ -137,6 +139,7 @@ void FluidSystem<Real>::load(ArchiveReader& archive) {
   require_same_time_step(archive, time_step());
   step_ = archive.integer_attribute("system/step");
   fluid_.load(archive);
+  set_gravity(fluid_, parameters_, step_);
   if (solids_) solids_->load(archive);
 }
 

@@ -60,7 +60,16 @@ ResolvedSystem<Real>::ResolvedSystem(std::unique_ptr<Decomposition> decompositio
   for (std::size_t g = 0; g < store.total(); ++g) set_vector(store.attached_of(g), link_position, store.position[g]);
   initialise_map();
   mass_.set_start(excess_mass(survey_of(fluid_), rest_).sum);
+  set_gravity_of(step_);
   show_stresses();
+}
+
+// Of the fluid and of the grains, in the step of this number, from 1.
+template <typename Real>
+void ResolvedSystem<Real>::set_gravity_of(std::int64_t step) {
+  if (parameters_.ramp == 0.0) return;
+  set_gravity(fluid_, parameters_, step);
+  grains_->set_body_force_factor(gravity_factor(parameters_, step));
 }
 
 // The cells covered at the start (of a run or after loading) were never fluid: nothing to refill.
@@ -180,6 +189,7 @@ void ResolvedSystem<Real>::advance() {
     step_totals_.refilled = totals.momentum;
     step_totals_.refilled_angular_momentum = totals.angular_momentum;
   }
+  set_gravity_of(step_ + 1);
   {
     const auto scope = timer_.measure(phases_.halo);
     fluid_.exchange_halo();
@@ -350,6 +360,7 @@ void ResolvedSystem<Real>::load(ArchiveReader& archive) {
   mass_.load(archive);
   parameters_.links.reference_density = archive.real_attribute("mass/reference");
   initialise_map();
+  set_gravity_of(step_);
   show_stresses();
 }
 

@@ -116,6 +116,7 @@ private:
   void settle_masses();
   void settle_mass(std::size_t first, std::size_t count);
   double mass_owed() const;
+  void set_gravity_of(std::int64_t step);
   void sweep_behind_links();
   void collect_loads();
   void apply_loads();

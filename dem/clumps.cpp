@@ -70,11 +70,10 @@ Clump clump_of(const ClumpSeed& seed, const PeriodicBox& box) {
           seed.angular_velocity};
 }
 
-void Clumps::settle_in(const GrainStore& store, const std::function<Vec3(double, double)>& body_force) {
+void Clumps::settle_in(const GrainStore& store) {
   first_slot_.clear();
   first_arm_.clear();
   offsets_.clear();
-  body_force_.clear();
   const auto end = store.id.begin() + static_cast<std::ptrdiff_t>(store.owned);
   for (const Clump& clump : clumps_) {
     const auto found = std::lower_bound(store.id.begin(), end, clump.id);
@@ -82,10 +81,14 @@ void Clumps::settle_in(const GrainStore& store, const std::function<Vec3(double,
     first_arm_.push_back(offsets_.size());
     for (std::int64_t m = 0; m < clump.members; ++m)
       offsets_.push_back(store.offset[first_slot_.back() + static_cast<std::size_t>(m)]);
-    body_force_.push_back(body_force ? body_force(clump.mass, radius_of_volume(clump.volume)) : Vec3(Vec3::Zero()));
   }
   arms_.resize(offsets_.size());
   for (std::size_t n = 0; n < clumps_.size(); ++n) turn_arms(n);
+}
+
+void Clumps::weigh(const std::function<Vec3(double, double)>& body_force) {
+  body_force_.clear();
+  for (const Clump& clump : clumps_) body_force_.push_back(body_force(clump.mass, radius_of_volume(clump.volume)));
 }
 
 void Clumps::turn_arms(std::size_t n) {

@@ -244,12 +244,26 @@ void GrainDynamics::settle_in(const std::vector<ContactHistory>& histories) {
   restore_histories(list_, store_, histories);
   const auto owned_end = static_cast<std::ptrdiff_t>(store_.owned);
   listed_position_.assign(store_.position.begin(), store_.position.begin() + owned_end);
+  clumps_.settle_in(store_);
+  weigh();
+}
+
+void GrainDynamics::weigh() {
+  const auto force = [this](double mass, double radius) -> Vec3 {
+    if (!parameters_.body_force) return Vec3::Zero();
+    return body_force_factor_ * parameters_.body_force(mass, radius);
+  };
   body_force_.assign(store_.owned, Vec3::Zero());
-  clumps_.settle_in(store_, parameters_.body_force);
-  if (!parameters_.body_force) return;
   for (std::size_t s = 0; s < store_.owned; ++s)
-    if (store_.clump[s] < 0) body_force_[s] = parameters_.body_force(store_.mass[s], store_.radius[s]);
+    if (store_.clump[s] < 0) body_force_[s] = force(store_.mass[s], store_.radius[s]);
+  clumps_.weigh(force);
   clumps_.share_body_force(body_force_);
+}
+
+void GrainDynamics::set_body_force_factor(double factor) {
+  if (factor == body_force_factor_) return;
+  body_force_factor_ = factor;
+  weigh();
 }
 
 void GrainDynamics::evaluate_forces(double time_step) {

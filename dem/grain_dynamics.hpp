@@ -112,6 +112,10 @@ public:
   // allowed_sub_steps() a grain may have outrun its list, which the next prepare() refuses. Collective.
   void advance(int sub_steps);
 
+  // Scales the body forces of the sub-steps to come: 1 at first. Not part of a checkpoint: a caller who changes it must
+  // set it again after load().
+  void set_body_force_factor(double factor);
+
   // After the sub-steps: wraps positions and gives ghosts the final velocities of their owners. Collective.
   void refresh_ghosts();
   void refresh_ghost_attached();  // the attached columns of ghosts, if the caller changed those of owned grains
@@ -200,6 +204,7 @@ private:
   std::vector<Clump> load_clumps(ArchiveReader& archive, const std::string& group, const GrainBatch& batch,
                                  std::vector<int>& owner);
   void settle_in(const std::vector<ContactHistory>& histories);
+  void weigh();
   void evaluate_forces(double time_step);
   template <typename Work>
   void timed(int phase, Work&& work);
@@ -230,7 +235,8 @@ private:
   Clumps clumps_;
   std::vector<Vec3> listed_position_;  // of owned grains, when the list was built
   std::vector<Plane> listed_planes_;
-  std::vector<Vec3> body_force_;  // of owned grains
+  std::vector<Vec3> body_force_;  // of owned grains, times the factor
+  double body_force_factor_ = 1.0;
 
   PhaseTimer timer_;
   int lists_phase_, forces_phase_, motion_phase_, messages_phase_;

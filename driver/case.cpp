@@ -46,6 +46,18 @@ Units units_of(const Case& c) { return {c.domain.spacing, fluid_time_step(c), c.
 
 double relaxation_time(const Case& c) { return units_of(c).relaxation_time(c.fluid.kinematic_viscosity); }
 
+// Three steps take out the sound that moving grains make and leave their drag as it is (benchmarks/validation/sound).
+double bulk_relaxation_time_for(const Case& c) {
+  const bool suits = c.fluid.collision == Collision::bgk && c.fluid.smagorinsky_constant > 0.0;
+  return c.system == SystemKind::resolved && suits ? 3.0 : 0.0;
+}
+
+double bulk_viscosity(const Case& c) {
+  const double given = c.fluid.bulk_relaxation_time.value_or(0.0), time = given > 0.0 ? given : relaxation_time(c);
+  const Units units = units_of(c);
+  return 2.0 / 9.0 * (time - 0.5) * units.spacing * units.velocity();
+}
+
 std::int64_t grain_count(const Case& c) {
   std::int64_t count = 0;
   for (const PopulationCase& population : c.grains) count += population.count;
@@ -174,6 +186,12 @@ std::vector<std::string> warnings(const Case& c) {
         stable == 0.0 ? std::string("at no velocity") : fmt::format("up to {:g} cells a step", stable),
         eddies ? "" : "fluid.smagorinsky_constant: 0.27",
         regularised ? (eddies ? "fluid.collision: trt" : " and fluid.collision: trt") : ""));
+  if (!eddies && c.fluid.collision == Collision::trt && c.fluid.bulk_relaxation_time.value_or(0.0) > 0.0 && excess < 0.0299)
+    found.push_back(
+        fmt::format("With a bulk relaxation time of its own and no subgrid model the collision trt is unstable at a "
+                    "relaxation time only {:.2g} above 1/2: consider fluid.collision: bgk or "
+                    "fluid.bulk_relaxation_time: 0.",
+                    excess));
   if (excess > 1.0)
     found.push_back(
         fmt::format("The relaxation time, {:.2g}, is so large that walls and grains lose accuracy: consider a "

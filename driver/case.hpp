@@ -85,6 +85,8 @@ struct FluidCase {
   std::optional<double> expected_velocity;         // m/s, the largest
   Collision collision = Collision::bgk;
   double magic_parameter = 3.0 / 16.0;  // of trt
+  // 1, of the trace of the stress; 0: as the shear's. Read as 3 with grains, bgk and a subgrid model, else 0.
+  std::optional<double> bulk_relaxation_time;
   Precision precision = Precision::single;
   std::optional<FlowTargetCase> mean_velocity;
   bool operator==(const FluidCase&) const = default;
@@ -203,6 +205,7 @@ struct RunCase {
   GrainIntegrator grain_integrator = GrainIntegrator::velocity_verlet;
   std::optional<AtRestCase> until_at_rest;  // of dry grains: the run ends earlier when this holds
   WatchdogAction watchdog = WatchdogAction::stop;
+  double ramp = 0.0;                        // s in which gravity rises from zero, with a fluid
   std::optional<double> time_step;  // s, of dry grains; read as 1/50 of the shortest contact where it is not given
   bool operator==(const RunCase&) const = default;
 };
@@ -309,6 +312,8 @@ double grain_time_step(const Case& c);            // s: a sub-step, or the step 
 Vec3 gravity_vector(const GravityCase& gravity);  // m/s^2: (g sin, 0, -g cos) of atan(slope)
 Units units_of(const Case& c);                    // of a resolved run
 double relaxation_time(const Case& c);            // BGK, without the subgrid model
+double bulk_relaxation_time_for(const Case& c);  // where the case does not give it
+double bulk_viscosity(const Case& c);             // m^2/s: 2/9 (tau_b - 1/2), without the subgrid model
 
 std::int64_t grain_count(const Case& c);  // of all populations
 double largest_diameter(const Case& c);   // m; 0 without grains

@@ -225,6 +225,10 @@ void check_gravity(const Case& c, const io::YamlDocument& document) {
     return std::any_of(c.domain.faces.begin(), c.domain.faces.end(), [type](const Face& f) { return f.type == type; });
   };
   if (!has_fluid(c) || c.gravity.mode != GravityMode::full) return;
+  if (c.run.ramp > 0.0)
+    throw document.error("run.ramp",
+                         "in full gravity the fluid begins at rest under its whole weight, which leaves nothing to "
+                         "raise; remove the key or set gravity.mode: reduced");
   if (c.domain.faces[bottom].type == FaceType::periodic)
     throw document.error("gravity.mode",
                          "a box that is periodic along z has no hydrostatic pressure; give domain.boundaries a bottom "

@@ -56,6 +56,8 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
   Case c;
   io::read_document(document, c);
   fill_in_grains(c, document);
+  if (has_fluid(c) && !c.fluid.bulk_relaxation_time)
+    c.fluid.bulk_relaxation_time = bulk_relaxation_time_for(c);
   if (c.system == SystemKind::grains && !c.run.time_step) c.run.time_step = shortest_contact(c) / steps_per_contact;
   if (!c.initial.from.empty())
     c.initial.from = (std::filesystem::absolute(path).parent_path() / c.initial.from).lexically_normal().string();

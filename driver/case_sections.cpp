@@ -8,58 +8,6 @@
 // visitor's templates would not find them.
 namespace thalweg {
 
-static void describe(io::SectionVisitor& visit, FlowTargetCase& target) {
-  visit.real("velocity", target.velocity,
-             {.unit = "m/s", .meaning = "mean over the fluid, along x", .required = true, .example = 0.3});
-  visit.real("response_time", target.response_time,
-             {.unit = "s",
-              .meaning = "in which the force answers; not longer than the flow needs to come to rest",
-              .required = true,
-              .above = 0.0,
-              .example = 0.1});
-}
-
-static void describe(io::SectionVisitor& visit, FluidCase& fluid) {
-  visit.real("density", fluid.density,
-             {.unit = "kg/m^3", .meaning = "mass density", .required = true, .above = 0.0, .example = 1000.0});
-  visit.real("kinematic_viscosity", fluid.kinematic_viscosity,
-             {.unit = "m^2/s", .meaning = "molecular viscosity", .required = true, .above = 0.0, .example = 1e-6});
-  visit.real("smagorinsky_constant", fluid.smagorinsky_constant,
-             {.meaning = "of the subgrid model; 0.27 for water, 0 switches it off", .at_least = 0.0, .below = 1.0});
-  visit.real("time_step", fluid.time_step,
-             {.unit = "s", .meaning = "of the fluid; or give the two velocities below", .above = 0.0, .example = 2e-5});
-  visit.real("maximum_lattice_velocity", fluid.maximum_lattice_velocity,
-             {.unit = "cells/step",
-              .meaning = "with expected_velocity, in place of time_step: the step in which the "
-                         "expected velocity covers this many cells",
-              .above = 0.0,
-              .at_most = 0.173,
-              .example = 0.05});
-  visit.real("expected_velocity", fluid.expected_velocity,
-             {.unit = "m/s", .meaning = "the largest velocity expected in the fluid", .above = 0.0, .example = 0.5});
-  visit.require(!(fluid.time_step && fluid.maximum_lattice_velocity), "time_step",
-                "the step is given twice; give either time_step or maximum_lattice_velocity with expected_velocity");
-  visit.require(fluid.time_step || fluid.maximum_lattice_velocity, "time_step",
-                "the step is missing; give time_step in s, for example 2e-05, or maximum_lattice_velocity with "
-                "expected_velocity");
-  visit.require(!fluid.maximum_lattice_velocity || fluid.expected_velocity, "expected_velocity",
-                "maximum_lattice_velocity needs it; give the largest velocity expected in m/s, for example 0.5");
-  visit.choice<Collision>("collision", fluid.collision,
-                          {{Collision::bgk, "bgk", "one relaxation time"},
-                           {Collision::trt, "trt", "two; walls stay in place at any viscosity"},
-                           {Collision::regularised, "regularised", "bgk without ghost modes; not near walls in water"}},
-                          {.meaning = "collision operator"});
-  if (fluid.collision == Collision::trt)
-    visit.real("magic_parameter", fluid.magic_parameter,
-               {.meaning = "of trt: (1/omega+ - 1/2)(1/omega- - 1/2); 3/16 puts walls exactly half way", .above = 0.0});
-  else
-    visit.not_here("magic_parameter", "only collision trt has a magic parameter; remove it");
-  visit.choice<Precision>("precision", fluid.precision, {{Precision::single, "single"}, {Precision::double_, "double"}},
-                          {.meaning = "of the stored populations"});
-  visit.section("mean_velocity", fluid.mean_velocity,
-                {.meaning = "hold this flow by a body force along x, in place of gravity along x"});
-}
-
 static void describe_gravity(io::SectionVisitor& visit, GravityCase& gravity, bool with_fluid) {
   visit.real("magnitude", gravity.magnitude,
              {.unit = "m/s^2", .meaning = "with slope; or give vector", .at_least = 0.0, .example = 9.8});
@@ -235,6 +183,13 @@ static void describe_run(io::SectionVisitor& visit, RunCase& run, bool with_flui
   else
     visit.section("until_at_rest", run.until_at_rest,
                   {.meaning = "the run ends when all grains are at rest (looked at every 200 steps), or at run.until"});
+  if (with_fluid)
+    visit.real("ramp", run.ramp,
+               {.unit = "s",
+                .meaning = "in which gravity, on fluid and grains, rises smoothly from zero; 0: it is there at once",
+                .at_least = 0.0});
+  else
+    visit.not_here("ramp", "without a fluid there is no column of water that would ring; remove the key");
   if (with_fluid)
     visit.not_here("time_step", "with a fluid the step is fluid.time_step; remove the key");
   else

@@ -9,6 +9,7 @@ namespace thalweg {
 
 void describe(io::SectionVisitor& visit, Case& c);
 void describe_domain(io::SectionVisitor& visit, DomainCase& domain, bool with_fluid);
+void describe(io::SectionVisitor& visit, FluidCase& fluid);
 void describe(io::SectionVisitor& visit, SolidCase& solid);
 void describe(io::SectionVisitor& visit, FluidStatisticsCase& statistics);
 void describe(io::SectionVisitor& visit, PopulationCase& grains);

@@ -1,7 +1,70 @@
 #include "driver/case_sections.hpp"
 
-// Sections of a fluid: solids in it, and means of it.
+// Sections of a fluid: what it is made of, solids in it, and means of it.
 namespace thalweg {
+
+static void describe(io::SectionVisitor& visit, FlowTargetCase& target) {
+  visit.real("velocity", target.velocity,
+             {.unit = "m/s", .meaning = "mean over the fluid, along x", .required = true, .example = 0.3});
+  visit.real("response_time", target.response_time,
+             {.unit = "s",
+              .meaning = "in which the force answers; not longer than the flow needs to come to rest",
+              .required = true,
+              .above = 0.0,
+              .example = 0.1});
+}
+
+void describe(io::SectionVisitor& visit, FluidCase& fluid) {
+  visit.real("density", fluid.density,
+             {.unit = "kg/m^3", .meaning = "mass density", .required = true, .above = 0.0, .example = 1000.0});
+  visit.real("kinematic_viscosity", fluid.kinematic_viscosity,
+             {.unit = "m^2/s", .meaning = "molecular viscosity", .required = true, .above = 0.0, .example = 1e-6});
+  visit.real("smagorinsky_constant", fluid.smagorinsky_constant,
+             {.meaning = "of the subgrid model; 0.27 for water, 0 switches it off", .at_least = 0.0, .below = 1.0});
+  visit.real("time_step", fluid.time_step,
+             {.unit = "s", .meaning = "of the fluid; or give the two velocities below", .above = 0.0, .example = 2e-5});
+  visit.real("maximum_lattice_velocity", fluid.maximum_lattice_velocity,
+             {.unit = "cells/step",
+              .meaning = "with expected_velocity, in place of time_step: the step in which the "
+                         "expected velocity covers this many cells",
+              .above = 0.0,
+              .at_most = 0.173,
+              .example = 0.05});
+  visit.real("expected_velocity", fluid.expected_velocity,
+             {.unit = "m/s", .meaning = "the largest velocity expected in the fluid", .above = 0.0, .example = 0.5});
+  visit.require(!(fluid.time_step && fluid.maximum_lattice_velocity), "time_step",
+                "the step is given twice; give either time_step or maximum_lattice_velocity with expected_velocity");
+  visit.require(fluid.time_step || fluid.maximum_lattice_velocity, "time_step",
+                "the step is missing; give time_step in s, for example 2e-05, or maximum_lattice_velocity with "
+                "expected_velocity");
+  visit.require(!fluid.maximum_lattice_velocity || fluid.expected_velocity, "expected_velocity",
+                "maximum_lattice_velocity needs it; give the largest velocity expected in m/s, for example 0.5");
+  visit.choice<Collision>("collision", fluid.collision,
+                          {{Collision::bgk, "bgk", "one relaxation time"},
+                           {Collision::trt, "trt", "two; walls stay in place at any viscosity"},
+                           {Collision::regularised, "regularised", "bgk without ghost modes; not near walls in water"}},
+                          {.meaning = "collision operator"});
+  if (fluid.collision == Collision::trt)
+    visit.real("magic_parameter", fluid.magic_parameter,
+               {.meaning = "of trt: (1/omega+ - 1/2)(1/omega- - 1/2); 3/16 puts walls exactly half way", .above = 0.0});
+  else
+    visit.not_here("magic_parameter", "only collision trt has a magic parameter; remove it");
+  visit.real("bulk_relaxation_time", fluid.bulk_relaxation_time,
+             {.meaning = "of the trace of the stress, in steps: damps sound, and nothing else, by a bulk viscosity of "
+                         "2/9 (it - 1/2); 0: as the shear's, the published method; where not given 3 with grains, bgk "
+                         "and a subgrid model, else 0",
+              .at_least = 0.0,
+              .at_most = 1000.0,
+              .example = 3.0});
+  const double bulk = fluid.bulk_relaxation_time.value_or(0.0);
+  visit.require(bulk == 0.0 || bulk > 0.5, "bulk_relaxation_time",
+                "a fluid damps sound only above 1/2; give more than 0.5 steps, for example 3, or 0 for that of the "
+                "shear");
+  visit.choice<Precision>("precision", fluid.precision, {{Precision::single, "single"}, {Precision::double_, "double"}},
+                          {.meaning = "of the stored populations"});
+  visit.section("mean_velocity", fluid.mean_velocity,
+                {.meaning = "hold this flow by a body force along x, in place of gravity along x"});
+}
 
 static void describe(io::SectionVisitor& visit, SphereCase& sphere) {
   visit.vec3("centre", sphere.centre, {.unit = "m", .meaning = "of the sphere", .required = true, .example = 0.02});

@@ -68,6 +68,7 @@ lbm::CollisionParameters collision_parameters(const Case& c) {
   parameters.model = collision_model(c.fluid.collision);
   parameters.magic_parameter = c.fluid.magic_parameter;
   parameters.relaxation_time = relaxation_time(c);
+  parameters.bulk_relaxation_time = c.fluid.bulk_relaxation_time.value_or(0.0);
   parameters.smagorinsky_constant = c.fluid.smagorinsky_constant;
   const Vec3 gravity = gravity_vector(c.gravity);
   const int axes = c.gravity.mode == GravityMode::full ? 3 : 2;
@@ -113,6 +114,7 @@ coupling::FluidParameters fluid_parameters(const Case& c) {
   parameters.units = units_of(c);
   parameters.collision = collision_parameters(c);
   parameters.full_gravity = c.gravity.mode == GravityMode::full;
+  parameters.ramp = c.run.ramp / parameters.units.time_step;
   parameters.faces = face_conditions(c.domain, parameters.units);
   if (c.fluid.mean_velocity)
     parameters.flow_target =

@@ -18,6 +18,13 @@
 //   regularised  bgk after f_i - f_i^eq has been replaced by its projection on Hermite polynomials up to second order,
 //                w_i [-3/2 c_i.F + 9/2 (c_ia c_ib - delta_ab/3) sum_j c_ja c_jb (f_j - f_j^eq)]     (Latt and Chopard
 //                2006; the first-order term is the half force, without which momentum would be lost)
+//
+// With a bulk relaxation time tau_b the trace of the second moment relaxes with omega_b = 1/tau_b in place of omega, in
+// all three (d'Humieres et al. 2002 relax it as a moment of its own). The collisions above leave (1 - omega) tr Pi +
+// u.F of it, so that the difference, force term included, is
+//   f_i^c += 3/2 w_i (c_i.c_i - 1) K,  K = (omega - omega_b) tr Pi:   -K/2 at rest, 0 on axes, K/24 on diagonals,
+// which carries neither mass nor momentum. The fluid then has the bulk viscosity zeta = 2/9 (tau_b - 1/2), and the
+// subgrid model takes for Q the norm of the traceless part of Pi, since a trace that lives long says nothing of shear.
 #pragma once
 
 #include "lbm/d3q19.hpp"
@@ -33,24 +40,11 @@ struct CollisionParameters {
   CollisionModel model = CollisionModel::bgk;
   double magic_parameter = 3.0 / 16.0;  // of trt; 3/16 puts half-link walls exactly half way
   double relaxation_time = 1.0;         // tau_0 = 1/2 + 3 nu dt/dx^2
+  double bulk_relaxation_time = 0.0;    // tau_b, above 1/2; 0: as the shear's, eddies included
   double smagorinsky_constant = 0.0;    // C_s; 0 switches the subgrid model off
   double force[3] = {0.0, 0.0, 0.0};    // force density on the fluid
-};
 
-// A symmetric tensor.
-template <typename Number>
-struct Symmetric {
-  Number xx, yy, zz, xy, xz, yz;
-};
-
-// What the relaxation needs to know of a cell, and a wall model may want.
-template <typename Number>
-struct CellMoments {
-  Number deviation;   // d
-  Number mx, my, mz;  // m, without the half force
-  Number inverse_rho;
-  Number omega;          // 1/tau
-  Symmetric<Number> pi;  // Pi; shear rate of a component: 2 |S_ab| = 3 |Pi_ab| omega/rho
+  bool with_bulk() const { return bulk_relaxation_time > 0.0; }
 };
 
 // A constant in every lane, rounded once to the storage type.
@@ -62,11 +56,39 @@ template <typename Number>
     return Number(static_cast<typename Number::value_type>(value));
 }
 
+// A symmetric tensor.
+template <typename Number>
+struct Symmetric {
+  Number xx, yy, zz, xy, xz, yz;
+
+  [[gnu::always_inline]] Number trace() const { return xx + yy + zz; }
+  [[gnu::always_inline]] Symmetric traceless() const {
+    const Number third = pack_constant<Number>(1.0 / 3.0) * trace();
+    return {xx - third, yy - third, zz - third, xy, xz, yz};
+  }
+  // The sum over all nine components squared.
+  [[gnu::always_inline]] Number squared() const {
+    return (xx * xx + yy * yy + zz * zz) + pack_constant<Number>(2) * (xy * xy + xz * xz + yz * yz);
+  }
+};
+
+// What the relaxation needs to know of a cell, and a wall model may want.
+template <typename Number>
+struct CellMoments {
+  Number deviation;   // d
+  Number mx, my, mz;  // m, without the half force
+  Number inverse_rho;
+  Number omega;          // 1/tau
+  Symmetric<Number> pi;  // Pi; shear rate of a component: 2 |S_ab| = 3 |Pi_ab| omega/rho
+  Number bulk;           // K/24; set and used with a bulk relaxation time of its own
+};
+
 // The numbers a collision needs in every cell, ready in packs.
 template <typename Number>
 struct CollisionConstants {
   Number tau0, tau0_squared, eddies;  // eddies = 18 sqrt(2) C_s^2
   Number omega0, magic;               // 1/tau_0;  2 magic parameter - 1/2
+  Number omega_bulk;                  // 1/tau_b, where it is of its own
   Number force[3], half_force[3];
   Symmetric<Number> quarter;  // F_a F_b/4
   Number cross[3], odd[3];    // 9 w F and 3 w F with the diagonal weight w
@@ -80,6 +102,7 @@ struct CollisionConstants {
     eddies = constant(25.455844122715711 * p.smagorinsky_constant * p.smagorinsky_constant);
     omega0 = constant(1.0 / p.relaxation_time);
     magic = constant(2.0 * p.magic_parameter - 0.5);
+    omega_bulk = constant(p.with_bulk() ? 1.0 / p.bulk_relaxation_time : 0.0);
     for (int a = 0; a < 3; ++a) {
       force[a] = constant(f[a]);
       half_force[a] = constant(0.5 * f[a]);
@@ -91,8 +114,9 @@ struct CollisionConstants {
   }
 };
 
-// `with_eddies` false: omega = 1/tau_0 whatever the smagorinsky_constant.
-template <bool with_eddies, typename Number>
+// `with_eddies` false: omega = 1/tau_0 whatever the smagorinsky_constant. `with_bulk` false: the trace relaxes as the
+// rest of Pi, whatever the bulk_relaxation_time.
+template <bool with_eddies, bool with_bulk = false, typename Number>
 [[gnu::always_inline]] inline CellMoments<Number> moments_of(const Number (&f)[19],
                                                              const CollisionConstants<Number>& constants) {
   using std::sqrt;
@@ -122,13 +146,17 @@ template <bool with_eddies, typename Number>
   m.pi.yz = (yz - ymz) - (m.my * vz - quarter.yz * m.inverse_rho);
 
   if constexpr (with_eddies) {
-    const Number squared = (m.pi.xx * m.pi.xx + m.pi.yy * m.pi.yy + m.pi.zz * m.pi.zz) +
-                           constant(2) * (m.pi.xy * m.pi.xy + m.pi.xz * m.pi.xz + m.pi.yz * m.pi.yz);
+    Number squared;
+    if constexpr (with_bulk)
+      squared = m.pi.traceless().squared();
+    else
+      squared = m.pi.squared();
     const Number eddies = constants.eddies * m.inverse_rho;
     m.omega = constant(2) / (constants.tau0 + sqrt(constants.tau0_squared + eddies * sqrt(squared)));
   } else {
     m.omega = constants.omega0;
   }
+  if constexpr (with_bulk) m.bulk = constant(1.0 / 24.0) * ((m.omega - constants.omega_bulk) * m.pi.trace());
   return m;
 }
 
@@ -169,10 +197,11 @@ template <int i, typename Number>
 
 // Equilibrium and force of a cell by pairs, each times its rate, both in units of the diagonal weight:
 //   even part: even_rate f^eq + even_force S,   odd part: odd_rate f^eq + odd_force S.
-template <typename Number>
+template <bool with_bulk, typename Number>
 struct Target {
   Number ux, uy, uz;
   Number common;                     // even part, the same for all directions
+  Number at_rest, diagonal;          // the same at rest and on diagonals, where a bulk rate tells them apart
   Number quadratic;                  // times (c.u)^2
   Number cross_x, cross_y, cross_z;  // times (c.u), along c
   Number odd_x, odd_y, odd_z;        // along c
@@ -193,6 +222,10 @@ struct Target {
     const Number twice_energy = jx * ux + jy * uy + jz * uz;
     common = even_rate * (constant(w) * m.deviation - constant(1.5 * w) * twice_energy) -
              (constant(3.0 * w) * even_force) * u_dot_f;
+    if constexpr (with_bulk) {
+      at_rest = common - m.bulk;
+      diagonal = common + m.bulk;
+    }
     quadratic = (constant(4.5 * w) * even_rate) * (constant(1) + m.deviation);
     cross_x = constants.cross[0] * even_force;
     cross_y = constants.cross[1] * even_force;
@@ -206,7 +239,7 @@ struct Target {
   template <int i>
   [[gnu::always_inline]] Number even() const {
     const Number cu = along<i>(ux, uy, uz);
-    const Number half = common + cu * (quadratic * cu + along<i>(cross_x, cross_y, cross_z));
+    const Number half = common_of<i>() + cu * (quadratic * cu + along<i>(cross_x, cross_y, cross_z));
     return D3Q19::length_squared(i) == 1 ? half + half : half;
   }
   template <int i>
@@ -215,18 +248,29 @@ struct Target {
     return D3Q19::length_squared(i) == 1 ? half + half : half;
   }
   [[gnu::always_inline]] Number rest() const {
-    return pack_constant<Number>(D3Q19::rest_weight / D3Q19::diagonal_weight) * common;
+    return pack_constant<Number>(D3Q19::rest_weight / D3Q19::diagonal_weight) * common_of<0>();
+  }
+
+private:
+  template <int i>
+  [[gnu::always_inline]] const Number& common_of() const {
+    if constexpr (with_bulk && i == 0)
+      return at_rest;
+    else if constexpr (with_bulk && D3Q19::length_squared(i) == 2)
+      return diagonal;
+    else
+      return common;
   }
 };
 
 }  // namespace detail
 
-// Replaces f by its value after the collision.
-template <typename Number>
+// Replaces f by its value after the collision. `with_bulk` as in moments_of.
+template <bool with_bulk, typename Number>
 [[gnu::always_inline]] inline void relax_bgk(Number (&f)[19], const CellMoments<Number>& m,
                                              const CollisionConstants<Number>& constants) {
   const Number keep = pack_constant<Number>(1) - m.omega;
-  const detail::Target<Number> target(m, constants, m.omega, m.omega);
+  const detail::Target<with_bulk, Number> target(m, constants, m.omega, m.omega);
   f[0] = keep * f[0] + target.rest();
   detail::for_each_pair([&]<int i>() __attribute__((always_inline)) {
     const Number even = target.template even<i>(), odd = target.template odd<i>();
@@ -235,7 +279,7 @@ template <typename Number>
   });
 }
 
-template <typename Number>
+template <bool with_bulk, typename Number>
 [[gnu::always_inline]] inline void relax_trt(Number (&f)[19], const CellMoments<Number>& m,
                                              const CollisionConstants<Number>& constants) {
   constexpr auto constant = pack_constant<Number>;
@@ -243,7 +287,7 @@ template <typename Number>
   const Number odd_rate = (constant(2) - m.omega) / (constant(1) + constants.magic * m.omega);
   const Number keep_even = constant(1) - m.omega, keep_odd = constant(1) - odd_rate;
   const Number same = constant(0.5) * (keep_even + keep_odd), swapped = constant(0.5) * (keep_even - keep_odd);
-  const detail::Target<Number> target(m, constants, m.omega, odd_rate);
+  const detail::Target<with_bulk, Number> target(m, constants, m.omega, odd_rate);
   f[0] = keep_even * f[0] + target.rest();
   detail::for_each_pair([&]<int i>() __attribute__((always_inline)) {
     const Number even = target.template even<i>(), odd = target.template odd<i>();
@@ -255,8 +299,8 @@ template <typename Number>
 
 // With n = m + F, the momentum after the collision: f^c_i = w_i {d + 3 c_i.n + 9/2 (c_ia c_ib - delta_ab/3) P_ab},
 //   P_ab = rho u_a u_b + (1 - omega) sum c_a c_b (f - f^eq) + (1 - omega/2)(u_a F_b + F_a u_b)
-//        = (1 - omega) Pi_ab + (n_a n_b - F_a F_b/4)/rho.
-template <typename Number>
+//        = (1 - omega) Pi_ab + (n_a n_b - F_a F_b/4)/rho,   and K/3 more on its diagonal.
+template <bool with_bulk, typename Number>
 [[gnu::always_inline]] inline void relax_regularised(Number (&f)[19], const CellMoments<Number>& m,
                                                      const CollisionConstants<Number>& constants) {
   constexpr auto constant = pack_constant<Number>;
@@ -266,9 +310,13 @@ template <typename Number>
   const Number hx = nx * weight, hy = ny * weight, hz = nz * weight;
   const Symmetric<Number>& quarter = constants.quarter;
   // 9/2 w P, the off-diagonals twice as both of a pair count.
-  const Number pxx = keep * m.pi.xx + (nx * hx - quarter.xx * weight),
-               pyy = keep * m.pi.yy + (ny * hy - quarter.yy * weight),
-               pzz = keep * m.pi.zz + (nz * hz - quarter.zz * weight);
+  Number pxx = keep * m.pi.xx + (nx * hx - quarter.xx * weight), pyy = keep * m.pi.yy + (ny * hy - quarter.yy * weight),
+         pzz = keep * m.pi.zz + (nz * hz - quarter.zz * weight);
+  if constexpr (with_bulk) {
+    pxx += m.bulk;
+    pyy += m.bulk;
+    pzz += m.bulk;
+  }
   const Number twice = keep + keep;
   const auto doubled = [](const Number& a) { return a + a; };
   const Number pxy = twice * m.pi.xy + doubled(nx * hy - quarter.xy * weight),
@@ -296,23 +344,23 @@ template <typename Number>
   });
 }
 
-template <CollisionModel model, typename Number>
+template <CollisionModel model, bool with_bulk, typename Number>
 [[gnu::always_inline]] inline void relax(Number (&f)[19], const CellMoments<Number>& m,
                                          const CollisionConstants<Number>& constants) {
   if constexpr (model == CollisionModel::bgk)
-    relax_bgk(f, m, constants);
+    relax_bgk<with_bulk>(f, m, constants);
   else if constexpr (model == CollisionModel::trt)
-    relax_trt(f, m, constants);
+    relax_trt<with_bulk>(f, m, constants);
   else
-    relax_regularised(f, m, constants);
+    relax_regularised<with_bulk>(f, m, constants);
 }
 
 // Both steps at once; returns the moments before the collision.
-template <CollisionModel model, bool with_eddies, typename Number>
+template <CollisionModel model, bool with_eddies, bool with_bulk = false, typename Number>
 [[gnu::always_inline]] inline CellMoments<Number> collide(Number (&f)[19], const CollisionParameters& parameters) {
   const CollisionConstants<Number> constants(parameters);
-  const CellMoments<Number> m = moments_of<with_eddies>(f, constants);
-  relax<model>(f, m, constants);
+  const CellMoments<Number> m = moments_of<with_eddies, with_bulk>(f, constants);
+  relax<model, with_bulk>(f, m, constants);
   return m;
 }
 

@@ -69,10 +69,11 @@ SubgridState subgrid_state(const Fluid<Real>& fluid, std::ptrdiff_t cell) {
   double f[D3Q19::directions];
   for (int i = 0; i < D3Q19::directions; ++i) f[i] = static_cast<double>(fluid.populations().incoming(i, cell));
   const CollisionParameters& parameters = fluid.parameters();
-  const CellMoments<double> m = moments_of<true>(f, CollisionConstants<double>(parameters));
-  const Symmetric<double>& pi = m.pi;
-  const double squared =
-      pi.xx * pi.xx + pi.yy * pi.yy + pi.zz * pi.zz + 2.0 * (pi.xy * pi.xy + pi.xz * pi.xz + pi.yz * pi.yz);
+  const CollisionConstants<double> constants(parameters);
+  const bool with_bulk = parameters.with_bulk();
+  const CellMoments<double> m =
+      with_bulk ? moments_of<true, true>(f, constants) : moments_of<true, false>(f, constants);
+  const double squared = (with_bulk ? m.pi.traceless() : m.pi).squared();
   SubgridState state;
   state.shear_rate = 1.5 * std::sqrt(2.0 * squared) * m.omega * m.inverse_rho;
   state.eddy_viscosity = parameters.smagorinsky_constant * parameters.smagorinsky_constant * state.shear_rate;

@@ -38,7 +38,7 @@ struct FluidTotals {
 template <typename Real>
 class Fluid {
 public:
-  // The decomposition must outlive the fluid. Throws InputError if the relaxation time is not above 1/2.
+  // The decomposition must outlive the fluid. Throws InputError if a relaxation time is not above 1/2.
   Fluid(const Decomposition& decomposition, MPI_Comm communicator, const CollisionParameters& parameters,
         const FaceConditions& faces);
 

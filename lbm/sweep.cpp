@@ -46,7 +46,7 @@ template <typename Real>
 struct Stretch {
   static constexpr int packs = 4;
   Pack<Real> deviation[packs], mx[packs], my[packs], mz[packs], inverse_rho[packs], omega[packs];
-  Pack<Real> xx[packs], yy[packs], zz[packs], xy[packs], xz[packs], yz[packs];
+  Pack<Real> xx[packs], yy[packs], zz[packs], xy[packs], xz[packs], yz[packs], bulk[packs];
 };
 
 // Calls visit.operator()<i>() for every direction: a loop the compiler cannot leave rolled up, or it would keep the
@@ -75,32 +75,39 @@ template <typename Real>
   });
 }
 
-template <bool with_eddies, bool with_diagonal, bool with_shear, typename Real>
+// Which of its variants a row takes.
+struct Kind {
+  CollisionModel model;
+  bool eddies, bulk, shear;
+};
+
+template <Kind kind, typename Real>
 [[gnu::always_inline]] inline void measure_pack(const Streams<Real>& streams, std::ptrdiff_t cell,
                                                 const CollisionConstants<Pack<Real>>& constants, Stretch<Real>& stretch,
                                                 int p) {
   Pack<Real> f[D3Q19::directions];
   load(f, streams, cell);
-  const CellMoments<Pack<Real>> m = moments_of<with_eddies>(f, constants);
+  const CellMoments<Pack<Real>> m = moments_of<kind.eddies, kind.bulk>(f, constants);
   stretch.deviation[p] = m.deviation;
   stretch.mx[p] = m.mx;
   stretch.my[p] = m.my;
   stretch.mz[p] = m.mz;
   stretch.inverse_rho[p] = m.inverse_rho;
   stretch.omega[p] = m.omega;
-  if constexpr (with_diagonal) {
+  if constexpr (kind.bulk) stretch.bulk[p] = m.bulk;
+  if constexpr (kind.model == CollisionModel::regularised) {
     stretch.xx[p] = m.pi.xx;
     stretch.yy[p] = m.pi.yy;
     stretch.zz[p] = m.pi.zz;
   }
-  if constexpr (with_diagonal || with_shear) {
+  if constexpr (kind.model == CollisionModel::regularised || kind.shear) {
     stretch.xy[p] = m.pi.xy;
     stretch.xz[p] = m.pi.xz;
     stretch.yz[p] = m.pi.yz;
   }
 }
 
-template <CollisionModel model, typename Real>
+template <Kind kind, typename Real>
 [[gnu::always_inline]] inline void relax_pack(const Streams<Real>& streams, std::ptrdiff_t cell,
                                               const CollisionConstants<Pack<Real>>& constants, const Stretch<Real>& s,
                                               int p) {
@@ -112,11 +119,12 @@ template <CollisionModel model, typename Real>
   m.mz = s.mz[p];
   m.inverse_rho = s.inverse_rho[p];
   m.omega = s.omega[p];
-  if constexpr (model == CollisionModel::regularised)
+  if constexpr (kind.bulk) m.bulk = s.bulk[p];
+  if constexpr (kind.model == CollisionModel::regularised)
     m.pi = {s.xx[p], s.yy[p], s.zz[p], s.xy[p], s.xz[p], s.yz[p]};
   else
     load(f, streams, cell);
-  relax<model>(f, m, constants);
+  relax<kind.model, kind.bulk>(f, m, constants);
   for_each_direction([&]<int i>() __attribute__((always_inline)) {
     f[i].copy_to(streams.out[i] + cell, stdx::element_aligned);
   });
@@ -134,43 +142,47 @@ template <typename Real>
 
 // Moments of a whole stretch first, then its relaxation: either pass alone is short enough for the processor to work on
 // several packs at once, while one long pass waits for its own divisions and roots.
-template <CollisionModel model, bool with_eddies, bool with_shear, typename Real>
+template <Kind kind, typename Real>
 void sweep_packs(const Streams<Real>& streams, std::ptrdiff_t row, const std::uint8_t* fluid_in_packs, int packs,
                  const CollisionParameters& parameters, const RowShear<Real>* shear) {
   constexpr int width = static_cast<int>(Pack<Real>::size());
-  constexpr bool with_diagonal = model == CollisionModel::regularised;
   const CollisionConstants<Pack<Real>> constants(parameters);
   Stretch<Real> stretch;
   for (int first = 0; first < packs; first += Stretch<Real>::packs) {
     const int count = std::min(Stretch<Real>::packs, packs - first);
     for (int p = 0; p < count; ++p) {
       if (fluid_in_packs[first + p] == 0) continue;
-      measure_pack<with_eddies, with_diagonal, with_shear>(streams, row + (first + p) * width, constants, stretch, p);
+      measure_pack<kind>(streams, row + (first + p) * width, constants, stretch, p);
     }
     for (int p = 0; p < count; ++p) {
       if (fluid_in_packs[first + p] == 0) continue;
       const std::ptrdiff_t cell = row + (first + p) * width;
       prefetch(streams, cell);
-      relax_pack<model>(streams, cell, constants, stretch, p);
-      if constexpr (with_shear) store_shear(stretch, p, *shear, (first + p) * width);
+      relax_pack<kind>(streams, cell, constants, stretch, p);
+      if constexpr (kind.shear) store_shear(stretch, p, *shear, (first + p) * width);
     }
   }
+}
+
+// Calls visit.operator()<value>() with the value as a constant.
+template <typename Visit>
+void as_constant(bool value, Visit visit) {
+  if (value)
+    visit.template operator()<true>();
+  else
+    visit.template operator()<false>();
 }
 
 template <CollisionModel model, typename Real>
 void sweep_row_with(const Streams<Real>& streams, std::ptrdiff_t row, const std::uint8_t* fluid, int packs,
                     const CollisionParameters& parameters, const RowShear<Real>* shear) {
-  if (parameters.smagorinsky_constant > 0.0) {
-    if (shear)
-      sweep_packs<model, true, true>(streams, row, fluid, packs, parameters, shear);
-    else
-      sweep_packs<model, true, false>(streams, row, fluid, packs, parameters, shear);
-  } else {
-    if (shear)
-      sweep_packs<model, false, true>(streams, row, fluid, packs, parameters, shear);
-    else
-      sweep_packs<model, false, false>(streams, row, fluid, packs, parameters, shear);
-  }
+  as_constant(parameters.smagorinsky_constant > 0.0, [&]<bool eddies>() {
+    as_constant(parameters.with_bulk(), [&]<bool bulk>() {
+      as_constant(shear != nullptr, [&]<bool with_shear>() {
+        sweep_packs<Kind{model, eddies, bulk, with_shear}>(streams, row, fluid, packs, parameters, shear);
+      });
+    });
+  });
 }
 
 }  // namespace

@@ -16,22 +16,33 @@ OPPOSITE = [int(np.where((C == -c).all(1))[0][0]) for c in C]
 MAGIC = 3 / 16
 
 
-def collision(tau, u, model):
+BULK = 1.5 * W * ((C * C).sum(1) - 1)  # what a unit of the trace of the second moment, set apart, gives a population
+
+
+def collision(tau, u, model, tau_bulk=None):
     """Derivative of the populations after the collision by those before, about the equilibrium at density 1."""
+    after, rest = shear_collision(tau, u, model)
+    if tau_bulk is None:
+        return after
+    return after + np.outer(BULK, (1 / tau - 1 / tau_bulk) * ((C * C).sum(1) @ rest))
+
+
+def shear_collision(tau, u, model):
+    """The same with one rate for the whole second moment, and the derivative of f - f_eq."""
     cu, identity = C @ u, np.eye(19)
     # f_eq = w [rho + 3 c.m + (9/2 (c.m)^2 - 3/2 m.m)/rho] with m the momentum.
     equilibrium = W[:, None] * (1 + 3 * C @ C.T + 9 * cu[:, None] * (C @ C.T) - 3 * (C @ u)[None, :]
                                 - (4.5 * cu**2 - 1.5 * u @ u)[:, None])
     rest = identity - equilibrium
     if model == "bgk":
-        return identity - rest / tau
+        return identity - rest / tau, rest
     if model == "trt":
         swap = identity[OPPOSITE]
         return identity - (0.5 * (identity + swap) / tau
-                           + 0.5 * (identity - swap) / (0.5 + MAGIC / (tau - 0.5))) @ rest
+                           + 0.5 * (identity - swap) / (0.5 + MAGIC / (tau - 0.5))) @ rest, rest
     second = sum(4.5 * np.outer(W * (C[:, a] * C[:, b] - (a == b) / 3), C[:, a] * C[:, b])
                  for a in range(3) for b in range(3))
-    return equilibrium + (1 - 1 / tau) * second @ rest
+    return equilibrium + (1 - 1 / tau) * second @ rest, rest
 
 
 def growth(matrix):
@@ -56,8 +67,8 @@ def couette(excess, speed, model, cells=8, waves=8):
     return best
 
 
-def stream(excess, speed, model, waves=8):
-    collide = collision(0.5 + excess, np.array([speed, 0, 0]), model)
+def stream(excess, speed, model, tau_bulk=None, waves=8):
+    collide = collision(0.5 + excess, np.array([speed, 0, 0]), model, tau_bulk)
     sides = np.linspace(0, np.pi, waves + 1)
     return max(growth(np.exp(-1j * (C @ np.array([kx, ky, kz])))[:, None] * collide)
                for kx in sides for ky in sides for kz in sides)
@@ -76,6 +87,11 @@ def main():
     for excess in (0.03, 0.01, 0.003, 0.001):
         print(f"| {excess:g} | " + " | ".join("stable" if g < 1e-9 else f"{g:.4f}"
                                              for g in (stream(excess, 0.1, m) for m in models)) + " |", flush=True)
+    print("\nUniform stream at 0.05, bulk relaxation time 3: growth a step\n")
+    print("| tau - 1/2 | " + " | ".join(models) + " |\n|---|---|---|---|")
+    for excess in (0.1, 0.05, 0.03, 0.01, 0.003, 0.001):
+        print(f"| {excess:g} | " + " | ".join("stable" if g < 1e-9 else f"{g:.4f}"
+                                             for g in (stream(excess, 0.05, m, 3) for m in models)) + " |", flush=True)
 
 
 if __name__ == "__main__":

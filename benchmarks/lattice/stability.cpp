@@ -1,6 +1,7 @@
 // The stability map of the collisions: how near to 1/2 the relaxation time may come at a given velocity.
 //
-//   bin/stability
+//   bin/stability                half an hour
+//   bin/stability TAU_B...       some minutes: a part of the map at each of these bulk relaxation times
 //
 // Three flows at a lattice velocity u, for tau - 1/2 from 0.1 to 1e-4, with and without eddies:
 //   vortex   a Taylor-Green vortex of three dimensions in a periodic box of 32 cells, for so many turnover times that
@@ -17,8 +18,10 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <numbers>
 #include <random>
+#include <string>
 
 namespace thalweg::benchmark {
 namespace {
@@ -37,12 +40,14 @@ constexpr Model models[] = {{"bgk", lbm::CollisionModel::bgk},
 struct Setting {
   lbm::CollisionModel model;
   double excess, velocity, smagorinsky;
+  double bulk = 0.0;
 
   lbm::CollisionParameters parameters() const {
     lbm::CollisionParameters p;
     p.model = model;
     p.relaxation_time = 0.5 + excess;
     p.smagorinsky_constant = smagorinsky;
+    p.bulk_relaxation_time = bulk;
     return p;
   }
 };
@@ -119,6 +124,18 @@ bool noise_dies(const Setting& s, bool plates) {
   return noise.end <= noise.start;
 }
 
+// Of the settings with these velocities the fastest before the first that fails, as a text.
+template <typename Survives>
+std::string fastest_stable(Setting s, const char* none, Survives survives) {
+  double best = 0.0;
+  for (const double velocity : velocities) {
+    s.velocity = velocity;
+    if (!survives(s)) break;
+    best = velocity;
+  }
+  return best == 0.0 ? none : fmt::format("{:g}", best);
+}
+
 template <typename Survives>
 void print_map(const char* title, double smagorinsky, Survives survives) {
   fmt::print("\n{}, C_s = {}: largest lattice velocity that stays stable\n\n| tau - 1/2 |", title, smagorinsky);
@@ -126,17 +143,8 @@ void print_map(const char* title, double smagorinsky, Survives survives) {
   fmt::print("\n|---|---|---|---|\n");
   for (const double excess : excesses) {
     fmt::print("| {:g} |", excess);
-    for (const Model& m : models) {
-      double best = 0.0;
-      for (const double velocity : velocities) {
-        if (!survives(Setting{m.model, excess, velocity, smagorinsky})) break;
-        best = velocity;
-      }
-      if (best == 0.0)
-        fmt::print(" unstable |");
-      else
-        fmt::print(" {:g} |", best);
-    }
+    for (const Model& m : models)
+      fmt::print(" {} |", fastest_stable({m.model, excess, 0.0, smagorinsky}, "unstable", survives));
     fmt::print("\n");
     std::fflush(stdout);
   }
@@ -157,6 +165,31 @@ void print_noise(double smagorinsky) {
   std::fflush(stdout);
 }
 
+// Vortex, stream and couette without eddies, and with them the noise that couette flow leaves as in print_noise.
+void print_bulk(double bulk) {
+  for (const double excess : {1e-2, 1e-3, 1e-4}) {
+    fmt::print("| {:g} | {:g} |", bulk, excess);
+    for (const Model& m : models) {
+      const Setting s{m.model, excess, 0.0, 0.0, bulk};
+      fmt::print(" {} / {} / {} |", fastest_stable(s, "-", vortex_survives),
+                 fastest_stable(s, "-", [](const Setting& t) { return noise_dies(t, false); }),
+                 fastest_stable(s, "-", [](const Setting& t) { return noise_dies(t, true); }));
+    }
+    for (const Model& m : models)
+      fmt::print(" {:.2f} |", 1e3 * follow_noise({m.model, excess, 0.1, 0.27, bulk}, true, 6000).end);
+    fmt::print("\n");
+    std::fflush(stdout);
+  }
+}
+
+void run_bulk(int count, char** times) {
+  fmt::print("| tau_b | tau - 1/2 |");
+  for (const Model& m : models) fmt::print(" {} |", m.name);
+  for (const Model& m : models) fmt::print(" {}, noise |", m.name);
+  fmt::print("\n|---|---|---|---|---|---|---|---|\n");
+  for (int n = 0; n < count; ++n) print_bulk(std::atof(times[n]));
+}
+
 void run() {
   for (const double smagorinsky : {0.0, 0.17, 0.27}) {
     print_map("vortex", smagorinsky, vortex_survives);
@@ -171,5 +204,8 @@ void run() {
 
 int main(int argc, char** argv) {
   thalweg::MpiSession session(argc, argv);
-  thalweg::benchmark::run();
+  if (argc > 1)
+    thalweg::benchmark::run_bulk(argc - 1, argv + 1);
+  else
+    thalweg::benchmark::run();
 }

@@ -115,6 +115,13 @@ TEST(Ranks, DoNotChangeOneBitOfACloudInAPeriodicBox) {
   for (const Index3& layout : layouts_of(size_of(MPI_COMM_WORLD))) compare<double>(box, layout, 25);
 }
 
+TEST(Ranks, DoNotChangeOneBitWithABulkViscosityUnderRisingGravity) {
+  WaterBox box = crowded({24, 24, 36}, {true, false, false}, 20, 5.5e-3);
+  box.bulk_relaxation_time = 10.0;
+  box.ramp = 30.5;
+  for (const Index3& layout : two_layouts_of(size_of(MPI_COMM_WORLD))) compare<float>(box, layout, 40);
+}
+
 // Every grain of the cloud is a clump half as wide again, which reaches over borders its centre does not cross.
 TEST(Ranks, DoNotChangeOneBitOfClumpsInAPeriodicBox) {
   WaterBox box = crowded({36, 40, 33}, {true, true, true}, 40, 7.4e-3);

@@ -70,7 +70,7 @@ TEST_P(UncoveredCells, KeepWhatTheRuleSays) {
   bodies[0].angular_velocity = Vec3(0.001, -0.002, 0.003);
   const std::vector<GrainMap::Change> changes = map.settle();
   Refill refill(decomposition, MPI_COMM_WORLD, GetParam());
-  const RefillTotals totals = refill.fill(fluid, changes, bodies);
+  const RefillTotals totals = refill.fill(fluid, changes, {}, bodies);
 
   // The plain answer, from global coordinates.
   const auto offset = [&](const Index3& cell, const Vec3& centre) {

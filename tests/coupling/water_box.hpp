@@ -16,6 +16,8 @@ struct WaterBox {
   double time_step = 1e-4;  // s
   double viscosity = 1e-6;  // m^2/s
   double smagorinsky_constant = 0.27;
+  double bulk_relaxation_time = 0.0;
+  double ramp = 0.0;  // steps
   lbm::CollisionModel collision = lbm::CollisionModel::bgk;
   Vec3 gravity = Vec3(0.0, 0.0, 0.0);  // m/s^2; reduced: along z only the submerged weight counts
   Vec3 fluid_velocity = Vec3::Zero();  // m/s at the start
@@ -48,6 +50,8 @@ std::unique_ptr<ResolvedSystem<Real>> make_system(const WaterBox& box, MPI_Comm 
   p.collision.relaxation_time = p.units.relaxation_time(box.viscosity);
   p.collision.model = box.collision;
   p.collision.smagorinsky_constant = box.smagorinsky_constant;
+  p.collision.bulk_relaxation_time = box.bulk_relaxation_time;
+  p.ramp = box.ramp;
   for (int a = 0; a < (box.full_gravity ? 3 : 2); ++a) p.collision.force[a] = box.gravity[a] / p.units.acceleration();
   for (int face = 0; face < 6; ++face)
     p.faces[face].type = box.periodic[face / 2] ? lbm::FaceType::periodic

@@ -91,6 +91,21 @@ TEST(CaseReader, AFluidWithoutGrainsIsACase) {
   EXPECT_EQ(read(resolved_yaml(c)), c);
 }
 
+TEST(CaseReader, ReadsTheBulkViscosityAndTheRamp) {
+  const Case plain = read(flume), c = read(flume, {"fluid.bulk_relaxation_time=10", "run.ramp=0.2"});
+  EXPECT_EQ(plain.fluid.bulk_relaxation_time, 3.0);  // grains, bgk and a subgrid model
+  const Case published = read(flume, {"fluid.bulk_relaxation_time=0"});
+  for (const char* other : {"fluid.smagorinsky_constant=0", "fluid.collision=trt"})
+    EXPECT_EQ(read(flume, {other}).fluid.bulk_relaxation_time, 0.0) << other;
+  EXPECT_EQ(plain.run.ramp, 0.0);
+  EXPECT_EQ(c.fluid.bulk_relaxation_time, 10.0);
+  EXPECT_EQ(c.run.ramp, 0.2);
+  EXPECT_EQ(read(resolved_yaml(c)), c);
+  EXPECT_NEAR(bulk_viscosity(c), 2.0 / 9.0 * 9.5 * 0.5e-3 * 0.5e-3 / 2e-5, 1e-15);
+  EXPECT_NEAR(bulk_viscosity(published), 2.0 / 3.0 * 1e-6, 1e-15);  // 2/3 nu
+  EXPECT_EQ(read(defaults_yaml("fluid"), {"run.ramp=0.2"}).run.ramp, 0.2);
+}
+
 // All keys at any depth, of the text with its commented-out keys brought to life.
 void collect_keys(const YAML::Node& node, const std::string& path, std::vector<std::string>& keys) {
   if (node.IsMap())
@@ -178,6 +193,14 @@ INSTANTIATE_TEST_SUITE_P(
             {"top.type = \"porous\": expected one of periodic, no_slip, free_slip, moving, navier_slip, "
              "law_of_the_wall, "
              "law_of_the_wall_as_printed, velocity_inlet, pressure_outlet."}},
+        Bad{"bulk_without_damping",
+            {"fluid.bulk_relaxation_time=0.5"},
+            {"fluid.bulk_relaxation_time = 0.5", "give more than 0.5 steps"}},
+        Bad{"bulk_below_zero", {"fluid.bulk_relaxation_time=-1"}, {"fluid.bulk_relaxation_time = -1", "at least 0"}},
+        Bad{"ramp_in_full_gravity",
+            {"gravity.mode=full", "run.ramp=0.1"},
+            {"run.ramp = 0.1", "at rest under its whole weight"}},
+        Bad{"ramp_below_zero", {"run.ramp=-0.1"}, {"run.ramp = -0.1", "at least 0"}},
         Bad{"magic_without_trt", {"fluid.magic_parameter=0.25"}, {"fluid.magic_parameter", "only collision trt"}},
         Bad{"slip_length_missing", {"domain.boundaries.top=navier_slip"}, {"slip_length"}},
         Bad{"wall_lifts_off",

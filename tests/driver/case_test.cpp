@@ -118,5 +118,19 @@ TEST(Case, WarnsOfWhatDeservesASecondLookAndOfNothingElse) {
   EXPECT_NE(warnings(c)[2].find("only 5 cells across"), std::string::npos);
 }
 
+TEST(Case, WarnsOfABulkViscosityThatMakesTrtUnstable) {
+  Case c = wide_bed();
+  c.run.until = 30.0;
+  c.fluid.collision = Collision::trt;
+  const std::size_t without = warnings(c).size();
+  c.fluid.bulk_relaxation_time = 3.0;
+  ASSERT_EQ(warnings(c).size(), without + 1);
+  c.fluid.smagorinsky_constant = 0.27;
+  EXPECT_TRUE(warnings(c).empty());
+  c.fluid.smagorinsky_constant = 0.0;
+  c.fluid.collision = Collision::bgk;
+  EXPECT_EQ(warnings(c).size(), without);
+}
+
 }  // namespace
 }  // namespace thalweg

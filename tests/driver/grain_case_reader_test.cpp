@@ -122,6 +122,13 @@ TEST(GrainCaseReader, DryGrainsNeedGrains) {
       << message;
 }
 
+TEST(GrainCaseReader, DryGrainsHaveNoWaterThatRings) {
+  const std::string ramp = message_of<InputError>([] { read(defaults_yaml("grains"), {"run.ramp=0.1"}); });
+  EXPECT_NE(ramp.find("run.ramp = 0.1: without a fluid there is no column of water that would ring"), std::string::npos)
+      << ramp;
+  EXPECT_THROW(read(defaults_yaml("grains"), {"fluid.bulk_relaxation_time=10"}), InputError);
+}
+
 TEST(GrainCaseReader, DryGrainsRefuseAStepTooLong) {
   const std::string message = message_of<InputError>([] { read(defaults_yaml("grains"), {"run.time_step=1e-4"}); });
   EXPECT_NE(

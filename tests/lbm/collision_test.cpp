@@ -157,5 +157,83 @@ TEST_F(Collision, RegularisedAgreesWithTheFormulaWrittenOut) {
   }
 }
 
+// What a bulk relaxation time of its own changes: the trace of the second moment after the collision, which is the one
+// of equilibrium and half force, u.F, and (1 - 1/tau_b) tr Pi; mass, momentum and all that has no trace stay.
+template <CollisionModel model, bool with_eddies>
+void expect_only_the_trace_differs(const double (&f)[19], CollisionParameters parameters, double tau_b) {
+  const WrittenOut w(f, parameters);
+  double with[19], without[19];
+  std::copy(f, f + 19, with);
+  std::copy(f, f + 19, without);
+  const double omega = collide<model, with_eddies>(without, parameters).omega;
+  parameters.bulk_relaxation_time = tau_b;
+  if (with_eddies) {  // so that both have the same rate, though not the same norm of Pi
+    parameters.smagorinsky_constant = 0.0;
+    parameters.relaxation_time = 1.0 / omega;
+  }
+  collide<model, false, true>(with, parameters);
+  const double trace = w.pi[0][0] + w.pi[1][1] + w.pi[2][2];
+  double change[3][3] = {};
+  for (int i = 0; i < 19; ++i)
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) change[a][b] += D3Q19::c[i][a] * D3Q19::c[i][b] * (with[i] - without[i]);
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b) EXPECT_NEAR(change[a][b], a == b ? (omega - 1.0 / tau_b) * trace / 3.0 : 0.0, 2e-16);
+  const Sums before = sums_of(without), after = sums_of(with);
+  EXPECT_NEAR(after.density, before.density, 1e-16);
+  EXPECT_NEAR((after.momentum - before.momentum).norm(), 0.0, 1e-16);
+  double equilibrium_trace = 0.0, after_trace = 0.0;
+  for (int i = 1; i < 19; ++i) {
+    equilibrium_trace += D3Q19::length_squared(i) * w.equilibrium[i];
+    after_trace += D3Q19::length_squared(i) * with[i];
+  }
+  EXPECT_NEAR(after_trace, equilibrium_trace + w.u.dot(w.force) + (1.0 - 1.0 / tau_b) * trace, 2e-16);
+}
+
+TEST_F(Collision, ABulkRateOfItsOwnChangesTheTraceAlone) {
+  for (const double smagorinsky : {0.0, 0.27}) {
+    parameters.smagorinsky_constant = smagorinsky;
+    for (const double tau_b : {0.51, 1.0, 30.0}) {
+      if (smagorinsky > 0.0) {
+        expect_only_the_trace_differs<CollisionModel::bgk, true>(f, parameters, tau_b);
+        expect_only_the_trace_differs<CollisionModel::trt, true>(f, parameters, tau_b);
+        expect_only_the_trace_differs<CollisionModel::regularised, true>(f, parameters, tau_b);
+      } else {
+        expect_only_the_trace_differs<CollisionModel::bgk, false>(f, parameters, tau_b);
+        expect_only_the_trace_differs<CollisionModel::trt, false>(f, parameters, tau_b);
+        expect_only_the_trace_differs<CollisionModel::regularised, false>(f, parameters, tau_b);
+      }
+    }
+  }
+}
+
+// The subgrid model sees the part of Pi without its trace: tau as in the header, with that norm.
+TEST_F(Collision, ALongLivedTraceRaisesNoEddyViscosity) {
+  parameters.smagorinsky_constant = 0.27;
+  parameters.bulk_relaxation_time = 30.0;
+  const WrittenOut w(f, parameters);
+  const double trace = w.pi[0][0] + w.pi[1][1] + w.pi[2][2], tau0 = parameters.relaxation_time;
+  const double shear = std::sqrt(w.q * w.q - trace * trace / 3.0);
+  const double tau =
+      0.5 * (tau0 + std::sqrt(tau0 * tau0 + 18.0 * std::sqrt(2.0) * 0.27 * 0.27 * shear / (1.0 + w.deviation)));
+  const CellMoments<double> m = moments_of<true, true>(f, CollisionConstants<double>(parameters));
+  EXPECT_NEAR(1.0 / m.omega, tau, 1e-15);
+}
+
+// A cell that is compressed alike from all sides has no shear: its norm is zero up to rounding, never the root of a
+// number below zero.
+TEST_F(Collision, PureCompressionRaisesNoEddyViscosity) {
+  parameters.smagorinsky_constant = 0.27;
+  parameters.bulk_relaxation_time = 30.0;
+  for (int a = 0; a < 3; ++a) parameters.force[a] = 0.0;
+  const CollisionConstants<float> constants(parameters);
+  for (int n = 1; n <= 100; ++n) {
+    float compressed[19];
+    for (int i = 0; i < 19; ++i)
+      compressed[i] = static_cast<float>(1e-4 * n * 1.5 * D3Q19::weight(i) * (D3Q19::length_squared(i) - 1));
+    EXPECT_NEAR(1.0F / (moments_of<true, true>(compressed, constants).omega), parameters.relaxation_time, 1e-6);
+  }
+}
+
 }  // namespace
 }  // namespace thalweg::lbm

@@ -48,7 +48,7 @@ std::vector<Box> boxes() {
 }
 
 template <typename Real>
-void compare(const Box& box, CollisionModel model, const Index3& layout) {
+void compare(const Box& box, CollisionModel model, const Index3& layout, double bulk_relaxation_time = 0.0) {
   const Index3 cells{37, 33, 35};
   std::array<bool, 3> periodic;
   for (int a = 0; a < 3; ++a) periodic[a] = box.faces[2 * a].type == FaceType::periodic;
@@ -56,6 +56,7 @@ void compare(const Box& box, CollisionModel model, const Index3& layout) {
   parameters.model = model;
   parameters.relaxation_time = 0.503;
   parameters.smagorinsky_constant = 0.27;
+  parameters.bulk_relaxation_time = bulk_relaxation_time;
   parameters.force[0] = 1e-5;
   const Decomposition whole(cells, 1.0, periodic, {1, 1, 1}), cut(cells, 1.0, periodic, layout);
   Fluid<Real> alone(whole, MPI_COMM_SELF, parameters, box.faces), shared(cut, MPI_COMM_WORLD, parameters, box.faces);
@@ -94,6 +95,14 @@ TEST(Ranks, DoNotChangeOneBit) {
     }
     ++turn;
   }
+}
+
+TEST(Ranks, DoNotChangeOneBitWithABulkViscosityOfItsOwn) {
+  const Box flume = boxes()[1];
+  const Index3 layout = layouts_of(size_of(MPI_COMM_WORLD)).front();
+  compare<float>(flume, CollisionModel::bgk, layout, 10.0);
+  compare<double>(flume, CollisionModel::trt, layout, 3.0);
+  compare<float>(flume, CollisionModel::regularised, layout, 1.0);
 }
 
 }  // namespace

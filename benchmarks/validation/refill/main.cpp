@@ -1,4 +1,7 @@
-// How rough the force on a moving grain is with each refill of the cells it uncovers: bin/refill
+// How rough the force on a moving grain is with each refill of the cells it uncovers, or with other bulk viscosities:
+//
+//   bin/refill                every refill
+//   bin/refill TAU_B...       the first refill at each of these bulk relaxation times (0: as the shear's)
 //
 // A sphere of ten cells moves at constant velocity, not along the lattice and without turning, through fluid at rest in
 // a periodic box of 56 x 48 x 48 cells: at Re_p = 20 (tau = 0.55, no subgrid model), and as a grain in water at the
@@ -13,7 +16,9 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace thalweg::benchmark {
@@ -28,7 +33,8 @@ struct Regime {
 
 constexpr double radius = 5.0;
 
-std::unique_ptr<coupling::ResolvedSystem<double>> make(const Regime& regime, const Vec3& velocity, RefillRule rule) {
+std::unique_ptr<coupling::ResolvedSystem<double>> make(const Regime& regime, const Vec3& velocity, RefillRule rule,
+                                                       double bulk_relaxation_time) {
   const Index3 cells{56, 48, 48};
   auto decomposition =
       std::make_unique<Decomposition>(cells, 1.0, std::array<bool, 3>{true, true, true}, Index3{1, 1, 1});
@@ -36,6 +42,7 @@ std::unique_ptr<coupling::ResolvedSystem<double>> make(const Regime& regime, con
   p.units = {1.0, 1.0, 1.0};
   p.collision.relaxation_time = regime.relaxation_time;
   p.collision.smagorinsky_constant = regime.smagorinsky_constant;
+  p.collision.bulk_relaxation_time = bulk_relaxation_time;
   p.refill = rule;
   p.sub_steps = 1;
   dem::GrainSeed seed;
@@ -76,9 +83,9 @@ double roughness(const std::vector<Vec3>& values, int half) {
   return std::sqrt(sum / count);
 }
 
-void measure(const Regime& regime, RefillRule rule, const char* name) {
+void measure(const Regime& regime, RefillRule rule, double bulk_relaxation_time, const std::string& name) {
   const Vec3 along = Vec3(1.0, 0.37, 0.21).normalized();
-  const auto system = make(regime, regime.speed * along, rule);
+  const auto system = make(regime, regime.speed * along, rule, bulk_relaxation_time);
   const int crossing = static_cast<int>(1.0 / regime.speed), steps = static_cast<int>(120.0 / regime.speed);
   std::vector<Vec3> force, torque, load, load_torque;
   Vec3 total = Vec3::Zero();
@@ -110,14 +117,16 @@ void measure(const Regime& regime, RefillRule rule, const char* name) {
 int main(int argc, char** argv) {
   using namespace thalweg;
   MpiSession session(argc, argv);
-  std::printf(
-      "| flow | refill | force, step to step | within a cell | torque, step to step | within a cell | drag |\n");
+  fmt::print("| flow | {} | force, step to step | within a cell | torque, step to step | within a cell | drag |\n",
+             argc > 1 ? "tau_b" : "refill");
   std::printf("|---|---|---|---|---|---|---|\n");
   for (const benchmark::Regime& regime : {benchmark::Regime{"Re_p = 20", 0.55, 0.0, 20.0 * 0.05 / 3.0 / 10.0},
                                           benchmark::Regime{"water", 0.50024, 0.27, 0.012}}) {
-    measure(regime, coupling::RefillRule::equilibrium, "equilibrium");
-    measure(regime, coupling::RefillRule::non_equilibrium, "non_equilibrium");
-    measure(regime, coupling::RefillRule::grad, "grad");
+    for (int n = 1; n < argc; ++n) measure(regime, coupling::RefillRule::equilibrium, std::atof(argv[n]), argv[n]);
+    if (argc > 1) continue;
+    measure(regime, coupling::RefillRule::equilibrium, 0.0, "equilibrium");
+    measure(regime, coupling::RefillRule::non_equilibrium, 0.0, "non_equilibrium");
+    measure(regime, coupling::RefillRule::grad, 0.0, "grad");
   }
   return 0;
 }
