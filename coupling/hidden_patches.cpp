@@ -26,21 +26,23 @@ void HiddenPatches::cell_changes(const Index3& local, std::int32_t now) {
   const std::int32_t before = cells_.body(cell);
   const bool owned = indexing.owned(local[0], local[1], local[2]);
   for (int i = 1; i < D3Q19::directions; ++i) {
-    bool in_memory = true, beyond_wall = false, other_owned = true;
+    bool in_memory = true, other_owned = true;
+    std::int32_t wall = CellMap::fluid;
     for (int a = 0; a < 3; ++a) {
       const int at = local[a] + D3Q19::c[i][a];
       in_memory = in_memory && at >= -1 && at <= n[a];
       other_owned = other_owned && at >= 0 && at < n[a];
-      beyond_wall = beyond_wall || (at < 0 && wall_below_[a]) || (at >= n[a] && wall_above_[a]);
+      if (at < 0 && wall_below_[a]) wall = wall_of_face(2 * a);
+      if (at >= n[a] && wall_above_[a]) wall = wall_of_face(2 * a + 1);
     }
     if (!in_memory) continue;
-    const std::int32_t other = beyond_wall ? CellMap::fluid : cells_.body(cell + indexing.offset(i));
-    if (other == CellMap::fluid && !beyond_wall) continue;
+    const std::int32_t other = wall != CellMap::fluid ? wall : cells_.body(cell + indexing.offset(i));
+    if (other == CellMap::fluid) continue;
     for (const std::int32_t holder : {before, now}) {
       if (holder == CellMap::fluid || holder == other) continue;
       const int lines = holder == now ? 1 : -1;
       if (owned) count(holder, other, D3Q19::opposite(i), lines);
-      if (other_owned && !beyond_wall) count(other, holder, i, lines);
+      if (other_owned && other >= 0) count(other, holder, i, lines);
     }
   }
 }
@@ -68,21 +70,28 @@ void HiddenPatches::apply(const std::vector<MappedGrain>& grains, const std::vec
     const auto q = static_cast<std::int32_t>(static_cast<std::uint32_t>(pair));
     const GlobalId clump = grains[p].clump;
     if (q >= 0 && clump >= 0 && grains[static_cast<std::size_t>(q)].clump == clump) continue;
-    const Vec3 h = Vec3(patch.sum[0], patch.sum[1], patch.sum[2]) / 36.0;
     lbm::LinkBody& body = bodies[p];
     double density = surrounding[p];
-    Vec3 outward = -h;
-    if (q >= 0) {
+    Vec3 outward = Vec3::Zero();
+    if (q < 0) {
+      const int face = wall_of_face(0) - q;
+      outward[face / 2] = face % 2 == 0 ? -1.0 : 1.0;
+    } else {
       const lbm::LinkBody& other = bodies[static_cast<std::size_t>(q)];
       density += (surrounding[static_cast<std::size_t>(q)] - density) * body.radius / (body.radius + other.radius);
       outward = box_.difference(other.centre, body.centre);
     }
-    const Vec3 force = 2.0 * (density - reference) * h;
-    body.force += FixedVec3{LatticeFixed::from(force.x()), LatticeFixed::from(force.y()), LatticeFixed::from(force.z())};
-    if (!moments || outward.isZero(0.0)) continue;
+    // Rounded before it is multiplied by the patch, so that the parts of a patch on several ranks add up to the whole.
+    const double line = 2.0 * (density - reference) / 36.0;
+    const std::int64_t force = LatticeFixed::from(line);
+    body.force += FixedVec3{force * patch.sum[0], force * patch.sum[1], force * patch.sum[2]};
+    if (!moments) continue;
+    // A pressure has no torque about the centre of a sphere: the symmetric part alone.
     const Vec3 arm = outward * (body.radius / outward.norm());
+    std::array<std::int64_t, 3> half;
+    for (int b = 0; b < 3; ++b) half[b] = LatticeFixed::from(0.5 * line * arm[b]);
     for (std::size_t k = 0; k < 9; ++k)
-      (*moments)[p].sums[k] += LatticeFixed::from(force[static_cast<int>(k / 3)] * arm[static_cast<int>(k % 3)]);
+      (*moments)[p].sums[k] += half[k % 3] * patch.sum[k / 3] + half[k / 3] * patch.sum[k % 3];
   }
 }
 

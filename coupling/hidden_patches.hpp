@@ -33,13 +33,16 @@ public:
   // To be called before the map gives a cell in reach (local coordinates) to `now`, a slot or CellMap::fluid.
   void cell_changes(const Index3& local, std::int32_t now);
 
-  // Adds to the bodies the force of the fluid on what is hidden here, where solid cell and rank go together, and sum
-  // F_a x_b to moments, where given. surrounding: rho - rho_rest around each slot's grain; reference: that presses on
+  // Adds to the bodies the force of the fluid on what is hidden here, where solid cell and rank go together, and the
+  // symmetric part of sum F_a x_b to moments, where given. surrounding: rho - rho_rest around each slot's grain; reference: that presses on
   // nothing (lbm/bouzidi.hpp).
   void apply(const std::vector<MappedGrain>& grains, const std::vector<double>& surrounding, double reference,
              std::vector<lbm::LinkBody>& bodies, std::vector<FixedTensor>* moments) const;
 
-  // h of p towards q (CellMap::fluid: towards walls), of this rank's cells of p.
+  // A face of the box (0 .. 5) in the place of the other grain.
+  static std::int32_t wall_of_face(int face) { return lbm::CellMap::fluid - 1 - face; }
+
+  // h of p towards q, a slot or a wall, of this rank's cells of p.
   Vec3 patch(std::int32_t p, std::int32_t q) const;
 
 private:

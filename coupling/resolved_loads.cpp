@@ -88,12 +88,13 @@ lbm::LinkSums ResolvedSystem<Real>::link_sums_of(std::size_t grain) const {
   return links;
 }
 
-// Of a grain, or of all members of a clump, in slots from `first` on. Besides what is owed, the links return what they
-// are likely to lose in the next step: by the motion that they then have (update_bodies), and otherwise as much as in
+// Of a grain, or of all members of a clump, in slots from `first` on. Besides half of what is owed, the links return
+// what they are likely to lose in the next step: by the motion that they then have (update_bodies), and otherwise as much as in
 // the last ones, a mean that leaves out the steps in which single cells change hands.
 template <typename Real>
 void ResolvedSystem<Real>::settle_mass(std::size_t first, std::size_t count) {
-  constexpr double share_of_last_step = 0.125;
+  // What comes back changes what the links take, with cli most of all: returned at once and whole it swings and grows.
+  constexpr double share_of_owed = 0.5, share_of_last_step = 0.125;
   dem::GrainStore& store = grains_->store();
   lbm::LinkSums links;
   std::int64_t sum = 0;
@@ -119,7 +120,7 @@ void ResolvedSystem<Real>::settle_mass(std::size_t first, std::size_t count) {
   own[other_loss] += share_of_last_step * (returned - given - by_motion - own[other_loss]);
   for (std::size_t g = first; g < first + count; ++g) {
     const std::span<double> columns = store.attached_of(g);
-    columns[due_mass] = own[owed_mass] + own[other_loss];
+    columns[due_mass] = share_of_owed * own[owed_mass] + own[other_loss];
     columns[unit_density] = unit.density;
     set_vector(columns, unit_slope, unit.slope);
     set_vector(columns, open_normal, normal);

@@ -7,8 +7,10 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <map>
 #include <random>
 #include <set>
+#include <utility>
 
 namespace thalweg::coupling {
 namespace {
@@ -31,6 +33,30 @@ std::set<std::array<std::uint32_t, 4>> links_by_definition(const lbm::Fluid<doub
         }
       }
   return links;
+}
+
+// Sum of w_i c_i over all lattice lines from a cell of q, or from beyond a wall, into an owned cell of p.
+std::map<std::pair<std::int32_t, std::int32_t>, Vec3> patches_by_definition(const lbm::Fluid<double>& fluid,
+                                                                            const Decomposition& decomposition) {
+  std::map<std::pair<std::int32_t, std::int32_t>, Vec3> patches;
+  const Index3& n = fluid.indexing().size();
+  for (int z = 0; z < n[2]; ++z)
+    for (int y = 0; y < n[1]; ++y)
+      for (int x = 0; x < n[0]; ++x) {
+        const std::ptrdiff_t cell = fluid.indexing().index(x, y, z);
+        const std::int32_t p = fluid.cells().body(cell);
+        for (int i = 1; i < 19 && p != lbm::CellMap::fluid; ++i) {
+          const int from[3] = {x - lbm::D3Q19::c[i][0], y - lbm::D3Q19::c[i][1], z - lbm::D3Q19::c[i][2]};
+          std::int32_t q = fluid.cells().body(cell - fluid.indexing().offset(i));
+          for (int a = 0; a < 3; ++a)
+            if (!decomposition.periodic()[a] && (from[a] < 0 || from[a] >= n[a]))
+              q = HiddenPatches::wall_of_face(2 * a + (from[a] < 0 ? 0 : 1));
+          if (q == p || q == lbm::CellMap::fluid) continue;
+          Vec3& sum = patches.try_emplace({p, q}, Vec3::Zero()).first->second;
+          for (int a = 0; a < 3; ++a) sum[a] += lbm::D3Q19::weight(i) * lbm::D3Q19::c[i][a];
+        }
+      }
+  return patches;
 }
 
 // Spheres wander, jump, vanish and appear, through each other and the periodic faces, many cells changing hands at
@@ -75,6 +101,13 @@ TEST(LinkBuilder, FollowsTheMapThroughAnyMoves) {
     }
     ASSERT_EQ(kept.size(), table.count()) << "a link twice, round " << round;
     ASSERT_EQ(kept, links_by_definition(fluid)) << "round " << round;
+    std::array<Vec3, grains> whole;  // over the closed surface of a grain sum w_i c_i vanishes, seen and hidden together
+    for (std::size_t slot = 0; slot < whole.size(); ++slot) whole[slot] = table.sums_of(static_cast<int>(slot)).normal();
+    for (const auto& [pair, sum] : patches_by_definition(fluid, decomposition)) {
+      ASSERT_LT((map.hidden_patches().patch(pair.first, pair.second) - sum).norm(), 1e-12) << "round " << round;
+      whole[static_cast<std::size_t>(pair.first)] += sum;
+    }
+    for (const Vec3& sum : whole) ASSERT_LT(sum.norm(), 1e-12) << "round " << round;
   }
 }
 
