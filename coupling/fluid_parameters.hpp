@@ -7,6 +7,7 @@
 #include "lbm/bouzidi.hpp"
 #include "lbm/fluid.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 
@@ -47,6 +48,13 @@ void set_gravity(lbm::Fluid<Real>& fluid, const FluidParameters& parameters, std
     force[axis] = fluid.parameters().force[axis];
   }
   fluid.set_force(force);
+}
+
+// No face lets fluid in or out.
+inline bool closed(const lbm::FaceConditions& faces) {
+  return std::none_of(faces.begin(), faces.end(), [](const lbm::FaceCondition& face) {
+    return face.type == lbm::FaceType::velocity_inlet || face.type == lbm::FaceType::pressure_outlet;
+  });
 }
 
 // The rest state of the fluid; no density of its own in reduced gravity.

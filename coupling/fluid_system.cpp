@@ -13,6 +13,13 @@
 
 namespace thalweg::coupling {
 
+namespace {
+
+// Steps after which what the links of solids have let through is given back.
+constexpr std::int64_t steps_between_corrections = 200;
+
+}  // namespace
+
 template <typename Real>
 FluidSystem<Real>::FluidSystem(std::unique_ptr<Decomposition> decomposition, MPI_Comm communicator,
                                const FluidParameters& parameters, const std::vector<SolidShape>& solids)
@@ -47,8 +54,17 @@ void FluidSystem<Real>::advance() {
   ++step_;
 }
 
+// The links of a solid conserve no mass where the pressure changes along them (mass_return.hpp).
+template <typename Real>
+void FluidSystem<Real>::keep_mass() {
+  if (step_ % steps_between_corrections != 0 || !closed(parameters_.faces)) return;
+  const ExcessMass excess = excess_mass(survey_of(fluid_), rest_);
+  add_density(fluid_, (start_excess_ - excess.sum) / static_cast<double>(std::max<std::int64_t>(1, excess.cells)));
+}
+
 template <typename Real>
 void FluidSystem<Real>::advance_around_solids() {
+  keep_mass();
   {
     const auto scope = timer_.measure(phases_.halo);
     fluid_.exchange_halo();
@@ -132,6 +148,7 @@ void FluidSystem<Real>::save(ArchiveWriter& archive) const {
   archive.attribute("system/time_step", time_step());
   fluid_.save(archive);
   if (solids_) solids_->save(archive);
+  archive.attribute("mass/start", start_excess_);
 }
 
 template <typename Real>
@@ -141,12 +158,14 @@ void FluidSystem<Real>::load(ArchiveReader& archive) {
   fluid_.load(archive);
   set_gravity(fluid_, parameters_, step_);
   if (solids_) solids_->load(archive);
+  start_excess_ = archive.real_attribute("mass/start");
 }
 
 template <typename Real>
 void FluidSystem<Real>::take_fluid(ArchiveReader& archive) {
   require_same_time_step(archive, time_step());
   fluid_.load_populations(archive);
+  start_excess_ = excess_mass(survey_of(fluid_), rest_).sum;
 }
 
 template class FluidSystem<float>;

@@ -40,6 +40,7 @@ public:
 
 private:
   void advance_around_solids();
+  void keep_mass();
   FluidFields sample(const std::vector<FluidField>& wanted) const override;
   void for_each_velocity(const VelocityVisitor& visit) const override;
 
@@ -49,7 +50,8 @@ private:
   mutable lbm::Fluid<Real> fluid_;        // a sample fills slots that every step fills anew; see sample_fields()
   std::unique_ptr<StaticSolids> solids_;  // null: none
   Hydrostatic rest_;
-  PeriodicBox lattice_box_;  // cells
+  PeriodicBox lattice_box_;     // cells
+  double start_excess_ = 0.0;   // mass beyond that of the fluid at rest, at the start; lattice units
   std::int64_t step_ = 0;
   PhaseTimer timer_;
   struct Phases {

@@ -21,12 +21,6 @@ using lbm::CellMap;
 
 namespace {
 
-bool closed(const lbm::FaceConditions& faces) {
-  return std::none_of(faces.begin(), faces.end(), [](const lbm::FaceCondition& face) {
-    return face.type == lbm::FaceType::velocity_inlet || face.type == lbm::FaceType::pressure_outlet;
-  });
-}
-
 Vec3 cells_as_vector(const Index3& cells) { return {double(cells[0]), double(cells[1]), double(cells[2])}; }
 
 }  // namespace
@@ -52,6 +46,8 @@ ResolvedSystem<Real>::ResolvedSystem(std::unique_ptr<Decomposition> decompositio
       closed_(closed(parameters.faces)) {
   phases_ = {timer_.phase("grain map"), timer_.phase("refill"), timer_.phase("halo"),  timer_.phase("walls"),
              timer_.phase("links"),     timer_.phase("sweep"),  timer_.phase("loads"), timer_.phase("grains")};
+  // The filter of the virtual mass, which makes up for the lag, is made for the mean.
+  if (parameters_.virtual_mass) parameters_.load = LoadRule::mean;
   parameters_.links.rest_gradient = rest_.gradient;
   parameters_.links.rest_middle = rest_.middle;
   if (parameters_.flow_target) fluid_.control_flow(*parameters_.flow_target);
