@@ -84,6 +84,10 @@ void HiddenPatches::apply(const std::vector<MappedGrain>& grains, const std::vec
     // Rounded before it is multiplied by the patch, so that the parts of a patch on several ranks add up to the whole.
     const double line = 2.0 * (density - reference) / 36.0;
     const std::int64_t force = LatticeFixed::from(line);
+    if (q >= 0) {
+      const Vec3 velocity = 0.5 * (body.velocity + bodies[static_cast<std::size_t>(q)].velocity);
+      for (int a = 0; a < 3; ++a) body.mass -= LatticeFixed::from(6.0 / 36.0 * velocity[a]) * patch.sum[a];
+    }
     body.force += FixedVec3{force * patch.sum[0], force * patch.sum[1], force * patch.sum[2]};
     if (!moments) continue;
     // A pressure has no torque about the centre of a sphere: the symmetric part alone.

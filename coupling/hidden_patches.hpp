@@ -9,6 +9,10 @@
 // D = D_p at a wall. Without this term touching grains would be drawn together or pushed apart by any pressure but the
 // reference. Between members of one clump is no surface.
 //
+// The same patches tell what of the mass that the links of p give is given in the place of q: grains that touch and move
+// together push fluid away in front of the one and draw it in behind the other. With v the mean of the two velocities,
+// that is 6 h.v from p to q; only the rest of what they cost the fluid is each grain's own (mass_return.hpp).
+//
 // Kept up to date with every cell that changes hands; the sums are integers, so that their history does not matter.
 // Lattice units.
 #pragma once
@@ -33,8 +37,8 @@ public:
   // To be called before the map gives a cell in reach (local coordinates) to `now`, a slot or CellMap::fluid.
   void cell_changes(const Index3& local, std::int32_t now);
 
-  // Adds to the bodies the force of the fluid on what is hidden here, where solid cell and rank go together, and the
-  // symmetric part of sum F_a x_b to moments, where given. surrounding: rho - rho_rest around each slot's grain; reference: that presses on
+  // Adds to the bodies the force of the fluid on what is hidden by this rank's cells and takes from their mass what is
+  // given in another's place; the symmetric part of sum F_a x_b is added to moments, where given. surrounding: rho - rho_rest around each slot's grain; reference: that presses on
   // nothing (lbm/bouzidi.hpp).
   void apply(const std::vector<MappedGrain>& grains, const std::vector<double>& surrounding, double reference,
              std::vector<lbm::LinkBody>& bodies, std::vector<FixedTensor>* moments) const;

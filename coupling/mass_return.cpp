@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace thalweg::coupling {
 
@@ -27,10 +26,6 @@ MassReturn unit_mass_return(const lbm::LinkSums& links) {
   const double share = weight - normal.dot(x);
   if (share < least_share * weight) return {1.0 / weight, Vec3::Zero()};
   return {1.0 / share, -x / share};
-}
-
-double loss_of_motion(const Vec3& normal, const Vec3& velocity) {
-  return 3.0 * (1.0 + std::numbers::ln2) * normal.dot(velocity);
 }
 
 }  // namespace thalweg::coupling

@@ -29,8 +29,4 @@ struct MassReturn {
 // For a unit of mass; links: of the body, over all ranks. Zero for a body without links.
 MassReturn unit_mass_return(const lbm::LinkSums& links);
 
-// What the moving surface of a body takes from the fluid in a step, because the part that others hide does not push:
-// 6 k A.v, where k = (1 + ln 2)/2 is the mean over the length of a link of Bouzidi's weight of the wall term over 6.
-double loss_of_motion(const Vec3& normal, const Vec3& velocity);
-
 }  // namespace thalweg::coupling

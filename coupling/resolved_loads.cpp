@@ -89,8 +89,8 @@ lbm::LinkSums ResolvedSystem<Real>::link_sums_of(std::size_t grain) const {
 }
 
 // Of a grain, or of all members of a clump, in slots from `first` on. Besides half of what is owed, the links return
-// what they are likely to lose in the next step: by the motion that they then have (update_bodies), and otherwise as much as in
-// the last ones, a mean that leaves out the steps in which single cells change hands.
+// what they are likely to lose in the next step: as much as in the last ones, a mean that leaves out the steps in which
+// single cells change hands.
 template <typename Real>
 void ResolvedSystem<Real>::settle_mass(std::size_t first, std::size_t count) {
   // What comes back changes what the links take, with cli most of all: returned at once and whole it swings and grows.
@@ -98,32 +98,26 @@ void ResolvedSystem<Real>::settle_mass(std::size_t first, std::size_t count) {
   dem::GrainStore& store = grains_->store();
   lbm::LinkSums links;
   std::int64_t sum = 0;
-  double returned = 0.0;
+  double came_back = 0.0;
   for (std::size_t g = first; g < first + count; ++g) {
     const lbm::LinkSums of_grain = link_sums_of(g);
     const lbm::LinkBody& body = bodies_[map_slot_[g]];
     const std::int64_t* sums = &exchanged_[sums_per_grain() * g + 6];
     links += of_grain;
     sum += sums[0];
-    returned += MassReturn{body.returned, body.returned_slope}.mass(of_grain);
+    came_back += MassReturn{body.returned, body.returned_slope}.mass(of_grain);
     // A grain without links has no fluid around it: what was there last stays.
     if (of_grain.weight() > 0.0)
       store.attached_of(g)[surrounding] = LatticeFixed::to_double(sums[1]) / of_grain.weight();
   }
-  // The members of a clump turn about its centre: their motion is not foreseen.
-  const Vec3 normal = count == 1 ? links.normal() : Vec3(Vec3::Zero());
   const double given = LatticeFixed::to_double(sum);
-  const double by_motion = loss_of_motion(normal, bodies_[map_slot_[first]].velocity);
-  const MassReturn unit = unit_mass_return(links);
   const std::span<double> own = store.attached_of(first);
   own[owed_mass] -= given;
-  own[other_loss] += share_of_last_step * (returned - given - by_motion - own[other_loss]);
+  own[mean_loss] += share_of_last_step * (came_back - given - own[mean_loss]);
+  const MassReturn next = unit_mass_return(links).scaled(share_of_owed * own[owed_mass] + own[mean_loss]);
   for (std::size_t g = first; g < first + count; ++g) {
-    const std::span<double> columns = store.attached_of(g);
-    columns[due_mass] = share_of_owed * own[owed_mass] + own[other_loss];
-    columns[unit_density] = unit.density;
-    set_vector(columns, unit_slope, unit.slope);
-    set_vector(columns, open_normal, normal);
+    store.attached_of(g)[returned_density] = next.density;
+    set_vector(store.attached_of(g), returned_slope, next.slope);
   }
 }
 

@@ -7,7 +7,6 @@
 #include "coupling/fluid_mass.hpp"
 #include "coupling/fluid_sample.hpp"
 #include "coupling/fluid_system.hpp"
-#include "coupling/mass_return.hpp"
 
 #include <fmt/format.h>
 
@@ -112,10 +111,8 @@ void ResolvedSystem<Real>::update_bodies() {
     body.radius = store.radius[g] / parameters_.units.spacing;
     body.velocity = store.velocity[g] / parameters_.units.velocity();
     body.angular_velocity = store.angular_velocity[g] * parameters_.units.time_step;
-    const double mass = columns[due_mass] + loss_of_motion(vector_at(columns, open_normal), body.velocity);
-    const MassReturn back = MassReturn{columns[unit_density], vector_at(columns, unit_slope)}.scaled(mass);
-    body.returned = back.density;
-    body.returned_slope = back.slope;
+    body.returned = columns[returned_density];
+    body.returned_slope = vector_at(columns, returned_slope);
     surrounding_[map_slot_[g]] = columns[surrounding];
     body.force = {};
     body.torque = {};

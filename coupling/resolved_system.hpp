@@ -53,10 +53,10 @@ public:
                  const ResolvedParameters& parameters, std::unique_ptr<dem::GrainDynamics> grains);
 
   // Attached columns of a grain: the place its cells stand for (m), force (N) and torque (N m) of the last exchange and
-  // the one before, how many there have been (2: or more). In lattice units: the mass owed to the fluid (of a clump in
-  // its first member's), the mean loss a step by anything but motion, what follows from the two for the coming step,
-  // the return of a unit of mass, A of the links (mass_return.hpp), and rho - rho_rest of the fluid around the grain.
-  // Where asked for, the stress (Pa, row by row) of the last exchange and the mean of the last two.
+  // the one before, how many there have been (2: or more). In lattice units: the mass owed to the fluid and the mean loss
+  // a step (of a clump in its first member's), what the links return in the coming step (mass_return.hpp), and rho -
+  // rho_rest of the fluid around the grain. Where asked for, the stress (Pa, row by row) of the last exchange and the mean
+  // of the last two.
   enum Attached {
     link_position = 0,
     last_force = 3,
@@ -65,16 +65,14 @@ public:
     earlier_torque = 12,
     exchanges = 15,
     owed_mass = 16,
-    other_loss = 17,
-    due_mass = 18,
-    unit_density = 19,
-    unit_slope = 20,
-    open_normal = 23,
-    surrounding = 26,
-    last_stress = 27,
-    mean_stress = 36
+    mean_loss = 17,
+    returned_density = 18,
+    returned_slope = 19,
+    surrounding = 22,
+    last_stress = 23,
+    mean_stress = 32
   };
-  static int attached_width(const ResolvedParameters& parameters) { return parameters.grain_stress ? 45 : 27; }
+  static int attached_width(const ResolvedParameters& parameters) { return parameters.grain_stress ? 41 : 23; }
 
   // How far beyond a block its grains must be known for the map, as a distance from the grain's centre (m).
   static double ghost_reach(double largest_radius, double spacing) { return largest_radius + 2.5 * spacing; }
