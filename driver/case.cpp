@@ -200,15 +200,19 @@ std::vector<std::string> warnings(const Case& c) {
   if (!c.grains.empty() && smallest_diameter(c) < 5.99 * c.domain.spacing)
     found.push_back(fmt::format("A grain is only {:.2g} cells across; drag is accurate to a few percent from about 8.",
                                 smallest_diameter(c) / c.domain.spacing));
-  // The reaction of the fluid to a grain's acceleration, half its own mass, acts a step or two later.
-  constexpr double light = 0.5;  // of the fluid's density; a sphere of 0.2 is still stable, one of 0.05 is not
-  for (const PopulationCase& population : c.grains)
+  // The fluid resists a sudden motion of a sphere with 3.8 dx/d of the displaced mass, and the load, extrapolated in time,
+  // stands up to 1.15 times the mass of the grain (coupling/load_rule.hpp); the mean was stable down to half the fluid's.
+  for (const PopulationCase& population : c.grains) {
+    const double least = c.coupling.load == GrainLoad::mean
+                             ? 0.5
+                             : 3.8 / 1.15 * c.domain.spacing / population.smallest_diameter();
     if (!c.coupling.virtual_mass && !population.fixed && !population.prescribed_velocity &&
-        population.density < light * c.fluid.density)
+        population.density < least * c.fluid.density)
       found.push_back(
           fmt::format("Grains of {} kg/m^3 are so light that the explicit coupling may become unstable: consider "
                       "coupling.virtual_mass: {{}}.",
                       population.density));
+  }
   return found;
 }
 

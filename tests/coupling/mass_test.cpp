@@ -116,10 +116,10 @@ double figure(const System& system, const std::string& name) {
 // as much again: 4e-5. With what is owed the water is all there: to the rounding of the account in double (2^-45 for
 // each of 5000 links, at random), to 1e-7 in single.
 template <typename Real>
-void keeps_its_mass(const WaterBox& box, double accuracy) {
+void keeps_its_mass(const WaterBox& box, double accuracy, int steps = 1200) {
   const auto system = make<Real>(box);
   const double cell = 1000.0 * std::pow(box.spacing, 3);
-  for (int step = 1; step <= 1200; ++step) {
+  for (int step = 1; step <= steps; ++step) {
     system->advance();
     if (step % 20 != 0) continue;
     const double mass = cell * figure(*system, "fluid_cells");
@@ -134,6 +134,28 @@ TEST(WaterMass, StaysWhereGrainsFallAndRoll) {
     keeps_its_mass<float>(crowd(sides), 1e-7);
   }
 }
+
+#ifdef LONG_SWARM
+// Three hundred grains of three densities, thrown through each other, over 1e4 steps.
+WaterBox swarm(Sides sides) {
+  WaterBox box = crowd(sides);
+  box.cells = {60, 60, 60};
+  box.seeds.clear();
+  for (int k = 0; k < 300; ++k) {
+    const Vec3 place(6.7e-3 * (k % 7) + 3.4e-3, 6.7e-3 * (k / 7 % 7) + 3.4e-3, 6.7e-3 * (k / 49) + 3.4e-3);
+    box.seeds.push_back(glass_sphere(k, place, 0.3 * Vec3(std::sin(3.0 * k), std::cos(5.0 * k), std::sin(7.0 * k))));
+    box.seeds.back().density = k % 3 == 0 ? 1100.0 : k % 3 == 1 ? 2550.0 : 8000.0;
+  }
+  return box;
+}
+
+TEST(WaterMass, StaysInASwarmOfThreeHundred) {
+  for (const Sides sides : {Sides::periodic, Sides::flume, Sides::closed}) {
+    keeps_its_mass<double>(swarm(sides), 1e-12, 10000);
+    keeps_its_mass<float>(swarm(sides), 1e-7, 10000);
+  }
+}
+#endif
 
 TEST(WaterMass, AddingDensityGivesNoMomentum) {
   const Decomposition decomposition({12, 10, 8}, 1.0, {true, true, true},

@@ -1,0 +1,100 @@
+#!/usr/bin/python3
+"""Whether a flume keeps its water and its bed comes to rest: compare.py RUN_FOLDER [--before FILE] [--figure FILE]
+
+From 2 s on, prints and judges
+  the largest deviation of the mean density from its start, at all times (bound 1e-5),
+  the fastest grain inside the bed (more than three diameters below its surface; bound 1 mm/s),
+  the mean transport rate in each third of the rest (finite; shown).
+--before: the columns time, mean density deviation, q* and moving grains of another run, drawn beside it.
+Writes the same columns of this run to FILE with --table. Exit code 0 if all pass.
+"""
+import argparse
+import csv
+import sys
+from pathlib import Path
+
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+import yaml
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from grain_pictures import pictures
+
+COLUMNS = ("time [s]", "mean_density_deviation [1]", "q_star [1]", "moving_grains [1]")
+SETTLED = 2.0  # s
+
+
+def table(path):
+    with open(path) as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    return np.array([[float(row[column]) for column in COLUMNS] for row in rows]).T
+
+
+def speeds_inside(run, diameter):
+    """Times (s) and the largest speed (m/s) of the grains more than three diameters below the surface of the bed, which
+    is the height below which nine tenths of the grains are."""
+    times, speeds = [], []
+    for time, grains in pictures(run):
+        count = grains.GetNumberOfPoints()
+        height = np.array([grains.GetPoint(k)[2] for k in range(count)])
+        velocity = grains.GetPointData().GetArray("velocity")
+        speed = np.array([np.linalg.norm(velocity.GetTuple3(k)) for k in range(count)])
+        inside = height < np.quantile(height, 0.9) - 3.0 * diameter
+        times.append(time)
+        speeds.append(speed[inside].max())
+    return np.array(times), np.array(speeds)
+
+
+def draw(arguments, here, before, inside):
+    figure, axes = plt.subplots(4, 1, figsize=(7, 8), sharex=True)
+    for data, label, colour in ((before, "before", "tab:red"), (here, "now", "tab:blue")):
+        if data is None:
+            continue
+        axes[0].semilogy(data[0], np.maximum(np.abs(data[1]), 1e-9), color=colour, label=label, lw=0.8)
+        axes[1].plot(data[0], data[2], color=colour, lw=0.8)
+        axes[2].plot(data[0], data[3], color=colour, lw=0.8)
+    axes[0].axhline(1e-5, color="grey", lw=0.8, ls=":")
+    axes[3].semilogy(inside[0], np.maximum(inside[1], 1e-9), "o-", ms=2, lw=0.8, color="tab:blue")
+    axes[3].axhline(1e-3, color="grey", lw=0.8, ls=":")
+    for axis, label in zip(axes, ("|mean density deviation|", "q*", "moving grains", "fastest inside the bed, m/s")):
+        axis.set_ylabel(label)
+    axes[0].legend()
+    axes[3].set_xlabel("time, s")
+    figure.tight_layout()
+    figure.savefig(arguments.figure, dpi=120)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("run", type=Path, metavar="RUN_FOLDER")
+    parser.add_argument("--before", type=Path)
+    parser.add_argument("--table", type=Path)
+    parser.add_argument("--figure", default="water_mass.png")
+    arguments = parser.parse_args()
+
+    here = table(arguments.run / "series.csv")
+    before = table(arguments.before) if arguments.before else None
+    diameter = yaml.safe_load((arguments.run / "case.yaml").read_text())["grains"][0]["diameter"]
+    inside = speeds_inside(arguments.run, diameter)
+    density = np.abs(here[1]).max()
+    settled = inside[0] >= SETTLED
+    fastest = inside[1][settled].max() if settled.any() else np.inf
+    thirds = np.array_split(here[2][here[0] >= SETTLED], 3)
+    passed = density < 1e-5 and fastest < 1e-3 and np.isfinite(here[2]).all()
+    print(f"mean density deviation    at most {density:.2g} (bound 1e-5)")
+    print(f"fastest inside the bed    {fastest:.2g} m/s from {SETTLED:g} s on (bound 1e-3)")
+    print("q* in thirds of the rest  " + ", ".join(f"{third.mean():.4f}" for third in thirds if third.size))
+    print("pass" if passed else "FAIL")
+    draw(arguments, here, before, inside)
+    if arguments.table:
+        with open(arguments.table, "w", newline="") as file:
+            writer = csv.writer(file)
+            writer.writerow(COLUMNS)
+            writer.writerows([f"{value:.6g}" for value in row] for row in here[:, ::5].T)
+    return 0 if passed else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
