@@ -33,8 +33,8 @@ def table(path):
 
 
 def speeds_inside(run, diameter):
-    """Times (s) and the largest speed (m/s) of the grains more than three diameters below the surface of the bed, which
-    is the height below which nine tenths of the grains are."""
+    """Times (s) and median, 99 % quantile and largest of the speeds (m/s) of the grains more than three diameters below
+    the surface of the bed, which is the height below which nine tenths of the grains are."""
     times, speeds = [], []
     for time, grains in pictures(run):
         count = grains.GetNumberOfPoints()
@@ -43,8 +43,8 @@ def speeds_inside(run, diameter):
         speed = np.array([np.linalg.norm(velocity.GetTuple3(k)) for k in range(count)])
         inside = height < np.quantile(height, 0.9) - 3.0 * diameter
         times.append(time)
-        speeds.append(speed[inside].max())
-    return np.array(times), np.array(speeds)
+        speeds.append(np.quantile(speed[inside], (0.5, 0.99, 1.0)))
+    return np.array(times), np.array(speeds).T
 
 
 def draw(arguments, here, before, inside):
@@ -56,9 +56,11 @@ def draw(arguments, here, before, inside):
         axes[1].plot(data[0], data[2], color=colour, lw=0.8)
         axes[2].plot(data[0], data[3], color=colour, lw=0.8)
     axes[0].axhline(1e-5, color="grey", lw=0.8, ls=":")
-    axes[3].semilogy(inside[0], np.maximum(inside[1], 1e-9), "o-", ms=2, lw=0.8, color="tab:blue")
+    for speed, label, style in zip(inside[1], ("median", "99 %", "fastest"), (":", "--", "-")):
+        axes[3].semilogy(inside[0], np.maximum(speed, 1e-7), style, lw=0.8, color="tab:blue", label=label)
     axes[3].axhline(1e-3, color="grey", lw=0.8, ls=":")
-    for axis, label in zip(axes, ("|mean density deviation|", "q*", "moving grains", "fastest inside the bed, m/s")):
+    axes[3].legend(ncol=3)
+    for axis, label in zip(axes, ("|mean density deviation|", "q*", "moving grains", "speed inside the bed, m/s")):
         axis.set_ylabel(label)
     axes[0].legend()
     axes[3].set_xlabel("time, s")
@@ -80,11 +82,12 @@ def main():
     inside = speeds_inside(arguments.run, diameter)
     density = np.abs(here[1]).max()
     settled = inside[0] >= SETTLED
-    fastest = inside[1][settled].max() if settled.any() else np.inf
+    median, most, fastest = inside[1][:, settled].max(axis=1) if settled.any() else (np.inf,) * 3
     thirds = np.array_split(here[2][here[0] >= SETTLED], 3)
     passed = density < 1e-5 and fastest < 1e-3 and np.isfinite(here[2]).all()
     print(f"mean density deviation    at most {density:.2g} (bound 1e-5)")
     print(f"fastest inside the bed    {fastest:.2g} m/s from {SETTLED:g} s on (bound 1e-3)")
+    print(f"  all but one in a hundred  {most:.2g} m/s;  median {median:.2g} m/s (the largest of all times)")
     print("q* in thirds of the rest  " + ", ".join(f"{third.mean():.4f}" for third in thirds if third.size))
     print("pass" if passed else "FAIL")
     draw(arguments, here, before, inside)
