@@ -116,7 +116,7 @@ TEST(Ranks, DoNotChangeOneBitOfACloudInAPeriodicBox) {
 }
 
 TEST(Ranks, DoNotChangeOneBitWithABulkViscosityUnderRisingGravity) {
-  WaterBox box = crowded({24, 24, 36}, {true, false, false}, 20, 5.5e-3);
+  WaterBox box = crowded({40, 24, 36}, {true, false, false}, 20, 5.5e-3);
   box.bulk_relaxation_time = 10.0;
   box.ramp = 30.5;
   for (const Index3& layout : two_layouts_of(size_of(MPI_COMM_WORLD))) compare<float>(box, layout, 40);
