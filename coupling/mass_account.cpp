@@ -26,6 +26,13 @@ void MassAccount::book(const lbm::LinkBalance& balance) {
   book(moving_wall, balance.moving_wall);
 }
 
+// What is owed was taken by links before.
+void MassAccount::open(double excess, double owed) {
+  sums_ = {};
+  start_ = excess + owed;
+  if (rank_of(communicator_) == 0) book(links, -LatticeFixed::from(owed));
+}
+
 std::array<WideSum, MassAccount::entries> MassAccount::totals_exact() const {
   static_assert(sizeof(sums_) == 2 * entries * sizeof(std::int64_t));
   constexpr int words = 2 * entries;

@@ -38,8 +38,9 @@ public:
   // Since the start of the run, over all ranks, by Entry; all at once because a reduction is shared. Collective.
   std::array<double, entries> totals() const;
 
-  void set_start(double excess) { start_ = excess; }
-  double start() const { return start_; }  // E at the start of the run
+  // Begins anew, with the excess as it is and what grains taken over from another run owe; both over all ranks.
+  void open(double excess, double owed);
+  double kept() const { return start_; }  // excess and owed mass at the start of the run, which are to stay
 
   // Columns of the series (kg): excess: E as measured; owed: what is still to be returned, over all ranks; with_parts:
   // with the entries of the link rules. Collective.
@@ -53,7 +54,7 @@ private:
 
   MPI_Comm communicator_;
   std::array<WideSum, entries> sums_{};  // this rank's
-  double start_ = 0.0;
+  double start_ = 0.0;  // excess and owed mass
 };
 
 }  // namespace thalweg::coupling

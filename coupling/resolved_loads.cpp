@@ -179,17 +179,25 @@ void ResolvedSystem<Real>::set_load(std::size_t grain, const Vec3& force, const 
   store.load_torque[grain] = VirtualMass::filtered(store.load_torque[grain], torque, share);
 }
 
-// What no body owes: round-off, and walls that do not conserve mass.
+// At the start of a run, whatever it begins from: what is there, and what the grains bring along as owed, is to be kept.
 template <typename Real>
-void ResolvedSystem<Real>::correct_mass() {
-  if (step_ % steps_between_corrections != 0) return;
+void ResolvedSystem<Real>::open_account() {
   const ExcessMass excess = excess_mass(survey_of(fluid_), rest_);
+  mass_.open(excess.sum, mass_owed());
   parameters_.links.reference_density = excess.mean();
   dem::GrainStore& store = grains_->store();
   for (std::size_t g = 0; g < store.total(); ++g)
     if (const auto columns = store.attached_of(g); columns[exchanges] == 0.0) columns[surrounding] = excess.mean();
+}
+
+// What no body owes: round-off, and walls that do not conserve mass.
+template <typename Real>
+void ResolvedSystem<Real>::correct_mass() {
+  if (step_ == 0 || step_ % steps_between_corrections != 0) return;
+  const ExcessMass excess = excess_mass(survey_of(fluid_), rest_);
+  parameters_.links.reference_density = excess.mean();
   if (!closed_) return;
-  const double missing = mass_.start() - mass_owed() - excess.sum;
+  const double missing = mass_.kept() - mass_owed() - excess.sum;
   const double added = add_density(fluid_, missing / static_cast<double>(excess.cells));
   if (rank_of(communicator_) == 0)
     mass_.book(MassAccount::corrections, LatticeFixed::from(added * static_cast<double>(excess.cells)));

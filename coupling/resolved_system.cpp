@@ -54,7 +54,7 @@ ResolvedSystem<Real>::ResolvedSystem(std::unique_ptr<Decomposition> decompositio
   dem::GrainStore& store = grains_->store();
   for (std::size_t g = 0; g < store.total(); ++g) set_vector(store.attached_of(g), link_position, store.position[g]);
   initialise_map();
-  mass_.set_start(excess_mass(survey_of(fluid_), rest_).sum);
+  open_account();
   set_gravity_of(step_);
   show_stresses();
 }
@@ -361,7 +361,9 @@ template <typename Real>
 void ResolvedSystem<Real>::take_fluid(ArchiveReader& archive) {
   require_same_time_step(archive, time_step());
   fluid_.load_populations(archive);
-  mass_.set_start(excess_mass(survey_of(fluid_), rest_).sum);
+  open_account();
+  // As the run that is taken over would go on.
+  if (archive.has("mass/reference")) parameters_.links.reference_density = archive.real_attribute("mass/reference");
 }
 
 // Grains of a resolved run keep the places their links were cut at, others begin where they are.
@@ -373,7 +375,7 @@ void ResolvedSystem<Real>::take_grains(ArchiveReader& archive) {
   for (std::size_t g = 0; g < store.total(); ++g)
     if (store.attached_of(g)[exchanges] == 0.0) set_vector(store.attached_of(g), link_position, store.position[g]);
   initialise_map();
-  mass_.set_start(excess_mass(survey_of(fluid_), rest_).sum);
+  open_account();
   show_stresses();
 }
 

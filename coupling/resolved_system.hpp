@@ -108,6 +108,7 @@ private:
   void update_map();
   void update_bodies();
   void account_for_covered_cells();
+  void open_account();
   void correct_mass();
   void book_links(const lbm::LinkBalance& balance);
   lbm::LinkSums link_sums_of(std::size_t grain) const;
