@@ -24,8 +24,8 @@ public:
   double time_step() const override { return parameters_.units.time_step; }
   Snapshot snapshot() const override;
   // largest_lattice_velocity (1), largest_fluid_speed (m/s), mean_velocity_x (m/s), body_force_x (N/m^3),
-  // mean_density_deviation (1), fluid_cells (1), of each solid solid_<n>_force_x, _y, _z (N), of the last step: what the
-  // fluid exerts on its surface, without the reference pressure, and those of add_extremes() (fluid_figures.hpp).
+  // mean_density_deviation (1), fluid_cells (1), of each solid solid_<n>_force_x, _y, _z (N), of the last step: what
+  // the fluid exerts on its surface, without the reference pressure, and those of add_extremes() (fluid_figures.hpp).
   std::vector<Figure> figures() const override;
   std::optional<Place> place_of(const std::string& figure) const override;
   void save(ArchiveWriter& archive) const override;
@@ -50,8 +50,8 @@ private:
   mutable lbm::Fluid<Real> fluid_;        // a sample fills slots that every step fills anew; see sample_fields()
   std::unique_ptr<StaticSolids> solids_;  // null: none
   Hydrostatic rest_;
-  PeriodicBox lattice_box_;     // cells
-  double start_excess_ = 0.0;   // mass beyond that of the fluid at rest, at the start; lattice units
+  PeriodicBox lattice_box_;    // cells
+  double start_excess_ = 0.0;  // mass beyond that of the fluid at rest, at the start; lattice units
   std::int64_t step_ = 0;
   PhaseTimer timer_;
   struct Phases {

@@ -11,7 +11,6 @@ using lbm::D3Q19;
 HiddenPatches::HiddenPatches(const Decomposition& decomposition, const Block& block, const CellMap& cells)
     : box_{Vec3(decomposition.cells()[0], decomposition.cells()[1], decomposition.cells()[2]),
            decomposition.periodic()},
-      block_(block),
       cells_(cells) {
   for (int a = 0; a < 3; ++a) {
     wall_below_[a] = !decomposition.periodic()[a] && block.lower[a] == 0;

@@ -9,9 +9,10 @@
 // D = D_p at a wall. Without this term touching grains would be drawn together or pushed apart by any pressure but the
 // reference. Between members of one clump is no surface.
 //
-// The same patches tell what of the mass that the links of p give is given in the place of q: grains that touch and move
-// together push fluid away in front of the one and draw it in behind the other. With v the mean of the two velocities,
-// that is 6 h.v from p to q; only the rest of what they cost the fluid is each grain's own (mass_return.hpp).
+// The same patches tell what of the mass that the links of p give is given in the place of q: grains that touch and
+// move together push fluid away in front of the one and draw it in behind the other. With v the mean of the two
+// velocities, that is 6 h.v from p to q; only the rest of what they cost the fluid is each grain's own
+// (mass_return.hpp).
 //
 // Kept up to date with every cell that changes hands; the sums are integers, so that their history does not matter.
 // Lattice units.
@@ -38,8 +39,8 @@ public:
   void cell_changes(const Index3& local, std::int32_t now);
 
   // Adds to the bodies the force of the fluid on what is hidden by this rank's cells and takes from their mass what is
-  // given in another's place; the symmetric part of sum F_a x_b is added to moments, where given. surrounding: rho - rho_rest around each slot's grain; reference: that presses on
-  // nothing (lbm/bouzidi.hpp).
+  // given in another's place; the symmetric part of sum F_a x_b is added to moments, where given. surrounding: rho -
+  // rho_rest around each slot's grain; reference: that presses on nothing (lbm/bouzidi.hpp).
   void apply(const std::vector<MappedGrain>& grains, const std::vector<double>& surrounding, double reference,
              std::vector<lbm::LinkBody>& bodies, std::vector<FixedTensor>* moments) const;
 
@@ -59,8 +60,7 @@ private:
   }
   void count(std::int32_t p, std::int32_t q, int direction, int lines);
 
-  PeriodicBox box_;  // cells
-  Block block_;
+  PeriodicBox box_;                              // cells
   std::array<bool, 3> wall_below_, wall_above_;  // whether the block ends at a wall, along each axis
   const lbm::CellMap& cells_;
   std::unordered_map<std::uint64_t, Patch> patches_;

@@ -8,7 +8,8 @@
 // spring with frequency omega a step, gains amplitude by omega^2/2 times the lag a step. Alone it radiates more than
 // that. Among other grains the sound does not leave, and where little viscosity damps it, a bed shakes itself apart.
 // Extrapolated by one step, the load has no lag. With K = 6 sum w_i c_ia c_ia/3 over the links, the resistance of the
-// fluid to a sudden motion (3.8 dx/d of the displaced mass for a sphere), it stands up to K = 1.15 m, the mean up to 2 m.
+// fluid to a sudden motion (3.8 dx/d of the displaced mass for a sphere), it stands up to K = 1.15 m, the mean up to 2
+// m.
 #pragma once
 
 #include "core/types.hpp"

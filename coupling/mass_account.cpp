@@ -13,9 +13,8 @@ namespace {
 
 constexpr int fraction_bits = 44;  // of LatticeFixed
 
-constexpr const char* names[MassAccount::entries] = {"links",     "covered_cells",   "uncovered_cells", "corrections",
-                                                     "upstream",  "same_cell",       "covered_upstream",
-                                                     "moving_wall"};
+constexpr const char* names[MassAccount::entries] = {"links",    "covered_cells", "uncovered_cells",  "corrections",
+                                                     "upstream", "same_cell",     "covered_upstream", "moving_wall"};
 
 }  // namespace
 

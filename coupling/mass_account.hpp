@@ -54,7 +54,7 @@ private:
 
   MPI_Comm communicator_;
   std::array<WideSum, entries> sums_{};  // this rank's
-  double start_ = 0.0;  // excess and owed mass
+  double start_ = 0.0;                   // excess and owed mass
 };
 
 }  // namespace thalweg::coupling

@@ -179,7 +179,8 @@ void ResolvedSystem<Real>::set_load(std::size_t grain, const Vec3& force, const 
   store.load_torque[grain] = VirtualMass::filtered(store.load_torque[grain], torque, share);
 }
 
-// At the start of a run, whatever it begins from: what is there, and what the grains bring along as owed, is to be kept.
+// At the start of a run, whatever it begins from: what is there, and what the grains bring along as owed, is to be
+// kept.
 template <typename Real>
 void ResolvedSystem<Real>::open_account() {
   const ExcessMass excess = excess_mass(survey_of(fluid_), rest_);

@@ -53,10 +53,10 @@ public:
                  const ResolvedParameters& parameters, std::unique_ptr<dem::GrainDynamics> grains);
 
   // Attached columns of a grain: the place its cells stand for (m), force (N) and torque (N m) of the last exchange and
-  // the one before, how many there have been (2: or more). In lattice units: the mass owed to the fluid and the mean loss
-  // a step (of a clump in its first member's), what the links return in the coming step (mass_return.hpp), and rho -
-  // rho_rest of the fluid around the grain. Where asked for, the stress (Pa, row by row) of the last exchange and the mean
-  // of the last two.
+  // the one before, how many there have been (2: or more). In lattice units: the mass owed to the fluid and the mean
+  // loss a step (of a clump in its first member's), what the links return in the coming step (mass_return.hpp), and rho
+  // - rho_rest of the fluid around the grain. Where asked for, the stress (Pa, row by row) of the last exchange and the
+  // mean of the last two.
   enum Attached {
     link_position = 0,
     last_force = 3,

@@ -101,8 +101,10 @@ TEST(LinkBuilder, FollowsTheMapThroughAnyMoves) {
     }
     ASSERT_EQ(kept.size(), table.count()) << "a link twice, round " << round;
     ASSERT_EQ(kept, links_by_definition(fluid)) << "round " << round;
-    std::array<Vec3, grains> whole;  // over the closed surface of a grain sum w_i c_i vanishes, seen and hidden together
-    for (std::size_t slot = 0; slot < whole.size(); ++slot) whole[slot] = table.sums_of(static_cast<int>(slot)).normal();
+    std::array<Vec3, grains>
+        whole;  // over the closed surface of a grain sum w_i c_i vanishes, seen and hidden together
+    for (std::size_t slot = 0; slot < whole.size(); ++slot)
+      whole[slot] = table.sums_of(static_cast<int>(slot)).normal();
     for (const auto& [pair, sum] : patches_by_definition(fluid, decomposition)) {
       ASSERT_LT((map.hidden_patches().patch(pair.first, pair.second) - sum).norm(), 1e-12) << "round " << round;
       whole[static_cast<std::size_t>(pair.first)] += sum;
