@@ -1,26 +1,33 @@
 #include "coupling/fluid_mass.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace thalweg::coupling {
 
 template <typename Real>
 double add_density(lbm::Fluid<Real>& fluid, double density) {
-  if (sizeof(Real) == sizeof(float) && std::abs(density) < 1e-7) return 0.0;
+  if (sizeof(Real) == sizeof(float) && std::abs(density) < 1e-8) return 0.0;
   lbm::Populations<Real>& populations = fluid.populations();
   const Index3& n = fluid.indexing().size();
   for (int z = 0; z < n[2]; ++z)
     for (int y = 0; y < n[1]; ++y)
       for (int x = 0; x < n[0]; ++x) {
         const std::ptrdiff_t cell = fluid.indexing().index(x, y, z);
-        if (!fluid.cells().is_fluid(cell)) continue;
-        for (int i = 0; i < lbm::D3Q19::directions; ++i)
-          populations.post_collision(i, cell) += static_cast<Real>(lbm::D3Q19::weight(i) * density);
+        if (fluid.cells().is_fluid(cell)) populations.post_collision(0, cell) += static_cast<Real>(density);
       }
   return density;
 }
 
+template <typename Real>
+double restore_excess(lbm::Fluid<Real>& fluid, const ExcessMass& now, double kept) {
+  const double cells = static_cast<double>(std::max<std::int64_t>(1, now.cells));
+  return cells * add_density(fluid, (kept - now.sum) / cells);
+}
+
 template double add_density(lbm::Fluid<float>&, double);
 template double add_density(lbm::Fluid<double>&, double);
+template double restore_excess(lbm::Fluid<float>&, const ExcessMass&, double);
+template double restore_excess(lbm::Fluid<double>&, const ExcessMass&, double);
 
 }  // namespace thalweg::coupling

@@ -20,9 +20,19 @@ inline ExcessMass excess_mass(const lbm::FluidSurvey& survey, const Hydrostatic&
   return {survey.totals.mass_deviation - rest.gradient.dot(survey.lever), survey.totals.cells};
 }
 
-// Adds a density to every fluid cell of this rank, w_i of it to each population, which gives no momentum. Returns what
-// was added: nothing where it would drown in the round-off of single storage, below 1e-7.
+// What the mass of the whole fluid has lost or gained to round-off, and to walls and solids that do not conserve it, is
+// looked for and given back every so many steps.
+inline constexpr std::int64_t steps_between_mass_looks = 200;
+
+inline bool looks_at_mass(std::int64_t step) { return step > 0 && step % steps_between_mass_looks == 0; }
+
+// Adds a density to every fluid cell of this rank, to the populations at rest: no momentum. Returns what was added:
+// nothing where it would drown in the round-off of single storage, below 1e-8.
 template <typename Real>
 double add_density(lbm::Fluid<Real>& fluid, double density);
+
+// Brings the excess of all ranks from `now` to `kept`. Returns the mass added, the same on every rank.
+template <typename Real>
+double restore_excess(lbm::Fluid<Real>& fluid, const ExcessMass& now, double kept);
 
 }  // namespace thalweg::coupling

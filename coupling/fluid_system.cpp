@@ -9,16 +9,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace thalweg::coupling {
-
-namespace {
-
-// Steps after which what the links of solids have let through is given back.
-constexpr std::int64_t steps_between_corrections = 200;
-
-}  // namespace
 
 template <typename Real>
 FluidSystem<Real>::FluidSystem(std::unique_ptr<Decomposition> decomposition, MPI_Comm communicator,
@@ -57,9 +49,8 @@ void FluidSystem<Real>::advance() {
 // The links of a solid conserve no mass where the pressure changes along them (mass_return.hpp).
 template <typename Real>
 void FluidSystem<Real>::keep_mass() {
-  if (step_ % steps_between_corrections != 0 || !closed(parameters_.faces)) return;
-  const ExcessMass excess = excess_mass(survey_of(fluid_), rest_);
-  add_density(fluid_, (start_excess_ - excess.sum) / static_cast<double>(std::max<std::int64_t>(1, excess.cells)));
+  if (looks_at_mass(step_) && closed(parameters_.faces))
+    restore_excess(fluid_, excess_mass(survey_of(fluid_), rest_), start_excess_);
 }
 
 template <typename Real>

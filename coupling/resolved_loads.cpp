@@ -11,13 +11,6 @@
 
 namespace thalweg::coupling {
 
-namespace {
-
-// Steps between two looks at the mass of the whole fluid.
-constexpr std::int64_t steps_between_corrections = 1000;
-
-}  // namespace
-
 // Before anything is added that the fluid does not feel.
 template <typename Real>
 void ResolvedSystem<Real>::book_links(const lbm::LinkBalance& balance) {
@@ -194,14 +187,12 @@ void ResolvedSystem<Real>::open_account() {
 // What no body owes: round-off, and walls that do not conserve mass.
 template <typename Real>
 void ResolvedSystem<Real>::correct_mass() {
-  if (step_ == 0 || step_ % steps_between_corrections != 0) return;
+  if (!looks_at_mass(step_)) return;
   const ExcessMass excess = excess_mass(survey_of(fluid_), rest_);
   parameters_.links.reference_density = excess.mean();
   if (!closed_) return;
-  const double missing = mass_.kept() - mass_owed() - excess.sum;
-  const double added = add_density(fluid_, missing / static_cast<double>(excess.cells));
-  if (rank_of(communicator_) == 0)
-    mass_.book(MassAccount::corrections, LatticeFixed::from(added * static_cast<double>(excess.cells)));
+  const double added = restore_excess(fluid_, excess, mass_.kept() - mass_owed());
+  if (rank_of(communicator_) == 0) mass_.book(MassAccount::corrections, LatticeFixed::from(added));
 }
 
 template class ResolvedSystem<float>;
