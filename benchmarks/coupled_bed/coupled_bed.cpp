@@ -1,11 +1,13 @@
 // Speed of the whole coupled step on a settled bed under flowing water, everything included.
 //
-//   mpirun -n 2 coupled_bed [--box bed|box] [--steps N]
+//   mpirun -n 2 coupled_bed [--box bed|box|flume|quickstart] [--steps N] [--flow N]
 //
-// bed: 240 x 80 x 200 cells and 2884 grains of 10 cells; box: 160 x 160 x 128 cells and 2250 grains. The grains settle
-// dry first, then water flows over them, fast enough to move the top ones, with 50 DEM sub-steps a step. Printed for
-// single and double storage: milliseconds a step by phase, MLUPS over all cells, links a grain, nanoseconds a link, and
-// the ratio to the pure lattice sweep over the same box in the same run. The last line is the same as JSON.
+// bed: 240 x 80 x 200 cells and 2884 grains of 10 cells; box: 160 x 160 x 128 cells and 2250 grains of 10 cells; flume:
+// 147 x 13 x 184 cells and 969 grains of 6.13 cells between law-of-the-wall sides; quickstart: that case, 72 x 13 x 90
+// cells and 230 grains of 6 cells. The grains settle under their submerged weight and rest on their contacts. Then water
+// flows over them, 500 steps (--flow) before the timing begins, with 50 DEM sub-steps a step. Printed for single and
+// double storage: milliseconds a step by phase, MLUPS over all cells, links and contacts a grain, nanoseconds a link,
+// and the ratio to the pure lattice sweep over the same box in the same run. The last line is the same as JSON.
 #include "core/mpi_session.hpp"
 #include "coupling/resolved_system.hpp"
 #include "dem/packing.hpp"
@@ -13,69 +15,77 @@
 #include "io/json_object.hpp"
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <numbers>
 #include <string>
+#include <vector>
 
 namespace {
 
 using namespace thalweg;
 using Clock = std::chrono::steady_clock;
 
-constexpr double diameter = 5e-3, spacing = 0.5e-3, time_step = 2e-5, density = 2550.0, water = 1000.0;
+constexpr double density = 2550.0, water = 1000.0, gravity = 9.8;
 constexpr int sub_steps = 50;
 
 struct Box {
   std::string name;
   Index3 cells;
   int grains;
+  double diameter, spacing, time_step, slope;  // m, m, s, 1
+  bool side_walls = false;                     // law of the wall at both y faces
 };
+
+const std::vector<Box> boxes{{"bed", {240, 80, 200}, 2884, 5e-3, 0.5e-3, 2e-5, 0.016},
+                             {"box", {160, 160, 128}, 2250, 5e-3, 0.5e-3, 2e-5, 0.016},
+                             {"flume", {147, 13, 184}, 969, 4.95e-3, 0.8077e-3, 1e-4, 0.0445, true},
+                             {"quickstart", {72, 13, 90}, 230, 4.95e-3, 0.825e-3, 1e-4, 0.08, true}};
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-dem::GrainParameters grain_parameters(const PeriodicBox& box, double dem_step, double fluid_density) {
+dem::GrainParameters grain_parameters(const Box& box, const Decomposition& decomposition) {
   dem::GrainParameters p;
   p.contact.normal_stiffness = 20000.0;
   p.contact.tangential_stiffness = 5714.0;
   p.contact.restitution = 0.93;
   p.contact.friction = 0.5;
-  p.contact.wall_friction = 0.5;
-  p.walls = dem::face_planes(box, p.contact);
-  p.body_force = [fluid_density](double mass, double radius) {
-    const double displaced = fluid_density * 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
-    return Vec3(0.016 * 9.8 * mass, 0.0, -9.8 * (mass - displaced));
+  p.contact.wall_friction = 0.45;
+  p.walls = dem::face_planes(decomposition.box(), p.contact);
+  p.body_force = [slope = box.slope](double mass, double radius) {
+    const double displaced = water * 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
+    return Vec3(gravity * (mass - displaced) * Vec3(slope, 0.0, -1.0));
   };
-  p.time_step = dem_step;
+  p.time_step = box.time_step / sub_steps;
   p.sub_steps = sub_steps;
-  p.skin = 0.1 * diameter;
+  p.skin = 0.1 * box.diameter;
+  p.initial_overlap = 0.01;
   return p;
 }
 
-// The grains after falling dry on the floor for 0.35 s, losing most of their energy in every contact. They settle
-// four thousandths too large, so that at their true size the dry weight and the last impacts leave no overlap.
+// The grains after sinking to the floor for 0.6 s, losing most of their energy in every contact.
 std::vector<dem::GrainSeed> settled(const Box& box, const Decomposition& decomposition) {
-  constexpr double swollen = 1.004;
   std::vector<dem::GrainSeed> seeds;
   const dem::Region region = dem::whole(decomposition.box());
   for (const Vec3& position :
-       dem::uniform_packing(decomposition.box(), region, box.grains, 0.5 * swollen * diameter, 0.0, 1)) {
+       dem::uniform_packing(decomposition.box(), region, box.grains, 0.5 * box.diameter, 0.0, 1)) {
     dem::GrainSeed seed;
     seed.id = static_cast<GlobalId>(seeds.size());
-    seed.radius = 0.5 * swollen * diameter;
+    seed.radius = 0.5 * box.diameter;
     seed.density = density;
     seed.position = position;
     seeds.push_back(seed);
   }
-  dem::GrainParameters p = grain_parameters(decomposition.box(), 8e-6, 0.0);
+  dem::GrainParameters p = grain_parameters(box, decomposition);
   p.contact.restitution = 0.3;
+  p.time_step = 8e-6;
   p.sub_steps = 10;
-  p.skin = 0.15 * diameter;
+  p.skin = 0.15 * box.diameter;
   dem::GrainDynamics grains(decomposition, MPI_COMM_WORLD, p, seeds);
-  for (int k = 0; k < 4400; ++k) {
+  for (int k = 0; k < 7500; ++k) {
     grains.prepare();
     grains.advance(p.sub_steps);
     grains.refresh_ghosts();
@@ -85,23 +95,36 @@ std::vector<dem::GrainSeed> settled(const Box& box, const Decomposition& decompo
     for (int a = 0; a < 3; ++a) positions[3 * grains.store().id[g] + a] = grains.store().position[g][a];
   MPI_Allreduce(MPI_IN_PLACE, positions.data(), static_cast<int>(positions.size()), MPI_DOUBLE, MPI_SUM,
                 MPI_COMM_WORLD);
-  for (std::size_t g = 0; g < seeds.size(); ++g) {
-    seeds[g].position = Vec3(&positions[3 * g]);
-    seeds[g].radius = 0.5 * diameter;
-  }
+  for (std::size_t g = 0; g < seeds.size(); ++g) seeds[g].position = Vec3(&positions[3 * g]);
   return seeds;
 }
 
+// As `thalweg run` has it by default: bgk, Smagorinsky's model and a bulk viscosity.
+lbm::CollisionParameters collision_of(const Box& box) {
+  const Units units{box.spacing, box.time_step, water};
+  lbm::CollisionParameters p;
+  p.relaxation_time = units.relaxation_time(1e-6);
+  p.smagorinsky_constant = 0.27;
+  p.bulk_relaxation_time = 3.0;
+  p.force[0] = box.slope * gravity / units.acceleration();
+  return p;
+}
+
+lbm::FaceConditions faces_of(const Box& box) {
+  lbm::FaceConditions faces;
+  if (box.side_walls) faces[2].type = faces[3].type = lbm::FaceType::law_of_the_wall;
+  faces[4].type = lbm::FaceType::no_slip;
+  faces[5].type = lbm::FaceType::free_slip;
+  return faces;
+}
+
 template <typename Real>
-std::unique_ptr<coupling::ResolvedSystem<Real>> flowing_bed(const Decomposition& decomposition,
-                                                            std::vector<dem::GrainSeed> seeds) {
+std::unique_ptr<coupling::ResolvedSystem<Real>> flowing_bed(const Box& box, const Decomposition& decomposition,
+                                                            const std::vector<dem::GrainSeed>& seeds) {
   coupling::ResolvedParameters p;
-  p.units = {spacing, time_step, water};
-  p.collision.relaxation_time = p.units.relaxation_time(1e-6);
-  p.collision.smagorinsky_constant = 0.27;
-  p.collision.force[0] = 0.016 * 9.8 / p.units.acceleration();
-  p.faces[4].type = lbm::FaceType::no_slip;
-  p.faces[5].type = lbm::FaceType::free_slip;
+  p.units = {box.spacing, box.time_step, water};
+  p.collision = collision_of(box);
+  p.faces = faces_of(box);
   p.sub_steps = sub_steps;
   double bed = 0.0;
   for (const dem::GrainSeed& seed : seeds) bed = std::max(bed, seed.position.z());
@@ -111,12 +134,8 @@ std::unique_ptr<coupling::ResolvedSystem<Real>> flowing_bed(const Decomposition&
     return coupling::FluidInitialState{0.0,
                                        Vec3(u, 0.05 * u * std::sin(400.0 * x.x()), 0.05 * u * std::cos(300.0 * x.y()))};
   };
-  // The top layer rolls from the start; the rest of the bed carries it.
-  for (dem::GrainSeed& seed : seeds)
-    if (seed.position.z() > bed - 1.2 * diameter) seed.velocity = Vec3(0.2, 0.0, 0.0);
-
-  dem::GrainParameters g = grain_parameters(decomposition.box(), time_step / sub_steps, water);
-  g.ghost_width = coupling::ResolvedSystem<Real>::ghost_reach(0.5 * diameter, spacing);
+  dem::GrainParameters g = grain_parameters(box, decomposition);
+  g.ghost_width = coupling::ResolvedSystem<Real>::ghost_reach(0.5 * box.diameter, box.spacing);
   g.attached_width = coupling::ResolvedSystem<Real>::attached_width(p);
   auto grains = std::make_unique<dem::GrainDynamics>(decomposition, MPI_COMM_WORLD, g, seeds);
   return std::make_unique<coupling::ResolvedSystem<Real>>(std::make_unique<Decomposition>(decomposition),
@@ -125,15 +144,8 @@ std::unique_ptr<coupling::ResolvedSystem<Real>> flowing_bed(const Decomposition&
 
 // Best of the repetitions of a lattice step without grains, in seconds.
 template <typename Real>
-double pure_sweep(const Decomposition& decomposition, int steps) {
-  lbm::CollisionParameters parameters;
-  parameters.relaxation_time = 0.5 + 3e-6 * time_step / (spacing * spacing);
-  parameters.smagorinsky_constant = 0.27;
-  parameters.force[0] = 1e-6;
-  lbm::FaceConditions faces;
-  faces[4].type = lbm::FaceType::no_slip;
-  faces[5].type = lbm::FaceType::free_slip;
-  lbm::Fluid<Real> fluid(decomposition, MPI_COMM_WORLD, parameters, faces);
+double pure_sweep(const Box& box, const Decomposition& decomposition, int steps) {
+  lbm::Fluid<Real> fluid(decomposition, MPI_COMM_WORLD, collision_of(box), faces_of(box));
   double best = 1e9;
   for (int k = 0; k < steps; ++k) {
     MPI_Barrier(MPI_COMM_WORLD);
@@ -147,11 +159,11 @@ double pure_sweep(const Decomposition& decomposition, int steps) {
 
 template <typename Real>
 void measure(const Box& box, const Decomposition& decomposition, const std::vector<dem::GrainSeed>& seeds, int steps,
-             io::JsonObject& json) {
+             int flow, io::JsonObject& json) {
   const bool first_rank = rank_of(MPI_COMM_WORLD) == 0;
   const std::string storage = sizeof(Real) == 4 ? "single" : "double";
-  const auto system = flowing_bed<Real>(decomposition, seeds);
-  for (int k = 0; k < 4; ++k) system->advance();
+  const auto system = flowing_bed<Real>(box, decomposition, seeds);
+  for (int k = 0; k < flow; ++k) system->advance();
   system->timer().reset();
   double best = 1e9;
   for (int k = 0; k < steps; k += 2) {  // pairs: the two kinds of lattice step differ
@@ -164,8 +176,8 @@ void measure(const Box& box, const Decomposition& decomposition, const std::vect
   const double cells = static_cast<double>(system->cells());
   const auto links =
       static_cast<double>(sum_over_ranks(MPI_COMM_WORLD, static_cast<std::int64_t>(system->links().count())));
-  const std::int64_t moving = system->grains().moving_count(1e-3 * spacing / time_step);
-  const double pure = pure_sweep<Real>(decomposition, 6);
+  const std::int64_t moving = system->grains().moving_count(1e-3 * box.spacing / box.time_step);
+  const double pure = pure_sweep<Real>(box, decomposition, std::max(6, steps / 2));
   const double mlups = cells / best / 1e6;
   if (first_rank)
     fmt::print("{} {}: {:.2f} ms a step (best), {:.1f} MLUPS, {:.2f} x the pure sweep ({:.1f} MLUPS)\n", box.name,
@@ -179,10 +191,12 @@ void measure(const Box& box, const Decomposition& decomposition, const std::vect
     std::replace(key.begin(), key.end(), ' ', '_');
     json.set("ms_per_step_" + key + "_" + storage, 1e3 * mean);
   }
+  const auto contacts = static_cast<double>(system->grains().contact_count());
   const double ns_per_link = 1e9 * link_seconds * size_of(MPI_COMM_WORLD) / links;
   if (first_rank)
-    fmt::print("  {:.0f} links a grain, {:.1f} ns a link and rank; {} of {} grains move their links every step\n",
-               links / box.grains, ns_per_link, moving, box.grains);
+    fmt::print("  {:.0f} links and {:.1f} contacts a grain, {:.1f} ns a link and rank; {} of {} grains move by a "
+               "thousandth of a cell a step\n",
+               links / box.grains, contacts / box.grains, ns_per_link, moving, box.grains);
   json.set("mlups_" + storage, mlups).set("ms_per_step_" + storage, 1e3 * best);
   json.set("ratio_to_pure_sweep_" + storage, best / pure).set("ns_per_link_" + storage, ns_per_link);
   if (sizeof(Real) == 4) json.set("links_per_grain", links / box.grains).set("moving_grains", moving);
@@ -192,14 +206,18 @@ void measure(const Box& box, const Decomposition& decomposition, const std::vect
 
 int main(int argc, char** argv) {
   MpiSession session(argc, argv);
-  Box box{"bed", {240, 80, 200}, 2884};
-  int steps = 20;
-  for (int k = 1; k + 1 < argc; k += 2) {
-    if (!std::strcmp(argv[k], "--box") && !std::strcmp(argv[k + 1], "box")) box = {"box", {160, 160, 128}, 2250};
-    if (!std::strcmp(argv[k], "--steps")) steps = std::max(2, std::atoi(argv[k + 1]) / 2 * 2);
-  }
+  CLI::App app{"Speed of the whole coupled step on a settled bed under flowing water."};
+  std::string name = "bed";
+  int steps = 20, flow = 500;
+  app.add_option("--box", name, "bed, box, flume or quickstart")
+      ->check(CLI::IsMember({"bed", "box", "flume", "quickstart"}));
+  app.add_option("--steps", steps, "timed steps, in pairs")->check(CLI::PositiveNumber);
+  app.add_option("--flow", flow, "steps of flow before the timing")->check(CLI::NonNegativeNumber);
+  CLI11_PARSE(app, argc, argv);
+  steps = std::max(2, steps / 2 * 2);
+  const Box& box = *std::find_if(boxes.begin(), boxes.end(), [&](const Box& b) { return b.name == name; });
   const Index3 layout = Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD));
-  const Decomposition decomposition(box.cells, spacing, {true, true, false}, layout);
+  const Decomposition decomposition(box.cells, box.spacing, {true, !box.side_walls, false}, layout);
   const auto start = Clock::now();
   const std::vector<dem::GrainSeed> seeds = settled(box, decomposition);
   if (rank_of(MPI_COMM_WORLD) == 0)
@@ -207,7 +225,7 @@ int main(int argc, char** argv) {
                size_of(MPI_COMM_WORLD), layout[0], layout[1], layout[2]);
   io::JsonObject json;
   json.set("benchmark", "coupled_bed").set("box", box.name).set("ranks", size_of(MPI_COMM_WORLD));
-  measure<float>(box, decomposition, seeds, steps, json);
-  measure<double>(box, decomposition, seeds, steps, json);
+  measure<float>(box, decomposition, seeds, steps, flow, json);
+  measure<double>(box, decomposition, seeds, steps, flow, json);
   if (rank_of(MPI_COMM_WORLD) == 0) fmt::print("{}\n", json.line());
 }

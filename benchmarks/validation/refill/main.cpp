@@ -2,6 +2,7 @@
 //
 //   bin/refill                every refill
 //   bin/refill TAU_B...       the first refill at each of these bulk relaxation times (0: as the shear's)
+//   bin/refill drag           the first refill from Re_p = 1 to 200 (0.02 cells a step)
 //
 // A sphere of ten cells moves at constant velocity, not along the lattice and without turning, through fluid at rest in
 // a periodic box of 56 x 48 x 48 cells: at Re_p = 20 (tau = 0.55, no subgrid model), and as a grain in water at the
@@ -117,9 +118,18 @@ void measure(const Regime& regime, RefillRule rule, double bulk_relaxation_time,
 int main(int argc, char** argv) {
   using namespace thalweg;
   MpiSession session(argc, argv);
+  const bool drag = argc == 2 && std::string(argv[1]) == "drag";
   fmt::print("| flow | {} | force, step to step | within a cell | torque, step to step | within a cell | drag |\n",
-             argc > 1 ? "tau_b" : "refill");
+             argc > 1 && !drag ? "tau_b" : "refill");
   std::printf("|---|---|---|---|---|---|---|\n");
+  if (drag) {
+    for (const int reynolds : {1, 5, 20, 50, 100, 200}) {
+      const std::string name = fmt::format("Re_p = {}", reynolds);
+      const benchmark::Regime regime{name.c_str(), 0.5 + 3.0 * 0.02 * 10.0 / reynolds, 0.0, 0.02};
+      measure(regime, coupling::RefillRule::equilibrium, 0.0, "equilibrium");
+    }
+    return 0;
+  }
   for (const benchmark::Regime& regime : {benchmark::Regime{"Re_p = 20", 0.55, 0.0, 20.0 * 0.05 / 3.0 / 10.0},
                                           benchmark::Regime{"water", 0.50024, 0.27, 0.012}}) {
     for (int n = 1; n < argc; ++n) measure(regime, coupling::RefillRule::equilibrium, std::atof(argv[n]), argv[n]);
