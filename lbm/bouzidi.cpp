@@ -6,7 +6,8 @@
 #include "lbm/sweep.hpp"
 
 #include <algorithm>
-#include <experimental/simd>
+#include <array>
+#include <bit>
 
 namespace thalweg::lbm {
 
@@ -19,25 +20,41 @@ constexpr int whole = static_cast<int>(LinkTable::slack);
 int rounded_up(int count) { return (count + whole - 1) / whole * whole; }
 
 template <int axis>
-int velocity(std::uint32_t tag) {
+int component(std::uint32_t tag) {
   return static_cast<int>(tag >> LinkTag::velocity_shift(axis) & 3) - 1;
 }
 
+using Wide = stdx::native_simd<double>;
+
 template <typename Real>
-std::int64_t total(const Real* terms, int n) {
-  std::int64_t sum = 0;
-  for (int k = 0; k < n; ++k) sum += LatticeFixed::from(static_cast<double>(terms[k]));
-  return sum;
+[[gnu::always_inline]] inline Wide wide(const Real* values) {
+  return Wide(values, stdx::element_aligned);
 }
 
-// Of the differences, which are exact in double: single storage loses nothing here.
-template <typename Real>
-std::int64_t total_difference(const Real* terms, const Real* less, int n) {
-  std::int64_t sum = 0;
-  for (int k = 0; k < n; ++k)
-    sum += LatticeFixed::from(static_cast<double>(terms[k]) - static_cast<double>(less[k]));
-  return sum;
-}
+// Sums of LatticeFixed::from over packs, several at a time: the bit patterns of value * scale + shift are added as
+// integers, which may wrap around, and the shifts taken off at the end.
+template <int count>
+class FixedSums {
+public:
+  static constexpr int width = static_cast<int>(Wide::size());
+
+  [[gnu::always_inline]] void add(const std::array<Wide, count>& terms) {
+    for (int s = 0; s < count; ++s)
+      bits_[s] += (Bits) static_cast<Doubles>(terms[s] * LatticeFixed::scale + LatticeFixed::rounding_shift);
+    terms_ += width;
+  }
+  std::int64_t operator[](int sum) const {
+    std::uint64_t total = 0;
+    for (int lane = 0; lane < width; ++lane) total += bits_[sum][lane];
+    return static_cast<std::int64_t>(total - terms_ * std::bit_cast<std::uint64_t>(LatticeFixed::rounding_shift));
+  }
+
+private:
+  using Doubles [[gnu::vector_size(sizeof(double) * Wide::size())]] = double;
+  using Bits [[gnu::vector_size(sizeof(double) * Wide::size())]] = std::uint64_t;
+  Bits bits_[count] = {};
+  std::uint64_t terms_ = 0;
+};
 
 }  // namespace
 
@@ -55,16 +72,9 @@ LinkPass<Real>::LinkPass(Fluid<Real>& fluid, const LinkTable& links, const Perio
       block_(box, fluid.block().lower) {
   Populations<Real>& populations = fluid.populations();
   for (auto& plane : deviations_) plane.resize(static_cast<std::size_t>(populations.indexing().plane_stride()));
-  for (int i = 0; i < D3Q19::directions; ++i) {
-    const int opposite = D3Q19::opposite(i);
-    for (const std::uint32_t half : {0u, near}) {
-      const std::uint32_t slot = static_cast<std::uint32_t>(i) | half;
-      incident_[slot] = &populations.post_collision(i, 0);
-      // The incoming slot also has what a wall returned, if x_ff lies beyond one.
-      second_[slot] = half ? &populations.incoming(i, 0) : &populations.post_collision(opposite, 0);
-      reflected_[slot] = &populations.incoming(opposite, 0);
-    }
-  }
+  for (int i = 0; i < D3Q19::directions; ++i) sent_[i] = &populations.post_collision(i, 0);
+  slots_ = LinkSlots(populations);
+  base_ = populations.plane(LinkSlots::middle);
 }
 
 template <typename Real>
@@ -91,21 +101,19 @@ void LinkPass<Real>::apply_links(int tile) {
   const int z = tiles_.plane_of(tile);
   if (z == 0) measure_densities(tile);
   if (z + 1 < tiles_.planes()) measure_densities(tile + 1);
-  plane_start_ = (z + 1) * cells_.indexing().plane_stride();
   deviation_ = deviations_[z % 2].data();
 
   const LinkTable::Tile& t = links_.tiles()[tile];
-  const std::vector<std::uint32_t>& order = links_.chunks_in_order(tile);
-  constexpr std::size_t ahead = 3;  // chunks
-  for (std::size_t c = 0; c < std::min(ahead, order.size()); ++c)
-    t.links.ask_for(t.chunks[order[c]].first, t.chunks[order[c]].count);
+  const std::vector<LinkTable::Run>& runs = links_.runs_in_order(tile);
+  constexpr std::size_t ahead = 3;  // runs
+  for (std::size_t r = 0; r < std::min(ahead, runs.size()); ++r) t.links.ask_for(runs[r].first, runs[r].count);
   int turn = 0;
   batches_[0].count = batches_[1].count = 0;
-  for (std::size_t c = 0; c < order.size(); ++c) {
-    if (c + ahead < order.size()) t.links.ask_for(t.chunks[order[c + ahead]].first, t.chunks[order[c + ahead]].count);
-    const LinkTable::Chunk& chunk = t.chunks[order[c]];
-    for (std::uint32_t first = 0; first < chunk.count; first += capacity, turn ^= 1) {
-      prepare(batches_[turn], t, z, chunk, chunk.first + first, std::min<int>(capacity, chunk.count - first));
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    if (r + ahead < runs.size()) t.links.ask_for(runs[r + ahead].first, runs[r + ahead].count);
+    const LinkTable::Run& run = runs[r];
+    for (std::uint32_t first = 0; first < run.count; first += capacity, turn ^= 1) {
+      prepare(batches_[turn], t, z, run.body, run.first + first, std::min<int>(capacity, run.count - first));
       finish<Rule, extra>(batches_[turn ^ 1]);
     }
   }
@@ -116,7 +124,6 @@ void LinkPass<Real>::apply_links(int tile) {
 // fluid cell.
 template <typename Real>
 void LinkPass<Real>::measure_densities(int tile) {
-  using Pack = stdx::native_simd<Real>;
   constexpr std::ptrdiff_t width = Pack::size(), ahead = prefetch_bytes / static_cast<std::ptrdiff_t>(sizeof(Real));
   const CellIndexing& indexing = cells_.indexing();
   if (links_.tiles()[tile].live == 0) return;
@@ -129,8 +136,8 @@ void LinkPass<Real>::measure_densities(int tile) {
       const std::ptrdiff_t cell = indexing.index(0, y, z) + p * width;
       Pack sum = 0;
       for (int i = 0; i < D3Q19::directions; ++i) {
-        __builtin_prefetch(incident_[i] + cell + ahead, 1);
-        sum += Pack(incident_[i] + cell, stdx::element_aligned);
+        __builtin_prefetch(sent_[i] + cell + ahead, 1);
+        sum += Pack(sent_[i] + cell, stdx::element_aligned);
       }
       sum.copy_to(deviations_[z % 2].data() + (cell - start), stdx::element_aligned);
     }
@@ -138,15 +145,13 @@ void LinkPass<Real>::measure_densities(int tile) {
 }
 
 template <typename Real>
-void LinkPass<Real>::prepare(Batch& b, const LinkTable::Tile& tile, int plane, const LinkTable::Chunk& chunk,
-                             std::uint32_t first, int count) const {
-  const CellIndexing& indexing = cells_.indexing();
+void LinkPass<Real>::prepare(Batch& b, const LinkTable::Tile& tile, int plane, std::int32_t body, std::uint32_t first,
+                             int count) const {
   const std::uint32_t *places = tile.links.place.data() + first, *tags = tile.links.tag.data() + first;
-  b.body = &bodies_[chunk.body];
+  b.body = &bodies_[body];
   b.tag = tags;
   b.count = count;
-  const int n = rounded_up(count), start = static_cast<int>(indexing.index(0, 0, plane)),
-            row = static_cast<int>(indexing.row_stride());
+  const int n = rounded_up(count);
   if (b.body->radius > 0.0) {
     cross_sphere(*b.body, block_, plane, places, tags, n, b.distance, b.arm[0], b.arm[1], b.arm[2]);
   } else {
@@ -157,27 +162,21 @@ void LinkPass<Real>::prepare(Batch& b, const LinkTable::Tile& tile, int plane, c
     }
   }
   for (int k = count; k < n; ++k) b.distance[k] = Real(1), b.arm[0][k] = b.arm[1][k] = b.arm[2][k] = Real(0);
-  for (int k = 0; k < n; ++k) {
-    const int place = static_cast<int>(places[k]);
-    b.cell[k] = start + (place >> LinkPlace::y_shift & 0xffff) * row + (place & 0xffff);
-    b.slot[k] = (tags[k] & LinkTag::direction_mask) | (b.distance[k] < Real(0.5) ? near : 0u);
-  }
+  slots_.find(plane, places, tags, n, b.distance, b.cell, b.incident_at, b.second_at, b.reflected_at);
   for (int k = 0; k < count; ++k) {
-    const std::uint32_t slot = b.slot[k];
-    const std::ptrdiff_t cell = b.cell[k];
-    __builtin_prefetch(incident_[slot] + cell, 0);
-    __builtin_prefetch(second_[slot] + cell, 0);
-    __builtin_prefetch(reflected_[slot] + cell, 1);
+    __builtin_prefetch(base_ + b.incident_at[k], 0);
+    __builtin_prefetch(base_ + b.second_at[k], 0);
+    __builtin_prefetch(base_ + b.reflected_at[k], 1);
   }
 }
 
 template <typename Real>
 template <typename Rule, typename LinkPass<Real>::Extra extra>
-void LinkPass<Real>::finish(Batch& b) {
+void LinkPass<Real>::finish(const Batch& b) {
   if (b.count == 0) return;
   gather<Rule>(b);
   reflect<Rule, extra>(b);
-  for (int k = 0; k < b.count; ++k) reflected_[b.slot[k]][b.cell[k]] = b.reflected[k];
+  for (int k = 0; k < b.count; ++k) base_[b.reflected_at[k]] = values_.reflected[k];
   add_momentum(b);
   if constexpr (extra != Extra::none) add_moments(b);
   if constexpr (extra == Extra::moments_and_balance) add_balance<Rule>(b);
@@ -185,166 +184,186 @@ void LinkPass<Real>::finish(Batch& b) {
 
 template <typename Real>
 template <typename Rule>
-void LinkPass<Real>::gather(Batch& b) {
-  const bool local = options_.wall_density == WallDensity::local;
+void LinkPass<Real>::gather(const Batch& b) {
   int covered = 0;
   for (int k = 0; k < b.count; ++k) {
-    const std::uint32_t slot = b.slot[k];
-    const std::ptrdiff_t cell = b.cell[k];
-    b.density[k] = deviation_[cell - plane_start_];
-    b.incident[k] = incident_[slot][cell];
-    b.second[k] = second_[slot][cell];
+    values_.deviation[k] = deviation_[b.cell[k]];
+    values_.incident[k] = base_[b.incident_at[k]];
+    values_.second[k] = base_[b.second_at[k]];
     covered_[covered] = k;
-    covered += static_cast<int>((slot & near) != 0) & static_cast<int>(b.tag[k] >> LinkTag::covered_shift & 1);
+    covered += static_cast<int>(b.distance[k] < Real(0.5)) & static_cast<int>(b.tag[k] >> LinkTag::covered_shift & 1);
   }
   if (covered > 0) fill_from_covered_cells(b, covered);
   if constexpr (Rule::needs_both) look_upstream(b);
-  for (int k = b.count; k < rounded_up(b.count); ++k) b.density[k] = b.incident[k] = b.second[k] = Real(0);
-  for (int k = 0; k < rounded_up(b.count); ++k) b.excess[k] = b.density[k];
-  for (int k = 0; k < rounded_up(b.count); ++k) b.density[k] = local ? Real(1) + b.density[k] : Real(1);
+  const int n = rounded_up(b.count);
+  for (int k = b.count; k < n; ++k) values_.deviation[k] = values_.incident[k] = values_.second[k] = Real(0);
+  std::copy_n(values_.deviation, n, values_.excess);
   if (!options_.rest_gradient.isZero(0.0)) subtract_rest(b);
 }
 
 // x_f from the body's centre: the arm, back by the distance.
 template <typename Real>
-void LinkPass<Real>::subtract_rest(Batch& b) const {
+void LinkPass<Real>::subtract_rest(const Batch& b) {
   const Vec3& gradient = options_.rest_gradient;
   const double at_centre = gradient.dot(b.body->centre - options_.rest_middle);
   for (int k = 0; k < b.count; ++k) {
-    const Vec3 c(velocity<0>(b.tag[k]), velocity<1>(b.tag[k]), velocity<2>(b.tag[k]));
+    const Vec3 c(component<0>(b.tag[k]), component<1>(b.tag[k]), component<2>(b.tag[k]));
     const Vec3 arm(b.arm[0][k], b.arm[1][k], b.arm[2][k]);
-    b.excess[k] -= static_cast<Real>(at_centre + gradient.dot(arm - static_cast<double>(b.distance[k]) * c));
+    values_.excess[k] -= static_cast<Real>(at_centre + gradient.dot(arm - static_cast<double>(b.distance[k]) * c));
   }
 }
 
 // The equilibrium at the density of x_f and the velocity that the covering body has at x_ff. With a hydrostatic
 // gradient c_i.gradient = 3 c_i.F: the density a cell further out, and 3/2 w_i c_i.F.
 template <typename Real>
-void LinkPass<Real>::fill_from_covered_cells(Batch& b, int covered) const {
-  double from[3][capacity], v[3][capacity], w[3][capacity], deviation[capacity], result[capacity];
-  std::uint32_t tags[capacity];
-  const Vec3& gradient = options_.rest_gradient;
+void LinkPass<Real>::fill_from_covered_cells(const Batch& b, int covered) {
+  Covered& v = upstream_;
+  std::int32_t last = -1;  // links of one covering body follow each other
+  Vec3 apart;
   for (int c = 0; c < covered; ++c) {
     const int k = covered_[c];
-    const LinkBody& other = bodies_[b.tag[k] >> LinkTag::body_shift];
-    const Vec3 apart = box_.difference(b.body->centre, other.centre);
-    tags[c] = b.tag[k];
-    deviation[c] = static_cast<double>(b.density[k]);
+    const auto slot = static_cast<std::int32_t>(b.tag[k] >> LinkTag::body_shift);
+    const LinkBody& other = bodies_[static_cast<std::size_t>(slot)];
+    if (slot != last) apart = box_.difference(b.body->centre, other.centre);
+    last = slot;
+    v.tag[c] = b.tag[k];
+    v.deviation[c] = static_cast<double>(values_.deviation[k]);
+    v.back[c] = static_cast<double>(b.distance[k]) + 1.0;
     for (int a = 0; a < 3; ++a) {
       // x_ff from the other's centre: the arm, back by the distance to x_f and one link more.
-      from[a][c] = apart[a] + static_cast<double>(b.arm[a][k]);
-      v[a][c] = other.velocity[a];
-      w[a][c] = other.angular_velocity[a];
+      v.arm[a][c] = apart[a] + static_cast<double>(b.arm[a][k]);
+      v.velocity[a][c] = other.velocity[a];
+      v.spin[a][c] = other.angular_velocity[a];
     }
-    result[c] = static_cast<double>(b.distance[k]) + 1.0;
   }
-  for (int c = 0; c < covered; ++c) {
-    const double cx = velocity<0>(tags[c]), cy = velocity<1>(tags[c]), cz = velocity<2>(tags[c]), back = result[c];
-    const double x = from[0][c] - back * cx, y = from[1][c] - back * cy, z = from[2][c] - back * cz;
-    const double ux = v[0][c] + (w[1][c] * z - w[2][c] * y), uy = v[1][c] + (w[2][c] * x - w[0][c] * z),
-                 uz = v[2][c] + (w[0][c] * y - w[1][c] * x);
-    const double cu = cx * ux + cy * uy + cz * uz, uu = ux * ux + uy * uy + uz * uz;
-    const double weight = (3.0 - (cx * cx + cy * cy + cz * cz)) * (1.0 / 36.0);
-    const double along = cx * gradient.x() + cy * gradient.y() + cz * gradient.z(), d = deviation[c] - along;
-    result[c] = weight * (d + (1.0 + d) * (3.0 * cu + 4.5 * cu * cu - 1.5 * uu) + 0.5 * along);
+  const int n = rounded_up(covered);
+  for (int c = covered; c < n; ++c) {
+    v.tag[c] = 0;
+    v.deviation[c] = v.back[c] = 0.0;
+    for (int a = 0; a < 3; ++a) v.arm[a][c] = v.velocity[a][c] = v.spin[a][c] = 0.0;
   }
-  for (int c = 0; c < covered; ++c) b.second[covered_[c]] = static_cast<Real>(result[c]);
+  const double gx = options_.rest_gradient.x(), gy = options_.rest_gradient.y(), gz = options_.rest_gradient.z();
+  for (int first = 0; first < n; first += whole)
+    for (int c = first; c < first + whole; ++c) {
+      const double cx = component<0>(v.tag[c]), cy = component<1>(v.tag[c]), cz = component<2>(v.tag[c]);
+      const double x = v.arm[0][c] - v.back[c] * cx, y = v.arm[1][c] - v.back[c] * cy, z = v.arm[2][c] - v.back[c] * cz;
+      const double ux = v.velocity[0][c] + (v.spin[1][c] * z - v.spin[2][c] * y),
+                   uy = v.velocity[1][c] + (v.spin[2][c] * x - v.spin[0][c] * z),
+                   uz = v.velocity[2][c] + (v.spin[0][c] * y - v.spin[1][c] * x);
+      const double cu = cx * ux + cy * uy + cz * uz, uu = ux * ux + uy * uy + uz * uz;
+      const double weight = (3.0 - (cx * cx + cy * cy + cz * cz)) * (1.0 / 36.0);
+      const double along = cx * gx + cy * gy + cz * gz, d = v.deviation[c] - along;
+      v.result[c] = weight * (d + (1.0 + d) * (3.0 * cu + 4.5 * cu * cu - 1.5 * uu) + 0.5 * along);
+    }
+  for (int c = 0; c < covered; ++c) values_.second[covered_[c]] = static_cast<Real>(v.result[c]);
 }
 
 // For a rule that needs both: what of the batch has no x_ff keeps the second value of Bouzidi's rule.
 template <typename Real>
-void LinkPass<Real>::look_upstream(Batch& b) const {
+void LinkPass<Real>::look_upstream(const Batch& b) {
   for (int k = 0; k < b.count; ++k) {
-    const std::uint32_t i = b.tag[k] & LinkTag::direction_mask;
     const bool covered = (b.tag[k] >> LinkTag::covered_shift & 1) != 0;
-    b.covered[k] = covered ? Real(1) : Real(0);
-    if (!covered) b.second[k] = second_[i | near][b.cell[k]] - second_[i][b.cell[k]];
+    values_.covered[k] = covered ? Real(1) : Real(0);
+    if (!covered)
+      values_.second[k] =
+          base_[slots_.upstream(b.incident_at[k], b.tag[k])] - base_[slots_.opposite(b.reflected_at[k], b.tag[k])];
   }
-  for (int k = b.count; k < rounded_up(b.count); ++k) b.covered[k] = Real(0);
+  for (int k = b.count; k < rounded_up(b.count); ++k) values_.covered[k] = Real(0);
 }
 
 template <typename Real>
 template <typename Rule, typename LinkPass<Real>::Extra extra>
-void LinkPass<Real>::reflect(Batch& b) const {
-  const LinkBody& body = *b.body;
-  const Real vx = Real(body.velocity.x()), vy = Real(body.velocity.y()), vz = Real(body.velocity.z());
-  const Real wx = Real(body.angular_velocity.x()), wy = Real(body.angular_velocity.y()),
-             wz = Real(body.angular_velocity.z());
-  const Real galilean = options_.momentum_exchange == MomentumExchange::galilean_invariant ? Real(1) : Real(0);
-  const Real returned = Real(body.returned), sx = Real(body.returned_slope.x()), sy = Real(body.returned_slope.y()),
-             sz = Real(body.returned_slope.z()), reference = Real(2.0 * options_.reference_density);
-  const std::uint32_t* tags = b.tag;
-  const int n = rounded_up(b.count), count = b.count;
-  for (int k = 0; k < n; ++k) {
-    const Real cx = Real(velocity<0>(tags[k])), cy = Real(velocity<1>(tags[k])), cz = Real(velocity<2>(tags[k]));
-    const Real weight = k < count ? (Real(3) - (cx * cx + cy * cy + cz * cz)) * Real(1.0 / 36.0) : Real(0);
-    const Real ax = b.arm[0][k], ay = b.arm[1][k], az = b.arm[2][k], delta = b.distance[k];
-    const Real ux = vx + (wy * az - wz * ay), uy = vy + (wz * ax - wx * az), uz = vz + (wx * ay - wy * ax);
-    const Real towards_wall = cx * ux + cy * uy + cz * uz;
-    LinkWeights<Real> rule = Rule::weights(delta);
+void LinkPass<Real>::reflect(const Batch& b) {
+  constexpr int width = static_cast<int>(Pack::size());
+  const Body body(*b.body);
+  const Pack galilean = options_.momentum_exchange == MomentumExchange::galilean_invariant ? Real(1) : Real(0);
+  const Pack reference = Real(2.0 * options_.reference_density);
+  const bool local = options_.wall_density == WallDensity::local;
+  for (int k = 0; k < rounded_up(b.count); k += width) {
+    const auto at = [k](const Real* values) { return Pack(values + k, stdx::element_aligned); };
+    const auto put = [k](const Pack& pack, Real* values) { pack.copy_to(values + k, stdx::element_aligned); };
+    const Ints tag(reinterpret_cast<const std::int32_t*>(b.tag) + k, stdx::element_aligned);
+    const Pack cx = velocity<0>(tag), cy = velocity<1>(tag), cz = velocity<2>(tag);
+    const Pack squared = cx * cx + cy * cy + cz * cz, ax = at(b.arm[0]), ay = at(b.arm[1]), az = at(b.arm[2]);
+    // No weight beyond the last link.
+    const Pack lane([k](auto j) { return Real(k + static_cast<int>(j)); });
+    const Pack weight =
+        chosen<Pack>(lane < Pack(Real(b.count)), (Pack(Real(3)) - squared) * Pack(Real(1.0 / 36.0)), Pack(Real(0)));
+    const Pack ux = body.vx + (body.wy * az - body.wz * ay), uy = body.vy + (body.wz * ax - body.wx * az),
+               uz = body.vz + (body.wx * ay - body.wy * ax);
+    const Pack towards_wall = cx * ux + cy * uy + cz * uz;
+    LinkWeights<Pack> rule = Rule::weights(at(b.distance));
     if constexpr (Rule::needs_both) {
-      const LinkWeights<Real> without = BouzidiLink::weights(delta);
-      const bool covered = b.covered[k] != Real(0);
-      rule.incident = covered ? without.incident : rule.incident;
-      rule.second = covered ? without.second : rule.second;
-      rule.wall = covered ? without.wall : rule.wall;
+      const LinkWeights<Pack> without = BouzidiLink::weights(at(b.distance));
+      const typename Pack::mask_type covered = at(values_.covered) != Pack(Real(0));
+      rule.incident = chosen<Pack>(covered, without.incident, rule.incident);
+      rule.second = chosen<Pack>(covered, without.second, rule.second);
+      rule.wall = chosen<Pack>(covered, without.wall, rule.wall);
     }
-    const Real incident = b.incident[k];
-    const Real interpolated = rule.incident * incident + rule.second * b.second[k];
-    const Real moving_wall = rule.wall * weight * b.density[k] * towards_wall;
-    const Real reflected = interpolated - moving_wall + weight * (returned + (cx * sx + cy * sy + cz * sz));
-    b.reflected[k] = reflected;
-    b.pressure[k] = weight * b.excess[k];
-    const Real sum = incident + reflected - reference * weight, flux = galilean * (incident - reflected);
-    const Real mx = sum * cx - flux * ux, my = sum * cy - flux * uy, mz = sum * cz - flux * uz;
-    b.momentum[0][k] = mx;
-    b.momentum[1][k] = my;
-    b.momentum[2][k] = mz;
-    b.torque[0][k] = ay * mz - az * my;
-    b.torque[1][k] = az * mx - ax * mz;
-    b.torque[2][k] = ax * my - ay * mx;
+    const Pack deviation = at(values_.deviation), incident = at(values_.incident);
+    const Pack density = local ? Pack(Real(1)) + deviation : Pack(Real(1));
+    const Pack interpolated = rule.incident * incident + rule.second * at(values_.second);
+    const Pack moving_wall = rule.wall * weight * density * towards_wall;
+    const Pack returned = body.returned + (cx * body.sx + cy * body.sy + cz * body.sz);
+    const Pack reflected = interpolated - moving_wall + weight * returned;
+    put(reflected, values_.reflected);
+    put(weight * at(values_.excess), values_.pressure);
+    const Pack sum = incident + reflected - reference * weight, flux = galilean * (incident - reflected);
+    const Pack mx = sum * cx - flux * ux, my = sum * cy - flux * uy, mz = sum * cz - flux * uz;
+    put(mx, values_.momentum[0]);
+    put(my, values_.momentum[1]);
+    put(mz, values_.momentum[2]);
+    put(ay * mz - az * my, values_.torque[0]);
+    put(az * mx - ax * mz, values_.torque[1]);
+    put(ax * my - ay * mx, values_.torque[2]);
     if constexpr (extra == Extra::moments_and_balance) {
-      b.interpolated[k] = interpolated - incident;
-      b.moving_wall[k] = -moving_wall;
+      put(interpolated - incident, values_.interpolated);
+      put(-moving_wall, values_.moving_wall);
     }
     if constexpr (extra != Extra::none) {
-      b.moment[0][k] = mx * ax;
-      b.moment[1][k] = mx * ay;
-      b.moment[2][k] = mx * az;
-      b.moment[3][k] = my * ax;
-      b.moment[4][k] = my * ay;
-      b.moment[5][k] = my * az;
-      b.moment[6][k] = mz * ax;
-      b.moment[7][k] = mz * ay;
-      b.moment[8][k] = mz * az;
+      const Pack m[3] = {mx, my, mz}, arm[3] = {ax, ay, az};
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) put(m[i] * arm[j], values_.moment[3 * i + j]);
     }
   }
 }
 
 template <typename Real>
 void LinkPass<Real>::add_momentum(const Batch& b) const {
-  const int n = rounded_up(b.count);
-  b.body->force += {total(b.momentum[0], n), total(b.momentum[1], n), total(b.momentum[2], n)};
-  b.body->torque += {total(b.torque[0], n), total(b.torque[1], n), total(b.torque[2], n)};
-  b.body->mass += total_difference(b.reflected, b.incident, n);
-  b.body->pressure += total(b.pressure, n);
+  const Values& v = values_;
+  FixedSums<8> sums;
+  for (int k = 0; k < rounded_up(b.count); k += FixedSums<8>::width)
+    sums.add({wide(v.momentum[0] + k), wide(v.momentum[1] + k), wide(v.momentum[2] + k), wide(v.torque[0] + k),
+              wide(v.torque[1] + k), wide(v.torque[2] + k), wide(v.pressure + k),
+              // The difference is exact in double: single storage loses nothing here.
+              wide(v.reflected + k) - wide(v.incident + k)});
+  b.body->force += {sums[0], sums[1], sums[2]};
+  b.body->torque += {sums[3], sums[4], sums[5]};
+  b.body->pressure += sums[6];
+  b.body->mass += sums[7];
 }
 
 template <typename Real>
 void LinkPass<Real>::add_moments(const Batch& b) const {
+  const Values& v = values_;
+  FixedSums<9> sums;
+  for (int k = 0; k < rounded_up(b.count); k += FixedSums<9>::width)
+    sums.add({wide(v.moment[0] + k), wide(v.moment[1] + k), wide(v.moment[2] + k), wide(v.moment[3] + k),
+              wide(v.moment[4] + k), wide(v.moment[5] + k), wide(v.moment[6] + k), wide(v.moment[7] + k),
+              wide(v.moment[8] + k)});
   FixedTensor& moments = (*moments_)[static_cast<std::size_t>(b.body - bodies_.data())];
-  for (std::size_t k = 0; k < 9; ++k) moments.sums[k] += total(b.moment[k], rounded_up(b.count));
+  for (int k = 0; k < 9; ++k) moments.sums[static_cast<std::size_t>(k)] += sums[k];
 }
 
 template <typename Real>
 template <typename Rule>
 void LinkPass<Real>::add_balance(const Batch& b) const {
   for (int k = 0; k < b.count; ++k) {
-    const bool near_wall = (b.slot[k] & near) != 0, has_covered = (b.tag[k] >> LinkTag::covered_shift & 1) != 0;
+    const bool near_wall = b.distance[k] < Real(0.5), has_covered = (b.tag[k] >> LinkTag::covered_shift & 1) != 0;
     const bool reads_upstream = Rule::needs_both ? near_wall || !has_covered : near_wall;
     std::int64_t& part = !reads_upstream ? balance_->same_cell : has_covered ? balance_->covered : balance_->upstream;
-    part += LatticeFixed::from(static_cast<double>(b.interpolated[k]));
-    balance_->moving_wall += LatticeFixed::from(static_cast<double>(b.moving_wall[k]));
+    part += LatticeFixed::from(static_cast<double>(values_.interpolated[k]));
+    balance_->moving_wall += LatticeFixed::from(static_cast<double>(values_.moving_wall[k]));
   }
 }
 

@@ -18,9 +18,11 @@
 #include "core/periodic_box.hpp"
 #include "lbm/fluid.hpp"
 #include "lbm/link_crossings.hpp"
+#include "lbm/link_slots.hpp"
 #include "lbm/link_table.hpp"
 
 #include <cstddef>
+#include <experimental/simd>
 #include <vector>
 
 namespace thalweg::lbm {
@@ -65,21 +67,23 @@ template <typename Real>
 class LinkPass {
 public:
   LinkPass(Fluid<Real>& fluid, const LinkTable& links, const PeriodicBox& box, const LinkOptions& options,
-           std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments = nullptr,
-           LinkBalance* balance = nullptr);
+           std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments = nullptr, LinkBalance* balance = nullptr);
 
   void apply_tile(int tile);
 
 private:
-  static constexpr int capacity = 64;
+  static constexpr int capacity = 128;
   struct Batch {
     LinkBody* body = nullptr;
     const std::uint32_t* tag = nullptr;
     int count = 0;
-    alignas(64) std::int32_t cell[capacity];   // index of x_f
-    alignas(64) std::uint32_t slot[capacity];  // direction, and `near` where delta < 1/2
+    alignas(64) std::int32_t cell[capacity];  // index of x_f within its plane
+    alignas(64) std::int32_t incident_at[capacity], second_at[capacity], reflected_at[capacity];  // LinkSlots
     alignas(64) Real distance[capacity], arm[3][capacity];
-    alignas(64) Real density[capacity];                     // rho at x_f, or what stands for it
+  };
+  // What a batch reads and what comes of it.
+  struct Values {
+    alignas(64) Real deviation[capacity];                   // rho - 1 at x_f
     alignas(64) Real excess[capacity];                      // rho - rho_rest at x_f
     alignas(64) Real incident[capacity], second[capacity];  // f_i^c(x_f); the rule's other value
     alignas(64) Real covered[capacity];                     // of a rule that needs both: 1 where a body covers x_ff
@@ -89,23 +93,46 @@ private:
     alignas(64) Real moment[9][capacity];
     alignas(64) Real interpolated[capacity], moving_wall[capacity];  // parts of f_i' - f_i^c
   };
+  // Of links whose x_ff a body covers: that body's motion, and x_ff from its centre as arm - back c_i.
+  struct Covered {
+    std::uint32_t tag[capacity];
+    alignas(64) double arm[3][capacity], velocity[3][capacity], spin[3][capacity];
+    alignas(64) double deviation[capacity], back[capacity], result[capacity];
+  };
+  using Pack = std::experimental::native_simd<Real>;
+  using Ints = std::experimental::rebind_simd_t<std::int32_t, Pack>;
+  // A body's motion in every lane.
+  struct Body {
+    Pack vx, vy, vz, wx, wy, wz, returned, sx, sy, sz;
+
+    explicit Body(const LinkBody& body)
+        : vx(Real(body.velocity.x())),
+          vy(Real(body.velocity.y())),
+          vz(Real(body.velocity.z())),
+          wx(Real(body.angular_velocity.x())),
+          wy(Real(body.angular_velocity.y())),
+          wz(Real(body.angular_velocity.z())),
+          returned(Real(body.returned)),
+          sx(Real(body.returned_slope.x())),
+          sy(Real(body.returned_slope.y())),
+          sz(Real(body.returned_slope.z())) {}
+  };
   enum class Extra { none, moments, moments_and_balance };  // what is measured besides force, torque and mass
-  static constexpr std::uint32_t near = 32, slots = 64;
 
   template <typename Rule, Extra extra>
   void apply_links(int tile);
   void measure_densities(int tile);
-  void prepare(Batch& batch, const LinkTable::Tile& tile, int plane, const LinkTable::Chunk& chunk, std::uint32_t first,
+  void prepare(Batch& batch, const LinkTable::Tile& tile, int plane, std::int32_t body, std::uint32_t first,
                int count) const;
   template <typename Rule, Extra extra>
-  void finish(Batch& batch);
+  void finish(const Batch& batch);
   template <typename Rule>
-  void gather(Batch& batch);
-  void fill_from_covered_cells(Batch& batch, int covered) const;
-  void look_upstream(Batch& batch) const;
-  void subtract_rest(Batch& batch) const;
+  void gather(const Batch& batch);
+  void fill_from_covered_cells(const Batch& batch, int covered);
+  void look_upstream(const Batch& batch);
+  void subtract_rest(const Batch& batch);
   template <typename Rule, Extra extra>
-  void reflect(Batch& batch) const;
+  void reflect(const Batch& batch);
   void add_momentum(const Batch& batch) const;
   void add_moments(const Batch& batch) const;
   template <typename Rule>
@@ -121,17 +148,22 @@ private:
   LinkBalance* balance_;               // null: not measured
   BlockPlace block_;
 
-  // Base pointers to what a link reads and writes, by its slot; the index of x_f is added.
-  const Real* incident_[slots] = {};
-  const Real* second_[slots] = {};
-  Real* reflected_[slots] = {};
+  LinkSlots slots_;
+  Real* base_ = nullptr;
+  const Real* sent_[D3Q19::directions];  // f_i^c of the cell with index 0
 
   // rho - 1 of the cells of two neighbouring planes, even z and odd z.
   std::vector<Real> deviations_[2];
-  const Real* deviation_ = nullptr;  // of the present plane, by the index of the cell less plane_start_
-  std::ptrdiff_t plane_start_ = 0;   // index of the first cell in memory of the present plane
+  const Real* deviation_ = nullptr;  // of the present plane
+
+  template <int axis>
+  [[gnu::always_inline]] static Pack velocity(const Ints& tag) {
+    return std::experimental::static_simd_cast<Pack>((tag >> LinkTag::velocity_shift(axis) & 3) - 1);
+  }
 
   Batch batches_[2];
+  Values values_;
+  Covered upstream_;
   int covered_[capacity];  // links of the batch whose second population is a covered cell's
 };
 

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "lbm/link_weights.hpp"
+#include "lbm/pack_constant.hpp"
 
 namespace thalweg::lbm {
 
@@ -13,10 +14,12 @@ struct BouzidiLink {
   // The second value is f_i^c(x_ff) below a half, f_i'^c(x_f) from there on.
   static constexpr bool needs_both = false;
 
-  template <typename Real>
-  [[gnu::always_inline]] static LinkWeights<Real> weights(Real delta) {
-    const Real share = delta < Real(0.5) ? Real(2) * delta : Real(0.5) / delta;
-    return {share, Real(1) - share, delta < Real(0.5) ? Real(6) : Real(6) * share};
+  template <typename Number>
+  [[gnu::always_inline]] static LinkWeights<Number> weights(const Number& delta) {
+    const Number one = pack_constant<Number>(1), six = pack_constant<Number>(6), half = pack_constant<Number>(0.5);
+    const auto near_wall = delta < half;
+    const Number share = chosen<Number>(near_wall, delta + delta, half / delta);
+    return {share, one - share, chosen<Number>(near_wall, six, six * share)};
   }
 };
 

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "lbm/link_weights.hpp"
+#include "lbm/pack_constant.hpp"
 
 namespace thalweg::lbm {
 
@@ -16,10 +17,10 @@ struct CliLink {
   // The second value is f_i^c(x_ff) - f_i'^c(x_f).
   static constexpr bool needs_both = true;
 
-  template <typename Real>
-  [[gnu::always_inline]] static LinkWeights<Real> weights(Real delta) {
-    const Real twice = Real(2) * delta, inverse = Real(1) / (Real(1) + twice);
-    return {Real(1), (Real(1) - twice) * inverse, Real(12) * inverse};
+  template <typename Number>
+  [[gnu::always_inline]] static LinkWeights<Number> weights(const Number& delta) {
+    const Number one = pack_constant<Number>(1), twice = delta + delta, inverse = one / (one + twice);
+    return {one, (one - twice) * inverse, pack_constant<Number>(12) * inverse};
   }
 };
 

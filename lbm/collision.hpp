@@ -28,6 +28,7 @@
 #pragma once
 
 #include "lbm/d3q19.hpp"
+#include "lbm/pack_constant.hpp"
 
 #include <cmath>
 #include <type_traits>
@@ -46,15 +47,6 @@ struct CollisionParameters {
 
   bool with_bulk() const { return bulk_relaxation_time > 0.0; }
 };
-
-// A constant in every lane, rounded once to the storage type.
-template <typename Number>
-[[gnu::always_inline]] inline Number pack_constant(double value) {
-  if constexpr (std::is_arithmetic_v<Number>)
-    return static_cast<Number>(value);
-  else
-    return Number(static_cast<typename Number::value_type>(value));
-}
 
 // A symmetric tensor.
 template <typename Number>

@@ -28,9 +28,10 @@ struct BlockPlace {
   }
 };
 
-// Of links [0, count) of one body in the plane z (owned local coordinate), in the arithmetic of Real, which is the same
-// for every link whatever its place in the arrays. Cells count from whole numbers near the centre, so that nothing is
-// lost far from the origin; the nearest image is that of the solid cell, which is inside.
+// Of links [0, count) of one body in the plane z (owned local coordinate), count a multiple of LinkTable::slack, in the
+// arithmetic of Real, which is the same for every link whatever its place in the arrays. Cells count from whole numbers
+// near the centre, so that nothing is lost far from the origin; the nearest image is that of the solid cell, which is
+// inside.
 template <typename Real>
 inline void cross_sphere(const LinkBody& body, const BlockPlace& block, int z, const std::uint32_t* __restrict places,
                          const std::uint32_t* __restrict tags, int count, Real* __restrict distance,
@@ -49,27 +50,29 @@ inline void cross_sphere(const LinkBody& body, const BlockPlace& block, int z, c
   const auto nearest = [](int cell, int half, int period) {
     return cell - (cell > half ? period : 0) + (cell < -half ? period : 0);
   };
-  for (int k = 0; k < count; ++k) {
-    const int tag = static_cast<int>(tags[k]), place = static_cast<int>(places[k]);
-    const int cx = (tag >> LinkTag::velocity_shift(0) & 3) - 1, cy = (tag >> LinkTag::velocity_shift(1) & 3) - 1,
-              cz = (tag >> LinkTag::velocity_shift(2) & 3) - 1;
-    const int x = static_cast<int>(place & static_cast<int>(LinkPlace::x_mask)),
-              y = place >> LinkPlace::y_shift & static_cast<int>(LinkPlace::x_mask);
-    const Real dx = Real(nearest(x + from_x + cx, half_x, period_x) - cx) + rest[0];
-    const Real dy = Real(nearest(y + from_y + cy, half_y, period_y) - cy) + rest[1];
-    const Real dz = Real(nearest(from_z + cz, half_z, period_z) - cz) + rest[2];
-    const Real b = Real(cx) * dx + Real(cy) * dy + Real(cz) * dz;
-    const Real q = dx * dx + dy * dy + dz * dz - squared_radius;
-    const Real a = Real(cx * cx + cy * cy + cz * cz);
-    const Real discriminant = b * b - a * q;
-    const Real root = std::sqrt(discriminant > Real(0) ? discriminant : Real(0));
-    const Real delta = q / (root - b);
-    const Real inside = delta > Real(0) ? (delta < Real(1) ? delta : Real(1)) : Real(0);
-    distance[k] = inside;
-    arm_x[k] = dx + inside * Real(cx);
-    arm_y[k] = dy + inside * Real(cy);
-    arm_z[k] = dz + inside * Real(cz);
-  }
+  constexpr int whole = static_cast<int>(LinkTable::slack);
+  for (int first = 0; first < count; first += whole)
+    for (int k = first; k < first + whole; ++k) {
+      const int tag = static_cast<int>(tags[k]), place = static_cast<int>(places[k]);
+      const int cx = (tag >> LinkTag::velocity_shift(0) & 3) - 1, cy = (tag >> LinkTag::velocity_shift(1) & 3) - 1,
+                cz = (tag >> LinkTag::velocity_shift(2) & 3) - 1;
+      const int x = static_cast<int>(place & static_cast<int>(LinkPlace::x_mask)),
+                y = place >> LinkPlace::y_shift & static_cast<int>(LinkPlace::x_mask);
+      const Real dx = Real(nearest(x + from_x + cx, half_x, period_x) - cx) + rest[0];
+      const Real dy = Real(nearest(y + from_y + cy, half_y, period_y) - cy) + rest[1];
+      const Real dz = Real(nearest(from_z + cz, half_z, period_z) - cz) + rest[2];
+      const Real b = Real(cx) * dx + Real(cy) * dy + Real(cz) * dz;
+      const Real q = dx * dx + dy * dy + dz * dz - squared_radius;
+      const Real a = Real(cx * cx + cy * cy + cz * cz);
+      const Real discriminant = b * b - a * q;
+      const Real root = std::sqrt(discriminant > Real(0) ? discriminant : Real(0));
+      const Real delta = q / (root - b);
+      const Real inside = delta > Real(0) ? (delta < Real(1) ? delta : Real(1)) : Real(0);
+      distance[k] = inside;
+      arm_x[k] = dx + inside * Real(cx);
+      arm_y[k] = dy + inside * Real(cy);
+      arm_z[k] = dz + inside * Real(cz);
+    }
 }
 
 }  // namespace thalweg::lbm

@@ -73,7 +73,7 @@ void LinkTable::drop_chunk(Tile& tile, std::uint32_t chunk) {
   tile.chunks[chunk].body = -1;
   tile.chunks[chunk].count = 0;
   tile.free_chunks.push_back(chunk);
-  tile.in_order = false;
+  tile.in_order = tile.runs_current = false;
 }
 
 void LinkTable::replace(int body, int tile, std::span<const Link> links, std::span<const LinkCrossing> crossings) {
@@ -104,7 +104,7 @@ void LinkTable::remove(int body) {
   places_[body].clear();
 }
 
-const std::vector<std::uint32_t>& LinkTable::chunks_in_order(int tile) const {
+const std::vector<LinkTable::Run>& LinkTable::runs_in_order(int tile) const {
   Tile& t = tiles_[tile];
   if (!t.in_order) {
     t.order.clear();
@@ -114,8 +114,14 @@ const std::vector<std::uint32_t>& LinkTable::chunks_in_order(int tile) const {
       return t.links.place[t.chunks[a].first] < t.links.place[t.chunks[b].first];
     });
     t.in_order = true;
+    t.runs_current = false;
   }
-  return t.order;
+  if (!t.runs_current) {
+    t.runs.clear();
+    for (const std::uint32_t c : t.order) t.runs.push_back({t.chunks[c].body, t.chunks[c].first, t.chunks[c].count});
+    t.runs_current = true;
+  }
+  return t.runs;
 }
 
 void LinkTable::resize(LinkStream& links, std::size_t size) const {
@@ -125,6 +131,7 @@ void LinkTable::resize(LinkStream& links, std::size_t size) const {
 }
 
 void LinkTable::put(Tile& tile, Chunk& chunk, std::span<const Link> links, std::span<const LinkCrossing> crossings) {
+  tile.runs_current = false;
   tile.live += links.size();
   tile.live -= chunk.count;
   if (links.size() > chunk.capacity) {

@@ -110,12 +110,18 @@ public:
     std::uint32_t first = 0, count = 0, capacity = 0;
     LinkSums sums;
   };
+  // What the pass over the links needs of a chunk.
+  struct Run {
+    std::int32_t body;
+    std::uint32_t first, count;
+  };
   struct Tile {
     LinkStream links;
     std::vector<Chunk> chunks;
     std::vector<std::uint32_t> free_chunks;
-    std::vector<std::uint32_t> order;  // of the chunks in use, by their first cell; see chunks_in_order()
-    bool in_order = true;
+    std::vector<std::uint32_t> order;  // of the chunks in use, by their first cell
+    std::vector<Run> runs;             // the same chunks; see runs_in_order()
+    bool in_order = true, runs_current = true;
     std::size_t live = 0, end = 0;  // links in use; first entry of the stream that no chunk has
   };
 
@@ -124,8 +130,8 @@ public:
   const std::vector<Tile>& tiles() const { return tiles_; }
 
   // The chunks of a tile in memory order of the cells, so that neighbouring grains share what they load.
-  const std::vector<std::uint32_t>& chunks_in_order(int tile) const;
-  std::size_t count() const;  // all links
+  const std::vector<Run>& runs_in_order(int tile) const;
+  std::size_t count() const;                // all links
   const LinkSums& sums_of(int body) const;  // over its links in all tiles; zero for a body without links
 
   // Replaces the links of a body in a tile; crossings: one a link if the table stores them, else empty. Throws

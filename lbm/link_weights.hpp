@@ -4,9 +4,21 @@
 
 namespace thalweg::lbm {
 
-template <typename Real>
+// a where the mask is set, else b: of plain numbers and of SIMD packs.
+template <typename Number>
+[[gnu::always_inline]] inline Number chosen(bool mask, const Number& a, const Number& b) {
+  return mask ? a : b;
+}
+template <typename Number>
+[[gnu::always_inline]] inline Number chosen(const typename Number::mask_type& mask, const Number& a, const Number& b) {
+  Number result = b;
+  where(mask, result) = a;
+  return result;
+}
+
+template <typename Number>
 struct LinkWeights {
-  Real incident, second, wall;
+  Number incident, second, wall;
 };
 
 }  // namespace thalweg::lbm

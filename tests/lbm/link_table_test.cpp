@@ -40,7 +40,7 @@ TEST(LinkTable, HoldsWhatWasPutInLast) {
     for (int t = 0; t < tiles; ++t) {
       const LinkTable::Tile& there = table.tiles()[t];
       std::size_t in_order = 0;
-      for (const std::uint32_t c : table.chunks_in_order(t)) in_order += there.chunks[c].count;
+      for (const LinkTable::Run& run : table.runs_in_order(t)) in_order += run.count;
       ASSERT_EQ(in_order, there.live);
       for (const LinkTable::Chunk& chunk : there.chunks)
         for (std::uint32_t k = chunk.first; k < chunk.first + chunk.count; ++k, ++count) {
