@@ -109,6 +109,11 @@ double shortest_contact(const Case& c) {
   return shortest;
 }
 
+std::int64_t sub_steps_needed(const Case& c) {
+  const double needed = fluid_time_step(c) * dem::fewest_steps_per_contact / shortest_contact(c);
+  return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(needed * (1.0 - 1e-9))));
+}
+
 namespace {
 
 constexpr double karman = 0.41;
@@ -186,7 +191,8 @@ std::vector<std::string> warnings(const Case& c) {
         stable == 0.0 ? std::string("at no velocity") : fmt::format("up to {:g} cells a step", stable),
         eddies ? "" : "fluid.smagorinsky_constant: 0.27",
         regularised ? (eddies ? "fluid.collision: trt" : " and fluid.collision: trt") : ""));
-  if (!eddies && c.fluid.collision == Collision::trt && c.fluid.bulk_relaxation_time.value_or(0.0) > 0.0 && excess < 0.0299)
+  if (!eddies && c.fluid.collision == Collision::trt && c.fluid.bulk_relaxation_time.value_or(0.0) > 0.0 &&
+      excess < 0.0299)
     found.push_back(
         fmt::format("With a bulk relaxation time of its own and no subgrid model the collision trt is unstable at a "
                     "relaxation time only {:.2g} above 1/2: consider fluid.collision: bgk or "
@@ -200,12 +206,12 @@ std::vector<std::string> warnings(const Case& c) {
   if (!c.grains.empty() && smallest_diameter(c) < 5.99 * c.domain.spacing)
     found.push_back(fmt::format("A grain is only {:.2g} cells across; drag is accurate to a few percent from about 8.",
                                 smallest_diameter(c) / c.domain.spacing));
-  // The fluid resists a sudden motion of a sphere with 3.8 dx/d of the displaced mass, and the load, extrapolated in time,
-  // stands up to 1.15 times the mass of the grain (coupling/load_rule.hpp); the mean was stable down to half the fluid's.
+  // The fluid resists a sudden motion of a sphere with 3.8 dx/d of the displaced mass, and the load, extrapolated in
+  // time, stands up to 1.15 times the mass of the grain (coupling/load_rule.hpp); the mean was stable down to half the
+  // fluid's.
   for (const PopulationCase& population : c.grains) {
-    const double least = c.coupling.load == GrainLoad::mean
-                             ? 0.5
-                             : 3.8 / 1.15 * c.domain.spacing / population.smallest_diameter();
+    const double least =
+        c.coupling.load == GrainLoad::mean ? 0.5 : 3.8 / 1.15 * c.domain.spacing / population.smallest_diameter();
     if (!c.coupling.virtual_mass && !population.fixed && !population.prescribed_velocity &&
         population.density < least * c.fluid.density)
       found.push_back(

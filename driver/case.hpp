@@ -142,6 +142,8 @@ struct VirtualMassCase {
 };
 
 struct CouplingCase {
+  // The word auto; read_case() puts sub_steps_needed() in its place.
+  static constexpr std::int64_t as_many_as_needed = 0;
   std::int64_t grain_steps_per_fluid_step = 50;
   double link_tolerance = 1e-3;  // cells a grain may move before the map of its cells follows
   MomentumExchange momentum_exchange = MomentumExchange::galilean_invariant;
@@ -152,8 +154,8 @@ struct CouplingCase {
   GrainLoad load = GrainLoad::extrapolated;
   std::optional<LubricationCase> lubrication;
   std::optional<VirtualMassCase> virtual_mass;
-  bool grain_stress = false;         // measure the fluid's stress on every grain
-  bool mass_balance = false;         // show what the links' mass is made of
+  bool grain_stress = false;  // measure the fluid's stress on every grain
+  bool mass_balance = false;  // show what the links' mass is made of
   bool operator==(const CouplingCase&) const = default;
 };
 
@@ -205,7 +207,7 @@ struct RunCase {
   GrainIntegrator grain_integrator = GrainIntegrator::velocity_verlet;
   std::optional<AtRestCase> until_at_rest;  // of dry grains: the run ends earlier when this holds
   WatchdogAction watchdog = WatchdogAction::stop;
-  double ramp = 0.0;                        // s in which gravity rises from zero, with a fluid
+  double ramp = 0.0;                // s in which gravity rises from zero, with a fluid
   std::optional<double> time_step;  // s, of dry grains; read as 1/50 of the shortest contact where it is not given
   bool operator==(const RunCase&) const = default;
 };
@@ -312,7 +314,7 @@ double grain_time_step(const Case& c);            // s: a sub-step, or the step 
 Vec3 gravity_vector(const GravityCase& gravity);  // m/s^2: (g sin, 0, -g cos) of atan(slope)
 Units units_of(const Case& c);                    // of a resolved run
 double relaxation_time(const Case& c);            // BGK, without the subgrid model
-double bulk_relaxation_time_for(const Case& c);  // where the case does not give it
+double bulk_relaxation_time_for(const Case& c);   // where the case does not give it
 double bulk_viscosity(const Case& c);             // m^2/s: 2/9 (tau_b - 1/2), without the subgrid model
 
 std::int64_t grain_count(const Case& c);  // of all populations
@@ -326,6 +328,10 @@ double grain_volume(const Case& c);       // m^3, of all grains
 // (dem/material.hpp). Contacts between populations are never shorter than the shortest within one. s; infinite without
 // grains.
 double shortest_contact(const Case& c);
+
+// Sub-steps of the grains in one step of the fluid with which the shortest contact takes
+// dem::fewest_steps_per_contact of them; at least 1.
+std::int64_t sub_steps_needed(const Case& c);
 
 // The speed (m/s) a flow driven by gravity along the bed can reach: that of a laminar film over the bed, or of the log
 // law above it where that is less. An upper estimate (no side walls), for warnings and `thalweg check`. 0 without

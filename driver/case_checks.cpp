@@ -1,5 +1,7 @@
 #include "driver/case_checks.hpp"
 
+#include "dem/material.hpp"
+
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
@@ -22,8 +24,6 @@ constexpr double largest_lattice_velocity = 0.173;
 constexpr double fewest_cells_per_diameter = 5.0;
 // A fixed sphere may be coarser, but must cover cells wherever it is: half the diagonal of a cell.
 constexpr double fewest_cells_per_radius = 0.87;
-// The shortest contact must last this many sub-steps for the dashpot and the spring to be integrated accurately.
-constexpr double fewest_steps_per_contact = 20.0;
 // Decimal numbers such as 0.12 / 0.0005 are whole up to a few units in the last place.
 constexpr double whole_number_tolerance = 1e-6;
 // A component of the random eddies at the start stays below this many times its root mean square nearly everywhere.
@@ -245,7 +245,7 @@ void check_gravity(const Case& c, const io::YamlDocument& document) {
 
 void check_contact_steps(const Case& c, const io::YamlDocument& document) {
   if (c.grains.empty()) return;
-  const double longest = shortest_contact(c) / fewest_steps_per_contact;
+  const double longest = shortest_contact(c) / dem::fewest_steps_per_contact;
   const double step = grain_time_step(c);
   if (step <= longest * (1.0 + whole_number_tolerance)) return;
   const std::string reason = fmt::format(
@@ -255,8 +255,8 @@ void check_contact_steps(const Case& c, const io::YamlDocument& document) {
   if (c.system == SystemKind::grains)
     throw document.error("run.time_step", fmt::format("{}; give at most {:.3g} s", reason, longest));
   throw document.error("coupling.grain_steps_per_fluid_step",
-                       fmt::format("{}; give at least {:.0f} sub-steps, or a lower contact.normal_stiffness in N/m",
-                                   reason, std::ceil(fluid_time_step(c) / longest)));
+                       fmt::format("{}; give at least {} sub-steps, or a lower contact.normal_stiffness in N/m", reason,
+                                   sub_steps_needed(c)));
 }
 
 // What a population or the walls change must fit the law and the manner of loss of the section contact.

@@ -56,8 +56,15 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
   Case c;
   io::read_document(document, c);
   fill_in_grains(c, document);
-  if (has_fluid(c) && !c.fluid.bulk_relaxation_time)
-    c.fluid.bulk_relaxation_time = bulk_relaxation_time_for(c);
+  if (has_fluid(c) && !c.fluid.bulk_relaxation_time) c.fluid.bulk_relaxation_time = bulk_relaxation_time_for(c);
+  if (c.coupling.grain_steps_per_fluid_step == CouplingCase::as_many_as_needed) {
+    if (c.system == SystemKind::grains)
+      throw document.error("coupling.grain_steps_per_fluid_step",
+                           "auto goes by the step of the fluid, and here is none; give a number");
+    // Where the step itself is missing, check_case() says so.
+    const bool has_step = c.fluid.time_step || (c.fluid.expected_velocity && c.fluid.maximum_lattice_velocity);
+    c.coupling.grain_steps_per_fluid_step = has_step ? sub_steps_needed(c) : 1;
+  }
   if (c.system == SystemKind::grains && !c.run.time_step) c.run.time_step = shortest_contact(c) / steps_per_contact;
   if (!c.initial.from.empty())
     c.initial.from = (std::filesystem::absolute(path).parent_path() / c.initial.from).lexically_normal().string();

@@ -61,7 +61,9 @@ static void describe_coupling(io::SectionVisitor& visit, CouplingCase& coupling,
     return;
   }
   visit.integer("grain_steps_per_fluid_step", coupling.grain_steps_per_fluid_step,
-                {.meaning = "sub-steps of the grains in one step of the fluid", .at_least = 1});
+                {.meaning = "sub-steps of the grains in one step of the fluid; auto: 20 in the shortest contact",
+                 .at_least = 1,
+                 .automatic = CouplingCase::as_many_as_needed});
   visit.real("link_tolerance", coupling.link_tolerance,
              {.unit = "cells",
               .meaning = "how far a grain may move before the map of its cells follows (the surface itself is cut "

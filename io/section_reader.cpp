@@ -174,10 +174,15 @@ void SectionReader::vec3_list(const std::string& key, std::vector<Vec3>& values,
 }
 
 void SectionReader::integer(const std::string& key, std::int64_t& value, const IntegerKey& about) {
-  const std::string expectation = fmt::format("a whole number, at least {}, for example {}", about.at_least,
-                                              about.example.value_or(std::max(value, about.at_least)));
+  const std::string expectation =
+      fmt::format("a whole number, at least {}, for example {}{}", about.at_least,
+                  about.example.value_or(std::max(value, about.at_least)), about.automatic ? ", or auto" : "");
   const YamlNode* node = look_up(key, about.required, expectation);
   if (!node) return;
+  if (about.automatic && node->kind == YamlNode::Kind::scalar && node->text == "auto") {
+    value = *about.automatic;
+    return;
+  }
   std::int64_t read = 0;
   if (node->kind != YamlNode::Kind::scalar || !parse(node->text, read) || read < about.at_least)
     fail(*node, key, "expected " + expectation);

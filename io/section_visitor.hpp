@@ -37,6 +37,7 @@ struct IntegerKey {
   bool required = false;
   std::int64_t at_least = 0;
   std::optional<std::int64_t> example = std::nullopt;
+  std::optional<std::int64_t> automatic = std::nullopt;  // the value for the word auto; none: not allowed
 };
 
 struct TextKey {

@@ -78,8 +78,10 @@ void SectionWriter::vec3_list(const std::string& key, std::vector<Vec3>& values,
 }
 
 void SectionWriter::integer(const std::string& key, std::int64_t& value, const IntegerKey& about) {
-  put(true, key, fmt::format("{}", value),
-      style_ == YamlStyle::plain ? "" : fmt::format("whole number, at least {}; {}", about.at_least, about.meaning));
+  const std::string range =
+      fmt::format("whole number, at least {}{}", about.at_least, about.automatic ? ", or auto" : "");
+  put(true, key, about.automatic == value ? "auto" : fmt::format("{}", value),
+      style_ == YamlStyle::plain ? "" : range + "; " + about.meaning);
 }
 
 void SectionWriter::real_list(const std::string& key, std::vector<double>& values, const RealKey& about) {

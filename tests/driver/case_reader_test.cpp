@@ -47,6 +47,19 @@ TEST(CaseReader, ReadsWhatTheFileSays) {
   EXPECT_EQ(c.analysis.transport_rate->from, 1.0);
 }
 
+// The lightest pair of the flume touches for 0.000145 s: 2e-5 s of the fluid are 2.8 twentieths of it.
+TEST(CaseReader, TakesAsManySubStepsAsTheContactNeeds) {
+  const Case c = read(flume, {"coupling.grain_steps_per_fluid_step=auto"});
+  EXPECT_EQ(c.coupling.grain_steps_per_fluid_step, 3);
+  EXPECT_EQ(sub_steps_needed(c), 3);
+  EXPECT_LE(grain_time_step(c), shortest_contact(c) / 20.0);
+  // What is kept with the run is the number.
+  EXPECT_NE(resolved_yaml(c).find("grain_steps_per_fluid_step: 3\n"), std::string::npos);
+  EXPECT_EQ(read(flume, {"coupling.grain_steps_per_fluid_step=auto", "fluid.time_step=1e-6"})
+                .coupling.grain_steps_per_fluid_step,
+            1);
+}
+
 TEST(CaseReader, ReadsEveryFormOfFacesGravityStepAndStart) {
   const Case c = read(flume, {"domain.boundaries={x_low: no_slip, x_high: free_slip, y: periodic, bottom: "
                               "{type: no_slip}, top: law_of_the_wall}",
@@ -294,6 +307,12 @@ INSTANTIATE_TEST_SUITE_P(
              "shortest "
              "contact (0.000145",
              "give at least 3 sub-steps"}},
+        Bad{"sub_steps_zero",
+            {"coupling.grain_steps_per_fluid_step=0"},
+            {"expected a whole number, at least 1, for example 50, or auto"}},
+        Bad{"auto_without_step",
+            {"coupling.grain_steps_per_fluid_step=auto", "fluid.time_step="},
+            {"fluid.time_step: the step is missing"}},
         Bad{"no_loss", {"contact.restitution="}, {"contact.restitution: the loss in a collision is missing"}},
         Bad{"both_losses",
             {"contact.damping=0.09"},
