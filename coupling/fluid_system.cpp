@@ -44,6 +44,7 @@ void FluidSystem<Real>::advance() {
     fluid_.advance();
   }
   ++step_;
+  if (solids_) keep_mass();
 }
 
 // The links of a solid conserve no mass where the pressure changes along them (mass_return.hpp).
@@ -55,7 +56,6 @@ void FluidSystem<Real>::keep_mass() {
 
 template <typename Real>
 void FluidSystem<Real>::advance_around_solids() {
-  keep_mass();
   {
     const auto scope = timer_.measure(phases_.halo);
     fluid_.exchange_halo();

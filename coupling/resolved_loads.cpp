@@ -184,7 +184,7 @@ void ResolvedSystem<Real>::open_account() {
     if (const auto columns = store.attached_of(g); columns[exchanges] == 0.0) columns[surrounding] = excess.mean();
 }
 
-// What no body owes: round-off, and walls that do not conserve mass.
+// What no body owes: round-off, and walls that do not conserve mass. At the end of a step, so that a checkpoint has it.
 template <typename Real>
 void ResolvedSystem<Real>::correct_mass() {
   if (!looks_at_mass(step_)) return;

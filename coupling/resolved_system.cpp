@@ -156,7 +156,6 @@ void ResolvedSystem<Real>::sweep_behind_links() {
 template <typename Real>
 void ResolvedSystem<Real>::advance() {
   step_totals_ = {};
-  correct_mass();
   bool slots_changed = false;
   {
     const auto scope = timer_.measure(phases_.grains);
@@ -203,6 +202,7 @@ void ResolvedSystem<Real>::advance() {
     grains_->refresh_ghosts();
   }
   ++step_;
+  correct_mass();
 }
 
 template <typename Real>
