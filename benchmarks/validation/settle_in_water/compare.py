@@ -36,6 +36,10 @@ def main():
         diameter = grain["diameter"]
         times, heights, velocities = trajectory(run)
         steady = [k for k, z in enumerate(heights) if heights[0] - z > 10 * diameter and z > 3.5 * diameter]
+        if len(steady) < 2:
+            print(f"{run.name}: fell no ten diameters before it ended: FAIL")
+            passed = False
+            continue
         first, last = steady[0], steady[-1]
         velocity = (heights[first] - heights[last]) / (times[last] - times[first])
         drag = 4.0 * (grain["density"] / 1000.0 - 1.0) * 9.8 * diameter / (3.0 * velocity ** 2)
