@@ -28,10 +28,10 @@ thalweg() {  # PROGRAM OPTIONS...: runs it in peace, or says what went wrong
   mpirun --quiet -n "$ranks" "$@" > "$work/last.log" 2>&1 || { tail -n 3 "$work/last.log"; return 1; }
 }
 
-measure() {  # NAME CASE SETTLED START TIMED: end of each part in s
+measure() {  # NAME CASE SETTLED START END: when the bed is taken, the timing begins and ends, in s
   local name=$1 case=$2 settled=$3 start=$4 end=$5
   local quiet=(--overwrite --set output.fluid.every=0 --set output.grains.every=0)
-  local bed=$work/$name/bed.h5 first second n
+  local bed=$work/$name/bed.h5 round n
   if [[ ! -f $bed ]]; then
     thalweg "${programs[1]}" run "$case" --out "$work/$name" "${quiet[@]}" --until "$settled"
   fi

@@ -28,7 +28,7 @@ void MassAccount::book(const lbm::LinkBalance& balance) {
 // What is owed was taken by links before.
 void MassAccount::open(double excess, double owed) {
   sums_ = {};
-  start_ = excess + owed;
+  kept_ = excess + owed;
   if (rank_of(communicator_) == 0) book(links, -LatticeFixed::from(owed));
 }
 
@@ -54,7 +54,7 @@ std::array<double, MassAccount::entries> MassAccount::totals() const {
 std::vector<Figure> MassAccount::figures(double excess, double owed, const Units& units, bool with_parts) const {
   const double cell = units.density * std::pow(units.spacing, 3);
   const std::array<double, entries> t = totals();
-  const double by_walls = excess - start_ - t[links] - t[covered] - t[uncovered] - t[corrections];
+  const double by_walls = excess - kept_ - t[links] - t[covered] - t[uncovered] - t[corrections];
   std::vector<Figure> figures{{"excess_mass", "kg", cell * excess},
                               {"mass_by_links", "kg", cell * t[links]},
                               {"mass_by_covered_cells", "kg", cell * t[covered]},
@@ -69,7 +69,7 @@ std::vector<Figure> MassAccount::figures(double excess, double owed, const Units
 }
 
 void MassAccount::save(ArchiveWriter& archive) const {
-  archive.attribute("mass/start", start_);
+  archive.attribute("mass/start", kept_);
   const std::array<WideSum, entries> totals = totals_exact();
   for (std::size_t k = 0; k < entries; ++k) {
     archive.attribute(fmt::format("mass/{}_high", names[k]), totals[k].high);
@@ -79,7 +79,7 @@ void MassAccount::save(ArchiveWriter& archive) const {
 
 // The whole sum is the first rank's from here on.
 void MassAccount::load(ArchiveReader& archive) {
-  start_ = archive.real_attribute("mass/start");
+  kept_ = archive.real_attribute("mass/start");
   for (std::size_t k = 0; k < entries; ++k) {
     const WideSum total{archive.integer_attribute(fmt::format("mass/{}_high", names[k])),
                         archive.integer_attribute(fmt::format("mass/{}_low", names[k]))};

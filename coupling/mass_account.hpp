@@ -40,7 +40,7 @@ public:
 
   // Begins anew, with the excess as it is and what grains taken over from another run owe; both over all ranks.
   void open(double excess, double owed);
-  double kept() const { return start_; }  // excess and owed mass at the start of the run, which are to stay
+  double kept() const { return kept_; }  // excess and owed mass at the start of the run, which are to stay
 
   // Columns of the series (kg): excess: E as measured; owed: what is still to be returned, over all ranks; with_parts:
   // with the entries of the link rules. Collective.
@@ -54,7 +54,7 @@ private:
 
   MPI_Comm communicator_;
   std::array<WideSum, entries> sums_{};  // this rank's
-  double start_ = 0.0;                   // excess and owed mass
+  double kept_ = 0.0;                    // excess and owed mass
 };
 
 }  // namespace thalweg::coupling

@@ -19,10 +19,7 @@ namespace stdx = std::experimental;
 constexpr int whole = static_cast<int>(LinkTable::slack);
 int rounded_up(int count) { return (count + whole - 1) / whole * whole; }
 
-template <int axis>
-int component(std::uint32_t tag) {
-  return static_cast<int>(tag >> LinkTag::velocity_shift(axis) & 3) - 1;
-}
+int component(std::uint32_t tag, int axis) { return LinkTag::velocity(static_cast<int>(tag), axis); }
 
 using Wide = stdx::native_simd<double>;
 
@@ -207,7 +204,7 @@ void LinkPass<Real>::subtract_rest(const Batch& b) {
   const Vec3& gradient = options_.rest_gradient;
   const double at_centre = gradient.dot(b.body->centre - options_.rest_middle);
   for (int k = 0; k < b.count; ++k) {
-    const Vec3 c(component<0>(b.tag[k]), component<1>(b.tag[k]), component<2>(b.tag[k]));
+    const Vec3 c(component(b.tag[k], 0), component(b.tag[k], 1), component(b.tag[k], 2));
     const Vec3 arm(b.arm[0][k], b.arm[1][k], b.arm[2][k]);
     values_.excess[k] -= static_cast<Real>(at_centre + gradient.dot(arm - static_cast<double>(b.distance[k]) * c));
   }
@@ -245,7 +242,7 @@ void LinkPass<Real>::fill_from_covered_cells(const Batch& b, int covered) {
   const double gx = options_.rest_gradient.x(), gy = options_.rest_gradient.y(), gz = options_.rest_gradient.z();
   for (int first = 0; first < n; first += whole)
     for (int c = first; c < first + whole; ++c) {
-      const double cx = component<0>(v.tag[c]), cy = component<1>(v.tag[c]), cz = component<2>(v.tag[c]);
+      const double cx = component(v.tag[c], 0), cy = component(v.tag[c], 1), cz = component(v.tag[c], 2);
       const double x = v.arm[0][c] - v.back[c] * cx, y = v.arm[1][c] - v.back[c] * cy, z = v.arm[2][c] - v.back[c] * cz;
       const double ux = v.velocity[0][c] + (v.spin[1][c] * z - v.spin[2][c] * y),
                    uy = v.velocity[1][c] + (v.spin[2][c] * x - v.spin[0][c] * z),
@@ -266,7 +263,7 @@ void LinkPass<Real>::look_upstream(const Batch& b) {
     values_.covered[k] = covered ? Real(1) : Real(0);
     if (!covered)
       values_.second[k] =
-          base_[slots_.upstream(b.incident_at[k], b.tag[k])] - base_[slots_.opposite(b.reflected_at[k], b.tag[k])];
+          base_[slots_.one_back(b.incident_at[k], b.tag[k])] - base_[slots_.one_back(b.reflected_at[k], b.tag[k])];
   }
   for (int k = b.count; k < rounded_up(b.count); ++k) values_.covered[k] = Real(0);
 }
@@ -282,8 +279,8 @@ void LinkPass<Real>::reflect(const Batch& b) {
   for (int k = 0; k < rounded_up(b.count); k += width) {
     const auto at = [k](const Real* values) { return Pack(values + k, stdx::element_aligned); };
     const auto put = [k](const Pack& pack, Real* values) { pack.copy_to(values + k, stdx::element_aligned); };
-    const Ints tag(reinterpret_cast<const std::int32_t*>(b.tag) + k, stdx::element_aligned);
-    const Pack cx = velocity<0>(tag), cy = velocity<1>(tag), cz = velocity<2>(tag);
+    const Ints tag(b.tag + k, stdx::element_aligned);
+    const Pack cx = velocity(tag, 0), cy = velocity(tag, 1), cz = velocity(tag, 2);
     const Pack squared = cx * cx + cy * cy + cz * cz, ax = at(b.arm[0]), ay = at(b.arm[1]), az = at(b.arm[2]);
     // No weight beyond the last link.
     const Pack lane([k](auto j) { return Real(k + static_cast<int>(j)); });

@@ -117,6 +117,9 @@ private:
           sy(Real(body.returned_slope.y())),
           sz(Real(body.returned_slope.z())) {}
   };
+  [[gnu::always_inline]] static Pack velocity(const Ints& tag, int axis) {
+    return std::experimental::static_simd_cast<Pack>(LinkTag::velocity(tag, axis));
+  }
   enum class Extra { none, moments, moments_and_balance };  // what is measured besides force, torque and mass
 
   template <typename Rule, Extra extra>
@@ -155,11 +158,6 @@ private:
   // rho - 1 of the cells of two neighbouring planes, even z and odd z.
   std::vector<Real> deviations_[2];
   const Real* deviation_ = nullptr;  // of the present plane
-
-  template <int axis>
-  [[gnu::always_inline]] static Pack velocity(const Ints& tag) {
-    return std::experimental::static_simd_cast<Pack>((tag >> LinkTag::velocity_shift(axis) & 3) - 1);
-  }
 
   Batch batches_[2];
   Values values_;

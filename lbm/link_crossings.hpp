@@ -54,8 +54,7 @@ inline void cross_sphere(const LinkBody& body, const BlockPlace& block, int z, c
   for (int first = 0; first < count; first += whole)
     for (int k = first; k < first + whole; ++k) {
       const int tag = static_cast<int>(tags[k]), place = static_cast<int>(places[k]);
-      const int cx = (tag >> LinkTag::velocity_shift(0) & 3) - 1, cy = (tag >> LinkTag::velocity_shift(1) & 3) - 1,
-                cz = (tag >> LinkTag::velocity_shift(2) & 3) - 1;
+      const int cx = LinkTag::velocity(tag, 0), cy = LinkTag::velocity(tag, 1), cz = LinkTag::velocity(tag, 2);
       const int x = static_cast<int>(place & static_cast<int>(LinkPlace::x_mask)),
                 y = place >> LinkPlace::y_shift & static_cast<int>(LinkPlace::x_mask);
       const Real dx = Real(nearest(x + from_x + cx, half_x, period_x) - cx) + rest[0];

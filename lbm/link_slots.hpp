@@ -28,7 +28,7 @@ public:
   // Throws InputError where the populations of a rank are too many for 32 bits.
   template <typename Real>
   explicit LinkSlots(const Populations<Real>& populations)
-      : moved_(populations.arrangement() == Arrangement::moved ? 1 : 0),
+      : moved_(populations.arrangement() == Arrangement::moved),
         row_(static_cast<int>(populations.indexing().row_stride())),
         plane_(static_cast<int>(populations.indexing().plane_stride())),
         first_(static_cast<int>(populations.indexing().index(0, 0, 0))) {
@@ -46,7 +46,8 @@ public:
   void find(int z, const std::uint32_t* __restrict places, const std::uint32_t* __restrict tags, int count,
             const Real* __restrict distance, std::int32_t* __restrict cells, std::int32_t* __restrict incident,
             std::int32_t* __restrict second, std::int32_t* __restrict reflected) const {
-    const int row = row_, plane = plane_, stride = stride_, moved = moved_, corner = first_ - plane;
+    const int row = row_, plane = plane_, stride = stride_, corner = first_ - plane;
+    const bool moved = moved_;
     const int start = (z + 1) * plane - middle * stride;
     constexpr int whole = static_cast<int>(LinkTable::slack);
     for (int first = 0; first < count; first += whole)
@@ -66,21 +67,16 @@ public:
       }
   }
 
-  // The slot of f_i^c(x_ff), and of f_i'^c(x_f), of one link from its other slots, wherever it is cut.
-  int upstream(int incident, std::uint32_t tag) const {
-    return incident - along_link(static_cast<int>(tag), row_, plane_);
-  }
-  int opposite(int reflected, std::uint32_t tag) const {
-    return reflected - along_link(static_cast<int>(tag), row_, plane_);
-  }
+  // The slot one link back, wherever the link is cut: from f_i^c(x_f) that of f_i^c(x_ff), from the incoming f_i' that
+  // of f_i'^c(x_f).
+  int one_back(int slot, std::uint32_t tag) const { return slot - along_link(static_cast<int>(tag), row_, plane_); }
 
 private:
   static int along_link(int tag, int row, int plane) {
-    const auto c = [tag](int axis) { return (tag >> LinkTag::velocity_shift(axis) & 3) - 1; };
-    return c(0) + c(1) * row + c(2) * plane;
+    return LinkTag::velocity(tag, 0) + LinkTag::velocity(tag, 1) * row + LinkTag::velocity(tag, 2) * plane;
   }
 
-  int moved_ = 0;  // 1: the moved arrangement
+  bool moved_ = false;
   int row_ = 0, plane_ = 0, first_ = 0, stride_ = 0;
 };
 

@@ -37,6 +37,11 @@ struct LinkTag {
   static constexpr std::int32_t bodies = 1 << (32 - body_shift);
   // c_i + 1 of an axis, so that vector code needs no table.
   static constexpr int velocity_shift(int axis) { return 6 + 2 * axis; }
+  // c_i of an axis: of one tag or of a pack of them.
+  template <typename Tag>
+  [[gnu::always_inline]] static constexpr Tag velocity(const Tag& tag, int axis) {
+    return (tag >> velocity_shift(axis) & 3) - 1;
+  }
 
   // upstream_body: which covers x_f - c_i; -1: none.
   static constexpr std::uint32_t of(int direction, std::int32_t upstream_body) {
