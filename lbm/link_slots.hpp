@@ -15,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include <experimental/simd>
 #include <limits>
 
 namespace thalweg::lbm {
@@ -46,34 +47,39 @@ public:
   void find(int z, const std::uint32_t* __restrict places, const std::uint32_t* __restrict tags, int count,
             const Real* __restrict distance, std::int32_t* __restrict cells, std::int32_t* __restrict incident,
             std::int32_t* __restrict second, std::int32_t* __restrict reflected) const {
-    const int row = row_, plane = plane_, stride = stride_, corner = first_ - plane;
-    const bool moved = moved_;
-    const int start = (z + 1) * plane - middle * stride;
-    constexpr int whole = static_cast<int>(LinkTable::slack);
-    for (int first = 0; first < count; first += whole)
-      for (int k = first; k < first + whole; ++k) {
-        const int place = static_cast<int>(places[k]), tag = static_cast<int>(tags[k]);
-        const int cell = corner + (place >> LinkPlace::y_shift & static_cast<int>(LinkPlace::x_mask)) * row +
-                         (place & static_cast<int>(LinkPlace::x_mask));
-        const int i = tag & static_cast<int>(LinkTag::direction_mask), opposite = ((i - 1) ^ 1) + 1;
-        const int along = along_link(tag, row, plane);
-        const int a = start + cell + (moved ? i : opposite) * stride,
-                  b = start + cell + (moved ? opposite : i) * stride;
-        const int shift = moved ? along : 0;
-        cells[k] = cell;
-        incident[k] = a + shift;
-        second[k] = distance[k] < Real(0.5) ? a + shift - along : b - shift;
-        reflected[k] = b - shift + along;
-      }
+    using Pack = std::experimental::native_simd<Real>;
+    using Ints = std::experimental::rebind_simd_t<std::int32_t, Pack>;
+    constexpr auto unaligned = std::experimental::element_aligned;
+    const int start = (z + 1) * plane_ - middle * stride_, corner = first_ - plane_;
+    for (int k = 0; k < count; k += static_cast<int>(Pack::size())) {
+      const Ints place(places + k, unaligned), tag(tags + k, unaligned);
+      const Ints cell = corner + (place >> LinkPlace::y_shift & static_cast<int>(LinkPlace::x_mask)) * row_ +
+                        (place & static_cast<int>(LinkPlace::x_mask));
+      const Ints i = tag & static_cast<int>(LinkTag::direction_mask), opposite = ((i - 1) ^ 1) + 1;
+      const Ints along = along_link(tag);
+      const Ints a = start + cell + (moved_ ? i : opposite) * stride_ + (moved_ ? along : Ints(0));
+      const Ints b = start + cell + (moved_ ? opposite : i) * stride_ - (moved_ ? along : Ints(0));
+      // 1 where the link is cut before its middle: as numbers, because masks of integers and of Real do not mix.
+      Pack before_middle = 0;
+      where(Pack(distance + k, unaligned) < Pack(Real(0.5)), before_middle) = Real(1);
+      Ints other = b;
+      where(std::experimental::static_simd_cast<Ints>(before_middle) != 0, other) = a - along;
+      cell.copy_to(cells + k, unaligned);
+      a.copy_to(incident + k, unaligned);
+      other.copy_to(second + k, unaligned);
+      (b + along).copy_to(reflected + k, unaligned);
+    }
   }
 
   // The slot one link back, wherever the link is cut: from f_i^c(x_f) that of f_i^c(x_ff), from the incoming f_i' that
   // of f_i'^c(x_f).
-  int one_back(int slot, std::uint32_t tag) const { return slot - along_link(static_cast<int>(tag), row_, plane_); }
+  int one_back(int slot, std::uint32_t tag) const { return slot - along_link(static_cast<int>(tag)); }
 
 private:
-  static int along_link(int tag, int row, int plane) {
-    return LinkTag::velocity(tag, 0) + LinkTag::velocity(tag, 1) * row + LinkTag::velocity(tag, 2) * plane;
+  // The step in memory along a link: of one tag or of a pack of them.
+  template <typename Tag>
+  [[gnu::always_inline]] Tag along_link(const Tag& tag) const {
+    return LinkTag::velocity(tag, 0) + LinkTag::velocity(tag, 1) * row_ + LinkTag::velocity(tag, 2) * plane_;
   }
 
   bool moved_ = false;
