@@ -14,6 +14,8 @@ import made_up_run
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "plot_run.py"
 sys.path.insert(0, str(SCRIPT.parent))
 import plot_run  # noqa: E402
+import thalweg  # noqa: E402
+from thalweg import drawing  # noqa: E402
 
 
 class PlotRun(unittest.TestCase):
@@ -50,26 +52,16 @@ class PlotRun(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(done.stdout.split(), [str(self.folder / name) for name in ("flow.png", "profiles.png")])
 
-    def test_reads_what_was_written(self):
-        time, path = plot_run.picture_at(self.folder / "grains.pvd", None)
-        self.assertEqual(time, 3.0)
-        self.assertEqual(plot_run.picture_at(self.folder / "grains.pvd", 1.4)[0], 0.0)
-        position, radius, speed = plot_run.read_grains(path)
-        self.assertEqual(len(position), self.grains)
-        self.assertTrue(np.all(radius == made_up_run.DIAMETER / 2))
-        self.assertTrue(np.all((speed > 0) & (speed < 1)))
-        flow, box = plot_run.read_fluid_slice(self.folder / "fluid/fluid_30000.vti")
+    def test_the_slice_behind_the_grains(self):
+        flow, box = drawing.fluid_slice(thalweg.Run(self.folder).fluid[0])
         self.assertEqual(flow.shape, (90, 72))
         self.assertEqual(flow.mask.sum(), 40)
         self.assertTrue(flow.mask[0, :40].all())
         np.testing.assert_allclose(box, (0, 72 * made_up_run.SPACING, 0, 90 * made_up_run.SPACING), rtol=1e-12)
-        series = plot_run.read_series(self.folder / "series.csv")
-        self.assertEqual(sorted(series), ["largest_lattice_velocity", "q_star", "time"])
-        self.assertEqual(len(series["time"]), 301)
 
     def test_a_sphere_covers_its_disk(self):
         # Radius 20 pixels about the middle of the image; the error of counting pixels is below their border, 2 pi r.
-        image = plot_run.render_spheres(np.array([[0.5, 0.0, 0.5]]), np.array([0.2]), np.array([1.0]),
+        image = drawing.render_spheres(np.array([[0.5, 0.0, 0.5]]), np.array([0.2]), np.array([1.0]),
                                         np.array([0.0, 1.0, 0.0, 1.0]), 100.0, lambda v: v)
         self.assertLess(abs(image[..., 3].sum() - np.pi * 20**2), 2 * np.pi * 20 / 4)
         self.assertEqual(image[50, 50, 3], 1.0)
@@ -78,19 +70,19 @@ class PlotRun(unittest.TestCase):
     def test_the_nearer_of_two_spheres_is_seen(self):
         extent, place = np.array([0.0, 1.0, 0.0, 1.0]), lambda y: [0.5, y, 0.5]
         radius = np.array([0.2, 0.2])
-        alone = plot_run.render_spheres(np.array([place(0.1)]), radius[:1], np.array([0.9]), extent, 100.0, lambda v: v)
+        alone = drawing.render_spheres(np.array([place(0.1)]), radius[:1], np.array([0.9]), extent, 100.0, lambda v: v)
         for order in (slice(None), slice(None, None, -1)):
-            both = plot_run.render_spheres(np.array([place(0.1), place(0.6)])[order], radius,
+            both = drawing.render_spheres(np.array([place(0.1), place(0.6)])[order], radius,
                                            np.array([0.9, 0.1])[order], extent, 100.0, lambda v: v)
             np.testing.assert_array_equal(both, alone)
 
     def test_holes_take_the_mean_of_their_neighbours(self):
         layer = np.ma.array([[1.0, 2.0, 3.0, 4.0, 5.0]] * 5, mask=np.zeros((5, 5), bool))
         layer[2, 2] = np.ma.masked
-        filled = plot_run.without_holes(layer)
+        filled = drawing.without_holes(layer)
         np.testing.assert_allclose(filled, [[1.0, 2.0, 3.0, 4.0, 5.0]] * 5, atol=1e-15)
         layer.mask[:] = True
-        self.assertEqual(plot_run.without_holes(layer).shape, (5, 5))
+        self.assertEqual(drawing.without_holes(layer).shape, (5, 5))
 
     def test_the_settling_at_the_start_does_not_dwarf_the_rest(self):
         rate = np.array([0.0, 2.0, 0.1, 0.08])
@@ -98,12 +90,6 @@ class PlotRun(unittest.TestCase):
         self.assertEqual(plot_run.range_of_interest(rate, rate), (0.0, 1.08 * 2.0))
         low, high = plot_run.range_of_interest(np.zeros(3), np.zeros(3))
         self.assertLess(low, high)
-
-    def test_a_running_mean_is_a_mean(self):
-        time = np.arange(0.0, 1.0, 0.01)
-        mean = plot_run.running_mean(time, 3.0 * time + 1.0, 0.1)
-        inner = (time > 0.06) & (time < 0.93)
-        np.testing.assert_allclose(mean[inner], (3.0 * time + 1.0)[inner], atol=3 * 0.01)
 
     def test_a_run_without_a_fluid_or_grain_pictures(self):
         (self.folder / "fluid.pvd").unlink()
@@ -119,11 +105,6 @@ class PlotRun(unittest.TestCase):
         done = self.plot()
         self.assertEqual(done.returncode, 1)
         self.assertIn("no case.yaml", done.stderr)
-
-    def test_a_row_cut_short_is_left_out(self):
-        with open(self.folder / "series.csv", "a") as file:
-            file.write("3.01,0.0")
-        self.assertEqual(len(plot_run.read_series(self.folder / "series.csv")["time"]), 301)
 
 
 if __name__ == "__main__":

@@ -15,10 +15,10 @@ from pathlib import Path
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
-import yaml
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from grain_pictures import trajectory
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import thalweg
+from thalweg.frames import trajectory
 
 ACCEPTED = 0.1
 CONTACT_GAP = 0.02        # diameters: closer than this, a turn is an impact
@@ -51,13 +51,15 @@ def main():
     figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4))
     passed, colours, shown = True, {}, set()
     for run in arguments.runs:
-        case = yaml.safe_load((run / "case.yaml").read_text())
+        folder = thalweg.Run(run)
+        case = folder.case
         diameter, density = case["grains"][0]["diameter"], case["grains"][0]["density"]
         viscosity = case["fluid"]["density"] * case["fluid"]["kinematic_viscosity"]
         option = (case.get("coupling") or {}).get("lubrication")
         kind = f"lubrication, gaps from {option['minimum_gap']:g} R" if option else "no lubrication"
         colour = colours.setdefault(kind, f"C{len(colours)}")
-        times, heights, velocities = trajectory(run)
+        times, positions, motions = trajectory(folder.grains)
+        heights, velocities = positions[:, 2], motions[:, 2]
         gaps = [(h - 0.5 * diameter) / diameter for h in heights]   # diameters
         answer = math.pi * 0.5 * diameter * math.sqrt(3.0) * case["fluid"]["time_step"] / case["domain"]["spacing"]
         for number, (before, after) in enumerate(impacts(times, gaps, velocities, answer)):

@@ -7,7 +7,6 @@ the energy that the grid resolves must be within 10 % of the measured spectrum's
 C_s = 0.17, which is Lilly's value for a cut-off in the inertial range. Exit code 0 if it passes.
 """
 import argparse
-import csv
 import subprocess
 import sys
 import tempfile
@@ -18,6 +17,9 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+from thalweg.tables import read_rows
+
 ACCEPTED = 0.10
 SIDE = 9 * 2 * np.pi          # cm
 VISCOSITY = 0.15              # cm^2/s: air
@@ -26,8 +28,7 @@ RMS_LATTICE = 0.02            # root mean square of a component at the start, ce
 
 
 def reference(column):
-    with open(Path(__file__).with_name("reference.csv")) as file:
-        rows = [r for r in csv.DictReader(line for line in file if not line.startswith("#")) if r[column]]
+    rows = [r for r in read_rows(Path(__file__).with_name("reference.csv")) if r[column]]
     k, e = (np.array([float(r[c]) for r in rows]) for c in ("k", column))
     return k, e
 

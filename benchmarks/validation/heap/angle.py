@@ -4,8 +4,10 @@ import argparse
 import pathlib
 import sys
 
-import h5py
 import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "python"))
+from thalweg.run import read_bed
 
 PLATE = (0.006, 0.046)  # m, its ends; half way between is the crest
 TOP = 0.04              # m
@@ -16,8 +18,8 @@ FITTED = (0.15, 0.85)   # of the way from the crest to the edge: the crest is ro
 
 def surface(run):
     """Distance from the crest and height of the surface (m), the mean across of the highest grains, and the grains."""
-    with h5py.File(run / "bed.h5") as bed:
-        place, radius = bed["grains/position"][()], bed["grains/radius"][()]
+    bed = read_bed(run / "bed.h5")
+    place, radius = bed["position"], bed["radius"]
     on_plate = place[:, 2] > TOP
     column = np.floor(place[on_plate, 0] / COLUMN).astype(int)
     row = np.floor(place[on_plate, 1] / COLUMN).astype(int) % round(WIDTH / COLUMN)

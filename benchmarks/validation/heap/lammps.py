@@ -14,6 +14,9 @@ import sys
 import h5py
 import numpy as np
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "python"))
+from thalweg.run import read_bed
+
 STIFFNESS, TANGENTIAL, DENSITY, RADIUS = 200.0, 57.14, 2500.0, 0.5e-3
 BOX, PLATE, TOP = (0.052, 0.012, 0.1), (0.006, 0.046), 0.04
 TIME_STEP, STEPS = 4.0e-6, 300000
@@ -79,8 +82,8 @@ def main():
     parser.add_argument("--wall-rolling-friction", type=float, default=0.09)
     arguments = parser.parse_args()
     arguments.folder.mkdir(parents=True)
-    with h5py.File(arguments.bed) as bed:
-        place, radius, density = (bed[f"grains/{name}"][()] for name in ("position", "radius", "density"))
+    bed = read_bed(arguments.bed)
+    place, radius, density = (bed[name] for name in ("position", "radius", "density"))
     write_data(arguments.folder / "bed.data", place, radius, density, arguments.smooth)
     grains = law(0.97, arguments.friction, arguments.rolling_friction, 0.5, 0.5)
     walls = "granular " + law(0.82, arguments.wall_friction, arguments.wall_rolling_friction, 1.0, 1.0)

@@ -13,7 +13,9 @@ import h5py
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
-import yaml
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import thalweg
 
 ACCEPTED = 0.03
 OF_THE_PAPER = 0.11
@@ -21,14 +23,14 @@ OF_THE_PAPER = 0.11
 
 def torque_ratio(run):
     """Collision, angular velocity (rad/s), torque over Stokes' in this box."""
-    case = yaml.safe_load((run / "case.yaml").read_text())
+    folder = thalweg.Run(run)
+    case = folder.case
     radius = 0.5 * case["grains"][0]["diameter"]
     omega = case["grains"][0]["prescribed_angular_velocity"][2]
     viscosity = case["fluid"]["density"] * case["fluid"]["kinematic_viscosity"]
     box = case["domain"]["size"][0]
     fraction = 4.0 / 3.0 * math.pi * (radius / box) ** 3
-    newest = (run / "checkpoints" / "latest").read_text().strip()
-    with h5py.File(run / "checkpoints" / newest) as file:
+    with h5py.File(folder.latest_checkpoint) as file:
         torque = file["grains/load_torque"][0][2]
     return case["fluid"]["collision"], omega, -torque / (8 * math.pi * viscosity * radius ** 3 * omega / (1 - fraction))
 

@@ -5,7 +5,6 @@ Prints for every run the largest settling velocity, the measured one, their diff
 velocity and height against time. Exit code 0 if all pass.
 """
 import argparse
-import csv
 import sys
 from pathlib import Path
 
@@ -13,8 +12,10 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from grain_pictures import trajectory
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import thalweg
+from thalweg.frames import trajectory
+from thalweg.tables import read_rows
 
 ACCEPTED = 0.02
 RADIUS = 7.5e-3   # m
@@ -26,8 +27,7 @@ def main():
     parser.add_argument("--figure", default="settle.png")
     arguments = parser.parse_args()
 
-    with open(Path(__file__).with_name("reference.csv")) as file:
-        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    rows = read_rows(Path(__file__).with_name("reference.csv"))
     measured = {row["case"]: float(row["u_inf [m/s]"]) * float(row["u_max_over_u_inf [1]"]) for row in rows}
 
     figure, (top, bottom) = plt.subplots(2, 1, sharex=True, figsize=(7, 6))
@@ -35,7 +35,8 @@ def main():
     for run in arguments.runs:
         name, folder = run.split("=", 1)
         case = name.split("_")[0]
-        times, heights, velocities = trajectory(folder)
+        times, positions, motions = trajectory(thalweg.Run(folder).grains)
+        heights, velocities = positions[:, 2], motions[:, 2]
         fastest = -min(velocities)
         difference = fastest / measured[case] - 1.0
         good = abs(difference) <= ACCEPTED

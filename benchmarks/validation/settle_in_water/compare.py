@@ -5,17 +5,17 @@ The terminal velocity is the mean over the fall from the tenth diameter to three
 reference, the difference, the drag coefficient, and pass or fail (10 %). Exit code 0 if all pass.
 """
 import argparse
-import csv
 import sys
 from pathlib import Path
 
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
-import yaml
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from grain_pictures import trajectory
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import thalweg
+from thalweg.frames import trajectory
+from thalweg.tables import read_rows
 
 ACCEPTED = 0.10
 
@@ -26,15 +26,15 @@ def main():
     parser.add_argument("--figure", default="settle_in_water.png")
     arguments = parser.parse_args()
 
-    with open(Path(__file__).with_name("reference.csv")) as file:
-        rows = csv.DictReader(line for line in file if not line.startswith("#"))
-        reference = float(next(rows)["velocity [m/s]"])
+    reference = float(read_rows(Path(__file__).with_name("reference.csv"))[0]["velocity [m/s]"])
     plt.figure(figsize=(6, 3.5))
     passed = True
     for run in arguments.runs:
-        grain = yaml.safe_load((run / "case.yaml").read_text())["grains"][0]
+        folder = thalweg.Run(run)
+        grain = folder.case["grains"][0]
         diameter = grain["diameter"]
-        times, heights, velocities = trajectory(run)
+        times, positions, motions = trajectory(folder.grains)
+        heights, velocities = positions[:, 2], motions[:, 2]
         steady = [k for k, z in enumerate(heights) if heights[0] - z > 10 * diameter and z > 3.5 * diameter]
         if len(steady) < 2:
             print(f"{run.name}: fell no ten diameters before it ended: FAIL")

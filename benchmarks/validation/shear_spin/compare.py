@@ -11,17 +11,16 @@ from pathlib import Path
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
-import yaml
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from grain_pictures import pictures
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import thalweg
 
 ACCEPTED = 0.03
 
 
 def spins(run):
     """Times (s) and angular velocities about y (rad/s) of the only grain."""
-    found = [(time, grain.GetPointData().GetArray("angular_velocity").GetTuple3(0)[1]) for time, grain in pictures(run)]
+    found = [(frame.time, frame.angular_velocity[0, 1]) for frame in run.grains]
     return [time for time, _ in found], [spin for _, spin in found]
 
 
@@ -34,13 +33,14 @@ def main():
     plt.figure(figsize=(6, 3.5))
     passed = True
     for run in arguments.runs:
-        case = yaml.safe_load((run / "case.yaml").read_text())
+        folder = thalweg.Run(run)
+        case = folder.case
         top, bottom = (case["domain"]["boundaries"][face]["velocity"][0] for face in ("top", "bottom"))
         rate = (top - bottom) / case["domain"]["size"][2]
         radius = 0.5 * case["grains"][0]["diameter"]
         reynolds = rate * radius ** 2 / case["fluid"]["kinematic_viscosity"]
         reference = 0.5 - 0.1538 * reynolds ** 1.5
-        times, values = spins(run)
+        times, values = spins(folder)
         ratio = values[-1] / rate
         good = abs(ratio / reference - 1.0) <= ACCEPTED
         passed = passed and good

@@ -5,13 +5,16 @@ Prints for every profile (output of bin/turbulent_channel) the difference from u
 the smallest and largest outside it, in per cent, and pass or fail (5 %).
 """
 import argparse
-import csv
 import math
+import sys
 from pathlib import Path
 
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+from thalweg.tables import read_rows
 
 ACCEPTED = 5.0
 
@@ -28,8 +31,7 @@ def main():
     figure, axis = plt.subplots(figsize=(7, 4.5))
     print("| profile | first cell | outside it: from | to | |\n|---|---|---|---|---|")
     for file in arguments.profiles:
-        with open(file) as rows:
-            profile = [(float(r["y_plus"]), float(r["U_plus"])) for r in csv.DictReader(rows)]
+        profile = [(float(r["y_plus"]), float(r["U_plus"])) for r in read_rows(file)]
         error = [100 * (u / law(y) - 1) for y, u in profile]
         good = max(map(abs, error[1:])) <= ACCEPTED
         print(f"| {file.stem} | {error[0]:+.1f} % | {min(error[1:]):+.1f} % | {max(error[1:]):+.1f} % | "

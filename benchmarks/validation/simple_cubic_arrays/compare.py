@@ -6,13 +6,15 @@ places between the cells, the reference, the difference, how far the places are 
 diameter and more), and draws the convergence. Exit code 0 if all pass.
 """
 import argparse
-import csv
 import sys
 from pathlib import Path
 
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+from thalweg.tables import read_rows
 
 ACCEPTED, FROM_CELLS = 0.05, 10.0
 
@@ -23,15 +25,13 @@ def main():
     parser.add_argument("--figure", default="simple_cubic_arrays.png")
     arguments = parser.parse_args()
 
-    with open(Path(__file__).with_name("reference.csv")) as file:
-        rows = csv.DictReader(line for line in file if not line.startswith("#"))
-        reference = {row["solid_fraction [1]"]: float(row["drag [1]"]) for row in rows}
+    rows = read_rows(Path(__file__).with_name("reference.csv"))
+    reference = {row["solid_fraction [1]"]: float(row["drag [1]"]) for row in rows}
     drags = {}
     for table in arguments.tables:
-        with open(table) as file:
-            for row in csv.DictReader(file):
-                group = drags.setdefault((row["links"], row["solid_fraction [1]"]), {})
-                group.setdefault(float(row["diameter [cells]"]), []).append(float(row["drag [1]"]))
+        for row in read_rows(table):
+            group = drags.setdefault((row["links"], row["solid_fraction [1]"]), {})
+            group.setdefault(float(row["diameter [cells]"]), []).append(float(row["drag [1]"]))
 
     plt.figure(figsize=(6, 4))
     passed = True

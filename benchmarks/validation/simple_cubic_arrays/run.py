@@ -14,7 +14,9 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-import yaml
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import thalweg
 
 CELLS = [16, 22, 27, 32, 43, 54]     # of half the box at 0.027, of the whole box of 0.216: diameters of 6 to 20 cells
 PLACES = 3
@@ -43,13 +45,12 @@ def overrides(fraction, cells, place):
 
 def drag(run, fraction, diameter):
     """Mean drag over 6 pi eta R U: the links' force and the driving force on the spheres' own volume."""
-    case = yaml.safe_load((run / "case.yaml").read_text())
-    summary = json.loads((run / "summary.json").read_text())
+    folder = thalweg.Run(run)
+    case, summary = folder.case, folder.summary
     size = case["domain"]["size"][0]
     volume = math.pi / 6.0 * diameter ** 3
     viscosity = DENSITY * VISCOSITY
-    newest = (run / "checkpoints" / "latest").read_text().strip()
-    with h5py.File(run / "checkpoints" / newest) as file:
+    with h5py.File(folder.latest_checkpoint) as file:
         force = np.mean(file["grains/load_force"][:, 0])
     fluid_cells = summary["figures"]["fluid_cells"]
     superficial = summary["fluid_statistics"]["mean_velocity_x"] * fluid_cells * SPACING ** 3 / size ** 3

@@ -8,7 +8,6 @@ column: mean velocity of the grains over Stokes' with Schiller and Naumann's cor
 value and how strongly it swings about its mean over a period of sound, in four parts of the run.
 """
 import argparse
-import csv
 import sys
 from pathlib import Path
 
@@ -16,10 +15,10 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-import yaml
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from grain_pictures import pictures
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import thalweg
+from thalweg.tables import read_rows
 
 ACCEPTED = 0.02  # of speed and damping, where the wave is slower than the stress: w tau_b < 1
 
@@ -34,7 +33,7 @@ def theory(k, tau, tau_b):
 
 
 def compare_waves(file, figure):
-    rows = list(csv.DictReader(open(file)))
+    rows = read_rows(file)
     plt.figure(figsize=(6, 4))
     passed = True
     for collision in ("bgk", "trt", "regularised"):
@@ -69,22 +68,18 @@ def compare_waves(file, figure):
 
 def velocity_of(run):
     """Times (s) and mean velocity downwards (m/s) of the grains."""
-    times, velocities = [], []
-    for time, grains in pictures(run):
-        array = grains.GetPointData().GetArray("velocity")
-        times.append(time)
-        velocities.append(-np.mean([array.GetTuple3(n)[2] for n in range(array.GetNumberOfTuples())]))
-    return np.array(times), np.array(velocities)
+    return run.grains.times, np.array([-frame.velocity[:, 2].mean() for frame in run.grains])
 
 
 def compare_column(runs, figure, table):
     figure_axes = plt.subplots(2, 1, figsize=(7, 6), sharex=True)
     columns = {}
     for run in runs:
-        case = yaml.safe_load((run / "case.yaml").read_text())
+        folder = thalweg.Run(run)
+        case = folder.case
         settling = case["fluid"]["kinematic_viscosity"] / case["grains"][0]["diameter"]  # Re_t = 1
         period = 2 * case["domain"]["size"][2] / case["domain"]["spacing"] * 3 ** 0.5 * case["fluid"]["time_step"]
-        times, velocity = velocity_of(run)
+        times, velocity = velocity_of(folder)
         velocity = velocity / settling
         window = int(round(period / (times[1] - times[0])))
         swing = velocity - np.convolve(velocity, np.ones(window) / window, "same")

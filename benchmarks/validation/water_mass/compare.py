@@ -17,32 +17,28 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-import yaml
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from grain_pictures import pictures
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import thalweg
+from thalweg.tables import read_series
 
-COLUMNS = ("time [s]", "mean_density_deviation [1]", "q_star [1]", "moving_grains [1]")
+COLUMNS = ("time", "mean_density_deviation", "q_star", "moving_grains")
 SETTLED = 2.0  # s
 
 
 def table(path):
-    with open(path) as file:
-        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
-    return np.array([[float(row[column]) for column in COLUMNS] for row in rows]).T
+    series = read_series(path)
+    return np.array([series[column] for column in COLUMNS])
 
 
 def speeds_inside(run, diameter):
     """Times (s) and median, 99 % quantile and largest of the speeds (m/s) of the grains more than three diameters below
     the surface of the bed, which is the height below which nine tenths of the grains are."""
     times, speeds = [], []
-    for time, grains in pictures(run):
-        count = grains.GetNumberOfPoints()
-        height = np.array([grains.GetPoint(k)[2] for k in range(count)])
-        velocity = grains.GetPointData().GetArray("velocity")
-        speed = np.array([np.linalg.norm(velocity.GetTuple3(k)) for k in range(count)])
+    for frame in run.grains:
+        height, speed = frame.position[:, 2], np.linalg.norm(frame.velocity, axis=1)
         inside = height < np.quantile(height, 0.9) - 3.0 * diameter
-        times.append(time)
+        times.append(frame.time)
         speeds.append(np.quantile(speed[inside], (0.5, 0.99, 1.0)))
     return np.array(times), np.array(speeds).T
 
@@ -78,8 +74,8 @@ def main():
 
     here = table(arguments.run / "series.csv")
     before = table(arguments.before) if arguments.before else None
-    diameter = yaml.safe_load((arguments.run / "case.yaml").read_text())["grains"][0]["diameter"]
-    inside = speeds_inside(arguments.run, diameter)
+    run = thalweg.Run(arguments.run)
+    inside = speeds_inside(run, run.diameter)
     density = np.abs(here[1]).max()
     settled = inside[0] >= SETTLED
     median, most, fastest = inside[1][:, settled].max(axis=1) if settled.any() else (np.inf,) * 3
@@ -94,7 +90,7 @@ def main():
     if arguments.table:
         with open(arguments.table, "w", newline="") as file:
             writer = csv.writer(file)
-            writer.writerow(COLUMNS)
+            writer.writerow(["time [s]", *(f"{name} [1]" for name in COLUMNS[1:])])
             writer.writerows([f"{value:.6g}" for value in row] for row in here[:, ::5].T)
     return 0 if passed else 1
 

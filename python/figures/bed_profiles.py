@@ -1,0 +1,98 @@
+#!/usr/bin/python3
+"""Means over the height of a bed, as fig. 7(a) of Zhang et al. (2022): bed_profiles.py RUN_FOLDER [options]
+
+Reads profiles.h5 (analysis.grain_profiles, and analysis.fluid_statistics where it is there) and, for the stress of the fluid on
+the grains, their pictures (coupling.grain_stress). Heights are from the surface by solid fraction. The driving stress is the
+weight along the slope of all that is above; without side walls, a steady flow has it as the sum of all shear stresses.
+"""
+import argparse
+import sys
+from pathlib import Path
+
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+import thalweg
+from thalweg.bed import surface_by_solid_fraction
+from thalweg.layers import layer_profiles
+
+
+def driving_stress(run, z, fraction):
+    """Pa at the middles z (m) of the layers: g_x times the mass of water and grains above."""
+    density = run.case["fluid"]["density"] * (1.0 - fraction) + run.case["grains"][0]["density"] * fraction
+    weight = density * run.gravity[0] * (z[1] - z[0])
+    return np.cumsum(weight[::-1])[::-1] - 0.5 * weight
+
+
+def component(group, name, which):
+    return group[name][:, group.components[name].index(which)]
+
+
+def stresses(run):
+    """(label, z in m, Pa) of every shear stress that was measured."""
+    grains = run.profiles["grain_profiles"]
+    z, fraction = grains["z"], grains["solid_fraction"]
+    solid = component(grains, "contact_stress", "xz") + component(grains, "kinetic_stress", "xz")
+    found = [("solid: contacts and motion", z, solid), ("driving", z, driving_stress(run, z, fraction))]
+    if not run.side_walls:
+        found.append(("fluid: what is left of the driving", z, found[1][2] - solid))
+    if "fluid_statistics" in run.profiles:
+        fluid = run.profiles["fluid_statistics"]
+        share = 1.0 - np.interp(fluid["z"], z, fraction)
+        reynolds = -run.case["fluid"]["density"] * share * component(fluid, "reynolds_stress", "xz")
+        found.append(("fluid: resolved eddies", fluid["z"], reynolds))
+    if len(run.grains) and "fluid_stress" in run.grains[-1].arrays:
+        pictures = layer_profiles(run, start=(run.case.get("analysis") or {})["grain_profiles"].get("from", 0.0))
+        found.append(("rotation stress", pictures["z"], pictures["rotation_stress"]))
+    return found
+
+
+def draw(run, out):
+    grains = run.profiles["grain_profiles"]
+    surface = surface_by_solid_fraction(grains["z"], grains["solid_fraction"])
+    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(11, 4.2), sharey=True, layout="constrained")
+    z, fraction = (grains["z"] - surface) / run.diameter, grains["solid_fraction"]
+    left.plot(fraction, z, "k-")
+    left.set(xlabel="solid fraction", ylabel="height from the surface [d]")
+    moving = np.where(fraction > 0, grains["velocity"][:, 0], np.nan)
+    middle.semilogx(np.where(moving > 0, moving, np.nan), z, label="grains")
+    if "fluid_statistics" in run.profiles:
+        fluid = run.profiles["fluid_statistics"]
+        speed = np.where(fluid["velocity"][:, 0] > 0, fluid["velocity"][:, 0], np.nan)
+        middle.semilogx(speed, (fluid["z"] - surface) / run.diameter, label="water")
+    middle.set(xlabel="mean velocity along x [m/s]")
+    for label, height, values in stresses(run):
+        right.plot(values, (height - surface) / run.diameter, label=label, lw=1.2)
+    right.set(xlabel="shear stress [Pa]")
+    for axes in (left, middle, right):
+        axes.axhline(0.0, color="0.6", lw=0.8)
+        axes.grid(color="#e5e8ea", linewidth=0.8)
+    middle.legend(fontsize=8)
+    right.legend(fontsize=8)
+    figure.suptitle(run.name, fontsize=11)
+    figure.savefig(out, dpi=130)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("run", type=Path, metavar="RUN_FOLDER")
+    parser.add_argument("--out", default="bed_profiles.png")
+    arguments = parser.parse_args()
+    try:
+        run = thalweg.Run(arguments.run)
+        if "grain_profiles" not in run.profiles:
+            raise thalweg.RunFolderError(f"{run.folder / 'profiles.h5'}: it has no means of the grains yet "
+                                         "(analysis.grain_profiles in the case; written with every checkpoint).")
+        draw(run, arguments.out)
+    except thalweg.RunFolderError as error:
+        print(f"bed_profiles: {error}", file=sys.stderr)
+        return 1
+    print(arguments.out)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,95 @@
+#!/usr/bin/python3
+"""q* against the Shields number, as fig. 3(a) of Zhang et al. (2022): transport_relation.py [RUN_FOLDER...] [options]
+
+Draws their printed points (bars: standard deviation of q* over the last 10 s), relations of the literature and the given
+runs, whose bars are the standard errors of the means. The Shields number of a run is that of its slope and its measured
+surface. Open symbols: not steady (first against last third). Prints the table.
+"""
+import argparse
+import sys
+from pathlib import Path
+
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+import thalweg
+from thalweg import bed, literature
+
+SMALLEST = 1e-3   # q* that is drawn; what is below stands on the axis
+
+
+def measure(folder, start, stop, surface):
+    """Shields number, q* (Mean), steadiness and height of the bed over the diameter."""
+    run = thalweg.Run(folder)
+    time, rate = bed.transport_rate(run, start, stop)
+    if surface == "static":
+        height = bed.static_bed_height(run, time[0], time[-1])
+    elif start is None and "grain_profiles" in run.profiles:
+        height = bed.bed_height(run)
+    else:
+        height = bed.bed_height(run, time[0], time[-1])
+    return (bed.shields_number(run, height), thalweg.mean_with_error(rate),
+            len(rate) >= 6 and thalweg.is_steady(rate).steady, height / run.diameter)
+
+
+def draw_literature(axes):
+    shields = np.linspace(0.02, 0.15, 400)
+    for curve, label, style in ((literature.meyer_peter_mueller, "Meyer-Peter and Müller", "-"),
+                                (literature.wong_parker, "Wong and Parker", "--"),
+                                (literature.fernandez_luque_van_beek, "Fernandez Luque and van Beek", "-."),
+                                (literature.zhang_wide_bed, "Zhang et al., fig. 6, prefactor as printed", ":")):
+        values = curve(shields)
+        axes.semilogy(shields[values > 0], values[values > 0], style, color="0.55", lw=1, label=label)
+
+
+def draw_paper(axes):
+    middle, half = literature.FLUME_THRESHOLD, literature.FLUME_THRESHOLD_ERROR
+    axes.axvspan(middle - half, middle + half, color="0.92", label="threshold of the experiment")
+    for (shields, rate, deviation, start), mark in zip(literature.FLUME_POINTS, "^v"):
+        axes.errorbar(shields, rate, deviation, fmt=mark, color="#c0392b", ms=6, capsize=3,
+                      label=f"Zhang et al., flume, start: {start}")
+
+
+def draw_runs(axes, folders, found):
+    for n, (folder, (shields, rate, steady, _)) in enumerate(zip(folders, found)):
+        axes.errorbar(shields, max(rate.mean, SMALLEST), rate.error, fmt="o", color=f"C{n % 10}", ms=7, capsize=3,
+                      mfc=f"C{n % 10}" if steady else "none", label=folder.name)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("runs", nargs="*", type=Path, metavar="RUN_FOLDER")
+    parser.add_argument("--from", dest="start", type=float, help="s, beginning of the means (default: as in the case)")
+    parser.add_argument("--to", dest="stop", type=float, default=np.inf, help="s, their end")
+    parser.add_argument("--surface", choices=("fraction", "static"), default="fraction",
+                        help="of the bed: half its solid fraction, or the paper's static pixels")
+    parser.add_argument("--out", default="transport_relation.png")
+    arguments = parser.parse_args()
+    try:
+        found = [measure(folder, arguments.start, arguments.stop, arguments.surface) for folder in arguments.runs]
+    except thalweg.RunFolderError as error:
+        print(f"transport_relation: {error}", file=sys.stderr)
+        return 1
+    if found:
+        print("| run | Shields number | bed [d] | q* | error | deviation | independent values | steady |")
+        print("|---|---|---|---|---|---|---|---|")
+    for folder, (shields, rate, steady, height) in zip(arguments.runs, found):
+        print(f"| {folder.name} | {shields:.4f} | {height:.2f} | {rate.mean:.4f} | {rate.error:.4f} | {rate.deviation:.4f} | "
+              f"{rate.independent:.0f} | {'yes' if steady else 'no'} |")
+    figure, axes = plt.subplots(figsize=(7, 4.8), layout="constrained")
+    draw_literature(axes)
+    draw_paper(axes)
+    draw_runs(axes, arguments.runs, found)
+    axes.set(xlabel="Shields number", ylabel="q*", xlim=(0.015, 0.15), ylim=(SMALLEST, 1.0))
+    axes.legend(fontsize=7, loc="lower right")
+    axes.grid(color="#e5e8ea", linewidth=0.8)
+    figure.savefig(arguments.out, dpi=130)
+    print(arguments.out)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,73 @@
+"""Surface of a bed, depth of the flow over it and Shields number, measured."""
+import numpy as np
+
+from thalweg.errors import RunFolderError
+from thalweg.layers import layer_profiles
+from thalweg.side_view import static_surface
+
+
+def surface_by_solid_fraction(z, fraction):
+    """Height (m) at which the solid fraction falls to half of the bed's, between the middles z (m) of two layers. The bed's
+    is the median of the layers below the grains' centre of mass."""
+    z, fraction = np.asarray(z, float), np.asarray(fraction, float)
+    inside = z <= np.sum(fraction * z) / np.sum(fraction)
+    half = 0.5 * np.median(fraction[inside & (fraction > 0.0)])
+    last = np.flatnonzero(fraction >= half)[-1]
+    if last + 1 == len(z):
+        raise RunFolderError("the grains reach the top: there is no surface of a bed.")
+    share = (fraction[last] - half) / (fraction[last] - fraction[last + 1])
+    return float(z[last] + share * (z[last + 1] - z[last]))
+
+
+def bed_height(run, start=-np.inf, stop=np.inf):
+    """Height (m) of the surface by solid fraction, from profiles.h5 or, if it has none or times (s) are given, from the
+    pictures between them, in layers of a quarter of a diameter."""
+    if "grain_profiles" in run.profiles and not np.isfinite([start, stop]).any():
+        profiles = run.profiles["grain_profiles"]
+    else:
+        profiles = layer_profiles(run, start, stop, 0.25 * run.diameter)
+    return surface_by_solid_fraction(profiles["z"], profiles["solid_fraction"])
+
+
+def static_bed_height(run, start=-np.inf, stop=np.inf, pictures=10):
+    """Height (m) of the surface by static pixels, the mean over that many times between two (s)."""
+    times = run.grains.between(start, stop).times
+    if len(times) == 0:
+        raise RunFolderError(f"{run.folder}: there is no picture of the grains between {start:g} and {stop:g} s.")
+    chosen = np.unique(np.linspace(0, len(times) - 1, pictures).astype(int))
+    return float(np.mean([static_surface(run, times[k]).mean for k in chosen]))
+
+
+def hydraulic_radius(depth, width=None):
+    """m: H W/(2 H + W) between side walls that far apart, H without (Zhang et al. 2022, sec. 2.2 and 2.3)."""
+    return depth if width is None else depth * width / (2.0 * depth + width)
+
+
+def shields_of(slope, depth, diameter, density_ratio, width=None):
+    """Shields number S R/((s - 1) d) of a slope, with R the hydraulic radius; lengths in m."""
+    return slope * hydraulic_radius(depth, width) / ((density_ratio - 1.0) * diameter)
+
+
+def slope_of(shields, depth, diameter, density_ratio, width=None):
+    """Slope that gives a Shields number: the reverse of shields_of()."""
+    return shields * (density_ratio - 1.0) * diameter / hydraulic_radius(depth, width)
+
+
+def shields_number(run, surface):
+    """Shields number of a run whose bed ends at the height `surface` (m), by depth and slope, or by hydraulic radius between
+    side walls."""
+    return shields_of(run.slope, run.size[2] - surface, run.diameter, run.density_ratio,
+                      run.size[1] if run.side_walls else None)
+
+
+def transport_rate(run, start=None, stop=np.inf):
+    """Times (s) and q* of a run between two times; from `analysis.transport_rate.from` on if no start is given."""
+    if "q_star" not in run.series:
+        raise RunFolderError(f"{run.folder / 'series.csv'}: it has no column q_star (analysis.transport_rate in the case).")
+    if start is None:
+        start = float(((run.case.get("analysis") or {}).get("transport_rate") or {}).get("from", 0.0))
+    time = run.series["time"]
+    counted = (time >= start - 1e-9) & (time <= stop + 1e-9)
+    if not counted.any():
+        raise RunFolderError(f"{run.folder / 'series.csv'}: there is no measurement from {start:g} s on yet.")
+    return time[counted], run.series["q_star"][counted]

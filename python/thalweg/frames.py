@@ -1,0 +1,118 @@
+"""Pictures of grains and fluid, read when they are asked for."""
+from collections.abc import Sequence
+from functools import cached_property
+
+import numpy as np
+
+from thalweg.columns import Columns
+from thalweg.errors import RunFolderError
+from thalweg.vtk_files import read_image, read_index, read_points
+
+GRAIN_UNITS = {"id": "1", "clump": "1", "radius": "m", "speed": "m/s", "position": "m", "velocity": "m/s",
+               "angular_velocity": "rad/s", "contact_force": "N", "fluid_force": "N", "contact_stress": "Pa",
+               "fluid_stress": "Pa"}
+FLUID_UNITS = {"velocity": "m/s", "pressure": "Pa", "density": "kg/m^3", "grain_id": "1", "shear_rate": "1/s",
+               "eddy_viscosity": "m^2/s", "vorticity": "1/s", "q_criterion": "1/s^2"}
+
+
+class GrainFrame:
+    """The grains at one time: `frame.position` [grain, axis], `frame.velocity`, `frame.contact_stress` [grain, row, column]
+    and so on; `arrays` has all of them with their units."""
+
+    def __init__(self, time, path):
+        self.time, self.path = time, path   # s
+
+    @cached_property
+    def arrays(self):
+        position, arrays = read_points(self.path)
+        if len(position) == 0:
+            raise RunFolderError(f"{self.path}: there are no grains in this picture.")
+        arrays = {name: values.reshape(-1, 3, 3) if name.endswith("_stress") else values
+                  for name, values in arrays.items()}
+        return Columns({"position": position, **arrays}, GRAIN_UNITS)
+
+    def __getattr__(self, name):
+        if name in GRAIN_UNITS:
+            if name not in self.arrays:
+                raise AttributeError(f"{self.path} has no {name}")
+            return self.arrays[name]
+        raise AttributeError(name)
+
+    def __len__(self):
+        return len(self.position)
+
+    @property
+    def diameter(self):
+        """m"""
+        return 2.0 * self.radius
+
+    @property
+    def volume(self):
+        """m^3"""
+        return 4.0 / 3.0 * np.pi * self.radius**3
+
+
+class FluidFrame:
+    """The fluid at one time: `arrays` as [z, y, x] and a component, `corner` and `spacing` in m."""
+
+    def __init__(self, time, path):
+        self.time, self.path = time, path   # s
+
+    @cached_property
+    def _image(self):
+        return read_image(self.path)
+
+    @property
+    def corner(self):
+        return self._image[0]
+
+    @property
+    def spacing(self):
+        return self._image[1]
+
+    @property
+    def arrays(self):
+        return Columns(self._image[2], FLUID_UNITS)
+
+    def centres(self, axis):
+        """Middle of the cells along x (0), y (1) or z (2), in m."""
+        count = next(iter(self._image[2].values())).shape[2 - axis]
+        return self.corner[axis] + (np.arange(count) + 0.5) * self.spacing[axis]
+
+
+class Frames(Sequence):
+    """The pictures of a .pvd index in their order; `times` in s. A slice is a series as well."""
+
+    def __init__(self, entries, kind):
+        self._entries, self._kind = entries, kind
+        self.times = np.array([time for time, _ in entries])
+
+    @classmethod
+    def of_index(cls, path, kind):
+        return cls(read_index(path), kind)
+
+    def __len__(self):
+        return len(self._entries)
+
+    def __getitem__(self, which):
+        if isinstance(which, slice):
+            return Frames(self._entries[which], self._kind)
+        return self._kind(*self._entries[which])
+
+    def nearest(self, time):
+        """The picture nearest to a time in s; the last one if it is None; None if there is none."""
+        if not self._entries:
+            return None
+        return self[-1 if time is None else int(np.argmin(np.abs(self.times - time)))]
+
+    def between(self, start=-np.inf, stop=np.inf):
+        """The pictures of start <= time <= stop (s), to a billionth of a second."""
+        return Frames([e for e in self._entries if start - 1e-9 <= e[0] <= stop + 1e-9], self._kind)
+
+
+def trajectory(frames, grain=0):
+    """Times (s), positions (m) and velocities (m/s) of one grain, by its place in the pictures: that of its id, unless
+    grains were lost."""
+    states = [(frame.time, frame.position[grain], frame.velocity[grain]) for frame in frames]
+    times, positions, velocities = (np.array(column) for column in zip(*states))
+    return times, positions, velocities

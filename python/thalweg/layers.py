@@ -1,0 +1,85 @@
+"""Layer means of grains, from pictures, with the exact volume of every sphere in every layer.
+
+The quantities are those of `analysis.grain_profiles`, which gathers them in the run and should be preferred for means over
+time; this is for pictures that are there already, and for heights measured from a surface that moves.
+"""
+import numpy as np
+
+from thalweg.columns import Columns
+from thalweg.errors import RunFolderError
+
+UNITS = {"z": "m", "solid_fraction": "1", "velocity": "m/s", "flux": "m/s", "granular_temperature": "m^2/s^2",
+         "contact_stress": "Pa", "fluid_stress": "Pa", "rotation_stress": "Pa"}
+
+
+def volume_below(height, radius):
+    """Volume (m^3) of spheres below a height (m) over their centres: pi (h + R)^2 (2 R - h)/3."""
+    h = np.clip(height, -radius, radius)
+    return np.pi / 3.0 * (h + radius)**2 * (2.0 * radius - h)
+
+
+def disk_below(height, radius):
+    """Area (m^2) of disks below a height (m) over their centres: R^2 (pi/2 + asin(h/R)) + h sqrt(R^2 - h^2)."""
+    h = np.clip(height, -radius, radius)
+    return radius**2 * (0.5 * np.pi + np.arcsin(h / radius)) + h * np.sqrt(radius**2 - h**2)
+
+
+def parts_in_layers(edges, height, radius, below=volume_below):
+    """What lies between one edge (m) and the next of every body, as [layer, body]. `below`: of volumes or of areas."""
+    part = below(np.asarray(edges)[:, None] - np.asarray(height)[None, :], np.asarray(radius)[None, :])
+    return np.diff(part, axis=0)
+
+
+def layer_edges(bottom, top, thickness):
+    """Edges of a whole number of layers between two heights (m), about as thick as wanted."""
+    return np.linspace(bottom, top, max(1, round((top - bottom) / thickness)) + 1)
+
+
+class LayerSums:
+    """Sums over pictures of what the grains bring into layers; profiles() makes means of them. Lengths in m."""
+
+    def __init__(self, edges, area):
+        self.edges, self.layer_volumes = np.asarray(edges, float), area * np.diff(edges)
+        layers = len(edges) - 1
+        self.pictures, self.volume = 0, np.zeros(layers)
+        self.momentum, self.square = np.zeros((layers, 3)), np.zeros(layers)
+        self.stresses = {}
+
+    def add(self, frame):
+        part = parts_in_layers(self.edges, frame.position[:, 2], frame.radius)
+        self.pictures += 1
+        self.volume += part.sum(axis=1)
+        self.momentum += part @ frame.velocity
+        self.square += part @ np.sum(frame.velocity**2, axis=1)
+        for name in ("contact_stress", "fluid_stress"):
+            if name in frame.arrays:
+                sums = self.stresses.setdefault(name, np.zeros((len(part), 9)))
+                sums += part @ frame.arrays[name].reshape(-1, 9)
+
+    def profiles(self):
+        """Columns over z, the middle of the layers: solid fraction, velocity (NaN where no grain was), flux, granular
+        temperature (sum V |v|^2/sum V - |U|^2)/3 over grains and pictures, stresses weighted with the solid fraction, and of
+        the fluid's on grains the rotation stress sigma_xz - sigma_zx (Zhang et al. 2022, sec. 2.4)."""
+        if self.pictures == 0:
+            raise RunFolderError("there is no picture of the grains in this time.")
+        whole = self.pictures * self.layer_volumes
+        volume = np.where(self.volume > 1e-9 * whole, self.volume, np.nan)
+        velocity = self.momentum / volume[:, None]
+        found = {"z": 0.5 * (self.edges[1:] + self.edges[:-1]), "solid_fraction": self.volume / whole,
+                 "velocity": velocity, "flux": self.momentum / whole[:, None],
+                 "granular_temperature": (self.square / volume - np.sum(velocity**2, axis=1)) / 3.0}
+        for name, sums in self.stresses.items():
+            found[name] = (sums / whole[:, None]).reshape(-1, 3, 3)
+        if "fluid_stress" in found:
+            found["rotation_stress"] = found["fluid_stress"][:, 0, 2] - found["fluid_stress"][:, 2, 0]
+        return Columns(found, UNITS)
+
+
+def layer_profiles(run, start=-np.inf, stop=np.inf, thickness=None):
+    """Profiles over the height of the box from the pictures between two times (s); layers of half a diameter if no
+    thickness (m) is given."""
+    edges = layer_edges(0.0, run.size[2], thickness or 0.5 * run.diameter)
+    sums = LayerSums(edges, run.size[0] * run.size[1])
+    for frame in run.grains.between(start, stop):
+        sums.add(frame)
+    return sums.profiles()

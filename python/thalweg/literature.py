@@ -1,0 +1,39 @@
+"""Transport relations q*(tau*) of the literature, and the numbers Zhang et al. (2022) print."""
+import numpy as np
+
+
+def excess_power(shields, prefactor, threshold):
+    """prefactor (tau* - threshold)^1.5, zero below the threshold."""
+    return prefactor * np.maximum(np.asarray(shields, float) - threshold, 0.0)**1.5
+
+
+def meyer_peter_mueller(shields):
+    """Meyer-Peter and Mueller (1948)."""
+    return excess_power(shields, 8.0, 0.047)
+
+
+def wong_parker(shields):
+    """Wong and Parker (2006), the same data with a better correction for side walls."""
+    return excess_power(shields, 3.97, 0.0495)
+
+
+def fernandez_luque_van_beek(shields, threshold=0.0455):
+    """Fernandez Luque and van Beek (1976); thresholds from 0.037 to 0.0455."""
+    return excess_power(shields, 5.7, threshold)
+
+
+def zhang_wide_bed(shields, prefactor=1.0):
+    """The curve of Zhang et al. (2022), fig. 6, for beds without side walls: q* = (tau* - 0.033)^1.5, as printed.
+
+    With that prefactor the curve is a factor of 3 to 8 below the relations above and below the paper's own flume, so one
+    between 5 and 8 seems to be missing. Do not take it as a reference before the figure's data have been read.
+    """
+    return excess_power(shields, prefactor, 0.033)
+
+
+# Zhang et al. (2022), sec. 2.2: the flume. What is not printed in the text is only in its figures.
+FLUME_THRESHOLD, FLUME_THRESHOLD_ERROR = 0.026, 0.002   # of the experiment, Benavides et al.
+# (Shields number, q*, standard deviation of q* over the last 10 s, start)
+FLUME_POINTS = ((0.028, 0.089, 0.019, "standard"), (0.028, 0.077, 0.017, "faster flow"))
+# (Shields number, standard deviation of q* over its mean)
+FLUME_SCATTER = ((0.047, 0.16), (0.063, 0.11), (0.068, 0.09))

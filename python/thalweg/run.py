@@ -1,0 +1,165 @@
+"""A run folder."""
+import json
+import re
+from functools import cached_property
+from pathlib import Path
+
+import h5py
+import numpy as np
+import yaml
+
+from thalweg.columns import Columns
+from thalweg.errors import RunFolderError
+from thalweg.frames import FluidFrame, Frames, GrainFrame
+from thalweg.tables import read_series
+
+
+class CaseLoader(yaml.SafeLoader):
+    """YAML 1.1 takes 1e-06 for text, YAML 1.2 and Thalweg for a number."""
+
+
+CaseLoader.add_implicit_resolver("tag:yaml.org,2002:float", re.compile(r"^[-+]?(\d+\.?\d*|\.\d+)[eE][-+]?\d+$"),
+                                 list("-+.0123456789"))
+
+
+def read_case(path):
+    """A case file as a dictionary."""
+    return yaml.load(Path(path).read_text(), CaseLoader)
+
+
+def face_type(boundary):
+    """A boundary is written as its type or as a mapping with the key type."""
+    return boundary.get("type") if isinstance(boundary, dict) else boundary
+
+
+class Run:
+    """A run folder, finished or still going. What has been read stays as it was; make another Run to look again."""
+
+    def __init__(self, folder):
+        self.folder = Path(folder)
+        if not (self.folder / "case.yaml").exists():
+            raise RunFolderError(f"{self.folder}: there is no case.yaml in it; give the folder of a run.")
+
+    @cached_property
+    def case(self):
+        """The case as it was run, as a dictionary; SI units."""
+        return read_case(self.folder / "case.yaml")
+
+    @cached_property
+    def series(self):
+        """Columns of series.csv by name, `time` (s) among them."""
+        return read_series(self.folder / "series.csv")
+
+    @cached_property
+    def grains(self):
+        """Pictures of the grains."""
+        return Frames.of_index(self.folder / "grains.pvd", GrainFrame)
+
+    @cached_property
+    def fluid(self):
+        """Pictures of the fluid."""
+        return Frames.of_index(self.folder / "fluid.pvd", FluidFrame)
+
+    @cached_property
+    def profiles(self):
+        """Means over time by group (`grain_profiles`, `fluid_statistics`), each with its arrays and their units; empty
+        until the first checkpoint after they were begun."""
+        path = self.folder / "profiles.h5"
+        if not path.exists():
+            return {}
+        with h5py.File(path) as file:
+            return {name: columns_of(group) for name, group in file.items()}
+
+    @cached_property
+    def bed(self):
+        """The grains at the end of the run, with the columns of bed.h5; None before."""
+        path = self.folder / "bed.h5"
+        return read_bed(path) if path.exists() else None
+
+    @cached_property
+    def summary(self):
+        """summary.json as a dictionary, or None while the run is going."""
+        path = self.folder / "summary.json"
+        return json.loads(path.read_text()) if path.exists() else None
+
+    @cached_property
+    def latest_checkpoint(self):
+        """Path of the newest checkpoint, an HDF5 file; None before the first."""
+        latest = self.folder / "checkpoints" / "latest"
+        return latest.parent / latest.read_text().strip() if latest.exists() else None
+
+    @property
+    def name(self):
+        return self.case.get("name", self.folder.name)
+
+    @property
+    def size(self):
+        """Of the box along x, y, z in m."""
+        return np.array(self.case["domain"]["size"], float)
+
+    def faces(self, axis):
+        """Types of the two faces across x, y or z ("x", "y", "z"), of which "periodic" comes twice."""
+        boundaries = self.case["domain"].get("boundaries", {})
+        both = face_type(boundaries.get(axis))
+        names = ("bottom", "top") if axis == "z" else (f"{axis}_low", f"{axis}_high")
+        return tuple(face_type(boundaries.get(name)) or both for name in names)
+
+    @property
+    def periodic(self):
+        """Whether x, y and z are periodic."""
+        return tuple("periodic" in self.faces(axis) for axis in "xyz")
+
+    @property
+    def side_walls(self):
+        """Whether both faces across y hold the water back, so that the hydraulic radius counts."""
+        return all(face not in ("periodic", "free_slip", None) for face in self.faces("y"))
+
+    @cached_property
+    def diameter(self):
+        """m: of the first population, or where that is more than one number the one that half of the mass is finer than."""
+        diameter = self.case["grains"][0].get("diameter")
+        if isinstance(diameter, (int, float)):
+            return float(diameter)
+        if not self.grains:
+            raise RunFolderError(f"{self.folder}: the case has no single diameter and there is no picture of the grains.")
+        sizes = np.sort(self.grains[0].diameter)
+        return float(sizes[np.searchsorted(np.cumsum(sizes**3), 0.5 * np.sum(sizes**3))])
+
+    @property
+    def density_ratio(self):
+        """Of the first population's grains to the fluid, 1."""
+        return self.case["grains"][0]["density"] / self.case["fluid"]["density"]
+
+    @property
+    def gravity(self):
+        """m/s^2, along x, y, z."""
+        gravity = self.case["gravity"]
+        if "vector" in gravity:
+            return np.array(gravity["vector"], float)
+        angle = np.arctan(gravity.get("slope", 0.0))
+        return gravity["magnitude"] * np.array([np.sin(angle), 0.0, -np.cos(angle)])
+
+    @property
+    def slope(self):
+        """Tangent of the bed's angle, 1."""
+        gravity = self.gravity
+        return float(gravity[0] / -gravity[2])
+
+
+def columns_of(group):
+    """The arrays of an HDF5 group with their units and components."""
+    arrays = {name: data[()] for name, data in group.items()}
+    units = {name: text(data.attrs.get("unit", "1")) for name, data in group.items()}
+    components = {name: text(data.attrs["components"]).split() for name, data in group.items()
+                  if "components" in data.attrs}
+    return Columns(arrays, units, components)
+
+
+def read_bed(path):
+    """The grains in a bed.h5: position, radius and what else is there, one row a grain."""
+    with h5py.File(path) as file:
+        return columns_of(file["grains"])
+
+
+def text(value):
+    return value.decode() if isinstance(value, bytes) else str(value)

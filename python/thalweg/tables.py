@@ -1,0 +1,32 @@
+"""Tables of comma-separated values whose headings carry units: `q_s [m^2/s]`."""
+import csv
+import re
+
+import numpy as np
+
+from thalweg.columns import Columns
+from thalweg.errors import RunFolderError
+
+HEADING = re.compile(r"\s*(.*?)\s*(?:\[(.*)\])?\s*$")
+
+
+def read_rows(path):
+    """Rows of a table as dictionaries of text by heading; lines that begin with # are comments."""
+    with open(path, newline="") as file:
+        return list(csv.DictReader(line for line in file if not line.startswith("#")))
+
+
+def read_series(path):
+    """Columns of series.csv by name without the unit. The last row may still be being written: it counts once its end of
+    line is there."""
+    if not path.exists():
+        raise RunFolderError(f"{path}: there is no such file; is this the folder of a run?")
+    text = path.read_text()
+    lines = [line for line in text[:text.rfind("\n") + 1].splitlines() if not line.startswith("#")]
+    rows = list(csv.reader(lines))
+    if len(rows) < 2:
+        raise RunFolderError(f"{path}: there is no measurement in it yet.")
+    headings = [HEADING.match(heading).groups() for heading in rows[0]]
+    values = np.array([[float(v) for v in row] for row in rows[1:] if len(row) == len(headings)])
+    names = [name for name, _ in headings]
+    return Columns(zip(names, values.T), {name: unit or "1" for name, unit in headings})

@@ -1,0 +1,116 @@
+"""The VTK XML files of a run (.vtp, .vti, .pvti and .pvd), read without VTK.
+
+Arrays lie in one appended section, raw or in base64, in blocks compressed by zlib or not at all, with headers of 32 or 64
+bits: the format of the VTK User's Guide, "VTK XML formats", as Thalweg and VTK's own writers make it.
+"""
+import base64
+import xml.etree.ElementTree as xml
+import zlib
+
+import numpy as np
+
+from thalweg.errors import RunFolderError
+
+TYPES = {"Int8": "i1", "UInt8": "u1", "Int32": "i4", "UInt32": "u4", "Int64": "i8", "UInt64": "u8", "Float32": "f4",
+         "Float64": "f8"}
+
+
+class Appended:
+    """The appended section of a file: bytes by offset."""
+
+    def __init__(self, data, encoded, header_type, compressed):
+        self.data, self.encoded, self.compressed = data, encoded, compressed
+        self.word = np.dtype("<" + TYPES[header_type])
+
+    def _piece(self, start, size):
+        """`size` bytes that begin at `start`, and where the next piece begins; in base64 every piece has its own end."""
+        if not self.encoded:
+            return self.data[start:start + size], start + size
+        length = (size + 2) // 3 * 4
+        return base64.b64decode(self.data[start:start + length])[:size], start + length
+
+    def bytes_at(self, offset):
+        word = self.word.itemsize
+        if not self.compressed:
+            size = int(np.frombuffer(self._piece(offset, word)[0], self.word)[0])
+            return self._piece(offset, word + size)[0][word:]
+        blocks = int(np.frombuffer(self._piece(offset, 3 * word)[0], self.word)[0])
+        header, start = self._piece(offset, (3 + blocks) * word)
+        sizes = np.frombuffer(header, self.word)[3:].astype(int)
+        joined, _ = self._piece(start, int(sizes.sum()))
+        ends = np.cumsum(sizes)
+        return b"".join(zlib.decompress(joined[end - size:end]) for size, end in zip(sizes, ends))
+
+
+def open_file(path):
+    """The XML tree of a file and its appended section (None without one)."""
+    if not path.exists():
+        raise RunFolderError(f"{path}: the picture its index names does not exist.")
+    content = path.read_bytes()
+    mark = content.find(b"<AppendedData")
+    if mark < 0:
+        return xml.fromstring(content), None
+    root = xml.fromstring(content[:mark] + b"</VTKFile>")
+    start = content.index(b"_", mark) + 1
+    encoded = b'encoding="base64"' in content[mark:start]
+    compressor = root.get("compressor")
+    if compressor not in (None, "vtkZLibDataCompressor"):
+        raise RunFolderError(f"{path}: its arrays are compressed by {compressor}, only vtkZLibDataCompressor is read.")
+    return root, Appended(content[start:], encoded, root.get("header_type", "UInt32"), compressor is not None)
+
+
+def arrays_in(section, appended, path):
+    """Arrays of a PointData, CellData or Points section by name."""
+    found = {}
+    for entry in section if section is not None else ():
+        if entry.get("format") != "appended":
+            raise RunFolderError(f"{path}: its array {entry.get('Name')} is written in the format {entry.get('format')}, "
+                                 "only appended is read.")
+        values = np.frombuffer(appended.bytes_at(int(entry.get("offset"))), "<" + TYPES[entry.get("type")])
+        components = int(entry.get("NumberOfComponents", 1))
+        found[entry.get("Name")] = values.reshape(-1, components) if components > 1 else values
+    return found
+
+
+def read_points(path):
+    """Positions (m) of the points in a .vtp file and their arrays by name."""
+    root, appended = open_file(path)
+    piece = root.find("PolyData/Piece")
+    if int(piece.get("NumberOfPoints")) == 0:
+        return np.zeros((0, 3)), {}
+    points = next(iter(arrays_in(piece.find("Points"), appended, path).values()))
+    return points.astype(float), arrays_in(piece.find("PointData"), appended, path)
+
+
+def numbers(text, kind=float):
+    return np.array([kind(word) for word in text.split()])
+
+
+def read_image(path):
+    """Lower corner (m), spacing (m) and arrays of the cells, as [z, y, x] and a component, of a .vti or .pvti file."""
+    root, appended = open_file(path)
+    image = root.find("ImageData") if path.suffix == ".vti" else root.find("PImageData")
+    spacing = numbers(image.get("Spacing"))
+    whole = numbers(image.get("WholeExtent"), int).reshape(3, 2)
+    corner = numbers(image.get("Origin")) + whole[:, 0] * spacing
+    arrays = {}
+    for piece in image.findall("Piece"):
+        extent = numbers(piece.get("Extent"), int).reshape(3, 2)
+        if path.suffix == ".vti":
+            inside = arrays_in(piece.find("CellData"), appended, path)
+            shape = (extent[:, 1] - extent[:, 0])[::-1]
+            inside = {name: values.reshape(*shape, *values.shape[1:]) for name, values in inside.items()}
+        else:
+            inside = read_image(path.parent / piece.get("Source"))[2]
+        place = tuple(slice(*(extent[axis] - whole[axis, 0])) for axis in (2, 1, 0))
+        for name, values in inside.items():
+            shape = (*(whole[:, 1] - whole[:, 0])[::-1], *values.shape[3:])
+            arrays.setdefault(name, np.zeros(shape, values.dtype))[place] = values
+    return corner, spacing, arrays
+
+
+def read_index(path):
+    """(time in s, path) of every entry of a .pvd index; none if there is no index yet."""
+    if not path.exists():
+        return []
+    return [(float(e.get("timestep")), path.parent / e.get("file")) for e in xml.parse(path).iter("DataSet")]

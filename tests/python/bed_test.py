@@ -1,0 +1,118 @@
+"""Layers, surface and Shields number of beds whose answers are known."""
+import unittest
+
+import numpy as np
+
+import made_up_folder as made_up
+import thalweg
+from thalweg import bed, literature
+from thalweg.layers import LayerSums, disk_below, layer_profiles, parts_in_layers, volume_below
+
+D, SIZE = 4.95e-3, np.array([0.12, 0.0105, 0.1485])
+
+
+class Parts(unittest.TestCase):
+    def test_of_a_sphere_and_a_disk(self):
+        # Half of each below the middle, all below the top, the cap pi h^2 (3 R - h)/3 and the segment of 60 degrees.
+        self.assertAlmostEqual(volume_below(0.0, 2.0), 2 / 3 * np.pi * 8, 12)
+        self.assertAlmostEqual(volume_below(5.0, 2.0), 4 / 3 * np.pi * 8, 12)
+        self.assertEqual(volume_below(-2.0, 2.0), 0.0)
+        self.assertAlmostEqual(volume_below(-1.5, 2.0), np.pi * 0.25 * 5.5 / 3, 12)
+        self.assertAlmostEqual(disk_below(-1.0, 2.0), 4 * (np.pi / 3 - np.sqrt(3) / 4), 12)
+        self.assertAlmostEqual(disk_below(9.0, 2.0), np.pi * 4, 12)
+
+    def test_nothing_is_lost(self):
+        generator = np.random.default_rng(1)
+        height, radius = generator.uniform(0.2, 0.8, 50), generator.uniform(0.05, 0.2, 50)
+        part = parts_in_layers(np.linspace(0, 1, 31), height, radius)
+        np.testing.assert_allclose(part.sum(axis=0), 4 / 3 * np.pi * radius**3, rtol=1e-12)
+        self.assertTrue((part >= 0).all())
+
+
+class Layers(made_up.MadeUpFolder):
+    def test_means_of_two_grains(self):
+        # Both centred on the edge between two layers a diameter thick, so that half of each is in each; velocities 1 and 3
+        # along x: mean 2, temperature 1/3 of the variance 1.
+        place = np.array([[[0.01, 0.005, D], [0.05, 0.005, D]]])
+        velocity = np.array([[[1.0, 0, 0], [3.0, 0, 0]]])
+        stress = np.zeros((1, 2, 9))
+        stress[0, :, 2], stress[0, :, 6] = (3.0, 5.0), (1.0, 1.0)   # xz, zx
+        self.write_frames((0.0,), place, velocity=velocity, fluid_stress=stress)
+        sums = LayerSums(np.array([0.0, D, 2 * D, 3 * D]), SIZE[0] * SIZE[1])
+        sums.add(thalweg.Run(self.folder).grains[0])
+        found = sums.profiles()
+        fraction = np.pi / 6 * D**3 / (SIZE[0] * SIZE[1] * D)
+        np.testing.assert_allclose(found["solid_fraction"], (fraction, fraction, 0.0), rtol=1e-12)
+        np.testing.assert_allclose(found["velocity"][:2, 0], 2.0, rtol=1e-12)
+        self.assertTrue(np.isnan(found["velocity"][2]).all())
+        np.testing.assert_allclose(found["flux"][:2, 0], 2.0 * fraction, rtol=1e-12)
+        np.testing.assert_allclose(found["granular_temperature"][:2], 1 / 3, rtol=1e-12)
+        np.testing.assert_allclose(found["rotation_stress"], np.array([3.0, 3.0, 0.0]) * fraction, rtol=1e-12)
+
+    def bed_of_layers(self, layers):
+        """24 x 2 grains a layer, layers one diameter apart, and one grain that flies."""
+        x, y, z = np.meshgrid((np.arange(24) + 0.5) * SIZE[0] / 24, (0.3 * SIZE[1], 0.7 * SIZE[1]),
+                              (np.arange(layers) + 0.5) * D)
+        return np.vstack([np.column_stack([x.ravel(), y.ravel(), z.ravel()]), [0.06, 0.005, (layers + 6) * D]])
+
+    def test_the_surface_by_solid_fraction(self):
+        # Half of the top layer's volume is where its solid fraction has fallen to half in layers a diameter thick: at the top.
+        places = self.bed_of_layers(10)
+        self.write_frames((0.0, 1.0), [places, places])
+        run = thalweg.Run(self.folder)
+        profiles = layer_profiles(run, thickness=D)
+        height = bed.surface_by_solid_fraction(profiles["z"], profiles["solid_fraction"])
+        self.assertAlmostEqual(height / D, 10.0, 6)
+        self.assertLess(abs(bed.bed_height(run) / D - 10.0), 0.25)   # in layers of a quarter
+        depth = SIZE[2] - height
+        exact = 0.0748 * depth * SIZE[1] / (2 * depth + SIZE[1]) / (1.55 * D)
+        self.assertAlmostEqual(bed.shields_number(run, height), exact, 12)
+
+    def test_the_surface_by_static_pixels(self):
+        # Layers at rest end 8 d high; on them a layer that slides by a diameter between pictures, and one grain that flies.
+        # The outline of spheres side by side is below their tops by 1 - pi/4 of half a diameter in the mean.
+        still = self.bed_of_layers(8)
+        moving = self.bed_of_layers(9)[-200:]
+        moving = moving[np.isclose(moving[:, 2], 8.5 * D)]
+        frames = [np.vstack([still, (moving + [n * D, 0, 0]) % [SIZE[0], 1, 1]]) for n in range(11)]
+        for n, places in enumerate(frames):
+            places[len(still) - 1, 0] = (0.06 + 0.01 * n) % SIZE[0]
+        self.write_frames(np.arange(11) * 0.1, frames)
+        height = bed.static_bed_height(thalweg.Run(self.folder), pictures=3) / D
+        self.assertLess(height, 8.0)
+        self.assertGreater(height, 8.0 - 0.5 * (1 - np.pi / 4) - 2 / 25)
+
+    def test_static_pixels_need_pictures(self):
+        self.write_frames((0.0, 0.3), [self.bed_of_layers(2)] * 2)
+        with self.assertRaisesRegex(thalweg.RunFolderError, "over 0.5 s"):
+            bed.static_bed_height(thalweg.Run(self.folder))
+
+    def test_the_transport_rate_from_where_the_case_says(self):
+        (self.folder / "series.csv").write_text("time [s],q_star [1]\n0,9\n1.0,0.1\n1.5,0.3\n")
+        time, rate = bed.transport_rate(thalweg.Run(self.folder))
+        np.testing.assert_array_equal(rate, (0.1, 0.3))
+        with self.assertRaisesRegex(thalweg.RunFolderError, "no measurement from 2 s on"):
+            bed.transport_rate(thalweg.Run(self.folder), 2.0)
+
+
+class Shields(unittest.TestCase):
+    def test_of_the_flume_and_the_wide_bed(self):
+        # Zhang et al. 2022: the flume with H = 12 d and W = 10.5 mm, and tau* = 0.085 of WWF1, whose depth has three digits.
+        self.assertAlmostEqual(bed.shields_of(0.0748, 12 * D, D, 2.55, 0.0105), 0.047, 4)
+        self.assertLess(abs(bed.shields_of(0.016, 0.0412, 5e-3, 2.55) / 0.085 - 1), 0.05 / 41.2)
+        for width in (None, 0.0105):
+            slope = bed.slope_of(0.05, 0.06, D, 2.55, width)
+            self.assertAlmostEqual(bed.shields_of(slope, 0.06, D, 2.55, width), 0.05, 14)
+
+
+class Literature(unittest.TestCase):
+    def test_values_at_two_shields_numbers(self):
+        # Worked out by hand from the printed formulas.
+        np.testing.assert_allclose(literature.meyer_peter_mueller([0.04, 0.085, 0.1408]), (0.0, 0.0593, 0.2298), atol=1e-4)
+        np.testing.assert_allclose(literature.wong_parker([0.085, 0.1408]), (0.0266, 0.1095), atol=2e-4)
+        np.testing.assert_allclose(literature.fernandez_luque_van_beek(0.085, 0.037), 0.0599, atol=1e-4)
+        np.testing.assert_allclose(literature.zhang_wide_bed(0.1408), 0.0354, atol=1e-4)
+
+
+if __name__ == "__main__":
+    unittest.main()

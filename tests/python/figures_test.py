@@ -1,0 +1,88 @@
+"""The scripts of python/figures draw a run folder, and say in one sentence what is missing."""
+import subprocess
+import sys
+import unittest
+
+import h5py
+import matplotlib.image
+import numpy as np
+
+import made_up_folder as made_up
+from made_up_folder import ROOT
+
+D = 4.95e-3
+
+
+class Figures(made_up.MadeUpFolder):
+    def setUp(self):
+        super().setUp()
+        x, y, z = np.meshgrid((np.arange(24) + 0.5) * 5e-3, (2.6e-3, 7.9e-3), (np.arange(6) + 0.5) * D)
+        still = np.column_stack([x.ravel(), y.ravel(), z.ravel()])
+        frames = [np.vstack([still, [0.02 + 0.01 * n, 5e-3, 7 * D]]) for n in range(8)]
+        velocity = np.zeros((8, len(still) + 1, 3))
+        velocity[:, -1, 0] = 0.1
+        self.write_frames(np.arange(8) * 0.1, frames, velocity=velocity)
+        time = np.arange(0, 3, 0.01)
+        self.rate = 0.05 + 0.01 * np.random.default_rng(1).normal(size=len(time))
+        rows = "".join(f"{t},{q}\n" for t, q in zip(time, self.rate))
+        (self.folder / "series.csv").write_text("time [s],q_star [1]\n" + rows)
+
+    def script(self, name, *options):
+        return subprocess.run([sys.executable, "-B", ROOT / "python/figures" / name, self.folder, *options], text=True,
+                              capture_output=True)
+
+    def drawn(self, done, out):
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stdout.splitlines()[-1], str(out))
+        pixels = matplotlib.image.imread(out)
+        self.assertGreater(len(np.unique(pixels.reshape(-1, pixels.shape[2]), axis=0)), 10)
+
+    def refused(self, done, words):
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+        self.assertIn(words, done.stderr)
+
+    def write_profiles(self):
+        z = (np.arange(30) + 0.5) * D
+        with h5py.File(self.folder / "profiles.h5", "w") as file:
+            group = file.create_group("grain_profiles")
+            group["z"], group["solid_fraction"] = z, np.where(z < 6 * D, 0.5, 0.0)
+            for name, components in (("velocity", "x y z"), ("contact_stress", "xx xy xz yx yy yz zx zy zz"),
+                                     ("kinetic_stress", "xx yy zz xy xz yz")):
+                group[name] = np.ones((30, len(components.split())))
+                group[name].attrs["components"] = components
+
+    def test_the_transport_relation(self):
+        self.write_profiles()
+        out = self.folder / "relation.png"
+        done = self.script("transport_relation.py", "--out", out)
+        self.drawn(done, out)
+        name, shields, bed, mean = done.stdout.splitlines()[2].split("|")[1:5]
+        # The surface of the made-up profiles is half way from the middle of the sixth layer to that of the seventh.
+        depth = 0.1485 - 6 * D
+        exact = 0.0748 * depth * 0.0105 / (2 * depth + 0.0105) / (1.55 * D)
+        self.assertLess(abs(float(shields) - exact), 5.1e-5)   # printed with four decimals
+        self.assertLess(abs(float(bed) - 6.0), 5.1e-3)
+        self.assertLess(abs(float(mean) - self.rate[100:].mean()), 5.1e-5)   # from 1 s on, as the case says
+
+    def test_what_a_camera_sees(self):
+        out = self.folder / "visible.png"
+        self.drawn(self.script("visible_grains.py", "--out", out), out)
+
+    def test_bed_profiles(self):
+        self.refused(self.script("bed_profiles.py"), "no means of the grains yet")
+        self.write_profiles()
+        out = self.folder / "profiles.png"
+        self.drawn(self.script("bed_profiles.py", "--out", out), out)
+
+    def test_a_film(self):
+        for name in ("film.gif", "film"):
+            done = self.script("movie.py", "--out", self.folder / name, "--every", "0.2", "--width", "300")
+            self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual((self.folder / "film.gif").read_bytes()[:3], b"GIF")
+        self.assertEqual(len(list((self.folder / "film").glob("*.png"))), 4)   # at 0, 0.2, 0.4, 0.6 s
+        self.refused(self.script("movie.py", "--from", "5"), "no picture of the grains in this time")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,84 @@
+"""What the tests of the package thalweg share: the package's place and run folders made up by VTK's own writers."""
+import pathlib
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
+from vtkmodules.vtkIOXML import vtkXMLImageDataWriter, vtkXMLPolyDataWriter
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "python"))
+
+CASE = """# Thalweg run: this is the case as it was run.
+system: resolved
+name: Made up
+domain: {size: [0.12, 0.0105, 0.1485], spacing: 0.5e-3,
+         boundaries: {x: periodic, y: {type: law_of_the_wall}, bottom: no_slip, top: free_slip}}
+fluid: {density: 1000, kinematic_viscosity: 1e-06}
+gravity: {magnitude: 9.8, slope: 0.0748}
+grains: [{count: 969, diameter: 4.95e-3, density: 2550}]
+analysis: {transport_rate: {from: 1.0}}
+"""
+
+
+class MadeUpFolder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name) / "run"
+        (self.folder / "grains").mkdir(parents=True)
+        (self.folder / "fluid").mkdir()
+        (self.folder / "case.yaml").write_text(CASE)
+
+    def write_frames(self, times, places, **arrays):
+        """grains.pvd and its pictures: positions, and arrays by name, at each time."""
+        names = []
+        for n, time in enumerate(times):
+            names.append((time, f"grains/grains_{n}.vtp"))
+            count = len(places[n])
+            values = {"id": np.arange(count), "radius": np.full(count, 2.475e-3), "velocity": np.zeros((count, 3))}
+            values.update({name: series[n] for name, series in arrays.items()})
+            write_points(self.folder / names[-1][1], places[n], values)
+        write_index(self.folder / "grains.pvd", names)
+
+
+def write_points(path, places, arrays, adapt=lambda writer: None):
+    points = vtkPoints()
+    points.SetDataTypeToDouble()
+    points.SetData(numpy_to_vtk(np.ascontiguousarray(places, float), deep=True))
+    data = vtkPolyData()
+    data.SetPoints(points)
+    add_arrays(data.GetPointData(), arrays)
+    write(vtkXMLPolyDataWriter(), data, path, adapt)
+
+
+def write_image(path, extent, spacing, arrays, adapt=lambda writer: None):
+    """extent: of the points, six numbers; arrays as [z, y, x] and perhaps a component."""
+    image = vtkImageData()
+    image.SetExtent(*extent)
+    image.SetSpacing(spacing, spacing, spacing)
+    add_arrays(image.GetCellData(), {name: values.reshape(-1, *values.shape[3:]) for name, values in arrays.items()})
+    write(vtkXMLImageDataWriter(), image, path, adapt)
+
+
+def add_arrays(section, arrays):
+    for name, values in arrays.items():
+        array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
+        array.SetName(name)
+        section.AddArray(array)
+
+
+def write(writer, data, path, adapt):
+    writer.SetFileName(str(path))
+    writer.SetInputData(data)
+    adapt(writer)
+    writer.Write()
+
+
+def write_index(path, entries):
+    lines = "".join(f'<DataSet timestep="{time}" part="0" file="{file}"/>' for time, file in entries)
+    path.write_text(f'<?xml version="1.0"?><VTKFile type="Collection"><Collection>{lines}</Collection></VTKFile>')

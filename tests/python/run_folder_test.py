@@ -1,0 +1,177 @@
+"""A run folder read into numpy: every kind of file, finished or half written."""
+import unittest
+
+import h5py
+import numpy as np
+
+import made_up_folder as made_up
+import thalweg
+from thalweg.vtk_files import read_image, read_points
+
+
+def raw(writer):
+    writer.SetDataModeToAppended()
+    writer.EncodeAppendedDataOff()
+
+
+def uncompressed(writer):
+    raw(writer)
+    writer.SetCompressorTypeToNone()
+
+
+def plain_base64(writer):
+    writer.SetCompressorTypeToNone()
+
+
+def wide_headers(writer):
+    raw(writer)
+    writer.SetHeaderTypeToUInt64()
+
+
+def small_blocks(writer):
+    writer.SetBlockSize(4096)   # many blocks an array
+
+
+class VtkFiles(made_up.MadeUpFolder):
+    def test_points_by_every_encoding(self):
+        generator = np.random.default_rng(1)
+        places, stress = generator.normal(size=(700, 3)), generator.normal(size=(700, 9))
+        number = generator.integers(0, 1 << 40, 700)
+        for adapt in (lambda writer: None, raw, uncompressed, plain_base64, wide_headers, small_blocks):
+            path = self.folder / "points.vtp"
+            made_up.write_points(path, places, {"id": number, "contact_stress": stress}, adapt)
+            position, arrays = read_points(path)
+            np.testing.assert_array_equal(position, places)
+            np.testing.assert_array_equal(arrays["id"], number)
+            np.testing.assert_array_equal(arrays["contact_stress"], stress)
+
+    def test_an_array_in_the_wrong_format_is_refused(self):
+        path = self.folder / "points.vtp"
+        made_up.write_points(path, np.zeros((1, 3)), {}, lambda writer: writer.SetDataModeToAscii())
+        with self.assertRaisesRegex(thalweg.RunFolderError, "only appended is read"):
+            read_points(path)
+
+    def test_an_image_and_its_pieces(self):
+        generator = np.random.default_rng(2)
+        velocity = generator.normal(size=(4, 2, 6, 3)).astype(np.float32)
+        pressure = generator.normal(size=(4, 2, 6)).astype(np.float32)
+        whole = {"velocity": velocity, "pressure": pressure}
+        made_up.write_image(self.folder / "whole.vti", (0, 6, 3, 5, 0, 4), 0.5, whole, raw)
+        for name, first, last in (("left", 0, 4), ("right", 4, 6)):
+            made_up.write_image(self.folder / f"{name}.vti", (first, last, 3, 5, 0, 4), 0.5,
+                                {key: values[:, :, first:last] for key, values in whole.items()})
+        (self.folder / "both.pvti").write_text(
+            '<VTKFile type="PImageData"><PImageData WholeExtent="0 6 3 5 0 4" Origin="0 0 0" Spacing="0.5 0.5 0.5">'
+            '<Piece Extent="0 4 3 5 0 4" Source="left.vti"/><Piece Extent="4 6 3 5 0 4" Source="right.vti"/>'
+            "</PImageData></VTKFile>")
+        for name in ("whole.vti", "both.pvti"):
+            corner, spacing, arrays = read_image(self.folder / name)
+            np.testing.assert_array_equal(corner, (0.0, 1.5, 0.0))
+            np.testing.assert_array_equal(spacing, (0.5, 0.5, 0.5))
+            np.testing.assert_array_equal(arrays["velocity"], velocity)
+            np.testing.assert_array_equal(arrays["pressure"], pressure)
+
+
+class RunFolder(made_up.MadeUpFolder):
+    def test_the_case_as_numbers(self):
+        run = thalweg.Run(self.folder)
+        self.assertEqual(run.case["fluid"]["kinematic_viscosity"], 1e-6)   # written 1e-06
+        self.assertEqual(run.name, "Made up")
+        self.assertEqual(run.periodic, (True, False, False))
+        self.assertEqual(run.faces("y"), ("law_of_the_wall", "law_of_the_wall"))
+        self.assertEqual(run.faces("z"), ("no_slip", "free_slip"))
+        self.assertTrue(run.side_walls)
+        self.assertEqual(run.diameter, 4.95e-3)
+        self.assertAlmostEqual(run.density_ratio, 2.55, 12)
+        self.assertAlmostEqual(run.slope, 0.0748, 12)
+        self.assertAlmostEqual(np.linalg.norm(run.gravity), 9.8, 12)
+
+    def test_the_series_with_its_units(self):
+        (self.folder / "series.csv").write_text("time [s],fast_cell_fraction [1],q_s [m^2/s],nothing\n"
+                                                "0,0,1e-3,5\n0.5,1,2e-3,6\n")
+        series = thalweg.Run(self.folder).series
+        np.testing.assert_array_equal(series["q_s"], (1e-3, 2e-3))
+        self.assertEqual(series.units, {"time": "s", "fast_cell_fraction": "1", "q_s": "m^2/s", "nothing": "1"})
+
+    def test_a_row_that_is_being_written_does_not_count(self):
+        for rest in ("1.0,", "1.0,0.0", "1.0,0.04"):   # the row will be 1.0,0.042
+            (self.folder / "series.csv").write_text("time [s],q_star [1]\n0,1\n0.5,2\n" + rest)
+            series = thalweg.Run(self.folder).series
+            np.testing.assert_array_equal(series["time"], (0.0, 0.5), rest)
+            np.testing.assert_array_equal(series["q_star"], (1.0, 2.0), rest)
+
+    def test_what_is_not_there_yet(self):
+        run = thalweg.Run(self.folder)
+        self.assertEqual(len(run.grains), 0)
+        self.assertEqual(len(run.fluid), 0)
+        self.assertIsNone(run.grains.nearest(None))
+        self.assertEqual(run.profiles, {})
+        self.assertIsNone(run.summary)
+        self.assertIsNone(run.latest_checkpoint)
+        with self.assertRaisesRegex(thalweg.RunFolderError, "is this the folder of a run"):
+            run.series
+        (self.folder / "series.csv").write_text("time [s],q_star [1]\n")
+        with self.assertRaisesRegex(thalweg.RunFolderError, "no measurement in it yet"):
+            thalweg.Run(self.folder).series
+        with self.assertRaisesRegex(thalweg.RunFolderError, "no case.yaml"):
+            thalweg.Run(self.folder / "grains")
+
+    def test_frames_of_grains(self):
+        places = np.arange(18.0).reshape(3, 2, 3)
+        stress = np.arange(54.0).reshape(3, 2, 9)
+        self.write_frames((0.0, 0.1, 0.2), places, velocity=10 * places, contact_stress=stress)
+        grains = thalweg.Run(self.folder).grains
+        self.assertEqual(len(grains), 3)
+        np.testing.assert_array_equal(grains.times, (0.0, 0.1, 0.2))
+        self.assertEqual(grains.nearest(0.13).time, 0.1)
+        self.assertEqual(grains.nearest(None).time, 0.2)
+        self.assertEqual([frame.time for frame in grains.between(0.05)], [0.1, 0.2])
+        self.assertEqual([frame.time for frame in grains[:2]], [0.0, 0.1])
+        frame = grains[-1]
+        np.testing.assert_array_equal(frame.position, places[2])
+        np.testing.assert_array_equal(frame.velocity, 10 * places[2])
+        self.assertEqual(frame.contact_stress[1, 0, 2], stress[2, 1, 2])   # xz: the force's component first
+        self.assertEqual(frame.arrays.units["contact_stress"], "Pa")
+        np.testing.assert_allclose(frame.volume, np.pi / 6 * frame.diameter**3, rtol=1e-15)
+        self.assertFalse(hasattr(frame, "fluid_stress"))
+
+    def test_a_grain_on_its_way(self):
+        places = np.arange(18.0).reshape(3, 2, 3)
+        self.write_frames((0.0, 0.1, 0.2), places, velocity=10 * places)
+        from thalweg.frames import trajectory
+        times, positions, velocities = trajectory(thalweg.Run(self.folder).grains, 1)
+        np.testing.assert_array_equal(times, (0.0, 0.1, 0.2))
+        np.testing.assert_array_equal(positions, places[:, 1])
+        np.testing.assert_array_equal(velocities, 10 * places[:, 1])
+
+    def test_a_slice_of_the_fluid(self):
+        pressure = np.arange(24.0, dtype=np.float32).reshape(4, 1, 6)
+        made_up.write_image(self.folder / "fluid/fluid_0.vti", (0, 6, 3, 4, 0, 4), 0.5, {"pressure": pressure})
+        made_up.write_index(self.folder / "fluid.pvd", [(0.5, "fluid/fluid_0.vti")])
+        frame = thalweg.Run(self.folder).fluid[0]
+        np.testing.assert_array_equal(frame.arrays["pressure"], pressure)
+        self.assertEqual(frame.arrays.units["pressure"], "Pa")
+        np.testing.assert_array_equal(frame.centres(1), (1.75,))
+        np.testing.assert_array_equal(frame.centres(2), (0.25, 0.75, 1.25, 1.75))
+
+    def test_profiles_with_units_and_components(self):
+        with h5py.File(self.folder / "profiles.h5", "w") as file:
+            data = file.create_dataset("grain_profiles/velocity", data=np.ones((4, 3)))
+            data.attrs["unit"], data.attrs["components"] = "m/s", "x y z"
+        group = thalweg.Run(self.folder).profiles["grain_profiles"]
+        self.assertEqual(group["velocity"].shape, (4, 3))
+        self.assertEqual(group.units["velocity"], "m/s")
+        self.assertEqual(group.components["velocity"], ["x", "y", "z"])
+
+    def test_the_bed_at_the_end(self):
+        self.assertIsNone(thalweg.Run(self.folder).bed)
+        with h5py.File(self.folder / "bed.h5", "w") as file:
+            file["grains/radius"] = np.array([1.0, 2.0])
+            file["grains/radius"].attrs["unit"] = "m"
+        bed = thalweg.Run(self.folder).bed
+        np.testing.assert_array_equal(bed["radius"], (1.0, 2.0))
+        self.assertEqual(bed.units, {"radius": "m"})
+
+
+if __name__ == "__main__":
+    unittest.main()
