@@ -1,5 +1,6 @@
 #include "driver/case.hpp"
 
+#include "driver/bed_flow.hpp"
 #include "driver/grain_materials.hpp"
 #include "driver/stability.hpp"
 
@@ -135,10 +136,9 @@ bool holds_back(const Face& face) {
 }  // namespace
 
 double estimated_velocity(const Case& c) {
-  constexpr double bed_fraction = 0.6;  // of a bed's volume that is grain
   const Vec3 gravity = gravity_vector(c.gravity);
   const double along = std::hypot(gravity[0], gravity[1]);
-  const double bed = grain_volume(c) / (bed_fraction * c.domain.size[0] * c.domain.size[1]);
+  const double bed = grain_volume(c) / (driver::settled_fraction(c) * c.domain.size[0] * c.domain.size[1]);
   const double depth = c.domain.size[2] - bed;
   if (!has_fluid(c) || along == 0.0 || depth <= 0.0) return 0.0;
   const double nu = c.fluid.kinematic_viscosity;

@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "dem/grain_seed.hpp"
 #include "dem/material.hpp"
+#include "driver/bed_flow.hpp"
 #include "driver/build_system.hpp"
 #include "driver/grain_materials.hpp"
 #include "driver/grain_setup.hpp"
@@ -15,7 +16,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace thalweg::driver {
 
@@ -31,8 +31,6 @@ void refuse_missing_start(const Case& c) {
   }
 }
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-
 // What the program is assumed to reach, for the estimate of time: the share of the memory-bound speed of a bed with its
 // links on one core, and the grain-steps of one core.
 constexpr double share_of_memory_bound = 0.25;
@@ -42,11 +40,6 @@ constexpr double grain_steps_per_second = 2.5e6;
 // and history.
 constexpr double flag_bytes = 8.0, link_bytes = 32.0, grain_bytes = 2000.0;
 constexpr double links_per_square_cell = 15.8;  // links of a sphere over its diameter in cells squared
-
-// Walls that take a share of the shear.
-bool is_wall(const Face& face) {
-  return face.type == FaceType::no_slip || face.type == FaceType::moving || face.slips();
-}
 
 double bytes_per_value(const Case& c) { return c.fluid.precision == Precision::single ? 4.0 : 8.0; }
 
@@ -86,13 +79,17 @@ void add_bed(const Case& c, Lines& lines) {
   if (!std::isfinite(flow.galileo)) return;
   lines.push_back(fmt::format("density    ratio {:.4g}; Galileo number {:.4g}", flow.density_ratio, flow.galileo));
   if (!std::isfinite(flow.shields_depth)) return;
-  lines.push_back(
-      fmt::format("bed        settles at about {:.3g} m ({:.3g} diameters), {:.3g} m of flow above, slope {:g}",
-                  flow.bed_height, flow.bed_height / c.grains.front().diameter, flow.depth, flow.slope));
+  lines.push_back(fmt::format(
+      "bed        settles at about {:.3g} m ({:.3g} diameters, solid fraction {:g}), {:.3g} m of flow above, "
+      "slope {:g}",
+      flow.bed_height, flow.bed_height / c.grains.front().diameter, settled_fraction(c), flow.depth, flow.slope));
   lines.push_back(fmt::format("Shields    {:.4g} from depth and slope", flow.shields_depth) +
                   (flow.side_walls ? fmt::format("; {:.4g} from the hydraulic radius between the side walls",
                                                  flow.shields_hydraulic)
                                    : ""));
+  lines.push_back(
+      fmt::format("slope      is {:.4g} times the Shields number at this depth: {:.3g} for 0.03, {:.3g} for 0.1",
+                  slope_for(flow, 1.0), slope_for(flow, 0.03), slope_for(flow, 0.1)));
   lines.push_back(fmt::format("Reynolds   {:.4g} of a grain at the friction velocity {:.3g} m/s",
                               flow.particle_reynolds, flow.friction_velocity));
 }
@@ -185,30 +182,6 @@ void refuse_impossible_grains(const Case& c) {
 }
 
 }  // namespace
-
-FlowNumbers flow_numbers(const Case& c) {
-  FlowNumbers flow{nothing, nothing, nothing, nothing, false, nothing, nothing, nothing, nothing, nothing, nothing};
-  if (!has_fluid(c) || c.grains.empty()) return flow;
-  const Vec3 gravity = gravity_vector(c.gravity);
-  const double g = gravity.norm(), d = c.grains.front().diameter;
-  flow.density_ratio = c.grains.front().density / c.fluid.density;
-  const double excess = flow.density_ratio - 1.0;
-  flow.galileo = std::sqrt(std::abs(excess) * g * d * d * d) / c.fluid.kinematic_viscosity;
-  if (gravity.x() <= 0.0 || gravity.z() >= 0.0 || excess <= 0.0) return flow;
-
-  const Vec3 size = c.domain.size;
-  flow.slope = gravity.x() / -gravity.z();
-  flow.bed_height = grain_volume(c) / (FlowNumbers::settled_fraction * size.x() * size.y());
-  flow.depth = size.z() - flow.bed_height;
-  if (flow.depth <= 0.0) return flow;
-  flow.side_walls = is_wall(c.domain.faces[y_low]) && is_wall(c.domain.faces[y_high]);
-  flow.hydraulic_radius = flow.side_walls ? flow.depth * size.y() / (2.0 * flow.depth + size.y()) : flow.depth;
-  flow.shields_depth = flow.slope * flow.depth / (excess * d);
-  flow.shields_hydraulic = flow.slope * flow.hydraulic_radius / (excess * d);
-  flow.friction_velocity = std::sqrt(g * flow.slope * flow.hydraulic_radius);
-  flow.particle_reynolds = flow.friction_velocity * d / c.fluid.kinematic_viscosity;
-  return flow;
-}
 
 Cost cost_of(const Case& c, double bandwidth) {
   const Index3 n = cells_of(c.domain);

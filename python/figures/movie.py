@@ -45,8 +45,9 @@ def scales(run, frames):
 def pictures(run, frames, width):
     """RGB arrays of the figures, all of the same even size."""
     speed, flow = scales(run, frames)
+    scale = width / max(run.size[0], run.size[2])   # pixels per metre: the axes take most of the width
     for frame in frames:
-        figure = drawing.bed_figure(run, frame, run.fluid.nearest(frame.time), speed, flow)
+        figure = drawing.bed_figure(run, frame, run.fluid.nearest(frame.time), speed, flow, scale)
         figure.set_dpi(width / figure.get_figwidth())
         figure.canvas.draw()
         image = np.asarray(figure.canvas.buffer_rgba())[..., :3].copy()

@@ -1,0 +1,52 @@
+#include "driver/bed_flow.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace thalweg::driver {
+
+namespace {
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+// Walls that take a share of the shear.
+bool is_wall(const Face& face) {
+  return face.type == FaceType::no_slip || face.type == FaceType::moving || face.slips();
+}
+
+}  // namespace
+
+FlowNumbers flow_numbers(const Case& c) {
+  FlowNumbers flow{nothing, nothing, nothing, nothing, false, nothing, nothing, nothing, nothing, nothing, nothing};
+  if (!has_fluid(c) || c.grains.empty()) return flow;
+  const Vec3 gravity = gravity_vector(c.gravity);
+  const double g = gravity.norm(), d = c.grains.front().diameter;
+  flow.density_ratio = c.grains.front().density / c.fluid.density;
+  const double excess = flow.density_ratio - 1.0;
+  flow.galileo = std::sqrt(std::abs(excess) * g * d * d * d) / c.fluid.kinematic_viscosity;
+  if (gravity.x() <= 0.0 || gravity.z() >= 0.0 || excess <= 0.0) return flow;
+
+  const Vec3 size = c.domain.size;
+  flow.slope = gravity.x() / -gravity.z();
+  flow.bed_height = grain_volume(c) / (settled_fraction(c) * size.x() * size.y());
+  flow.depth = size.z() - flow.bed_height;
+  if (flow.depth <= 0.0) return flow;
+  flow.side_walls = is_wall(c.domain.faces[y_low]) && is_wall(c.domain.faces[y_high]);
+  flow.hydraulic_radius = flow.side_walls ? flow.depth * size.y() / (2.0 * flow.depth + size.y()) : flow.depth;
+  flow.shields_depth = flow.slope * flow.depth / (excess * d);
+  flow.shields_hydraulic = flow.slope * flow.hydraulic_radius / (excess * d);
+  flow.friction_velocity = std::sqrt(g * flow.slope * flow.hydraulic_radius);
+  flow.particle_reynolds = flow.friction_velocity * d / c.fluid.kinematic_viscosity;
+  return flow;
+}
+
+double slope_for(const FlowNumbers& flow, double shields) { return flow.slope / flow.shields_hydraulic * shields; }
+
+double settled_fraction(const Case& c) {
+  const bool between_walls =
+      c.domain.faces[y_low].type != FaceType::periodic && c.domain.faces[y_high].type != FaceType::periodic;
+  const bool narrow = !c.grains.empty() && c.domain.size.y() < 3.0 * c.grains.front().diameter;
+  return between_walls && narrow ? 0.554 : 0.6;
+}
+
+}  // namespace thalweg::driver

@@ -1,0 +1,34 @@
+// A flow over a bed of grains driven by the slope: depth, Shields number, slope, as far as the case alone tells them.
+#pragma once
+
+#include "driver/case.hpp"
+
+namespace thalweg::driver {
+
+// Shields number and depth follow Zhang et al. 2022: tau_b = rho_f g S H far from side walls, rho_f g S H W/(2 H + W)
+// between two of them, and tau* = tau_b / ((rho_s - rho_f) g d). Not a number where a case lacks what a number needs.
+struct FlowNumbers {
+  double slope;             // tangent of the bed's angle
+  double bed_height;        // m: the grains settled at settled_fraction()
+  double depth;             // m: from there to the top
+  double hydraulic_radius;  // m: H W/(2 H + W) between side walls, H without
+  bool side_walls;
+  double shields_depth;      // tau* of the depth-slope product
+  double shields_hydraulic;  // tau* of the hydraulic radius
+  double friction_velocity;  // m/s, of shields_hydraulic
+  double particle_reynolds;  // u_tau d / nu
+  double galileo;            // sqrt((s - 1) g d^3) / nu
+  double density_ratio;      // s
+};
+FlowNumbers flow_numbers(const Case& c);
+
+// The slope with which the hydraulic radius R gives the Shields number: S = tau* (s - 1) d / R, the reverse of
+// shields_hydraulic.
+double slope_for(const FlowNumbers& flow, double shields);
+
+// What part of a settled bed's volume is grain, 1: 0.6 (random loose to close packing is 0.55 to 0.64); 0.554 between
+// faces across y that are not periodic and closer than three diameters, which is that of the 969 grains in the flume of
+// Zhang et al. 2022, 18 diameters high.
+double settled_fraction(const Case& c);
+
+}  // namespace thalweg::driver
