@@ -3,16 +3,19 @@
 
 FIRST and SECOND are run folders without the number of the round: FIRST.0, FIRST.1, ... Of each the fastest round counts.
 """
-import json
 import pathlib
 import subprocess
 import sys
 
-COMPARE = pathlib.Path(__file__).resolve().parents[1] / "scripts" / "compare_checkpoints.py"
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "python"))
+import thalweg
+
+COMPARE = ROOT / "scripts" / "compare_checkpoints.py"
 
 
 def fastest(folder, rounds):
-    summaries = [json.loads(pathlib.Path(f"{folder}.{n}", "summary.json").read_text()) for n in range(rounds)]
+    summaries = [thalweg.Run(f"{folder}.{n}").summary for n in range(rounds)]
     return max(summaries, key=lambda s: s["steps_per_second"])
 
 
