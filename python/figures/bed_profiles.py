@@ -2,8 +2,9 @@
 """Means over the height of a bed, as fig. 7(a) of Zhang et al. (2022): bed_profiles.py RUN_FOLDER [options]
 
 Reads profiles.h5 (analysis.grain_profiles, and analysis.fluid_statistics where it is there) and, for the stress of the fluid on
-the grains, their pictures (coupling.grain_stress). Heights are from the surface by solid fraction. The driving stress is the
-weight along the slope of all that is above; without side walls, a steady flow has it as the sum of all shear stresses.
+the grains, their pictures (coupling.grain_stress). Heights are from the surface by solid fraction. Without side
+walls it also draws the driving stress, the weight along the slope of all that is above: in a steady flow the sum of all
+shear stresses.
 """
 import argparse
 import sys
@@ -36,9 +37,10 @@ def stresses(run):
     grains = run.profiles["grain_profiles"]
     z, fraction = grains["z"], grains["solid_fraction"]
     solid = component(grains, "contact_stress", "xz") + component(grains, "kinetic_stress", "xz")
-    found = [("solid: contacts and motion", z, solid), ("driving", z, driving_stress(run, z, fraction))]
-    if not run.side_walls:
-        found.append(("fluid: what is left of the driving", z, found[1][2] - solid))
+    found = [("solid: contacts and motion", z, solid)]
+    if not run.side_walls:   # which would take a share
+        driving = driving_stress(run, z, fraction)
+        found += [("driving", z, driving), ("fluid: what is left of the driving", z, driving - solid)]
     if "fluid_statistics" in run.profiles:
         fluid = run.profiles["fluid_statistics"]
         share = 1.0 - np.interp(fluid["z"], z, fraction)

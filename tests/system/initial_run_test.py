@@ -72,6 +72,17 @@ run: {until: 0.1}
         # A step or two of 1e-4 s at less than 0.25 m/s.
         numpy.testing.assert_allclose(self.grains("wet")["position"], self.grains("first")["position"], atol=5e-5)
 
+    def test_grains_of_another_run_under_a_flow_of_this_one(self):
+        self.run_well("run", self.case, "--out", "first")
+        begin = ("--set", "initial.from=first", "--set", "initial.fluid.uniform=[0.25, 0, 0]")
+        self.run_well("run", self.case, *begin, "--set", "initial.fields=[grains]", "--until", "0.0001", "--out", "flow")
+        numpy.testing.assert_allclose(self.grains("flow")["position"], self.grains("first")["position"], atol=5e-5)
+        # The first row is the state at the start, up to what gravity along the bed does in half a step of 1e-4 s.
+        half_step = 9.8 * numpy.sin(numpy.arctan(0.1)) * 0.5e-4
+        self.assertLess(abs(self.series("flow")["largest_fluid_speed"][0] - 0.25), 1.001 * half_step)
+        for fields in ("[fluid]", "[grains, fluid]"):
+            self.assert_refused("check", self.case, *begin, "--set", f"initial.fields={fields}", words=["given twice"])
+
     def test_what_does_not_fit_is_refused(self):
         self.case.write_text(self.DRY)
         self.run_well("run", self.case, "--until", "0.001", "--out", "first")
