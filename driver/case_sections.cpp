@@ -153,11 +153,11 @@ static void describe_initial(io::SectionVisitor& visit, InitialCase& initial, bo
   }
   visit.section("fluid", initial.fluid,
                 {.meaning = "velocity at the start: rest, uniform or log_profile", .empty_name = "rest"});
-  const bool fluid_of_other_run =
-      !initial.from.empty() &&
-      std::find(initial.fields.begin(), initial.fields.end(), InitialField::fluid) != initial.fields.end();
-  visit.require(!fluid_of_other_run || !(initial.fluid.uniform || initial.fluid.log_profile), "from",
-                "the start of the fluid is given twice; remove this key or the section fluid, or take fields: [grains]");
+  const bool fluid_of_other_run = !initial.from.empty() && std::find(initial.fields.begin(), initial.fields.end(),
+                                                                     InitialField::fluid) != initial.fields.end();
+  visit.require(
+      !fluid_of_other_run || !(initial.fluid.uniform || initial.fluid.log_profile), "from",
+      "the start of the fluid is given twice; remove this key or the section fluid, or take fields: [grains]");
 }
 
 static void describe(io::SectionVisitor& visit, AtRestCase& rest) {
