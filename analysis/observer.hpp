@@ -34,6 +34,9 @@ public:
   // The same as arrays, for profiles.h5.
   virtual std::vector<Profile> profiles() const { return {}; }
 
+  // The same in words, for the log at the end of the run: one sentence each.
+  virtual std::vector<std::string> remarks() const { return {}; }
+
   // Running sums, so that a restarted run reports the same means as one that was never interrupted. Collective.
   virtual void save(ArchiveWriter& archive) const = 0;
   virtual void load(ArchiveReader& archive) = 0;  // does nothing if the archive holds no sums that fit

@@ -1,18 +1,39 @@
 #include "analysis/transport_rate.hpp"
 
-#include "analysis/sphere_in_layer.hpp"
 #include "core/mpi_session.hpp"
 #include "core/order_free_sum.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace thalweg::analysis {
 
 namespace {
 
 constexpr double share_of_fall_speed_that_counts_as_moving = 0.01;
+
+// Of velocities, in fall speeds: water over a bed of sand or gravel seldom carries a grain faster than ten.
+constexpr double slowest = -5.0, fastest = 15.0;
+constexpr int velocity_bins = 200;
+
+// Rank 0 writes what all ranks hold alike.
+template <typename T>
+void write_once(ArchiveWriter& archive, MPI_Comm communicator, const std::string& path, const std::vector<T>& values) {
+  const bool first = rank_of(communicator) == 0;
+  const std::vector<std::uint64_t> shape{values.size()}, nothing{0};
+  archive.write(path, std::span<const T>(values).first(first ? values.size() : 0),
+                {shape, nothing, first ? shape : nothing});
+}
+
+template <typename T>
+std::vector<T> read_all(ArchiveReader& archive, const std::string& path) {
+  const std::vector<std::uint64_t> shape = archive.shape(path);
+  std::vector<T> values(shape.at(0));
+  archive.read(path, std::span<T>(values), {shape, {0}, shape});
+  return values;
+}
 
 }  // namespace
 
@@ -21,81 +42,191 @@ double TransportScales::flux() const {
   return std::sqrt(excess * gravity * grain_diameter) * grain_diameter;
 }
 
+double TransportScales::fall_speed() const { return flux() > 0.0 ? flux() / grain_diameter : 1.0; }
+
 double TransportScales::moving_speed() const {
   return share_of_fall_speed_that_counts_as_moving * flux() / grain_diameter;
 }
 
-TransportRate::TransportRate(MPI_Comm communicator, const TransportScales& scales, double from)
-    : communicator_(communicator), scales_(scales), from_(from) {}
+TransportRate::TransportRate(MPI_Comm communicator, const TransportScales& scales, const TransportSchedule& schedule)
+    : communicator_(communicator),
+      scales_(scales),
+      schedule_(schedule),
+      velocities_{Histogram::linear(slowest * scales.fall_speed(), fastest * scales.fall_speed(), velocity_bins),
+                  Histogram::linear(slowest * scales.fall_speed(), fastest * scales.fall_speed(), velocity_bins),
+                  Histogram::linear(slowest * scales.fall_speed(), fastest * scales.fall_speed(), velocity_bins)},
+      hops_(communicator, scales.grain_diameter, scales.grain_diameter / scales.fall_speed(), scales.moving_speed()) {}
 
 void TransportRate::observe(const Snapshot& snapshot) {
-  const GrainView& grains = snapshot.grains;
+  const std::vector<Body> bodies = bodies_of(snapshot.grains);
+  measure(snapshot, bodies);
+  // from may be a rounded multiple of the time step: a measurement at that very step counts.
+  const bool counts = snapshot.time >= schedule_.from * (1.0 - 1e-12);
+  // To see a state twice, as a run does that goes on from a checkpoint, changes nothing of the hops.
+  hops_.observe(snapshot.time, snapshot.decomposition->box(), snapshot.grains.global_count, bodies, counts);
+  if (!counts || snapshot.step <= counted_step_) return;
+  counted_step_ = snapshot.step;
+  last_time_ = snapshot.time;
+  if (q_s_.count() == 0) first_time_ = snapshot.time;
+  q_s_.add(latest_.q_s);
+  trend_.add(latest_.q_s);
+  sum_of_moving_ += static_cast<double>(latest_.moving);
+  sum_of_shares_ += latest_.share();
+  sum_of_activity_ += latest_.activity;
+  count_velocities(bodies);
+}
+
+void TransportRate::measure(const Snapshot& snapshot, const std::vector<Body>& bodies) {
   const double threshold = scales_.moving_speed();
-  std::vector<double> flux;
+  std::vector<double> terms;
   std::int64_t moving = 0;
   double largest_squared = 0.0;
-  const auto add = [&](double volume, const Vec3& velocity) {
-    flux.push_back(volume * velocity.x());
-    const double speed_squared = velocity.squaredNorm();
-    if (speed_squared > threshold * threshold) ++moving;
+  for (const Body& body : bodies) {
+    const double speed_squared = body.velocity.squaredNorm();
+    const bool moves = speed_squared > threshold * threshold;
+    terms.insert(terms.end(), {body.volume * body.velocity.x(), moves ? body.volume : 0.0});
+    if (moves) ++moving;
     largest_squared = std::max(largest_squared, speed_squared);
-  };
-  for (std::size_t i = 0; i < grains.id.size(); ++i)
-    if (!grains.is_member(i)) add(volume_of(grains.radius[i], grains.disk_thickness), grains.velocity[i]);
-  for (const ClumpState& clump : grains.clumps) add(clump.volume, clump.velocity);
+  }
   const Vec3 size = snapshot.decomposition->box().size;
-  const double width = grains.disk_thickness > 0.0 ? grains.disk_thickness : size.y();
-  q_s_ = order_free_sums(communicator_, flux, 1)[0] / (size.x() * width);
-  moving_ = sum_over_ranks(communicator_, moving);
-  largest_speed_ = std::sqrt(max_over_ranks(communicator_, largest_squared));
+  const double width = snapshot.grains.disk_thickness > 0.0 ? snapshot.grains.disk_thickness : size.y();
+  const std::vector<double> sums = order_free_sums(communicator_, terms, 2);
+  latest_.q_s = sums[0] / (size.x() * width);
+  latest_.activity = sums[1] / (size.x() * width);
+  latest_.moving = sum_over_ranks(communicator_, moving);
+  latest_.grains = snapshot.grains.body_count();
+  latest_.largest_speed = std::sqrt(max_over_ranks(communicator_, largest_squared));
+}
 
-  // from_ may be a rounded multiple of the time step: a measurement at that very step counts.
-  if (snapshot.time < from_ * (1.0 - 1e-12)) return;
-  // A run that goes on from a checkpoint looks once more at the state the checkpoint holds.
-  if (snapshot.step <= counted_step_) return;
-  counted_step_ = snapshot.step;
-  ++measurements_;
-  sum_ += q_s_;
-  sum_of_squares_ += q_s_ * q_s_;
+void TransportRate::count_velocities(const std::vector<Body>& bodies) {
+  const double threshold = scales_.moving_speed();
+  const std::size_t cells = velocities_[0].counts().size();
+  std::vector<std::int64_t> counts(3 * cells, 0);
+  for (const Body& body : bodies)
+    if (body.velocity.squaredNorm() > threshold * threshold)
+      for (std::size_t a = 0; a < 3; ++a) ++counts[a * cells + velocities_[a].bin_of(body.velocity[a])];
+  MPI_Allreduce(MPI_IN_PLACE, counts.data(), static_cast<int>(counts.size()), MPI_INT64_T, MPI_SUM, communicator_);
+  for (std::size_t c = 0; c < counts.size(); ++c) velocities_[c / cells].counts()[c % cells] += counts[c];
 }
 
 std::vector<Figure> TransportRate::figures() const {
-  std::vector<Figure> figures{{"q_s", "m^2/s", q_s_}};
-  if (scales_.have_q_star()) figures.push_back({"q_star", "1", q_s_ / scales_.flux()});
-  figures.push_back({"moving_grains", "1", static_cast<double>(moving_)});
-  figures.push_back({"largest_grain_speed", "m/s", largest_speed_});
+  std::vector<Figure> figures{{"q_s", "m^2/s", latest_.q_s}};
+  if (scales_.have_q_star()) figures.push_back({"q_star", "1", latest_.q_s / scales_.flux()});
+  figures.push_back({"moving_grains", "1", static_cast<double>(latest_.moving)});
+  figures.push_back({"moving_share", "1", latest_.share()});
+  figures.push_back({"activity", "m", latest_.activity});
+  figures.push_back({"largest_grain_speed", "m/s", latest_.largest_speed});
   return figures;
 }
 
+double TransportRate::interval() const {
+  return q_s_.count() > 1 ? (last_time_ - first_time_) / static_cast<double>(q_s_.count() - 1) : 0.0;
+}
+
 std::vector<Figure> TransportRate::results() const {
-  const double count = std::max<double>(1.0, static_cast<double>(measurements_));
-  const double mean = sum_ / count;
-  const double deviation = std::sqrt(std::max(0.0, sum_of_squares_ / count - mean * mean));
-  std::vector<Figure> results{{"q_s_mean", "m^2/s", mean}};
+  const CorrelatedMean::Error error = q_s_.error();
+  const TrendTest::Verdict verdict = trend_.verdict();
+  const double steady = verdict.trend == Trend::steady ? 1.0 : verdict.trend == Trend::drifting ? 0.0 : -1.0;
+  std::vector<Figure> results{{"q_s_mean", "m^2/s", q_s_.mean()},
+                              {"q_s_deviation", "m^2/s", q_s_.deviation()},
+                              {"q_s_error", "m^2/s", error.of_mean},
+                              {"q_s_error_holds", "1", error.blocks_long_enough ? 1.0 : 0.0},
+                              {"q_s_correlation_time", "s", error.correlation_time * interval()},
+                              {"q_s_drift", "m^2/s", verdict.drift},
+                              {"q_s_drift_error", "m^2/s", verdict.error},
+                              {"steady", "1", steady}};
   if (scales_.have_q_star()) {
-    results.push_back({"q_star_mean", "1", mean / scales_.flux()});
-    results.push_back({"q_star_deviation", "1", deviation / scales_.flux()});
+    results.push_back({"q_star_mean", "1", q_s_.mean() / scales_.flux()});
+    results.push_back({"q_star_deviation", "1", q_s_.deviation() / scales_.flux()});
+    results.push_back({"q_star_error", "1", error.of_mean / scales_.flux()});
   }
-  results.push_back({"mean_from", "s", from_});
-  results.push_back({"measurements", "1", static_cast<double>(measurements_)});
+  const double count = static_cast<double>(std::max<std::int64_t>(1, q_s_.count()));
+  results.push_back({"moving_grains_mean", "1", sum_of_moving_ / count});
+  results.push_back({"moving_share_mean", "1", sum_of_shares_ / count});
+  results.push_back({"activity_mean", "m", sum_of_activity_ / count});
+  for (const Figure& of_hops : hops_.results()) results.push_back(of_hops);
+  results.push_back({"reference_diameter", "m", scales_.grain_diameter});
+  results.push_back({"reference_density", "kg/m^3", scales_.grain_density});
+  results.push_back({"moving_speed", "m/s", scales_.moving_speed()});
+  results.push_back({"mean_from", "s", schedule_.from});
+  results.push_back({"measurements", "1", static_cast<double>(q_s_.count())});
   for (const Figure& latest : figures()) results.push_back(latest);
   return results;
 }
 
+std::vector<std::string> TransportRate::remarks() const {
+  if (q_s_.count() == 0) return {};
+  const CorrelatedMean::Error error = q_s_.error();
+  const TrendTest::Verdict verdict = trend_.verdict();
+  const double unit = scales_.have_q_star() ? scales_.flux() : 1.0;
+  const std::string mean = fmt::format(
+      "transport: {} = {:.4g} +- {:.2g}{} from {:.4g} to {:.4g} s ({} measurements, correlation time {:.2g} s{})",
+      scales_.have_q_star() ? "q*" : "q_s", q_s_.mean() / unit, error.of_mean / unit,
+      scales_.have_q_star() ? "" : " m^2/s", first_time_, last_time_, q_s_.count(), error.correlation_time * interval(),
+      error.blocks_long_enough ? "" : "; too short a time, the error is larger");
+  const std::string line = fmt::format("a straight line through it changes by {:+.2g} +- {:.2g} over this time",
+                                       verdict.drift / unit, verdict.error / unit);
+  switch (verdict.trend) {
+    case Trend::steady:
+      return {mean, fmt::format("transport: steady, {}, which is within chance", line)};
+    case Trend::drifting:
+      return {mean, fmt::format("transport: not steady, {}, which is beyond chance", line)};
+    case Trend::too_short:
+      break;
+  }
+  return {mean, "transport: too short a time to tell whether it is steady"};
+}
+
+std::vector<Profile> TransportRate::profiles() const {
+  const std::span<const double> edges = velocities_[0].edges();
+  Profile edge{"velocity_edges", "m/s", {}, {edges.size()}, {edges.begin(), edges.end()}};
+  Profile density{"velocity_density", "s/m", {"x", "y", "z"}, {edges.size() - 1, 3}, {}};
+  for (std::size_t b = 1; b < edges.size(); ++b)
+    for (const Histogram& velocity : velocities_) {
+      const auto all = static_cast<double>(std::max<std::int64_t>(1, velocity.total()));
+      density.values.push_back(static_cast<double>(velocity.counts()[b]) / (all * (edges[b] - edges[b - 1])));
+    }
+  std::vector<Profile> profiles{edge, density};
+  for (Profile& of_hops : hops_.profiles()) profiles.push_back(std::move(of_hops));
+  return profiles;
+}
+
+std::vector<double> TransportRate::sums() const {
+  return {first_time_, last_time_, sum_of_moving_, sum_of_shares_, sum_of_activity_};
+}
+
 void TransportRate::save(ArchiveWriter& archive) const {
-  archive.attribute("transport_rate/mean_from", from_);
-  archive.attribute("transport_rate/measurements", measurements_);
+  archive.attribute("transport_rate/mean_from", schedule_.from);
   archive.attribute("transport_rate/counted_step", counted_step_);
-  archive.attribute("transport_rate/sum", sum_);
-  archive.attribute("transport_rate/sum_of_squares", sum_of_squares_);
+  write_once(archive, communicator_, "transport_rate/sums", sums());
+  write_once(archive, communicator_, "transport_rate/trend", trend_.state());
+  if (q_s_.count() > 0) write_once(archive, communicator_, "transport_rate/blocks", q_s_.state());
+  std::vector<std::int64_t> counts;
+  for (const Histogram& velocity : velocities_)
+    counts.insert(counts.end(), velocity.counts().begin(), velocity.counts().end());
+  write_once(archive, communicator_, "transport_rate/velocity_counts", counts);
+  hops_.save(archive, "transport_rate");
 }
 
 void TransportRate::load(ArchiveReader& archive) {
-  if (!archive.has("transport_rate/mean_from") || archive.real_attribute("transport_rate/mean_from") != from_) return;
-  measurements_ = archive.integer_attribute("transport_rate/measurements");
+  const std::size_t cells = velocities_[0].counts().size();
+  const std::vector<std::uint64_t> shape{3 * cells};
+  if (!archive.has("transport_rate/mean_from") ||
+      archive.real_attribute("transport_rate/mean_from") != schedule_.from ||
+      !archive.has("transport_rate/velocity_counts") || archive.shape("transport_rate/velocity_counts") != shape)
+    return;
   counted_step_ = archive.integer_attribute("transport_rate/counted_step");
-  sum_ = archive.real_attribute("transport_rate/sum");
-  sum_of_squares_ = archive.real_attribute("transport_rate/sum_of_squares");
+  const auto sums = read_all<double>(archive, "transport_rate/sums");
+  first_time_ = sums.at(0);
+  last_time_ = sums.at(1);
+  sum_of_moving_ = sums.at(2);
+  sum_of_shares_ = sums.at(3);
+  sum_of_activity_ = sums.at(4);
+  trend_.restore(read_all<double>(archive, "transport_rate/trend"));
+  if (archive.has("transport_rate/blocks")) q_s_.restore(read_all<double>(archive, "transport_rate/blocks"));
+  const auto counts = read_all<std::int64_t>(archive, "transport_rate/velocity_counts");
+  for (std::size_t c = 0; c < counts.size(); ++c) velocities_[c / cells].counts()[c % cells] = counts[c];
+  hops_.load(archive, "transport_rate");
 }
 
 }  // namespace thalweg::analysis

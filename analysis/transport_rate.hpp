@@ -2,60 +2,97 @@
 //
 //   q_s = sum over grains of V v_x / (L W)              volume flux per unit width, m^2/s
 //   q*  = q_s / sqrt((s - 1) g d^3),  s = rho_s/rho_f   the same without dimension
+//   activity = sum over moving grains of V / (L W)      m (Furbish et al., J. Geophys. Res. 117 (2012) F03031)
 //
 // V volume of a grain, v_x its streamwise velocity, L and W length and width of the domain (Zhang et al. 2022: all
-// grains of the whole domain count). With several populations d and rho_s are those of the first one in the case.
-// Without a fluid s has no meaning and q* is left out.
+// grains of the whole domain count). Without a fluid s has no meaning and q* is left out. A clump is one grain.
+//
+// The mean of q_s comes with its error (correlated_mean.hpp) and a test of whether it drifts (trend_test.hpp); moving
+// grains with the distribution of their velocities (histogram.hpp) and their hops (hops.hpp).
 #pragma once
 
+#include "analysis/correlated_mean.hpp"
+#include "analysis/histogram.hpp"
+#include "analysis/hops.hpp"
 #include "analysis/observer.hpp"
+#include "analysis/trend_test.hpp"
 
 #include <mpi.h>
 
+#include <array>
 #include <cstdint>
 
 namespace thalweg::analysis {
 
 struct TransportScales {
-  double grain_diameter;       // m, first population
-  double grain_density;        // kg/m^3, first population
+  double grain_diameter;       // m, of the reference grain
+  double grain_density;        // kg/m^3, of the reference grain
   double fluid_density = 0.0;  // kg/m^3; 0: dry grains
   double gravity = 0.0;        // m/s^2, magnitude
 
   double flux() const;          // sqrt(|s - 1| g d^3), m^2/s; without a fluid sqrt(g d^3)
+  double fall_speed() const;    // m/s: sqrt(|s - 1| g d), without a fluid sqrt(g d); 1 m/s where that is zero
   double moving_speed() const;  // m/s: 1 % of sqrt(|s - 1| g d), without a fluid of sqrt(g d)
   bool have_q_star() const { return fluid_density > 0.0 && flux() > 0.0; }
 };
 
+struct TransportSchedule {
+  double from = 0.0;   // s: means, hops and distributions begin here
+  double every = 0.0;  // s: between measurements; 0: with the rows of the series
+};
+
 class TransportRate : public Observer {
 public:
-  // Means are taken over the measurements from time `from` (s) on.
-  TransportRate(MPI_Comm communicator, const TransportScales& scales, double from);
+  TransportRate(MPI_Comm communicator, const TransportScales& scales, const TransportSchedule& schedule);
 
   std::string name() const override { return "transport_rate"; }
+  double every() const override { return schedule_.every; }
   void observe(const Snapshot& snapshot) override;  // a step seen before does not count again in the means
 
-  // q_s (m^2/s), q_star (1; only in a fluid), moving_grains (1: faster than moving_speed()), largest_grain_speed (m/s).
+  // q_s (m^2/s), q_star (1; only in a fluid), moving_grains (1: faster than moving_speed()), moving_share (1: of all
+  // grains), activity (m), largest_grain_speed (m/s).
   std::vector<Figure> figures() const override;
 
-  // q_s_mean, and in a fluid q_star_mean and q_star_deviation (standard deviation of the measurements), mean_from (s),
-  // measurements; then the latest figures. Means are 0 as long as nothing was measured.
+  // q_s_mean, q_s_deviation (standard deviation of the measurements), q_s_error (standard error of the mean),
+  // q_s_error_holds (1, or 0: the run is too short for it, and it is more), q_s_correlation_time (s), q_s_drift and
+  // q_s_drift_error (m^2/s, over the whole time), steady (1: no drift beyond chance, 0: there is one, -1: too short to
+  // tell); in a fluid q_star_mean, _deviation, _error; moving_grains_mean, moving_share_mean, activity_mean; those of
+  // Hops; reference_diameter, reference_density, moving_speed, mean_from (s), measurements; then the latest figures.
+  // Means are 0 as long as nothing was measured.
   std::vector<Figure> results() const override;
+  std::vector<std::string> remarks() const override;  // the mean, its error and whether it is steady
+
+  // velocity_edges (m/s), velocity_density (s/m: of x, y, z of moving grains, times the width of a bin the share of all
+  // velocities that were in it); those of Hops.
+  std::vector<Profile> profiles() const override;
 
   void save(ArchiveWriter& archive) const override;
   void load(ArchiveReader& archive) override;  // takes the sums over only if they were begun at the same `from`
 
 private:
+  struct Latest {
+    double q_s = 0.0;       // m^2/s
+    double activity = 0.0;  // m
+    std::int64_t moving = 0, grains = 0;
+    double largest_speed = 0.0;  // m/s
+    double share() const { return grains > 0 ? static_cast<double>(moving) / static_cast<double>(grains) : 0.0; }
+  };
+  void measure(const Snapshot& snapshot, const std::vector<Body>& bodies);
+  void count_velocities(const std::vector<Body>& bodies);
+  std::vector<double> sums() const;  // for a checkpoint: what is not elsewhere
+  double interval() const;           // s, between measurements that count
+
   MPI_Comm communicator_;
   TransportScales scales_;
-  double from_;
-  double q_s_ = 0.0;
-  std::int64_t moving_ = 0;
-  double largest_speed_ = 0.0;
-  std::int64_t measurements_ = 0;   // from from_ on
-  std::int64_t counted_step_ = -1;  // of the latest of them
-  double sum_ = 0.0;                // of q_s, m^2/s
-  double sum_of_squares_ = 0.0;     // of q_s, m^4/s^2
+  TransportSchedule schedule_;
+  Latest latest_;
+  std::int64_t counted_step_ = -1;             // of the latest measurement from schedule_.from on
+  double first_time_ = 0.0, last_time_ = 0.0;  // s, of those
+  double sum_of_moving_ = 0.0, sum_of_shares_ = 0.0, sum_of_activity_ = 0.0;
+  CorrelatedMean q_s_;
+  TrendTest trend_;
+  std::array<Histogram, 3> velocities_;  // of moving grains, over all ranks, on every rank
+  Hops hops_;
 };
 
 }  // namespace thalweg::analysis

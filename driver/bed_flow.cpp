@@ -1,5 +1,7 @@
 #include "driver/bed_flow.hpp"
 
+#include "driver/reference_grain.hpp"
+
 #include <cmath>
 #include <limits>
 
@@ -20,8 +22,9 @@ FlowNumbers flow_numbers(const Case& c) {
   FlowNumbers flow{nothing, nothing, nothing, nothing, false, nothing, nothing, nothing, nothing, nothing, nothing};
   if (!has_fluid(c) || c.grains.empty()) return flow;
   const Vec3 gravity = gravity_vector(c.gravity);
-  const double g = gravity.norm(), d = c.grains.front().diameter;
-  flow.density_ratio = c.grains.front().density / c.fluid.density;
+  const ReferenceGrain grain = reference_grain(c);
+  const double g = gravity.norm(), d = grain.diameter;
+  flow.density_ratio = grain.density / c.fluid.density;
   const double excess = flow.density_ratio - 1.0;
   flow.galileo = std::sqrt(std::abs(excess) * g * d * d * d) / c.fluid.kinematic_viscosity;
   if (gravity.x() <= 0.0 || gravity.z() >= 0.0 || excess <= 0.0) return flow;
@@ -45,7 +48,7 @@ double slope_for(const FlowNumbers& flow, double shields) { return flow.slope / 
 double settled_fraction(const Case& c) {
   const bool between_walls =
       c.domain.faces[y_low].type != FaceType::periodic && c.domain.faces[y_high].type != FaceType::periodic;
-  const bool narrow = !c.grains.empty() && c.domain.size.y() < 3.0 * c.grains.front().diameter;
+  const bool narrow = !c.grains.empty() && c.domain.size.y() < 3.0 * reference_grain(c).diameter;
   return between_walls && narrow ? 0.554 : 0.6;
 }
 

@@ -149,6 +149,7 @@ void take_from_file(Case& c, std::size_t number, const io::YamlDocument& documen
   population.count = static_cast<std::int64_t>(sizes.diameters.size());
   population.diameter = median_by_volume(sizes.diameters);
   population.density = sizes.mass / sizes.volume;
+  population.body_diameters = sizes.diameters;
 }
 
 // Grains that are clumps, where the case gives their shape.

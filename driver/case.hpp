@@ -242,7 +242,8 @@ struct OutputCase {
 };
 
 struct TransportRateCase {
-  double from = 0.0;  // s: the mean in the summary is taken from here to the end of the run
+  double from = 0.0;   // s: the means in the summary are taken from here to the end of the run
+  double every = 0.0;  // s; 0: with the rows of the series
   bool operator==(const TransportRateCase&) const = default;
 };
 
@@ -273,6 +274,7 @@ struct AnalysisCase {
   std::optional<GrainProfilesCase> grain_profiles;
   std::optional<PopulationLoadsCase> population_loads;
   std::optional<WallForcesCase> wall_forces;
+  std::optional<double> reference_diameter;  // m; else that of reference_grain()
   std::optional<TransportRateCase> transport_rate;
   std::optional<FluidStatisticsCase> fluid_statistics;
   bool operator==(const AnalysisCase&) const = default;

@@ -257,7 +257,10 @@ static void describe_output(io::SectionVisitor& visit, OutputCase& output, bool 
 }
 
 static void describe(io::SectionVisitor& visit, TransportRateCase& rate) {
-  visit.real("from", rate.from, {.unit = "s", .meaning = "start of the mean that summary.json gives", .at_least = 0.0});
+  visit.real("from", rate.from,
+             {.unit = "s", .meaning = "start of the means, hops and distributions", .at_least = 0.0});
+  visit.real("every", rate.every,
+             {.unit = "s", .meaning = "between measurements; 0: with the rows of series.csv", .at_least = 0.0});
 }
 
 static void describe(io::SectionVisitor& visit, GrainProfilesCase& profiles) {
@@ -281,7 +284,18 @@ static void describe_analysis(io::SectionVisitor& visit, AnalysisCase& analysis,
     else
       visit.not_here(key, "system: fluid has no grains; remove the section or set system: resolved");
   };
-  of_grains("transport_rate", analysis.transport_rate, {.meaning = "the grains' flux q and q* along x"});
+  if (with_grains)
+    visit.real("reference_diameter", analysis.reference_diameter,
+               {.unit = "m",
+                .meaning = "d of q*, the Shields number and the speed that counts as moving; where not given, half of "
+                           "the volume of all free grains is finer",
+                .above = 0.0,
+                .example = 5e-3});
+  else
+    visit.not_here("reference_diameter", "system: fluid has no grains; remove the key or set system: resolved");
+  of_grains(
+      "transport_rate", analysis.transport_rate,
+      {.meaning = "the grains' flux q and q* along x with its error, how many move, how fast, and how far they hop"});
   of_grains("grain_profiles", analysis.grain_profiles,
             {.meaning = "mean solid fraction, velocity, flux, granular temperature and stresses of the grains over "
                         "z, in profiles.h5"});

@@ -9,6 +9,7 @@
 #include "driver/grain_setup.hpp"
 #include "driver/machine.hpp"
 #include "driver/progress.hpp"
+#include "driver/reference_grain.hpp"
 #include "driver/solid_setup.hpp"
 #include "io/run_folder.hpp"
 
@@ -77,12 +78,13 @@ void add_fluid(const Case& c, Lines& lines) {
 void add_bed(const Case& c, Lines& lines) {
   const FlowNumbers flow = flow_numbers(c);
   if (!std::isfinite(flow.galileo)) return;
+  if (c.grains.size() > 1 || c.analysis.reference_diameter) lines.push_back("reference  " + reference_text(c));
   lines.push_back(fmt::format("density    ratio {:.4g}; Galileo number {:.4g}", flow.density_ratio, flow.galileo));
   if (!std::isfinite(flow.shields_depth)) return;
   lines.push_back(fmt::format(
       "bed        settles at about {:.3g} m ({:.3g} diameters, solid fraction {:g}), {:.3g} m of flow above, "
       "slope {:g}",
-      flow.bed_height, flow.bed_height / c.grains.front().diameter, settled_fraction(c), flow.depth, flow.slope));
+      flow.bed_height, flow.bed_height / reference_grain(c).diameter, settled_fraction(c), flow.depth, flow.slope));
   lines.push_back(fmt::format("Shields    {:.4g} from depth and slope", flow.shields_depth) +
                   (flow.side_walls ? fmt::format("; {:.4g} from the hydraulic radius between the side walls",
                                                  flow.shields_hydraulic)

@@ -156,10 +156,11 @@ struct PopulationCase {
   std::optional<MotionCase> motion;                 // all together, as one body
 
   // What read_case() makes of disks, sizes and file.
-  double thickness = 0.0;          // m, of disks; 0: spheres
-  std::vector<double> diameters;   // m, one a grain or row of the file; empty: all `diameter`
-  std::vector<io::BedGrain> file;  // rows of placement.file: grains, and members of clumps one after the other
-  ClumpFigures clumps;             // of shape or file
+  double thickness = 0.0;              // m, of disks; 0: spheres
+  std::vector<double> diameters;       // m, one a grain or row of the file; empty: all `diameter`
+  std::vector<io::BedGrain> file;      // rows of placement.file: grains, and members of clumps one after the other
+  std::vector<double> body_diameters;  // m, of a file: one a grain, of a clump that of the sphere of its volume
+  ClumpFigures clumps;                 // of shape or file
 
   bool operator==(const PopulationCase&) const = default;
 

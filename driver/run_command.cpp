@@ -14,6 +14,7 @@
 #include "driver/machine.hpp"
 #include "driver/on_first_rank.hpp"
 #include "driver/progress.hpp"
+#include "driver/reference_grain.hpp"
 #include "driver/run_output.hpp"
 #include "driver/stop_request.hpp"
 #include "driver/summary.hpp"
@@ -75,6 +76,11 @@ std::vector<analysis::Population> populations_of(const Case& c) {
   return populations;
 }
 
+analysis::TransportScales transport_scales(const Case& c) {
+  const ReferenceGrain grain = reference_grain(c);
+  return {grain.diameter, grain.density, has_fluid(c) ? c.fluid.density : 0.0, gravity_vector(c.gravity).norm()};
+}
+
 Observers observers_of(const Case& c, const System& system, MPI_Comm communicator) {
   Observers observers;
   if (c.analysis.fluid_statistics) {
@@ -85,12 +91,8 @@ Observers observers_of(const Case& c, const System& system, MPI_Comm communicato
   }
   if (c.grains.empty()) return observers;
   if (c.analysis.transport_rate) {
-    const PopulationCase& first = c.grains.front();
-    const double fluid_density = has_fluid(c) ? c.fluid.density : 0.0;
-    const analysis::TransportScales scales{first.diameter, first.density, fluid_density,
-                                           gravity_vector(c.gravity).norm()};
-    observers.push_back(
-        std::make_unique<analysis::TransportRate>(communicator, scales, c.analysis.transport_rate->from));
+    const analysis::TransportSchedule schedule{c.analysis.transport_rate->from, c.analysis.transport_rate->every};
+    observers.push_back(std::make_unique<analysis::TransportRate>(communicator, transport_scales(c), schedule));
   }
   if (c.analysis.grain_profiles) {
     const GrainProfilesCase& asked_for = *c.analysis.grain_profiles;
@@ -117,6 +119,7 @@ void greet(const Case& c, RunIdentity& identity, const System& system, const Pla
   if (!places.checkpoint.empty())
     log.line(fmt::format("going on from {} at {:.6g} s", places.checkpoint.string(), system.time()));
   log.line(fmt::format("writing {}", places.folder.path().string()));
+  if (!c.grains.empty()) log.line("reference grain: " + reference_text(c));
   if (system.cells() > 0) {
     const double bandwidth = measure_bandwidth(communicator);
     const double bytes = bytes_per_cell_update(c.fluid.precision == Precision::single ? 4 : 8);
@@ -137,8 +140,11 @@ void prepare_folder(const Places& places, const Case& c, const Command& command,
 }
 
 void say_how_it_ended(const RunIdentity& identity, const LoopRecord& record, const System& system,
-                      const std::vector<PhaseShare>& phases, const io::RunFolder& folder, Log& log) {
+                      const Observers& observers, const std::vector<PhaseShare>& phases, const io::RunFolder& folder,
+                      Log& log) {
   log.line("");
+  for (const auto& observer : observers)
+    for (const std::string& remark : observer->remarks()) log.line(remark);
   for (const std::string& line : phase_table(phases)) log.line(line);
   const Speeds speeds = speeds_of(system, record);
   std::string speed = fmt::format("{:.4g} steps/s", speeds.steps_per_second);
@@ -222,7 +228,7 @@ void run_case(const Command& command, MPI_Comm communicator, WallClock::time_poi
   }
   if (!c.grains.empty()) io::write_bed_file(communicator, places.folder.bed(), system->snapshot());
   const std::vector<PhaseShare> phases = collect_phases(communicator, *system, loop);
-  say_how_it_ended(identity, loop.record(), *system, phases, places.folder, log);
+  say_how_it_ended(identity, loop.record(), *system, observers, phases, places.folder, log);
   const io::JsonObject summary = summary_of(identity, *system, loop.record(), observers, phases);
   on_first_rank(communicator, [&] { summary.write(places.folder.summary()); });
 }

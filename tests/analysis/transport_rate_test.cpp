@@ -1,6 +1,7 @@
 #include "analysis/transport_rate.hpp"
 
 #include "tests/analysis/made_up_grains.hpp"
+#include "tests/support/memory_archive.hpp"
 
 #include <gtest/gtest.h>
 
@@ -24,32 +25,9 @@ MadeUpGrain runner(GlobalId id, double factor) {
 // Sum over id < 300, id not a multiple of 3, of id/100: (44850 - 14850)/100 = 300 m/s.
 constexpr double sum_of_speeds = 300.0;
 
-// In memory only: what observers put into a checkpoint.
-class AttributeStore : public ArchiveWriter, public ArchiveReader {
-public:
-  void write(const std::string&, std::span<const double>, const ArrayBox&) override { FAIL(); }
-  void write(const std::string&, std::span<const float>, const ArrayBox&) override { FAIL(); }
-  void write(const std::string&, std::span<const std::int64_t>, const ArrayBox&) override { FAIL(); }
-  void attribute(const std::string& path, double value) override { reals_[path] = value; }
-  void attribute(const std::string& path, std::int64_t value) override { integers_[path] = value; }
-  void attribute(const std::string&, const std::string&) override { FAIL(); }
-  bool has(const std::string& path) const override { return reals_.contains(path) || integers_.contains(path); }
-  std::vector<std::uint64_t> shape(const std::string&) const override { return {}; }
-  void read(const std::string&, std::span<double>, const ArrayBox&) override { FAIL(); }
-  void read(const std::string&, std::span<float>, const ArrayBox&) override { FAIL(); }
-  void read(const std::string&, std::span<std::int64_t>, const ArrayBox&) override { FAIL(); }
-  double real_attribute(const std::string& path) const override { return reals_.at(path); }
-  std::int64_t integer_attribute(const std::string& path) const override { return integers_.at(path); }
-  std::string text_attribute(const std::string&) const override { return {}; }
-
-private:
-  std::map<std::string, double> reals_;
-  std::map<std::string, std::int64_t> integers_;
-};
-
 TEST(TransportRate, IsTheVolumeFluxOfAllGrainsPerWidth) {
   const MadeUpGrains grains(world, 300, [](GlobalId id) { return runner(id, 1.0); });
-  TransportRate rate(world, scales, 0.0);
+  TransportRate rate(world, scales, {});
   rate.observe(grains.snapshot(0.0));
 
   const double volume = std::numbers::pi / 6.0 * 0.25 * 0.25 * 0.25;
@@ -57,6 +35,8 @@ TEST(TransportRate, IsTheVolumeFluxOfAllGrainsPerWidth) {
   EXPECT_NEAR(value_of(rate.figures(), "q_s"), q_s, 4e-16 * 1e3 * q_s);  // a few roundings a term
   EXPECT_NEAR(value_of(rate.figures(), "q_star"), q_s / 0.75, 4e-16 * 1e3 * q_s);
   EXPECT_EQ(value_of(rate.figures(), "moving_grains"), 200.0);  // 0.03 m/s itself is not moving
+  EXPECT_EQ(value_of(rate.figures(), "moving_share"), 200.0 / 300.0);
+  EXPECT_NEAR(value_of(rate.figures(), "activity"), volume * 200.0 / (20.0 * 10.0), 1e-12 * volume);
   EXPECT_NEAR(value_of(rate.figures(), "largest_grain_speed"), std::sqrt(2.99 * 2.99 + 1.0), 1e-15 * 4);
 }
 
@@ -64,7 +44,7 @@ TEST(TransportRate, TakesAClumpForOneGrainWithItsVolumeAtItsCentre) {
   // The last six of the grains, ids 294 to 299, are one clump of 0.05 m^3 at 0.5 m/s; four of them moved.
   MadeUpGrains grains(world, 300, [](GlobalId id) { return runner(id, 1.0); });
   grains.bind(6, {294, 1.0, 0.05, Vec3::Zero(), Vec3(0.5, 0.0, 0.0), 0.0});
-  TransportRate rate(world, scales, 0.0);
+  TransportRate rate(world, scales, {});
   rate.observe(grains.snapshot(0.0));
   const double volume = std::numbers::pi / 6.0 * 0.25 * 0.25 * 0.25;
   const double gone = (295.0 + 296.0 + 298.0 + 299.0) / 100.0;
@@ -79,10 +59,10 @@ TEST(TransportRate, HasTheSameBitsOnAnyNumberOfRanks) {
     const double phase = static_cast<double>(id);
     return MadeUpGrain{0.1 + 0.05 * std::cos(phase), 1.0, Vec3(std::sin(3.0 * phase), 0.0, 0.0), Vec3::Zero()};
   };
-  TransportRate alone(MPI_COMM_SELF, scales, 0.0), shared(world, scales, 0.0);
+  TransportRate alone(MPI_COMM_SELF, scales, {}), shared(world, scales, {});
   alone.observe(MadeUpGrains(MPI_COMM_SELF, 1000, made).snapshot(0.0));
   shared.observe(MadeUpGrains(world, 1000, made).snapshot(0.0));
-  for (const char* name : {"q_s", "q_star", "moving_grains", "largest_grain_speed"})
+  for (const char* name : {"q_s", "q_star", "moving_grains", "activity", "largest_grain_speed"})
     EXPECT_EQ(value_of(alone.figures(), name), value_of(shared.figures(), name)) << name;
 }
 
@@ -90,16 +70,18 @@ TEST(TransportRate, TakesTheMeanFromAGivenTimeAndCarriesItOverARestart) {
   const auto grains = [](double factor) {
     return MadeUpGrains(world, 300, [factor](GlobalId id) { return runner(id, factor); });
   };
-  TransportRate rate(world, scales, 2.0);
+  TransportRate rate(world, scales, {2.0});
   rate.observe(grains(100.0).snapshot(1.9));
   EXPECT_EQ(value_of(rate.results(), "q_star_mean"), 0.0);
   rate.observe(grains(1.0).snapshot(2.0));
-  AttributeStore checkpoint;
-  rate.save(checkpoint);
+  test::MemoryArchive checkpoint;
+  test::MemoryWriter writer(checkpoint, world);
+  rate.save(writer);
 
-  TransportRate restarted(world, scales, 2.0), other_window(world, scales, 2.5);
+  TransportRate restarted(world, scales, {2.0}), other_window(world, scales, {2.5});
   for (TransportRate* next : {&restarted, &other_window}) {
-    next->load(checkpoint);
+    test::MemoryReader reader(checkpoint);
+    next->load(reader);
     next->observe(grains(1.0).snapshot(2.0));  // what the checkpoint holds, seen again: it counts once
     next->observe(grains(3.0).snapshot(3.0));
   }
@@ -112,12 +94,65 @@ TEST(TransportRate, TakesTheMeanFromAGivenTimeAndCarriesItOverARestart) {
 }
 
 TEST(TransportRate, OfDryGrainsHasNoQStar) {
-  TransportRate rate(world, {0.25, 2500.0, 0.0, 9.8}, 0.0);
+  TransportRate rate(world, {0.25, 2500.0, 0.0, 9.8}, {});
   rate.observe(MadeUpGrains(world, 10, [](GlobalId id) { return runner(id, 1.0); }).snapshot(0.0));
   EXPECT_THROW(value_of(rate.figures(), "q_star"), std::out_of_range);
   // v_x = 0.01, 0.02, 0.04, 0.05, 0.07, 0.08 m/s: sum 0.27 m/s.
   const double q_s = std::numbers::pi / 6.0 / 64.0 * 0.27 / 200.0;
   EXPECT_NEAR(value_of(rate.figures(), "q_s"), q_s, 1e-14 * q_s);
+}
+
+// v_x = id/100 of the grains that are no multiple of 3, from 0.01 to 2.99 m/s, v_z = -1 m/s of all of them; the rest,
+// at 0.03 m/s, is not moving. With fall speeds of 3 m/s a bin is 0.3 m/s wide, from -15 m/s on.
+TEST(TransportRate, CountsTheVelocitiesOfMovingGrains) {
+  TransportRate rate(world, scales, {});
+  rate.observe(MadeUpGrains(world, 300, [](GlobalId id) { return runner(id, 1.0); }).snapshot(0.0));
+  std::map<std::string, std::vector<double>> shown;
+  for (const Profile& profile : rate.profiles()) shown[profile.name] = profile.values;
+  const std::vector<double>&edges = shown.at("velocity_edges"), &density = shown.at("velocity_density");
+  ASSERT_EQ(edges.size(), 201u);
+  ASSERT_EQ(density.size(), 600u);
+  double whole = 0.0;
+  for (std::size_t b = 0; b < 200; ++b) {
+    const double width = edges[b + 1] - edges[b];
+    EXPECT_NEAR(width, 0.3, 1e-12);
+    whole += density[3 * b] * width;
+    const bool holds_one = edges[b] <= -1.0 && -1.0 < edges[b + 1];
+    EXPECT_NEAR(density[3 * b + 2], holds_one ? 1.0 / 0.3 : 0.0, 1e-11);
+    // 30 ids in a width of 0.3 m/s, 20 of them no multiple of 3; one more or less by where an edge lies.
+    const bool inside = edges[b] > -0.01 && edges[b + 1] < 3.01;
+    EXPECT_NEAR(density[3 * b] * 200.0 * width, inside ? 20.0 : 0.0, 1.0 + 1e-9);
+  }
+  EXPECT_NEAR(whole, 1.0, 1e-12);
+}
+
+// Fluxes that alternate between two values have a known mean and no drift; those that rise have one. The same state
+// from a checkpoint in the middle.
+TEST(TransportRate, SaysWhetherTheMeanIsSteady) {
+  const auto run = [](TransportRate& rate, int from, int to, double rise) {
+    for (int n = from; n < to; ++n) {
+      const double factor = 1.0 + 0.1 * (n % 2) + rise * n;
+      rate.observe(MadeUpGrains(world, 30, [factor](GlobalId id) { return runner(id, factor); }).snapshot(0.1 * n));
+    }
+  };
+  for (const double rise : {0.0, 0.02}) {
+    TransportRate whole(world, scales, {}), first_half(world, scales, {}), second_half(world, scales, {});
+    run(whole, 0, 101, rise);
+    run(first_half, 0, 41, rise);
+    test::MemoryArchive half_way, end, other_end;
+    test::MemoryWriter writer(half_way, world), end_writer(end, world), other_writer(other_end, world);
+    first_half.save(writer);
+    test::MemoryReader reader(half_way);
+    second_half.load(reader);
+    run(second_half, 40, 101, rise);  // seen again at 40
+    EXPECT_EQ(value_of(whole.results(), "steady"), rise == 0.0 ? 1.0 : 0.0);
+    EXPECT_EQ(whole.remarks().size(), 2u);
+    EXPECT_NE(whole.remarks().at(1).find(rise == 0.0 ? "transport: steady" : "not steady"), std::string::npos);
+    whole.save(end_writer);
+    second_half.save(other_writer);
+    EXPECT_EQ(test::first_difference(end, other_end), "");
+    EXPECT_EQ(whole.remarks(), second_half.remarks());
+  }
 }
 
 }  // namespace

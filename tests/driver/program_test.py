@@ -152,6 +152,8 @@ class Running(DryGrains):
             a.visititems(lambda name, item: names.append(name) if isinstance(item, h5py.Dataset) else None)
             self.assertTrue(any("position" in name for name in names))
             for name in names:
+                if name.startswith("transport_rate/"):   # what the observer remembers of what it saw
+                    continue
                 self.assertEqual(a[name][()].tobytes(), b[name][()].tobytes(), name)
 
     def test_a_failed_run_says_so_and_keeps_its_checkpoint(self):

@@ -1,0 +1,64 @@
+#include "analysis/correlated_mean.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace thalweg::analysis {
+
+void CorrelatedMean::add(double value) {
+  for (std::size_t k = 0;; ++k) {
+    if (k == levels_.size()) levels_.emplace_back();
+    Level& level = levels_[k];
+    level.blocks += 1.0;  // Welford's sums, which do not cancel
+    const double before = value - level.mean;
+    level.mean += before / level.blocks;
+    level.squares += before * (value - level.mean);
+    if (level.waits == 0.0) {
+      level.waits = 1.0;
+      level.waiting = value;
+      return;
+    }
+    level.waits = 0.0;
+    value = 0.5 * (level.waiting + value);
+  }
+}
+
+std::int64_t CorrelatedMean::count() const {
+  return levels_.empty() ? 0 : static_cast<std::int64_t>(levels_.front().blocks);
+}
+
+double CorrelatedMean::mean() const { return levels_.empty() ? 0.0 : levels_.front().mean; }
+
+double CorrelatedMean::deviation() const {
+  return levels_.empty() ? 0.0 : std::sqrt(levels_.front().squares / levels_.front().blocks);
+}
+
+CorrelatedMean::Error CorrelatedMean::error() const {
+  Error error;
+  if (count() < 2) return error;
+  const double values = levels_.front().blocks, plain = levels_.front().squared_error();
+  if (plain == 0.0) return {0.0, 0.5, true};  // all alike
+  double largest = 0.0;
+  for (std::size_t k = 0; k < levels_.size() && levels_[k].blocks >= 2.0; ++k) {
+    const double squared = levels_[k].squared_error(), ratio = squared / plain;
+    largest = std::max(largest, squared);
+    if (std::exp2(3.0 * static_cast<double>(k)) > 2.0 * values * ratio * ratio)
+      return {std::sqrt(squared), 0.5 * ratio, true};
+  }
+  return {std::sqrt(largest), 0.5 * largest / plain, false};
+}
+
+std::vector<double> CorrelatedMean::state() const {
+  std::vector<double> state;
+  for (const Level& level : levels_)
+    state.insert(state.end(), {level.blocks, level.mean, level.squares, level.waits, level.waiting});
+  return state;
+}
+
+void CorrelatedMean::restore(std::span<const double> state) {
+  levels_.clear();
+  for (std::size_t n = 0; n + numbers_a_level <= state.size(); n += numbers_a_level)
+    levels_.push_back({state[n], state[n + 1], state[n + 2], state[n + 3], state[n + 4]});
+}
+
+}  // namespace thalweg::analysis
