@@ -191,8 +191,18 @@ std::vector<Profile> TransportRate::profiles() const {
   return profiles;
 }
 
+// The latest measurement too: a row of the series may come before the next.
 std::vector<double> TransportRate::sums() const {
-  return {first_time_, last_time_, sum_of_moving_, sum_of_shares_, sum_of_activity_};
+  return {first_time_,
+          last_time_,
+          sum_of_moving_,
+          sum_of_shares_,
+          sum_of_activity_,
+          latest_.q_s,
+          latest_.activity,
+          static_cast<double>(latest_.moving),
+          static_cast<double>(latest_.grains),
+          latest_.largest_speed};
 }
 
 void TransportRate::save(ArchiveWriter& archive) const {
@@ -222,6 +232,7 @@ void TransportRate::load(ArchiveReader& archive) {
   sum_of_moving_ = sums.at(2);
   sum_of_shares_ = sums.at(3);
   sum_of_activity_ = sums.at(4);
+  latest_ = {sums.at(5), sums.at(6), std::llround(sums.at(7)), std::llround(sums.at(8)), sums.at(9)};
   trend_.restore(read_all<double>(archive, "transport_rate/trend"));
   if (archive.has("transport_rate/blocks")) q_s_.restore(read_all<double>(archive, "transport_rate/blocks"));
   const auto counts = read_all<std::int64_t>(archive, "transport_rate/velocity_counts");

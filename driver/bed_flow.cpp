@@ -11,11 +11,6 @@ namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-// Walls that take a share of the shear.
-bool is_wall(const Face& face) {
-  return face.type == FaceType::no_slip || face.type == FaceType::moving || face.slips();
-}
-
 }  // namespace
 
 FlowNumbers flow_numbers(const Case& c) {
@@ -34,7 +29,7 @@ FlowNumbers flow_numbers(const Case& c) {
   flow.bed_height = grain_volume(c) / (settled_fraction(c) * size.x() * size.y());
   flow.depth = size.z() - flow.bed_height;
   if (flow.depth <= 0.0) return flow;
-  flow.side_walls = is_wall(c.domain.faces[y_low]) && is_wall(c.domain.faces[y_high]);
+  flow.side_walls = c.domain.faces[y_low].drags() && c.domain.faces[y_high].drags();
   flow.hydraulic_radius = flow.side_walls ? flow.depth * size.y() / (2.0 * flow.depth + size.y()) : flow.depth;
   flow.shields_depth = flow.slope * flow.depth / (excess * d);
   flow.shields_hydraulic = flow.slope * flow.hydraulic_radius / (excess * d);

@@ -46,6 +46,8 @@ struct Face {
   bool same_coefficient(const Face& other) const {
     return of_first_cell == other.of_first_cell && (of_first_cell || coefficient == other.coefficient);
   }
+  // Takes a share of the shear of a flow along it.
+  bool drags() const { return type == FaceType::no_slip || type == FaceType::moving || slips(); }
   bool has_velocity() const { return type == FaceType::moving || type == FaceType::velocity_inlet; }
   bool operator==(const Face& other) const {  // what the type does not use does not count
     return type == other.type && (type != FaceType::law_of_the_wall || same_coefficient(other)) &&
@@ -247,6 +249,15 @@ struct TransportRateCase {
   bool operator==(const TransportRateCase&) const = default;
 };
 
+struct BedSurfaceCase {
+  double from = 0.0;            // s
+  double every = 0.01;          // s
+  std::optional<double> layer;  // m; else the reference diameter
+  std::optional<double> pixel;  // m; else 1/25 of the reference diameter
+  double static_time = 0.5;     // s
+  bool operator==(const BedSurfaceCase&) const = default;
+};
+
 struct FluidStatisticsCase {
   double from = 0.0;    // s
   double every = 0.01;  // s
@@ -276,6 +287,7 @@ struct AnalysisCase {
   std::optional<WallForcesCase> wall_forces;
   std::optional<double> reference_diameter;  // m; else that of reference_grain()
   std::optional<TransportRateCase> transport_rate;
+  std::optional<BedSurfaceCase> bed_surface;
   std::optional<FluidStatisticsCase> fluid_statistics;
   bool operator==(const AnalysisCase&) const = default;
 };

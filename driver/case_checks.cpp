@@ -382,6 +382,12 @@ void check_case(const Case& c, const io::YamlDocument& document) {
   check_clumps(c, document);
   check_materials(c, document);
   check_contact_steps(c, document);
+  if (c.analysis.bed_surface && c.grains.empty())
+    throw document.error("analysis.bed_surface", "there are no grains to measure; remove the section or add grains");
+  if (c.analysis.bed_surface && periodic_axes(c.domain)[2])
+    throw document.error("analysis.bed_surface",
+                         "a bed has a height above a bottom, and here z is periodic; remove the section or give "
+                         "domain.boundaries a bottom and a top, for example no_slip and free_slip");
   if (c.analysis.transport_rate && c.grains.empty())
     throw document.error("analysis.transport_rate", "there are no grains to measure; remove the section or add grains");
 }

@@ -263,6 +263,23 @@ static void describe(io::SectionVisitor& visit, TransportRateCase& rate) {
              {.unit = "s", .meaning = "between measurements; 0: with the rows of series.csv", .at_least = 0.0});
 }
 
+static void describe(io::SectionVisitor& visit, BedSurfaceCase& surface) {
+  visit.real("from", surface.from, {.unit = "s", .meaning = "start of the means", .at_least = 0.0});
+  visit.real("every", surface.every, {.unit = "s", .meaning = "between measurements", .above = 0.0});
+  visit.real("layer", surface.layer,
+             {.unit = "m",
+              .meaning = "height over which the solid fraction is averaged; the reference diameter where not given",
+              .above = 0.0,
+              .example = 5e-3});
+  visit.real("pixel", surface.pixel,
+             {.unit = "m",
+              .meaning = "side of a pixel of the side view; 1/25 of the reference diameter where not given",
+              .above = 0.0,
+              .example = 2e-4});
+  visit.real("static_time", surface.static_time,
+             {.unit = "s", .meaning = "a pixel is static that one grain has covered for so long", .above = 0.0});
+}
+
 static void describe(io::SectionVisitor& visit, GrainProfilesCase& profiles) {
   visit.real("from", profiles.from, {.unit = "s", .meaning = "start of the means", .at_least = 0.0});
   visit.real("every", profiles.every, {.unit = "s", .meaning = "between measurements", .above = 0.0});
@@ -296,6 +313,10 @@ static void describe_analysis(io::SectionVisitor& visit, AnalysisCase& analysis,
   of_grains(
       "transport_rate", analysis.transport_rate,
       {.meaning = "the grains' flux q and q* along x with its error, how many move, how fast, and how far they hop"});
+  of_grains(
+      "bed_surface", analysis.bed_surface,
+      {.meaning = "height of the bed by solid fraction and by static pixels; depth, bed stress and Shields number "
+                  "of the flow above it"});
   of_grains("grain_profiles", analysis.grain_profiles,
             {.meaning = "mean solid fraction, velocity, flux, granular temperature and stresses of the grains over "
                         "z, in profiles.h5"});

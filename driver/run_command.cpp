@@ -1,5 +1,6 @@
 #include "driver/run_command.hpp"
 
+#include "analysis/bed_surface.hpp"
 #include "analysis/fluid_statistics.hpp"
 #include "analysis/grain_energy.hpp"
 #include "analysis/grain_profiles.hpp"
@@ -81,6 +82,29 @@ analysis::TransportScales transport_scales(const Case& c) {
   return {grain.diameter, grain.density, has_fluid(c) ? c.fluid.density : 0.0, gravity_vector(c.gravity).norm()};
 }
 
+// What drives the flow over a bed: the slope, unless the mean velocity is steered.
+std::optional<analysis::BedFlow> bed_flow(const Case& c) {
+  if (!has_fluid(c)) return std::nullopt;
+  const Vec3 gravity = gravity_vector(c.gravity);
+  const double g = gravity.norm();
+  const ReferenceGrain grain = reference_grain(c);
+  analysis::BedFlow flow;
+  flow.side_walls = c.domain.faces[y_low].drags() + c.domain.faces[y_high].drags();
+  flow.shields_stress = (grain.density - c.fluid.density) * g * grain.diameter;
+  const bool by_slope = gravity.x() > 0.0 && gravity.z() < 0.0 && !c.fluid.mean_velocity;
+  if (by_slope && flow.shields_stress > 0.0) flow.driving_stress = c.fluid.density * g * gravity.x() / -gravity.z();
+  return flow;
+}
+
+std::unique_ptr<analysis::Observer> bed_surface(const Case& c, const System& system, MPI_Comm communicator) {
+  const BedSurfaceCase& asked_for = *c.analysis.bed_surface;
+  const double d = reference_grain(c).diameter;
+  const analysis::BedSurfaceSettings settings{asked_for.from, asked_for.every, asked_for.layer.value_or(d),
+                                              asked_for.pixel.value_or(d / 25.0), asked_for.static_time};
+  return std::make_unique<analysis::BedSurface>(communicator, system.snapshot().decomposition->box(), settings,
+                                                bed_flow(c), c.disks ? c.disks->thickness : 0.0);
+}
+
 Observers observers_of(const Case& c, const System& system, MPI_Comm communicator) {
   Observers observers;
   if (c.analysis.fluid_statistics) {
@@ -94,6 +118,7 @@ Observers observers_of(const Case& c, const System& system, MPI_Comm communicato
     const analysis::TransportSchedule schedule{c.analysis.transport_rate->from, c.analysis.transport_rate->every};
     observers.push_back(std::make_unique<analysis::TransportRate>(communicator, transport_scales(c), schedule));
   }
+  if (c.analysis.bed_surface) observers.push_back(bed_surface(c, system, communicator));
   if (c.analysis.grain_profiles) {
     const GrainProfilesCase& asked_for = *c.analysis.grain_profiles;
     observers.push_back(std::make_unique<analysis::GrainProfiles>(

@@ -1,0 +1,28 @@
+// The height of a bed by its solid fraction: where, seen from above, a mean over a layer of height b first reaches half
+// of the bulk value.
+//
+//   phi(z)   = [C(z + b/2) - C(z - b/2)] / (A b)         C(z): volume of grains below z, exact; A: plan of the box
+//   phi_bulk = (C_50 - C_10) / [A (z_50 - z_10)]         z_n: height below which n % of all grains' volume lies
+//
+// The bulk is thus the lower half of the grains without the layers at the floor. A block of uniform solid fraction with
+// a flat top has its height exactly. Near floor and top phi is the mean over the part of the layer inside the box.
+#pragma once
+
+#include <span>
+
+namespace thalweg::analysis {
+
+// C at equally spaced heights from the floor of the box to its top, m^3.
+struct VolumeBelow {
+  std::span<const double> volume;
+  double spacing;  // m
+  double area;     // m^2
+};
+
+// phi_bulk; 0 without grains.
+double bulk_solid_fraction(const VolumeBelow& below);
+
+// The height in m, linear between heights of `below`; 0 without grains. half_window: b/2 in spacings.
+double bed_height(const VolumeBelow& below, int half_window);
+
+}  // namespace thalweg::analysis

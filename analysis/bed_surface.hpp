@@ -1,0 +1,77 @@
+// Where the bed ends and the flow begins, and the stress that follows from it.
+//
+//   bed height        half of the bulk solid fraction (bed_height.hpp), and the mean of the surface of static pixels
+//                     (static_pixels.hpp)
+//   flow depth        H   = height of the box - bed height, that of the solid fraction
+//   hydraulic radius  R_h = H W / (W + n H)                n: side walls that hold the flow back, 0 to 2
+//   bed stress        tau_b = rho_f g S R_h                Pa, of a flow that is steady (Zhang et al. 2022)
+//   Shields number    tau*  = tau_b / ((rho_s - rho_f) g d)
+#pragma once
+
+#include "analysis/observer.hpp"
+#include "analysis/static_pixels.hpp"
+
+#include <mpi.h>
+
+#include <cstdint>
+#include <optional>
+
+namespace thalweg::analysis {
+
+struct BedSurfaceSettings {
+  double from = 0.0;         // s: the means begin here
+  double every = 0.01;       // s: between measurements and looks at the pixels
+  double layer = 0.0;        // m: height over which the solid fraction is averaged
+  double pixel = 0.0;        // m
+  double static_time = 0.5;  // s: a pixel covered by one grain for so long is static
+};
+
+// The flow over the bed; none for dry grains.
+struct BedFlow {
+  int side_walls = 0;           // that hold the flow back
+  double driving_stress = 0.0;  // Pa/m: rho_f g S; 0: no slope drives the flow, and no stress is shown
+  double shields_stress = 0.0;  // Pa: (rho_s - rho_f) g d
+};
+
+class BedSurface : public Observer {
+public:
+  // disk_thickness: m, 0: spheres. The box must end in walls along z.
+  BedSurface(MPI_Comm communicator, const PeriodicBox& box, const BedSurfaceSettings& settings,
+             const std::optional<BedFlow>& flow, double disk_thickness);
+
+  std::string name() const override { return "bed_surface"; }
+  double every() const override { return settings_.every; }
+  void observe(const Snapshot& snapshot) override;  // a step seen before does not count again
+
+  // bed_height (m), static_bed_height (m; not a number before the first half second is over); over a bed in a fluid
+  // flow_depth (m), hydraulic_radius (m), and where a slope drives the flow bed_stress (Pa), shields_number (1).
+  std::vector<Figure> figures() const override;
+
+  // The means of all of these (with _mean), bulk_solid_fraction_mean, mean_from (s), measurements, static_pictures.
+  std::vector<Figure> results() const override;
+
+  // x (m, middle of the column), static_surface (m: mean over pictures), latest_static_surface (m).
+  std::vector<Profile> profiles() const override;
+
+  void save(ArchiveWriter& archive) const override;
+  void load(ArchiveReader& archive) override;  // takes the sums over only if they were begun at the same `from`
+
+private:
+  void measure(const Snapshot& snapshot);
+  std::vector<double> volume_below(const Snapshot& snapshot) const;
+
+  MPI_Comm communicator_;
+  PeriodicBox box_;
+  BedSurfaceSettings settings_;
+  std::optional<BedFlow> flow_;
+  int layers_;                            // thin ones
+  double thickness_;                      // m, of a thin layer
+  double width_;                          // m, of the bed
+  double bed_height_ = 0.0, bulk_ = 0.0;  // m, 1: latest
+  StaticPixels pixels_;
+  std::int64_t seen_step_ = -1, measurements_ = 0, pictures_ = 0;
+  std::vector<double> sums_;          // of the figures but static_bed_height, and of the bulk's solid fraction
+  std::vector<double> surface_sums_;  // m, of each column
+};
+
+}  // namespace thalweg::analysis

@@ -1,0 +1,197 @@
+#include "analysis/bed_surface.hpp"
+
+#include "analysis/bed_height.hpp"
+#include "core/counter_random.hpp"
+#include "tests/analysis/made_up_grains.hpp"
+#include "tests/support/memory_archive.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+
+namespace thalweg::analysis {
+namespace {
+
+const MPI_Comm world = MPI_COMM_WORLD;
+constexpr double d = 1.0 / 128.0;  // m; with its multiples exact in binary
+
+// Spheres at given places, each owned by another rank at every step. Box of 16 d x 8 d x 32 d, periodic along x and y.
+class Spheres {
+public:
+  explicit Spheres(MPI_Comm communicator)
+      : communicator_(communicator), decomposition_({32, 16, 64}, d / 2.0, {true, true, false}, {1, 1, 1}) {}
+
+  PeriodicBox box() const { return decomposition_.box(); }
+
+  Snapshot at(std::int64_t step, const std::vector<Vec3>& positions) {
+    id_.clear(), radius_.clear(), position_.clear();
+    for (std::size_t n = positions.size(); n-- > 0;) {
+      if ((static_cast<std::int64_t>(3 * n) + step) % size_of(communicator_) != rank_of(communicator_)) continue;
+      id_.push_back(static_cast<GlobalId>(n));
+      radius_.push_back(0.5 * d);
+      position_.push_back(box().wrapped(positions[n]));
+    }
+    velocity_.assign(id_.size(), Vec3::Zero());
+    Snapshot snapshot;
+    snapshot.step = step;
+    snapshot.time = 0.125 * static_cast<double>(step);
+    snapshot.decomposition = &decomposition_;
+    snapshot.grains.global_count = static_cast<std::int64_t>(positions.size());
+    snapshot.grains.id = id_;
+    snapshot.grains.radius = radius_;
+    snapshot.grains.position = position_;
+    snapshot.grains.velocity = velocity_;
+    return snapshot;
+  }
+
+private:
+  MPI_Comm communicator_;
+  Decomposition decomposition_;
+  std::vector<GlobalId> id_;
+  std::vector<double> radius_;
+  std::vector<Vec3> position_, velocity_;
+};
+
+std::vector<Vec3> cubic_lattice(int layers) {
+  std::vector<Vec3> positions;
+  for (int z = 0; z < layers; ++z)
+    for (int y = 0; y < 8; ++y)
+      for (int x = 0; x < 16; ++x) positions.emplace_back((x + 0.5) * d, (y + 0.5) * d, (z + 0.5) * d);
+  return positions;
+}
+
+BedSurfaceSettings settings() { return {0.0, 0.125, d, d / 25.0, 0.5}; }
+
+// Slope and walls of a flume: rho_f g S = 500 Pa/m, (rho_s - rho_f) g d = 80 Pa.
+const BedFlow flume{2, 500.0, 80.0};
+
+TEST(BedHeight, OfAUniformBlockIsItsTop) {
+  std::vector<double> below;
+  for (int k = 0; k <= 100; ++k) below.push_back(0.6 * 2.0 * 0.1 * std::min(k, 43));  // 0.6 of 2 m^2 up to 4.3 m
+  const VolumeBelow block{below, 0.1, 2.0};
+  EXPECT_NEAR(bulk_solid_fraction(block), 0.6, 1e-12);
+  EXPECT_NEAR(bed_height(block, 5), 4.3, 1e-12);
+  const std::vector<double> nothing(101, 0.0);
+  EXPECT_EQ(bed_height({nothing, 0.1, 2.0}, 5), 0.0);
+}
+
+// Ten layers of a simple cubic lattice: a window of one diameter holds pi/6 anywhere inside, and half of it around the
+// top.
+TEST(BedSurface, OfACubicLatticeIsTheTopOfItsHighestLayer) {
+  Spheres spheres(world);
+  BedSurface surface(world, spheres.box(), settings(), flume, 0.0);
+  std::vector<Vec3> grains = cubic_lattice(10);
+  grains.emplace_back(0.1 * d, 0.2 * d, 20.0 * d);  // one in the flow is no bed
+  for (int step = 0; step < 5; ++step) surface.observe(spheres.at(step, grains));
+  // The one above moves the quantiles by up to half a grain's volume, which near the plane between two layers of 128
+  // grains is as much as lies within h of it, 128 pi R h^2 = V/2, h = 0.036 d: 2 % of the bulk's fraction over its 4 d,
+  // and 1 % of d in the height, where phi falls by 0.8 a diameter.
+  EXPECT_NEAR(value_of(surface.figures(), "bed_height"), 10.0 * d, 0.01 * d);
+  EXPECT_NEAR(value_of(surface.results(), "bulk_solid_fraction_mean"), std::numbers::pi / 6.0, 0.02 * 0.53);
+  const double depth = 32.0 * d - value_of(surface.figures(), "bed_height"), width = 8.0 * d;
+  const double radius = depth * width / (2.0 * depth + width);
+  EXPECT_NEAR(value_of(surface.figures(), "flow_depth"), depth, 1e-15);
+  EXPECT_NEAR(value_of(surface.figures(), "hydraulic_radius"), radius, 1e-15);
+  EXPECT_NEAR(value_of(surface.figures(), "bed_stress"), 500.0 * radius, 1e-10);
+  EXPECT_NEAR(value_of(surface.figures(), "shields_number"), 500.0 * radius / 80.0, 1e-12);
+  EXPECT_EQ(value_of(surface.results(), "measurements"), 5.0);
+  EXPECT_NEAR(value_of(surface.results(), "shields_number_mean"), 500.0 * radius / 80.0, 1e-12);
+
+  BedSurface wide(world, spheres.box(), settings(), BedFlow{0, 500.0, 80.0}, 0.0),
+      dry(world, spheres.box(), settings(), {}, 0.0);
+  wide.observe(spheres.at(0, cubic_lattice(10)));
+  dry.observe(spheres.at(0, cubic_lattice(10)));
+  EXPECT_NEAR(value_of(wide.figures(), "bed_height"), 10.0 * d, 1e-12);
+  EXPECT_NEAR(value_of(wide.figures(), "hydraulic_radius"), 22.0 * d, 1e-12);
+  EXPECT_EQ(dry.figures().size(), 2u);
+}
+
+// Places that jiggle by up to half a diameter about a drift of half a box in a picture, for some of them.
+std::vector<Vec3> jiggling(std::int64_t step) {
+  std::vector<Vec3> positions;
+  for (std::uint64_t id = 0; id < 40; ++id) {
+    const auto random = [id](std::uint64_t draw) { return uniform_random(11, id, draw); };
+    const auto now = static_cast<std::uint64_t>(step);
+    const double drift = id % 5 == 0 ? 2.0 * d * static_cast<double>(step) : 0.0;
+    const double size = id % 3 == 0 ? 0.0 : 0.5 * random(3);
+    const double x = 16.0 * d * random(0) + drift + size * d * (random(10 + now) - 0.5);
+    positions.emplace_back(x - 16.0 * d * std::floor(x / (16.0 * d)), 4.0 * d,
+                           d * (0.5 + 6.0 * random(1)) + size * d * (random(1000 + now) - 0.5));
+  }
+  return positions;
+}
+
+// Pixel by pixel: the upper edge of the highest that one grain covers at all steps from first to last.
+std::vector<double> surface_by_pixels(std::int64_t first, std::int64_t last, double width, double height) {
+  std::vector<std::vector<Vec3>> places;
+  for (std::int64_t step = first; step <= last; ++step) places.push_back(jiggling(step));
+  std::vector<double> surface(400, 0.0);
+  for (std::size_t id = 0; id < 40; ++id)
+    for (std::size_t column = 0; column < 400; ++column)
+      for (int row = 0; row < 200; ++row) {
+        bool covered = true;
+        for (std::size_t look = 0; look < places.size() && covered; ++look) {
+          const Vec3 place = places[look][id];
+          double off = (static_cast<double>(column) + 0.5) * width - place.x();
+          off -= 16.0 * d * std::round(off / (16.0 * d));
+          const double up = (row + 0.5) * height - place.z();
+          covered = off * off + up * up <= 0.25 * d * d;
+        }
+        if (covered) surface[column] = std::max(surface[column], (row + 1) * height);
+      }
+  return surface;
+}
+
+TEST(StaticPixels, AreThoseThatOneGrainCoversAllTheTime) {
+  Spheres spheres(world);
+  StaticPixels pixels(world, spheres.box(), d / 25.0,
+                      0.5);  // pictures of five looks, the last of one the first of the next
+  ASSERT_EQ(pixels.columns(), 400);
+  std::int64_t pictures = 0;
+  for (std::int64_t step = 0; step <= 8; ++step) {
+    const bool complete = pixels.look(spheres.at(step, jiggling(step)));
+    EXPECT_EQ(complete, step == 4 || step == 8);
+    if (!complete) continue;
+    ++pictures;
+    EXPECT_NEAR(pixels.begun(), 0.5 * static_cast<double>(pictures - 1), 1e-15);
+    const std::vector<double> expected = surface_by_pixels(step - 4, step, pixels.column_width(), d / 25.0);
+    for (std::size_t c = 0; c < 400; ++c) EXPECT_NEAR(pixels.surface()[c], expected[c], 1e-12) << step << ' ' << c;
+    EXPECT_GT(std::set<double>(expected.begin(), expected.end()).size(), 20u);  // there is something to see
+  }
+  EXPECT_EQ(pictures, 2);
+}
+
+test::MemoryArchive saved(const BedSurface& surface, MPI_Comm communicator) {
+  test::MemoryArchive archive;
+  test::MemoryWriter writer(archive, communicator);
+  surface.save(writer);
+  return archive;
+}
+
+TEST(BedSurface, HasTheSameBitsOnAnyNumberOfRanksAndAfterARestart) {
+  Spheres own(MPI_COMM_SELF), dealt(world);
+  BedSurface alone(MPI_COMM_SELF, own.box(), settings(), flume, 0.0), shared(world, own.box(), settings(), flume, 0.0);
+  BedSurface restarted(world, own.box(), settings(), flume, 0.0);
+  test::MemoryArchive half_way;
+  for (std::int64_t step = 0; step <= 11; ++step) {
+    alone.observe(own.at(step, jiggling(step)));
+    shared.observe(dealt.at(step, jiggling(step)));
+    if (step == 6) half_way = saved(alone, MPI_COMM_SELF);
+  }
+  test::MemoryReader reader(half_way);
+  restarted.load(reader);
+  for (std::int64_t step = 6; step <= 11; ++step) restarted.observe(dealt.at(step, jiggling(step)));  // 6 is seen again
+  const test::MemoryArchive end = saved(alone, MPI_COMM_SELF);
+  EXPECT_EQ(test::first_difference(end, saved(shared, world)), "");
+  EXPECT_EQ(test::first_difference(end, saved(restarted, world)), "");
+  EXPECT_EQ(value_of(alone.results(), "static_pictures"), 2.0);
+  EXPECT_EQ(value_of(alone.results(), "measurements"), 12.0);
+  EXPECT_EQ(value_of(restarted.results(), "static_bed_height_mean"),
+            value_of(alone.results(), "static_bed_height_mean"));
+}
+
+}  // namespace
+}  // namespace thalweg::analysis
