@@ -11,9 +11,9 @@ namespace thalweg::analysis {
 
 namespace {
 
-// A hundredth of a unit is below what a moving grain creeps between measurements, a thousand units further than a box.
-constexpr double shortest = 0.01, longest = 1000.0;
-constexpr int bins = 100;  // 20 a decade
+// In units of length and time. Grains that only jiggle in their places make hops of a thousandth of a diameter.
+constexpr double shortest = 1e-4, longest = 1e3;
+constexpr int bins = 140;  // 20 a decade
 
 }  // namespace
 
