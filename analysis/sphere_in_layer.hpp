@@ -1,4 +1,4 @@
-// How much of a sphere or disk lies between two heights: exact.
+// How much of a sphere or disk lies between two heights, and where: exact.
 #pragma once
 
 #include <algorithm>
@@ -11,6 +11,12 @@ namespace thalweg::analysis {
 inline double sphere_volume_below(double radius, double height) {
   const double h = std::clamp(height, 0.0, 2.0 * radius);
   return std::numbers::pi / 3.0 * h * h * (3.0 * radius - h);
+}
+
+// First moment (m^4) of the same part about the lowest point: the integral of s dV over 0 < s < height.
+inline double sphere_moment_below(double radius, double height) {
+  const double h = std::clamp(height, 0.0, 2.0 * radius);
+  return std::numbers::pi * h * h * h * (2.0 / 3.0 * radius - 0.25 * h);
 }
 
 // The same of a disk that stands, of this thickness (m).

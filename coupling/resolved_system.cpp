@@ -7,6 +7,7 @@
 #include "coupling/fluid_mass.hpp"
 #include "coupling/fluid_sample.hpp"
 #include "coupling/fluid_system.hpp"
+#include "coupling/momentum_sample.hpp"
 
 #include <fmt/format.h>
 
@@ -102,15 +103,21 @@ void ResolvedSystem<Real>::synchronise_slots() {
 }
 
 template <typename Real>
+void ResolvedSystem<Real>::place_body(std::size_t grain, lbm::LinkBody& body) const {
+  const dem::GrainStore& store = grains_->store();
+  body.centre = lattice_position(store.position[grain]);
+  body.radius = store.radius[grain] / parameters_.units.spacing;
+  body.velocity = store.velocity[grain] / parameters_.units.velocity();
+  body.angular_velocity = store.angular_velocity[grain] * parameters_.units.time_step;
+}
+
+template <typename Real>
 void ResolvedSystem<Real>::update_bodies() {
   const dem::GrainStore& store = grains_->store();
   for (std::size_t g = 0; g < store.total(); ++g) {
     lbm::LinkBody& body = bodies_[map_slot_[g]];
     const std::span<const double> columns = store.attached_of(g);
-    body.centre = lattice_position(store.position[g]);
-    body.radius = store.radius[g] / parameters_.units.spacing;
-    body.velocity = store.velocity[g] / parameters_.units.velocity();
-    body.angular_velocity = store.angular_velocity[g] * parameters_.units.time_step;
+    place_body(g, body);
     body.returned = columns[returned_density];
     body.returned_slope = vector_at(columns, returned_slope);
     surrounding_[map_slot_[g]] = columns[surrounding];
@@ -247,6 +254,7 @@ Snapshot ResolvedSystem<Real>::snapshot() const {
   s.decomposition = decomposition_.get();
   s.fluid = this;
   s.contacts = this;
+  s.momentum = this;
   s.grains.global_count = grains_->global_count();
   s.grains.id = {store.id.data(), n};
   s.grains.radius = {store.radius.data(), n};
@@ -279,6 +287,21 @@ FluidFields ResolvedSystem<Real>::sample(const std::vector<FluidField>& wanted) 
 template <typename Real>
 void ResolvedSystem<Real>::for_each_velocity(const VelocityVisitor& visit) const {
   visit_velocities(fluid_, parameters_.units, visit);
+}
+
+// Grains are where the coming step will find them; their cells are those of the step just done.
+template <typename Real>
+MomentumBudget ResolvedSystem<Real>::for_each_momentum(const MomentumVisitor& visit) const {
+  return sample_momentum(
+      fluid_, parameters_.units, parameters_.links.reference_density,
+      [this](std::vector<FixedVec3>& by_height) {
+        std::vector<lbm::LinkBody> bodies = bodies_;
+        for (std::size_t g = 0; g < grains_->store().total(); ++g) place_body(g, bodies[map_slot_[g]]);
+        lbm::LinkPass<Real> links(fluid_, links_, lattice_box_, parameters_.links, bodies, nullptr, nullptr,
+                                  &by_height);
+        for (int tile = 0; tile < fluid_.tiles().count(); ++tile) links.apply_tile(tile);
+      },
+      visit);
 }
 
 template <typename Real>

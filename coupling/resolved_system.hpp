@@ -45,7 +45,7 @@ struct ExchangeTotals {
 };
 
 template <typename Real>
-class ResolvedSystem final : public System, private FluidSource, private ContactSource {
+class ResolvedSystem final : public System, private FluidSource, private ContactSource, private MomentumSource {
 public:
   // The grains (already holding their seeds) must carry attached_width() attached columns and reach ghost_reach()
   // beyond their block. Takes both over.
@@ -100,6 +100,7 @@ private:
   FluidFields sample(const std::vector<FluidField>& wanted) const override;
   void for_each_velocity(const VelocityVisitor& visit) const override;
   void for_each_contact(const ContactVisitor& visit) const override { grains_->for_each_contact(visit); }
+  MomentumBudget for_each_momentum(const MomentumVisitor& visit) const override;
 
   void add_wall_forces(std::vector<Figure>& figures) const;
   void forget_map();
@@ -107,6 +108,7 @@ private:
   void synchronise_slots();
   void update_map();
   void update_bodies();
+  void place_body(std::size_t grain, lbm::LinkBody& body) const;
   void account_for_covered_cells();
   void open_account();
   void correct_mass();

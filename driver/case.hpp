@@ -281,8 +281,16 @@ struct GrainProfilesCase {
   bool operator==(const GrainProfilesCase&) const = default;
 };
 
+struct StressBalanceCase {
+  double from = 0.0;            // s
+  double every = 0.01;          // s
+  std::optional<double> layer;  // m; else a quarter of the smallest diameter
+  bool operator==(const StressBalanceCase&) const = default;
+};
+
 struct AnalysisCase {
   std::optional<GrainProfilesCase> grain_profiles;
+  std::optional<StressBalanceCase> stress_balance;
   std::optional<PopulationLoadsCase> population_loads;
   std::optional<WallForcesCase> wall_forces;
   std::optional<double> reference_diameter;  // m; else that of reference_grain()

@@ -361,6 +361,26 @@ void check_clumps(const Case& c, const io::YamlDocument& document) {
   }
 }
 
+void check_stress_balance(const Case& c, const io::YamlDocument& document) {
+  if (!c.analysis.stress_balance) return;
+  const std::string key = "analysis.stress_balance";
+  if (c.grains.empty())
+    throw document.error(key, "there are no grains to share the stress; remove the section or add grains");
+  if (periodic_axes(c.domain)[2])
+    throw document.error(key,
+                         "stress is summed from the top down, and z is periodic; remove the section or give "
+                         "domain.boundaries bottom and top");
+  for (const PopulationCase& grains : c.grains)
+    if (grains.clumps.count > 0)
+      throw document.error(key,
+                           "it knows grains that are single spheres, and there are clumps; remove the section or "
+                           "use grain_profiles");
+  if (c.analysis.stress_balance->from < c.run.ramp)
+    throw document.error(key + ".from",
+                         fmt::format("{} s is before gravity has its full value; give at least run.ramp, {} s",
+                                     c.analysis.stress_balance->from, c.run.ramp));
+}
+
 void check_materials(const Case& c, const io::YamlDocument& document) {
   for (std::size_t n = 0; n < c.grains.size(); ++n)
     if (c.grains[n].contact) check_material(c, document, fmt::format("grains.{}.contact", n), *c.grains[n].contact);
@@ -388,6 +408,7 @@ void check_case(const Case& c, const io::YamlDocument& document) {
     throw document.error("analysis.bed_surface",
                          "a bed has a height above a bottom, and here z is periodic; remove the section or give "
                          "domain.boundaries a bottom and a top, for example no_slip and free_slip");
+  check_stress_balance(c, document);
   if (c.analysis.transport_rate && c.grains.empty())
     throw document.error("analysis.transport_rate", "there are no grains to measure; remove the section or add grains");
 }

@@ -291,6 +291,18 @@ static void describe(io::SectionVisitor& visit, GrainProfilesCase& profiles) {
               .example = 2.5e-3});
 }
 
+static void describe(io::SectionVisitor& visit, StressBalanceCase& balance) {
+  visit.real("from", balance.from, {.unit = "s", .meaning = "start of the means", .at_least = 0.0});
+  visit.real("every", balance.every, {.unit = "s", .meaning = "between measurements", .above = 0.0});
+  visit.real(
+      "layer", balance.layer,
+      {.unit = "m",
+       .meaning = "height of a layer, in whole cells as near as can be; a quarter of the smallest diameter where "
+                  "not given",
+       .above = 0.0,
+       .example = 1.25e-3});
+}
+
 static void describe(io::SectionVisitor&, WallForcesCase&) {}
 static void describe(io::SectionVisitor&, PopulationLoadsCase&) {}
 
@@ -320,6 +332,14 @@ static void describe_analysis(io::SectionVisitor& visit, AnalysisCase& analysis,
   of_grains("grain_profiles", analysis.grain_profiles,
             {.meaning = "mean solid fraction, velocity, flux, granular temperature and stresses of the grains over "
                         "z, in profiles.h5"});
+  if (with_fluid)
+    of_grains("stress_balance", analysis.stress_balance,
+              {.meaning = "all stresses of grains and fluid over z, in profiles.h5, and how far their total is from "
+                          "what the driving force prescribes in steady state"});
+  else
+    visit.not_here("stress_balance",
+                   "system: grains has no fluid; remove the section, use grain_profiles, or set "
+                   "system: resolved");
   of_grains("population_loads", analysis.population_loads,
             {.meaning = "force and torque on each population of grains, in series.csv; no keys: {}"});
   if (with_fluid)

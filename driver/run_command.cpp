@@ -5,6 +5,7 @@
 #include "analysis/grain_energy.hpp"
 #include "analysis/grain_profiles.hpp"
 #include "analysis/population_loads.hpp"
+#include "analysis/stress_balance.hpp"
 #include "analysis/transport_rate.hpp"
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
@@ -105,6 +106,23 @@ std::unique_ptr<analysis::Observer> bed_surface(const Case& c, const System& sys
                                                 bed_flow(c), c.disks ? c.disks->thickness : 0.0);
 }
 
+std::unique_ptr<analysis::StressBalance> stress_balance_of(const Case& c, const System& system, MPI_Comm communicator) {
+  const StressBalanceCase& asked_for = *c.analysis.stress_balance;
+  const analysis::BalanceScales scales{units_of(c).velocity(), c.fluid.density,
+                                       c.fluid.density * c.fluid.kinematic_viscosity, reference_grain(c).diameter,
+                                       gravity_vector(c.gravity).x()};
+  std::vector<analysis::HeldGrains> held;
+  GlobalId first = 0;
+  for (const PopulationCase& grains : c.grains) {
+    const GlobalId end = first + grains.row_count();
+    if (grains.fixed || grains.prescribed_velocity || grains.motion) held.push_back({first, end});
+    first = end;
+  }
+  return std::make_unique<analysis::StressBalance>(
+      communicator, *system.snapshot().decomposition, asked_for.layer.value_or(0.25 * smallest_diameter(c)),
+      analysis::BalanceSchedule{asked_for.from, asked_for.every}, scales, std::move(held));
+}
+
 Observers observers_of(const Case& c, const System& system, MPI_Comm communicator) {
   Observers observers;
   if (c.analysis.fluid_statistics) {
@@ -125,6 +143,7 @@ Observers observers_of(const Case& c, const System& system, MPI_Comm communicato
         communicator, *system.snapshot().decomposition, asked_for.layer.value_or(0.5 * largest_diameter(c)),
         analysis::ProfileSchedule{asked_for.from, asked_for.every}));
   }
+  if (c.analysis.stress_balance) observers.push_back(stress_balance_of(c, system, communicator));
   if (c.analysis.population_loads)
     observers.push_back(std::make_unique<analysis::PopulationLoads>(
         communicator, system.snapshot().decomposition->box(), populations_of(c), has_fluid(c)));

@@ -57,7 +57,8 @@ private:
 
 template <typename Real>
 LinkPass<Real>::LinkPass(Fluid<Real>& fluid, const LinkTable& links, const PeriodicBox& box, const LinkOptions& options,
-                         std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments, LinkBalance* balance)
+                         std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments, LinkBalance* balance,
+                         std::vector<FixedVec3>* by_height)
     : cells_(fluid.cells()),
       tiles_(fluid.tiles()),
       links_(links),
@@ -66,6 +67,7 @@ LinkPass<Real>::LinkPass(Fluid<Real>& fluid, const LinkTable& links, const Perio
       bodies_(bodies),
       moments_(moments),
       balance_(balance),
+      by_height_(by_height),
       block_(box, fluid.block().lower) {
   Populations<Real>& populations = fluid.populations();
   for (auto& plane : deviations_) plane.resize(static_cast<std::size_t>(populations.indexing().plane_stride()));
@@ -148,6 +150,7 @@ void LinkPass<Real>::prepare(Batch& b, const LinkTable::Tile& tile, int plane, s
   b.body = &bodies_[body];
   b.tag = tags;
   b.count = count;
+  b.plane = plane;
   const int n = rounded_up(count);
   if (b.body->radius > 0.0) {
     cross_sphere(*b.body, block_, plane, places, tags, n, b.distance, b.arm[0], b.arm[1], b.arm[2]);
@@ -175,6 +178,7 @@ void LinkPass<Real>::finish(const Batch& b) {
   reflect<Rule, extra>(b);
   for (int k = 0; k < b.count; ++k) base_[b.reflected_at[k]] = values_.reflected[k];
   add_momentum(b);
+  if (by_height_) add_by_height(b);
   if constexpr (extra != Extra::none) add_moments(b);
   if constexpr (extra == Extra::moments_and_balance) add_balance<Rule>(b);
 }
@@ -350,6 +354,14 @@ void LinkPass<Real>::add_moments(const Batch& b) const {
               wide(v.moment[8] + k)});
   FixedTensor& moments = (*moments_)[static_cast<std::size_t>(b.body - bodies_.data())];
   for (int k = 0; k < 9; ++k) moments.sums[static_cast<std::size_t>(k)] += sums[k];
+}
+
+template <typename Real>
+void LinkPass<Real>::add_by_height(const Batch& b) const {
+  for (int k = 0; k < b.count; ++k) {
+    const auto at = [&](int axis) { return LatticeFixed::from(static_cast<double>(values_.momentum[axis][k])); };
+    (*by_height_)[static_cast<std::size_t>(2 * b.plane + 1 + component(b.tag[k], 2))] += {at(0), at(1), at(2)};
+  }
 }
 
 template <typename Real>

@@ -63,11 +63,14 @@ struct LinkBalance {
 //
 // moments: where given, one for each body, to which sum F_a x_b is added, F the momentum of a link and x its arm; the
 // torque is its antisymmetric part. balance: where given (with moments), what the mass is made of is added to it.
+// by_height: where given, 2 n_z + 1 sums for the n_z planes of this rank, to which the force of every link is added at
+// the height half a link from its fluid cell: entry h lies h half cells above the block's lower face.
 template <typename Real>
 class LinkPass {
 public:
   LinkPass(Fluid<Real>& fluid, const LinkTable& links, const PeriodicBox& box, const LinkOptions& options,
-           std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments = nullptr, LinkBalance* balance = nullptr);
+           std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments = nullptr, LinkBalance* balance = nullptr,
+           std::vector<FixedVec3>* by_height = nullptr);
 
   void apply_tile(int tile);
 
@@ -76,7 +79,7 @@ private:
   struct Batch {
     LinkBody* body = nullptr;
     const std::uint32_t* tag = nullptr;
-    int count = 0;
+    int count = 0, plane = 0;
     alignas(64) std::int32_t cell[capacity];  // index of x_f within its plane
     alignas(64) std::int32_t incident_at[capacity], second_at[capacity], reflected_at[capacity];  // LinkSlots
     alignas(64) Real distance[capacity], arm[3][capacity];
@@ -138,6 +141,7 @@ private:
   void reflect(const Batch& batch);
   void add_momentum(const Batch& batch) const;
   void add_moments(const Batch& batch) const;
+  void add_by_height(const Batch& batch) const;
   template <typename Rule>
   void add_balance(const Batch& batch) const;
 
@@ -149,6 +153,7 @@ private:
   std::vector<LinkBody>& bodies_;
   std::vector<FixedTensor>* moments_;  // null: not measured
   LinkBalance* balance_;               // null: not measured
+  std::vector<FixedVec3>* by_height_;  // null: not measured
   BlockPlace block_;
 
   LinkSlots slots_;

@@ -64,25 +64,58 @@ double q_criterion(const Gradient& g) {
   return 0.5 * (rotation.squaredNorm() - strain.squaredNorm());
 }
 
+namespace {
+
+// With the populations that the coming collision sees.
 template <typename Real>
-SubgridState subgrid_state(const Fluid<Real>& fluid, std::ptrdiff_t cell) {
+CellMoments<double> incoming_moments(const Fluid<Real>& fluid, std::ptrdiff_t cell) {
   double f[D3Q19::directions];
   for (int i = 0; i < D3Q19::directions; ++i) f[i] = static_cast<double>(fluid.populations().incoming(i, cell));
+  const CollisionConstants<double> constants(fluid.parameters());
+  return fluid.parameters().with_bulk() ? moments_of<true, true>(f, constants) : moments_of<true, false>(f, constants);
+}
+
+Symmetric<double> times(double factor, const Symmetric<double>& s) {
+  return {factor * s.xx, factor * s.yy, factor * s.zz, factor * s.xy, factor * s.xz, factor * s.yz};
+}
+
+}  // namespace
+
+template <typename Real>
+SubgridState subgrid_state(const Fluid<Real>& fluid, std::ptrdiff_t cell) {
   const CollisionParameters& parameters = fluid.parameters();
-  const CollisionConstants<double> constants(parameters);
-  const bool with_bulk = parameters.with_bulk();
-  const CellMoments<double> m =
-      with_bulk ? moments_of<true, true>(f, constants) : moments_of<true, false>(f, constants);
-  const double squared = (with_bulk ? m.pi.traceless() : m.pi).squared();
+  const CellMoments<double> m = incoming_moments(fluid, cell);
+  const double squared = (parameters.with_bulk() ? m.pi.traceless() : m.pi).squared();
   SubgridState state;
   state.shear_rate = 1.5 * std::sqrt(2.0 * squared) * m.omega * m.inverse_rho;
   state.eddy_viscosity = parameters.smagorinsky_constant * parameters.smagorinsky_constant * state.shear_rate;
   return state;
 }
 
+template <typename Real>
+MomentumFlux momentum_flux(const Fluid<Real>& fluid, std::ptrdiff_t cell) {
+  const CollisionParameters& p = fluid.parameters();
+  const CellMoments<double> m = incoming_moments(fluid, cell);
+  MomentumFlux flux;
+  flux.density = 1.0 + m.deviation;
+  flux.velocity = m.inverse_rho * (Vec3(m.mx, m.my, m.mz) + 0.5 * Vec3(p.force[0], p.force[1], p.force[2]));
+  const Symmetric<double> pi = p.with_bulk() ? m.pi.traceless() : m.pi;
+  flux.viscous = times(-m.omega * (p.relaxation_time - 0.5), pi);
+  flux.subgrid = times(-(1.0 - m.omega * p.relaxation_time), pi);
+  if (p.with_bulk()) {
+    const double bulk = -(1.0 - 0.5 / p.bulk_relaxation_time) * m.pi.trace() / 3.0;
+    flux.viscous.xx += bulk;
+    flux.viscous.yy += bulk;
+    flux.viscous.zz += bulk;
+  }
+  return flux;
+}
+
 template GhostedField velocity_field(const Fluid<float>&);
 template GhostedField velocity_field(const Fluid<double>&);
 template SubgridState subgrid_state(const Fluid<float>&, std::ptrdiff_t);
 template SubgridState subgrid_state(const Fluid<double>&, std::ptrdiff_t);
+template MomentumFlux momentum_flux(const Fluid<float>&, std::ptrdiff_t);
+template MomentumFlux momentum_flux(const Fluid<double>&, std::ptrdiff_t);
 
 }  // namespace thalweg::lbm

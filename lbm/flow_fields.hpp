@@ -34,7 +34,20 @@ struct SubgridState {
   double eddy_viscosity = 0.0;
 };
 
+// What a cell carries of momentum through itself, the mean of before and after the coming collision: with P = sum c_a
+// c_b f_i of either,
+//   (P + P^c)/2 = rho/3 delta_ab + rho u_a u_b + (1 - omega/2) Pi_ab
+// exactly, whatever the collision model (on the trace omega_b counts). The last term is minus the stress of viscosity
+// and subgrid model, which share it as their relaxation times: omega (tau_0 - 1/2) and omega (tau - tau_0).
+struct MomentumFlux {
+  double density = 1.0;  // rho
+  Vec3 velocity = Vec3::Zero();
+  Symmetric<double> viscous{}, subgrid{};
+};
+
 // Of an owned fluid cell. What streams in must lie ready: exchange_halo(), apply_walls(), and the links of bodies.
+template <typename Real>
+MomentumFlux momentum_flux(const Fluid<Real>& fluid, std::ptrdiff_t cell);
 template <typename Real>
 SubgridState subgrid_state(const Fluid<Real>& fluid, std::ptrdiff_t cell);
 

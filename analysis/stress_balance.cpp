@@ -1,0 +1,145 @@
+// Sums of the stress balance and their state; what they come to is in stress_profiles.cpp.
+#include "analysis/stress_balance.hpp"
+
+#include "analysis/sphere_in_layer.hpp"
+#include "analysis/tensor_names.hpp"
+#include "core/contact_stress.hpp"
+#include "core/fixed_point.hpp"
+#include "core/mpi_session.hpp"
+#include "core/order_free_sum.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace thalweg::analysis {
+
+namespace {
+
+using CellSum = FixedPoint<40>;
+
+}  // namespace
+
+StressBalance::StressBalance(MPI_Comm communicator, const Decomposition& decomposition, double layer,
+                             const BalanceSchedule& schedule, const BalanceScales& scales, std::vector<HeldGrains> held)
+    : communicator_(communicator),
+      n_(decomposition.cells()),
+      spacing_(decomposition.spacing()),
+      side_walls_(!decomposition.periodic()[1]),
+      layers_(n_[2], spacing_, layer),
+      schedule_(schedule),
+      scales_(scales),
+      held_(std::move(held)),
+      fluid_(static_cast<std::size_t>(n_[2]) * fluid_columns, 0.0),
+      grains_(static_cast<std::size_t>(layers_.count()) * grain_columns, 0.0),
+      given_(static_cast<std::size_t>(2 * n_[2] + 1), 0.0),
+      driving_(static_cast<std::size_t>(n_[2] + 1), 0.0) {
+  if (decomposition.periodic()[2]) throw std::logic_error("a stress balance needs a top and a bottom");
+}
+
+void StressBalance::observe(const Snapshot& snapshot) {
+  // A step that is due at `from` itself counts, whatever the last bit of its time.
+  if (!snapshot.momentum || snapshot.step <= counted_step_ || snapshot.time < schedule_.from * (1.0 - 1e-12)) return;
+  counted_step_ = snapshot.step;
+  ++measurements_;
+  add_fluid(snapshot);
+  add_grains(snapshot);
+}
+
+void StressBalance::add_fluid(const Snapshot& snapshot) {
+  const double stress_unit = scales_.fluid_density * scales_.velocity_unit * scales_.velocity_unit;
+  std::vector<std::int64_t> sums(fluid_.size(), 0);
+  const MomentumBudget budget = snapshot.momentum->for_each_momentum([&](const Index3& cell, const CellMomentum& c) {
+    std::int64_t* columns = sums.data() + static_cast<std::size_t>(cell[2]) * fluid_columns;
+    const double rho = c.density / scales_.fluid_density;
+    const Vec3 u = c.velocity / scales_.velocity_unit;
+    columns[cells] += 1;
+    columns[density] += CellSum::from(rho);
+    for (int a = 0; a < 3; ++a) columns[flow + a] += CellSum::from(rho * u[a]);
+    for (int p = 0; p < 6; ++p) {
+      columns[flow_flux + p] += CellSum::from(rho * u[symmetric_pairs[p][0]] * u[symmetric_pairs[p][1]]);
+      columns[viscous + p] += CellSum::from(c.viscous[static_cast<std::size_t>(p)] / stress_unit);
+      columns[subgrid + p] += CellSum::from(c.subgrid[static_cast<std::size_t>(p)] / stress_unit);
+    }
+  });
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_INT64_T, MPI_SUM, communicator_);
+  for (std::size_t s = 0; s < sums.size(); ++s)
+    fluid_[s] += s % fluid_columns == cells ? static_cast<double>(sums[s]) : CellSum::to_double(sums[s]);
+  for (std::size_t h = 0; h < given_.size(); ++h) given_[h] += budget.on_grains[h].x();
+  for (int z = 0; z < n_[2]; ++z)
+    driving_[static_cast<std::size_t>(z)] +=
+        budget.driving.x() * static_cast<double>(sums[static_cast<std::size_t>(z) * fluid_columns + cells]);
+  driving_.back() += budget.on_top.x();
+}
+
+bool StressBalance::is_held(GlobalId id) const {
+  return std::any_of(held_.begin(), held_.end(),
+                     [id](const HeldGrains& held) { return id >= held.first && id < held.end; });
+}
+
+void StressBalance::add_grains(const Snapshot& snapshot) {
+  const GrainView& grains = snapshot.grains;
+  if (grains.global_count == 0) return;
+  const std::vector<Mat3> contact_moments_of = contact_moments(snapshot);
+  std::vector<int> layer_of_row;
+  std::vector<double> terms;
+  for (std::size_t i = 0; i < grains.id.size(); ++i) {
+    const double radius = grains.radius[i], lowest = grains.position[i][2] - radius, whole = volume_of(radius, 0.0);
+    const Vec3 &v = grains.velocity[i], &by_fluid = grains.fluid_force[i], &by_contacts = grains.contact_force[i];
+    const Mat3 of_fluid = grains.fluid_stress.empty() ? Mat3(Mat3::Zero()) : Mat3(whole * grains.fluid_stress[i]);
+    const double outer = is_held(grains.id[i]) ? -(by_fluid.x() + by_contacts.x()) : grains.mass[i] * scales_.gravity_x;
+    for (int layer = layers_.at(lowest); layer <= layers_.at(lowest + 2.0 * radius); ++layer) {
+      const double from = layers_.bottom(layer) - lowest, to = from + layers_.height(layer);
+      const double part = volume_between(radius, 0.0, from, to), share = part / whole, m = share * grains.mass[i];
+      const double lever = (sphere_moment_below(radius, to) - sphere_moment_below(radius, from) - from * part) / whole;
+      layer_of_row.push_back(layer);
+      terms.insert(terms.end(), {part, m, m * v[0], m * v[1], m * v[2]});
+      for (const auto& [a, b] : symmetric_pairs) terms.push_back(m * v[a] * v[b]);
+      for (const Mat3* moment : {&contact_moments_of[i], &of_fluid})
+        for (int k = 0; k < 9; ++k) terms.push_back(share * (*moment)(k / 3, k % 3));
+      terms.insert(terms.end(), {share * by_fluid[0], share * by_fluid[1], share * by_fluid[2], share * by_contacts[0],
+                                 share * outer});
+      terms.insert(terms.end(), {lever * by_fluid[0], lever * by_contacts[0], lever * outer});
+    }
+  }
+  const std::vector<double> sums =
+      order_free_sums_by_bin(communicator_, layer_of_row, layers_.count(), terms, grain_columns);
+  for (std::size_t s = 0; s < sums.size(); ++s) grains_[s] += sums[s];
+}
+
+std::vector<std::span<double>> StressBalance::stored() { return {fluid_, grains_, given_, driving_}; }
+
+void StressBalance::save(ArchiveWriter& archive) const {
+  archive.attribute("stress_balance/mean_from", schedule_.from);
+  archive.attribute("stress_balance/measurements", measurements_);
+  archive.attribute("stress_balance/counted_step", counted_step_);
+  archive.attribute("stress_balance/layers", static_cast<std::int64_t>(layers_.count()));
+  std::vector<double> all;
+  const bool first = rank_of(communicator_) == 0;
+  const std::size_t size = fluid_.size() + grains_.size() + given_.size() + driving_.size();
+  if (first)
+    for (const std::vector<double>* sums : {&fluid_, &grains_, &given_, &driving_})
+      all.insert(all.end(), sums->begin(), sums->end());
+  const std::vector<std::uint64_t> shape{size}, nothing{0};
+  archive.write("stress_balance/sums", std::span<const double>(all), {shape, nothing, first ? shape : nothing});
+}
+
+void StressBalance::load(ArchiveReader& archive) {
+  const std::size_t size = fluid_.size() + grains_.size() + given_.size() + driving_.size();
+  const std::vector<std::uint64_t> shape{size};
+  if (!archive.has("stress_balance/mean_from") ||
+      archive.real_attribute("stress_balance/mean_from") != schedule_.from ||
+      archive.integer_attribute("stress_balance/layers") != layers_.count() ||
+      archive.shape("stress_balance/sums") != shape)
+    return;
+  measurements_ = archive.integer_attribute("stress_balance/measurements");
+  counted_step_ = archive.integer_attribute("stress_balance/counted_step");
+  std::vector<double> all(size);
+  archive.read("stress_balance/sums", std::span<double>(all), {shape, {0}, shape});
+  auto next = all.begin();
+  for (const std::span<double> sums : stored()) {
+    std::copy_n(next, sums.size(), sums.begin());
+    next += static_cast<std::ptrdiff_t>(sums.size());
+  }
+}
+
+}  // namespace thalweg::analysis

@@ -1,0 +1,143 @@
+// The balance of momentum along x by layers of a bed under a flow: all stresses that carry it, who takes it from whom,
+// and the line that the driving force prescribes in steady state (docs/theory.md, section 5, "Momentum balance by
+// layers"). Stresses are per area of the whole layer, fluid and grains together, so that they add up; positive in
+// tension, the force's component first.
+//
+// Grains by volume shares, V_il the part of grain i within layer l, A b the layer's volume (grain_profiles.hpp):
+//   contact stress         (1/Ab) sum_i (V_il/V_i) sum_c F_a r_b              (Christoffersen et al. 1981)
+//   fluid part on grains   (1/Ab) sum_i (V_il/V_i) sum_links F_a x_b          (Zhang et al. 2022, eq. 13)
+//   rotation stress        xz - zx of the last                                (Zhang et al. 2022, section 2.4)
+//   drag density           (1/Ab) sum_i (V_il/V_i) F_i                        N/m^3, given by the fluid
+//   drag function          F = f_x d^2/(18 phi (1 - phi) eta (U_f - U_s)),  Re_d = (1 - phi) rho_f |U_f - U_s| d/eta
+//                                                                             (eq. 25, without turbulent drift)
+// Of the fluid cells, in the coming collision: viscous and subgrid stress from the non-equilibrium moments
+// (lbm/flow_fields.hpp), rho u_a u_b, which is parted into Reynolds stress -(<rho u_a u_b> - <rho u_a><rho u_b>/<rho>)
+// and what the mean flow carries.
+//
+// Totals of xz, all means over the layer:
+//   sum of stresses   all of the above added up: grains count with their mean stress wherever they are cut
+//   total stress      the same with grains cut where the layer is: what acts on the parts above a plane
+//   driving stress    top + integral from z to the top of rho_f g_x (1 - phi) + rho_s g_x phi, and of what holds held
+//                     grains
+// In steady state total stress and driving stress are equal. Between side walls they differ by what the walls carry.
+#pragma once
+
+#include "analysis/cell_layers.hpp"
+#include "analysis/observer.hpp"
+
+#include <mpi.h>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace thalweg::analysis {
+
+struct BalanceSchedule {
+  double from = 0.0;   // s: the means begin here
+  double every = 0.0;  // s: between measurements
+};
+
+struct BalanceScales {
+  double velocity_unit = 1.0;  // m/s a lattice unit
+  double fluid_density = 0.0;  // kg/m^3
+  double viscosity = 0.0;      // Pa s
+  double diameter = 0.0;       // m, that stands for all grains
+  double gravity_x = 0.0;      // m/s^2, on grains that are free
+};
+
+// Grains that move as told, or not at all: ids from `first` to one before `end`.
+struct HeldGrains {
+  GlobalId first = 0, end = 0;
+};
+
+class StressBalance : public Observer {
+public:
+  // layer: m, wanted; layers are of whole planes of cells. z must not be periodic.
+  StressBalance(MPI_Comm communicator, const Decomposition& decomposition, double layer,
+                const BalanceSchedule& schedule, const BalanceScales& scales, std::vector<HeldGrains> held);
+
+  std::string name() const override { return "stress_balance"; }
+  double every() const override { return schedule_.every; }
+  void observe(const Snapshot& snapshot) override;  // a step seen before does not count again
+  std::vector<Figure> figures() const override { return {}; }
+
+  // mean_from (s), measurements (1), bed_height (m): where, from above, the solid fraction first exceeds half of its
+  // maximum; bed_stress (Pa): the driving stress there (its largest where there is no bed); largest_difference (1): of
+  // the total stress from the driving stress, over the bed stress; largest_difference_at (m); and of the sum of
+  // stresses, largest_difference_of_sum, largest_difference_of_sum_at.
+  std::vector<Figure> results() const override;
+  std::vector<std::string> remarks() const override;
+
+  // Over z (m, middle of the layer): thickness (m), solid_fraction (1), grain_velocity, fluid_velocity (m/s: x, y, z),
+  // granular_temperature (m^2/s^2), drag_density (N/m^3: x, y, z), drag_function, drag_reynolds_number (1; zero without
+  // grains), and in Pa: contact_stress, grain_fluid_stress (xx, xy, xz, yx, ... zz), kinetic_stress, viscous_stress,
+  // subgrid_stress, reynolds_stress, mean_flow_stress (xx, yy, zz, xy, xz, yz), rotation_stress,
+  // contact_rotation_stress, sum_of_stresses, total_stress, driving_stress.
+  std::vector<Profile> profiles() const override;
+
+  void save(ArchiveWriter& archive) const override;
+  void load(ArchiveReader& archive) override;  // takes the sums over only if they were begun at the same `from`
+
+private:
+  // Columns of a plane of cells (lattice units, sums over its fluid cells).
+  enum FluidColumn { cells, density = 1, flow = 2, flow_flux = 5, viscous = 11, subgrid = 17, fluid_columns = 23 };
+  // Columns of a layer of grains (SI): sums over the parts; levers are parts times their height over the layer's
+  // bottom.
+  enum GrainColumn {
+    volume,
+    mass = 1,
+    momentum = 2,
+    momentum_flux = 5,
+    contact_moment = 11,
+    fluid_moment = 20,
+    fluid_force = 29,
+    contact_force_x = 32,
+    outer_force_x = 33,
+    fluid_lever = 34,
+    contact_lever = 35,
+    outer_lever = 36,
+    grain_columns = 37
+  };
+  using Tensor = std::array<double, 6>;  // xx, yy, zz, xy, xz, yz
+  struct LayerMeans;
+  struct Difference {
+    double share = 0.0, height = 0.0;
+  };
+
+  void add_fluid(const Snapshot& snapshot);
+  void add_grains(const Snapshot& snapshot);
+  bool is_held(GlobalId id) const;
+  std::array<double, fluid_columns> fluid_of(int layer) const;
+  LayerMeans means_of(int layer) const;
+  void set_fluid_means(int layer, LayerMeans& means) const;
+  void set_grain_means(int layer, LayerMeans& means) const;
+  void set_drag_law(LayerMeans& means) const;
+  void set_totals(int layer, LayerMeans& means) const;
+  double given_above(int layer) const;
+  double driven_above(int layer) const;
+  double above(int layer, GrainColumn force, GrainColumn lever) const;
+  int bed_layer(const std::vector<LayerMeans>& layers) const;
+  static Difference largest_difference(const std::vector<LayerMeans>& layers, double LayerMeans::*total,
+                                       double bed_stress);
+  std::vector<LayerMeans> all_means() const;
+  std::vector<std::span<double>> stored();
+
+  MPI_Comm communicator_;
+  Index3 n_;         // cells of the domain
+  double spacing_;   // m
+  bool side_walls_;  // y is not periodic
+  CellLayers layers_;
+  BalanceSchedule schedule_;
+  BalanceScales scales_;
+  std::vector<HeldGrains> held_;
+  // Over measurements and all ranks, on every rank.
+  std::vector<double> fluid_;    // fluid_columns of each plane
+  std::vector<double> grains_;   // grain_columns of each layer
+  std::vector<double> given_;    // N, along x, on grains by half planes
+  std::vector<double> driving_;  // N/m^3 times fluid cells, along x, of each plane; last: N on the top
+  std::int64_t measurements_ = 0, counted_step_ = -1;
+};
+
+}  // namespace thalweg::analysis

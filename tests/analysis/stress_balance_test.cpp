@@ -1,0 +1,267 @@
+// The balance of momentum by layers: flows whose stress follows from the force that drives them, and sums that are the
+// same on any ranks.
+#include "analysis/stress_balance.hpp"
+
+#include "analysis/sphere_in_layer.hpp"
+#include "core/mpi_session.hpp"
+#include "tests/coupling/water_box.hpp"
+#include "tests/support/memory_archive.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+
+namespace thalweg::analysis {
+namespace {
+
+using coupling::FluidInitialState;
+using coupling::glass_sphere;
+using coupling::make_system;
+using coupling::ResolvedSystem;
+using coupling::WaterBox;
+
+using Values = std::map<std::string, std::vector<double>>;
+
+Values by_name(const StressBalance& balance) {
+  Values values;
+  for (const Profile& profile : balance.profiles()) values[profile.name] = profile.values;
+  return values;
+}
+
+double result(const StressBalance& balance, const std::string& name) {
+  for (const Figure& figure : balance.results())
+    if (figure.name == name) return figure.value;
+  throw std::out_of_range("no result " + name);
+}
+
+// A viscous fluid among spheres of 9 or 6 cells; what the tests below have in common.
+WaterBox viscous_box(const Index3& cells, double cells_per_diameter, double tau) {
+  WaterBox box;
+  box.cells = cells;
+  box.periodic = {true, true, false};
+  box.spacing = 5e-3 / cells_per_diameter;
+  box.time_step = 1e-4;
+  box.viscosity = (tau - 0.5) / 3.0 * box.spacing * box.spacing / box.time_step;
+  box.smagorinsky_constant = 0.0;
+  box.collision = lbm::CollisionModel::trt;
+  box.links.rule = lbm::LinkRule::cli;
+  box.grain_stress = true;
+  return box;
+}
+
+std::unique_ptr<ResolvedSystem<double>> system_of(const WaterBox& box) {
+  return make_system<double>(box, MPI_COMM_WORLD, Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD)));
+}
+
+StressBalance balance_of(const WaterBox& box, const ResolvedSystem<double>& system, double layer,
+                         std::vector<HeldGrains> held) {
+  const BalanceScales scales{box.spacing / box.time_step, 1000.0, 1000.0 * box.viscosity, 5e-3, box.gravity.x()};
+  return StressBalance(MPI_COMM_WORLD, *system.snapshot().decomposition, layer, {0.0, 1e-4}, scales, std::move(held));
+}
+
+// Over some steps one after the other: exchanges over links swing a little from step to step, which the mean of two
+// takes out of the loads (docs/theory.md, section 3).
+void measure(StressBalance& balance, ResolvedSystem<double>& system) {
+  for (int n = 0; n < 20; ++n) {
+    system.advance();
+    balance.observe(system.snapshot());
+  }
+}
+
+double integral(const Values& values, const std::string& name) {
+  double sum = 0.0;
+  for (std::size_t l = 0; l < values.at("z").size(); ++l) sum += values.at(name)[l] * values.at("thickness")[l];
+  return sum;
+}
+
+double largest_apart(const Values& values, const std::string& one, const std::string& other) {
+  double largest = 0.0;
+  for (std::size_t l = 0; l < values.at(one).size(); ++l)
+    largest = std::max(largest, std::abs(values.at(one)[l] - values.at(other)[l]));
+  return largest;
+}
+
+// Flow down a slope over a bed of spheres that are held, at Re below 0.1. The balance of the lattice is exact plane by
+// plane, so that total and driving stress differ by the change of momentum in time alone. Its slowest part decays as
+// exp(-t/T), T = 4 H^2/(pi^2 nu) with H below the whole height (Stokes flow between a wall and a free surface); after
+// 10 T that of a start at rest is 5e-5.
+TEST(StressBalance, OfASlowFlowOverHeldSpheresIsTheWeightAbove) {
+  WaterBox box = viscous_box({18, 18, 36}, 9.0, 1.5);
+  box.gravity = Vec3(0.02, 0.0, -9.8);
+  for (int k = 0; k < 4; ++k)
+    box.seeds.push_back(glass_sphere(k, Vec3((k % 2 + 0.31) * 5e-3, (k / 2 + 0.17) * 5e-3, 2.9e-3 + 0.4e-3 * k)));
+  for (dem::GrainSeed& seed : box.seeds) seed.motion = dem::Motion::fixed;
+  const auto system = system_of(box);
+  const double nu = (1.5 - 0.5) / 3.0, decay = 4.0 * 36.0 * 36.0 / (std::numbers::pi * std::numbers::pi * nu);
+  for (int step = 0; step < static_cast<int>(10.0 * decay); ++step) system->advance();
+  StressBalance balance = balance_of(box, *system, 1.2e-3, {{0, 4}});
+  measure(balance, *system);
+  const Values values = by_name(balance);
+  const double bed_stress = result(balance, "bed_stress");
+  EXPECT_LT(largest_apart(values, "total_stress", "driving_stress"), 1e-4 * bed_stress);
+
+  // Above the spheres there is fluid alone, and its weight above a layer's middle is known.
+  const double height = 36.0 * box.spacing;
+  for (std::size_t l = 0; l < values.at("z").size(); ++l)
+    if (values.at("z")[l] - 0.5 * values.at("thickness")[l] > 2.9e-3 + 1.2e-3 + 2.5e-3) {
+      EXPECT_NEAR(values.at("driving_stress")[l], 1000.0 * 0.02 * (height - values.at("z")[l]), 1e-9 * bed_stress);
+      EXPECT_NEAR(values.at("viscous_stress")[6 * l + 4], values.at("total_stress")[l], 1e-3 * bed_stress);
+    }
+  // Spread over a grain's volume or not, the stress is the same in the whole: each force acts within half a link of
+  // the height it is counted at, and together the forces are no more than the bed carries with its own driving, below
+  // the weight of the whole fluid column.
+  EXPECT_NEAR(integral(values, "sum_of_stresses"), integral(values, "total_stress"),
+              0.5 * box.spacing * 1000.0 * 0.02 * height);
+  // The drag of all grains is what drives the fluid less what the floor takes: less than its weight, and most of it.
+  double drag = 0.0;
+  for (std::size_t l = 0; l < values.at("z").size(); ++l)
+    drag += values.at("drag_density")[3 * l] * values.at("thickness")[l];
+  double loads = 0.0;
+  for (const Vec3& force : system->snapshot().grains.fluid_force) loads += force.x();
+  loads = sum_over_ranks(MPI_COMM_WORLD, loads) / (18.0 * 18.0 * box.spacing * box.spacing);
+  EXPECT_NEAR(drag, loads, 1e-4 * bed_stress);  // of the last step, against the mean of twenty
+  EXPECT_GT(drag, 0.5 * bed_stress);
+}
+
+// A sphere held between two plates that slide: nothing drives the fluid but the plates, so that the total stress is the
+// same everywhere once the flow is steady (T = H^2/(pi^2 nu), 10 T: 5e-5 of the start, which is linear and differs from
+// the end by the share of the solid). The rotation stress is the torque on the sphere per area of the box, integrated
+// over the height: an identity.
+TEST(StressBalance, OfAHeldSphereInShearIsThatOfThePlates) {
+  WaterBox box = viscous_box({20, 18, 24}, 9.0, 1.5);
+  const double height = 24.0 * box.spacing, rate = 0.02 * box.viscosity / (2.5e-3 * 2.5e-3);
+  box.plate_velocity = 0.5 * rate * height;
+  static double shear, middle;
+  shear = rate;
+  middle = 0.5 * height;
+  box.initial = [](const Vec3& p) { return FluidInitialState{0.0, Vec3(shear * (p.z() - middle), 0.0, 0.0)}; };
+  box.seeds = {glass_sphere(0, Vec3(9.2 * box.spacing, 8.1 * box.spacing, middle + 0.7 * box.spacing))};
+  box.seeds[0].motion = dem::Motion::fixed;
+  const auto system = system_of(box);
+  const double decay = 24.0 * 24.0 / (std::numbers::pi * std::numbers::pi / 3.0);
+  for (int step = 0; step < static_cast<int>(10.0 * decay); ++step) system->advance();
+  StressBalance balance = balance_of(box, *system, box.spacing, {{0, 1}});
+  measure(balance, *system);
+  const Values values = by_name(balance);
+  const double unit = 1000.0 * box.viscosity * rate;
+  EXPECT_LT(largest_apart(values, "total_stress", "driving_stress"), 1e-4 * unit);
+  EXPECT_GT(values.at("total_stress").front(), unit);  // the sphere makes the suspension stiffer
+
+  double torque = 0.0, force = 0.0;
+  const GrainView grains = system->snapshot().grains;
+  if (!grains.id.empty()) torque = grains.fluid_torque[0].y(), force = grains.fluid_force[0].x();
+  torque = sum_over_ranks(MPI_COMM_WORLD, torque);
+  force = sum_over_ranks(MPI_COMM_WORLD, force);
+  const double area = 20.0 * 18.0 * box.spacing * box.spacing;
+  EXPECT_NEAR(integral(values, "rotation_stress"), torque / area, 1e-6 * unit * height);
+  EXPECT_GT(torque, 0.0);
+  // A layer above the sphere carries the stress of the plate, one below differs by the force that holds the sphere.
+  EXPECT_NEAR(values.at("driving_stress").front() - values.at("driving_stress").back(), -force / area, 1e-9 * unit);
+}
+
+// A bed at rest in a viscous fluid that flows down a slope it can bear: two sheets of free spheres, each in the hollows
+// of the one below, on a sheet that is held. Weight and contacts come in. The start is the parabola over the bed; what
+// is not steady yet decays by exp(-4), and was a quarter of the bed stress at most (a bed surface wrong by half a grain
+// in a depth of four).
+TEST(StressBalance, OfABedAtRestHasTheWeightOfItsGrains) {
+  WaterBox box = viscous_box({24, 12, 36}, 6.0, 1.0);
+  box.sub_steps = 20;
+  box.gravity = Vec3(9.8 * 0.03, 0.0, -9.8);
+  const double rise = 2.5e-3 * std::numbers::sqrt2;
+  static double nu, pull, top, bed;
+  nu = box.viscosity;
+  pull = box.gravity.x();
+  top = 36.0 * box.spacing;
+  bed = 5e-3 + 2.0 * rise;
+  box.initial = [](const Vec3& p) {
+    const double z = std::max(0.0, p.z() - bed), depth = top - bed;
+    return FluidInitialState{0.0, Vec3(pull / nu * z * (depth - 0.5 * z), 0.0, 0.0)};
+  };
+  for (int sheet = 0; sheet < 3; ++sheet)
+    for (int k = 0; k < 8; ++k) {
+      const double aside = 0.25 + 0.5 * (sheet % 2);
+      box.seeds.push_back(
+          glass_sphere(8 * sheet + k, Vec3((k % 4 + aside) * 5e-3, (k / 4 + aside) * 5e-3, 2.5e-3 + rise * sheet)));
+      if (sheet == 0) box.seeds.back().motion = dem::Motion::fixed;
+    }
+  const auto system = system_of(box);
+  const double depth = (top - bed) / box.spacing;
+  const double decay = 4.0 * depth * depth / (std::numbers::pi * std::numbers::pi / 6.0);
+  for (int step = 0; step < static_cast<int>(4.0 * decay); ++step) system->advance();
+  StressBalance balance = balance_of(box, *system, 1.25e-3, {{0, 8}});
+  const double area = 24.0 * 12.0 * box.spacing * box.spacing;
+  double holding = 0.0;
+  constexpr int steps = 20;
+  for (int n = 0; n < steps; ++n) {
+    system->advance();
+    const Snapshot snapshot = system->snapshot();
+    balance.observe(snapshot);
+    const GrainView& grains = snapshot.grains;
+    for (std::size_t g = 0; g < grains.id.size(); ++g)
+      if (grains.id[g] < 8) holding += (grains.fluid_force[g].x() + grains.contact_force[g].x()) / (steps * area);
+  }
+  holding = sum_over_ranks(MPI_COMM_WORLD, holding);
+  const Values values = by_name(balance);
+  EXPECT_LT(std::abs(result(balance, "largest_difference")), 0.25 * std::exp(-4.0));
+  EXPECT_NEAR(result(balance, "bed_height"), bed, 1.3e-3);  // a layer
+  const double sheet = 8.0 * 4.0 / 3.0 * std::numbers::pi * std::pow(2.5e-3, 3) / area;
+  EXPECT_NEAR(integral(values, "solid_fraction"), 3.0 * sheet, 1e-9 * sheet);
+
+  // What holds the lowest sheet, and the line in the middle of the lowest layer, which has the part of it above:
+  // together the weight along the slope, of the free grains and of the fluid above. The spheres cover their volume
+  // within a few per cent.
+  const double middle = values.at("z").front(),
+               below = sphere_volume_below(2.5e-3, middle) / sphere_volume_below(2.5e-3, 1);
+  const double fluid = top - middle - (3.0 - below) * sheet;
+  const double weight = box.gravity.x() * (2550.0 * 2.0 * sheet + 1000.0 * fluid);
+  EXPECT_NEAR(values.at("driving_stress").front() + (1.0 - below) * holding, weight, 0.01 * weight);
+  EXPECT_NEAR(holding, weight, 0.1 * weight);  // the floor under the spheres sees little of the flow
+}
+
+// The same sums, bit by bit, whatever the ranks; measured again from a saved state, the means go on as if nothing had
+// been; and a run that is looked at has the same bits as one that is not.
+TEST(StressBalance, LooksWithoutTouchingAndGoesOnAfterARestart) {
+  WaterBox box;
+  box.cells = {32, 24, 24};
+  box.periodic = {true, true, false};
+  box.gravity = Vec3(0.5, 0.0, -9.8);
+  box.grain_stress = true;
+  for (int k = 0; k < 6; ++k)
+    box.seeds.push_back(glass_sphere(k, Vec3(6.4e-3 * (k % 3) + 1e-3, 8e-3 * (k / 3) + 3e-3, 6e-3 + 1e-3 * k),
+                                     Vec3(0.2, 0.05 * k, -0.1)));
+  const auto watched = system_of(box), alone = system_of(box);
+  StressBalance balance = balance_of(box, *watched, 1.25e-3, {});
+  const auto serial = make_system<double>(box, MPI_COMM_SELF, {1, 1, 1});
+  const BalanceScales scales{box.spacing / box.time_step, 1000.0, 1e-3, 5e-3, 0.5};
+  StressBalance of_one(MPI_COMM_SELF, *serial->snapshot().decomposition, 1.25e-3, {0.0, 1e-4}, scales, {});
+  StressBalance again = balance_of(box, *watched, 1.25e-3, {});
+  for (int step = 0; step < 20; ++step) {
+    watched->advance();
+    alone->advance();
+    serial->advance();
+    balance.observe(watched->snapshot());
+    of_one.observe(serial->snapshot());
+    if (step == 9) {
+      thalweg::test::MemoryArchive archive;
+      thalweg::test::MemoryWriter writer(archive, MPI_COMM_WORLD);
+      balance.save(writer);
+      thalweg::test::MemoryReader reader(archive);
+      again.load(reader);
+    }
+    if (step > 9) again.observe(watched->snapshot());
+  }
+  EXPECT_EQ(by_name(balance), by_name(again));
+  EXPECT_EQ(by_name(balance), by_name(of_one));
+  const GrainView seen = watched->snapshot().grains, unseen = alone->snapshot().grains;
+  ASSERT_EQ(seen.id.size(), unseen.id.size());
+  for (std::size_t g = 0; g < seen.id.size(); ++g) {
+    EXPECT_EQ(seen.position[g], unseen.position[g]);
+    EXPECT_EQ(seen.fluid_torque[g], unseen.fluid_torque[g]);
+  }
+  EXPECT_EQ(watched->fluid().totals().momentum, alone->fluid().totals().momentum);
+}
+
+}  // namespace
+}  // namespace thalweg::analysis
