@@ -103,7 +103,8 @@ private:
   using Tensor = std::array<double, 6>;  // xx, yy, zz, xy, xz, yz
   struct LayerMeans;
   struct Difference {
-    double share = 0.0, height = 0.0;
+    double share = 0.0;  // of the bed stress
+    int layer = 0;
   };
 
   void add_fluid(const Snapshot& snapshot);

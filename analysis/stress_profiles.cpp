@@ -151,7 +151,7 @@ StressBalance::Difference StressBalance::largest_difference(const std::vector<La
   Difference largest;
   for (std::size_t l = 0; l < layers.size() && bed_stress != 0.0; ++l) {
     const double share = (layers[l].*total - layers[l].driving) / bed_stress;
-    if (std::abs(share) > std::abs(largest.share)) largest = {share, static_cast<double>(l)};
+    if (std::abs(share) > std::abs(largest.share)) largest = {share, static_cast<int>(l)};
   }
   return largest;
 }
@@ -164,7 +164,7 @@ std::vector<Figure> StressBalance::results() const {
     if (bed < 0 && std::abs(means.driving) > std::abs(bed_stress)) bed_stress = means.driving;
   const Difference total = largest_difference(layers, &LayerMeans::total, bed_stress);
   const Difference sum = largest_difference(layers, &LayerMeans::sum, bed_stress);
-  const auto height = [this](const Difference& d) { return layers_.middle(static_cast<int>(d.height)); };
+  const auto height = [this](const Difference& d) { return layers_.middle(d.layer); };
   return {{"mean_from", "s", schedule_.from},
           {"measurements", "1", static_cast<double>(measurements_)},
           {"bed_height", "m", bed >= 0 ? layers_.bottom(bed) + layers_.height(bed) : 0.0},

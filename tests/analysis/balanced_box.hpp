@@ -1,0 +1,37 @@
+// A stress balance of a small resolved system, for tests.
+#pragma once
+
+#include "analysis/stress_balance.hpp"
+#include "core/mpi_session.hpp"
+#include "tests/coupling/water_box.hpp"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace thalweg::analysis {
+
+using coupling::glass_sphere;
+using coupling::make_system;
+using coupling::ResolvedSystem;
+using coupling::WaterBox;
+
+using Values = std::map<std::string, std::vector<double>>;
+
+inline Values by_name(const StressBalance& balance) {
+  Values values;
+  for (const Profile& profile : balance.profiles()) values[profile.name] = profile.values;
+  return values;
+}
+
+inline std::unique_ptr<ResolvedSystem<double>> system_of(const WaterBox& box) {
+  return make_system<double>(box, MPI_COMM_WORLD, Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD)));
+}
+
+inline StressBalance balance_of(const WaterBox& box, const ResolvedSystem<double>& system, double layer,
+                                std::vector<HeldGrains> held) {
+  const BalanceScales scales{box.spacing / box.time_step, 1000.0, 1000.0 * box.viscosity, 5e-3, box.gravity.x()};
+  return StressBalance(MPI_COMM_WORLD, *system.snapshot().decomposition, layer, {0.0, 1e-4}, scales, std::move(held));
+}
+
+}  // namespace thalweg::analysis

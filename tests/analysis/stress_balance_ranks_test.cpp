@@ -1,0 +1,54 @@
+// Sums of the stress balance: the same on any ranks and after a restart, of a run that does not notice.
+#include "tests/analysis/balanced_box.hpp"
+#include "tests/support/memory_archive.hpp"
+
+#include <gtest/gtest.h>
+
+namespace thalweg::analysis {
+namespace {
+
+// The same sums, bit by bit, whatever the ranks; measured again from a saved state, the means go on as if nothing had
+// been; and a run that is looked at has the same bits as one that is not.
+TEST(StressBalance, LooksWithoutTouchingAndGoesOnAfterARestart) {
+  WaterBox box;
+  box.cells = {32, 24, 24};
+  box.periodic = {true, true, false};
+  box.gravity = Vec3(0.5, 0.0, -9.8);
+  box.grain_stress = true;
+  for (int k = 0; k < 6; ++k)
+    box.seeds.push_back(glass_sphere(k, Vec3(6.4e-3 * (k % 3) + 1e-3, 8e-3 * (k / 3) + 3e-3, 6e-3 + 1e-3 * k),
+                                     Vec3(0.2, 0.05 * k, -0.1)));
+  const auto watched = system_of(box), alone = system_of(box);
+  StressBalance balance = balance_of(box, *watched, 1.25e-3, {});
+  const auto serial = make_system<double>(box, MPI_COMM_SELF, {1, 1, 1});
+  const BalanceScales scales{box.spacing / box.time_step, 1000.0, 1e-3, 5e-3, 0.5};
+  StressBalance of_one(MPI_COMM_SELF, *serial->snapshot().decomposition, 1.25e-3, {0.0, 1e-4}, scales, {});
+  StressBalance again = balance_of(box, *watched, 1.25e-3, {});
+  for (int step = 0; step < 20; ++step) {
+    watched->advance();
+    alone->advance();
+    serial->advance();
+    balance.observe(watched->snapshot());
+    of_one.observe(serial->snapshot());
+    if (step == 9) {
+      thalweg::test::MemoryArchive archive;
+      thalweg::test::MemoryWriter writer(archive, MPI_COMM_WORLD);
+      balance.save(writer);
+      thalweg::test::MemoryReader reader(archive);
+      again.load(reader);
+    }
+    if (step > 9) again.observe(watched->snapshot());
+  }
+  EXPECT_EQ(by_name(balance), by_name(again));
+  EXPECT_EQ(by_name(balance), by_name(of_one));
+  const GrainView seen = watched->snapshot().grains, unseen = alone->snapshot().grains;
+  ASSERT_EQ(seen.id.size(), unseen.id.size());
+  for (std::size_t g = 0; g < seen.id.size(); ++g) {
+    EXPECT_EQ(seen.position[g], unseen.position[g]);
+    EXPECT_EQ(seen.fluid_torque[g], unseen.fluid_torque[g]);
+  }
+  EXPECT_EQ(watched->fluid().totals().momentum, alone->fluid().totals().momentum);
+}
+
+}  // namespace
+}  // namespace thalweg::analysis
