@@ -19,27 +19,10 @@ import matplotlib.pyplot as plt
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 import thalweg
 from thalweg.frames import trajectory
+from thalweg.rebound import impacts, settling_time
 
 ACCEPTED = 0.1
-CONTACT_GAP = 0.02        # diameters: closer than this, a turn is an impact
-IMPACTS = 3
 SLOWEST = 8.0             # Stokes number below which nothing rebounds and nothing more is counted
-
-
-def impacts(times, gaps, velocities, answer):
-    """Velocities before and after each impact; the fall from the start counts from two diameters on. answer: s."""
-    begin, found = next(k for k, gap in enumerate(gaps) if gap < 2.0), []
-    while len(found) < IMPACTS:
-        near = next((k for k in range(begin, len(gaps)) if gaps[k] < CONTACT_GAP), None)
-        left = near and next((k for k in range(near + 1, len(gaps)) if velocities[k] > 0.0), None)
-        later = left and next((k for k in range(left, len(gaps)) if times[k] >= times[left] + answer), None)
-        if later is None:
-            break
-        share = (times[left] + answer - times[later - 1]) / (times[later] - times[later - 1])
-        after = velocities[later - 1] + share * (velocities[later] - velocities[later - 1])
-        found.append((max(-v for v in velocities[begin:near + 1]), max(0.0, after)))
-        begin = next((k for k in range(left, len(gaps)) if velocities[k] < 0.0), len(gaps))
-    return found
 
 
 def main():
@@ -61,8 +44,7 @@ def main():
         times, positions, motions = trajectory(folder.grains)
         heights, velocities = positions[:, 2], motions[:, 2]
         gaps = [(h - 0.5 * diameter) / diameter for h in heights]   # diameters
-        answer = math.pi * 0.5 * diameter * math.sqrt(3.0) * case["fluid"]["time_step"] / case["domain"]["spacing"]
-        for number, (before, after) in enumerate(impacts(times, gaps, velocities, answer)):
+        for number, (before, after) in enumerate(impacts(times, gaps, velocities, settling_time(case))):
             stokes = density * before * diameter / (9.0 * viscosity)
             ratio, reference = after / before / case["contact"]["restitution"], math.exp(-35.0 / stokes)
             if stokes < SLOWEST:
