@@ -4,6 +4,7 @@
 
 #include "core/archive.hpp"
 #include "core/profile.hpp"
+#include "core/records.hpp"
 #include "core/snapshot.hpp"
 #include "core/system.hpp"
 
@@ -22,6 +23,9 @@ public:
   // Seconds of simulated time between its measurements; 0: with the rows of the series.
   virtual double every() const { return 0.0; }
 
+  // True for one that looks at single grains, as often as every step: the system's health is not looked into for it.
+  virtual bool in_passing() const { return false; }
+
   // Takes one measurement. Collective: every rank calls it at the same steps.
   virtual void observe(const Snapshot& snapshot) = 0;
 
@@ -36,6 +40,11 @@ public:
 
   // The same in words, for the log at the end of the run: one sentence each.
   virtual std::vector<std::string> remarks() const { return {}; }
+
+  // True if it has a file of its own in the run folder, NAME.h5, to which take_records() is added.
+  virtual bool has_records() const { return false; }
+  // What it has recorded since the last call: on rank 0, empty elsewhere. Called before every save().
+  virtual Records take_records() { return {}; }
 
   // Running sums, so that a restarted run reports the same means as one that was never interrupted. Collective.
   virtual void save(ArchiveWriter& archive) const = 0;

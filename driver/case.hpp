@@ -288,7 +288,15 @@ struct StressBalanceCase {
   bool operator==(const StressBalanceCase&) const = default;
 };
 
+struct TracksCase {
+  std::vector<std::int64_t> grains;  // ids; empty: every one_in-th grain
+  std::int64_t one_in = 1;
+  double every = 1e-3;  // s
+  bool operator==(const TracksCase&) const = default;
+};
+
 struct AnalysisCase {
+  std::optional<TracksCase> tracks;
   std::optional<GrainProfilesCase> grain_profiles;
   std::optional<StressBalanceCase> stress_balance;
   std::optional<PopulationLoadsCase> population_loads;

@@ -1,6 +1,7 @@
 #include "driver/case_checks.hpp"
 
 #include "dem/material.hpp"
+#include "driver/watched_grains.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -409,6 +410,7 @@ void check_case(const Case& c, const io::YamlDocument& document) {
                          "a bed has a height above a bottom, and here z is periodic; remove the section or give "
                          "domain.boundaries a bottom and a top, for example no_slip and free_slip");
   check_stress_balance(c, document);
+  check_watched_grains(c, document);
   if (c.analysis.transport_rate && c.grains.empty())
     throw document.error("analysis.transport_rate", "there are no grains to measure; remove the section or add grains");
 }

@@ -1,5 +1,7 @@
 #include "driver/case_sections.hpp"
 
+#include "driver/watched_grains.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -348,6 +350,8 @@ static void describe_analysis(io::SectionVisitor& visit, AnalysisCase& analysis,
                               "side walls"});
   else
     visit.not_here("fluid_statistics", "system: grains has no fluid; remove the section or set system: resolved");
+  of_grains("tracks", analysis.tracks,
+            {.meaning = "places, motion and forces of chosen grains at short intervals, in tracks.h5"});
   of_grains("wall_forces", analysis.wall_forces,
             {.meaning = "force of grains and of the fluid on each wall, in series.csv; no keys: {}"});
 }

@@ -6,6 +6,7 @@
 #include "analysis/grain_profiles.hpp"
 #include "analysis/population_loads.hpp"
 #include "analysis/stress_balance.hpp"
+#include "analysis/tracks.hpp"
 #include "analysis/transport_rate.hpp"
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
@@ -21,6 +22,7 @@
 #include "driver/stop_request.hpp"
 #include "driver/summary.hpp"
 #include "driver/version.hpp"
+#include "driver/watched_grains.hpp"
 #include "io/atomic_file.hpp"
 #include "io/bed_file.hpp"
 
@@ -147,6 +149,8 @@ Observers observers_of(const Case& c, const System& system, MPI_Comm communicato
   if (c.analysis.population_loads)
     observers.push_back(std::make_unique<analysis::PopulationLoads>(
         communicator, system.snapshot().decomposition->box(), populations_of(c), has_fluid(c)));
+  if (c.analysis.tracks)
+    observers.push_back(std::make_unique<analysis::Tracks>(communicator, tracked_grains(c), c.analysis.tracks->every));
   observers.push_back(std::make_unique<analysis::GrainEnergy>(communicator));
   return observers;
 }

@@ -27,6 +27,11 @@ RunOutput::RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& 
   if (c.output.fluid.every > 0.0 && snapshot.fluid != nullptr)
     fluid_ = std::make_unique<io::FluidSeries>(communicator, folder.path(), c.output.fluid.region,
                                                c.output.fluid.fields, continue_from);
+  for (const auto& observer : observers)
+    if (observer->has_records())
+      records_.emplace_back(observer.get(),
+                            io::RecordFile(communicator, folder.records(observer->name()), continue_from));
+  write_records();  // whether they can be written, or continued, is known before the run begins
 }
 
 void RunOutput::add_to(LoopPlan& plan) {
@@ -41,6 +46,10 @@ void RunOutput::add_to(LoopPlan& plan) {
   if (fluid_)
     plan.outputs.push_back({"fluid pictures", Schedule(case_.output.fluid.every, time_step),
                             [this](const Snapshot& snapshot) { fluid_->write(snapshot); }});
+  // With the looks at the system's health, so that nothing is written of a state that is broken.
+  if (!records_.empty())
+    plan.outputs.push_back({"records", Schedule(TimeLoop::steps_between_health_checks * time_step, time_step),
+                            [this](const Snapshot&) { write_records(); }});
 }
 
 void RunOutput::write_row(double time, const std::vector<Figure>& row) {
@@ -64,7 +73,12 @@ void RunOutput::write_profiles() {
   if (!groups.empty()) io::write_profiles(communicator_, folder_.profiles(), system_.time(), groups);
 }
 
+void RunOutput::write_records() {
+  for (auto& [observer, file] : records_) file.add(observer->take_records());
+}
+
 void RunOutput::write_checkpoint() {
+  write_records();
   write_checkpoint_file(communicator_, folder_.checkpoint(system_.step()), case_, system_, observers_);
   on_first_rank(communicator_,
                 [this] { folder_.rotate_checkpoints(system_.step(), static_cast<int>(case_.output.checkpoint.keep)); });

@@ -7,6 +7,7 @@
 #include "driver/time_loop.hpp"
 #include "io/fluid_series.hpp"
 #include "io/grain_series.hpp"
+#include "io/record_file.hpp"
 #include "io/run_folder.hpp"
 #include "io/series_table.hpp"
 
@@ -35,6 +36,7 @@ private:
   void write_row(double time, const std::vector<Figure>& row);
   void write_checkpoint();
   void write_profiles();
+  void write_records();
 
   MPI_Comm communicator_;
   const Case& case_;
@@ -45,6 +47,7 @@ private:
   std::unique_ptr<io::SeriesTable> series_;  // from the first row on: only then the columns are known
   std::unique_ptr<io::GrainSeries> grains_;
   std::unique_ptr<io::FluidSeries> fluid_;
+  std::vector<std::pair<analysis::Observer*, io::RecordFile>> records_;
 };
 
 // A checkpoint: what it is (group "run": system, name, version, step, time in s, time_step in s), the system, the

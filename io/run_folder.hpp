@@ -31,7 +31,7 @@ public:
   std::filesystem::path log() const { return path_ / "run.log"; }
   std::filesystem::path series() const { return path_ / "series.csv"; }
   std::filesystem::path profiles() const { return path_ / "profiles.h5"; }
-  std::filesystem::path tracks() const { return path_ / "tracks.h5"; }
+  std::filesystem::path records(const std::string& observer) const { return path_ / (observer + ".h5"); }
   std::filesystem::path bed() const { return path_ / "bed.h5"; }
   std::filesystem::path summary() const { return path_ / "summary.json"; }
   std::filesystem::path checkpoints() const { return path_ / "checkpoints"; }

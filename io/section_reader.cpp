@@ -189,6 +189,23 @@ void SectionReader::integer(const std::string& key, std::int64_t& value, const I
   value = read;
 }
 
+void SectionReader::integer_list(const std::string& key, std::vector<std::int64_t>& values, const IntegerKey& about) {
+  const std::int64_t example = about.example.value_or(std::max<std::int64_t>(1, about.at_least));
+  const std::string expectation =
+      fmt::format("a list of whole numbers, at least {}, for example [{}, {}]", about.at_least, example, example + 1);
+  const YamlNode* node = look_up(key, about.required, expectation);
+  if (!node) return;
+  if (node->kind != YamlNode::Kind::list || node->items.empty()) fail(*node, key, "expected " + expectation);
+  values.clear();
+  for (std::size_t n = 0; n < node->items.size(); ++n) {
+    const YamlNode& item = node->items[n];
+    std::int64_t read = 0;
+    if (item.kind != YamlNode::Kind::scalar || !parse(item.text, read) || read < about.at_least)
+      fail(item, fmt::format("{}.{}", key, n), fmt::format("expected a whole number, at least {}", about.at_least));
+    values.push_back(read);
+  }
+}
+
 void SectionReader::real_list(const std::string& key, std::vector<double>& values, const RealKey& about) {
   const double example = about.example.value_or(1.0);
   const std::string expectation = fmt::format("a list of numbers{}{}, for example [{}, {}]", unit_of(about),

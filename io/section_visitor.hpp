@@ -73,6 +73,7 @@ public:
   virtual void vec3(const std::string& key, std::optional<Vec3>& value, const RealKey& about) = 0;
   virtual void vec3_list(const std::string& key, std::vector<Vec3>& values, const RealKey& about) = 0;
   virtual void integer(const std::string& key, std::int64_t& value, const IntegerKey& about) = 0;
+  virtual void integer_list(const std::string& key, std::vector<std::int64_t>& values, const IntegerKey& about) = 0;
   virtual void real_list(const std::string& key, std::vector<double>& values, const RealKey& about) = 0;
   virtual void text(const std::string& key, std::string& value, const TextKey& about) = 0;
   virtual void text(const std::string& key, std::optional<std::string>& value, const TextKey& about) = 0;

@@ -84,6 +84,13 @@ void SectionWriter::integer(const std::string& key, std::int64_t& value, const I
       style_ == YamlStyle::plain ? "" : range + "; " + about.meaning);
 }
 
+void SectionWriter::integer_list(const std::string& key, std::vector<std::int64_t>& values, const IntegerKey& about) {
+  std::vector<std::int64_t> shown = values;
+  if (values.empty()) shown = {about.example.value_or(1), about.example.value_or(1) + 1};
+  put(!values.empty(), key, fmt::format("[{}]", fmt::join(shown, ", ")),
+      style_ == YamlStyle::plain ? "" : fmt::format("whole numbers, at least {}; {}", about.at_least, about.meaning));
+}
+
 void SectionWriter::real_list(const std::string& key, std::vector<double>& values, const RealKey& about) {
   std::vector<std::string> texts;
   for (const double value : values) texts.push_back(shortest(value));

@@ -19,6 +19,7 @@ public:
   void vec3(const std::string& key, std::optional<Vec3>& value, const RealKey& about) override;
   void vec3_list(const std::string& key, std::vector<Vec3>& values, const RealKey& about) override;
   void integer(const std::string& key, std::int64_t& value, const IntegerKey& about) override;
+  void integer_list(const std::string& key, std::vector<std::int64_t>& values, const IntegerKey& about) override;
   void real_list(const std::string& key, std::vector<double>& values, const RealKey& about) override;
   void text(const std::string& key, std::string& value, const TextKey& about) override;
   void text(const std::string& key, std::optional<std::string>& value, const TextKey& about) override;

@@ -71,6 +71,16 @@ class Run:
             return {name: columns_of(group) for name, group in file.items()}
 
     @cached_property
+    def tracks(self):
+        """Tracks of single grains (`analysis.tracks`): `id`, `time` and arrays [time, grain, axis], of which `position` goes on
+        where a grain leaves a periodic box; None where there are none."""
+        path = self.folder / "tracks.h5"
+        if not path.exists():
+            return None
+        with h5py.File(path) as file:
+            return columns_of(file)
+
+    @cached_property
     def bed(self):
         """The grains at the end of the run, with the columns of bed.h5; None before."""
         path = self.folder / "bed.h5"

@@ -51,12 +51,19 @@ private:
 
 class LooksOn : public analysis::Observer {
 public:
+  explicit LooksOn(double every = 0.0, bool in_passing = false) : every_(every), in_passing_(in_passing) {}
+  double every() const override { return every_; }
+  bool in_passing() const override { return in_passing_; }
   std::string name() const override { return "looks_on"; }
   void observe(const Snapshot& snapshot) override { steps.push_back(snapshot.step); }
   std::vector<Figure> figures() const override { return {{"seen", "1", static_cast<double>(steps.size())}}; }
   void save(ArchiveWriter&) const override {}
   void load(ArchiveReader&) override {}
   std::vector<std::int64_t> steps;
+
+private:
+  double every_;
+  bool in_passing_;
 };
 
 // What the loop did, and the loop itself.
@@ -109,6 +116,20 @@ TEST(TimeLoop, KeepsEveryBeatAndEndsWithACheckpoint) {
   EXPECT_EQ(bench.columns, 2u);
   EXPECT_EQ(bench.pictures, (Steps{0, 5, 10}));
   EXPECT_EQ(bench.checkpoints, (Steps{4, 8, 10}));
+}
+
+// The largest figure of all looks: of step 7, unless an observer has the system looked into at every step.
+TEST(TimeLoop, DoesNotLookIntoTheSystemForWhoLooksInPassing) {
+  for (const bool in_passing : {false, true}) {
+    Bench bench(0.010);
+    bench.system.lattice_velocity = [](std::int64_t step) { return step == 7 ? 0.19 : 0.05; };
+    auto observer = std::make_unique<LooksOn>(0.001, in_passing);
+    const LooksOn& busy = *observer;
+    bench.observers.push_back(std::move(observer));
+    const LoopRecord& record = bench.run().record();
+    EXPECT_EQ(busy.steps.size(), 11u);
+    EXPECT_EQ(record.largest.at(0).value, in_passing ? 0.05 : 0.19);
+  }
 }
 
 TEST(TimeLoop, GoesOnFromALaterStepWithoutRepeatingWhatIsWritten) {

@@ -116,6 +116,19 @@ class RunFolder(made_up.MadeUpFolder):
         with self.assertRaisesRegex(thalweg.RunFolderError, "no case.yaml"):
             thalweg.Run(self.folder / "grains")
 
+    def test_tracks(self):
+        self.assertIsNone(thalweg.Run(self.folder).tracks)
+        places = np.arange(24.0).reshape(4, 2, 3)
+        with h5py.File(self.folder / "tracks.h5", "w") as file:
+            for name, values, unit in (("id", np.array([3, 17]), "1"), ("time", np.arange(4.0), "s"), ("position", places, "m")):
+                file.create_dataset(name, data=values).attrs["unit"] = unit
+            file["position"].attrs["components"] = "x y z"
+        tracks = thalweg.Run(self.folder).tracks
+        np.testing.assert_array_equal(tracks["id"], (3, 17))
+        np.testing.assert_array_equal(tracks["position"][:, 1], places[:, 1])
+        self.assertEqual(tracks.units, {"id": "1", "time": "s", "position": "m"})
+        self.assertEqual(tracks.components["position"], ["x", "y", "z"])
+
     def test_frames_of_grains(self):
         places = np.arange(18.0).reshape(3, 2, 3)
         stress = np.arange(54.0).reshape(3, 2, 9)

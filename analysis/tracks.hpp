@@ -1,0 +1,52 @@
+// The tracks of chosen grains: where they are, how they move and turn, and what acts on them, at short intervals.
+//
+// Positions go on where a grain leaves a periodic box: from one measurement to the next it has gone to the image that
+// lies nearest to where the mean of its two velocities would have taken it, which is right as long as the grain's speed
+// changes by less than a box in an interval. A member of a clump is recorded as the sphere it is.
+#pragma once
+
+#include "analysis/grain_record.hpp"
+#include "analysis/observer.hpp"
+#include "core/periodic_box.hpp"
+
+#include <mpi.h>
+
+#include <vector>
+
+namespace thalweg::analysis {
+
+class Tracks : public Observer {
+public:
+  // grains: ids, ascending, each once. every: s, between measurements.
+  Tracks(MPI_Comm communicator, std::vector<GlobalId> grains, double every);
+
+  std::string name() const override { return "tracks"; }
+  double every() const override { return every_; }
+  bool in_passing() const override { return true; }
+  void observe(const Snapshot& snapshot) override;  // a step seen before does not count again
+
+  std::vector<Figure> figures() const override { return {}; }
+  // tracked_grains, track_measurements (1).
+  std::vector<Figure> results() const override;
+
+  // Fixed: id. Rows: time (s), [time] and of each grain in the order of ids, [time, grain, axis]: those of GrainRecord.
+  bool has_records() const override { return true; }
+  Records take_records() override;
+
+  void save(ArchiveWriter& archive) const override;
+  void load(ArchiveReader& archive) override;  // begins anew where the archive has other grains
+
+private:
+  void go_on(GrainRecord& record, const GrainRecord& last, double interval, const PeriodicBox& box) const;
+
+  MPI_Comm communicator_;
+  std::vector<GlobalId> grains_;
+  double every_;
+  std::int64_t seen_step_ = -1, measurements_ = 0;
+  double last_time_ = 0.0;                  // s
+  std::vector<GrainRecord> last_;           // on rank 0, at the latest measurement
+  std::vector<double> times_;               // s, since take_records(); on rank 0
+  std::vector<std::vector<double>> since_;  // the same of each quantity
+};
+
+}  // namespace thalweg::analysis

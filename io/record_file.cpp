@@ -1,0 +1,252 @@
+#include "io/record_file.hpp"
+
+#include "core/error.hpp"
+#include "core/mpi_session.hpp"
+#include "io/hdf5_handle.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace thalweg::io {
+namespace {
+
+// What went wrong on rank 0, for all to throw.
+struct CannotWrite {};
+struct CannotGoOn {
+  std::string why;
+};
+
+hid_t must(hid_t id) {
+  if (id < 0) throw CannotWrite{};
+  return id;
+}
+
+Handle plain(hid_t property_class) {
+  Handle properties(must(H5Pcreate(property_class)), H5Pclose);
+  H5Pset_obj_track_times(properties, false);  // equal runs write equal files
+  return properties;
+}
+
+void write_attribute(hid_t object, const std::string& name, hid_t file_type, hid_t memory_type, const void* value) {
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Handle attribute(must(H5Acreate2(object, name.c_str(), file_type, space, H5P_DEFAULT, H5P_DEFAULT)), H5Aclose);
+  must(H5Awrite(attribute, memory_type, value));
+}
+
+void write_text(hid_t object, const std::string& name, const std::string& value) {
+  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type, value.size() + 1);
+  H5Tset_cset(type, H5T_CSET_UTF8);
+  write_attribute(object, name, type, type, value.c_str());
+}
+
+void write_number(hid_t object, const std::string& name, double value) {
+  write_attribute(object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value);
+}
+
+void describe(hid_t dataset, const Profile& array) {
+  write_text(dataset, "unit", array.unit);
+  if (!array.components.empty()) write_text(dataset, "components", fmt::format("{}", fmt::join(array.components, " ")));
+}
+
+void write_numbers(hid_t parent, const WholeNumbers& numbers) {
+  const hsize_t count = numbers.values.size();
+  const Handle space(must(H5Screate_simple(1, &count, nullptr)), H5Sclose), creation = plain(H5P_DATASET_CREATE);
+  const Handle dataset(
+      must(H5Dcreate2(parent, numbers.name.c_str(), H5T_STD_I64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT)),
+      H5Dclose);
+  if (count > 0) must(H5Dwrite(dataset, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.values.data()));
+  write_text(dataset, "unit", "1");
+}
+
+void write_array(hid_t parent, const Profile& array) {
+  const std::vector<hsize_t> shape(array.shape.begin(), array.shape.end());
+  const Handle space(must(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr)), H5Sclose);
+  const Handle creation = plain(H5P_DATASET_CREATE);
+  const Handle dataset(
+      must(H5Dcreate2(parent, array.name.c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT)),
+      H5Dclose);
+  if (!array.values.empty())
+    must(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values.data()));
+  describe(dataset, array);
+}
+
+void write_event(hid_t file, const Event& event) {
+  const Handle creation = plain(H5P_GROUP_CREATE);
+  const Handle group(must(H5Gcreate2(file, event.name.c_str(), H5P_DEFAULT, creation, H5P_DEFAULT)), H5Gclose);
+  write_number(group, "time", event.time);
+  write_text(group, "time_unit", "s");
+  for (const Figure& figure : event.figures) {
+    write_number(group, figure.name, figure.value);
+    write_text(group, figure.name + "_unit", figure.unit);
+  }
+  for (const WholeNumbers& numbers : event.numbers) write_numbers(group, numbers);
+  for (const Profile& array : event.arrays) write_array(group, array);
+}
+
+// An array without rows that can get longer, in chunks of about 32 KiB.
+void create_growing(hid_t file, const Profile& array) {
+  std::vector<hsize_t> shape(array.shape.begin(), array.shape.end()), limit = shape, chunk = shape;
+  shape[0] = 0;
+  limit[0] = H5S_UNLIMITED;
+  hsize_t row = 1;
+  for (std::size_t d = 1; d < shape.size(); ++d) row *= shape[d];
+  chunk[0] = std::max<hsize_t>(1, 4096 / std::max<hsize_t>(1, row));
+  const auto dimensions = static_cast<int>(shape.size());
+  const Handle space(must(H5Screate_simple(dimensions, shape.data(), limit.data())), H5Sclose);
+  const Handle creation = plain(H5P_DATASET_CREATE);
+  H5Pset_chunk(creation, dimensions, chunk.data());
+  const Handle dataset(
+      must(H5Dcreate2(file, array.name.c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT)), H5Dclose);
+  describe(dataset, array);
+}
+
+Handle open_array(hid_t file, const std::string& name) {
+  if (H5Lexists(file, name.c_str(), H5P_DEFAULT) <= 0) throw CannotGoOn{fmt::format("it has no array {}", name)};
+  return Handle(must(H5Dopen2(file, name.c_str(), H5P_DEFAULT)), H5Dclose);
+}
+
+std::vector<hsize_t> extents_of(hid_t dataset) {
+  const Handle space(H5Dget_space(dataset), H5Sclose);
+  std::vector<hsize_t> extents(static_cast<std::size_t>(std::max(0, H5Sget_simple_extent_ndims(space))));
+  if (!extents.empty()) H5Sget_simple_extent_dims(space, extents.data(), nullptr);
+  return extents;
+}
+
+void add_rows(hid_t file, const Profile& array) {
+  if (array.shape[0] == 0) return;
+  const Handle dataset = open_array(file, array.name);
+  std::vector<hsize_t> extents = extents_of(dataset), start(extents.size(), 0);
+  const std::vector<hsize_t> count(array.shape.begin(), array.shape.end());
+  start[0] = extents[0];
+  extents[0] += count[0];
+  must(H5Dset_extent(dataset, extents.data()));
+  const Handle space(H5Dget_space(dataset), H5Sclose);
+  must(H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr));
+  const Handle memory(must(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr)), H5Sclose);
+  must(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, array.values.data()));
+}
+
+void check_fixed(hid_t file, const WholeNumbers& numbers) {
+  const Handle dataset = open_array(file, numbers.name);
+  const std::vector<hsize_t> extents = extents_of(dataset);
+  std::vector<std::int64_t> found(extents.size() == 1 ? extents[0] : 0);
+  if (!found.empty()) must(H5Dread(dataset, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, found.data()));
+  if (found != numbers.values) throw CannotGoOn{fmt::format("its {} is not that of this run", numbers.name)};
+}
+
+// The number of rows up to a time.
+hsize_t rows_until(hid_t file, double time) {
+  const Handle dataset = open_array(file, "time");
+  std::vector<double> times(extents_of(dataset).at(0));
+  if (!times.empty()) must(H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, times.data()));
+  return static_cast<hsize_t>(std::upper_bound(times.begin(), times.end(), time) - times.begin());
+}
+
+void drop_rows_after(hid_t file, const std::vector<Profile>& rows, double time) {
+  if (rows.empty()) return;
+  const hsize_t kept = rows_until(file, time);
+  for (const Profile& array : rows) {
+    const Handle dataset = open_array(file, array.name);
+    std::vector<hsize_t> extents = extents_of(dataset);
+    const std::vector<hsize_t> wanted(array.shape.begin(), array.shape.end());
+    if (extents.size() != wanted.size() || !std::equal(extents.begin() + 1, extents.end(), wanted.begin() + 1))
+      throw CannotGoOn{fmt::format("its array {} has another shape", array.name)};
+    extents[0] = std::min(extents[0], kept);
+    must(H5Dset_extent(dataset, extents.data()));
+  }
+}
+
+void drop_events_after(hid_t file, double time) {
+  std::vector<std::string> groups;
+  const auto collect = [](hid_t parent, const char* name, const H5L_info_t*, void* into) -> herr_t {
+    if (H5Aexists_by_name(parent, name, "time", H5P_DEFAULT) > 0)
+      static_cast<std::vector<std::string>*>(into)->emplace_back(name);
+    return 0;
+  };
+  hsize_t index = 0;
+  must(H5Literate(file, H5_INDEX_NAME, H5_ITER_INC, &index, collect, &groups));
+  for (const std::string& name : groups) {
+    double at = 0.0;
+    {
+      const Handle attribute(must(H5Aopen_by_name(file, name.c_str(), "time", H5P_DEFAULT, H5P_DEFAULT)), H5Aclose);
+      must(H5Aread(attribute, H5T_NATIVE_DOUBLE, &at));
+    }
+    if (at > time) must(H5Ldelete(file, name.c_str(), H5P_DEFAULT));
+  }
+}
+
+std::string from_first_rank(MPI_Comm communicator, std::string text) {
+  auto length = static_cast<int>(text.size());
+  MPI_Bcast(&length, 1, MPI_INT, 0, communicator);
+  text.resize(static_cast<std::size_t>(length));
+  MPI_Bcast(text.data(), length, MPI_CHAR, 0, communicator);
+  return text;
+}
+
+Handle open_file(const std::filesystem::path& path) {
+  return Handle(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+}
+
+}  // namespace
+
+RecordFile::RecordFile(MPI_Comm communicator, std::filesystem::path path, std::optional<double> continue_from)
+    : communicator_(communicator), path_(std::move(path)), continue_from_(continue_from) {
+  silence_hdf5();
+}
+
+void RecordFile::open_or_create(const Records& records) {
+  opened_ = true;
+  std::error_code ignored;
+  if (continue_from_ && std::filesystem::exists(path_, ignored)) {
+    const Handle file = open_file(path_);
+    if (!file.good()) throw CannotGoOn{"it is damaged, or another program has it open"};
+    for (const WholeNumbers& numbers : records.fixed) check_fixed(file, numbers);
+    drop_rows_after(file, records.rows, *continue_from_);
+    drop_events_after(file, *continue_from_);
+    return;
+  }
+  const Handle file(must(H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)), H5Fclose);
+  for (const WholeNumbers& numbers : records.fixed) write_numbers(file, numbers);
+  for (const Profile& array : records.rows) create_growing(file, array);
+}
+
+void RecordFile::write(const Records& records) {
+  if (!opened_) open_or_create(records);
+  const bool no_rows = records.rows.empty() || records.rows[0].shape[0] == 0;
+  if (no_rows && records.events.empty()) return;
+  Handle file = open_file(path_);
+  must(file);
+  for (const Profile& array : records.rows) add_rows(file, array);
+  for (const Event& event : records.events) write_event(file, event);
+  must(H5Fclose(file.release()));
+}
+
+void RecordFile::add(const Records& records) {
+  enum Outcome { good, cannot_write, cannot_go_on };
+  int outcome = good;
+  std::string why;
+  if (rank_of(communicator_) == 0) {
+    try {
+      write(records);
+    } catch (const CannotWrite&) {
+      outcome = cannot_write;
+    } catch (const CannotGoOn& reason) {
+      outcome = cannot_go_on;
+      why = reason.why;
+    }
+  }
+  MPI_Bcast(&outcome, 1, MPI_INT, 0, communicator_);
+  if (outcome == cannot_go_on)
+    throw InputError(
+        fmt::format("{}: the file cannot be continued, {}; move it away or restart into another folder with "
+                    "--out.",
+                    path_.string(), from_first_rank(communicator_, why)));
+  if (outcome == cannot_write)
+    throw RunError(
+        fmt::format("{}: cannot write the file; is the disk full or the folder write-protected?", path_.string()));
+}
+
+}  // namespace thalweg::io

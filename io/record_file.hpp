@@ -1,0 +1,38 @@
+// A file of what an observer has recorded so far, such as tracks.h5. It grows while the run goes on and is closed
+// after each addition, so that it can be read in between.
+//
+// In the file: `fixed` as whole numbers, `rows` as arrays that get longer along their first dimension, each event a
+// group with its figures and `time` as attributes (their units beside them: `time_unit`). Every array has the
+// attributes `unit` and perhaps `components`.
+#pragma once
+
+#include "core/records.hpp"
+
+#include <mpi.h>
+
+#include <filesystem>
+#include <optional>
+
+namespace thalweg::io {
+
+// Rank 0 writes, without MPI-IO. All calls are collective and throw RunError on every rank if the file cannot be
+// written.
+class RecordFile {
+public:
+  // continue_from: take up an existing file and drop rows and events after that time (s); a file whose `fixed` numbers
+  // are others, or that is damaged, is an InputError at the first add(), which may have no rows yet. Empty: a new file.
+  RecordFile(MPI_Comm communicator, std::filesystem::path path, std::optional<double> continue_from);
+
+  void add(const Records& records);  // only rank 0's are used
+
+private:
+  void open_or_create(const Records& records);
+  void write(const Records& records);  // on rank 0
+
+  MPI_Comm communicator_;
+  std::filesystem::path path_;
+  std::optional<double> continue_from_;
+  bool opened_ = false;
+};
+
+}  // namespace thalweg::io

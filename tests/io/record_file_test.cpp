@@ -1,0 +1,104 @@
+// A file that grows: what is added lies behind what was there, and what is later than a restart is dropped.
+#include "io/record_file.hpp"
+
+#include "core/error.hpp"
+#include "io/hdf5_archive.hpp"
+#include "tests/io/scratch_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <numeric>
+
+namespace thalweg::io {
+namespace {
+
+using testing::message_of;
+using testing::put;
+using testing::ScratchFolder;
+
+constexpr int first_events = 12;
+
+// Rows at whole seconds from `first` to before `end`: a number a row and two vectors; an event at each of the first.
+Records seconds(int first, int end, std::vector<std::int64_t> id = {4, 7}) {
+  Records records;
+  if (rank_of(MPI_COMM_WORLD) != 0) return records;
+  records.fixed = {{"id", std::move(id)}};
+  const auto rows = static_cast<std::uint64_t>(end - first);
+  records.rows = {{"time", "s", {}, {rows}, {}}, {"velocity", "m/s", {"x", "y", "z"}, {rows, 2, 3}, {}}};
+  for (int t = first; t < end; ++t) {
+    records.rows[0].values.push_back(t);
+    for (int k = 0; k < 6; ++k) records.rows[1].values.push_back(10.0 * t + k);
+    if (t >= first_events) continue;
+    records.events.push_back({"event_" + std::to_string(t),
+                              static_cast<double>(t),
+                              {{"share", "1", 0.25}},
+                              {{"partner", {t}}},
+                              {{"force", "N", {}, {2}, {1.0 * t, 2.0 * t}}}});
+  }
+  return records;
+}
+
+template <typename Number = double>
+std::vector<Number> numbers(Hdf5Reader& file, const std::string& name) {
+  const std::vector<std::uint64_t> shape = file.shape(name);
+  std::vector<Number> values(std::accumulate(shape.begin(), shape.end(), std::uint64_t{1}, std::multiplies<>()));
+  file.read(name, std::span<Number>(values), {shape, std::vector<std::uint64_t>(shape.size(), 0), shape});
+  return values;
+}
+
+void expect_seconds(const std::filesystem::path& path, int end) {
+  Hdf5Reader file(MPI_COMM_WORLD, path);
+  std::vector<double> times, velocities;
+  for (int t = 0; t < end; ++t) {
+    times.push_back(t);
+    for (int k = 0; k < 6; ++k) velocities.push_back(10.0 * t + k);
+    if (t < first_events)
+      EXPECT_EQ(numbers(file, "event_" + std::to_string(t) + "/force"), (std::vector<double>{1.0 * t, 2.0 * t}));
+  }
+  EXPECT_EQ(numbers(file, "time"), times);
+  EXPECT_EQ(numbers(file, "velocity"), velocities);
+  EXPECT_EQ(numbers<std::int64_t>(file, "id"), (std::vector<std::int64_t>{4, 7}));
+  EXPECT_EQ(file.text_attribute("velocity/components"), "x y z");
+  EXPECT_EQ(file.real_attribute("event_0/share"), 0.25);
+  EXPECT_FALSE(file.has("event_" + std::to_string(end)));
+}
+
+TEST(RecordFile, GrowsAndDropsWhatIsLaterThanARestart) {
+  const ScratchFolder folder;
+  const auto path = folder / "tracks.h5";
+  RecordFile first(MPI_COMM_WORLD, path, std::nullopt);
+  first.add(seconds(0, 0));
+  first.add(seconds(0, 3));
+  first.add(seconds(3, 3));
+  first.add(seconds(3, 9));
+  expect_seconds(path, 9);
+  RecordFile again(MPI_COMM_WORLD, path, 4.0);
+  again.add(seconds(5, 5));  // nothing new yet, but what is later is gone
+  expect_seconds(path, 5);
+  again.add(seconds(5, 2000));  // more than a chunk
+  expect_seconds(path, 2000);
+  RecordFile anew(MPI_COMM_WORLD, path, std::nullopt);
+  anew.add(seconds(0, 2));
+  expect_seconds(path, 2);
+}
+
+TEST(RecordFile, RefusesWhatItCannotContinue) {
+  const ScratchFolder folder;
+  const auto path = folder / "tracks.h5", damaged = folder / "damaged.h5";
+  RecordFile(MPI_COMM_WORLD, path, std::nullopt).add(seconds(0, 3));
+  RecordFile other(MPI_COMM_WORLD, path, 2.0);
+  EXPECT_NE(message_of<InputError>([&] {
+              other.add(seconds(3, 3, {4, 8}));
+            }).find("its id is not that of this run; move"),
+            std::string::npos);
+  if (rank_of(MPI_COMM_WORLD) == 0) put(damaged, "no HDF5");
+  MPI_Barrier(MPI_COMM_WORLD);
+  RecordFile broken(MPI_COMM_WORLD, damaged, 2.0);
+  EXPECT_NE(message_of<InputError>([&] { broken.add(seconds(3, 3)); }).find("it is damaged"), std::string::npos);
+  RecordFile nowhere(MPI_COMM_WORLD, folder / "missing/tracks.h5", std::nullopt);
+  EXPECT_NE(message_of<RunError>([&] { nowhere.add(seconds(0, 1)); }).find("cannot write the file"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace thalweg::io
