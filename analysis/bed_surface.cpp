@@ -1,35 +1,21 @@
 #include "analysis/bed_surface.hpp"
 
-#include "analysis/bed_height.hpp"
-#include "analysis/sphere_in_layer.hpp"
 #include "core/mpi_session.hpp"
-#include "core/order_free_sum.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numeric>
 
 namespace thalweg::analysis {
 
 namespace {
 
-constexpr int thin_layers_a_layer = 10;
 const std::string static_height = "static_bed_height";
 
 double mean_of(const std::vector<double>& values) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-// For each clump, its volume over that of its members together, which may overlap.
-std::map<GlobalId, double> shares_of_members(const GrainView& grains) {
-  std::map<GlobalId, double> shares;
-  for (std::size_t i = 0; i < grains.id.size(); ++i)
-    if (grains.is_member(i)) shares[grains.clump[i]] += volume_of(grains.radius[i], grains.disk_thickness);
-  for (const ClumpState& clump : grains.clumps) shares.at(clump.id) = clump.volume / shares.at(clump.id);
-  return shares;
 }
 
 }  // namespace
@@ -40,9 +26,7 @@ BedSurface::BedSurface(MPI_Comm communicator, const PeriodicBox& box, const BedS
       box_(box),
       settings_(settings),
       flow_(flow),
-      layers_(std::max(1, static_cast<int>(std::lround(thin_layers_a_layer * box.size.z() / settings.layer)))),
-      thickness_(box.size.z() / layers_),
-      width_(disk_thickness > 0.0 ? disk_thickness : box.size.y()),
+      layers_(communicator, box, settings.layer, disk_thickness),
       pixels_(communicator, box, settings.pixel, settings.static_time),
       surface_sums_(static_cast<std::size_t>(pixels_.columns()), 0.0) {
   sums_.assign(figures().size(), 0.0);
@@ -67,42 +51,17 @@ void BedSurface::observe(const Snapshot& snapshot) {
   sums_[n] += bulk_;
 }
 
-std::vector<double> BedSurface::volume_below(const Snapshot& snapshot) const {
-  const GrainView& grains = snapshot.grains;
-  const std::map<GlobalId, double> shares = shares_of_members(grains);
-  std::vector<int> layer_of_row;
-  std::vector<double> volumes;
-  for (std::size_t i = 0; i < grains.id.size(); ++i) {
-    const double radius = grains.radius[i], foot = grains.position[i].z() - radius;
-    const double share = grains.is_member(i) ? shares.at(grains.clump[i]) : 1.0;
-    const int first = static_cast<int>(std::floor(foot / thickness_));
-    const int last = static_cast<int>(std::floor((foot + 2.0 * radius) / thickness_));
-    for (int layer = std::max(0, first); layer <= std::min(layers_ - 1, last); ++layer) {
-      // What a wall overlaps belongs to the layer at the wall, so that no volume is lost.
-      const double lower = layer == 0 ? 0.0 : layer * thickness_ - foot;
-      const double upper = layer == layers_ - 1 ? 2.0 * radius : (layer + 1) * thickness_ - foot;
-      layer_of_row.push_back(layer);
-      volumes.push_back(share * volume_between(radius, grains.disk_thickness, lower, upper));
-    }
-  }
-  const std::vector<double> in_layer = order_free_sums_by_bin(communicator_, layer_of_row, layers_, volumes, 1);
-  std::vector<double> below{0.0};
-  for (const double volume : in_layer) below.push_back(below.back() + volume);
-  return below;
-}
-
 void BedSurface::measure(const Snapshot& snapshot) {
-  const std::vector<double> volumes = volume_below(snapshot);
-  const VolumeBelow below{volumes, thickness_, box_.size.x() * width_};
-  bulk_ = bulk_solid_fraction(below);
-  bed_height_ = bed_height(below, thin_layers_a_layer / 2);
+  const BedLayers::Bed bed = layers_.bed(snapshot);
+  bulk_ = bed.solid_fraction;
+  bed_height_ = bed.height;
 }
 
 std::vector<Figure> BedSurface::figures() const {
   std::vector<Figure> figures{{"bed_height", "m", bed_height_}, {static_height, "m", mean_of(pixels_.surface())}};
   if (!flow_) return figures;
   const double depth = box_.size.z() - bed_height_;
-  const double radius = depth * width_ / (width_ + flow_->side_walls * depth);
+  const double radius = depth * layers_.width() / (layers_.width() + flow_->side_walls * depth);
   figures.push_back({"flow_depth", "m", depth});
   figures.push_back({"hydraulic_radius", "m", radius});
   if (flow_->driving_stress <= 0.0) return figures;

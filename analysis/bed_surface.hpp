@@ -8,6 +8,7 @@
 //   Shields number    tau*  = tau_b / ((rho_s - rho_f) g d)
 #pragma once
 
+#include "analysis/bed_layers.hpp"
 #include "analysis/observer.hpp"
 #include "analysis/static_pixels.hpp"
 
@@ -58,15 +59,12 @@ public:
 
 private:
   void measure(const Snapshot& snapshot);
-  std::vector<double> volume_below(const Snapshot& snapshot) const;
 
   MPI_Comm communicator_;
   PeriodicBox box_;
   BedSurfaceSettings settings_;
   std::optional<BedFlow> flow_;
-  int layers_;                            // thin ones
-  double thickness_;                      // m, of a thin layer
-  double width_;                          // m, of the bed
+  BedLayers layers_;
   double bed_height_ = 0.0, bulk_ = 0.0;  // m, 1: latest
   StaticPixels pixels_;
   std::int64_t seen_step_ = -1, measurements_ = 0, pictures_ = 0;

@@ -105,6 +105,14 @@ public:
   virtual MomentumBudget for_each_momentum(const MomentumVisitor& visit) const = 0;
 };
 
+// A contact as one of its grains feels it, and what it touches.
+struct ContactEnd {
+  Vec3 arm;          // m, from the grain's centre to the contact
+  Vec3 force;        // N, on the grain
+  GlobalId partner;  // the other grain; -1 - w for wall w
+  Vec3 to_partner;   // m, from the grain's centre to the partner's; of a wall, to the nearest point of it
+};
+
 // The contacts of the grains, as each grain feels them.
 class ContactSource {
 public:
@@ -115,6 +123,11 @@ public:
   // grains comes up once for each of them.
   using ContactVisitor = std::function<void(std::size_t, const Vec3&, const Vec3&)>;
   virtual void for_each_contact(const ContactVisitor& visit) const = 0;
+
+  // The same of some grains (chosen[n] != 0 for number n of the GrainView) and with their partners, arms always from
+  // their own centre; of the other grains' contacts nothing is calculated.
+  using ContactEndVisitor = std::function<void(std::size_t, const ContactEnd&)>;
+  virtual void for_each_contact_of(std::span<const char> chosen, const ContactEndVisitor& visit) const = 0;
 };
 
 struct Snapshot {

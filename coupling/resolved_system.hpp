@@ -100,6 +100,9 @@ private:
   FluidFields sample(const std::vector<FluidField>& wanted) const override;
   void for_each_velocity(const VelocityVisitor& visit) const override;
   void for_each_contact(const ContactVisitor& visit) const override { grains_->for_each_contact(visit); }
+  void for_each_contact_of(std::span<const char> chosen, const ContactEndVisitor& visit) const override {
+    grains_->for_each_contact_of(chosen, visit);
+  }
   MomentumBudget for_each_momentum(const MomentumVisitor& visit) const override;
 
   void add_wall_forces(std::vector<Figure>& figures) const;

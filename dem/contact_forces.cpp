@@ -132,22 +132,28 @@ std::vector<Vec3> wall_forces_with(const ContactLaw& law, const GrainStore& stor
 
 template <typename ContactLaw>
 void visit_ends_with(const ContactLaw& law, const GrainStore& store, const ContactList& list, const PeriodicBox& box,
-                     std::span<const Plane> walls, const MaterialTable& materials, const ContactEndVisitor& visit) {
+                     std::span<const Plane> walls, const MaterialTable& materials, std::span<const char> chosen,
+                     const ContactEndVisitor& visit) {
+  const auto wanted = [&](std::size_t slot) { return !store.is_ghost(slot) && (chosen.empty() || chosen[slot] != 0); };
   for (const PairContact& c : list.pairs) {
-    const ContactMotion motion = motion_of(body_of(store, c.first), body_of(store, c.second),
-                                           box.difference(store.position[c.first], store.position[c.second]));
+    const bool first = wanted(c.first), second = wanted(c.second);
+    if (!first && !second) continue;
+    const Vec3 separation = box.difference(store.position[c.first], store.position[c.second]);
+    const ContactMotion motion = motion_of(body_of(store, c.first), body_of(store, c.second), separation);
     if (!(motion.overlap > 0.0)) continue;
     const Vec3 n = normal_of(motion);
     const Vec3 force =
         force_of(law, motion, materials.pair(store.material[c.first], store.material[c.second]).coefficients, c.damping,
                  c.spring);
     const double half = 0.5 * motion.overlap;
-    if (!store.is_ghost(c.first)) visit(c.first, -(store.radius[c.first] - half) * n, force);
-    if (!store.is_ghost(c.second)) visit(c.second, (store.radius[c.second] - half) * n, -force);
+    if (first) visit(c.first, {-(store.radius[c.first] - half) * n, force, store.id[c.second], -separation});
+    if (second) visit(c.second, {(store.radius[c.second] - half) * n, -force, store.id[c.first], separation});
   }
   visit_walls_with(law, store, list, box, walls, materials,
                    [&](const WallContact& c, const ContactMotion& motion, const Vec3& force) {
-                     visit(c.grain, (motion.overlap - store.radius[c.grain]) * normal_of(motion), force);
+                     if (!wanted(c.grain)) return;
+                     const Vec3 arm = (motion.overlap - store.radius[c.grain]) * normal_of(motion);
+                     visit(c.grain, {arm, force, -1 - static_cast<GlobalId>(c.wall), arm});
                    });
 }
 
@@ -182,13 +188,13 @@ std::vector<Vec3> wall_contact_forces(const GrainStore& store, const ContactList
 }
 
 void for_each_contact_end(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
-                          std::span<const Plane> walls, const MaterialTable& materials,
+                          std::span<const Plane> walls, const MaterialTable& materials, std::span<const char> chosen,
                           const ContactEndVisitor& visit) {
   const ContactManner manner = materials.manner(0.0);
   if (materials.law() == Law::linear)
-    visit_ends_with(SpringDashpotFriction(manner), store, list, box, walls, materials, visit);
+    visit_ends_with(SpringDashpotFriction(manner), store, list, box, walls, materials, chosen, visit);
   else
-    visit_ends_with(HertzMindlin(manner), store, list, box, walls, materials, visit);
+    visit_ends_with(HertzMindlin(manner), store, list, box, walls, materials, chosen, visit);
 }
 
 }  // namespace thalweg::dem

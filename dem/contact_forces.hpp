@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/periodic_box.hpp"
+#include "core/snapshot.hpp"
 #include "dem/contact_list.hpp"
 #include "dem/material.hpp"
 #include "dem/moving_grains.hpp"
@@ -22,10 +23,12 @@ void evaluate_contacts(MovingGrains& grains, ContactList& list, const PeriodicBo
 std::vector<Vec3> wall_contact_forces(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
                                       std::span<const Plane> walls, const MaterialTable& materials);
 
-// Calls visit(slot, arm, force) for every contact of every owned grain, in the order of the list, pairs first: m from
-// its centre to the contact, N on the grain. By the present positions, velocities and springs, which stay as they are.
-using ContactEndVisitor = std::function<void(std::size_t slot, const Vec3& arm, const Vec3& force)>;
+// Calls visit(slot, end) for every contact of every owned grain, in the order of the list, pairs first. By the present
+// positions, velocities and springs, which stay as they are. chosen: one entry a slot of an owned grain, 0 for those left
+// out; empty: all.
+using ContactEndVisitor = std::function<void(std::size_t slot, const ContactEnd& end)>;
 void for_each_contact_end(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
-                          std::span<const Plane> walls, const MaterialTable& materials, const ContactEndVisitor& visit);
+                          std::span<const Plane> walls, const MaterialTable& materials, std::span<const char> chosen,
+                          const ContactEndVisitor& visit);
 
 }  // namespace thalweg::dem

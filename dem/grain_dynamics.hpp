@@ -153,6 +153,9 @@ public:
   // Every contact of every owned grain, as it feels it (contact_forces.hpp); of a clump's member, with the arm from the
   // clump's centre.
   void for_each_contact(const std::function<void(std::size_t slot, const Vec3& arm, const Vec3& force)>& visit) const;
+  // Those of some owned grains (chosen[slot] != 0), of a clump's member with the arm from its own centre.
+  void for_each_contact_of(std::span<const char> chosen,
+                           const std::function<void(std::size_t slot, const ContactEnd& end)>& visit) const;
 
   // Figures over all ranks, the same bits in any layout; a clump is one grain, with the velocity of its centre, but
   // overlap and contacts are those of its members. Collective.

@@ -53,10 +53,14 @@ void GrainDynamics::for_each_contact(
       const std::size_t slot = clumps_.first_slot(n) + m;
       from_centre[slot] = box_.difference(store_.position[slot], clumps_[n].centre);
     }
-  for_each_contact_end(store_, list_, box_, planes_, materials_,
-                       [&](std::size_t slot, const Vec3& arm, const Vec3& force) {
-                         visit(slot, from_centre.empty() ? arm : Vec3(arm + from_centre[slot]), force);
-                       });
+  for_each_contact_end(store_, list_, box_, planes_, materials_, {}, [&](std::size_t slot, const ContactEnd& end) {
+    visit(slot, from_centre.empty() ? end.arm : Vec3(end.arm + from_centre[slot]), end.force);
+  });
+}
+
+void GrainDynamics::for_each_contact_of(
+    std::span<const char> chosen, const std::function<void(std::size_t slot, const ContactEnd& end)>& visit) const {
+  for_each_contact_end(store_, list_, box_, planes_, materials_, chosen, visit);
 }
 
 std::vector<Vec3> GrainDynamics::wall_forces() const {

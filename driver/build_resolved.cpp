@@ -1,21 +1,13 @@
-// From a case to grains in a resolved flow: gravity to its two parts.
+// From a case to grains in a resolved flow.
 #include "coupling/resolved_system.hpp"
 #include "driver/build_system.hpp"
 #include "driver/fluid_setup.hpp"
 #include "driver/grain_setup.hpp"
-
-#include <numbers>
+#include "driver/grain_weight.hpp"
 
 namespace thalweg::driver {
 
 namespace {
-
-// A grain feels all of gravity along the bed (the water's surface is parallel to it) and its submerged weight across
-// it.
-Vec3 reduced_weight(const Vec3& gravity, double fluid_density, double mass, double radius) {
-  const double displaced = fluid_density * 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
-  return {mass * gravity.x(), mass * gravity.y(), (mass - displaced) * gravity.z()};
-}
 
 coupling::RefillRule refill_rule(Refill refill) {
   switch (refill) {
@@ -49,11 +41,7 @@ std::unique_ptr<System> build(const Case& c, MPI_Comm communicator, const Index3
 
   using System = coupling::ResolvedSystem<Real>;
   dem::GrainParameters grains = grain_parameters(c, decomposition->box());
-  const bool full = c.gravity.mode == GravityMode::full;
-  grains.body_force = [gravity = gravity_vector(c.gravity), density = c.fluid.density, full](double mass,
-                                                                                             double radius) {
-    return full ? Vec3(mass * gravity) : reduced_weight(gravity, density, mass, radius);
-  };
+  grains.body_force = body_force(c);
   grains.ghost_width = System::ghost_reach(0.5 * largest_diameter(c), c.domain.spacing);
   grains.attached_width = System::attached_width(parameters);
   const GrainSeeds seeds = grain_seeds(c);

@@ -295,8 +295,20 @@ struct TracksCase {
   bool operator==(const TracksCase&) const = default;
 };
 
+struct EntrainmentCase {
+  std::vector<std::int64_t> grains;  // ids; empty: those of the bed's surface
+  double from = 0.0;                 // s
+  double memory = 0.2;               // s
+  double every = 0.0;                // s; 0: at every step
+  double refresh = 0.5;              // s
+  double displacement = 0.1;         // diameters of the grain
+  double rest_time = 0.1;            // s
+  bool operator==(const EntrainmentCase&) const = default;
+};
+
 struct AnalysisCase {
   std::optional<TracksCase> tracks;
+  std::optional<EntrainmentCase> entrainment;
   std::optional<GrainProfilesCase> grain_profiles;
   std::optional<StressBalanceCase> stress_balance;
   std::optional<PopulationLoadsCase> population_loads;

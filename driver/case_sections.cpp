@@ -352,6 +352,12 @@ static void describe_analysis(io::SectionVisitor& visit, AnalysisCase& analysis,
     visit.not_here("fluid_statistics", "system: grains has no fluid; remove the section or set system: resolved");
   of_grains("tracks", analysis.tracks,
             {.meaning = "places, motion and forces of chosen grains at short intervals, in tracks.h5"});
+  if (with_fluid)
+    of_grains("entrainment", analysis.entrainment,
+              {.meaning = "what acted on grains that start to move, and the torques about the hinge they roll over, in "
+                          "entrainment.h5"});
+  else
+    visit.not_here("entrainment", "system: grains has no fluid; remove the section or set system: resolved");
   of_grains("wall_forces", analysis.wall_forces,
             {.meaning = "force of grains and of the fluid on each wall, in series.csv; no keys: {}"});
 }

@@ -35,6 +35,9 @@ public:
 
 private:
   void for_each_contact(const ContactVisitor& visit) const override { grains_.for_each_contact(visit); }
+  void for_each_contact_of(std::span<const char> chosen, const ContactEndVisitor& visit) const override {
+    grains_.for_each_contact_of(chosen, visit);
+  }
 
   int sub_steps_;
   double time_step_;                     // s, of sub_steps_ sub-steps

@@ -1,6 +1,7 @@
 #include "driver/run_command.hpp"
 
 #include "analysis/bed_surface.hpp"
+#include "analysis/entrainment.hpp"
 #include "analysis/fluid_statistics.hpp"
 #include "analysis/grain_energy.hpp"
 #include "analysis/grain_profiles.hpp"
@@ -14,6 +15,7 @@
 #include "driver/case_reader.hpp"
 #include "driver/dry_grains.hpp"
 #include "driver/grain_setup.hpp"
+#include "driver/grain_weight.hpp"
 #include "driver/machine.hpp"
 #include "driver/on_first_rank.hpp"
 #include "driver/progress.hpp"
@@ -28,6 +30,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 namespace thalweg::driver {
@@ -108,11 +111,7 @@ std::unique_ptr<analysis::Observer> bed_surface(const Case& c, const System& sys
                                                 bed_flow(c), c.disks ? c.disks->thickness : 0.0);
 }
 
-std::unique_ptr<analysis::StressBalance> stress_balance_of(const Case& c, const System& system, MPI_Comm communicator) {
-  const StressBalanceCase& asked_for = *c.analysis.stress_balance;
-  const analysis::BalanceScales scales{units_of(c).velocity(), c.fluid.density,
-                                       c.fluid.density * c.fluid.kinematic_viscosity, reference_grain(c).diameter,
-                                       gravity_vector(c.gravity).x()};
+std::vector<analysis::HeldGrains> held_grains(const Case& c) {
   std::vector<analysis::HeldGrains> held;
   GlobalId first = 0;
   for (const PopulationCase& grains : c.grains) {
@@ -120,9 +119,40 @@ std::unique_ptr<analysis::StressBalance> stress_balance_of(const Case& c, const 
     if (grains.fixed || grains.prescribed_velocity || grains.motion) held.push_back({first, end});
     first = end;
   }
+  return held;
+}
+
+std::unique_ptr<analysis::StressBalance> stress_balance_of(const Case& c, const System& system, MPI_Comm communicator) {
+  const StressBalanceCase& asked_for = *c.analysis.stress_balance;
+  const analysis::BalanceScales scales{units_of(c).velocity(), c.fluid.density,
+                                       c.fluid.density * c.fluid.kinematic_viscosity, reference_grain(c).diameter,
+                                       gravity_vector(c.gravity).x()};
   return std::make_unique<analysis::StressBalance>(
       communicator, *system.snapshot().decomposition, asked_for.layer.value_or(0.25 * smallest_diameter(c)),
-      analysis::BalanceSchedule{asked_for.from, asked_for.every}, scales, std::move(held));
+      analysis::BalanceSchedule{asked_for.from, asked_for.every}, scales, held_grains(c));
+}
+
+std::unique_ptr<analysis::Entrainment> entrainment_of(const Case& c, const System& system, MPI_Comm communicator) {
+  const EntrainmentCase& asked_for = *c.analysis.entrainment;
+  const double step = system.time_step();
+  analysis::EntrainmentSettings settings;
+  settings.grains = watched_grains(c);
+  settings.from = asked_for.from;
+  settings.interval = static_cast<double>(std::max<std::int64_t>(1, Schedule(asked_for.every, step).interval())) * step;
+  settings.memory = asked_for.memory;
+  settings.refresh = Schedule(asked_for.refresh, step).interval();
+  settings.window = settings.diameter = reference_grain(c).diameter;
+  settings.displacement = asked_for.displacement;
+  settings.rest_time = asked_for.rest_time;
+  settings.moving_speed = transport_scales(c).moving_speed();
+  settings.held = [held = held_grains(c)](GlobalId id) {
+    return std::any_of(held.begin(), held.end(),
+                       [id](const analysis::HeldGrains& some) { return id >= some.first && id < some.end; });
+  };
+  settings.weight = submerged_weight(c);
+  settings.buoyancy = buoyancy_in_load(c);
+  return std::make_unique<analysis::Entrainment>(communicator, system.snapshot().decomposition->box(),
+                                                 std::move(settings));
 }
 
 Observers observers_of(const Case& c, const System& system, MPI_Comm communicator) {
@@ -151,6 +181,7 @@ Observers observers_of(const Case& c, const System& system, MPI_Comm communicato
         communicator, system.snapshot().decomposition->box(), populations_of(c), has_fluid(c)));
   if (c.analysis.tracks)
     observers.push_back(std::make_unique<analysis::Tracks>(communicator, tracked_grains(c), c.analysis.tracks->every));
+  if (c.analysis.entrainment) observers.push_back(entrainment_of(c, system, communicator));
   observers.push_back(std::make_unique<analysis::GrainEnergy>(communicator));
   return observers;
 }

@@ -17,6 +17,29 @@ void describe(io::SectionVisitor& visit, TracksCase& tracks) {
   visit.real("every", tracks.every, {.unit = "s", .meaning = "between measurements", .above = 0.0});
 }
 
+void describe(io::SectionVisitor& visit, EntrainmentCase& entrainment) {
+  visit.integer_list("grains", entrainment.grains,
+                     {.meaning = "ids of the grains, in the order of the populations from 0; else the free ones whose "
+                                 "centre is above the bed's height less one reference diameter",
+                      .at_least = 0,
+                      .example = 0});
+  visit.real("from", entrainment.from, {.unit = "s", .meaning = "start of the watch", .at_least = 0.0});
+  visit.real(
+      "memory", entrainment.memory,
+      {.unit = "s", .meaning = "what is kept of each grain, and goes into the file with its start", .above = 0.0});
+  visit.real("every", entrainment.every,
+             {.unit = "s", .meaning = "between the states that are kept; 0: every step", .at_least = 0.0});
+  visit.real("refresh", entrainment.refresh,
+             {.unit = "s", .meaning = "until the grains of the surface are chosen anew", .above = 0.0});
+  visit.real(
+      "displacement", entrainment.displacement,
+      {.unit = "1", .meaning = "a grain starts that is so many of its diameters from its rest place", .above = 0.0});
+  visit.real("rest_time", entrainment.rest_time,
+             {.unit = "s",
+              .meaning = "a grain rests that has been slower for so long than the speed from which it moves",
+              .at_least = 0.0});
+}
+
 namespace {
 
 std::int64_t row_count(const Case& c) {
@@ -49,6 +72,27 @@ void check_watched_grains(const Case& c, const io::YamlDocument& document) {
       throw document.error("analysis.tracks.one_in",
                            "analysis.tracks.grains names the grains already; give one of them");
   }
+  if (const auto& entrainment = c.analysis.entrainment) {
+    const std::string key = "analysis.entrainment";
+    check_ids(c, document, key, entrainment->grains);
+    for (const PopulationCase& grains : c.grains)
+      if (grains.clumps.count > 0)
+        throw document.error(key, "it knows grains that are single spheres, and there are clumps; remove the section");
+    if (entrainment->grains.empty() && periodic_axes(c.domain)[2])
+      throw document.error(key,
+                           "a bed has a height above a bottom, and here z is periodic; name the grains, or give "
+                           "domain.boundaries bottom and top");
+    if (entrainment->from < c.run.ramp)
+      throw document.error(key + ".from",
+                           fmt::format("{} s is before gravity has its full value; give at least run.ramp, {} s",
+                                       entrainment->from, c.run.ramp));
+  }
+}
+
+std::vector<GlobalId> watched_grains(const Case& c) {
+  std::vector<GlobalId> ids = c.analysis.entrainment->grains;
+  std::sort(ids.begin(), ids.end());
+  return ids;
 }
 
 std::vector<GlobalId> tracked_grains(const Case& c) {

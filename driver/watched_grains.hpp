@@ -1,4 +1,4 @@
-// What is recorded of single grains (analysis.tracks): its keys, and which grains it means.
+// What is recorded of single grains (analysis.tracks and analysis.entrainment): keys, and which grains they mean.
 #pragma once
 
 #include "driver/case.hpp"
@@ -10,10 +10,12 @@
 namespace thalweg {
 
 void describe(io::SectionVisitor& visit, TracksCase& tracks);
+void describe(io::SectionVisitor& visit, EntrainmentCase& entrainment);
 
-// Throws InputError with the place of a key that names a grain which is not there.
+// Throws InputError with the place of a key that names a grain which is not there, or asks for what cannot be watched.
 void check_watched_grains(const Case& c, const io::YamlDocument& document);
 
 std::vector<GlobalId> tracked_grains(const Case& c);  // ids, ascending
+std::vector<GlobalId> watched_grains(const Case& c);  // of analysis.entrainment, the same; empty: those of the surface
 
 }  // namespace thalweg

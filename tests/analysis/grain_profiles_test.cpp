@@ -28,6 +28,9 @@ class Shown : public ContactSource {
 public:
   explicit Shown(const GrainDynamics& grains) : grains_(grains) {}
   void for_each_contact(const ContactVisitor& visit) const override { grains_.for_each_contact(visit); }
+  void for_each_contact_of(std::span<const char> chosen, const ContactEndVisitor& visit) const override {
+    grains_.for_each_contact_of(chosen, visit);
+  }
 
   Snapshot snapshot(std::int64_t step = 0) const {
     const dem::GrainStore& s = grains_.store();

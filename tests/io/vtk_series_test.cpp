@@ -88,6 +88,11 @@ public:
     for (std::size_t i = 0; i < grains_.id.size(); ++i)
       visit(i, Vec3(grains_.radius[i], 0.0, 0.0), Vec3(-1.0, 0.0, static_cast<double>(grains_.id[i])));
   }
+  void for_each_contact_of(std::span<const char> chosen, const ContactEndVisitor& visit) const override {
+    for_each_contact([&](std::size_t i, const Vec3& arm, const Vec3& force) {
+      if (chosen[i] != 0) visit(i, {arm, force, -1, arm});
+    });
+  }
 
 private:
   const GrainView& grains_;

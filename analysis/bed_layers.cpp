@@ -1,0 +1,64 @@
+#include "analysis/bed_layers.hpp"
+
+#include "analysis/sphere_in_layer.hpp"
+#include "core/order_free_sum.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace thalweg::analysis {
+
+namespace {
+
+constexpr int thin_layers_a_window = 10;
+
+// For each clump, its volume over that of its members together, which may overlap.
+std::map<GlobalId, double> shares_of_members(const GrainView& grains) {
+  std::map<GlobalId, double> shares;
+  for (std::size_t i = 0; i < grains.id.size(); ++i)
+    if (grains.is_member(i)) shares[grains.clump[i]] += volume_of(grains.radius[i], grains.disk_thickness);
+  for (const ClumpState& clump : grains.clumps) shares.at(clump.id) = clump.volume / shares.at(clump.id);
+  return shares;
+}
+
+}  // namespace
+
+BedLayers::BedLayers(MPI_Comm communicator, const PeriodicBox& box, double window, double disk_thickness)
+    : communicator_(communicator),
+      box_(box),
+      layers_(std::max(1, static_cast<int>(std::lround(thin_layers_a_window * box.size.z() / window)))),
+      thickness_(box.size.z() / layers_),
+      width_(disk_thickness > 0.0 ? disk_thickness : box.size.y()) {}
+
+BedLayers::Bed BedLayers::bed(const Snapshot& snapshot) const {
+  const std::vector<double> volumes = volume_below(snapshot);
+  const VolumeBelow below{volumes, thickness_, box_.size.x() * width_};
+  return {bed_height(below, thin_layers_a_window / 2), bulk_solid_fraction(below)};
+}
+
+std::vector<double> BedLayers::volume_below(const Snapshot& snapshot) const {
+  const GrainView& grains = snapshot.grains;
+  const std::map<GlobalId, double> shares = shares_of_members(grains);
+  std::vector<int> layer_of_row;
+  std::vector<double> volumes;
+  for (std::size_t i = 0; i < grains.id.size(); ++i) {
+    const double radius = grains.radius[i], foot = grains.position[i].z() - radius;
+    const double share = grains.is_member(i) ? shares.at(grains.clump[i]) : 1.0;
+    const int first = static_cast<int>(std::floor(foot / thickness_));
+    const int last = static_cast<int>(std::floor((foot + 2.0 * radius) / thickness_));
+    for (int layer = std::max(0, first); layer <= std::min(layers_ - 1, last); ++layer) {
+      // What a wall overlaps belongs to the layer at the wall, so that no volume is lost.
+      const double lower = layer == 0 ? 0.0 : layer * thickness_ - foot;
+      const double upper = layer == layers_ - 1 ? 2.0 * radius : (layer + 1) * thickness_ - foot;
+      layer_of_row.push_back(layer);
+      volumes.push_back(share * volume_between(radius, grains.disk_thickness, lower, upper));
+    }
+  }
+  const std::vector<double> in_layer = order_free_sums_by_bin(communicator_, layer_of_row, layers_, volumes, 1);
+  std::vector<double> below{0.0};
+  for (const double volume : in_layer) below.push_back(below.back() + volume);
+  return below;
+}
+
+}  // namespace thalweg::analysis

@@ -1,0 +1,34 @@
+// The height of the bed in a snapshot, by thin layers of the box (bed_height.hpp).
+#pragma once
+
+#include "analysis/bed_height.hpp"
+#include "core/periodic_box.hpp"
+#include "core/snapshot.hpp"
+
+#include <mpi.h>
+
+namespace thalweg::analysis {
+
+class BedLayers {
+public:
+  // window: m, the height over which the solid fraction is averaged. disk_thickness: m, 0: spheres.
+  BedLayers(MPI_Comm communicator, const PeriodicBox& box, double window, double disk_thickness = 0.0);
+
+  struct Bed {
+    double height;          // m, above the floor of the box; 0 without grains
+    double solid_fraction;  // of the bulk
+  };
+  Bed bed(const Snapshot& snapshot) const;  // the same bits on any ranks; collective
+  double width() const { return width_; }   // m, of the bed
+
+private:
+  std::vector<double> volume_below(const Snapshot& snapshot) const;
+
+  MPI_Comm communicator_;
+  PeriodicBox box_;
+  int layers_;        // thin ones
+  double thickness_;  // m, of a thin layer
+  double width_;
+};
+
+}  // namespace thalweg::analysis

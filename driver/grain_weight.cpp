@@ -1,0 +1,34 @@
+#include "driver/grain_weight.hpp"
+
+#include <numbers>
+
+namespace thalweg::driver {
+
+namespace {
+
+double displaced_mass(double fluid_density, double radius) {
+  return fluid_density * 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
+}
+
+}  // namespace
+
+ForceOnGrain submerged_weight(const Case& c) {
+  return [gravity = gravity_vector(c.gravity), density = c.fluid.density](double mass, double radius) {
+    const double displaced = displaced_mass(density, radius);
+    return Vec3(mass * gravity.x(), mass * gravity.y(), (mass - displaced) * gravity.z());
+  };
+}
+
+ForceOnGrain body_force(const Case& c) {
+  if (c.gravity.mode != GravityMode::full) return submerged_weight(c);
+  return [gravity = gravity_vector(c.gravity)](double mass, double) { return Vec3(mass * gravity); };
+}
+
+ForceOnGrain buoyancy_in_load(const Case& c) {
+  if (c.gravity.mode != GravityMode::full) return [](double, double) { return Vec3(Vec3::Zero()); };
+  return [gravity = gravity_vector(c.gravity), density = c.fluid.density](double, double radius) {
+    return Vec3(0.0, 0.0, -displaced_mass(density, radius) * gravity.z());
+  };
+}
+
+}  // namespace thalweg::driver
