@@ -38,7 +38,7 @@ public:
       const double begin = 0.305 + 0.1 * static_cast<double>(n), way = std::clamp(time - begin, 0.0, 0.15) * 2.0;
       const bool starts = n >= 0 && n % 2 == 0, moves = starts && way > 0.0 && way < 0.3;
       Vec3 place(n < 0 ? static_cast<double>(id % 10) * 2.0 : 19.8,
-                 n < 0 ? 0.5 + static_cast<double>(id / 10) : n + 0.5, n < 0 ? 0.5 : 1.4);
+                 n < 0 ? 0.5 + static_cast<double>(id / 10) : static_cast<double>(n) + 0.5, n < 0 ? 0.5 : 1.4);
       if (starts) place.x() += way;
       if (place.x() >= 20.0) place.x() -= 20.0;
       id_.push_back(id);

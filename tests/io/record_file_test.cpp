@@ -53,8 +53,9 @@ void expect_seconds(const std::filesystem::path& path, int end) {
   for (int t = 0; t < end; ++t) {
     times.push_back(t);
     for (int k = 0; k < 6; ++k) velocities.push_back(10.0 * t + k);
-    if (t < first_events)
+    if (t < first_events) {
       EXPECT_EQ(numbers(file, "event_" + std::to_string(t) + "/force"), (std::vector<double>{1.0 * t, 2.0 * t}));
+    }
   }
   EXPECT_EQ(numbers(file, "time"), times);
   EXPECT_EQ(numbers(file, "velocity"), velocities);

@@ -1,0 +1,61 @@
+#!/usr/bin/python3
+"""q* of the flume against time: compare.py RUN_FOLDER... [--figure FILE] [--table FILE]
+
+Draws means over half a second, and the mean and the deviation that Zhang et al. (2022) print at the Shields number 0.028;
+the table has the same means. python/figures/transport_relation.py draws the runs against the Shields number.
+"""
+import argparse
+import csv
+import sys
+from pathlib import Path
+
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import thalweg
+
+WINDOW = 0.5                       # s
+PAPER_MEAN, PAPER_DEVIATION = 0.089, 0.019
+
+
+def window_means(series):
+    """Ends of the windows (s) and the mean of q* in each; the settling of the first second is left out."""
+    time, q_star = series["time"], series["q_star"]
+    ends = np.arange(WINDOW, time[-1] + 1e-9, WINDOW)
+    means = np.array([q_star[(time > end - WINDOW) & (time <= end)].mean() for end in ends])
+    keep = means < 0.5
+    return ends[keep], means[keep]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("runs", nargs="+", type=Path, metavar="RUN_FOLDER")
+    parser.add_argument("--figure", default="flume.png")
+    parser.add_argument("--table")
+    arguments = parser.parse_args()
+
+    plt.figure(figsize=(7, 4))
+    rows = []
+    for run in arguments.runs:
+        folder = thalweg.Run(run)
+        ends, means = window_means(folder.series)
+        plt.plot(ends - 0.5 * WINDOW, means, "o-", markersize=3, label=folder.case["name"])
+        rows += [[run.name, f"{end:.1f}", f"{mean:.4f}"] for end, mean in zip(ends, means)]
+    plt.axhspan(PAPER_MEAN - PAPER_DEVIATION, PAPER_MEAN + PAPER_DEVIATION, color="0.9",
+                label="Zhang et al. at 0.028, mean and deviation")
+    plt.xlabel("time [s]")
+    plt.ylabel("q*")
+    plt.ylim(0.0, None)
+    plt.legend(fontsize=8)
+    plt.tight_layout()
+    plt.savefig(arguments.figure, dpi=100)
+    if arguments.table:
+        with open(arguments.table, "w", newline="", encoding="utf-8") as file:
+            csv.writer(file).writerows([["run", "until [s]", "q_star [1]"], *rows])
+
+
+if __name__ == "__main__":
+    main()
