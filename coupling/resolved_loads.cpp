@@ -11,6 +11,53 @@
 
 namespace thalweg::coupling {
 
+using lbm::CellMap;
+
+template <typename Real>
+void ResolvedSystem<Real>::account_for_covered_cells() {
+  const Index3& lower = fluid_.block().lower;
+  for (const GrainMap::Change& change : map_.changes()) {
+    const Index3& at = change.cell;
+    if (change.before != CellMap::fluid || !fluid_.indexing().owned(at[0], at[1], at[2])) continue;
+    const std::ptrdiff_t cell = fluid_.indexing().index(at[0], at[1], at[2]);
+    Vec3 momentum = Vec3::Zero();
+    for (int i = 0; i < lbm::D3Q19::directions; ++i)
+      for (int a = 0; a < 3; ++a)
+        momentum[a] += lbm::D3Q19::c[i][a] * static_cast<double>(fluid_.populations().post_collision(i, cell));
+    const Vec3 position(lower[0] + at[0] + 0.5, lower[1] + at[1] + 0.5, lower[2] + at[2] + 0.5);
+    step_totals_.covered += momentum;
+    step_totals_.covered_angular_momentum += position.cross(momentum);
+    const double deviation = fluid_.populations().density_deviation(cell);
+    const std::int64_t mass = LatticeFixed::from(rest_.deviation(position) - deviation);
+    lbm::LinkBody& body = bodies_[static_cast<std::size_t>(change.now)];
+    body.mass += mass;
+    step_totals_.covered_mass += mass;
+    if (parameters_.keep_covered_momentum) keep_momentum(body, position, 1.0 + deviation, momentum);
+  }
+}
+
+// Of a cell that this body covers: sum (c_i - u_w) f_i^c without the half force, which refill puts into cells again.
+// What is left, rho u_w, belongs to the mass, which comes back (docs/theory.md, section 3, "Covered cells").
+template <typename Real>
+void ResolvedSystem<Real>::keep_momentum(lbm::LinkBody& body, const Vec3& position, double density,
+                                         const Vec3& momentum) {
+  const double(&f)[3] = fluid_.parameters().force;
+  const Vec3 arm = lattice_box_.difference(position, body.centre);
+  const Vec3 wall = body.velocity + body.angular_velocity.cross(arm);
+  const Vec3 kept = momentum - 0.5 * Vec3(f[0], f[1], f[2]) - density * wall, torque = arm.cross(kept);
+  const auto fixed = [](const Vec3& v) {
+    return FixedVec3{LatticeFixed::from(v.x()), LatticeFixed::from(v.y()), LatticeFixed::from(v.z())};
+  };
+  body.force += fixed(kept);
+  body.torque += fixed(torque);
+  if (!moments_.empty())
+    for (int k = 0; k < 9; ++k)
+      moments_[static_cast<std::size_t>(&body - bodies_.data())].sums[static_cast<std::size_t>(k)] +=
+          LatticeFixed::from(kept[k / 3] * arm[k % 3]);
+  step_totals_.kept += kept;
+  step_totals_.kept_angular_momentum += body.centre.cross(kept) + torque;
+}
+
 // Before anything is added that the fluid does not feel.
 template <typename Real>
 void ResolvedSystem<Real>::book_links(const lbm::LinkBalance& balance) {
@@ -21,6 +68,8 @@ void ResolvedSystem<Real>::book_links(const lbm::LinkBalance& balance) {
     step_totals_.link_angular_momentum += body.centre.cross(force) + body.torque.to_vec3();
     step_totals_.link_mass += body.mass;
   }
+  step_totals_.link_momentum -= step_totals_.kept;
+  step_totals_.link_angular_momentum -= step_totals_.kept_angular_momentum;
   step_totals_.link_mass -= step_totals_.refilled_mass + step_totals_.covered_mass;
   mass_.book(MassAccount::links, step_totals_.link_mass);
   mass_.book(MassAccount::uncovered, step_totals_.refilled_mass);

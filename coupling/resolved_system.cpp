@@ -211,27 +211,6 @@ void ResolvedSystem<Real>::advance() {
 }
 
 template <typename Real>
-void ResolvedSystem<Real>::account_for_covered_cells() {
-  const Index3& lower = fluid_.block().lower;
-  for (const GrainMap::Change& change : map_.changes()) {
-    const Index3& at = change.cell;
-    if (change.before != CellMap::fluid || !fluid_.indexing().owned(at[0], at[1], at[2])) continue;
-    const std::ptrdiff_t cell = fluid_.indexing().index(at[0], at[1], at[2]);
-    Vec3 momentum = Vec3::Zero();
-    for (int i = 0; i < lbm::D3Q19::directions; ++i)
-      for (int a = 0; a < 3; ++a)
-        momentum[a] += lbm::D3Q19::c[i][a] * static_cast<double>(fluid_.populations().post_collision(i, cell));
-    const Vec3 position(lower[0] + at[0] + 0.5, lower[1] + at[1] + 0.5, lower[2] + at[2] + 0.5);
-    step_totals_.covered += momentum;
-    step_totals_.covered_angular_momentum += position.cross(momentum);
-    const std::int64_t mass =
-        LatticeFixed::from(rest_.deviation(position) - fluid_.populations().density_deviation(cell));
-    bodies_[static_cast<std::size_t>(change.now)].mass += mass;
-    step_totals_.covered_mass += mass;
-  }
-}
-
-template <typename Real>
 std::int64_t ResolvedSystem<Real>::cells() const {
   const Index3& n = decomposition_->cells();
   return static_cast<std::int64_t>(n[0]) * n[1] * n[2];

@@ -26,18 +26,21 @@ struct ResolvedParameters : FluidParameters {
   std::optional<VirtualMass> virtual_mass;  // of light grains
   RefillRule refill = RefillRule::equilibrium;
   LoadRule load = LoadRule::extrapolated;
-  bool grain_stress = false;        // the stress of the fluid on every grain is measured
-  bool paper_near_contact = false;  // hidden_links.hpp
-  bool mass_balance = false;        // the figures include where the links' mass comes from
+  bool keep_covered_momentum = false;  // what a covered cell carries relative to its grain, the grain gets
+  bool grain_stress = false;           // the stress of the fluid on every grain is measured
+  bool paper_near_contact = false;     // hidden_links.hpp
+  bool mass_balance = false;           // the figures include where the links' mass comes from
 };
 
 // This rank's part of the sums that a momentum balance of the fluid needs (lattice units, of the step just done).
 struct ExchangeTotals {
   Vec3 link_momentum = Vec3::Zero();  // force on the grains through this rank's links
+  Vec3 kept = Vec3::Zero();           // of `covered`: what the grains got
   Vec3 refilled = Vec3::Zero();       // given to uncovered cells
   Vec3 covered = Vec3::Zero();        // lost in cells that became solid
   // The same about the origin. Angular momentum has a meaning only in a box without periodic faces.
   Vec3 link_angular_momentum = Vec3::Zero();
+  Vec3 kept_angular_momentum = Vec3::Zero();
   Vec3 refilled_angular_momentum = Vec3::Zero();
   Vec3 covered_angular_momentum = Vec3::Zero();
   // Gained by the fluid, LatticeFixed sums (mass_account.hpp).
@@ -113,6 +116,7 @@ private:
   void update_bodies();
   void place_body(std::size_t grain, lbm::LinkBody& body) const;
   void account_for_covered_cells();
+  void keep_momentum(lbm::LinkBody& body, const Vec3& position, double density, const Vec3& momentum);
   void open_account();
   void correct_mass();
   void book_links(const lbm::LinkBalance& balance);

@@ -29,6 +29,7 @@ std::unique_ptr<System> build(const Case& c, MPI_Comm communicator, const Index3
   parameters.link_tolerance = c.coupling.link_tolerance;
   parameters.load =
       c.coupling.load == GrainLoad::mean ? coupling::LoadRule::mean : coupling::LoadRule::extrapolated;
+  parameters.keep_covered_momentum = c.coupling.covered_momentum == CoveredMomentum::to_grain;
   parameters.mass_balance = c.coupling.mass_balance;
   parameters.refill = refill_rule(c.coupling.refill);
   parameters.paper_near_contact = c.coupling.near_contact == NearContact::paper;

@@ -127,6 +127,7 @@ enum class WallDensity { local, reference };
 enum class LinkRule { bouzidi, cli };
 enum class NearContact { subtracted, paper };
 enum class Refill { equilibrium, non_equilibrium, grad };
+enum class CoveredMomentum { lost, to_grain };
 enum class GrainLoad { extrapolated, mean };
 
 // The part of the lubrication force between near surfaces that the cells cannot resolve.
@@ -153,6 +154,7 @@ struct CouplingCase {
   LinkRule links = LinkRule::bouzidi;
   NearContact near_contact = NearContact::subtracted;
   Refill refill = Refill::equilibrium;
+  CoveredMomentum covered_momentum = CoveredMomentum::lost;
   GrainLoad load = GrainLoad::extrapolated;
   std::optional<LubricationCase> lubrication;
   std::optional<VirtualMassCase> virtual_mass;

@@ -59,7 +59,7 @@ static void describe_coupling(io::SectionVisitor& visit, CouplingCase& coupling,
   visit.not_here("mass_correction", "the fluid's mass is always kept; remove the key");
   if (!with_grains) {
     for (const char* key : {"grain_steps_per_fluid_step", "link_tolerance", "momentum_exchange", "wall_density",
-                            "near_contact", "refill", "load", "grain_stress", "mass_balance"})
+                            "near_contact", "refill", "covered_momentum", "load", "grain_stress", "mass_balance"})
       visit.not_here(key, "system: fluid has no grains; remove the key or set system: resolved");
     return;
   }
@@ -90,6 +90,11 @@ static void describe_coupling(io::SectionVisitor& visit, CouplingCase& coupling,
                         {Refill::non_equilibrium, "non_equilibrium", "with that of the neighbour along the normal"},
                         {Refill::grad, "grad", "with the mean stress of the neighbours"}},
                        {.meaning = "populations of a cell that a grain has uncovered"});
+  visit.choice<CoveredMomentum>(
+      "covered_momentum", coupling.covered_momentum,
+      {{CoveredMomentum::lost, "lost", "as published: grains get a little less than the fluid loses"},
+       {CoveredMomentum::to_grain, "to_grain"}},
+      {.meaning = "what a cell that a grain covers carries relative to the grain"});
   visit.choice<GrainLoad>("load", coupling.load,
                           {{GrainLoad::extrapolated, "extrapolated", "from the last three exchanges, without lag"},
                            {GrainLoad::mean, "mean", "of the last two, as published; a bed may shake"}},

@@ -137,7 +137,7 @@ TEST(Ranks, DoNotChangeOneBitOfClumpsInAPeriodicBox) {
 
 TEST(Ranks, DoNotChangeOneBitWithFullGravityAndEveryOtherChoiceInAFlume) {
   WaterBox box = crowded({48, 36, 36}, {true, false, false}, 100, 5.4e-3);
-  box.full_gravity = box.grain_stress = box.paper_near_contact = true;
+  box.full_gravity = box.grain_stress = box.paper_near_contact = box.keep_covered_momentum = true;
   box.links.rule = lbm::LinkRule::cli;
   box.refill = RefillRule::grad;
   for (const Index3& layout : two_layouts_of(size_of(MPI_COMM_WORLD))) compare<float>(box, layout, 8);

@@ -22,6 +22,7 @@ struct WaterBox {
   Vec3 gravity = Vec3(0.0, 0.0, 0.0);  // m/s^2; reduced: along z only the submerged weight counts
   Vec3 fluid_velocity = Vec3::Zero();  // m/s at the start
   double plate_velocity = 0.0;         // m/s along x: where not zero, top and bottom are plates that move, top along x
+  bool bottom_at_rest = false;         // of two plates the lower one does not move
   FluidInitialState (*initial)(const Vec3&) = nullptr;
   bool closed = false;  // no slip at all faces that are not periodic
   lbm::LinkOptions links;
@@ -31,6 +32,7 @@ struct WaterBox {
   bool lubrication = false;  // with the cut-offs of the case's defaults, at the floor alone
   bool virtual_mass = false;
   RefillRule refill = RefillRule::equilibrium;
+  bool keep_covered_momentum = false;
   bool grain_stress = false;
   bool full_gravity = false;  // gravity acts on everything, and buoyancy comes from the fluid
   bool paper_near_contact = false;
@@ -63,7 +65,8 @@ std::unique_ptr<ResolvedSystem<Real>> make_system(const WaterBox& box, MPI_Comm 
   for (const int face : {4, 5}) {
     if (box.plate_velocity == 0.0) continue;
     p.faces[face].type = lbm::FaceType::moving;
-    p.faces[face].velocity = Vec3((face == 5 ? 1.0 : -1.0) * box.plate_velocity / p.units.velocity(), 0.0, 0.0);
+    const double along = face == 5 ? 1.0 : (box.bottom_at_rest ? 0.0 : -1.0);
+    p.faces[face].velocity = Vec3(along * box.plate_velocity / p.units.velocity(), 0.0, 0.0);
   }
   p.links = box.links;
   p.link_tolerance = box.link_tolerance;
@@ -71,6 +74,7 @@ std::unique_ptr<ResolvedSystem<Real>> make_system(const WaterBox& box, MPI_Comm 
   p.wall_forces = box.wall_forces;
   if (box.virtual_mass) p.virtual_mass = VirtualMass{0.5, fluid_density};
   p.refill = box.refill;
+  p.keep_covered_momentum = box.keep_covered_momentum;
   p.grain_stress = box.grain_stress;
   p.full_gravity = box.full_gravity;
   p.paper_near_contact = box.paper_near_contact;

@@ -2,6 +2,9 @@
 //
 //   bin/refill                every refill
 //   bin/refill TAU_B...       the first refill at each of these bulk relaxation times (0: as the shear's)
+//   bin/refill covered        the first refill, with the momentum of covered cells lost and given to the grain, and
+//   past a sphere
+//                             at rest, which covers none
 //   bin/refill drag           the first refill from Re_p = 1 to 200 (0.02 cells a step)
 //
 // A sphere of ten cells moves at constant velocity, not along the lattice and without turning, through fluid at rest in
@@ -27,6 +30,9 @@ namespace {
 
 using coupling::RefillRule;
 
+// What becomes of the momentum of covered cells; none: the sphere rests, and the fluid moves past it.
+enum class Covered { lost, to_grain, none };
+
 struct Regime {
   const char* name;
   double relaxation_time, smagorinsky_constant, speed;  // lattice units
@@ -35,7 +41,7 @@ struct Regime {
 constexpr double radius = 5.0;
 
 std::unique_ptr<coupling::ResolvedSystem<double>> make(const Regime& regime, const Vec3& velocity, RefillRule rule,
-                                                       double bulk_relaxation_time) {
+                                                       double bulk_relaxation_time, Covered covered) {
   const Index3 cells{56, 48, 48};
   auto decomposition =
       std::make_unique<Decomposition>(cells, 1.0, std::array<bool, 3>{true, true, true}, Index3{1, 1, 1});
@@ -45,12 +51,17 @@ std::unique_ptr<coupling::ResolvedSystem<double>> make(const Regime& regime, con
   p.collision.smagorinsky_constant = regime.smagorinsky_constant;
   p.collision.bulk_relaxation_time = bulk_relaxation_time;
   p.refill = rule;
+  p.keep_covered_momentum = covered != Covered::lost;
+  const bool held = covered == Covered::none;
+  p.initial_fluid = [u = held ? Vec3(-velocity) : Vec3(Vec3::Zero())](const Vec3&) {
+    return coupling::FluidInitialState{0.0, u};
+  };
   p.sub_steps = 1;
   dem::GrainSeed seed;
   seed.radius = radius;
   seed.density = 2.55;
   seed.position = Vec3(28.13, 24.37, 23.71);
-  seed.velocity = velocity;
+  seed.velocity = held ? Vec3(Vec3::Zero()) : velocity;
   seed.motion = dem::Motion::fixed;
   dem::GrainParameters g;
   g.contact.normal_stiffness = g.contact.tangential_stiffness = 1.0;
@@ -84,9 +95,10 @@ double roughness(const std::vector<Vec3>& values, int half) {
   return std::sqrt(sum / count);
 }
 
-void measure(const Regime& regime, RefillRule rule, double bulk_relaxation_time, const std::string& name) {
+void measure(const Regime& regime, RefillRule rule, double bulk_relaxation_time, const std::string& name,
+             Covered covered = Covered::lost) {
   const Vec3 along = Vec3(1.0, 0.37, 0.21).normalized();
-  const auto system = make(regime, regime.speed * along, rule, bulk_relaxation_time);
+  const auto system = make(regime, regime.speed * along, rule, bulk_relaxation_time, covered);
   const int crossing = static_cast<int>(1.0 / regime.speed), steps = static_cast<int>(120.0 / regime.speed);
   std::vector<Vec3> force, torque, load, load_torque;
   Vec3 total = Vec3::Zero();
@@ -118,9 +130,12 @@ void measure(const Regime& regime, RefillRule rule, double bulk_relaxation_time,
 int main(int argc, char** argv) {
   using namespace thalweg;
   MpiSession session(argc, argv);
-  const bool drag = argc == 2 && std::string(argv[1]) == "drag";
+  const std::string mode = argc == 2 ? argv[1] : "";
+  const bool drag = mode == "drag", by_covered = mode == "covered";
   fmt::print("| flow | {} | force, step to step | within a cell | torque, step to step | within a cell | drag |\n",
-             argc > 1 && !drag ? "tau_b" : "refill");
+             by_covered          ? "covered"
+             : argc > 1 && !drag ? "tau_b"
+                                 : "refill");
   std::printf("|---|---|---|---|---|---|---|\n");
   if (drag) {
     for (const int reynolds : {1, 5, 20, 50, 100, 200}) {
@@ -132,6 +147,14 @@ int main(int argc, char** argv) {
   }
   for (const benchmark::Regime& regime : {benchmark::Regime{"Re_p = 20", 0.55, 0.0, 20.0 * 0.05 / 3.0 / 10.0},
                                           benchmark::Regime{"water", 0.50024, 0.27, 0.012}}) {
+    if (by_covered) {
+      for (const double bulk : {0.0, 3.0})
+        for (const auto& [covered, name] : {std::pair{benchmark::Covered::lost, "lost"},
+                                            {benchmark::Covered::to_grain, "to_grain"},
+                                            {benchmark::Covered::none, "none: sphere at rest"}})
+          measure(regime, coupling::RefillRule::equilibrium, bulk, fmt::format("{}, tau_b = {}", name, bulk), covered);
+      continue;
+    }
     for (int n = 1; n < argc; ++n) measure(regime, coupling::RefillRule::equilibrium, std::atof(argv[n]), argv[n]);
     if (argc > 1) continue;
     measure(regime, coupling::RefillRule::equilibrium, 0.0, "equilibrium");
