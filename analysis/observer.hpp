@@ -26,6 +26,9 @@ public:
   // True for one that looks at single grains, as often as every step: the system's health is not looked into for it.
   virtual bool in_passing() const { return false; }
 
+  // Whether it looks at Snapshot::momentum, which a system books when asked before the step.
+  virtual bool needs_momentum() const { return false; }
+
   // Takes one measurement. Collective: every rank calls it at the same steps.
   virtual void observe(const Snapshot& snapshot) = 0;
 

@@ -4,7 +4,6 @@
 #include "analysis/sphere_in_layer.hpp"
 #include "analysis/tensor_names.hpp"
 #include "core/contact_stress.hpp"
-#include "core/fixed_point.hpp"
 #include "core/mpi_session.hpp"
 #include "core/order_free_sum.hpp"
 
@@ -12,12 +11,6 @@
 #include <stdexcept>
 
 namespace thalweg::analysis {
-
-namespace {
-
-using CellSum = FixedPoint<40>;
-
-}  // namespace
 
 StressBalance::StressBalance(MPI_Comm communicator, const Decomposition& decomposition, double layer,
                              const BalanceSchedule& schedule, const BalanceScales& scales, std::vector<HeldGrains> held)
@@ -41,34 +34,27 @@ void StressBalance::observe(const Snapshot& snapshot) {
   if (!snapshot.momentum || snapshot.step <= counted_step_ || snapshot.time < schedule_.from * (1.0 - 1e-12)) return;
   counted_step_ = snapshot.step;
   ++measurements_;
-  add_fluid(snapshot);
+  add_fluid(*snapshot.momentum);
   add_grains(snapshot);
 }
 
-void StressBalance::add_fluid(const Snapshot& snapshot) {
-  const double stress_unit = scales_.fluid_density * scales_.velocity_unit * scales_.velocity_unit;
-  std::vector<std::int64_t> sums(fluid_.size(), 0);
-  const MomentumBudget budget = snapshot.momentum->for_each_momentum([&](const Index3& cell, const CellMomentum& c) {
-    std::int64_t* columns = sums.data() + static_cast<std::size_t>(cell[2]) * fluid_columns;
-    const double rho = c.density / scales_.fluid_density;
-    const Vec3 u = c.velocity / scales_.velocity_unit;
-    columns[cells] += 1;
-    columns[density] += CellSum::from(rho);
-    for (int a = 0; a < 3; ++a) columns[flow + a] += CellSum::from(rho * u[a]);
-    for (int p = 0; p < 6; ++p) {
-      columns[flow_flux + p] += CellSum::from(rho * u[symmetric_pairs[p][0]] * u[symmetric_pairs[p][1]]);
-      columns[viscous + p] += CellSum::from(c.viscous[static_cast<std::size_t>(p)] / stress_unit);
-      columns[subgrid + p] += CellSum::from(c.subgrid[static_cast<std::size_t>(p)] / stress_unit);
+void StressBalance::add_fluid(const MomentumBook& book) {
+  for (std::size_t z = 0; z < book.planes.size(); ++z) {
+    const PlaneMomentum& plane = book.planes[z];
+    double* sums = fluid_.data() + z * fluid_columns;
+    const auto cells_here = static_cast<double>(plane.cells);
+    sums[cells] += cells_here;
+    sums[density] += plane.density;
+    for (int a = 0; a < 3; ++a) sums[flow + a] += plane.flow[a];
+    for (std::size_t p = 0; p < 6; ++p) {
+      sums[flow_flux + p] += plane.flow_flux[p];
+      sums[viscous + p] += plane.viscous[p];
+      sums[subgrid + p] += plane.subgrid[p];
     }
-  });
-  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_INT64_T, MPI_SUM, communicator_);
-  for (std::size_t s = 0; s < sums.size(); ++s)
-    fluid_[s] += s % fluid_columns == cells ? static_cast<double>(sums[s]) : CellSum::to_double(sums[s]);
-  for (std::size_t h = 0; h < given_.size(); ++h) given_[h] += budget.on_grains[h].x();
-  for (int z = 0; z < n_[2]; ++z)
-    driving_[static_cast<std::size_t>(z)] +=
-        budget.driving.x() * static_cast<double>(sums[static_cast<std::size_t>(z) * fluid_columns + cells]);
-  driving_.back() += budget.on_top.x();
+    driving_[z] += book.driving.x() * cells_here;
+  }
+  driving_.back() += book.on_top.x();
+  for (std::size_t h = 0; h < given_.size(); ++h) given_[h] += book.on_grains[h].x();
 }
 
 bool StressBalance::is_held(GlobalId id) const {

@@ -10,7 +10,7 @@
 //   drag density           (1/Ab) sum_i (V_il/V_i) F_i                        N/m^3, given by the fluid
 //   drag function          F = f_x d^2/(18 phi (1 - phi) eta (U_f - U_s)),  Re_d = (1 - phi) rho_f |U_f - U_s| d/eta
 //                                                                             (eq. 25, without turbulent drift)
-// Of the fluid cells, in the coming collision: viscous and subgrid stress from the non-equilibrium moments
+// Of the fluid cells, in the collision of the step: viscous and subgrid stress from the non-equilibrium moments
 // (lbm/flow_fields.hpp), rho u_a u_b, which is parted into Reynolds stress -(<rho u_a u_b> - <rho u_a><rho u_b>/<rho>)
 // and what the mean flow carries.
 //
@@ -40,7 +40,6 @@ struct BalanceSchedule {
 };
 
 struct BalanceScales {
-  double velocity_unit = 1.0;  // m/s a lattice unit
   double fluid_density = 0.0;  // kg/m^3
   double viscosity = 0.0;      // Pa s
   double diameter = 0.0;       // m, that stands for all grains
@@ -60,7 +59,8 @@ public:
 
   std::string name() const override { return "stress_balance"; }
   double every() const override { return schedule_.every; }
-  void observe(const Snapshot& snapshot) override;  // a step seen before does not count again
+  bool needs_momentum() const override { return true; }
+  void observe(const Snapshot& snapshot) override;  // a step seen before, or not booked, does not count
   std::vector<Figure> figures() const override { return {}; }
 
   // mean_from (s), measurements (1), bed_height (m): where, from above, the solid fraction first exceeds half of its
@@ -81,7 +81,7 @@ public:
   void load(ArchiveReader& archive) override;  // takes the sums over only if they were begun at the same `from`
 
 private:
-  // Columns of a plane of cells (lattice units, sums over its fluid cells).
+  // Columns of a plane of cells: PlaneMomentum.
   enum FluidColumn { cells, density = 1, flow = 2, flow_flux = 5, viscous = 11, subgrid = 17, fluid_columns = 23 };
   // Columns of a layer of grains (SI): sums over the parts; levers are parts times their height over the layer's
   // bottom.
@@ -107,7 +107,7 @@ private:
     int layer = 0;
   };
 
-  void add_fluid(const Snapshot& snapshot);
+  void add_fluid(const MomentumBook& book);
   void add_grains(const Snapshot& snapshot);
   bool is_held(GlobalId id) const;
   std::array<double, fluid_columns> fluid_of(int layer) const;

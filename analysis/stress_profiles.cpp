@@ -36,10 +36,8 @@ void StressBalance::set_fluid_means(int layer, LayerMeans& means) const {
   const std::array<double, fluid_columns> sum = fluid_of(layer);
   if (sum[cells] == 0.0) return;
   const double planes = layers_.first_plane(layer + 1) - layers_.first_plane(layer);
-  const double unit = scales_.fluid_density * scales_.velocity_unit * scales_.velocity_unit /
-                      (planes * n_[0] * n_[1] * static_cast<double>(measurements_));
-  for (int a = 0; a < 3; ++a)
-    means.fluid_velocity[a] = sum[static_cast<std::size_t>(flow + a)] / sum[density] * scales_.velocity_unit;
+  const double unit = 1.0 / (planes * n_[0] * n_[1] * static_cast<double>(measurements_));
+  for (int a = 0; a < 3; ++a) means.fluid_velocity[a] = sum[static_cast<std::size_t>(flow + a)] / sum[density];
   for (std::size_t p = 0; p < 6; ++p) {
     const double carried = sum[static_cast<std::size_t>(flow + symmetric_pairs[p][0])] *
                            sum[static_cast<std::size_t>(flow + symmetric_pairs[p][1])] / sum[density];

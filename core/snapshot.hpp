@@ -80,29 +80,23 @@ public:
   virtual void for_each_velocity(const VelocityVisitor& visit) const = 0;
 };
 
-// What a fluid cell carries of momentum through itself (docs/theory.md, section 5, "Momentum balance by layers").
-struct CellMomentum {
-  double density = 0.0;                    // kg/m^3
-  Vec3 velocity = Vec3::Zero();            // m/s
-  std::array<double, 6> viscous, subgrid;  // Pa, without the pressure: xx, yy, zz, xy, xz, yz
+// What a plane of cells carries of momentum through itself (docs/theory.md, section 5, "Momentum balance by layers"):
+// sums over its fluid cells.
+struct PlaneMomentum {
+  std::int64_t cells = 0;
+  double density = 0.0;                        // kg/m^3
+  Vec3 flow = Vec3::Zero();                    // rho u, kg/(m^2 s)
+  std::array<double, 6> flow_flux{};           // rho u_a u_b, Pa: xx, yy, zz, xy, xz, yz
+  std::array<double, 6> viscous{}, subgrid{};  // Pa, without the pressure
 };
 
-// Who gives momentum to the fluid and takes it, over the whole domain.
-struct MomentumBudget {
-  std::vector<Vec3> on_grains;  // N, by height: entry h lies h half cells above the floor, h = 0 .. 2 n_z
-  Vec3 on_top = Vec3::Zero();   // N, on the face z_high
-  Vec3 driving = Vec3::Zero();  // N/m^3, of the force that drives the fluid
-};
-
-// The momentum of a fluid among grains, in the exchange that the coming step makes.
-class MomentumSource {
-public:
-  virtual ~MomentumSource() = default;
-
-  // Calls visit(global cell, momentum) for every fluid cell this rank owns. Collective; the budget is the same on every
-  // rank, bit by bit.
-  using MomentumVisitor = std::function<void(const Index3&, const CellMomentum&)>;
-  virtual MomentumBudget for_each_momentum(const MomentumVisitor& visit) const = 0;
+// The momentum of a fluid among grains in one step: who carries it, who gives it and who takes it, over the whole
+// domain. The same bits on every rank, and on any ranks.
+struct MomentumBook {
+  std::vector<PlaneMomentum> planes;  // of cells, from the floor
+  std::vector<Vec3> on_grains;        // N, by height: entry h lies h half cells above the floor, h = 0 .. 2 n_z
+  Vec3 on_top = Vec3::Zero();         // N, on the face z_high
+  Vec3 driving = Vec3::Zero();        // N/m^3, of the force that drives the fluid
 };
 
 // A contact as one of its grains feels it, and what it touches.
@@ -134,10 +128,10 @@ struct Snapshot {
   double time = 0.0;  // s
   std::int64_t step = 0;
   const Decomposition* decomposition = nullptr;
-  GrainView grains;                          // global_count 0: no grains
-  const FluidSource* fluid = nullptr;        // null: no fluid
-  const ContactSource* contacts = nullptr;   // null: no grains
-  const MomentumSource* momentum = nullptr;  // null: no grains, or no fluid
+  GrainView grains;                         // global_count 0: no grains
+  const FluidSource* fluid = nullptr;       // null: no fluid
+  const ContactSource* contacts = nullptr;  // null: no grains
+  const MomentumBook* momentum = nullptr;   // of the last step; null unless it was booked (System::book_momentum)
 };
 
 }  // namespace thalweg

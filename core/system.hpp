@@ -26,7 +26,10 @@ class System {
 public:
   virtual ~System() = default;
 
-  virtual void advance() = 0;                                                // one (fluid) step. Throws RunError.
+  virtual void advance() = 0;  // one (fluid) step. Throws RunError.
+  // The step to come books its momentum for its snapshot. Collective; changes no bit. A system without a fluid and
+  // grains has none to book.
+  virtual void book_momentum() {}
   virtual std::int64_t step() const = 0;                                     // steps done since the start of the run
   virtual double time_step() const = 0;                                      // s
   double time() const { return static_cast<double>(step()) * time_step(); }  // s

@@ -32,14 +32,14 @@ void ResolvedSystem<Real>::account_for_covered_cells() {
     lbm::LinkBody& body = bodies_[static_cast<std::size_t>(change.now)];
     body.mass += mass;
     step_totals_.covered_mass += mass;
-    if (parameters_.keep_covered_momentum) keep_momentum(body, position, 1.0 + deviation, momentum);
+    if (parameters_.keep_covered_momentum) keep_momentum(body, at[2], position, 1.0 + deviation, momentum);
   }
 }
 
 // Of a cell that this body covers: sum (c_i - u_w) f_i^c without the half force, which refill puts into cells again.
 // What is left, rho u_w, belongs to the mass, which comes back (docs/theory.md, section 3, "Covered cells").
 template <typename Real>
-void ResolvedSystem<Real>::keep_momentum(lbm::LinkBody& body, const Vec3& position, double density,
+void ResolvedSystem<Real>::keep_momentum(lbm::LinkBody& body, int plane, const Vec3& position, double density,
                                          const Vec3& momentum) {
   const double(&f)[3] = fluid_.parameters().force;
   const Vec3 arm = lattice_box_.difference(position, body.centre);
@@ -49,6 +49,7 @@ void ResolvedSystem<Real>::keep_momentum(lbm::LinkBody& body, const Vec3& positi
     return FixedVec3{LatticeFixed::from(v.x()), LatticeFixed::from(v.y()), LatticeFixed::from(v.z())};
   };
   body.force += fixed(kept);
+  if (booking_) given_by_height_[static_cast<std::size_t>(2 * plane + 1)] += fixed(kept);
   body.torque += fixed(torque);
   if (!moments_.empty())
     for (int k = 0; k < 9; ++k)

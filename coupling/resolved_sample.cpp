@@ -1,6 +1,6 @@
-// What a resolved system shows of its fluid: fields, velocities, and the momentum it carries and hands over.
+// What a resolved system shows of its fluid: fields, velocities, and the momentum of a step.
 #include "coupling/fluid_sample.hpp"
-#include "coupling/momentum_sample.hpp"
+#include "coupling/momentum_book.hpp"
 #include "coupling/resolved_system.hpp"
 
 namespace thalweg::coupling {
@@ -23,19 +23,15 @@ void ResolvedSystem<Real>::for_each_velocity(const VelocityVisitor& visit) const
   visit_velocities(fluid_, parameters_.units, visit);
 }
 
-// Grains are where the coming step will find them; their cells are those of the step just done.
+// The links of this step are applied twice: here on copies of the bodies, so that all that streams in lies ready.
 template <typename Real>
-MomentumBudget ResolvedSystem<Real>::for_each_momentum(const MomentumVisitor& visit) const {
-  return sample_momentum(
-      fluid_, parameters_.units, parameters_.links.reference_density,
-      [this](std::vector<FixedVec3>& by_height) {
-        std::vector<lbm::LinkBody> bodies = bodies_;
-        for (std::size_t g = 0; g < grains_->store().total(); ++g) place_body(g, bodies[map_slot_[g]]);
-        lbm::LinkPass<Real> links(fluid_, links_, lattice_box_, parameters_.links, bodies, nullptr, nullptr,
-                                  &by_height);
-        for (int tile = 0; tile < fluid_.tiles().count(); ++tile) links.apply_tile(tile);
-      },
-      visit);
+void ResolvedSystem<Real>::write_momentum_book() {
+  std::vector<lbm::LinkBody> bodies = bodies_;
+  lbm::LinkPass<Real> links(fluid_, links_, lattice_box_, parameters_.links, bodies, nullptr, nullptr,
+                            &given_by_height_);
+  for (int tile = 0; tile < fluid_.tiles().count(); ++tile) links.apply_tile(tile);
+  momentum_ = book_of(fluid_, parameters_.units, parameters_.links.reference_density, given_by_height_);
+  booking_ = false;
 }
 
 template class ResolvedSystem<float>;

@@ -161,6 +161,8 @@ void ResolvedSystem<Real>::sweep_behind_links() {
 template <typename Real>
 void ResolvedSystem<Real>::advance() {
   step_totals_ = {};
+  momentum_.reset();
+  given_by_height_.assign(booking_ ? static_cast<std::size_t>(2 * fluid_.indexing().size()[2] + 1) : 0, {});
   bool slots_changed = false;
   {
     const auto scope = timer_.measure(phases_.grains);
@@ -195,6 +197,7 @@ void ResolvedSystem<Real>::advance() {
     const auto scope = timer_.measure(phases_.walls);
     fluid_.apply_walls();
   }
+  if (booking_) write_momentum_book();
   sweep_behind_links();
   {
     const auto scope = timer_.measure(phases_.loads);
@@ -231,7 +234,7 @@ Snapshot ResolvedSystem<Real>::snapshot() const {
   s.decomposition = decomposition_.get();
   s.fluid = this;
   s.contacts = this;
-  s.momentum = this;
+  s.momentum = momentum_ ? &*momentum_ : nullptr;
   s.grains.global_count = grains_->global_count();
   s.grains.id = {store.id.data(), n};
   s.grains.radius = {store.radius.data(), n};

@@ -48,7 +48,7 @@ struct ExchangeTotals {
 };
 
 template <typename Real>
-class ResolvedSystem final : public System, private FluidSource, private ContactSource, private MomentumSource {
+class ResolvedSystem final : public System, private FluidSource, private ContactSource {
 public:
   // The grains (already holding their seeds) must carry attached_width() attached columns and reach ghost_reach()
   // beyond their block. Takes both over.
@@ -81,6 +81,7 @@ public:
   static double ghost_reach(double largest_radius, double spacing) { return largest_radius + 2.5 * spacing; }
 
   void advance() override;
+  void book_momentum() override { booking_ = true; }
   std::int64_t step() const override { return step_; }
   double time_step() const override { return parameters_.units.time_step; }
   Snapshot snapshot() const override;
@@ -106,7 +107,6 @@ private:
   void for_each_contact_of(std::span<const char> chosen, const ContactEndVisitor& visit) const override {
     grains_->for_each_contact_of(chosen, visit);
   }
-  MomentumBudget for_each_momentum(const MomentumVisitor& visit) const override;
 
   void add_wall_forces(std::vector<Figure>& figures) const;
   void forget_map();
@@ -116,7 +116,7 @@ private:
   void update_bodies();
   void place_body(std::size_t grain, lbm::LinkBody& body) const;
   void account_for_covered_cells();
-  void keep_momentum(lbm::LinkBody& body, const Vec3& position, double density, const Vec3& momentum);
+  void keep_momentum(lbm::LinkBody& body, int plane, const Vec3& position, double density, const Vec3& momentum);
   void open_account();
   void correct_mass();
   void book_links(const lbm::LinkBalance& balance);
@@ -125,6 +125,7 @@ private:
   void settle_mass(std::size_t first, std::size_t count);
   double mass_owed() const;
   void set_gravity_of(std::int64_t step);
+  void write_momentum_book();
   void sweep_behind_links();
   void collect_loads();
   void apply_loads();
@@ -155,6 +156,9 @@ private:
   std::vector<std::int64_t> exchanged_;  // force and torque sums of each grain of the store, and those of moments
   std::vector<Mat3> fluid_stress_;       // Pa, of owned grains; empty unless asked for
   ExchangeTotals step_totals_;
+  bool booking_ = false;                    // this step's momentum is to be booked
+  std::vector<FixedVec3> given_by_height_;  // to grains, by half planes of cells; empty unless booking
+  std::optional<MomentumBook> momentum_;    // of the last step
   MassAccount mass_;
   bool closed_;  // no face lets fluid in or out
   std::int64_t step_ = 0;

@@ -124,9 +124,8 @@ std::vector<analysis::HeldGrains> held_grains(const Case& c) {
 
 std::unique_ptr<analysis::StressBalance> stress_balance_of(const Case& c, const System& system, MPI_Comm communicator) {
   const StressBalanceCase& asked_for = *c.analysis.stress_balance;
-  const analysis::BalanceScales scales{units_of(c).velocity(), c.fluid.density,
-                                       c.fluid.density * c.fluid.kinematic_viscosity, reference_grain(c).diameter,
-                                       gravity_vector(c.gravity).x()};
+  const analysis::BalanceScales scales{c.fluid.density, c.fluid.density * c.fluid.kinematic_viscosity,
+                                       reference_grain(c).diameter, gravity_vector(c.gravity).x()};
   return std::make_unique<analysis::StressBalance>(
       communicator, *system.snapshot().decomposition, asked_for.layer.value_or(0.25 * smallest_diameter(c)),
       analysis::BalanceSchedule{asked_for.from, asked_for.every}, scales, held_grains(c));

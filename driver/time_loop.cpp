@@ -49,6 +49,7 @@ void TimeLoop::run() {
   Verdict verdict = Verdict::go_on;
   while (system_.step() < final_step_ && verdict == Verdict::go_on) {
     const WallClock::time_point before = WallClock::now();
+    if (needs_momentum_at(system_.step() + 1)) system_.book_momentum();
     system_.advance();
     record_.advance_seconds += seconds_since(before);
     record_.last_step = system_.step();
@@ -81,6 +82,12 @@ void TimeLoop::look_at_health() {
   }
   for (std::size_t f = 0; f < record_.figures.size(); ++f)
     record_.largest[f].value = std::max(record_.largest[f].value, record_.figures[f].value);
+}
+
+bool TimeLoop::needs_momentum_at(std::int64_t step) const {
+  for (std::size_t o = 0; o < observers_.size(); ++o)
+    if (observers_[o]->needs_momentum() && schedules_[o].due(step)) return true;
+  return false;
 }
 
 void TimeLoop::measure() {

@@ -90,6 +90,7 @@ private:
   enum class Verdict : int { go_on = 0, wall_time_is_up = 1, signal = 2, enough = 3 };
 
   void look_at_health();
+  bool needs_momentum_at(std::int64_t step) const;
   void measure();
   bool has_enough() const;
   void write_what_is_due();

@@ -30,7 +30,7 @@ inline std::unique_ptr<ResolvedSystem<double>> system_of(const WaterBox& box) {
 
 inline StressBalance balance_of(const WaterBox& box, const ResolvedSystem<double>& system, double layer,
                                 std::vector<HeldGrains> held) {
-  const BalanceScales scales{box.spacing / box.time_step, 1000.0, 1000.0 * box.viscosity, 5e-3, box.gravity.x()};
+  const BalanceScales scales{1000.0, 1000.0 * box.viscosity, 5e-3, box.gravity.x()};
   return StressBalance(MPI_COMM_WORLD, *system.snapshot().decomposition, layer, {0.0, 1e-4}, scales, std::move(held));
 }
 

@@ -1,0 +1,98 @@
+#include "coupling/momentum_book.hpp"
+
+#include "lbm/flow_fields.hpp"
+
+namespace thalweg::coupling {
+
+namespace {
+
+// Stresses in lattice units are far below 1, so a plane's sum has room for 2^23 cells of them.
+using CellSum = FixedPoint<40>;
+
+constexpr int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+
+// Columns of a plane of cells.
+enum Column { cells, density = 1, flow = 2, flow_flux = 5, viscous = 11, subgrid = 17, columns = 23 };
+
+void add_stress(const lbm::Symmetric<double>& s, std::int64_t* into) {
+  const double components[6] = {s.xx, s.yy, s.zz, s.xy, s.xz, s.yz};
+  for (int p = 0; p < 6; ++p) into[p] += CellSum::from(components[p]);
+}
+
+void add_cell(const lbm::MomentumFlux& flux, std::int64_t* sums) {
+  const Vec3& u = flux.velocity;
+  sums[cells] += 1;
+  sums[density] += CellSum::from(flux.density);
+  for (int a = 0; a < 3; ++a) sums[flow + a] += CellSum::from(flux.density * u[a]);
+  for (int p = 0; p < 6; ++p) sums[flow_flux + p] += CellSum::from(flux.density * u[pairs[p][0]] * u[pairs[p][1]]);
+  add_stress(flux.viscous, sums + viscous);
+  add_stress(flux.subgrid, sums + subgrid);
+}
+
+PlaneMomentum in_si(const std::int64_t* sums, const Units& units) {
+  PlaneMomentum plane;
+  plane.cells = sums[cells];
+  plane.density = CellSum::to_double(sums[density]) * units.density;
+  for (int a = 0; a < 3; ++a) plane.flow[a] = CellSum::to_double(sums[flow + a]) * units.density * units.velocity();
+  for (std::size_t p = 0; p < 6; ++p) {
+    plane.flow_flux[p] = CellSum::to_double(sums[flow_flux + p]) * units.stress();
+    plane.viscous[p] = CellSum::to_double(sums[viscous + p]) * units.stress();
+    plane.subgrid[p] = CellSum::to_double(sums[subgrid + p]) * units.stress();
+  }
+  return plane;
+}
+
+template <typename Real>
+std::vector<PlaneMomentum> planes_of(const lbm::Fluid<Real>& fluid, const Units& units) {
+  const Index3 &n = fluid.indexing().size(), &from = fluid.block().lower;
+  const int planes = fluid.decomposition().cells()[2];
+  std::vector<std::int64_t> sums(static_cast<std::size_t>(planes * columns), 0);
+  for (int z = 0; z < n[2]; ++z)
+    for (int y = 0; y < n[1]; ++y)
+      for (int x = 0; x < n[0]; ++x) {
+        const std::ptrdiff_t cell = fluid.indexing().index(x, y, z);
+        if (fluid.cells().is_fluid(cell)) add_cell(lbm::momentum_flux(fluid, cell), &sums[(from[2] + z) * columns]);
+      }
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_INT64_T, MPI_SUM, fluid.communicator());
+  std::vector<PlaneMomentum> all;
+  for (int z = 0; z < planes; ++z) all.push_back(in_si(&sums[z * columns], units));
+  return all;
+}
+
+// entries: of a block, one for each plane of cells (`per_plane` 1) or half plane (2, and one more).
+template <typename Real>
+std::vector<Vec3> over_ranks(const std::vector<FixedVec3>& entries, int per_plane, const lbm::Fluid<Real>& fluid,
+                             double unit) {
+  const std::size_t first = static_cast<std::size_t>(per_plane * fluid.block().lower[2]);
+  const auto all = static_cast<std::size_t>(per_plane * fluid.decomposition().cells()[2] + per_plane - 1);
+  std::vector<std::int64_t> sums(3 * all, 0);
+  for (std::size_t h = 0; h < entries.size(); ++h) {
+    sums[3 * (first + h)] = entries[h].x;
+    sums[3 * (first + h) + 1] = entries[h].y;
+    sums[3 * (first + h) + 2] = entries[h].z;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_INT64_T, MPI_SUM, fluid.communicator());
+  std::vector<Vec3> in_si(all);
+  for (std::size_t h = 0; h < all; ++h)
+    in_si[h] = FixedVec3{sums[3 * h], sums[3 * h + 1], sums[3 * h + 2]}.to_vec3() * unit;
+  return in_si;
+}
+
+}  // namespace
+
+template <typename Real>
+MomentumBook book_of(lbm::Fluid<Real>& fluid, const Units& units, double reference,
+                     const std::vector<FixedVec3>& on_grains) {
+  MomentumBook book;
+  book.planes = planes_of(fluid, units);
+  book.on_grains = over_ranks(on_grains, 2, fluid, units.force());
+  book.on_top = fluid.wall_forces(reference)[5] * units.force();
+  const double(&force)[3] = fluid.parameters().force;
+  book.driving = Vec3(force[0], force[1], force[2]) * (units.stress() / units.spacing);
+  return book;
+}
+
+template MomentumBook book_of(lbm::Fluid<float>&, const Units&, double, const std::vector<FixedVec3>&);
+template MomentumBook book_of(lbm::Fluid<double>&, const Units&, double, const std::vector<FixedVec3>&);
+
+}  // namespace thalweg::coupling
