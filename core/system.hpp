@@ -43,13 +43,17 @@ public:
 
   virtual void save(ArchiveWriter& archive) const = 0;  // everything the next step depends on; collective
   virtual void load(ArchiveReader& archive) = 0;        // collective
-  // Takes the fluid's field alone from the state of another run on the same lattice, as an initial state. Throws
-  // InputError where it does not fit, or there is no fluid; collective.
-  virtual void take_fluid(ArchiveReader&) { throw InputError("this system has no fluid that could be taken over."); }
+  // Takes the fluid alone from the state of another run in the same box, whose cells had the size `spacing` (m), as an
+  // initial state. Throws InputError where it does not fit, or there is no fluid; collective.
+  virtual void take_fluid(ArchiveReader&, double /*spacing*/) {
+    throw InputError("this system has no fluid that could be taken over.");
+  }
 
   // The same of the grains alone, with their contact springs, of a run that has as many; velocities are kept, the time
   // is not. To be called before take_fluid().
-  virtual void take_grains(ArchiveReader&) { throw InputError("this system has no grains that could be taken over."); }
+  virtual void take_grains(ArchiveReader&, double /*spacing*/) {
+    throw InputError("this system has no grains that could be taken over.");
+  }
 
   virtual PhaseTimer& timer() = 0;
   virtual std::int64_t cells() const = 0;                 // lattice cells in the whole domain; 0 without a fluid

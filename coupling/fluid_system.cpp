@@ -5,6 +5,7 @@
 #include "coupling/fluid_figures.hpp"
 #include "coupling/fluid_mass.hpp"
 #include "coupling/fluid_sample.hpp"
+#include "coupling/taken_fluid.hpp"
 
 #include <fmt/format.h>
 
@@ -153,9 +154,8 @@ void FluidSystem<Real>::load(ArchiveReader& archive) {
 }
 
 template <typename Real>
-void FluidSystem<Real>::take_fluid(ArchiveReader& archive) {
-  require_same_time_step(archive, time_step());
-  fluid_.load_populations(archive);
+void FluidSystem<Real>::take_fluid(ArchiveReader& archive, double spacing) {
+  coupling::take_fluid(fluid_, archive, spacing, parameters_);
   start_excess_ = excess_mass(survey_of(fluid_), rest_).sum;
 }
 

@@ -6,6 +6,7 @@
 #include "coupling/fluid_figures.hpp"
 #include "coupling/fluid_mass.hpp"
 #include "coupling/fluid_system.hpp"
+#include "coupling/taken_fluid.hpp"
 
 #include <fmt/format.h>
 
@@ -328,22 +329,28 @@ void ResolvedSystem<Real>::load(ArchiveReader& archive) {
 }
 
 template <typename Real>
-void ResolvedSystem<Real>::take_fluid(ArchiveReader& archive) {
-  require_same_time_step(archive, time_step());
-  fluid_.load_populations(archive);
+void ResolvedSystem<Real>::take_fluid(ArchiveReader& archive, double spacing) {
+  const double density_unit = coupling::take_fluid(fluid_, archive, spacing, parameters_);
   open_account();
   // As the run that is taken over would go on.
-  if (archive.has("mass/reference")) parameters_.links.reference_density = archive.real_attribute("mass/reference");
+  if (archive.has("mass/reference"))
+    parameters_.links.reference_density = density_unit * archive.real_attribute("mass/reference");
 }
 
-// Grains of a resolved run keep the places their links were cut at, others begin where they are.
+// Grains of a resolved run keep the places their links were cut at, others begin where they are. What is in lattice
+// units begins anew on another lattice.
 template <typename Real>
-void ResolvedSystem<Real>::take_grains(ArchiveReader& archive) {
+void ResolvedSystem<Real>::take_grains(ArchiveReader& archive, double spacing) {
   forget_map();
   grains_->take(archive);
+  const bool same_units =
+      spacing == parameters_.units.spacing && archive.real_attribute("system/time_step") == time_step();
   dem::GrainStore& store = grains_->store();
-  for (std::size_t g = 0; g < store.total(); ++g)
-    if (store.attached_of(g)[exchanges] == 0.0) set_vector(store.attached_of(g), link_position, store.position[g]);
+  for (std::size_t g = 0; g < store.total(); ++g) {
+    const std::span<double> attached = store.attached_of(g);
+    if (attached[exchanges] == 0.0) set_vector(attached, link_position, store.position[g]);
+    if (!same_units) std::fill(attached.begin() + owed_mass, attached.begin() + last_stress, 0.0);
+  }
   initialise_map();
   open_account();
   show_stresses();

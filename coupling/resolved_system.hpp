@@ -89,8 +89,8 @@ public:
   std::optional<Place> place_of(const std::string& figure) const override;
   void save(ArchiveWriter& archive) const override;
   void load(ArchiveReader& archive) override;
-  void take_fluid(ArchiveReader& archive) override;
-  void take_grains(ArchiveReader& archive) override;
+  void take_fluid(ArchiveReader& archive, double spacing) override;
+  void take_grains(ArchiveReader& archive, double spacing) override;
   PhaseTimer& timer() override { return timer_; }
   std::int64_t cells() const override;
   std::int64_t grain_steps_per_step() const override;

@@ -119,7 +119,7 @@ void DryGrains::load(ArchiveReader& archive) {
 }
 
 // Whatever a fluid did to them is over.
-void DryGrains::take_grains(ArchiveReader& archive) {
+void DryGrains::take_grains(ArchiveReader& archive, double /*spacing*/) {
   grains_.take(archive);
   dem::GrainStore& store = grains_.store();
   std::fill(store.load_force.begin(), store.load_force.end(), Vec3::Zero());

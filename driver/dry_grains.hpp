@@ -28,7 +28,7 @@ public:
   static constexpr const char* largest_acceleration_figure = "largest_grain_acceleration";
   void save(ArchiveWriter& archive) const override;
   void load(ArchiveReader& archive) override;
-  void take_grains(ArchiveReader& archive) override;
+  void take_grains(ArchiveReader& archive, double spacing) override;
   PhaseTimer& timer() override { return timer_; }
   std::int64_t cells() const override { return 0; }
   std::int64_t grain_steps_per_step() const override { return grains_.global_count() * sub_steps_; }

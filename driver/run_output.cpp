@@ -108,18 +108,16 @@ void take_initial_fields(MPI_Comm communicator, const Case& c, System& system) {
     const auto wanted = [&c](InitialField field) {
       return std::find(c.initial.fields.begin(), c.initial.fields.end(), field) != c.initial.fields.end();
     };
+    const double spacing = archive.real_attribute("run/spacing");
     if (wanted(InitialField::grains)) {
       if (!archive.has("grains/radius"))
         throw InputError(fmt::format("{} holds no grains; give a run with system: resolved or grains.", path.string()));
-      system.take_grains(archive);
+      system.take_grains(archive, spacing);
     }
     if (!wanted(InitialField::fluid)) return;
     if (!archive.has("fluid/populations_00"))
       throw InputError(fmt::format("{} holds no fluid; give a run with system: resolved or fluid.", path.string()));
-    if (archive.has("run/spacing") && archive.real_attribute("run/spacing") != c.domain.spacing)
-      throw InputError(fmt::format("{} has cells of {:.6g} m and this case of {:.6g} m; use the same domain.spacing.",
-                                   path.string(), archive.real_attribute("run/spacing"), c.domain.spacing));
-    system.take_fluid(archive);
+    system.take_fluid(archive, spacing);
   } catch (const InputError& error) {
     throw InputError(fmt::format("initial.from = {}: {}", c.initial.from, error.what()));
   }

@@ -10,6 +10,7 @@ import numpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 import program
+from pictures import cell_data
 from program import ProgramTest
 
 
@@ -82,6 +83,22 @@ run: {until: 0.1}
         self.assertLess(abs(self.series("flow")["largest_fluid_speed"][0] - 0.25), 1.001 * half_step)
         for fields in ("[fluid]", "[grains, fluid]"):
             self.assert_refused("check", self.case, *begin, "--set", f"initial.fields={fields}", words=["given twice"])
+
+    def test_grains_and_flow_go_on_on_a_finer_lattice(self):
+        pictures = ("--set", "output={fluid: {every: 0.01, fields: [velocity]}}")
+        self.run_well("run", self.case, "--out", "first", *pictures)
+        finer = ("--set", "domain.spacing=0.4e-3", "--set", "fluid.time_step=0.4e-4", *pictures, "--until", "0.4e-4",
+                 "--set", "initial={from: first, fields: [grains, fluid]}")
+        self.run_well("run", self.case, *finer, "--out", "finer")
+        self.run_well("run", self.case, *finer, "--out", "on_two", ranks=2)
+        self.assertEqual(self.last_checkpoint("finer").read_bytes(), self.last_checkpoint("on_two").read_bytes())
+        # A step of 4e-5 s at less than 0.25 m/s.
+        numpy.testing.assert_allclose(self.grains("finer")["position"], self.grains("first")["position"], atol=1e-5)
+        before, after = (cell_data(sorted((self.folder / out / "fluid").glob("*.vti"))[-1 if out == "first" else 0])
+                         ["velocity"].astype(float) for out in ("first", "finer"))
+        # Means over the box: interpolation keeps them but for the half cells next to the walls and what grains cover.
+        self.assertGreater(abs(before).max(), 0.01)
+        numpy.testing.assert_allclose(after.mean(axis=(0, 1, 2)), before.mean(axis=(0, 1, 2)), atol=0.05 * abs(before).mean())
 
     def test_what_does_not_fit_is_refused(self):
         self.case.write_text(self.DRY)

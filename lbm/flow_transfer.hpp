@@ -1,0 +1,20 @@
+// The flow of another lattice as the start of this one.
+#pragma once
+
+#include "core/archive.hpp"
+#include "lbm/fluid.hpp"
+
+namespace thalweg::lbm {
+
+// Fills `fluid` with the density and velocity that a Fluid<Real> of another number of cells, or another step, saved: at
+// the centre of each cell, linear along each axis between the centres of the eight cells around the same fraction of
+// the box; periodic where `fluid` is, and constant from the last centre to a wall. Solid cells count as fluid at rest,
+// as they were saved. Populations become their equilibrium with the half of `force` (lattice units of `fluid`); the
+// stress of shear follows within a few steps.
+//
+// velocity_unit: that of the saved lattice, dx/dt, over that of `fluid`; rho - 1 goes with its square, so that the
+// pressure in SI units stays. Throws InputError where the archive holds populations of another precision. Collective.
+template <typename Real>
+void transfer_flow(Fluid<Real>& fluid, ArchiveReader& archive, double velocity_unit, const Vec3& force);
+
+}  // namespace thalweg::lbm
