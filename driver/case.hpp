@@ -125,6 +125,7 @@ struct SolidCase {
 enum class MomentumExchange { galilean_invariant, classical };
 enum class WallDensity { local, reference };
 enum class LinkRule { bouzidi, cli };
+enum class NarrowGaps { no_slip, slip };
 enum class NearContact { subtracted, paper };
 enum class Refill { equilibrium, non_equilibrium, grad };
 enum class CoveredMomentum { lost, to_grain };
@@ -152,6 +153,7 @@ struct CouplingCase {
   MomentumExchange momentum_exchange = MomentumExchange::galilean_invariant;
   WallDensity wall_density = WallDensity::local;
   LinkRule links = LinkRule::bouzidi;
+  NarrowGaps narrow_gaps = NarrowGaps::no_slip;
   NearContact near_contact = NearContact::subtracted;
   Refill refill = Refill::equilibrium;
   CoveredMomentum covered_momentum = CoveredMomentum::lost;

@@ -58,8 +58,9 @@ static void describe_coupling(io::SectionVisitor& visit, CouplingCase& coupling,
                          {.meaning = "how populations come back from a surface"});
   visit.not_here("mass_correction", "the fluid's mass is always kept; remove the key");
   if (!with_grains) {
-    for (const char* key : {"grain_steps_per_fluid_step", "link_tolerance", "momentum_exchange", "wall_density",
-                            "near_contact", "refill", "covered_momentum", "load", "grain_stress", "mass_balance"})
+    for (const char* key :
+         {"grain_steps_per_fluid_step", "link_tolerance", "momentum_exchange", "wall_density", "narrow_gaps",
+          "near_contact", "refill", "covered_momentum", "load", "grain_stress", "mass_balance"})
       visit.not_here(key, "system: fluid has no grains; remove the key or set system: resolved");
     return;
   }
@@ -81,6 +82,10 @@ static void describe_coupling(io::SectionVisitor& visit, CouplingCase& coupling,
                             {{WallDensity::local, "local", "of the fluid cell"},
                              {WallDensity::reference, "reference", "of the fluid at rest"}},
                             {.meaning = "density in the moving-wall term"});
+  visit.choice<NarrowGaps>("narrow_gaps", coupling.narrow_gaps,
+                           {{NarrowGaps::no_slip, "no_slip", "as published: in water they do not flow"},
+                            {NarrowGaps::slip, "slip", "they flow as their width and the viscosity say"}},
+                           {.meaning = "gaps of one cell between two grains"});
   visit.choice<NearContact>("near_contact", coupling.near_contact,
                             {{NearContact::subtracted, "subtracted", "reference pressure taken out of every link"},
                              {NearContact::paper, "paper", "and the paper's links between grains"}},

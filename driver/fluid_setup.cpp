@@ -127,6 +127,7 @@ coupling::FluidParameters fluid_parameters(const Case& c) {
   parameters.links.wall_density =
       c.coupling.wall_density == WallDensity::reference ? lbm::WallDensity::reference : lbm::WallDensity::local;
   parameters.links.rule = c.coupling.links == LinkRule::cli ? lbm::LinkRule::cli : lbm::LinkRule::bouzidi;
+  parameters.links.gaps = c.coupling.narrow_gaps == NarrowGaps::slip ? lbm::GapRule::slip : lbm::GapRule::no_slip;
   parameters.initial_fluid = initial_fluid(c);
   return parameters;
 }

@@ -68,7 +68,9 @@ LinkPass<Real>::LinkPass(Fluid<Real>& fluid, const LinkTable& links, const Perio
       moments_(moments),
       balance_(balance),
       by_height_(by_height),
-      block_(box, fluid.block().lower) {
+      block_(box, fluid.block().lower),
+      gaps_(options.gaps == GapRule::slip ? gap_flow(fluid.parameters()) : GapFlow{}) {
+  std::copy_n(fluid.parameters().force, 3, force_);
   Populations<Real>& populations = fluid.populations();
   for (auto& plane : deviations_) plane.resize(static_cast<std::size_t>(populations.indexing().plane_stride()));
   for (int i = 0; i < D3Q19::directions; ++i) sent_[i] = &populations.post_collision(i, 0);
@@ -186,15 +188,18 @@ void LinkPass<Real>::finish(const Batch& b) {
 template <typename Real>
 template <typename Rule>
 void LinkPass<Real>::gather(const Batch& b) {
+  const int wanted_at_any_distance = gaps_.kept < 1.0 ? 1 : 0;
   int covered = 0;
   for (int k = 0; k < b.count; ++k) {
     values_.deviation[k] = deviation_[b.cell[k]];
     values_.incident[k] = base_[b.incident_at[k]];
     values_.second[k] = base_[b.second_at[k]];
     covered_[covered] = k;
-    covered += static_cast<int>(b.distance[k] < Real(0.5)) & static_cast<int>(b.tag[k] >> LinkTag::covered_shift & 1);
+    covered += (static_cast<int>(b.distance[k] < Real(0.5)) | wanted_at_any_distance) &
+               static_cast<int>(b.tag[k] >> LinkTag::covered_shift & 1);
   }
-  if (covered > 0) fill_from_covered_cells(b, covered);
+  slips_ = wanted_at_any_distance != 0 && covered > 0;
+  if (covered > 0) look_at_covered(b, covered);
   if constexpr (Rule::needs_both) look_upstream(b);
   const int n = rounded_up(b.count);
   for (int k = b.count; k < n; ++k) values_.deviation[k] = values_.incident[k] = values_.second[k] = Real(0);
@@ -214,11 +219,9 @@ void LinkPass<Real>::subtract_rest(const Batch& b) {
   }
 }
 
-// The equilibrium at the density of x_f and the velocity that the covering body has at x_ff. With a hydrostatic
-// gradient c_i.gradient = 3 c_i.F: the density a cell further out, and 3/2 w_i c_i.F.
 template <typename Real>
-void LinkPass<Real>::fill_from_covered_cells(const Batch& b, int covered) {
-  Covered& v = upstream_;
+void LinkPass<Real>::look_at_covered(const Batch& b, int covered) {
+  upstream_.clear();
   std::int32_t last = -1;  // links of one covering body follow each other
   Vec3 apart;
   for (int c = 0; c < covered; ++c) {
@@ -227,36 +230,24 @@ void LinkPass<Real>::fill_from_covered_cells(const Batch& b, int covered) {
     const LinkBody& other = bodies_[static_cast<std::size_t>(slot)];
     if (slot != last) apart = box_.difference(b.body->centre, other.centre);
     last = slot;
-    v.tag[c] = b.tag[k];
-    v.deviation[c] = static_cast<double>(values_.deviation[k]);
-    v.back[c] = static_cast<double>(b.distance[k]) + 1.0;
-    for (int a = 0; a < 3; ++a) {
-      // x_ff from the other's centre: the arm, back by the distance to x_f and one link more.
-      v.arm[a][c] = apart[a] + static_cast<double>(b.arm[a][k]);
-      v.velocity[a][c] = other.velocity[a];
-      v.spin[a][c] = other.angular_velocity[a];
+    const auto arm = [&](int axis) { return static_cast<double>(b.arm[axis][k]); };
+    upstream_.add(b.tag[k], b.cell[k], static_cast<double>(values_.deviation[k]), static_cast<double>(b.distance[k]),
+                  {arm(0), arm(1), arm(2)}, *b.body, other, apart);
+  }
+  if (gaps_.kept < 1.0) {
+    const Real* sent[D3Q19::directions];
+    for (int i = 0; i < D3Q19::directions; ++i) sent[i] = sent_[i] + (b.plane + 1) * cells_.indexing().plane_stride();
+    upstream_.let_flow(sent, force_, gaps_);
+    std::fill_n(values_.slip, rounded_up(b.count), Real(0));
+    std::fill_n(values_.odd_change, rounded_up(b.count), Real(0));
+    for (int c = 0; c < covered; ++c) {
+      values_.slip[covered_[c]] = static_cast<Real>(upstream_.slip_along(c));
+      values_.odd_change[covered_[c]] = static_cast<Real>(upstream_.odd_change(c));
     }
   }
-  const int n = rounded_up(covered);
-  for (int c = covered; c < n; ++c) {
-    v.tag[c] = 0;
-    v.deviation[c] = v.back[c] = 0.0;
-    for (int a = 0; a < 3; ++a) v.arm[a][c] = v.velocity[a][c] = v.spin[a][c] = 0.0;
-  }
-  const double gx = options_.rest_gradient.x(), gy = options_.rest_gradient.y(), gz = options_.rest_gradient.z();
-  for (int first = 0; first < n; first += whole)
-    for (int c = first; c < first + whole; ++c) {
-      const double cx = component(v.tag[c], 0), cy = component(v.tag[c], 1), cz = component(v.tag[c], 2);
-      const double x = v.arm[0][c] - v.back[c] * cx, y = v.arm[1][c] - v.back[c] * cy, z = v.arm[2][c] - v.back[c] * cz;
-      const double ux = v.velocity[0][c] + (v.spin[1][c] * z - v.spin[2][c] * y),
-                   uy = v.velocity[1][c] + (v.spin[2][c] * x - v.spin[0][c] * z),
-                   uz = v.velocity[2][c] + (v.spin[0][c] * y - v.spin[1][c] * x);
-      const double cu = cx * ux + cy * uy + cz * uz, uu = ux * ux + uy * uy + uz * uz;
-      const double weight = (3.0 - (cx * cx + cy * cy + cz * cz)) * (1.0 / 36.0);
-      const double along = cx * gx + cy * gy + cz * gz, d = v.deviation[c] - along;
-      v.result[c] = weight * (d + (1.0 + d) * (3.0 * cu + 4.5 * cu * cu - 1.5 * uu) + 0.5 * along);
-    }
-  for (int c = 0; c < covered; ++c) values_.second[covered_[c]] = static_cast<Real>(v.result[c]);
+  upstream_.find_populations(options_.rest_gradient);
+  for (int c = 0; c < covered; ++c)
+    if (b.distance[covered_[c]] < Real(0.5)) values_.second[covered_[c]] = static_cast<Real>(upstream_.population(c));
 }
 
 // For a rule that needs both: what of the batch has no x_ff keeps the second value of Bouzidi's rule.
@@ -292,7 +283,8 @@ void LinkPass<Real>::reflect(const Batch& b) {
         chosen<Pack>(lane < Pack(Real(b.count)), (Pack(Real(3)) - squared) * Pack(Real(1.0 / 36.0)), Pack(Real(0)));
     const Pack ux = body.vx + (body.wy * az - body.wz * ay), uy = body.vy + (body.wz * ax - body.wx * az),
                uz = body.vz + (body.wx * ay - body.wy * ax);
-    const Pack towards_wall = cx * ux + cy * uy + cz * uz;
+    Pack towards_wall = cx * ux + cy * uy + cz * uz;
+    if (slips_) towards_wall += at(values_.slip);
     LinkWeights<Pack> rule = Rule::weights(at(b.distance));
     if constexpr (Rule::needs_both) {
       const LinkWeights<Pack> without = BouzidiLink::weights(at(b.distance));
@@ -303,7 +295,12 @@ void LinkPass<Real>::reflect(const Batch& b) {
     }
     const Pack deviation = at(values_.deviation), incident = at(values_.incident);
     const Pack density = local ? Pack(Real(1)) + deviation : Pack(Real(1));
-    const Pack interpolated = rule.incident * incident + rule.second * at(values_.second);
+    Pack interpolated = rule.incident * incident + rule.second * at(values_.second);
+    if (slips_) {
+      // From a half on the second is f_i'^c(x_f), which changes by as much the other way.
+      const Pack opposite = chosen<Pack>(at(b.distance) < Pack(Real(0.5)), Pack(Real(0)), rule.second);
+      interpolated += at(values_.odd_change) * (rule.incident - opposite);
+    }
     const Pack moving_wall = rule.wall * weight * density * towards_wall;
     const Pack returned = body.returned + (cx * body.sx + cy * body.sy + cz * body.sz);
     const Pack reflected = interpolated - moving_wall + weight * returned;

@@ -4,8 +4,8 @@
 // post-collision, x_ff = x_f - c_i, u_w the velocity of the surface where the link meets it. What comes back, f_i'(x_f,
 // t+1), is told by a rule: bouzidi_link.hpp or cli_link.hpp.
 // If x_ff is covered by a body, f_i^c(x_ff) is the equilibrium at the density of x_f and that body's velocity at x_ff
-// (Zhang et al. 2022); with a hydrostatic gradient, of the density that follows at x_ff, and with the half force that a
-// collision leaves. If it lies beyond a wall, the population that the wall returns to x_f stands in.
+// (Zhang et al. 2022; upstream_bodies.hpp). If it lies beyond a wall, the population that the wall returns to x_f
+// stands in.
 //
 // Force on the body per step: the Galilean-invariant exchange of Wen et al. 2014, sum (c_i - u_w) f_i^c - (c_i' - u_w)
 // f_i', or the classical one of Mei et al. 2002, sum c_i (f_i^c + f_i'). Populations count less w_i times a reference
@@ -20,6 +20,7 @@
 #include "lbm/link_crossings.hpp"
 #include "lbm/link_slots.hpp"
 #include "lbm/link_table.hpp"
+#include "lbm/upstream_bodies.hpp"
 
 #include <cstddef>
 #include <experimental/simd>
@@ -30,11 +31,15 @@ namespace thalweg::lbm {
 enum class MomentumExchange { galilean_invariant, classical };
 enum class WallDensity { local, reference };  // rho in the moving-wall term: of x_f, or 1
 enum class LinkRule { bouzidi, cli };
+// Gaps of one cell between two bodies: the fluid in them sticks to both, or slips so much that it flows at the speed
+// that its viscosity says (upstream_bodies.hpp; spheres only).
+enum class GapRule { no_slip, slip };
 
 struct LinkOptions {
   MomentumExchange momentum_exchange = MomentumExchange::galilean_invariant;
   WallDensity wall_density = WallDensity::local;
   LinkRule rule = LinkRule::bouzidi;
+  GapRule gaps = GapRule::no_slip;
   // In a fluid at rest rho = 1 + rest_gradient.(x - rest_middle): the hydrostatic one, or 1.
   Vec3 rest_gradient = Vec3::Zero();  // of rho a cell
   Vec3 rest_middle = Vec3::Zero();    // cells
@@ -75,7 +80,7 @@ public:
   void apply_tile(int tile);
 
 private:
-  static constexpr int capacity = 128;
+  static constexpr int capacity = UpstreamBodies::capacity;
   struct Batch {
     LinkBody* body = nullptr;
     const std::uint32_t* tag = nullptr;
@@ -91,16 +96,11 @@ private:
     alignas(64) Real incident[capacity], second[capacity];  // f_i^c(x_f); the rule's other value
     alignas(64) Real covered[capacity];                     // of a rule that needs both: 1 where a body covers x_ff
     alignas(64) Real reflected[capacity];                   // f_i'(x_f, t+1)
+    alignas(64) Real slip[capacity], odd_change[capacity];  // c_i.v, change of o (upstream_bodies.hpp)
     alignas(64) Real pressure[capacity];                    // w_i (rho - rho_rest)(x_f)
     alignas(64) Real momentum[3][capacity], torque[3][capacity];
     alignas(64) Real moment[9][capacity];
     alignas(64) Real interpolated[capacity], moving_wall[capacity];  // parts of f_i' - f_i^c
-  };
-  // Of links whose x_ff a body covers: that body's motion, and x_ff from its centre as arm - back c_i.
-  struct Covered {
-    std::uint32_t tag[capacity];
-    alignas(64) double arm[3][capacity], velocity[3][capacity], spin[3][capacity];
-    alignas(64) double deviation[capacity], back[capacity], result[capacity];
   };
   using Pack = std::experimental::native_simd<Real>;
   using Ints = std::experimental::rebind_simd_t<std::int32_t, Pack>;
@@ -134,7 +134,7 @@ private:
   void finish(const Batch& batch);
   template <typename Rule>
   void gather(const Batch& batch);
-  void fill_from_covered_cells(const Batch& batch, int covered);
+  void look_at_covered(const Batch& batch, int covered);
   void look_upstream(const Batch& batch);
   void subtract_rest(const Batch& batch);
   template <typename Rule, Extra extra>
@@ -166,8 +166,11 @@ private:
 
   Batch batches_[2];
   Values values_;
-  Covered upstream_;
-  int covered_[capacity];  // links of the batch whose second population is a covered cell's
+  UpstreamBodies upstream_;
+  int covered_[capacity];  // links of the batch whose x_ff a body covers, if they want to know of it
+  GapFlow gaps_;
+  double force_[3];     // on the fluid
+  bool slips_ = false;  // of the batch: values_.slip and odd_change count
 };
 
 }  // namespace thalweg::lbm

@@ -139,6 +139,7 @@ TEST(Ranks, DoNotChangeOneBitWithFullGravityAndEveryOtherChoiceInAFlume) {
   WaterBox box = crowded({48, 36, 36}, {true, false, false}, 100, 5.4e-3);
   box.full_gravity = box.grain_stress = box.paper_near_contact = box.keep_covered_momentum = true;
   box.links.rule = lbm::LinkRule::cli;
+  box.links.gaps = lbm::GapRule::slip;
   box.refill = RefillRule::grad;
   for (const Index3& layout : two_layouts_of(size_of(MPI_COMM_WORLD))) compare<float>(box, layout, 8);
 }
@@ -148,6 +149,7 @@ TEST(Ranks, DoNotChangeOneBitWithTheOtherRefillInAPeriodicBox) {
   box.refill = RefillRule::non_equilibrium;
   box.paper_near_contact = box.grain_stress = true;
   box.links.momentum_exchange = lbm::MomentumExchange::classical;
+  box.links.gaps = lbm::GapRule::slip;
   for (const Index3& layout : two_layouts_of(size_of(MPI_COMM_WORLD))) compare<double>(box, layout, 14);
 }
 

@@ -138,11 +138,12 @@ TEST(CaseReader, ReadsEveryWallAndCollision) {
                    "fluid.collision=trt", "fluid.magic_parameter=0.25",
                    "fluid.mean_velocity={velocity: 0.3, response_time: 0.05}", "coupling.links=cli",
                    "coupling.near_contact=paper", "coupling.refill=grad", "coupling.covered_momentum=to_grain",
-                   "coupling.grain_stress=true"});
+                   "coupling.narrow_gaps=slip", "coupling.grain_stress=true"});
   EXPECT_EQ(c.coupling.links, LinkRule::cli);
   EXPECT_EQ(c.coupling.near_contact, NearContact::paper);
   EXPECT_EQ(c.coupling.refill, Refill::grad);
   EXPECT_EQ(c.coupling.covered_momentum, CoveredMomentum::to_grain);
+  EXPECT_EQ(c.coupling.narrow_gaps, NarrowGaps::slip);
   EXPECT_TRUE(c.coupling.grain_stress);
   EXPECT_EQ(c.domain.faces[x_low].velocity, Vec3(0.2, 0, 0));
   EXPECT_EQ(c.domain.faces[x_high].pressure, 3.0);

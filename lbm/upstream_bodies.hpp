@@ -1,0 +1,81 @@
+// Links whose upstream cell x_ff = x_f - c_i a body covers: x_f is a gap of one cell between that body and the one the
+// link runs into. A batch of them, with what stands in for f_i^c(x_ff), and the slip of such gaps. Symbols as in
+// bouzidi.hpp.
+//
+// Slip: between half-link walls one cell apart, bounce-back lets a force F drive u = 2/3 Lambda F/nu, Lambda = (tau+ -
+// 1/2)(tau- - 1/2) (Ginzburg and d'Humieres 2003). Right would be F/(8 nu); in water under bgk Lambda is 1e-7 to 1e-5,
+// so that such gaps are plugged: what a grain should press out of the way before it touches another stays and is
+// pressed together. The cause is the odd part o = (f_i^c - f_i'^c)/2 of links with a wall at both ends, which turns
+// over in every step and takes the momentum of the other directions with it. Instead, before the link's rule is
+// applied, it becomes
+//   o -> theta o + (1 - theta) 3 w_i rho c_i.(u_m + v),   u_m = (u_1 + u_2)/2,
+// and walls and covered cells move by v more, where
+//   v = s (1 - m m)(u - u_m),   m = (n_1 - n_2)/|n_1 - n_2|
+// is a share of the velocity along the gap relative to its walls, u_1, u_2 the velocities and n_1, n_2 the normals of
+// both bodies at x_f. Between flat walls the balance of momentum, F = loss to the walls, gives u = F/(8 nu) for
+//   theta = 0, s = 1 - 8 nu (2 + omega'/2)/omega'             where K = omega'/(24 nu) + (1 - omega'/2)/3 is above 1,
+//   theta = (1 - K)/(K - 1 + omega'), s = 0                   below,
+// omega' the rate of the odd part; theta reaches 1, plain bounce-back, at Lambda = 3/16. A push along the gap then
+// stays in the fluid until viscosity takes it. Both ends of a link get the same, so that no mass comes of it; momentum
+// goes to the bodies as in any link.
+#pragma once
+
+#include "lbm/collision.hpp"
+#include "lbm/link_table.hpp"
+
+#include <cstdint>
+
+namespace thalweg::lbm {
+
+// theta and s above.
+struct GapFlow {
+  double kept = 1.0;  // theta
+  double slip = 0.0;  // s
+};
+GapFlow gap_flow(const CollisionParameters& collision);
+
+// Arrays of doubles, whatever the precision of the populations: the arithmetic is the same for every link whatever its
+// place in the batch.
+class UpstreamBodies {
+public:
+  static constexpr int capacity = 128;
+
+  void clear() { count_ = 0; }
+  int count() const { return count_; }
+
+  // A link of `own` with delta = distance and its arm, deviation = rho - 1 at x_f, and cell, the index of x_f within
+  // its plane. apart: from the centre of `other`, which covers x_ff, to that of `own`.
+  void add(std::uint32_t tag, std::int32_t cell, double deviation, double distance, const Vec3& arm,
+           const LinkBody& own, const LinkBody& other, const Vec3& apart);
+
+  // Lets the fluid flow. sent: f_i^c of the cell with index 0 within the plane, for every i; force: on the fluid, of
+  // which f^c has half too much.
+  template <typename Real>
+  void let_flow(const Real* const (&sent)[D3Q19::directions], const double (&force)[3], const GapFlow& flow);
+
+  // The equilibrium at x_ff: density as at x_f, velocity that of the covering body, and the slip. With a hydrostatic
+  // gradient c_i.gradient = 3 c_i.F: the density a cell further out, and 3/2 w_i c_i.F.
+  void find_populations(const Vec3& rest_gradient);
+
+  double population(int link) const { return population_[link]; }  // in place of f_i^c(x_ff)
+  double slip_along(int link) const { return slip_along_[link]; }  // c_i . v
+  double odd_change(int link) const { return odd_change_[link]; }  // of o
+
+private:
+  static constexpr int whole = static_cast<int>(LinkTable::slack);
+  int rounded_up() const { return (count_ + whole - 1) / whole * whole; }
+  template <typename Real>
+  void measure_velocity(const Real* const (&sent)[D3Q19::directions], const double (&force)[3]);
+
+  int count_ = 0;
+  std::uint32_t tag_[capacity] = {};
+  std::int32_t cell_[capacity] = {};
+  // x_f from the own centre and the velocity of that body there; the crossing from the other's centre, and its motion.
+  alignas(64) double distance_[capacity] = {}, from_own_[3][capacity] = {}, own_velocity_[3][capacity] = {};
+  alignas(64) double arm_[3][capacity] = {}, velocity_[3][capacity] = {}, spin_[3][capacity] = {};
+  alignas(64) double deviation_[capacity] = {}, odd_[capacity] = {}, fluid_velocity_[3][capacity] = {};
+  alignas(64) double slip_[3][capacity] = {}, slip_along_[capacity] = {}, odd_change_[capacity] = {},
+                     population_[capacity] = {};
+};
+
+}  // namespace thalweg::lbm

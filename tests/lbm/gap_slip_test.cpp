@@ -1,0 +1,131 @@
+// A gap of one cell between two bodies, so large that they are flat: what flows along it under a force.
+#include "lbm/bouzidi.hpp"
+#include "lbm/fluid.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+
+namespace thalweg::lbm {
+namespace {
+
+constexpr double force = 1e-7;
+
+// Of radius 1e8 cells: 4.5e-8 cells are missing at three cells from the middle, which counts against 1 - s = 12 nu.
+constexpr double radius = 1e8, curvature = 1e-3;
+
+class Gap {
+public:
+  Gap(const CollisionParameters& collision, GapRule rule, const Vec3& velocity_below, const Vec3& velocity_above)
+      : fluid_(decomposition_, MPI_COMM_SELF, collision, {}), links_(fluid_.tiles().count()), bodies_(2) {
+    options_.gaps = rule;
+    for (int z = 0; z < 3; z += 2)
+      for (int y = -1; y <= cells[1]; ++y)
+        for (int x = -1; x <= cells[0]; ++x) fluid_.cells().assign(x, y, z, z / 2);
+    bodies_[0].centre = Vec3(3.0, 2.0, 1.0 - radius);
+    bodies_[1].centre = Vec3(3.0, 2.0, 2.0 + radius);
+    bodies_[0].velocity = velocity_below;
+    bodies_[1].velocity = velocity_above;
+    for (int body = 0; body < 2; ++body) {
+      bodies_[static_cast<std::size_t>(body)].radius = radius;
+      for (int y = 0; y < cells[1]; ++y) add_links(body, y);
+    }
+  }
+
+  void run(int steps) {
+    for (int step = 0; step < steps; ++step) {
+      fluid_.exchange_halo();
+      fluid_.apply_walls();
+      for (LinkBody& body : bodies_) body.force = body.torque = {}, body.mass = 0;
+      LinkPass<double> pass(fluid_, links_, box_, options_, bodies_);
+      fluid_.stream_and_collide([&](int tile) { pass.apply_tile(tile); });
+    }
+  }
+
+  double velocity() const {
+    double sum = 0.0;
+    for (int y = 0; y < cells[1]; ++y)
+      for (int x = 0; x < cells[0]; ++x) sum += fluid_.state_at(fluid_.indexing().index(x, y, 1)).velocity.x();
+    return sum / (cells[0] * cells[1]);
+  }
+  const LinkBody& body(int b) const { return bodies_[static_cast<std::size_t>(b)]; }
+
+  static constexpr int fluid_cells() { return cells[0] * cells[1]; }
+
+private:
+  static constexpr std::array<int, 3> cells{6, 4, 3};
+
+  // All links of a row: there is one tile a row, or more rows in one tile.
+  void add_links(int body, int row) {
+    const int tile = fluid_.tiles().tile_of(row, 1), first = fluid_.tiles().first_row(fluid_.tiles().block_of(tile));
+    if (row != first) return;
+    std::vector<Link> links;
+    for (int y = first; y < cells[1] && fluid_.tiles().tile_of(y, 1) == tile; ++y)
+      for (int x = 0; x < cells[0]; ++x)
+        for (int i = 1; i < D3Q19::directions; ++i)
+          if (D3Q19::c[i][2] == 2 * body - 1) links.push_back({LinkPlace::of(x, y), LinkTag::of(i, 1 - body)});
+    links_.replace(body, tile, links);
+  }
+
+  const Decomposition decomposition_{{cells[0], cells[1], cells[2]}, 1.0, {true, true, true}, {1, 1, 1}};
+  const PeriodicBox box_{Vec3(cells[0], cells[1], cells[2]), {true, true, false}};
+  Fluid<double> fluid_;
+  LinkTable links_;
+  LinkOptions options_;
+  std::vector<LinkBody> bodies_;
+};
+
+CollisionParameters parameters(CollisionModel model, double viscosity) {
+  CollisionParameters p;
+  p.model = model;
+  p.relaxation_time = 0.5 + 3.0 * viscosity;
+  p.force[0] = force;
+  return p;
+}
+
+// What is left of the start has decayed: with the flow's own rate 8 nu, and with that of the odd part.
+int settling_steps(double viscosity) { return static_cast<int>(20.0 / (8.0 * std::min(viscosity, 0.02))); }
+
+TEST(NarrowGaps, WithoutSlipFlowAsTheMagicParameterSays) {
+  // u = 2/3 Lambda F/nu (Ginzburg and d'Humieres 2003).
+  for (const double viscosity : {0.01, 0.03}) {
+    for (const CollisionModel model : {CollisionModel::bgk, CollisionModel::regularised, CollisionModel::trt}) {
+      const CollisionParameters p = parameters(model, viscosity);
+      Gap gap(p, GapRule::no_slip, Vec3::Zero(), Vec3::Zero());
+      gap.run(settling_steps(viscosity));
+      const double magic = (p.relaxation_time - 0.5) * (1.0 / p.odd_rate() - 0.5);
+      const double expected = 2.0 / 3.0 * magic * force / viscosity;
+      EXPECT_NEAR(gap.velocity(), expected, curvature * force / (8.0 * viscosity));
+    }
+  }
+}
+
+TEST(NarrowGaps, WithSlipFlowAsBetweenTwoPlatesUpToTheMagicParameter) {
+  for (const double viscosity : {0.002, 0.01, 0.03, 0.08, 0.12}) {
+    for (const CollisionModel model : {CollisionModel::bgk, CollisionModel::regularised, CollisionModel::trt}) {
+      Gap gap(parameters(model, viscosity), GapRule::slip, Vec3::Zero(), Vec3::Zero());
+      gap.run(settling_steps(viscosity));
+      const double expected = force / (8.0 * viscosity);
+      EXPECT_NEAR(gap.velocity(), expected, curvature * expected) << "viscosity " << viscosity;
+      // All of the force ends in the bodies, half in each.
+      for (int b = 0; b < 2; ++b)
+        EXPECT_NEAR(gap.body(b).force.to_vec3().x(), 0.5 * Gap::fluid_cells() * force,
+                    curvature * Gap::fluid_cells() * force);
+    }
+  }
+}
+
+TEST(NarrowGaps, SlipIsRelativeToTheMeanOfBothBodiesAndKeepsTheMass) {
+  const double viscosity = 0.01;
+  Gap gap(parameters(CollisionModel::bgk, viscosity), GapRule::slip, Vec3(0.01, 0.0, 0.0), Vec3(0.03, 0.0, 0.0));
+  gap.run(settling_steps(viscosity));
+  const double expected = 0.02 + force / (8.0 * viscosity);
+  EXPECT_NEAR(gap.velocity(), expected, curvature * expected);
+  // To the rounding of its links, each to 2^-45.
+  const double mass = LatticeFixed::to_double(gap.body(0).mass + gap.body(1).mass);
+  EXPECT_NEAR(mass, 0.0, Gap::fluid_cells() * 10 * 0x1p-44);
+}
+
+}  // namespace
+}  // namespace thalweg::lbm
