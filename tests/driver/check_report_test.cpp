@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 namespace thalweg::driver {
 namespace {
 
@@ -20,6 +23,24 @@ TEST(Cost, CountsCellsAndSteps) {
   const Cost on_faster_memory = cost_of(c, 20e9);
   EXPECT_LT(on_faster_memory.core_seconds, cost.core_seconds);
   EXPECT_GT(on_faster_memory.core_seconds, 0.5 * cost.core_seconds);  // the grains do not get faster
+}
+
+TEST(CheckReport, AsksForContactsAsLongAsSoundGoesAroundAGrain) {
+  Case c = water_over_glass(5e-3, 0.016, 0.0412, 0.040, FaceType::periodic);
+  const auto line = [&c]() -> std::string {
+    for (const std::string& text : check_report(c, 10e9))
+      if (text.starts_with("rebound")) return text;
+    return {};
+  };
+  // Ten cells a diameter: pi 5 sqrt(3) = 27.2 steps around.
+  EXPECT_NE(line().find("27.2 around a grain"), std::string::npos) << line();
+  // A contact lasts pi sqrt(m/(2 k)): as long as that with the stiffness that the line asks for, m = pi/6 d^3 rho.
+  const double mass = std::numbers::pi / 6.0 * std::pow(5e-3, 3) * c.grains[0].density;
+  const double longest = 0.5 * mass * std::pow(std::numbers::pi / (27.2 * *c.fluid.time_step), 2);
+  c.contact.normal_stiffness = 1.01 * longest;
+  EXPECT_NE(line(), "");
+  c.contact.normal_stiffness = 0.99 * longest;
+  EXPECT_EQ(line(), "");
 }
 
 }  // namespace
