@@ -1,6 +1,7 @@
 // The program: one command line, the same on every rank.
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
+#include "driver/analyze_command.hpp"
 #include "driver/case_reader.hpp"
 #include "driver/check_report.hpp"
 #include "driver/collective_failure.hpp"
@@ -51,6 +52,7 @@ int end_with(ExitCode code, const std::string& message, FailureCouncil& council,
 
 int main(int argc, char** argv) {
   const WallClock::time_point started = WallClock::now();
+  if (is_analyze(argc, argv)) return analyze(argc, argv);
   MpiSession session(argc, argv);
   const bool speaking = rank_of(MPI_COMM_WORLD) == 0;
   const CommandLine line = parse_command_line(argc, argv);

@@ -46,6 +46,14 @@ class CommandLine(DryGrains):
         self.assertRegex(self.run_well("--version").stdout, r"^thalweg \d+\.\d+\.\d+")
         self.assertIn("--walltime", self.run_well("run", "--help").stdout)
 
+    def test_analyze_says_what_the_sediment_does(self):
+        self.run_well("run", self.case, "--out", "run")
+        said = self.run_well("analyze", "run", "--from", "0.06").stdout
+        self.assertIn("transport", said)
+        self.assertTrue((self.folder / "run/analysis/layers.csv").exists())
+        self.assertIn("--until SECONDS", self.run_well("analyze", "--help").stdout)
+        self.assert_refused("analyze", "nowhere", words=["nowhere", "case.yaml"])
+
     def test_on_several_ranks_only_one_speaks(self):
         self.assertEqual(self.run_well("--version", ranks=2).stdout.count("thalweg"), 1)
         self.assertEqual(self.run_well("check", self.case, ranks=2).stdout.count("tumbling grains"), 1)

@@ -1,0 +1,34 @@
+#include "driver/analyze_command.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <vector>
+
+namespace thalweg::driver {
+
+bool is_analyze(int argc, const char* const* argv) { return argc > 1 && std::strcmp(argv[1], "analyze") == 0; }
+
+int analyze(int argc, char** argv) {
+  const char* named = std::getenv("THALWEG_PYTHON");
+  std::string interpreter = named ? named : THALWEG_PYTHON;
+  std::string path = THALWEG_PYTHON_PACKAGE;
+  if (const char* more = std::getenv("PYTHONPATH"); more && *more) path.append(":").append(more);
+  setenv("PYTHONPATH", path.c_str(), 1);
+  std::string module_flag = "-m", module = "thalweg";
+  std::vector<char*> arguments = {interpreter.data(), module_flag.data(), module.data()};
+  arguments.insert(arguments.end(), argv + 1, argv + argc);
+  arguments.push_back(nullptr);
+  execvp(interpreter.c_str(), arguments.data());
+  std::fprintf(stderr,
+               "thalweg: analyze needs Python, and %s cannot be started (%s); set THALWEG_PYTHON to an interpreter with "
+               "numpy, h5py and PyYAML.\n",
+               interpreter.c_str(), std::strerror(errno));
+  return 2;
+}
+
+}  // namespace thalweg::driver

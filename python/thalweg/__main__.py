@@ -1,0 +1,43 @@
+"""`thalweg analyze RUN`, which is `python -m thalweg analyze RUN`."""
+import argparse
+import sys
+from pathlib import Path
+
+try:
+    from thalweg.errors import RunFolderError
+    from thalweg.report import report_of
+    from thalweg.run import Run
+except ModuleNotFoundError as missing:
+    sys.exit(f"thalweg: {sys.executable} has no module {missing.name}; install it (python3-numpy, python3-h5py, python3-yaml "
+             "on Debian), or set THALWEG_PYTHON to an interpreter that has it.")
+
+
+def parse(arguments):
+    parser = argparse.ArgumentParser(prog="thalweg", description=__doc__)
+    analyze = parser.add_subparsers(dest="command", required=True).add_parser(
+        "analyze", description="Transport, surface, Shields number and profiles of a run between two times, from what it "
+                               "has stored. A run that is still going can be looked at, too.")
+    analyze.add_argument("run", type=Path, metavar="RUN", help="Run folder")
+    analyze.add_argument("--from", dest="start", type=float, metavar="SECONDS",
+                         help="Begin of the averages (default: analysis.transport_rate.from, or half of the run)")
+    analyze.add_argument("--until", dest="stop", type=float, metavar="SECONDS", help="Their end (default: of the run)")
+    analyze.add_argument("--out", type=Path, metavar="FOLDER",
+                         help="Where summary.json and the tables go (default: analysis in the run folder)")
+    return parser.parse_args(arguments)
+
+
+def main(arguments=None):
+    wanted = parse(arguments)
+    try:
+        report = report_of(Run(wanted.run), wanted.start, wanted.stop)
+        files = report.write(wanted.out or wanted.run / "analysis")
+    except RunFolderError as error:
+        print(f"thalweg: {error}", file=sys.stderr)
+        return 2
+    print("\n".join(report.lines))
+    print(f"{'written':<11}{', '.join(str(file) for file in files)}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

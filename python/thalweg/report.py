@@ -1,0 +1,130 @@
+"""What a run says of its sediment: transport, surface, Shields number and profiles between two times, from stored output.
+
+What a run folder does not hold is left out, with the reason. Averages that the run gathered itself (profiles.h5,
+summary.json) are better where they cover the time wanted; this is for other times, and for runs without those observers.
+"""
+import csv
+import json
+
+import numpy as np
+
+from thalweg import bed
+from thalweg.errors import RunFolderError
+from thalweg.layers import layer_profiles
+from thalweg.means import is_steady, mean_with_error
+from thalweg.visible_profiles import visible_profiles
+
+VISIBLE_PICTURES = 20   # the most that are looked at pixel by pixel
+
+
+class Report:
+    """Findings by name as text lines and as numbers, and profiles as columns."""
+
+    def __init__(self, run, start, stop):
+        self.run, self.start, self.stop = run, start, stop
+        self.lines, self.numbers, self.profiles = [], {"from": start, "until": stop}, {}
+
+    def say(self, name, text):
+        self.lines.append(f"{name:<11}{text}")
+
+    def attempt(self, name, part):
+        """part(), or the reason why there is none."""
+        try:
+            part()
+        except RunFolderError as error:
+            self.say(name, f"left out: {error}")
+
+    def write(self, folder):
+        """summary.json with the numbers (SI units) and a table for each profile. Returns the files."""
+        folder.mkdir(parents=True, exist_ok=True)
+        files = [folder / "summary.json"]
+        files[0].write_text(json.dumps(self.numbers, indent=2) + "\n")
+        for name, columns in self.profiles.items():
+            files.append(folder / f"{name}.csv")
+            write_columns(files[-1], columns)
+        return files
+
+
+def write_columns(path, columns):
+    """A table of columns over z, with a column for each component."""
+    headings, values = [], []
+    for name, array in columns.items():
+        flat = array.reshape(len(array), -1)
+        parts = {1: [""], 2: ["_x", "_z"], 3: ["_x", "_y", "_z"],
+                 9: ["_" + a + b for a in "xyz" for b in "xyz"]}[flat.shape[1]]
+        headings += [f"{name}{part} [{columns.units[name]}]" for part in parts]
+        values.append(flat)
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(headings)
+        writer.writerows([f"{value:.9g}" for value in row] for row in np.hstack(values))
+
+
+def window(run, start=None, stop=None):
+    """Times (s) to average over: from `analysis.transport_rate.from`, or the middle of the run, to its end."""
+    times = run.series["time"]
+    stop = float(times[-1]) if stop is None else stop
+    if start is None:
+        start = float(((run.case.get("analysis") or {}).get("transport_rate") or {}).get("from", 0.0)) or 0.5 * stop
+    if not start < stop or start >= times[-1]:
+        raise RunFolderError(f"{run.folder}: there is nothing to average from {start:g} to {stop:g} s: the run has come to "
+                             f"{times[-1]:g} s. Give other times.")
+    return start, stop
+
+
+def describe_transport(report):
+    run = report.run
+    _, rate = bed.transport_rate(run, report.start, report.stop)
+    mean = mean_with_error(rate)
+    report.numbers["q_star"] = mean._asdict()
+    text = (f"q* {mean.mean:.4g} +- {mean.error:.2g}, deviation {mean.deviation:.2g}, {mean.independent:.3g} independent "
+            f"values")
+    if len(rate) >= 6:
+        verdict = is_steady(rate)
+        report.numbers["q_star"]["steady"] = verdict.steady
+        text += (f"; {'steady' if verdict.steady else 'NOT steady'}: first third {verdict.first.mean:.4g}, last "
+                 f"{verdict.last.mean:.4g}, {verdict.errors_apart:.2g} errors apart")
+    report.say("transport", text)
+    if "moving_grains" in run.series:
+        time = run.series["time"]
+        chosen = (time >= report.start - 1e-9) & (time <= report.stop + 1e-9)
+        moving = mean_with_error(run.series["moving_grains"][chosen])
+        report.numbers["moving_grains"] = moving._asdict()
+        report.say("moving", f"{moving.mean:.4g} +- {moving.error:.2g} grains faster than the threshold")
+
+
+def describe_surface(report, name, title, surface):
+    run = report.run
+    depth, shields = float(run.size[2] - surface), float(bed.shields_number(run, surface))
+    report.numbers[name] = {"bed_height": surface, "depth": depth, "shields": shields}
+    by = "hydraulic radius" if run.side_walls else "depth"
+    report.say(title, f"at {surface:.4g} m ({surface / run.diameter:.3g} d), {depth:.4g} m of water above: Shields number "
+                      f"{shields:.4g} by {by} at slope {run.slope:.4g}")
+
+
+def describe_profiles(report):
+    profiles = layer_profiles(report.run, report.start, report.stop, 0.25 * report.run.diameter)
+    report.profiles["layers"] = profiles
+    if report.run.case.get("fluid"):
+        surface = bed.surface_by_solid_fraction(profiles["z"], profiles["solid_fraction"])
+        describe_surface(report, "surface_by_solid_fraction", "surface", surface)
+
+
+def describe_camera(report):
+    run = report.run
+    if not run.side_walls:
+        return
+    static = bed.static_bed_height(run, report.start, report.stop)
+    describe_surface(report, "surface_by_static_pixels", "static", static)
+    report.profiles["visible_grains"] = visible_profiles(run, report.start, report.stop, pictures=VISIBLE_PICTURES)
+
+
+def report_of(run, start=None, stop=None):
+    """Report of a run between two times (s); see window() for what counts where none are given."""
+    report = Report(run, *window(run, start, stop))
+    report.say("run", f"{run.name}: {report.start:g} to {report.stop:g} s of {run.series['time'][-1]:g} s")
+    report.attempt("transport", lambda: describe_transport(report))
+    report.attempt("surface", lambda: describe_profiles(report))
+    if run.case.get("fluid"):
+        report.attempt("static", lambda: describe_camera(report))
+    return report

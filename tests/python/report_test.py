@@ -1,0 +1,80 @@
+"""`thalweg analyze` on a folder whose answers are known."""
+import json
+import unittest
+
+import numpy as np
+
+import made_up_folder as made_up
+import thalweg
+from thalweg import __main__ as program
+from thalweg.report import report_of, window
+from thalweg.tables import read_series
+
+D, SIZE = 4.95e-3, np.array([0.12, 0.0105, 0.1485])
+
+
+class Report(made_up.MadeUpFolder):
+    def setUp(self):
+        super().setUp()
+        time = np.arange(0.0, 4.005, 0.01)
+        self.rate = 0.1 + 0.02 * np.sin(20 * np.pi * time)
+        rows = [f"{t:.6g},{q:.9g},5" for t, q in zip(time, self.rate)]
+        (self.folder / "series.csv").write_text("time [s],q_star [1],moving_grains [1]\n" + "\n".join(rows) + "\n")
+
+    def write_bed(self):
+        """24 x 2 grains a layer, ten layers one diameter apart, at rest."""
+        x, y, z = np.meshgrid((np.arange(24) + 0.5) * SIZE[0] / 24, (0.3 * SIZE[1], 0.7 * SIZE[1]), (np.arange(10) + 0.5) * D)
+        places = np.column_stack([x.ravel(), y.ravel(), z.ravel()])
+        times = np.arange(0.0, 4.05, 0.1)
+        self.write_frames(times, [places] * len(times))
+
+    def test_transport_of_a_window(self):
+        report = report_of(thalweg.Run(self.folder), 2.0, 4.0)
+        # Twenty whole waves and one value more, which is the mean.
+        self.assertAlmostEqual(report.numbers["q_star"]["mean"], 0.1, 9)
+        self.assertAlmostEqual(report.numbers["q_star"]["deviation"], 0.02 / np.sqrt(2), 4)
+        self.assertTrue(report.numbers["q_star"]["steady"])
+        self.assertEqual(report.numbers["moving_grains"]["mean"], 5.0)
+        # No pictures: said, and no table.
+        self.assertTrue(any(line.startswith("surface") and "left out" in line for line in report.lines))
+        self.assertEqual(report.profiles, {})
+
+    def test_surface_and_profiles(self):
+        self.write_bed()
+        report = report_of(thalweg.Run(self.folder))
+        self.assertEqual((report.start, report.stop), (1.0, 4.0))   # of the case's transport_rate
+        # The top of the grains is at 10 d; the static outline lies on them, at most a radius lower between two.
+        static = report.numbers["surface_by_static_pixels"]
+        self.assertLess(static["bed_height"], 10.0 * D)
+        self.assertGreater(static["bed_height"], 9.5 * D)
+        depth = SIZE[2] - static["bed_height"]
+        self.assertAlmostEqual(static["depth"], depth, 12)
+        radius = depth * SIZE[1] / (2 * depth + SIZE[1])
+        self.assertAlmostEqual(static["shields"], 0.0748 * radius / (1.55 * D), 9)
+        self.assertAlmostEqual(report.numbers["surface_by_solid_fraction"]["bed_height"], 10.0 * D, delta=0.5 * D)
+        files = report.write(self.folder / "out")
+        self.assertEqual([file.name for file in files], ["summary.json", "layers.csv", "visible_grains.csv"])
+        self.assertEqual(json.loads(files[0].read_text()), report.numbers)
+        layers = read_series(files[1])
+        # All of the grains' volume is in the layers.
+        volume = np.sum(layers["solid_fraction"]) * SIZE.prod() / len(layers["z"])
+        self.assertAlmostEqual(volume / (480 * np.pi / 6 * D**3), 1.0, 6)
+        self.assertEqual(layers.units["velocity_x"], "m/s")
+
+    def test_times(self):
+        run = thalweg.Run(self.folder)
+        self.assertEqual(window(run), (1.0, 4.0))
+        self.assertEqual(window(run, 0.0), (0.0, 4.0))
+        for start, stop in ((5.0, None), (2.0, 1.0)):
+            with self.assertRaisesRegex(thalweg.RunFolderError, "nothing to average"):
+                window(run, start, stop)
+
+    def test_the_command(self):
+        self.assertEqual(program.main(["analyze", str(self.folder), "--from", "2"]), 0)
+        numbers = json.loads((self.folder / "analysis" / "summary.json").read_text())
+        self.assertEqual(numbers["from"], 2.0)
+        self.assertEqual(program.main(["analyze", str(self.folder / "elsewhere")]), 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
