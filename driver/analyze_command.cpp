@@ -24,10 +24,11 @@ int analyze(int argc, char** argv) {
   arguments.insert(arguments.end(), argv + 1, argv + argc);
   arguments.push_back(nullptr);
   execvp(interpreter.c_str(), arguments.data());
-  std::fprintf(stderr,
-               "thalweg: analyze needs Python, and %s cannot be started (%s); set THALWEG_PYTHON to an interpreter with "
-               "numpy, h5py and PyYAML.\n",
-               interpreter.c_str(), std::strerror(errno));
+  std::fprintf(
+      stderr,
+      "thalweg: analyze needs Python, and %s cannot be started (%s); set THALWEG_PYTHON to an interpreter with "
+      "numpy, h5py and PyYAML.\n",
+      interpreter.c_str(), std::strerror(errno));
   return 2;
 }
 
