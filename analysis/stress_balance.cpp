@@ -8,6 +8,7 @@
 #include "core/order_free_sum.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace thalweg::analysis {
@@ -17,7 +18,7 @@ StressBalance::StressBalance(MPI_Comm communicator, const Decomposition& decompo
     : communicator_(communicator),
       n_(decomposition.cells()),
       spacing_(decomposition.spacing()),
-      side_walls_(!decomposition.periodic()[1]),
+      side_walls_(!decomposition.periodic()[0] || !decomposition.periodic()[1]),
       layers_(n_[2], spacing_, layer),
       schedule_(schedule),
       scales_(scales),
@@ -25,6 +26,8 @@ StressBalance::StressBalance(MPI_Comm communicator, const Decomposition& decompo
       fluid_(static_cast<std::size_t>(n_[2]) * fluid_columns, 0.0),
       grains_(static_cast<std::size_t>(layers_.count()) * grain_columns, 0.0),
       given_(static_cast<std::size_t>(2 * n_[2] + 1), 0.0),
+      sides_(given_.size(), 0.0),
+      held_up_(static_cast<std::size_t>(2 * layers_.count()), 0.0),
       driving_(static_cast<std::size_t>(n_[2] + 1), 0.0) {
   if (decomposition.periodic()[2]) throw std::logic_error("a stress balance needs a top and a bottom");
 }
@@ -36,6 +39,7 @@ void StressBalance::observe(const Snapshot& snapshot) {
   ++measurements_;
   add_fluid(*snapshot.momentum);
   add_grains(snapshot);
+  if (side_walls_) add_grains_at_sides(snapshot);
 }
 
 void StressBalance::add_fluid(const MomentumBook& book) {
@@ -54,7 +58,10 @@ void StressBalance::add_fluid(const MomentumBook& book) {
     driving_[z] += book.driving.x() * cells_here;
   }
   driving_.back() += book.on_top.x();
-  for (std::size_t h = 0; h < given_.size(); ++h) given_[h] += book.on_grains[h].x();
+  for (std::size_t h = 0; h < given_.size(); ++h) {
+    given_[h] += book.on_grains[h].x();
+    sides_[h] += book.on_sides[h].x();
+  }
 }
 
 bool StressBalance::is_held(GlobalId id) const {
@@ -92,7 +99,26 @@ void StressBalance::add_grains(const Snapshot& snapshot) {
   for (std::size_t s = 0; s < sums.size(); ++s) grains_[s] += sums[s];
 }
 
-std::vector<std::span<double>> StressBalance::stored() { return {fluid_, grains_, given_, driving_}; }
+// Contacts with walls that stand: their nearest point is not above or below the grain.
+void StressBalance::add_grains_at_sides(const Snapshot& snapshot) {
+  const GrainView& grains = snapshot.grains;
+  if (grains.global_count == 0) return;
+  std::vector<int> layer_of_row;
+  std::vector<double> terms;
+  const std::vector<char> all(grains.id.size(), 1);
+  snapshot.contacts->for_each_contact_of(all, [&](std::size_t grain, const ContactEnd& contact) {
+    const Vec3& towards = contact.to_partner;
+    if (contact.partner >= 0 || std::abs(towards.z()) > std::hypot(towards.x(), towards.y())) return;
+    const double height = std::clamp(grains.position[grain].z() + contact.arm.z(), 0.0, n_[2] * spacing_);
+    const int layer = layers_.at(height);
+    layer_of_row.push_back(layer);
+    terms.insert(terms.end(), {contact.force.x(), contact.force.x() * (height - layers_.bottom(layer))});
+  });
+  const std::vector<double> sums = order_free_sums_by_bin(communicator_, layer_of_row, layers_.count(), terms, 2);
+  for (std::size_t s = 0; s < sums.size(); ++s) held_up_[s] += sums[s];
+}
+
+std::vector<std::span<double>> StressBalance::stored() { return {fluid_, grains_, given_, sides_, held_up_, driving_}; }
 
 void StressBalance::save(ArchiveWriter& archive) const {
   archive.attribute("stress_balance/mean_from", schedule_.from);
@@ -101,16 +127,18 @@ void StressBalance::save(ArchiveWriter& archive) const {
   archive.attribute("stress_balance/layers", static_cast<std::int64_t>(layers_.count()));
   std::vector<double> all;
   const bool first = rank_of(communicator_) == 0;
-  const std::size_t size = fluid_.size() + grains_.size() + given_.size() + driving_.size();
-  if (first)
-    for (const std::vector<double>* sums : {&fluid_, &grains_, &given_, &driving_})
-      all.insert(all.end(), sums->begin(), sums->end());
+  std::size_t size = 0;
+  for (const std::vector<double>* sums : {&fluid_, &grains_, &given_, &sides_, &held_up_, &driving_}) {
+    size += sums->size();
+    if (first) all.insert(all.end(), sums->begin(), sums->end());
+  }
   const std::vector<std::uint64_t> shape{size}, nothing{0};
   archive.write("stress_balance/sums", std::span<const double>(all), {shape, nothing, first ? shape : nothing});
 }
 
 void StressBalance::load(ArchiveReader& archive) {
-  const std::size_t size = fluid_.size() + grains_.size() + given_.size() + driving_.size();
+  std::size_t size = 0;
+  for (const std::span<double> sums : stored()) size += sums.size();
   const std::vector<std::uint64_t> shape{size};
   if (!archive.has("stress_balance/mean_from") ||
       archive.real_attribute("stress_balance/mean_from") != schedule_.from ||

@@ -17,9 +17,10 @@
 // Totals of xz, all means over the layer:
 //   sum of stresses   all of the above added up: grains count with their mean stress wherever they are cut
 //   total stress      the same with grains cut where the layer is: what acts on the parts above a plane
+//   side wall stress  what side walls take of fluid and grains above the plane
 //   driving stress    top + integral from z to the top of rho_f g_x (1 - phi) + rho_s g_x phi, and of what holds held
 //                     grains
-// In steady state total stress and driving stress are equal. Between side walls they differ by what the walls carry.
+// In steady state total stress and side wall stress together are the driving stress.
 #pragma once
 
 #include "analysis/cell_layers.hpp"
@@ -64,9 +65,9 @@ public:
   std::vector<Figure> figures() const override { return {}; }
 
   // mean_from (s), measurements (1), bed_height (m): where, from above, the solid fraction first exceeds half of its
-  // maximum; bed_stress (Pa): the driving stress there (its largest where there is no bed); largest_difference (1): of
-  // the total stress from the driving stress, over the bed stress; largest_difference_at (m); and of the sum of
-  // stresses, largest_difference_of_sum, largest_difference_of_sum_at.
+  // maximum; bed_stress (Pa): the driving stress there less the side walls' (its largest where there is no bed);
+  // largest_difference (1): of the total stress from the driving stress less the side walls', over the bed stress;
+  // largest_difference_at (m); and of the sum of stresses, largest_difference_of_sum, largest_difference_of_sum_at.
   std::vector<Figure> results() const override;
   std::vector<std::string> remarks() const override;
 
@@ -74,7 +75,7 @@ public:
   // granular_temperature (m^2/s^2), drag_density (N/m^3: x, y, z), drag_function, drag_reynolds_number (1; zero without
   // grains), and in Pa: contact_stress, grain_fluid_stress (xx, xy, xz, yx, ... zz), kinetic_stress, viscous_stress,
   // subgrid_stress, reynolds_stress, mean_flow_stress (xx, yy, zz, xy, xz, yz), rotation_stress,
-  // contact_rotation_stress, sum_of_stresses, total_stress, driving_stress.
+  // contact_rotation_stress, sum_of_stresses, total_stress, side_wall_stress, driving_stress.
   std::vector<Profile> profiles() const override;
 
   void save(ArchiveWriter& archive) const override;
@@ -109,6 +110,7 @@ private:
 
   void add_fluid(const MomentumBook& book);
   void add_grains(const Snapshot& snapshot);
+  void add_grains_at_sides(const Snapshot& snapshot);
   bool is_held(GlobalId id) const;
   std::array<double, fluid_columns> fluid_of(int layer) const;
   LayerMeans means_of(int layer) const;
@@ -116,7 +118,8 @@ private:
   void set_grain_means(int layer, LayerMeans& means) const;
   void set_drag_law(LayerMeans& means) const;
   void set_totals(int layer, LayerMeans& means) const;
-  double given_above(int layer) const;
+  double by_height_above(const std::vector<double>& half_planes, int layer) const;
+  double of_grains_at_sides_above(int layer) const;
   double driven_above(int layer) const;
   double above(int layer, GrainColumn force, GrainColumn lever) const;
   int bed_layer(const std::vector<LayerMeans>& layers) const;
@@ -128,7 +131,7 @@ private:
   MPI_Comm communicator_;
   Index3 n_;         // cells of the domain
   double spacing_;   // m
-  bool side_walls_;  // y is not periodic
+  bool side_walls_;  // x or y is not periodic
   CellLayers layers_;
   BalanceSchedule schedule_;
   BalanceScales scales_;
@@ -137,6 +140,9 @@ private:
   std::vector<double> fluid_;    // fluid_columns of each plane
   std::vector<double> grains_;   // grain_columns of each layer
   std::vector<double> given_;    // N, along x, on grains by half planes
+  std::vector<double> sides_;    // N, along x, of the fluid on side walls by half planes
+  std::vector<double> held_up_;  // of each layer: N, along x, of side walls on grains, and times the contact's height
+                                 // over the layer's bottom
   std::vector<double> driving_;  // N/m^3 times fluid cells, along x, of each plane; last: N on the top
   std::int64_t measurements_ = 0, counted_step_ = -1;
 };

@@ -22,7 +22,9 @@ struct StressBalance::LayerMeans {
   double drag_function = 0.0, drag_reynolds = 0.0;
   std::array<double, 9> contact{}, grain_fluid{};
   Tensor kinetic{}, viscous{}, subgrid{}, reynolds{}, mean_flow{};
-  double rotation = 0.0, contact_rotation = 0.0, sum = 0.0, total = 0.0, driving = 0.0;
+  double rotation = 0.0, contact_rotation = 0.0, sum = 0.0, total = 0.0, sides = 0.0, driving = 0.0;
+
+  double left() const { return driving - sides; }  // to the bed, by the side walls
 };
 
 std::array<double, StressBalance::fluid_columns> StressBalance::fluid_of(int layer) const {
@@ -89,12 +91,18 @@ double StressBalance::above(int layer, GrainColumn force, GrainColumn lever) con
   return sum;
 }
 
-// The same of what the fluid gives to grains, where it does.
-double StressBalance::given_above(int layer) const {
+// The same of what is booked where it acts.
+double StressBalance::by_height_above(const std::vector<double>& half_planes, int layer) const {
   const double from = layers_.first_plane(layer), planes = layers_.first_plane(layer + 1) - from;
   double sum = 0.0;
-  for (std::size_t h = 0; h < given_.size(); ++h)
-    sum += given_[h] * std::clamp((0.5 * static_cast<double>(h) - from) / planes, 0.0, 1.0);
+  for (std::size_t h = 0; h < half_planes.size(); ++h)
+    sum += half_planes[h] * std::clamp((0.5 * static_cast<double>(h) - from) / planes, 0.0, 1.0);
+  return sum;
+}
+
+double StressBalance::of_grains_at_sides_above(int layer) const {
+  double sum = held_up_[static_cast<std::size_t>(2 * layer + 1)] / layers_.height(layer);
+  for (int l = layer + 1; l < layers_.count(); ++l) sum += held_up_[static_cast<std::size_t>(2 * l)];
   return sum;
 }
 
@@ -112,9 +120,11 @@ void StressBalance::set_totals(int layer, LayerMeans& means) const {
   const double carried =
       means.kinetic[xz] + means.viscous[xz] + means.subgrid[xz] + means.reynolds[xz] + means.mean_flow[xz];
   means.sum = carried + means.contact[row_xz] + means.grain_fluid[row_xz];
-  means.total = carried + (given_above(layer) - above(layer, fluid_force, fluid_lever) -
-                           above(layer, contact_force_x, contact_lever)) /
+  const double walls_on_grains = of_grains_at_sides_above(layer);
+  means.total = carried + (by_height_above(given_, layer) - above(layer, fluid_force, fluid_lever) -
+                           above(layer, contact_force_x, contact_lever) + walls_on_grains) /
                               area;
+  means.sides = (by_height_above(sides_, layer) - walls_on_grains) / area;
   means.driving = (driven_above(layer) + above(layer, outer_force_x, outer_lever) - driving_.back()) / area;
 }
 
@@ -148,7 +158,7 @@ StressBalance::Difference StressBalance::largest_difference(const std::vector<La
                                                             double LayerMeans::*total, double bed_stress) {
   Difference largest;
   for (std::size_t l = 0; l < layers.size() && bed_stress != 0.0; ++l) {
-    const double share = (layers[l].*total - layers[l].driving) / bed_stress;
+    const double share = (layers[l].*total + layers[l].sides - layers[l].driving) / bed_stress;
     if (std::abs(share) > std::abs(largest.share)) largest = {share, static_cast<int>(l)};
   }
   return largest;
@@ -157,9 +167,9 @@ StressBalance::Difference StressBalance::largest_difference(const std::vector<La
 std::vector<Figure> StressBalance::results() const {
   const std::vector<LayerMeans> layers = all_means();
   const int bed = bed_layer(layers);
-  double bed_stress = bed >= 0 ? layers[static_cast<std::size_t>(bed)].driving : 0.0;
+  double bed_stress = bed >= 0 ? layers[static_cast<std::size_t>(bed)].left() : 0.0;
   for (const LayerMeans& means : layers)
-    if (bed < 0 && std::abs(means.driving) > std::abs(bed_stress)) bed_stress = means.driving;
+    if (bed < 0 && std::abs(means.left()) > std::abs(bed_stress)) bed_stress = means.left();
   const Difference total = largest_difference(layers, &LayerMeans::total, bed_stress);
   const Difference sum = largest_difference(layers, &LayerMeans::sum, bed_stress);
   const auto height = [this](const Difference& d) { return layers_.middle(d.layer); };
@@ -180,11 +190,11 @@ std::vector<std::string> StressBalance::remarks() const {
     return std::find_if(r.begin(), r.end(), [&name](const Figure& figure) { return figure.name == name; })->value;
   };
   return {fmt::format(
-      "largest difference of the total stress from the driving stress: {:.2g} % of the bed stress of {:.4g} Pa, at z = "
-      "{:.4g} m (of the sum of the stresses by volume shares {:.2g} %, at {:.4g} m){}",
-      100.0 * value("largest_difference"), value("bed_stress"), value("largest_difference_at"),
-      100.0 * value("largest_difference_of_sum"), value("largest_difference_of_sum_at"),
-      side_walls_ ? "; what the side walls carry is part of it" : "")};
+      "largest difference of the total stress from the driving stress{}: {:.2g} % of the bed stress of {:.4g} Pa, at z "
+      "= {:.4g} m (of the sum of the stresses by volume shares {:.2g} %, at {:.4g} m)",
+      side_walls_ ? " less what the side walls take" : "", 100.0 * value("largest_difference"), value("bed_stress"),
+      value("largest_difference_at"), 100.0 * value("largest_difference_of_sum"),
+      value("largest_difference_of_sum_at"))};
 }
 
 std::vector<Profile> StressBalance::profiles() const {
@@ -226,6 +236,7 @@ std::vector<Profile> StressBalance::profiles() const {
   add("contact_rotation_stress", "Pa", {}, member(&LayerMeans::contact_rotation));
   add("sum_of_stresses", "Pa", {}, member(&LayerMeans::sum));
   add("total_stress", "Pa", {}, member(&LayerMeans::total));
+  add("side_wall_stress", "Pa", {}, member(&LayerMeans::sides));
   add("driving_stress", "Pa", {}, member(&LayerMeans::driving));
   return all;
 }

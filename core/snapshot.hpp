@@ -95,6 +95,7 @@ struct PlaneMomentum {
 struct MomentumBook {
   std::vector<PlaneMomentum> planes;  // of cells, from the floor
   std::vector<Vec3> on_grains;        // N, by height: entry h lies h half cells above the floor, h = 0 .. 2 n_z
+  std::vector<Vec3> on_sides;         // N, on the faces across x and y, by height as on_grains
   Vec3 on_top = Vec3::Zero();         // N, on the face z_high
   Vec3 driving = Vec3::Zero();        // N/m^3, of the force that drives the fluid
 };

@@ -106,10 +106,10 @@ void Fluid<Real>::update_force() {
 }
 
 template <typename Real>
-std::array<Vec3, 6> Fluid<Real>::wall_forces(double reference) {
+std::array<Vec3, 6> Fluid<Real>::wall_forces(double reference, std::vector<FixedVec3>* sides_by_height) {
   exchange_halo();
   apply_walls();
-  std::array<FixedVec3, 6> sums = walls_.forces(populations_, cells_, reference);
+  std::array<FixedVec3, 6> sums = walls_.forces(populations_, cells_, reference, sides_by_height);
   static_assert(sizeof(sums) == 18 * sizeof(std::int64_t));
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), 18, MPI_INT64_T, MPI_SUM, communicator_);
   std::array<Vec3, 6> forces;

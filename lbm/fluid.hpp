@@ -79,8 +79,8 @@ public:
   FluidTotals totals() const;                      // those of survey_of(*this) (fluid_survey.hpp); collective
 
   // Force on each face (lattice units) in the step to come, without that of a fluid at rest with rho = 1 + reference.
-  // Fills halo and walls, which every step does anew. Collective.
-  std::array<Vec3, 6> wall_forces(double reference = 0.0);
+  // Fills halo and walls, which every step does anew. sides_by_height: of this rank, as in Walls::forces. Collective.
+  std::array<Vec3, 6> wall_forces(double reference = 0.0, std::vector<FixedVec3>* sides_by_height = nullptr);
 
   // Post-collision populations of every owned cell, zero in solid ones, and the walls' state. Collective.
   void save(ArchiveWriter& archive) const;

@@ -26,7 +26,7 @@ int Walls<Real>::face_of_population(int face, int o, const Index3& at) const {
 
 template <typename Real>
 std::array<FixedVec3, 6> Walls<Real>::forces(const Populations<Real>& populations, const CellMap& cells,
-                                             double reference) const {
+                                             double reference, std::vector<FixedVec3>* sides_by_height) const {
   std::array<FixedVec3, 6> sums{};
   const Index3& n = indexing_.size();
   for (int face = 0; face < 6; ++face) {
@@ -43,11 +43,13 @@ std::array<FixedVec3, 6> Walls<Real>::forces(const Populations<Real>& population
           for (at[0] = begin[0]; at[0] < end[0]; ++at[0]) {
             const std::ptrdiff_t cell = indexing_.index(at[0], at[1], at[2]);
             if (!cells.is_fluid(cell) || face_of_population(face, o, at) != face) continue;
-            const std::int64_t lost =
-                LatticeFixed::from(static_cast<double>(populations.post_collision(D3Q19::opposite(o), cell)) +
-                                   static_cast<double>(populations.incoming(o, cell)) -
-                                   2.0 * D3Q19::weight(o) * reference);
-            sums[face] += {-D3Q19::c[o][0] * lost, -D3Q19::c[o][1] * lost, -D3Q19::c[o][2] * lost};
+            const std::int64_t lost = LatticeFixed::from(
+                static_cast<double>(populations.post_collision(D3Q19::opposite(o), cell)) +
+                static_cast<double>(populations.incoming(o, cell)) - 2.0 * D3Q19::weight(o) * reference);
+            const FixedVec3 force{-D3Q19::c[o][0] * lost, -D3Q19::c[o][1] * lost, -D3Q19::c[o][2] * lost};
+            sums[face] += force;
+            if (sides_by_height && axis != 2)
+              (*sides_by_height)[static_cast<std::size_t>(2 * at[2] + 1 - D3Q19::c[o][2])] += force;
           }
     }
   }

@@ -69,7 +69,10 @@ public:
 
   // The momentum that each face takes from this rank's fluid in the step to come, after apply(): with what leaves and
   // what comes in as f - w (1 + reference): a fluid at rest with rho = 1 + reference presses on nothing.
-  std::array<FixedVec3, 6> forces(const Populations<Real>& populations, const CellMap& cells, double reference) const;
+  // sides_by_height: where given, 2 n_z + 1 sums for the n_z planes of this rank, to which what the faces across x and
+  // y take is added at the height half a link from its cell: entry h lies h half cells above the block's lower face.
+  std::array<FixedVec3, 6> forces(const Populations<Real>& populations, const CellMap& cells, double reference,
+                                  std::vector<FixedVec3>* sides_by_height = nullptr) const;
 
   // True if the shear rates of a row are wanted after the sweep.
   bool wants_shear(int y, int z) const;

@@ -195,5 +195,56 @@ TEST(StressBalance, OfABedAtRestHasTheWeightOfItsGrains) {
   EXPECT_NEAR(holding, weight, 0.1 * weight);  // the floor under the spheres sees little of the flow
 }
 
+// Between side walls two held spheres, one of which touches a wall; the walls take what does not arrive at the floor.
+// The slowest part of a start at rest decays faster than between plates H apart, T = H^2/(pi^2 nu) with H the width; 12
+// T.
+TEST(StressBalance, BetweenSideWallsCountsWhatTheyTakeOfTheFluid) {
+  WaterBox box = viscous_box({18, 16, 30}, 9.0, 1.5);
+  box.periodic = {true, false, false};
+  box.closed = true;
+  box.gravity = Vec3(0.02, 0.0, -9.8);
+  box.seeds = {glass_sphere(0, Vec3(4e-3, 2.5e-3, 2.9e-3)), glass_sphere(1, Vec3(8.7e-3, 5.1e-3, 3.4e-3))};
+  for (dem::GrainSeed& seed : box.seeds) seed.motion = dem::Motion::fixed;
+  const auto system = system_of(box);
+  const double decay = 16.0 * 16.0 / (std::numbers::pi * std::numbers::pi / 3.0);
+  for (int step = 0; step < static_cast<int>(12.0 * decay); ++step) system->advance();
+  StressBalance balance = balance_of(box, *system, 1.2e-3, {{0, 2}});
+  measure(balance, *system);
+  const Values values = by_name(balance);
+  const double bed_stress = values.at("driving_stress").front();
+  for (std::size_t l = 0; l < values.at("z").size(); ++l)
+    EXPECT_NEAR(values.at("total_stress")[l] + values.at("side_wall_stress")[l], values.at("driving_stress")[l],
+                1e-4 * bed_stress);
+  EXPECT_LT(std::abs(result(balance, "largest_difference")) * result(balance, "bed_stress"), 1e-4 * bed_stress);
+  // Two walls twice as high as they are apart take most of it.
+  EXPECT_GT(values.at("side_wall_stress").front(), 0.5 * bed_stress);
+}
+
+// A sphere that scrapes slowly along a side wall, pressed against it: the wall takes the friction, 0.45 of 20000 N/m
+// times the overlap of 5e-6 m, at the height of the sphere's middle, and what moves the sphere gives it.
+TEST(StressBalance, BetweenSideWallsCountsWhatTheyTakeOfTheGrains) {
+  WaterBox box = viscous_box({18, 12, 24}, 9.0, 1.5);
+  box.periodic = {true, false, false};
+  box.closed = true;
+  box.seeds = {glass_sphere(0, Vec3(5e-3, 2.495e-3, 6.1e-3), Vec3(1e-3, 0.0, 0.0))};
+  box.seeds[0].motion = dem::Motion::fixed;
+  const auto system = system_of(box);
+  for (int step = 0; step < 1000; ++step) system->advance();
+  StressBalance balance = balance_of(box, *system, 1.2e-3, {{0, 1}});
+  measure(balance, *system);
+  const Values values = by_name(balance);
+  const double friction = 0.45 * 20000.0 * 5e-6 / (18.0 * 12.0 * box.spacing * box.spacing);
+  for (std::size_t l = 0; l < values.at("z").size(); ++l) {
+    EXPECT_NEAR(values.at("total_stress")[l] + values.at("side_wall_stress")[l], values.at("driving_stress")[l],
+                1e-3 * friction);
+    // The water's share is small: 3 pi eta d v for a sphere far from walls, several times that near one.
+    const double below = values.at("z")[l] + 0.5 * values.at("thickness")[l] - 6.1e-3;
+    const double above = below - values.at("thickness")[l];
+    if (below < 0.0 || above > 0.0) {
+      EXPECT_NEAR(values.at("side_wall_stress")[l], below < 0.0 ? friction : 0.0, 0.05 * friction);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace thalweg::analysis
