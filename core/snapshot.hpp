@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -78,6 +79,13 @@ public:
   // Calls visit(cell, velocity) for every fluid cell this rank owns: global cell, m/s in full precision.
   using VelocityVisitor = std::function<void(const Index3&, const Vec3&)>;
   virtual void for_each_velocity(const VelocityVisitor& visit) const = 0;
+
+  struct State {
+    Vec3 velocity;    // m/s
+    double pressure;  // Pa, beyond that of the fluid at rest with its reference density
+  };
+  // Of a cell that this rank owns, by its global coordinates; none where a body covers it.
+  virtual std::optional<State> state_in(const Index3& cell) const = 0;
 };
 
 // What a plane of cells carries of momentum through itself (docs/theory.md, section 5, "Momentum balance by layers"):

@@ -102,6 +102,17 @@ void visit_velocities(const lbm::Fluid<Real>& fluid, const Units& units, const F
   });
 }
 
+template <typename Real>
+std::optional<FluidSource::State> state_of(const lbm::Fluid<Real>& fluid, const Units& units, const Index3& cell) {
+  const Index3& from = fluid.block().lower;
+  const std::ptrdiff_t index = fluid.indexing().index(cell[0] - from[0], cell[1] - from[1], cell[2] - from[2]);
+  if (!fluid.cells().is_fluid(index)) return std::nullopt;
+  const lbm::FluidState state = fluid.state_at(index);
+  return FluidSource::State{state.velocity * units.velocity(), state.density_deviation * (units.stress() / 3.0)};
+}
+
+template std::optional<FluidSource::State> state_of(const lbm::Fluid<float>&, const Units&, const Index3&);
+template std::optional<FluidSource::State> state_of(const lbm::Fluid<double>&, const Units&, const Index3&);
 template void visit_velocities(const lbm::Fluid<float>&, const Units&, const FluidSource::VelocityVisitor&);
 template void visit_velocities(const lbm::Fluid<double>&, const Units&, const FluidSource::VelocityVisitor&);
 template FluidFields sample_fields(lbm::Fluid<float>&, const SampleContext&, const std::vector<FluidField>&);

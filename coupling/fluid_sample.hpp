@@ -26,4 +26,8 @@ FluidFields sample_fields(lbm::Fluid<Real>& fluid, const SampleContext& context,
 template <typename Real>
 void visit_velocities(const lbm::Fluid<Real>& fluid, const Units& units, const FluidSource::VelocityVisitor& visit);
 
+// Of one owned cell; none where a body covers it.
+template <typename Real>
+std::optional<FluidSource::State> state_of(const lbm::Fluid<Real>& fluid, const Units& units, const Index3& cell);
+
 }  // namespace thalweg::coupling

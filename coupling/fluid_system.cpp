@@ -109,6 +109,11 @@ void FluidSystem<Real>::for_each_velocity(const VelocityVisitor& visit) const {
 }
 
 template <typename Real>
+std::optional<FluidSource::State> FluidSystem<Real>::state_in(const Index3& cell) const {
+  return state_of(fluid_, parameters_.units, cell);
+}
+
+template <typename Real>
 std::vector<Figure> FluidSystem<Real>::figures() const {
   const lbm::FluidSurvey survey = survey_of(fluid_);
   const double cells = static_cast<double>(std::max<std::int64_t>(1, survey.totals.cells));

@@ -43,6 +43,7 @@ private:
   void keep_mass();
   FluidFields sample(const std::vector<FluidField>& wanted) const override;
   void for_each_velocity(const VelocityVisitor& visit) const override;
+  std::optional<State> state_in(const Index3& cell) const override;
 
   std::unique_ptr<Decomposition> decomposition_;
   MPI_Comm communicator_;

@@ -23,6 +23,11 @@ void ResolvedSystem<Real>::for_each_velocity(const VelocityVisitor& visit) const
   visit_velocities(fluid_, parameters_.units, visit);
 }
 
+template <typename Real>
+std::optional<FluidSource::State> ResolvedSystem<Real>::state_in(const Index3& cell) const {
+  return state_of(fluid_, parameters_.units, cell);
+}
+
 // The links of this step are applied twice: here on copies of the bodies, so that all that streams in lies ready.
 template <typename Real>
 void ResolvedSystem<Real>::write_momentum_book() {

@@ -103,6 +103,7 @@ public:
 private:
   FluidFields sample(const std::vector<FluidField>& wanted) const override;
   void for_each_velocity(const VelocityVisitor& visit) const override;
+  std::optional<State> state_in(const Index3& cell) const override;
   void for_each_contact(const ContactVisitor& visit) const override { grains_->for_each_contact(visit); }
   void for_each_contact_of(std::span<const char> chosen, const ContactEndVisitor& visit) const override {
     grains_->for_each_contact_of(chosen, visit);

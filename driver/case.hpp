@@ -310,6 +310,19 @@ struct EntrainmentCase {
   bool operator==(const EntrainmentCase&) const = default;
 };
 
+struct ProbeLineCase {
+  Vec3 from = Vec3::Zero(), to = Vec3::Zero();  // m
+  std::int64_t points = 10;
+  bool operator==(const ProbeLineCase&) const = default;
+};
+
+struct ProbesCase {
+  std::vector<Vec3> points;  // m
+  std::vector<ProbeLineCase> lines;
+  double every = 1e-3;  // s
+  bool operator==(const ProbesCase&) const = default;
+};
+
 struct AnalysisCase {
   std::optional<TracksCase> tracks;
   std::optional<EntrainmentCase> entrainment;
@@ -321,6 +334,7 @@ struct AnalysisCase {
   std::optional<TransportRateCase> transport_rate;
   std::optional<BedSurfaceCase> bed_surface;
   std::optional<FluidStatisticsCase> fluid_statistics;
+  std::optional<ProbesCase> probes;
   bool operator==(const AnalysisCase&) const = default;
 };
 

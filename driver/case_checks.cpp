@@ -1,6 +1,7 @@
 #include "driver/case_checks.hpp"
 
 #include "dem/material.hpp"
+#include "driver/probe_points.hpp"
 #include "driver/watched_grains.hpp"
 
 #include <fmt/format.h>
@@ -411,6 +412,7 @@ void check_case(const Case& c, const io::YamlDocument& document) {
                          "domain.boundaries a bottom and a top, for example no_slip and free_slip");
   check_stress_balance(c, document);
   check_watched_grains(c, document);
+  check_probes(c, document);
   if (c.analysis.transport_rate && c.grains.empty())
     throw document.error("analysis.transport_rate", "there are no grains to measure; remove the section or add grains");
 }

@@ -1,5 +1,6 @@
 #include "driver/case_sections.hpp"
 
+#include "driver/probe_points.hpp"
 #include "driver/watched_grains.hpp"
 
 #include <fmt/format.h>
@@ -360,6 +361,12 @@ static void describe_analysis(io::SectionVisitor& visit, AnalysisCase& analysis,
                               "side walls"});
   else
     visit.not_here("fluid_statistics", "system: grains has no fluid; remove the section or set system: resolved");
+  if (with_fluid)
+    visit.section("probes", analysis.probes,
+                  {.meaning = "velocity and pressure of the fluid at points and along lines at short intervals, in "
+                              "probes.h5"});
+  else
+    visit.not_here("probes", "system: grains has no fluid; remove the section or set system: resolved");
   of_grains("tracks", analysis.tracks,
             {.meaning = "places, motion and forces of chosen grains at short intervals, in tracks.h5"});
   if (with_fluid)

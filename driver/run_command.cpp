@@ -6,6 +6,7 @@
 #include "analysis/grain_energy.hpp"
 #include "analysis/grain_profiles.hpp"
 #include "analysis/population_loads.hpp"
+#include "analysis/probes.hpp"
 #include "analysis/stress_balance.hpp"
 #include "analysis/tracks.hpp"
 #include "analysis/transport_rate.hpp"
@@ -18,6 +19,7 @@
 #include "driver/grain_weight.hpp"
 #include "driver/machine.hpp"
 #include "driver/on_first_rank.hpp"
+#include "driver/probe_points.hpp"
 #include "driver/progress.hpp"
 #include "driver/reference_grain.hpp"
 #include "driver/run_output.hpp"
@@ -162,6 +164,9 @@ Observers observers_of(const Case& c, const System& system, MPI_Comm communicato
         communicator, *system.snapshot().decomposition, units_of(c).velocity(),
         analysis::StatisticsSchedule{asked_for.from, asked_for.every}, !periodic_axes(c.domain)[1]));
   }
+  if (c.analysis.probes)
+    observers.push_back(std::make_unique<analysis::Probes>(communicator, *system.snapshot().decomposition,
+                                                           probe_points(*c.analysis.probes), c.analysis.probes->every));
   if (c.grains.empty()) return observers;
   if (c.analysis.transport_rate) {
     const analysis::TransportSchedule schedule{c.analysis.transport_rate->from, c.analysis.transport_rate->every};

@@ -81,6 +81,20 @@ class Run:
             return columns_of(file)
 
     @cached_property
+    def probes(self):
+        """Velocity (m/s) [time, point, axis] and pressure (Pa) [time, point] of the fluid at high rate (`analysis.probes`), with
+        `time` (s) and `position` (m) [point, axis], the centres of the cells; None where there are none."""
+        path = self.folder / "probes.h5"
+        if not path.exists():
+            return None
+        with h5py.File(path) as file:
+            columns = columns_of(file)
+        cells = np.column_stack([columns[f"cell_{axis}"] for axis in "xyz"])
+        spacing = float(self.case["domain"]["spacing"])
+        return Columns({"position": (cells + 0.5) * spacing, **columns}, {**columns.units, "position": "m"},
+                       columns.components)
+
+    @cached_property
     def bed(self):
         """The grains at the end of the run, with the columns of bed.h5; None before."""
         path = self.folder / "bed.h5"

@@ -31,6 +31,7 @@ public:
         for (int x = block_.lower[0]; x < block_.upper[0]; ++x)
           if (is_fluid({x, y, z})) visit({x, y, z}, velocity_at({x, y, z}, step));
   }
+  std::optional<State> state_in(const Index3&) const override { return std::nullopt; }
   Snapshot snapshot(std::int64_t at_step) {
     step = at_step;
     Snapshot snapshot;

@@ -39,6 +39,7 @@ public:
   }
 
   void for_each_velocity(const VelocityVisitor&) const override {}
+  std::optional<State> state_in(const Index3&) const override { return std::nullopt; }
 
 private:
   Block block_;
