@@ -232,12 +232,12 @@ void LinkPass<Real>::look_at_covered(const Batch& b, int covered) {
     last = slot;
     const auto arm = [&](int axis) { return static_cast<double>(b.arm[axis][k]); };
     upstream_.add(b.tag[k], b.cell[k], static_cast<double>(values_.deviation[k]), static_cast<double>(b.distance[k]),
-                  {arm(0), arm(1), arm(2)}, *b.body, other, apart);
+                  {arm(0), arm(1), arm(2)}, other, apart);
   }
   if (gaps_.kept < 1.0) {
     const Real* sent[D3Q19::directions];
     for (int i = 0; i < D3Q19::directions; ++i) sent[i] = sent_[i] + (b.plane + 1) * cells_.indexing().plane_stride();
-    upstream_.let_flow(sent, force_, gaps_);
+    upstream_.let_flow(sent, force_, gaps_, *b.body);
     std::fill_n(values_.slip, rounded_up(b.count), Real(0));
     std::fill_n(values_.odd_change, rounded_up(b.count), Real(0));
     for (int c = 0; c < covered; ++c) {

@@ -13,19 +13,15 @@ GapFlow gap_flow(const CollisionParameters& collision) {
 }
 
 void UpstreamBodies::add(std::uint32_t tag, std::int32_t cell, double deviation, double distance, const Vec3& arm,
-                         const LinkBody& own, const LinkBody& other, const Vec3& apart) {
+                         const LinkBody& other, const Vec3& apart) {
   const int k = count_++;
   tag_[k] = tag;
   cell_[k] = cell;
   deviation_[k] = deviation;
   distance_[k] = distance;
-  const Vec3 c(LinkTag::velocity(static_cast<int>(tag), 0), LinkTag::velocity(static_cast<int>(tag), 1),
-               LinkTag::velocity(static_cast<int>(tag), 2));
-  const Vec3 from_own = arm - distance * c, own_velocity = own.velocity + own.angular_velocity.cross(from_own);
   for (int a = 0; a < 3; ++a) {
-    from_own_[a][k] = from_own[a];
+    own_arm_[a][k] = arm[a];
     arm_[a][k] = apart[a] + arm[a];
-    own_velocity_[a][k] = own_velocity[a];
     velocity_[a][k] = other.velocity[a];
     spin_[a][k] = other.angular_velocity[a];
     slip_[a][k] = 0.0;
@@ -52,27 +48,29 @@ void UpstreamBodies::measure_velocity(const Real* const (&sent)[D3Q19::direction
 
 template <typename Real>
 void UpstreamBodies::let_flow(const Real* const (&sent)[D3Q19::directions], const double (&force)[3],
-                              const GapFlow& flow) {
+                              const GapFlow& flow, const LinkBody& own) {
   measure_velocity(sent, force);
   for (int k = 0; k < count_; ++k) {
     const auto i = static_cast<int>(tag_[k] & LinkTag::direction_mask);
     odd_[k] = 0.5 * (static_cast<double>(sent[i][cell_[k]]) - static_cast<double>(sent[D3Q19::opposite(i)][cell_[k]]));
   }
-  const auto& x1 = from_own_;
+  const Vec3 &v = own.velocity, &w = own.angular_velocity;
   for (int k = 0; k < count_; ++k) {
     const int tag = static_cast<int>(tag_[k]);
     const double cx = LinkTag::velocity(tag, 0), cy = LinkTag::velocity(tag, 1), cz = LinkTag::velocity(tag, 2);
+    const double x1[3] = {own_arm_[0][k] - distance_[k] * cx, own_arm_[1][k] - distance_[k] * cy,
+                          own_arm_[2][k] - distance_[k] * cz};
     const double x2[3] = {arm_[0][k] - distance_[k] * cx, arm_[1][k] - distance_[k] * cy,
                           arm_[2][k] - distance_[k] * cz};
-    const double to_1 = 1.0 / std::sqrt(x1[0][k] * x1[0][k] + x1[1][k] * x1[1][k] + x1[2][k] * x1[2][k]),
+    const double to_1 = 1.0 / std::sqrt(x1[0] * x1[0] + x1[1] * x1[1] + x1[2] * x1[2]),
                  to_2 = 1.0 / std::sqrt(x2[0] * x2[0] + x2[1] * x2[1] + x2[2] * x2[2]);
-    const double mx = to_1 * x1[0][k] - to_2 * x2[0], my = to_1 * x1[1][k] - to_2 * x2[1],
-                 mz = to_1 * x1[2][k] - to_2 * x2[2];
+    const double mx = to_1 * x1[0] - to_2 * x2[0], my = to_1 * x1[1] - to_2 * x2[1], mz = to_1 * x1[2] - to_2 * x2[2];
     const double u2x = velocity_[0][k] + (spin_[1][k] * x2[2] - spin_[2][k] * x2[1]),
                  u2y = velocity_[1][k] + (spin_[2][k] * x2[0] - spin_[0][k] * x2[2]),
                  u2z = velocity_[2][k] + (spin_[0][k] * x2[1] - spin_[1][k] * x2[0]);
-    const double wx = 0.5 * (own_velocity_[0][k] + u2x), wy = 0.5 * (own_velocity_[1][k] + u2y),
-                 wz = 0.5 * (own_velocity_[2][k] + u2z);
+    const double wx = 0.5 * ((v.x() + (w.y() * x1[2] - w.z() * x1[1])) + u2x),
+                 wy = 0.5 * ((v.y() + (w.z() * x1[0] - w.x() * x1[2])) + u2y),
+                 wz = 0.5 * ((v.z() + (w.x() * x1[1] - w.y() * x1[0])) + u2z);
     const double vx = fluid_velocity_[0][k] - wx, vy = fluid_velocity_[1][k] - wy, vz = fluid_velocity_[2][k] - wz;
     // The link enters one body and leaves the other, so m is not zero.
     const double across = (vx * mx + vy * my + vz * mz) / (mx * mx + my * my + mz * mz);
@@ -106,7 +104,9 @@ void UpstreamBodies::find_populations(const Vec3& rest_gradient) {
     }
 }
 
-template void UpstreamBodies::let_flow(const float* const (&)[D3Q19::directions], const double (&)[3], const GapFlow&);
-template void UpstreamBodies::let_flow(const double* const (&)[D3Q19::directions], const double (&)[3], const GapFlow&);
+template void UpstreamBodies::let_flow(const float* const (&)[D3Q19::directions], const double (&)[3], const GapFlow&,
+                                       const LinkBody&);
+template void UpstreamBodies::let_flow(const double* const (&)[D3Q19::directions], const double (&)[3], const GapFlow&,
+                                       const LinkBody&);
 
 }  // namespace thalweg::lbm

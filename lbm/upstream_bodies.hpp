@@ -43,15 +43,16 @@ public:
   void clear() { count_ = 0; }
   int count() const { return count_; }
 
-  // A link of `own` with delta = distance and its arm, deviation = rho - 1 at x_f, and cell, the index of x_f within
-  // its plane. apart: from the centre of `other`, which covers x_ff, to that of `own`.
+  // A link with delta = distance and the arm from its own body's centre, deviation = rho - 1 at x_f, and cell, the
+  // index of x_f within its plane. apart: from the centre of `other`, which covers x_ff, to that of the own body.
   void add(std::uint32_t tag, std::int32_t cell, double deviation, double distance, const Vec3& arm,
-           const LinkBody& own, const LinkBody& other, const Vec3& apart);
+           const LinkBody& other, const Vec3& apart);
 
-  // Lets the fluid flow. sent: f_i^c of the cell with index 0 within the plane, for every i; force: on the fluid, of
-  // which f^c has half too much.
+  // Lets the fluid flow between `own`, to which all links belong, and the bodies behind. sent: f_i^c of the cell with
+  // index 0 within the plane, for every i; force: on the fluid, of which f^c has half too much.
   template <typename Real>
-  void let_flow(const Real* const (&sent)[D3Q19::directions], const double (&force)[3], const GapFlow& flow);
+  void let_flow(const Real* const (&sent)[D3Q19::directions], const double (&force)[3], const GapFlow& flow,
+                const LinkBody& own);
 
   // The equilibrium at x_ff: density as at x_f, velocity that of the covering body, and the slip. With a hydrostatic
   // gradient c_i.gradient = 3 c_i.F: the density a cell further out, and 3/2 w_i c_i.F.
@@ -70,8 +71,8 @@ private:
   int count_ = 0;
   std::uint32_t tag_[capacity] = {};
   std::int32_t cell_[capacity] = {};
-  // x_f from the own centre and the velocity of that body there; the crossing from the other's centre, and its motion.
-  alignas(64) double distance_[capacity] = {}, from_own_[3][capacity] = {}, own_velocity_[3][capacity] = {};
+  // The crossing from both centres, and the other's motion.
+  alignas(64) double distance_[capacity] = {}, own_arm_[3][capacity] = {};
   alignas(64) double arm_[3][capacity] = {}, velocity_[3][capacity] = {}, spin_[3][capacity] = {};
   alignas(64) double deviation_[capacity] = {}, odd_[capacity] = {}, fluid_velocity_[3][capacity] = {};
   alignas(64) double slip_[3][capacity] = {}, slip_along_[capacity] = {}, odd_change_[capacity] = {},
