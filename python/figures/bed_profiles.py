@@ -2,9 +2,10 @@
 """Means over the height of a bed, as fig. 7(a) of Zhang et al. (2022): bed_profiles.py RUN_FOLDER [options]
 
 Reads profiles.h5 (analysis.grain_profiles, and analysis.fluid_statistics where it is there) and, for the stress of the fluid on
-the grains, their pictures (coupling.grain_stress). Heights are from the surface by solid fraction. Without side
-walls it also draws the driving stress, the weight along the slope of all that is above: in a steady flow the sum of all
-shear stresses.
+the grains, their pictures (coupling.grain_stress). Heights are from the surface by solid fraction. With
+analysis.stress_balance it draws the stresses of that, the total and the line of the driving force, to which the total comes,
+with what side walls take, in steady flow. Without, and without side walls, it draws the driving stress, the weight along the
+slope of all that is above, and what is left of it for the fluid.
 """
 import argparse
 import sys
@@ -32,8 +33,26 @@ def component(group, name, which):
     return group[name][:, group.components[name].index(which)]
 
 
+def balanced_stresses(balance):
+    """(label, z in m, Pa) of the stresses that make up the balance of momentum along x."""
+    xz = {name: component(balance, name, "xz") for name in balance.components if "xz" in balance.components[name]}
+    found = [("solid: contacts and motion", xz["contact_stress"] + xz["kinetic_stress"]),
+             ("fluid on grains", xz["grain_fluid_stress"]),
+             ("fluid: viscous and subgrid", xz["viscous_stress"] + xz["subgrid_stress"]),
+             ("fluid: resolved eddies", xz["reynolds_stress"]),
+             ("rotation stress", balance["rotation_stress"]),
+             ("total", balance["total_stress"]),
+             ("driving", balance["driving_stress"])]
+    sides = balance.get("side_wall_stress")
+    if sides is not None and np.any(sides):
+        found += [("driving less side walls", balance["driving_stress"] - sides)]
+    return [(label, balance["z"], values) for label, values in found]
+
+
 def stresses(run):
     """(label, z in m, Pa) of every shear stress that was measured."""
+    if "stress_balance" in run.profiles:
+        return balanced_stresses(run.profiles["stress_balance"])
     grains = run.profiles["grain_profiles"]
     z, fraction = grains["z"], grains["solid_fraction"]
     solid = component(grains, "contact_stress", "xz") + component(grains, "kinetic_stress", "xz")

@@ -75,6 +75,21 @@ class Figures(made_up.MadeUpFolder):
         out = self.folder / "profiles.png"
         self.drawn(self.script("bed_profiles.py", "--out", out), out)
 
+    def test_bed_profiles_with_the_balance(self):
+        self.write_profiles()
+        full, half = "xx xy xz yx yy yz zx zy zz", "xx yy zz xy xz yz"
+        with h5py.File(self.folder / "profiles.h5", "a") as file:
+            group = file.create_group("stress_balance")
+            group["z"] = (np.arange(60) + 0.5) * 0.5 * D
+            for name, components in (("contact_stress", full), ("grain_fluid_stress", full), ("kinetic_stress", half),
+                                     ("viscous_stress", half), ("subgrid_stress", half), ("reynolds_stress", half)):
+                group[name] = np.ones((60, len(components.split())))
+                group[name].attrs["components"] = components
+            for name in ("rotation_stress", "total_stress", "side_wall_stress", "driving_stress"):
+                group[name] = np.ones(60)
+        out = self.folder / "balance.png"
+        self.drawn(self.script("bed_profiles.py", "--out", out), out)
+
     def test_a_film(self):
         for name in ("film.gif", "film"):
             done = self.script("movie.py", "--out", self.folder / name, "--every", "0.2", "--width", "300")
