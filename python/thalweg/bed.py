@@ -10,6 +10,8 @@ def surface_by_solid_fraction(z, fraction):
     """Height (m) at which the solid fraction falls to half of the bed's, between the middles z (m) of two layers. The bed's
     is the median of the layers below the grains' centre of mass."""
     z, fraction = np.asarray(z, float), np.asarray(fraction, float)
+    if not np.nansum(fraction) > 0.0:
+        raise RunFolderError("these profiles hold no grains; nothing has been measured yet.")
     inside = z <= np.sum(fraction * z) / np.sum(fraction)
     half = 0.5 * np.median(fraction[inside & (fraction > 0.0)])
     last = np.flatnonzero(fraction >= half)[-1]

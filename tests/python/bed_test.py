@@ -55,6 +55,11 @@ class Layers(made_up.MadeUpFolder):
                               (np.arange(layers) + 0.5) * D)
         return np.vstack([np.column_stack([x.ravel(), y.ravel(), z.ravel()]), [0.06, 0.005, (layers + 6) * D]])
 
+    def test_profiles_of_nothing(self):
+        for nothing in (0.0, np.nan):
+            with self.assertRaisesRegex(thalweg.RunFolderError, "nothing has been measured"):
+                bed.surface_by_solid_fraction(D * np.arange(5), np.full(5, nothing))
+
     def test_the_surface_by_solid_fraction(self):
         # Half of the top layer's volume is where its solid fraction has fallen to half in layers a diameter thick: at the top.
         places = self.bed_of_layers(10)
