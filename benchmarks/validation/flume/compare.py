@@ -42,7 +42,7 @@ def main():
     for run in arguments.runs:
         folder = thalweg.Run(run)
         ends, means = window_means(folder.series)
-        plt.plot(ends - 0.5 * WINDOW, means, "o-", markersize=3, label=folder.case["name"])
+        plt.plot(ends - 0.5 * WINDOW, means, "o-", markersize=3, label=run.name)
         rows += [[run.name, f"{end:.1f}", f"{mean:.4f}"] for end, mean in zip(ends, means)]
     plt.axhspan(PAPER_MEAN - PAPER_DEVIATION, PAPER_MEAN + PAPER_DEVIATION, color="0.9",
                 label="Zhang et al. at 0.028, mean and deviation")
