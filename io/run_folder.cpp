@@ -15,10 +15,10 @@ namespace thalweg::io {
 namespace fs = std::filesystem;
 namespace {
 
-// All a run writes; --overwrite removes these and nothing else.
-constexpr std::array run_contents{"case.yaml", "run.log",        "series.csv",  "profiles.h5", "probes.h5",
-                                  "tracks.h5", "entrainment.h5", "bed.h5",      "grains.pvd",  "fluid.pvd",
-                                  "grains",    "fluid",          "checkpoints", "summary.json"};
+// All a run writes, and thalweg analyze; --overwrite removes these and nothing else.
+constexpr std::array run_contents{"case.yaml", "run.log",        "series.csv",  "profiles.h5",  "probes.h5",
+                                  "tracks.h5", "entrainment.h5", "bed.h5",      "grains.pvd",   "fluid.pvd",
+                                  "grains",    "fluid",          "checkpoints", "summary.json", "analysis"};
 constexpr const char* latest_name = "latest";
 
 std::optional<std::int64_t> step_of_checkpoint(const std::string& name) {
