@@ -118,7 +118,11 @@ void StressBalance::add_grains_at_sides(const Snapshot& snapshot) {
   for (std::size_t s = 0; s < sums.size(); ++s) held_up_[s] += sums[s];
 }
 
-std::vector<std::span<double>> StressBalance::stored() { return {fluid_, grains_, given_, sides_, held_up_, driving_}; }
+std::size_t StressBalance::stored_size() const {
+  std::size_t size = 0;
+  for (const auto sums : stored) size += (this->*sums).size();
+  return size;
+}
 
 void StressBalance::save(ArchiveWriter& archive) const {
   archive.attribute("stress_balance/mean_from", schedule_.from);
@@ -127,19 +131,14 @@ void StressBalance::save(ArchiveWriter& archive) const {
   archive.attribute("stress_balance/layers", static_cast<std::int64_t>(layers_.count()));
   std::vector<double> all;
   const bool first = rank_of(communicator_) == 0;
-  std::size_t size = 0;
-  for (const std::vector<double>* sums : {&fluid_, &grains_, &given_, &sides_, &held_up_, &driving_}) {
-    size += sums->size();
-    if (first) all.insert(all.end(), sums->begin(), sums->end());
-  }
-  const std::vector<std::uint64_t> shape{size}, nothing{0};
+  if (first)
+    for (const auto sums : stored) all.insert(all.end(), (this->*sums).begin(), (this->*sums).end());
+  const std::vector<std::uint64_t> shape{stored_size()}, nothing{0};
   archive.write("stress_balance/sums", std::span<const double>(all), {shape, nothing, first ? shape : nothing});
 }
 
 void StressBalance::load(ArchiveReader& archive) {
-  std::size_t size = 0;
-  for (const std::span<double> sums : stored()) size += sums.size();
-  const std::vector<std::uint64_t> shape{size};
+  const std::vector<std::uint64_t> shape{stored_size()};
   if (!archive.has("stress_balance/mean_from") ||
       archive.real_attribute("stress_balance/mean_from") != schedule_.from ||
       archive.integer_attribute("stress_balance/layers") != layers_.count() ||
@@ -147,12 +146,12 @@ void StressBalance::load(ArchiveReader& archive) {
     return;
   measurements_ = archive.integer_attribute("stress_balance/measurements");
   counted_step_ = archive.integer_attribute("stress_balance/counted_step");
-  std::vector<double> all(size);
+  std::vector<double> all(stored_size());
   archive.read("stress_balance/sums", std::span<double>(all), {shape, {0}, shape});
   auto next = all.begin();
-  for (const std::span<double> sums : stored()) {
-    std::copy_n(next, sums.size(), sums.begin());
-    next += static_cast<std::ptrdiff_t>(sums.size());
+  for (const auto sums : stored) {
+    std::copy_n(next, (this->*sums).size(), (this->*sums).begin());
+    next += static_cast<std::ptrdiff_t>((this->*sums).size());
   }
 }
 

@@ -119,14 +119,14 @@ private:
   void set_drag_law(LayerMeans& means) const;
   void set_totals(int layer, LayerMeans& means) const;
   double by_height_above(const std::vector<double>& half_planes, int layer) const;
-  double of_grains_at_sides_above(int layer) const;
   double driven_above(int layer) const;
+  double above(int layer, const std::vector<double>& sums, int columns, int force, int lever) const;
   double above(int layer, GrainColumn force, GrainColumn lever) const;
   int bed_layer(const std::vector<LayerMeans>& layers) const;
   static Difference largest_difference(const std::vector<LayerMeans>& layers, double LayerMeans::*total,
                                        double bed_stress);
   std::vector<LayerMeans> all_means() const;
-  std::vector<std::span<double>> stored();
+  std::size_t stored_size() const;
 
   MPI_Comm communicator_;
   Index3 n_;         // cells of the domain
@@ -145,6 +145,10 @@ private:
                                  // over the layer's bottom
   std::vector<double> driving_;  // N/m^3 times fluid cells, along x, of each plane; last: N on the top
   std::int64_t measurements_ = 0, counted_step_ = -1;
+
+  // What a checkpoint holds, in its order.
+  static constexpr std::array stored{&StressBalance::fluid_, &StressBalance::grains_,  &StressBalance::given_,
+                                     &StressBalance::sides_, &StressBalance::held_up_, &StressBalance::driving_};
 };
 
 }  // namespace thalweg::analysis

@@ -81,14 +81,17 @@ void StressBalance::set_drag_law(LayerMeans& means) const {
   means.drag_reynolds = fluid * scales_.fluid_density * slip.norm() * d / scales_.viscosity;
 }
 
-// Sum of forces over all that is above a plane, its mean over the planes of a layer; N times measurements.
-double StressBalance::above(int layer, GrainColumn force, GrainColumn lever) const {
-  const auto column = [this](int l, GrainColumn c) {
-    return grains_[static_cast<std::size_t>(l) * grain_columns + static_cast<std::size_t>(c)];
-  };
+// Sum of forces over all that is above a plane, its mean over the planes of a layer; N times measurements. sums: rows
+// of layers, with forces and their levers in two of `columns`.
+double StressBalance::above(int layer, const std::vector<double>& sums, int columns, int force, int lever) const {
+  const auto column = [&](int l, int c) { return sums[static_cast<std::size_t>(l * columns + c)]; };
   double sum = column(layer, lever) / layers_.height(layer);
   for (int l = layer + 1; l < layers_.count(); ++l) sum += column(l, force);
   return sum;
+}
+
+double StressBalance::above(int layer, GrainColumn force, GrainColumn lever) const {
+  return above(layer, grains_, grain_columns, force, lever);
 }
 
 // The same of what is booked where it acts.
@@ -97,12 +100,6 @@ double StressBalance::by_height_above(const std::vector<double>& half_planes, in
   double sum = 0.0;
   for (std::size_t h = 0; h < half_planes.size(); ++h)
     sum += half_planes[h] * std::clamp((0.5 * static_cast<double>(h) - from) / planes, 0.0, 1.0);
-  return sum;
-}
-
-double StressBalance::of_grains_at_sides_above(int layer) const {
-  double sum = held_up_[static_cast<std::size_t>(2 * layer + 1)] / layers_.height(layer);
-  for (int l = layer + 1; l < layers_.count(); ++l) sum += held_up_[static_cast<std::size_t>(2 * l)];
   return sum;
 }
 
@@ -120,7 +117,7 @@ void StressBalance::set_totals(int layer, LayerMeans& means) const {
   const double carried =
       means.kinetic[xz] + means.viscous[xz] + means.subgrid[xz] + means.reynolds[xz] + means.mean_flow[xz];
   means.sum = carried + means.contact[row_xz] + means.grain_fluid[row_xz];
-  const double walls_on_grains = of_grains_at_sides_above(layer);
+  const double walls_on_grains = above(layer, held_up_, 2, 0, 1);
   means.total = carried + (by_height_above(given_, layer) - above(layer, fluid_force, fluid_lever) -
                            above(layer, contact_force_x, contact_lever) + walls_on_grains) /
                               area;

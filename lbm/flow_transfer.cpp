@@ -60,7 +60,8 @@ private:
 class SavedFlow {
 public:
   template <typename Real>
-  SavedFlow(const Fluid<Real>& fluid, ArchiveReader& archive) : axes_(axes_of(fluid, archive)) {
+  SavedFlow(const Fluid<Real>& fluid, ArchiveReader& archive)
+      : shape_(archive.shape("fluid/populations_00")), axes_(axes_of(fluid, shape_)) {
     const auto n = [this](int axis) { return static_cast<std::size_t>(axes_[static_cast<std::size_t>(axis)].count()); };
     states_.resize(n(0) * n(1) * n(2));
     for (int i = 0; i < D3Q19::directions; ++i)
@@ -92,8 +93,7 @@ public:
 
 private:
   template <typename Real>
-  static std::array<SourceAxis, 3> axes_of(const Fluid<Real>& fluid, ArchiveReader& archive) {
-    const std::vector<std::uint64_t> saved = archive.shape("fluid/populations_00");
+  static std::array<SourceAxis, 3> axes_of(const Fluid<Real>& fluid, const std::vector<std::uint64_t>& saved) {
     const auto axis = [&](int a) {
       return SourceAxis(static_cast<int>(saved.at(static_cast<std::size_t>(2 - a))), fluid.decomposition().cells()[a],
                         fluid.block().lower[a], fluid.block().upper[a], fluid.decomposition().periodic()[a]);
@@ -111,9 +111,8 @@ private:
            const SourceAxis::Stretch& z) {
     const auto whole = [](int n) { return static_cast<std::uint64_t>(n); };
     const std::string path = fmt::format("fluid/populations_{:02d}", i);
-    const ArrayBox box{archive.shape(path),
-                       {whole(z.from), whole(y.from), whole(x.from)},
-                       {whole(z.count), whole(y.count), whole(x.count)}};
+    const ArrayBox box{
+        shape_, {whole(z.from), whole(y.from), whole(x.from)}, {whole(z.count), whole(y.count), whole(x.count)}};
     std::vector<Real> values(static_cast<std::size_t>(z.count) * y.count * x.count);
     archive.read(path, std::span<Real>(values), box);
     std::size_t next = 0;
@@ -127,6 +126,7 @@ private:
         }
   }
 
+  std::vector<std::uint64_t> shape_;
   std::array<SourceAxis, 3> axes_;
   std::vector<FluidState> states_;
 };

@@ -50,10 +50,6 @@ template <typename Real>
 void UpstreamBodies::let_flow(const Real* const (&sent)[D3Q19::directions], const double (&force)[3],
                               const GapFlow& flow, const LinkBody& own) {
   measure_velocity(sent, force);
-  for (int k = 0; k < count_; ++k) {
-    const auto i = static_cast<int>(tag_[k] & LinkTag::direction_mask);
-    odd_[k] = 0.5 * (static_cast<double>(sent[i][cell_[k]]) - static_cast<double>(sent[D3Q19::opposite(i)][cell_[k]]));
-  }
   const Vec3 &v = own.velocity, &w = own.angular_velocity;
   for (int k = 0; k < count_; ++k) {
     const int tag = static_cast<int>(tag_[k]);
@@ -80,7 +76,10 @@ void UpstreamBodies::let_flow(const Real* const (&sent)[D3Q19::directions], cons
     slip_along_[k] = cx * slip_[0][k] + cy * slip_[1][k] + cz * slip_[2][k];
     const double weight = (3.0 - (cx * cx + cy * cy + cz * cz)) * (1.0 / 36.0);
     const double at_rest = 3.0 * weight * (1.0 + deviation_[k]) * (cx * wx + cy * wy + cz * wz + slip_along_[k]);
-    odd_change_[k] = (1.0 - flow.kept) * (at_rest - odd_[k]);
+    const int i = tag & static_cast<int>(LinkTag::direction_mask);
+    const double odd =
+        0.5 * (static_cast<double>(sent[i][cell_[k]]) - static_cast<double>(sent[D3Q19::opposite(i)][cell_[k]]));
+    odd_change_[k] = (1.0 - flow.kept) * (at_rest - odd);
   }
 }
 

@@ -74,7 +74,7 @@ private:
   // The crossing from both centres, and the other's motion.
   alignas(64) double distance_[capacity] = {}, own_arm_[3][capacity] = {};
   alignas(64) double arm_[3][capacity] = {}, velocity_[3][capacity] = {}, spin_[3][capacity] = {};
-  alignas(64) double deviation_[capacity] = {}, odd_[capacity] = {}, fluid_velocity_[3][capacity] = {};
+  alignas(64) double deviation_[capacity] = {}, fluid_velocity_[3][capacity] = {};
   alignas(64) double slip_[3][capacity] = {}, slip_along_[capacity] = {}, odd_change_[capacity] = {},
                      population_[capacity] = {};
 };

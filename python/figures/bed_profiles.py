@@ -66,7 +66,7 @@ def stresses(run):
         reynolds = -run.case["fluid"]["density"] * share * component(fluid, "reynolds_stress", "xz")
         found.append(("fluid: resolved eddies", fluid["z"], reynolds))
     if len(run.grains) and "fluid_stress" in run.grains[-1].arrays:
-        pictures = layer_profiles(run, start=(run.case.get("analysis") or {})["grain_profiles"].get("from", 0.0))
+        pictures = layer_profiles(run, start=run.averaged_from("grain_profiles"))
         found.append(("rotation stress", pictures["z"], pictures["rotation_stress"]))
     return found
 

@@ -67,7 +67,7 @@ def transport_rate(run, start=None, stop=np.inf):
     if "q_star" not in run.series:
         raise RunFolderError(f"{run.folder / 'series.csv'}: it has no column q_star (analysis.transport_rate in the case).")
     if start is None:
-        start = float(((run.case.get("analysis") or {}).get("transport_rate") or {}).get("from", 0.0))
+        start = run.averaged_from("transport_rate")
     time = run.series["time"]
     counted = (time >= start - 1e-9) & (time <= stop + 1e-9)
     if not counted.any():

@@ -65,7 +65,7 @@ def window(run, start=None, stop=None):
     times = run.series["time"]
     stop = float(times[-1]) if stop is None else stop
     if start is None:
-        start = float(((run.case.get("analysis") or {}).get("transport_rate") or {}).get("from", 0.0)) or 0.5 * stop
+        start = run.averaged_from("transport_rate") or 0.5 * stop
     if not start < stop or start >= times[-1]:
         raise RunFolderError(f"{run.folder}: there is nothing to average from {start:g} to {stop:g} s: the run has come to "
                              f"{times[-1]:g} s. Give other times.")

@@ -112,6 +112,10 @@ class Run:
         latest = self.folder / "checkpoints" / "latest"
         return latest.parent / latest.read_text().strip() if latest.exists() else None
 
+    def averaged_from(self, observer):
+        """Time (s) at which the means of an observer begin, by its key in the case's `analysis`."""
+        return float(((self.case.get("analysis") or {}).get(observer) or {}).get("from", 0.0))
+
     @property
     def name(self):
         return self.case.get("name", self.folder.name)

@@ -62,6 +62,15 @@ class ProgramTest(unittest.TestCase):
         checkpoints = self.folder / run / "checkpoints"
         return checkpoints / (checkpoints / "latest").read_text().strip()
 
+    def assert_same_state(self, watched, alone):
+        """All that the last checkpoint of `alone` holds of grains and fluid has the same bits in that of `watched`."""
+        names = []
+        with h5py.File(self.last_checkpoint(watched)) as a, h5py.File(self.last_checkpoint(alone)) as b:
+            b.visititems(lambda name, item: names.append(name) if isinstance(item, h5py.Dataset) else None)
+            self.assertTrue(any("position" in name for name in names) and any("populations" in name for name in names))
+            for name in names:
+                self.assertEqual(a[name][()].tobytes(), b[name][()].tobytes(), name)
+
     def assert_refused(self, *arguments, words, ranks=0):
         """Exit code 2, one sentence with the words on standard error, nothing written anywhere."""
         before = files_below(self.folder)
