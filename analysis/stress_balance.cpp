@@ -13,6 +13,11 @@
 
 namespace thalweg::analysis {
 
+bool is_held(const std::vector<HeldGrains>& held, GlobalId id) {
+  return std::any_of(held.begin(), held.end(),
+                     [id](const HeldGrains& some) { return id >= some.first && id < some.end; });
+}
+
 StressBalance::StressBalance(MPI_Comm communicator, const Decomposition& decomposition, double layer,
                              const BalanceSchedule& schedule, const BalanceScales& scales, std::vector<HeldGrains> held)
     : communicator_(communicator),
@@ -64,11 +69,6 @@ void StressBalance::add_fluid(const MomentumBook& book) {
   }
 }
 
-bool StressBalance::is_held(GlobalId id) const {
-  return std::any_of(held_.begin(), held_.end(),
-                     [id](const HeldGrains& held) { return id >= held.first && id < held.end; });
-}
-
 void StressBalance::add_grains(const Snapshot& snapshot) {
   const GrainView& grains = snapshot.grains;
   if (grains.global_count == 0) return;
@@ -79,7 +79,8 @@ void StressBalance::add_grains(const Snapshot& snapshot) {
     const double radius = grains.radius[i], lowest = grains.position[i][2] - radius, whole = volume_of(radius, 0.0);
     const Vec3 &v = grains.velocity[i], &by_fluid = grains.fluid_force[i], &by_contacts = grains.contact_force[i];
     const Mat3 of_fluid = grains.fluid_stress.empty() ? Mat3(Mat3::Zero()) : Mat3(whole * grains.fluid_stress[i]);
-    const double outer = is_held(grains.id[i]) ? -(by_fluid.x() + by_contacts.x()) : grains.mass[i] * scales_.gravity_x;
+    const double outer =
+        is_held(held_, grains.id[i]) ? -(by_fluid.x() + by_contacts.x()) : grains.mass[i] * scales_.gravity_x;
     for (int layer = layers_.at(lowest); layer <= layers_.at(lowest + 2.0 * radius); ++layer) {
       const double from = layers_.bottom(layer) - lowest, to = from + layers_.height(layer);
       const double part = volume_between(radius, 0.0, from, to), share = part / whole, m = share * grains.mass[i];

@@ -51,6 +51,7 @@ struct BalanceScales {
 struct HeldGrains {
   GlobalId first = 0, end = 0;
 };
+bool is_held(const std::vector<HeldGrains>& held, GlobalId id);
 
 class StressBalance : public Observer {
 public:
@@ -111,7 +112,6 @@ private:
   void add_fluid(const MomentumBook& book);
   void add_grains(const Snapshot& snapshot);
   void add_grains_at_sides(const Snapshot& snapshot);
-  bool is_held(GlobalId id) const;
   std::array<double, fluid_columns> fluid_of(int layer) const;
   LayerMeans means_of(int layer) const;
   void set_fluid_means(int layer, LayerMeans& means) const;

@@ -23,6 +23,10 @@ bool wants(const std::vector<FluidField>& wanted, std::initializer_list<FluidFie
   return std::find_first_of(wanted.begin(), wanted.end(), any.begin(), any.end()) != wanted.end();
 }
 
+FluidSource::State in_si(const lbm::FluidState& state, const Units& units) {
+  return {state.velocity * units.velocity(), state.density_deviation * (units.stress() / 3.0)};
+}
+
 void put(std::vector<float>& values, std::size_t at, const Vec3& v) {
   for (int a = 0; a < 3; ++a) values[3 * at + a] = static_cast<float>(v[a]);
 }
@@ -35,9 +39,9 @@ void sample_states(const lbm::Fluid<Real>& fluid, const SampleContext& context, 
     if (!fields.grain_id.empty()) fields.grain_id[at] = body == lbm::CellMap::fluid ? -1 : context.grain_id(body);
     if (body != lbm::CellMap::fluid) return;
     const lbm::FluidState state = fluid.state_at(cell);
-    if (!fields.velocity.empty()) put(fields.velocity, at, state.velocity * units.velocity());
-    if (!fields.pressure.empty())
-      fields.pressure[at] = static_cast<float>(state.density_deviation * (units.stress() / 3.0));
+    const FluidSource::State shown = in_si(state, units);
+    if (!fields.velocity.empty()) put(fields.velocity, at, shown.velocity);
+    if (!fields.pressure.empty()) fields.pressure[at] = static_cast<float>(shown.pressure);
     if (!fields.density.empty())
       fields.density[at] = static_cast<float>((1.0 + state.density_deviation) * units.density);
   });
@@ -107,8 +111,7 @@ std::optional<FluidSource::State> state_of(const lbm::Fluid<Real>& fluid, const 
   const Index3& from = fluid.block().lower;
   const std::ptrdiff_t index = fluid.indexing().index(cell[0] - from[0], cell[1] - from[1], cell[2] - from[2]);
   if (!fluid.cells().is_fluid(index)) return std::nullopt;
-  const lbm::FluidState state = fluid.state_at(index);
-  return FluidSource::State{state.velocity * units.velocity(), state.density_deviation * (units.stress() / 3.0)};
+  return in_si(fluid.state_at(index), units);
 }
 
 template std::optional<FluidSource::State> state_of(const lbm::Fluid<float>&, const Units&, const Index3&);

@@ -59,12 +59,11 @@ std::vector<PlaneMomentum> planes_of(const lbm::Fluid<Real>& fluid, const Units&
   return all;
 }
 
-// entries: of a block, one for each plane of cells (`per_plane` 1) or half plane (2, and one more).
+// entries: of a block, 2 n_z + 1 by half planes.
 template <typename Real>
-std::vector<Vec3> over_ranks(const std::vector<FixedVec3>& entries, int per_plane, const lbm::Fluid<Real>& fluid,
-                             double unit) {
-  const std::size_t first = static_cast<std::size_t>(per_plane * fluid.block().lower[2]);
-  const auto all = static_cast<std::size_t>(per_plane * fluid.decomposition().cells()[2] + per_plane - 1);
+std::vector<Vec3> over_ranks(const std::vector<FixedVec3>& entries, const lbm::Fluid<Real>& fluid, double unit) {
+  const auto first = static_cast<std::size_t>(2 * fluid.block().lower[2]),
+             all = static_cast<std::size_t>(2 * fluid.decomposition().cells()[2] + 1);
   std::vector<std::int64_t> sums(3 * all, 0);
   for (std::size_t h = 0; h < entries.size(); ++h) {
     sums[3 * (first + h)] = entries[h].x;
@@ -85,10 +84,10 @@ MomentumBook book_of(lbm::Fluid<Real>& fluid, const Units& units, double referen
                      const std::vector<FixedVec3>& on_grains) {
   MomentumBook book;
   book.planes = planes_of(fluid, units);
-  book.on_grains = over_ranks(on_grains, 2, fluid, units.force());
+  book.on_grains = over_ranks(on_grains, fluid, units.force());
   std::vector<FixedVec3> on_sides(on_grains.size());
   book.on_top = fluid.wall_forces(reference, &on_sides)[5] * units.force();
-  book.on_sides = over_ranks(on_sides, 2, fluid, units.force());
+  book.on_sides = over_ranks(on_sides, fluid, units.force());
   const double(&force)[3] = fluid.parameters().force;
   book.driving = Vec3(force[0], force[1], force[2]) * (units.stress() / units.spacing);
   return book;

@@ -146,10 +146,7 @@ std::unique_ptr<analysis::Entrainment> entrainment_of(const Case& c, const Syste
   settings.displacement = asked_for.displacement;
   settings.rest_time = asked_for.rest_time;
   settings.moving_speed = transport_scales(c).moving_speed();
-  settings.held = [held = held_grains(c)](GlobalId id) {
-    return std::any_of(held.begin(), held.end(),
-                       [id](const analysis::HeldGrains& some) { return id >= some.first && id < some.end; });
-  };
+  settings.held = [held = held_grains(c)](GlobalId id) { return analysis::is_held(held, id); };
   settings.weight = submerged_weight(c);
   settings.buoyancy = buoyancy_in_load(c);
   return std::make_unique<analysis::Entrainment>(communicator, system.snapshot().decomposition->box(),

@@ -34,13 +34,9 @@ void UpstreamBodies::measure_velocity(const Real* const (&sent)[D3Q19::direction
   const int n = count_;
   for (int a = 0; a < 3; ++a) std::fill_n(fluid_velocity_[a], n, -0.5 * force[a]);
   for (int i = 1; i < D3Q19::directions; ++i)
-    for (int a = 0; a < 3; ++a) {
-      const Real* values = sent[i];
-      double* sum = fluid_velocity_[a];
-      if (D3Q19::c[i][a] > 0)
-        for (int k = 0; k < n; ++k) sum[k] += static_cast<double>(values[cell_[k]]);
-      else if (D3Q19::c[i][a] < 0)
-        for (int k = 0; k < n; ++k) sum[k] -= static_cast<double>(values[cell_[k]]);
+    for (int k = 0; k < n; ++k) {
+      const auto f = static_cast<double>(sent[i][cell_[k]]);
+      for (int a = 0; a < 3; ++a) fluid_velocity_[a][k] += D3Q19::c[i][a] * f;
     }
   for (double(&component)[capacity] : fluid_velocity_)
     for (int k = 0; k < n; ++k) component[k] /= 1.0 + deviation_[k];
