@@ -35,6 +35,9 @@ using LatticeFixed = FixedPoint<44>;
 struct FixedVec3 {
   std::int64_t x = 0, y = 0, z = 0;
 
+  static FixedVec3 from(const Vec3& v) {
+    return {LatticeFixed::from(v.x()), LatticeFixed::from(v.y()), LatticeFixed::from(v.z())};
+  }
   FixedVec3& operator+=(const FixedVec3& other) {
     x += other.x;
     y += other.y;
@@ -48,6 +51,10 @@ struct FixedVec3 {
 struct FixedTensor {
   std::array<std::int64_t, 9> sums{};
 
+  // Adds a_i b_j.
+  void add(const Vec3& a, const Vec3& b) {
+    for (int k = 0; k < 9; ++k) sums[static_cast<std::size_t>(k)] += LatticeFixed::from(a[k / 3] * b[k % 3]);
+  }
   Mat3 to_mat3() const {
     Mat3 m;
     for (int k = 0; k < 9; ++k) m(k / 3, k % 3) = LatticeFixed::to_double(sums[static_cast<std::size_t>(k)]);

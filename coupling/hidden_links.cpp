@@ -123,9 +123,6 @@ Vec3 HiddenLinks::momentum_of(const Link& link, const Vec3& from, double distanc
 }
 
 void HiddenLinks::apply(std::vector<lbm::LinkBody>& bodies, std::vector<FixedTensor>* moments) const {
-  const auto fixed = [](const Vec3& v) {
-    return FixedVec3{LatticeFixed::from(v.x()), LatticeFixed::from(v.y()), LatticeFixed::from(v.z())};
-  };
   for (std::size_t slot = 0; slot < links_.size(); ++slot)
     for (const Link& link : links_[slot]) {
       lbm::LinkBody& body = bodies[slot];
@@ -136,11 +133,9 @@ void HiddenLinks::apply(std::vector<lbm::LinkBody>& bodies, std::vector<FixedTen
       const double met = q > 0.0 ? (-b - std::sqrt(std::max(b * b - a * q, 0.0))) / a : 0.0;
       const double distance = std::clamp(met, 0.0, 1.0);
       const Vec3 momentum = momentum_of(link, from, distance, body, bodies), arm = from + distance * c;
-      body.force += fixed(momentum);
-      body.torque += fixed(arm.cross(momentum));
-      for (std::size_t k = 0; moments && k < 9; ++k)
-        (*moments)[slot].sums[k] +=
-            LatticeFixed::from(momentum[static_cast<int>(k / 3)] * arm[static_cast<int>(k % 3)]);
+      body.force += FixedVec3::from(momentum);
+      body.torque += FixedVec3::from(arm.cross(momentum));
+      if (moments) (*moments)[slot].add(momentum, arm);
     }
 }
 

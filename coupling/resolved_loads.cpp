@@ -45,16 +45,10 @@ void ResolvedSystem<Real>::keep_momentum(lbm::LinkBody& body, int plane, const V
   const Vec3 arm = lattice_box_.difference(position, body.centre);
   const Vec3 wall = body.velocity + body.angular_velocity.cross(arm);
   const Vec3 kept = momentum - 0.5 * Vec3(f[0], f[1], f[2]) - density * wall, torque = arm.cross(kept);
-  const auto fixed = [](const Vec3& v) {
-    return FixedVec3{LatticeFixed::from(v.x()), LatticeFixed::from(v.y()), LatticeFixed::from(v.z())};
-  };
-  body.force += fixed(kept);
-  if (booking_) given_by_height_[static_cast<std::size_t>(2 * plane + 1)] += fixed(kept);
-  body.torque += fixed(torque);
-  if (!moments_.empty())
-    for (int k = 0; k < 9; ++k)
-      moments_[static_cast<std::size_t>(&body - bodies_.data())].sums[static_cast<std::size_t>(k)] +=
-          LatticeFixed::from(kept[k / 3] * arm[k % 3]);
+  body.force += FixedVec3::from(kept);
+  if (booking_) given_by_height_[static_cast<std::size_t>(2 * plane + 1)] += FixedVec3::from(kept);
+  body.torque += FixedVec3::from(torque);
+  if (!moments_.empty()) moments_[static_cast<std::size_t>(&body - bodies_.data())].add(kept, arm);
   step_totals_.kept += kept;
   step_totals_.kept_angular_momentum += body.centre.cross(kept) + torque;
 }
