@@ -8,7 +8,7 @@ import json
 
 import numpy as np
 
-from thalweg import bed
+from thalweg import bed, water
 from thalweg.errors import RunFolderError
 from thalweg.layers import layer_profiles
 from thalweg.means import is_steady, mean_with_error
@@ -108,6 +108,19 @@ def describe_profiles(report):
     if report.run.case.get("fluid"):
         surface = bed.surface_by_solid_fraction(profiles["z"], profiles["solid_fraction"])
         describe_surface(report, "surface_by_solid_fraction", "surface", surface)
+        report.attempt("water", lambda: describe_water(report, surface))
+
+
+def describe_water(report, surface):
+    """Between side walls transport follows the speed of the water steeply, so a run says whether it has the right one."""
+    expected = water.expected_middle_speed(report.run)
+    if expected is None:
+        return
+    above = surface + water.FAR * report.run.size[1]
+    speed = mean_with_error(water.middle_speed(report.run, report.start, report.stop, above))
+    report.numbers["middle_speed"] = {**speed._asdict(), "law_of_the_wall": expected, "above": above}
+    report.say("water", f"{speed.mean:.4g} +- {speed.error:.2g} m/s half-way between the side walls, above {above:.4g} m: "
+                        f"{100 * (speed.mean / expected - 1):+.1f} % from the law of the wall ({expected:.4g} m/s)")
 
 
 def describe_camera(report):

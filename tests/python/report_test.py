@@ -61,6 +61,32 @@ class Report(made_up.MadeUpFolder):
         self.assertAlmostEqual(volume / (480 * np.pi / 6 * D**3), 1.0, 6)
         self.assertEqual(layers.units["velocity_x"], "m/s")
 
+    def write_water(self, speed):
+        """Pictures of the middle plane every 0.1 s in cells of 0.5 mm: `speed` from 0.06 m up, half of it below."""
+        z = (np.arange(297) + 0.5) * 0.5e-3
+        velocity = np.zeros((297, 1, 24, 3))
+        velocity[..., 0] = np.where(z > 0.06, speed, 0.5 * speed)[:, None, None]
+        grain = np.full((297, 1, 24), -1)
+        velocity[250, 0, 3], grain[250, 0, 3] = 0.0, 7   # a cell under a grain does not count
+        names = [(0.1 * n, f"fluid/fluid_{n}.vti") for n in range(41)]
+        for _, name in names:
+            made_up.write_image(self.folder / name, (0, 24, 10, 11, 0, 297), 0.5e-3, {"velocity": velocity, "grain_id": grain})
+        made_up.write_index(self.folder / "fluid.pvd", names)
+
+    def test_water_between_side_walls(self):
+        self.write_bed()
+        missing = report_of(thalweg.Run(self.folder))
+        self.assertTrue(any(line.startswith("water") and "left out" in line for line in missing.lines))
+        # ln(y+)/0.41 + 5 at y+ = 325, by hand: half of 10.5 mm, slope 0.0748, u_tau = 0.0619 m/s.
+        friction_velocity = np.sqrt(9.8 * np.sin(np.arctan(0.0748)) * 5.25e-3)
+        expected = friction_velocity * (np.log(friction_velocity * 5.25e-3 / 1e-6) / 0.41 + 5.0)
+        self.assertAlmostEqual(expected, 1.184, 2)
+        self.write_water(0.9 * expected)
+        report = report_of(thalweg.Run(self.folder))
+        self.assertAlmostEqual(report.numbers["middle_speed"]["law_of_the_wall"], expected, 9)
+        self.assertAlmostEqual(report.numbers["middle_speed"]["mean"], 0.9 * expected, 6)
+        self.assertTrue(any(line.startswith("water") and "-10.0 %" in line for line in report.lines))
+
     def test_times(self):
         run = thalweg.Run(self.folder)
         self.assertEqual(window(run), (1.0, 4.0))
