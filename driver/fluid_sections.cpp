@@ -51,14 +51,14 @@ void describe(io::SectionVisitor& visit, FluidCase& fluid) {
     visit.not_here("magic_parameter", "only collision trt has a magic parameter; remove it");
   visit.real("bulk_relaxation_time", fluid.bulk_relaxation_time,
              {.meaning = "of the trace of the stress, in steps: damps sound, and nothing else, by a bulk viscosity of "
-                         "2/9 (it - 1/2); 0: as the shear's, the published method; where not given 3 with grains, bgk "
+                         "2/9 (it - 1/2); 0: as the shear's, the published method; where not given 1 with grains, bgk "
                          "and a subgrid model, else 0",
               .at_least = 0.0,
               .at_most = 1000.0,
-              .example = 3.0});
+              .example = 1.0});
   const double bulk = fluid.bulk_relaxation_time.value_or(0.0);
   visit.require(bulk == 0.0 || bulk > 0.5, "bulk_relaxation_time",
-                "a fluid damps sound only above 1/2; give more than 0.5 steps, for example 3, or 0 for that of the "
+                "a fluid damps sound only above 1/2; give more than 0.5 steps, for example 1, or 0 for that of the "
                 "shear");
   visit.choice<Precision>("precision", fluid.precision, {{Precision::single, "single"}, {Precision::double_, "double"}},
                           {.meaning = "of the stored populations"});

@@ -32,7 +32,10 @@ def save(figure, path):
 
 
 def draw_bed(run, time, path):
-    """The grains, coloured by speed, before the fluid's speed in the middle plane."""
+    """The grains, coloured by speed, before the fluid's speed in the middle plane, as near to each other in time as the
+    pictures allow."""
+    if time is None and run.fluid:
+        time = run.fluid.times[-1]
     grains = run.grains.nearest(time)
     if grains is None:
         raise thalweg.RunFolderError(f"{run.folder}: no picture of the grains yet (output.grains.every in the case).")

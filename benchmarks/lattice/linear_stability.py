@@ -74,6 +74,15 @@ def stream(excess, speed, model, tau_bulk=None, waves=8):
                for kx in sides for ky in sides for kz in sides)
 
 
+def largest_stable_stream(excess, tau_bulk):
+    stable = 0.0
+    for speed in np.arange(1, 9) * 0.02:
+        if stream(excess, speed, "bgk", tau_bulk) > 1e-9:
+            break
+        stable = speed
+    return stable
+
+
 def main():
     models = ("bgk", "trt", "regularised")
     print("Couette flow, lid at 0.1: growth a step, and its wave number along and across the flow in units of pi\n")
@@ -92,6 +101,12 @@ def main():
     for excess in (0.1, 0.05, 0.03, 0.01, 0.003, 0.001):
         print(f"| {excess:g} | " + " | ".join("stable" if g < 1e-9 else f"{g:.4f}"
                                              for g in (stream(excess, 0.05, m, 3) for m in models)) + " |", flush=True)
+
+    times = (None, 1, 1.5, 2, 3, 10)
+    print("\nUniform stream, bgk: the largest velocity in steps of 0.02 that is stable, up to 0.16\n")
+    print("| tau - 1/2 | bulk as the shear | " + " | ".join(f"{t:g}" for t in times[1:]) + " |\n" + "|---" * (len(times) + 1) + "|")
+    for excess in (0.01, 0.003, 0.001):
+        print(f"| {excess:g} | " + " | ".join(f"{largest_stable_stream(excess, t):.2f}" for t in times) + " |", flush=True)
 
 
 if __name__ == "__main__":

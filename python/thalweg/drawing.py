@@ -105,7 +105,8 @@ def bed_figure(run, frame, fluid=None, largest_speed=None, largest_flow=None, sc
     size = run.size
     speed = np.linalg.norm(frame.velocity, axis=1)
     if largest_speed is None:
-        largest_speed = max(np.quantile(speed, 0.98), 1e-3)
+        moving = speed >= 0.1 * speed.max()
+        largest_speed = max(np.quantile(speed[moving], 0.9), 1e-3)
     position, radius, speed = with_periodic_images(frame.position, frame.radius, speed, size, run.periodic)
     extent = np.array([0.0, size[0], 0.0, size[2]])
     if scale is None:

@@ -132,5 +132,21 @@ TEST(Case, WarnsOfABulkViscosityThatMakesTrtUnstable) {
   EXPECT_EQ(warnings(c).size(), without);
 }
 
+// docs/stability.md: at tau - 1/2 = 0.003 a stream is stable up to 0.10 cells a step with three steps, 0.16 with one.
+TEST(Case, WarnsOfABulkViscosityThatMakesAFastStreamUnstable) {
+  Case c = wide_bed();
+  c.run.until = 30.0;
+  c.fluid.collision = Collision::bgk;
+  c.fluid.smagorinsky_constant = 0.27;
+  c.fluid.bulk_relaxation_time = 3.0;
+  c.fluid.expected_velocity = 0.09 * units_of(c).velocity();
+  EXPECT_TRUE(warnings(c).empty());
+  c.fluid.expected_velocity = 0.11 * units_of(c).velocity();
+  ASSERT_EQ(warnings(c).size(), 1u);
+  EXPECT_NE(warnings(c)[0].find("grows stripes"), std::string::npos);
+  c.fluid.bulk_relaxation_time = 1.0;
+  EXPECT_TRUE(warnings(c).empty());
+}
+
 }  // namespace
 }  // namespace thalweg
