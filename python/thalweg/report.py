@@ -113,14 +113,16 @@ def describe_profiles(report):
 
 def describe_water(report, surface):
     """Between side walls transport follows the speed of the water steeply, so a run says whether it has the right one."""
-    expected = water.expected_middle_speed(report.run)
+    run, expected = report.run, water.expected_speeds(report.run)
     if expected is None:
         return
-    above = surface + water.FAR * report.run.size[1]
-    speed = mean_with_error(water.middle_speed(report.run, report.start, report.stop, above))
-    report.numbers["middle_speed"] = {**speed._asdict(), "law_of_the_wall": expected, "above": above}
-    report.say("water", f"{speed.mean:.4g} +- {speed.error:.2g} m/s half-way between the side walls, above {above:.4g} m: "
-                        f"{100 * (speed.mean / expected - 1):+.1f} % from the law of the wall ({expected:.4g} m/s)")
+    above = surface + water.FAR * run.size[1]
+    speeds, since = water.measured_speeds(run, above), run.averaged_from("fluid_statistics")
+    report.numbers["water"] = {"above": above, "from": since, "mean_speed": speeds.mean, "middle_speed": speeds.middle,
+                               "law_of_the_wall": expected._asdict()}
+    mean, middle = (f"{value:.4g} m/s ({100 * (value / right - 1):+.1f} %" for value, right in zip(speeds, expected))
+    report.say("water", f"above {above:.4g} m, from {since:g} s on: {mean} from the law of the wall at the side walls), "
+                        f"half-way between them {middle})")
 
 
 def describe_camera(report):

@@ -2,6 +2,7 @@
 import json
 import unittest
 
+import h5py
 import numpy as np
 
 import made_up_folder as made_up
@@ -61,31 +62,37 @@ class Report(made_up.MadeUpFolder):
         self.assertAlmostEqual(volume / (480 * np.pi / 6 * D**3), 1.0, 6)
         self.assertEqual(layers.units["velocity_x"], "m/s")
 
-    def write_water(self, speed):
-        """Pictures of the middle plane every 0.1 s in cells of 0.5 mm: `speed` from 0.06 m up, half of it below."""
+    def write_water(self, shape):
+        """profiles.h5 with the fluid at shape (fractions of one, across the width) from 0.06 m up and at rest below."""
         z = (np.arange(297) + 0.5) * 0.5e-3
-        velocity = np.zeros((297, 1, 24, 3))
-        velocity[..., 0] = np.where(z > 0.06, speed, 0.5 * speed)[:, None, None]
-        grain = np.full((297, 1, 24), -1)
-        velocity[250, 0, 3], grain[250, 0, 3] = 0.0, 7   # a cell under a grain does not count
-        names = [(0.1 * n, f"fluid/fluid_{n}.vti") for n in range(41)]
-        for _, name in names:
-            made_up.write_image(self.folder / name, (0, 24, 10, 11, 0, 297), 0.5e-3, {"velocity": velocity, "grain_id": grain})
-        made_up.write_index(self.folder / "fluid.pvd", names)
+        velocity = np.zeros((297, len(shape), 3))
+        velocity[..., 0] = np.where(z[:, None] > 0.06, shape, 0.0)
+        with h5py.File(self.folder / "profiles.h5", "w") as file:
+            group = file.create_group("fluid_statistics")
+            group["z"], group["section_velocity"] = z, velocity
+            group["section_fluid_fraction"] = np.ones(velocity.shape[:2])
 
     def test_water_between_side_walls(self):
         self.write_bed()
         missing = report_of(thalweg.Run(self.folder))
         self.assertTrue(any(line.startswith("water") and "left out" in line for line in missing.lines))
-        # ln(y+)/0.41 + 5 at y+ = 325, by hand: half of 10.5 mm, slope 0.0748, u_tau = 0.0619 m/s.
+        # Half of 10.5 mm and a slope of 0.0748 make u_tau = 0.0619 m/s, and y+ = 325 in the middle. The mean by the integrals
+        # of y+ up to 10.8, and of ln(y+)/0.41 + 5 from there.
         friction_velocity = np.sqrt(9.8 * np.sin(np.arctan(0.0748)) * 5.25e-3)
-        expected = friction_velocity * (np.log(friction_velocity * 5.25e-3 / 1e-6) / 0.41 + 5.0)
-        self.assertAlmostEqual(expected, 1.184, 2)
-        self.write_water(0.9 * expected)
-        report = report_of(thalweg.Run(self.folder))
-        self.assertAlmostEqual(report.numbers["middle_speed"]["law_of_the_wall"], expected, 9)
-        self.assertAlmostEqual(report.numbers["middle_speed"]["mean"], 0.9 * expected, 6)
-        self.assertTrue(any(line.startswith("water") and "-10.0 %" in line for line in report.lines))
+        middle = friction_velocity * (np.log(friction_velocity * 5.25e-3 / 1e-6) / 0.41 + 5.0)
+        width, sublayer = friction_velocity * 5.25e-3 / 1e-6, 10.8
+        log_law = [end * (np.log(end) - 1) / 0.41 + 5 * end for end in (sublayer, width)]
+        mean = friction_velocity * (0.5 * sublayer**2 + log_law[1] - log_law[0]) / width
+        self.assertAlmostEqual(middle, 1.184, 2)
+        for shape in (np.array([0.8, 1.0, 0.8]) * middle, np.array([0.8, 1.0, 1.0, 0.8]) * middle):
+            self.write_water(shape)
+            report = report_of(thalweg.Run(self.folder))
+            found = report.numbers["water"]
+            self.assertAlmostEqual(found["law_of_the_wall"]["middle"], middle, 9)
+            self.assertAlmostEqual(found["law_of_the_wall"]["mean"] / mean, 1.0, 4)
+            self.assertAlmostEqual(found["middle_speed"], middle, 9)
+            self.assertAlmostEqual(found["mean_speed"], shape.mean(), 9)
+            self.assertTrue(any(line.startswith("water") and "(+0.0 %)" in line for line in report.lines))
 
     def test_times(self):
         run = thalweg.Run(self.folder)

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""q* of the flume against the speed of its water: water_speed.py RUN_FOLDER... [--from SECONDS] [--figure FILE] [--table FILE]
+"""q* of the flume against the speed of its water: water_speed.py RUN_FOLDER... [--figure FILE] [--table FILE]
 
-A point is the mean over one second of a run, from --from on, that has pictures of the fluid: q*, and the speed half-way between the side walls from two
-widths above the bed, over that of the law of the wall (thalweg.water). Open symbols: trt.
+A point is the mean of a run while its fluid was averaged (analysis.fluid_statistics.from): q* with its standard error, and
+the speed of the water over the width, from two widths above the bed, over that of the law of the wall at the side walls
+(thalweg.water). Open symbols: trt; squares: ten cells a diameter.
 """
 import argparse
 import csv
@@ -12,34 +13,26 @@ from pathlib import Path
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
-import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 import thalweg
 from thalweg import bed, water
 
-WINDOW = 1.0   # s
 PAPER_MEAN, PAPER_DEVIATION = 0.089, 0.019
 
 
-def points_of(run, begin):
-    """Rows: begin of the window (s), speed over the law of the wall's, q*."""
-    time, rate = bed.transport_rate(run, begin)
-    above = bed.bed_height(run, begin, time[-1]) + water.FAR * run.size[1]
-    rows = []
-    for start in np.arange(begin, time[-1] - 0.9 * WINDOW, WINDOW):
-        if not len(run.fluid.between(start, start + WINDOW)):
-            continue
-        inside = (time >= start) & (time < start + WINDOW)
-        speed = water.middle_speed(run, start, start + WINDOW, above).mean()
-        rows.append((start, speed / water.expected_middle_speed(run), rate[inside].mean()))
-    return np.array(rows)
+def measure(run):
+    """Mean of q*, and the speeds over those of the law of the wall."""
+    start = run.averaged_from("fluid_statistics")
+    _, rate = bed.transport_rate(run, start)
+    above = bed.bed_height(run, start, run.series["time"][-1]) + water.FAR * run.size[1]
+    speeds, expected = water.measured_speeds(run, above), water.expected_speeds(run)
+    return thalweg.mean_with_error(rate), speeds.mean / expected.mean, speeds.middle / expected.middle
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("runs", nargs="+", type=Path, metavar="RUN_FOLDER")
-    parser.add_argument("--from", dest="begin", type=float, default=0.0, help="s")
     parser.add_argument("--figure", default="water_speed.png")
     parser.add_argument("--table")
     arguments = parser.parse_args()
@@ -47,21 +40,23 @@ def main():
     _, axes = plt.subplots(figsize=(6.5, 4.2), layout="constrained")
     for n, folder in enumerate(arguments.runs):
         run = thalweg.Run(folder)
-        rows = points_of(run, arguments.begin)
+        rate, mean, middle = measure(run)
         open_symbol = run.case["fluid"]["collision"] == "trt"
         fine = run.diameter / run.case["domain"]["spacing"] > 8.0
-        axes.plot(rows[:, 1], rows[:, 2], "s" if fine else "o", color=f"C{n % 10}", mfc="none" if open_symbol else None,
-                  label=folder.name)
-        table += [[folder.name, f"{start:.1f}", f"{speed:.3f}", f"{rate:.4f}"] for start, speed, rate in rows]
+        axes.errorbar(mean, rate.mean, rate.error, fmt="s" if fine else "o", color=f"C{n % 10}", capsize=3,
+                      mfc="none" if open_symbol else None, label=folder.name)
+        table.append([folder.name, f"{mean:.3f}", f"{middle:.3f}", f"{rate.mean:.4f}", f"{rate.error:.4f}"])
     axes.axhspan(PAPER_MEAN - PAPER_DEVIATION, PAPER_MEAN + PAPER_DEVIATION, color="0.9",
                  label="Zhang et al. at 0.028, mean and deviation")
     axes.axvline(1.0, color="0.6", lw=1)
-    axes.set(xlabel="speed of the water over that of the law of the wall", ylabel="q*", ylim=(0.0, None))
+    axes.set(xlabel="mean speed of the water over that of the law of the wall", ylabel="q*", ylim=(0.0, None))
     axes.legend(fontsize=7, loc="upper left")
     plt.savefig(arguments.figure, dpi=110)
+    header = ["run", "mean speed over law of the wall [1]", "middle speed over law of the wall [1]", "q_star [1]", "error [1]"]
+    print("\n".join(", ".join(row) for row in [header, *table]))
     if arguments.table:
         with open(arguments.table, "w", newline="", encoding="utf-8") as file:
-            csv.writer(file).writerows([["run", "from [s]", "speed over law of the wall [1]", "q_star [1]"], *table])
+            csv.writer(file).writerows([header, *table])
 
 
 if __name__ == "__main__":
