@@ -12,11 +12,15 @@
 // m.
 #pragma once
 
+#include "core/named_choice.hpp"
 #include "core/types.hpp"
+
+#include <vector>
 
 namespace thalweg::coupling {
 
 enum class LoadRule { extrapolated, mean };
+std::vector<NamedChoice<LoadRule>> choices_of(LoadRule);  // its words in a case file
 
 // exchanges: how many there have been before this one; those missing are left out.
 inline Vec3 load_of(LoadRule rule, int exchanges, const Vec3& now, const Vec3& last, const Vec3& before_last) {

@@ -19,6 +19,7 @@
 #include "core/fixed_point.hpp"
 #include "coupling/grain_map.hpp"
 #include "coupling/hydrostatic.hpp"
+#include "coupling/refill_rule.hpp"
 #include "lbm/fluid.hpp"
 
 #include <mpi.h>
@@ -27,8 +28,6 @@
 #include <vector>
 
 namespace thalweg::coupling {
-
-enum class RefillRule { equilibrium, non_equilibrium, grad };
 
 struct RefillTotals {
   std::int64_t cells = 0;                // this rank's uncovered cells

@@ -23,6 +23,7 @@
 #include "dem/ghost_exchange.hpp"
 #include "dem/grain_seed.hpp"
 #include "dem/grain_store.hpp"
+#include "dem/integrator.hpp"
 #include "dem/lubrication.hpp"
 #include "dem/material.hpp"
 #include "dem/moving_grains.hpp"
@@ -39,8 +40,6 @@
 #include <vector>
 
 namespace thalweg::dem {
-
-enum class Integrator { velocity_verlet, gear };
 
 struct GrainParameters {
   ContactParameters contact;                       // material 0

@@ -9,29 +9,16 @@ namespace thalweg::driver {
 
 namespace {
 
-coupling::RefillRule refill_rule(Refill refill) {
-  switch (refill) {
-    case Refill::equilibrium:
-      return coupling::RefillRule::equilibrium;
-    case Refill::non_equilibrium:
-      return coupling::RefillRule::non_equilibrium;
-    case Refill::grad:
-      return coupling::RefillRule::grad;
-  }
-  return coupling::RefillRule::equilibrium;
-}
-
 template <typename Real>
 std::unique_ptr<System> build(const Case& c, MPI_Comm communicator, const Index3& layout) {
   auto decomposition = std::make_unique<Decomposition>(decomposition_of(c, layout));
   coupling::ResolvedParameters parameters;
   static_cast<coupling::FluidParameters&>(parameters) = fluid_parameters(c);
   parameters.link_tolerance = c.coupling.link_tolerance;
-  parameters.load =
-      c.coupling.load == GrainLoad::mean ? coupling::LoadRule::mean : coupling::LoadRule::extrapolated;
+  parameters.load = c.coupling.load;
   parameters.keep_covered_momentum = c.coupling.covered_momentum == CoveredMomentum::to_grain;
   parameters.mass_balance = c.coupling.mass_balance;
-  parameters.refill = refill_rule(c.coupling.refill);
+  parameters.refill = c.coupling.refill;
   parameters.paper_near_contact = c.coupling.near_contact == NearContact::paper;
   parameters.grain_stress = c.coupling.grain_stress || c.analysis.stress_balance.has_value();
   parameters.wall_forces = c.analysis.wall_forces.has_value();

@@ -4,8 +4,14 @@
 
 #include "core/types.hpp"
 #include "core/units.hpp"
+#include "coupling/load_rule.hpp"
+#include "coupling/refill_rule.hpp"
+#include "dem/integrator.hpp"
 #include "driver/grain_case.hpp"
+#include "driver/out_of_bounds.hpp"
 #include "io/fluid_series.hpp"
+#include "lbm/collision_parameters.hpp"
+#include "lbm/link_options.hpp"
 
 #include <array>
 #include <cstdint>
@@ -68,7 +74,6 @@ struct DomainCase {
   bool operator==(const DomainCase&) const = default;
 };
 
-enum class Collision { bgk, trt, regularised };
 enum class Precision { single, double_ };
 
 // A mean velocity of the fluid that the body force is steered to, in place of gravity along that axis.
@@ -85,9 +90,9 @@ struct FluidCase {
   std::optional<double> time_step;                 // s; else from the two velocities
   std::optional<double> maximum_lattice_velocity;  // cells per step
   std::optional<double> expected_velocity;         // m/s, the largest
-  Collision collision = Collision::bgk;
+  lbm::CollisionModel collision = lbm::CollisionModel::bgk;
   double magic_parameter = 3.0 / 16.0;  // of trt
-  // 1, of the trace of the stress; 0: as the shear's. Read as 3 with grains, bgk and a subgrid model, else 0.
+  // 1, of the trace of the stress; 0: as the shear's. Read as 1 with grains, bgk and a subgrid model, else 0.
   std::optional<double> bulk_relaxation_time;
   Precision precision = Precision::single;
   std::optional<FlowTargetCase> mean_velocity;
@@ -122,14 +127,8 @@ struct SolidCase {
   bool operator==(const SolidCase&) const = default;
 };
 
-enum class MomentumExchange { galilean_invariant, classical };
-enum class WallDensity { local, reference };
-enum class LinkRule { bouzidi, cli };
-enum class NarrowGaps { no_slip, slip };
 enum class NearContact { subtracted, paper };
-enum class Refill { equilibrium, non_equilibrium, grad };
 enum class CoveredMomentum { lost, to_grain };
-enum class GrainLoad { extrapolated, mean };
 
 // The part of the lubrication force between near surfaces that the cells cannot resolve.
 struct LubricationCase {
@@ -150,14 +149,14 @@ struct CouplingCase {
   static constexpr std::int64_t as_many_as_needed = 0;
   std::int64_t grain_steps_per_fluid_step = 50;
   double link_tolerance = 1e-3;  // cells a grain may move before the map of its cells follows
-  MomentumExchange momentum_exchange = MomentumExchange::galilean_invariant;
-  WallDensity wall_density = WallDensity::local;
-  LinkRule links = LinkRule::bouzidi;
-  NarrowGaps narrow_gaps = NarrowGaps::no_slip;
+  lbm::MomentumExchange momentum_exchange = lbm::MomentumExchange::galilean_invariant;
+  lbm::WallDensity wall_density = lbm::WallDensity::local;
+  lbm::LinkRule links = lbm::LinkRule::bouzidi;
+  lbm::GapRule narrow_gaps = lbm::GapRule::no_slip;
   NearContact near_contact = NearContact::subtracted;
-  Refill refill = Refill::equilibrium;
+  coupling::RefillRule refill = coupling::RefillRule::equilibrium;
   CoveredMomentum covered_momentum = CoveredMomentum::lost;
-  GrainLoad load = GrainLoad::extrapolated;
+  coupling::LoadRule load = coupling::LoadRule::extrapolated;
   std::optional<LubricationCase> lubrication;
   std::optional<VirtualMassCase> virtual_mass;
   bool grain_stress = false;  // measure the fluid's stress on every grain
@@ -204,15 +203,11 @@ struct AtRestCase {
   bool operator==(const AtRestCase&) const = default;
 };
 
-enum class GrainIntegrator { velocity_verlet, gear };
-
-enum class WatchdogAction { stop, warn };
-
 struct RunCase {
   double until = 0.0;  // s
-  GrainIntegrator grain_integrator = GrainIntegrator::velocity_verlet;
+  dem::Integrator grain_integrator = dem::Integrator::velocity_verlet;
   std::optional<AtRestCase> until_at_rest;  // of dry grains: the run ends earlier when this holds
-  WatchdogAction watchdog = WatchdogAction::stop;
+  driver::OutOfBounds watchdog = driver::OutOfBounds::stop;
   double ramp = 0.0;                // s in which gravity rises from zero, with a fluid
   std::optional<double> time_step;  // s, of dry grains; read as 1/50 of the shortest contact where it is not given
   bool operator==(const RunCase&) const = default;

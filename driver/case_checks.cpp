@@ -267,7 +267,7 @@ void check_material(const Case& c, const io::YamlDocument& document, const std::
   const auto refuse = [&](bool given, const char* name, const std::string& remedy) {
     if (given) throw document.error(key + "." + name, remedy);
   };
-  if (c.contact.law == ContactLaw::linear) {
+  if (c.contact.law == dem::Law::linear) {
     const std::string remedy = "contact.law is linear, which has stiffnesses; remove it or set hertz_mindlin there";
     refuse(material.youngs_modulus.has_value(), "youngs_modulus", remedy);
     refuse(material.poisson_ratio.has_value(), "poisson_ratio", remedy);
@@ -354,7 +354,7 @@ void check_disks(const Case& c, const io::YamlDocument& document) {
 void check_clumps(const Case& c, const io::YamlDocument& document) {
   for (std::size_t n = 0; n < c.grains.size(); ++n) {
     if (c.grains[n].clumps.count == 0) continue;
-    if (c.run.grain_integrator == GrainIntegrator::gear)
+    if (c.run.grain_integrator == dem::Integrator::gear)
       throw document.error("run.grain_integrator", "clumps are moved by velocity_verlet; give that or no clumps");
     if (c.grains[n].motion)
       throw document.error(fmt::format("grains.{}.motion", n),

@@ -12,7 +12,7 @@
 // visitor's templates would not find them.
 namespace thalweg {
 
-static void describe_gravity(io::SectionVisitor& visit, GravityCase& gravity, bool with_fluid) {
+static void describe_gravity(SectionVisitor& visit, GravityCase& gravity, bool with_fluid) {
   visit.real("magnitude", gravity.magnitude,
              {.unit = "m/s^2", .meaning = "with slope; or give vector", .at_least = 0.0, .example = 9.8});
   visit.real("slope", gravity.slope,
@@ -31,7 +31,7 @@ static void describe_gravity(io::SectionVisitor& visit, GravityCase& gravity, bo
     visit.not_here("mode", "a run without fluid has only one kind of gravity; remove the key");
 }
 
-static void describe(io::SectionVisitor& visit, LubricationCase& lubrication) {
+static void describe(SectionVisitor& visit, LubricationCase& lubrication) {
   visit.real(
       "normal_cut_off", lubrication.normal_cut_off,
       {.unit = "cells", .meaning = "gap below which the squeezing flow is not resolved", .above = 0.0, .at_most = 2.0});
@@ -47,16 +47,13 @@ static void describe(io::SectionVisitor& visit, LubricationCase& lubrication) {
               .at_most = 0.1});
 }
 
-static void describe(io::SectionVisitor& visit, VirtualMassCase& virtual_mass) {
+static void describe(SectionVisitor& visit, VirtualMassCase& virtual_mass) {
   visit.real("coefficient", virtual_mass.coefficient,
              {.meaning = "of the mass of the displaced fluid; 1/2 is that of a sphere", .above = 0.0, .at_most = 10.0});
 }
 
-static void describe_coupling(io::SectionVisitor& visit, CouplingCase& coupling, bool with_grains) {
-  visit.choice<LinkRule>("links", coupling.links,
-                         {{LinkRule::bouzidi, "bouzidi", "Bouzidi et al. 2001"},
-                          {LinkRule::cli, "cli", "Ginzburg et al. 2008; with collision trt"}},
-                         {.meaning = "how populations come back from a surface"});
+static void describe_coupling(SectionVisitor& visit, CouplingCase& coupling, bool with_grains) {
+  visit.choice("links", coupling.links, {.meaning = "how populations come back from a surface"});
   visit.not_here("mass_correction", "the fluid's mass is always kept; remove the key");
   if (!with_grains) {
     for (const char* key :
@@ -75,36 +72,20 @@ static void describe_coupling(io::SectionVisitor& visit, CouplingCase& coupling,
                          "exactly at all times)",
               .at_least = 0.0,
               .at_most = 0.1});
-  visit.choice<MomentumExchange>("momentum_exchange", coupling.momentum_exchange,
-                                 {{MomentumExchange::galilean_invariant, "galilean_invariant", "Wen et al. 2014"},
-                                  {MomentumExchange::classical, "classical", "Mei et al. 2002"}},
-                                 {.meaning = "how the force on a grain is summed"});
-  visit.choice<WallDensity>("wall_density", coupling.wall_density,
-                            {{WallDensity::local, "local", "of the fluid cell"},
-                             {WallDensity::reference, "reference", "of the fluid at rest"}},
-                            {.meaning = "density in the moving-wall term"});
-  visit.choice<NarrowGaps>("narrow_gaps", coupling.narrow_gaps,
-                           {{NarrowGaps::no_slip, "no_slip", "as published: in water they do not flow"},
-                            {NarrowGaps::slip, "slip", "they flow as their width and the viscosity say"}},
-                           {.meaning = "gaps of one cell between two grains"});
+  visit.choice("momentum_exchange", coupling.momentum_exchange, {.meaning = "how the force on a grain is summed"});
+  visit.choice("wall_density", coupling.wall_density, {.meaning = "density in the moving-wall term"});
+  visit.choice("narrow_gaps", coupling.narrow_gaps, {.meaning = "gaps of one cell between two grains"});
   visit.choice<NearContact>("near_contact", coupling.near_contact,
                             {{NearContact::subtracted, "subtracted", "reference pressure taken out of every link"},
                              {NearContact::paper, "paper", "and the paper's links between grains"}},
                             {.meaning = "patches of its surface that a grain's neighbours hide"});
-  visit.choice<Refill>("refill", coupling.refill,
-                       {{Refill::equilibrium, "equilibrium"},
-                        {Refill::non_equilibrium, "non_equilibrium", "with that of the neighbour along the normal"},
-                        {Refill::grad, "grad", "with the mean stress of the neighbours"}},
-                       {.meaning = "populations of a cell that a grain has uncovered"});
+  visit.choice("refill", coupling.refill, {.meaning = "populations of a cell that a grain has uncovered"});
   visit.choice<CoveredMomentum>(
       "covered_momentum", coupling.covered_momentum,
       {{CoveredMomentum::lost, "lost", "as published: grains get a little less than the fluid loses"},
        {CoveredMomentum::to_grain, "to_grain"}},
       {.meaning = "what a cell that a grain covers carries relative to the grain"});
-  visit.choice<GrainLoad>("load", coupling.load,
-                          {{GrainLoad::extrapolated, "extrapolated", "from the last three exchanges, without lag"},
-                           {GrainLoad::mean, "mean", "of the last two, as published; a bed may shake"}},
-                          {.meaning = "the force and torque of the fluid that move a grain in a step"});
+  visit.choice("load", coupling.load, {.meaning = "the force and torque of the fluid that move a grain in a step"});
   visit.section(
       "lubrication", coupling.lubrication,
       {.meaning = "adds the force between near surfaces that the cells do not resolve, in every sub-step; {}"});
@@ -116,14 +97,14 @@ static void describe_coupling(io::SectionVisitor& visit, CouplingCase& coupling,
              {.meaning = "show in series.csv which part of the link rule gives and takes the fluid's mass"});
 }
 
-static void describe(io::SectionVisitor& visit, PerturbationCase& perturbation) {
+static void describe(SectionVisitor& visit, PerturbationCase& perturbation) {
   visit.real(
       "amplitude", perturbation.amplitude,
       {.meaning = "root mean square of a velocity component away from walls, over shear_velocity", .above = 0.0});
   visit.integer("seed", perturbation.seed, {.meaning = "another seed, other eddies", .at_least = 0});
 }
 
-static void describe(io::SectionVisitor& visit, LogProfileCase& profile) {
+static void describe(SectionVisitor& visit, LogProfileCase& profile) {
   visit.real("bed_height", profile.bed_height,
              {.unit = "m",
               .meaning = "above the bottom; the fluid below is at rest",
@@ -145,18 +126,18 @@ static void describe(io::SectionVisitor& visit, LogProfileCase& profile) {
   visit.section("perturbation", profile.perturbation, {.meaning = "random eddies without divergence on top"});
 }
 
-static void describe(io::SectionVisitor& visit, InitialFluidCase& fluid) {
+static void describe(SectionVisitor& visit, InitialFluidCase& fluid) {
   visit.vec3("uniform", fluid.uniform, {.unit = "m/s", .meaning = "the same velocity everywhere", .example = 0.0});
   visit.section("log_profile", fluid.log_profile, {.meaning = "a turbulent profile along x over a bed"});
   visit.require(!(fluid.uniform && fluid.log_profile), "uniform",
                 "the start is given twice; give either uniform or log_profile");
 }
 
-static void describe_initial(io::SectionVisitor& visit, InitialCase& initial, bool with_fluid, bool with_grains) {
+static void describe_initial(SectionVisitor& visit, InitialCase& initial, bool with_fluid, bool with_grains) {
   visit.text("from", initial.from,
              {.meaning = "run folder or checkpoint of another run to begin from, relative to this file; \"\": none"});
   if (!with_fluid && initial.fields == InitialCase{}.fields) initial.fields = {InitialField::grains};
-  std::vector<io::NamedChoice<InitialField>> fields;
+  std::vector<NamedChoice<InitialField>> fields;
   if (with_fluid) fields.push_back({InitialField::fluid, "fluid"});
   if (with_grains) fields.push_back({InitialField::grains, "grains", "as many as the populations have"});
   visit.choice_list<InitialField>("fields", initial.fields, fields, {.meaning = "what is taken from it"});
@@ -173,13 +154,13 @@ static void describe_initial(io::SectionVisitor& visit, InitialCase& initial, bo
       "the start of the fluid is given twice; remove this key or the section fluid, or take fields: [grains]");
 }
 
-static void describe(io::SectionVisitor& visit, AtRestCase& rest) {
+static void describe(SectionVisitor& visit, AtRestCase& rest) {
   visit.real("largest_speed", rest.largest_speed, {.unit = "m/s", .meaning = "no free grain is faster", .above = 0.0});
   visit.real("largest_acceleration", rest.largest_acceleration,
              {.unit = "m/s^2", .meaning = "no free grain has more, of all forces together", .above = 0.0});
 }
 
-static void describe_run(io::SectionVisitor& visit, RunCase& run, bool with_fluid, bool with_grains) {
+static void describe_run(SectionVisitor& visit, RunCase& run, bool with_fluid, bool with_grains) {
   visit.real("until", run.until,
              {.unit = "s",
               .meaning = "simulated time at which the run ends",
@@ -187,15 +168,12 @@ static void describe_run(io::SectionVisitor& visit, RunCase& run, bool with_flui
               .above = 0.0,
               .example = 30.0});
   if (with_grains)
-    visit.choice<GrainIntegrator>(
-        "grain_integrator", run.grain_integrator,
-        {{GrainIntegrator::velocity_verlet, "velocity_verlet"}, {GrainIntegrator::gear, "gear", "sixth order"}},
-        {.meaning = "how the grains are moved"});
+    visit.choice("grain_integrator", run.grain_integrator, {.meaning = "how the grains are moved"});
   else
     visit.not_here("grain_integrator", "a fluid alone has no grains; remove the key");
-  visit.choice<WatchdogAction>("watchdog", run.watchdog,
-                               {{WatchdogAction::stop, "stop", "the run, with exit code 1"},
-                                {WatchdogAction::warn, "warn", "and go on while there are numbers"}},
+  visit.choice<driver::OutOfBounds>("watchdog", run.watchdog,
+                               {{driver::OutOfBounds::stop, "stop", "the run, with exit code 1"},
+                                {driver::OutOfBounds::warn, "warn", "and go on while there are numbers"}},
                                {.meaning = "what to do when a figure leaves its bounds (docs/stability.md)"});
   if (with_fluid)
     visit.not_here("until_at_rest", "grains in a fluid are never at rest; remove the section or set system: grains");
@@ -219,11 +197,11 @@ static void describe_run(io::SectionVisitor& visit, RunCase& run, bool with_flui
                 .example = 4e-6});
 }
 
-static void describe(io::SectionVisitor& visit, SeriesOutputCase& series) {
+static void describe(SectionVisitor& visit, SeriesOutputCase& series) {
   visit.real("every", series.every, {.unit = "s", .meaning = "between rows of series.csv; 0: none", .at_least = 0.0});
 }
 
-static void describe(io::SectionVisitor& visit, FluidOutputCase& fluid) {
+static void describe(SectionVisitor& visit, FluidOutputCase& fluid) {
   using io::FluidField;
   using io::FluidRegion;
   visit.real("every", fluid.every, {.unit = "s", .meaning = "between pictures of the fluid; 0: none", .at_least = 0.0});
@@ -245,18 +223,18 @@ static void describe(io::SectionVisitor& visit, FluidOutputCase& fluid) {
                                 {.meaning = "what the pictures show"});
 }
 
-static void describe(io::SectionVisitor& visit, GrainOutputCase& grains) {
+static void describe(SectionVisitor& visit, GrainOutputCase& grains) {
   visit.real("every", grains.every,
              {.unit = "s", .meaning = "between pictures of the grains; 0: none", .at_least = 0.0});
 }
 
-static void describe(io::SectionVisitor& visit, CheckpointOutputCase& checkpoint) {
+static void describe(SectionVisitor& visit, CheckpointOutputCase& checkpoint) {
   visit.real("every", checkpoint.every,
              {.unit = "s", .meaning = "between checkpoints; 0: only at the end of the run", .at_least = 0.0});
   visit.integer("keep", checkpoint.keep, {.meaning = "number of newest checkpoints that are kept", .at_least = 1});
 }
 
-static void describe_output(io::SectionVisitor& visit, OutputCase& output, bool with_fluid, bool with_grains) {
+static void describe_output(SectionVisitor& visit, OutputCase& output, bool with_fluid, bool with_grains) {
   visit.section("series", output.series, {.meaning = "the table series.csv"});
   if (with_fluid)
     visit.section("fluid", output.fluid, {.meaning = "pictures of the fluid, fluid.pvd"});
@@ -269,14 +247,14 @@ static void describe_output(io::SectionVisitor& visit, OutputCase& output, bool 
   visit.section("checkpoint", output.checkpoint, {.meaning = "states from which the run can be continued"});
 }
 
-static void describe(io::SectionVisitor& visit, TransportRateCase& rate) {
+static void describe(SectionVisitor& visit, TransportRateCase& rate) {
   visit.real("from", rate.from,
              {.unit = "s", .meaning = "start of the means, hops and distributions", .at_least = 0.0});
   visit.real("every", rate.every,
              {.unit = "s", .meaning = "between measurements; 0: with the rows of series.csv", .at_least = 0.0});
 }
 
-static void describe(io::SectionVisitor& visit, BedSurfaceCase& surface) {
+static void describe(SectionVisitor& visit, BedSurfaceCase& surface) {
   visit.real("from", surface.from, {.unit = "s", .meaning = "start of the means", .at_least = 0.0});
   visit.real("every", surface.every, {.unit = "s", .meaning = "between measurements", .above = 0.0});
   visit.real("layer", surface.layer,
@@ -293,7 +271,7 @@ static void describe(io::SectionVisitor& visit, BedSurfaceCase& surface) {
              {.unit = "s", .meaning = "a pixel is static that one grain has covered for so long", .above = 0.0});
 }
 
-static void describe(io::SectionVisitor& visit, GrainProfilesCase& profiles) {
+static void describe(SectionVisitor& visit, GrainProfilesCase& profiles) {
   visit.real("from", profiles.from, {.unit = "s", .meaning = "start of the means", .at_least = 0.0});
   visit.real("every", profiles.every, {.unit = "s", .meaning = "between measurements", .above = 0.0});
   visit.real("layer", profiles.layer,
@@ -304,7 +282,7 @@ static void describe(io::SectionVisitor& visit, GrainProfilesCase& profiles) {
               .example = 2.5e-3});
 }
 
-static void describe(io::SectionVisitor& visit, StressBalanceCase& balance) {
+static void describe(SectionVisitor& visit, StressBalanceCase& balance) {
   visit.real("from", balance.from, {.unit = "s", .meaning = "start of the means", .at_least = 0.0});
   visit.real("every", balance.every, {.unit = "s", .meaning = "between measurements", .above = 0.0});
   visit.real(
@@ -316,11 +294,11 @@ static void describe(io::SectionVisitor& visit, StressBalanceCase& balance) {
        .example = 1.25e-3});
 }
 
-static void describe(io::SectionVisitor&, WallForcesCase&) {}
-static void describe(io::SectionVisitor&, PopulationLoadsCase&) {}
+static void describe(SectionVisitor&, WallForcesCase&) {}
+static void describe(SectionVisitor&, PopulationLoadsCase&) {}
 
-static void describe_analysis(io::SectionVisitor& visit, AnalysisCase& analysis, bool with_fluid, bool with_grains) {
-  const auto of_grains = [&](const char* key, auto& section, const io::SectionKey& about) {
+static void describe_analysis(SectionVisitor& visit, AnalysisCase& analysis, bool with_fluid, bool with_grains) {
+  const auto of_grains = [&](const char* key, auto& section, const SectionKey& about) {
     if (with_grains)
       visit.section(key, section, about);
     else
@@ -379,12 +357,12 @@ static void describe_analysis(io::SectionVisitor& visit, AnalysisCase& analysis,
             {.meaning = "force of grains and of the fluid on each wall, in series.csv; no keys: {}"});
 }
 
-static void describe(io::SectionVisitor& visit, DisksCase& disks) {
+static void describe(SectionVisitor& visit, DisksCase& disks) {
   visit.real("thickness", disks.thickness,
              {.unit = "m", .meaning = "along y: gives their mass", .required = true, .above = 0.0, .example = 5e-3});
 }
 
-void describe(io::SectionVisitor& visit, Case& c) {
+void describe(SectionVisitor& visit, Case& c) {
   visit.choice<SystemKind>("system", c.system,
                            {{SystemKind::resolved, "resolved", "fluid with grains in it, every grain resolved"},
                             {SystemKind::fluid, "fluid", "fluid alone"},
@@ -399,13 +377,13 @@ void describe(io::SectionVisitor& visit, Case& c) {
   };
   visit.text("name", c.name, {.meaning = "what the run is called in its output"});
   visit.section("domain", {.meaning = "the box, its cells and its faces", .required = true},
-                [&](io::SectionVisitor& inside) { describe_domain(inside, c.domain, with_fluid); });
+                [&](SectionVisitor& inside) { describe_domain(inside, c.domain, with_fluid); });
   if (with_fluid)
     visit.section("fluid", c.fluid, {.meaning = "what fills the box", .required = true});
   else
     only_with_fluid("fluid");
   visit.section("gravity", {.meaning = "given by magnitude and slope, or as a vector", .required = true},
-                [&](io::SectionVisitor& inside) { describe_gravity(inside, c.gravity, with_fluid); });
+                [&](SectionVisitor& inside) { describe_gravity(inside, c.gravity, with_fluid); });
   if (with_fluid)
     visit.not_here("disks", "only dry grains can be disks; remove the section or set system: grains");
   else
@@ -420,18 +398,18 @@ void describe(io::SectionVisitor& visit, Case& c) {
     visit.require(with_fluid || !c.grains.empty(), "grains",
                   "a run of dry grains needs at least one population of them");
     visit.section("contact", {.meaning = "force between grains that touch, with friction"},
-                  [&](io::SectionVisitor& inside) { describe_contact(inside, c.contact, !c.grains.empty()); });
+                  [&](SectionVisitor& inside) { describe_contact(inside, c.contact, !c.grains.empty()); });
   } else {
     only_with_grains("grains");
     only_with_grains("contact");
   }
   if (with_fluid)
     visit.section("coupling", {.meaning = "how fluid and grains, or solids, act on each other"},
-                  [&](io::SectionVisitor& inside) { describe_coupling(inside, c.coupling, with_grains); });
+                  [&](SectionVisitor& inside) { describe_coupling(inside, c.coupling, with_grains); });
   else
     only_with_fluid("coupling");
   visit.section("initial", {.meaning = "state at the start"},
-                [&](io::SectionVisitor& inside) { describe_initial(inside, c.initial, with_fluid, with_grains); });
+                [&](SectionVisitor& inside) { describe_initial(inside, c.initial, with_fluid, with_grains); });
   if (!with_grains)
     visit.list("solids", c.solids, {.meaning = "bodies that stand still in the fluid"});
   else
@@ -439,11 +417,11 @@ void describe(io::SectionVisitor& visit, Case& c) {
                    "only system: fluid has them, because grains would not feel them; for spheres give a population of "
                    "grains with fixed: true");
   visit.section("run", {.meaning = "how long", .required = true},
-                [&](io::SectionVisitor& inside) { describe_run(inside, c.run, with_fluid, with_grains); });
+                [&](SectionVisitor& inside) { describe_run(inside, c.run, with_fluid, with_grains); });
   visit.section("output", {.meaning = "what the run writes, besides run.log and summary.json"},
-                [&](io::SectionVisitor& inside) { describe_output(inside, c.output, with_fluid, with_grains); });
+                [&](SectionVisitor& inside) { describe_output(inside, c.output, with_fluid, with_grains); });
   visit.section("analysis", {.meaning = "what is measured while the run goes"},
-                [&](io::SectionVisitor& inside) { describe_analysis(inside, c.analysis, with_fluid, with_grains); });
+                [&](SectionVisitor& inside) { describe_analysis(inside, c.analysis, with_fluid, with_grains); });
 }
 
 }  // namespace thalweg

@@ -107,7 +107,7 @@ std::string damping_text(const Case& c) {
     const double damping = dem::Damping(material).coefficient(0.5 * c.grains[p].lightest_mass());
     text += fmt::format("{}{:.3g}", p > 0 ? ", " : "", damping);
   }
-  return text + (c.contact.law == ContactLaw::linear ? " kg/s" : " kg/(s m^1/2)");
+  return text + (c.contact.law == dem::Law::linear ? " kg/s" : " kg/(s m^1/2)");
 }
 
 // A contact that ends before sound has gone around the grain turns the grain alone, which then pays for the water that
@@ -116,7 +116,7 @@ void add_rebound(const Case& c, Lines& lines) {
   const double contact = shortest_contact(c) / fluid_time_step(c);
   const double around = 0.5 * std::numbers::pi * std::sqrt(3.0) * smallest_diameter(c) / c.domain.spacing;  // steps
   if (contact >= around) return;
-  const std::string advice = c.contact.law == ContactLaw::linear
+  const std::string advice = c.contact.law == dem::Law::linear
                                  ? fmt::format("; {:.4g} N/m as contact.normal_stiffness makes them as long",
                                                c.contact.normal_stiffness * contact * contact / (around * around))
                                  : std::string("; softer grains have longer contacts");

@@ -44,7 +44,7 @@ const std::string face_forms =
     "periodic, no_slip, free_slip, law_of_the_wall, or with its numbers, for example {type: law_of_the_wall, "
     "coefficient: 8.36}, {type: navier_slip, slip_length: 1e-4} or {type: moving, velocity: [0.1, 0, 0]}";
 
-void check_axis(io::SectionVisitor& visit, const std::string& axis, const std::optional<Face>& both,
+void check_axis(SectionVisitor& visit, const std::string& axis, const std::optional<Face>& both,
                 const std::optional<Face>& low, const std::optional<Face>& high) {
   const std::string low_key = axis + "_low", high_key = axis + "_high";
   visit.require(!both || (!low && !high), low ? low_key : high_key,
@@ -62,7 +62,7 @@ bool half_periodic(const std::optional<Face>& a, const std::optional<Face>& b) {
 }  // namespace
 
 // Not in the unnamed namespace, where argument-dependent lookup would not find it.
-static void describe(io::SectionVisitor& visit, Face& face) {
+static void describe(SectionVisitor& visit, Face& face) {
   visit.choice<FaceType>(
       "type", face.type,
       {{FaceType::periodic, "periodic"},
@@ -120,7 +120,7 @@ static void describe(io::SectionVisitor& visit, Face& face) {
     visit.not_here("pressure", "only a pressure_outlet has a pressure; remove it");
 }
 
-static void describe_boundaries(io::SectionVisitor& visit, BoundaryKeys& keys, bool with_fluid) {
+static void describe_boundaries(SectionVisitor& visit, BoundaryKeys& keys, bool with_fluid) {
   const auto face = [&](const std::string& key, std::optional<Face>& value, const std::string& meaning) {
     visit.section(key, value, {.meaning = meaning, .shorthand = "type"});
   };
@@ -154,7 +154,7 @@ static void describe_boundaries(io::SectionVisitor& visit, BoundaryKeys& keys, b
     }
 }
 
-void describe_domain(io::SectionVisitor& visit, DomainCase& domain, bool with_fluid) {
+void describe_domain(SectionVisitor& visit, DomainCase& domain, bool with_fluid) {
   visit.vec3("size", domain.size,
              {.unit = "m",
               .meaning = "length streamwise (x), cross-stream (y), upwards (z)",
@@ -170,7 +170,7 @@ void describe_domain(io::SectionVisitor& visit, DomainCase& domain, bool with_fl
               .example = 0.5e-3});
   BoundaryKeys keys = keys_of(domain.faces);
   visit.section("boundaries", {.meaning = "what stands at each face: " + face_forms, .required = true},
-                [&](io::SectionVisitor& inside) { describe_boundaries(inside, keys, with_fluid); });
+                [&](SectionVisitor& inside) { describe_boundaries(inside, keys, with_fluid); });
   if (visit.reading()) domain.faces = faces_of(keys);
 }
 

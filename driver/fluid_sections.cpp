@@ -3,7 +3,7 @@
 // Sections of a fluid: what it is made of, solids in it, and means of it.
 namespace thalweg {
 
-static void describe(io::SectionVisitor& visit, FlowTargetCase& target) {
+static void describe(SectionVisitor& visit, FlowTargetCase& target) {
   visit.real("velocity", target.velocity,
              {.unit = "m/s", .meaning = "mean over the fluid, along x", .required = true, .example = 0.3});
   visit.real("response_time", target.response_time,
@@ -14,7 +14,7 @@ static void describe(io::SectionVisitor& visit, FlowTargetCase& target) {
               .example = 0.1});
 }
 
-void describe(io::SectionVisitor& visit, FluidCase& fluid) {
+void describe(SectionVisitor& visit, FluidCase& fluid) {
   visit.real("density", fluid.density,
              {.unit = "kg/m^3", .meaning = "mass density", .required = true, .above = 0.0, .example = 1000.0});
   visit.real("kinematic_viscosity", fluid.kinematic_viscosity,
@@ -39,12 +39,8 @@ void describe(io::SectionVisitor& visit, FluidCase& fluid) {
                 "expected_velocity");
   visit.require(!fluid.maximum_lattice_velocity || fluid.expected_velocity, "expected_velocity",
                 "maximum_lattice_velocity needs it; give the largest velocity expected in m/s, for example 0.5");
-  visit.choice<Collision>("collision", fluid.collision,
-                          {{Collision::bgk, "bgk", "one relaxation time"},
-                           {Collision::trt, "trt", "two; walls stay in place at any viscosity"},
-                           {Collision::regularised, "regularised", "bgk without ghost modes; not near walls in water"}},
-                          {.meaning = "collision operator"});
-  if (fluid.collision == Collision::trt)
+  visit.choice("collision", fluid.collision, {.meaning = "collision operator"});
+  if (fluid.collision == lbm::CollisionModel::trt)
     visit.real("magic_parameter", fluid.magic_parameter,
                {.meaning = "of trt: (1/omega+ - 1/2)(1/omega- - 1/2); 3/16 puts walls exactly half way", .above = 0.0});
   else
@@ -66,13 +62,13 @@ void describe(io::SectionVisitor& visit, FluidCase& fluid) {
                 {.meaning = "hold this flow by a body force along x, in place of gravity along x"});
 }
 
-static void describe(io::SectionVisitor& visit, SphereCase& sphere) {
+static void describe(SectionVisitor& visit, SphereCase& sphere) {
   visit.vec3("centre", sphere.centre, {.unit = "m", .meaning = "of the sphere", .required = true, .example = 0.02});
   visit.real("radius", sphere.radius,
              {.unit = "m", .meaning = "of the sphere", .required = true, .above = 0.0, .example = 5e-3});
 }
 
-void describe(io::SectionVisitor& visit, SolidCase& solid) {
+void describe(SectionVisitor& visit, SolidCase& solid) {
   visit.section("sphere", solid.sphere, {.meaning = "a sphere; or give stl"});
   visit.text("stl", solid.stl, {.meaning = "file with a closed surface, relative to this file; \"\": none"});
   visit.real("scale", solid.scale, {.unit = "m", .meaning = "length of one unit of the STL file", .above = 0.0});
@@ -82,7 +78,7 @@ void describe(io::SectionVisitor& visit, SolidCase& solid) {
   visit.require(!(solid.sphere && !solid.stl.empty()), "stl", "the solid has two shapes; remove either sphere or stl");
 }
 
-void describe(io::SectionVisitor& visit, FluidStatisticsCase& statistics) {
+void describe(SectionVisitor& visit, FluidStatisticsCase& statistics) {
   visit.real("from", statistics.from, {.unit = "s", .meaning = "start of the means", .at_least = 0.0});
   visit.real("every", statistics.every, {.unit = "s", .meaning = "between measurements", .above = 0.0});
 }

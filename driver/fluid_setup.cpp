@@ -49,23 +49,11 @@ lbm::FaceConditions face_conditions(const DomainCase& domain, const Units& units
   return conditions;
 }
 
-lbm::CollisionModel collision_model(Collision collision) {
-  switch (collision) {
-    case Collision::bgk:
-      return lbm::CollisionModel::bgk;
-    case Collision::trt:
-      return lbm::CollisionModel::trt;
-    case Collision::regularised:
-      return lbm::CollisionModel::regularised;
-  }
-  return lbm::CollisionModel::bgk;
-}
-
 // Reduced gravity: the hydrostatic pressure is taken out of the flow. The fluid is driven along the bed only. Full
 // gravity: all of it acts on the fluid.
 lbm::CollisionParameters collision_parameters(const Case& c) {
   lbm::CollisionParameters parameters;
-  parameters.model = collision_model(c.fluid.collision);
+  parameters.model = c.fluid.collision;
   parameters.magic_parameter = c.fluid.magic_parameter;
   parameters.relaxation_time = relaxation_time(c);
   parameters.bulk_relaxation_time = c.fluid.bulk_relaxation_time.value_or(0.0);
@@ -121,13 +109,10 @@ coupling::FluidParameters fluid_parameters(const Case& c) {
         lbm::FlowTarget{.axis = 0,
                         .velocity = c.fluid.mean_velocity->velocity / parameters.units.velocity(),
                         .response_time = c.fluid.mean_velocity->response_time / parameters.units.time_step};
-  parameters.links.momentum_exchange = c.coupling.momentum_exchange == MomentumExchange::classical
-                                           ? lbm::MomentumExchange::classical
-                                           : lbm::MomentumExchange::galilean_invariant;
-  parameters.links.wall_density =
-      c.coupling.wall_density == WallDensity::reference ? lbm::WallDensity::reference : lbm::WallDensity::local;
-  parameters.links.rule = c.coupling.links == LinkRule::cli ? lbm::LinkRule::cli : lbm::LinkRule::bouzidi;
-  parameters.links.gaps = c.coupling.narrow_gaps == NarrowGaps::slip ? lbm::GapRule::slip : lbm::GapRule::no_slip;
+  parameters.links.momentum_exchange = c.coupling.momentum_exchange;
+  parameters.links.wall_density = c.coupling.wall_density;
+  parameters.links.rule = c.coupling.links;
+  parameters.links.gaps = c.coupling.narrow_gaps;
   parameters.initial_fluid = initial_fluid(c);
   return parameters;
 }

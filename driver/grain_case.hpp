@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/types.hpp"
+#include "dem/contact_parameters.hpp"
 #include "io/bed_file.hpp"
 
 #include <cstdint>
@@ -185,25 +186,17 @@ double median_by_volume(std::vector<double> diameters);
 // shuffles. fractions: each size gets its share of the number, rounded so that the sum is right.
 std::vector<double> sampled_diameters(const SizesCase& sizes, std::int64_t count, std::int64_t seed);
 
-enum class Attraction { none, allowed };
-enum class ContactLaw { linear, hertz_mindlin };
-
-struct ContactCase {
-  ContactLaw law = ContactLaw::linear;
-  double normal_stiffness = 20000.0;            // N/m
-  double tangential_stiffness = 5714.0;         // N/m
-  double youngs_modulus = 0.0;                  // Pa; of hertz_mindlin, in place of the two stiffnesses
-  double poisson_ratio = 0.3;                   // 1; of hertz_mindlin
-  double tangential_damping = 0.0;              // 1; dashpot along the contact over the one across it
-  std::optional<double> restitution;            // 1; exactly one of restitution and damping is set
-  std::optional<double> damping;                // kg/s
-  double friction = 0.5;                        // grain on grain
-  double wall_friction = 0.45;                  // grain on wall
-  double rolling_friction = 0.0;                // grain on grain; 0: none
-  double wall_rolling_friction = 0.0;           // grain on wall
-  double rolling_damping = 0.3;                 // of the rolling spring, over the critical damping
-  Attraction attraction = Attraction::allowed;  // allowed: the dashpot may pull grains together as they part
-  std::optional<WallMaterialCase> walls;        // contact of grains with walls, where it differs
+// Of grains and of what is not said otherwise.
+struct ContactCase : dem::ContactParameters {
+  ContactCase() {
+    normal_stiffness = 20000.0;
+    tangential_stiffness = 5714.0;
+    poisson_ratio = 0.3;
+    friction = 0.5;
+    wall_friction = 0.45;
+    attraction = true;
+  }
+  std::optional<WallMaterialCase> walls;  // contact of grains with walls, where it differs
   bool operator==(const ContactCase&) const = default;
 };
 

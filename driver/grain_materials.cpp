@@ -3,25 +3,6 @@
 namespace thalweg {
 namespace {
 
-dem::ContactParameters base_material(const ContactCase& contact) {
-  dem::ContactParameters p;
-  p.law = contact.law == ContactLaw::linear ? dem::Law::linear : dem::Law::hertz_mindlin;
-  p.normal_stiffness = contact.normal_stiffness;
-  p.tangential_stiffness = contact.tangential_stiffness;
-  p.youngs_modulus = contact.youngs_modulus;
-  p.poisson_ratio = contact.poisson_ratio;
-  p.tangential_damping = contact.tangential_damping;
-  p.restitution = contact.restitution;
-  p.damping = contact.damping;
-  p.friction = contact.friction;
-  p.wall_friction = contact.wall_friction;
-  p.rolling_friction = contact.rolling_friction;
-  p.wall_rolling_friction = contact.wall_rolling_friction;
-  p.rolling_damping = contact.rolling_damping;
-  p.attraction = contact.attraction == Attraction::allowed;
-  return p;
-}
-
 dem::ContactParameters changed(dem::ContactParameters p, const MaterialCase& material) {
   p.normal_stiffness = material.normal_stiffness.value_or(p.normal_stiffness);
   p.tangential_stiffness = material.tangential_stiffness.value_or(p.tangential_stiffness);
@@ -37,7 +18,7 @@ dem::ContactParameters changed(dem::ContactParameters p, const MaterialCase& mat
 }  // namespace
 
 std::vector<dem::ContactParameters> materials_of(const Case& c) {
-  std::vector<dem::ContactParameters> materials{base_material(c.contact)};
+  std::vector<dem::ContactParameters> materials{c.contact};
   for (const PopulationCase& population : c.grains)
     if (population.contact) materials.push_back(changed(materials.front(), *population.contact));
   return materials;
@@ -52,7 +33,7 @@ int material_of(const Case& c, std::size_t population) {
 
 std::optional<dem::ContactParameters> wall_material_of(const ContactCase& contact) {
   if (!contact.walls) return std::nullopt;
-  return changed(base_material(contact), *contact.walls);
+  return changed(contact, *contact.walls);
 }
 
 }  // namespace thalweg

@@ -7,12 +7,12 @@
 // Functions named describe are static rather than in an unnamed namespace, as in case_sections.cpp.
 namespace thalweg {
 
-static void describe(io::SectionVisitor& visit, RegionCase& region) {
+static void describe(SectionVisitor& visit, RegionCase& region) {
   visit.vec3("lower", region.lower, {.unit = "m", .meaning = "lower corner", .required = true, .example = 0.0});
   visit.vec3("upper", region.upper, {.unit = "m", .meaning = "upper corner", .required = true, .example = 0.05});
 }
 
-static void describe(io::SectionVisitor& visit, PlacementCase& placement) {
+static void describe(SectionVisitor& visit, PlacementCase& placement) {
   visit.text("file", placement.file,
              {.meaning = "a bed file, as a run leaves it (bed.h5); relative to this file",
               .example = "../settled_bed/run/bed.h5"});
@@ -48,7 +48,7 @@ static void describe(io::SectionVisitor& visit, PlacementCase& placement) {
   visit.section("region", placement.region, {.meaning = "where the grains are put; the whole box where not given"});
 }
 
-static void require_sizes_that_fit(io::SectionVisitor& visit, const SizesCase& sizes) {
+static void require_sizes_that_fit(SectionVisitor& visit, const SizesCase& sizes) {
   if (sizes.distribution) {
     visit.require(sizes.median && sizes.geometric_deviation && sizes.minimum && sizes.maximum, "distribution",
                   "a lognormal distribution needs median, minimum and maximum in m and geometric_deviation");
@@ -63,7 +63,7 @@ static void require_sizes_that_fit(io::SectionVisitor& visit, const SizesCase& s
                 fmt::format("the fractions add up to {:g}; they are shares of the number and must add up to 1", sum));
 }
 
-static void describe_diameter(io::SectionVisitor& visit, PopulationCase& grains) {
+static void describe_diameter(SectionVisitor& visit, PopulationCase& grains) {
   SizesCase& sizes = grains.sizes;
   std::optional<double> value;
   if (!visit.reading() && !sizes.given()) value = grains.diameter;
@@ -91,7 +91,7 @@ static void describe_diameter(io::SectionVisitor& visit, PopulationCase& grains)
   if (value) grains.diameter = *value;
 }
 
-static void describe_material(io::SectionVisitor& visit, MaterialCase& material, bool walls) {
+static void describe_material(SectionVisitor& visit, MaterialCase& material, bool walls) {
   visit.real("normal_stiffness", material.normal_stiffness,
              {.unit = "N/m", .meaning = "linear law", .above = 0.0, .example = 20000.0});
   visit.real("tangential_stiffness", material.tangential_stiffness,
@@ -114,30 +114,30 @@ static void describe_material(io::SectionVisitor& visit, MaterialCase& material,
              {.meaning = "between grains", .at_least = 0.0, .example = 0.05});
 }
 
-static void describe(io::SectionVisitor& visit, MaterialCase& material) { describe_material(visit, material, false); }
-static void describe(io::SectionVisitor& visit, WallMaterialCase& walls) { describe_material(visit, walls, true); }
+static void describe(SectionVisitor& visit, MaterialCase& material) { describe_material(visit, material, false); }
+static void describe(SectionVisitor& visit, WallMaterialCase& walls) { describe_material(visit, walls, true); }
 
-static void describe(io::SectionVisitor& visit, MemberCase& member) {
+static void describe(SectionVisitor& visit, MemberCase& member) {
   visit.vec3("position", member.position, {.unit = "m", .meaning = "from any origin", .required = true});
   visit.real("diameter", member.diameter,
              {.unit = "m", .meaning = "of the sphere", .required = true, .above = 0.0, .example = 4e-3});
 }
 
-static void describe(io::SectionVisitor& visit, ShapeCase& shape) {
+static void describe(SectionVisitor& visit, ShapeCase& shape) {
   visit.list("clump", shape.clump,
              {.meaning = "spheres that may overlap and move as one rigid grain", .required = true});
   visit.require(!shape.clump.empty(), "clump",
                 "a clump needs at least one sphere; give its position and diameter in m");
 }
 
-static void describe(io::SectionVisitor& visit, OrientationCase& orientation) {
+static void describe(SectionVisitor& visit, OrientationCase& orientation) {
   visit.vec3("axis", orientation.axis, {.meaning = "along the axis, of any length"});
   visit.real("angle", orientation.angle, {.unit = "rad", .meaning = "right-handed about it from the shape as given"});
   visit.require(!orientation.axis.isZero(0.0), "axis", "a direction cannot be zero; give for example [0, 1, 0]");
 }
 
 // Diameter, or shape.
-static void describe_size(io::SectionVisitor& visit, PopulationCase& grains) {
+static void describe_size(SectionVisitor& visit, PopulationCase& grains) {
   visit.section("shape", grains.shape, {.meaning = "in place of a diameter, for grains that are no spheres"});
   if (!grains.shape) visit.not_here("orientation", "spheres have none; give a shape or remove the key");
   if (grains.shape || !visit.reading())
@@ -151,11 +151,11 @@ static void describe_size(io::SectionVisitor& visit, PopulationCase& grains) {
                  .required = true,
                  .shorthand = "value",
                  .expected = "a number in m above 0, for example 0.005"},
-                [&](io::SectionVisitor& inside) { describe_diameter(inside, grains); });
+                [&](SectionVisitor& inside) { describe_diameter(inside, grains); });
 }
 
 // Position, number, size and density, which a bed file gives all at once.
-static void describe_grains_themselves(io::SectionVisitor& visit, PopulationCase& grains) {
+static void describe_grains_themselves(SectionVisitor& visit, PopulationCase& grains) {
   visit.section("placement", grains.placement, {.meaning = "where the grains are at the start"});
   if (grains.placement.file) {
     for (const char* key : {"diameter", "shape", "orientation", "density", "count"})
@@ -181,7 +181,7 @@ static void describe_grains_themselves(io::SectionVisitor& visit, PopulationCase
   visit.vec3("angular_velocity", grains.angular_velocity, {.unit = "rad/s", .meaning = "at the start"});
 }
 
-void describe(io::SectionVisitor& visit, PopulationCase& grains) {
+void describe(SectionVisitor& visit, PopulationCase& grains) {
   describe_grains_themselves(visit, grains);
   visit.section("contact", grains.contact,
                 {.meaning = "material of these grains where it differs from the section contact"});
@@ -209,63 +209,12 @@ void describe(io::SectionVisitor& visit, PopulationCase& grains) {
                 "prescribed_angular_velocity already says how the grains turn; remove one of the two");
 }
 
-void describe_contact(io::SectionVisitor& visit, ContactCase& contact, bool with_grains) {
-  visit.choice<ContactLaw>("law", contact.law,
-                           {{ContactLaw::linear, "linear", "spring and dashpot"},
-                            {ContactLaw::hertz_mindlin, "hertz_mindlin", "elastic spheres, by youngs_modulus"}},
-                           {.meaning = "force of a contact"});
-  if (contact.law == ContactLaw::linear) {
-    visit.real("normal_stiffness", contact.normal_stiffness,
-               {.unit = "N/m", .meaning = "of the spring across a contact", .above = 0.0});
-    visit.real("tangential_stiffness", contact.tangential_stiffness,
-               {.unit = "N/m", .meaning = "of the spring along a contact", .above = 0.0});
-    for (const char* key : {"youngs_modulus", "poisson_ratio"})
-      visit.not_here(key, "the linear law has stiffnesses; remove it or set law: hertz_mindlin");
-  } else {
-    visit.real("youngs_modulus", contact.youngs_modulus,
-               {.unit = "Pa", .meaning = "of grains and walls", .required = true, .above = 0.0, .example = 70e9});
-    visit.real("poisson_ratio", contact.poisson_ratio,
-               {.meaning = "of grains and walls", .at_least = 0.0, .at_most = 0.5});
-    for (const char* key : {"normal_stiffness", "tangential_stiffness", "damping"})
-      visit.not_here(key,
-                     "elastic spheres have youngs_modulus, poisson_ratio and restitution; remove it or set law: "
-                     "linear");
-  }
-  visit.real("tangential_damping", contact.tangential_damping,
-             {.meaning = "dashpot along a contact over the one across it", .at_least = 0.0});
-  visit.real("restitution", contact.restitution,
-             {.meaning = "speed after over speed before a dry collision; or give damping",
-              .above = 0.0,
-              .at_most = 1.0,
-              .example = 0.93});
-  if (contact.law == ContactLaw::linear)
-    visit.real("damping", contact.damping,
-               {.unit = "kg/s",
-                .meaning = "of the dashpot across a contact, in place of restitution",
-                .at_least = 0.0,
-                .example = 0.09});
-  visit.require(!(contact.restitution && contact.damping), "restitution",
-                "the loss in a collision is given twice; give either restitution or damping");
+void describe_contact(SectionVisitor& visit, ContactCase& contact, bool with_grains) {
+  dem::describe(visit, contact);
   visit.require(!with_grains || contact.restitution || contact.damping, "restitution",
                 "the loss in a collision is missing; give restitution, for example 0.93, or damping in kg/s");
-  visit.real("friction", contact.friction, {.meaning = "coefficient between grains", .at_least = 0.0});
-  visit.real("wall_friction", contact.wall_friction,
-             {.meaning = "coefficient between grain and wall", .at_least = 0.0});
-  visit.real(
-      "rolling_friction", contact.rolling_friction,
-      {.meaning = "moment against rolling over normal force and radius (R1 R2/(R1 + R2)), between grains; 0: none",
-       .at_least = 0.0});
-  visit.real("wall_rolling_friction", contact.wall_rolling_friction,
-             {.meaning = "the same between grain and wall", .at_least = 0.0});
-  visit.real("rolling_damping", contact.rolling_damping,
-             {.meaning = "of the rolling spring, over the critical damping", .at_least = 0.0});
   visit.section("walls", contact.walls,
                 {.meaning = "contact of grains with walls where it differs from that between grains"});
-  visit.choice<Attraction>(
-      "attraction", contact.attraction,
-      {{Attraction::none, "none", "the force never pulls"},
-       {Attraction::allowed, "allowed", "the dashpot may pull as grains part, as in the linear law"}},
-      {.meaning = "sign of the normal force"});
 }
 
 }  // namespace thalweg

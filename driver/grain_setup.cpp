@@ -226,7 +226,7 @@ dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box) {
   if (c.coupling.lubrication) parameters.lubrication = lubrication_parameters(c, parameters.walls.size());
   parameters.time_step = grain_time_step(c);
   parameters.disks = c.disks.has_value();
-  if (c.run.grain_integrator == GrainIntegrator::gear) parameters.integrator = dem::Integrator::gear;
+  parameters.integrator = c.run.grain_integrator;
   parameters.sub_steps = static_cast<int>(c.coupling.grain_steps_per_fluid_step);
   parameters.skin = (has_fluid(c) ? skin_in_diameters : dry_skin_in_diameters) * smallest_diameter(c);
   for (const PopulationCase& population : c.grains)

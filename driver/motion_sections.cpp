@@ -3,7 +3,7 @@
 // Sections of walls besides the faces, and of what moves as a given function of time.
 namespace thalweg {
 
-void describe(io::SectionVisitor& visit, OscillationCase& oscillation) {
+void describe(SectionVisitor& visit, OscillationCase& oscillation) {
   visit.vec3("amplitude", oscillation.amplitude,
              {.unit = "m",
               .meaning = "moves by amplitude [sin(2 pi frequency t + phase) - sin(phase)]",
@@ -14,7 +14,7 @@ void describe(io::SectionVisitor& visit, OscillationCase& oscillation) {
   visit.real("phase", oscillation.phase, {.unit = "rad", .meaning = "at the start; pi/2 begins at rest"});
 }
 
-static void describe(io::SectionVisitor& visit, RotationCase& rotation) {
+static void describe(SectionVisitor& visit, RotationCase& rotation) {
   visit.vec3("point", rotation.point,
              {.unit = "m", .meaning = "on the axis, at the start", .required = true, .example = 0.03});
   visit.vec3("axis", rotation.axis, {.meaning = "along the axis, of any length"});
@@ -23,13 +23,13 @@ static void describe(io::SectionVisitor& visit, RotationCase& rotation) {
   visit.require(!rotation.axis.isZero(0.0), "axis", "a direction cannot be zero; give for example [0, 1, 0]");
 }
 
-void describe(io::SectionVisitor& visit, MotionCase& motion) {
+void describe(SectionVisitor& visit, MotionCase& motion) {
   visit.vec3("velocity", motion.velocity, {.unit = "m/s", .meaning = "constant"});
   visit.section("oscillation", motion.oscillation, {.meaning = "on top of the velocity"});
   visit.section("rotation", motion.rotation, {.meaning = "about an axis that moves along"});
 }
 
-static void describe(io::SectionVisitor& visit, PlateCase& plate) {
+static void describe(SectionVisitor& visit, PlateCase& plate) {
   visit.vec3("along", plate.along, {.meaning = "direction of its length in the plane of the wall, of any length"});
   visit.real("length", plate.length,
              {.unit = "m",
@@ -46,7 +46,7 @@ static void describe(io::SectionVisitor& visit, PlateCase& plate) {
   visit.require(!plate.along.isZero(0.0), "along", "a direction cannot be zero; give for example [1, 0, 0]");
 }
 
-void describe(io::SectionVisitor& visit, WallCase& wall) {
+void describe(SectionVisitor& visit, WallCase& wall) {
   visit.vec3(
       "point", wall.point,
       {.unit = "m", .meaning = "on the plane, of a plate its middle, at the start", .required = true, .example = 0.0});

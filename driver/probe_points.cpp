@@ -4,13 +4,13 @@
 
 namespace thalweg {
 
-void describe(io::SectionVisitor& visit, ProbeLineCase& line) {
+void describe(SectionVisitor& visit, ProbeLineCase& line) {
   visit.vec3("from", line.from, {.unit = "m"});
   visit.vec3("to", line.to, {.unit = "m"});
   visit.integer("points", line.points, {.meaning = "at equal distances, both ends included", .at_least = 2});
 }
 
-void describe(io::SectionVisitor& visit, ProbesCase& probes) {
+void describe(SectionVisitor& visit, ProbesCase& probes) {
   visit.vec3_list("points", probes.points, {.unit = "m", .meaning = "each stands for the cell that it lies in"});
   visit.list("lines", probes.lines, {.meaning = "rows of points"});
   visit.real("every", probes.every, {.unit = "s", .meaning = "between measurements", .above = 0.0});

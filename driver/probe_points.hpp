@@ -2,15 +2,15 @@
 #pragma once
 
 #include "driver/case.hpp"
-#include "io/section_visitor.hpp"
+#include "core/section_visitor.hpp"
 #include "io/yaml_document.hpp"
 
 #include <vector>
 
 namespace thalweg {
 
-void describe(io::SectionVisitor& visit, ProbeLineCase& line);
-void describe(io::SectionVisitor& visit, ProbesCase& probes);
+void describe(SectionVisitor& visit, ProbeLineCase& line);
+void describe(SectionVisitor& visit, ProbesCase& probes);
 
 // Throws InputError with the place where there is no point, or one is outside the box.
 void check_probes(const Case& c, const io::YamlDocument& document);

@@ -290,7 +290,7 @@ void run_case(const Command& command, MPI_Comm communicator, WallClock::time_poi
     plan.enough = {{DryGrains::largest_speed_figure, c.run.until_at_rest->largest_speed},
                    {DryGrains::largest_acceleration_figure, c.run.until_at_rest->largest_acceleration}};
   plan.watch = watch_rules(c);
-  plan.out_of_bounds = c.run.watchdog == WatchdogAction::stop ? OutOfBounds::stop : OutOfBounds::warn;
+  plan.out_of_bounds = c.run.watchdog;
   plan.walltime = command.walltime;
   plan.started = started;
   plan.write_at_start = !places.same_folder;

@@ -202,7 +202,7 @@ void add_grain_rules(const Case& c, std::vector<WatchRule>& rules) {
                    "the largest overlap of two grains in diameters",
                    fmt::format("The contacts are too soft for the load or the speed, or grains were placed into each "
                                "other: raise contact.{}, or check grains.0.placement.",
-                               c.contact.law == ContactLaw::linear ? "normal_stiffness" : "youngs_modulus")});
+                               c.contact.law == dem::Law::linear ? "normal_stiffness" : "youngs_modulus")});
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "core/system.hpp"
+#include "driver/out_of_bounds.hpp"
 #include "driver/watch_rule.hpp"
 
 #include <mpi.h>
@@ -14,8 +15,6 @@
 #include <vector>
 
 namespace thalweg::driver {
-
-enum class OutOfBounds { stop, warn };  // what becomes of a run beyond the second limit
 
 class Watchdog {
 public:

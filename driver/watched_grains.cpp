@@ -7,7 +7,7 @@
 // Sections of what is recorded of single grains, and whether the grains they name exist.
 namespace thalweg {
 
-void describe(io::SectionVisitor& visit, TracksCase& tracks) {
+void describe(SectionVisitor& visit, TracksCase& tracks) {
   visit.integer_list("grains", tracks.grains,
                      {.meaning = "ids of the grains, in the order of the populations from 0; else every one_in-th",
                       .at_least = 0,
@@ -17,7 +17,7 @@ void describe(io::SectionVisitor& visit, TracksCase& tracks) {
   visit.real("every", tracks.every, {.unit = "s", .meaning = "between measurements", .above = 0.0});
 }
 
-void describe(io::SectionVisitor& visit, EntrainmentCase& entrainment) {
+void describe(SectionVisitor& visit, EntrainmentCase& entrainment) {
   visit.integer_list("grains", entrainment.grains,
                      {.meaning = "ids of the grains, in the order of the populations from 0; else the free ones whose "
                                  "centre is above the bed's height less one reference diameter",

@@ -2,15 +2,15 @@
 #pragma once
 
 #include "driver/case.hpp"
-#include "io/section_visitor.hpp"
+#include "core/section_visitor.hpp"
 #include "io/yaml_document.hpp"
 
 #include <vector>
 
 namespace thalweg {
 
-void describe(io::SectionVisitor& visit, TracksCase& tracks);
-void describe(io::SectionVisitor& visit, EntrainmentCase& entrainment);
+void describe(SectionVisitor& visit, TracksCase& tracks);
+void describe(SectionVisitor& visit, EntrainmentCase& entrainment);
 
 // Throws InputError with the place of a key that names a grain which is not there, or asks for what cannot be watched.
 void check_watched_grains(const Case& c, const io::YamlDocument& document);

@@ -1,7 +1,7 @@
 // The visitor that fills a struct from a section of a YAML document and complains about everything that does not fit.
 #pragma once
 
-#include "io/section_visitor.hpp"
+#include "core/section_visitor.hpp"
 #include "io/yaml_document.hpp"
 
 namespace thalweg::io {

@@ -1,7 +1,7 @@
 // The visitor that shows a struct as YAML: plainly, with units behind the numbers, or as documentation.
 #pragma once
 
-#include "io/section_visitor.hpp"
+#include "core/section_visitor.hpp"
 
 namespace thalweg::io {
 

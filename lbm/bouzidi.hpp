@@ -18,6 +18,7 @@
 #include "core/periodic_box.hpp"
 #include "lbm/fluid.hpp"
 #include "lbm/link_crossings.hpp"
+#include "lbm/link_options.hpp"
 #include "lbm/link_slots.hpp"
 #include "lbm/link_table.hpp"
 #include "lbm/upstream_bodies.hpp"
@@ -27,24 +28,6 @@
 #include <vector>
 
 namespace thalweg::lbm {
-
-enum class MomentumExchange { galilean_invariant, classical };
-enum class WallDensity { local, reference };  // rho in the moving-wall term: of x_f, or 1
-enum class LinkRule { bouzidi, cli };
-// Gaps of one cell between two bodies: the fluid in them sticks to both, or slips so much that it flows at the speed
-// that its viscosity says (upstream_bodies.hpp; spheres only).
-enum class GapRule { no_slip, slip };
-
-struct LinkOptions {
-  MomentumExchange momentum_exchange = MomentumExchange::galilean_invariant;
-  WallDensity wall_density = WallDensity::local;
-  LinkRule rule = LinkRule::bouzidi;
-  GapRule gaps = GapRule::no_slip;
-  // In a fluid at rest rho = 1 + rest_gradient.(x - rest_middle): the hydrostatic one, or 1.
-  Vec3 rest_gradient = Vec3::Zero();  // of rho a cell
-  Vec3 rest_middle = Vec3::Zero();    // cells
-  double reference_density = 0.0;     // rho - 1 that presses on nothing: force and torque count what is beyond it
-};
 
 // Where the mass comes from that links give to the fluid (LatticeFixed sums over a rank's links in one step), by what
 // the rule reads besides f_i^c(x_f). What is returned (LinkBody) is the rest of LinkBody::mass.

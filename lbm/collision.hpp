@@ -27,6 +27,7 @@
 // subgrid model takes for Q the norm of the traceless part of Pi, since a trace that lives long says nothing of shear.
 #pragma once
 
+#include "lbm/collision_parameters.hpp"
 #include "lbm/d3q19.hpp"
 #include "lbm/pack_constant.hpp"
 
@@ -34,26 +35,6 @@
 #include <type_traits>
 
 namespace thalweg::lbm {
-
-enum class CollisionModel { bgk, trt, regularised };
-
-struct CollisionParameters {
-  CollisionModel model = CollisionModel::bgk;
-  double magic_parameter = 3.0 / 16.0;  // of trt; 3/16 puts half-link walls exactly half way
-  double relaxation_time = 1.0;         // tau_0 = 1/2 + 3 nu dt/dx^2
-  double bulk_relaxation_time = 0.0;    // tau_b, above 1/2; 0: as the shear's, eddies included
-  double smagorinsky_constant = 0.0;    // C_s; 0 switches the subgrid model off
-  double force[3] = {0.0, 0.0, 0.0};    // force density on the fluid
-
-  bool with_bulk() const { return bulk_relaxation_time > 0.0; }
-
-  // Of the odd part, without eddies; 1 in the regularised model, which puts all of it but the momentum into equilibrium.
-  double odd_rate() const {
-    if (model == CollisionModel::regularised) return 1.0;
-    if (model == CollisionModel::bgk) return 1.0 / relaxation_time;
-    return 1.0 / (0.5 + magic_parameter / (relaxation_time - 0.5));
-  }
-};
 
 // A symmetric tensor.
 template <typename Number>

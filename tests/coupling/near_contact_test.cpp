@@ -92,7 +92,10 @@ TEST_P(HiddenLinksTest, CarryWhatTheDefinitionSaysOnAnyRanks) {
   map.begin_update();
   for (std::size_t s = 0; s < spheres.size(); ++s) {
     map.place(map.add(static_cast<GlobalId>(s), spheres[s].radius), spheres[s].centre);
-    bodies[s] = {spheres[s].centre, spheres[s].velocity, spheres[s].spin, spheres[s].radius, {}, {}};
+    bodies[s].centre = spheres[s].centre;
+    bodies[s].velocity = spheres[s].velocity;
+    bodies[s].angular_velocity = spheres[s].spin;
+    bodies[s].radius = spheres[s].radius;
   }
   map.settle();
   links.update(map);

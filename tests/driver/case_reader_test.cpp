@@ -75,7 +75,7 @@ TEST(CaseReader, ReadsEveryFormOfFacesGravityStepAndStart) {
   EXPECT_EQ(c.gravity.mode, GravityMode::reduced);
   EXPECT_EQ(fluid_time_step(c), 0.05 * 0.5e-3);
   EXPECT_EQ(*c.contact.damping, 0.09);
-  EXPECT_EQ(c.contact.attraction, Attraction::none);
+  EXPECT_FALSE(c.contact.attraction);
   EXPECT_EQ(c.initial.fluid.log_profile->shear_velocity, 0.06);
   EXPECT_EQ(*c.grains[1].prescribed_angular_velocity, Vec3(0, 1, 0));
   EXPECT_EQ(read(resolved_yaml(c)), c);
@@ -139,11 +139,11 @@ TEST(CaseReader, ReadsEveryWallAndCollision) {
                    "fluid.mean_velocity={velocity: 0.3, response_time: 0.05}", "coupling.links=cli",
                    "coupling.near_contact=paper", "coupling.refill=grad", "coupling.covered_momentum=to_grain",
                    "coupling.narrow_gaps=slip", "coupling.grain_stress=true"});
-  EXPECT_EQ(c.coupling.links, LinkRule::cli);
+  EXPECT_EQ(c.coupling.links, lbm::LinkRule::cli);
   EXPECT_EQ(c.coupling.near_contact, NearContact::paper);
-  EXPECT_EQ(c.coupling.refill, Refill::grad);
+  EXPECT_EQ(c.coupling.refill, coupling::RefillRule::grad);
   EXPECT_EQ(c.coupling.covered_momentum, CoveredMomentum::to_grain);
-  EXPECT_EQ(c.coupling.narrow_gaps, NarrowGaps::slip);
+  EXPECT_EQ(c.coupling.narrow_gaps, lbm::GapRule::slip);
   EXPECT_TRUE(c.coupling.grain_stress);
   EXPECT_EQ(c.domain.faces[x_low].velocity, Vec3(0.2, 0, 0));
   EXPECT_EQ(c.domain.faces[x_high].pressure, 3.0);
@@ -151,7 +151,7 @@ TEST(CaseReader, ReadsEveryWallAndCollision) {
   EXPECT_TRUE(c.domain.faces[y_low].on_node);
   EXPECT_EQ(c.domain.faces[bottom].type, FaceType::law_of_the_wall_as_printed);
   EXPECT_EQ(c.domain.faces[top].velocity, Vec3(0.1, 0, 0));
-  EXPECT_EQ(c.fluid.collision, Collision::trt);
+  EXPECT_EQ(c.fluid.collision, lbm::CollisionModel::trt);
   EXPECT_EQ(c.fluid.magic_parameter, 0.25);
   EXPECT_EQ(c.fluid.mean_velocity->response_time, 0.05);
   EXPECT_EQ(read(resolved_yaml(c)), c);  // and writes them all

@@ -90,12 +90,12 @@ TEST(Case, TheVelocityEstimateIsTheLaminarFilmInAThickFluid) {
 
 // The map's own entries, and between them the entry on the safe side.
 TEST(Case, StabilityFollowsTheMap) {
-  EXPECT_EQ(stable_lattice_velocity(Collision::bgk, 0.003), 0.05);
-  EXPECT_EQ(stable_lattice_velocity(Collision::bgk, 0.0099), 0.05);
-  EXPECT_EQ(stable_lattice_velocity(Collision::trt, 0.0015), 0.0);
-  EXPECT_EQ(stable_lattice_velocity(Collision::regularised, 0.04), 0.05);
-  EXPECT_EQ(stable_lattice_velocity(Collision::regularised, 2e-4), 0.0);
-  EXPECT_EQ(stable_lattice_velocity(Collision::trt, 0.5), 0.15);
+  EXPECT_EQ(stable_lattice_velocity(lbm::CollisionModel::bgk, 0.003), 0.05);
+  EXPECT_EQ(stable_lattice_velocity(lbm::CollisionModel::bgk, 0.0099), 0.05);
+  EXPECT_EQ(stable_lattice_velocity(lbm::CollisionModel::trt, 0.0015), 0.0);
+  EXPECT_EQ(stable_lattice_velocity(lbm::CollisionModel::regularised, 0.04), 0.05);
+  EXPECT_EQ(stable_lattice_velocity(lbm::CollisionModel::regularised, 2e-4), 0.0);
+  EXPECT_EQ(stable_lattice_velocity(lbm::CollisionModel::trt, 0.5), 0.15);
 }
 
 TEST(Case, WarnsOfWhatDeservesASecondLookAndOfNothingElse) {
@@ -104,10 +104,10 @@ TEST(Case, WarnsOfWhatDeservesASecondLookAndOfNothingElse) {
   c.run.until = 30.0;
   c.analysis.transport_rate = TransportRateCase{20.0, 0.0};
   EXPECT_TRUE(warnings(c).empty());            // 0.94 m/s are 0.038 cells a step
-  c.fluid.collision = Collision::regularised;  // unstable at walls, eddies or not
+  c.fluid.collision = lbm::CollisionModel::regularised;  // unstable at walls, eddies or not
   ASSERT_EQ(warnings(c).size(), 1u);
   EXPECT_NE(warnings(c)[0].find("regularised"), std::string::npos);
-  c.fluid.collision = Collision::bgk;
+  c.fluid.collision = lbm::CollisionModel::bgk;
   c.fluid.time_step = 1e-4;  // 0.19 cells a step
   c.fluid.smagorinsky_constant = 0.0;
   c.domain.spacing = 1e-3;  // 5 cells a diameter, and 0.094 cells a step
@@ -121,14 +121,14 @@ TEST(Case, WarnsOfWhatDeservesASecondLookAndOfNothingElse) {
 TEST(Case, WarnsOfABulkViscosityThatMakesTrtUnstable) {
   Case c = wide_bed();
   c.run.until = 30.0;
-  c.fluid.collision = Collision::trt;
+  c.fluid.collision = lbm::CollisionModel::trt;
   const std::size_t without = warnings(c).size();
   c.fluid.bulk_relaxation_time = 3.0;
   ASSERT_EQ(warnings(c).size(), without + 1);
   c.fluid.smagorinsky_constant = 0.27;
   EXPECT_TRUE(warnings(c).empty());
   c.fluid.smagorinsky_constant = 0.0;
-  c.fluid.collision = Collision::bgk;
+  c.fluid.collision = lbm::CollisionModel::bgk;
   EXPECT_EQ(warnings(c).size(), without);
 }
 
@@ -136,7 +136,7 @@ TEST(Case, WarnsOfABulkViscosityThatMakesTrtUnstable) {
 TEST(Case, WarnsOfABulkViscosityThatMakesAFastStreamUnstable) {
   Case c = wide_bed();
   c.run.until = 30.0;
-  c.fluid.collision = Collision::bgk;
+  c.fluid.collision = lbm::CollisionModel::bgk;
   c.fluid.smagorinsky_constant = 0.27;
   c.fluid.bulk_relaxation_time = 3.0;
   c.fluid.expected_velocity = 0.09 * units_of(c).velocity();

@@ -31,7 +31,7 @@ TEST(GrainCaseReader, ElasticSpheresHaveModuliInPlaceOfStiffnesses) {
       "contact={law: hertz_mindlin, youngs_modulus: 1e8, poisson_ratio: 0.25, restitution: 0.9, "
       "tangential_damping: 0.5}";
   const Case c = read(defaults_yaml("grains"), {elastic, "run.time_step="});
-  EXPECT_EQ(c.contact.law, ContactLaw::hertz_mindlin);
+  EXPECT_EQ(c.contact.law, dem::Law::hertz_mindlin);
   EXPECT_EQ(c.contact.youngs_modulus, 1e8);
   EXPECT_EQ(c.contact.poisson_ratio, 0.25);
   EXPECT_EQ(c.contact.tangential_damping, 0.5);

@@ -22,7 +22,7 @@ double growth(double speed, double bulk_relaxation_time, int from, int to) {
   parameters.bulk_relaxation_time = bulk_relaxation_time;
   Fluid<double> fluid(decomposition, MPI_COMM_SELF, parameters, {});
   std::mt19937 bits(1);
-  const auto noise = [&] { return 1e-12 * (bits() / 0x1p31 - 1.0); };
+  const auto noise = [&] { return 1e-12 * (static_cast<double>(bits()) / 0x1p31 - 1.0); };
   fluid.initialise([&](const Vec3&) { return FluidState{0.0, Vec3(speed + noise(), noise(), noise())}; });
   const auto size = [&] {
     double sum = 0.0;

@@ -50,7 +50,7 @@ public:
     for (int m = 0; m < 4; ++m)
       for (int n = 0; n < 5; ++n) {
         if (m == 0 && n == 0) continue;
-        const auto phase = [&] { return 2.0 * std::numbers::pi * bits() / 0x1p32; };
+        const auto phase = [&] { return 2.0 * std::numbers::pi * static_cast<double>(bits()) / 0x1p32; };
         const double kx = 2.0 * std::numbers::pi * m / cells[0], ky = 2.0 * std::numbers::pi * n / cells[1];
         modes_.push_back({kx, ky, phase(), phase(), amplitude * cells[2] / (8.0 * std::sqrt(1.0 + m * m + n * n))});
       }

@@ -1,15 +1,16 @@
 // One description of the keys of a section serves three uses: reading it, writing it back with all defaults, and
 // documenting it. For a plain struct T write once
 //
-//   void describe(io::SectionVisitor& visit, FluidCase& fluid) {
+//   void describe(SectionVisitor& visit, FluidCase& fluid) {
 //     visit.real("density", fluid.density, {.unit = "kg/m^3", .meaning = "mass density", .above = 0.0});
 //     ...
 //   }
 //
-// in T's namespace; SectionReader and SectionWriter are the visitors. The default of a key is the value the struct has
-// before it is read; `required` keys and optional values have none.
+// in T's namespace; io::SectionReader and io::SectionWriter are the visitors. The default of a key is the value the struct
+// has before it is read; `required` keys and optional values have none. Words of choices: named_choice.hpp.
 #pragma once
 
+#include "core/named_choice.hpp"
 #include "core/types.hpp"
 
 #include <cstdint>
@@ -19,7 +20,7 @@
 #include <utility>
 #include <vector>
 
-namespace thalweg::io {
+namespace thalweg {
 
 struct RealKey {
   std::string unit = "1";  // "1": none
@@ -55,14 +56,6 @@ struct SectionKey {
   std::string empty_name = {};  // this word in place of the section stands for the section without keys: fluid: rest
 };
 
-// A word of a choice and what it means.
-template <typename Choice>
-struct NamedChoice {
-  Choice value;
-  std::string name;
-  std::string meaning = {};
-};
-
 class SectionVisitor {
 public:
   virtual ~SectionVisitor() = default;
@@ -85,6 +78,12 @@ public:
     std::size_t index = index_of(value, choices);
     word(key, index, words_of(choices), about);
     value = choices[index].value;
+  }
+
+  // With the words that the enumeration has everywhere.
+  template <typename Choice>
+  void choice(const std::string& key, Choice& value, const SectionKey& about) {
+    choice(key, value, choices_of(value), about);
   }
 
   // Empty: not given.
@@ -181,4 +180,4 @@ private:
   }
 };
 
-}  // namespace thalweg::io
+}  // namespace thalweg

@@ -1,0 +1,63 @@
+#include "dem/contact_parameters.hpp"
+
+#include "core/section_visitor.hpp"
+
+namespace thalweg::dem {
+
+std::vector<NamedChoice<Law>> choices_of(Law) {
+  return {{Law::linear, "linear", "spring and dashpot"},
+          {Law::hertz_mindlin, "hertz_mindlin", "elastic spheres, by youngs_modulus"}};
+}
+
+void describe(SectionVisitor& visit, ContactParameters& contact) {
+  visit.choice("law", contact.law, {.meaning = "force of a contact"});
+  if (contact.law == Law::linear) {
+    visit.real("normal_stiffness", contact.normal_stiffness,
+               {.unit = "N/m", .meaning = "of the spring across a contact", .above = 0.0});
+    visit.real("tangential_stiffness", contact.tangential_stiffness,
+               {.unit = "N/m", .meaning = "of the spring along a contact", .above = 0.0});
+    for (const char* key : {"youngs_modulus", "poisson_ratio"})
+      visit.not_here(key, "the linear law has stiffnesses; remove it or set law: hertz_mindlin");
+  } else {
+    visit.real("youngs_modulus", contact.youngs_modulus,
+               {.unit = "Pa", .meaning = "of grains and walls", .required = true, .above = 0.0, .example = 70e9});
+    visit.real("poisson_ratio", contact.poisson_ratio,
+               {.meaning = "of grains and walls", .at_least = 0.0, .at_most = 0.5});
+    for (const char* key : {"normal_stiffness", "tangential_stiffness", "damping"})
+      visit.not_here(key,
+                     "elastic spheres have youngs_modulus, poisson_ratio and restitution; remove it or set law: "
+                     "linear");
+  }
+  visit.real("tangential_damping", contact.tangential_damping,
+             {.meaning = "dashpot along a contact over the one across it", .at_least = 0.0});
+  visit.real("restitution", contact.restitution,
+             {.meaning = "speed after over speed before a dry collision; or give damping",
+              .above = 0.0,
+              .at_most = 1.0,
+              .example = 0.93});
+  if (contact.law == Law::linear)
+    visit.real("damping", contact.damping,
+               {.unit = "kg/s",
+                .meaning = "of the dashpot across a contact, in place of restitution",
+                .at_least = 0.0,
+                .example = 0.09});
+  visit.require(!(contact.restitution && contact.damping), "restitution",
+                "the loss in a collision is given twice; give either restitution or damping");
+  visit.real("friction", contact.friction, {.meaning = "coefficient between grains", .at_least = 0.0});
+  visit.real("wall_friction", contact.wall_friction,
+             {.meaning = "coefficient between grain and wall", .at_least = 0.0});
+  visit.real(
+      "rolling_friction", contact.rolling_friction,
+      {.meaning = "moment against rolling over normal force and radius (R1 R2/(R1 + R2)), between grains; 0: none",
+       .at_least = 0.0});
+  visit.real("wall_rolling_friction", contact.wall_rolling_friction,
+             {.meaning = "the same between grain and wall", .at_least = 0.0});
+  visit.real("rolling_damping", contact.rolling_damping,
+             {.meaning = "of the rolling spring, over the critical damping", .at_least = 0.0});
+  visit.choice<bool>("attraction", contact.attraction,
+                     {{false, "none", "the force never pulls"},
+                      {true, "allowed", "the dashpot may pull as grains part, as in the linear law"}},
+                     {.meaning = "sign of the normal force"});
+}
+
+}  // namespace thalweg::dem

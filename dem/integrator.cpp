@@ -1,0 +1,9 @@
+#include "dem/integrator.hpp"
+
+namespace thalweg::dem {
+
+std::vector<NamedChoice<Integrator>> choices_of(Integrator) {
+  return {{Integrator::velocity_verlet, "velocity_verlet", ""}, {Integrator::gear, "gear", "sixth order"}};
+}
+
+}  // namespace thalweg::dem

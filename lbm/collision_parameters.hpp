@@ -1,0 +1,33 @@
+// Which collision the fluid has, and its numbers. Lattice units; the equations are in collision.hpp.
+#pragma once
+
+#include "core/named_choice.hpp"
+
+#include <vector>
+
+namespace thalweg::lbm {
+
+enum class CollisionModel { bgk, trt, regularised };
+
+// Its words in a case file (core/section_visitor.hpp).
+std::vector<NamedChoice<CollisionModel>> choices_of(CollisionModel);
+
+struct CollisionParameters {
+  CollisionModel model = CollisionModel::bgk;
+  double magic_parameter = 3.0 / 16.0;  // of trt; 3/16 puts half-link walls exactly half way
+  double relaxation_time = 1.0;         // tau_0 = 1/2 + 3 nu dt/dx^2
+  double bulk_relaxation_time = 0.0;    // tau_b, above 1/2; 0: as the shear's, eddies included
+  double smagorinsky_constant = 0.0;    // C_s; 0 switches the subgrid model off
+  double force[3] = {0.0, 0.0, 0.0};    // force density on the fluid
+
+  bool with_bulk() const { return bulk_relaxation_time > 0.0; }
+
+  // Of the odd part, without eddies; 1 in the regularised model, which puts all of it but the momentum into equilibrium.
+  double odd_rate() const {
+    if (model == CollisionModel::regularised) return 1.0;
+    if (model == CollisionModel::bgk) return 1.0 / relaxation_time;
+    return 1.0 / (0.5 + magic_parameter / (relaxation_time - 0.5));
+  }
+};
+
+}  // namespace thalweg::lbm

@@ -1,0 +1,35 @@
+// What the links between fluid and bodies may do one way or another (bouzidi.hpp).
+#pragma once
+
+#include "core/named_choice.hpp"
+#include "core/types.hpp"
+
+#include <vector>
+
+namespace thalweg::lbm {
+
+enum class MomentumExchange { galilean_invariant, classical };
+enum class WallDensity { local, reference };  // rho in the moving-wall term: of x_f, or 1
+enum class LinkRule { bouzidi, cli };
+// Gaps of one cell between two bodies: the fluid in them sticks to both, or slips so much that it flows at the speed
+// that its viscosity says (upstream_bodies.hpp; spheres only).
+enum class GapRule { no_slip, slip };
+
+// Their words in a case file (core/section_visitor.hpp).
+std::vector<NamedChoice<MomentumExchange>> choices_of(MomentumExchange);
+std::vector<NamedChoice<WallDensity>> choices_of(WallDensity);
+std::vector<NamedChoice<LinkRule>> choices_of(LinkRule);
+std::vector<NamedChoice<GapRule>> choices_of(GapRule);
+
+struct LinkOptions {
+  MomentumExchange momentum_exchange = MomentumExchange::galilean_invariant;
+  WallDensity wall_density = WallDensity::local;
+  LinkRule rule = LinkRule::bouzidi;
+  GapRule gaps = GapRule::no_slip;
+  // In a fluid at rest rho = 1 + rest_gradient.(x - rest_middle): the hydrostatic one, or 1.
+  Vec3 rest_gradient = Vec3::Zero();  // of rho a cell
+  Vec3 rest_middle = Vec3::Zero();    // cells
+  double reference_density = 0.0;     // rho - 1 that presses on nothing: force and torque count what is beyond it
+};
+
+}  // namespace thalweg::lbm
