@@ -64,7 +64,7 @@ void add_fluid(const Case& c, Lines& lines) {
   lines.push_back(fmt::format("fluid      {:g} kg/m^3, {:g} m^2/s; relaxation time 1/2 + {:.3g}; {:g} s a step",
                               c.fluid.density, c.fluid.kinematic_viscosity, relaxation_time(c) - 0.5, units.time_step));
   if (c.fluid.bulk_relaxation_time.value_or(0.0) > 0.0)
-    lines.push_back(fmt::format("sound      damped by a bulk viscosity of {:.3g} m^2/s, {:.3g} times the viscosity",
+    lines.push_back(fmt::format("sound      damped by a bulk viscosity of {:.3g} m^2/s, {:.3g} times the shear viscosity",
                                 bulk_viscosity(c), bulk_viscosity(c) / c.fluid.kinematic_viscosity));
   if (c.run.ramp > 0.0)
     lines.push_back(fmt::format("gravity    rises to its full value during the first {:g} s, {:.3g} steps", c.run.ramp,
@@ -117,12 +117,12 @@ void add_rebound(const Case& c, Lines& lines) {
   const double around = 0.5 * std::numbers::pi * std::sqrt(3.0) * smallest_diameter(c) / c.domain.spacing;  // steps
   if (contact >= around) return;
   const std::string advice = c.contact.law == dem::Law::linear
-                                 ? fmt::format("; {:.4g} N/m as contact.normal_stiffness makes them as long",
+                                 ? fmt::format("; contact.normal_stiffness: {:.4g} would make them equal",
                                                c.contact.normal_stiffness * contact * contact / (around * around))
                                  : std::string("; softer grains have longer contacts");
   lines.push_back(
-      fmt::format("rebound    weaker than it should be: a contact lasts {:.3g} steps of the fluid, and sound "
-                  "takes {:.3g} around a grain{}",
+      fmt::format("rebound    too weak: a contact lasts {:.3g} fluid steps, less than the {:.3g} that sound takes "
+                  "around a grain{}",
                   contact, around, advice));
 }
 
@@ -148,7 +148,7 @@ void add_grains(const Case& c, Lines& lines) {
                               damping_text(c)));
   if (!has_fluid(c)) return;
   lines.push_back(
-      fmt::format("flight     a grain moves a fiftieth of a cell a step at {:.3g} m/s: faster ones are less exact",
+      fmt::format("flight     a grain moves a fiftieth of a cell a step at {:.3g} m/s; faster grains are less accurate",
                   0.02 * units_of(c).velocity()));
   add_rebound(c, lines);
 }
@@ -180,7 +180,8 @@ void add_cost(const Case& c, double bandwidth, Lines& lines) {
   lines.push_back(work);
   lines.push_back("memory     about " + bytes_text(cost.memory));
   lines.push_back(
-      fmt::format("time       about {} on one core like this one ({:.3g} GB/s), and so many times less on more",
+      fmt::format("time       about {} on one core like this one ({:.3g} GB/s); divide by the number of cores until "
+                  "memory bandwidth saturates",
                   clock_text(cost.core_seconds), bandwidth * 1e-9));
 }
 
