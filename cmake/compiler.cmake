@@ -5,27 +5,41 @@
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
+include(GNUInstallDirs)
 # FindMPI and FindHDF5 look for the C components, hence LANGUAGES C; all sources are C++.
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
 endif()
-set(CMAKE_CXX_FLAGS_RELEASE "-O3 -DNDEBUG")
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 12)
+  message(FATAL_ERROR "Thalweg needs GCC 12 or newer, and this is ${CMAKE_CXX_COMPILER_VERSION}; "
+                      "choose another with -DCMAKE_CXX_COMPILER=g++-12")
+endif()
 
+# What every program that uses the libraries must be compiled with as well: SIMD packs in their headers are as wide as the
+# architecture says.
 add_library(thalweg_compile_options INTERFACE)
-target_compile_options(thalweg_compile_options INTERFACE
-  -march=${THALWEG_ARCHITECTURE} -ffp-contract=off -fno-math-errno -fno-trapping-math
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
-target_include_directories(thalweg_compile_options INTERFACE ${CMAKE_SOURCE_DIR})
+add_library(thalweg::compile_options ALIAS thalweg_compile_options)
+set_target_properties(thalweg_compile_options PROPERTIES EXPORT_NAME compile_options)
+target_compile_features(thalweg_compile_options INTERFACE cxx_std_20)
+target_compile_options(thalweg_compile_options INTERFACE -march=${THALWEG_ARCHITECTURE} -ffp-contract=off)
+target_include_directories(thalweg_compile_options INTERFACE
+  $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/thalweg>)
+
+# What they are compiled with themselves.
+add_library(thalweg_own_options INTERFACE)
+target_compile_options(thalweg_own_options INTERFACE
+  -fno-math-errno -fno-trapping-math -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
 if(THALWEG_SANITIZE)
   target_compile_options(thalweg_compile_options INTERFACE -fsanitize=${THALWEG_SANITIZE} -fno-omit-frame-pointer)
   target_link_options(thalweg_compile_options INTERFACE -fsanitize=${THALWEG_SANITIZE})
 endif()
 
-# thalweg_library(name source... ): a library of the house, usable alone as thalweg::name.
+# thalweg_library(name source... ): one of the project's libraries, usable alone as thalweg::name.
 function(thalweg_library name)
   add_library(thalweg_${name} STATIC ${ARGN})
   add_library(thalweg::${name} ALIAS thalweg_${name})
-  target_link_libraries(thalweg_${name} PUBLIC thalweg_compile_options)
+  set_target_properties(thalweg_${name} PROPERTIES EXPORT_NAME ${name})
+  target_link_libraries(thalweg_${name} PUBLIC thalweg_compile_options PRIVATE $<BUILD_INTERFACE:thalweg_own_options>)
 endfunction()

@@ -6,17 +6,27 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <string>
 #include <vector>
 
 namespace thalweg::driver {
+
+// The Python package beside the installed program, PREFIX/share/thalweg/python, else that of the source tree.
+static std::string python_package() {
+  std::error_code unknown;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", unknown);
+  const auto installed = program.parent_path().parent_path() / "share/thalweg/python";
+  return !unknown && std::filesystem::exists(installed / "thalweg", unknown) ? installed.string()
+                                                                             : THALWEG_PYTHON_PACKAGE;
+}
 
 bool is_analyze(int argc, const char* const* argv) { return argc > 1 && std::strcmp(argv[1], "analyze") == 0; }
 
 int analyze(int argc, char** argv) {
   const char* named = std::getenv("THALWEG_PYTHON");
   std::string interpreter = named ? named : THALWEG_PYTHON;
-  std::string path = THALWEG_PYTHON_PACKAGE;
+  std::string path = python_package();
   if (const char* more = std::getenv("PYTHONPATH"); more && *more) path.append(":").append(more);
   setenv("PYTHONPATH", path.c_str(), 1);
   std::string module_flag = "-m", module = "thalweg";

@@ -110,7 +110,7 @@ Noise follow_noise(const Setting& s, bool plates, int steps) {
   }
   lbm::Fluid<double> fluid(decomposition, MPI_COMM_SELF, s.parameters(), faces);
   std::mt19937 bits(1);
-  const auto noise = [&] { return 1e-3 * s.velocity * (2.0 * bits() / 0x1p32 - 1.0); };
+  const auto noise = [&] { return 1e-3 * s.velocity * (2.0 * static_cast<double>(bits()) / 0x1p32 - 1.0); };
   fluid.initialise([&](const Vec3& p) {
     return lbm::FluidState{0.0, Vec3((plates ? p.z() / cells[2] : 1.0) * s.velocity + noise(), noise(), noise())};
   });
