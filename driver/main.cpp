@@ -14,6 +14,8 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <new>
 
 namespace {
@@ -30,13 +32,11 @@ void execute(const Command& command, WallClock::time_point started, FailureCounc
     return;
   }
   on_first_rank(world, [&] {
-    std::vector<std::string> lines;
-    if (command.kind == Command::Kind::check)
-      lines = check_report(read_case(command.path, command.settings), measure_bandwidth(MPI_COMM_SELF));
-    if (command.kind == Command::Kind::info) lines = info_report(command.path);
+    const std::vector<std::string> lines =
+        command.kind == Command::Kind::check
+            ? check_report(read_case(command.path, command.settings), measure_bandwidth(MPI_COMM_SELF))
+            : info_report(command.path);
     for (const std::string& line : lines) log.line(line);
-    if (command.kind == Command::Kind::defaults)
-      std::fputs(defaults_yaml(command.system.empty() ? "resolved" : command.system).c_str(), stdout);
   });
 }
 
@@ -48,19 +48,37 @@ int end_with(ExitCode code, const std::string& message, FailureCouncil& council,
   return code;
 }
 
+// Whether this is the only process or the first that a launcher has started, by the variables that launchers set. For what
+// is done without MPI, which may not start on login nodes.
+bool first_of_its_launcher() {
+  for (const char* name : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID"})
+    if (const char* rank = std::getenv(name)) return std::strcmp(rank, "0") == 0;
+  return true;
+}
+
+// Help, the defaults, and complaints about the command line.
+int answer_without_mpi(CommandLine line) {
+  if (line.command) {
+    try {
+      line.text = defaults_yaml(line.command->system.empty() ? "resolved" : line.command->system);
+    } catch (const InputError& error) {
+      line = {.command = {}, .text = error.what(), .exit_code = bad_input};
+    }
+  }
+  if (first_of_its_launcher() && line.exit_code == done) std::fputs(line.text.c_str(), stdout);
+  if (first_of_its_launcher() && line.exit_code != done) std::fprintf(stderr, "thalweg: %s\n", line.text.c_str());
+  return line.exit_code;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const WallClock::time_point started = WallClock::now();
   if (is_analyze(argc, argv)) return analyze(argc, argv);
+  const CommandLine line = parse_command_line(argc, argv);
+  if (!line.command || line.command->kind == Command::Kind::defaults) return answer_without_mpi(line);
   MpiSession session(argc, argv);
   const bool speaking = rank_of(MPI_COMM_WORLD) == 0;
-  const CommandLine line = parse_command_line(argc, argv);
-  if (!line.command) {
-    if (speaking && line.exit_code == done) std::fputs(line.text.c_str(), stdout);
-    if (speaking && line.exit_code != done) std::fprintf(stderr, "thalweg: %s\n", line.text.c_str());
-    return line.exit_code;
-  }
   FailureCouncil council(MPI_COMM_WORLD);
   Log log(speaking);
   try {

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+import unittest.mock
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
@@ -56,7 +57,16 @@ class CommandLine(DryGrains):
 
     def test_on_several_ranks_only_one_speaks(self):
         self.assertEqual(self.run_well("--version", ranks=2).stdout.count("thalweg"), 1)
+        self.assertEqual(self.run_well("defaults", ranks=2).stdout.count("system: resolved  "), 1)
         self.assertEqual(self.run_well("check", self.case, ranks=2).stdout.count("tumbling grains"), 1)
+
+    def test_answers_where_mpi_cannot_start(self):
+        # As on the login nodes of some clusters: there is no such way to send messages.
+        with unittest.mock.patch.dict(os.environ, OMPI_MCA_pml="none_such"):
+            self.assertNotEqual(self.thalweg("check", self.case).returncode, 0)   # it needs MPI
+            self.run_well("--help")
+            self.run_well("defaults", "fluid")
+            self.assert_refused("fly", words=["fly"])
 
     def test_wrong_words(self):
         self.assert_refused("fly", words=["fly"])
