@@ -44,8 +44,8 @@ def draw(file, runs):
     matplotlib.use("Agg")
     from matplotlib import pyplot
     from matplotlib.collections import EllipseCollection
-    with h5py.File(runs[0] / "bed.h5") as bed:
-        place, radius = bed["grains/position"][()], bed["grains/radius"][()]
+    bed = read_bed(runs[0] / "bed.h5")
+    place, radius = bed["position"], bed["radius"]
     front_last = np.argsort(-place[:, 1])
     x, z = (place[front_last, 0] - 0.5 * sum(PLATE)) * 1e3, (place[front_last, 2] - TOP) * 1e3
     size = 2e3 * radius[front_last]
