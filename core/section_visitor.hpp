@@ -22,6 +22,13 @@
 
 namespace thalweg {
 
+// A key that belongs to some cases only. Where the condition does not hold, giving the key is an error with this reason, which
+// says what to do: "only a navier_slip wall has a slip length; remove it".
+struct OnlyIf {
+  bool holds = true;
+  std::string reason = {};
+};
+
 struct RealKey {
   std::string unit = "1";  // "1": none
   std::string meaning = {};
@@ -31,6 +38,7 @@ struct RealKey {
   std::optional<double> below = std::nullopt;  // value < below
   std::optional<double> at_most = std::nullopt;
   std::optional<double> example = std::nullopt;  // shown in errors and, for an optional value, in the documentation
+  OnlyIf only_if = {};
 };
 
 struct IntegerKey {
@@ -39,12 +47,14 @@ struct IntegerKey {
   std::int64_t at_least = 0;
   std::optional<std::int64_t> example = std::nullopt;
   std::optional<std::int64_t> automatic = std::nullopt;  // the value for the word auto; none: not allowed
+  OnlyIf only_if = {};
 };
 
 struct TextKey {
   std::string meaning = {};
   bool required = false;
   std::string example = {};  // of an optional value, shown in the documentation
+  OnlyIf only_if = {};
 };
 
 // A section, a list of sections, or a choice.
@@ -54,27 +64,29 @@ struct SectionKey {
   std::string shorthand = {};   // a plain word in place of the section is the value of this key: x: no_slip
   std::string expected = {};    // with shorthand: what is given in most cases, for complaints: "a number in m"
   std::string empty_name = {};  // this word in place of the section stands for the section without keys: fluid: rest
+  OnlyIf only_if = {};
 };
 
 class SectionVisitor {
 public:
   virtual ~SectionVisitor() = default;
 
-  virtual void real(const std::string& key, double& value, const RealKey& about) = 0;
-  virtual void real(const std::string& key, std::optional<double>& value, const RealKey& about) = 0;
-  virtual void vec3(const std::string& key, Vec3& value, const RealKey& about) = 0;
-  virtual void vec3(const std::string& key, std::optional<Vec3>& value, const RealKey& about) = 0;
-  virtual void vec3_list(const std::string& key, std::vector<Vec3>& values, const RealKey& about) = 0;
-  virtual void integer(const std::string& key, std::int64_t& value, const IntegerKey& about) = 0;
-  virtual void integer_list(const std::string& key, std::vector<std::int64_t>& values, const IntegerKey& about) = 0;
-  virtual void real_list(const std::string& key, std::vector<double>& values, const RealKey& about) = 0;
-  virtual void text(const std::string& key, std::string& value, const TextKey& about) = 0;
-  virtual void text(const std::string& key, std::optional<std::string>& value, const TextKey& about) = 0;
-  virtual void flag(const std::string& key, bool& value, const TextKey& about) = 0;
+  // Values: double, Vec3 or std::string, or an optional of them; bool; lists of double, of Vec3 or of whole numbers.
+  void real(const std::string& key, auto& value, const RealKey& about) { visit(key, value, about); }
+  void vec3(const std::string& key, auto& value, const RealKey& about) { visit(key, value, about); }
+  void vec3_list(const std::string& key, std::vector<Vec3>& values, const RealKey& about) { visit(key, values, about); }
+  void real_list(const std::string& key, std::vector<double>& values, const RealKey& about) { visit(key, values, about); }
+  void integer(const std::string& key, std::int64_t& value, const IntegerKey& about) { visit(key, value, about); }
+  void integer_list(const std::string& key, std::vector<std::int64_t>& values, const IntegerKey& about) {
+    visit(key, values, about);
+  }
+  void text(const std::string& key, auto& value, const TextKey& about) { visit(key, value, about); }
+  void flag(const std::string& key, bool& value, const TextKey& about) { visit(key, value, about); }
 
   template <typename Choice>
   void choice(const std::string& key, Choice& value, const std::vector<NamedChoice<Choice>>& choices,
               const SectionKey& about) {
+    if (!belongs(key, about.only_if)) return;
     std::size_t index = index_of(value, choices);
     word(key, index, words_of(choices), about);
     value = choices[index].value;
@@ -90,6 +102,7 @@ public:
   template <typename Choice>
   void choice(const std::string& key, std::optional<Choice>& value, const std::vector<NamedChoice<Choice>>& choices,
               const SectionKey& about) {
+    if (!belongs(key, about.only_if)) return;
     std::optional<std::size_t> index;
     if (value) index = index_of(*value, choices);
     word(key, index, words_of(choices), about);
@@ -100,6 +113,7 @@ public:
   template <typename Choice>
   void choice_list(const std::string& key, std::vector<Choice>& values, const std::vector<NamedChoice<Choice>>& choices,
                    const SectionKey& about) {
+    if (!belongs(key, about.only_if)) return;
     std::vector<std::size_t> indices;
     for (const Choice& value : values) indices.push_back(index_of(value, choices));
     word_list(key, indices, words_of(choices), about);
@@ -109,16 +123,19 @@ public:
 
   // What a section holds, where a struct and its describe() will not do: where it depends on other sections.
   using Body = std::function<void(SectionVisitor&)>;
-  void section(const std::string& key, const SectionKey& about, const Body& body) { nested(key, true, about, body); }
+  void section(const std::string& key, const SectionKey& about, const Body& body) {
+    if (belongs(key, about.only_if)) nested(key, true, about, body);
+  }
 
   template <typename Section>
   void section(const std::string& key, Section& value, const SectionKey& about) {
-    nested(key, true, about, [&](SectionVisitor& inside) { describe(inside, value); });
+    section(key, about, Body([&](SectionVisitor& inside) { describe(inside, value); }));
   }
 
   // Empty: the section is not given.
   template <typename Section>
   void section(const std::string& key, std::optional<Section>& value, const SectionKey& about) {
+    if (!belongs(key, about.only_if)) return;
     const bool given = is_given(key, value.has_value());
     Section held = value.value_or(Section{});
     nested(key, given, about, [&](SectionVisitor& inside) { describe(inside, held); });
@@ -130,6 +147,7 @@ public:
 
   template <typename Section>
   void list(const std::string& key, std::vector<Section>& values, const SectionKey& about) {
+    if (!belongs(key, about.only_if)) return;
     const std::size_t size = begin_list(key, values.size(), about);
     values.resize(size);
     for (std::size_t n = 0; n < size; ++n) item(key, n, [&](SectionVisitor& inside) { describe(inside, values[n]); });
@@ -149,6 +167,18 @@ public:
   virtual bool reading() const = 0;
 
 protected:
+  virtual void value_of(const std::string& key, double& value, const RealKey& about) = 0;
+  virtual void value_of(const std::string& key, std::optional<double>& value, const RealKey& about) = 0;
+  virtual void value_of(const std::string& key, Vec3& value, const RealKey& about) = 0;
+  virtual void value_of(const std::string& key, std::optional<Vec3>& value, const RealKey& about) = 0;
+  virtual void value_of(const std::string& key, std::vector<Vec3>& values, const RealKey& about) = 0;
+  virtual void value_of(const std::string& key, std::int64_t& value, const IntegerKey& about) = 0;
+  virtual void value_of(const std::string& key, std::vector<std::int64_t>& values, const IntegerKey& about) = 0;
+  virtual void value_of(const std::string& key, std::vector<double>& values, const RealKey& about) = 0;
+  virtual void value_of(const std::string& key, std::string& value, const TextKey& about) = 0;
+  virtual void value_of(const std::string& key, std::optional<std::string>& value, const TextKey& about) = 0;
+  virtual void value_of(const std::string& key, bool& value, const TextKey& about) = 0;
+
   struct Word {
     std::string name, meaning;
   };
@@ -166,6 +196,13 @@ protected:
   virtual void example_item(const Body&) {}  // of a list that is empty
 
 private:
+  bool belongs(const std::string& key, const OnlyIf& only_if) {
+    if (!only_if.holds) not_here(key, only_if.reason);
+    return only_if.holds;
+  }
+  void visit(const std::string& key, auto& value, const auto& about) {
+    if (belongs(key, about.only_if)) value_of(key, value, about);
+  }
   template <typename Choice>
   static std::size_t index_of(const Choice& value, const std::vector<NamedChoice<Choice>>& choices) {
     std::size_t index = 0;

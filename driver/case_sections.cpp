@@ -12,6 +12,14 @@
 // visitor's templates would not find them.
 namespace thalweg {
 
+static OnlyIf only_with_fluid(bool with_fluid) {
+  return {with_fluid, "system: grains has no fluid; remove the section or set system: resolved"};
+}
+
+static OnlyIf only_with_grains(bool with_grains) {
+  return {with_grains, "system: fluid has no grains; remove the section or set system: resolved"};
+}
+
 static void describe_gravity(SectionVisitor& visit, GravityCase& gravity, bool with_fluid) {
   visit.real("magnitude", gravity.magnitude,
              {.unit = "m/s^2", .meaning = "with slope; or give vector", .at_least = 0.0, .example = 9.8});
@@ -22,13 +30,12 @@ static void describe_gravity(SectionVisitor& visit, GravityCase& gravity, bool w
                 "gravity is given twice; give either magnitude and slope or vector");
   visit.require(gravity.vector || gravity.magnitude, "magnitude",
                 "gravity is missing; give magnitude in m/s^2, for example 9.8, with slope, or vector");
-  if (with_fluid)
-    visit.choice<GravityMode>("mode", gravity.mode,
-                              {{GravityMode::reduced, "reduced", "hydrostatic pressure left out"},
-                               {GravityMode::full, "full", "in the fluid, and buoyancy from it"}},
-                              {.meaning = "how the weight of the resting fluid is treated"});
-  else
-    visit.not_here("mode", "a run without fluid has only one kind of gravity; remove the key");
+  visit.choice<GravityMode>(
+      "mode", gravity.mode,
+      {{GravityMode::reduced, "reduced", "hydrostatic pressure left out"},
+       {GravityMode::full, "full", "in the fluid, and buoyancy from it"}},
+      {.meaning = "how the weight of the resting fluid is treated",
+       .only_if = {with_fluid, "a run without fluid has only one kind of gravity; remove the key"}});
 }
 
 static void describe(SectionVisitor& visit, LubricationCase& lubrication) {
@@ -141,12 +148,10 @@ static void describe_initial(SectionVisitor& visit, InitialCase& initial, bool w
   if (with_fluid) fields.push_back({InitialField::fluid, "fluid"});
   if (with_grains) fields.push_back({InitialField::grains, "grains", "as many as the populations have"});
   visit.choice_list<InitialField>("fields", initial.fields, fields, {.meaning = "what is taken from it"});
-  if (!with_fluid) {
-    visit.not_here("fluid", "system: grains has no fluid; remove the section or set system: resolved");
-    return;
-  }
   visit.section("fluid", initial.fluid,
-                {.meaning = "velocity at the start: rest, uniform or log_profile", .empty_name = "rest"});
+                {.meaning = "velocity at the start: rest, uniform or log_profile",
+                 .empty_name = "rest",
+                 .only_if = only_with_fluid(with_fluid)});
   const bool fluid_of_other_run = !initial.from.empty() && std::find(initial.fields.begin(), initial.fields.end(),
                                                                      InitialField::fluid) != initial.fields.end();
   visit.require(
@@ -167,34 +172,28 @@ static void describe_run(SectionVisitor& visit, RunCase& run, bool with_fluid, b
               .required = true,
               .above = 0.0,
               .example = 30.0});
-  if (with_grains)
-    visit.choice("grain_integrator", run.grain_integrator, {.meaning = "how the grains are moved"});
-  else
-    visit.not_here("grain_integrator", "a fluid alone has no grains; remove the key");
+  visit.choice(
+      "grain_integrator", run.grain_integrator,
+      {.meaning = "how the grains are moved", .only_if = {with_grains, "a fluid alone has no grains; remove the key"}});
   visit.choice<driver::OutOfBounds>("watchdog", run.watchdog,
-                               {{driver::OutOfBounds::stop, "stop", "the run, with exit code 1"},
-                                {driver::OutOfBounds::warn, "warn", "and go on while there are numbers"}},
-                               {.meaning = "what to do when a figure leaves its bounds (docs/stability.md)"});
-  if (with_fluid)
-    visit.not_here("until_at_rest", "grains in a fluid are never at rest; remove the section or set system: grains");
-  else
-    visit.section("until_at_rest", run.until_at_rest,
-                  {.meaning = "the run ends when all grains are at rest (looked at every 200 steps), or at run.until"});
-  if (with_fluid)
-    visit.real("ramp", run.ramp,
-               {.unit = "s",
-                .meaning = "in which gravity, on fluid and grains, rises smoothly from zero; 0: it is there at once",
-                .at_least = 0.0});
-  else
-    visit.not_here("ramp", "without a fluid there is no column of water that would ring; remove the key");
-  if (with_fluid)
-    visit.not_here("time_step", "with a fluid the step is fluid.time_step; remove the key");
-  else
-    visit.real("time_step", run.time_step,
-               {.unit = "s",
-                .meaning = "of the grains; 1/50 of the shortest contact where not given",
-                .above = 0.0,
-                .example = 4e-6});
+                                    {{driver::OutOfBounds::stop, "stop", "the run, with exit code 1"},
+                                     {driver::OutOfBounds::warn, "warn", "and go on while there are numbers"}},
+                                    {.meaning = "what to do when a figure leaves its bounds (docs/stability.md)"});
+  visit.section(
+      "until_at_rest", run.until_at_rest,
+      {.meaning = "the run ends when all grains are at rest (looked at every 200 steps), or at run.until",
+       .only_if = {!with_fluid, "grains in a fluid are never at rest; remove the section or set system: grains"}});
+  visit.real("ramp", run.ramp,
+             {.unit = "s",
+              .meaning = "in which gravity, on fluid and grains, rises smoothly from zero; 0: it is there at once",
+              .at_least = 0.0,
+              .only_if = {with_fluid, "without a fluid there is no column of water that would ring; remove the key"}});
+  visit.real("time_step", run.time_step,
+             {.unit = "s",
+              .meaning = "of the grains; 1/50 of the shortest contact where not given",
+              .above = 0.0,
+              .example = 4e-6,
+              .only_if = {!with_fluid, "with a fluid the step is fluid.time_step; remove the key"}});
 }
 
 static void describe(SectionVisitor& visit, SeriesOutputCase& series) {
@@ -236,14 +235,11 @@ static void describe(SectionVisitor& visit, CheckpointOutputCase& checkpoint) {
 
 static void describe_output(SectionVisitor& visit, OutputCase& output, bool with_fluid, bool with_grains) {
   visit.section("series", output.series, {.meaning = "the table series.csv"});
-  if (with_fluid)
-    visit.section("fluid", output.fluid, {.meaning = "pictures of the fluid, fluid.pvd"});
-  else
-    visit.not_here("fluid", "a run without fluid has no pictures of it; remove the section");
-  if (with_grains)
-    visit.section("grains", output.grains, {.meaning = "pictures of the grains, grains.pvd"});
-  else
-    visit.not_here("grains", "system: fluid has no grains; remove the section or set system: resolved");
+  visit.section("fluid", output.fluid,
+                {.meaning = "pictures of the fluid, fluid.pvd",
+                 .only_if = {with_fluid, "a run without fluid has no pictures of it; remove the section"}});
+  visit.section("grains", output.grains,
+                {.meaning = "pictures of the grains, grains.pvd", .only_if = only_with_grains(with_grains)});
   visit.section("checkpoint", output.checkpoint, {.meaning = "states from which the run can be continued"});
 }
 
@@ -298,63 +294,57 @@ static void describe(SectionVisitor&, WallForcesCase&) {}
 static void describe(SectionVisitor&, PopulationLoadsCase&) {}
 
 static void describe_analysis(SectionVisitor& visit, AnalysisCase& analysis, bool with_fluid, bool with_grains) {
-  const auto of_grains = [&](const char* key, auto& section, const SectionKey& about) {
-    if (with_grains)
-      visit.section(key, section, about);
-    else
-      visit.not_here(key, "system: fluid has no grains; remove the section or set system: resolved");
-  };
-  if (with_grains)
-    visit.real("reference_diameter", analysis.reference_diameter,
-               {.unit = "m",
-                .meaning = "d of q*, the Shields number and the speed that counts as moving; where not given, half of "
-                           "the volume of all free grains is finer",
-                .above = 0.0,
-                .example = 5e-3});
-  else
-    visit.not_here("reference_diameter", "system: fluid has no grains; remove the key or set system: resolved");
-  of_grains(
+  const OnlyIf of_fluid = only_with_fluid(with_fluid), of_grains = only_with_grains(with_grains);
+  const OnlyIf of_both = with_grains ? of_fluid : of_grains;
+  visit.real("reference_diameter", analysis.reference_diameter,
+             {.unit = "m",
+              .meaning = "d of q*, the Shields number and the speed that counts as moving; where not given, half of "
+                         "the volume of all free grains is finer",
+              .above = 0.0,
+              .example = 5e-3,
+              .only_if = {with_grains, "system: fluid has no grains; remove the key or set system: resolved"}});
+  visit.section(
       "transport_rate", analysis.transport_rate,
-      {.meaning = "the grains' flux q and q* along x with its error, how many move, how fast, and how far they hop"});
-  of_grains(
+      {.meaning = "the grains' flux q and q* along x with its error, how many move, how fast, and how far they hop",
+       .only_if = of_grains});
+  visit.section(
       "bed_surface", analysis.bed_surface,
       {.meaning = "height of the bed by solid fraction and by static pixels; depth, bed stress and Shields number "
-                  "of the flow above it"});
-  of_grains("grain_profiles", analysis.grain_profiles,
-            {.meaning = "mean solid fraction, velocity, flux, granular temperature and stresses of the grains over "
-                        "z, in profiles.h5"});
-  if (with_fluid)
-    of_grains("stress_balance", analysis.stress_balance,
-              {.meaning = "all stresses of grains and fluid over z, in profiles.h5, and how far their total is from "
-                          "what the driving force prescribes in steady state"});
-  else
-    visit.not_here("stress_balance",
-                   "system: grains has no fluid; remove the section, use grain_profiles, or set "
-                   "system: resolved");
-  of_grains("population_loads", analysis.population_loads,
-            {.meaning = "force and torque on each population of grains, in series.csv; no keys: {}"});
-  if (with_fluid)
-    visit.section("fluid_statistics", analysis.fluid_statistics,
-                  {.meaning = "mean velocity and Reynolds stresses in profiles.h5: over z, and over y and z between "
-                              "side walls"});
-  else
-    visit.not_here("fluid_statistics", "system: grains has no fluid; remove the section or set system: resolved");
-  if (with_fluid)
-    visit.section("probes", analysis.probes,
-                  {.meaning = "velocity and pressure of the fluid at points and along lines at short intervals, in "
-                              "probes.h5"});
-  else
-    visit.not_here("probes", "system: grains has no fluid; remove the section or set system: resolved");
-  of_grains("tracks", analysis.tracks,
-            {.meaning = "places, motion and forces of chosen grains at short intervals, in tracks.h5"});
-  if (with_fluid)
-    of_grains("entrainment", analysis.entrainment,
-              {.meaning = "what acted on grains that start to move, and the torques about the hinge they roll over, in "
-                          "entrainment.h5"});
-  else
-    visit.not_here("entrainment", "system: grains has no fluid; remove the section or set system: resolved");
-  of_grains("wall_forces", analysis.wall_forces,
-            {.meaning = "force of grains and of the fluid on each wall, in series.csv; no keys: {}"});
+                  "of the flow above it",
+       .only_if = of_grains});
+  visit.section("grain_profiles", analysis.grain_profiles,
+                {.meaning = "mean solid fraction, velocity, flux, granular temperature and stresses of the grains over "
+                            "z, in profiles.h5",
+                 .only_if = of_grains});
+  visit.section("stress_balance", analysis.stress_balance,
+                {.meaning = "all stresses of grains and fluid over z, in profiles.h5, and how far their total is from "
+                            "what the driving force prescribes in steady state",
+                 .only_if = with_fluid ? of_grains
+                                       : OnlyIf{false,
+                                                "system: grains has no fluid; remove the section, use "
+                                                "grain_profiles, or set system: resolved"}});
+  visit.section(
+      "population_loads", analysis.population_loads,
+      {.meaning = "force and torque on each population of grains, in series.csv; no keys: {}", .only_if = of_grains});
+  visit.section("fluid_statistics", analysis.fluid_statistics,
+                {.meaning = "mean velocity and Reynolds stresses in profiles.h5: over z, and over y and z between "
+                            "side walls",
+                 .only_if = of_fluid});
+  visit.section("probes", analysis.probes,
+                {.meaning = "velocity and pressure of the fluid at points and along lines at short intervals, in "
+                            "probes.h5",
+                 .only_if = of_fluid});
+  visit.section(
+      "tracks", analysis.tracks,
+      {.meaning = "places, motion and forces of chosen grains at short intervals, in tracks.h5", .only_if = of_grains});
+  visit.section(
+      "entrainment", analysis.entrainment,
+      {.meaning = "what acted on grains that start to move, and the torques about the hinge they roll over, in "
+                  "entrainment.h5",
+       .only_if = of_both});
+  visit.section(
+      "wall_forces", analysis.wall_forces,
+      {.meaning = "force of grains and of the fluid on each wall, in series.csv; no keys: {}", .only_if = of_grains});
 }
 
 static void describe(SectionVisitor& visit, DisksCase& disks) {
@@ -369,53 +359,32 @@ void describe(SectionVisitor& visit, Case& c) {
                             {SystemKind::grains, "grains", "dry grains"}},
                            {.meaning = "what is simulated", .required = true});
   const bool with_fluid = has_fluid(c), with_grains = c.system != SystemKind::fluid;
-  const auto only_with_fluid = [&](const std::string& key) {
-    visit.not_here(key, "system: grains has no fluid; remove the section or set system: resolved");
-  };
-  const auto only_with_grains = [&](const std::string& key) {
-    visit.not_here(key, "system: fluid has no grains; remove the section or set system: resolved");
-  };
+  const OnlyIf of_fluid = only_with_fluid(with_fluid), of_grains = only_with_grains(with_grains);
   visit.text("name", c.name, {.meaning = "what the run is called in its output"});
   visit.section("domain", {.meaning = "the box, its cells and its faces", .required = true},
                 [&](SectionVisitor& inside) { describe_domain(inside, c.domain, with_fluid); });
-  if (with_fluid)
-    visit.section("fluid", c.fluid, {.meaning = "what fills the box", .required = true});
-  else
-    only_with_fluid("fluid");
+  visit.section("fluid", c.fluid, {.meaning = "what fills the box", .required = true, .only_if = of_fluid});
   visit.section("gravity", {.meaning = "given by magnitude and slope, or as a vector", .required = true},
                 [&](SectionVisitor& inside) { describe_gravity(inside, c.gravity, with_fluid); });
-  if (with_fluid)
-    visit.not_here("disks", "only dry grains can be disks; remove the section or set system: grains");
-  else
-    visit.section("disks", c.disks,
-                  {.meaning = "two dimensions: the grains are disks that move in the plane x-z, in the middle of y"});
-  if (with_fluid)
-    visit.not_here("walls", "with a fluid there are only the faces of the box; remove the section");
-  else
-    visit.list("walls", c.walls, {.meaning = "planes the grains bounce off, besides the faces of the box"});
-  if (with_grains) {
-    visit.list("grains", c.grains, {.meaning = "populations of grains", .required = !with_fluid});
-    visit.require(with_fluid || !c.grains.empty(), "grains",
-                  "a run of dry grains needs at least one population of them");
-    visit.section("contact", {.meaning = "force between grains that touch, with friction"},
-                  [&](SectionVisitor& inside) { describe_contact(inside, c.contact, !c.grains.empty()); });
-  } else {
-    only_with_grains("grains");
-    only_with_grains("contact");
-  }
-  if (with_fluid)
-    visit.section("coupling", {.meaning = "how fluid and grains, or solids, act on each other"},
-                  [&](SectionVisitor& inside) { describe_coupling(inside, c.coupling, with_grains); });
-  else
-    only_with_fluid("coupling");
+  visit.section("disks", c.disks,
+                {.meaning = "two dimensions: the grains are disks that move in the plane x-z, in the middle of y",
+                 .only_if = {!with_fluid, "only dry grains can be disks; remove the section or set system: grains"}});
+  visit.list("walls", c.walls,
+             {.meaning = "planes the grains bounce off, besides the faces of the box",
+              .only_if = {!with_fluid, "with a fluid there are only the faces of the box; remove the section"}});
+  visit.list("grains", c.grains, {.meaning = "populations of grains", .required = !with_fluid, .only_if = of_grains});
+  visit.require(with_fluid || !c.grains.empty(), "grains", "a run of dry grains needs at least one population of them");
+  visit.section("contact", {.meaning = "force between grains that touch, with friction", .only_if = of_grains},
+                [&](SectionVisitor& inside) { describe_contact(inside, c.contact, !c.grains.empty()); });
+  visit.section("coupling", {.meaning = "how fluid and grains, or solids, act on each other", .only_if = of_fluid},
+                [&](SectionVisitor& inside) { describe_coupling(inside, c.coupling, with_grains); });
   visit.section("initial", {.meaning = "state at the start"},
                 [&](SectionVisitor& inside) { describe_initial(inside, c.initial, with_fluid, with_grains); });
-  if (!with_grains)
-    visit.list("solids", c.solids, {.meaning = "bodies that stand still in the fluid"});
-  else
-    visit.not_here("solids",
-                   "only system: fluid has them, because grains would not feel them; for spheres give a population of "
-                   "grains with fixed: true");
+  visit.list("solids", c.solids,
+             {.meaning = "bodies that stand still in the fluid",
+              .only_if = {!with_grains,
+                          "only system: fluid has them, because grains would not feel them; for spheres give a "
+                          "population of grains with fixed: true"}});
   visit.section("run", {.meaning = "how long", .required = true},
                 [&](SectionVisitor& inside) { describe_run(inside, c.run, with_fluid, with_grains); });
   visit.section("output", {.meaning = "what the run writes, besides run.log and summary.json"},

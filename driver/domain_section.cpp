@@ -75,49 +75,43 @@ static void describe(SectionVisitor& visit, Face& face) {
        {FaceType::velocity_inlet, "velocity_inlet"},
        {FaceType::pressure_outlet, "pressure_outlet"}},
       {.meaning = "kind of face, by half-link rules unless on_node", .required = true});
-  if (face.type == FaceType::law_of_the_wall) {
-    visit.flag(
-        "of_first_cell", face.of_first_cell,
-        {.meaning = "take the coefficient from the law of the wall at the first cell's centre, whose distance in "
-                    "wall units grows with the stress"});
-    if (face.of_first_cell)
-      visit.not_here("coefficient", "of_first_cell finds the coefficient; remove one of the two");
-    else
-      visit.real("coefficient", face.coefficient,
-                 {.meaning = "slip velocity at the wall over the friction velocity", .above = 0.0});
-  } else {
-    visit.not_here("coefficient", "only a law_of_the_wall has a coefficient; remove it");
-    visit.not_here("of_first_cell", "only a law_of_the_wall has a coefficient; remove it");
-  }
-  if (face.type == FaceType::navier_slip)
-    visit.real("slip_length", face.slip_length,
-               {.unit = "m",
-                .meaning = "from the wall to where the profile would come to rest",
-                .required = true,
-                .at_least = 0.0,
-                .example = 1e-4});
-  else
-    visit.not_here("slip_length", "only a navier_slip wall has a slip length; remove it");
-  if (face.of_first_cell)
-    visit.not_here("on_node", "of_first_cell needs the first cell half a cell from the wall; remove one of the two");
-  else if (face.slips())
-    visit.flag("on_node", face.on_node,
-               {.meaning = "the wall runs through the outermost cell centres, not beyond them"});
-  else
-    visit.not_here("on_node", "only slip walls can stand on the cell centres; remove it");
-  if (face.has_velocity())
-    visit.vec3("velocity", face.velocity,
-               {.unit = "m/s", .meaning = "of the wall or of the fluid that enters", .required = true, .example = 0.1});
-  else
-    visit.not_here("velocity", "only a moving wall or a velocity_inlet has a velocity; remove it");
-  if (face.type == FaceType::moving)
-    visit.section("oscillation", face.oscillation, {.meaning = "dry grains only: on top of the velocity"});
-  else
-    visit.not_here("oscillation", "only a moving wall swings; remove it");
-  if (face.type == FaceType::pressure_outlet)
-    visit.real("pressure", face.pressure, {.unit = "Pa", .meaning = "above the reference pressure"});
-  else
-    visit.not_here("pressure", "only a pressure_outlet has a pressure; remove it");
+  const bool law = face.type == FaceType::law_of_the_wall;
+  const std::string of_the_law = "only a law_of_the_wall has a coefficient; remove it";
+  visit.flag("of_first_cell", face.of_first_cell,
+             {.meaning = "take the coefficient from the law of the wall at the first cell's centre, whose distance in "
+                         "wall units grows with the stress",
+              .only_if = {law, of_the_law}});
+  visit.real("coefficient", face.coefficient,
+             {.meaning = "slip velocity at the wall over the friction velocity",
+              .above = 0.0,
+              .only_if = {law && !face.of_first_cell,
+                          law ? "of_first_cell finds the coefficient; remove one of the two" : of_the_law}});
+  visit.real("slip_length", face.slip_length,
+             {.unit = "m",
+              .meaning = "from the wall to where the profile would come to rest",
+              .required = true,
+              .at_least = 0.0,
+              .example = 1e-4,
+              .only_if = {face.type == FaceType::navier_slip, "only a navier_slip wall has a slip length; remove it"}});
+  visit.flag("on_node", face.on_node,
+             {.meaning = "the wall runs through the outermost cell centres, not beyond them",
+              .only_if = {face.slips() && !face.of_first_cell,
+                          face.of_first_cell
+                              ? "of_first_cell needs the first cell half a cell from the wall; remove one of the two"
+                              : "only slip walls can stand on the cell centres; remove it"}});
+  visit.vec3("velocity", face.velocity,
+             {.unit = "m/s",
+              .meaning = "of the wall or of the fluid that enters",
+              .required = true,
+              .example = 0.1,
+              .only_if = {face.has_velocity(), "only a moving wall or a velocity_inlet has a velocity; remove it"}});
+  visit.section("oscillation", face.oscillation,
+                {.meaning = "dry grains only: on top of the velocity",
+                 .only_if = {face.type == FaceType::moving, "only a moving wall swings; remove it"}});
+  visit.real("pressure", face.pressure,
+             {.unit = "Pa",
+              .meaning = "above the reference pressure",
+              .only_if = {face.type == FaceType::pressure_outlet, "only a pressure_outlet has a pressure; remove it"}});
 }
 
 static void describe_boundaries(SectionVisitor& visit, BoundaryKeys& keys, bool with_fluid) {

@@ -40,11 +40,11 @@ void describe(SectionVisitor& visit, FluidCase& fluid) {
   visit.require(!fluid.maximum_lattice_velocity || fluid.expected_velocity, "expected_velocity",
                 "maximum_lattice_velocity needs it; give the largest velocity expected in m/s, for example 0.5");
   visit.choice("collision", fluid.collision, {.meaning = "collision operator"});
-  if (fluid.collision == lbm::CollisionModel::trt)
-    visit.real("magic_parameter", fluid.magic_parameter,
-               {.meaning = "of trt: (1/omega+ - 1/2)(1/omega- - 1/2); 3/16 puts walls exactly half way", .above = 0.0});
-  else
-    visit.not_here("magic_parameter", "only collision trt has a magic parameter; remove it");
+  visit.real("magic_parameter", fluid.magic_parameter,
+             {.meaning = "of trt: (1/omega+ - 1/2)(1/omega- - 1/2); 3/16 puts walls exactly half way",
+              .above = 0.0,
+              .only_if = {fluid.collision == lbm::CollisionModel::trt,
+                          "only collision trt has a magic parameter; remove it"}});
   visit.real("bulk_relaxation_time", fluid.bulk_relaxation_time,
              {.meaning = "of the trace of the stress, in steps: damps sound, and nothing else, by a bulk viscosity of "
                          "2/9 (it - 1/2); 0: as the shear's, the published method; where not given 1 with grains, bgk "

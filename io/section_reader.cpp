@@ -136,31 +136,31 @@ Vec3 SectionReader::vec3_from(const YamlNode& node, const std::string& key, cons
   return value;
 }
 
-void SectionReader::real(const std::string& key, double& value, const RealKey& about) {
+void SectionReader::value_of(const std::string& key, double& value, const RealKey& about) {
   const std::string expectation = expected_real(about, value);
   if (const YamlNode* node = look_up(key, about.required, expectation))
     value = real_from(*node, key, about, expectation);
 }
 
-void SectionReader::real(const std::string& key, std::optional<double>& value, const RealKey& about) {
+void SectionReader::value_of(const std::string& key, std::optional<double>& value, const RealKey& about) {
   const std::string expectation = expected_real(about, value.value_or(1.0));
   if (const YamlNode* node = look_up(key, about.required, expectation))
     value = real_from(*node, key, about, expectation);
 }
 
-void SectionReader::vec3(const std::string& key, Vec3& value, const RealKey& about) {
+void SectionReader::value_of(const std::string& key, Vec3& value, const RealKey& about) {
   const std::string expectation = expected_vec3(about);
   if (const YamlNode* node = look_up(key, about.required, expectation))
     value = vec3_from(*node, key, about, expectation);
 }
 
-void SectionReader::vec3(const std::string& key, std::optional<Vec3>& value, const RealKey& about) {
+void SectionReader::value_of(const std::string& key, std::optional<Vec3>& value, const RealKey& about) {
   const std::string expectation = expected_vec3(about);
   if (const YamlNode* node = look_up(key, about.required, expectation))
     value = vec3_from(*node, key, about, expectation);
 }
 
-void SectionReader::vec3_list(const std::string& key, std::vector<Vec3>& values, const RealKey& about) {
+void SectionReader::value_of(const std::string& key, std::vector<Vec3>& values, const RealKey& about) {
   const std::string expectation = fmt::format(
       "a list of points{}, each a list of 3 numbers, for example "
       "[[0.01, 0.01, 0.005], [0.02, 0.01, 0.005]]",
@@ -173,7 +173,7 @@ void SectionReader::vec3_list(const std::string& key, std::vector<Vec3>& values,
     values.push_back(vec3_from(node->items[n], fmt::format("{}.{}", key, n), about, expected_vec3(about)));
 }
 
-void SectionReader::integer(const std::string& key, std::int64_t& value, const IntegerKey& about) {
+void SectionReader::value_of(const std::string& key, std::int64_t& value, const IntegerKey& about) {
   const std::string expectation =
       fmt::format("a whole number, at least {}, for example {}{}", about.at_least,
                   about.example.value_or(std::max(value, about.at_least)), about.automatic ? ", or auto" : "");
@@ -189,7 +189,7 @@ void SectionReader::integer(const std::string& key, std::int64_t& value, const I
   value = read;
 }
 
-void SectionReader::integer_list(const std::string& key, std::vector<std::int64_t>& values, const IntegerKey& about) {
+void SectionReader::value_of(const std::string& key, std::vector<std::int64_t>& values, const IntegerKey& about) {
   const std::int64_t example = about.example.value_or(std::max<std::int64_t>(1, about.at_least));
   const std::string expectation =
       fmt::format("a list of whole numbers, at least {}, for example [{}, {}]", about.at_least, example, example + 1);
@@ -206,7 +206,7 @@ void SectionReader::integer_list(const std::string& key, std::vector<std::int64_
   }
 }
 
-void SectionReader::real_list(const std::string& key, std::vector<double>& values, const RealKey& about) {
+void SectionReader::value_of(const std::string& key, std::vector<double>& values, const RealKey& about) {
   const double example = about.example.value_or(1.0);
   const std::string expectation = fmt::format("a list of numbers{}{}, for example [{}, {}]", unit_of(about),
                                               range_of(about), shortest(example), shortest(example));
@@ -218,24 +218,24 @@ void SectionReader::real_list(const std::string& key, std::vector<double>& value
     values.push_back(real_from(node->items[n], fmt::format("{}.{}", key, n), about, expected_real(about, example)));
 }
 
-void SectionReader::text(const std::string& key, std::optional<std::string>& value, const TextKey& about) {
+void SectionReader::value_of(const std::string& key, std::optional<std::string>& value, const TextKey& about) {
   if (!section_.find(key)) {
     look_up(key, about.required, "a text");
     return;
   }
   std::string read;
-  text(key, read, about);
+  value_of(key, read, about);
   value = read;
 }
 
-void SectionReader::text(const std::string& key, std::string& value, const TextKey& about) {
+void SectionReader::value_of(const std::string& key, std::string& value, const TextKey& about) {
   const YamlNode* node = look_up(key, about.required, "a text");
   if (!node) return;
   if (node->kind != YamlNode::Kind::scalar) fail(*node, key, "expected a text");
   value = node->text;
 }
 
-void SectionReader::flag(const std::string& key, bool& value, const TextKey& about) {
+void SectionReader::value_of(const std::string& key, bool& value, const TextKey& about) {
   const YamlNode* node = look_up(key, about.required, "true or false");
   if (!node) return;
   if (node->kind != YamlNode::Kind::scalar || (node->text != "true" && node->text != "false"))

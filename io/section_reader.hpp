@@ -12,17 +12,6 @@ public:
   // The section of `document` at key_path ("": the root), which must exist.
   SectionReader(const YamlDocument& document, std::string key_path, const YamlNode& section);
 
-  void real(const std::string& key, double& value, const RealKey& about) override;
-  void real(const std::string& key, std::optional<double>& value, const RealKey& about) override;
-  void vec3(const std::string& key, Vec3& value, const RealKey& about) override;
-  void vec3(const std::string& key, std::optional<Vec3>& value, const RealKey& about) override;
-  void vec3_list(const std::string& key, std::vector<Vec3>& values, const RealKey& about) override;
-  void integer(const std::string& key, std::int64_t& value, const IntegerKey& about) override;
-  void integer_list(const std::string& key, std::vector<std::int64_t>& values, const IntegerKey& about) override;
-  void real_list(const std::string& key, std::vector<double>& values, const RealKey& about) override;
-  void text(const std::string& key, std::string& value, const TextKey& about) override;
-  void text(const std::string& key, std::optional<std::string>& value, const TextKey& about) override;
-  void flag(const std::string& key, bool& value, const TextKey& about) override;
   void not_here(const std::string& key, const std::string& reason) override;
   void require(bool condition, const std::string& key, const std::string& remedy) override;
   bool reading() const override { return true; }
@@ -30,6 +19,17 @@ public:
   void finish() const;  // throws InputError for an unknown key, with the nearest known one
 
 private:
+  void value_of(const std::string& key, double& value, const RealKey& about) override;
+  void value_of(const std::string& key, std::optional<double>& value, const RealKey& about) override;
+  void value_of(const std::string& key, Vec3& value, const RealKey& about) override;
+  void value_of(const std::string& key, std::optional<Vec3>& value, const RealKey& about) override;
+  void value_of(const std::string& key, std::vector<Vec3>& values, const RealKey& about) override;
+  void value_of(const std::string& key, std::int64_t& value, const IntegerKey& about) override;
+  void value_of(const std::string& key, std::vector<std::int64_t>& values, const IntegerKey& about) override;
+  void value_of(const std::string& key, std::vector<double>& values, const RealKey& about) override;
+  void value_of(const std::string& key, std::string& value, const TextKey& about) override;
+  void value_of(const std::string& key, std::optional<std::string>& value, const TextKey& about) override;
+  void value_of(const std::string& key, bool& value, const TextKey& about) override;
   void word(const std::string& key, std::size_t& index, const std::vector<Word>& words,
             const SectionKey& about) override;
   void word(const std::string& key, std::optional<std::size_t>& index, const std::vector<Word>& words,

@@ -48,25 +48,25 @@ void SectionWriter::put(bool given, const std::string& key, const std::string& v
   item_begins_ = false;
 }
 
-void SectionWriter::real(const std::string& key, double& value, const RealKey& about) {
+void SectionWriter::value_of(const std::string& key, double& value, const RealKey& about) {
   put(true, key, shortest(given_ ? value : about.example.value_or(value)), comment_of(about));
 }
 
-void SectionWriter::real(const std::string& key, std::optional<double>& value, const RealKey& about) {
+void SectionWriter::value_of(const std::string& key, std::optional<double>& value, const RealKey& about) {
   put(value.has_value(), key, shortest(value.value_or(about.example.value_or(1.0))), comment_of(about));
 }
 
-void SectionWriter::vec3(const std::string& key, Vec3& value, const RealKey& about) {
+void SectionWriter::value_of(const std::string& key, Vec3& value, const RealKey& about) {
   const bool show_example = !given_ && about.example;
   put(true, key, bracketed(show_example ? Vec3(Vec3::Constant(*about.example)) : value), comment_of(about));
 }
 
-void SectionWriter::vec3(const std::string& key, std::optional<Vec3>& value, const RealKey& about) {
+void SectionWriter::value_of(const std::string& key, std::optional<Vec3>& value, const RealKey& about) {
   put(value.has_value(), key, bracketed(value.value_or(Vec3::Constant(about.example.value_or(0.0)))),
       comment_of(about));
 }
 
-void SectionWriter::vec3_list(const std::string& key, std::vector<Vec3>& values, const RealKey& about) {
+void SectionWriter::value_of(const std::string& key, std::vector<Vec3>& values, const RealKey& about) {
   if (values.empty()) return put(false, key, "[[0.01, 0.01, 0.005], [0.02, 0.01, 0.005]]", comment_of(about));
   put(true, key, "", comment_of(about));
   ++depth_;
@@ -77,37 +77,37 @@ void SectionWriter::vec3_list(const std::string& key, std::vector<Vec3>& values,
   --depth_;
 }
 
-void SectionWriter::integer(const std::string& key, std::int64_t& value, const IntegerKey& about) {
+void SectionWriter::value_of(const std::string& key, std::int64_t& value, const IntegerKey& about) {
   const std::string range =
       fmt::format("whole number, at least {}{}", about.at_least, about.automatic ? ", or auto" : "");
   put(true, key, about.automatic == value ? "auto" : fmt::format("{}", value),
       style_ == YamlStyle::plain ? "" : range + "; " + about.meaning);
 }
 
-void SectionWriter::integer_list(const std::string& key, std::vector<std::int64_t>& values, const IntegerKey& about) {
+void SectionWriter::value_of(const std::string& key, std::vector<std::int64_t>& values, const IntegerKey& about) {
   std::vector<std::int64_t> shown = values;
   if (values.empty()) shown = {about.example.value_or(1), about.example.value_or(1) + 1};
   put(!values.empty(), key, fmt::format("[{}]", fmt::join(shown, ", ")),
       style_ == YamlStyle::plain ? "" : fmt::format("whole numbers, at least {}; {}", about.at_least, about.meaning));
 }
 
-void SectionWriter::real_list(const std::string& key, std::vector<double>& values, const RealKey& about) {
+void SectionWriter::value_of(const std::string& key, std::vector<double>& values, const RealKey& about) {
   std::vector<std::string> texts;
   for (const double value : values) texts.push_back(shortest(value));
   if (values.empty()) texts.assign(2, shortest(about.example.value_or(1.0)));
   put(!values.empty(), key, fmt::format("[{}]", fmt::join(texts, ", ")), comment_of(about));
 }
 
-void SectionWriter::text(const std::string& key, std::optional<std::string>& value, const TextKey& about) {
+void SectionWriter::value_of(const std::string& key, std::optional<std::string>& value, const TextKey& about) {
   put(value.has_value(), key, quoted(value.value_or(about.example)),
       style_ == YamlStyle::plain ? "" : "text; " + about.meaning);
 }
 
-void SectionWriter::text(const std::string& key, std::string& value, const TextKey& about) {
+void SectionWriter::value_of(const std::string& key, std::string& value, const TextKey& about) {
   put(true, key, quoted(value), style_ == YamlStyle::plain ? "" : "text; " + about.meaning);
 }
 
-void SectionWriter::flag(const std::string& key, bool& value, const TextKey& about) {
+void SectionWriter::value_of(const std::string& key, bool& value, const TextKey& about) {
   put(true, key, value ? "true" : "false", style_ == YamlStyle::plain ? "" : "true | false; " + about.meaning);
 }
 

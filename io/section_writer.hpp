@@ -13,17 +13,6 @@ class SectionWriter final : public SectionVisitor {
 public:
   explicit SectionWriter(YamlStyle style) : style_(style) {}
 
-  void real(const std::string& key, double& value, const RealKey& about) override;
-  void real(const std::string& key, std::optional<double>& value, const RealKey& about) override;
-  void vec3(const std::string& key, Vec3& value, const RealKey& about) override;
-  void vec3(const std::string& key, std::optional<Vec3>& value, const RealKey& about) override;
-  void vec3_list(const std::string& key, std::vector<Vec3>& values, const RealKey& about) override;
-  void integer(const std::string& key, std::int64_t& value, const IntegerKey& about) override;
-  void integer_list(const std::string& key, std::vector<std::int64_t>& values, const IntegerKey& about) override;
-  void real_list(const std::string& key, std::vector<double>& values, const RealKey& about) override;
-  void text(const std::string& key, std::string& value, const TextKey& about) override;
-  void text(const std::string& key, std::optional<std::string>& value, const TextKey& about) override;
-  void flag(const std::string& key, bool& value, const TextKey& about) override;
   void not_here(const std::string&, const std::string&) override {}
   void require(bool, const std::string&, const std::string&) override {}
   bool reading() const override { return false; }
@@ -39,6 +28,17 @@ private:
     bool example = false;  // with item: of an entry that is a comment altogether
   };
 
+  void value_of(const std::string& key, double& value, const RealKey& about) override;
+  void value_of(const std::string& key, std::optional<double>& value, const RealKey& about) override;
+  void value_of(const std::string& key, Vec3& value, const RealKey& about) override;
+  void value_of(const std::string& key, std::optional<Vec3>& value, const RealKey& about) override;
+  void value_of(const std::string& key, std::vector<Vec3>& values, const RealKey& about) override;
+  void value_of(const std::string& key, std::int64_t& value, const IntegerKey& about) override;
+  void value_of(const std::string& key, std::vector<std::int64_t>& values, const IntegerKey& about) override;
+  void value_of(const std::string& key, std::vector<double>& values, const RealKey& about) override;
+  void value_of(const std::string& key, std::string& value, const TextKey& about) override;
+  void value_of(const std::string& key, std::optional<std::string>& value, const TextKey& about) override;
+  void value_of(const std::string& key, bool& value, const TextKey& about) override;
   void word(const std::string& key, std::size_t& index, const std::vector<Word>& words,
             const SectionKey& about) override;
   void word(const std::string& key, std::optional<std::size_t>& index, const std::vector<Word>& words,

@@ -33,7 +33,7 @@ TEST(CheckReport, AsksForContactsAsLongAsSoundGoesAroundAGrain) {
     return {};
   };
   // Ten cells a diameter: pi 5 sqrt(3) = 27.2 steps around.
-  EXPECT_NE(line().find("27.2 around a grain"), std::string::npos) << line();
+  EXPECT_NE(line().find("the 27.2 that sound takes around a grain"), std::string::npos) << line();
   // A contact lasts pi sqrt(m/(2 k)): as long as that with the stiffness that the line asks for, m = pi/6 d^3 rho.
   const double mass = std::numbers::pi / 6.0 * std::pow(5e-3, 3) * c.grains[0].density;
   const double longest = 0.5 * mass * std::pow(std::numbers::pi / (27.2 * *c.fluid.time_step), 2);
