@@ -50,7 +50,7 @@ def main():
                  label="Zhang et al. at 0.028, mean and deviation")
     axes.axvline(1.0, color="0.6", lw=1)
     axes.set(xlabel="mean speed of the water over that of the law of the wall", ylabel="q*", ylim=(0.0, None))
-    axes.legend(fontsize=7, loc="upper left")
+    axes.legend(fontsize=7, loc="lower right")
     plt.savefig(arguments.figure, dpi=110)
     header = ["run", "mean speed over law of the wall [1]", "middle speed over law of the wall [1]", "q_star [1]", "error [1]"]
     print("\n".join(", ".join(row) for row in [header, *table]))
