@@ -26,7 +26,7 @@ def window_means(series):
     time, q_star = series["time"], series["q_star"]
     ends = np.arange(WINDOW, time[-1] + 1e-9, WINDOW)
     means = np.array([q_star[(time > end - WINDOW) & (time <= end)].mean() for end in ends])
-    keep = means < 0.5
+    keep = (means < 0.5) | (ends > 1.0)
     return ends[keep], means[keep]
 
 
