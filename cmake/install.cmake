@@ -1,32 +1,30 @@
 # cmake --install: the program with its Python package and cases, and the libraries as thalweg::core, lbm, dem, coupling,
-# analysis and io for find_package(thalweg). Called last, when all targets are there.
+# analysis and io for find_package(thalweg). Included when all of them are there.
 include(CMakePackageConfigHelpers)
 
 set(thalweg_config_folder ${CMAKE_INSTALL_LIBDIR}/cmake/thalweg)
 set(thalweg_data_folder ${CMAKE_INSTALL_DATADIR}/thalweg)
 
-function(thalweg_install)
-  install(TARGETS thalweg RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-  install(DIRECTORY python cases DESTINATION ${thalweg_data_folder}
-          PATTERN "__pycache__" EXCLUDE)
-  install(FILES scripts/plot_run.py DESTINATION ${thalweg_data_folder}/scripts
-          PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+install(TARGETS thalweg RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(DIRECTORY python cases DESTINATION ${thalweg_data_folder}
+        PATTERN "__pycache__" EXCLUDE)
+install(FILES scripts/plot_run.py DESTINATION ${thalweg_data_folder}/scripts
+        PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 
-  # io needs VTK, HDF5 and yaml-cpp, which not every program has to have.
-  install(TARGETS thalweg_compile_options thalweg_core thalweg_lbm thalweg_dem thalweg_coupling thalweg_analysis
-          EXPORT thalweg_libraries ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  install(TARGETS thalweg_io EXPORT thalweg_io ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  foreach(set libraries io)
-    install(EXPORT thalweg_${set} NAMESPACE thalweg:: FILE thalweg-${set}.cmake DESTINATION ${thalweg_config_folder})
-  endforeach()
-  foreach(module core lbm dem coupling analysis io)
-    install(DIRECTORY ${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/thalweg
-            FILES_MATCHING PATTERN "*.hpp" PATTERN "*.ipp")
-  endforeach()
+# io needs VTK, HDF5 and yaml-cpp, which not every program has to have.
+install(TARGETS thalweg_compile_options thalweg_core thalweg_lbm thalweg_dem thalweg_coupling thalweg_analysis
+        EXPORT thalweg_libraries ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS thalweg_io EXPORT thalweg_io ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+foreach(set libraries io)
+  install(EXPORT thalweg_${set} NAMESPACE thalweg:: FILE thalweg-${set}.cmake DESTINATION ${thalweg_config_folder})
+endforeach()
+foreach(module core lbm dem coupling analysis io)
+  install(DIRECTORY ${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/thalweg
+          FILES_MATCHING PATTERN "*.hpp" PATTERN "*.ipp")
+endforeach()
 
-  configure_package_config_file(cmake/thalweg-config.cmake.in ${PROJECT_BINARY_DIR}/thalweg-config.cmake
-                                INSTALL_DESTINATION ${thalweg_config_folder})
-  write_basic_package_version_file(${PROJECT_BINARY_DIR}/thalweg-config-version.cmake COMPATIBILITY SameMinorVersion)
-  install(FILES ${PROJECT_BINARY_DIR}/thalweg-config.cmake ${PROJECT_BINARY_DIR}/thalweg-config-version.cmake
-          DESTINATION ${thalweg_config_folder})
-endfunction()
+configure_package_config_file(cmake/thalweg-config.cmake.in ${PROJECT_BINARY_DIR}/thalweg-config.cmake
+                              INSTALL_DESTINATION ${thalweg_config_folder})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/thalweg-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/thalweg-config.cmake ${PROJECT_BINARY_DIR}/thalweg-config-version.cmake
+        DESTINATION ${thalweg_config_folder})

@@ -6,8 +6,8 @@
 //     ...
 //   }
 //
-// in T's namespace; io::SectionReader and io::SectionWriter are the visitors. The default of a key is the value the struct
-// has before it is read; `required` keys and optional values have none. Words of choices: named_choice.hpp.
+// in T's namespace; io::SectionReader and io::SectionWriter are the visitors. The default of a key is the value the
+// struct has before it is read; `required` keys and optional values have none. Words of choices: named_choice.hpp.
 #pragma once
 
 #include "core/named_choice.hpp"
@@ -22,8 +22,8 @@
 
 namespace thalweg {
 
-// A key that belongs to some cases only. Where the condition does not hold, giving the key is an error with this reason, which
-// says what to do: "only a navier_slip wall has a slip length; remove it".
+// A key that belongs to some cases only. Where the condition does not hold, giving the key is an error with this
+// reason, which says what to do: "only a navier_slip wall has a slip length; remove it".
 struct OnlyIf {
   bool holds = true;
   std::string reason = {};
@@ -75,7 +75,9 @@ public:
   void real(const std::string& key, auto& value, const RealKey& about) { visit(key, value, about); }
   void vec3(const std::string& key, auto& value, const RealKey& about) { visit(key, value, about); }
   void vec3_list(const std::string& key, std::vector<Vec3>& values, const RealKey& about) { visit(key, values, about); }
-  void real_list(const std::string& key, std::vector<double>& values, const RealKey& about) { visit(key, values, about); }
+  void real_list(const std::string& key, std::vector<double>& values, const RealKey& about) {
+    visit(key, values, about);
+  }
   void integer(const std::string& key, std::int64_t& value, const IntegerKey& about) { visit(key, value, about); }
   void integer_list(const std::string& key, std::vector<std::int64_t>& values, const IntegerKey& about) {
     visit(key, values, about);

@@ -11,23 +11,24 @@ std::vector<NamedChoice<Law>> choices_of(Law) {
 
 void describe(SectionVisitor& visit, ContactParameters& contact) {
   visit.choice("law", contact.law, {.meaning = "force of a contact"});
-  if (contact.law == Law::linear) {
-    visit.real("normal_stiffness", contact.normal_stiffness,
-               {.unit = "N/m", .meaning = "of the spring across a contact", .above = 0.0});
-    visit.real("tangential_stiffness", contact.tangential_stiffness,
-               {.unit = "N/m", .meaning = "of the spring along a contact", .above = 0.0});
-    for (const char* key : {"youngs_modulus", "poisson_ratio"})
-      visit.not_here(key, "the linear law has stiffnesses; remove it or set law: hertz_mindlin");
-  } else {
-    visit.real("youngs_modulus", contact.youngs_modulus,
-               {.unit = "Pa", .meaning = "of grains and walls", .required = true, .above = 0.0, .example = 70e9});
-    visit.real("poisson_ratio", contact.poisson_ratio,
-               {.meaning = "of grains and walls", .at_least = 0.0, .at_most = 0.5});
-    for (const char* key : {"normal_stiffness", "tangential_stiffness", "damping"})
-      visit.not_here(key,
-                     "elastic spheres have youngs_modulus, poisson_ratio and restitution; remove it or set law: "
-                     "linear");
-  }
+  const OnlyIf linear{contact.law == Law::linear,
+                      "elastic spheres have youngs_modulus, poisson_ratio and restitution; remove it or set law: "
+                      "linear"};
+  const OnlyIf elastic{contact.law == Law::hertz_mindlin,
+                       "the linear law has stiffnesses; remove it or set law: hertz_mindlin"};
+  visit.real("normal_stiffness", contact.normal_stiffness,
+             {.unit = "N/m", .meaning = "of the spring across a contact", .above = 0.0, .only_if = linear});
+  visit.real("tangential_stiffness", contact.tangential_stiffness,
+             {.unit = "N/m", .meaning = "of the spring along a contact", .above = 0.0, .only_if = linear});
+  visit.real("youngs_modulus", contact.youngs_modulus,
+             {.unit = "Pa",
+              .meaning = "of grains and walls",
+              .required = true,
+              .above = 0.0,
+              .example = 70e9,
+              .only_if = elastic});
+  visit.real("poisson_ratio", contact.poisson_ratio,
+             {.meaning = "of grains and walls", .at_least = 0.0, .at_most = 0.5, .only_if = elastic});
   visit.real("tangential_damping", contact.tangential_damping,
              {.meaning = "dashpot along a contact over the one across it", .at_least = 0.0});
   visit.real("restitution", contact.restitution,
@@ -35,12 +36,12 @@ void describe(SectionVisitor& visit, ContactParameters& contact) {
               .above = 0.0,
               .at_most = 1.0,
               .example = 0.93});
-  if (contact.law == Law::linear)
-    visit.real("damping", contact.damping,
-               {.unit = "kg/s",
-                .meaning = "of the dashpot across a contact, in place of restitution",
-                .at_least = 0.0,
-                .example = 0.09});
+  visit.real("damping", contact.damping,
+             {.unit = "kg/s",
+              .meaning = "of the dashpot across a contact, in place of restitution",
+              .at_least = 0.0,
+              .example = 0.09,
+              .only_if = linear});
   visit.require(!(contact.restitution && contact.damping), "restitution",
                 "the loss in a collision is given twice; give either restitution or damping");
   visit.real("friction", contact.friction, {.meaning = "coefficient between grains", .at_least = 0.0});

@@ -168,8 +168,9 @@ public:
   double largest_acceleration() const;            // m/s^2, of the same, by all forces at the end of the last step
   std::int64_t moving_count(double speed) const;  // free grains faster than speed (m/s)
 
-  // Where these two figures have their values: the pair that overlaps most, and the grain or clump (by its first member)
-  // that largest_speed() belongs to; of several, those with the lowest ids. Empty where there are none. Collective.
+  // Where these two figures have their values: the pair that overlaps most, and the grain or clump (by its first
+  // member) that largest_speed() belongs to; of several, those with the lowest ids. Empty where there are none.
+  // Collective.
   std::optional<Place> place_of_deepest_overlap() const;
   std::optional<Place> place_of_fastest() const;
 

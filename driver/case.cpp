@@ -47,8 +47,8 @@ Units units_of(const Case& c) { return {c.domain.spacing, fluid_time_step(c), c.
 
 double relaxation_time(const Case& c) { return units_of(c).relaxation_time(c.fluid.kinematic_viscosity); }
 
-// One step takes out the sound that moving grains make and leaves their drag as it is (benchmarks/validation/sound); more
-// makes a fast stream unstable (docs/stability.md).
+// One step takes out the sound that moving grains make and leaves their drag as it is (benchmarks/validation/sound);
+// more makes a fast stream unstable (docs/stability.md).
 double bulk_relaxation_time_for(const Case& c) {
   const bool suits = c.fluid.collision == lbm::CollisionModel::bgk && c.fluid.smagorinsky_constant > 0.0;
   return c.system == SystemKind::resolved && suits ? 1.0 : 0.0;
@@ -184,7 +184,8 @@ std::vector<std::string> warnings(const Case& c) {
   const double fastest =
       c.fluid.expected_velocity ? *c.fluid.expected_velocity / units_of(c).velocity() : lattice_velocity;
   const double stable = stable_lattice_velocity(c.fluid.collision, excess);
-  const bool eddies = c.fluid.smagorinsky_constant > 0.0, regularised = c.fluid.collision == lbm::CollisionModel::regularised;
+  const bool eddies = c.fluid.smagorinsky_constant > 0.0,
+             regularised = c.fluid.collision == lbm::CollisionModel::regularised;
   if ((!eddies || regularised) && (stable == 0.0 || fastest > stable))
     found.push_back(fmt::format(
         "The relaxation time is only {:.2g} above 1/2{}; the collision {} was stable there {}: consider {}{}.", excess,
@@ -192,19 +193,20 @@ std::vector<std::string> warnings(const Case& c) {
         stable == 0.0 ? std::string("at no velocity") : fmt::format("up to {:g} cells a step", stable),
         eddies ? "" : "fluid.smagorinsky_constant: 0.27",
         regularised ? (eddies ? "fluid.collision: trt" : " and fluid.collision: trt") : ""));
-  if (!eddies && c.fluid.collision == lbm::CollisionModel::trt && c.fluid.bulk_relaxation_time.value_or(0.0) > 0.0 &&
-      excess < 0.0299)
+  const double bulk = c.fluid.bulk_relaxation_time.value_or(0.0);
+  if (!eddies && c.fluid.collision == lbm::CollisionModel::trt && bulk > 0.0 && excess < 0.0299)
     found.push_back(
         fmt::format("With a bulk relaxation time of its own and no subgrid model the collision trt is unstable at a "
                     "relaxation time only {:.2g} above 1/2: consider fluid.collision: bgk or "
                     "fluid.bulk_relaxation_time: 0.",
                     excess));
   // The largest stable stream at tau - 1/2 = 0.003, where the subgrid model brings water (docs/stability.md), to 5 %.
-  const double bulk = c.fluid.bulk_relaxation_time.value_or(0.0), calm = 0.17 / std::sqrt(std::max(bulk, 1.0));
+  const double calm = 0.17 / std::sqrt(bulk);
   if (c.fluid.collision == lbm::CollisionModel::bgk && bulk > 1.0 && excess < 0.003 && fastest > calm)
-    found.push_back(fmt::format("With a bulk relaxation time of {:g} steps a stream faster than about {:.2g} cells a step "
-                                "grows stripes, and this one may reach {:.2g}: consider fluid.bulk_relaxation_time: 1.",
-                                bulk, calm, fastest));
+    found.push_back(
+        fmt::format("With a bulk relaxation time of {:g} steps a stream faster than about {:.2g} cells a step "
+                    "grows stripes, and this one may reach {:.2g}: consider fluid.bulk_relaxation_time: 1.",
+                    bulk, calm, fastest));
   if (excess > 1.0)
     found.push_back(
         fmt::format("The relaxation time, {:.2g}, is so large that walls and grains lose accuracy: consider a "
@@ -217,8 +219,9 @@ std::vector<std::string> warnings(const Case& c) {
   // time, stands up to 1.15 times the mass of the grain (coupling/load_rule.hpp); the mean was stable down to half the
   // fluid's.
   for (const PopulationCase& population : c.grains) {
-    const double least =
-        c.coupling.load == coupling::LoadRule::mean ? 0.5 : 3.8 / 1.15 * c.domain.spacing / population.smallest_diameter();
+    const double least = c.coupling.load == coupling::LoadRule::mean
+                             ? 0.5
+                             : 3.8 / 1.15 * c.domain.spacing / population.smallest_diameter();
     if (!c.coupling.virtual_mass && !population.fixed && !population.prescribed_velocity &&
         population.density < least * c.fluid.density)
       found.push_back(

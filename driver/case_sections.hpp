@@ -2,8 +2,8 @@
 // documenting.
 #pragma once
 
-#include "driver/case.hpp"
 #include "core/section_visitor.hpp"
+#include "driver/case.hpp"
 
 namespace thalweg {
 

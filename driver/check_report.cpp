@@ -64,8 +64,9 @@ void add_fluid(const Case& c, Lines& lines) {
   lines.push_back(fmt::format("fluid      {:g} kg/m^3, {:g} m^2/s; relaxation time 1/2 + {:.3g}; {:g} s a step",
                               c.fluid.density, c.fluid.kinematic_viscosity, relaxation_time(c) - 0.5, units.time_step));
   if (c.fluid.bulk_relaxation_time.value_or(0.0) > 0.0)
-    lines.push_back(fmt::format("sound      damped by a bulk viscosity of {:.3g} m^2/s, {:.3g} times the shear viscosity",
-                                bulk_viscosity(c), bulk_viscosity(c) / c.fluid.kinematic_viscosity));
+    lines.push_back(
+        fmt::format("sound      damped by a bulk viscosity of {:.3g} m^2/s, {:.3g} times the shear viscosity",
+                    bulk_viscosity(c), bulk_viscosity(c) / c.fluid.kinematic_viscosity));
   if (c.run.ramp > 0.0)
     lines.push_back(fmt::format("gravity    rises to its full value during the first {:g} s, {:.3g} steps", c.run.ramp,
                                 c.run.ramp / units.time_step));

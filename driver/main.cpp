@@ -48,8 +48,8 @@ int end_with(ExitCode code, const std::string& message, FailureCouncil& council,
   return code;
 }
 
-// Whether this is the only process or the first that a launcher has started, by the variables that launchers set. For what
-// is done without MPI, which may not start on login nodes.
+// Whether this is the only process or the first that a launcher has started, by the variables that launchers set. For
+// what is done without MPI, which may not start on login nodes.
 bool first_of_its_launcher() {
   for (const char* name : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID"})
     if (const char* rank = std::getenv(name)) return std::strcmp(rank, "0") == 0;
@@ -65,8 +65,12 @@ int answer_without_mpi(CommandLine line) {
       line = {.command = {}, .text = error.what(), .exit_code = bad_input};
     }
   }
-  if (first_of_its_launcher() && line.exit_code == done) std::fputs(line.text.c_str(), stdout);
-  if (first_of_its_launcher() && line.exit_code != done) std::fprintf(stderr, "thalweg: %s\n", line.text.c_str());
+  if (first_of_its_launcher()) {
+    if (line.exit_code == done)
+      std::fputs(line.text.c_str(), stdout);
+    else
+      std::fprintf(stderr, "thalweg: %s\n", line.text.c_str());
+  }
   return line.exit_code;
 }
 

@@ -1,8 +1,8 @@
 // Where the fluid is probed (analysis.probes): keys, and the points they mean.
 #pragma once
 
-#include "driver/case.hpp"
 #include "core/section_visitor.hpp"
+#include "driver/case.hpp"
 #include "io/yaml_document.hpp"
 
 #include <vector>

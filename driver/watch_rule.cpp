@@ -160,12 +160,12 @@ void add_fluid_rules(const Case& c, std::vector<WatchRule>& rules) {
                    is_open(c) ? "Inlets and outlets do not balance: check the velocities and pressures in "
                                 "domain.boundaries, or " +
                                     shorter_step + "."
-                   : c.grains.empty() ? "The collision has become unstable, or rounding adds up: " + shorter_step +
-                                            ", or take fluid.precision: double."
-                                      : "Grains cost the fluid more than their links can return, or the collision has "
-                                        "become unstable: " +
-                                            shorter_step +
-                                            "; coupling.mass_balance shows in series.csv where the mass goes."});
+                   : c.grains.empty()
+                       ? "The collision has become unstable, or rounding adds up: " + shorter_step +
+                             ", or take fluid.precision: double."
+                       : "Grains cost the fluid more than their links can return, or the collision has "
+                         "become unstable: " +
+                             shorter_step + "; coupling.mass_balance shows in series.csv where the mass goes."});
   const std::string waves =
       "Pressure waves of this size come from a flow or grains that start or stop at once, or from "
       "an unstable collision: begin with a smoother state (initial, grains.0.velocity), or " +

@@ -1,8 +1,8 @@
 // What is recorded of single grains (analysis.tracks and analysis.entrainment): keys, and which grains they mean.
 #pragma once
 
-#include "driver/case.hpp"
 #include "core/section_visitor.hpp"
+#include "driver/case.hpp"
 #include "io/yaml_document.hpp"
 
 #include <vector>

@@ -32,13 +32,11 @@ def chosen_frames(run, start, stop, every):
 
 
 def scales(run, frames):
-    """Largest speeds (m/s) of grains and fluid that a dozen of the pictures call for: of the grains that move faster than a
-    diameter a second, nine tenths are slower."""
+    """Ends of the scales (m/s) of grains and fluid that a dozen of the pictures call for."""
     some = frames[::max(1, len(frames) // 12)]
     speeds = np.concatenate([np.linalg.norm(f.velocity, axis=1) for f in some])
-    moving = speeds[speeds > run.diameter]
     layers = [drawing.fluid_slice(f) for f in (run.fluid.nearest(f.time) for f in some) if f]
-    return (np.quantile(moving, 0.9) if len(moving) else run.diameter,
+    return (drawing.largest_speed_of(speeds, run.diameter),
             max((layer[0].max() for layer in layers if layer), default=None))
 
 

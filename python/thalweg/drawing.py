@@ -99,14 +99,19 @@ def side_view_axes(size):
     return figure, place(left, below, width, height), bars
 
 
+def largest_speed_of(speed, diameter):
+    """End of the scale of grain speeds (m/s): of the grains faster than a diameter (m) a second, nine tenths are slower."""
+    moving = speed[speed > diameter]
+    return float(np.quantile(moving, 0.9) if len(moving) else diameter)
+
+
 def bed_figure(run, frame, fluid=None, largest_speed=None, largest_flow=None, scale=None):
     """A figure of the grains, coloured by speed, before the fluid's speed in the middle plane (`fluid`: its picture).
     largest_speed, largest_flow: ends of the scales in m/s, of this picture if None. scale: pixels per metre."""
     size = run.size
     speed = np.linalg.norm(frame.velocity, axis=1)
     if largest_speed is None:
-        moving = speed >= 0.1 * speed.max()
-        largest_speed = max(np.quantile(speed[moving], 0.9), 1e-3)
+        largest_speed = largest_speed_of(speed, np.median(frame.diameter))
     position, radius, speed = with_periodic_images(frame.position, frame.radius, speed, size, run.periodic)
     extent = np.array([0.0, size[0], 0.0, size[2]])
     if scale is None:

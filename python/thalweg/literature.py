@@ -37,3 +37,9 @@ FLUME_THRESHOLD, FLUME_THRESHOLD_ERROR = 0.026, 0.002   # of the experiment, Ben
 FLUME_POINTS = ((0.028, 0.089, 0.019, "standard"), (0.028, 0.077, 0.017, "faster flow"))
 # (Shields number, standard deviation of q* over its mean)
 FLUME_SCATTER = ((0.047, 0.16), (0.063, 0.11), (0.068, 0.09))
+
+
+def flume_band():
+    """q* at a Shields number of 0.028 from the standard start, mean less and plus one standard deviation."""
+    _, mean, deviation, _ = FLUME_POINTS[0]
+    return mean - deviation, mean + deviation

@@ -16,10 +16,15 @@ class Speeds(NamedTuple):
     middle: float   # half-way between the side walls
 
 
+def logarithmic_law(inner):
+    """u+ at y+ beyond the sublayer."""
+    return np.log(inner) / VON_KARMAN + INTERCEPT
+
+
 def law_of_the_wall(distance, friction_velocity, viscosity):
     """Mean velocity (m/s) of a turbulent flow at a distance (m) from a smooth wall."""
     inner = np.asarray(distance, float) * friction_velocity / viscosity
-    return friction_velocity * np.where(inner < SUBLAYER, inner, np.log(np.maximum(inner, 1.0)) / VON_KARMAN + INTERCEPT)
+    return friction_velocity * np.where(inner < SUBLAYER, inner, logarithmic_law(np.maximum(inner, 1.0)))
 
 
 def expected_speeds(run):

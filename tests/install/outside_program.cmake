@@ -6,7 +6,6 @@ function(run)
   if(failed)
     message(FATAL_ERROR "${ARGN}\n${said}")
   endif()
-  set(said "${said}" PARENT_SCOPE)
 endfunction()
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
 run(${CMAKE_COMMAND} -S ${SOURCE}/examples/channel -B ${WORK}/build -DCMAKE_PREFIX_PATH=${WORK}/prefix

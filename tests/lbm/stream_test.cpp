@@ -1,5 +1,5 @@
-// A uniform stream near tau = 1/2: disturbances the size of a cell grow or die as the eigenvalues of the linearised step
-// say, which depends on the bulk relaxation time.
+// A uniform stream near tau = 1/2: disturbances the size of a cell grow or die as the eigenvalues of the linearised
+// step say, which depends on the bulk relaxation time.
 #include "lbm/fluid.hpp"
 
 #include <gtest/gtest.h>
@@ -47,8 +47,8 @@ double growth(double speed, double bulk_relaxation_time, int from, int to) {
   return 0.5 * std::log(average() / before) / (to - from);
 }
 
-// The largest eigenvalue over all waves of this box (benchmarks/lattice/linear_stability.py, which shares no code with the
-// library) is 1.0043072, that of the wave (8, 8, 3); after 3000 steps it has outgrown the noise of the others.
+// The largest eigenvalue over all waves of this box (benchmarks/lattice/linear_stability.py, which shares no code with
+// the library) is 1.0043072, that of the wave (8, 8, 3); after 3000 steps it has outgrown the noise of the others.
 TEST(Stream, GrowsUnstableWithALargeBulkViscosityAsTheEigenvaluesSay) {
   EXPECT_NEAR(growth(0.14, 3.0, 3000, 5000), std::log(1.0043072), 0.01 * 0.0043072);
 }

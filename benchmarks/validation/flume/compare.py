@@ -16,9 +16,9 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 import thalweg
+from thalweg import literature
 
 WINDOW = 0.5                       # s
-PAPER_MEAN, PAPER_DEVIATION = 0.089, 0.019
 
 
 def window_means(series):
@@ -44,7 +44,7 @@ def main():
         ends, means = window_means(folder.series)
         plt.plot(ends - 0.5 * WINDOW, means, "o-", markersize=3, label=run.name)
         rows += [[run.name, f"{end:.1f}", f"{mean:.4f}"] for end, mean in zip(ends, means)]
-    plt.axhspan(PAPER_MEAN - PAPER_DEVIATION, PAPER_MEAN + PAPER_DEVIATION, color="0.9",
+    plt.axhspan(*literature.flume_band(), color="0.9",
                 label="Zhang et al. at 0.028, mean and deviation")
     plt.xlabel("time [s]")
     plt.ylabel("q*")

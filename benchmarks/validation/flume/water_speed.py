@@ -16,9 +16,8 @@ import matplotlib.pyplot as plt
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 import thalweg
-from thalweg import bed, water
+from thalweg import bed, literature, water
 
-PAPER_MEAN, PAPER_DEVIATION = 0.089, 0.019
 
 
 def measure(run):
@@ -46,7 +45,7 @@ def main():
         axes.errorbar(mean, rate.mean, rate.error, fmt="s" if fine else "o", color=f"C{n % 10}", capsize=3,
                       mfc="none" if open_symbol else None, label=folder.name)
         table.append([folder.name, f"{mean:.3f}", f"{middle:.3f}", f"{rate.mean:.4f}", f"{rate.error:.4f}"])
-    axes.axhspan(PAPER_MEAN - PAPER_DEVIATION, PAPER_MEAN + PAPER_DEVIATION, color="0.9",
+    axes.axhspan(*literature.flume_band(), color="0.9",
                  label="Zhang et al. at 0.028, mean and deviation")
     axes.axvline(1.0, color="0.6", lw=1)
     axes.set(xlabel="mean speed of the water over that of the law of the wall", ylabel="q*", ylim=(0.0, None))

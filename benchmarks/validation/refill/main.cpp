@@ -11,8 +11,8 @@
 // a periodic box of 56 x 48 x 48 cells: at Re_p = 20 (tau = 0.55, no subgrid model), and as a grain in water at the
 // flume's step (tau - 1/2 = 2.4e-4, 0.012 cells a step, C_s = 0.27). It crosses 12 diameters; the last 8 count. Noise
 // of the force is given over the mean drag, of the torque over drag times radius, in two measures: the root mean square
-// of the change from one exchange to the next, and that of
-// what is left of the load that the grains feel when its mean over the time of crossing a cell is subtracted. Prints a table in Markdown.
+// of the change from one exchange to the next, and that of what is left of the load that the grains feel when its mean
+// over the time of crossing a cell is subtracted. Prints a table in Markdown.
 #include "core/mpi_session.hpp"
 #include "coupling/resolved_system.hpp"
 

@@ -5,7 +5,6 @@ Prints for every profile (output of bin/turbulent_channel) the difference from u
 the smallest and largest outside it, in per cent, and pass or fail (5 %).
 """
 import argparse
-import math
 import sys
 from pathlib import Path
 
@@ -15,12 +14,9 @@ import matplotlib.pyplot as plt
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 from thalweg.tables import read_rows
+from thalweg.water import logarithmic_law as law
 
 ACCEPTED = 5.0
-
-
-def law(y):
-    return math.log(y) / 0.41 + 5.0
 
 
 def main():

@@ -27,13 +27,8 @@ run larger_box 0.0620 0.27 8.36 --length 128 --width 64 --until 80
 run shorter_step 0.0620 0.27 8.36 --friction-velocity 0.00248 --until 80
 
 # The workstation's flume at 0.028: 13 cells of 0.8077 mm, 1e-4 s.
-coarse() {  # name, A, further options
-  name=$1 slip=$2
-  shift 2
-  "$program" --height 13 --length 40 --width 20 --wall law_of_the_wall --samples 10 --until 160 --average-from 60 \
-    --friction-velocity 0.00593 --reynolds 251 --smagorinsky 0.27 --slip-coefficient "$slip" --output "$name.csv" "$@"
-}
-coarse six_first_cell 8.36 --slip-of-first-cell
-coarse six_trt_first_cell 8.36 --slip-of-first-cell --collision trt
-coarse six_trt_A_7.4 7.4 --collision trt
-coarse six_A_10.05 10.05
+coarse="--height 13 --length 40 --width 20 --until 160 --average-from 60 --friction-velocity 0.00593 --reynolds 251"
+run six_first_cell 0.0479 0.27 8.36 $coarse --slip-of-first-cell
+run six_trt_first_cell 0.0479 0.27 8.36 $coarse --slip-of-first-cell --collision trt
+run six_trt_A_7.4 0.0479 0.27 7.4 $coarse --collision trt
+run six_A_10.05 0.0479 0.27 10.05 $coarse
