@@ -20,14 +20,14 @@ double mean_of(const std::vector<double>& values) {
 
 }  // namespace
 
-BedSurface::BedSurface(MPI_Comm communicator, const PeriodicBox& box, const BedSurfaceSettings& settings,
+BedSurface::BedSurface(MPI_Comm communicator, const PeriodicBox& box, const BedSurfaceKeys& keys, double diameter,
                        const std::optional<BedFlow>& flow, double disk_thickness)
     : communicator_(communicator),
       box_(box),
-      settings_(settings),
+      keys_(keys),
       flow_(flow),
-      layers_(communicator, box, settings.layer, disk_thickness),
-      pixels_(communicator, box, settings.pixel, settings.static_time),
+      layers_(communicator, box, keys.layer.value_or(diameter), disk_thickness),
+      pixels_(communicator, box, keys.pixel.value_or(diameter / 25.0), keys.static_time),
       surface_sums_(static_cast<std::size_t>(pixels_.columns()), 0.0) {
   sums_.assign(figures().size(), 0.0);
 }
@@ -38,7 +38,7 @@ void BedSurface::observe(const Snapshot& snapshot) {
   measure(snapshot);
   if (again) return;
   seen_step_ = snapshot.step;
-  const double from = settings_.from * (1.0 - 1e-12);
+  const double from = keys_.from * (1.0 - 1e-12);
   if (pixels_.look(snapshot) && pixels_.begun() >= from) {
     ++pictures_;
     for (std::size_t c = 0; c < surface_sums_.size(); ++c) surface_sums_[c] += pixels_.surface()[c];
@@ -79,7 +79,7 @@ std::vector<Figure> BedSurface::results() const {
   results.push_back({"bulk_solid_fraction_mean", "1", sums_[n] / count});
   const double pictures = static_cast<double>(pictures_);
   results.push_back({static_height + "_mean", "m", mean_of(surface_sums_) / pictures});  // not a number without any
-  results.push_back({"mean_from", "s", settings_.from});
+  results.push_back({"mean_from", "s", keys_.from});
   results.push_back({"measurements", "1", static_cast<double>(measurements_)});
   results.push_back({"static_pictures", "1", pictures});
   return results;
@@ -98,7 +98,7 @@ std::vector<Profile> BedSurface::profiles() const {
 }
 
 void BedSurface::save(ArchiveWriter& archive) const {
-  archive.attribute("bed_surface/mean_from", settings_.from);
+  archive.attribute("bed_surface/mean_from", keys_.from);
   archive.attribute("bed_surface/seen_step", seen_step_);
   archive.attribute("bed_surface/measurements", measurements_);
   archive.attribute("bed_surface/pictures", pictures_);
@@ -115,7 +115,7 @@ void BedSurface::save(ArchiveWriter& archive) const {
 }
 
 void BedSurface::load(ArchiveReader& archive) {
-  if (!archive.has("bed_surface/mean_from") || archive.real_attribute("bed_surface/mean_from") != settings_.from ||
+  if (!archive.has("bed_surface/mean_from") || archive.real_attribute("bed_surface/mean_from") != keys_.from ||
       archive.shape("bed_surface/sums") != std::vector<std::uint64_t>{sums_.size()} ||
       archive.shape("bed_surface/surface_sums") != std::vector<std::uint64_t>{surface_sums_.size()})
     return;
@@ -130,6 +130,48 @@ void BedSurface::load(ArchiveReader& archive) {
   read("bed_surface/sums", sums_);
   read("bed_surface/surface_sums", surface_sums_);
   pixels_.load(archive, "bed_surface");
+}
+
+void describe(SectionVisitor& visit, BedSurfaceKeys& keys) {
+  describe_from(visit, keys.from);
+  describe_every(visit, keys.every);
+  visit.real("layer", keys.layer,
+             {.unit = "m",
+              .meaning = "height over which the solid fraction is averaged; the reference diameter where not given",
+              .above = 0.0,
+              .example = 5e-3});
+  visit.real("pixel", keys.pixel,
+             {.unit = "m",
+              .meaning = "side of a pixel of the side view; 1/25 of the reference diameter where not given",
+              .above = 0.0,
+              .example = 2e-4});
+  visit.real("static_time", keys.static_time,
+             {.unit = "s", .meaning = "a pixel is static that one grain has covered for so long", .above = 0.0});
+}
+
+void check(const BedSurfaceKeys&, const RunFacts& run) {
+  require_grains(run, "measure");
+  if (run.box.periodic[2])
+    throw KeyError("",
+                   "a bed has a height above a bottom, and here z is periodic; remove the section or give "
+                   "domain.boundaries a bottom and a top, for example no_slip and free_slip");
+}
+
+std::optional<BedFlow> bed_flow(const RunFacts& run) {
+  if (!run.fluid) return std::nullopt;
+  const double g = run.gravity.norm();
+  BedFlow flow;
+  flow.side_walls = run.fluid->side_walls;
+  flow.shields_stress = (run.grains->reference_density - run.fluid->density) * g * run.grains->reference_diameter;
+  const bool by_slope = run.gravity.x() > 0.0 && run.gravity.z() < 0.0 && !run.fluid->steered;
+  if (by_slope && flow.shields_stress > 0.0)
+    flow.driving_stress = run.fluid->density * g * run.gravity.x() / -run.gravity.z();
+  return flow;
+}
+
+std::unique_ptr<Observer> make_observer(const BedSurfaceKeys& keys, const RunFacts& run, const RunningSystem& system) {
+  return std::make_unique<BedSurface>(system.communicator, run.box, keys, run.grains->reference_diameter, bed_flow(run),
+                                      run.grains->disk_thickness);
 }
 
 }  // namespace thalweg::analysis

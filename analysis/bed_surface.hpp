@@ -9,7 +9,7 @@
 #pragma once
 
 #include "analysis/bed_layers.hpp"
-#include "analysis/observer.hpp"
+#include "analysis/observer_keys.hpp"
 #include "analysis/static_pixels.hpp"
 
 #include <mpi.h>
@@ -19,13 +19,23 @@
 
 namespace thalweg::analysis {
 
-struct BedSurfaceSettings {
-  double from = 0.0;         // s: the means begin here
-  double every = 0.01;       // s: between measurements and looks at the pixels
-  double layer = 0.0;        // m: height over which the solid fraction is averaged
-  double pixel = 0.0;        // m
-  double static_time = 0.5;  // s: a pixel covered by one grain for so long is static
+struct BedSurfaceKeys {
+  static constexpr const char* section = "bed_surface";
+  static constexpr const char* meaning =
+      "height of the bed by solid fraction and by static pixels; depth, bed stress and Shields number of the flow "
+      "above "
+      "it";
+  static constexpr Needs needs = Needs::grains;
+  double from = 0.0;                 // s: the means begin here
+  double every = 0.01;               // s: between measurements and looks at the pixels
+  std::optional<double> layer = {};  // m: over which the solid fraction is averaged; d where not given
+  std::optional<double> pixel = {};  // m; d/25 where not given
+  double static_time = 0.5;          // s: a pixel covered by one grain for so long is static
+  bool operator==(const BedSurfaceKeys&) const = default;
 };
+void describe(SectionVisitor& visit, BedSurfaceKeys& keys);
+void check(const BedSurfaceKeys& keys, const RunFacts& run);
+std::unique_ptr<Observer> make_observer(const BedSurfaceKeys& keys, const RunFacts& run, const RunningSystem& system);
 
 // The flow over the bed; none for dry grains.
 struct BedFlow {
@@ -36,12 +46,12 @@ struct BedFlow {
 
 class BedSurface : public Observer {
 public:
-  // disk_thickness: m, 0: spheres. The box must end in walls along z.
-  BedSurface(MPI_Comm communicator, const PeriodicBox& box, const BedSurfaceSettings& settings,
+  // diameter: m, that stands for all grains. disk_thickness: m, 0: spheres. The box must end in walls along z.
+  BedSurface(MPI_Comm communicator, const PeriodicBox& box, const BedSurfaceKeys& keys, double diameter,
              const std::optional<BedFlow>& flow, double disk_thickness);
 
   std::string name() const override { return "bed_surface"; }
-  double every() const override { return settings_.every; }
+  double every() const override { return keys_.every; }
   void observe(const Snapshot& snapshot) override;  // a step seen before does not count again
 
   // bed_height (m), static_bed_height (m; not a number before the first half second is over); over a bed in a fluid
@@ -62,7 +72,7 @@ private:
 
   MPI_Comm communicator_;
   PeriodicBox box_;
-  BedSurfaceSettings settings_;
+  BedSurfaceKeys keys_;
   std::optional<BedFlow> flow_;
   BedLayers layers_;
   double bed_height_ = 0.0, bulk_ = 0.0;  // m, 1: latest

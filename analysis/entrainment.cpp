@@ -39,7 +39,7 @@ void Entrainment::observe(const Snapshot& snapshot) {
     memory_.assign(homes_->size(), {});
     watched_.assign(static_cast<std::size_t>(homes_->count()), 0);
   }
-  const bool due = settings_.grains.empty() && snapshot.step - chosen_step_ >= settings_.refresh;
+  const bool due = settings_.grains.empty() && snapshot.step - chosen_step_ >= settings_.refresh_steps;
   if (chosen_step_ < 0 || due) choose(snapshot);
   count(take_samples(snapshot), snapshot.time);
 }
@@ -50,7 +50,7 @@ void Entrainment::choose(const Snapshot& snapshot) {
   const double lowest = layers_.bed(snapshot).height - settings_.diameter;
   std::vector<GlobalId> chosen;
   for (std::size_t n = 0; n < snapshot.grains.id.size(); ++n)
-    if (snapshot.grains.position[n].z() > lowest && !settings_.held(snapshot.grains.id[n]))
+    if (snapshot.grains.position[n].z() > lowest && !is_held(settings_.held, snapshot.grains.id[n]))
       chosen.push_back(snapshot.grains.id[n]);
   watch(shared_by_all(communicator_, chosen));
 }

@@ -17,29 +17,42 @@
 #include "analysis/entrainment_event.hpp"
 #include "analysis/grain_ring.hpp"
 #include "analysis/home_by_id.hpp"
-#include "analysis/observer.hpp"
+#include "analysis/observer_keys.hpp"
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
 
 namespace thalweg::analysis {
 
-struct EntrainmentSettings {
-  std::vector<GlobalId> grains;        // ids, ascending; empty: free grains above the bed height less one diameter
-  double from = 0.0;                   // s
-  double interval = 0.0;               // s, between samples
-  double memory = 0.2;                 // s
-  std::int64_t refresh = 0;            // steps until the grains of the surface are chosen anew
-  double window = 0.0;                 // m, over which the solid fraction is averaged for the bed height
-  double diameter = 0.0;               // m, the depth below the bed height that belongs to its surface
-  double displacement = 0.1;           // grain diameters from the rest place that count as a start
-  double rest_time = 0.1;              // s
-  double moving_speed = 0.0;           // m/s
-  std::function<bool(GlobalId)> held;  // grains that cannot move
-  std::function<Vec3(double mass, double radius)> weight;    // N, submerged
-  std::function<Vec3(double mass, double radius)> buoyancy;  // N, as torques_about() has it
+struct EntrainmentKeys {
+  static constexpr const char* section = "entrainment";
+  static constexpr const char* meaning =
+      "what acted on grains that start to move, and the torques about the hinge they roll over, in entrainment.h5";
+  static constexpr Needs needs = Needs::both;
+  std::vector<GlobalId> grains;  // ids; empty: free grains above the bed height less one diameter
+  double from = 0.0;             // s
+  double memory = 0.2;           // s
+  double every = 0.0;            // s, between samples; 0: every step
+  double refresh = 0.5;          // s, until the grains of the surface are chosen anew
+  double displacement = 0.1;     // grain diameters from the rest place that count as a start
+  double rest_time = 0.1;        // s
+  bool operator==(const EntrainmentKeys&) const = default;
+};
+void describe(SectionVisitor& visit, EntrainmentKeys& keys);
+void check(const EntrainmentKeys& keys, const RunFacts& run);
+std::unique_ptr<Observer> make_observer(const EntrainmentKeys& keys, const RunFacts& run, const RunningSystem& system);
+
+// The same for a run: the ids ascending, and what follows from its step and its grains.
+struct EntrainmentSettings : EntrainmentKeys {
+  double interval = 0.0;           // s, between samples
+  std::int64_t refresh_steps = 0;  // until the grains of the surface are chosen anew
+  double window = 0.0;             // m, over which the solid fraction is averaged for the bed height
+  double diameter = 0.0;           // m, the depth below the bed height that belongs to its surface
+  double moving_speed = 0.0;       // m/s
+  std::vector<HeldGrains> held;    // grains that cannot move
+  GrainFacts::Force weight;        // submerged
+  GrainFacts::Force buoyancy;      // as torques_about() has it
 };
 
 class Entrainment : public Observer {

@@ -3,6 +3,8 @@
 #include "core/fixed_point.hpp"
 #include "core/mpi_session.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace thalweg::analysis {
@@ -18,18 +20,18 @@ const std::vector<std::string> components{"x", "y", "z"}, tensor{"xx", "yy", "zz
 }  // namespace
 
 FluidStatistics::FluidStatistics(MPI_Comm communicator, const Decomposition& decomposition, double velocity_unit,
-                                 const StatisticsSchedule& schedule, bool sections)
+                                 const FluidStatisticsKeys& keys, bool sections)
     : communicator_(communicator),
       cells_(decomposition.cells()),
       spacing_(decomposition.spacing()),
       velocity_unit_(velocity_unit),
-      schedule_(schedule),
+      keys_(keys),
       sections_(sections),
       sums_(static_cast<std::size_t>(bins()) * quantities) {}
 
 void FluidStatistics::observe(const Snapshot& snapshot) {
   // A step that is due at `from` itself counts, whatever the last bit of its time.
-  if (!snapshot.fluid || snapshot.step <= counted_step_ || snapshot.time < schedule_.from * (1.0 - 1e-12)) return;
+  if (!snapshot.fluid || snapshot.step <= counted_step_ || snapshot.time < keys_.from * (1.0 - 1e-12)) return;
   counted_step_ = snapshot.step;
   ++measurements_;
   std::vector<std::int64_t> sums(sums_.size(), 0);
@@ -77,7 +79,7 @@ std::vector<Figure> FluidStatistics::results() const {
     for (int q = 0; q < quantities; ++q) all[q].add(sums[q]);
   }
   return {{"mean_velocity_x", "m/s", means_of(all.data(), 1.0).velocity[0]},
-          {"mean_from", "s", schedule_.from},
+          {"mean_from", "s", keys_.from},
           {"measurements", "1", static_cast<double>(measurements_)}};
 }
 
@@ -116,7 +118,7 @@ std::vector<Profile> FluidStatistics::profiles() const {
 }
 
 void FluidStatistics::save(ArchiveWriter& archive) const {
-  archive.attribute("fluid_statistics/mean_from", schedule_.from);
+  archive.attribute("fluid_statistics/mean_from", keys_.from);
   archive.attribute("fluid_statistics/measurements", measurements_);
   archive.attribute("fluid_statistics/counted_step", counted_step_);
   std::vector<std::int64_t> values;
@@ -132,7 +134,7 @@ void FluidStatistics::save(ArchiveWriter& archive) const {
 void FluidStatistics::load(ArchiveReader& archive) {
   const std::vector<std::uint64_t> shape{static_cast<std::uint64_t>(bins()), quantities, 2};
   if (!archive.has("fluid_statistics/mean_from") ||
-      archive.real_attribute("fluid_statistics/mean_from") != schedule_.from ||
+      archive.real_attribute("fluid_statistics/mean_from") != keys_.from ||
       archive.shape("fluid_statistics/sums") != shape)
     return;
   measurements_ = archive.integer_attribute("fluid_statistics/measurements");
@@ -140,6 +142,25 @@ void FluidStatistics::load(ArchiveReader& archive) {
   std::vector<std::int64_t> values(2 * sums_.size());
   archive.read("fluid_statistics/sums", std::span<std::int64_t>(values), {shape, {0, 0, 0}, shape});
   for (std::size_t s = 0; s < sums_.size(); ++s) sums_[s] = {values[2 * s], values[2 * s + 1]};
+}
+
+void describe(SectionVisitor& visit, FluidStatisticsKeys& keys) {
+  describe_from(visit, keys.from);
+  describe_every(visit, keys.every);
+}
+
+std::optional<std::string> warning(const FluidStatisticsKeys& keys, const RunFacts& run) {
+  if (keys.from < run.until) return std::nullopt;
+  return fmt::format(
+      "The means of the fluid begin at {} s, after the end of the run at {} s, so profiles.h5 will hold "
+      "none: consider an earlier analysis.fluid_statistics.from.",
+      keys.from, run.until);
+}
+
+std::unique_ptr<Observer> make_observer(const FluidStatisticsKeys& keys, const RunFacts& run,
+                                        const RunningSystem& system) {
+  return std::make_unique<FluidStatistics>(system.communicator, system.decomposition, run.fluid->velocity_unit, keys,
+                                           !run.box.periodic[1]);
 }
 
 }  // namespace thalweg::analysis

@@ -11,7 +11,7 @@
 // 8 million cells.
 #pragma once
 
-#include "analysis/observer.hpp"
+#include "analysis/observer_keys.hpp"
 #include "core/wide_sum.hpp"
 
 #include <mpi.h>
@@ -21,19 +21,28 @@
 
 namespace thalweg::analysis {
 
-struct StatisticsSchedule {
-  double from = 0.0;   // s: the means begin here
-  double every = 0.0;  // s: between measurements
+struct FluidStatisticsKeys {
+  static constexpr const char* section = "fluid_statistics";
+  static constexpr const char* meaning =
+      "mean velocity and Reynolds stresses in profiles.h5: over z, and over y and z between side walls";
+  static constexpr Needs needs = Needs::fluid;
+  double from = 0.0;    // s: the means begin here
+  double every = 0.01;  // s: between measurements
+  bool operator==(const FluidStatisticsKeys&) const = default;
 };
+void describe(SectionVisitor& visit, FluidStatisticsKeys& keys);
+std::optional<std::string> warning(const FluidStatisticsKeys& keys, const RunFacts& run);
+std::unique_ptr<Observer> make_observer(const FluidStatisticsKeys& keys, const RunFacts& run,
+                                        const RunningSystem& system);
 
 class FluidStatistics : public Observer {
 public:
   // velocity_unit: m/s of one cell a step. sections: profiles over y and z too.
   FluidStatistics(MPI_Comm communicator, const Decomposition& decomposition, double velocity_unit,
-                  const StatisticsSchedule& schedule, bool sections);
+                  const FluidStatisticsKeys& keys, bool sections);
 
   std::string name() const override { return "fluid_statistics"; }
-  double every() const override { return schedule_.every; }
+  double every() const override { return keys_.every; }
   void observe(const Snapshot& snapshot) override;  // a step seen before does not count again
   std::vector<Figure> figures() const override { return {}; }
   std::vector<Figure> results() const override;  // mean_velocity_x (m/s), mean_from (s), measurements (1)
@@ -60,7 +69,7 @@ private:
   MPI_Comm communicator_;
   Index3 cells_;
   double spacing_, velocity_unit_;
-  StatisticsSchedule schedule_;
+  FluidStatisticsKeys keys_;
   bool sections_;
   std::vector<WideSum> sums_;  // quantities of each bin; over all ranks, on every rank
   std::int64_t measurements_ = 0, counted_step_ = -1;

@@ -54,17 +54,17 @@ std::vector<Weighed> weighed(const Snapshot& snapshot) {
 }  // namespace
 
 GrainProfiles::GrainProfiles(MPI_Comm communicator, const Decomposition& decomposition, double layer,
-                             const ProfileSchedule& schedule)
+                             const GrainProfilesKeys& keys)
     : communicator_(communicator),
       box_(decomposition.box()),
-      layers_(std::max(1, static_cast<int>(std::lround(box_.size[2] / layer)))),
+      layers_(std::max(1, static_cast<int>(std::lround(box_.size[2] / keys.layer.value_or(layer))))),
       thickness_(box_.size[2] / layers_),
-      schedule_(schedule),
+      keys_(keys),
       sums_(static_cast<std::size_t>(layers_) * quantities, 0.0) {}
 
 void GrainProfiles::observe(const Snapshot& snapshot) {
   // A step that is due at `from` itself counts, whatever the last bit of its time.
-  if (snapshot.step <= counted_step_ || snapshot.time < schedule_.from * (1.0 - 1e-12)) return;
+  if (snapshot.step <= counted_step_ || snapshot.time < keys_.from * (1.0 - 1e-12)) return;
   counted_step_ = snapshot.step;
   ++measurements_;
   const GrainView& grains = snapshot.grains;
@@ -97,7 +97,7 @@ void GrainProfiles::observe(const Snapshot& snapshot) {
 }
 
 std::vector<Figure> GrainProfiles::results() const {
-  return {{"mean_from", "s", schedule_.from}, {"measurements", "1", static_cast<double>(measurements_)}};
+  return {{"mean_from", "s", keys_.from}, {"measurements", "1", static_cast<double>(measurements_)}};
 }
 
 std::vector<Profile> GrainProfiles::profiles() const {
@@ -132,7 +132,7 @@ std::vector<Profile> GrainProfiles::profiles() const {
 }
 
 void GrainProfiles::save(ArchiveWriter& archive) const {
-  archive.attribute("grain_profiles/mean_from", schedule_.from);
+  archive.attribute("grain_profiles/mean_from", keys_.from);
   archive.attribute("grain_profiles/measurements", measurements_);
   archive.attribute("grain_profiles/counted_step", counted_step_);
   const bool first = rank_of(communicator_) == 0;
@@ -144,13 +144,29 @@ void GrainProfiles::save(ArchiveWriter& archive) const {
 
 void GrainProfiles::load(ArchiveReader& archive) {
   const std::vector<std::uint64_t> shape{static_cast<std::uint64_t>(layers_), quantities};
-  if (!archive.has("grain_profiles/mean_from") ||
-      archive.real_attribute("grain_profiles/mean_from") != schedule_.from ||
+  if (!archive.has("grain_profiles/mean_from") || archive.real_attribute("grain_profiles/mean_from") != keys_.from ||
       archive.shape("grain_profiles/sums") != shape)
     return;
   measurements_ = archive.integer_attribute("grain_profiles/measurements");
   counted_step_ = archive.integer_attribute("grain_profiles/counted_step");
   archive.read("grain_profiles/sums", std::span<double>(sums_), {shape, {0, 0}, shape});
+}
+
+void describe(SectionVisitor& visit, GrainProfilesKeys& keys) {
+  describe_from(visit, keys.from);
+  describe_every(visit, keys.every);
+  visit.real("layer", keys.layer,
+             {.unit = "m",
+              .meaning = "height of a layer, of which a whole number fills the box; half of the largest diameter where "
+                         "not given",
+              .above = 0.0,
+              .example = 2.5e-3});
+}
+
+std::unique_ptr<Observer> make_observer(const GrainProfilesKeys& keys, const RunFacts& run,
+                                        const RunningSystem& system) {
+  return std::make_unique<GrainProfiles>(system.communicator, system.decomposition, 0.5 * run.grains->largest_diameter,
+                                         keys);
 }
 
 }  // namespace thalweg::analysis

@@ -20,28 +20,37 @@
 // also after a restart.
 #pragma once
 
-#include "analysis/observer.hpp"
+#include "analysis/observer_keys.hpp"
 
 #include <mpi.h>
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace thalweg::analysis {
 
-struct ProfileSchedule {
-  double from = 0.0;   // s: the means begin here
-  double every = 0.0;  // s: between measurements
+struct GrainProfilesKeys {
+  static constexpr const char* section = "grain_profiles";
+  static constexpr const char* meaning =
+      "mean solid fraction, velocity, flux, granular temperature and stresses of the grains over z, in profiles.h5";
+  static constexpr Needs needs = Needs::grains;
+  double from = 0.0;                 // s: the means begin here
+  double every = 0.01;               // s: between measurements
+  std::optional<double> layer = {};  // m, wanted; half of the largest diameter where not given
+  bool operator==(const GrainProfilesKeys&) const = default;
 };
+void describe(SectionVisitor& visit, GrainProfilesKeys& keys);
+std::unique_ptr<Observer> make_observer(const GrainProfilesKeys& keys, const RunFacts& run,
+                                        const RunningSystem& system);
 
 class GrainProfiles : public Observer {
 public:
-  // layer: m, wanted; changed so that a whole number of layers fills the box.
-  GrainProfiles(MPI_Comm communicator, const Decomposition& decomposition, double layer,
-                const ProfileSchedule& schedule);
+  // layer: m, where the keys have none; changed so that a whole number of layers fills the box.
+  GrainProfiles(MPI_Comm communicator, const Decomposition& decomposition, double layer, const GrainProfilesKeys& keys);
 
   std::string name() const override { return "grain_profiles"; }
-  double every() const override { return schedule_.every; }
+  double every() const override { return keys_.every; }
   void observe(const Snapshot& snapshot) override;  // a step seen before does not count again
   std::vector<Figure> figures() const override { return {}; }
   std::vector<Figure> results() const override;  // mean_from (s), measurements (1)
@@ -62,7 +71,7 @@ private:
   PeriodicBox box_;
   int layers_;
   double thickness_;  // m, of a layer
-  ProfileSchedule schedule_;
+  GrainProfilesKeys keys_;
   std::vector<double> sums_;  // quantities of each layer; over all ranks, on every rank
   std::int64_t measurements_ = 0, counted_step_ = -1;
 };

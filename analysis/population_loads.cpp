@@ -43,4 +43,11 @@ void PopulationLoads::observe(const Snapshot& snapshot) {
   }
 }
 
+void describe(SectionVisitor&, PopulationLoadsKeys&) {}
+
+std::unique_ptr<Observer> make_observer(const PopulationLoadsKeys&, const RunFacts& run, const RunningSystem& system) {
+  return std::make_unique<PopulationLoads>(system.communicator, run.box, run.grains->populations,
+                                           run.fluid.has_value());
+}
+
 }  // namespace thalweg::analysis

@@ -7,23 +7,25 @@
 // the same bits on any number of ranks.
 #pragma once
 
-#include "analysis/observer.hpp"
+#include "analysis/observer_keys.hpp"
 #include "core/periodic_box.hpp"
 
 #include <mpi.h>
 
-#include <functional>
 #include <string>
 #include <vector>
 
 namespace thalweg::analysis {
 
-struct Population {
-  std::string name;    // of its columns
-  GlobalId first = 0;  // its ids are first ... end - 1
-  GlobalId end = 0;
-  std::function<Vec3(double time)> pivot;  // m, at a time (s)
+struct PopulationLoadsKeys {
+  static constexpr const char* section = "population_loads";
+  static constexpr const char* meaning = "force and torque on each population of grains, in series.csv; no keys: {}";
+  static constexpr Needs needs = Needs::grains;
+  bool operator==(const PopulationLoadsKeys&) const = default;
 };
+void describe(SectionVisitor& visit, PopulationLoadsKeys& keys);
+std::unique_ptr<Observer> make_observer(const PopulationLoadsKeys& keys, const RunFacts& run,
+                                        const RunningSystem& system);
 
 class PopulationLoads : public Observer {
 public:

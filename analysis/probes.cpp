@@ -2,6 +2,8 @@
 
 #include "core/mpi_session.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -87,6 +89,47 @@ void Probes::load(ArchiveReader& archive) {
   if (!archive.has("probes/seen_step")) return;
   seen_step_ = archive.integer_attribute("probes/seen_step");
   measurements_ = archive.integer_attribute("probes/measurements");
+}
+
+static void describe(SectionVisitor& visit, ProbeLine& line) {
+  visit.vec3("from", line.from, {.unit = "m"});
+  visit.vec3("to", line.to, {.unit = "m"});
+  visit.integer("points", line.points, {.meaning = "at equal distances, both ends included", .at_least = 2});
+}
+
+void describe(SectionVisitor& visit, ProbesKeys& keys) {
+  visit.vec3_list("points", keys.points, {.unit = "m", .meaning = "each stands for the cell that it lies in"});
+  visit.list("lines", keys.lines, {.meaning = "rows of points"});
+  describe_every(visit, keys.every);
+}
+
+namespace {
+
+void require_inside(const Vec3& point, const PeriodicBox& box, const std::string& key) {
+  if ((point.array() >= 0.0).all() && (point.array() <= box.size.array()).all()) return;
+  throw KeyError(key, fmt::format("the box goes from 0 to ({:g}, {:g}, {:g}) m; give a point in it", box.size.x(),
+                                  box.size.y(), box.size.z()));
+}
+
+}  // namespace
+
+void check(const ProbesKeys& keys, const RunFacts& run) {
+  if (keys.points.empty() && keys.lines.empty()) throw KeyError("", "there is no point; give points, lines or both");
+  for (std::size_t n = 0; n < keys.points.size(); ++n)
+    require_inside(keys.points[n], run.box, fmt::format("points.{}", n));
+  for (std::size_t n = 0; n < keys.lines.size(); ++n) {
+    require_inside(keys.lines[n].from, run.box, fmt::format("lines.{}.from", n));
+    require_inside(keys.lines[n].to, run.box, fmt::format("lines.{}.to", n));
+  }
+}
+
+std::unique_ptr<Observer> make_observer(const ProbesKeys& keys, const RunFacts&, const RunningSystem& system) {
+  std::vector<Vec3> points = keys.points;
+  for (const ProbeLine& line : keys.lines)
+    for (std::int64_t n = 0; n < line.points; ++n)
+      points.push_back(line.from +
+                       (line.to - line.from) * (static_cast<double>(n) / static_cast<double>(line.points - 1)));
+  return std::make_unique<Probes>(system.communicator, system.decomposition, points, keys.every);
 }
 
 }  // namespace thalweg::analysis

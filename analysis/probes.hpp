@@ -1,7 +1,7 @@
 // Velocity and pressure of the fluid in chosen cells, at short intervals.
 #pragma once
 
-#include "analysis/observer.hpp"
+#include "analysis/observer_keys.hpp"
 #include "core/decomposition.hpp"
 
 #include <mpi.h>
@@ -9,6 +9,27 @@
 #include <vector>
 
 namespace thalweg::analysis {
+
+// A row of points at equal distances, both ends included.
+struct ProbeLine {
+  Vec3 from = Vec3::Zero(), to = Vec3::Zero();  // m
+  std::int64_t points = 10;
+  bool operator==(const ProbeLine&) const = default;
+};
+
+struct ProbesKeys {
+  static constexpr const char* section = "probes";
+  static constexpr const char* meaning =
+      "velocity and pressure of the fluid at points and along lines at short intervals, in probes.h5";
+  static constexpr Needs needs = Needs::fluid;
+  std::vector<Vec3> points;  // m
+  std::vector<ProbeLine> lines;
+  double every = 1e-3;  // s
+  bool operator==(const ProbesKeys&) const = default;
+};
+void describe(SectionVisitor& visit, ProbesKeys& keys);
+void check(const ProbesKeys& keys, const RunFacts& run);
+std::unique_ptr<Observer> make_observer(const ProbesKeys& keys, const RunFacts& run, const RunningSystem& system);
 
 class Probes : public Observer {
 public:

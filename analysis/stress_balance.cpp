@@ -13,19 +13,14 @@
 
 namespace thalweg::analysis {
 
-bool is_held(const std::vector<HeldGrains>& held, GlobalId id) {
-  return std::any_of(held.begin(), held.end(),
-                     [id](const HeldGrains& some) { return id >= some.first && id < some.end; });
-}
-
 StressBalance::StressBalance(MPI_Comm communicator, const Decomposition& decomposition, double layer,
-                             const BalanceSchedule& schedule, const BalanceScales& scales, std::vector<HeldGrains> held)
+                             const StressBalanceKeys& keys, const BalanceScales& scales, std::vector<HeldGrains> held)
     : communicator_(communicator),
       n_(decomposition.cells()),
       spacing_(decomposition.spacing()),
       side_walls_(!decomposition.periodic()[0] || !decomposition.periodic()[1]),
-      layers_(n_[2], spacing_, layer),
-      schedule_(schedule),
+      layers_(n_[2], spacing_, keys.layer.value_or(layer)),
+      keys_(keys),
       scales_(scales),
       held_(std::move(held)),
       fluid_(static_cast<std::size_t>(n_[2]) * fluid_columns, 0.0),
@@ -39,7 +34,7 @@ StressBalance::StressBalance(MPI_Comm communicator, const Decomposition& decompo
 
 void StressBalance::observe(const Snapshot& snapshot) {
   // A step that is due at `from` itself counts, whatever the last bit of its time.
-  if (!snapshot.momentum || snapshot.step <= counted_step_ || snapshot.time < schedule_.from * (1.0 - 1e-12)) return;
+  if (!snapshot.momentum || snapshot.step <= counted_step_ || snapshot.time < keys_.from * (1.0 - 1e-12)) return;
   counted_step_ = snapshot.step;
   ++measurements_;
   add_fluid(*snapshot.momentum);
@@ -126,7 +121,7 @@ std::size_t StressBalance::stored_size() const {
 }
 
 void StressBalance::save(ArchiveWriter& archive) const {
-  archive.attribute("stress_balance/mean_from", schedule_.from);
+  archive.attribute("stress_balance/mean_from", keys_.from);
   archive.attribute("stress_balance/measurements", measurements_);
   archive.attribute("stress_balance/counted_step", counted_step_);
   archive.attribute("stress_balance/layers", static_cast<std::int64_t>(layers_.count()));
@@ -140,8 +135,7 @@ void StressBalance::save(ArchiveWriter& archive) const {
 
 void StressBalance::load(ArchiveReader& archive) {
   const std::vector<std::uint64_t> shape{stored_size()};
-  if (!archive.has("stress_balance/mean_from") ||
-      archive.real_attribute("stress_balance/mean_from") != schedule_.from ||
+  if (!archive.has("stress_balance/mean_from") || archive.real_attribute("stress_balance/mean_from") != keys_.from ||
       archive.integer_attribute("stress_balance/layers") != layers_.count() ||
       archive.shape("stress_balance/sums") != shape)
     return;
@@ -154,6 +148,39 @@ void StressBalance::load(ArchiveReader& archive) {
     std::copy_n(next, (this->*sums).size(), (this->*sums).begin());
     next += static_cast<std::ptrdiff_t>((this->*sums).size());
   }
+}
+
+void describe(SectionVisitor& visit, StressBalanceKeys& keys) {
+  describe_from(visit, keys.from);
+  describe_every(visit, keys.every);
+  visit.real(
+      "layer", keys.layer,
+      {.unit = "m",
+       .meaning = "height of a layer, in whole cells as near as can be; a quarter of the smallest diameter where "
+                  "not given",
+       .above = 0.0,
+       .example = 1.25e-3});
+}
+
+void check(const StressBalanceKeys& keys, const RunFacts& run) {
+  require_grains(run, "share the stress");
+  if (run.box.periodic[2])
+    throw KeyError("",
+                   "stress is summed from the top down, and z is periodic; remove the section or give "
+                   "domain.boundaries bottom and top");
+  if (run.grains->any_clumps())
+    throw KeyError("",
+                   "it knows grains that are single spheres, and there are clumps; remove the section or "
+                   "use grain_profiles");
+  require_full_gravity_from(run, keys.from);
+}
+
+std::unique_ptr<Observer> make_observer(const StressBalanceKeys& keys, const RunFacts& run,
+                                        const RunningSystem& system) {
+  const BalanceScales scales{run.fluid->density, run.fluid->density * run.fluid->kinematic_viscosity,
+                             run.grains->reference_diameter, run.gravity.x()};
+  return std::make_unique<StressBalance>(system.communicator, system.decomposition,
+                                         0.25 * run.grains->smallest_diameter, keys, scales, run.grains->held());
 }
 
 }  // namespace thalweg::analysis

@@ -24,21 +24,34 @@
 #pragma once
 
 #include "analysis/cell_layers.hpp"
-#include "analysis/observer.hpp"
+#include "analysis/observer_keys.hpp"
 
 #include <mpi.h>
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace thalweg::analysis {
 
-struct BalanceSchedule {
-  double from = 0.0;   // s: the means begin here
-  double every = 0.0;  // s: between measurements
+struct StressBalanceKeys {
+  static constexpr const char* section = "stress_balance";
+  static constexpr const char* meaning =
+      "all stresses of grains and fluid over z, in profiles.h5, and how far their total is from what the driving force "
+      "prescribes in steady state";
+  static constexpr Needs needs = Needs::both;
+  static constexpr const char* without_fluid = "use grain_profiles";
+  double from = 0.0;                 // s: the means begin here
+  double every = 0.01;               // s: between measurements
+  std::optional<double> layer = {};  // m, wanted; a quarter of the smallest diameter where not given
+  bool operator==(const StressBalanceKeys&) const = default;
 };
+void describe(SectionVisitor& visit, StressBalanceKeys& keys);
+void check(const StressBalanceKeys& keys, const RunFacts& run);
+std::unique_ptr<Observer> make_observer(const StressBalanceKeys& keys, const RunFacts& run,
+                                        const RunningSystem& system);
 
 struct BalanceScales {
   double fluid_density = 0.0;  // kg/m^3
@@ -47,20 +60,14 @@ struct BalanceScales {
   double gravity_x = 0.0;      // m/s^2, on grains that are free
 };
 
-// Grains that move as told, or not at all: ids from `first` to one before `end`.
-struct HeldGrains {
-  GlobalId first = 0, end = 0;
-};
-bool is_held(const std::vector<HeldGrains>& held, GlobalId id);
-
 class StressBalance : public Observer {
 public:
-  // layer: m, wanted; layers are of whole planes of cells. z must not be periodic.
-  StressBalance(MPI_Comm communicator, const Decomposition& decomposition, double layer,
-                const BalanceSchedule& schedule, const BalanceScales& scales, std::vector<HeldGrains> held);
+  // layer: m, where the keys have none; layers are of whole planes of cells. z must not be periodic.
+  StressBalance(MPI_Comm communicator, const Decomposition& decomposition, double layer, const StressBalanceKeys& keys,
+                const BalanceScales& scales, std::vector<HeldGrains> held);
 
   std::string name() const override { return "stress_balance"; }
-  double every() const override { return schedule_.every; }
+  double every() const override { return keys_.every; }
   bool needs_momentum() const override { return true; }
   void observe(const Snapshot& snapshot) override;  // a step seen before, or not booked, does not count
   std::vector<Figure> figures() const override { return {}; }
@@ -133,7 +140,7 @@ private:
   double spacing_;   // m
   bool side_walls_;  // x or y is not periodic
   CellLayers layers_;
-  BalanceSchedule schedule_;
+  StressBalanceKeys keys_;
   BalanceScales scales_;
   std::vector<HeldGrains> held_;
   // Over measurements and all ranks, on every rank.

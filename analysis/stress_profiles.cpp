@@ -170,7 +170,7 @@ std::vector<Figure> StressBalance::results() const {
   const Difference total = largest_difference(layers, &LayerMeans::total, bed_stress);
   const Difference sum = largest_difference(layers, &LayerMeans::sum, bed_stress);
   const auto height = [this](const Difference& d) { return layers_.middle(d.layer); };
-  return {{"mean_from", "s", schedule_.from},
+  return {{"mean_from", "s", keys_.from},
           {"measurements", "1", static_cast<double>(measurements_)},
           {"bed_height", "m", bed >= 0 ? layers_.bottom(bed) + layers_.height(bed) : 0.0},
           {"bed_stress", "Pa", bed_stress},

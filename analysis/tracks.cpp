@@ -96,4 +96,28 @@ void Tracks::load(ArchiveReader& archive) {
   }
 }
 
+void describe(SectionVisitor& visit, TracksKeys& keys) {
+  visit.integer_list("grains", keys.grains,
+                     {.meaning = "ids of the grains, in the order of the populations from 0; else every one_in-th",
+                      .at_least = 0,
+                      .example = 0});
+  visit.integer("one_in", keys.one_in,
+                {.meaning = "grains 0, one_in, 2 one_in, ... where no ids are given", .at_least = 1});
+  describe_every(visit, keys.every);
+}
+
+void check(const TracksKeys& keys, const RunFacts& run) {
+  require_ids(run, keys.grains);
+  if (!keys.grains.empty() && keys.one_in != 1)
+    throw KeyError("one_in", "analysis.tracks.grains names the grains already; give one of them");
+}
+
+std::unique_ptr<Observer> make_observer(const TracksKeys& keys, const RunFacts& run, const RunningSystem& system) {
+  std::vector<GlobalId> ids = keys.grains;
+  std::sort(ids.begin(), ids.end());
+  if (ids.empty())
+    for (GlobalId id = 0; id < run.grains->count(); id += keys.one_in) ids.push_back(id);
+  return std::make_unique<Tracks>(system.communicator, std::move(ids), keys.every);
+}
+
 }  // namespace thalweg::analysis

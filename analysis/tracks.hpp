@@ -6,7 +6,7 @@
 #pragma once
 
 #include "analysis/grain_record.hpp"
-#include "analysis/observer.hpp"
+#include "analysis/observer_keys.hpp"
 #include "core/periodic_box.hpp"
 
 #include <mpi.h>
@@ -14,6 +14,19 @@
 #include <vector>
 
 namespace thalweg::analysis {
+
+struct TracksKeys {
+  static constexpr const char* section = "tracks";
+  static constexpr const char* meaning = "places, motion and forces of chosen grains at short intervals, in tracks.h5";
+  static constexpr Needs needs = Needs::grains;
+  std::vector<GlobalId> grains;  // ids; empty: every one_in-th grain
+  std::int64_t one_in = 1;
+  double every = 1e-3;  // s
+  bool operator==(const TracksKeys&) const = default;
+};
+void describe(SectionVisitor& visit, TracksKeys& keys);
+void check(const TracksKeys& keys, const RunFacts& run);
+std::unique_ptr<Observer> make_observer(const TracksKeys& keys, const RunFacts& run, const RunningSystem& system);
 
 class Tracks : public Observer {
 public:

@@ -48,10 +48,10 @@ double TransportScales::moving_speed() const {
   return share_of_fall_speed_that_counts_as_moving * flux() / grain_diameter;
 }
 
-TransportRate::TransportRate(MPI_Comm communicator, const TransportScales& scales, const TransportSchedule& schedule)
+TransportRate::TransportRate(MPI_Comm communicator, const TransportScales& scales, const TransportRateKeys& keys)
     : communicator_(communicator),
       scales_(scales),
-      schedule_(schedule),
+      keys_(keys),
       velocities_{Histogram::linear(slowest * scales.fall_speed(), fastest * scales.fall_speed(), velocity_bins),
                   Histogram::linear(slowest * scales.fall_speed(), fastest * scales.fall_speed(), velocity_bins),
                   Histogram::linear(slowest * scales.fall_speed(), fastest * scales.fall_speed(), velocity_bins)},
@@ -61,7 +61,7 @@ void TransportRate::observe(const Snapshot& snapshot) {
   const std::vector<Body> bodies = bodies_of(snapshot.grains);
   measure(snapshot, bodies);
   // from may be a rounded multiple of the time step: a measurement at that very step counts.
-  const bool counts = snapshot.time >= schedule_.from * (1.0 - 1e-12);
+  const bool counts = snapshot.time >= keys_.from * (1.0 - 1e-12);
   // To see a state twice, as a run does that goes on from a checkpoint, changes nothing of the hops.
   hops_.observe(snapshot.time, snapshot.decomposition->box(), snapshot.grains.global_count, bodies, counts);
   if (!counts || snapshot.step <= counted_step_) return;
@@ -148,7 +148,7 @@ std::vector<Figure> TransportRate::results() const {
   results.push_back({"reference_diameter", "m", scales_.grain_diameter});
   results.push_back({"reference_density", "kg/m^3", scales_.grain_density});
   results.push_back({"moving_speed", "m/s", scales_.moving_speed()});
-  results.push_back({"mean_from", "s", schedule_.from});
+  results.push_back({"mean_from", "s", keys_.from});
   results.push_back({"measurements", "1", static_cast<double>(q_s_.count())});
   for (const Figure& latest : figures()) results.push_back(latest);
   return results;
@@ -206,7 +206,7 @@ std::vector<double> TransportRate::sums() const {
 }
 
 void TransportRate::save(ArchiveWriter& archive) const {
-  archive.attribute("transport_rate/mean_from", schedule_.from);
+  archive.attribute("transport_rate/mean_from", keys_.from);
   archive.attribute("transport_rate/counted_step", counted_step_);
   write_once(archive, communicator_, "transport_rate/sums", sums());
   write_once(archive, communicator_, "transport_rate/trend", trend_.state());
@@ -221,8 +221,7 @@ void TransportRate::save(ArchiveWriter& archive) const {
 void TransportRate::load(ArchiveReader& archive) {
   const std::size_t cells = velocities_[0].counts().size();
   const std::vector<std::uint64_t> shape{3 * cells};
-  if (!archive.has("transport_rate/mean_from") ||
-      archive.real_attribute("transport_rate/mean_from") != schedule_.from ||
+  if (!archive.has("transport_rate/mean_from") || archive.real_attribute("transport_rate/mean_from") != keys_.from ||
       !archive.has("transport_rate/velocity_counts") || archive.shape("transport_rate/velocity_counts") != shape)
     return;
   counted_step_ = archive.integer_attribute("transport_rate/counted_step");
@@ -238,6 +237,33 @@ void TransportRate::load(ArchiveReader& archive) {
   const auto counts = read_all<std::int64_t>(archive, "transport_rate/velocity_counts");
   for (std::size_t c = 0; c < counts.size(); ++c) velocities_[c / cells].counts()[c % cells] = counts[c];
   hops_.load(archive, "transport_rate");
+}
+
+void describe(SectionVisitor& visit, TransportRateKeys& keys) {
+  visit.real("from", keys.from,
+             {.unit = "s", .meaning = "start of the means, hops and distributions", .at_least = 0.0});
+  visit.real("every", keys.every,
+             {.unit = "s", .meaning = "between measurements; 0: with the rows of series.csv", .at_least = 0.0});
+}
+
+void check(const TransportRateKeys&, const RunFacts& run) { require_grains(run, "measure"); }
+
+std::optional<std::string> warning(const TransportRateKeys& keys, const RunFacts& run) {
+  if (keys.from < run.until) return std::nullopt;
+  return fmt::format(
+      "The mean transport rate begins at {} s, after the end of the run at {} s, so the summary will have "
+      "none: consider an earlier analysis.transport_rate.from.",
+      keys.from, run.until);
+}
+
+TransportScales transport_scales(const RunFacts& run) {
+  return {run.grains->reference_diameter, run.grains->reference_density, run.fluid ? run.fluid->density : 0.0,
+          run.gravity.norm()};
+}
+
+std::unique_ptr<Observer> make_observer(const TransportRateKeys& keys, const RunFacts& run,
+                                        const RunningSystem& system) {
+  return std::make_unique<TransportRate>(system.communicator, transport_scales(run), keys);
 }
 
 }  // namespace thalweg::analysis

@@ -14,7 +14,7 @@
 #include "analysis/correlated_mean.hpp"
 #include "analysis/histogram.hpp"
 #include "analysis/hops.hpp"
-#include "analysis/observer.hpp"
+#include "analysis/observer_keys.hpp"
 #include "analysis/trend_test.hpp"
 
 #include <mpi.h>
@@ -35,18 +35,29 @@ struct TransportScales {
   double moving_speed() const;  // m/s: 1 % of sqrt(|s - 1| g d), without a fluid of sqrt(g d)
   bool have_q_star() const { return fluid_density > 0.0 && flux() > 0.0; }
 };
+TransportScales transport_scales(const RunFacts& run);  // of a run with grains
 
-struct TransportSchedule {
+struct TransportRateKeys {
+  static constexpr const char* section = "transport_rate";
+  static constexpr const char* meaning =
+      "the grains' flux q and q* along x with its error, how many move, how fast, and how far they hop";
+  static constexpr Needs needs = Needs::grains;
   double from = 0.0;   // s: means, hops and distributions begin here
   double every = 0.0;  // s: between measurements; 0: with the rows of the series
+  bool operator==(const TransportRateKeys&) const = default;
 };
+void describe(SectionVisitor& visit, TransportRateKeys& keys);
+void check(const TransportRateKeys& keys, const RunFacts& run);
+std::optional<std::string> warning(const TransportRateKeys& keys, const RunFacts& run);
+std::unique_ptr<Observer> make_observer(const TransportRateKeys& keys, const RunFacts& run,
+                                        const RunningSystem& system);
 
 class TransportRate : public Observer {
 public:
-  TransportRate(MPI_Comm communicator, const TransportScales& scales, const TransportSchedule& schedule);
+  TransportRate(MPI_Comm communicator, const TransportScales& scales, const TransportRateKeys& keys);
 
   std::string name() const override { return "transport_rate"; }
-  double every() const override { return schedule_.every; }
+  double every() const override { return keys_.every; }
   void observe(const Snapshot& snapshot) override;  // a step seen before does not count again in the means
 
   // q_s (m^2/s), q_star (1; only in a fluid), moving_grains (1: faster than moving_speed()), moving_share (1: of all
@@ -84,9 +95,9 @@ private:
 
   MPI_Comm communicator_;
   TransportScales scales_;
-  TransportSchedule schedule_;
+  TransportRateKeys keys_;
   Latest latest_;
-  std::int64_t counted_step_ = -1;             // of the latest measurement from schedule_.from on
+  std::int64_t counted_step_ = -1;             // of the latest measurement from keys_.from on
   double first_time_ = 0.0, last_time_ = 0.0;  // s, of those
   double sum_of_moving_ = 0.0, sum_of_shares_ = 0.0, sum_of_activity_ = 0.0;
   CorrelatedMean q_s_;

@@ -2,6 +2,7 @@
 
 #include "driver/bed_flow.hpp"
 #include "driver/grain_materials.hpp"
+#include "driver/run_facts.hpp"
 #include "driver/stability.hpp"
 
 #include <fmt/format.h>
@@ -154,18 +155,8 @@ double estimated_velocity(const Case& c) {
 }
 
 std::vector<std::string> warnings(const Case& c) {
-  std::vector<std::string> found;
-  if (c.analysis.transport_rate && c.analysis.transport_rate->from >= c.run.until)
-    found.push_back(
-        fmt::format("The mean transport rate begins at {} s, after the end of the run at {} s, so the summary "
-                    "will have none: consider an earlier analysis.transport_rate.from.",
-                    c.analysis.transport_rate->from, c.run.until));
+  std::vector<std::string> found = warnings(c.analysis.observers, driver::run_facts(c));
   if (!has_fluid(c)) return found;
-  if (c.analysis.fluid_statistics && c.analysis.fluid_statistics->from >= c.run.until)
-    found.push_back(
-        fmt::format("The means of the fluid begin at {} s, after the end of the run at {} s, so profiles.h5 will hold "
-                    "none: consider an earlier analysis.fluid_statistics.from.",
-                    c.analysis.fluid_statistics->from, c.run.until));
   const double lattice_velocity = estimated_velocity(c) / units_of(c).velocity();
   if (!c.fluid.expected_velocity && lattice_velocity > 0.1)
     found.push_back(

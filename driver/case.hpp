@@ -2,6 +2,7 @@
 // them by definition. The file format is case_reader's business; meanings and units of all keys: `thalweg defaults`.
 #pragma once
 
+#include "analysis/observer_list.hpp"
 #include "core/types.hpp"
 #include "core/units.hpp"
 #include "coupling/load_rule.hpp"
@@ -242,94 +243,15 @@ struct OutputCase {
   bool operator==(const OutputCase&) const = default;
 };
 
-struct TransportRateCase {
-  double from = 0.0;   // s: the means in the summary are taken from here to the end of the run
-  double every = 0.0;  // s; 0: with the rows of the series
-  bool operator==(const TransportRateCase&) const = default;
-};
-
-struct BedSurfaceCase {
-  double from = 0.0;            // s
-  double every = 0.01;          // s
-  std::optional<double> layer;  // m; else the reference diameter
-  std::optional<double> pixel;  // m; else 1/25 of the reference diameter
-  double static_time = 0.5;     // s
-  bool operator==(const BedSurfaceCase&) const = default;
-};
-
-struct FluidStatisticsCase {
-  double from = 0.0;    // s
-  double every = 0.01;  // s
-  bool operator==(const FluidStatisticsCase&) const = default;
-};
-
-// Columns of series.csv; it has no keys.
+// Columns of series.csv that the system itself measures; it has no keys.
 struct WallForcesCase {
   bool operator==(const WallForcesCase&) const = default;
 };
 
-// Columns of series.csv; it has no keys.
-struct PopulationLoadsCase {
-  bool operator==(const PopulationLoadsCase&) const = default;
-};
-
-struct GrainProfilesCase {
-  double from = 0.0;            // s
-  double every = 0.01;          // s
-  std::optional<double> layer;  // m; else half of the largest diameter
-  bool operator==(const GrainProfilesCase&) const = default;
-};
-
-struct StressBalanceCase {
-  double from = 0.0;            // s
-  double every = 0.01;          // s
-  std::optional<double> layer;  // m; else a quarter of the smallest diameter
-  bool operator==(const StressBalanceCase&) const = default;
-};
-
-struct TracksCase {
-  std::vector<std::int64_t> grains;  // ids; empty: every one_in-th grain
-  std::int64_t one_in = 1;
-  double every = 1e-3;  // s
-  bool operator==(const TracksCase&) const = default;
-};
-
-struct EntrainmentCase {
-  std::vector<std::int64_t> grains;  // ids; empty: those of the bed's surface
-  double from = 0.0;                 // s
-  double memory = 0.2;               // s
-  double every = 0.0;                // s; 0: at every step
-  double refresh = 0.5;              // s
-  double displacement = 0.1;         // diameters of the grain
-  double rest_time = 0.1;            // s
-  bool operator==(const EntrainmentCase&) const = default;
-};
-
-struct ProbeLineCase {
-  Vec3 from = Vec3::Zero(), to = Vec3::Zero();  // m
-  std::int64_t points = 10;
-  bool operator==(const ProbeLineCase&) const = default;
-};
-
-struct ProbesCase {
-  std::vector<Vec3> points;  // m
-  std::vector<ProbeLineCase> lines;
-  double every = 1e-3;  // s
-  bool operator==(const ProbesCase&) const = default;
-};
-
 struct AnalysisCase {
-  std::optional<TracksCase> tracks;
-  std::optional<EntrainmentCase> entrainment;
-  std::optional<GrainProfilesCase> grain_profiles;
-  std::optional<StressBalanceCase> stress_balance;
-  std::optional<PopulationLoadsCase> population_loads;
-  std::optional<WallForcesCase> wall_forces;
   std::optional<double> reference_diameter;  // m; else that of reference_grain()
-  std::optional<TransportRateCase> transport_rate;
-  std::optional<BedSurfaceCase> bed_surface;
-  std::optional<FluidStatisticsCase> fluid_statistics;
-  std::optional<ProbesCase> probes;
+  analysis::RequestedObservers observers;
+  std::optional<WallForcesCase> wall_forces;
   bool operator==(const AnalysisCase&) const = default;
 };
 

@@ -1,8 +1,7 @@
 #include "driver/case_checks.hpp"
 
 #include "driver/grain_checks.hpp"
-#include "driver/probe_points.hpp"
-#include "driver/watched_grains.hpp"
+#include "driver/run_facts.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -176,24 +175,12 @@ void check_gravity(const Case& c, const io::YamlDocument& document) {
                          "reduced");
 }
 
-void check_stress_balance(const Case& c, const io::YamlDocument& document) {
-  if (!c.analysis.stress_balance) return;
-  const std::string key = "analysis.stress_balance";
-  if (c.grains.empty())
-    throw document.error(key, "there are no grains to share the stress; remove the section or add grains");
-  if (periodic_axes(c.domain)[2])
-    throw document.error(key,
-                         "stress is summed from the top down, and z is periodic; remove the section or give "
-                         "domain.boundaries bottom and top");
-  for (const PopulationCase& grains : c.grains)
-    if (grains.clumps.count > 0)
-      throw document.error(key,
-                           "it knows grains that are single spheres, and there are clumps; remove the section or "
-                           "use grain_profiles");
-  if (c.analysis.stress_balance->from < c.run.ramp)
-    throw document.error(key + ".from",
-                         fmt::format("{} s is before gravity has its full value; give at least run.ramp, {} s",
-                                     c.analysis.stress_balance->from, c.run.ramp));
+void check_observers(const Case& c, const io::YamlDocument& document) {
+  try {
+    check(c.analysis.observers, driver::run_facts(c));
+  } catch (const KeyError& error) {
+    throw document.error("analysis." + error.key, error.what());
+  }
 }
 
 }  // namespace
@@ -206,17 +193,7 @@ void check_case(const Case& c, const io::YamlDocument& document) {
   check_fluid(c, document);
   check_gravity(c, document);
   check_grains(c, document);
-  if (c.analysis.bed_surface && c.grains.empty())
-    throw document.error("analysis.bed_surface", "there are no grains to measure; remove the section or add grains");
-  if (c.analysis.bed_surface && periodic_axes(c.domain)[2])
-    throw document.error("analysis.bed_surface",
-                         "a bed has a height above a bottom, and here z is periodic; remove the section or give "
-                         "domain.boundaries a bottom and a top, for example no_slip and free_slip");
-  check_stress_balance(c, document);
-  check_watched_grains(c, document);
-  check_probes(c, document);
-  if (c.analysis.transport_rate && c.grains.empty())
-    throw document.error("analysis.transport_rate", "there are no grains to measure; remove the section or add grains");
+  check_observers(c, document);
 }
 
 }  // namespace thalweg

@@ -37,7 +37,7 @@ Case example_case(SystemKind system) {
     glass.density = 2550.0;
     c.grains = {glass};
     c.contact.restitution = 0.93;
-    c.analysis.transport_rate.emplace();
+    c.analysis.observers.of<analysis::TransportRateKeys>().emplace();
   }
   if (has_fluid(c)) {
     c.fluid.density = 1000.0;

@@ -1,11 +1,9 @@
 #include "driver/case_sections.hpp"
 
-#include "driver/probe_points.hpp"
-#include "driver/watched_grains.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 
 // Functions named describe are static rather than in an unnamed namespace, where argument-dependent lookup from the
@@ -243,59 +241,19 @@ static void describe_output(SectionVisitor& visit, OutputCase& output, bool with
   visit.section("checkpoint", output.checkpoint, {.meaning = "states from which the run can be continued"});
 }
 
-static void describe(SectionVisitor& visit, TransportRateCase& rate) {
-  visit.real("from", rate.from,
-             {.unit = "s", .meaning = "start of the means, hops and distributions", .at_least = 0.0});
-  visit.real("every", rate.every,
-             {.unit = "s", .meaning = "between measurements; 0: with the rows of series.csv", .at_least = 0.0});
-}
-
-static void describe(SectionVisitor& visit, BedSurfaceCase& surface) {
-  visit.real("from", surface.from, {.unit = "s", .meaning = "start of the means", .at_least = 0.0});
-  visit.real("every", surface.every, {.unit = "s", .meaning = "between measurements", .above = 0.0});
-  visit.real("layer", surface.layer,
-             {.unit = "m",
-              .meaning = "height over which the solid fraction is averaged; the reference diameter where not given",
-              .above = 0.0,
-              .example = 5e-3});
-  visit.real("pixel", surface.pixel,
-             {.unit = "m",
-              .meaning = "side of a pixel of the side view; 1/25 of the reference diameter where not given",
-              .above = 0.0,
-              .example = 2e-4});
-  visit.real("static_time", surface.static_time,
-             {.unit = "s", .meaning = "a pixel is static that one grain has covered for so long", .above = 0.0});
-}
-
-static void describe(SectionVisitor& visit, GrainProfilesCase& profiles) {
-  visit.real("from", profiles.from, {.unit = "s", .meaning = "start of the means", .at_least = 0.0});
-  visit.real("every", profiles.every, {.unit = "s", .meaning = "between measurements", .above = 0.0});
-  visit.real("layer", profiles.layer,
-             {.unit = "m",
-              .meaning = "height of a layer, of which a whole number fills the box; half of the largest diameter where "
-                         "not given",
-              .above = 0.0,
-              .example = 2.5e-3});
-}
-
-static void describe(SectionVisitor& visit, StressBalanceCase& balance) {
-  visit.real("from", balance.from, {.unit = "s", .meaning = "start of the means", .at_least = 0.0});
-  visit.real("every", balance.every, {.unit = "s", .meaning = "between measurements", .above = 0.0});
-  visit.real(
-      "layer", balance.layer,
-      {.unit = "m",
-       .meaning = "height of a layer, in whole cells as near as can be; a quarter of the smallest diameter where "
-                  "not given",
-       .above = 0.0,
-       .example = 1.25e-3});
-}
-
 static void describe(SectionVisitor&, WallForcesCase&) {}
-static void describe(SectionVisitor&, PopulationLoadsCase&) {}
+
+template <typename Keys>
+OnlyIf belonging(bool with_fluid, bool with_grains) {
+  if (Keys::needs != analysis::Needs::fluid && !with_grains) return only_with_grains(false);
+  if (Keys::needs == analysis::Needs::grains || with_fluid) return {};
+  if constexpr (requires { Keys::without_fluid; })
+    return {false, fmt::format("system: grains has no fluid; remove the section, {}, or set system: resolved",
+                               Keys::without_fluid)};
+  return only_with_fluid(false);
+}
 
 static void describe_analysis(SectionVisitor& visit, AnalysisCase& analysis, bool with_fluid, bool with_grains) {
-  const OnlyIf of_fluid = only_with_fluid(with_fluid), of_grains = only_with_grains(with_grains);
-  const OnlyIf of_both = with_grains ? of_fluid : of_grains;
   visit.real("reference_diameter", analysis.reference_diameter,
              {.unit = "m",
               .meaning = "d of q*, the Shields number and the speed that counts as moving; where not given, half of "
@@ -303,48 +261,13 @@ static void describe_analysis(SectionVisitor& visit, AnalysisCase& analysis, boo
               .above = 0.0,
               .example = 5e-3,
               .only_if = {with_grains, "system: fluid has no grains; remove the key or set system: resolved"}});
-  visit.section(
-      "transport_rate", analysis.transport_rate,
-      {.meaning = "the grains' flux q and q* along x with its error, how many move, how fast, and how far they hop",
-       .only_if = of_grains});
-  visit.section(
-      "bed_surface", analysis.bed_surface,
-      {.meaning = "height of the bed by solid fraction and by static pixels; depth, bed stress and Shields number "
-                  "of the flow above it",
-       .only_if = of_grains});
-  visit.section("grain_profiles", analysis.grain_profiles,
-                {.meaning = "mean solid fraction, velocity, flux, granular temperature and stresses of the grains over "
-                            "z, in profiles.h5",
-                 .only_if = of_grains});
-  visit.section("stress_balance", analysis.stress_balance,
-                {.meaning = "all stresses of grains and fluid over z, in profiles.h5, and how far their total is from "
-                            "what the driving force prescribes in steady state",
-                 .only_if = with_fluid ? of_grains
-                                       : OnlyIf{false,
-                                                "system: grains has no fluid; remove the section, use "
-                                                "grain_profiles, or set system: resolved"}});
-  visit.section(
-      "population_loads", analysis.population_loads,
-      {.meaning = "force and torque on each population of grains, in series.csv; no keys: {}", .only_if = of_grains});
-  visit.section("fluid_statistics", analysis.fluid_statistics,
-                {.meaning = "mean velocity and Reynolds stresses in profiles.h5: over z, and over y and z between "
-                            "side walls",
-                 .only_if = of_fluid});
-  visit.section("probes", analysis.probes,
-                {.meaning = "velocity and pressure of the fluid at points and along lines at short intervals, in "
-                            "probes.h5",
-                 .only_if = of_fluid});
-  visit.section(
-      "tracks", analysis.tracks,
-      {.meaning = "places, motion and forces of chosen grains at short intervals, in tracks.h5", .only_if = of_grains});
-  visit.section(
-      "entrainment", analysis.entrainment,
-      {.meaning = "what acted on grains that start to move, and the torques about the hinge they roll over, in "
-                  "entrainment.h5",
-       .only_if = of_both});
-  visit.section(
-      "wall_forces", analysis.wall_forces,
-      {.meaning = "force of grains and of the fluid on each wall, in series.csv; no keys: {}", .only_if = of_grains});
+  analysis.observers.for_each([&](auto& keys) {
+    using Keys = std::decay_t<decltype(*keys)>;
+    visit.section(Keys::section, keys, {.meaning = Keys::meaning, .only_if = belonging<Keys>(with_fluid, with_grains)});
+  });
+  visit.section("wall_forces", analysis.wall_forces,
+                {.meaning = "force of grains and of the fluid on each wall, in series.csv; no keys: {}",
+                 .only_if = only_with_grains(with_grains)});
 }
 
 static void describe(SectionVisitor& visit, DisksCase& disks) {

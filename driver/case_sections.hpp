@@ -11,7 +11,6 @@ void describe(SectionVisitor& visit, Case& c);
 void describe_domain(SectionVisitor& visit, DomainCase& domain, bool with_fluid);
 void describe(SectionVisitor& visit, FluidCase& fluid);
 void describe(SectionVisitor& visit, SolidCase& solid);
-void describe(SectionVisitor& visit, FluidStatisticsCase& statistics);
 void describe(SectionVisitor& visit, PopulationCase& grains);
 void describe(SectionVisitor& visit, OscillationCase& oscillation);
 void describe(SectionVisitor& visit, MotionCase& motion);

@@ -78,9 +78,4 @@ void describe(SectionVisitor& visit, SolidCase& solid) {
   visit.require(!(solid.sphere && !solid.stl.empty()), "stl", "the solid has two shapes; remove either sphere or stl");
 }
 
-void describe(SectionVisitor& visit, FluidStatisticsCase& statistics) {
-  visit.real("from", statistics.from, {.unit = "s", .meaning = "start of the means", .at_least = 0.0});
-  visit.real("every", statistics.every, {.unit = "s", .meaning = "between measurements", .above = 0.0});
-}
-
 }  // namespace thalweg

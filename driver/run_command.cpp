@@ -1,32 +1,19 @@
 #include "driver/run_command.hpp"
 
-#include "analysis/bed_surface.hpp"
-#include "analysis/entrainment.hpp"
-#include "analysis/fluid_statistics.hpp"
-#include "analysis/grain_energy.hpp"
-#include "analysis/grain_profiles.hpp"
-#include "analysis/population_loads.hpp"
-#include "analysis/probes.hpp"
-#include "analysis/stress_balance.hpp"
-#include "analysis/tracks.hpp"
-#include "analysis/transport_rate.hpp"
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
 #include "driver/build_system.hpp"
 #include "driver/case_reader.hpp"
 #include "driver/dry_grains.hpp"
-#include "driver/grain_setup.hpp"
-#include "driver/grain_weight.hpp"
 #include "driver/machine.hpp"
 #include "driver/on_first_rank.hpp"
-#include "driver/probe_points.hpp"
 #include "driver/progress.hpp"
 #include "driver/reference_grain.hpp"
+#include "driver/run_facts.hpp"
 #include "driver/run_output.hpp"
 #include "driver/stop_request.hpp"
 #include "driver/summary.hpp"
 #include "driver/version.hpp"
-#include "driver/watched_grains.hpp"
 #include "io/atomic_file.hpp"
 #include "io/bed_file.hpp"
 
@@ -66,125 +53,6 @@ Places places_of(const Command& command) {
   std::error_code ignored;
   const bool same = !origin.empty() && fs::equivalent(out, origin, ignored);
   return {checkpoint, io::RunFolder(out), same};
-}
-
-// The ids of grains count population by population (grain_seeds()).
-std::vector<analysis::Population> populations_of(const Case& c) {
-  std::vector<analysis::Population> populations;
-  GlobalId first = 0;
-  for (std::size_t p = 0; p < c.grains.size(); ++p) {
-    const PopulationCase& grains = c.grains[p];
-    std::function<Vec3(double)> pivot = [centre = Vec3(0.5 * c.domain.size)](double) { return centre; };
-    if (grains.motion && grains.motion->rotation)
-      pivot = [motion = prescribed_motion(*grains.motion)](double time) -> Vec3 {
-        return motion.centre + motion.displacement(time);
-      };
-    populations.push_back({fmt::format("grains_{}", p), first, first + grains.row_count(), pivot});
-    first += grains.row_count();
-  }
-  return populations;
-}
-
-analysis::TransportScales transport_scales(const Case& c) {
-  const ReferenceGrain grain = reference_grain(c);
-  return {grain.diameter, grain.density, has_fluid(c) ? c.fluid.density : 0.0, gravity_vector(c.gravity).norm()};
-}
-
-// What drives the flow over a bed: the slope, unless the mean velocity is steered.
-std::optional<analysis::BedFlow> bed_flow(const Case& c) {
-  if (!has_fluid(c)) return std::nullopt;
-  const Vec3 gravity = gravity_vector(c.gravity);
-  const double g = gravity.norm();
-  const ReferenceGrain grain = reference_grain(c);
-  analysis::BedFlow flow;
-  flow.side_walls = c.domain.faces[y_low].drags() + c.domain.faces[y_high].drags();
-  flow.shields_stress = (grain.density - c.fluid.density) * g * grain.diameter;
-  const bool by_slope = gravity.x() > 0.0 && gravity.z() < 0.0 && !c.fluid.mean_velocity;
-  if (by_slope && flow.shields_stress > 0.0) flow.driving_stress = c.fluid.density * g * gravity.x() / -gravity.z();
-  return flow;
-}
-
-std::unique_ptr<analysis::Observer> bed_surface(const Case& c, const System& system, MPI_Comm communicator) {
-  const BedSurfaceCase& asked_for = *c.analysis.bed_surface;
-  const double d = reference_grain(c).diameter;
-  const analysis::BedSurfaceSettings settings{asked_for.from, asked_for.every, asked_for.layer.value_or(d),
-                                              asked_for.pixel.value_or(d / 25.0), asked_for.static_time};
-  return std::make_unique<analysis::BedSurface>(communicator, system.snapshot().decomposition->box(), settings,
-                                                bed_flow(c), c.disks ? c.disks->thickness : 0.0);
-}
-
-std::vector<analysis::HeldGrains> held_grains(const Case& c) {
-  std::vector<analysis::HeldGrains> held;
-  GlobalId first = 0;
-  for (const PopulationCase& grains : c.grains) {
-    const GlobalId end = first + grains.row_count();
-    if (grains.fixed || grains.prescribed_velocity || grains.motion) held.push_back({first, end});
-    first = end;
-  }
-  return held;
-}
-
-std::unique_ptr<analysis::StressBalance> stress_balance_of(const Case& c, const System& system, MPI_Comm communicator) {
-  const StressBalanceCase& asked_for = *c.analysis.stress_balance;
-  const analysis::BalanceScales scales{c.fluid.density, c.fluid.density * c.fluid.kinematic_viscosity,
-                                       reference_grain(c).diameter, gravity_vector(c.gravity).x()};
-  return std::make_unique<analysis::StressBalance>(
-      communicator, *system.snapshot().decomposition, asked_for.layer.value_or(0.25 * smallest_diameter(c)),
-      analysis::BalanceSchedule{asked_for.from, asked_for.every}, scales, held_grains(c));
-}
-
-std::unique_ptr<analysis::Entrainment> entrainment_of(const Case& c, const System& system, MPI_Comm communicator) {
-  const EntrainmentCase& asked_for = *c.analysis.entrainment;
-  const double step = system.time_step();
-  analysis::EntrainmentSettings settings;
-  settings.grains = watched_grains(c);
-  settings.from = asked_for.from;
-  settings.interval = static_cast<double>(std::max<std::int64_t>(1, Schedule(asked_for.every, step).interval())) * step;
-  settings.memory = asked_for.memory;
-  settings.refresh = Schedule(asked_for.refresh, step).interval();
-  settings.window = settings.diameter = reference_grain(c).diameter;
-  settings.displacement = asked_for.displacement;
-  settings.rest_time = asked_for.rest_time;
-  settings.moving_speed = transport_scales(c).moving_speed();
-  settings.held = [held = held_grains(c)](GlobalId id) { return analysis::is_held(held, id); };
-  settings.weight = submerged_weight(c);
-  settings.buoyancy = buoyancy_in_load(c);
-  return std::make_unique<analysis::Entrainment>(communicator, system.snapshot().decomposition->box(),
-                                                 std::move(settings));
-}
-
-Observers observers_of(const Case& c, const System& system, MPI_Comm communicator) {
-  Observers observers;
-  if (c.analysis.fluid_statistics) {
-    const FluidStatisticsCase& asked_for = *c.analysis.fluid_statistics;
-    observers.push_back(std::make_unique<analysis::FluidStatistics>(
-        communicator, *system.snapshot().decomposition, units_of(c).velocity(),
-        analysis::StatisticsSchedule{asked_for.from, asked_for.every}, !periodic_axes(c.domain)[1]));
-  }
-  if (c.analysis.probes)
-    observers.push_back(std::make_unique<analysis::Probes>(communicator, *system.snapshot().decomposition,
-                                                           probe_points(*c.analysis.probes), c.analysis.probes->every));
-  if (c.grains.empty()) return observers;
-  if (c.analysis.transport_rate) {
-    const analysis::TransportSchedule schedule{c.analysis.transport_rate->from, c.analysis.transport_rate->every};
-    observers.push_back(std::make_unique<analysis::TransportRate>(communicator, transport_scales(c), schedule));
-  }
-  if (c.analysis.bed_surface) observers.push_back(bed_surface(c, system, communicator));
-  if (c.analysis.grain_profiles) {
-    const GrainProfilesCase& asked_for = *c.analysis.grain_profiles;
-    observers.push_back(std::make_unique<analysis::GrainProfiles>(
-        communicator, *system.snapshot().decomposition, asked_for.layer.value_or(0.5 * largest_diameter(c)),
-        analysis::ProfileSchedule{asked_for.from, asked_for.every}));
-  }
-  if (c.analysis.stress_balance) observers.push_back(stress_balance_of(c, system, communicator));
-  if (c.analysis.population_loads)
-    observers.push_back(std::make_unique<analysis::PopulationLoads>(
-        communicator, system.snapshot().decomposition->box(), populations_of(c), has_fluid(c)));
-  if (c.analysis.tracks)
-    observers.push_back(std::make_unique<analysis::Tracks>(communicator, tracked_grains(c), c.analysis.tracks->every));
-  if (c.analysis.entrainment) observers.push_back(entrainment_of(c, system, communicator));
-  observers.push_back(std::make_unique<analysis::GrainEnergy>(communicator));
-  return observers;
 }
 
 // Says what is about to run, and measures what the memory of the machine allows.
@@ -270,7 +138,8 @@ void run_case(const Command& command, MPI_Comm communicator, WallClock::time_poi
   });
   const Index3 layout = choose_layout(c, size_of(communicator), command.layout);
   const std::unique_ptr<System> system = build_system(c, communicator, layout);
-  Observers observers = observers_of(c, *system, communicator);
+  Observers observers = make_observers(c.analysis.observers, run_facts(c),
+                                       {communicator, *system->snapshot().decomposition, system->time_step()});
   if (places.checkpoint.empty())
     take_initial_fields(communicator, c, *system);
   else

@@ -63,7 +63,7 @@ std::vector<Vec3> cubic_lattice(int layers) {
   return positions;
 }
 
-BedSurfaceSettings settings() { return {0.0, 0.125, d, d / 25.0, 0.5}; }
+BedSurfaceKeys keys() { return {0.0, 0.125, d, d / 25.0, 0.5}; }
 
 // Slope and walls of a flume: rho_f g S = 500 Pa/m, (rho_s - rho_f) g d = 80 Pa.
 const BedFlow flume{2, 500.0, 80.0};
@@ -82,7 +82,7 @@ TEST(BedHeight, OfAUniformBlockIsItsTop) {
 // top.
 TEST(BedSurface, OfACubicLatticeIsTheTopOfItsHighestLayer) {
   Spheres spheres(world);
-  BedSurface surface(world, spheres.box(), settings(), flume, 0.0);
+  BedSurface surface(world, spheres.box(), keys(), d, flume, 0.0);
   std::vector<Vec3> grains = cubic_lattice(10);
   grains.emplace_back(0.1 * d, 0.2 * d, 20.0 * d);  // one in the flow is no bed
   for (int step = 0; step < 5; ++step) surface.observe(spheres.at(step, grains));
@@ -100,8 +100,8 @@ TEST(BedSurface, OfACubicLatticeIsTheTopOfItsHighestLayer) {
   EXPECT_EQ(value_of(surface.results(), "measurements"), 5.0);
   EXPECT_NEAR(value_of(surface.results(), "shields_number_mean"), 500.0 * radius / 80.0, 1e-12);
 
-  BedSurface wide(world, spheres.box(), settings(), BedFlow{0, 500.0, 80.0}, 0.0),
-      dry(world, spheres.box(), settings(), {}, 0.0);
+  BedSurface wide(world, spheres.box(), keys(), d, BedFlow{0, 500.0, 80.0}, 0.0),
+      dry(world, spheres.box(), keys(), d, {}, 0.0);
   wide.observe(spheres.at(0, cubic_lattice(10)));
   dry.observe(spheres.at(0, cubic_lattice(10)));
   EXPECT_NEAR(value_of(wide.figures(), "bed_height"), 10.0 * d, 1e-12);
@@ -173,8 +173,8 @@ test::MemoryArchive saved(const BedSurface& surface, MPI_Comm communicator) {
 
 TEST(BedSurface, HasTheSameBitsOnAnyNumberOfRanksAndAfterARestart) {
   Spheres own(MPI_COMM_SELF), dealt(world);
-  BedSurface alone(MPI_COMM_SELF, own.box(), settings(), flume, 0.0), shared(world, own.box(), settings(), flume, 0.0);
-  BedSurface restarted(world, own.box(), settings(), flume, 0.0);
+  BedSurface alone(MPI_COMM_SELF, own.box(), keys(), d, flume, 0.0), shared(world, own.box(), keys(), d, flume, 0.0);
+  BedSurface restarted(world, own.box(), keys(), d, flume, 0.0);
   test::MemoryArchive half_way;
   for (std::int64_t step = 0; step <= 11; ++step) {
     alone.observe(own.at(step, jiggling(step)));

@@ -90,12 +90,12 @@ EntrainmentSettings settings(std::vector<GlobalId> grains) {
   s.grains = std::move(grains);
   s.interval = dt;
   s.memory = 0.1;
-  s.refresh = 25;
+  s.refresh_steps = 25;
   s.window = 2.0 * radius;
   s.diameter = 0.3;  // the bed is one layer, which reaches up to 1 m at most
   s.rest_time = 0.1;
   s.moving_speed = 0.01;
-  s.held = [](GlobalId id) { return id == 52; };
+  s.held = {{52, 53}};
   s.weight = [](double mass, double) { return Vec3(0.0, 0.0, -mass); };
   s.buoyancy = [](double, double) { return Vec3(Vec3::Zero()); };
   return s;

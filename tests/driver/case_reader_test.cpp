@@ -44,7 +44,7 @@ TEST(CaseReader, ReadsWhatTheFileSays) {
   EXPECT_EQ(c.coupling.grain_steps_per_fluid_step, 50);
   EXPECT_EQ(c.output.fluid.fields, std::vector<io::FluidField>{io::FluidField::velocity});
   EXPECT_EQ(c.output.checkpoint.keep, 3);
-  EXPECT_EQ(c.analysis.transport_rate->from, 1.0);
+  EXPECT_EQ(c.analysis.observers.of<analysis::TransportRateKeys>()->from, 1.0);
 }
 
 // The lightest pair of the flume touches for 0.000145 s: 2e-5 s of the fluid are 2.8 twentieths of it.

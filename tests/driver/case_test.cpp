@@ -102,7 +102,7 @@ TEST(Case, WarnsOfWhatDeservesASecondLookAndOfNothingElse) {
   Case c = wide_bed();
   c.fluid.smagorinsky_constant = 0.27;
   c.run.until = 30.0;
-  c.analysis.transport_rate = TransportRateCase{20.0, 0.0};
+  c.analysis.observers.of<analysis::TransportRateKeys>() = {20.0, 0.0};
   EXPECT_TRUE(warnings(c).empty());                      // 0.94 m/s are 0.038 cells a step
   c.fluid.collision = lbm::CollisionModel::regularised;  // unstable at walls, eddies or not
   ASSERT_EQ(warnings(c).size(), 1u);

@@ -1,0 +1,60 @@
+// What a case says about Entrainment, and the settings that follow from it.
+#include "analysis/entrainment.hpp"
+#include "analysis/transport_rate.hpp"
+#include "core/schedule.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace thalweg::analysis {
+
+void describe(SectionVisitor& visit, EntrainmentKeys& keys) {
+  visit.integer_list("grains", keys.grains,
+                     {.meaning = "ids of the grains, in the order of the populations from 0; else the free ones whose "
+                                 "centre is above the bed's height less one reference diameter",
+                      .at_least = 0,
+                      .example = 0});
+  visit.real("from", keys.from, {.unit = "s", .meaning = "start of the watch", .at_least = 0.0});
+  visit.real(
+      "memory", keys.memory,
+      {.unit = "s", .meaning = "what is kept of each grain, and goes into the file with its start", .above = 0.0});
+  visit.real("every", keys.every,
+             {.unit = "s", .meaning = "between the states that are kept; 0: every step", .at_least = 0.0});
+  visit.real("refresh", keys.refresh,
+             {.unit = "s", .meaning = "until the grains of the surface are chosen anew", .above = 0.0});
+  visit.real(
+      "displacement", keys.displacement,
+      {.unit = "1", .meaning = "a grain starts that is so many of its diameters from its rest place", .above = 0.0});
+  visit.real("rest_time", keys.rest_time,
+             {.unit = "s",
+              .meaning = "a grain rests that has been slower for so long than the speed from which it moves",
+              .at_least = 0.0});
+}
+
+void check(const EntrainmentKeys& keys, const RunFacts& run) {
+  require_ids(run, keys.grains);
+  if (run.grains->any_clumps())
+    throw KeyError("", "it knows grains that are single spheres, and there are clumps; remove the section");
+  if (keys.grains.empty() && run.box.periodic[2])
+    throw KeyError("",
+                   "a bed has a height above a bottom, and here z is periodic; name the grains, or give "
+                   "domain.boundaries bottom and top");
+  require_full_gravity_from(run, keys.from);
+}
+
+std::unique_ptr<Observer> make_observer(const EntrainmentKeys& keys, const RunFacts& run, const RunningSystem& system) {
+  EntrainmentSettings settings;
+  static_cast<EntrainmentKeys&>(settings) = keys;
+  std::sort(settings.grains.begin(), settings.grains.end());
+  const std::int64_t steps = Schedule(keys.every, system.time_step).interval();
+  settings.interval = static_cast<double>(std::max<std::int64_t>(1, steps)) * system.time_step;
+  settings.refresh_steps = Schedule(keys.refresh, system.time_step).interval();
+  settings.window = settings.diameter = run.grains->reference_diameter;
+  settings.moving_speed = transport_scales(run).moving_speed();
+  settings.held = run.grains->held();
+  settings.weight = run.grains->submerged_weight;
+  settings.buoyancy = run.grains->buoyancy;
+  return std::make_unique<Entrainment>(system.communicator, run.box, std::move(settings));
+}
+
+}  // namespace thalweg::analysis

@@ -1,0 +1,60 @@
+#include "driver/run_facts.hpp"
+
+#include "driver/grain_setup.hpp"
+#include "driver/grain_weight.hpp"
+#include "driver/reference_grain.hpp"
+
+#include <fmt/format.h>
+
+namespace thalweg::driver {
+
+namespace {
+
+// The ids of grains count population by population (grain_seeds()).
+std::vector<analysis::Population> populations_of(const Case& c) {
+  std::vector<analysis::Population> populations;
+  GlobalId first = 0;
+  for (std::size_t p = 0; p < c.grains.size(); ++p) {
+    const PopulationCase& grains = c.grains[p];
+    std::function<Vec3(double)> pivot = [centre = Vec3(0.5 * c.domain.size)](double) { return centre; };
+    if (grains.motion && grains.motion->rotation)
+      pivot = [motion = prescribed_motion(*grains.motion)](double time) -> Vec3 {
+        return motion.centre + motion.displacement(time);
+      };
+    const GlobalId end = first + grains.row_count();
+    const bool held = grains.fixed || grains.prescribed_velocity || grains.motion;
+    populations.push_back({fmt::format("grains_{}", p), first, end, pivot, held, grains.clumps.count > 0});
+    first = end;
+  }
+  return populations;
+}
+
+analysis::FluidFacts fluid_facts(const Case& c) {
+  return {c.fluid.density, c.fluid.kinematic_viscosity, units_of(c).velocity(), c.fluid.mean_velocity.has_value(),
+          c.domain.faces[y_low].drags() + c.domain.faces[y_high].drags()};
+}
+
+analysis::GrainFacts grain_facts(const Case& c) {
+  const ReferenceGrain reference = reference_grain(c);
+  analysis::GrainFacts facts{populations_of(c),    reference.diameter,  reference.density,
+                             smallest_diameter(c), largest_diameter(c), c.disks ? c.disks->thickness : 0.0};
+  if (!has_fluid(c)) return facts;
+  facts.submerged_weight = submerged_weight(c);
+  facts.buoyancy = buoyancy_in_load(c);
+  return facts;
+}
+
+}  // namespace
+
+analysis::RunFacts run_facts(const Case& c) {
+  analysis::RunFacts facts;
+  facts.box = {c.domain.size, periodic_axes(c.domain)};
+  facts.until = c.run.until;
+  facts.ramp = c.run.ramp;
+  facts.gravity = gravity_vector(c.gravity);
+  if (has_fluid(c)) facts.fluid = fluid_facts(c);
+  if (!c.grains.empty()) facts.grains = grain_facts(c);
+  return facts;
+}
+
+}  // namespace thalweg::driver
