@@ -23,6 +23,9 @@ struct Sphere {
   double radius;  // m
 };
 
+// Random close packing of equal spheres, and the same of disks in their plane: no bed is denser.
+inline constexpr double densest_bed = 0.64, densest_disks = 0.84;
+
 // Centres of `count` equal grains spread over the region as evenly as a cubic lattice allows: the lattice with the
 // widest spacing that has enough sites, sites left over spread evenly, each centre moved at random by up to 1 % of a
 // diameter (less where there is no room) so that grains do not stack perfectly. clearance: m, surface to the region's

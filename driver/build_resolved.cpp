@@ -20,7 +20,8 @@ std::unique_ptr<System> build(const Case& c, MPI_Comm communicator, const Index3
   parameters.mass_balance = c.coupling.mass_balance;
   parameters.refill = c.coupling.refill;
   parameters.paper_near_contact = c.coupling.near_contact == NearContact::paper;
-  parameters.grain_stress = c.coupling.grain_stress || c.analysis.observers.of<analysis::StressBalanceKeys>().has_value();
+  parameters.grain_stress =
+      c.coupling.grain_stress || c.analysis.observers.of<analysis::StressBalanceKeys>().has_value();
   parameters.wall_forces = c.analysis.wall_forces.has_value();
   parameters.sub_steps = static_cast<int>(c.coupling.grain_steps_per_fluid_step);
 
@@ -32,7 +33,7 @@ std::unique_ptr<System> build(const Case& c, MPI_Comm communicator, const Index3
   grains.body_force = body_force(c);
   grains.ghost_width = System::ghost_reach(0.5 * largest_diameter(c), c.domain.spacing);
   grains.attached_width = System::attached_width(parameters);
-  const GrainSeeds seeds = grain_seeds(c);
+  const dem::GrainSeeds seeds = grain_seeds(c);
   auto dynamics =
       std::make_unique<dem::GrainDynamics>(*decomposition, communicator, grains, seeds.grains, seeds.clumps);
   return std::make_unique<System>(std::move(decomposition), communicator, parameters, std::move(dynamics));

@@ -1,7 +1,7 @@
 #include "driver/case.hpp"
 
+#include "dem/population_seeds.hpp"
 #include "driver/bed_flow.hpp"
-#include "driver/grain_materials.hpp"
 #include "driver/run_facts.hpp"
 #include "driver/stability.hpp"
 
@@ -12,7 +12,7 @@
 #include <limits>
 #include <numbers>
 
-namespace thalweg {
+namespace thalweg::driver {
 
 bool has_fluid(const Case& c) { return c.system != SystemKind::grains; }
 
@@ -63,41 +63,41 @@ double bulk_viscosity(const Case& c) {
 
 std::int64_t grain_count(const Case& c) {
   std::int64_t count = 0;
-  for (const PopulationCase& population : c.grains) count += population.count;
+  for (const dem::Population& population : c.grains) count += population.count;
   return count;
 }
 
 double largest_diameter(const Case& c) {
   double diameter = 0.0;
-  for (const PopulationCase& population : c.grains) diameter = std::max(diameter, population.largest_diameter());
+  for (const dem::Population& population : c.grains) diameter = std::max(diameter, population.largest_diameter());
   return diameter;
 }
 
 double largest_extent(const Case& c) {
   double extent = 0.0;
-  for (const PopulationCase& population : c.grains) extent = std::max(extent, population.largest_extent());
+  for (const dem::Population& population : c.grains) extent = std::max(extent, population.largest_extent());
   return extent;
 }
 
 double smallest_diameter(const Case& c) {
   double diameter = largest_diameter(c);
-  for (const PopulationCase& population : c.grains) diameter = std::min(diameter, population.smallest_diameter());
+  for (const dem::Population& population : c.grains) diameter = std::min(diameter, population.smallest_diameter());
   return diameter;
 }
 
 double grain_volume(const Case& c) {
   double volume = 0.0;
-  for (const PopulationCase& population : c.grains) volume += population.volume();
+  for (const dem::Population& population : c.grains) volume += population.volume();
   return volume;
 }
 
 double shortest_contact(const Case& c) {
   const bool linear = c.contact.law == dem::Law::linear;
-  const std::vector<dem::ContactParameters> materials = materials_of(c);
-  const std::optional<dem::ContactParameters> walls = wall_material_of(c.contact);
+  const std::vector<dem::ContactParameters> materials = dem::materials_of(c.contact, c.grains);
+  const std::optional<dem::ContactParameters> walls = dem::wall_material_of(c.contact);
   double shortest = std::numeric_limits<double>::infinity();
   for (std::size_t p = 0; p < c.grains.size(); ++p) {
-    const dem::ContactParameters& own = materials[static_cast<std::size_t>(material_of(c, p))];
+    const dem::ContactParameters& own = materials[static_cast<std::size_t>(dem::material_of(c.grains, p))];
     const double mass = c.grains[p].lightest_mass(), radius = 0.5 * c.grains[p].smallest_diameter();
     const auto undamped = [&](double stiffness, double effective) {
       return std::numbers::pi * std::sqrt(effective / stiffness);
@@ -140,7 +140,7 @@ bool holds_back(const Face& face) {
 double estimated_velocity(const Case& c) {
   const Vec3 gravity = gravity_vector(c.gravity);
   const double along = std::hypot(gravity[0], gravity[1]);
-  const double bed = grain_volume(c) / (driver::settled_fraction(c) * c.domain.size[0] * c.domain.size[1]);
+  const double bed = grain_volume(c) / (settled_fraction(c) * c.domain.size[0] * c.domain.size[1]);
   const double depth = c.domain.size[2] - bed;
   if (!has_fluid(c) || along == 0.0 || depth <= 0.0) return 0.0;
   const double nu = c.fluid.kinematic_viscosity;
@@ -155,7 +155,7 @@ double estimated_velocity(const Case& c) {
 }
 
 std::vector<std::string> warnings(const Case& c) {
-  std::vector<std::string> found = warnings(c.analysis.observers, driver::run_facts(c));
+  std::vector<std::string> found = warnings(c.analysis.observers, run_facts(c));
   if (!has_fluid(c)) return found;
   const double lattice_velocity = estimated_velocity(c) / units_of(c).velocity();
   if (!c.fluid.expected_velocity && lattice_velocity > 0.1)
@@ -209,7 +209,7 @@ std::vector<std::string> warnings(const Case& c) {
   // The fluid resists a sudden motion of a sphere with 3.8 dx/d of the displaced mass, and the load, extrapolated in
   // time, stands up to 1.15 times the mass of the grain (coupling/load_rule.hpp); the mean was stable down to half the
   // fluid's.
-  for (const PopulationCase& population : c.grains) {
+  for (const dem::Population& population : c.grains) {
     const double least = c.coupling.load == coupling::LoadRule::mean
                              ? 0.5
                              : 3.8 / 1.15 * c.domain.spacing / population.smallest_diameter();
@@ -223,4 +223,4 @@ std::vector<std::string> warnings(const Case& c) {
   return found;
 }
 
-}  // namespace thalweg
+}  // namespace thalweg::driver

@@ -8,7 +8,9 @@
 #include "coupling/load_rule.hpp"
 #include "coupling/refill_rule.hpp"
 #include "dem/integrator.hpp"
-#include "driver/grain_case.hpp"
+#include "dem/material_keys.hpp"
+#include "dem/population.hpp"
+#include "dem/wall_keys.hpp"
 #include "driver/out_of_bounds.hpp"
 #include "io/fluid_series.hpp"
 #include "lbm/collision_parameters.hpp"
@@ -20,7 +22,7 @@
 #include <string>
 #include <vector>
 
-namespace thalweg {
+namespace thalweg::driver {
 
 enum class SystemKind { resolved, fluid, grains };
 
@@ -44,7 +46,7 @@ struct Face {
   bool on_node = false;          // of the two slips: the wall runs through the outermost cell centres
   Vec3 velocity = Vec3::Zero();  // m/s, moving and velocity_inlet
   double pressure = 0.0;         // Pa above the reference, pressure_outlet
-  std::optional<OscillationCase> oscillation = {};  // moving; dry grains only
+  std::optional<dem::Oscillation> oscillation = {};  // moving; dry grains only
 
   bool slips() const {
     return type == FaceType::navier_slip || type == FaceType::law_of_the_wall ||
@@ -208,7 +210,7 @@ struct RunCase {
   double until = 0.0;  // s
   dem::Integrator grain_integrator = dem::Integrator::velocity_verlet;
   std::optional<AtRestCase> until_at_rest;  // of dry grains: the run ends earlier when this holds
-  driver::OutOfBounds watchdog = driver::OutOfBounds::stop;
+  OutOfBounds watchdog = OutOfBounds::stop;
   double ramp = 0.0;                // s in which gravity rises from zero, with a fluid
   std::optional<double> time_step;  // s, of dry grains; read as 1/50 of the shortest contact where it is not given
   bool operator==(const RunCase&) const = default;
@@ -268,10 +270,10 @@ struct Case {
   FluidCase fluid;  // meaningless for dry grains, as are coupling and initial
   GravityCase gravity;
   std::optional<DisksCase> disks;
-  std::vector<PopulationCase> grains;
-  std::vector<WallCase> walls;    // of dry grains, besides the faces
-  std::vector<SolidCase> solids;  // of system: fluid
-  ContactCase contact;
+  std::vector<dem::Population> grains;
+  std::vector<dem::WallKeys> walls;  // of dry grains, besides the faces
+  std::vector<SolidCase> solids;     // of system: fluid
+  dem::ContactKeys contact;
   CouplingCase coupling;
   InitialCase initial;
   RunCase run;
@@ -318,4 +320,4 @@ double estimated_velocity(const Case& c);
 // What does not forbid a run but deserves a second look: whole sentences.
 std::vector<std::string> warnings(const Case& c);
 
-}  // namespace thalweg
+}  // namespace thalweg::driver

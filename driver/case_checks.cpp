@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <numbers>
 
-namespace thalweg {
+namespace thalweg::driver {
 namespace {
 
 // True Mach number 0.3, beyond which the lattice fluid is compressible: 0.3 / sqrt(3) cells a step.
@@ -95,14 +95,14 @@ void check_initial_fluid(const Case& c, const io::YamlDocument& document) {
 }
 
 // That any grain of a rigid population may have, wherever in its region or the box it is; m/s.
-double largest_speed(const Case& c, const PopulationCase& grains) {
-  const MotionCase& motion = *grains.motion;
+double largest_speed(const Case& c, const dem::Population& grains) {
+  const dem::MotionKeys& motion = *grains.motion;
   double speed = motion.velocity.norm();
   if (motion.oscillation)
     speed += 2.0 * std::numbers::pi * motion.oscillation->frequency * motion.oscillation->amplitude.norm();
   if (!motion.rotation) return speed;
   std::vector<Vec3> places = grains.placement.positions;
-  const RegionCase room = grains.placement.region.value_or(RegionCase{Vec3::Zero(), c.domain.size});
+  const dem::RegionKeys room = grains.placement.region.value_or(dem::RegionKeys{Vec3::Zero(), c.domain.size});
   for (int corner = 0; corner < 8 && grains.placement.positions.empty(); ++corner)
     places.emplace_back((corner & 1 ? room.upper : room.lower)[0], (corner & 2 ? room.upper : room.lower)[1],
                         (corner & 4 ? room.upper : room.lower)[2]);
@@ -138,7 +138,7 @@ void check_fluid(const Case& c, const io::YamlDocument& document) {
     if (face.has_velocity()) check_lattice_velocity(c, document, "domain.boundaries", face.velocity.norm());
   check_initial_fluid(c, document);
   for (std::size_t n = 0; n < c.grains.size(); ++n) {
-    const PopulationCase& grains = c.grains[n];
+    const dem::Population& grains = c.grains[n];
     const std::string key = fmt::format("grains.{}.", n);
     const double radius = 0.5 * grains.largest_extent();
     check_lattice_velocity(c, document, key + "velocity", grains.velocity.norm());
@@ -177,7 +177,7 @@ void check_gravity(const Case& c, const io::YamlDocument& document) {
 
 void check_observers(const Case& c, const io::YamlDocument& document) {
   try {
-    check(c.analysis.observers, driver::run_facts(c));
+    check(c.analysis.observers, run_facts(c));
   } catch (const KeyError& error) {
     throw document.error("analysis." + error.key, error.what());
   }
@@ -196,4 +196,4 @@ void check_case(const Case& c, const io::YamlDocument& document) {
   check_observers(c, document);
 }
 
-}  // namespace thalweg
+}  // namespace thalweg::driver

@@ -4,7 +4,7 @@
 #include "driver/case.hpp"
 #include "io/yaml_document.hpp"
 
-namespace thalweg {
+namespace thalweg::driver {
 
 inline constexpr const char* axis_name[3] = {"x", "y", "z"};
 // Decimal numbers such as 0.12 / 0.0005 are whole up to a few units in the last place.
@@ -13,4 +13,4 @@ inline constexpr double whole_number_tolerance = 1e-6;
 // Throws InputError at the first thing that cannot be, with the place of the key to change in the document.
 void check_case(const Case& c, const io::YamlDocument& document);
 
-}  // namespace thalweg
+}  // namespace thalweg::driver

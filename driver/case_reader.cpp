@@ -14,7 +14,7 @@
 #include <iterator>
 #include <utility>
 
-namespace thalweg {
+namespace thalweg::driver {
 namespace {
 
 // Plausible values for the keys that have no default: a small flume of glass spheres in water.
@@ -31,7 +31,7 @@ Case example_case(SystemKind system) {
   c.run.until = 3.0;
   if (system == SystemKind::fluid) c.solids = {{SphereCase{{0.02, 0.00525, 0.02}, 2.5e-3}, {}, 1.0, Vec3::Zero()}};
   if (system != SystemKind::fluid) {
-    PopulationCase glass;
+    dem::Population glass;
     glass.count = 200;
     glass.diameter = 4.95e-3;
     glass.density = 2550.0;
@@ -93,4 +93,4 @@ std::string defaults_yaml(const std::string& system) {
          io::written(example, io::YamlStyle::documented);
 }
 
-}  // namespace thalweg
+}  // namespace thalweg::driver

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace thalweg {
+namespace thalweg::driver {
 
 // Reads and checks a case. overrides: texts of the form "key.sub=VALUE" (items of a list by index: grains.0.count=10)
 // that replace or add to what the file says. Throws InputError: one sentence with file and line (or the override), key,
@@ -21,4 +21,4 @@ std::string resolved_yaml(const Case& c);
 // valid case, with plausible values for the keys that have no default, and the optional ones commented out.
 std::string defaults_yaml(const std::string& system = "resolved");
 
-}  // namespace thalweg
+}  // namespace thalweg::driver

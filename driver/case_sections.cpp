@@ -8,7 +8,7 @@
 
 // Functions named describe are static rather than in an unnamed namespace, where argument-dependent lookup from the
 // visitor's templates would not find them.
-namespace thalweg {
+namespace thalweg::driver {
 
 static OnlyIf only_with_fluid(bool with_fluid) {
   return {with_fluid, "system: grains has no fluid; remove the section or set system: resolved"};
@@ -173,9 +173,9 @@ static void describe_run(SectionVisitor& visit, RunCase& run, bool with_fluid, b
   visit.choice(
       "grain_integrator", run.grain_integrator,
       {.meaning = "how the grains are moved", .only_if = {with_grains, "a fluid alone has no grains; remove the key"}});
-  visit.choice<driver::OutOfBounds>("watchdog", run.watchdog,
-                                    {{driver::OutOfBounds::stop, "stop", "the run, with exit code 1"},
-                                     {driver::OutOfBounds::warn, "warn", "and go on while there are numbers"}},
+  visit.choice<OutOfBounds>("watchdog", run.watchdog,
+                                    {{OutOfBounds::stop, "stop", "the run, with exit code 1"},
+                                     {OutOfBounds::warn, "warn", "and go on while there are numbers"}},
                                     {.meaning = "what to do when a figure leaves its bounds (docs/stability.md)"});
   visit.section(
       "until_at_rest", run.until_at_rest,
@@ -298,7 +298,12 @@ void describe(SectionVisitor& visit, Case& c) {
   visit.list("grains", c.grains, {.meaning = "populations of grains", .required = !with_fluid, .only_if = of_grains});
   visit.require(with_fluid || !c.grains.empty(), "grains", "a run of dry grains needs at least one population of them");
   visit.section("contact", {.meaning = "force between grains that touch, with friction", .only_if = of_grains},
-                [&](SectionVisitor& inside) { describe_contact(inside, c.contact, !c.grains.empty()); });
+                [&](SectionVisitor& inside) {
+                  describe(inside, c.contact);
+                  inside.require(
+                      c.grains.empty() || c.contact.restitution || c.contact.damping, "restitution",
+                      "the loss in a collision is missing; give restitution, for example 0.93, or damping in kg/s");
+                });
   visit.section("coupling", {.meaning = "how fluid and grains, or solids, act on each other", .only_if = of_fluid},
                 [&](SectionVisitor& inside) { describe_coupling(inside, c.coupling, with_grains); });
   visit.section("initial", {.meaning = "state at the start"},
@@ -316,4 +321,4 @@ void describe(SectionVisitor& visit, Case& c) {
                 [&](SectionVisitor& inside) { describe_analysis(inside, c.analysis, with_fluid, with_grains); });
 }
 
-}  // namespace thalweg
+}  // namespace thalweg::driver

@@ -5,16 +5,11 @@
 #include "core/section_visitor.hpp"
 #include "driver/case.hpp"
 
-namespace thalweg {
+namespace thalweg::driver {
 
 void describe(SectionVisitor& visit, Case& c);
 void describe_domain(SectionVisitor& visit, DomainCase& domain, bool with_fluid);
 void describe(SectionVisitor& visit, FluidCase& fluid);
 void describe(SectionVisitor& visit, SolidCase& solid);
-void describe(SectionVisitor& visit, PopulationCase& grains);
-void describe(SectionVisitor& visit, OscillationCase& oscillation);
-void describe(SectionVisitor& visit, MotionCase& motion);
-void describe(SectionVisitor& visit, WallCase& wall);
-void describe_contact(SectionVisitor& visit, ContactCase& contact, bool with_grains);
 
-}  // namespace thalweg
+}  // namespace thalweg::driver

@@ -5,7 +5,6 @@
 #include "dem/material.hpp"
 #include "driver/bed_flow.hpp"
 #include "driver/build_system.hpp"
-#include "driver/grain_materials.hpp"
 #include "driver/grain_setup.hpp"
 #include "driver/machine.hpp"
 #include "driver/progress.hpp"
@@ -100,11 +99,11 @@ void add_bed(const Case& c, Lines& lines) {
 
 // Of the lightest two grains of each population.
 std::string damping_text(const Case& c) {
-  const std::vector<dem::ContactParameters> materials = materials_of(c);
+  const std::vector<dem::ContactParameters> materials = dem::materials_of(c.contact, c.grains);
   std::string text;
   for (std::size_t p = 0; p < c.grains.size(); ++p) {
     if (p > 0 && !c.grains[p].contact && c.grains[p].lightest_mass() == c.grains[0].lightest_mass()) continue;
-    const dem::ContactParameters& material = materials[static_cast<std::size_t>(material_of(c, p))];
+    const dem::ContactParameters& material = materials[static_cast<std::size_t>(dem::material_of(c.grains, p))];
     const double damping = dem::Damping(material).coefficient(0.5 * c.grains[p].lightest_mass());
     text += fmt::format("{}{:.3g}", p > 0 ? ", " : "", damping);
   }
@@ -128,7 +127,7 @@ void add_rebound(const Case& c, Lines& lines) {
 }
 
 void add_grains(const Case& c, Lines& lines) {
-  for (const PopulationCase& population : c.grains) {
+  for (const dem::Population& population : c.grains) {
     const double smallest = population.smallest_diameter(), largest = population.largest_diameter();
     const std::string sizes = smallest == largest ? fmt::format("{:g} m", smallest)
                                                   : fmt::format("{:g} to {:g} m, median by mass {:g} m", smallest,
@@ -193,7 +192,7 @@ void refuse_impossible_grains(const Case& c) {
   const dem::GrainParameters parameters = grain_parameters(c, box);
   dem::check(parameters.contact);
   std::vector<dem::LightestGrain> lightest(1 + parameters.other_materials.size());
-  const GrainSeeds start = grain_seeds(c);
+  const dem::GrainSeeds start = grain_seeds(c);
   dem::check(start.clumps, box);
   const std::vector<dem::GrainSeed> seeds = dem::with_members(start.grains, start.clumps, box);
   for (const dem::GrainSeed& seed : seeds)
@@ -215,7 +214,7 @@ Cost cost_of(const Case& c, double bandwidth) {
   cost.memory =
       cost.cells * (19.0 * bytes_per_value(c) + flag_bytes) + static_cast<double>(grain_count(c)) * grain_bytes;
   if (has_fluid(c))
-    for (const PopulationCase& population : c.grains) {
+    for (const dem::Population& population : c.grains) {
       const double cells_across = population.diameter / c.domain.spacing;
       cost.memory +=
           static_cast<double>(population.count) * links_per_square_cell * cells_across * cells_across * link_bytes;

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace thalweg {
+namespace thalweg::driver {
 namespace {
 
 // The faces as the file names them: an axis at once, or each side.
@@ -168,4 +168,4 @@ void describe_domain(SectionVisitor& visit, DomainCase& domain, bool with_fluid)
   if (visit.reading()) domain.faces = faces_of(keys);
 }
 
-}  // namespace thalweg
+}  // namespace thalweg::driver

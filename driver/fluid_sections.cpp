@@ -1,7 +1,7 @@
 #include "driver/case_sections.hpp"
 
 // Sections of a fluid: what it is made of, solids in it, and means of it.
-namespace thalweg {
+namespace thalweg::driver {
 
 static void describe(SectionVisitor& visit, FlowTargetCase& target) {
   visit.real("velocity", target.velocity,
@@ -78,4 +78,4 @@ void describe(SectionVisitor& visit, SolidCase& solid) {
   visit.require(!(solid.sphere && !solid.stl.empty()), "stl", "the solid has two shapes; remove either sphere or stl");
 }
 
-}  // namespace thalweg
+}  // namespace thalweg::driver

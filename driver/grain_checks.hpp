@@ -4,7 +4,7 @@
 #include "driver/case.hpp"
 #include "io/yaml_document.hpp"
 
-namespace thalweg {
+namespace thalweg::driver {
 
 // Whether there is room for the grains in the box and where they are to be placed. Throws InputError.
 void check_that_grains_fit(const Case& c, const io::YamlDocument& document);
@@ -12,4 +12,4 @@ void check_that_grains_fit(const Case& c, const io::YamlDocument& document);
 // Plates, disks, clumps, materials and the steps a contact takes. Throws InputError.
 void check_grains(const Case& c, const io::YamlDocument& document);
 
-}  // namespace thalweg
+}  // namespace thalweg::driver

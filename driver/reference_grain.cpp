@@ -4,33 +4,33 @@
 
 #include <algorithm>
 
-namespace thalweg {
+namespace thalweg::driver {
 namespace {
 
-bool is_free(const PopulationCase& population) {
+bool is_free(const dem::Population& population) {
   return !population.fixed && !population.motion && !population.prescribed_velocity;
 }
 
-std::vector<const PopulationCase*> populations_that_count(const Case& c) {
-  std::vector<const PopulationCase*> chosen;
+std::vector<const dem::Population*> populations_that_count(const Case& c) {
+  std::vector<const dem::Population*> chosen;
   const bool any_free = std::any_of(c.grains.begin(), c.grains.end(), is_free);
-  for (const PopulationCase& population : c.grains)
+  for (const dem::Population& population : c.grains)
     if (is_free(population) || !any_free) chosen.push_back(&population);
   return chosen;
 }
 
 // One a grain; a clump counts with the sphere of its volume.
-std::vector<double> diameters_of(const PopulationCase& population) {
+std::vector<double> diameters_of(const dem::Population& population) {
   if (!population.file.empty()) return population.body_diameters;
   if (!population.diameters.empty()) return population.diameters;
   return std::vector<double>(static_cast<std::size_t>(population.count), population.diameter);
 }
 
-double mean_density(const std::vector<const PopulationCase*>& populations) {
+double mean_density(const std::vector<const dem::Population*>& populations) {
   const double first = populations.front()->density;
   double mass = 0.0, volume = 0.0;
   bool alike = true;  // exactly the density given, then, and not rounded by the division
-  for (const PopulationCase* population : populations) {
+  for (const dem::Population* population : populations) {
     alike = alike && population->density == first;
     mass += population->density * population->volume();
     volume += population->volume();
@@ -41,15 +41,15 @@ double mean_density(const std::vector<const PopulationCase*>& populations) {
 }  // namespace
 
 ReferenceGrain reference_grain(const Case& c) {
-  const std::vector<const PopulationCase*> populations = populations_that_count(c);
+  const std::vector<const dem::Population*> populations = populations_that_count(c);
   const double density = mean_density(populations);
   if (c.analysis.reference_diameter) return {*c.analysis.reference_diameter, density};
   std::vector<double> diameters;
-  for (const PopulationCase* population : populations) {
+  for (const dem::Population* population : populations) {
     const std::vector<double> more = diameters_of(*population);
     diameters.insert(diameters.end(), more.begin(), more.end());
   }
-  return {median_by_volume(std::move(diameters)), density};
+  return {dem::median_by_volume(std::move(diameters)), density};
 }
 
 std::string reference_text(const Case& c) {
@@ -59,4 +59,4 @@ std::string reference_text(const Case& c) {
       c.analysis.reference_diameter ? "analysis.reference_diameter" : "half of the volume of all free grains is finer");
 }
 
-}  // namespace thalweg
+}  // namespace thalweg::driver

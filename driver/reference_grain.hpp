@@ -6,7 +6,7 @@
 
 #include <string>
 
-namespace thalweg {
+namespace thalweg::driver {
 
 struct ReferenceGrain {
   double diameter;  // m
@@ -14,11 +14,11 @@ struct ReferenceGrain {
 };
 
 // Of all grains that are free to move, taken together (of all, where none is): the diameter that half of their volume
-// is finer than, as for a single population (median_by_volume()), unless analysis.reference_diameter gives another; and
-// their mass over their volume. The case must have grains.
+// is finer than, as for a single population (dem::median_by_volume()), unless analysis.reference_diameter gives
+// another; and their mass over their volume. The case must have grains.
 ReferenceGrain reference_grain(const Case& c);
 
 // The same in words: "diameter 0.00495 m, density 2550 kg/m^3 (...)".
 std::string reference_text(const Case& c);
 
-}  // namespace thalweg
+}  // namespace thalweg::driver

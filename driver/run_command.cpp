@@ -2,9 +2,9 @@
 
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
+#include "dem/dry_grains.hpp"
 #include "driver/build_system.hpp"
 #include "driver/case_reader.hpp"
-#include "driver/dry_grains.hpp"
 #include "driver/machine.hpp"
 #include "driver/on_first_rank.hpp"
 #include "driver/progress.hpp"
@@ -156,8 +156,8 @@ void run_case(const Command& command, MPI_Comm communicator, WallClock::time_poi
   LoopPlan plan;
   plan.until = c.run.until;
   if (c.run.until_at_rest)
-    plan.enough = {{DryGrains::largest_speed_figure, c.run.until_at_rest->largest_speed},
-                   {DryGrains::largest_acceleration_figure, c.run.until_at_rest->largest_acceleration}};
+    plan.enough = {{dem::DryGrains::largest_speed_figure, c.run.until_at_rest->largest_speed},
+                   {dem::DryGrains::largest_acceleration_figure, c.run.until_at_rest->largest_acceleration}};
   plan.watch = watch_rules(c);
   plan.out_of_bounds = c.run.watchdog;
   plan.walltime = command.walltime;

@@ -1,6 +1,5 @@
 #include "driver/run_facts.hpp"
 
-#include "driver/grain_setup.hpp"
 #include "driver/grain_weight.hpp"
 #include "driver/reference_grain.hpp"
 
@@ -15,15 +14,14 @@ std::vector<analysis::Population> populations_of(const Case& c) {
   std::vector<analysis::Population> populations;
   GlobalId first = 0;
   for (std::size_t p = 0; p < c.grains.size(); ++p) {
-    const PopulationCase& grains = c.grains[p];
+    const dem::Population& grains = c.grains[p];
     std::function<Vec3(double)> pivot = [centre = Vec3(0.5 * c.domain.size)](double) { return centre; };
     if (grains.motion && grains.motion->rotation)
       pivot = [motion = prescribed_motion(*grains.motion)](double time) -> Vec3 {
         return motion.centre + motion.displacement(time);
       };
     const GlobalId end = first + grains.row_count();
-    const bool held = grains.fixed || grains.prescribed_velocity || grains.motion;
-    populations.push_back({fmt::format("grains_{}", p), first, end, pivot, held, grains.clumps.count > 0});
+    populations.push_back({fmt::format("grains_{}", p), first, end, pivot, grains.held(), grains.clumps.count > 0});
     first = end;
   }
   return populations;

@@ -1,6 +1,6 @@
 #include "driver/stability.hpp"
 
-namespace thalweg {
+namespace thalweg::driver {
 
 double stable_lattice_velocity(lbm::CollisionModel collision, double excess) {
   struct Row {
@@ -17,4 +17,4 @@ double stable_lattice_velocity(lbm::CollisionModel collision, double excess) {
   return 0.0;
 }
 
-}  // namespace thalweg
+}  // namespace thalweg::driver

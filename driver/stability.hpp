@@ -3,11 +3,11 @@
 
 #include "driver/case.hpp"
 
-namespace thalweg {
+namespace thalweg::driver {
 
 // The largest lattice velocity (cells a step) of the map that stayed stable at this distance of the relaxation time
 // from 1/2, looked up at the nearest smaller one of the map; 0 if none did. A subgrid model keeps bgk and trt steady
 // beyond it, but not the regularised collision at walls.
 double stable_lattice_velocity(lbm::CollisionModel collision, double excess);
 
-}  // namespace thalweg
+}  // namespace thalweg::driver

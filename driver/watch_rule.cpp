@@ -34,7 +34,7 @@ auto always(double warn, double stop) {
   return [limits = WatchLimits{std::min(warn, stop), stop}](const std::vector<Figure>&) { return limits; };
 }
 
-double oscillation_speed(const std::optional<OscillationCase>& oscillation) {
+double oscillation_speed(const std::optional<dem::Oscillation>& oscillation) {
   return oscillation ? 2.0 * std::numbers::pi * oscillation->frequency * oscillation->amplitude.norm() : 0.0;
 }
 
@@ -71,7 +71,7 @@ double deviation_at_rest(const Case& c) {
 // (rho_s - rho) g (pi d^3/6)/(pi d^2/4), is 2/3 (rho_s - rho) g d; Pa. Infinite where there is none.
 double weight_over_section(const Case& c) {
   double least = never;
-  for (const PopulationCase& grains : c.grains) {
+  for (const dem::Population& grains : c.grains) {
     const double excess = std::abs(grains.density - c.fluid.density);
     if (grains.fixed || grains.prescribed_velocity || grains.motion || excess == 0.0) continue;
     least = std::min(least, 2.0 / 3.0 * excess * gravity_vector(c.gravity).norm() * grains.smallest_diameter());
@@ -83,7 +83,7 @@ double weight_over_section(const Case& c) {
 double prescribed_speed(const Case& c) {
   double largest = 0.0;
   const double across = c.domain.size.norm();
-  for (const PopulationCase& grains : c.grains) {
+  for (const dem::Population& grains : c.grains) {
     const double radius = 0.5 * grains.largest_extent();
     double speed = grains.velocity.norm() + grains.angular_velocity.norm() * radius;
     if (grains.prescribed_velocity) speed = std::max(speed, grains.prescribed_velocity->norm());
@@ -93,12 +93,12 @@ double prescribed_speed(const Case& c) {
       speed = std::max(
           speed, grains.motion->velocity.norm() + oscillation_speed(grains.motion->oscillation) +
                      (grains.motion->rotation ? std::abs(grains.motion->rotation->angular_velocity) * across : 0.0));
-    for (const io::BedGrain& grain : grains.file) speed = std::max(speed, grain.velocity.norm());
+    for (const BedGrain& grain : grains.file) speed = std::max(speed, grain.velocity.norm());
     largest = std::max(largest, speed);
   }
   for (const Face& face : c.domain.faces)
     if (face.has_velocity()) largest = std::max(largest, face.velocity.norm() + oscillation_speed(face.oscillation));
-  for (const WallCase& wall : c.walls)
+  for (const dem::WallKeys& wall : c.walls)
     largest = std::max(largest, wall.velocity.norm() + oscillation_speed(wall.oscillation));
   return largest;
 }
@@ -106,9 +106,9 @@ double prescribed_speed(const Case& c) {
 // What grains from a bed file may gain when their overlaps spring open: overlap times the contact's frequency; m/s.
 double speed_of_overlaps(const Case& c) {
   double speed = 0.0;
-  for (const PopulationCase& grains : c.grains)
+  for (const dem::Population& grains : c.grains)
     if (!grains.file.empty())
-      speed = std::max(speed, grains.placement.largest_overlap.value_or(PlacementCase::bed_overlap) *
+      speed = std::max(speed, grains.placement.largest_overlap.value_or(dem::PlacementKeys::bed_overlap) *
                                   grains.largest_diameter() * std::numbers::pi / shortest_contact(c));
   return speed;
 }
@@ -128,7 +128,7 @@ double fall_speed(const Case& c) {
       head += g * c.domain.size[static_cast<Eigen::Index>(a)];
   }
   if (!has_fluid(c)) return std::sqrt(2.0 * head) + unlimited;
-  for (const PopulationCase& grains : c.grains) {
+  for (const dem::Population& grains : c.grains) {
     const double excess = std::abs(grains.density / c.fluid.density - 1.0);
     fastest = std::max(fastest, std::sqrt(4.0 / 3.0 * excess * gravity.norm() * grains.largest_extent() / 0.4));
   }
@@ -194,9 +194,9 @@ void add_grain_rules(const Case& c, std::vector<WatchRule>& rules) {
                    "overlaps at the start, or shorten {} or soften contact.normal_stiffness.",
                    has_fluid(c) ? "fluid.time_step" : "run.time_step")});
   double allowed = 0.0;
-  for (const PopulationCase& grains : c.grains)
+  for (const dem::Population& grains : c.grains)
     if (!grains.file.empty())
-      allowed = std::max(allowed, grains.placement.largest_overlap.value_or(PlacementCase::bed_overlap));
+      allowed = std::max(allowed, grains.placement.largest_overlap.value_or(dem::PlacementKeys::bed_overlap));
   rules.push_back({"largest_overlap", Side::above,
                    always(std::max(suspicious_overlap, 2.0 * allowed), std::max(impossible_overlap, 2.0 * allowed)),
                    "the largest overlap of two grains in diameters",

@@ -7,35 +7,14 @@
 // the grains alone, not on the number of ranks.
 #pragma once
 
+#include "core/bed.hpp"
 #include "core/snapshot.hpp"
-#include "core/types.hpp"
 
 #include <mpi.h>
 
-#include <array>
 #include <filesystem>
-#include <vector>
 
 namespace thalweg::io {
-
-struct BedGrain {
-  GlobalId id = 0;
-  double radius = 0.0;                   // m
-  double density = 0.0;                  // kg/m^3
-  Vec3 position = Vec3::Zero();          // m
-  Vec3 velocity = Vec3::Zero();          // m/s
-  Vec3 angular_velocity = Vec3::Zero();  // rad/s
-  GlobalId clump = -1;                   // id of the clump it is a member of; members follow each other
-  bool operator==(const BedGrain&) const = default;
-};
-
-struct Bed {
-  Vec3 box = Vec3::Zero();  // m
-  std::array<bool, 3> periodic{};
-  double time = 0.0;             // s, of the run that wrote it
-  double disk_thickness = 0.0;   // m; 0: spheres
-  std::vector<BedGrain> grains;  // in order of id
-};
 
 // The density is the mass over the volume of the sphere or disk, or of the clump. Collective; throws RunError on every
 // rank.

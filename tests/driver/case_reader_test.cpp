@@ -13,7 +13,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace thalweg {
+namespace thalweg::driver {
 namespace {
 
 using testing::flume;
@@ -36,7 +36,7 @@ TEST(CaseReader, ReadsWhatTheFileSays) {
   EXPECT_EQ(c.fluid.precision, Precision::single);
   EXPECT_EQ(*c.gravity.slope, 0.07);
   ASSERT_EQ(c.grains.size(), 2u);
-  EXPECT_EQ(c.grains[0].placement.pattern, PlacementPattern::random);
+  EXPECT_EQ(c.grains[0].placement.pattern, dem::PlacementPattern::random);
   EXPECT_EQ(c.grains[0].placement.region->upper, Vec3(0.06, 0.0105, 0.05));
   EXPECT_EQ(c.grains[1].count, 2);
   EXPECT_TRUE(c.grains[1].fixed);
@@ -384,4 +384,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& bad) { return bad.param.name; });
 
 }  // namespace
-}  // namespace thalweg
+}  // namespace thalweg::driver

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace thalweg {
+namespace thalweg::driver {
 namespace {
 
 // The wide wall-free flume WWF1 of Zhang et al. 2022 at Shields number 0.085.
@@ -21,7 +21,7 @@ Case wide_bed() {
   c.fluid.time_step = 2e-5;
   c.gravity.magnitude = 9.8;
   c.gravity.slope = 0.016;
-  PopulationCase glass;
+  dem::Population glass;
   glass.count = 2884;
   glass.diameter = 5e-3;
   glass.density = 2550.0;
@@ -149,4 +149,4 @@ TEST(Case, WarnsOfABulkViscosityThatMakesAFastStreamUnstable) {
 }
 
 }  // namespace
-}  // namespace thalweg
+}  // namespace thalweg::driver

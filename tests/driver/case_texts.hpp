@@ -38,10 +38,10 @@ analysis:
   transport_rate: {from: 1.0}
 )";
 
-inline Case read_text(const std::string& yaml, const std::vector<std::string>& overrides = {}) {
+inline driver::Case read_text(const std::string& yaml, const std::vector<std::string>& overrides = {}) {
   const ScratchFolder folder;
   put(folder / "case.yaml", yaml);
-  return read_case(folder / "case.yaml", overrides);
+  return driver::read_case(folder / "case.yaml", overrides);
 }
 
 }  // namespace thalweg::testing

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace thalweg {
+namespace thalweg::driver {
 namespace {
 
 using testing::flume;
@@ -177,4 +177,4 @@ TEST(GrainCaseReader, WallsAndPopulationsMove) {
 }
 
 }  // namespace
-}  // namespace thalweg
+}  // namespace thalweg::driver

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
-namespace thalweg {
+namespace thalweg::driver {
 namespace {
 
-PopulationCase population(std::int64_t count, double diameter, double density) {
-  PopulationCase grains;
+dem::Population population(std::int64_t count, double diameter, double density) {
+  dem::Population grains;
   grains.count = count;
   grains.diameter = diameter;
   grains.density = density;
@@ -28,7 +28,7 @@ TEST(ReferenceGrain, DoesNotDependOnTheOrderOfPopulations) {
   Case c;
   c.grains = {population(10, 1e-3, 2000.0), population(3, 2e-3, 2500.0), population(1, 3e-3, 3000.0)};
   std::vector<int> order{0, 1, 2};
-  const std::vector<PopulationCase> grains = c.grains;
+  const std::vector<dem::Population> grains = c.grains;
   do {
     for (std::size_t n = 0; n < 3; ++n) c.grains[n] = grains[static_cast<std::size_t>(order[n])];
     EXPECT_EQ(reference_grain(c).diameter, 2e-3);
@@ -56,4 +56,4 @@ TEST(ReferenceGrain, IsWhatTheUserSays) {
 }
 
 }  // namespace
-}  // namespace thalweg
+}  // namespace thalweg::driver

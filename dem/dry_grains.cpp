@@ -1,52 +1,35 @@
-#include "driver/dry_grains.hpp"
+#include "dem/dry_grains.hpp"
 
 #include "core/same_time_step.hpp"
-#include "driver/build_system.hpp"
-#include "driver/grain_setup.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-namespace thalweg::driver {
+namespace thalweg::dem {
 
 namespace {
 
 // Without a fluid step to respect, the neighbour lists are looked at more often, so that faster grains are welcome.
 constexpr int sub_steps_between_list_checks = 10;
 
-dem::GrainParameters dry_parameters(const Case& c, const Decomposition& decomposition) {
-  dem::GrainParameters parameters = grain_parameters(c, decomposition.box());
+GrainParameters dry_parameters(const DryParameters& dry) {
+  GrainParameters parameters = dry.grains;
   parameters.sub_steps = std::min(parameters.sub_steps, sub_steps_between_list_checks);
   parameters.movable_cuts = true;
-  const Vec3 gravity = gravity_vector(c.gravity);
-  parameters.body_force = [gravity](double mass, double) -> Vec3 { return mass * gravity; };
+  parameters.body_force = [gravity = dry.gravity](double mass, double) -> Vec3 { return mass * gravity; };
   return parameters;
-}
-
-// The walls in the order of grain_parameters(); none where their forces are not asked for.
-std::vector<std::string> measured_walls(const Case& c) {
-  std::vector<std::string> walls;
-  for (std::size_t face = 0; face < dem::face_names.size() && c.analysis.wall_forces; ++face)
-    if (c.domain.faces[face].type != FaceType::periodic) walls.emplace_back(dem::face_names[face]);
-  for (std::size_t wall = 0; wall < c.walls.size() && c.analysis.wall_forces; ++wall)
-    walls.push_back(fmt::format("wall_{}", wall));
-  return walls;
-}
-
-dem::GrainDynamics dry_dynamics(const Case& c, MPI_Comm communicator, const Decomposition& decomposition) {
-  const GrainSeeds seeds = grain_seeds(c);
-  return {decomposition, communicator, dry_parameters(c, decomposition), seeds.grains, seeds.clumps};
 }
 
 }  // namespace
 
-DryGrains::DryGrains(const Case& c, MPI_Comm communicator, const Decomposition& decomposition)
-    : sub_steps_(static_cast<int>(c.coupling.grain_steps_per_fluid_step)),
-      time_step_(grain_time_step(c) * sub_steps_),
-      wall_names_(measured_walls(c)),
-      disk_thickness_(c.disks ? c.disks->thickness : 0.0),
-      grains_(dry_dynamics(c, communicator, decomposition)),
+DryGrains::DryGrains(const Decomposition& decomposition, MPI_Comm communicator, const DryParameters& parameters,
+                     const GrainSeeds& seeds)
+    : sub_steps_(parameters.grains.sub_steps),
+      time_step_(parameters.grains.time_step * sub_steps_),
+      wall_names_(parameters.measured_walls),
+      disk_thickness_(parameters.disk_thickness),
+      grains_(decomposition, communicator, dry_parameters(parameters), seeds.grains, seeds.clumps),
       lists_(timer_.phase("grain lists")),
       motion_(timer_.phase("grain motion")) {}
 
@@ -66,7 +49,7 @@ void DryGrains::advance() {
 }
 
 Snapshot DryGrains::snapshot() const {
-  const dem::GrainStore& store = grains_.store();
+  const GrainStore& store = grains_.store();
   const std::size_t owned = store.owned;
   Snapshot snapshot;
   snapshot.time = time();
@@ -121,13 +104,9 @@ void DryGrains::load(ArchiveReader& archive) {
 // Whatever a fluid did to them is over.
 void DryGrains::take_grains(ArchiveReader& archive, double /*spacing*/) {
   grains_.take(archive);
-  dem::GrainStore& store = grains_.store();
+  GrainStore& store = grains_.store();
   std::fill(store.load_force.begin(), store.load_force.end(), Vec3::Zero());
   std::fill(store.load_torque.begin(), store.load_torque.end(), Vec3::Zero());
 }
 
-std::unique_ptr<System> build_grains_system(const Case& c, MPI_Comm communicator, const Index3& layout) {
-  return std::make_unique<DryGrains>(c, communicator, decomposition_of(c, layout));
-}
-
-}  // namespace thalweg::driver
+}  // namespace thalweg::dem

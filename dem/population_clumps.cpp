@@ -1,4 +1,4 @@
-#include "driver/clump_setup.hpp"
+#include "dem/population_clumps.hpp"
 
 #include "core/counter_random.hpp"
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace thalweg {
+namespace thalweg::dem {
 namespace {
 
 // The draws of counter_random.hpp that orientations use; placements use small numbers, sizes 2^40.
@@ -18,31 +18,31 @@ constexpr double turn = 2.0 * std::numbers::pi;
 
 }  // namespace
 
-std::shared_ptr<const dem::ClumpShape> clump_shape_of(const PopulationCase& population) {
-  std::vector<dem::Sphere> members;
-  for (const MemberCase& member : population.shape->clump) members.push_back({member.position, 0.5 * member.diameter});
-  return std::make_shared<const dem::ClumpShape>(dem::clump_shape(members, population.thickness));
+std::shared_ptr<const ClumpShape> clump_shape_of(const Population& population) {
+  std::vector<Sphere> members;
+  for (const MemberKeys& member : population.shape->clump) members.push_back({member.position, 0.5 * member.diameter});
+  return std::make_shared<const ClumpShape>(clump_shape(members, population.thickness));
 }
 
-dem::Quaternion orientation_of(const PopulationCase& population, std::size_t grain) {
+Quaternion orientation_of(const Population& population, std::size_t grain) {
   if (population.orientation) {
     const Vec3 axis = population.orientation->axis.normalized();
     const double half = 0.5 * population.orientation->angle, s = std::sin(half);
-    return dem::normalised({std::cos(half), s * axis[0], s * axis[1], s * axis[2]});
+    return normalised({std::cos(half), s * axis[0], s * axis[1], s * axis[2]});
   }
   const auto draw = [&](std::uint64_t n) {
     return uniform_random(static_cast<std::uint64_t>(population.placement.seed), grain, first_orientation_draw + n);
   };
   if (population.thickness > 0.0) {
     const double half = 0.5 * turn * draw(0);
-    return dem::normalised({std::cos(half), 0.0, std::sin(half), 0.0});
+    return normalised({std::cos(half), 0.0, std::sin(half), 0.0});
   }
   const double u = draw(0), inner = std::sqrt(1.0 - u), outer = std::sqrt(u), a = turn * draw(1), b = turn * draw(2);
-  return dem::normalised({outer * std::cos(b), inner * std::sin(a), inner * std::cos(a), outer * std::sin(b)});
+  return normalised({outer * std::cos(b), inner * std::sin(a), inner * std::cos(a), outer * std::sin(b)});
 }
 
-std::vector<std::span<const io::BedGrain>> bodies_of(std::span<const io::BedGrain> rows) {
-  std::vector<std::span<const io::BedGrain>> bodies;
+std::vector<std::span<const BedGrain>> bodies_of(std::span<const BedGrain> rows) {
+  std::vector<std::span<const BedGrain>> bodies;
   for (std::size_t first = 0; first < rows.size();) {
     std::size_t end = first + 1;
     while (end < rows.size() && rows[first].clump >= 0 && rows[end].clump == rows[first].clump) ++end;
@@ -52,12 +52,12 @@ std::vector<std::span<const io::BedGrain>> bodies_of(std::span<const io::BedGrai
   return bodies;
 }
 
-dem::ClumpSeed clump_from(std::span<const io::BedGrain> rows, const PeriodicBox& box, double thickness) {
-  const io::BedGrain& first = rows.front();
-  std::vector<dem::Sphere> members;
-  for (const io::BedGrain& row : rows) members.push_back({box.difference(row.position, first.position), row.radius});
-  dem::ClumpSeed clump;
-  clump.shape = std::make_shared<const dem::ClumpShape>(dem::clump_shape(members, thickness));
+ClumpSeed clump_from(std::span<const BedGrain> rows, const PeriodicBox& box, double thickness) {
+  const BedGrain& first = rows.front();
+  std::vector<Sphere> members;
+  for (const BedGrain& row : rows) members.push_back({box.difference(row.position, first.position), row.radius});
+  ClumpSeed clump;
+  clump.shape = std::make_shared<const ClumpShape>(clump_shape(members, thickness));
   clump.density = first.density;
   clump.position = box.wrapped(first.position + clump.shape->centre);
   clump.velocity = first.velocity + first.angular_velocity.cross(clump.shape->centre);
@@ -65,7 +65,7 @@ dem::ClumpSeed clump_from(std::span<const io::BedGrain> rows, const PeriodicBox&
   return clump;
 }
 
-void add_clumps(ClumpFigures& figures, const dem::ClumpShape& shape, double density, std::int64_t count) {
+void add_clumps(ClumpFigures& figures, const ClumpShape& shape, double density, std::int64_t count) {
   const double mass = shape.least_contact_mass(density);
   figures.least_contact_mass = figures.count == 0 ? mass : std::min(figures.least_contact_mass, mass);
   figures.count += count;
@@ -73,4 +73,4 @@ void add_clumps(ClumpFigures& figures, const dem::ClumpShape& shape, double dens
   figures.largest_extent = std::max(figures.largest_extent, 2.0 * shape.bounding_radius);
 }
 
-}  // namespace thalweg
+}  // namespace thalweg::dem

@@ -1,27 +1,38 @@
 // Grains alone, under gravity, between the walls of the box: the system `grains`.
 //
-// One step is coupling.grain_steps_per_fluid_step sub-steps of grain_time_step(): the same beat as in a fluid.
+// One step is as many sub-steps as its parameters say: the same beat as in a fluid.
 #pragma once
 
 #include "core/system.hpp"
 #include "dem/grain_dynamics.hpp"
-#include "driver/case.hpp"
+#include "dem/population_seeds.hpp"
 
 #include <mpi.h>
 
-namespace thalweg::driver {
+#include <string>
+#include <vector>
+
+namespace thalweg::dem {
+
+struct DryParameters {
+  GrainParameters grains;                   // without body force
+  Vec3 gravity = Vec3::Zero();              // m/s^2
+  std::vector<std::string> measured_walls;  // names of all walls, in their order, or none
+  double disk_thickness = 0.0;              // m; 0: spheres
+};
 
 class DryGrains final : public System, private ContactSource {
 public:
   // Throws InputError where the grains do not fit or the time step is too long. Collective.
-  DryGrains(const Case& c, MPI_Comm communicator, const Decomposition& decomposition);
+  DryGrains(const Decomposition& decomposition, MPI_Comm communicator, const DryParameters& parameters,
+            const GrainSeeds& seeds);
 
   void advance() override;
   std::int64_t step() const override { return step_; }
   double time_step() const override { return time_step_; }
   Snapshot snapshot() const override;
   // contacts, largest_overlap (in diameters), and of the free grains largest_grain_speed, largest_grain_acceleration
-  // With analysis.wall_forces also three for each wall: wall_force_bottom_x ..., wall_force_wall_0_x ...
+  // and of each measured wall three: wall_force_bottom_x ..., wall_force_wall_0_x ...
   std::vector<Figure> figures() const override;
   std::optional<Place> place_of(const std::string& figure) const override;
   static constexpr const char* largest_speed_figure = "largest_grain_speed";
@@ -43,10 +54,10 @@ private:
   double time_step_;                     // s, of sub_steps_ sub-steps
   std::vector<std::string> wall_names_;  // whose forces are measured
   double disk_thickness_;                // m; 0: spheres
-  dem::GrainDynamics grains_;
+  GrainDynamics grains_;
   std::int64_t step_ = 0;
   PhaseTimer timer_;
   int lists_, motion_;  // phases
 };
 
-}  // namespace thalweg::driver
+}  // namespace thalweg::dem

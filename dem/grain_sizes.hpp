@@ -1,0 +1,40 @@
+// How the diameters of a population differ.
+#pragma once
+
+#include "core/section_visitor.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace thalweg::dem {
+
+enum class SizeDistribution { lognormal };
+
+// Nothing given: not at all.
+struct SizesKeys {
+  std::optional<SizeDistribution> distribution;
+  std::optional<double> median;               // m, by number, before the tails are cut
+  std::optional<double> geometric_deviation;  // 1; exp of the standard deviation of ln d
+  std::optional<double> minimum, maximum;     // m, where the tails are cut
+  std::vector<double> sizes;                  // m, in place of a distribution
+  std::vector<double> fractions;              // of the number of grains, as many as sizes
+  bool operator==(const SizesKeys&) const = default;
+
+  bool given() const { return distribution || !sizes.empty(); }
+};
+
+// The section `diameter`: a distribution, or the one diameter (m) of all.
+void describe(SectionVisitor& visit, SizesKeys& sizes, double& diameter);
+
+double sphere_volume(double diameter);  // m^3
+
+// The diameter that half of the mass of these grains is finer than; m.
+double median_by_volume(std::vector<double> diameters);
+
+// One diameter (m) a grain. Every grain takes the place in the distribution that its random number has among those of
+// the population, so that the population follows the distribution as closely as its number allows, and the seed only
+// shuffles. fractions: each size gets its share of the number, rounded so that the sum is right.
+std::vector<double> sampled_diameters(const SizesKeys& sizes, std::int64_t count, std::int64_t seed);
+
+}  // namespace thalweg::dem

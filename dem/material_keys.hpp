@@ -1,0 +1,55 @@
+// How a case describes contacts: the section `contact`, and the material of a population, or of the walls, where it
+// differs.
+#pragma once
+
+#include "core/section_visitor.hpp"
+#include "dem/contact_parameters.hpp"
+
+#include <optional>
+
+namespace thalweg::dem {
+
+struct MaterialKeys {
+  std::optional<double> normal_stiffness;      // N/m
+  std::optional<double> tangential_stiffness;  // N/m
+  std::optional<double> youngs_modulus;        // Pa
+  std::optional<double> poisson_ratio;         // 1
+  std::optional<double> restitution;           // 1
+  std::optional<double> damping;               // kg/s
+  std::optional<double> friction;              // 1; not of walls, whose friction is contact.wall_friction
+  std::optional<double> rolling_friction;      // 1; likewise
+  bool operator==(const MaterialKeys&) const = default;
+};
+
+struct WallMaterialKeys : MaterialKeys {
+  bool operator==(const WallMaterialKeys&) const = default;
+};
+
+// The section `contact`: of grains, and of what is not said otherwise.
+struct ContactKeys : ContactParameters {
+  ContactKeys() {
+    normal_stiffness = 20000.0;
+    tangential_stiffness = 5714.0;
+    poisson_ratio = 0.3;
+    friction = 0.5;
+    wall_friction = 0.45;
+    attraction = true;
+  }
+  std::optional<WallMaterialKeys> walls;  // contact of grains with walls, where it differs
+  bool operator==(const ContactKeys&) const = default;
+};
+
+void describe(SectionVisitor& visit, ContactKeys& contact);
+void describe(SectionVisitor& visit, MaterialKeys& material);
+void describe(SectionVisitor& visit, WallMaterialKeys& walls);
+
+// Throws KeyError unless it fits the law of the section `contact` and the way that gives the loss.
+void check(const MaterialKeys& material, const ContactParameters& contact);
+
+// The contact with what the material changes.
+ContactParameters changed(ContactParameters contact, const MaterialKeys& material);
+
+// Of walls; empty: they are of each grain's own material.
+std::optional<ContactParameters> wall_material_of(const ContactKeys& contact);
+
+}  // namespace thalweg::dem

@@ -1,0 +1,152 @@
+#include "dem/population_bed.hpp"
+
+#include "core/error.hpp"
+#include "core/key_error.hpp"
+#include "dem/grain_seed.hpp"
+#include "dem/population_clumps.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace thalweg::dem {
+namespace {
+
+// Box sizes that differ by less are the same: decimal numbers read from two case files.
+constexpr double same_size = 1e-9;
+
+const char* const file_key = "placement.file";
+
+std::string without_period(std::string text) {
+  if (text.ends_with('.')) text.pop_back();
+  return text;
+}
+
+std::string shape_text(double thickness) {
+  return thickness > 0.0 ? fmt::format("disks {:g} m thick", thickness) : std::string("spheres");
+}
+
+void check_thickness(const Bed& bed, double thickness) {
+  if (bed.disk_thickness == thickness) return;
+  throw KeyError(file_key, fmt::format("the bed is of {} and this case of {}; give the same disks.thickness in m",
+                                       shape_text(bed.disk_thickness), shape_text(thickness)));
+}
+
+void check_box(const Bed& bed, const PeriodicBox& box) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!bed.periodic[static_cast<std::size_t>(axis)] || (bed.disk_thickness > 0.0 && axis == 1)) continue;
+    const bool periodic = box.periodic[static_cast<std::size_t>(axis)];
+    const double made = bed.box[axis], here = box.size[axis];
+    if (!periodic || std::abs(made - here) > same_size * made)
+      throw KeyError(file_key,
+                     fmt::format("the bed was made in a box periodic along {} over {:g} m, and this case's is {} over "
+                                 "{:g} m; give the same domain there, or make a bed for this one",
+                                 "xyz"[axis], made, periodic ? "periodic" : "not periodic", here));
+  }
+}
+
+void check_grains(const std::vector<BedGrain>& grains, const Bed& bed, const PeriodicBox& box, double largest_overlap) {
+  std::vector<GrainSeed> seeds;
+  for (const BedGrain& grain : grains) {
+    GrainSeed seed;
+    seed.id = static_cast<GlobalId>(seeds.size());
+    seed.radius = grain.radius;
+    seed.density = grain.density;
+    seed.position = grain.position;
+    seed.thickness = bed.disk_thickness;
+    seed.clump = grain.clump;
+    seeds.push_back(seed);
+    if ((grain.position.array() < 0.0).any() || (grain.position.array() > box.size.array()).any())
+      throw KeyError(file_key,
+                     fmt::format("grain {} of the file, at [{:g}, {:g}, {:g}] m, is outside this case's box; give a "
+                                 "domain.size in m that holds the bed, or a placement.region to leave it out",
+                                 grain.id, grain.position[0], grain.position[1], grain.position[2]));
+  }
+  try {
+    check(seeds, box, {}, largest_overlap);
+  } catch (const InputError& error) {
+    throw KeyError(file_key, fmt::format("{}; up to placement.largest_overlap: {:g} diameters are allowed",
+                                         without_period(error.what()), largest_overlap));
+  }
+}
+
+bool inside(const Vec3& point, const RegionKeys& region) {
+  return (point.array() >= region.lower.array()).all() && (point.array() <= region.upper.array()).all();
+}
+
+// Of the grains of a bed file, a clump being one.
+struct BedSizes {
+  std::vector<double> diameters;  // m, of a clump that of the sphere of its volume
+  double mass = 0.0, volume = 0.0;
+};
+
+// Takes over the grains with their centre in the region.
+BedSizes take_bodies(Population& population, const Bed& bed) {
+  const PeriodicBox box{bed.box, bed.periodic};
+  const std::optional<RegionKeys>& region = population.placement.region;
+  BedSizes sizes;
+  for (const std::span<const BedGrain> body : bodies_of(bed.grains)) {
+    const BedGrain& first = body.front();
+    double volume = 0.0, radius = first.radius;
+    if (first.clump < 0) {
+      if (region && !inside(first.position, *region)) continue;
+      volume = bed.disk_thickness > 0.0 ? std::numbers::pi * radius * radius * bed.disk_thickness
+                                        : 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
+    } else {
+      const ClumpSeed clump = clump_from(body, box, bed.disk_thickness);
+      if (region && !inside(clump.position, *region)) continue;
+      add_clumps(population.clumps, *clump.shape, clump.density, 1);
+      volume = clump.shape->volume;
+      radius = clump.shape->equivalent_radius();
+    }
+    sizes.diameters.push_back(2.0 * radius);
+    sizes.volume += volume;
+    sizes.mass += first.density * volume;
+    for (const BedGrain& grain : body) {
+      population.file.push_back(grain);
+      population.diameters.push_back(2.0 * grain.radius);
+    }
+  }
+  return sizes;
+}
+
+void take_bed(Population& population, const Bed& bed, const PeriodicBox& box) {
+  const BedSizes sizes = take_bodies(population, bed);
+  if (population.file.empty())
+    throw KeyError(file_key, "the file has no grain in the region; give a placement.region in m that holds some");
+  check_thickness(bed, population.thickness);
+  check_box(bed, box);
+  check_grains(population.file, bed, box, population.placement.largest_overlap.value_or(PlacementKeys::bed_overlap));
+  population.count = static_cast<std::int64_t>(sizes.diameters.size());
+  population.diameter = median_by_volume(sizes.diameters);
+  population.density = sizes.mass / sizes.volume;
+  population.body_diameters = sizes.diameters;
+}
+
+// Grains that are clumps, where the case gives their shape.
+void take_shape(Population& population) {
+  try {
+    const auto shape = clump_shape_of(population);
+    add_clumps(population.clumps, *shape, population.density, population.count);
+    population.diameter = 2.0 * shape->equivalent_radius();
+  } catch (const InputError& error) {
+    throw KeyError("shape.clump", without_period(error.what()));
+  }
+}
+
+}  // namespace
+
+void complete(Population& population, double disk_thickness, const std::optional<Bed>& bed, const PeriodicBox& box) {
+  population.thickness = disk_thickness;
+  if (bed) take_bed(population, *bed, box);
+  if (population.shape) take_shape(population);
+  if (!population.sizes.given()) return;
+  population.diameters = sampled_diameters(population.sizes, population.count, population.placement.seed);
+  population.diameter = median_by_volume(population.diameters);
+}
+
+}  // namespace thalweg::dem

@@ -1,0 +1,31 @@
+// From clumps as a case or a bed file has them to clump_seed.hpp.
+#pragma once
+
+#include "core/bed.hpp"
+#include "core/periodic_box.hpp"
+#include "dem/clump_seed.hpp"
+#include "dem/population.hpp"
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace thalweg::dem {
+
+// Of a population with `shape`. Throws InputError where no clump can be made of it.
+std::shared_ptr<const ClumpShape> clump_shape_of(const Population& population);
+
+// Of one clump of such a population: the given one, or one of all that are equally likely (K. Shoemake, Graphics Gems
+// III (1992) 124; of disks, about y). grain: its number in the population.
+Quaternion orientation_of(const Population& population, std::size_t grain);
+
+// The grains of a bed file one by one, each either one row or the members of one clump, which follow each other.
+std::vector<std::span<const BedGrain>> bodies_of(std::span<const BedGrain> rows);
+
+// The clump that its members make, as it lies and moves; its id stays 0. box: of the bed. thickness: m, of disks.
+ClumpSeed clump_from(std::span<const BedGrain> members, const PeriodicBox& box, double thickness);
+
+// Adds what a population's figures need of `count` clumps of this shape.
+void add_clumps(ClumpFigures& figures, const ClumpShape& shape, double density, std::int64_t count);
+
+}  // namespace thalweg::dem

@@ -1,0 +1,211 @@
+#include "dem/population_seeds.hpp"
+
+#include "core/error.hpp"
+#include "dem/packing.hpp"
+#include "dem/population_clumps.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace thalweg::dem {
+namespace {
+
+Region region_of(const PlacementKeys& placement, const PeriodicBox& box) {
+  if (!placement.region) return whole(box);
+  return {placement.region->lower, placement.region->upper};
+}
+
+// Number in the list of assemblies; -1: none.
+int assembly_of(std::span<const Population> populations, std::size_t population) {
+  if (!populations[population].motion) return -1;
+  int number = -1;
+  for (std::size_t p = 0; p <= population; ++p) number += populations[p].motion.has_value();
+  return number;
+}
+
+// What all grains of a population have in common.
+GrainSeed common_seed(std::span<const Population> populations, std::size_t number) {
+  const Population& population = populations[number];
+  GrainSeed seed;
+  seed.thickness = population.thickness;
+  seed.material = material_of(populations, number);
+  seed.assembly = assembly_of(populations, number);
+  if (population.prescribed_velocity) seed.motion = Motion::held_translation;
+  if (population.prescribed_angular_velocity)
+    seed.motion = population.prescribed_velocity ? Motion::fixed : Motion::held_rotation;
+  if (population.fixed || population.motion) seed.motion = Motion::fixed;
+  return seed;
+}
+
+bool keeps_velocities(const Population& population) {
+  return population.placement.velocities.value_or(FileVelocities::kept) == FileVelocities::kept;
+}
+
+// Disks are in the middle of the box.
+Vec3 in_plane(Vec3 position, const Population& population, const PeriodicBox& box) {
+  if (population.thickness > 0.0) position[1] = 0.5 * box.size[1];
+  return position;
+}
+
+void set_motion(GrainSeed& seed, const Population& population, std::size_t grain) {
+  Vec3 velocity = population.velocity, spin = population.angular_velocity;
+  if (!population.file.empty()) {
+    const bool kept = keeps_velocities(population);
+    velocity = kept ? population.file[grain].velocity : Vec3::Zero();
+    spin = kept ? population.file[grain].angular_velocity : Vec3::Zero();
+  }
+  seed.velocity = population.prescribed_velocity.value_or(velocity);
+  seed.angular_velocity = population.prescribed_angular_velocity.value_or(spin);
+  if (population.fixed || population.motion) seed.velocity = seed.angular_velocity = Vec3::Zero();
+}
+
+// A clump moves and is held as its population says a grain is; of a file it has what its members tell.
+ClumpSeed clump_seed_of(const GrainSeed& as_grain, ClumpSeed clump) {
+  clump.id = as_grain.id;
+  clump.density = as_grain.density;
+  clump.velocity = as_grain.velocity;
+  clump.angular_velocity = as_grain.angular_velocity;
+  clump.material = as_grain.material;
+  clump.motion = as_grain.motion;
+  return clump;
+}
+
+// Who is given a place first.
+enum class Turn { given, uniform, random };
+
+Turn turn_of(const PlacementKeys& placement) {
+  if (placement.file || !placement.positions.empty()) return Turn::given;
+  return placement.pattern == PlacementPattern::uniform ? Turn::uniform : Turn::random;
+}
+
+std::vector<Vec3> place(const Population& population, const PeriodicBox& box, const std::vector<Sphere>& placed) {
+  const PlacementKeys& placement = population.placement;
+  const auto seed = static_cast<std::uint64_t>(placement.seed);
+  std::vector<Vec3> positions;
+  std::vector<double> radii;
+  Region region = region_of(placement, box);
+  region.plane = population.thickness > 0.0;
+  if (region.plane) region.lower[1] = 0.0, region.upper[1] = box.size[1];
+  switch (turn_of(placement)) {
+    case Turn::given:
+      for (const BedGrain& grain : population.file) positions.push_back(grain.position);
+      return placement.file ? positions : placement.positions;
+    case Turn::uniform:
+      return uniform_packing(box, region, population.count, 0.5 * population.room_of_all(), 0.0, seed);
+    case Turn::random:
+      break;
+  }
+  for (std::size_t n = 0; n < static_cast<std::size_t>(population.count); ++n)
+    radii.push_back(0.5 * population.room_of(n));
+  return random_packing(box, region, radii, 0.0, seed, placed);
+}
+
+// Adds the grains of a population one after the other, with ids that count up.
+class SeedAdder {
+public:
+  SeedAdder(const PeriodicBox& box, GrainSeeds& seeds) : box_(box), seeds_(seeds) {}
+
+  void add(const Population& population, const GrainSeed& common, const std::vector<Vec3>& positions) {
+    const auto seed_of = [&](std::size_t grain) {
+      GrainSeed seed = common;
+      seed.id = next_;
+      seed.radius = 0.5 * population.diameter_of(grain);
+      seed.density = population.density_of(grain);
+      seed.position = in_plane(positions[grain], population, box_);
+      set_motion(seed, population, grain);
+      return seed;
+    };
+    if (!population.file.empty()) return add_from_file(population, seed_of);
+    if (population.shape) return add_clumps(population, positions.size(), seed_of);
+    for (std::size_t n = 0; n < positions.size(); ++n, ++next_) seeds_.grains.push_back(seed_of(n));
+  }
+
+private:
+  void add_clumps(const Population& population, std::size_t count, const auto& seed_of) {
+    ClumpSeed clump;
+    clump.shape = clump_shape_of(population);
+    for (std::size_t n = 0; n < count; ++n) {
+      const GrainSeed as_grain = seed_of(n);
+      clump.position = as_grain.position;
+      clump.orientation = orientation_of(population, n);
+      seeds_.clumps.push_back(clump_seed_of(as_grain, clump));
+      next_ += static_cast<GlobalId>(clump.shape->members.size());
+    }
+  }
+
+  void add_from_file(const Population& population, const auto& seed_of) {
+    std::size_t row = 0;
+    for (const std::span<const BedGrain> body : bodies_of(population.file)) {
+      GrainSeed seed = seed_of(row);
+      if (body.front().clump < 0) {
+        seeds_.grains.push_back(seed);
+      } else {
+        const ClumpSeed clump = clump_from(body, box_, population.thickness);
+        if (keeps_velocities(population) && !holds_translation(seed.motion))
+          seed.velocity = clump.velocity;  // of the centre
+        seeds_.clumps.push_back(clump_seed_of(seed, clump));
+      }
+      next_ += static_cast<GlobalId>(body.size());
+      row += body.size();
+    }
+  }
+
+  const PeriodicBox& box_;
+  GrainSeeds& seeds_;
+  GlobalId next_ = 0;
+};
+
+}  // namespace
+
+GrainSeeds grain_seeds(std::span<const Population> populations, const PeriodicBox& box) {
+  std::vector<std::vector<Vec3>> positions(populations.size());
+  std::vector<Sphere> placed;
+  for (const Turn turn : {Turn::given, Turn::uniform, Turn::random})
+    for (std::size_t p = 0; p < populations.size(); ++p) {
+      if (turn_of(populations[p].placement) != turn) continue;
+      try {
+        positions[p] = place(populations[p], box, placed);
+      } catch (const InputError& error) {
+        throw InputError(fmt::format("grains.{}: {}", p, error.what()));
+      }
+      for (std::size_t n = 0; n < positions[p].size(); ++n)
+        placed.push_back({in_plane(positions[p][n], populations[p], box), 0.5 * populations[p].room_of(n)});
+    }
+  GrainSeeds seeds;
+  SeedAdder adder(box, seeds);
+  for (std::size_t p = 0; p < populations.size(); ++p)
+    adder.add(populations[p], common_seed(populations, p), positions[p]);
+  return seeds;
+}
+
+std::vector<PrescribedMotion> assemblies_of(std::span<const Population> populations) {
+  std::vector<PrescribedMotion> motions;
+  for (const Population& population : populations)
+    if (population.motion) motions.push_back(prescribed_motion(*population.motion));
+  return motions;
+}
+
+std::vector<ContactParameters> materials_of(const ContactParameters& contact, std::span<const Population> populations) {
+  std::vector<ContactParameters> materials{contact};
+  for (const Population& population : populations)
+    if (population.contact) materials.push_back(changed(contact, *population.contact));
+  return materials;
+}
+
+int material_of(std::span<const Population> populations, std::size_t population) {
+  if (!populations[population].contact) return 0;
+  int number = 0;
+  for (std::size_t p = 0; p <= population; ++p) number += populations[p].contact.has_value();
+  return number;
+}
+
+double allowed_overlap(std::span<const Population> populations) {
+  double allowed = 0.0;
+  for (const Population& population : populations)
+    if (population.placement.file)
+      allowed = std::max(allowed, population.placement.largest_overlap.value_or(PlacementKeys::bed_overlap));
+  return allowed;
+}
+
+}  // namespace thalweg::dem

@@ -1,0 +1,34 @@
+// From a case to dry grains.
+#include "dem/dry_grains.hpp"
+#include "driver/build_system.hpp"
+#include "driver/grain_setup.hpp"
+
+#include <fmt/format.h>
+
+namespace thalweg::driver {
+
+namespace {
+
+// The walls in the order of grain_parameters(); none where their forces are not asked for.
+std::vector<std::string> measured_walls(const Case& c) {
+  std::vector<std::string> walls;
+  for (std::size_t face = 0; face < dem::face_names.size() && c.analysis.wall_forces; ++face)
+    if (c.domain.faces[face].type != FaceType::periodic) walls.emplace_back(dem::face_names[face]);
+  for (std::size_t wall = 0; wall < c.walls.size() && c.analysis.wall_forces; ++wall)
+    walls.push_back(fmt::format("wall_{}", wall));
+  return walls;
+}
+
+}  // namespace
+
+std::unique_ptr<System> build_grains_system(const Case& c, MPI_Comm communicator, const Index3& layout) {
+  const Decomposition decomposition = decomposition_of(c, layout);
+  dem::DryParameters parameters;
+  parameters.grains = grain_parameters(c, decomposition.box());
+  parameters.gravity = gravity_vector(c.gravity);
+  parameters.measured_walls = measured_walls(c);
+  parameters.disk_thickness = c.disks ? c.disks->thickness : 0.0;
+  return std::make_unique<dem::DryGrains>(decomposition, communicator, parameters, grain_seeds(c));
+}
+
+}  // namespace thalweg::driver
