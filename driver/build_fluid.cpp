@@ -17,8 +17,8 @@ std::unique_ptr<System> build(const Case& c, MPI_Comm communicator, const Index3
 }  // namespace
 
 std::unique_ptr<System> build_fluid_system(const Case& c, MPI_Comm communicator, const Index3& layout) {
-  return c.fluid.precision == Precision::single ? build<float>(c, communicator, layout)
-                                                : build<double>(c, communicator, layout);
+  return c.fluid.precision == coupling::Precision::single ? build<float>(c, communicator, layout)
+                                                          : build<double>(c, communicator, layout);
 }
 
 }  // namespace thalweg::driver

@@ -16,10 +16,10 @@ std::unique_ptr<System> build(const Case& c, MPI_Comm communicator, const Index3
   static_cast<coupling::FluidParameters&>(parameters) = fluid_parameters(c);
   parameters.link_tolerance = c.coupling.link_tolerance;
   parameters.load = c.coupling.load;
-  parameters.keep_covered_momentum = c.coupling.covered_momentum == CoveredMomentum::to_grain;
+  parameters.keep_covered_momentum = c.coupling.covered_momentum == coupling::CoveredMomentum::to_grain;
   parameters.mass_balance = c.coupling.mass_balance;
   parameters.refill = c.coupling.refill;
-  parameters.paper_near_contact = c.coupling.near_contact == NearContact::paper;
+  parameters.paper_near_contact = c.coupling.near_contact == coupling::NearContact::paper;
   parameters.grain_stress =
       c.coupling.grain_stress || c.analysis.observers.of<analysis::StressBalanceKeys>().has_value();
   parameters.wall_forces = c.analysis.wall_forces.has_value();
@@ -42,8 +42,8 @@ std::unique_ptr<System> build(const Case& c, MPI_Comm communicator, const Index3
 }  // namespace
 
 std::unique_ptr<System> build_resolved_system(const Case& c, MPI_Comm communicator, const Index3& layout) {
-  return c.fluid.precision == Precision::single ? build<float>(c, communicator, layout)
-                                                : build<double>(c, communicator, layout);
+  return c.fluid.precision == coupling::Precision::single ? build<float>(c, communicator, layout)
+                                                          : build<double>(c, communicator, layout);
 }
 
 }  // namespace thalweg::driver

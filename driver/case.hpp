@@ -5,16 +5,15 @@
 #include "analysis/observer_list.hpp"
 #include "core/types.hpp"
 #include "core/units.hpp"
-#include "coupling/load_rule.hpp"
-#include "coupling/refill_rule.hpp"
+#include "coupling/coupling_keys.hpp"
+#include "coupling/fluid_keys.hpp"
+#include "coupling/initial_fluid.hpp"
 #include "dem/integrator.hpp"
 #include "dem/material_keys.hpp"
 #include "dem/population.hpp"
 #include "dem/wall_keys.hpp"
 #include "driver/out_of_bounds.hpp"
 #include "io/fluid_series.hpp"
-#include "lbm/collision_parameters.hpp"
-#include "lbm/link_options.hpp"
 
 #include <array>
 #include <cstdint>
@@ -77,31 +76,6 @@ struct DomainCase {
   bool operator==(const DomainCase&) const = default;
 };
 
-enum class Precision { single, double_ };
-
-// A mean velocity of the fluid that the body force is steered to, in place of gravity along that axis.
-struct FlowTargetCase {
-  double velocity = 0.0;       // m/s, along x
-  double response_time = 0.0;  // s
-  bool operator==(const FlowTargetCase&) const = default;
-};
-
-struct FluidCase {
-  double density = 0.0;                            // kg/m^3
-  double kinematic_viscosity = 0.0;                // m^2/s
-  double smagorinsky_constant = 0.0;               // 1; 0: no subgrid model
-  std::optional<double> time_step;                 // s; else from the two velocities
-  std::optional<double> maximum_lattice_velocity;  // cells per step
-  std::optional<double> expected_velocity;         // m/s, the largest
-  lbm::CollisionModel collision = lbm::CollisionModel::bgk;
-  double magic_parameter = 3.0 / 16.0;  // of trt
-  // 1, of the trace of the stress; 0: as the shear's. Read as 1 with grains, bgk and a subgrid model, else 0.
-  std::optional<double> bulk_relaxation_time;
-  Precision precision = Precision::single;
-  std::optional<FlowTargetCase> mean_velocity;
-  bool operator==(const FluidCase&) const = default;
-};
-
 // reduced: the fluid is driven by rho g_x, _y alone and the grains feel their submerged weight. full: the fluid has its
 // weight and its hydrostatic pressure, which carries the grains through the links, and the grains have their whole
 // weight.
@@ -130,72 +104,12 @@ struct SolidCase {
   bool operator==(const SolidCase&) const = default;
 };
 
-enum class NearContact { subtracted, paper };
-enum class CoveredMomentum { lost, to_grain };
-
-// The part of the lubrication force between near surfaces that the cells cannot resolve.
-struct LubricationCase {
-  double normal_cut_off = 2.0 / 3.0;  // cells, the gap below which the squeezing flow is not resolved
-  double tangential_cut_off = 0.5;    // cells, the same of sliding and rolling
-  double minimum_gap = 1e-3;          // radii: gaps count as at least this wide
-  bool operator==(const LubricationCase&) const = default;
-};
-
-// Keeps light grains stable.
-struct VirtualMassCase {
-  double coefficient = 0.5;  // of the mass of the displaced fluid
-  bool operator==(const VirtualMassCase&) const = default;
-};
-
-struct CouplingCase {
-  // The word auto; read_case() puts sub_steps_needed() in its place.
-  static constexpr std::int64_t as_many_as_needed = 0;
-  std::int64_t grain_steps_per_fluid_step = 50;
-  double link_tolerance = 1e-3;  // cells a grain may move before the map of its cells follows
-  lbm::MomentumExchange momentum_exchange = lbm::MomentumExchange::galilean_invariant;
-  lbm::WallDensity wall_density = lbm::WallDensity::local;
-  lbm::LinkRule links = lbm::LinkRule::bouzidi;
-  lbm::GapRule narrow_gaps = lbm::GapRule::no_slip;
-  NearContact near_contact = NearContact::subtracted;
-  coupling::RefillRule refill = coupling::RefillRule::equilibrium;
-  CoveredMomentum covered_momentum = CoveredMomentum::lost;
-  coupling::LoadRule load = coupling::LoadRule::extrapolated;
-  std::optional<LubricationCase> lubrication;
-  std::optional<VirtualMassCase> virtual_mass;
-  bool grain_stress = false;  // measure the fluid's stress on every grain
-  bool mass_balance = false;  // show what the links' mass is made of
-  bool operator==(const CouplingCase&) const = default;
-};
-
-// Random eddies without divergence on top of a profile.
-struct PerturbationCase {
-  double amplitude = 1.0;  // root mean square of a component over the shear velocity, away from walls
-  std::int64_t seed = 1;
-  bool operator==(const PerturbationCase&) const = default;
-};
-
-// u(z) = (shear_velocity / 0.41) ln((z - bed_height) / roughness) along x above the bed, zero below.
-struct LogProfileCase {
-  double bed_height = 0.0;      // m above the bottom
-  double shear_velocity = 0.0;  // m/s
-  double roughness = 0.0;       // m, the height where the velocity is zero (for grains about d/30)
-  std::optional<PerturbationCase> perturbation;
-  bool operator==(const LogProfileCase&) const = default;
-};
-
-// Neither: at rest.
-struct InitialFluidCase {
-  std::optional<Vec3> uniform;  // m/s
-  std::optional<LogProfileCase> log_profile;
-  bool operator==(const InitialFluidCase&) const = default;
-};
-
 enum class InitialField { fluid, grains };
 
 struct InitialCase {
   std::string from;  // run folder or checkpoint of another run, absolute once read; empty: none
   std::vector<InitialField> fields{InitialField::fluid};  // what is taken from it
-  InitialFluidCase fluid;
+  coupling::InitialFluidKeys fluid;
   bool operator==(const InitialCase&) const = default;
 };
 
@@ -267,14 +181,14 @@ struct Case {
   SystemKind system = SystemKind::resolved;
   std::string name;
   DomainCase domain;
-  FluidCase fluid;  // meaningless for dry grains, as are coupling and initial
+  coupling::FluidKeys fluid;  // meaningless for dry grains, as are coupling and initial
   GravityCase gravity;
   std::optional<DisksCase> disks;
   std::vector<dem::Population> grains;
   std::vector<dem::WallKeys> walls;  // of dry grains, besides the faces
   std::vector<SolidCase> solids;     // of system: fluid
   dem::ContactKeys contact;
-  CouplingCase coupling;
+  coupling::CouplingKeys coupling;
   InitialCase initial;
   RunCase run;
   OutputCase output;

@@ -82,7 +82,7 @@ void check_initial_fluid(const Case& c, const io::YamlDocument& document) {
   if (c.initial.fluid.uniform)
     check_lattice_velocity(c, document, "initial.fluid.uniform", c.initial.fluid.uniform->norm());
   if (!c.initial.fluid.log_profile) return;
-  const LogProfileCase& profile = *c.initial.fluid.log_profile;
+  const coupling::LogProfileKeys& profile = *c.initial.fluid.log_profile;
   const double depth = c.domain.size[2] - profile.bed_height;
   if (depth <= profile.roughness)
     throw document.error("initial.fluid.log_profile.bed_height",

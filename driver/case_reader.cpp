@@ -57,7 +57,7 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
   io::read_document(document, c);
   fill_in_grains(c, document);
   if (has_fluid(c) && !c.fluid.bulk_relaxation_time) c.fluid.bulk_relaxation_time = bulk_relaxation_time_for(c);
-  if (c.coupling.grain_steps_per_fluid_step == CouplingCase::as_many_as_needed) {
+  if (c.coupling.grain_steps_per_fluid_step == coupling::CouplingKeys::as_many_as_needed) {
     if (c.system == SystemKind::grains)
       throw document.error("coupling.grain_steps_per_fluid_step",
                            "auto goes by the step of the fluid, and here is none; give a number");

@@ -36,108 +36,6 @@ static void describe_gravity(SectionVisitor& visit, GravityCase& gravity, bool w
        .only_if = {with_fluid, "a run without fluid has only one kind of gravity; remove the key"}});
 }
 
-static void describe(SectionVisitor& visit, LubricationCase& lubrication) {
-  visit.real(
-      "normal_cut_off", lubrication.normal_cut_off,
-      {.unit = "cells", .meaning = "gap below which the squeezing flow is not resolved", .above = 0.0, .at_most = 2.0});
-  visit.real("tangential_cut_off", lubrication.tangential_cut_off,
-             {.unit = "cells",
-              .meaning = "the same of sliding and rolling; 0: none of these",
-              .at_least = 0.0,
-              .at_most = 2.0});
-  visit.real("minimum_gap", lubrication.minimum_gap,
-             {.unit = "radii",
-              .meaning = "gaps count as at least this wide: the roughness of the grains",
-              .at_least = 1e-6,
-              .at_most = 0.1});
-}
-
-static void describe(SectionVisitor& visit, VirtualMassCase& virtual_mass) {
-  visit.real("coefficient", virtual_mass.coefficient,
-             {.meaning = "of the mass of the displaced fluid; 1/2 is that of a sphere", .above = 0.0, .at_most = 10.0});
-}
-
-static void describe_coupling(SectionVisitor& visit, CouplingCase& coupling, bool with_grains) {
-  visit.choice("links", coupling.links, {.meaning = "how populations come back from a surface"});
-  visit.not_here("mass_correction", "the fluid's mass is always kept; remove the key");
-  if (!with_grains) {
-    for (const char* key :
-         {"grain_steps_per_fluid_step", "link_tolerance", "momentum_exchange", "wall_density", "narrow_gaps",
-          "near_contact", "refill", "covered_momentum", "load", "grain_stress", "mass_balance"})
-      visit.not_here(key, "system: fluid has no grains; remove the key or set system: resolved");
-    return;
-  }
-  visit.integer("grain_steps_per_fluid_step", coupling.grain_steps_per_fluid_step,
-                {.meaning = "sub-steps of the grains in one step of the fluid; auto: 20 in the shortest contact",
-                 .at_least = 1,
-                 .automatic = CouplingCase::as_many_as_needed});
-  visit.real("link_tolerance", coupling.link_tolerance,
-             {.unit = "cells",
-              .meaning = "how far a grain may move before the map of its cells follows (the surface itself is cut "
-                         "exactly at all times)",
-              .at_least = 0.0,
-              .at_most = 0.1});
-  visit.choice("momentum_exchange", coupling.momentum_exchange, {.meaning = "how the force on a grain is summed"});
-  visit.choice("wall_density", coupling.wall_density, {.meaning = "density in the moving-wall term"});
-  visit.choice("narrow_gaps", coupling.narrow_gaps, {.meaning = "gaps of one cell between two grains"});
-  visit.choice<NearContact>("near_contact", coupling.near_contact,
-                            {{NearContact::subtracted, "subtracted", "reference pressure taken out of every link"},
-                             {NearContact::paper, "paper", "and the paper's links between grains"}},
-                            {.meaning = "patches of its surface that a grain's neighbours hide"});
-  visit.choice("refill", coupling.refill, {.meaning = "populations of a cell that a grain has uncovered"});
-  visit.choice<CoveredMomentum>(
-      "covered_momentum", coupling.covered_momentum,
-      {{CoveredMomentum::lost, "lost", "as published: grains get a little less than the fluid loses"},
-       {CoveredMomentum::to_grain, "to_grain"}},
-      {.meaning = "what a cell that a grain covers carries relative to the grain"});
-  visit.choice("load", coupling.load, {.meaning = "the force and torque of the fluid that move a grain in a step"});
-  visit.section(
-      "lubrication", coupling.lubrication,
-      {.meaning = "adds the force between near surfaces that the cells do not resolve, in every sub-step; {}"});
-  visit.section("virtual_mass", coupling.virtual_mass,
-                {.meaning = "for grains much lighter than the fluid: filters their load; {}"});
-  visit.flag("grain_stress", coupling.grain_stress,
-             {.meaning = "measure the fluid's stress on every grain, for its pictures: fluid_stress"});
-  visit.flag("mass_balance", coupling.mass_balance,
-             {.meaning = "show in series.csv which part of the link rule gives and takes the fluid's mass"});
-}
-
-static void describe(SectionVisitor& visit, PerturbationCase& perturbation) {
-  visit.real(
-      "amplitude", perturbation.amplitude,
-      {.meaning = "root mean square of a velocity component away from walls, over shear_velocity", .above = 0.0});
-  visit.integer("seed", perturbation.seed, {.meaning = "another seed, other eddies", .at_least = 0});
-}
-
-static void describe(SectionVisitor& visit, LogProfileCase& profile) {
-  visit.real("bed_height", profile.bed_height,
-             {.unit = "m",
-              .meaning = "above the bottom; the fluid below is at rest",
-              .required = true,
-              .at_least = 0.0,
-              .example = 0.06});
-  visit.real("shear_velocity", profile.shear_velocity,
-             {.unit = "m/s",
-              .meaning = "u(z) = shear_velocity / 0.41 ln((z - bed_height) / roughness)",
-              .required = true,
-              .above = 0.0,
-              .example = 0.08});
-  visit.real("roughness", profile.roughness,
-             {.unit = "m",
-              .meaning = "height above the bed at which the velocity is zero",
-              .required = true,
-              .above = 0.0,
-              .example = 3.3e-4});
-  visit.section("perturbation", profile.perturbation, {.meaning = "random eddies without divergence on top"});
-}
-
-static void describe(SectionVisitor& visit, InitialFluidCase& fluid) {
-  visit.vec3("uniform", fluid.uniform, {.unit = "m/s", .meaning = "the same velocity everywhere", .example = 0.0});
-  visit.section("log_profile", fluid.log_profile, {.meaning = "a turbulent profile along x over a bed"});
-  visit.require(!(fluid.uniform && fluid.log_profile), "uniform",
-                "the start is given twice; give either uniform or log_profile");
-}
-
 static void describe_initial(SectionVisitor& visit, InitialCase& initial, bool with_fluid, bool with_grains) {
   visit.text("from", initial.from,
              {.meaning = "run folder or checkpoint of another run to begin from, relative to this file; \"\": none"});
@@ -174,9 +72,9 @@ static void describe_run(SectionVisitor& visit, RunCase& run, bool with_fluid, b
       "grain_integrator", run.grain_integrator,
       {.meaning = "how the grains are moved", .only_if = {with_grains, "a fluid alone has no grains; remove the key"}});
   visit.choice<OutOfBounds>("watchdog", run.watchdog,
-                                    {{OutOfBounds::stop, "stop", "the run, with exit code 1"},
-                                     {OutOfBounds::warn, "warn", "and go on while there are numbers"}},
-                                    {.meaning = "what to do when a figure leaves its bounds (docs/stability.md)"});
+                            {{OutOfBounds::stop, "stop", "the run, with exit code 1"},
+                             {OutOfBounds::warn, "warn", "and go on while there are numbers"}},
+                            {.meaning = "what to do when a figure leaves its bounds (docs/stability.md)"});
   visit.section(
       "until_at_rest", run.until_at_rest,
       {.meaning = "the run ends when all grains are at rest (looked at every 200 steps), or at run.until",
@@ -305,7 +203,7 @@ void describe(SectionVisitor& visit, Case& c) {
                       "the loss in a collision is missing; give restitution, for example 0.93, or damping in kg/s");
                 });
   visit.section("coupling", {.meaning = "how fluid and grains, or solids, act on each other", .only_if = of_fluid},
-                [&](SectionVisitor& inside) { describe_coupling(inside, c.coupling, with_grains); });
+                [&](SectionVisitor& inside) { describe(inside, c.coupling, with_grains); });
   visit.section("initial", {.meaning = "state at the start"},
                 [&](SectionVisitor& inside) { describe_initial(inside, c.initial, with_fluid, with_grains); });
   visit.list("solids", c.solids,

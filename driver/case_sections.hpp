@@ -9,7 +9,6 @@ namespace thalweg::driver {
 
 void describe(SectionVisitor& visit, Case& c);
 void describe_domain(SectionVisitor& visit, DomainCase& domain, bool with_fluid);
-void describe(SectionVisitor& visit, FluidCase& fluid);
 void describe(SectionVisitor& visit, SolidCase& solid);
 
 }  // namespace thalweg::driver

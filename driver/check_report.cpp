@@ -42,7 +42,7 @@ constexpr double grain_steps_per_second = 2.5e6;
 constexpr double flag_bytes = 8.0, link_bytes = 32.0, grain_bytes = 2000.0;
 constexpr double links_per_square_cell = 15.8;  // links of a sphere over its diameter in cells squared
 
-double bytes_per_value(const Case& c) { return c.fluid.precision == Precision::single ? 4.0 : 8.0; }
+double bytes_per_value(const Case& c) { return c.fluid.precision == coupling::Precision::single ? 4.0 : 8.0; }
 
 double step_time(const Case& c) {
   return has_fluid(c) ? fluid_time_step(c)

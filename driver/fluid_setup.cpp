@@ -1,8 +1,6 @@
 // From a case to the lattice: SI to lattice units, faces to wall rules, gravity along the bed to a body force.
 #include "driver/fluid_setup.hpp"
 
-#include "lbm/solenoidal_noise.hpp"
-
 #include <cmath>
 
 namespace thalweg::driver {
@@ -64,37 +62,6 @@ lbm::CollisionParameters collision_parameters(const Case& c) {
   return parameters;
 }
 
-using InitialFluid = std::function<coupling::FluidInitialState(const Vec3&)>;
-
-InitialFluid with_perturbation(const Case& c, const InitialFluid& calm) {
-  const LogProfileCase& profile = *c.initial.fluid.log_profile;
-  const double strength = profile.shear_velocity * profile.perturbation->amplitude, spacing = c.domain.spacing;
-  const lbm::NoiseBox box{cells_of(c.domain), periodic_axes(c.domain), profile.bed_height / spacing};
-  const lbm::SolenoidalNoise noise(box, static_cast<std::uint64_t>(profile.perturbation->seed));
-  return [calm, noise, strength, spacing](const Vec3& position) {
-    coupling::FluidInitialState state = calm(position);
-    Index3 cell;
-    for (int a = 0; a < 3; ++a) cell[a] = static_cast<int>(std::floor(position[a] / spacing));
-    state.velocity += strength * noise.velocity(cell);
-    return state;
-  };
-}
-
-InitialFluid initial_fluid(const Case& c) {
-  const InitialFluidCase& fluid = c.initial.fluid;
-  if (fluid.uniform) return [u = *fluid.uniform](const Vec3&) { return coupling::FluidInitialState{0.0, u}; };
-  if (!fluid.log_profile) return {};
-  const InitialFluid calm = [profile = *fluid.log_profile](const Vec3& position) {
-    constexpr double von_karman = 0.41;
-    const double height = position.z() - profile.bed_height;
-    coupling::FluidInitialState state;
-    if (height > profile.roughness)
-      state.velocity.x() = profile.shear_velocity / von_karman * std::log(height / profile.roughness);
-    return state;
-  };
-  return fluid.log_profile->perturbation ? with_perturbation(c, calm) : calm;
-}
-
 }  // namespace
 
 coupling::FluidParameters fluid_parameters(const Case& c) {
@@ -113,7 +80,8 @@ coupling::FluidParameters fluid_parameters(const Case& c) {
   parameters.links.wall_density = c.coupling.wall_density;
   parameters.links.rule = c.coupling.links;
   parameters.links.gaps = c.coupling.narrow_gaps;
-  parameters.initial_fluid = initial_fluid(c);
+  parameters.initial_fluid =
+      initial_fluid(c.initial.fluid, cells_of(c.domain), periodic_axes(c.domain), c.domain.spacing);
   return parameters;
 }
 

@@ -14,7 +14,7 @@ constexpr double skin_in_diameters = 0.1, dry_skin_in_diameters = 0.5;
 
 // Faces the fluid sticks to; the other walls of the case are not the fluid's.
 dem::LubricationParameters lubrication_parameters(const Case& c, std::size_t walls) {
-  const LubricationCase& asked_for = *c.coupling.lubrication;
+  const coupling::LubricationKeys& asked_for = *c.coupling.lubrication;
   dem::LubricationParameters parameters;
   parameters.viscosity = c.fluid.density * c.fluid.kinematic_viscosity;
   parameters.normal_cut_off = asked_for.normal_cut_off * c.domain.spacing;

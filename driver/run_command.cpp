@@ -70,7 +70,7 @@ void greet(const Case& c, RunIdentity& identity, const System& system, const Pla
   if (!c.grains.empty()) log.line("reference grain: " + reference_text(c));
   if (system.cells() > 0) {
     const double bandwidth = measure_bandwidth(communicator);
-    const double bytes = bytes_per_cell_update(c.fluid.precision == Precision::single ? 4 : 8);
+    const double bytes = bytes_per_cell_update(c.fluid.precision == coupling::Precision::single ? 4 : 8);
     identity.memory_bound_mlups = bandwidth / bytes * 1e-6;
     log.line(fmt::format("memory bandwidth {:.1f} GB/s; {:.0f} bytes a cell update: at most {:.0f} MLUPS",
                          bandwidth * 1e-9, bytes, identity.memory_bound_mlups));

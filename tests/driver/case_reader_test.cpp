@@ -33,7 +33,7 @@ TEST(CaseReader, ReadsWhatTheFileSays) {
   EXPECT_EQ(c.domain.faces[y_low], (Face{FaceType::law_of_the_wall, 2.35}));
   EXPECT_EQ(c.domain.faces[top].type, FaceType::free_slip);
   EXPECT_EQ(c.fluid.smagorinsky_constant, 0.27);
-  EXPECT_EQ(c.fluid.precision, Precision::single);
+  EXPECT_EQ(c.fluid.precision, coupling::Precision::single);
   EXPECT_EQ(*c.gravity.slope, 0.07);
   ASSERT_EQ(c.grains.size(), 2u);
   EXPECT_EQ(c.grains[0].placement.pattern, dem::PlacementPattern::random);
@@ -140,9 +140,9 @@ TEST(CaseReader, ReadsEveryWallAndCollision) {
                    "coupling.near_contact=paper", "coupling.refill=grad", "coupling.covered_momentum=to_grain",
                    "coupling.narrow_gaps=slip", "coupling.grain_stress=true"});
   EXPECT_EQ(c.coupling.links, lbm::LinkRule::cli);
-  EXPECT_EQ(c.coupling.near_contact, NearContact::paper);
+  EXPECT_EQ(c.coupling.near_contact, coupling::NearContact::paper);
   EXPECT_EQ(c.coupling.refill, coupling::RefillRule::grad);
-  EXPECT_EQ(c.coupling.covered_momentum, CoveredMomentum::to_grain);
+  EXPECT_EQ(c.coupling.covered_momentum, coupling::CoveredMomentum::to_grain);
   EXPECT_EQ(c.coupling.narrow_gaps, lbm::GapRule::slip);
   EXPECT_TRUE(c.coupling.grain_stress);
   EXPECT_EQ(c.domain.faces[x_low].velocity, Vec3(0.2, 0, 0));

@@ -1,9 +1,8 @@
-#include "driver/case_sections.hpp"
+#include "coupling/fluid_keys.hpp"
 
-// Sections of a fluid: what it is made of, solids in it, and means of it.
-namespace thalweg::driver {
+namespace thalweg::coupling {
 
-static void describe(SectionVisitor& visit, FlowTargetCase& target) {
+static void describe(SectionVisitor& visit, FlowTargetKeys& target) {
   visit.real("velocity", target.velocity,
              {.unit = "m/s", .meaning = "mean over the fluid, along x", .required = true, .example = 0.3});
   visit.real("response_time", target.response_time,
@@ -14,7 +13,7 @@ static void describe(SectionVisitor& visit, FlowTargetCase& target) {
               .example = 0.1});
 }
 
-void describe(SectionVisitor& visit, FluidCase& fluid) {
+void describe(SectionVisitor& visit, FluidKeys& fluid) {
   visit.real("density", fluid.density,
              {.unit = "kg/m^3", .meaning = "mass density", .required = true, .above = 0.0, .example = 1000.0});
   visit.real("kinematic_viscosity", fluid.kinematic_viscosity,
@@ -62,20 +61,4 @@ void describe(SectionVisitor& visit, FluidCase& fluid) {
                 {.meaning = "hold this flow by a body force along x, in place of gravity along x"});
 }
 
-static void describe(SectionVisitor& visit, SphereCase& sphere) {
-  visit.vec3("centre", sphere.centre, {.unit = "m", .meaning = "of the sphere", .required = true, .example = 0.02});
-  visit.real("radius", sphere.radius,
-             {.unit = "m", .meaning = "of the sphere", .required = true, .above = 0.0, .example = 5e-3});
-}
-
-void describe(SectionVisitor& visit, SolidCase& solid) {
-  visit.section("sphere", solid.sphere, {.meaning = "a sphere; or give stl"});
-  visit.text("stl", solid.stl, {.meaning = "file with a closed surface, relative to this file; \"\": none"});
-  visit.real("scale", solid.scale, {.unit = "m", .meaning = "length of one unit of the STL file", .above = 0.0});
-  visit.vec3("translate", solid.translate, {.unit = "m", .meaning = "shift of the STL surface once scaled"});
-  visit.require(solid.sphere.has_value() || !solid.stl.empty(), "sphere",
-                "the solid has no shape; give sphere: {centre: [x, y, z], radius: r} in m, or stl: FILE");
-  visit.require(!(solid.sphere && !solid.stl.empty()), "stl", "the solid has two shapes; remove either sphere or stl");
-}
-
-}  // namespace thalweg::driver
+}  // namespace thalweg::coupling

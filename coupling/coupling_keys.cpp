@@ -1,0 +1,71 @@
+#include "coupling/coupling_keys.hpp"
+
+namespace thalweg::coupling {
+
+static void describe(SectionVisitor& visit, LubricationKeys& lubrication) {
+  visit.real(
+      "normal_cut_off", lubrication.normal_cut_off,
+      {.unit = "cells", .meaning = "gap below which the squeezing flow is not resolved", .above = 0.0, .at_most = 2.0});
+  visit.real("tangential_cut_off", lubrication.tangential_cut_off,
+             {.unit = "cells",
+              .meaning = "the same of sliding and rolling; 0: none of these",
+              .at_least = 0.0,
+              .at_most = 2.0});
+  visit.real("minimum_gap", lubrication.minimum_gap,
+             {.unit = "radii",
+              .meaning = "gaps count as at least this wide: the roughness of the grains",
+              .at_least = 1e-6,
+              .at_most = 0.1});
+}
+
+static void describe(SectionVisitor& visit, VirtualMassKeys& virtual_mass) {
+  visit.real("coefficient", virtual_mass.coefficient,
+             {.meaning = "of the mass of the displaced fluid; 1/2 is that of a sphere", .above = 0.0, .at_most = 10.0});
+}
+
+void describe(SectionVisitor& visit, CouplingKeys& coupling, bool with_grains) {
+  visit.choice("links", coupling.links, {.meaning = "how populations come back from a surface"});
+  visit.not_here("mass_correction", "the fluid's mass is always kept; remove the key");
+  if (!with_grains) {
+    for (const char* key :
+         {"grain_steps_per_fluid_step", "link_tolerance", "momentum_exchange", "wall_density", "narrow_gaps",
+          "near_contact", "refill", "covered_momentum", "load", "grain_stress", "mass_balance"})
+      visit.not_here(key, "system: fluid has no grains; remove the key or set system: resolved");
+    return;
+  }
+  visit.integer("grain_steps_per_fluid_step", coupling.grain_steps_per_fluid_step,
+                {.meaning = "sub-steps of the grains in one step of the fluid; auto: 20 in the shortest contact",
+                 .at_least = 1,
+                 .automatic = CouplingKeys::as_many_as_needed});
+  visit.real("link_tolerance", coupling.link_tolerance,
+             {.unit = "cells",
+              .meaning = "how far a grain may move before the map of its cells follows (the surface itself is cut "
+                         "exactly at all times)",
+              .at_least = 0.0,
+              .at_most = 0.1});
+  visit.choice("momentum_exchange", coupling.momentum_exchange, {.meaning = "how the force on a grain is summed"});
+  visit.choice("wall_density", coupling.wall_density, {.meaning = "density in the moving-wall term"});
+  visit.choice("narrow_gaps", coupling.narrow_gaps, {.meaning = "gaps of one cell between two grains"});
+  visit.choice<NearContact>("near_contact", coupling.near_contact,
+                            {{NearContact::subtracted, "subtracted", "reference pressure taken out of every link"},
+                             {NearContact::paper, "paper", "and the paper's links between grains"}},
+                            {.meaning = "patches of its surface that a grain's neighbours hide"});
+  visit.choice("refill", coupling.refill, {.meaning = "populations of a cell that a grain has uncovered"});
+  visit.choice<CoveredMomentum>(
+      "covered_momentum", coupling.covered_momentum,
+      {{CoveredMomentum::lost, "lost", "as published: grains get a little less than the fluid loses"},
+       {CoveredMomentum::to_grain, "to_grain"}},
+      {.meaning = "what a cell that a grain covers carries relative to the grain"});
+  visit.choice("load", coupling.load, {.meaning = "the force and torque of the fluid that move a grain in a step"});
+  visit.section(
+      "lubrication", coupling.lubrication,
+      {.meaning = "adds the force between near surfaces that the cells do not resolve, in every sub-step; {}"});
+  visit.section("virtual_mass", coupling.virtual_mass,
+                {.meaning = "for grains much lighter than the fluid: filters their load; {}"});
+  visit.flag("grain_stress", coupling.grain_stress,
+             {.meaning = "measure the fluid's stress on every grain, for its pictures: fluid_stress"});
+  visit.flag("mass_balance", coupling.mass_balance,
+             {.meaning = "show in series.csv which part of the link rule gives and takes the fluid's mass"});
+}
+
+}  // namespace thalweg::coupling

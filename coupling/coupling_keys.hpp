@@ -1,0 +1,54 @@
+// How a case says that fluid and grains, or solids, act on each other.
+#pragma once
+
+#include "core/section_visitor.hpp"
+#include "coupling/load_rule.hpp"
+#include "coupling/refill_rule.hpp"
+#include "lbm/link_options.hpp"
+
+#include <cstdint>
+#include <optional>
+
+namespace thalweg::coupling {
+
+enum class NearContact { subtracted, paper };
+enum class CoveredMomentum { lost, to_grain };
+
+// The part of the lubrication force between near surfaces that the cells cannot resolve.
+struct LubricationKeys {
+  double normal_cut_off = 2.0 / 3.0;  // cells, the gap below which the squeezing flow is not resolved
+  double tangential_cut_off = 0.5;    // cells, the same of sliding and rolling
+  double minimum_gap = 1e-3;          // radii: gaps count as at least this wide
+  bool operator==(const LubricationKeys&) const = default;
+};
+
+// Keeps light grains stable.
+struct VirtualMassKeys {
+  double coefficient = 0.5;  // of the mass of the displaced fluid
+  bool operator==(const VirtualMassKeys&) const = default;
+};
+
+struct CouplingKeys {
+  // The word auto; read_case() puts sub_steps_needed() in its place.
+  static constexpr std::int64_t as_many_as_needed = 0;
+  std::int64_t grain_steps_per_fluid_step = 50;
+  double link_tolerance = 1e-3;  // cells a grain may move before the map of its cells follows
+  lbm::MomentumExchange momentum_exchange = lbm::MomentumExchange::galilean_invariant;
+  lbm::WallDensity wall_density = lbm::WallDensity::local;
+  lbm::LinkRule links = lbm::LinkRule::bouzidi;
+  lbm::GapRule narrow_gaps = lbm::GapRule::no_slip;
+  NearContact near_contact = NearContact::subtracted;
+  RefillRule refill = RefillRule::equilibrium;
+  CoveredMomentum covered_momentum = CoveredMomentum::lost;
+  LoadRule load = LoadRule::extrapolated;
+  std::optional<LubricationKeys> lubrication;
+  std::optional<VirtualMassKeys> virtual_mass;
+  bool grain_stress = false;  // measure the fluid's stress on every grain
+  bool mass_balance = false;  // show what the links' mass is made of
+  bool operator==(const CouplingKeys&) const = default;
+};
+
+// with_grains: the keys of grains belong to the case, too.
+void describe(SectionVisitor& visit, CouplingKeys& coupling, bool with_grains);
+
+}  // namespace thalweg::coupling

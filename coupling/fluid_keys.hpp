@@ -1,0 +1,38 @@
+// How a case describes the fluid, in SI units.
+#pragma once
+
+#include "core/section_visitor.hpp"
+#include "lbm/collision_parameters.hpp"
+
+#include <optional>
+
+namespace thalweg::coupling {
+
+enum class Precision { single, double_ };
+
+// A mean velocity of the fluid that the body force is steered to, in place of gravity along that axis.
+struct FlowTargetKeys {
+  double velocity = 0.0;       // m/s, along x
+  double response_time = 0.0;  // s
+  bool operator==(const FlowTargetKeys&) const = default;
+};
+
+struct FluidKeys {
+  double density = 0.0;                            // kg/m^3
+  double kinematic_viscosity = 0.0;                // m^2/s
+  double smagorinsky_constant = 0.0;               // 1; 0: no subgrid model
+  std::optional<double> time_step;                 // s; else from the two velocities
+  std::optional<double> maximum_lattice_velocity;  // cells per step
+  std::optional<double> expected_velocity;         // m/s, the largest
+  lbm::CollisionModel collision = lbm::CollisionModel::bgk;
+  double magic_parameter = 3.0 / 16.0;  // of trt
+  // 1, of the trace of the stress; 0: as the shear's. Read as 1 with grains, bgk and a subgrid model, else 0.
+  std::optional<double> bulk_relaxation_time;
+  Precision precision = Precision::single;
+  std::optional<FlowTargetKeys> mean_velocity;
+  bool operator==(const FluidKeys&) const = default;
+};
+
+void describe(SectionVisitor& visit, FluidKeys& fluid);
+
+}  // namespace thalweg::coupling

@@ -1,0 +1,44 @@
+// How a case describes the fluid at the start, and the state that follows from it.
+#pragma once
+
+#include "core/section_visitor.hpp"
+#include "core/types.hpp"
+#include "coupling/fluid_parameters.hpp"
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+namespace thalweg::coupling {
+
+// Random eddies without divergence on top of a profile.
+struct PerturbationKeys {
+  double amplitude = 1.0;  // root mean square of a component over the shear velocity, away from walls
+  std::int64_t seed = 1;
+  bool operator==(const PerturbationKeys&) const = default;
+};
+
+// u(z) = (shear_velocity / 0.41) ln((z - bed_height) / roughness) along x above the bed, zero below.
+struct LogProfileKeys {
+  double bed_height = 0.0;      // m above the bottom
+  double shear_velocity = 0.0;  // m/s
+  double roughness = 0.0;       // m, the height where the velocity is zero (for grains about d/30)
+  std::optional<PerturbationKeys> perturbation;
+  bool operator==(const LogProfileKeys&) const = default;
+};
+
+// Neither: at rest.
+struct InitialFluidKeys {
+  std::optional<Vec3> uniform;  // m/s
+  std::optional<LogProfileKeys> log_profile;
+  bool operator==(const InitialFluidKeys&) const = default;
+};
+
+void describe(SectionVisitor& visit, InitialFluidKeys& fluid);
+
+// The state at a position (m); empty: at rest. spacing: m, of the cells.
+std::function<FluidInitialState(const Vec3&)> initial_fluid(const InitialFluidKeys& fluid, const Index3& cells,
+                                                            const std::array<bool, 3>& periodic, double spacing);
+
+}  // namespace thalweg::coupling
