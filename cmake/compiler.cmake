@@ -43,3 +43,9 @@ function(thalweg_library name)
   set_target_properties(thalweg_${name} PROPERTIES EXPORT_NAME ${name})
   target_link_libraries(thalweg_${name} PUBLIC thalweg_compile_options PRIVATE $<BUILD_INTERFACE:thalweg_own_options>)
 endfunction()
+
+# thalweg_links(source...): files that instantiate passes over links. Batches of links are whole vectors, however short.
+function(thalweg_links)
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS
+    "$<$<CXX_COMPILER_ID:GNU>:-fvect-cost-model=unlimited>;-Wno-maybe-uninitialized;-Wno-uninitialized")
+endfunction()

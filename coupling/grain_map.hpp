@@ -1,75 +1,114 @@
-// Which cells each grain covers, kept up to date as grains move.
-//
-// A cell is solid if its centre is strictly inside a grain; where two overlapping grains claim a cell, the lower global
-// id has it, whatever the order of events. The map covers this rank's cells and one ghost layer. Grains live in slots
-// that stay theirs as long as the grain is in reach of this rank; slots index the lattice's LinkBody table as well.
+// Which cells each grain covers, kept up to date as grains move. A cell is solid if its centre is strictly inside a
+// grain.
 #pragma once
 
-#include "core/decomposition.hpp"
-#include "coupling/hidden_patches.hpp"
+#include "core/shape.hpp"
+#include "core/sphere.hpp"
+#include "coupling/cell_claims.hpp"
 #include "coupling/local_cells.hpp"
-#include "lbm/cell_map.hpp"
-#include "lbm/link_table.hpp"
 
-#include <unordered_map>
+#include <algorithm>
+#include <span>
+#include <utility>
 #include <vector>
 
 namespace thalweg::coupling {
 
-struct MappedGrain {
-  GlobalId id = -1;            // -1: the slot is free
-  GlobalId clump = -1;         // it is a member of; -1: none
-  double radius = 0.0;         // lattice units
-  Vec3 centre = Vec3::Zero();  // for which its cells stand; lattice units, global
-};
-
-class GrainMap {
+template <Shape S = Sphere>
+class GrainMap : public CellClaims {
 public:
-  // A cell whose cover changed in the present update; local coordinates, owned or ghost.
-  struct Change {
-    Index3 cell;
-    std::int32_t before, now;  // slots; CellMap::fluid
-  };
+  GrainMap(const Decomposition& decomposition, const Block& block, lbm::CellMap& cells)
+      : CellClaims(decomposition, block, cells), local_cells_(decomposition, block) {}
 
-  GrainMap(const Decomposition& decomposition, const Block& block, lbm::CellMap& cells);
+  // A new slot, covering nothing yet. shape: in cells.
+  int add(GlobalId id, const S& shape, GlobalId clump = -1);
+  void remove(int slot);  // gives up the grain's cells
 
-  const std::vector<MappedGrain>& grains() const { return grains_; }
-  int slot_of(GlobalId id) const;  // -1 if the grain is not here
-
-  int add(GlobalId id, double radius, GlobalId clump = -1);  // a new slot, covering nothing yet
-  void remove(int slot);                                     // gives up the grain's cells
-
-  void begin_update();  // forgets the changes of the last update
-
-  // Moves a grain: its cells are those of a sphere at `centre`. Changes are collected until settle().
+  // Moves a grain: its cells are those inside its shape at `centre`. Changes are collected until settle().
   void place(int slot, const Vec3& centre);
 
-  // Ends an update: returns what changed, each cell once, sorted. Valid until begin_update().
-  const std::vector<Change>& settle();
-  const std::vector<Change>& changes() const { return changes_; }
-
-  const HiddenPatches& hidden_patches() const { return hidden_patches_; }  // of the grains' present cells
+  std::span<const S> shapes() const { return shapes_; }  // by slot
 
 private:
-  void assign(const Index3& local, std::ptrdiff_t cell, std::int32_t slot);
+  static constexpr double nowhere = -1e8;  // no grain's centre is below this
+
   // Turns the cells within reach of `middle` that are inside the grain at only one of the two places of its centre.
   void turn_cells(int slot, const Vec3& middle, double reach, const Vec3& old, const Vec3& now);
-  void take(int slot, const Index3& local);
-  void leave(int slot, const Index3& local);
-  void withdraw(int slot, std::ptrdiff_t cell);
+  using Chord = decltype(std::declval<const S&>().chord(0.0, 0.0));
+  void turn_row(int slot, int y, int z, const Chord& before, const Chord& after);
 
   LocalCells local_cells_;
-  lbm::CellMap& cells_;
-  HiddenPatches hidden_patches_;
-  std::vector<MappedGrain> grains_;
-  std::vector<int> free_slots_;
-  std::unordered_map<GlobalId, int> slot_of_id_;
-  std::unordered_map<std::ptrdiff_t, std::vector<int>> claimants_;  // of cells that a lower id has
-  std::vector<Change> changes_;
-  // Scratch of turn_cells: cells along each axis from the two centres; of a row, squares of the offsets and who turns.
+  std::vector<S> shapes_;
+  // Scratch of turn_cells: cells along each axis from the two centres; of a row, who turns.
   std::vector<LocalCell> before_[3], after_[3];
-  std::vector<double> squares_before_, squares_after_;
+  std::vector<double> x_before_, x_after_;
   std::vector<unsigned> turns_;
 };
+
+template <Shape S>
+int GrainMap<S>::add(GlobalId id, const S& shape, GlobalId clump) {
+  const int slot = new_slot({id, clump, shape.reach(), Vec3::Constant(2.0 * nowhere)});
+  shapes_.resize(grains().size());
+  shapes_[static_cast<std::size_t>(slot)] = shape;
+  return slot;
+}
+
+template <Shape S>
+void GrainMap<S>::remove(int slot) {
+  place(slot, Vec3::Constant(2.0 * nowhere));
+  free_slot(slot);
+}
+
+template <Shape S>
+void GrainMap<S>::place(int slot, const Vec3& centre) {
+  const double reach = grain(slot).reach;
+  const Vec3 old = grain(slot).centre;
+  grain(slot).centre = centre;
+  const bool was_here = old.x() > nowhere, is_here = centre.x() > nowhere;
+  if (was_here && is_here && (centre - old).squaredNorm() < 1.0) {
+    turn_cells(slot, centre, reach + 1.0, old, centre);
+  } else {
+    if (was_here) turn_cells(slot, old, reach, old, centre);
+    if (is_here) turn_cells(slot, centre, reach, old, centre);
+  }
+}
+
+// Only cells that are inside at one of the two places and not at the other can change hands; what the grain holds or
+// claims of the others stays.
+template <Shape S>
+void GrainMap<S>::turn_cells(int slot, const Vec3& middle, double reach, const Vec3& old, const Vec3& now) {
+  for (int a = 0; a < 3; ++a) {
+    local_cells_.along(a, middle[a], reach, old[a], 1, before_[a]);
+    local_cells_.along(a, middle[a], reach, now[a], 1, after_[a]);
+  }
+  const auto offset = [](const LocalCell& place) { return place.offset; };
+  x_before_.resize(before_[0].size());
+  x_after_.resize(after_[0].size());
+  std::transform(before_[0].begin(), before_[0].end(), x_before_.begin(), offset);
+  std::transform(after_[0].begin(), after_[0].end(), x_after_.begin(), offset);
+  const S& shape = shapes_[static_cast<std::size_t>(slot)];
+  for (std::size_t z = 0; z < after_[2].size(); ++z)
+    for (std::size_t y = 0; y < after_[1].size(); ++y) {
+      const Chord before = shape.chord(before_[1][y].offset, before_[2][z].offset),
+                  after = shape.chord(after_[1][y].offset, after_[2][z].offset);
+      if (!before.missed() || !after.missed()) turn_row(slot, after_[1][y].local, after_[2][z].local, before, after);
+    }
+}
+
+template <Shape S>
+void GrainMap<S>::turn_row(int slot, int y, int z, const Chord& before, const Chord& after) {
+  const std::size_t width = x_after_.size();
+  turns_.resize(width);
+  unsigned any = 0;
+  for (std::size_t k = 0; k < width; ++k) {
+    turns_[k] = before.holds(x_before_[k]) != after.holds(x_after_[k]);
+    any |= turns_[k];
+  }
+  for (std::size_t k = 0; any && k < width; ++k) {
+    if (!turns_[k]) continue;
+    const Index3 local{after_[0][k].local, y, z};
+    after.holds(x_after_[k]) ? claim(slot, local) : give_up(slot, local);
+  }
+}
 
 }  // namespace thalweg::coupling

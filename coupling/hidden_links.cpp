@@ -1,11 +1,9 @@
 #include "coupling/hidden_links.hpp"
 
-#include "coupling/lattice_vectors.hpp"
 #include "lbm/bouzidi_link.hpp"
 #include "lbm/equilibrium.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace thalweg::coupling {
 
@@ -29,11 +27,11 @@ std::size_t HiddenLinks::count() const {
   return total;
 }
 
-void HiddenLinks::update(const GrainMap& map) {
+void HiddenLinks::update(const CellClaims& map) {
   if (!wanted()) return;
   links_.resize(map.grains().size());
   is_stale_.resize(map.grains().size(), 0);
-  for (const GrainMap::Change& change : map.changes()) {
+  for (const CellChange& change : map.changes()) {
     mark(change.before);
     mark(change.now);
     mark_around(change.cell);
@@ -69,7 +67,7 @@ void HiddenLinks::rebuild(int slot, const std::vector<MappedGrain>& grains) {
   const MappedGrain& grain = grains[static_cast<std::size_t>(slot)];
   links_[static_cast<std::size_t>(slot)].clear();
   if (grain.id < 0) return;
-  for (int a = 0; a < 3; ++a) local_cells_.along(a, grain.centre[a], grain.radius, grain.centre[a], 0, places_[a]);
+  for (int a = 0; a < 3; ++a) local_cells_.along(a, grain.centre[a], grain.reach, grain.centre[a], 0, places_[a]);
   for (const LocalCell& z : places_[2])
     for (const LocalCell& y : places_[1])
       for (const LocalCell& x : places_[0]) {
@@ -122,21 +120,14 @@ Vec3 HiddenLinks::momentum_of(const Link& link, const Vec3& from, double distanc
   return momentum;
 }
 
-void HiddenLinks::apply(std::vector<lbm::LinkBody>& bodies, std::vector<FixedTensor>* moments) const {
-  for (std::size_t slot = 0; slot < links_.size(); ++slot)
-    for (const Link& link : links_[slot]) {
-      lbm::LinkBody& body = bodies[slot];
-      const Vec3 c = velocity_of(link.direction), from = box_.difference(link.from, body.centre);
-      const double a = D3Q19::length_squared(link.direction), b = c.dot(from),
-                   q = from.squaredNorm() - body.radius * body.radius;
-      // Where grains overlap, x_f can be inside this one, too.
-      const double met = q > 0.0 ? (-b - std::sqrt(std::max(b * b - a * q, 0.0))) / a : 0.0;
-      const double distance = std::clamp(met, 0.0, 1.0);
-      const Vec3 momentum = momentum_of(link, from, distance, body, bodies), arm = from + distance * c;
-      body.force += FixedVec3::from(momentum);
-      body.torque += FixedVec3::from(arm.cross(momentum));
-      if (moments) (*moments)[slot].add(momentum, arm);
-    }
+void HiddenLinks::add(const Link& link, const Vec3& from, double distance, std::size_t slot,
+                      std::vector<lbm::LinkBody>& bodies, std::vector<FixedTensor>* moments) const {
+  lbm::LinkBody& body = bodies[slot];
+  const Vec3 arm = from + distance * velocity_of(link.direction);
+  const Vec3 momentum = momentum_of(link, from, distance, body, bodies);
+  body.force += FixedVec3::from(momentum);
+  body.torque += FixedVec3::from(arm.cross(momentum));
+  if (moments) (*moments)[slot].add(momentum, arm);
 }
 
 }  // namespace thalweg::coupling

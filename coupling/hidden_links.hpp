@@ -15,11 +15,15 @@
 #pragma once
 
 #include "core/decomposition.hpp"
-#include "coupling/grain_map.hpp"
+#include "core/shape.hpp"
+#include "coupling/cell_claims.hpp"
 #include "coupling/hydrostatic.hpp"
+#include "coupling/lattice_vectors.hpp"
 #include "coupling/local_cells.hpp"
 #include "lbm/bouzidi.hpp"
 
+#include <algorithm>
+#include <span>
 #include <vector>
 
 namespace thalweg::coupling {
@@ -38,10 +42,11 @@ public:
 
   // Finds anew the hidden links around cells that changed hands since the last call; does nothing where nobody wants
   // them. A link belongs to the rank that owns its solid cell.
-  void update(const GrainMap& map);
+  void update(const CellClaims& map);
 
-  // Adds the momentum of all hidden links to their bodies, and sum F_a x_b to moments, where given.
-  void apply(std::vector<lbm::LinkBody>& bodies, std::vector<FixedTensor>* moments) const;
+  // Adds the momentum of all hidden links to their bodies, and sum F_a x_b to moments, where given. shapes: by slot.
+  template <Shape S>
+  void apply(std::span<const S> shapes, std::vector<lbm::LinkBody>& bodies, std::vector<FixedTensor>* moments) const;
 
   std::size_t count() const;
 
@@ -58,6 +63,9 @@ private:
   void find_at_cell(int slot, const Index3& local, const std::vector<MappedGrain>& grains);
   Vec3 momentum_of(const Link& link, const Vec3& from, double distance, const lbm::LinkBody& body,
                    const std::vector<lbm::LinkBody>& bodies) const;
+  // from: x_f from the body's centre.
+  void add(const Link& link, const Vec3& from, double distance, std::size_t slot, std::vector<lbm::LinkBody>& bodies,
+           std::vector<FixedTensor>* moments) const;
 
   const Decomposition& decomposition_;
   Block block_;
@@ -71,5 +79,19 @@ private:
   std::vector<char> is_stale_;            // by slot
   std::vector<LocalCell> places_[3];      // scratch
 };
+
+// Where grains overlap, x_f can be inside this one, too. A line that just misses the surface, because the cells are
+// those of a place a little apart, meets it where it is nearest to the centre.
+template <Shape S>
+void HiddenLinks::apply(std::span<const S> shapes, std::vector<lbm::LinkBody>& bodies,
+                        std::vector<FixedTensor>* moments) const {
+  for (std::size_t slot = 0; slot < links_.size(); ++slot)
+    for (const Link& link : links_[slot]) {
+      const Vec3 c = velocity_of(link.direction), from = box_.difference(link.from, bodies[slot].centre);
+      double met = 0.0;
+      if (!is_inside(shapes[slot], from)) met = shapes[slot].crossing(from, c).value_or(-c.dot(from) / c.squaredNorm());
+      add(link, from, std::clamp(met, 0.0, 1.0), slot, bodies, moments);
+    }
+}
 
 }  // namespace thalweg::coupling

@@ -1,8 +1,5 @@
 #include "coupling/hidden_patches.hpp"
 
-#include "coupling/grain_map.hpp"
-#include "coupling/lattice_vectors.hpp"
-
 namespace thalweg::coupling {
 
 using lbm::CellMap;
@@ -61,41 +58,41 @@ Vec3 HiddenPatches::patch(std::int32_t p, std::int32_t q) const {
   return Vec3(sum[0], sum[1], sum[2]) / 36.0;
 }
 
-void HiddenPatches::apply(const std::vector<MappedGrain>& grains, const std::vector<double>& surrounding,
-                          double reference, std::vector<lbm::LinkBody>& bodies,
-                          std::vector<FixedTensor>* moments) const {
-  for (const auto& [pair, patch] : patches_) {
-    const auto p = static_cast<std::size_t>(pair >> 32);
-    const auto q = static_cast<std::int32_t>(static_cast<std::uint32_t>(pair));
-    const GlobalId clump = grains[p].clump;
-    if (q >= 0 && clump >= 0 && grains[static_cast<std::size_t>(q)].clump == clump) continue;
-    lbm::LinkBody& body = bodies[p];
-    double density = surrounding[p];
-    Vec3 outward = Vec3::Zero();
-    if (q < 0) {
-      const int face = wall_of_face(0) - q;
-      outward[face / 2] = face % 2 == 0 ? -1.0 : 1.0;
-    } else {
-      const lbm::LinkBody& other = bodies[static_cast<std::size_t>(q)];
-      density += (surrounding[static_cast<std::size_t>(q)] - density) * body.radius / (body.radius + other.radius);
-      outward = box_.difference(other.centre, body.centre);
+// Out of p, towards q.
+Vec3 HiddenPatches::direction(const Pair& pair, const std::vector<lbm::LinkBody>& bodies) const {
+  if (pair.q >= 0)
+    return box_.difference(bodies[static_cast<std::size_t>(pair.q)].centre,
+                           bodies[static_cast<std::size_t>(pair.p)].centre);
+  const int face = wall_of_face(0) - pair.q;
+  Vec3 outward = Vec3::Zero();
+  outward[face / 2] = face % 2 == 0 ? -1.0 : 1.0;
+  return outward;
+}
+
+// Numbers are rounded before they are multiplied by the patch, so that the parts of a patch on several ranks add up to
+// the whole.
+void HiddenPatches::press(const Patch& patch, const Vec3& arm, const Vec3& normal, double excess, lbm::LinkBody& body,
+                          FixedTensor* moment) {
+  const double line = 2.0 * excess / 36.0;
+  const std::int64_t force = LatticeFixed::from(line);
+  body.force += FixedVec3{force * patch.sum[0], force * patch.sum[1], force * patch.sum[2]};
+  // Exactly zero where the normal passes through the centre.
+  const Vec3 turning = arm.cross(normal) / normal.squaredNorm();
+  if (!turning.isZero(0.0))
+    for (int a = 0; a < 3; ++a) {
+      const FixedVec3 torque = FixedVec3::from(line * normal[a] * turning);
+      body.torque += {torque.x * patch.sum[a], torque.y * patch.sum[a], torque.z * patch.sum[a]};
     }
-    // Rounded before it is multiplied by the patch, so that the parts of a patch on several ranks add up to the whole.
-    const double line = 2.0 * (density - reference) / 36.0;
-    const std::int64_t force = LatticeFixed::from(line);
-    if (q >= 0) {
-      const Vec3 velocity = 0.5 * (body.velocity + bodies[static_cast<std::size_t>(q)].velocity);
-      for (int a = 0; a < 3; ++a) body.mass -= LatticeFixed::from(6.0 / 36.0 * velocity[a]) * patch.sum[a];
-    }
-    body.force += FixedVec3{force * patch.sum[0], force * patch.sum[1], force * patch.sum[2]};
-    if (!moments) continue;
-    // A pressure has no torque about the centre of a sphere: the symmetric part alone.
-    const Vec3 arm = outward * (body.radius / outward.norm());
-    std::array<std::int64_t, 3> half;
-    for (int b = 0; b < 3; ++b) half[b] = LatticeFixed::from(0.5 * line * arm[b]);
-    for (std::size_t k = 0; k < 9; ++k)
-      (*moments)[p].sums[k] += half[k % 3] * patch.sum[k / 3] + half[k / 3] * patch.sum[k % 3];
-  }
+  if (!moment) return;
+  std::array<std::int64_t, 3> half;
+  for (int b = 0; b < 3; ++b) half[b] = LatticeFixed::from(0.5 * line * arm[b]);
+  for (std::size_t k = 0; k < 9; ++k)
+    moment->sums[k] += half[k % 3] * patch.sum[k / 3] + half[k / 3] * patch.sum[k % 3];
+}
+
+void HiddenPatches::give_mass(const Patch& patch, lbm::LinkBody& body, const lbm::LinkBody& other) {
+  const Vec3 velocity = 0.5 * (body.velocity + other.velocity);
+  for (int a = 0; a < 3; ++a) body.mass -= LatticeFixed::from(6.0 / 36.0 * velocity[a]) * patch.sum[a];
 }
 
 }  // namespace thalweg::coupling

@@ -27,9 +27,9 @@ LinkBuilder::LinkBuilder(const Decomposition& decomposition, const Block& block,
                                    block.size()[a], "xy"[a], lbm::LinkPlace::largest));
 }
 
-void LinkBuilder::update(const GrainMap& map, lbm::LinkTable& table) {
+void LinkBuilder::update(const CellClaims& map, lbm::LinkTable& table) {
   stale_tiles_.resize(map.grains().size());
-  for (const GrainMap::Change& change : map.changes()) mark_around(change);
+  for (const CellChange& change : map.changes()) mark_around(change);
   std::sort(stale_.begin(), stale_.end());
   for (const int slot : stale_) {
     if (map.grains()[slot].id < 0)
@@ -50,7 +50,7 @@ void LinkBuilder::mark(std::int32_t slot, int tile) {
 
 // A link is told by its fluid cell, its solid cell and the cell upstream, and a changed cell may be any of them. The
 // neighbours may have changed in the same update, so it does not count what they are now.
-void LinkBuilder::mark_around(const GrainMap::Change& change) {
+void LinkBuilder::mark_around(const CellChange& change) {
   const lbm::CellIndexing& indexing = cells_.indexing();
   const Index3 &at = change.cell, &n = indexing.size();
   const std::ptrdiff_t cell = indexing.index(at[0], at[1], at[2]);
@@ -75,7 +75,7 @@ void LinkBuilder::mark_around(const GrainMap::Change& change) {
 }
 
 void LinkBuilder::rebuild(int slot, const MappedGrain& grain, lbm::LinkTable& table) {
-  const double reach = grain.radius + longest_link;
+  const double reach = grain.reach + longest_link;
   std::vector<LocalCell>* places[2] = {&xs_, &ys_};
   const auto before = [](const LocalCell& p, const LocalCell& q) { return p.local < q.local; };
   const auto same = [](const LocalCell& p, const LocalCell& q) { return p.local == q.local; };

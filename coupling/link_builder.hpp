@@ -3,7 +3,7 @@
 // grain in one tile at a time.
 #pragma once
 
-#include "coupling/grain_map.hpp"
+#include "coupling/cell_claims.hpp"
 #include "coupling/local_cells.hpp"
 #include "lbm/cell_map.hpp"
 #include "lbm/link_table.hpp"
@@ -20,10 +20,10 @@ public:
               const lbm::RowTiles& tiles);
 
   // Brings the table up to date with the map's changes since the last call.
-  void update(const GrainMap& map, lbm::LinkTable& table);
+  void update(const CellClaims& map, lbm::LinkTable& table);
 
 private:
-  void mark_around(const GrainMap::Change& change);
+  void mark_around(const CellChange& change);
   void mark(std::int32_t slot, int tile);
   void rebuild(int slot, const MappedGrain& grain, lbm::LinkTable& table);
   void find_in_row(int slot, int y, int z);

@@ -82,9 +82,9 @@ std::ptrdiff_t Refill::index_of(const lbm::CellIndexing& indexing, const Index3&
 
 // Every uncovered cell in reach once, sorted by place in the box, so that all ranks list shared cells in the same
 // order.
-std::vector<Refill::Uncovered> Refill::uncovered_cells(const std::vector<GrainMap::Change>& changes) const {
+std::vector<Refill::Uncovered> Refill::uncovered_cells(const std::vector<CellChange>& changes) const {
   std::vector<Uncovered> uncovered;
-  for (const GrainMap::Change& change : changes) {
+  for (const CellChange& change : changes) {
     if (change.now != CellMap::fluid) continue;
     Index3 global;
     for (int a = 0; a < 3; ++a) global[a] = block_.lower[a] + change.cell[a];
@@ -121,14 +121,14 @@ Refill::Neighbours Refill::look_at(const lbm::Fluid<Real>& fluid, std::ptrdiff_t
 
 template <typename Real>
 void Refill::add_own_neighbours(const lbm::Fluid<Real>& fluid, const std::vector<lbm::LinkBody>& bodies,
-                                std::vector<Uncovered>& uncovered) const {
+                                const Outward& outward, std::vector<Uncovered>& uncovered) const {
   const auto fresh = [&](const Index3& global) {
     const auto found = std::lower_bound(uncovered.begin(), uncovered.end(), key(global),
                                         [](const Uncovered& u, const auto& k) { return key(u.global) < k; });
     return found != uncovered.end() && found->global == global;
   };
   for (Uncovered& cell : uncovered) {
-    const Vec3 normal = box_.difference(centre_of(cell.global), bodies[cell.before].centre);
+    const Vec3 normal = outward(cell.before, box_.difference(centre_of(cell.global), bodies[cell.before].centre));
     for (int i = 1; i < D3Q19::directions; ++i) {
       const Index3 neighbour = wrapped(step_from(cell.global, i));
       if (!block_.contains(neighbour)) continue;
@@ -197,12 +197,12 @@ std::array<double, 19> Refill::populations_of(const Neighbours& n, const Vec3& v
 }
 
 template <typename Real>
-RefillTotals Refill::fill(lbm::Fluid<Real>& fluid, const std::vector<GrainMap::Change>& changes,
-                          const Hydrostatic& rest, std::vector<lbm::LinkBody>& bodies) {
+RefillTotals Refill::fill(lbm::Fluid<Real>& fluid, const std::vector<CellChange>& changes, const Hydrostatic& rest,
+                          const Outward& outward, std::vector<lbm::LinkBody>& bodies) {
   RefillTotals totals;
   std::vector<Uncovered> uncovered = uncovered_cells(changes);
   if (uncovered.empty()) return totals;
-  add_own_neighbours(fluid, bodies, uncovered);
+  add_own_neighbours(fluid, bodies, outward, uncovered);
   exchange(uncovered);
 
   const double(&f)[3] = fluid.parameters().force;
@@ -231,9 +231,9 @@ RefillTotals Refill::fill(lbm::Fluid<Real>& fluid, const std::vector<GrainMap::C
   return totals;
 }
 
-template RefillTotals Refill::fill(lbm::Fluid<float>&, const std::vector<GrainMap::Change>&,
-                                   const Hydrostatic&, std::vector<lbm::LinkBody>&);
-template RefillTotals Refill::fill(lbm::Fluid<double>&, const std::vector<GrainMap::Change>&,
-                                   const Hydrostatic&, std::vector<lbm::LinkBody>&);
+template RefillTotals Refill::fill(lbm::Fluid<float>&, const std::vector<CellChange>&, const Hydrostatic&,
+                                   const Outward&, std::vector<lbm::LinkBody>&);
+template RefillTotals Refill::fill(lbm::Fluid<double>&, const std::vector<CellChange>&, const Hydrostatic&,
+                                   const Outward&, std::vector<lbm::LinkBody>&);
 
 }  // namespace thalweg::coupling

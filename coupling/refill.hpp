@@ -17,7 +17,7 @@
 
 #include "core/decomposition.hpp"
 #include "core/fixed_point.hpp"
-#include "coupling/grain_map.hpp"
+#include "coupling/cell_claims.hpp"
 #include "coupling/hydrostatic.hpp"
 #include "coupling/refill_rule.hpp"
 #include "lbm/fluid.hpp"
@@ -25,6 +25,7 @@
 #include <mpi.h>
 
 #include <array>
+#include <functional>
 #include <vector>
 
 namespace thalweg::coupling {
@@ -38,14 +39,17 @@ struct RefillTotals {
 
 class Refill {
 public:
+  // The direction of the normal of a slot's body, of any length, at a point from its centre (core/shape.hpp).
+  using Outward = std::function<Vec3(std::int32_t slot, const Vec3& point)>;
+
   Refill(const Decomposition& decomposition, MPI_Comm communicator, RefillRule rule = RefillRule::equilibrium);
 
-  // changes: from GrainMap::settle(); bodies: centre and motion of the slots, to whose mass rho - rho_rest of the cells
-  // that each has uncovered is added. Call after the map is settled and before the halo exchange. Every rank calls it
-  // each step.
+  // changes: from CellClaims::settle(); bodies: centre and motion of the slots, to whose mass rho - rho_rest of the
+  // cells that each has uncovered is added; outward: their normals. Call after the map is settled and before the halo
+  // exchange. Every rank calls it each step.
   template <typename Real>
-  RefillTotals fill(lbm::Fluid<Real>& fluid, const std::vector<GrainMap::Change>& changes, const Hydrostatic& rest,
-                    std::vector<lbm::LinkBody>& bodies);
+  RefillTotals fill(lbm::Fluid<Real>& fluid, const std::vector<CellChange>& changes, const Hydrostatic& rest,
+                    const Outward& outward, std::vector<lbm::LinkBody>& bodies);
 
 private:
   // What the fluid neighbours of one uncovered cell tell; a message between ranks as it stands.
@@ -69,10 +73,10 @@ private:
   int owner_of(const Index3& cell) const;
   std::vector<int> owners_of_neighbours(const Index3& cell) const;  // other than this rank, sorted
   std::ptrdiff_t index_of(const lbm::CellIndexing& indexing, const Index3& global) const;
-  std::vector<Uncovered> uncovered_cells(const std::vector<GrainMap::Change>& changes) const;
+  std::vector<Uncovered> uncovered_cells(const std::vector<CellChange>& changes) const;
   template <typename Real>
   void add_own_neighbours(const lbm::Fluid<Real>& fluid, const std::vector<lbm::LinkBody>& bodies,
-                          std::vector<Uncovered>& uncovered) const;
+                          const Outward& outward, std::vector<Uncovered>& uncovered) const;
   template <typename Real>
   Neighbours look_at(const lbm::Fluid<Real>& fluid, std::ptrdiff_t cell, int direction, const Vec3& normal) const;
   void exchange(std::vector<Uncovered>& uncovered) const;

@@ -8,7 +8,6 @@ namespace thalweg::coupling {
 
 namespace {
 
-// Links that run along an edge or end on a surface are met all the same, up to round-off.
 constexpr double slack = 1e-9;
 
 // True if, in the plane (y, z), the line from (y, z) towards +y crosses the edge. The edge is taken in the same order
@@ -24,9 +23,10 @@ bool crosses_edge(const Vec3& a, const Vec3& b, double y, double z) {
 }  // namespace
 
 Extent extent_of(const SolidShape& shape) {
-  if (const auto* sphere = std::get_if<SolidSphere>(&shape))
-    return {sphere->centre.array() - sphere->radius, sphere->centre.array() + sphere->radius};
-  const TriangleMesh& mesh = std::get<TriangleMesh>(shape);
+  return std::visit([](const auto& s) { return extent_of(s); }, shape);
+}
+
+Extent extent_of(const TriangleMesh& mesh) {
   Extent extent{mesh.points.front(), mesh.points.front()};
   for (const Vec3& point : mesh.points) {
     extent.lower = extent.lower.cwiseMin(point);
@@ -45,6 +45,11 @@ std::optional<Crossing> crossing(const Corners& t, double y, double z) {
   return Crossing{x, normal.x() < 0.0 ? 1 : -1};
 }
 
+std::optional<double> on_link(std::optional<double> way) {
+  if (!way || *way < -slack || *way > 1.0 + slack) return std::nullopt;
+  return std::clamp(*way, 0.0, 1.0);
+}
+
 // Moeller and Trumbore 1997.
 std::optional<double> meets(const Corners& t, const Vec3& from, const Vec3& along) {
   const Vec3 first = t[1] - t[0], second = t[2] - t[0], p = along.cross(second);
@@ -52,18 +57,8 @@ std::optional<double> meets(const Corners& t, const Vec3& from, const Vec3& alon
   if (std::abs(determinant) < 1e-14 * first.norm() * second.norm()) return std::nullopt;  // parallel to the triangle
   const Vec3 offset = from - t[0], q = offset.cross(first);
   const double u = offset.dot(p) / determinant, v = along.dot(q) / determinant, way = second.dot(q) / determinant;
-  if (u < -slack || v < -slack || u + v > 1.0 + slack || way < -slack || way > 1.0 + slack) return std::nullopt;
-  return std::clamp(way, 0.0, 1.0);
-}
-
-std::optional<double> meets(const SolidSphere& sphere, const Vec3& from, const Vec3& along) {
-  const Vec3 offset = from - sphere.centre;
-  const double a = along.squaredNorm(), b = along.dot(offset);
-  const double discriminant = b * b - a * (offset.squaredNorm() - sphere.radius * sphere.radius);
-  if (b >= 0.0 || discriminant < 0.0) return std::nullopt;
-  const double way = (-b - std::sqrt(discriminant)) / a;
-  if (way < -slack || way > 1.0 + slack) return std::nullopt;
-  return std::clamp(way, 0.0, 1.0);
+  if (u < -slack || v < -slack || u + v > 1.0 + slack) return std::nullopt;
+  return on_link(way);
 }
 
 }  // namespace thalweg::coupling

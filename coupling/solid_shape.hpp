@@ -2,6 +2,7 @@
 // units, global coordinates.
 #pragma once
 
+#include "core/sphere.hpp"
 #include "core/triangle_mesh.hpp"
 #include "core/types.hpp"
 
@@ -10,16 +11,25 @@
 
 namespace thalweg::coupling {
 
-struct SolidSphere {
+// A shape (core/shape.hpp) somewhere in the box.
+template <Shape S>
+struct PlacedShape {
   Vec3 centre = Vec3::Zero();
-  double radius = 0.0;
+  S shape;
 };
+using SolidSphere = PlacedShape<Sphere>;
 
-using SolidShape = std::variant<SolidSphere, TriangleMesh>;  // a mesh is closed and wound outwards
+// Another shape of the concept is one more alternative. A mesh is closed and wound outwards.
+using SolidShape = std::variant<SolidSphere, TriangleMesh>;
 
 struct Extent {
   Vec3 lower, upper;
 };
+Extent extent_of(const TriangleMesh& mesh);
+template <Shape S>
+Extent extent_of(const PlacedShape<S>& solid) {
+  return {solid.centre.array() - solid.shape.reach(), solid.centre.array() + solid.shape.reach()};
+}
 Extent extent_of(const SolidShape& shape);
 
 using Corners = std::array<Vec3, 3>;
@@ -34,7 +44,13 @@ struct Crossing {
 std::optional<Crossing> crossing(const Corners& triangle, double y, double z);
 
 // The fraction t in [0, 1] of the way from a point along a link at which it meets the surface; none: it does not.
+// Links that run along an edge or end on a surface are met all the same, up to round-off; on_link() says so of the
+// fraction at which their line meets it.
+std::optional<double> on_link(std::optional<double> way);
 std::optional<double> meets(const Corners& triangle, const Vec3& from, const Vec3& along);
-std::optional<double> meets(const SolidSphere& sphere, const Vec3& from, const Vec3& along);
+template <Shape S>
+std::optional<double> meets(const PlacedShape<S>& solid, const Vec3& from, const Vec3& along) {
+  return on_link(solid.shape.crossing(from - solid.centre, along));
+}
 
 }  // namespace thalweg::coupling

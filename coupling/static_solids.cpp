@@ -56,7 +56,7 @@ StaticSolids::StaticSolids(const Decomposition& decomposition, MPI_Comm communic
   for (std::size_t s = 0; s < shapes.size(); ++s) {
     const Extent extent = coupling::extent_of(shapes[s]);
     bodies_[s].centre = 0.5 * (extent.lower + extent.upper);
-    cover(static_cast<int>(s), shapes[s]);
+    std::visit([&](const auto& shape) { cover(static_cast<int>(s), shape); }, shapes[s]);
   }
   for (std::size_t s = 0; s < shapes.size(); ++s)
     if (sum_over_ranks(communicator, covered_[s]) == 0)
@@ -65,7 +65,7 @@ StaticSolids::StaticSolids(const Decomposition& decomposition, MPI_Comm communic
                       "the centres of the cells; check its place and its size in m.",
                       s));
   find_cut_cells();
-  for (const SolidShape& shape : shapes) measure(shape);
+  for (const SolidShape& any : shapes) std::visit([&](const auto& shape) { measure(shape); }, any);
   build_links(tiles);
 }
 
@@ -86,27 +86,24 @@ void StaticSolids::for_each_image(const Extent& extent, Visit visit) const {
         visit(Vec3(i * decomposition_.cells()[0], j * decomposition_.cells()[1], k * decomposition_.cells()[2]));
 }
 
-void StaticSolids::cover(int solid, const SolidShape& shape) {
-  std::visit([&](const auto& s) { cover(solid, s); }, shape);
-}
-
 void StaticSolids::claim(int solid, const Index3& local) {
   if (!cells_.is_fluid(cells_.indexing().index(local[0], local[1], local[2]))) return;
   cells_.assign(local[0], local[1], local[2], solid);
   if (cells_.indexing().owned(local[0], local[1], local[2])) ++covered_[static_cast<std::size_t>(solid)];
 }
 
-void StaticSolids::cover(int solid, const SolidSphere& sphere) {
-  const Extent whole = coupling::extent_of(SolidShape(sphere));
+template <Shape S>
+void StaticSolids::cover(int solid, const PlacedShape<S>& shape) {
+  const Extent whole = coupling::extent_of(shape);
   for_each_image(whole, [&](const Vec3& shift) {
-    const Vec3 centre = sphere.centre + shift;
+    const Vec3 centre = shape.centre + shift;
     std::pair<int, int> cells[3];
     for (int a = 0; a < 3; ++a)
       cells[a] = range(whole.lower[a] + shift[a], whole.upper[a] + shift[a], 1, 0, decomposition_.cells()[a]);
     for (int z = cells[2].first; z < cells[2].second; ++z)
       for (int y = cells[1].first; y < cells[1].second; ++y)
         for (int x = cells[0].first; x < cells[0].second; ++x) {
-          if ((centre_of({x, y, z}) - centre).squaredNorm() >= sphere.radius * sphere.radius) continue;
+          if (!is_inside(shape.shape, centre_of({x, y, z}) - centre)) continue;
           for (const int lz : places_[2][z])
             for (const int ly : places_[1][y])
               for (const int lx : places_[0][x]) claim(solid, {lx, ly, lz});
@@ -119,7 +116,7 @@ void StaticSolids::cover(int solid, const SolidSphere& sphere) {
 void StaticSolids::cover(int solid, const TriangleMesh& mesh) {
   const Index3& n = decomposition_.cells();
   std::unordered_map<std::int64_t, std::vector<Crossing>> rows;
-  for_each_image(coupling::extent_of(SolidShape(mesh)), [&](const Vec3& shift) {
+  for_each_image(coupling::extent_of(mesh), [&](const Vec3& shift) {
     for (const auto& triangle : mesh.triangles) {
       const Corners corners = corners_of(mesh, triangle, shift);
       const Extent extent = extent_of(corners);
@@ -182,16 +179,18 @@ void StaticSolids::measure_near(const Extent& extent, Meets meets) {
       }
 }
 
-void StaticSolids::measure(const SolidShape& shape) {
+template <Shape S>
+void StaticSolids::measure(const PlacedShape<S>& shape) {
   const Extent whole = coupling::extent_of(shape);
   for_each_image(whole, [&](const Vec3& shift) {
-    if (const auto* sphere = std::get_if<SolidSphere>(&shape)) {
-      const SolidSphere image{sphere->centre + shift, sphere->radius};
-      measure_near({whole.lower + shift, whole.upper + shift},
-                   [&](const Vec3& from, const Vec3& along) { return meets(image, from, along); });
-      return;
-    }
-    const TriangleMesh& mesh = std::get<TriangleMesh>(shape);
+    const PlacedShape<S> image{shape.centre + shift, shape.shape};
+    measure_near({whole.lower + shift, whole.upper + shift},
+                 [&](const Vec3& from, const Vec3& along) { return meets(image, from, along); });
+  });
+}
+
+void StaticSolids::measure(const TriangleMesh& mesh) {
+  for_each_image(coupling::extent_of(mesh), [&](const Vec3& shift) {
     for (const auto& triangle : mesh.triangles) {
       const Corners corners = corners_of(mesh, triangle, shift);
       measure_near(extent_of(corners),

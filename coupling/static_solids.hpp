@@ -48,12 +48,14 @@ private:
     std::vector<lbm::LinkCrossing> crossings;
   };
 
-  void cover(int solid, const SolidShape& shape);
-  void cover(int solid, const SolidSphere& sphere);
+  template <Shape S>
+  void cover(int solid, const PlacedShape<S>& shape);
   void cover(int solid, const TriangleMesh& mesh);
   void claim(int solid, const Index3& local);
   void find_cut_cells();
-  void measure(const SolidShape& shape);
+  template <Shape S>
+  void measure(const PlacedShape<S>& shape);
+  void measure(const TriangleMesh& mesh);
   void build_links(const lbm::RowTiles& tiles);
   void add_links_of_cell(const Index3& local, std::vector<SolidLinks>& links) const;
   template <typename Visit>

@@ -13,7 +13,7 @@ std::vector<coupling::SolidShape> solid_shapes(const Case& c) {
   for (std::size_t n = 0; n < c.solids.size(); ++n) {
     const SolidCase& solid = c.solids[n];
     if (solid.sphere) {
-      shapes.push_back(coupling::SolidSphere{solid.sphere->centre / spacing, solid.sphere->radius / spacing});
+      shapes.push_back(coupling::SolidSphere{solid.sphere->centre / spacing, {solid.sphere->radius / spacing}});
       continue;
     }
     try {

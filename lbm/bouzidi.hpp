@@ -16,6 +16,7 @@
 #pragma once
 
 #include "core/periodic_box.hpp"
+#include "core/shape.hpp"
 #include "lbm/fluid.hpp"
 #include "lbm/link_crossings.hpp"
 #include "lbm/link_options.hpp"
@@ -23,8 +24,10 @@
 #include "lbm/link_table.hpp"
 #include "lbm/upstream_bodies.hpp"
 
+#include <concepts>
 #include <cstddef>
 #include <experimental/simd>
+#include <span>
 #include <vector>
 
 namespace thalweg::lbm {
@@ -38,10 +41,17 @@ struct LinkBalance {
   std::int64_t moving_wall = 0;  // the term with c_i.u_w
 };
 
+// In place of a shape: the crossings are stored with the links (LinkTable).
+struct StoredCrossings {};
+
+template <typename S>
+concept LinkShape = Shape<S> || std::same_as<S, StoredCrossings>;
+
 // Applies the links of one step, tile by tile. For every link it writes the population that the sweep will take from
 // the solid side, and adds the momentum to bodies[...].force and torque (which the caller has cleared). Walls and halo
 // must be done. The map of the cells holds slots of bodies. box: the domain in cells, for the minimum image between
-// bodies. Whatever is handed over must outlive the pass.
+// bodies. shapes: of the bodies, all of one kind; empty where crossings are stored. Whatever is handed over must
+// outlive the pass.
 //
 // The links of a row read what cells of the rows around it sent out, so they must be applied before any of these rows
 // is swept; Fluid::stream_and_collide(before_tile) does so while the tile is still in the cache. Tiles in order.
@@ -53,12 +63,14 @@ struct LinkBalance {
 // torque is its antisymmetric part. balance: where given (with moments), what the mass is made of is added to it.
 // by_height: where given, 2 n_z + 1 sums for the n_z planes of this rank, to which the force of every link is added at
 // the height half a link from its fluid cell: entry h lies h half cells above the block's lower face.
-template <typename Real>
+//
+// The bodies of the members are in bouzidi.ipp, which a file includes that instantiates them for a new shape.
+template <typename Real, LinkShape S = StoredCrossings>
 class LinkPass {
 public:
   LinkPass(Fluid<Real>& fluid, const LinkTable& links, const PeriodicBox& box, const LinkOptions& options,
-           std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments = nullptr, LinkBalance* balance = nullptr,
-           std::vector<FixedVec3>* by_height = nullptr);
+           std::vector<LinkBody>& bodies, std::span<const S> shapes = {}, std::vector<FixedTensor>* moments = nullptr,
+           LinkBalance* balance = nullptr, std::vector<FixedVec3>* by_height = nullptr);
 
   void apply_tile(int tile);
 
@@ -85,6 +97,17 @@ private:
     alignas(64) Real moment[9][capacity];
     alignas(64) Real interpolated[capacity], moving_wall[capacity];  // parts of f_i' - f_i^c
   };
+  static constexpr bool has_normals = Shape<S>;
+  // The arithmetic runs over whole vectors of any machine; what it computes beyond the last link is zero.
+  static constexpr int whole = static_cast<int>(LinkTable::slack);
+  static int rounded_up(int count) { return (count + whole - 1) / whole * whole; }
+  static int component(std::uint32_t tag, int axis) { return LinkTag::velocity(static_cast<int>(tag), axis); }
+
+  using Wide = std::experimental::native_simd<double>;
+  [[gnu::always_inline]] static Wide wide(const Real* values) {
+    return Wide(values, std::experimental::element_aligned);
+  }
+
   using Pack = std::experimental::native_simd<Real>;
   using Ints = std::experimental::rebind_simd_t<std::int32_t, Pack>;
   // A body's motion in every lane.
@@ -118,6 +141,7 @@ private:
   template <typename Rule>
   void gather(const Batch& batch);
   void look_at_covered(const Batch& batch, int covered);
+  void find_normals(const Batch& batch, int covered);
   void look_upstream(const Batch& batch);
   void subtract_rest(const Batch& batch);
   template <typename Rule, Extra extra>
@@ -134,6 +158,7 @@ private:
   const PeriodicBox& box_;
   const LinkOptions& options_;
   std::vector<LinkBody>& bodies_;
+  std::span<const S> shapes_;
   std::vector<FixedTensor>* moments_;  // null: not measured
   LinkBalance* balance_;               // null: not measured
   std::vector<FixedVec3>* by_height_;  // null: not measured

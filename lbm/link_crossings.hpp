@@ -1,13 +1,12 @@
-// Where links cross the surface of a sphere. With d = x_f - centre, b = c_i.d, q = d.d - R^2, a = c_i.c_i:
-//   delta = q / (sqrt(b^2 - a q) - b),  in [0, 1], a fraction of the link;  arm = d + delta c_i.
-// (The usual root, written so that nothing cancels.) The cells may be those of a place of the sphere up to a small
-// tolerance away: then a crossing just beyond an end is put at the end.
+// Where links cross the surface of a body of a given shape (core/shape.hpp). With d = x_f - centre and delta in [0, 1]
+// the fraction of the link at which it enters: arm = d + delta c_i. The cells may be those of a place of the body up to
+// a small tolerance away: then a crossing just beyond an end is put at the end.
 #pragma once
 
 #include "core/periodic_box.hpp"
+#include "core/shape.hpp"
 #include "lbm/link_table.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -28,25 +27,25 @@ struct BlockPlace {
   }
 };
 
-// Of links [0, count) of one body in the plane z (owned local coordinate), count a multiple of LinkTable::slack, in the
-// arithmetic of Real, which is the same for every link whatever its place in the arrays. Cells count from whole numbers
-// near the centre, so that nothing is lost far from the origin; the nearest image is that of the solid cell, which is
-// inside.
-template <typename Real>
-inline void cross_sphere(const LinkBody& body, const BlockPlace& block, int z, const std::uint32_t* __restrict places,
-                         const std::uint32_t* __restrict tags, int count, Real* __restrict distance,
-                         Real* __restrict arm_x, Real* __restrict arm_y, Real* __restrict arm_z) {
+// Of links [0, count) of one body (centre: global) in the plane z (owned local coordinate), count a multiple of
+// LinkTable::slack, in the arithmetic of Real, which is the same for every link whatever its place in the arrays. Cells
+// count from whole numbers near the centre, so that nothing is lost far from the origin; the nearest image is that of
+// the solid cell, which is inside.
+template <typename Real, Shape S>
+inline void find_crossings(S shape, const Vec3& centre, const BlockPlace& block, int z,
+                           const std::uint32_t* __restrict places, const std::uint32_t* __restrict tags, int count,
+                           Real* __restrict distance, Real* __restrict arm_x, Real* __restrict arm_y,
+                           Real* __restrict arm_z) {
   int from[3];
   Real rest[3];
   for (int a = 0; a < 3; ++a) {
-    const double whole = std::floor(body.centre[a]);
+    const double whole = std::floor(centre[a]);
     from[a] = block.lower[a] - static_cast<int>(whole);
-    rest[a] = static_cast<Real>(0.5 - (body.centre[a] - whole));
+    rest[a] = static_cast<Real>(0.5 - (centre[a] - whole));
   }
   const int from_x = from[0], from_y = from[1], from_z = from[2] + z;
   const int half_x = block.half[0], half_y = block.half[1], half_z = block.half[2];
   const int period_x = block.period[0], period_y = block.period[1], period_z = block.period[2];
-  const Real squared_radius = static_cast<Real>(body.radius * body.radius);
   const auto nearest = [](int cell, int half, int period) {
     return cell - (cell > half ? period : 0) + (cell < -half ? period : 0);
   };
@@ -60,12 +59,7 @@ inline void cross_sphere(const LinkBody& body, const BlockPlace& block, int z, c
       const Real dx = Real(nearest(x + from_x + cx, half_x, period_x) - cx) + rest[0];
       const Real dy = Real(nearest(y + from_y + cy, half_y, period_y) - cy) + rest[1];
       const Real dz = Real(nearest(from_z + cz, half_z, period_z) - cz) + rest[2];
-      const Real b = Real(cx) * dx + Real(cy) * dy + Real(cz) * dz;
-      const Real q = dx * dx + dy * dy + dz * dz - squared_radius;
-      const Real a = Real(cx * cx + cy * cy + cz * cz);
-      const Real discriminant = b * b - a * q;
-      const Real root = std::sqrt(discriminant > Real(0) ? discriminant : Real(0));
-      const Real delta = q / (root - b);
+      const Real delta = shape.link_crossing(dx, dy, dz, Real(cx), Real(cy), Real(cz));
       const Real inside = delta > Real(0) ? (delta < Real(1) ? delta : Real(1)) : Real(0);
       distance[k] = inside;
       arm_x[k] = dx + inside * Real(cx);

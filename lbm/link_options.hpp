@@ -12,7 +12,7 @@ enum class MomentumExchange { galilean_invariant, classical };
 enum class WallDensity { local, reference };  // rho in the moving-wall term: of x_f, or 1
 enum class LinkRule { bouzidi, cli };
 // Gaps of one cell between two bodies: the fluid in them sticks to both, or slips so much that it flows at the speed
-// that its viscosity says (upstream_bodies.hpp; spheres only).
+// that its viscosity says (upstream_bodies.hpp; not of bodies with stored crossings).
 enum class GapRule { no_slip, slip };
 
 // Their words in a case file (core/section_visitor.hpp).

@@ -1,10 +1,10 @@
 // Cut lattice links: where a body's surface crosses the line from a fluid cell to its solid neighbour.
 //
 // A link is two words, place and tag, and says which cells it joins; where the surface crosses it follows from the
-// body's present place when the link is applied (spheres), or is kept beside it (bodies of any shape that stand still).
-// So a link changes only when a cell changes hands, however its body moves. Links are kept tile by tile (RowTiles, by
-// the fluid cell) and, within a tile, body by body in memory order: the links of one body in one tile are a chunk. The
-// lattice knows bodies as rigid motions of spheres or of stored distances, and nothing of grains.
+// body's shape and present place when the link is applied (link_crossings.hpp), or is kept beside it (bodies of any
+// shape that stand still). So a link changes only when a cell changes hands, however its body moves. Links are kept
+// tile by tile (RowTiles, by the fluid cell) and, within a tile, body by body in memory order: the links of one body in
+// one tile are a chunk. The lattice knows bodies as rigid motions, and nothing of grains.
 #pragma once
 
 #include "core/fixed_point.hpp"
@@ -76,7 +76,6 @@ struct LinkBody {
   Vec3 centre = Vec3::Zero();
   Vec3 velocity = Vec3::Zero();
   Vec3 angular_velocity = Vec3::Zero();
-  double radius = 0.0;  // of a sphere; 0: the links have their crossings stored
 
   // What the links add to the populations that come back, w_i (returned + returned_slope.c_i), to give the fluid mass
   // that it lost at this body.

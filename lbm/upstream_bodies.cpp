@@ -28,6 +28,13 @@ void UpstreamBodies::add(std::uint32_t tag, std::int32_t cell, double deviation,
   }
 }
 
+void UpstreamBodies::set_normals(int link, const Vec3& own, const Vec3& other) {
+  for (int a = 0; a < 3; ++a) {
+    own_normal_[a][link] = own[a];
+    normal_[a][link] = other[a];
+  }
+}
+
 // Direction by direction, so that the inner loop gathers from one plane of memory.
 template <typename Real>
 void UpstreamBodies::measure_velocity(const Real* const (&sent)[D3Q19::directions], const double (&force)[3]) {
@@ -54,9 +61,11 @@ void UpstreamBodies::let_flow(const Real* const (&sent)[D3Q19::directions], cons
                           own_arm_[2][k] - distance_[k] * cz};
     const double x2[3] = {arm_[0][k] - distance_[k] * cx, arm_[1][k] - distance_[k] * cy,
                           arm_[2][k] - distance_[k] * cz};
-    const double to_1 = 1.0 / std::sqrt(x1[0] * x1[0] + x1[1] * x1[1] + x1[2] * x1[2]),
-                 to_2 = 1.0 / std::sqrt(x2[0] * x2[0] + x2[1] * x2[1] + x2[2] * x2[2]);
-    const double mx = to_1 * x1[0] - to_2 * x2[0], my = to_1 * x1[1] - to_2 * x2[1], mz = to_1 * x1[2] - to_2 * x2[2];
+    const double n1[3] = {own_normal_[0][k], own_normal_[1][k], own_normal_[2][k]};
+    const double n2[3] = {normal_[0][k], normal_[1][k], normal_[2][k]};
+    const double to_1 = 1.0 / std::sqrt(n1[0] * n1[0] + n1[1] * n1[1] + n1[2] * n1[2]),
+                 to_2 = 1.0 / std::sqrt(n2[0] * n2[0] + n2[1] * n2[1] + n2[2] * n2[2]);
+    const double mx = to_1 * n1[0] - to_2 * n2[0], my = to_1 * n1[1] - to_2 * n2[1], mz = to_1 * n1[2] - to_2 * n2[2];
     const double u2x = velocity_[0][k] + (spin_[1][k] * x2[2] - spin_[2][k] * x2[1]),
                  u2y = velocity_[1][k] + (spin_[2][k] * x2[0] - spin_[0][k] * x2[2]),
                  u2z = velocity_[2][k] + (spin_[0][k] * x2[1] - spin_[1][k] * x2[0]);

@@ -48,8 +48,14 @@ public:
   void add(std::uint32_t tag, std::int32_t cell, double deviation, double distance, const Vec3& arm,
            const LinkBody& other, const Vec3& apart);
 
-  // Lets the fluid flow between `own`, to which all links belong, and the bodies behind. sent: f_i^c of the cell with
-  // index 0 within the plane, for every i; force: on the fluid, of which f^c has half too much.
+  // x_f of a link from the centres of the own body and of the other, and the outward normals of both there, of any
+  // length.
+  Vec3 from_own(int link) const { return before_arm(own_arm_, link); }
+  Vec3 from_other(int link) const { return before_arm(arm_, link); }
+  void set_normals(int link, const Vec3& own, const Vec3& other);
+
+  // Lets the fluid flow between `own`, to which all links belong, and the bodies behind; normals must be set. sent:
+  // f_i^c of the cell with index 0 within the plane, for every i; force: on the fluid, of which f^c has half too much.
   template <typename Real>
   void let_flow(const Real* const (&sent)[D3Q19::directions], const double (&force)[3], const GapFlow& flow,
                 const LinkBody& own);
@@ -65,6 +71,12 @@ public:
 private:
   static constexpr int whole = static_cast<int>(LinkTable::slack);
   int rounded_up() const { return (count_ + whole - 1) / whole * whole; }
+  Vec3 before_arm(const double (&arm)[3][capacity], int link) const {
+    Vec3 from;
+    for (int a = 0; a < 3; ++a)
+      from[a] = arm[a][link] - distance_[link] * LinkTag::velocity(static_cast<int>(tag_[link]), a);
+    return from;
+  }
   template <typename Real>
   void measure_velocity(const Real* const (&sent)[D3Q19::directions], const double (&force)[3]);
 
@@ -75,6 +87,7 @@ private:
   alignas(64) double distance_[capacity] = {}, own_arm_[3][capacity] = {};
   alignas(64) double arm_[3][capacity] = {}, velocity_[3][capacity] = {}, spin_[3][capacity] = {};
   alignas(64) double deviation_[capacity] = {}, fluid_velocity_[3][capacity] = {};
+  alignas(64) double own_normal_[3][capacity] = {}, normal_[3][capacity] = {};
   alignas(64) double slip_[3][capacity] = {}, slip_along_[capacity] = {}, odd_change_[capacity] = {},
                      population_[capacity] = {};
 };

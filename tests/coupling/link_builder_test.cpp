@@ -79,7 +79,7 @@ TEST(LinkBuilder, FollowsTheMapThroughAnyMoves) {
     for (GlobalId id = 0; id < grains; ++id) {
       const int slot = map.slot_of(id);
       if (slot < 0) {
-        if (uniform(generator) < 0.5) map.place(map.add(id, 2.0 + 1.5 * uniform(generator)), anywhere());
+        if (uniform(generator) < 0.5) map.place(map.add(id, {2.0 + 1.5 * uniform(generator)}), anywhere());
       } else if (uniform(generator) < 0.05) {
         map.remove(slot);
       } else if (uniform(generator) < 0.7) {

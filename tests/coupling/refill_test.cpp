@@ -59,7 +59,7 @@ TEST_P(UncoveredCells, KeepWhatTheRuleSays) {
   GrainMap map(decomposition, fluid.block(), fluid.cells());
   const Vec3 before(7.9, 15.7, 8.1), after(8.6, 15.9, 7.8);
   map.begin_update();
-  const int slot = map.add(0, 3.0);
+  const int slot = map.add(0, {3.0});
   map.place(slot, before);
   map.settle();
   map.begin_update();
@@ -68,9 +68,10 @@ TEST_P(UncoveredCells, KeepWhatTheRuleSays) {
   bodies[0].centre = after;
   bodies[0].velocity = Vec3(0.7, 0.2, -0.3) * 0.05;
   bodies[0].angular_velocity = Vec3(0.001, -0.002, 0.003);
-  const std::vector<GrainMap::Change> changes = map.settle();
+  const std::vector<CellChange> changes = map.settle();
   Refill refill(decomposition, MPI_COMM_WORLD, GetParam());
-  const RefillTotals totals = refill.fill(fluid, changes, {}, bodies);
+  const RefillTotals totals = refill.fill(
+      fluid, changes, {}, [&](int, const Vec3& point) { return map.shapes()[0].outward(point); }, bodies);
 
   // The plain answer, from global coordinates.
   const auto offset = [&](const Index3& cell, const Vec3& centre) {

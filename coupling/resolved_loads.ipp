@@ -1,4 +1,6 @@
 // What the links of a step come to: loads on the grains, and the mass that they owe to the fluid.
+#pragma once
+
 #include "core/mpi_session.hpp"
 #include "coupling/attached_vector.hpp"
 #include "coupling/fluid_mass.hpp"
@@ -6,19 +8,15 @@
 #include "coupling/resolved_system.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 namespace thalweg::coupling {
 
-using lbm::CellMap;
-
-template <typename Real>
-void ResolvedSystem<Real>::account_for_covered_cells() {
+template <typename Real, GrainShape S>
+void ResolvedSystem<Real, S>::account_for_covered_cells() {
   const Index3& lower = fluid_.block().lower;
-  for (const GrainMap::Change& change : map_.changes()) {
+  for (const CellChange& change : map_.changes()) {
     const Index3& at = change.cell;
-    if (change.before != CellMap::fluid || !fluid_.indexing().owned(at[0], at[1], at[2])) continue;
+    if (change.before != lbm::CellMap::fluid || !fluid_.indexing().owned(at[0], at[1], at[2])) continue;
     const std::ptrdiff_t cell = fluid_.indexing().index(at[0], at[1], at[2]);
     Vec3 momentum = Vec3::Zero();
     for (int i = 0; i < lbm::D3Q19::directions; ++i)
@@ -38,9 +36,9 @@ void ResolvedSystem<Real>::account_for_covered_cells() {
 
 // Of a cell that this body covers: sum (c_i - u_w) f_i^c without the half force, which refill puts into cells again.
 // What is left, rho u_w, belongs to the mass, which comes back (docs/theory.md, section 3, "Covered cells").
-template <typename Real>
-void ResolvedSystem<Real>::keep_momentum(lbm::LinkBody& body, int plane, const Vec3& position, double density,
-                                         const Vec3& momentum) {
+template <typename Real, GrainShape S>
+void ResolvedSystem<Real, S>::keep_momentum(lbm::LinkBody& body, int plane, const Vec3& position, double density,
+                                            const Vec3& momentum) {
   const double(&f)[3] = fluid_.parameters().force;
   const Vec3 arm = lattice_box_.difference(position, body.centre);
   const Vec3 wall = body.velocity + body.angular_velocity.cross(arm);
@@ -54,8 +52,8 @@ void ResolvedSystem<Real>::keep_momentum(lbm::LinkBody& body, int plane, const V
 }
 
 // Before anything is added that the fluid does not feel.
-template <typename Real>
-void ResolvedSystem<Real>::book_links(const lbm::LinkBalance& balance) {
+template <typename Real, GrainShape S>
+void ResolvedSystem<Real, S>::book_links(const lbm::LinkBalance& balance) {
   for (std::size_t g = 0; g < grains_->store().total(); ++g) {
     const lbm::LinkBody& body = bodies_[map_slot_[g]];
     const Vec3 force = body.force.to_vec3();
@@ -72,8 +70,8 @@ void ResolvedSystem<Real>::book_links(const lbm::LinkBalance& balance) {
   if (parameters_.mass_balance) mass_.book(balance);
 }
 
-template <typename Real>
-void ResolvedSystem<Real>::collect_loads() {
+template <typename Real, GrainShape S>
+void ResolvedSystem<Real, S>::collect_loads() {
   const std::size_t count = grains_->store().total();
   const int width = sums_per_grain();
   exchanged_.resize(static_cast<std::size_t>(width) * count);
@@ -92,8 +90,8 @@ void ResolvedSystem<Real>::collect_loads() {
   grains_->add_ghost_values(exchanged_, width);
 }
 
-template <typename Real>
-void ResolvedSystem<Real>::apply_loads() {
+template <typename Real, GrainShape S>
+void ResolvedSystem<Real, S>::apply_loads() {
   dem::GrainStore& store = grains_->store();
   for (std::size_t g = 0; g < store.owned; ++g) {
     const std::int64_t* sums = &exchanged_[sums_per_grain() * g];
@@ -117,8 +115,8 @@ void ResolvedSystem<Real>::apply_loads() {
   show_stresses();
 }
 
-template <typename Real>
-lbm::LinkSums ResolvedSystem<Real>::link_sums_of(std::size_t grain) const {
+template <typename Real, GrainShape S>
+lbm::LinkSums ResolvedSystem<Real, S>::link_sums_of(std::size_t grain) const {
   lbm::LinkSums links;
   std::copy_n(&exchanged_[sums_per_grain() * grain + plain_sums - lbm::LinkSums::size], lbm::LinkSums::size,
               links.sums.begin());
@@ -128,8 +126,8 @@ lbm::LinkSums ResolvedSystem<Real>::link_sums_of(std::size_t grain) const {
 // Of a grain, or of all members of a clump, in slots from `first` on. Besides half of what is owed, the links return
 // what they are likely to lose in the next step: as much as in the last ones, a mean that leaves out the steps in which
 // single cells change hands.
-template <typename Real>
-void ResolvedSystem<Real>::settle_mass(std::size_t first, std::size_t count) {
+template <typename Real, GrainShape S>
+void ResolvedSystem<Real, S>::settle_mass(std::size_t first, std::size_t count) {
   // What comes back changes what the links take, with cli most of all: returned at once and whole it swings and grows.
   constexpr double share_of_owed = 0.5, share_of_last_step = 0.125;
   dem::GrainStore& store = grains_->store();
@@ -158,8 +156,8 @@ void ResolvedSystem<Real>::settle_mass(std::size_t first, std::size_t count) {
   }
 }
 
-template <typename Real>
-void ResolvedSystem<Real>::settle_masses() {
+template <typename Real, GrainShape S>
+void ResolvedSystem<Real, S>::settle_masses() {
   const dem::GrainStore& store = grains_->store();
   for (std::size_t g = 0; g < store.owned; ++g)
     if (store.clump[g] < 0) settle_mass(g, 1);
@@ -169,8 +167,8 @@ void ResolvedSystem<Real>::settle_masses() {
 }
 
 // Multiples of 2^-44 below 500, whose sum in any order is exact.
-template <typename Real>
-double ResolvedSystem<Real>::mass_owed() const {
+template <typename Real, GrainShape S>
+double ResolvedSystem<Real, S>::mass_owed() const {
   std::int64_t owed = 0;
   for (std::size_t g = 0; g < grains_->store().owned; ++g)
     owed += LatticeFixed::from(grains_->store().attached_of(g)[owed_mass]);
@@ -179,10 +177,10 @@ double ResolvedSystem<Real>::mass_owed() const {
 }
 
 // sigma_ab = (1/V) sum F_a x_b over the surface (Zhang et al. 2022, eq. 13), the mean of two exchanges.
-template <typename Real>
-void ResolvedSystem<Real>::apply_stress(std::size_t grain, bool first) {
+template <typename Real, GrainShape S>
+void ResolvedSystem<Real, S>::apply_stress(std::size_t grain, bool first) {
   dem::GrainStore& store = grains_->store();
-  const double volume = 4.0 / 3.0 * std::numbers::pi * std::pow(store.radius[grain], 3);
+  const double volume = S::of_grain(store.radius[grain]).volume();
   const std::int64_t* sums = &exchanged_[sums_per_grain() * grain + plain_sums];
   const std::span<double> columns = store.attached_of(grain);
   for (int k = 0; k < 9; ++k) {
@@ -192,8 +190,8 @@ void ResolvedSystem<Real>::apply_stress(std::size_t grain, bool first) {
   }
 }
 
-template <typename Real>
-void ResolvedSystem<Real>::show_stresses() {
+template <typename Real, GrainShape S>
+void ResolvedSystem<Real, S>::show_stresses() {
   if (!parameters_.grain_stress) return;
   const dem::GrainStore& store = grains_->store();
   fluid_stress_.resize(store.owned);
@@ -202,8 +200,8 @@ void ResolvedSystem<Real>::show_stresses() {
 }
 
 // What the store has is what the grain got in the step before.
-template <typename Real>
-void ResolvedSystem<Real>::set_load(std::size_t grain, const Vec3& force, const Vec3& torque, bool first) {
+template <typename Real, GrainShape S>
+void ResolvedSystem<Real, S>::set_load(std::size_t grain, const Vec3& force, const Vec3& torque, bool first) {
   dem::GrainStore& store = grains_->store();
   if (!parameters_.virtual_mass || dem::holds_translation(store.motion[grain])) {
     store.load_force[grain] = force;
@@ -218,8 +216,8 @@ void ResolvedSystem<Real>::set_load(std::size_t grain, const Vec3& force, const 
 
 // At the start of a run, whatever it begins from: what is there, and what the grains bring along as owed, is to be
 // kept.
-template <typename Real>
-void ResolvedSystem<Real>::open_account() {
+template <typename Real, GrainShape S>
+void ResolvedSystem<Real, S>::open_account() {
   const ExcessMass excess = excess_mass(survey_of(fluid_), rest_);
   mass_.open(excess.sum, mass_owed());
   parameters_.links.reference_density = excess.mean();
@@ -229,8 +227,8 @@ void ResolvedSystem<Real>::open_account() {
 }
 
 // What no body owes: round-off, and walls that do not conserve mass. At the end of a step, so that a checkpoint has it.
-template <typename Real>
-void ResolvedSystem<Real>::correct_mass() {
+template <typename Real, GrainShape S>
+void ResolvedSystem<Real, S>::correct_mass() {
   if (!looks_at_mass(step_)) return;
   const ExcessMass excess = excess_mass(survey_of(fluid_), rest_);
   parameters_.links.reference_density = excess.mean();
@@ -238,8 +236,5 @@ void ResolvedSystem<Real>::correct_mass() {
   const double added = restore_excess(fluid_, excess, mass_.kept() - mass_owed());
   if (rank_of(communicator_) == 0) mass_.book(MassAccount::corrections, LatticeFixed::from(added));
 }
-
-template class ResolvedSystem<float>;
-template class ResolvedSystem<double>;
 
 }  // namespace thalweg::coupling

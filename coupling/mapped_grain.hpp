@@ -1,0 +1,15 @@
+// A grain as the map of the cells knows it.
+#pragma once
+
+#include "core/types.hpp"
+
+namespace thalweg::coupling {
+
+struct MappedGrain {
+  GlobalId id = -1;            // -1: the slot is free
+  GlobalId clump = -1;         // it is a member of; -1: none
+  double reach = 0.0;          // from its centre, cells
+  Vec3 centre = Vec3::Zero();  // for which its cells stand; lattice units, global
+};
+
+}  // namespace thalweg::coupling

@@ -1,0 +1,10 @@
+// The links of spheres.
+#include "core/sphere.hpp"
+#include "lbm/bouzidi.ipp"
+
+namespace thalweg::lbm {
+
+template class LinkPass<float, Sphere>;
+template class LinkPass<double, Sphere>;
+
+}  // namespace thalweg::lbm

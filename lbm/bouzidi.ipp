@@ -1,0 +1,353 @@
+// Template bodies of bouzidi.hpp. Included where the links of a shape are instantiated: in bouzidi.cpp those with
+// stored crossings. Name such a file to thalweg_links() (cmake/compiler.cmake).
+#pragma once
+
+#include "lbm/bouzidi.hpp"
+
+#include "lbm/bouzidi_link.hpp"
+#include "lbm/cli_link.hpp"
+#include "lbm/equilibrium.hpp"
+#include "lbm/fixed_sums.hpp"
+#include "lbm/sweep.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace thalweg::lbm {
+
+namespace stdx = std::experimental;
+
+template <typename Real, LinkShape S>
+LinkPass<Real, S>::LinkPass(Fluid<Real>& fluid, const LinkTable& links, const PeriodicBox& box,
+                            const LinkOptions& options, std::vector<LinkBody>& bodies, std::span<const S> shapes,
+                            std::vector<FixedTensor>* moments, LinkBalance* balance, std::vector<FixedVec3>* by_height)
+    : cells_(fluid.cells()),
+      tiles_(fluid.tiles()),
+      links_(links),
+      box_(box),
+      options_(options),
+      bodies_(bodies),
+      shapes_(shapes),
+      moments_(moments),
+      balance_(balance),
+      by_height_(by_height),
+      block_(box, fluid.block().lower),
+      gaps_(has_normals && options.gaps == GapRule::slip ? gap_flow(fluid.parameters()) : GapFlow{}) {
+  std::copy_n(fluid.parameters().force, 3, force_);
+  Populations<Real>& populations = fluid.populations();
+  for (auto& plane : deviations_) plane.resize(static_cast<std::size_t>(populations.indexing().plane_stride()));
+  for (int i = 0; i < D3Q19::directions; ++i) sent_[i] = &populations.post_collision(i, 0);
+  slots_ = LinkSlots(populations);
+  base_ = populations.plane(LinkSlots::middle);
+}
+
+template <typename Real, LinkShape S>
+void LinkPass<Real, S>::apply_tile(int tile) {
+  const auto apply = [&]<typename Rule>() {
+    if (balance_)
+      apply_links<Rule, Extra::moments_and_balance>(tile);
+    else if (moments_)
+      apply_links<Rule, Extra::moments>(tile);
+    else
+      apply_links<Rule, Extra::none>(tile);
+  };
+  if (options_.rule == LinkRule::cli)
+    apply.template operator()<CliLink>();
+  else
+    apply.template operator()<BouzidiLink>();
+}
+
+template <typename Real, LinkShape S>
+template <typename Rule, typename LinkPass<Real, S>::Extra extra>
+void LinkPass<Real, S>::apply_links(int tile) {
+  // One plane ahead, because links reach for slots in the next plane: the straight pass for the densities brings them
+  // into the cache at the speed of memory.
+  const int z = tiles_.plane_of(tile);
+  if (z == 0) measure_densities(tile);
+  if (z + 1 < tiles_.planes()) measure_densities(tile + 1);
+  deviation_ = deviations_[z % 2].data();
+
+  const LinkTable::Tile& t = links_.tiles()[tile];
+  const std::vector<LinkTable::Run>& runs = links_.runs_in_order(tile);
+  constexpr std::size_t ahead = 3;  // runs
+  for (std::size_t r = 0; r < std::min(ahead, runs.size()); ++r) t.links.ask_for(runs[r].first, runs[r].count);
+  int turn = 0;
+  batches_[0].count = batches_[1].count = 0;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    if (r + ahead < runs.size()) t.links.ask_for(runs[r + ahead].first, runs[r + ahead].count);
+    const LinkTable::Run& run = runs[r];
+    for (std::uint32_t first = 0; first < run.count; first += capacity, turn ^= 1) {
+      prepare(batches_[turn], t, z, run.body, run.first + first, std::min<int>(capacity, run.count - first));
+      finish<Rule, extra>(batches_[turn ^ 1]);
+    }
+  }
+  finish<Rule, extra>(batches_[turn ^ 1]);
+}
+
+// Links never change a density: they write incoming slots of fluid cells, which hold no post-collision population of a
+// fluid cell.
+template <typename Real, LinkShape S>
+void LinkPass<Real, S>::measure_densities(int tile) {
+  constexpr std::ptrdiff_t width = Pack::size(), ahead = prefetch_bytes / static_cast<std::ptrdiff_t>(sizeof(Real));
+  const CellIndexing& indexing = cells_.indexing();
+  if (links_.tiles()[tile].live == 0) return;
+  const int z = tiles_.plane_of(tile), block = tiles_.block_of(tile);
+  const std::ptrdiff_t start = (z + 1) * indexing.plane_stride();
+  for (int y = tiles_.first_row(block); y < tiles_.end_row(block); ++y) {
+    const std::uint8_t* fluid = cells_.fluid_in_packs(y, z);
+    for (int p = 0; p < indexing.packs_per_row(); ++p) {
+      if (fluid[p] == 0) continue;
+      const std::ptrdiff_t cell = indexing.index(0, y, z) + p * width;
+      Pack sum = 0;
+      for (int i = 0; i < D3Q19::directions; ++i) {
+        __builtin_prefetch(sent_[i] + cell + ahead, 1);
+        sum += Pack(sent_[i] + cell, stdx::element_aligned);
+      }
+      sum.copy_to(deviations_[z % 2].data() + (cell - start), stdx::element_aligned);
+    }
+  }
+}
+
+template <typename Real, LinkShape S>
+void LinkPass<Real, S>::prepare(Batch& b, const LinkTable::Tile& tile, int plane, std::int32_t body,
+                                std::uint32_t first, int count) const {
+  const std::uint32_t *places = tile.links.place.data() + first, *tags = tile.links.tag.data() + first;
+  b.body = &bodies_[body];
+  b.tag = tags;
+  b.count = count;
+  b.plane = plane;
+  const int n = rounded_up(count);
+  if constexpr (Shape<S>) {
+    find_crossings(shapes_[static_cast<std::size_t>(body)], b.body->centre, block_, plane, places, tags, n, b.distance,
+                   b.arm[0], b.arm[1], b.arm[2]);
+  } else {
+    for (int k = 0; k < count; ++k) {
+      const LinkCrossing& crossing = tile.links.crossing[first + k];
+      b.distance[k] = Real(crossing.distance);
+      for (int a = 0; a < 3; ++a) b.arm[a][k] = Real(crossing.arm[a]);
+    }
+  }
+  for (int k = count; k < n; ++k) b.distance[k] = Real(1), b.arm[0][k] = b.arm[1][k] = b.arm[2][k] = Real(0);
+  slots_.find(plane, places, tags, n, b.distance, b.cell, b.incident_at, b.second_at, b.reflected_at);
+  for (int k = 0; k < count; ++k) {
+    __builtin_prefetch(base_ + b.incident_at[k], 0);
+    __builtin_prefetch(base_ + b.second_at[k], 0);
+    __builtin_prefetch(base_ + b.reflected_at[k], 1);
+  }
+}
+
+template <typename Real, LinkShape S>
+template <typename Rule, typename LinkPass<Real, S>::Extra extra>
+void LinkPass<Real, S>::finish(const Batch& b) {
+  if (b.count == 0) return;
+  gather<Rule>(b);
+  reflect<Rule, extra>(b);
+  for (int k = 0; k < b.count; ++k) base_[b.reflected_at[k]] = values_.reflected[k];
+  add_momentum(b);
+  if (by_height_) add_by_height(b);
+  if constexpr (extra != Extra::none) add_moments(b);
+  if constexpr (extra == Extra::moments_and_balance) add_balance<Rule>(b);
+}
+
+template <typename Real, LinkShape S>
+template <typename Rule>
+void LinkPass<Real, S>::gather(const Batch& b) {
+  const int wanted_at_any_distance = gaps_.kept < 1.0 ? 1 : 0;
+  int covered = 0;
+  for (int k = 0; k < b.count; ++k) {
+    values_.deviation[k] = deviation_[b.cell[k]];
+    values_.incident[k] = base_[b.incident_at[k]];
+    values_.second[k] = base_[b.second_at[k]];
+    covered_[covered] = k;
+    covered += (static_cast<int>(b.distance[k] < Real(0.5)) | wanted_at_any_distance) &
+               static_cast<int>(b.tag[k] >> LinkTag::covered_shift & 1);
+  }
+  slips_ = wanted_at_any_distance != 0 && covered > 0;
+  if (covered > 0) look_at_covered(b, covered);
+  if constexpr (Rule::needs_both) look_upstream(b);
+  const int n = rounded_up(b.count);
+  for (int k = b.count; k < n; ++k) values_.deviation[k] = values_.incident[k] = values_.second[k] = Real(0);
+  std::copy_n(values_.deviation, n, values_.excess);
+  if (!options_.rest_gradient.isZero(0.0)) subtract_rest(b);
+}
+
+// x_f from the body's centre: the arm, back by the distance.
+template <typename Real, LinkShape S>
+void LinkPass<Real, S>::subtract_rest(const Batch& b) {
+  const Vec3& gradient = options_.rest_gradient;
+  const double at_centre = gradient.dot(b.body->centre - options_.rest_middle);
+  for (int k = 0; k < b.count; ++k) {
+    const Vec3 c(component(b.tag[k], 0), component(b.tag[k], 1), component(b.tag[k], 2));
+    const Vec3 arm(b.arm[0][k], b.arm[1][k], b.arm[2][k]);
+    values_.excess[k] -= static_cast<Real>(at_centre + gradient.dot(arm - static_cast<double>(b.distance[k]) * c));
+  }
+}
+
+template <typename Real, LinkShape S>
+void LinkPass<Real, S>::look_at_covered(const Batch& b, int covered) {
+  upstream_.clear();
+  std::int32_t last = -1;  // links of one covering body follow each other
+  Vec3 apart;
+  for (int c = 0; c < covered; ++c) {
+    const int k = covered_[c];
+    const auto slot = static_cast<std::int32_t>(b.tag[k] >> LinkTag::body_shift);
+    const LinkBody& other = bodies_[static_cast<std::size_t>(slot)];
+    if (slot != last) apart = box_.difference(b.body->centre, other.centre);
+    last = slot;
+    const auto arm = [&](int axis) { return static_cast<double>(b.arm[axis][k]); };
+    upstream_.add(b.tag[k], b.cell[k], static_cast<double>(values_.deviation[k]), static_cast<double>(b.distance[k]),
+                  {arm(0), arm(1), arm(2)}, other, apart);
+  }
+  if (slips_) {
+    find_normals(b, covered);
+    const Real* sent[D3Q19::directions];
+    for (int i = 0; i < D3Q19::directions; ++i) sent[i] = sent_[i] + (b.plane + 1) * cells_.indexing().plane_stride();
+    upstream_.let_flow(sent, force_, gaps_, *b.body);
+    std::fill_n(values_.slip, rounded_up(b.count), Real(0));
+    std::fill_n(values_.odd_change, rounded_up(b.count), Real(0));
+    for (int c = 0; c < covered; ++c) {
+      values_.slip[covered_[c]] = static_cast<Real>(upstream_.slip_along(c));
+      values_.odd_change[covered_[c]] = static_cast<Real>(upstream_.odd_change(c));
+    }
+  }
+  upstream_.find_populations(options_.rest_gradient);
+  for (int c = 0; c < covered; ++c)
+    if (b.distance[covered_[c]] < Real(0.5)) values_.second[covered_[c]] = static_cast<Real>(upstream_.population(c));
+}
+
+// At x_f, of the body that the links run into and of those behind them.
+template <typename Real, LinkShape S>
+void LinkPass<Real, S>::find_normals(const Batch& b, int covered) {
+  if constexpr (Shape<S>) {
+    const S& own = shapes_[static_cast<std::size_t>(b.body - bodies_.data())];
+    for (int c = 0; c < covered; ++c) {
+      const S& other = shapes_[b.tag[covered_[c]] >> LinkTag::body_shift];
+      upstream_.set_normals(c, own.outward(upstream_.from_own(c)), other.outward(upstream_.from_other(c)));
+    }
+  }
+}
+
+// For a rule that needs both: what of the batch has no x_ff keeps the second value of Bouzidi's rule.
+template <typename Real, LinkShape S>
+void LinkPass<Real, S>::look_upstream(const Batch& b) {
+  for (int k = 0; k < b.count; ++k) {
+    const bool covered = (b.tag[k] >> LinkTag::covered_shift & 1) != 0;
+    values_.covered[k] = covered ? Real(1) : Real(0);
+    if (!covered)
+      values_.second[k] =
+          base_[slots_.one_back(b.incident_at[k], b.tag[k])] - base_[slots_.one_back(b.reflected_at[k], b.tag[k])];
+  }
+  for (int k = b.count; k < rounded_up(b.count); ++k) values_.covered[k] = Real(0);
+}
+
+template <typename Real, LinkShape S>
+template <typename Rule, typename LinkPass<Real, S>::Extra extra>
+void LinkPass<Real, S>::reflect(const Batch& b) {
+  constexpr int width = static_cast<int>(Pack::size());
+  const Body body(*b.body);
+  const Pack galilean = options_.momentum_exchange == MomentumExchange::galilean_invariant ? Real(1) : Real(0);
+  const Pack reference = Real(2.0 * options_.reference_density);
+  const bool local = options_.wall_density == WallDensity::local;
+  for (int k = 0; k < rounded_up(b.count); k += width) {
+    const auto at = [k](const Real* values) { return Pack(values + k, stdx::element_aligned); };
+    const auto put = [k](const Pack& pack, Real* values) { pack.copy_to(values + k, stdx::element_aligned); };
+    const Ints tag(b.tag + k, stdx::element_aligned);
+    const Pack cx = velocity(tag, 0), cy = velocity(tag, 1), cz = velocity(tag, 2);
+    const Pack squared = cx * cx + cy * cy + cz * cz, ax = at(b.arm[0]), ay = at(b.arm[1]), az = at(b.arm[2]);
+    // No weight beyond the last link.
+    const Pack lane([k](auto j) { return Real(k + static_cast<int>(j)); });
+    const Pack weight =
+        chosen<Pack>(lane < Pack(Real(b.count)), (Pack(Real(3)) - squared) * Pack(Real(1.0 / 36.0)), Pack(Real(0)));
+    const Pack ux = body.vx + (body.wy * az - body.wz * ay), uy = body.vy + (body.wz * ax - body.wx * az),
+               uz = body.vz + (body.wx * ay - body.wy * ax);
+    Pack towards_wall = cx * ux + cy * uy + cz * uz;
+    if (slips_) towards_wall += at(values_.slip);
+    LinkWeights<Pack> rule = Rule::weights(at(b.distance));
+    if constexpr (Rule::needs_both) {
+      const LinkWeights<Pack> without = BouzidiLink::weights(at(b.distance));
+      const typename Pack::mask_type covered = at(values_.covered) != Pack(Real(0));
+      rule.incident = chosen<Pack>(covered, without.incident, rule.incident);
+      rule.second = chosen<Pack>(covered, without.second, rule.second);
+      rule.wall = chosen<Pack>(covered, without.wall, rule.wall);
+    }
+    const Pack deviation = at(values_.deviation), incident = at(values_.incident);
+    const Pack density = local ? Pack(Real(1)) + deviation : Pack(Real(1));
+    Pack interpolated = rule.incident * incident + rule.second * at(values_.second);
+    if (slips_) {
+      // From a half on the second is f_i'^c(x_f), which changes by as much the other way.
+      const Pack opposite = chosen<Pack>(at(b.distance) < Pack(Real(0.5)), Pack(Real(0)), rule.second);
+      interpolated += at(values_.odd_change) * (rule.incident - opposite);
+    }
+    const Pack moving_wall = rule.wall * weight * density * towards_wall;
+    const Pack returned = body.returned + (cx * body.sx + cy * body.sy + cz * body.sz);
+    const Pack reflected = interpolated - moving_wall + weight * returned;
+    put(reflected, values_.reflected);
+    put(weight * at(values_.excess), values_.pressure);
+    const Pack sum = incident + reflected - reference * weight, flux = galilean * (incident - reflected);
+    const Pack mx = sum * cx - flux * ux, my = sum * cy - flux * uy, mz = sum * cz - flux * uz;
+    put(mx, values_.momentum[0]);
+    put(my, values_.momentum[1]);
+    put(mz, values_.momentum[2]);
+    put(ay * mz - az * my, values_.torque[0]);
+    put(az * mx - ax * mz, values_.torque[1]);
+    put(ax * my - ay * mx, values_.torque[2]);
+    if constexpr (extra == Extra::moments_and_balance) {
+      put(interpolated - incident, values_.interpolated);
+      put(-moving_wall, values_.moving_wall);
+    }
+    if constexpr (extra != Extra::none) {
+      const Pack m[3] = {mx, my, mz}, arm[3] = {ax, ay, az};
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) put(m[i] * arm[j], values_.moment[3 * i + j]);
+    }
+  }
+}
+
+template <typename Real, LinkShape S>
+void LinkPass<Real, S>::add_momentum(const Batch& b) const {
+  const Values& v = values_;
+  FixedSums<8> sums;
+  for (int k = 0; k < rounded_up(b.count); k += FixedSums<8>::width)
+    sums.add({wide(v.momentum[0] + k), wide(v.momentum[1] + k), wide(v.momentum[2] + k), wide(v.torque[0] + k),
+              wide(v.torque[1] + k), wide(v.torque[2] + k), wide(v.pressure + k),
+              // The difference is exact in double: single storage loses nothing here.
+              wide(v.reflected + k) - wide(v.incident + k)});
+  b.body->force += {sums[0], sums[1], sums[2]};
+  b.body->torque += {sums[3], sums[4], sums[5]};
+  b.body->pressure += sums[6];
+  b.body->mass += sums[7];
+}
+
+template <typename Real, LinkShape S>
+void LinkPass<Real, S>::add_moments(const Batch& b) const {
+  const Values& v = values_;
+  FixedSums<9> sums;
+  for (int k = 0; k < rounded_up(b.count); k += FixedSums<9>::width)
+    sums.add({wide(v.moment[0] + k), wide(v.moment[1] + k), wide(v.moment[2] + k), wide(v.moment[3] + k),
+              wide(v.moment[4] + k), wide(v.moment[5] + k), wide(v.moment[6] + k), wide(v.moment[7] + k),
+              wide(v.moment[8] + k)});
+  FixedTensor& moments = (*moments_)[static_cast<std::size_t>(b.body - bodies_.data())];
+  for (int k = 0; k < 9; ++k) moments.sums[static_cast<std::size_t>(k)] += sums[k];
+}
+
+template <typename Real, LinkShape S>
+void LinkPass<Real, S>::add_by_height(const Batch& b) const {
+  for (int k = 0; k < b.count; ++k) {
+    const auto at = [&](int axis) { return LatticeFixed::from(static_cast<double>(values_.momentum[axis][k])); };
+    (*by_height_)[static_cast<std::size_t>(2 * b.plane + 1 + component(b.tag[k], 2))] += {at(0), at(1), at(2)};
+  }
+}
+
+template <typename Real, LinkShape S>
+template <typename Rule>
+void LinkPass<Real, S>::add_balance(const Batch& b) const {
+  for (int k = 0; k < b.count; ++k) {
+    const bool near_wall = b.distance[k] < Real(0.5), has_covered = (b.tag[k] >> LinkTag::covered_shift & 1) != 0;
+    const bool reads_upstream = Rule::needs_both ? near_wall || !has_covered : near_wall;
+    std::int64_t& part = !reads_upstream ? balance_->same_cell : has_covered ? balance_->covered : balance_->upstream;
+    part += LatticeFixed::from(static_cast<double>(values_.interpolated[k]));
+    balance_->moving_wall += LatticeFixed::from(static_cast<double>(values_.moving_wall[k]));
+  }
+}
+
+}  // namespace thalweg::lbm
