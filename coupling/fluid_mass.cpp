@@ -1,5 +1,7 @@
 #include "coupling/fluid_mass.hpp"
 
+#include "lbm/for_each_cell.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,13 +11,9 @@ template <typename Real>
 double add_density(lbm::Fluid<Real>& fluid, double density) {
   if (sizeof(Real) == sizeof(float) && std::abs(density) < 1e-8) return 0.0;
   lbm::Populations<Real>& populations = fluid.populations();
-  const Index3& n = fluid.indexing().size();
-  for (int z = 0; z < n[2]; ++z)
-    for (int y = 0; y < n[1]; ++y)
-      for (int x = 0; x < n[0]; ++x) {
-        const std::ptrdiff_t cell = fluid.indexing().index(x, y, z);
-        if (fluid.cells().is_fluid(cell)) populations.post_collision(0, cell) += static_cast<Real>(density);
-      }
+  lbm::for_each_fluid_cell(fluid.cells(), [&](std::ptrdiff_t cell, const Index3&) {
+    populations.post_collision(0, cell) += static_cast<Real>(density);
+  });
   return density;
 }
 

@@ -1,6 +1,7 @@
 #include "coupling/fluid_sample.hpp"
 
 #include "lbm/flow_fields.hpp"
+#include "lbm/for_each_cell.hpp"
 
 #include <algorithm>
 #include <initializer_list>
@@ -8,16 +9,6 @@
 namespace thalweg::coupling {
 
 namespace {
-
-// Calls visit(cell index, x, y, z, position in the arrays of the fields) for every owned cell.
-template <typename Real, typename Visit>
-void for_each_cell(const lbm::Fluid<Real>& fluid, Visit visit) {
-  const Index3& n = fluid.indexing().size();
-  std::size_t at = 0;
-  for (int z = 0; z < n[2]; ++z)
-    for (int y = 0; y < n[1]; ++y)
-      for (int x = 0; x < n[0]; ++x) visit(fluid.indexing().index(x, y, z), x, y, z, at++);
-}
 
 bool wants(const std::vector<FluidField>& wanted, std::initializer_list<FluidField> any) {
   return std::find_first_of(wanted.begin(), wanted.end(), any.begin(), any.end()) != wanted.end();
@@ -34,7 +25,8 @@ void put(std::vector<float>& values, std::size_t at, const Vec3& v) {
 template <typename Real>
 void sample_states(const lbm::Fluid<Real>& fluid, const SampleContext& context, FluidFields& fields) {
   const Units& units = context.units;
-  for_each_cell(fluid, [&](std::ptrdiff_t cell, int, int, int, std::size_t at) {
+  lbm::for_each_cell(fluid.indexing(), [&](std::ptrdiff_t cell, const Index3& local) {
+    const std::size_t at = lbm::place_in_block(fluid.indexing(), local);
     const std::int32_t body = fluid.cells().body(cell);
     if (!fields.grain_id.empty()) fields.grain_id[at] = body == lbm::CellMap::fluid ? -1 : context.grain_id(body);
     if (body != lbm::CellMap::fluid) return;
@@ -52,8 +44,8 @@ void sample_subgrid(lbm::Fluid<Real>& fluid, const SampleContext& context, Fluid
   fluid.exchange_halo();
   fluid.apply_walls();
   if (context.apply_links) context.apply_links();
-  for_each_cell(fluid, [&](std::ptrdiff_t cell, int, int, int, std::size_t at) {
-    if (!fluid.cells().is_fluid(cell)) return;
+  lbm::for_each_fluid_cell(fluid.cells(), [&](std::ptrdiff_t cell, const Index3& local) {
+    const std::size_t at = lbm::place_in_block(fluid.indexing(), local);
     const lbm::SubgridState state = lbm::subgrid_state(fluid, cell);
     if (!fields.shear_rate.empty())
       fields.shear_rate[at] = static_cast<float>(state.shear_rate / context.units.time_step);
@@ -66,9 +58,9 @@ template <typename Real>
 void sample_gradients(const lbm::Fluid<Real>& fluid, const SampleContext& context, FluidFields& fields) {
   const GhostedField velocity = lbm::velocity_field(fluid);
   const double rate = 1.0 / context.units.time_step;
-  for_each_cell(fluid, [&](std::ptrdiff_t cell, int x, int y, int z, std::size_t at) {
-    if (!fluid.cells().is_fluid(cell)) return;
-    const lbm::Gradient gradient = lbm::velocity_gradient(velocity, x, y, z);
+  lbm::for_each_fluid_cell(fluid.cells(), [&](std::ptrdiff_t, const Index3& local) {
+    const std::size_t at = lbm::place_in_block(fluid.indexing(), local);
+    const lbm::Gradient gradient = lbm::velocity_gradient(velocity, local[0], local[1], local[2]);
     if (!fields.vorticity.empty()) put(fields.vorticity, at, lbm::vorticity(gradient) * rate);
     if (!fields.q_criterion.empty())
       fields.q_criterion[at] = static_cast<float>(lbm::q_criterion(gradient) * rate * rate);
@@ -100,9 +92,8 @@ FluidFields sample_fields(lbm::Fluid<Real>& fluid, const SampleContext& context,
 template <typename Real>
 void visit_velocities(const lbm::Fluid<Real>& fluid, const Units& units, const FluidSource::VelocityVisitor& visit) {
   const Index3& from = fluid.block().lower;
-  for_each_cell(fluid, [&](std::ptrdiff_t cell, int x, int y, int z, std::size_t) {
-    if (fluid.cells().is_fluid(cell))
-      visit({from[0] + x, from[1] + y, from[2] + z}, fluid.state_at(cell).velocity * units.velocity());
+  lbm::for_each_fluid_cell(fluid.cells(), [&](std::ptrdiff_t cell, const Index3& at) {
+    visit({from[0] + at[0], from[1] + at[1], from[2] + at[2]}, fluid.state_at(cell).velocity * units.velocity());
   });
 }
 

@@ -1,6 +1,7 @@
 #include "coupling/momentum_book.hpp"
 
 #include "lbm/flow_fields.hpp"
+#include "lbm/for_each_cell.hpp"
 
 namespace thalweg::coupling {
 
@@ -44,15 +45,12 @@ PlaneMomentum in_si(const std::int64_t* sums, const Units& units) {
 
 template <typename Real>
 std::vector<PlaneMomentum> planes_of(const lbm::Fluid<Real>& fluid, const Units& units) {
-  const Index3 &n = fluid.indexing().size(), &from = fluid.block().lower;
+  const Index3& from = fluid.block().lower;
   const int planes = fluid.decomposition().cells()[2];
   std::vector<std::int64_t> sums(static_cast<std::size_t>(planes * columns), 0);
-  for (int z = 0; z < n[2]; ++z)
-    for (int y = 0; y < n[1]; ++y)
-      for (int x = 0; x < n[0]; ++x) {
-        const std::ptrdiff_t cell = fluid.indexing().index(x, y, z);
-        if (fluid.cells().is_fluid(cell)) add_cell(lbm::momentum_flux(fluid, cell), &sums[(from[2] + z) * columns]);
-      }
+  lbm::for_each_fluid_cell(fluid.cells(), [&](std::ptrdiff_t cell, const Index3& at) {
+    add_cell(lbm::momentum_flux(fluid, cell), &sums[(from[2] + at[2]) * columns]);
+  });
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_INT64_T, MPI_SUM, fluid.communicator());
   std::vector<PlaneMomentum> all;
   for (int z = 0; z < planes; ++z) all.push_back(in_si(&sums[z * columns], units));

@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
 #include "coupling/lattice_vectors.hpp"
+#include "lbm/for_each_cell.hpp"
 
 #include <fmt/format.h>
 
@@ -145,18 +146,13 @@ void StaticSolids::cover(int solid, const TriangleMesh& mesh) {
 }
 
 void StaticSolids::find_cut_cells() {
-  const Index3 n = block_.size();
-  for (int z = 0; z < n[2]; ++z)
-    for (int y = 0; y < n[1]; ++y)
-      for (int x = 0; x < n[0]; ++x) {
-        const std::ptrdiff_t cell = cells_.indexing().index(x, y, z);
-        if (!cells_.is_fluid(cell)) continue;
-        for (int i = 1; i < D3Q19::directions; ++i)
-          if (!cells_.is_fluid(cell + cells_.indexing().offset(i))) {
-            cut_[cell].fill(not_met);
-            break;
-          }
+  lbm::for_each_fluid_cell(cells_, [&](std::ptrdiff_t cell, const Index3&) {
+    for (int i = 1; i < D3Q19::directions; ++i)
+      if (!cells_.is_fluid(cell + cells_.indexing().offset(i))) {
+        cut_[cell].fill(not_met);
+        break;
       }
+  });
 }
 
 // Shortens the links of the cut cells in and around an extent to where meets(from, along) says.

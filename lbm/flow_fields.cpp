@@ -1,6 +1,7 @@
 #include "lbm/flow_fields.hpp"
 
 #include "lbm/collision.hpp"
+#include "lbm/for_each_cell.hpp"
 
 #include <cmath>
 
@@ -36,17 +37,12 @@ Vec3 derivative(const GhostedField& velocity, const Index3& cell, int axis) {
 template <typename Real>
 GhostedField velocity_field(const Fluid<Real>& fluid) {
   GhostedField field(fluid.decomposition(), fluid.communicator(), fluid_flag + 1, 2);
-  const Index3& n = fluid.indexing().size();
-  for (int z = 0; z < n[2]; ++z)
-    for (int y = 0; y < n[1]; ++y)
-      for (int x = 0; x < n[0]; ++x) {
-        const std::ptrdiff_t cell = fluid.indexing().index(x, y, z);
-        if (!fluid.cells().is_fluid(cell)) continue;
-        const Vec3 u = fluid.state_at(cell).velocity;
-        double* values = field.at(x, y, z);
-        for (int a = 0; a < 3; ++a) values[a] = u[a];
-        values[fluid_flag] = 1.0;
-      }
+  for_each_fluid_cell(fluid.cells(), [&](std::ptrdiff_t cell, const Index3& at) {
+    const Vec3 u = fluid.state_at(cell).velocity;
+    double* values = field.at(at[0], at[1], at[2]);
+    for (int a = 0; a < 3; ++a) values[a] = u[a];
+    values[fluid_flag] = 1.0;
+  });
   field.exchange();
   return field;
 }

@@ -4,6 +4,7 @@
 #include "core/mpi_session.hpp"
 #include "lbm/equilibrium.hpp"
 #include "lbm/fluid_survey.hpp"
+#include "lbm/for_each_cell.hpp"
 
 #include <fmt/format.h>
 
@@ -46,33 +47,17 @@ Fluid<Real>::Fluid(const Decomposition& decomposition, MPI_Comm communicator, co
 }
 
 template <typename Real>
-template <typename Visit>
-void Fluid<Real>::for_each_fluid_cell(Visit visit) const {
-  const Index3& n = indexing().size();
-  for (int z = 0; z < n[2]; ++z)
-    for (int y = 0; y < n[1]; ++y)
-      for (int x = 0; x < n[0]; ++x) {
-        const std::ptrdiff_t cell = indexing().index(x, y, z);
-        if (cells_.is_fluid(cell)) visit(cell, x, y, z);
-      }
-}
-
-template <typename Real>
 void Fluid<Real>::initialise(const std::function<FluidState(const Vec3&)>& state, const Vec3& force) {
   populations_.set_arrangement(Arrangement::swapped);
-  const Index3& n = indexing().size();
-  for (int z = 0; z < n[2]; ++z)
-    for (int y = 0; y < n[1]; ++y)
-      for (int x = 0; x < n[0]; ++x) {
-        const FluidState s =
-            state(Vec3(block_.lower[0] + x + 0.5, block_.lower[1] + y + 0.5, block_.lower[2] + z + 0.5));
-        const std::ptrdiff_t cell = indexing().index(x, y, z);
-        for (int i = 0; i < D3Q19::directions; ++i) {
-          const double along = D3Q19::c[i][0] * force.x() + D3Q19::c[i][1] * force.y() + D3Q19::c[i][2] * force.z();
-          populations_.post_collision(i, cell) = static_cast<Real>(
-              equilibrium_deviation(i, s.density_deviation, s.velocity) + 1.5 * D3Q19::weight(i) * along);
-        }
-      }
+  for_each_cell(indexing(), [&](std::ptrdiff_t cell, const Index3& at) {
+    const FluidState s =
+        state(Vec3(block_.lower[0] + at[0] + 0.5, block_.lower[1] + at[1] + 0.5, block_.lower[2] + at[2] + 0.5));
+    for (int i = 0; i < D3Q19::directions; ++i) {
+      const double along = D3Q19::c[i][0] * force.x() + D3Q19::c[i][1] * force.y() + D3Q19::c[i][2] * force.z();
+      populations_.post_collision(i, cell) =
+          static_cast<Real>(equilibrium_deviation(i, s.density_deviation, s.velocity) + 1.5 * D3Q19::weight(i) * along);
+    }
+  });
 }
 
 template <typename Real>
@@ -228,8 +213,8 @@ void Fluid<Real>::save(ArchiveWriter& archive) const {
   std::vector<Real> values(static_cast<std::size_t>(n[0]) * n[1] * n[2]);
   for (int i = 0; i < D3Q19::directions; ++i) {
     std::fill(values.begin(), values.end(), Real(0));
-    for_each_fluid_cell([&](std::ptrdiff_t cell, int x, int y, int z) {
-      values[(static_cast<std::size_t>(z) * n[1] + y) * n[0] + x] = populations_.post_collision(i, cell);
+    for_each_fluid_cell(cells_, [&](std::ptrdiff_t cell, const Index3& at) {
+      values[place_in_block(indexing(), at)] = populations_.post_collision(i, cell);
     });
     archive.write(fmt::format("fluid/populations_{:02d}", i), std::span<const Real>(values), array_box());
   }
@@ -250,11 +235,9 @@ void Fluid<Real>::load_populations(ArchiveReader& archive) {
   std::vector<Real> values(static_cast<std::size_t>(n[0]) * n[1] * n[2]);
   for (int i = 0; i < D3Q19::directions; ++i) {
     archive.read(fmt::format("fluid/populations_{:02d}", i), std::span<Real>(values), array_box());
-    for (int z = 0; z < n[2]; ++z)
-      for (int y = 0; y < n[1]; ++y)
-        for (int x = 0; x < n[0]; ++x)
-          populations_.post_collision(i, indexing().index(x, y, z)) =
-              values[(static_cast<std::size_t>(z) * n[1] + y) * n[0] + x];
+    for_each_cell(indexing(), [&](std::ptrdiff_t cell, const Index3& at) {
+      populations_.post_collision(i, cell) = values[place_in_block(indexing(), at)];
+    });
   }
 }
 

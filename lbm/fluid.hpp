@@ -90,8 +90,6 @@ public:
   void load_populations(ArchiveReader& archive);
 
 private:
-  template <typename Visit>
-  void for_each_fluid_cell(Visit visit) const;
   ArrayBox array_box() const;
   void sweep(int y, int z);  // a row, and the shear rates its walls want
   void switch_arrangement();

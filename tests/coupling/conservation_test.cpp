@@ -3,6 +3,7 @@
 
 #include "core/mpi_session.hpp"
 #include "coupling/attached_vector.hpp"
+#include "lbm/for_each_cell.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,13 +21,10 @@ Vec3 over_ranks(const Vec3& v) {
 template <typename Visit>
 void for_each_fluid_cell(const ResolvedSystem<double>& system, Visit visit) {
   const lbm::Fluid<double>& fluid = system.fluid();
-  const Index3 n = fluid.indexing().size(), from = fluid.block().lower;
-  for (int z = 0; z < n[2]; ++z)
-    for (int y = 0; y < n[1]; ++y)
-      for (int x = 0; x < n[0]; ++x) {
-        const std::ptrdiff_t cell = fluid.indexing().index(x, y, z);
-        if (fluid.cells().is_fluid(cell)) visit(Vec3(from[0] + x + 0.5, from[1] + y + 0.5, from[2] + z + 0.5), cell);
-      }
+  const Index3& from = fluid.block().lower;
+  lbm::for_each_fluid_cell(fluid.cells(), [&](std::ptrdiff_t cell, const Index3& at) {
+    visit(Vec3(from[0] + at[0] + 0.5, from[1] + at[1] + 0.5, from[2] + at[2] + 0.5), cell);
+  });
 }
 
 Vec3 momentum_of(const ResolvedSystem<double>& system, std::ptrdiff_t cell) {

@@ -3,6 +3,7 @@
 
 #include "core/mpi_session.hpp"
 #include "coupling/attached_vector.hpp"
+#include "lbm/for_each_cell.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,18 +18,12 @@ struct Content {
 
 Content content_of(const ResolvedSystem<double>& system) {
   const lbm::Fluid<double>& fluid = system.fluid();
-  const Index3 n = fluid.indexing().size();
   Content all;
-  for (int z = 0; z < n[2]; ++z)
-    for (int y = 0; y < n[1]; ++y)
-      for (int x = 0; x < n[0]; ++x) {
-        const std::ptrdiff_t cell = fluid.indexing().index(x, y, z);
-        if (!fluid.cells().is_fluid(cell)) continue;
-        all.mass += 1.0 + fluid.populations().density_deviation(cell);
-        for (int i = 1; i < lbm::D3Q19::directions; ++i)
-          for (int a = 0; a < 3; ++a)
-            all.momentum[a] += lbm::D3Q19::c[i][a] * fluid.populations().post_collision(i, cell);
-      }
+  lbm::for_each_fluid_cell(fluid.cells(), [&](std::ptrdiff_t cell, const Index3&) {
+    all.mass += 1.0 + fluid.populations().density_deviation(cell);
+    for (int i = 1; i < lbm::D3Q19::directions; ++i)
+      for (int a = 0; a < 3; ++a) all.momentum[a] += lbm::D3Q19::c[i][a] * fluid.populations().post_collision(i, cell);
+  });
   all.mass = sum_over_ranks(MPI_COMM_WORLD, all.mass);
   for (int a = 0; a < 3; ++a) all.momentum[a] = sum_over_ranks(MPI_COMM_WORLD, all.momentum[a]);
   return all;
