@@ -98,9 +98,6 @@ private:
     alignas(64) Real interpolated[capacity], moving_wall[capacity];  // parts of f_i' - f_i^c
   };
   static constexpr bool has_normals = Shape<S>;
-  // The arithmetic runs over whole vectors of any machine; what it computes beyond the last link is zero.
-  static constexpr int whole = static_cast<int>(LinkTable::slack);
-  static int rounded_up(int count) { return (count + whole - 1) / whole * whole; }
   static int component(std::uint32_t tag, int axis) { return LinkTag::velocity(static_cast<int>(tag), axis); }
 
   using Wide = std::experimental::native_simd<double>;

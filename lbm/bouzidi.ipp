@@ -116,7 +116,7 @@ void LinkPass<Real, S>::prepare(Batch& b, const LinkTable::Tile& tile, int plane
   b.tag = tags;
   b.count = count;
   b.plane = plane;
-  const int n = rounded_up(count);
+  const int n = padded(count);
   if constexpr (Shape<S>) {
     find_crossings(shapes_[static_cast<std::size_t>(body)], b.body->centre, block_, plane, places, tags, n, b.distance,
                    b.arm[0], b.arm[1], b.arm[2]);
@@ -165,7 +165,7 @@ void LinkPass<Real, S>::gather(const Batch& b) {
   slips_ = wanted_at_any_distance != 0 && covered > 0;
   if (covered > 0) look_at_covered(b, covered);
   if constexpr (Rule::needs_both) look_upstream(b);
-  const int n = rounded_up(b.count);
+  const int n = padded(b.count);
   for (int k = b.count; k < n; ++k) values_.deviation[k] = values_.incident[k] = values_.second[k] = Real(0);
   std::copy_n(values_.deviation, n, values_.excess);
   if (!options_.rest_gradient.isZero(0.0)) subtract_rest(b);
@@ -203,8 +203,8 @@ void LinkPass<Real, S>::look_at_covered(const Batch& b, int covered) {
     const Real* sent[D3Q19::directions];
     for (int i = 0; i < D3Q19::directions; ++i) sent[i] = sent_[i] + (b.plane + 1) * cells_.indexing().plane_stride();
     upstream_.let_flow(sent, force_, gaps_, *b.body);
-    std::fill_n(values_.slip, rounded_up(b.count), Real(0));
-    std::fill_n(values_.odd_change, rounded_up(b.count), Real(0));
+    std::fill_n(values_.slip, padded(b.count), Real(0));
+    std::fill_n(values_.odd_change, padded(b.count), Real(0));
     for (int c = 0; c < covered; ++c) {
       values_.slip[covered_[c]] = static_cast<Real>(upstream_.slip_along(c));
       values_.odd_change[covered_[c]] = static_cast<Real>(upstream_.odd_change(c));
@@ -237,7 +237,7 @@ void LinkPass<Real, S>::look_upstream(const Batch& b) {
       values_.second[k] =
           base_[slots_.one_back(b.incident_at[k], b.tag[k])] - base_[slots_.one_back(b.reflected_at[k], b.tag[k])];
   }
-  for (int k = b.count; k < rounded_up(b.count); ++k) values_.covered[k] = Real(0);
+  for (int k = b.count; k < padded(b.count); ++k) values_.covered[k] = Real(0);
 }
 
 template <typename Real, LinkShape S>
@@ -248,7 +248,7 @@ void LinkPass<Real, S>::reflect(const Batch& b) {
   const Pack galilean = options_.momentum_exchange == MomentumExchange::galilean_invariant ? Real(1) : Real(0);
   const Pack reference = Real(2.0 * options_.reference_density);
   const bool local = options_.wall_density == WallDensity::local;
-  for (int k = 0; k < rounded_up(b.count); k += width) {
+  for (int k = 0; k < padded(b.count); k += width) {
     const auto at = [k](const Real* values) { return Pack(values + k, stdx::element_aligned); };
     const auto put = [k](const Pack& pack, Real* values) { pack.copy_to(values + k, stdx::element_aligned); };
     const Ints tag(b.tag + k, stdx::element_aligned);
@@ -307,7 +307,7 @@ template <typename Real, LinkShape S>
 void LinkPass<Real, S>::add_momentum(const Batch& b) const {
   const Values& v = values_;
   FixedSums<8> sums;
-  for (int k = 0; k < rounded_up(b.count); k += FixedSums<8>::width)
+  for (int k = 0; k < padded(b.count); k += FixedSums<8>::width)
     sums.add({wide(v.momentum[0] + k), wide(v.momentum[1] + k), wide(v.momentum[2] + k), wide(v.torque[0] + k),
               wide(v.torque[1] + k), wide(v.torque[2] + k), wide(v.pressure + k),
               // The difference is exact in double: single storage loses nothing here.
@@ -322,7 +322,7 @@ template <typename Real, LinkShape S>
 void LinkPass<Real, S>::add_moments(const Batch& b) const {
   const Values& v = values_;
   FixedSums<9> sums;
-  for (int k = 0; k < rounded_up(b.count); k += FixedSums<9>::width)
+  for (int k = 0; k < padded(b.count); k += FixedSums<9>::width)
     sums.add({wide(v.moment[0] + k), wide(v.moment[1] + k), wide(v.moment[2] + k), wide(v.moment[3] + k),
               wide(v.moment[4] + k), wide(v.moment[5] + k), wide(v.moment[6] + k), wide(v.moment[7] + k),
               wide(v.moment[8] + k)});

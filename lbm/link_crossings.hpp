@@ -28,7 +28,7 @@ struct BlockPlace {
 };
 
 // Of links [0, count) of one body (centre: global) in the plane z (owned local coordinate), count a multiple of
-// LinkTable::slack, in the arithmetic of Real, which is the same for every link whatever its place in the arrays. Cells
+// links_at_a_time, in the arithmetic of Real, which is the same for every link whatever its place in the arrays. Cells
 // count from whole numbers near the centre, so that nothing is lost far from the origin; the nearest image is that of
 // the solid cell, which is inside.
 template <typename Real, Shape S>
@@ -49,9 +49,8 @@ inline void find_crossings(S shape, const Vec3& centre, const BlockPlace& block,
   const auto nearest = [](int cell, int half, int period) {
     return cell - (cell > half ? period : 0) + (cell < -half ? period : 0);
   };
-  constexpr int whole = static_cast<int>(LinkTable::slack);
-  for (int first = 0; first < count; first += whole)
-    for (int k = first; k < first + whole; ++k) {
+  for (int first = 0; first < count; first += links_at_a_time)
+    for (int k = first; k < first + links_at_a_time; ++k) {
       const int tag = static_cast<int>(tags[k]), place = static_cast<int>(places[k]);
       const int cx = LinkTag::velocity(tag, 0), cy = LinkTag::velocity(tag, 1), cz = LinkTag::velocity(tag, 2);
       const int x = static_cast<int>(place & static_cast<int>(LinkPlace::x_mask)),

@@ -40,7 +40,7 @@ public:
     stride_ = static_cast<int>(stride);
   }
 
-  // Of links [0, count) in the plane z (owned local coordinate), count a multiple of LinkTable::slack: the index of x_f
+  // Of links [0, count) in the plane z (owned local coordinate), count a multiple of links_at_a_time: the index of x_f
   // within its plane of cells; the slots of f_i^c(x_f), of f_i^c(x_ff) where delta < 1/2 or else f_i'^c(x_f), and of
   // the incoming f_i'.
   template <typename Real>

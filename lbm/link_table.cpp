@@ -139,7 +139,7 @@ void LinkTable::put(Tile& tile, Chunk& chunk, std::span<const Link> links, std::
     chunk.first = static_cast<std::uint32_t>(tile.end);
     chunk.capacity = static_cast<std::uint32_t>(links.size() + links.size() / 4);
     tile.end += chunk.capacity;
-    resize(tile.links, tile.end + slack);
+    resize(tile.links, tile.end + links_at_a_time);
   }
   LinkSums& sums = sums_[static_cast<std::size_t>(chunk.body)];
   sums -= chunk.sums;
@@ -157,7 +157,7 @@ void LinkTable::put(Tile& tile, Chunk& chunk, std::span<const Link> links, std::
 
 void LinkTable::compact(Tile& tile) const {
   LinkStream packed;
-  resize(packed, tile.live + slack);
+  resize(packed, tile.live + links_at_a_time);
   std::size_t end = 0;
   for (Chunk& chunk : tile.chunks) {
     const auto move = [&](const auto& from, auto& to) {

@@ -52,6 +52,11 @@ struct LinkTag {
   }
 };
 
+// Vector code takes so many links at a time, whole vectors of any machine. What it computes beyond the last link is of
+// no use and no harm, and streams are longer than their links by as much, so that it may read on beyond their end.
+inline constexpr int links_at_a_time = 16;
+constexpr int padded(int links) { return (links + links_at_a_time - 1) / links_at_a_time * links_at_a_time; }
+
 struct Link {
   std::uint32_t place = 0, tag = 0;
 };
@@ -106,9 +111,6 @@ struct LinkSums {
 
 class LinkTable {
 public:
-  // Every stream is longer than its links by this much, for vector code to run over the end.
-  static constexpr std::size_t slack = 16;
-
   struct Chunk {
     std::int32_t body = -1;  // slot of the body; -1: the chunk is free
     std::uint32_t first = 0, count = 0, capacity = 0;

@@ -88,12 +88,11 @@ void UpstreamBodies::let_flow(const Real* const (&sent)[D3Q19::directions], cons
   }
 }
 
-// The arithmetic runs over whole vectors; what it computes beyond the last link is of no use and no harm.
 void UpstreamBodies::find_populations(const Vec3& rest_gradient) {
   const double gx = rest_gradient.x(), gy = rest_gradient.y(), gz = rest_gradient.z();
-  const int n = rounded_up();
-  for (int first = 0; first < n; first += whole)
-    for (int k = first; k < first + whole; ++k) {
+  const int n = padded(count_);
+  for (int first = 0; first < n; first += links_at_a_time)
+    for (int k = first; k < first + links_at_a_time; ++k) {
       const int tag = static_cast<int>(tag_[k]);
       const double cx = LinkTag::velocity(tag, 0), cy = LinkTag::velocity(tag, 1), cz = LinkTag::velocity(tag, 2);
       const double back = distance_[k] + 1.0;

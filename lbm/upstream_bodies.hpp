@@ -69,8 +69,6 @@ public:
   double odd_change(int link) const { return odd_change_[link]; }  // of o
 
 private:
-  static constexpr int whole = static_cast<int>(LinkTable::slack);
-  int rounded_up() const { return (count_ + whole - 1) / whole * whole; }
   Vec3 before_arm(const double (&arm)[3][capacity], int link) const {
     Vec3 from;
     for (int a = 0; a < 3; ++a)

@@ -58,7 +58,7 @@ TEST(AnyShape, CoversItsVolumeAndIsCutWhereItsSurfaceIs) {
     const lbm::BlockPlace block(box, fluid.block().lower);
     for (int tile = 0; tile < fluid.tiles().count(); ++tile)
       for (const lbm::LinkTable::Run& run : table.runs_in_order(tile)) {
-        const std::size_t n = (run.count + 15) / 16 * 16;
+        const auto n = static_cast<std::size_t>(lbm::padded(static_cast<int>(run.count)));
         std::vector<double> distance(n), x(n), y(n), z(n);
         const lbm::LinkStream& links = table.tiles()[tile].links;
         lbm::find_crossings(shape, map.grains()[0].centre, block, fluid.tiles().plane_of(tile),
