@@ -114,7 +114,7 @@ void Fluid<Real>::sweep(int y, int z) {
   const bool wanted = walls_.wants_shear(y, z);
   const RowShear<Real> shear{{shear_rows_[0].data(), shear_rows_[1].data(), shear_rows_[2].data()}};
   sweep_row<Real>(populations_, cells_, parameters_, y, z, wanted ? &shear : nullptr);
-  if (wanted) walls_.take_shear(y, z, shear, cells_);
+  if (wanted) walls_.update_bounced(y, z, shear, cells_);
 }
 
 template <typename Real>

@@ -81,13 +81,13 @@ public:
         for_each_pack(
             y, z, [&](int x, const CellPack& cells) __attribute__((always_inline)) {
               if (packs++ == Lanes::most_packs) {
-                take(lanes, y, z);
+                add_row(lanes, y, z);
                 lanes = {};
                 packs = 1;
               }
               add(lanes, cells, x);
             });
-        take(lanes, y, z);
+        add_row(lanes, y, z);
       }
     return combined();
   }
@@ -153,7 +153,7 @@ private:
     lanes.fastest = stdx::max(lanes.fastest, where_else(good, c.speed_squared, -infinity));
   }
 
-  void take(const Lanes& lanes, int y, int z) {
+  void add_row(const Lanes& lanes, int y, int z) {
     const Index3 &lower = fluid_.block().lower, &cells = fluid_.decomposition().cells();
     sums_[0].add(total(lanes.mass));
     for (int a = 0; a < 3; ++a) sums_[1 + a].add(total(lanes.momentum[a]));

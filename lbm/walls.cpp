@@ -94,22 +94,22 @@ bool Walls<Real>::wants_shear(int y, int z) const {
 }
 
 template <typename Real>
-void Walls<Real>::take_cell(int face, int x, int y, int z, double shear_rate, const CellMap& cells) {
+void Walls<Real>::update_bounced_cell(int face, int x, int y, int z, double shear_rate, const CellMap& cells) {
   const int u = face / 2 == 0 ? y : x, v = face / 2 == 2 ? y : z;
   const bool fluid = cells.is_fluid(indexing_.index(x, y, z));
   bounced_[face].at(u, v) = static_cast<Real>(bounced_fraction(face, fluid ? shear_rate : 0.0));
 }
 
 template <typename Real>
-void Walls<Real>::take_shear(int y, int z, const RowShear<Real>& shear, const CellMap& cells) {
+void Walls<Real>::update_bounced(int y, int z, const RowShear<Real>& shear, const CellMap& cells) {
   const Index3& n = indexing_.size();
   for (int face = 0; face < 6; ++face) {
     if (!present_[face] || !follows_shear(face)) continue;
     const int axis = face / 2, wall_cell = face % 2 == 0 ? 0 : n[axis] - 1;
     if (axis == 0)
-      take_cell(face, wall_cell, y, z, shear.normal_to[0][wall_cell], cells);
+      update_bounced_cell(face, wall_cell, y, z, shear.normal_to[0][wall_cell], cells);
     else if ((axis == 1 ? y : z) == wall_cell)
-      for (int x = 0; x < n[0]; ++x) take_cell(face, x, y, z, shear.normal_to[axis][x], cells);
+      for (int x = 0; x < n[0]; ++x) update_bounced_cell(face, x, y, z, shear.normal_to[axis][x], cells);
   }
 }
 

@@ -76,9 +76,9 @@ public:
 
   // True if the shear rates of a row are wanted after the sweep.
   bool wants_shear(int y, int z) const;
-  // Takes the shear rates of a row, just swept, and updates the bounced fraction of the wall cells in it (solid cells
-  // have no shear rate; theirs goes back to the start value).
-  void take_shear(int y, int z, const RowShear<Real>& shear, const CellMap& cells);
+  // Updates the bounced fraction of the wall cells in a row, just swept, from its shear rates (solid cells have none;
+  // theirs goes back to the start value).
+  void update_bounced(int y, int z, const RowShear<Real>& shear, const CellMap& cells);
 
   // The body force, where it changes with time.
   void set_force(const Vec3& force) { half_force_ = 0.5 * force; }
@@ -100,7 +100,7 @@ private:
   void apply_face(Populations<Real>& populations, const CellMap& cells, int face) const;
   void apply_direction(Populations<Real>& populations, const CellMap& cells, int face, int direction) const;
   void reflect_run(Populations<Real>& populations, const CellMap& cells, const Run& run) const;
-  void take_cell(int face, int x, int y, int z, double shear_rate, const CellMap& cells);
+  void update_bounced_cell(int face, int x, int y, int z, double shear_rate, const CellMap& cells);
   bool decides_edge(int face, int other) const;
   int face_of_population(int face, int direction, const Index3& at) const;
   bool follows_shear(int face) const;
