@@ -32,8 +32,9 @@ public:
 private:
   static constexpr double nowhere = -1e8;  // no grain's centre is below this
 
-  // Turns the cells within reach of `middle` that are inside the grain at only one of the two places of its centre.
-  void turn_cells(int slot, const Vec3& middle, double reach, const Vec3& old, const Vec3& now);
+  // Turns the cells within `half_width` of `middle` that are inside the grain at only one of the two places of its
+  // centre.
+  void turn_cells(int slot, const Vec3& middle, double half_width, const Vec3& old, const Vec3& now);
   using Chord = decltype(std::declval<const S&>().chord(0.0, 0.0));
   void turn_row(int slot, int y, int z, const Chord& before, const Chord& after);
 
@@ -76,10 +77,10 @@ void GrainMap<S>::place(int slot, const Vec3& centre) {
 // Only cells that are inside at one of the two places and not at the other can change hands; what the grain holds or
 // claims of the others stays.
 template <Shape S>
-void GrainMap<S>::turn_cells(int slot, const Vec3& middle, double reach, const Vec3& old, const Vec3& now) {
+void GrainMap<S>::turn_cells(int slot, const Vec3& middle, double half_width, const Vec3& old, const Vec3& now) {
   for (int a = 0; a < 3; ++a) {
-    local_cells_.along(a, middle[a], reach, old[a], 1, before_[a]);
-    local_cells_.along(a, middle[a], reach, now[a], 1, after_[a]);
+    local_cells_.along(a, middle[a], half_width, old[a], 1, before_[a]);
+    local_cells_.along(a, middle[a], half_width, now[a], 1, after_[a]);
   }
   const auto offset = [](const LocalCell& place) { return place.offset; };
   x_before_.resize(before_[0].size());

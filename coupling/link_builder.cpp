@@ -75,13 +75,13 @@ void LinkBuilder::mark_around(const CellChange& change) {
 }
 
 void LinkBuilder::rebuild(int slot, const MappedGrain& grain, lbm::LinkTable& table) {
-  const double reach = grain.reach + longest_link;
+  const double half_width = grain.reach + longest_link;
   std::vector<LocalCell>* places[2] = {&xs_, &ys_};
   const auto before = [](const LocalCell& p, const LocalCell& q) { return p.local < q.local; };
   const auto same = [](const LocalCell& p, const LocalCell& q) { return p.local == q.local; };
   for (int a = 0; a < 2; ++a) {
     std::vector<LocalCell>& cells = *places[a];
-    local_cells_.along(a, grain.centre[a], reach, grain.centre[a], 0, cells);
+    local_cells_.along(a, grain.centre[a], half_width, grain.centre[a], 0, cells);
     std::sort(cells.begin(), cells.end(), before);
     cells.erase(std::unique(cells.begin(), cells.end(), same), cells.end());
   }

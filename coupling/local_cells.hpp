@@ -18,15 +18,15 @@ class LocalCells {
 public:
   LocalCells(const Decomposition& decomposition, const Block& block) : decomposition_(decomposition), block_(block) {}
 
-  // Cells along an axis whose centres are within `reach` of `middle` (and perhaps one more), in memory on this rank out
-  // to `ghosts` layers; offsets are taken from `reference`. All in cells.
-  void along(int axis, double middle, double reach, double reference, int ghosts,
+  // Cells along an axis whose centres are within `half_width` of `middle` (and perhaps one more), in memory on this
+  // rank out to `ghosts` layers; offsets are taken from `reference`. All in cells.
+  void along(int axis, double middle, double half_width, double reference, int ghosts,
              std::vector<LocalCell>& places) const {
     places.clear();
     const int cells = decomposition_.cells()[axis], n = block_.size()[axis];
     const bool periodic = decomposition_.periodic()[axis];
-    int first = static_cast<int>(std::floor(middle - reach - 0.5)),
-        last = static_cast<int>(std::ceil(middle + reach - 0.5));
+    int first = static_cast<int>(std::floor(middle - half_width - 0.5)),
+        last = static_cast<int>(std::ceil(middle + half_width - 0.5));
     if (!periodic) {
       first = first < 0 ? 0 : first;
       last = last > cells - 1 ? cells - 1 : last;
