@@ -2,7 +2,6 @@
 #pragma once
 
 #include "core/mpi_session.hpp"
-#include "coupling/attached_vector.hpp"
 #include "coupling/fluid_mass.hpp"
 #include "coupling/mass_return.hpp"
 #include "coupling/resolved_system.hpp"
@@ -92,23 +91,20 @@ void ResolvedSystem<Real, S>::collect_loads() {
 
 template <typename Real, GrainShape S>
 void ResolvedSystem<Real, S>::apply_loads() {
-  dem::GrainStore& store = grains_->store();
-  for (std::size_t g = 0; g < store.owned; ++g) {
+  for (std::size_t g = 0; g < grains_->store().owned; ++g) {
     const std::int64_t* sums = &exchanged_[sums_per_grain() * g];
     const Vec3 force = FixedVec3{sums[0], sums[1], sums[2]}.to_vec3() * parameters_.units.force();
     const Vec3 torque = FixedVec3{sums[3], sums[4], sums[5]}.to_vec3() * parameters_.units.torque();
-    const std::span<double> columns = store.attached_of(g);
-    const int before = static_cast<int>(columns[exchanges]);
-    const auto load = [&](const Vec3& now, int last, int before_last) {
-      return load_of(parameters_.load, before, now, vector_at(columns, last), vector_at(columns, before_last));
-    };
-    set_load(g, load(force, last_force, earlier_force), load(torque, last_torque, earlier_torque), before == 0);
-    set_vector(columns, earlier_force, vector_at(columns, last_force));
-    set_vector(columns, earlier_torque, vector_at(columns, last_torque));
-    set_vector(columns, last_force, force);
-    set_vector(columns, last_torque, torque);
+    const GrainExchange<double> kept = exchange_of(g);
+    const int before = kept.exchanges();
+    set_load(g, load_of(parameters_.load, before, force, kept.last_force(), kept.earlier_force()),
+             load_of(parameters_.load, before, torque, kept.last_torque(), kept.earlier_torque()), before == 0);
+    kept.earlier_force() = kept.last_force();
+    kept.earlier_torque() = kept.last_torque();
+    kept.last_force() = force;
+    kept.last_torque() = torque;
     if (parameters_.grain_stress) apply_stress(g, before == 0);
-    columns[exchanges] = std::min(before + 1, 2);
+    kept.set_exchanges(std::min(before + 1, 2));
   }
   settle_masses();
   grains_->refresh_ghost_attached();
@@ -130,7 +126,6 @@ template <typename Real, GrainShape S>
 void ResolvedSystem<Real, S>::settle_mass(std::size_t first, std::size_t count) {
   // What comes back changes what the links take, with cli most of all: returned at once and whole it swings and grows.
   constexpr double share_of_owed = 0.5, share_of_last_step = 0.125;
-  dem::GrainStore& store = grains_->store();
   lbm::LinkSums links;
   std::int64_t sum = 0;
   double came_back = 0.0;
@@ -142,17 +137,16 @@ void ResolvedSystem<Real, S>::settle_mass(std::size_t first, std::size_t count) 
     sum += sums[0];
     came_back += MassReturn{body.returned, body.returned_slope}.mass(of_grain);
     // A grain without links has no fluid around it: what was there last stays.
-    if (of_grain.weight() > 0.0)
-      store.attached_of(g)[surrounding] = LatticeFixed::to_double(sums[1]) / of_grain.weight();
+    if (of_grain.weight() > 0.0) exchange_of(g).surrounding() = LatticeFixed::to_double(sums[1]) / of_grain.weight();
   }
   const double given = LatticeFixed::to_double(sum);
-  const std::span<double> own = store.attached_of(first);
-  own[owed_mass] -= given;
-  own[mean_loss] += share_of_last_step * (came_back - given - own[mean_loss]);
-  const MassReturn next = unit_mass_return(links).scaled(share_of_owed * own[owed_mass] + own[mean_loss]);
+  double &owed = exchange_of(first).owed_mass(), &loss = exchange_of(first).mean_loss();
+  owed -= given;
+  loss += share_of_last_step * (came_back - given - loss);
+  const MassReturn next = unit_mass_return(links).scaled(share_of_owed * owed + loss);
   for (std::size_t g = first; g < first + count; ++g) {
-    store.attached_of(g)[returned_density] = next.density;
-    set_vector(store.attached_of(g), returned_slope, next.slope);
+    exchange_of(g).returned_density() = next.density;
+    exchange_of(g).returned_slope() = next.slope;
   }
 }
 
@@ -170,8 +164,7 @@ void ResolvedSystem<Real, S>::settle_masses() {
 template <typename Real, GrainShape S>
 double ResolvedSystem<Real, S>::mass_owed() const {
   std::int64_t owed = 0;
-  for (std::size_t g = 0; g < grains_->store().owned; ++g)
-    owed += LatticeFixed::from(grains_->store().attached_of(g)[owed_mass]);
+  for (std::size_t g = 0; g < grains_->store().owned; ++g) owed += LatticeFixed::from(exchange_of(g).owed_mass());
   MPI_Allreduce(MPI_IN_PLACE, &owed, 1, MPI_INT64_T, MPI_SUM, communicator_);
   return LatticeFixed::to_double(owed);
 }
@@ -179,24 +172,20 @@ double ResolvedSystem<Real, S>::mass_owed() const {
 // sigma_ab = (1/V) sum F_a x_b over the surface (Zhang et al. 2022, eq. 13), the mean of two exchanges.
 template <typename Real, GrainShape S>
 void ResolvedSystem<Real, S>::apply_stress(std::size_t grain, bool first) {
-  dem::GrainStore& store = grains_->store();
-  const double volume = S::of_grain(store.radius[grain]).volume();
-  const std::int64_t* sums = &exchanged_[sums_per_grain() * grain + plain_sums];
-  const std::span<double> columns = store.attached_of(grain);
-  for (int k = 0; k < 9; ++k) {
-    const double stress = LatticeFixed::to_double(sums[k]) * (parameters_.units.torque() / volume);
-    columns[mean_stress + k] = first ? stress : 0.5 * (stress + columns[last_stress + k]);
-    columns[last_stress + k] = stress;
-  }
+  const double volume = S::of_grain(grains_->store().radius[grain]).volume();
+  FixedTensor sums;
+  std::copy_n(&exchanged_[sums_per_grain() * grain + plain_sums], sums.sums.size(), sums.sums.begin());
+  const Mat3 stress = sums.to_mat3() * (parameters_.units.torque() / volume);
+  const GrainExchange<double> kept = exchange_of(grain);
+  kept.mean_stress() = first ? stress : Mat3(0.5 * (stress + kept.last_stress()));
+  kept.last_stress() = stress;
 }
 
 template <typename Real, GrainShape S>
 void ResolvedSystem<Real, S>::show_stresses() {
   if (!parameters_.grain_stress) return;
-  const dem::GrainStore& store = grains_->store();
-  fluid_stress_.resize(store.owned);
-  for (std::size_t g = 0; g < store.owned; ++g)
-    for (int k = 0; k < 9; ++k) fluid_stress_[g](k / 3, k % 3) = store.attached_of(g)[mean_stress + k];
+  fluid_stress_.resize(grains_->store().owned);
+  for (std::size_t g = 0; g < fluid_stress_.size(); ++g) fluid_stress_[g] = exchange_of(g).mean_stress();
 }
 
 // What the store has is what the grain got in the step before.
@@ -221,9 +210,8 @@ void ResolvedSystem<Real, S>::open_account() {
   const ExcessMass excess = excess_mass(survey_of(fluid_), rest_);
   mass_.open(excess.sum, mass_owed());
   parameters_.links.reference_density = excess.mean();
-  dem::GrainStore& store = grains_->store();
-  for (std::size_t g = 0; g < store.total(); ++g)
-    if (const auto columns = store.attached_of(g); columns[exchanges] == 0.0) columns[surrounding] = excess.mean();
+  for (std::size_t g = 0; g < grains_->store().total(); ++g)
+    if (exchange_of(g).exchanges() == 0) exchange_of(g).surrounding() = excess.mean();
 }
 
 // What no body owes: round-off, and walls that do not conserve mass. At the end of a step, so that a checkpoint has it.

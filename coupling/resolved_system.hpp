@@ -8,6 +8,7 @@
 #include "core/sphere.hpp"
 #include "core/system.hpp"
 #include "coupling/fluid_parameters.hpp"
+#include "coupling/grain_exchange.hpp"
 #include "coupling/grain_map.hpp"
 #include "coupling/hidden_links.hpp"
 #include "coupling/link_builder.hpp"
@@ -19,6 +20,7 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace thalweg::coupling {
@@ -59,27 +61,10 @@ public:
   ResolvedSystem(std::unique_ptr<Decomposition> decomposition, MPI_Comm communicator,
                  const ResolvedParameters& parameters, std::unique_ptr<dem::GrainDynamics> grains);
 
-  // Attached columns of a grain: the place its cells stand for (m), force (N) and torque (N m) of the last exchange and
-  // the one before, how many there have been (2: or more). In lattice units: the mass owed to the fluid and the mean
-  // loss a step (of a clump in its first member's), what the links return in the coming step (mass_return.hpp), and rho
-  // - rho_rest of the fluid around the grain. Where asked for, the stress (Pa, row by row) of the last exchange and the
-  // mean of the last two.
-  enum Attached {
-    link_position = 0,
-    last_force = 3,
-    last_torque = 6,
-    earlier_force = 9,
-    earlier_torque = 12,
-    exchanges = 15,
-    owed_mass = 16,
-    mean_loss = 17,
-    returned_density = 18,
-    returned_slope = 19,
-    surrounding = 22,
-    last_stress = 23,
-    mean_stress = 32
-  };
-  static int attached_width(const ResolvedParameters& parameters) { return parameters.grain_stress ? 41 : 23; }
+  // Columns that dem carries for the exchange (grain_exchange.hpp).
+  static int attached_width(const ResolvedParameters& parameters) {
+    return parameters.grain_stress ? GrainExchange<double>::width_with_stress : GrainExchange<double>::width;
+  }
 
   // How far beyond a block its grains must be known for the map, as a distance from the grain's centre (m).
   static double ghost_reach(double largest_radius, double spacing) {
@@ -136,6 +121,10 @@ private:
   void sweep_behind_links();
   void collect_loads();
   void apply_loads();
+  GrainExchange<double> exchange_of(std::size_t grain) { return GrainExchange(grains_->store().attached_of(grain)); }
+  GrainExchange<const double> exchange_of(std::size_t grain) const {
+    return GrainExchange(std::as_const(*grains_).store().attached_of(grain));
+  }
   void set_load(std::size_t grain, const Vec3& force, const Vec3& torque, bool first);
   void apply_stress(std::size_t grain, bool first);
   void show_stresses();

@@ -7,7 +7,6 @@
 
 #include "core/mpi_session.hpp"
 #include "core/same_time_step.hpp"
-#include "coupling/attached_vector.hpp"
 #include "coupling/fluid_figures.hpp"
 #include "coupling/fluid_mass.hpp"
 #include "coupling/fluid_system.hpp"
@@ -49,7 +48,7 @@ ResolvedSystem<Real, S>::ResolvedSystem(std::unique_ptr<Decomposition> decomposi
   if (parameters_.flow_target) fluid_.control_flow(*parameters_.flow_target);
   initialise(fluid_, parameters_, rest_);
   dem::GrainStore& store = grains_->store();
-  for (std::size_t g = 0; g < store.total(); ++g) set_vector(store.attached_of(g), link_position, store.position[g]);
+  for (std::size_t g = 0; g < store.total(); ++g) exchange_of(g).link_position() = store.position[g];
   initialise_map();
   open_account();
   set_gravity_of(step_);
@@ -89,7 +88,7 @@ void ResolvedSystem<Real, S>::synchronise_slots() {
     int slot = map_.slot_of(store.id[g]);
     if (slot < 0) {
       slot = map_.add(store.id[g], S::of_grain(store.radius[g] / parameters_.units.spacing), store.clump[g]);
-      map_.place(slot, lattice_position(vector_at(store.attached_of(g), link_position)));
+      map_.place(slot, lattice_position(exchange_of(g).link_position()));
     }
     map_slot_[g] = slot;
   }
@@ -111,11 +110,11 @@ void ResolvedSystem<Real, S>::update_bodies() {
   const dem::GrainStore& store = grains_->store();
   for (std::size_t g = 0; g < store.total(); ++g) {
     lbm::LinkBody& body = bodies_[map_slot_[g]];
-    const std::span<const double> columns = store.attached_of(g);
+    const GrainExchange<double> kept = exchange_of(g);
     place_body(g, body);
-    body.returned = columns[returned_density];
-    body.returned_slope = vector_at(columns, returned_slope);
-    surrounding_[map_slot_[g]] = columns[surrounding];
+    body.returned = kept.returned_density();
+    body.returned_slope = kept.returned_slope();
+    surrounding_[map_slot_[g]] = kept.surrounding();
     body.force = {};
     body.torque = {};
     body.mass = body.pressure = 0;
@@ -130,10 +129,10 @@ void ResolvedSystem<Real, S>::update_map() {
   dem::GrainStore& store = grains_->store();
   const double tolerance = parameters_.link_tolerance * parameters_.units.spacing;
   for (std::size_t g = 0; g < store.total(); ++g) {
-    const std::span<double> columns = store.attached_of(g);
-    const Vec3 moved = box_.difference(store.position[g], vector_at(columns, link_position));
+    const GrainExchange<double> kept = exchange_of(g);
+    const Vec3 moved = box_.difference(store.position[g], kept.link_position());
     if (moved.squaredNorm() <= tolerance * tolerance) continue;
-    set_vector(columns, link_position, store.position[g]);
+    kept.link_position() = store.position[g];
     map_.place(map_slot_[g], lattice_position(store.position[g]));
   }
 }
@@ -345,9 +344,9 @@ void ResolvedSystem<Real, S>::take_grains(ArchiveReader& archive, double spacing
       spacing == parameters_.units.spacing && archive.real_attribute("system/time_step") == time_step();
   dem::GrainStore& store = grains_->store();
   for (std::size_t g = 0; g < store.total(); ++g) {
-    const std::span<double> attached = store.attached_of(g);
-    if (attached[exchanges] == 0.0) set_vector(attached, link_position, store.position[g]);
-    if (!same_units) std::fill(attached.begin() + owed_mass, attached.begin() + last_stress, 0.0);
+    const GrainExchange<double> kept = exchange_of(g);
+    if (kept.exchanges() == 0) kept.link_position() = store.position[g];
+    if (!same_units) kept.forget_lattice_units();
   }
   initialise_map();
   open_account();

@@ -2,7 +2,6 @@
 #include "tests/coupling/water_box.hpp"
 
 #include "core/mpi_session.hpp"
-#include "coupling/attached_vector.hpp"
 #include "lbm/for_each_cell.hpp"
 
 #include <gtest/gtest.h>
@@ -60,11 +59,9 @@ void balance_of_a_crowd(int steps, lbm::GapRule gaps = lbm::GapRule::no_slip) {
     Vec3 fluid = Vec3::Zero(), grains = Vec3::Zero(), lag = Vec3::Zero();
     for_each_fluid_cell(*system, [&](const Vec3&, std::ptrdiff_t cell) { fluid += momentum_of(*system, cell); });
     const dem::GrainStore& store = system->grains().store();
-    using System = ResolvedSystem<double>;
     for (std::size_t g = 0; g < store.owned; ++g) {
       grains += store.mass[g] * store.velocity[g];
-      const auto columns = store.attached_of(g);
-      lag -= 0.5 * vector_at(columns, System::earlier_force) * box.time_step;
+      lag -= 0.5 * GrainExchange(store.attached_of(g)).earlier_force() * box.time_step;
     }
     return Vec3(over_ranks(fluid * impulse_unit + grains + lag));
   };

@@ -2,7 +2,6 @@
 #include "tests/coupling/water_box.hpp"
 
 #include "core/mpi_session.hpp"
-#include "coupling/attached_vector.hpp"
 #include "lbm/for_each_cell.hpp"
 
 #include <gtest/gtest.h>
@@ -51,13 +50,12 @@ Vec3 missing_impulse(bool keep, RefillRule refill, lbm::LinkRule rule, int steps
   const auto system =
       make_system<double>(box, MPI_COMM_WORLD, Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD)));
   const Units units{box.spacing, box.time_step, 1000.0};
-  using System = ResolvedSystem<double>;
   const Content before = content_of(*system);
   Vec3 exchanged = Vec3::Zero();
   for (int step = 0; step < steps; ++step) {
     system->advance();
     const dem::GrainStore& store = system->grains().store();
-    if (store.owned == 1) exchanged += vector_at(store.attached_of(0), System::last_force) / units.force();
+    if (store.owned == 1) exchanged += GrainExchange(store.attached_of(0)).last_force() / units.force();
   }
   for (int a = 0; a < 3; ++a) exchanged[a] = sum_over_ranks(MPI_COMM_WORLD, exchanged[a]);
   const Content after = content_of(*system);

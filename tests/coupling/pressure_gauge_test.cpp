@@ -1,6 +1,5 @@
 // A constant added to the pressure everywhere presses on nothing.
 #include "core/mpi_session.hpp"
-#include "coupling/attached_vector.hpp"
 #include "tests/coupling/water_box.hpp"
 
 #include <gtest/gtest.h>

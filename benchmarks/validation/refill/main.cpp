@@ -102,15 +102,13 @@ void measure(const Regime& regime, RefillRule rule, double bulk_relaxation_time,
   const int crossing = static_cast<int>(1.0 / regime.speed), steps = static_cast<int>(120.0 / regime.speed);
   std::vector<Vec3> force, torque, load, load_torque;
   Vec3 total = Vec3::Zero();
-  using System = coupling::ResolvedSystem<double>;
   for (int step = 0; step < steps; ++step) {
     system->advance();
     if (step < steps / 3) continue;
     const dem::GrainStore& store = system->grains().store();
-    const auto columns = store.attached_of(0);
-    force.emplace_back(columns[System::last_force], columns[System::last_force + 1], columns[System::last_force + 2]);
-    torque.emplace_back(columns[System::last_torque], columns[System::last_torque + 1],
-                        columns[System::last_torque + 2]);
+    const coupling::GrainExchange last(store.attached_of(0));
+    force.push_back(last.last_force());
+    torque.push_back(last.last_torque());
     load.push_back(store.load_force[0]);
     load_torque.push_back(store.load_torque[0]);
     total += load.back();
