@@ -12,20 +12,21 @@
 namespace thalweg::dem {
 
 // Adds the contact forces and torques that follow from positions and velocities, those of rolling friction among them,
-// and advances the springs of the list.
+// and advances the histories of the list.
 // The lever arm of a grain reaches to the middle of the overlap (to the surface of a wall), so that angular momentum is
-// conserved. Sums run over pairs in the order of the list, then over walls. material: of every slot; time_step: s, with
-// 0 no spring grows.
+// conserved; across a gap it reaches to the middle of that. Sums run over pairs in the order of the list, then over
+// walls. material: of every slot; time_step: s, with 0 no spring grows.
 void evaluate_contacts(MovingGrains& grains, ContactList& list, const PeriodicBox& box, std::span<const Plane> walls,
                        const MaterialTable& materials, std::span<const std::uint8_t> material, double time_step);
 
-// The force (N) on each wall contact's grain, by the present positions, velocities and springs, which stay as they are.
+// The force (N) on each wall contact's grain, by the present positions, velocities and histories, which stay as they
+// are.
 std::vector<Vec3> wall_contact_forces(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
                                       std::span<const Plane> walls, const MaterialTable& materials);
 
-// Calls visit(slot, end) for every contact of every owned grain, in the order of the list, pairs first. By the present
-// positions, velocities and springs, which stay as they are. chosen: one entry a slot of an owned grain, 0 for those left
-// out; empty: all.
+// Calls visit(slot, end) for every contact, touching or acting across a gap, of every owned grain, in the order of the
+// list, pairs first. By the present positions, velocities and histories, which stay as they are. chosen: one entry a
+// slot of an owned grain, 0 for those left out; empty: all.
 using ContactEndVisitor = std::function<void(std::size_t slot, const ContactEnd& end)>;
 void for_each_contact_end(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
                           std::span<const Plane> walls, const MaterialTable& materials, std::span<const char> chosen,

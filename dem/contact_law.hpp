@@ -1,55 +1,119 @@
-// What every contact law is made of: its arguments, its result, and the friction across the contact (Cundall & Strack,
-// Geotechnique 29 (1979) 47), which all laws share. A law is one functor: spring_dashpot.hpp, hertz_mindlin.hpp.
+// What contact laws are made of. A law is one class: spring_dashpot.hpp and hertz_mindlin.hpp, which stand alone, or
+// rolling_friction.hpp, which adds to another law. contact_laws.hpp has them all. Such a class has
+//
+//   Coefficients    doubles that two materials have together; the last one is `friction`, which walls replace by theirs
+//   Constants       doubles that a contact has from its two bodies, by constants_of() when it is listed
+//   History         doubles that a contact keeps from one evaluation to the next, zero in a new one
+//   history_parts   their names, in which files have them
+//   rolls           whether it uses the spin of the bodies against each other and gives a moment
+//   range()         m, the gap up to which it may act: beyond it there is no force and no history
+//   operator()(motion, coefficients, constants, history)   the load; brings the history to the end of the step
+//
+// Nobody else needs to know what these doubles mean.
 //
 // v is the velocity of the first body's surface against the second's at the contact, n the unit normal from the second
 // body to the first, delta the overlap. Force on the first body: F_n n + F_t. SI units.
 #pragma once
 
+#include <array>
 #include <cmath>
-#include <limits>
+#include <cstddef>
+#include <span>
+#include <utility>
 
 namespace thalweg::dem {
 
 // Plain values and no branches, so that a loop over contacts in arrays is vectorised by the compiler.
 struct ContactMotion {
-  double overlap;           // m
-  double nx, ny, nz;        // unit normal
-  double vx, vy, vz;        // m/s
-  double effective_radius;  // m, R1 R2/(R1 + R2); R against a wall
+  double overlap;                 // m; across a gap negative
+  double nx, ny, nz;              // unit normal
+  double vx, vy, vz;              // m/s
+  double effective_radius;        // m, R1 R2/(R1 + R2); R against a wall
+  double wx = 0, wy = 0, wz = 0;  // rad/s, spin of the first body against the second; for laws that roll
 };
 
-// Of a pair of materials; what the numbers mean is the law's business.
-struct ContactCoefficients {
-  double normal;      // linear: k_n, N/m;  Hertz: 4/3 E*, Pa
-  double tangential;  // linear: k_t, N/m;  Hertz: 8 G*, Pa
-  double friction;    // mu
+// What a law is told of the two bodies of a contact when it is listed.
+struct ContactBodies {
+  double damping;           // of the dashpot: kg/s, or kg/(s m^1/2) of elastic spheres
+  double rolling_friction;  // mu_r
+  double rolling_inertia;   // kg m^2, I_r of rolling_friction.hpp
+};
+
+struct ContactLoad {
+  double normal;                  // N, positive pushes the bodies apart
+  double tx, ty, tz;              // N: F_t
+  double mx = 0, my = 0, mz = 0;  // N m: moment on the first body beyond that of the force, its opposite on the second
+};
+
+struct HistoryPart {
+  const char* name;
+  std::size_t size;
+};
+
+// The doubles of all these parts.
+inline std::size_t doubles_of(std::span<const HistoryPart> parts) {
+  std::size_t size = 0;
+  for (const HistoryPart& part : parts) size += part.size;
+  return size;
+}
+
+// Doubles in a struct of nothing else.
+template <typename Doubles>
+inline constexpr std::size_t doubles_in = sizeof(Doubles) / sizeof(double);
+
+// What laws that add to another put together: parts, and the histories themselves.
+template <std::size_t n>
+constexpr std::array<HistoryPart, n + 1> joined(const std::array<HistoryPart, n>& parts, const HistoryPart& last) {
+  std::array<HistoryPart, n + 1> all{};
+  for (std::size_t p = 0; p < n; ++p) all[p] = parts[p];
+  all[n] = last;
+  return all;
+}
+
+template <std::size_t n, typename History>
+std::array<double, n> first_of(const History& history) {
+  return [&]<std::size_t... i>(std::index_sequence<i...>) { return std::array<double, n>{history[i]...}; }
+  (std::make_index_sequence<n>());
+}
+
+template <std::size_t n, typename... Doubles>
+std::array<double, n + sizeof...(Doubles)> appended(const std::array<double, n>& history, Doubles... more) {
+  return [&]<std::size_t... i>(std::index_sequence<i...>) {
+    return std::array<double, n + sizeof...(Doubles)>{history[i]..., more...};
+  }
+  (std::make_index_sequence<n>());
+}
+
+template <std::size_t n, typename Change>
+std::array<double, n> each(const std::array<double, n>& history, const Change& change) {
+  return [&]<std::size_t... i>(std::index_sequence<i...>) { return std::array<double, n>{change(history[i])...}; }
+  (std::make_index_sequence<n>());
+}
+
+// How the normal spring of a law resists more overlap: stiffness scale (N/m over the unit of scale), and what a spring
+// across it grows by per displacement and keeps in this step.
+struct NormalSpring {
+  double stiffness;  // k_n = stiffness * scale
+  double scale;      // 1, or the contact radius, m
+  double growth;     // scale times the time step
+  double keep;
 };
 
 struct TangentialSpring {
   double x, y, z;  // linear: displacement xi, m;  Hertz: xi times contact radius, m^2
 };
 
-struct ContactForce {
-  double normal;      // N, positive pushes the bodies apart
-  double tx, ty, tz;  // N: F_t
+struct Friction {
+  double x, y, z;  // N: F_t
   TangentialSpring spring;
 };
 
-// How contacts end, and what the tangential dashpot is.
-struct ContactManner {
-  bool attraction = true;           // whether the normal dashpot may pull
-  double tangential_damping = 0.0;  // tangential dashpot over normal dashpot
-  double time_step = 0.0;           // s; with 0 the springs do not grow: a force without history
-
-  double least_normal_force() const { return attraction ? -std::numeric_limits<double>::infinity() : 0.0; }
-};
-
-// The spring is turned into the present tangent plane, keeping its length (to the fourth order of the angle, which is
-// that of one sub-step), shortened by `keep` and grown by growth v_t; F_t = -stiffness xi - damping v_t, both shortened
-// to |F_t| <= mu |F_n| while the contact slides. closing: -v.n.
-inline ContactForce with_friction(const ContactMotion& c, double closing, double normal, double friction,
-                                  double stiffness, double damping, double keep, double growth,
-                                  const TangentialSpring& spring) {
+// Friction across the contact (Cundall & Strack, Geotechnique 29 (1979) 47). The spring is turned into the present
+// tangent plane, keeping its length (to the fourth order of the angle, which is that of one sub-step), shortened by
+// `keep` and grown by growth v_t; F_t = -stiffness xi - damping v_t, both shortened to |F_t| <= mu |F_n| while the
+// contact slides. closing: -v.n.
+inline Friction friction_of(const ContactMotion& c, double closing, double normal, double friction, double stiffness,
+                            double damping, double keep, double growth, const TangentialSpring& spring) {
   const double off = spring.x * c.nx + spring.y * c.ny + spring.z * c.nz;
   const double px = spring.x - off * c.nx, py = spring.y - off * c.ny, pz = spring.z - off * c.nz;
   const double length2 = spring.x * spring.x + spring.y * spring.y + spring.z * spring.z;
@@ -63,11 +127,7 @@ inline ContactForce with_friction(const ContactMotion& c, double closing, double
   const double hold = tangential > limit ? limit / tangential : 1.0;
   // What is left of the spring when the dashpot keeps its share of the shortened force.
   const double share = damping > 0.0 && stiffness > 0.0 ? (1.0 - hold) * damping / stiffness : 0.0;
-  return {normal,
-          -hold * fx,
-          -hold * fy,
-          -hold * fz,
-          {hold * x - share * ux, hold * y - share * uy, hold * z - share * uz}};
+  return {-hold * fx, -hold * fy, -hold * fz, {hold * x - share * ux, hold * y - share * uy, hold * z - share * uz}};
 }
 
 }  // namespace thalweg::dem

@@ -4,6 +4,8 @@
 #include "dem/minimum_image.hpp"
 
 #include <algorithm>
+#include <cstring>
+#include <string_view>
 #include <utility>
 
 namespace thalweg::dem {
@@ -19,9 +21,10 @@ struct Candidate {
   }
 };
 
-std::vector<Candidate> find_pairs(const GrainStore& store, const PeriodicBox& box, double skin, double largest_radius) {
+std::vector<Candidate> find_pairs(const GrainStore& store, const PeriodicBox& box, double range,
+                                  double largest_radius) {
   std::vector<Candidate> pairs;
-  const CellGrid grid(box, 2.0 * largest_radius + skin, store.position);
+  const CellGrid grid(box, 2.0 * largest_radius + range, store.position);
   const MinimumImage image(box);
   const std::span<const std::uint32_t> slot = grid.order();
   std::vector<Row> spheres;
@@ -29,8 +32,8 @@ std::vector<Candidate> find_pairs(const GrainStore& store, const PeriodicBox& bo
   for (const std::uint32_t s : slot) spheres.push_back(row_of(store.position[s], store.radius[s]));
   grid.for_each_near_pair([&](std::uint32_t m, std::uint32_t n) {
     const Row d = image(spheres[m] - spheres[n]), square = d * d;
-    const double range = spheres[m][3] + spheres[n][3] + skin;
-    if (!(square[0] + square[1] + square[2] <= range * range)) return;
+    const double limit = spheres[m][3] + spheres[n][3] + range;
+    if (!(square[0] + square[1] + square[2] <= limit * limit)) return;
     std::uint32_t first = slot[m], second = slot[n];
     if (store.is_ghost(first) && store.is_ghost(second)) return;
     if (store.clump[first] >= 0 && store.clump[first] == store.clump[second]) return;
@@ -43,114 +46,129 @@ std::vector<Candidate> find_pairs(const GrainStore& store, const PeriodicBox& bo
 
 GlobalId wall_key(std::uint32_t wall) { return -1 - static_cast<GlobalId>(wall); }
 
-// Walks sorted contacts and sorted histories together: give(contact number, history).
-template <typename Contact, typename Key, typename Give>
-void merge(const std::vector<Contact>& contacts, std::span<const ContactHistory> histories, Key&& key_of, Give&& give) {
-  std::size_t h = 0;
-  for (std::size_t c = 0; c < contacts.size(); ++c) {
-    const ContactHistory key = key_of(contacts[c]);
-    while (h < histories.size() && histories[h] < key) ++h;
-    if (h == histories.size()) return;
-    if (!(key < histories[h])) give(c, histories[h]);
-  }
-}
-
 // I_r of rolling_friction.hpp.
 double rolling_inertia(const GrainStore& store, std::uint32_t slot) {
   return store.inertia[slot] + store.mass[slot] * store.radius[slot] * store.radius[slot];
 }
 
-void add_rolling(ContactList& list, const GrainStore& store, std::span<const Plane> walls,
-                 const MaterialTable& materials) {
-  const bool on_walls =
-      std::any_of(walls.begin(), walls.end(), [](const Plane& wall) { return wall.rolling_friction > 0.0; });
-  if (materials.rolling_friction())
-    for (const PairContact& c : list.pairs)
-      list.rolling_pairs.push_back(
-          {{0.0, 0.0, 0.0},
-           materials.pair(store.material[c.first], store.material[c.second]).rolling_friction,
-           effective_mass(rolling_inertia(store, c.first), holds_rotation(store.motion[c.first]),
-                          rolling_inertia(store, c.second), holds_rotation(store.motion[c.second]))});
-  if (on_walls)
-    for (const WallContact& c : list.walls)
-      list.rolling_walls.push_back({{0.0, 0.0, 0.0}, walls[c.wall].rolling_friction, rolling_inertia(store, c.grain)});
+ContactBodies bodies_of(const PairContact& c, const GrainStore& store, const MaterialTable& materials) {
+  const MaterialTable::Entry& pair = materials.pair(store.material[c.first], store.material[c.second]);
+  const double mass = effective_mass(store.mass[c.first], holds_translation(store.motion[c.first]),
+                                     store.mass[c.second], holds_translation(store.motion[c.second]));
+  const double inertia = effective_mass(rolling_inertia(store, c.first), holds_rotation(store.motion[c.first]),
+                                        rolling_inertia(store, c.second), holds_rotation(store.motion[c.second]));
+  return {pair.damping.coefficient(mass), pair.rolling_friction, inertia};
 }
 
-void add_history(std::vector<ContactHistory>& histories, GlobalId first, GlobalId second, const double (&spring)[3],
-                 const std::vector<RollingContact>& rolling, std::size_t number) {
-  ContactHistory history{first, second, {spring[0], spring[1], spring[2]}, {0.0, 0.0, 0.0}};
-  if (!rolling.empty()) std::copy_n(rolling[number].spring, 3, history.rolling.begin());
-  const auto some = [](double x) { return x != 0.0; };
-  if (std::any_of(history.spring.begin(), history.spring.end(), some) ||
-      std::any_of(history.rolling.begin(), history.rolling.end(), some))
-    histories.push_back(history);
+ContactBodies bodies_of(const WallContact& c, const GrainStore& store, std::span<const Plane> walls,
+                        const MaterialTable& materials) {
+  return {materials.wall(store.material[c.grain]).damping.coefficient(store.mass[c.grain]),
+          walls[c.wall].rolling_friction, rolling_inertia(store, c.grain)};
+}
+
+ContactKey key_of(const PairContact& c, const GrainStore& store) { return {store.id[c.first], store.id[c.second]}; }
+ContactKey key_of(const WallContact& c, const GrainStore& store) { return {store.id[c.grain], wall_key(c.wall)}; }
+
+// Where the doubles that these contacts keep are among those of all contacts.
+std::vector<std::size_t> columns_of(const ContactRows& rows, std::span<const HistoryPart> all) {
+  std::vector<std::size_t> columns;
+  for (const HistoryPart& part : history_parts_of(rows.law())) {
+    const auto same = std::find_if(all.begin(), all.end(), [&part](const HistoryPart& other) {
+      return std::string_view(other.name) == part.name;
+    });
+    const std::size_t first = doubles_of({all.begin(), same});
+    for (std::size_t n = 0; n < part.size; ++n) columns.push_back(first + n);
+  }
+  return columns;
 }
 
 template <typename Contact>
-void take_history(std::vector<Contact>& contacts, std::vector<RollingContact>& rolling, std::size_t number,
-                  const ContactHistory& history) {
-  std::copy(history.spring.begin(), history.spring.end(), contacts[number].spring);
-  if (!rolling.empty()) std::copy(history.rolling.begin(), history.rolling.end(), rolling[number].spring);
+void add_histories(ContactHistories& histories, const std::vector<Contact>& contacts, const ContactRows& rows,
+                   std::span<const HistoryPart> all, const GrainStore& store) {
+  const std::vector<std::size_t> columns = columns_of(rows, all);
+  std::vector<double> values(histories.width(), 0.0);
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const std::span<const double> history = rows.history_of(c);
+    if (std::all_of(history.begin(), history.end(), [](double x) { return x == 0.0; })) continue;
+    for (std::size_t n = 0; n < columns.size(); ++n) values[columns[n]] = history[n];
+    histories.add(key_of(contacts[c], store), values);
+  }
+}
+
+// Walks sorted contacts and sorted histories together.
+template <typename Contact>
+void take_histories(const std::vector<Contact>& contacts, ContactRows& rows, std::span<const HistoryPart> all,
+                    const GrainStore& store, const ContactHistories& histories) {
+  const std::vector<std::size_t> columns = columns_of(rows, all);
+  std::size_t h = 0;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const ContactKey key = key_of(contacts[c], store);
+    while (h < histories.size() && histories.key(h) < key) ++h;
+    if (h == histories.size()) return;
+    if (histories.key(h) != key) continue;
+    for (std::size_t n = 0; n < columns.size(); ++n) rows[c][n] = histories.values(h)[columns[n]];
+  }
 }
 
 }  // namespace
 
+ContactRows::ContactRows(const LawChoice& law, std::span<const ContactBodies> bodies) : law_(law) {
+  with_law(law_, 0.0, [&](const auto& chosen) {
+    using ContactLaw = std::decay_t<decltype(chosen)>;
+    history_ = std::tuple_size_v<typename ContactLaw::History>;
+    width_ = width_of<ContactLaw>;
+    values_.assign(width_ / 4 * bodies.size(), Row{});
+    for (std::size_t c = 0; c < bodies.size(); ++c) {
+      const typename ContactLaw::Constants constants = ContactLaw::constants_of(bodies[c]);
+      std::memcpy((*this)[c] + history_, &constants, sizeof(constants));
+    }
+  });
+}
+
+std::vector<HistoryPart> history_parts_of(const ContactList& list) {
+  LawChoice law = list.pair_rows.law();
+  law.rolling_friction = law.rolling_friction || list.wall_rows.law().rolling_friction;
+  return history_parts_of(law);
+}
+
 ContactList find_contacts(const GrainStore& store, const PeriodicBox& box, std::span<const Plane> walls,
-                          const MaterialTable& materials, double skin, double largest_radius) {
+                          const MaterialTable& materials, double range, double largest_radius) {
   ContactList list;
-  constexpr double near_share = 0.03;  // of the skin
-  list.near = NearPairs(near_share * skin);
-  const std::vector<Candidate> pairs = find_pairs(store, box, skin, largest_radius);
-  list.pairs.reserve(pairs.size());
-  for (const Candidate& p : pairs) {
-    const double mass = effective_mass(store.mass[p.first], holds_translation(store.motion[p.first]),
-                                       store.mass[p.second], holds_translation(store.motion[p.second]));
-    list.pairs.push_back({p.first,
-                          p.second,
-                          store.radius[p.first] + store.radius[p.second],
-                          {0.0, 0.0, 0.0},
-                          materials.pair(store.material[p.first], store.material[p.second]).damping.coefficient(mass)});
+  constexpr double near_share = 0.03;  // of the range
+  list.near = NearPairs(near_share * range);
+  std::vector<ContactBodies> bodies;
+  for (const Candidate& p : find_pairs(store, box, range, largest_radius)) {
+    list.pairs.push_back({p.first, p.second, store.radius[p.first] + store.radius[p.second]});
+    bodies.push_back(bodies_of(list.pairs.back(), store, materials));
   }
+  list.pair_rows = ContactRows({materials.common(), materials.rolling_friction()}, bodies);
+  bodies.clear();
   for (std::size_t s = 0; s < store.owned; ++s)
     // From the last wall to the first: the keys -1 - wall then rise.
     for (std::size_t w = walls.size(); w-- > 0;) {
-      if (!(walls[w].seen_from(store.position[s], box).distance <= store.radius[s] + skin)) continue;
-      list.walls.push_back({static_cast<std::uint32_t>(s),
-                            static_cast<std::uint32_t>(w),
-                            materials.wall(store.material[s]).damping.coefficient(store.mass[s]),
-                            {0.0, 0.0, 0.0}});
+      if (!(walls[w].seen_from(store.position[s], box).distance <= store.radius[s] + range)) continue;
+      list.walls.push_back({static_cast<std::uint32_t>(s), static_cast<std::uint32_t>(w)});
+      bodies.push_back(bodies_of(list.walls.back(), store, walls, materials));
     }
-  add_rolling(list, store, walls, materials);
+  const bool rolling =
+      std::any_of(walls.begin(), walls.end(), [](const Plane& wall) { return wall.rolling_friction > 0.0; });
+  list.wall_rows = ContactRows({materials.common(), rolling}, bodies);
   return list;
 }
 
-std::vector<ContactHistory> histories_of(const ContactList& list, const GrainStore& store) {
-  std::vector<ContactHistory> histories;
-  for (std::size_t p = 0; p < list.pairs.size(); ++p) {
-    const PairContact& c = list.pairs[p];
-    add_history(histories, store.id[c.first], store.id[c.second], c.spring, list.rolling_pairs, p);
-  }
-  for (std::size_t w = 0; w < list.walls.size(); ++w) {
-    const WallContact& c = list.walls[w];
-    add_history(histories, store.id[c.grain], wall_key(c.wall), c.spring, list.rolling_walls, w);
-  }
-  sort_histories(histories);
+ContactHistories histories_of(const ContactList& list, const GrainStore& store) {
+  const std::vector<HistoryPart> all = history_parts_of(list);
+  ContactHistories histories(doubles_of(all));
+  add_histories(histories, list.pairs, list.pair_rows, all, store);
+  add_histories(histories, list.walls, list.wall_rows, all, store);
+  histories.sort();
   return histories;
 }
 
-void restore_histories(ContactList& list, const GrainStore& store, std::span<const ContactHistory> histories) {
-  merge(
-      list.pairs, histories,
-      [&](const PairContact& c) {
-        return ContactHistory{store.id[c.first], store.id[c.second], {}, {}};
-      },
-      [&](std::size_t p, const ContactHistory& h) { take_history(list.pairs, list.rolling_pairs, p, h); });
-  merge(
-      list.walls, histories,
-      [&](const WallContact& c) {
-        return ContactHistory{store.id[c.grain], wall_key(c.wall), {}, {}};
-      },
-      [&](std::size_t w, const ContactHistory& h) { take_history(list.walls, list.rolling_walls, w, h); });
+void restore_histories(ContactList& list, const GrainStore& store, const ContactHistories& histories) {
+  const std::vector<HistoryPart> all = history_parts_of(list);
+  take_histories(list.pairs, list.pair_rows, all, store, histories);
+  take_histories(list.walls, list.wall_rows, all, store, histories);
 }
 
 }  // namespace thalweg::dem

@@ -6,12 +6,14 @@
 #pragma once
 
 #include "core/periodic_box.hpp"
-#include "dem/grain_batch.hpp"
+#include "dem/contact_history.hpp"
 #include "dem/grain_store.hpp"
 #include "dem/material.hpp"
+#include "dem/moving_grains.hpp"
 #include "dem/near_pairs.hpp"
 #include "dem/walls.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -21,43 +23,64 @@ namespace thalweg::dem {
 struct PairContact {
   std::uint32_t first, second;  // slots of the lower and the higher id
   double reach;                 // m, sum of the radii
-  double spring[3];             // m, xi of the first against the second; zero when they do not touch
-  double damping;               // of the law; right behind the spring, so that one load takes both
 };
 
 struct WallContact {
   std::uint32_t grain;  // slot
   std::uint32_t wall;
-  double damping;
-  double spring[3];
 };
 
-// What rolling friction adds to a contact.
-struct RollingContact {
-  double spring[3];  // theta of the first against the second (rolling_friction.hpp); zero when they do not touch
-  double friction;
-  double inertia;  // kg m^2, I_r
+// What the law of all contacts of a kind has in each of them, one row of doubles a contact: its history, then its
+// constants (contact_law.hpp), then zeros up to whole vectors.
+class ContactRows {
+public:
+  ContactRows() : ContactRows({}, {}) {}
+  // Of so many new contacts, without history.
+  ContactRows(const LawChoice& law, std::span<const ContactBodies> bodies);
+
+  const LawChoice& law() const { return law_; }
+  double* data() { return reinterpret_cast<double*>(values_.data()); }
+  double* operator[](std::size_t contact) { return data() + contact * width_; }
+  const double* operator[](std::size_t contact) const {
+    return reinterpret_cast<const double*>(values_.data()) + contact * width_;
+  }
+  std::span<const double> history_of(std::size_t contact) const { return {(*this)[contact], history_}; }
+
+  void forget(std::size_t contact) { std::fill_n((*this)[contact], history_, 0.0); }
+
+  // Doubles of a row of one law.
+  template <typename ContactLaw>
+  static constexpr std::size_t width_of = (std::tuple_size_v<typename ContactLaw::History> +
+                                           doubles_in<typename ContactLaw::Constants> + 3) /
+                                          4 * 4;
+
+private:
+  LawChoice law_;
+  std::size_t history_ = 0, width_ = 0;
+  std::vector<Row> values_;  // for its alignment
 };
 
 struct ContactList {
   std::vector<PairContact> pairs;
+  ContactRows pair_rows;
   NearPairs near;                  // of the pairs; kept by evaluate_contacts()
   std::vector<WallContact> walls;  // of owned grains, sorted by id, then from the last wall to the first
-
-  // One each contact, in their order; empty without rolling friction.
-  std::vector<RollingContact> rolling_pairs, rolling_walls;
+  ContactRows wall_rows;
 };
 
-// All pairs with at least one owned grain whose surfaces are closer than `skin` (m), and all owned grains closer than
-// that to a wall, but no two members of one clump; springs zero. Positions must be wrapped. largest_radius: m, of all
-// grains.
+// What all contacts of the list together keep: of two kinds of contacts one may have more than the other.
+std::vector<HistoryPart> history_parts_of(const ContactList& list);
+
+// All pairs with at least one owned grain whose surfaces are closer than `range` (m), and all owned grains closer than
+// that to a wall, but no two members of one clump; without history. Positions must be wrapped. largest_radius: m, of
+// all grains.
 ContactList find_contacts(const GrainStore& store, const PeriodicBox& box, std::span<const Plane> walls,
-                          const MaterialTable& materials, double skin, double largest_radius);
+                          const MaterialTable& materials, double range, double largest_radius);
 
-// The springs that are not zero, sorted by ids.
-std::vector<ContactHistory> histories_of(const ContactList& list, const GrainStore& store);
+// The histories that are not zero, sorted by ids, with the doubles of history_parts_of().
+ContactHistories histories_of(const ContactList& list, const GrainStore& store);
 
-// Gives the contacts of the list their springs; histories (sorted by ids) of pairs not in the list are dropped.
-void restore_histories(ContactList& list, const GrainStore& store, std::span<const ContactHistory> histories);
+// Gives the contacts of the list their histories; those (sorted by ids) of pairs not in the list are dropped.
+void restore_histories(ContactList& list, const GrainStore& store, const ContactHistories& histories);
 
 }  // namespace thalweg::dem

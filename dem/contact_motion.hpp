@@ -34,13 +34,14 @@ inline ContactMotion motion_of(const ContactBody& first, const ContactBody& seco
   const double overlap = reach - distance, half = 0.5 * overlap;
   const Vec3 turning = (first.radius - half) * first.spin + (second.radius - half) * second.spin;
   const Vec3 v = first.velocity - second.velocity - turning.cross(n);
-  return {overlap, n[0], n[1], n[2], v[0], v[1], v[2], first.radius * second.radius / reach};
+  const Vec3 w = first.spin - second.spin;
+  return {overlap, n[0], n[1], n[2], v[0], v[1], v[2], first.radius * second.radius / reach, w[0], w[1], w[2]};
 }
 
 inline ContactMotion motion_of(const ContactBody& grain, const WallSight& wall, const Vec3& wall_velocity) {
   const Vec3& n = wall.normal;
-  const Vec3 v = grain.velocity - wall_velocity - wall.distance * grain.spin.cross(n);
-  return {grain.radius - wall.distance, n[0], n[1], n[2], v[0], v[1], v[2], grain.radius};
+  const Vec3 v = grain.velocity - wall_velocity - wall.distance * grain.spin.cross(n), &w = grain.spin;
+  return {grain.radius - wall.distance, n[0], n[1], n[2], v[0], v[1], v[2], grain.radius, w[0], w[1], w[2]};
 }
 
 inline Vec3 normal_of(const ContactMotion& c) { return {c.nx, c.ny, c.nz}; }

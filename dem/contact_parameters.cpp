@@ -1,6 +1,11 @@
 #include "dem/contact_parameters.hpp"
 
+#include "core/error.hpp"
 #include "core/section_visitor.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
 
 namespace thalweg::dem {
 
@@ -59,6 +64,14 @@ void describe(SectionVisitor& visit, ContactParameters& contact) {
                      {{false, "none", "the force never pulls"},
                       {true, "allowed", "the dashpot may pull as grains part, as in the linear law"}},
                      {.meaning = "sign of the normal force"});
+}
+
+void require(bool good, const char* name, double value, const char* unit, const char* remedy) {
+  if (!good) throw InputError(fmt::format("Contact parameter {} is {:g}{}; it must be {}.", name, value, unit, remedy));
+}
+
+void require_not_negative(const char* name, double value, const char* unit) {
+  require(std::isfinite(value) && value >= 0.0, name, value, unit, "zero or positive");
 }
 
 }  // namespace thalweg::dem

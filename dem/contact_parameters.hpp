@@ -3,6 +3,7 @@
 
 #include "core/named_choice.hpp"
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -32,6 +33,8 @@ struct ContactParameters {
   bool attraction = false;             // whether the dashpot may pull at the end of the contact
   double tangential_damping = 0.0;     // dashpot across the contact over the one along the normal, >= 0
   bool operator==(const ContactParameters&) const = default;
+
+  double least_normal_force() const { return attraction ? -std::numeric_limits<double>::infinity() : 0.0; }  // N
 };
 
 // The keys of a case's section `contact`.
@@ -39,5 +42,9 @@ void describe(SectionVisitor& visit, ContactParameters& contact);
 
 // Throws InputError naming the first parameter that is impossible.
 void check(const ContactParameters& parameters);
+
+// For checks of laws: throw InputError with name, value and remedy unless the parameter is good.
+void require(bool good, const char* name, double value, const char* unit, const char* remedy);
+void require_not_negative(const char* name, double value, const char* unit);
 
 }  // namespace thalweg::dem

@@ -80,10 +80,4 @@ GrainBatch exchange_grains(MPI_Comm communicator, const GrainBatch& batch, const
   return arrived;
 }
 
-void sort_histories(std::vector<ContactHistory>& histories) {
-  std::sort(histories.begin(), histories.end());
-  const auto same = [](const ContactHistory& a, const ContactHistory& b) { return !(a < b) && !(b < a); };
-  histories.erase(std::unique(histories.begin(), histories.end(), same), histories.end());
-}
-
 }  // namespace thalweg::dem

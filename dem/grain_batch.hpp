@@ -1,4 +1,4 @@
-// Grains and contact histories on their way between ranks and files: rows of plain values.
+// Grains on their way between ranks and files: rows of plain values.
 #pragma once
 
 #include "core/types.hpp"
@@ -38,19 +38,5 @@ void adopt(GrainStore& store, const GrainBatch& batch);
 // Sends row i to rank destination[i]; returns what arrived here, sorted by id. Collective.
 GrainBatch exchange_grains(MPI_Comm communicator, const GrainBatch& batch, const std::vector<int>& destination,
                            int attached_width);
-
-// The springs of one contact. `second` is the higher id of two grains, or -1 - w for wall w.
-struct ContactHistory {
-  GlobalId first, second;
-  std::array<double, 3> spring;   // m, tangential
-  std::array<double, 3> rolling;  // rad, zero without rolling friction
-
-  bool operator<(const ContactHistory& other) const {
-    return first != other.first ? first < other.first : second < other.second;
-  }
-};
-
-// Sorts by ids and drops repetitions.
-void sort_histories(std::vector<ContactHistory>& histories);
 
 }  // namespace thalweg::dem

@@ -96,6 +96,7 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
   planes_ = parameters_.walls;
   if (walls_change_) place_walls(0.0, 0.0);
   if (parameters_.lubrication) check(*parameters_.lubrication, seeds, box_, parameters_.time_step);
+  check_range();
 
   const int me = rank_of(communicator_);
   const std::vector<Clump> mine = clumps_of(clumps, decomposition_, me);
@@ -137,7 +138,20 @@ double GrainDynamics::ghost_reach() const {
 
 // The gap up to which pairs are listed: what acts across a gap must be known there until the list is made anew.
 double GrainDynamics::list_range() const {
-  return parameters_.skin + (parameters_.lubrication ? parameters_.lubrication->reach() : 0.0);
+  const double lubrication = parameters_.lubrication ? parameters_.lubrication->reach() : 0.0;
+  return parameters_.skin + std::max(lubrication, range_of({materials_.common()}));
+}
+
+// No pair may act across both ends of a periodic axis.
+void GrainDynamics::check_range() const {
+  const double range = range_of({materials_.common()}), shortest = 2.0 * (2.0 * largest_radius_ + range);
+  if (range == 0.0) return;
+  for (int axis = 0; axis < 3; ++axis)
+    if (box_.periodic[axis] && box_.size[axis] < shortest)
+      throw InputError(fmt::format(
+          "The box is {:g} m long along the periodic axis {}, but contacts act across gaps of up to {:g} m; "
+          "give at least {:g} m, two diameters and twice the gap.",
+          box_.size[axis], "xyz"[axis], range, shortest));
 }
 
 bool GrainDynamics::prepare() {
@@ -180,19 +194,13 @@ double GrainDynamics::fastest_member() const {
   return 3.0 * speed + clumps_.largest_pull(store_) * step_time();
 }
 
-// Of the parameters, so the same on every rank.
-bool GrainDynamics::rolling_friction() const {
-  return materials_.rolling_friction() || std::any_of(parameters_.walls.begin(), parameters_.walls.end(),
-                                                      [](const Plane& wall) { return wall.rolling_friction > 0.0; });
-}
-
 void GrainDynamics::wrap_positions() {
   for (Vec3& x : store_.position) x = box_.wrapped(x);
   clumps_.wrap(box_);
 }
 
 void GrainDynamics::rebuild() {
-  std::vector<ContactHistory> histories = histories_of(list_, store_);
+  ContactHistories histories = histories_of(list_, store_);
   if (size_of(communicator_) > 1) {
     if (parameters_.movable_cuts) move_cuts();
     migrate(histories);
@@ -208,7 +216,7 @@ void GrainDynamics::move_cuts() {
   ghosts_ = GhostExchange(decomposition_, communicator_, ghost_reach(), largest_offset_);
 }
 
-void GrainDynamics::migrate(std::vector<ContactHistory>& histories) {
+void GrainDynamics::migrate(ContactHistories& histories) {
   const int me = rank_of(communicator_);
   std::vector<int> owner(store_.owned);
   for (std::size_t s = 0; s < store_.owned; ++s) owner[s] = decomposition_.owner_of(store_.position[s]);
@@ -220,23 +228,22 @@ void GrainDynamics::migrate(std::vector<ContactHistory>& histories) {
     const auto found = std::lower_bound(store_.id.begin(), end, id);
     return found != end && *found == id ? owner[static_cast<std::size_t>(found - store_.id.begin())] : me;
   };
-  std::vector<ContactHistory> leaving;
+  ContactHistories leaving(histories.width());
   std::vector<int> destination;
-  for (const ContactHistory& h : histories)
-    for (const GlobalId id : {h.first, h.second})
+  for (std::size_t n = 0; n < histories.size(); ++n)
+    for (const GlobalId id : {histories.key(n).first, histories.key(n).second})
       if (const int to = new_owner(id); to != me) {
-        leaving.push_back(h);
+        leaving.add(histories.key(n), histories.values(n));
         destination.push_back(to);
       }
-  const std::vector<ContactHistory> arrived = exchange_rows(communicator_, leaving, destination);
-  histories.insert(histories.end(), arrived.begin(), arrived.end());
-  sort_histories(histories);
+  histories.add(leaving.exchanged(communicator_, destination));
+  histories.sort();
   adopt(store_, exchange_grains(communicator_, owned_grains(store_), owner, store_.attached_width));
   if (clump_count_ > 0) clumps_.migrate(decomposition_, communicator_);
 }
 
 // Makes everything that follows from the owned grains: ghosts, contact list, body forces.
-void GrainDynamics::settle_in(const std::vector<ContactHistory>& histories) {
+void GrainDynamics::settle_in(const ContactHistories& histories) {
   ghosts_.build(store_);
   assemblies_.find(store_);
   listed_planes_ = planes_;

@@ -21,6 +21,7 @@
 #include "dem/contact_list.hpp"
 #include "dem/gear_predictor.hpp"
 #include "dem/ghost_exchange.hpp"
+#include "dem/grain_batch.hpp"
 #include "dem/grain_seed.hpp"
 #include "dem/grain_store.hpp"
 #include "dem/integrator.hpp"
@@ -79,10 +80,10 @@ void check_time_step(const GrainParameters& parameters, std::span<const Lightest
 
 // Two grains in contact, or a grain and a wall.
 struct Contact {
-  GlobalId first, second;  // the higher id; -1 - w for wall w
-  double overlap;          // m
-  Vec3 normal;             // unit, from second to first
-  Vec3 spring;             // m, tangential displacement at the last evaluation
+  GlobalId first, second;       // the higher id; -1 - w for wall w
+  double overlap;               // m
+  Vec3 normal;                  // unit, from second to first
+  std::vector<double> history;  // what its law keeps (contact_law.hpp), at the last evaluation
 };
 
 class GrainDynamics {
@@ -188,7 +189,7 @@ public:
 
 private:
   void restore(ArchiveReader& archive, const std::string& group, bool as_start);
-  bool rolling_friction() const;
+  void check_range() const;
   void place_walls(double time, double time_of_velocity);
   void place_prescribed(double time, double time_of_velocity);
   double largest_prescribed_speed() const;
@@ -203,10 +204,12 @@ private:
   double fastest_member() const;
   void rebuild();
   void move_cuts();
-  void migrate(std::vector<ContactHistory>& histories);
+  void migrate(ContactHistories& histories);
+  ContactHistories load_histories(ArchiveReader& archive, const std::string& group, const std::vector<int>& owner,
+                                  bool with_walls);
   std::vector<Clump> load_clumps(ArchiveReader& archive, const std::string& group, const GrainBatch& batch,
                                  std::vector<int>& owner);
-  void settle_in(const std::vector<ContactHistory>& histories);
+  void settle_in(const ContactHistories& histories);
   void weigh();
   void evaluate_forces(double time_step);
   template <typename Work>

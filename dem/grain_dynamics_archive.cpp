@@ -1,11 +1,13 @@
 // Saving and loading of GrainDynamics. Datasets, one row a grain in order of id: radius, mass, motion, material,
 // position, velocity, angular_velocity, contact_force, contact_torque, load_force, load_torque, attached. One row a
-// contact, sorted by ids: contact_ids (lower id; higher id, or -1 - w for wall w), contact_spring; with rolling
-// friction contact_rolling. Where there are clumps also, of each grain, clump (its clump's id, or -1) and offset, and
-// one row a clump, sorted by id: clump_id, clump_members, clump_motion, clump_mass and so on with the names of struct
-// ClumpRow.
+// contact, sorted by ids: contact_ids (lower id; higher id, or -1 - w for wall w), and what its law keeps, by the names
+// that the law gives to the parts: contact_spring; with rolling friction contact_rolling; and so on. Where there are
+// clumps also, of each grain, clump (its clump's id, or -1) and offset, and one row a clump, sorted by id: clump_id,
+// clump_members, clump_motion, clump_mass and so on with the names of struct ClumpRow.
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
+#include "dem/archive_share.hpp"
+#include "dem/contact_archive.hpp"
 #include "dem/grain_batch.hpp"
 #include "dem/grain_dynamics.hpp"
 #include "dem/grain_space.hpp"
@@ -23,32 +25,6 @@ namespace {
 
 constexpr const char* vector_names[GrainRow::vectors] = {
     "position", "velocity", "angular_velocity", "contact_force", "contact_torque", "load_force", "load_torque"};
-
-// The rows [first, last) of `count` that a rank writes or reads.
-struct Share {
-  Share(std::int64_t rows, int ranks, int rank)
-      : count(rows), first(rows * rank / ranks), last(rows * (rank + 1) / ranks) {}
-
-  ArrayBox box(std::uint64_t columns) const {
-    return {{static_cast<std::uint64_t>(count), columns},
-            {static_cast<std::uint64_t>(first), 0},
-            {static_cast<std::uint64_t>(last - first), columns}};
-  }
-  ArrayBox box() const {
-    return {{static_cast<std::uint64_t>(count)},
-            {static_cast<std::uint64_t>(first)},
-            {static_cast<std::uint64_t>(last - first)}};
-  }
-
-  std::int64_t count, first, last;
-};
-
-// The rank in whose share a row falls.
-int home_of(std::int64_t row, std::int64_t count, int ranks) {
-  auto rank = static_cast<int>(row * ranks / count);
-  while (row >= count * (rank + 1) / ranks) ++rank;
-  return rank;
-}
 
 void write_grains(ArchiveWriter& archive, const std::string& group, const GrainBatch& batch, const Share& share,
                   int attached_width, bool with_clumps) {
@@ -161,44 +137,10 @@ std::vector<ClumpRow> read_clumps(ArchiveReader& archive, const std::string& gro
   return rows;
 }
 
-// Rows that this rank holds one after the other of all ranks' rows.
-Share share_of(std::int64_t rows, MPI_Comm communicator) {
-  Share share(sum_over_ranks(communicator, rows), 1, 0);
-  MPI_Scan(&rows, &share.last, 1, MPI_INT64_T, MPI_SUM, communicator);
-  share.first = share.last - rows;
-  return share;
-}
-
 // Attached columns of a saved grain.
 int saved_width(const ArchiveReader& archive, const std::string& group) {
   const std::string name = group + "/attached";
   return archive.has(name) ? static_cast<int>(archive.shape(name).at(1)) : 0;
-}
-
-// A contact history on its way to the owner of grain `to`.
-struct Addressed {
-  GlobalId to;
-  ContactHistory history;
-};
-
-std::vector<Addressed> read_histories(ArchiveReader& archive, const std::string& group, const Share& share) {
-  const auto rows = static_cast<std::size_t>(share.last - share.first);
-  std::vector<std::int64_t> ids(2 * rows);
-  std::vector<double> springs(3 * rows);
-  archive.read(group + "/contact_ids", ids, share.box(2));
-  archive.read(group + "/contact_spring", springs, share.box(3));
-  std::vector<double> rolling(3 * rows, 0.0);
-  if (archive.has(group + "/contact_rolling")) archive.read(group + "/contact_rolling", rolling, share.box(3));
-  std::vector<Addressed> addressed;
-  for (std::size_t r = 0; r < rows; ++r) {
-    const ContactHistory h{ids[2 * r],
-                           ids[2 * r + 1],
-                           {springs[3 * r], springs[3 * r + 1], springs[3 * r + 2]},
-                           {rolling[3 * r], rolling[3 * r + 1], rolling[3 * r + 2]}};
-    addressed.push_back({h.first, h});
-    if (h.second >= 0) addressed.push_back({h.second, h});
-  }
-  return addressed;
 }
 
 // Throws on every rank, naming the same grain, the one with the lowest id.
@@ -265,31 +207,24 @@ void GrainDynamics::save(ArchiveWriter& archive, const std::string& group) const
       home.push_back(home_of(clumps.back().id, global_count_, ranks));
     }
     clumps = exchange_rows(communicator_, clumps, home);
-    const Share clump_share = share_of(static_cast<std::int64_t>(clumps.size()), communicator_);
+    const Share clump_share = Share::of_rows(static_cast<std::int64_t>(clumps.size()), communicator_);
     write_clumps(archive, group, std::move(clumps), clump_share);
   }
 
   // A pair known to two ranks is written by the owner of its lower id.
-  std::vector<ContactHistory> mine = histories_of(list_, store_);
+  const ContactHistories known = histories_of(list_, store_);
+  ContactHistories mine(known.width());
   const auto owned_end = store_.id.begin() + static_cast<std::ptrdiff_t>(store_.owned);
-  std::erase_if(mine,
-                [&](const ContactHistory& h) { return !std::binary_search(store_.id.begin(), owned_end, h.first); });
   home.clear();
-  for (const ContactHistory& h : mine) home.push_back(home_of(h.first, global_count_, ranks));
-  std::vector<ContactHistory> rows = exchange_rows(communicator_, mine, home);
-  sort_histories(rows);
-
-  const Share share = share_of(static_cast<std::int64_t>(rows.size()), communicator_);
-  std::vector<std::int64_t> ids;
-  std::vector<double> springs, rolling;
-  for (const ContactHistory& h : rows) {
-    ids.insert(ids.end(), {h.first, h.second});
-    springs.insert(springs.end(), h.spring.begin(), h.spring.end());
-    rolling.insert(rolling.end(), h.rolling.begin(), h.rolling.end());
+  for (std::size_t n = 0; n < known.size(); ++n) {
+    const GlobalId first = known.key(n).first;
+    if (!std::binary_search(store_.id.begin(), owned_end, first)) continue;
+    mine.add(known.key(n), known.values(n));
+    home.push_back(home_of(first, global_count_, ranks));
   }
-  archive.write(group + "/contact_ids", ids, share.box(2));
-  archive.write(group + "/contact_spring", springs, share.box(3));
-  if (rolling_friction()) archive.write(group + "/contact_rolling", rolling, share.box(3));
+  ContactHistories rows = mine.exchanged(communicator_, home);
+  rows.sort();
+  write_histories(archive, group, rows, history_parts_of(list_), communicator_);
 }
 
 void GrainDynamics::load(ArchiveReader& archive, const std::string& group) { restore(archive, group, false); }
@@ -343,35 +278,47 @@ void GrainDynamics::restore(ArchiveReader& archive, const std::string& group, bo
   member_count_ = sum_over_ranks(communicator_, members);
   ghosts_ = GhostExchange(decomposition_, communicator_, ghost_reach(), largest_offset_);
 
-  // Grains to the rank of their centre; histories first to the rank that read the grain and so knows its owner.
-  std::vector<int> owner;
+  std::vector<int> owner;  // grains go to the rank of their centre
   for (GrainRow& row : batch.rows) {
     const Vec3 x = box_.wrapped(Vec3(row.value[GrainRow::position].data()));
     row.value[GrainRow::position] = {x[0], x[1], x[2]};
     owner.push_back(decomposition_.owner_of(x));
   }
   const std::vector<Clump> clumps = load_clumps(archive, group, batch, owner);
-  const Share contacts(static_cast<std::int64_t>(archive.shape(group + "/contact_ids").at(0)), ranks, me);
-  std::vector<Addressed> read = read_histories(archive, group, contacts);
-  std::vector<int> to;
-  for (const Addressed& a : read) to.push_back(home_of(a.to, global_count_, ranks));
-  read = exchange_rows(communicator_, read, to);
-  to.clear();
-  const std::int64_t first = Share(global_count_, ranks, me).first;
-  std::vector<ContactHistory> histories;
-  for (const Addressed& a : read) {
-    if (!same_walls && a.history.second < 0) continue;
-    histories.push_back(a.history);
-    to.push_back(owner[static_cast<std::size_t>(a.to - first)]);
-  }
-  histories = exchange_rows(communicator_, histories, to);
-  sort_histories(histories);
+  const ContactHistories histories = load_histories(archive, group, owner, same_walls);
 
   adopt(store_, exchange_grains(communicator_, batch, owner, store_.attached_width));
   check_time_step(parameters_, lightest_of(store_, clumps, materials_.count(), communicator_), body_count());
   clumps_.adopt(clumps);
   settle_in(histories);
   rebuilds_ = 0;
+}
+
+// The histories of the contacts of the grains that will be here, sorted by ids. owner: of the grains that this rank
+// read.
+ContactHistories GrainDynamics::load_histories(ArchiveReader& archive, const std::string& group,
+                                               const std::vector<int>& owner, bool with_walls) {
+  const int ranks = size_of(communicator_), me = rank_of(communicator_);
+  constexpr int nobody = -1;
+  const auto sent_on = [&](const ContactHistories& histories, const auto& rank_for) {
+    ContactHistories sent(histories.width());
+    std::vector<int> to;
+    for (std::size_t n = 0; n < histories.size(); ++n)
+      for (const GlobalId id : {histories.key(n).first, histories.key(n).second})
+        if (const int rank = id < 0 ? nobody : rank_for(id); rank != nobody) {
+          sent.add(histories.key(n), histories.values(n));
+          to.push_back(rank);
+        }
+    ContactHistories arrived = sent.exchanged(communicator_, to);
+    arrived.sort();
+    return arrived;
+  };
+  // First to the ranks that read one of its grains and so know the owner, then to the owners.
+  const ContactHistories read = read_histories(archive, group, history_parts_of(list_), with_walls, communicator_);
+  const ContactHistories met = sent_on(read, [&](GlobalId id) { return home_of(id, global_count_, ranks); });
+  const Share grains(global_count_, ranks, me);
+  return sent_on(
+      met, [&](GlobalId id) { return grains.has(id) ? owner[static_cast<std::size_t>(id - grains.first)] : nobody; });
 }
 
 // The clumps with their centre here. Members go to the rank of their clump's centre: `owner` of the rows of `batch` is

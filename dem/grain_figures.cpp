@@ -31,16 +31,20 @@ double overlap_in_diameters(const GrainStore& store, const PairContact& c, doubl
 }  // namespace
 
 std::vector<Contact> GrainDynamics::contacts() const {
+  const auto kept = [](std::span<const double> history) { return std::vector<double>(history.begin(), history.end()); };
   std::vector<Contact> touching;
   for_each_touching(list_, store_, box_, [&](const PairContact& c, double overlap, const Vec3& separation) {
-    touching.push_back({store_.id[c.first], store_.id[c.second], overlap, separation.normalized(), Vec3(c.spring)});
+    const auto number = static_cast<std::size_t>(&c - list_.pairs.data());
+    touching.push_back({store_.id[c.first], store_.id[c.second], overlap, separation.normalized(),
+                        kept(list_.pair_rows.history_of(number))});
   });
-  for (const WallContact& c : list_.walls) {
+  for (std::size_t number = 0; number < list_.walls.size(); ++number) {
+    const WallContact& c = list_.walls[number];
     const WallSight wall = planes_[c.wall].seen_from(store_.position[c.grain], box_);
     const double overlap = store_.radius[c.grain] - wall.distance;
     if (overlap > 0.0)
-      touching.push_back(
-          {store_.id[c.grain], -1 - static_cast<GlobalId>(c.wall), overlap, wall.normal, Vec3(c.spring)});
+      touching.push_back({store_.id[c.grain], -1 - static_cast<GlobalId>(c.wall), overlap, wall.normal,
+                          kept(list_.wall_rows.history_of(number))});
   }
   return touching;
 }

@@ -10,32 +10,69 @@
 // Elliott, EPL 94 (2011) 50004), so both closed forms of material.hpp hold exactly. SI units.
 #pragma once
 
-#include "dem/rolling_friction.hpp"
+#include "dem/contact_law.hpp"
+#include "dem/contact_parameters.hpp"
+
+#include <string>
 
 namespace thalweg::dem {
 
 class HertzMindlin {
 public:
-  explicit HertzMindlin(const ContactManner& manner)
-      : least_(manner.least_normal_force()), share_(manner.tangential_damping), time_step_(manner.time_step) {}
+  struct Coefficients {
+    double normal;      // Pa, 4/3 E*
+    double tangential;  // Pa, 8 G*
+    double friction;    // mu
+  };
+  struct Constants {
+    double damping;  // kg/(s m^1/2), d
+  };
+  using History = std::array<double, 3>;  // m^2, F_t/(-8 G*)
+  static constexpr std::array history_parts{HistoryPart{"spring", 3}};
+  static constexpr bool rolls = false;
 
-  // damping: d, kg/(s m^1/2); spring: F_t/(-8 G*), as the last evaluation left it (zero in a new contact).
-  ContactForce operator()(const ContactMotion& c, const ContactCoefficients& k, double damping,
-                          const TangentialSpring& spring) const {
+  // common: of any material; time_step: s, with 0 the springs do not grow: a force without history.
+  HertzMindlin(const ContactParameters& common, double time_step)
+      : least_(common.least_normal_force()), share_(common.tangential_damping), time_step_(time_step) {}
+
+  static constexpr double range() { return 0.0; }
+  static Constants constants_of(const ContactBodies& bodies) { return {bodies.damping}; }
+
+  ContactLoad operator()(const ContactMotion& c, const Coefficients& k, const Constants& constants,
+                         History& history) const {
     const double closing = -(c.vx * c.nx + c.vy * c.ny + c.vz * c.nz);
     const double overlap = c.overlap > 0.0 ? c.overlap : 0.0;  // rounding may leave a touch without one
     const double a = std::sqrt(c.effective_radius * overlap);
-    const double dashpot = damping * std::sqrt(a);
+    const double dashpot = constants.damping * std::sqrt(a);
     const double pressed = k.normal * a * overlap + dashpot * closing;
     const double normal = pressed > least_ ? pressed : least_;
-    return with_friction(c, closing, normal, k.friction, k.tangential, share_ * dashpot, kept(closing, overlap),
-                         a * time_step_, spring);
+    const Friction f = friction_of(c, closing, normal, k.friction, k.tangential, share_ * dashpot,
+                                   kept(closing, overlap), a * time_step_, {history[0], history[1], history[2]});
+    history = {f.spring.x, f.spring.y, f.spring.z};
+    return {normal, f.x, f.y, f.z};
   }
 
-  NormalSpring normal_spring(const ContactMotion& c, const ContactCoefficients& k) const {
+  NormalSpring normal_spring(const ContactMotion& c, const Coefficients& k) const {
     const double overlap = c.overlap > 0.0 ? c.overlap : 0.0, a = std::sqrt(c.effective_radius * overlap);
     return {1.5 * k.normal, a, a * time_step_, kept(-(c.vx * c.nx + c.vy * c.ny + c.vz * c.nz), overlap)};
   }
+
+  // Each body with its own moduli.
+  static Coefficients between(const ContactParameters& a, const ContactParameters& b);
+  static Coefficients against_wall(const ContactParameters& grain, const ContactParameters& wall) {
+    return between(grain, wall);
+  }
+
+  // Pa, k of the dashpot 2 zeta sqrt(k m*) with the damping ratio zeta of material.hpp.
+  static double damping_stiffness(const Coefficients& k) { return 1.25 * k.normal; }
+
+  // s, as if they met at elastic_contact_speed, which the time falls with to the fifth root:
+  // 2.868 (m*^2/(R* E*^2 v))^(1/5) (Hertz, without damping); of m* in kg and R* in m.
+  static double contact_time(const Coefficients& k, double damping, double effective_mass, double effective_radius);
+
+  static void check(const ContactParameters& parameters);  // throws InputError
+  // What a softer contact of a grain and another, or a wall, takes: "lower ..."
+  static std::string softer(const ContactParameters& grain, const ContactParameters& other);
 
 private:
   // a/a_before where the contact opens.
@@ -46,5 +83,7 @@ private:
 
   double least_, share_, time_step_;
 };
+
+inline constexpr double elastic_contact_speed = 1.0;  // m/s
 
 }  // namespace thalweg::dem

@@ -11,9 +11,9 @@
 // Elastic spheres (hertz_mindlin.hpp) have the same restitution with zeta of their own dashpot.
 #pragma once
 
-#include "dem/contact_law.hpp"
-#include "dem/contact_parameters.hpp"
+#include "dem/contact_laws.hpp"
 
+#include <cstring>
 #include <optional>
 #include <span>
 #include <vector>
@@ -30,31 +30,31 @@ double damping_ratio_of_restitution(double restitution, bool attraction);
 class Damping {
 public:
   explicit Damping(const ContactParameters& parameters);  // parameters must have passed check()
-  Damping(const ContactCoefficients& coefficients, const ContactParameters& parameters);
+  Damping(double stiffness, const ContactParameters& parameters);
 
   // effective_mass (kg): m1 m2/(m1 + m2) of two grains, m of a grain against a wall.
   double coefficient(double effective_mass) const;
 
 private:
-  double stiffness_;            // of the square root: k_n, or 5/4 of 4/3 E*
+  double stiffness_;            // of the square root: damping_stiffness() of the law
   double constant_ = 0.0;       // kg/s, where the user gave it
   double damping_ratio_ = 0.0;  // zeta, where the user gave a restitution
 };
 
 // What two bodies of different materials make of each other. Springs in series: stiffnesses and dashpots by the
-// harmonic mean; frictions and restitution by the geometric mean; moduli are kept apart (coefficients_of). Throws
+// harmonic mean; frictions and restitution by the geometric mean; moduli are kept apart (hertz_mindlin.hpp). Throws
 // InputError where one has a restitution and the other a damping, or where law, attraction, tangential or rolling
 // damping differ.
 ContactParameters mixed(const ContactParameters& a, const ContactParameters& b);
 
-// k_n, k_t, mu; or 4/3 E*, 8 G*, mu with each body's own moduli.
-ContactCoefficients coefficients_of(const ContactParameters& a, const ContactParameters& b);
+double harmonic_mean(double a, double b);
+double geometric_mean(double a, double b);
 
 // All pairs of materials, and each against the walls.
 class MaterialTable {
 public:
   struct Entry {
-    ContactCoefficients coefficients;
+    std::vector<double> coefficients;  // of the law
     Damping damping;
     double rolling_friction;
   };
@@ -66,19 +66,24 @@ public:
   int count() const { return count_; }
   const Entry& pair(int a, int b) const { return pairs_[static_cast<std::size_t>(a) * count_ + b]; }
   const Entry& wall(int material) const { return walls_[material]; }
-  Law law() const { return law_; }
-  ContactManner manner(double time_step) const;
+  // What all materials have in common: law, attraction, tangential and rolling damping.
+  const ContactParameters& common() const { return common_; }
   bool rolling_friction() const { return rolling_friction_; }  // whether any pair of grains has it
-  double rolling_damping() const { return rolling_damping_; }
 
 private:
   int count_;
-  Law law_;
-  ContactManner manner_;
+  ContactParameters common_;
   bool rolling_friction_ = false;
-  double rolling_damping_;
   std::vector<Entry> pairs_, walls_;
 };
+
+// As the law reads them.
+template <typename Coefficients>
+Coefficients coefficients_of(const MaterialTable::Entry& entry) {
+  Coefficients coefficients;
+  std::memcpy(&coefficients, entry.coefficients.data(), sizeof(Coefficients));
+  return coefficients;
+}
 
 // m1 m2/(m1 + m2); a grain that is held moves as if its mass were infinite.
 double effective_mass(double mass_1, bool held_1, double mass_2, bool held_2);
@@ -86,11 +91,11 @@ double effective_mass(double mass_1, bool held_1, double mass_2, bool held_2);
 // The time a contact must be resolved in (s): t_c = pi/omega, or pi/beta where the damping is faster than the spring.
 double contact_time(double normal_stiffness, double effective_mass, double damping);
 
-// The same of any law; elastic spheres, whose contact time falls with the fifth root of the speed, as if they met at
-// 1 m/s: 2.868 (m*^2/(R* E*^2 v))^(1/5) (Hertz, without damping). effective_radius: m, used by them only.
+// The same of any law, between grains of one material, and against a wall of another. effective_radius: m, used by
+// elastic spheres only.
 double contact_time(const ContactParameters& parameters, double effective_mass, double effective_radius);
-double elastic_contact_time(const ContactCoefficients& coefficients, double effective_mass, double effective_radius);
-inline constexpr double elastic_contact_speed = 1.0;  // m/s
+double wall_contact_time(const ContactParameters& parameters, const ContactParameters& wall, double mass,
+                         double radius);
 
 // Sub-steps a contact time needs at least.
 inline constexpr double fewest_steps_per_contact = 20.0;

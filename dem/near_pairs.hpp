@@ -1,10 +1,11 @@
-// Which pairs of a contact list are so near that they may touch soon: a list within the list. In a bed at rest nearly
-// all of them do touch, so that a sub-step need not look at the others of the skin.
+// Which pairs of a contact list are so near that their law may act soon: a list within the list. In a bed at rest
+// nearly all of them do touch, so that a sub-step need not look at the others of the skin.
 //
-// A pair is near if its gap is below a range. Two grains close a gap by at most the sum of what both move, so while no
-// grain has moved by more than half the range since the pairs were looked at, the others cannot touch. The motion is
-// bounded by the largest speed of every sub-step times its length; a third is kept in reserve for members of rigid
-// bodies, which turn within a step. Leaving out a pair that does not touch changes no bit.
+// A pair is near if its gap is below that of the law (contact_law.hpp) and a margin. Two grains close a gap by at most
+// the sum of what both move, so while no grain has moved by more than half the margin since the pairs were looked at,
+// the law cannot act in the others. The motion is bounded by the largest speed of every sub-step times its length; a
+// third is kept in reserve for members of rigid bodies, which turn within a step. Leaving out a pair in which the law
+// does not act changes no bit.
 #pragma once
 
 #include <cstdint>
@@ -19,11 +20,11 @@ struct NearPair {
 
 class NearPairs {
 public:
-  explicit NearPairs(double range = 0.0) : range_(range) {}
+  explicit NearPairs(double margin = 0.0) : margin_(margin) {}
 
-  double range() const { return range_; }  // m
+  double margin() const { return margin_; }  // m
   // Whether the list of pairs must be looked through as a whole.
-  bool stale() const { return !known_ || 3.0 * moved_ > range_; }
+  bool stale() const { return !known_ || 3.0 * moved_ > margin_; }
 
   void begin() {
     pairs_.clear();
@@ -37,7 +38,7 @@ public:
   void forget() { known_ = false; }
 
 private:
-  double range_;
+  double margin_;
   double moved_ = 0.0;
   bool known_ = false;
   std::vector<NearPair> pairs_;

@@ -1,8 +1,8 @@
 // Pairs of grains in contact, many at once: gathered into arrays, so that the contact law is evaluated for several in
 // one instruction, and scattered in their order.
 //
-// A pair that does not touch goes along with a force of zero: nearly all touch, and adding zero changes no bit (no sum
-// here is ever -0, since it began at +0).
+// A pair beyond the range of the law goes along with a force of zero: nearly all touch, and adding zero changes no bit
+// (no sum here is ever -0, since it began at +0).
 #pragma once
 
 #include "core/periodic_box.hpp"
@@ -11,14 +11,15 @@
 #include "dem/material.hpp"
 #include "dem/minimum_image.hpp"
 #include "dem/moving_grains.hpp"
-#include "dem/rolling_friction.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <span>
+#include <tuple>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace thalweg::dem {
@@ -41,35 +42,25 @@ inline void transpose(Row (&r)[4]) {
   r[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
 }
 
-// rolling: whether the pairs have rolling friction (ContactList::rolling_pairs).
-template <bool rolling>
+template <typename ContactLaw>
 class PairBatch {
 public:
   static constexpr int capacity = 64;
   static constexpr int lanes = 8;  // whole vectors: the last one is filled up with copies of the first pair
 
-  // material: of every slot.
-  PairBatch(MovingGrains& grains, ContactList& list, const PeriodicBox& box, const MaterialTable& materials,
-            std::span<const std::uint8_t> material)
-      : grains_(grains),
-        pairs_(list.pairs),
-        rolling_pairs_(list.rolling_pairs),
-        image_(box),
-        materials_(materials),
-        material_(material) {
-    static_assert(offsetof(PairContact, damping) == offsetof(PairContact, spring) + 3 * sizeof(double));
-    static_assert(offsetof(RollingContact, friction) == offsetof(RollingContact, spring) + 3 * sizeof(double));
+  // rows: of the pairs of the list; material: of every slot.
+  PairBatch(const ContactLaw& law, MovingGrains& grains, ContactRows& rows, const PeriodicBox& box,
+            const MaterialTable& materials, std::span<const std::uint8_t> material)
+      : law_(law), grains_(grains), rows_(rows.data()), image_(box), materials_(materials), material_(material) {
     // One material's numbers are the same in all lanes, so they are put there once.
     if (materials.count() > 1) return;
-    const ContactCoefficients& only = materials.pair(0, 0).coefficients;
-    std::fill_n(normal_, capacity, only.normal);
-    std::fill_n(tangential_, capacity, only.tangential);
-    std::fill_n(friction_, capacity, only.friction);
+    const std::vector<double>& only = materials.pair(0, 0).coefficients;
+    for (std::size_t n = 0; n < coefficients; ++n) std::fill_n(coefficient_[n], capacity, only[n]);
   }
 
   // near: at most `capacity`. fetch: whether to ask for grains and contacts of `ahead` pairs behind these.
-  template <bool fetch, typename ContactLaw>
-  void evaluate(std::span<const NearPair> near, std::span<const NearPair> behind, const ContactLaw& law) {
+  template <bool fetch>
+  void evaluate(std::span<const NearPair> near, std::span<const NearPair> behind) {
     const int count = static_cast<int>(near.size()), rounded = (count + lanes - 1) / lanes * lanes;
     std::copy(near.begin(), near.end(), pair_);
     std::fill(pair_ + count, pair_ + rounded, near[0]);
@@ -79,12 +70,19 @@ public:
       gather(k);
     }
     if (materials_.count() > 1) gather_coefficients(rounded);
-    evaluate(law, rounded);
+    evaluate_lanes(rounded);
     for (int k = 0; k < count; k += 4) scatter(k, std::min(4, count - k));
   }
 
 private:
   using Lane = double[capacity];
+  using Coefficients = typename ContactLaw::Coefficients;
+  using Constants = typename ContactLaw::Constants;
+  using History = typename ContactLaw::History;
+  static constexpr std::size_t coefficients = doubles_in<Coefficients>, history = std::tuple_size_v<History>;
+  static constexpr std::size_t width = ContactRows::width_of<ContactLaw>;
+
+  double* row(const NearPair& pair) const { return rows_ + pair.pair * width; }
 
   static void store(const Row (&r)[4], int k, Lane& x, Lane& y, Lane& z, Lane& last) {
     std::memcpy(x + k, &r[0], sizeof(Row));
@@ -93,10 +91,20 @@ private:
     std::memcpy(last + k, &r[3], sizeof(Row));
   }
 
+  // What lane k of consecutive lanes has, as a struct of doubles.
+  template <typename Doubles, std::size_t... n>
+  static Doubles taken(const Lane* from, int k, std::index_sequence<n...>) {
+    return Doubles{from[n][k]...};
+  }
+  template <typename Doubles>
+  static Doubles taken(const Lane* from, int k) {
+    return taken<Doubles>(from, k, std::make_index_sequence<doubles_in<Doubles>>());
+  }
+
   // Inlined, because to the compiler a function that only asks does nothing, and a call of it can go.
   [[gnu::always_inline]] void ask_for(const NearPair& next) const {
-    __builtin_prefetch(&pairs_[next.pair], 1);
-    if constexpr (rolling) __builtin_prefetch(&rolling_pairs_[next.pair], 1);
+    const char* values = reinterpret_cast<const char*>(row(next));
+    for (std::size_t line = 0; line < width * sizeof(double); line += 64) __builtin_prefetch(values + line, 1);
     for (const std::uint32_t slot : {next.first, next.second}) {
       const char* grain = reinterpret_cast<const char*>(&grains_[slot]);
       for (std::size_t line = 0; line < sizeof(MovingGrain); line += 64) __builtin_prefetch(grain + line, 1);
@@ -104,138 +112,133 @@ private:
   }
 
   void gather(int k) {
-    Row separation[4], v[4], rw[4], w[4], spring[4];
+    Row separation[4], v[4], rw[4], w[4];
     for (int m = 0; m < 4; ++m) {
-      const PairContact& c = pairs_[pair_[k + m].pair];
       const MovingGrain &first = grains_[pair_[k + m].first], &second = grains_[pair_[k + m].second];
       separation[m] = image_(first.position - second.position);
       v[m] = first.velocity - second.velocity;
       rw[m] = last_everywhere(first.position) * first.spin + last_everywhere(second.position) * second.spin;
       w[m] = first.spin + second.spin;
-      spring[m] = row_at(c.spring);
-      reach_[k + m] = c.reach;
+      reach_[k + m] = first.position[3] + second.position[3];
     }
-    transpose(separation), transpose(v), transpose(rw), transpose(w), transpose(spring);
+    transpose(separation), transpose(v), transpose(rw), transpose(w);
     store(separation, k, x_, y_, z_, difference_);
     store(v, k, vx_, vy_, vz_, unused_);
     store(rw, k, rwx_, rwy_, rwz_, unused_);
     store(w, k, wx_, wy_, wz_, unused_);
-    store(spring, k, sx_, sy_, sz_, damping_);
-    if constexpr (rolling) gather_rolling(k);
+    for (std::size_t n = 0; n < width; n += 4) gather_values(k, n);
+    if constexpr (ContactLaw::rolls) gather_spins(k);
   }
 
-  void gather_rolling(int k) {
-    Row spin[4], spring[4];
-    for (int m = 0; m < 4; ++m) {
-      const RollingContact& c = rolling_pairs_[pair_[k + m].pair];
-      spin[m] = grains_[pair_[k + m].first].spin - grains_[pair_[k + m].second].spin;
-      spring[m] = row_at(c.spring);
-      roll_.inertia[k + m] = c.inertia;
-    }
-    transpose(spin), transpose(spring);
-    store(spin, k, roll_.wx, roll_.wy, roll_.wz, unused_);
-    store(spring, k, roll_.sx, roll_.sy, roll_.sz, roll_.friction);
+  // Four doubles from number n on of the rows of four contacts.
+  void gather_values(int k, std::size_t n) {
+    Row values[4];
+    for (int m = 0; m < 4; ++m) values[m] = row_at(row(pair_[k + m]) + n);
+    transpose(values);
+    store(values, k, value_[n], value_[n + 1], value_[n + 2], value_[n + 3]);
+  }
+
+  void gather_spins(int k) {
+    Row spin[4];
+    for (int m = 0; m < 4; ++m) spin[m] = grains_[pair_[k + m].first].spin - grains_[pair_[k + m].second].spin;
+    transpose(spin);
+    store(spin, k, roll_.x, roll_.y, roll_.z, unused_);
   }
 
   void gather_coefficients(int rounded) {
     for (int k = 0; k < rounded; ++k) {
-      const ContactCoefficients& pair =
-          materials_.pair(material_[pair_[k].first], material_[pair_[k].second]).coefficients;
-      normal_[k] = pair.normal, tangential_[k] = pair.tangential, friction_[k] = pair.friction;
+      const double* pair = materials_.pair(material_[pair_[k].first], material_[pair_[k].second]).coefficients.data();
+      for (std::size_t n = 0; n < coefficients; ++n) coefficient_[n][k] = pair[n];
     }
   }
 
   // Force on the first and turning moment per unit of lever arm on both: n x F_t, with the sign turned.
-  template <typename ContactLaw>
-  void evaluate(const ContactLaw& law, int rounded) {
+  void evaluate_lanes(int rounded) {
+    const ContactLaw law = law_;
+    const double range = law.range();
     for (int k = 0; k < rounded; ++k) {
-      const double squared = x_[k] * x_[k] + y_[k] * y_[k] + z_[k] * z_[k];
-      const bool touches = squared < reach_[k] * reach_[k];
+      const double squared = x_[k] * x_[k] + y_[k] * y_[k] + z_[k] * z_[k], limit = reach_[k] + range;
+      const bool acts = squared < limit * limit;
       const double distance = std::sqrt(squared);
       const double inverse = 1.0 / distance, nx = inverse * x_[k], ny = inverse * y_[k], nz = inverse * z_[k];
       const double overlap = reach_[k] - distance, half = 0.5 * overlap;
       // Surface velocity by rotation: -(l1 w1 + l2 w2) x n with the lever arms l = R - overlap/2.
       const double ax = rwx_[k] - half * wx_[k], ay = rwy_[k] - half * wy_[k], az = rwz_[k] - half * wz_[k];
-      const ContactMotion motion{overlap, nx, ny, nz, vx_[k] - (ay * nz - az * ny), vy_[k] - (az * nx - ax * nz),
-                                 vz_[k] - (ax * ny - ay * nx),
-                                 // R1 R2/(R1 + R2) of the sum and the difference of the radii
-                                 0.25 * (reach_[k] - difference_[k] * difference_[k] / reach_[k])};
-      const ContactCoefficients coefficients{normal_[k], tangential_[k], friction_[k]};
-      const ContactForce f = law(motion, coefficients, damping_[k], {sx_[k], sy_[k], sz_[k]});
-      const auto if_touching = [touches](double value) { return touches ? value : 0.0; };
-      if constexpr (rolling) {
-        const RollingMoment m = rolling_moment(
-            motion, roll_.wx[k], roll_.wy[k], roll_.wz[k], f.normal, law.normal_spring(motion, coefficients),
-            {roll_.friction[k], rolling_damping_, roll_.inertia[k]}, {roll_.sx[k], roll_.sy[k], roll_.sz[k]});
-        roll_.wx[k] = if_touching(m.x), roll_.wy[k] = if_touching(m.y), roll_.wz[k] = if_touching(m.z);
-        roll_.sx[k] = if_touching(m.spring.x), roll_.sy[k] = if_touching(m.spring.y);
-        roll_.sz[k] = if_touching(m.spring.z);
-      }
-      x_[k] = if_touching(f.normal * nx + f.tx);
-      y_[k] = if_touching(f.normal * ny + f.ty);
-      z_[k] = if_touching(f.normal * nz + f.tz);
-      wx_[k] = if_touching(f.ty * nz - f.tz * ny);
-      wy_[k] = if_touching(f.tz * nx - f.tx * nz);
-      wz_[k] = if_touching(f.tx * ny - f.ty * nx);
-      sx_[k] = if_touching(f.spring.x), sy_[k] = if_touching(f.spring.y), sz_[k] = if_touching(f.spring.z);
+      ContactMotion motion{overlap, nx, ny, nz, vx_[k] - (ay * nz - az * ny), vy_[k] - (az * nx - ax * nz),
+                           vz_[k] - (ax * ny - ay * nx),
+                           // R1 R2/(R1 + R2) of the sum and the difference of the radii
+                           0.25 * (reach_[k] - difference_[k] * difference_[k] / reach_[k])};
+      if constexpr (ContactLaw::rolls) motion.wx = roll_.x[k], motion.wy = roll_.y[k], motion.wz = roll_.z[k];
+      History kept = taken<History>(value_, k);
+      const ContactLoad f =
+          law(motion, taken<Coefficients>(coefficient_, k), taken<Constants>(value_ + history, k), kept);
+      const auto if_acting = [acts](double value) { return acts ? value : 0.0; };
+      [&]<std::size_t... n>(std::index_sequence<n...>) { ((value_[n][k] = if_acting(kept[n])), ...); }
+      (std::make_index_sequence<history>());
+      if constexpr (ContactLaw::rolls)
+        roll_.x[k] = if_acting(f.mx), roll_.y[k] = if_acting(f.my), roll_.z[k] = if_acting(f.mz);
+      x_[k] = if_acting(f.normal * nx + f.tx);
+      y_[k] = if_acting(f.normal * ny + f.ty);
+      z_[k] = if_acting(f.normal * nz + f.tz);
+      wx_[k] = if_acting(f.ty * nz - f.tz * ny);
+      wy_[k] = if_acting(f.tz * nx - f.tx * nz);
+      wz_[k] = if_acting(f.tx * ny - f.ty * nx);
       difference_[k] = half;
     }
-  }
-
-  void take_moments(int k, Row (&moment)[4], Row (&spring)[4]) const {
-    moment[0] = row_at(roll_.wx + k), moment[1] = row_at(roll_.wy + k), moment[2] = row_at(roll_.wz + k);
-    spring[0] = row_at(roll_.sx + k), spring[1] = row_at(roll_.sy + k), spring[2] = row_at(roll_.sz + k);
-    spring[3] = row_at(roll_.friction + k);
-    transpose(moment), transpose(spring);
   }
 
   // Pair by pair, so that no sum depends on which pairs are gathered together.
   void scatter(int k, int count) {
     Row force[4] = {row_at(x_ + k), row_at(y_ + k), row_at(z_ + k), row_at(difference_ + k)};
     Row turn[4] = {row_at(wx_ + k), row_at(wy_ + k), row_at(wz_ + k), Row{}};
-    Row spring[4] = {row_at(sx_ + k), row_at(sy_ + k), row_at(sz_ + k), row_at(damping_ + k)};
-    transpose(force), transpose(turn), transpose(spring);
-    Row moment[4]{}, rolling_spring[4]{};
-    if constexpr (rolling) take_moments(k, moment, rolling_spring);
+    transpose(force), transpose(turn);
+    Row moment[4]{};
+    if constexpr (ContactLaw::rolls) {
+      moment[0] = row_at(roll_.x + k), moment[1] = row_at(roll_.y + k), moment[2] = row_at(roll_.z + k);
+      transpose(moment);
+    }
+    for (std::size_t n = 0; n < history; n += 4) scatter_values(k, count, n);
     for (int m = 0; m < count; ++m) {
       const NearPair& pair = pair_[k + m];
-      std::memcpy(pairs_[pair.pair].spring, &spring[m], sizeof(Row));
       MovingGrain &first = grains_[pair.first], &second = grains_[pair.second];
       const Row half = last_everywhere(force[m]), f = force[m] * Row{1.0, 1.0, 1.0, 0.0};
       first.force += f;
       second.force -= f;
       first.torque += (last_everywhere(first.position) - half) * turn[m];
       second.torque += (last_everywhere(second.position) - half) * turn[m];
-      if constexpr (!rolling) continue;
-      std::memcpy(rolling_pairs_[pair.pair].spring, &rolling_spring[m], sizeof(Row));
+      if constexpr (!ContactLaw::rolls) continue;
       first.torque += moment[m];
       second.torque -= moment[m];
     }
   }
 
+  void scatter_values(int k, int count, std::size_t n) {
+    Row values[4] = {row_at(value_[n] + k), row_at(value_[n + 1] + k), row_at(value_[n + 2] + k),
+                     row_at(value_[n + 3] + k)};
+    transpose(values);
+    for (int m = 0; m < count; ++m) std::memcpy(row(pair_[k + m]) + n, &values[m], sizeof(Row));
+  }
+
   struct alignas(64) RollingLanes {
-    Lane wx, wy, wz;  // spin of the first against the second; then the moment
-    Lane sx, sy, sz;  // spring
-    Lane friction, inertia;
+    Lane x, y, z;  // spin of the first against the second; then the moment
   };
   struct Nothing {};
 
+  const ContactLaw law_;
   MovingGrains& grains_;
-  std::vector<PairContact>& pairs_;
-  std::vector<RollingContact>& rolling_pairs_;
+  double* const rows_;
   const MinimumImage image_;
   const MaterialTable& materials_;
   std::span<const std::uint8_t> material_;
   NearPair pair_[capacity];
   alignas(64) Lane x_{}, y_{}, z_{}, difference_{};  // separation, difference of radii; then force, overlap/2
-  alignas(64) Lane normal_{}, tangential_{}, friction_{};
-  alignas(64) Lane reach_{}, damping_{}, unused_{};
+  alignas(64) Lane coefficient_[coefficients]{};
+  alignas(64) Lane reach_{}, unused_{};
   alignas(64) Lane vx_{}, vy_{}, vz_{};     // velocity of the first centre against the second
   alignas(64) Lane rwx_{}, rwy_{}, rwz_{};  // R1 w1 + R2 w2
   alignas(64) Lane wx_{}, wy_{}, wz_{};     // w1 + w2; then the moment
-  alignas(64) Lane sx_{}, sy_{}, sz_{};     // spring
-  std::conditional_t<rolling, RollingLanes, Nothing> roll_{};
-  const double rolling_damping_ = materials_.rolling_damping();
+  alignas(64) Lane value_[width]{};         // rows of the pairs
+  std::conditional_t<ContactLaw::rolls, RollingLanes, Nothing> roll_{};
 };
 
 }  // namespace thalweg::dem

@@ -13,6 +13,7 @@
 #pragma once
 
 #include "dem/contact_law.hpp"
+#include "dem/contact_parameters.hpp"
 
 #include <cmath>
 
@@ -24,31 +25,60 @@ struct RollingCoefficients {
   double inertia;        // kg m^2, I_r
 };
 
-// How the normal spring of a law resists more overlap: stiffness scale (N/m over the unit of scale), and what the
-// rolling spring grows by per angle and keeps in this step.
-struct NormalSpring {
-  double stiffness;  // k_n = stiffness * scale
-  double scale;      // 1, or the contact radius, m
-  double growth;     // scale times the time step
-  double keep;
-};
-
 struct RollingMoment {
   double x, y, z;  // N m, on the first body
   TangentialSpring spring;
 };
 
-// spin: of the first body against the second, rad/s; normal: F_n, N; spring: as the last evaluation left it.
-inline RollingMoment rolling_moment(const ContactMotion& c, double wx, double wy, double wz, double normal,
-                                    const NormalSpring& k, const RollingCoefficients& rolling,
-                                    const TangentialSpring& spring) {
+// normal: F_n, N; spring: as the last evaluation left it.
+inline RollingMoment rolling_moment(const ContactMotion& c, double normal, const NormalSpring& k,
+                                    const RollingCoefficients& rolling, const TangentialSpring& spring) {
   const double arm = rolling.friction * c.effective_radius, stiffness = 2.25 * k.stiffness * arm * arm;
   const double dashpot = 2.0 * rolling.damping_ratio * std::sqrt(rolling.inertia * stiffness * k.scale);
   ContactMotion turning = c;
-  turning.vx = wx, turning.vy = wy, turning.vz = wz;
-  const double along = -(wx * c.nx + wy * c.ny + wz * c.nz);
-  const ContactForce f = with_friction(turning, along, normal, arm, stiffness, dashpot, k.keep, k.growth, spring);
-  return {f.tx, f.ty, f.tz, f.spring};
+  turning.vx = c.wx, turning.vy = c.wy, turning.vz = c.wz;
+  const double along = -(c.wx * c.nx + c.wy * c.ny + c.wz * c.nz);
+  const Friction f = friction_of(turning, along, normal, arm, stiffness, dashpot, k.keep, k.growth, spring);
+  return {f.x, f.y, f.z, f.spring};
 }
+
+// Another law with rolling friction.
+template <typename Inner>
+class WithRollingFriction {
+public:
+  using Coefficients = typename Inner::Coefficients;
+  struct Constants {
+    typename Inner::Constants inner;
+    double friction, inertia;  // mu_r; kg m^2, I_r
+  };
+  static constexpr std::size_t of_inner = std::tuple_size_v<typename Inner::History>;
+  using History = std::array<double, of_inner + 3>;  // theta, rad, behind that of the law
+  static constexpr std::array history_parts = joined(Inner::history_parts, HistoryPart{"rolling", 3});
+  static constexpr bool rolls = true;
+
+  WithRollingFriction(const Inner& inner, const ContactParameters& common)
+      : inner_(inner), damping_ratio_(common.rolling_damping) {}
+
+  double range() const { return inner_.range(); }
+  static Constants constants_of(const ContactBodies& bodies) {
+    return {Inner::constants_of(bodies), bodies.rolling_friction, bodies.rolling_inertia};
+  }
+
+  ContactLoad operator()(const ContactMotion& c, const Coefficients& k, const Constants& constants,
+                         History& history) const {
+    auto kept = first_of<of_inner>(history);
+    ContactLoad load = inner_(c, k, constants.inner, kept);
+    const RollingMoment m = rolling_moment(c, load.normal, inner_.normal_spring(c, k),
+                                           {constants.friction, damping_ratio_, constants.inertia},
+                                           {history[of_inner], history[of_inner + 1], history[of_inner + 2]});
+    load.mx = m.x, load.my = m.y, load.mz = m.z;
+    history = appended(kept, m.spring.x, m.spring.y, m.spring.z);
+    return load;
+  }
+
+private:
+  Inner inner_;
+  double damping_ratio_;
+};
 
 }  // namespace thalweg::dem

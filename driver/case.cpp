@@ -105,9 +105,8 @@ double shortest_contact(const Case& c) {
     shortest = std::min(shortest, linear ? undamped(own.normal_stiffness, 0.5 * mass)
                                          : dem::contact_time(own, 0.5 * mass, 0.5 * radius));
     if (walls)
-      shortest =
-          std::min(shortest, linear ? undamped(walls->normal_stiffness, mass)
-                                    : dem::elastic_contact_time(dem::coefficients_of(own, *walls), mass, radius));
+      shortest = std::min(shortest, linear ? undamped(walls->normal_stiffness, mass)
+                                           : dem::wall_contact_time(own, *walls, mass, radius));
   }
   return shortest;
 }

@@ -47,7 +47,7 @@ Loads pair_loads(const Body& first, const Body& second, const Vec3& direction, d
   MovingGrains grains;
   grains.load(store, {});
   ContactList list;
-  list.pairs.push_back({0, 1, first.radius + second.radius, {0.0, 0.0, 0.0}, 0.0});
+  list.pairs.push_back({0, 1, first.radius + second.radius});
   add_lubrication(grains, list, {Vec3(0.1, 0.1, 0.1), {false, false, false}}, {}, parameters());
   return {{vector_of(grains[0].force), vector_of(grains[1].force)},
           {vector_of(grains[0].torque), vector_of(grains[1].torque)}};
@@ -60,7 +60,7 @@ Loads wall_loads(const Body& body, double gap) {
   MovingGrains grains;
   grains.load(store, {});
   ContactList list;
-  list.walls.push_back({0, 0, 0.0, {0.0, 0.0, 0.0}});
+  list.walls.push_back({0, 0});
   const Plane floor;
   add_lubrication(grains, list, {Vec3(0.1, 0.1, 0.1), {false, false, false}}, {&floor, 1}, parameters());
   return {{vector_of(grains[0].force), Vec3::Zero()}, {vector_of(grains[0].torque), Vec3::Zero()}};

@@ -112,7 +112,7 @@ TEST(Mixing, ModuliKeepTheirOwners) {
   steel.law = rubber.law = Law::hertz_mindlin;
   steel.youngs_modulus = 200e9, steel.poisson_ratio = 0.3;
   rubber.youngs_modulus = 10e6, rubber.poisson_ratio = 0.5;
-  const ContactCoefficients c = coefficients_of(steel, rubber);
+  const HertzMindlin::Coefficients c = HertzMindlin::between(steel, rubber);
   EXPECT_NEAR(c.normal, 4.0 / 3.0 * 10e6 / 0.75, 1e-4 * 1.8e7);
   EXPECT_NEAR(c.tangential, 8.0 * (10e6 / 3.0) / 1.5, 1e-4 * 1.8e7);
   rubber.damping = 0.1, rubber.restitution.reset();

@@ -1,0 +1,26 @@
+// The datasets of the contacts in a saved state: contact_ids (lower id; higher id, or -1 - w for wall w), and for each
+// part of what the law keeps contact_<name of the part>: contact_spring. One row a contact, sorted by ids.
+#pragma once
+
+#include "core/archive.hpp"
+#include "dem/contact_history.hpp"
+#include "dem/contact_law.hpp"
+
+#include <mpi.h>
+
+#include <span>
+#include <string>
+
+namespace thalweg::dem {
+
+// Writes these of every rank one after the other, below `group`. parts: what the doubles of a history are, in their
+// order. Collective.
+void write_histories(ArchiveWriter& archive, const std::string& group, const ContactHistories& histories,
+                     std::span<const HistoryPart> parts, MPI_Comm communicator);
+
+// An even share of the histories for each rank; parts that were not saved, because the law had none of them, are zero.
+// walls: whether contacts with walls are wanted. Collective.
+ContactHistories read_histories(ArchiveReader& archive, const std::string& group, std::span<const HistoryPart> parts,
+                                bool walls, MPI_Comm communicator);
+
+}  // namespace thalweg::dem

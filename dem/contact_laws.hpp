@@ -1,0 +1,49 @@
+// All contact laws, and the one place that chooses among them: with_law(choice, time_step, visit) calls visit(law).
+#pragma once
+
+#include "dem/hertz_mindlin.hpp"
+#include "dem/rolling_friction.hpp"
+#include "dem/spring_dashpot.hpp"
+
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace thalweg::dem {
+
+// The law of all contacts of a kind.
+struct LawChoice {
+  ContactParameters common;       // of any material
+  bool rolling_friction = false;  // whether any of the contacts may have it
+};
+
+// Calls visit(std::type_identity<Law>()) with the law of the spring across the contact, which the others add to.
+template <typename Visitor>
+decltype(auto) with_spring_law(Law law, Visitor&& visit) {
+  if (law == Law::linear) return visit(std::type_identity<SpringDashpotFriction>());
+  return visit(std::type_identity<HertzMindlin>());
+}
+
+// time_step: s, with 0 no spring grows.
+template <typename Visitor>
+decltype(auto) with_law(const LawChoice& choice, double time_step, Visitor&& visit) {
+  const ContactParameters& common = choice.common;
+  return with_spring_law(common.law, [&](auto spring) -> decltype(auto) {
+    const typename decltype(spring)::type law(common, time_step);
+    return choice.rolling_friction ? visit(WithRollingFriction(law, common)) : visit(law);
+  });
+}
+
+// Names and numbers of the doubles that a contact keeps.
+inline std::vector<HistoryPart> history_parts_of(const LawChoice& choice) {
+  return with_law(choice, 0.0, [](const auto& law) {
+    return std::vector<HistoryPart>(law.history_parts.begin(), law.history_parts.end());
+  });
+}
+
+// m, the gap up to which the law may act.
+inline double range_of(const LawChoice& choice) {
+  return with_law(choice, 0.0, [](const auto& law) { return law.range(); });
+}
+
+}  // namespace thalweg::dem
