@@ -1,5 +1,5 @@
 // What contact laws are made of. A law is one class: spring_dashpot.hpp and hertz_mindlin.hpp, which stand alone, or
-// rolling_friction.hpp, which adds to another law. contact_laws.hpp has them all. Such a class has
+// rolling_friction.hpp and liquid_bridge.hpp, which add to another law. contact_laws.hpp has them all. Such a class has
 //
 //   Coefficients    doubles that two materials have together; the last one is `friction`, which walls replace by theirs
 //   Constants       doubles that a contact has from its two bodies, by constants_of() when it is listed

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dem/hertz_mindlin.hpp"
+#include "dem/liquid_bridge.hpp"
 #include "dem/rolling_friction.hpp"
 #include "dem/spring_dashpot.hpp"
 
@@ -28,9 +29,12 @@ decltype(auto) with_spring_law(Law law, Visitor&& visit) {
 template <typename Visitor>
 decltype(auto) with_law(const LawChoice& choice, double time_step, Visitor&& visit) {
   const ContactParameters& common = choice.common;
+  const auto and_bridge = [&](const auto& law) -> decltype(auto) {
+    return common.liquid_bridge ? visit(WithLiquidBridge(law, *common.liquid_bridge)) : visit(law);
+  };
   return with_spring_law(common.law, [&](auto spring) -> decltype(auto) {
     const typename decltype(spring)::type law(common, time_step);
-    return choice.rolling_friction ? visit(WithRollingFriction(law, common)) : visit(law);
+    return choice.rolling_friction ? and_bridge(WithRollingFriction(law, common)) : and_bridge(law);
   });
 }
 

@@ -6,12 +6,26 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace thalweg::dem {
 
 std::vector<NamedChoice<Law>> choices_of(Law) {
   return {{Law::linear, "linear", "spring and dashpot"},
           {Law::hertz_mindlin, "hertz_mindlin", "elastic spheres, by youngs_modulus"}};
+}
+
+static void describe(SectionVisitor& visit, LiquidBridgeParameters& bridge) {
+  visit.real("surface_tension", bridge.surface_tension,
+             {.unit = "N/m", .meaning = "of the liquid", .required = true, .at_least = 0.0, .example = 0.073});
+  visit.real("contact_angle", bridge.contact_angle,
+             {.unit = "rad", .meaning = "between liquid and grain", .at_least = 0.0, .below = 0.5 * std::numbers::pi});
+  visit.real("volume", bridge.volume,
+             {.unit = "m^3",
+              .meaning = "of each bridge, which breaks at a gap of (1 + contact_angle/2) volume^(1/3)",
+              .required = true,
+              .above = 0.0,
+              .example = 1e-11});
 }
 
 void describe(SectionVisitor& visit, ContactParameters& contact) {
@@ -64,6 +78,8 @@ void describe(SectionVisitor& visit, ContactParameters& contact) {
                      {{false, "none", "the force never pulls"},
                       {true, "allowed", "the dashpot may pull as grains part, as in the linear law"}},
                      {.meaning = "sign of the normal force"});
+  visit.section("liquid_bridge", contact.liquid_bridge,
+                {.meaning = "a drop of liquid holds grains, and grains and walls, together that have touched"});
 }
 
 void require(bool good, const char* name, double value, const char* unit, const char* remedy) {

@@ -16,9 +16,17 @@ namespace thalweg::dem {
 enum class Law { linear, hertz_mindlin };
 std::vector<NamedChoice<Law>> choices_of(Law);  // its words in a case file
 
+// Of liquid_bridge.hpp; the same for all materials of a run.
+struct LiquidBridgeParameters {
+  double surface_tension = 0.0;  // N/m, >= 0
+  double contact_angle = 0.0;    // rad, from 0 to below pi/2
+  double volume = 0.0;           // m^3, > 0, of each bridge
+  bool operator==(const LiquidBridgeParameters&) const = default;
+};
+
 // One material, in contact with itself.
 struct ContactParameters {
-  Law law = Law::linear;               // the same for all materials of a run, as are the last two
+  Law law = Law::linear;               // the same for all materials of a run, as are the last three
   double normal_stiffness = 0.0;       // N/m, > 0; linear law
   double tangential_stiffness = 0.0;   // N/m, >= 0; linear law
   double youngs_modulus = 0.0;         // Pa, > 0; Hertz and Mindlin
@@ -32,6 +40,7 @@ struct ContactParameters {
   double rolling_damping = 0.3;        // over the critical one, >= 0; the same for all materials of a run
   bool attraction = false;             // whether the dashpot may pull at the end of the contact
   double tangential_damping = 0.0;     // dashpot across the contact over the one along the normal, >= 0
+  std::optional<LiquidBridgeParameters> liquid_bridge;  // none: dry
   bool operator==(const ContactParameters&) const = default;
 
   double least_normal_force() const { return attraction ? -std::numeric_limits<double>::infinity() : 0.0; }  // N

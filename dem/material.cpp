@@ -25,6 +25,7 @@ void check(const ContactParameters& p) {
     require(*p.restitution > 0.0 && *p.restitution <= 1.0, "restitution", *p.restitution, "",
             "greater than 0 and at most 1");
   if (p.damping) require_not_negative("damping", *p.damping, " kg/s");
+  if (p.liquid_bridge) check(*p.liquid_bridge);
 }
 
 double restitution_of_damping_ratio(double zeta, bool attraction) {
@@ -93,6 +94,8 @@ ContactParameters mixed(const ContactParameters& a, const ContactParameters& b) 
       a.rolling_damping != b.rolling_damping)
     throw InputError(
         "Two materials differ in contact law, attraction, tangential or rolling damping; give all the same.");
+  if (a.liquid_bridge != b.liquid_bridge)
+    throw InputError("Two materials differ in their liquid bridges; give all the same.");
   if (a.restitution.has_value() != b.restitution.has_value())
     throw InputError("One material has a restitution and another a damping; give all materials the same of the two.");
   ContactParameters m = a;

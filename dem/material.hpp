@@ -44,7 +44,7 @@ private:
 // What two bodies of different materials make of each other. Springs in series: stiffnesses and dashpots by the
 // harmonic mean; frictions and restitution by the geometric mean; moduli are kept apart (hertz_mindlin.hpp). Throws
 // InputError where one has a restitution and the other a damping, or where law, attraction, tangential or rolling
-// damping differ.
+// damping or liquid bridges differ.
 ContactParameters mixed(const ContactParameters& a, const ContactParameters& b);
 
 double harmonic_mean(double a, double b);
@@ -66,7 +66,7 @@ public:
   int count() const { return count_; }
   const Entry& pair(int a, int b) const { return pairs_[static_cast<std::size_t>(a) * count_ + b]; }
   const Entry& wall(int material) const { return walls_[material]; }
-  // What all materials have in common: law, attraction, tangential and rolling damping.
+  // What all materials have in common: law, attraction, tangential and rolling damping, liquid bridges.
   const ContactParameters& common() const { return common_; }
   bool rolling_friction() const { return rolling_friction_; }  // whether any pair of grains has it
 

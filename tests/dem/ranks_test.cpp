@@ -25,6 +25,7 @@ struct Case {
   bool plate = false;    // comes up from below the floor, across the end of the box along x
   bool lubricated = false;
   bool movable_cuts = false;
+  bool moist = false;  // with liquid bridges
 };
 
 struct Cloud {
@@ -82,6 +83,7 @@ GrainParameters parameters_of(const Case& c) {
   p.contact.normal_stiffness = 500.0;
   p.contact.tangential_stiffness = 2.0 / 7.0 * 500.0;
   p.contact.rolling_friction = p.contact.wall_rolling_friction = c.rolling;
+  if (c.moist) p.contact.liquid_bridge = LiquidBridgeParameters{0.05, 0.3, 5e-11};  // breaks at 0.42 mm
   if (c.elastic) {
     p.contact.law = Law::hertz_mindlin;
     p.contact.youngs_modulus = 1e5;  // about as soft
@@ -200,6 +202,24 @@ int members_abroad(const Case& c, const GrainDynamics& grains) {
   return count;
 }
 
+// Saved bridges across a gap, between grains that belong to different octants.
+int bridges_across_borders(const Case& c, const thalweg::test::MemoryArchive& archive) {
+  const Decomposition octants(c.cells, c.spacing, c.periodic, {2, 2, 2});
+  const auto reals = [&](const char* name) { return std::get<std::vector<double>>(archive.datasets.at(name).values); };
+  const auto ids = std::get<std::vector<std::int64_t>>(archive.datasets.at("grains/contact_ids").values);
+  const auto bridge = reals("grains/contact_bridge"), position = reals("grains/position"),
+             radius = reals("grains/radius");
+  int count = 0;
+  for (std::size_t n = 0; n < bridge.size(); ++n) {
+    const auto first = static_cast<std::size_t>(ids[2 * n]), second = static_cast<std::size_t>(ids[2 * n + 1]);
+    if (ids[2 * n + 1] < 0 || bridge[n] == 0.0) continue;
+    const Vec3 a(&position[3 * first]), b(&position[3 * second]);
+    const bool stretched = octants.box().difference(a, b).norm() > radius[first] + radius[second];
+    count += stretched && octants.owner_of(a) != octants.owner_of(b);
+  }
+  return count;
+}
+
 void compare(const Case& c, int steps) {
   const Cloud seeds = cloud(c);
   const GrainParameters p = parameters_of(c);
@@ -218,6 +238,9 @@ void compare(const Case& c, int steps) {
   EXPECT_GT(moved_to_another_octant(c, seeds, alone), c.grains / 10);
   if (c.clumps) {
     EXPECT_GT(members_abroad(c, alone), c.grains / 10);
+  }
+  if (c.moist) {
+    EXPECT_GT(bridges_across_borders(c, half), 0);
   }
   if (c.plate) {
     EXPECT_LT(alone.wall_forces().back()[2], 0.0);
@@ -331,6 +354,23 @@ TEST(Ranks, HeapWithLubrication) {
   Case c{{16, 16, 16}, 1.5e-3, {true, true, false}, 60, Vec3(4.0, 2.0, -15.0), Vec3(0.4, 0.3, 0.0)};
   c.lubricated = true;
   compare(c, 240);
+}
+
+TEST(Ranks, HeapWithLiquidBridges) {
+  Case c{{16, 16, 16}, 1.5e-3, {true, true, false}, 60, Vec3(4.0, 2.0, -15.0), Vec3(0.4, 0.3, 0.0)};
+  c.moist = true;
+  compare(c, 240);
+  c.elastic = true;
+  c.rolling = 0.1;
+  compare(c, 240);
+  c.integrator = Integrator::gear;
+  compare(c, 240);
+}
+
+TEST(Ranks, MoistHeapOfClumpsWithMovingCuts) {
+  Case c{{16, 16, 16}, 1.5e-3, {true, true, false}, 30, Vec3(4.0, 2.0, -30.0), Vec3(0.4, 0.3, 0.0)};
+  c.moist = c.clumps = c.movable_cuts = c.lubricated = true;
+  compare(c, 320);
 }
 
 TEST(Ranks, ChannelTwoDiametersWide) {
