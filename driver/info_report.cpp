@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <mpi.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -21,7 +20,7 @@ namespace fs = std::filesystem;
 using Lines = std::vector<std::string>;
 
 void add_checkpoint(const fs::path& file, Lines& lines) {
-  io::Hdf5Reader archive(MPI_COMM_SELF, file);
+  io::Hdf5Reader archive(file);
   if (!archive.has("run/system"))
     throw InputError(fmt::format("{} is an HDF5 file but not a checkpoint of this program.", file.string()));
   lines.push_back(fmt::format("checkpoint  {}", file.string()));

@@ -8,16 +8,17 @@
 
 namespace thalweg::driver {
 
-double measure_bandwidth(MPI_Comm communicator) {
-  // 256 MiB together, at least 32 MiB a rank: caches of a whole chip hold less than half of it.
-  const std::size_t values = (std::size_t{1} << 25) / static_cast<std::size_t>(std::min(8, size_of(communicator)));
+namespace {
+
+constexpr std::size_t all_values = std::size_t{1} << 25;  // 256 MiB: caches of a whole chip hold less than half of it
+
+// Bytes per second that this process reads and writes updating the array.
+double bandwidth_on(std::vector<double>& array) {
   constexpr double patience = 0.08;  // s
-  std::vector<double> array(values, 1.0);
   using Clock = std::chrono::steady_clock;
   const auto seconds_since = [](Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
   };
-  MPI_Barrier(communicator);
   const Clock::time_point begin = Clock::now();
   double fastest = 1e9;
   do {
@@ -25,7 +26,20 @@ double measure_bandwidth(MPI_Comm communicator) {
     for (double& value : array) value = 0.5 * value + 0.5;
     fastest = std::min(fastest, seconds_since(start));
   } while (seconds_since(begin) < patience);
-  return sum_over_ranks(communicator, 2.0 * sizeof(double) * static_cast<double>(values) / fastest);
+  return 2.0 * sizeof(double) * static_cast<double>(array.size()) / fastest;
+}
+
+}  // namespace
+
+double measure_bandwidth() {
+  std::vector<double> array(all_values, 1.0);
+  return bandwidth_on(array);
+}
+
+double measure_bandwidth(MPI_Comm communicator) {
+  std::vector<double> array(all_values / static_cast<std::size_t>(std::min(8, size_of(communicator))), 1.0);
+  MPI_Barrier(communicator);
+  return sum_over_ranks(communicator, bandwidth_on(array));
 }
 
 }  // namespace thalweg::driver

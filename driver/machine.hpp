@@ -5,6 +5,9 @@
 
 namespace thalweg::driver {
 
+// Bytes per second read and written by this process alone, as below. Needs no MPI.
+double measure_bandwidth();
+
 // Bytes per second read and written by all ranks together updating arrays much larger than their caches in place.
 // Takes about 0.1 s. Collective.
 double measure_bandwidth(MPI_Comm communicator);

@@ -1,4 +1,4 @@
-// The program: one command line, the same on every rank.
+// The program: one command line, the same on every rank. Only `run` starts MPI.
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
 #include "driver/analyze_command.hpp"
@@ -8,15 +8,17 @@
 #include "driver/command_line.hpp"
 #include "driver/info_report.hpp"
 #include "driver/machine.hpp"
-#include "driver/on_first_rank.hpp"
 #include "driver/run_command.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <new>
+#include <string>
+#include <vector>
 
 namespace {
 
@@ -25,27 +27,34 @@ using namespace thalweg::driver;
 
 enum ExitCode { done = 0, run_failed = 1, bad_input = 2 };
 
-void execute(const Command& command, WallClock::time_point started, FailureCouncil& council, Log& log) {
-  const MPI_Comm world = MPI_COMM_WORLD;
-  if (command.kind == Command::Kind::run) {
-    run_case(command, world, started, council, log);
-    return;
+struct Failure {
+  ExitCode code;
+  std::string message;
+};
+
+// What the exception that is being handled means to the user.
+Failure failure() {
+  try {
+    throw;
+  } catch (const InputError& error) {
+    return {bad_input, error.what()};
+  } catch (const RunError& error) {
+    return {run_failed, error.what()};
+  } catch (const std::bad_alloc&) {
+    return {run_failed, "The memory of this machine is not enough for the case."};
+  } catch (const std::exception& error) {
+    return {run_failed, fmt::format("An error nobody expected: {}.", error.what())};
   }
-  on_first_rank(world, [&] {
-    const std::vector<std::string> lines =
-        command.kind == Command::Kind::check
-            ? check_report(read_case(command.path, command.settings), measure_bandwidth(MPI_COMM_SELF))
-            : info_report(command.path);
-    for (const std::string& line : lines) log.line(line);
-  });
 }
 
+void complain(const std::string& message) { std::fprintf(stderr, "thalweg: %s\n", message.c_str()); }
+
 // Ends the program after an error: in good order if it met every rank, else by force, since the others are waiting.
-int end_with(ExitCode code, const std::string& message, FailureCouncil& council, bool speaking) {
+int end_with(const Failure& failed, FailureCouncil& council, bool speaking) {
   const bool together = council.everybody_failed(seconds_to_wait_for_others);
-  if (speaking || !together) std::fprintf(stderr, "thalweg: %s\n", message.c_str());
-  if (!together) MPI_Abort(MPI_COMM_WORLD, code);
-  return code;
+  if (speaking || !together) complain(failed.message);
+  if (!together) MPI_Abort(MPI_COMM_WORLD, failed.code);
+  return failed.code;
 }
 
 // Whether this is the only process or the first that a launcher has started, by the variables that launchers set. For
@@ -56,22 +65,46 @@ bool first_of_its_launcher() {
   return true;
 }
 
-// Help, the defaults, and complaints about the command line.
-int answer_without_mpi(CommandLine line) {
-  if (line.command) {
-    try {
-      line.text = defaults_yaml(line.command->system.empty() ? "resolved" : line.command->system);
-    } catch (const InputError& error) {
-      line = {.command = {}, .text = error.what(), .exit_code = bad_input};
-    }
+int run(const Command& command, int argc, char** argv, WallClock::time_point started) {
+  MpiSession session(argc, argv);
+  const bool speaking = rank_of(MPI_COMM_WORLD) == 0;
+  FailureCouncil council(MPI_COMM_WORLD);
+  Log log(speaking);
+  try {
+    run_case(command, MPI_COMM_WORLD, started, council, log);
+    return done;
+  } catch (...) {
+    return end_with(failure(), council, speaking);
   }
-  if (first_of_its_launcher()) {
-    if (line.exit_code == done)
-      std::fputs(line.text.c_str(), stdout);
-    else
-      std::fprintf(stderr, "thalweg: %s\n", line.text.c_str());
+}
+
+std::string joined(const std::vector<std::string>& lines) { return fmt::format("{}\n", fmt::join(lines, "\n")); }
+
+// What a command other than run prints.
+std::string answer(const Command& command) {
+  switch (command.kind) {
+    case Command::Kind::check:
+      return joined(check_report(read_case(command.path, command.settings), measure_bandwidth()));
+    case Command::Kind::info:
+      return joined(info_report(command.path));
+    default:
+      return defaults_yaml(command.system.empty() ? "resolved" : command.system);
   }
-  return line.exit_code;
+}
+
+// Every command but run, and complaints about the command line. Of several ranks only the first does anything.
+int answer_without_mpi(const CommandLine& line) {
+  if (!first_of_its_launcher()) return line.exit_code;
+  flush_denormals_to_zero();
+  try {
+    if (line.exit_code != done) throw InputError(line.text);
+    std::fputs((line.command ? answer(*line.command) : line.text).c_str(), stdout);
+    return done;
+  } catch (...) {
+    const Failure failed = failure();
+    complain(failed.message);
+    return failed.code;
+  }
 }
 
 }  // namespace
@@ -80,21 +113,6 @@ int main(int argc, char** argv) {
   const WallClock::time_point started = WallClock::now();
   if (is_analyze(argc, argv)) return analyze(argc, argv);
   const CommandLine line = parse_command_line(argc, argv);
-  if (!line.command || line.command->kind == Command::Kind::defaults) return answer_without_mpi(line);
-  MpiSession session(argc, argv);
-  const bool speaking = rank_of(MPI_COMM_WORLD) == 0;
-  FailureCouncil council(MPI_COMM_WORLD);
-  Log log(speaking);
-  try {
-    execute(*line.command, started, council, log);
-    return done;
-  } catch (const InputError& error) {
-    return end_with(bad_input, error.what(), council, speaking);
-  } catch (const RunError& error) {
-    return end_with(run_failed, error.what(), council, speaking);
-  } catch (const std::bad_alloc&) {
-    return end_with(run_failed, "The memory of this machine is not enough for the case.", council, speaking);
-  } catch (const std::exception& error) {
-    return end_with(run_failed, fmt::format("An error nobody expected: {}.", error.what()), council, speaking);
-  }
+  if (line.command && line.command->kind == Command::Kind::run) return run(*line.command, argc, argv, started);
+  return answer_without_mpi(line);
 }

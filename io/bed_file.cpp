@@ -16,13 +16,11 @@ namespace {
 const std::string format = "thalweg bed 1";
 
 // One grain on its way to rank 0.
-struct Row {
+struct BedRow {
   GlobalId id, clump;
   double radius, density;
   double position[3], velocity[3], angular_velocity[3];
 };
-
-void copy(const Vec3& from, double* to) { std::copy(from.data(), from.data() + 3, to); }
 
 double clump_density(const GrainView& grains, GlobalId id) {
   // In order of id, and with its members here.
@@ -31,8 +29,8 @@ double clump_density(const GrainView& grains, GlobalId id) {
   return clump->mass / clump->volume;
 }
 
-std::vector<Row> gathered(MPI_Comm communicator, const GrainView& grains) {
-  std::vector<Row> rows(grains.id.size());
+std::vector<BedRow> gathered(MPI_Comm communicator, const GrainView& grains) {
+  std::vector<BedRow> rows(grains.id.size());
   for (std::size_t n = 0; n < rows.size(); ++n) {
     const double r = grains.radius[n];
     const double height = grains.disk_thickness > 0.0 ? grains.disk_thickness : 4.0 / 3.0 * r;
@@ -41,12 +39,12 @@ std::vector<Row> gathered(MPI_Comm communicator, const GrainView& grains) {
       rows[n].clump = grains.clump[n];
       rows[n].density = clump_density(grains, grains.clump[n]);
     }
-    copy(grains.position[n], rows[n].position);
-    copy(grains.velocity[n], rows[n].velocity);
-    copy(grains.angular_velocity[n], rows[n].angular_velocity);
+    std::copy_n(grains.position[n].data(), 3, rows[n].position);
+    std::copy_n(grains.velocity[n].data(), 3, rows[n].velocity);
+    std::copy_n(grains.angular_velocity[n].data(), 3, rows[n].angular_velocity);
   }
   rows = exchange_rows(communicator, rows, std::vector<int>(rows.size(), 0));
-  std::sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.id < b.id; });
+  std::sort(rows.begin(), rows.end(), [](const BedRow& a, const BedRow& b) { return a.id < b.id; });
   return rows;
 }
 
@@ -67,14 +65,14 @@ public:
     archive_.write("grains/" + name, values, whole(mine_, count_, width));
     archive_.attribute("grains/" + name + "/unit", std::string(unit));
   }
-  void scalars(const std::vector<Row>& rows, const std::string& name, const char* unit, double Row::*field) {
+  void scalars(const std::vector<BedRow>& rows, const std::string& name, const char* unit, double BedRow::*field) {
     std::vector<double> values;
-    for (const Row& row : rows) values.push_back(row.*field);
+    for (const BedRow& row : rows) values.push_back(row.*field);
     column(name, unit, values);
   }
-  void vectors(const std::vector<Row>& rows, const std::string& name, const char* unit, double (Row::*field)[3]) {
+  void vectors(const std::vector<BedRow>& rows, const std::string& name, const char* unit, double (BedRow::*field)[3]) {
     std::vector<double> values;
-    for (const Row& row : rows) values.insert(values.end(), row.*field, row.*field + 3);
+    for (const BedRow& row : rows) values.insert(values.end(), row.*field, row.*field + 3);
     column(name, unit, values, 3);
   }
   template <typename Number>
@@ -101,7 +99,7 @@ std::vector<Number> column(Hdf5Reader& file, const std::string& path, std::uint6
 }  // namespace
 
 void write_bed_file(MPI_Comm communicator, const std::filesystem::path& path, const Snapshot& snapshot) {
-  const std::vector<Row> rows = gathered(communicator, snapshot.grains);
+  const std::vector<BedRow> rows = gathered(communicator, snapshot.grains);
   const PeriodicBox box = snapshot.decomposition->box();
   BedWriter writer(communicator, path, snapshot.grains.global_count);
   writer.archive().attribute("bed/format", format);
@@ -110,22 +108,22 @@ void write_bed_file(MPI_Comm communicator, const std::filesystem::path& path, co
   writer.triple<double>("box", "m", {box.size[0], box.size[1], box.size[2]});
   writer.triple<std::int64_t>("periodic", "1", {box.periodic[0], box.periodic[1], box.periodic[2]});
   std::vector<std::int64_t> ids, clumps;
-  for (const Row& row : rows) {
+  for (const BedRow& row : rows) {
     ids.push_back(row.id);
     clumps.push_back(row.clump);
   }
   writer.column("id", "1", ids);
   if (snapshot.grains.clump_count > 0) writer.column("clump", "1", clumps);
-  writer.scalars(rows, "radius", "m", &Row::radius);
-  writer.scalars(rows, "density", "kg/m^3", &Row::density);
-  writer.vectors(rows, "position", "m", &Row::position);
-  writer.vectors(rows, "velocity", "m/s", &Row::velocity);
-  writer.vectors(rows, "angular_velocity", "rad/s", &Row::angular_velocity);
+  writer.scalars(rows, "radius", "m", &BedRow::radius);
+  writer.scalars(rows, "density", "kg/m^3", &BedRow::density);
+  writer.vectors(rows, "position", "m", &BedRow::position);
+  writer.vectors(rows, "velocity", "m/s", &BedRow::velocity);
+  writer.vectors(rows, "angular_velocity", "rad/s", &BedRow::angular_velocity);
   writer.archive().close();
 }
 
 Bed read_bed_file(const std::filesystem::path& path) {
-  Hdf5Reader file(MPI_COMM_SELF, path);
+  Hdf5Reader file(path);
   if (!file.has("bed/format") || file.text_attribute("bed/format") != format)
     throw InputError(fmt::format("{} is an HDF5 file but not a bed file of this program.", path.string()));
   Bed bed;

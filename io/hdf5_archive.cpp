@@ -43,13 +43,6 @@ std::string name_of_type(hid_t type) {
   return "another type";
 }
 
-std::vector<hsize_t> extents_of(hid_t dataset) {
-  const Handle space(H5Dget_space(dataset), H5Sclose);
-  std::vector<hsize_t> extents(static_cast<std::size_t>(std::max(0, H5Sget_simple_extent_ndims(space))));
-  if (!extents.empty()) H5Sget_simple_extent_dims(space, extents.data(), nullptr);
-  return extents;
-}
-
 std::string shown(const std::vector<std::uint64_t>& shape) { return fmt::format("{}", fmt::join(shape, " x ")); }
 
 std::uint64_t volume(const std::vector<std::uint64_t>& shape) {
@@ -226,9 +219,31 @@ void Hdf5Writer::close() {
 }
 
 struct Hdf5Reader::File {
-  MPI_Comm communicator;
+  MPI_Comm communicator;  // MPI_COMM_NULL: this process alone, perhaps without MPI
   std::filesystem::path path;
   Handle file;
+
+  bool alone() const { return communicator == MPI_COMM_NULL; }
+  bool any(bool mine) const { return alone() ? mine : any_rank(communicator, mine); }
+
+  void open() {
+    silence_hdf5();
+    enum Outcome : int { well, missing, not_hdf5 };
+    int outcome = well;  // rank 0 looks before all open together
+    if (alone() || rank_of(communicator) == 0) {
+      std::error_code ignored;
+      if (!std::filesystem::exists(path, ignored))
+        outcome = missing;
+      else if (H5Fis_hdf5(path.c_str()) <= 0)
+        outcome = not_hdf5;
+    }
+    if (!alone()) MPI_Bcast(&outcome, 1, MPI_INT, 0, communicator);
+    if (outcome == missing) throw InputError(fmt::format("{}: there is no such file; check the path.", path.string()));
+    const Handle access = alone() ? lone_access() : mpi_access(communicator);
+    if (outcome == well) file = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
+    if (any(!file.good()))
+      throw InputError(fmt::format("{}: this is not an HDF5 file or it is damaged; give a checkpoint.", path.string()));
+  }
 
   InputError error(const std::string& name, const std::string& what) const {
     return InputError(fmt::format("{}: {}: {}; was the file written by this program for a case like this one?",
@@ -271,10 +286,10 @@ struct Hdf5Reader::File {
                   fmt::format("the file holds {} values, but {} are needed", shown(stored), shown(box.global_shape)));
     if (volume(stored) == 0) return;
     const Selection selection(box);
-    const Handle transfer = collective_transfer();
+    const Handle transfer = alone() ? Handle(H5Pcreate(H5P_DATASET_XFER), H5Pclose) : collective_transfer();
     const bool good =
         H5Dread(found, Stored<Number>::memory(), selection.memory, selection.file, transfer, values.data()) >= 0;
-    if (any_rank(communicator, !good)) throw error(name, "the data cannot be read, the file is damaged");
+    if (any(!good)) throw error(name, "the data cannot be read, the file is damaged");
   }
 
   Handle attribute(const std::string& name) const {
@@ -294,29 +309,16 @@ struct Hdf5Reader::File {
   }
 };
 
-Hdf5Reader::Hdf5Reader(MPI_Comm communicator, const std::filesystem::path& path) : file_(std::make_unique<File>()) {
-  silence_hdf5();
-  file_->communicator = communicator;
-  file_->path = path;
-  int outcome = 0;  // rank 0 looks before all open together
-  if (rank_of(communicator) == 0) {
-    std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored))
-      outcome = 1;
-    else if (H5Fis_hdf5(path.c_str()) <= 0)
-      outcome = 2;
-  }
-  MPI_Bcast(&outcome, 1, MPI_INT, 0, communicator);
-  if (outcome == 1) throw InputError(fmt::format("{}: there is no such file; check the path.", path.string()));
-  const Handle access = mpi_access(communicator);
-  if (outcome == 0) file_->file = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
-  if (any_rank(communicator, !file_->file.good()))
-    throw InputError(fmt::format("{}: this is not an HDF5 file or it is damaged; give a checkpoint.", path.string()));
+Hdf5Reader::Hdf5Reader(const std::filesystem::path& path) : Hdf5Reader(MPI_COMM_NULL, path) {}
+
+Hdf5Reader::Hdf5Reader(MPI_Comm communicator, const std::filesystem::path& path)
+    : file_(std::make_unique<File>(File{communicator, path, {}})) {
+  file_->open();
 }
 
 Hdf5Reader::~Hdf5Reader() {
   // As for the writer: another rank may not come to close the file.
-  if (std::uncaught_exceptions() > 0) file_->file.release();
+  if (!file_->alone() && std::uncaught_exceptions() > 0) file_->file.release();
 }
 
 bool Hdf5Reader::has(const std::string& path) const { return file_->has_link(path) || file_->has_attribute(path); }

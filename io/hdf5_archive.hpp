@@ -41,9 +41,11 @@ private:
 
 // Reads what Hdf5Writer wrote, on any number of ranks. The constructor throws InputError if the file is missing or not
 // HDF5; reading throws InputError (naming file and path) where the path is missing or of another shape or type.
-// The constructor and read() are collective; the questions may be asked by any rank alone.
+// The constructor and read() are collective; the questions may be asked by any rank alone. Without a communicator the
+// file is read by this process alone, also where there is no MPI.
 class Hdf5Reader final : public ArchiveReader {
 public:
+  explicit Hdf5Reader(const std::filesystem::path& path);
   Hdf5Reader(MPI_Comm communicator, const std::filesystem::path& path);
   ~Hdf5Reader() override;
   Hdf5Reader(const Hdf5Reader&) = delete;

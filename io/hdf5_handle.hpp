@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <utility>
+#include <vector>
 
 namespace thalweg::io {
 
@@ -44,6 +45,12 @@ inline void silence_hdf5() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 // Access to a file through MPI-IO by all ranks of a communicator, also where there is only one, so that the layout of
 // the file is always the same.
 Handle mpi_access(MPI_Comm communicator);
+
+// Access by this process alone, without MPI, to a file that nobody writes.
+Handle lone_access();
+
+// Rows, columns, ... of a dataset; none if it cannot be asked.
+std::vector<hsize_t> extents_of(hid_t dataset);
 
 // True if an empty file could be created under this name; leaves nothing behind.
 bool can_create(const std::filesystem::path& path);

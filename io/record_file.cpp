@@ -108,13 +108,6 @@ Handle open_array(hid_t file, const std::string& name) {
   return Handle(must(H5Dopen2(file, name.c_str(), H5P_DEFAULT)), H5Dclose);
 }
 
-std::vector<hsize_t> extents_of(hid_t dataset) {
-  const Handle space(H5Dget_space(dataset), H5Sclose);
-  std::vector<hsize_t> extents(static_cast<std::size_t>(std::max(0, H5Sget_simple_extent_ndims(space))));
-  if (!extents.empty()) H5Sget_simple_extent_dims(space, extents.data(), nullptr);
-  return extents;
-}
-
 void add_rows(hid_t file, const Profile& array) {
   if (array.shape[0] == 0) return;
   const Handle dataset = open_array(file, array.name);

@@ -63,10 +63,26 @@ class CommandLine(DryGrains):
     def test_answers_where_mpi_cannot_start(self):
         # As on the login nodes of some clusters: there is no such way to send messages.
         with unittest.mock.patch.dict(os.environ, OMPI_MCA_pml="none_such"):
-            self.assertNotEqual(self.thalweg("check", self.case).returncode, 0)   # it needs MPI
+            self.assertNotEqual(self.thalweg("run", self.case).returncode, 0)   # the only command that needs MPI
             self.run_well("--help")
             self.run_well("defaults", "fluid")
             self.assert_refused("fly", words=["fly"])
+            self.assertIn("tumbling grains", self.run_well("check", self.case).stdout)
+            self.assert_refused("check", self.case, "--set", "grains.0.diameter=-0.005", words=["grains.0.diameter"])
+            self.assert_refused("info", "nowhere", words=["nowhere"])
+
+    def test_reads_a_run_where_mpi_cannot_start(self):
+        self.run_well("run", self.case, "--out", "run")
+        with_mpi = self.run_well("info", "run").stdout
+        placed = ["--set", "grains.0={placement: {file: run/bed.h5}}"]
+        bed = self.run_well("check", self.case, *placed).stdout
+        with unittest.mock.patch.dict(os.environ, OMPI_MCA_pml="none_such"):
+            self.assertEqual(self.run_well("info", "run").stdout, with_mpi)
+            self.assertIn("grains/position", with_mpi)
+            without_speed = [line for line in bed.splitlines() if not line.startswith("time ")]
+            again = self.run_well("check", self.case, *placed).stdout
+            self.assertEqual([line for line in again.splitlines() if not line.startswith("time ")], without_speed)
+            self.assertIn("40 of", again)
 
     def test_wrong_words(self):
         self.assert_refused("fly", words=["fly"])
