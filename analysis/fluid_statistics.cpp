@@ -1,7 +1,9 @@
 #include "analysis/fluid_statistics.hpp"
 
+#include "analysis/tensor_names.hpp"
 #include "core/fixed_point.hpp"
 #include "core/mpi_session.hpp"
+#include "core/symmetric_pairs.hpp"
 
 #include <fmt/format.h>
 
@@ -13,9 +15,6 @@ namespace {
 
 constexpr int fraction_bits = 40;
 using VelocitySum = FixedPoint<fraction_bits>;
-
-constexpr int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
-const std::vector<std::string> components{"x", "y", "z"}, tensor{"xx", "yy", "zz", "xy", "xz", "yz"};
 
 }  // namespace
 
@@ -41,7 +40,8 @@ void FluidStatistics::observe(const Snapshot& snapshot) {
     const Vec3 u = velocity_si / velocity_unit_;
     columns[count] += 1;
     for (int a = 0; a < 3; ++a) columns[velocity + a] += VelocitySum::from(u[a]);
-    for (int p = 0; p < 6; ++p) columns[product + p] += VelocitySum::from(u[pairs[p][0]] * u[pairs[p][1]]);
+    for (int p = 0; p < 6; ++p)
+      columns[product + p] += VelocitySum::from(u[symmetric_pairs[p][0]] * u[symmetric_pairs[p][1]]);
   });
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_INT64_T, MPI_SUM, communicator_);
   for (std::size_t s = 0; s < sums.size(); ++s) sums_[s].add(sums[s]);
@@ -67,8 +67,9 @@ FluidStatistics::Means FluidStatistics::means_of(const WideSum* sums, double cel
     means.velocity[a] = u[a] * velocity_unit_;
   }
   for (int p = 0; p < 6; ++p)
-    means.stress[p] = (sums[product + p].to_double(fraction_bits) / n - u[pairs[p][0]] * u[pairs[p][1]]) *
-                      velocity_unit_ * velocity_unit_;
+    means.stress[p] =
+        (sums[product + p].to_double(fraction_bits) / n - u[symmetric_pairs[p][0]] * u[symmetric_pairs[p][1]]) *
+        velocity_unit_ * velocity_unit_;
   return means;
 }
 
@@ -97,8 +98,8 @@ std::vector<Profile> FluidStatistics::profiles() const {
     to[2].values.push_back(means.fluid_fraction);
   };
   const auto empty = [](const std::string& prefix, std::vector<std::uint64_t> shape) {
-    std::vector<Profile> profiles{{prefix + "velocity", "m/s", components, shape, {}},
-                                  {prefix + "reynolds_stress", "m^2/s^2", tensor, shape, {}},
+    std::vector<Profile> profiles{{prefix + "velocity", "m/s", vector_names, shape, {}},
+                                  {prefix + "reynolds_stress", "m^2/s^2", symmetric_names, shape, {}},
                                   {prefix + "fluid_fraction", "1", {}, shape, {}}};
     profiles[0].shape.push_back(3);
     profiles[1].shape.push_back(6);

@@ -1,9 +1,11 @@
 #include "analysis/grain_profiles.hpp"
 
 #include "analysis/sphere_in_layer.hpp"
+#include "analysis/tensor_names.hpp"
 #include "core/contact_stress.hpp"
 #include "core/mpi_session.hpp"
 #include "core/order_free_sum.hpp"
+#include "core/symmetric_pairs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +14,6 @@
 namespace thalweg::analysis {
 
 namespace {
-
-constexpr int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
 
 // A grain as the sums take it. The members of a clump share its volume, mass and contact moment as their own volumes
 // are to each other, and move with its centre, so that its parts add up to the clump.
@@ -86,7 +86,7 @@ void GrainProfiles::observe(const Snapshot& snapshot) {
       const double inside_it = grains.is_member(i) ? share * body.volume : part;
       layer_of_row.push_back(inside);
       terms.insert(terms.end(), {inside_it, m, m * v[0], m * v[1], m * v[2]});
-      for (const auto& [a, b] : pairs) terms.push_back(m * v[a] * v[b]);
+      for (const auto& [a, b] : symmetric_pairs) terms.push_back(m * v[a] * v[b]);
       terms.insert(terms.end(), {inside_it * v[0], inside_it * v[1], inside_it * v[2]});
       for (int a = 0; a < 3; ++a)
         for (int b = 0; b < 3; ++b) terms.push_back(share * body.moment(a, b));
@@ -102,12 +102,11 @@ std::vector<Figure> GrainProfiles::results() const {
 
 std::vector<Profile> GrainProfiles::profiles() const {
   const auto n = static_cast<std::uint64_t>(layers_);
-  const std::vector<std::string> components{"x", "y", "z"};
   Profile z{"z", "m", {}, {n}, {}}, fraction{"solid_fraction", "1", {}, {n}, {}};
-  Profile velocity{"velocity", "m/s", components, {n, 3}, {}}, volume_flux{"flux", "m/s", components, {n, 3}, {}};
+  Profile velocity{"velocity", "m/s", vector_names, {n, 3}, {}}, volume_flux{"flux", "m/s", vector_names, {n, 3}, {}};
   Profile temperature{"granular_temperature", "m^2/s^2", {}, {n}, {}};
-  Profile contact_stress{"contact_stress", "Pa", {"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"}, {n, 9}, {}};
-  Profile kinetic_stress{"kinetic_stress", "Pa", {"xx", "yy", "zz", "xy", "xz", "yz"}, {n, 6}, {}};
+  Profile contact_stress{"contact_stress", "Pa", tensor_names, {n, 9}, {}};
+  Profile kinetic_stress{"kinetic_stress", "Pa", symmetric_names, {n, 6}, {}};
   // Of all measurements together.
   const double room =
       box_.size[0] * box_.size[1] * thickness_ * static_cast<double>(std::max<std::int64_t>(1, measurements_));
@@ -126,7 +125,8 @@ std::vector<Profile> GrainProfiles::profiles() const {
     for (int a = 0; a < 3; ++a) volume_flux.values.push_back(sum[flux + a] / room);
     for (int c = 0; c < 9; ++c) contact_stress.values.push_back(sum[contact + c] / room);
     for (int p = 0; p < 6; ++p)
-      kinetic_stress.values.push_back(-(sum[product + p] - sum[mass] * u[pairs[p][0]] * u[pairs[p][1]]) / room);
+      kinetic_stress.values.push_back(
+          -(sum[product + p] - sum[mass] * u[symmetric_pairs[p][0]] * u[symmetric_pairs[p][1]]) / room);
   }
   return {z, fraction, velocity, volume_flux, temperature, contact_stress, kinetic_stress};
 }

@@ -2,10 +2,10 @@
 #include "analysis/stress_balance.hpp"
 
 #include "analysis/sphere_in_layer.hpp"
-#include "analysis/tensor_names.hpp"
 #include "core/contact_stress.hpp"
 #include "core/mpi_session.hpp"
 #include "core/order_free_sum.hpp"
+#include "core/symmetric_pairs.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 // What the sums of a stress balance come to: means by layers, totals, and how far they are from the driving stress.
 #include "analysis/stress_balance.hpp"
 #include "analysis/tensor_names.hpp"
+#include "core/symmetric_pairs.hpp"
 
 #include <fmt/format.h>
 

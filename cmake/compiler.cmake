@@ -30,9 +30,11 @@ target_include_directories(thalweg_compile_options INTERFACE
 # What they are compiled with themselves.
 add_library(thalweg_own_options INTERFACE)
 target_compile_options(thalweg_own_options INTERFACE
-  -fno-math-errno -fno-trapping-math -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
+  -fno-math-errno -fno-trapping-math -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+  $<$<BOOL:${THALWEG_WARNINGS_AS_ERRORS}>:-Werror>)
 if(THALWEG_SANITIZE)
-  target_compile_options(thalweg_compile_options INTERFACE -fsanitize=${THALWEG_SANITIZE} -fno-omit-frame-pointer)
+  target_compile_options(thalweg_compile_options INTERFACE
+    -fsanitize=${THALWEG_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(thalweg_compile_options INTERFACE -fsanitize=${THALWEG_SANITIZE})
 endif()
 
@@ -47,5 +49,5 @@ endfunction()
 # thalweg_links(source...): files that instantiate passes over links. Batches of links are whole vectors, however short.
 function(thalweg_links)
   set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS
-    "$<$<CXX_COMPILER_ID:GNU>:-fvect-cost-model=unlimited>;-Wno-maybe-uninitialized;-Wno-uninitialized")
+    "$<$<CXX_COMPILER_ID:GNU>:-fvect-cost-model=unlimited;-Wno-maybe-uninitialized;-Wno-uninitialized>")
 endfunction()

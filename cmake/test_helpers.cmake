@@ -1,26 +1,40 @@
-# thalweg_test(NAME name SOURCES file... LIBRARIES target... [RANKS 1 2 4 8] [LABELS label...])
+# thalweg_test(NAME name SOURCES file... LIBRARIES target... [RANKS 1 2 4 8] [QUICK 1 2] [LABELS label...])
 #
-# One GoogleTest executable, registered once per number of MPI ranks. Ranks may outnumber the cores of the machine.
+# One GoogleTest executable, registered once per number of MPI ranks. Ranks may outnumber the cores of the machine. On the
+# numbers of ranks after QUICK it takes a second or two, also where the sanitizers make it several times slower than that:
+# these have the label quick, and the target quick_tests builds them.
 function(thalweg_test)
-  cmake_parse_arguments(T "" "NAME" "SOURCES;LIBRARIES;RANKS;LABELS" ${ARGN})
+  cmake_parse_arguments(T "" "NAME" "SOURCES;LIBRARIES;RANKS;QUICK;LABELS" ${ARGN})
   if(NOT T_RANKS)
     set(T_RANKS 1)
   endif()
   add_executable(${T_NAME} ${T_SOURCES})
   target_link_libraries(${T_NAME} PRIVATE thalweg_test_support ${T_LIBRARIES})
+  if(T_QUICK)
+    if(NOT TARGET quick_tests)
+      add_custom_target(quick_tests)
+    endif()
+    add_dependencies(quick_tests ${T_NAME})
+  endif()
   foreach(ranks IN LISTS T_RANKS)
+    set(labels ${T_LABELS})
+    if(ranks IN_LIST T_QUICK)
+      list(APPEND labels quick)
+    endif()
     add_test(NAME ${T_NAME}.${ranks}
              COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks} $<TARGET_FILE:${T_NAME}>)
     thalweg_mpi_test_properties(${T_NAME}.${ranks} ${ranks})
-    if(T_LABELS)
-      set_property(TEST ${T_NAME}.${ranks} PROPERTY LABELS ${T_LABELS})
-    endif()
+    set_property(TEST ${T_NAME}.${ranks} PROPERTY LABELS ${labels})
   endforeach()
 endfunction()
 
 # Environment under which Open MPI runs more ranks than cores, as root in a container, and gives up its time slice.
 set(THALWEG_MPI_ENVIRONMENT
     "OMPI_ALLOW_RUN_AS_ROOT=1;OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1;OMPI_MCA_rmaps_base_oversubscribe=1;OMPI_MCA_mpi_yield_when_idle=1;OMPI_MCA_btl_base_warn_component_unused=0;OMPI_MCA_hwloc_base_binding_policy=none;OMPI_MCA_btl_vader_single_copy_mechanism=none")
+if(THALWEG_SANITIZE)
+  list(APPEND THALWEG_MPI_ENVIRONMENT "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/support/leaks_of_mpi.txt"
+       "UBSAN_OPTIONS=print_stacktrace=1")
+endif()
 function(thalweg_mpi_test_properties test ranks)
   set(slots ${ranks})
   if(slots GREATER 2)

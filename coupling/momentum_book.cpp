@@ -1,5 +1,6 @@
 #include "coupling/momentum_book.hpp"
 
+#include "core/symmetric_pairs.hpp"
 #include "lbm/flow_fields.hpp"
 #include "lbm/for_each_cell.hpp"
 
@@ -9,8 +10,6 @@ namespace {
 
 // Stresses in lattice units are far below 1, so a plane's sum has room for 2^23 cells of them.
 using CellSum = FixedPoint<40>;
-
-constexpr int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
 
 // Columns of a plane of cells.
 enum Column { cells, density = 1, flow = 2, flow_flux = 5, viscous = 11, subgrid = 17, columns = 23 };
@@ -25,7 +24,8 @@ void add_cell(const lbm::MomentumFlux& flux, std::int64_t* sums) {
   sums[cells] += 1;
   sums[density] += CellSum::from(flux.density);
   for (int a = 0; a < 3; ++a) sums[flow + a] += CellSum::from(flux.density * u[a]);
-  for (int p = 0; p < 6; ++p) sums[flow_flux + p] += CellSum::from(flux.density * u[pairs[p][0]] * u[pairs[p][1]]);
+  for (int p = 0; p < 6; ++p)
+    sums[flow_flux + p] += CellSum::from(flux.density * u[symmetric_pairs[p][0]] * u[symmetric_pairs[p][1]]);
   add_stress(flux.viscous, sums + viscous);
   add_stress(flux.subgrid, sums + subgrid);
 }

@@ -1,6 +1,7 @@
 #include "coupling/refill.hpp"
 
 #include "core/mpi_session.hpp"
+#include "core/symmetric_pairs.hpp"
 #include "coupling/lattice_vectors.hpp"
 #include "lbm/equilibrium.hpp"
 
@@ -20,8 +21,6 @@ Index3 step_from(const Index3& cell, int direction) {
 }
 
 std::array<int, 3> key(const Index3& cell) { return {cell[2], cell[1], cell[0]}; }
-
-constexpr int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
 
 }  // namespace
 
@@ -111,7 +110,7 @@ Refill::Neighbours Refill::look_at(const lbm::Fluid<Real>& fluid, std::ptrdiff_t
   for (std::size_t k = 0; k < one.stress.size(); ++k) {
     double moment = 0.0;
     for (int i = 1; i < D3Q19::directions; ++i)
-      moment += D3Q19::c[i][pairs[k][0]] * D3Q19::c[i][pairs[k][1]] * one.non_equilibrium[i];
+      moment += D3Q19::c[i][symmetric_pairs[k][0]] * D3Q19::c[i][symmetric_pairs[k][1]] * one.non_equilibrium[i];
     one.stress[k] = LatticeFixed::from(moment);
   }
   one.donor = direction;
@@ -190,7 +189,8 @@ std::array<double, 19> Refill::populations_of(const Neighbours& n, const Vec3& v
     if (rule_ != RefillRule::grad) continue;
     double projected = -trace;
     for (std::size_t k = 0; k < stress.size(); ++k)
-      projected += (k < 3 ? 1.0 : 2.0) * D3Q19::c[i][pairs[k][0]] * D3Q19::c[i][pairs[k][1]] * stress[k];
+      projected +=
+          (k < 3 ? 1.0 : 2.0) * D3Q19::c[i][symmetric_pairs[k][0]] * D3Q19::c[i][symmetric_pairs[k][1]] * stress[k];
     f[i] += 4.5 * D3Q19::weight(i) * projected;
   }
   return f;

@@ -6,7 +6,6 @@ namespace {
 
 constexpr double of_position = 3.0 / 16.0, of_velocity = 251.0 / 360.0;
 constexpr double of_higher[4] = {1.0, 11.0 / 18.0, 1.0 / 6.0, 1.0 / 60.0};
-constexpr Row first_three{1.0, 1.0, 1.0, 0.0};
 
 // Pascal's triangle on q_2 ... q_5; returns what they add to q_1 and, with that, to q_0.
 struct Advance {

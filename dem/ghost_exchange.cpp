@@ -1,6 +1,7 @@
 #include "dem/ghost_exchange.hpp"
 
 #include "core/mpi_session.hpp"
+#include "dem/grain_batch.hpp"
 
 #include <algorithm>
 #include <array>
@@ -24,8 +25,6 @@ struct GhostRow {
 struct MotionRow {
   double value[9];
 };
-
-std::array<double, 3> plain(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
 bool blocks_near(const Decomposition& d, int rank_1, int rank_2, double distance) {
   const Block b1 = d.block_of(rank_1), b2 = d.block_of(rank_2);

@@ -9,8 +9,6 @@ namespace thalweg::dem {
 
 namespace {
 
-std::array<double, 3> plain(const Vec3& v) { return {v[0], v[1], v[2]}; }
-
 void sort_by_id(GrainBatch& batch, int width) {
   std::vector<std::size_t> order(batch.rows.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

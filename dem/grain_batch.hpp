@@ -12,6 +12,9 @@
 
 namespace thalweg::dem {
 
+// A vector as rows hold it.
+inline std::array<double, 3> plain(const Vec3& v) { return {v[0], v[1], v[2]}; }
+
 // Everything of a grain that the next sub-step depends on, except its contacts and attached columns.
 struct GrainRow {
   enum Vector { position, velocity, angular_velocity, contact_force, contact_torque, load_force, load_torque, vectors };

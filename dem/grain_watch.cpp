@@ -64,7 +64,8 @@ void GrainWatch::throw_first(const GrainStore& store, const PeriodicBox& box, co
     case GrainTrouble::beyond_wall:
       throw RunError(grain + " is more than its radius beyond a wall that moves.");
     case GrainTrouble::in_plate:
-      throw RunError(grain + " is more than half its radius deep in a plate; use stiffer contacts, or less load or speed.");
+      throw RunError(grain +
+                     " is more than half its radius deep in a plate; use stiffer contacts, or less load or speed.");
     case GrainTrouble::too_fast:
       throw RunError(fmt::format("{} moves more than its radius in one step of {:g} s; use a shorter time step.", grain,
                                  step_time));

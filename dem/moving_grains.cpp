@@ -7,7 +7,6 @@ namespace thalweg::dem {
 namespace {
 
 constexpr Row zero{0.0, 0.0, 0.0, 0.0};
-constexpr Row first_three{1.0, 1.0, 1.0, 0.0};
 
 template <typename Load>
 inline void kick(MovingGrain& grain, const Load& load, double half) {

@@ -14,6 +14,7 @@ namespace thalweg::dem {
 // Four doubles that the processor handles at once: x, y, z and one more.
 using Row = double __attribute__((vector_size(32)));
 
+inline constexpr Row first_three{1.0, 1.0, 1.0, 0.0};  // as a factor: without the last entry
 inline Row row_of(const Vec3& v, double last = 0.0) { return Row{v[0], v[1], v[2], last}; }
 inline Vec3 vector_of(const Row& r) { return {r[0], r[1], r[2]}; }
 

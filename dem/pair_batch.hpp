@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <span>
 #include <tuple>
@@ -32,14 +33,25 @@ inline Row row_at(const double* values) {
   return row;
 }
 
+// The entries of two rows, counted from 0 to 7, that `entry` names.
+template <int... entry>
+Row picked(const Row& first, const Row& second) {
+#if defined(__clang__) || __GNUC__ >= 12
+  return __builtin_shufflevector(first, second, entry...);
+#else
+  using Entries = std::int64_t __attribute__((vector_size(32)));
+  return __builtin_shuffle(first, second, Entries{entry...});
+#endif
+}
+
 // Turns four rows into four columns, and back.
 inline void transpose(Row (&r)[4]) {
-  const Row a = __builtin_shufflevector(r[0], r[1], 0, 4, 2, 6), b = __builtin_shufflevector(r[0], r[1], 1, 5, 3, 7);
-  const Row c = __builtin_shufflevector(r[2], r[3], 0, 4, 2, 6), d = __builtin_shufflevector(r[2], r[3], 1, 5, 3, 7);
-  r[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
-  r[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
-  r[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
-  r[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+  const Row a = picked<0, 4, 2, 6>(r[0], r[1]), b = picked<1, 5, 3, 7>(r[0], r[1]);
+  const Row c = picked<0, 4, 2, 6>(r[2], r[3]), d = picked<1, 5, 3, 7>(r[2], r[3]);
+  r[0] = picked<0, 1, 4, 5>(a, c);
+  r[1] = picked<0, 1, 4, 5>(b, d);
+  r[2] = picked<2, 3, 6, 7>(a, c);
+  r[3] = picked<2, 3, 6, 7>(b, d);
 }
 
 template <typename ContactLaw>

@@ -9,7 +9,7 @@ namespace thalweg::driver {
 namespace {
 
 template <typename Real>
-std::unique_ptr<System> build(const Case& c, MPI_Comm communicator, const Index3& layout) {
+std::unique_ptr<System> build_fluid(const Case& c, MPI_Comm communicator, const Index3& layout) {
   return std::make_unique<coupling::FluidSystem<Real>>(std::make_unique<Decomposition>(decomposition_of(c, layout)),
                                                        communicator, fluid_parameters(c), solid_shapes(c));
 }
@@ -17,8 +17,8 @@ std::unique_ptr<System> build(const Case& c, MPI_Comm communicator, const Index3
 }  // namespace
 
 std::unique_ptr<System> build_fluid_system(const Case& c, MPI_Comm communicator, const Index3& layout) {
-  return c.fluid.precision == coupling::Precision::single ? build<float>(c, communicator, layout)
-                                                          : build<double>(c, communicator, layout);
+  return c.fluid.precision == coupling::Precision::single ? build_fluid<float>(c, communicator, layout)
+                                                          : build_fluid<double>(c, communicator, layout);
 }
 
 }  // namespace thalweg::driver

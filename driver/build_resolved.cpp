@@ -10,7 +10,7 @@ namespace thalweg::driver {
 namespace {
 
 template <typename Real>
-std::unique_ptr<System> build(const Case& c, MPI_Comm communicator, const Index3& layout) {
+std::unique_ptr<System> build_resolved(const Case& c, MPI_Comm communicator, const Index3& layout) {
   auto decomposition = std::make_unique<Decomposition>(decomposition_of(c, layout));
   coupling::ResolvedParameters parameters;
   static_cast<coupling::FluidParameters&>(parameters) = fluid_parameters(c);
@@ -42,8 +42,8 @@ std::unique_ptr<System> build(const Case& c, MPI_Comm communicator, const Index3
 }  // namespace
 
 std::unique_ptr<System> build_resolved_system(const Case& c, MPI_Comm communicator, const Index3& layout) {
-  return c.fluid.precision == coupling::Precision::single ? build<float>(c, communicator, layout)
-                                                          : build<double>(c, communicator, layout);
+  return c.fluid.precision == coupling::Precision::single ? build_resolved<float>(c, communicator, layout)
+                                                          : build_resolved<double>(c, communicator, layout);
 }
 
 }  // namespace thalweg::driver

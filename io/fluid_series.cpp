@@ -13,7 +13,7 @@
 #include <vtkXMLImageDataWriter.h>
 
 #include <algorithm>
-#include <cstring>
+#include <bit>
 #include <string>
 
 namespace thalweg::io {
@@ -74,7 +74,7 @@ std::size_t index_in(const Block& block, const Index3& cell) {
 }
 
 // One component of a field in a cell on its way to rank 0; a grain id travels as its bits.
-struct Row {
+struct CellRow {
   Index3 cell;
   std::int32_t component;
   std::int32_t bits;
@@ -84,7 +84,7 @@ struct Row {
 std::vector<std::int32_t> gathered(MPI_Comm communicator, const std::int32_t* values, int components,
                                    const Block& block, const Block& region) {
   const Block part = intersection(block, region);
-  std::vector<Row> rows;
+  std::vector<CellRow> rows;
   for (int k = part.lower[2]; k < part.upper[2]; ++k)
     for (int j = part.lower[1]; j < part.upper[1]; ++j)
       for (int i = part.lower[0]; i < part.upper[0]; ++i)
@@ -94,7 +94,7 @@ std::vector<std::int32_t> gathered(MPI_Comm communicator, const std::int32_t* va
   std::vector<std::int32_t> result;
   if (rank_of(communicator) != 0) return result;
   result.resize(components * volume(region));
-  for (const Row& row : rows) result[components * index_in(region, row.cell) + row.component] = row.bits;
+  for (const CellRow& row : rows) result[components * index_in(region, row.cell) + row.component] = row.bits;
   return result;
 }
 
@@ -111,11 +111,11 @@ FluidFields gathered(MPI_Comm communicator, const FluidFields& fields, const Blo
     }
     const std::vector<float>& here = values_of(fields, field);
     std::vector<std::int32_t> bits(here.size());
-    std::memcpy(bits.data(), here.data(), here.size() * sizeof(float));
+    std::transform(here.begin(), here.end(), bits.begin(), std::bit_cast<std::int32_t, float>);
     bits = gathered(communicator, bits.data(), components, fields.block, region);
     std::vector<float>& there = values_of(result, field);
     there.resize(bits.size());
-    std::memcpy(there.data(), bits.data(), bits.size() * sizeof(float));
+    std::transform(bits.begin(), bits.end(), there.begin(), std::bit_cast<float, std::int32_t>);
   }
   return result;
 }

@@ -309,7 +309,7 @@ void SectionReader::read_inside(const YamlNode& node, const std::string& key, co
         const std::string word = about.empty_name.empty() ? "" : fmt::format("{} or ", about.empty_name);
         fail(node, key, fmt::format("expected {}a section of keys with values", word));
       }
-      inside.entries.emplace_back(about.shorthand, node);
+      inside.entries.push_back({about.shorthand, node});
     }
   }
   if (inside.kind != YamlNode::Kind::section) fail(node, key, "expected a section of keys with values, not a list");

@@ -33,7 +33,7 @@ YamlNode converted(const YAML::Node& node, const std::string& place, const std::
       if (const YamlNode* first = result.find(key))
         throw InputError(fmt::format("{}: {}: the key is given twice (first at {}); remove one of the two.", here, path,
                                      first->place));
-      result.entries.emplace_back(key, converted(entry.second, here, path, place_of, depth + 1));
+      result.entries.push_back({key, converted(entry.second, here, path, place_of, depth + 1)});
     }
   } else if (node.IsSequence()) {
     result.kind = YamlNode::Kind::list;
@@ -88,7 +88,7 @@ std::vector<std::string> split_key(const std::string& key_path) {
 }
 
 void erase_entry(YamlNode& section, const std::string& key) {
-  std::erase_if(section.entries, [&](const auto& entry) { return entry.first == key; });
+  std::erase_if(section.entries, [&](const auto& entry) { return entry.key == key; });
 }
 
 }  // namespace
@@ -156,8 +156,8 @@ void YamlDocument::apply(const std::string& override_text) {
       node->kind = YamlNode::Kind::section;
       next = entry_of(*node, key);
       if (!next && !(last && remove)) {
-        node->entries.emplace_back(key, YamlNode{});
-        next = &node->entries.back().second;
+        node->entries.push_back({key, {}});
+        next = &node->entries.back().value;
         next->place = place;
       }
       if (last && remove) {

@@ -5,21 +5,27 @@
 
 #include <filesystem>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace thalweg::io {
+
+struct YamlEntry;
 
 struct YamlNode {
   enum class Kind { scalar, section, list };
 
   Kind kind = Kind::section;
-  std::string text;                                       // of a scalar; empty for null
-  std::vector<std::pair<std::string, YamlNode>> entries;  // of a section, in the order of the file
-  std::vector<YamlNode> items;                            // of a list
-  std::string place;                                      // "cases/x/case.yaml:12" or "--set fluid.density=water"
+  std::string text;                // of a scalar; empty for null
+  std::vector<YamlEntry> entries;  // of a section, in the order of the file
+  std::vector<YamlNode> items;     // of a list
+  std::string place;               // "cases/x/case.yaml:12" or "--set fluid.density=water"
 
   const YamlNode* find(const std::string& key) const;  // entry of a section; null if there is none
+};
+
+struct YamlEntry {
+  std::string key;
+  YamlNode value;
 };
 
 class YamlDocument {

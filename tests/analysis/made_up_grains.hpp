@@ -47,7 +47,13 @@ public:
     snapshot.time = time;
     snapshot.step = std::llround(100.0 * time);  // steps of 0.01 s
     snapshot.decomposition = &decomposition_;
-    snapshot.grains = {count_, 0.0, id_, radius_, mass_, position_, velocity_, angular_velocity_, {}, {}, {}};
+    snapshot.grains.global_count = count_;
+    snapshot.grains.id = id_;
+    snapshot.grains.radius = radius_;
+    snapshot.grains.mass = mass_;
+    snapshot.grains.position = position_;
+    snapshot.grains.velocity = velocity_;
+    snapshot.grains.angular_velocity = angular_velocity_;
     if (members_ == 0) return snapshot;
     snapshot.grains.clump_count = 1;
     snapshot.grains.member_count = members_;

@@ -21,8 +21,9 @@ WaterBox slot(LoadRule load) {
   box.sub_steps = 10;
   box.load = load;
   for (int k = 0; k < 3 * 2 * 5; ++k)
-    box.seeds.push_back(glass_sphere(k, Vec3(6.4e-3 * (k % 3) + 3.2e-3 + 2e-4 * (k / 6 % 2),
-                                             5.2e-3 * (k / 3 % 2) + 2.6e-3, 5.6e-3 * (k / 6) + 3.3e-3 + 1e-4 * (k % 5)),
+    box.seeds.push_back(glass_sphere(k,
+                                     Vec3(6.4e-3 * (k % 3) + 3.2e-3 + 2e-4 * (k / 6 % 2), 5.2e-3 * (k / 3 % 2) + 2.6e-3,
+                                          5.6e-3 * (k / 6) + 3.3e-3 + 1e-4 * (k % 5)),
                                      Vec3::Zero(), 2.475e-3));
   return box;
 }

@@ -25,7 +25,8 @@ WaterBox crowd(Sides sides, bool full_gravity = false) {
   box.full_gravity = full_gravity;
   box.sub_steps = 20;
   for (int k = 0; k < 18; ++k) {
-    const Vec3 place(6.0e-3 * (k % 3) + 3.5e-3, 5.6e-3 * (k / 3 % 3) + 3.2e-3 + 1e-4 * (k % 5), 5.5e-3 * (k / 9) + 7e-3);
+    const Vec3 place(6.0e-3 * (k % 3) + 3.5e-3, 5.6e-3 * (k / 3 % 3) + 3.2e-3 + 1e-4 * (k % 5),
+                     5.5e-3 * (k / 9) + 7e-3);
     box.seeds.push_back(glass_sphere(k, place, Vec3(0.3 - 0.03 * k, 0.1, 0.02 * k - 0.2)));
     box.seeds.back().density = k % 3 == 0 ? 1100.0 : k % 3 == 1 ? 2550.0 : 8000.0;
     box.seeds.back().angular_velocity = Vec3(10.0 * k, -40.0, 5.0 * k);
@@ -49,7 +50,8 @@ double excess_of(const ResolvedSystem<Real>& system, const Vec3& gradient, const
       for (int x = 0; x < n[0]; ++x) {
         const std::ptrdiff_t cell = fluid.indexing().index(x, y, z);
         const Vec3 at(from[0] + x + 0.5, from[1] + y + 0.5, from[2] + z + 0.5);
-        if (fluid.cells().is_fluid(cell)) sum += fluid.populations().density_deviation(cell) - gradient.dot(at - middle);
+        if (fluid.cells().is_fluid(cell))
+          sum += fluid.populations().density_deviation(cell) - gradient.dot(at - middle);
       }
   return sum_over_ranks(MPI_COMM_WORLD, sum);
 }
@@ -75,9 +77,7 @@ void balance_closes(const WaterBox& box, int steps) {
   for (int step = 0; step < steps; ++step) {
     system->advance();
     const ExchangeTotals& t = system->step_totals();
-    const auto whole = [](std::int64_t mass) {
-      return LatticeFixed::to_double(sum_over_ranks(MPI_COMM_WORLD, mass));
-    };
+    const auto whole = [](std::int64_t mass) { return LatticeFixed::to_double(sum_over_ranks(MPI_COMM_WORLD, mass)); };
     const double links = whole(t.link_mass), covered = whole(t.covered_mass), uncovered = whole(t.refilled_mass);
     const double now = excess_of(*system, gradient, middle);
     ASSERT_NEAR(now - before, links + covered + uncovered, round_off_of_a_step<Real>()) << step;
@@ -112,9 +112,9 @@ double figure(const System& system, const std::string& name) {
 }
 
 // At any time what single cells took that changed hands in the last step is still owed: here up to a hundred, with
-// densities of up to 0.03 beyond the mean, at random, in 15000 cells of water; and links that the motion did not foresee
-// as much again: 4e-5. With what is owed the water is all there: to the rounding of the account in double (2^-45 for
-// each of 5000 links, at random), to 1e-7 in single.
+// densities of up to 0.03 beyond the mean, at random, in 15000 cells of water; and links that the motion did not
+// foresee as much again: 4e-5. With what is owed the water is all there: to the rounding of the account in double
+// (2^-45 for each of 5000 links, at random), to 1e-7 in single.
 template <typename Real>
 void keeps_its_mass(const WaterBox& box, double accuracy, int steps = 1200) {
   const auto system = make<Real>(box);

@@ -28,10 +28,11 @@ Loads loads_in(WaterBox box, FluidInitialState (*initial)(const Vec3&)) {
   box.grain_stress = true;
   box.wall_forces = true;
   const double d = 5e-3;
-  for (const Vec3& place : {Vec3(6.03e-3, 6.1e-3, 2.5e-3), Vec3(6.03e-3 + d, 6.1e-3, 2.5e-3),
-                            Vec3(6.03e-3 + 0.5 * d, 6.1e-3 + 0.86 * d, 2.5e-3),
-                            Vec3(6.03e-3 + 0.5 * d, 6.1e-3 + 0.28 * d, 2.5e-3 + 0.81 * d),
-                            Vec3(16.4e-3, 2.49e-3, 9.2e-3), Vec3(16.0e-3, 7.4e-3, 9.9e-3), Vec3(21.3e-3, 9.6e-3, 14e-3)}) {
+  for (const Vec3& place :
+       {Vec3(6.03e-3, 6.1e-3, 2.5e-3), Vec3(6.03e-3 + d, 6.1e-3, 2.5e-3),
+        Vec3(6.03e-3 + 0.5 * d, 6.1e-3 + 0.86 * d, 2.5e-3),
+        Vec3(6.03e-3 + 0.5 * d, 6.1e-3 + 0.28 * d, 2.5e-3 + 0.81 * d), Vec3(16.4e-3, 2.49e-3, 9.2e-3),
+        Vec3(16.0e-3, 7.4e-3, 9.9e-3), Vec3(21.3e-3, 9.6e-3, 14e-3)}) {
     box.seeds.push_back(glass_sphere(static_cast<GlobalId>(box.seeds.size()), place));
     box.seeds.back().motion = dem::Motion::fixed;
   }
@@ -52,7 +53,8 @@ Loads loads_in(WaterBox box, FluidInitialState (*initial)(const Vec3&)) {
 
 // The deviation of 0.01 is a pressure of 213 Pa, which on the cross-section of a grain is 4.2 mN, five times a grain's
 // submerged weight. Round-off: the mean density that presses on nothing is known to 2^-37, and counts a third on every
-// cell of a surface, once in the links and once in what is hidden: 80 of a grain, 720 of a wall; in the torque times the radius, in the stress over a third of it.
+// cell of a surface, once in the links and once in what is hidden: 80 of a grain, 720 of a wall; in the torque times
+// the radius, in the stress over a third of it.
 void expect_no_difference(const WaterBox& box) {
   const Loads before = loads_in(box, at_rest), after = loads_in(box, compressed);
   const Units units{box.spacing, box.time_step, 1000.0};

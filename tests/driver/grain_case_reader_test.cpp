@@ -82,7 +82,8 @@ TEST(GrainCaseReader, SizesFollowTheirDistribution) {
     return 0.5 * std::erfc(-std::log(diameter / 4.5e-3) / std::log(1.3) / std::sqrt(2.0));
   };
   for (std::size_t n = 0; n < d.size(); ++n)
-    EXPECT_NEAR((below(d[n]) - below(3e-3)) / (below(6e-3) - below(3e-3)), (n + 0.5) / 150.0, 1e-12);
+    EXPECT_NEAR((below(d[n]) - below(3e-3)) / (below(6e-3) - below(3e-3)), (static_cast<double>(n) + 0.5) / 150.0,
+                1e-12);
   // Half of the mass is finer than the population's diameter.
   double finer = 0.0, all = 0.0;
   for (const double diameter : d) {

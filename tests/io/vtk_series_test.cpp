@@ -72,7 +72,15 @@ struct Grains {
     }
   }
   GrainView view(bool with_fluid) const {
-    GrainView view{grain_count, 0.0, id, radius, mass, position, velocity, angular_velocity, {}, {}, contact_force, {}};
+    GrainView view;
+    view.global_count = grain_count;
+    view.id = id;
+    view.radius = radius;
+    view.mass = mass;
+    view.position = position;
+    view.velocity = velocity;
+    view.angular_velocity = angular_velocity;
+    view.contact_force = contact_force;
     if (with_fluid) {
       view.fluid_force = fluid_force;
       view.fluid_torque = fluid_torque;

@@ -28,9 +28,11 @@ TEST(LinkTable, HoldsWhatWasPutInLast) {
     expected.erase({body, tile});
     const bool none = generator() % 3 == 0;
     for (auto left = none ? 0 : generator() % 60; left > 0; --left) {
-      links.push_back({serial, ~serial});
+      const std::uint32_t tag =
+          LinkTag::of(1 + static_cast<int>(serial % 18), static_cast<std::int32_t>(serial % 1000));
+      links.push_back({serial, tag});
       crossings.push_back({static_cast<float>(serial % 1000), {}});
-      expected[{body, tile}].insert({serial, ~serial});
+      expected[{body, tile}].insert({serial, tag});
       ++serial;
     }
     table.replace(body, tile, links, crossings);

@@ -52,7 +52,7 @@ inline std::string first_difference(const MemoryArchive& a, const MemoryArchive&
         [&](const auto& values) {
           const auto& theirs = std::get<std::decay_t<decltype(values)>>(other->second.values);
           return values.size() == theirs.size() &&
-                 std::memcmp(values.data(), theirs.data(), values.size() * sizeof(values[0])) == 0;
+                 (values.empty() || std::memcmp(values.data(), theirs.data(), values.size() * sizeof(values[0])) == 0);
         },
         mine.values);
     if (!same) return path;
