@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
 namespace thalweg::dem {
 
@@ -19,7 +18,7 @@ static void describe(SectionVisitor& visit, LiquidBridgeParameters& bridge) {
   visit.real("surface_tension", bridge.surface_tension,
              {.unit = "N/m", .meaning = "of the liquid", .required = true, .at_least = 0.0, .example = 0.073});
   visit.real("contact_angle", bridge.contact_angle,
-             {.unit = "rad", .meaning = "between liquid and grain", .at_least = 0.0, .below = 0.5 * std::numbers::pi});
+             {.unit = "rad", .meaning = "between liquid and grain", .at_least = 0.0, .below = 1.57});
   visit.real("volume", bridge.volume,
              {.unit = "m^3",
               .meaning = "of each bridge, which breaks at a gap of (1 + contact_angle/2) volume^(1/3)",

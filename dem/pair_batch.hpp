@@ -124,13 +124,14 @@ private:
   }
 
   void gather(int k) {
-    Row separation[4], v[4], rw[4], w[4];
+    Row separation[4], v[4], rw[4], w[4], values[width / 4][4];
     for (int m = 0; m < 4; ++m) {
       const MovingGrain &first = grains_[pair_[k + m].first], &second = grains_[pair_[k + m].second];
       separation[m] = image_(first.position - second.position);
       v[m] = first.velocity - second.velocity;
       rw[m] = last_everywhere(first.position) * first.spin + last_everywhere(second.position) * second.spin;
       w[m] = first.spin + second.spin;
+      for (std::size_t n = 0; n < width / 4; ++n) values[n][m] = row_at(row(pair_[k + m]) + 4 * n);
       reach_[k + m] = first.position[3] + second.position[3];
     }
     transpose(separation), transpose(v), transpose(rw), transpose(w);
@@ -138,16 +139,11 @@ private:
     store(v, k, vx_, vy_, vz_, unused_);
     store(rw, k, rwx_, rwy_, rwz_, unused_);
     store(w, k, wx_, wy_, wz_, unused_);
-    for (std::size_t n = 0; n < width; n += 4) gather_values(k, n);
+    for (std::size_t n = 0; n < width / 4; ++n) {
+      transpose(values[n]);
+      store(values[n], k, value_[4 * n], value_[4 * n + 1], value_[4 * n + 2], value_[4 * n + 3]);
+    }
     if constexpr (ContactLaw::rolls) gather_spins(k);
-  }
-
-  // Four doubles from number n on of the rows of four contacts.
-  void gather_values(int k, std::size_t n) {
-    Row values[4];
-    for (int m = 0; m < 4; ++m) values[m] = row_at(row(pair_[k + m]) + n);
-    transpose(values);
-    store(values, k, value_[n], value_[n + 1], value_[n + 2], value_[n + 3]);
   }
 
   void gather_spins(int k) {
@@ -169,7 +165,8 @@ private:
     const ContactLaw law = law_;
     const double range = law.range();
     for (int k = 0; k < rounded; ++k) {
-      const double squared = x_[k] * x_[k] + y_[k] * y_[k] + z_[k] * z_[k], limit = reach_[k] + range;
+      const double squared = x_[k] * x_[k] + y_[k] * y_[k] + z_[k] * z_[k];
+      const double limit = range > 0.0 ? reach_[k] + range : reach_[k];
       const bool acts = squared < limit * limit;
       const double distance = std::sqrt(squared);
       const double inverse = 1.0 / distance, nx = inverse * x_[k], ny = inverse * y_[k], nz = inverse * z_[k];
@@ -209,9 +206,15 @@ private:
       moment[0] = row_at(roll_.x + k), moment[1] = row_at(roll_.y + k), moment[2] = row_at(roll_.z + k);
       transpose(moment);
     }
-    for (std::size_t n = 0; n < history; n += 4) scatter_values(k, count, n);
+    constexpr std::size_t vectors = (history + 3) / 4;  // of a row that change
+    Row values[vectors][4];
+    for (std::size_t n = 0; n < vectors; ++n) {
+      for (std::size_t i = 0; i < 4; ++i) values[n][i] = row_at(value_[4 * n + i] + k);
+      transpose(values[n]);
+    }
     for (int m = 0; m < count; ++m) {
       const NearPair& pair = pair_[k + m];
+      for (std::size_t n = 0; n < vectors; ++n) std::memcpy(row(pair) + 4 * n, &values[n][m], sizeof(Row));
       MovingGrain &first = grains_[pair.first], &second = grains_[pair.second];
       const Row half = last_everywhere(force[m]), f = force[m] * Row{1.0, 1.0, 1.0, 0.0};
       first.force += f;
@@ -222,13 +225,6 @@ private:
       first.torque += moment[m];
       second.torque -= moment[m];
     }
-  }
-
-  void scatter_values(int k, int count, std::size_t n) {
-    Row values[4] = {row_at(value_[n] + k), row_at(value_[n + 1] + k), row_at(value_[n + 2] + k),
-                     row_at(value_[n + 3] + k)};
-    transpose(values);
-    for (int m = 0; m < count; ++m) std::memcpy(row(pair_[k + m]) + n, &values[m], sizeof(Row));
   }
 
   struct alignas(64) RollingLanes {
