@@ -67,9 +67,9 @@ ContactLoad load_of(const ContactLaw& law, const ContactMotion& motion, const Ma
 }
 
 template <typename ContactLaw>
-void evaluate_walls(const ContactLaw& law, MovingGrains& grains, std::vector<WallContact>& contacts, ContactRows& rows,
-                    const PeriodicBox& box, std::span<const Plane> walls, const MaterialTable& materials,
-                    std::span<const std::uint8_t> material) {
+[[gnu::flatten]] void evaluate_walls(const ContactLaw& law, MovingGrains& grains, std::vector<WallContact>& contacts,
+                                     ContactRows& rows, const PeriodicBox& box, std::span<const Plane> walls,
+                                     const MaterialTable& materials, std::span<const std::uint8_t> material) {
   for (std::size_t number = 0; number < contacts.size(); ++number) {
     const WallContact& c = contacts[number];
     MovingGrain& grain = grains[c.grain];
