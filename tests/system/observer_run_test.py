@@ -98,7 +98,8 @@ analysis:
         self.assert_refused("run", self.case, "--set", "domain.boundaries.bottom=periodic", "--set",
                             "domain.boundaries.top=periodic", "--set", "analysis.transport_rate.from=0",
                             words=["analysis.bed_surface", "periodic"])
-        self.assert_refused("run", self.case, "--set", "grains=[]", words=["analysis.bed_surface", "no grains"])
+        self.assert_refused("run", self.case, "--set", "grains=[]", "--set", "analysis.transport_rate=",
+                            words=["analysis.bed_surface", "no grains"])
         self.assert_refused("run", self.case, "--set", "analysis.reference_diameter=0",
                             words=["analysis.reference_diameter = 0", "a number in m above 0"])
 
