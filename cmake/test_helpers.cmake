@@ -9,6 +9,7 @@ function(thalweg_test)
     set(T_RANKS 1)
   endif()
   add_executable(${T_NAME} ${T_SOURCES})
+  set_target_properties(${T_NAME} PROPERTIES UNITY_BUILD OFF)   # each source has its own constants
   target_link_libraries(${T_NAME} PRIVATE thalweg_test_support ${T_LIBRARIES})
   if(T_QUICK)
     if(NOT TARGET quick_tests)

@@ -51,7 +51,7 @@ double rolling_inertia(const GrainStore& store, std::uint32_t slot) {
   return store.inertia[slot] + store.mass[slot] * store.radius[slot] * store.radius[slot];
 }
 
-ContactBodies bodies_of(const PairContact& c, const GrainStore& store, const MaterialTable& materials) {
+ContactBodies contact_bodies(const PairContact& c, const GrainStore& store, const MaterialTable& materials) {
   const MaterialTable::Entry& pair = materials.pair(store.material[c.first], store.material[c.second]);
   const double mass = effective_mass(store.mass[c.first], holds_translation(store.motion[c.first]),
                                      store.mass[c.second], holds_translation(store.motion[c.second]));
@@ -60,8 +60,8 @@ ContactBodies bodies_of(const PairContact& c, const GrainStore& store, const Mat
   return {pair.damping.coefficient(mass), pair.rolling_friction, inertia};
 }
 
-ContactBodies bodies_of(const WallContact& c, const GrainStore& store, std::span<const Plane> walls,
-                        const MaterialTable& materials) {
+ContactBodies contact_bodies(const WallContact& c, const GrainStore& store, std::span<const Plane> walls,
+                             const MaterialTable& materials) {
   return {materials.wall(store.material[c.grain]).damping.coefficient(store.mass[c.grain]),
           walls[c.wall].rolling_friction, rolling_inertia(store, c.grain)};
 }
@@ -139,7 +139,7 @@ ContactList find_contacts(const GrainStore& store, const PeriodicBox& box, std::
   std::vector<ContactBodies> bodies;
   for (const Candidate& p : find_pairs(store, box, range, largest_radius)) {
     list.pairs.push_back({p.first, p.second, store.radius[p.first] + store.radius[p.second]});
-    bodies.push_back(bodies_of(list.pairs.back(), store, materials));
+    bodies.push_back(contact_bodies(list.pairs.back(), store, materials));
   }
   list.pair_rows = ContactRows({materials.common(), materials.rolling_friction()}, bodies);
   bodies.clear();
@@ -148,7 +148,7 @@ ContactList find_contacts(const GrainStore& store, const PeriodicBox& box, std::
     for (std::size_t w = walls.size(); w-- > 0;) {
       if (!(walls[w].seen_from(store.position[s], box).distance <= store.radius[s] + range)) continue;
       list.walls.push_back({static_cast<std::uint32_t>(s), static_cast<std::uint32_t>(w)});
-      bodies.push_back(bodies_of(list.walls.back(), store, walls, materials));
+      bodies.push_back(contact_bodies(list.walls.back(), store, walls, materials));
     }
   const bool rolling =
       std::any_of(walls.begin(), walls.end(), [](const Plane& wall) { return wall.rolling_friction > 0.0; });

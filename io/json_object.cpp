@@ -12,7 +12,7 @@ namespace {
 
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
 
-std::string quoted(const std::string& text) {
+std::string json_text(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\')
@@ -48,7 +48,7 @@ JsonObject& JsonObject::set(const std::string& name, bool value) {
 }
 
 JsonObject& JsonObject::set(const std::string& name, const std::string& value) {
-  return put(name, quoted(value), quoted(value));
+  return put(name, json_text(value), json_text(value));
 }
 
 JsonObject& JsonObject::set(const std::string& name, const JsonObject& value) {
@@ -64,7 +64,7 @@ JsonObject& JsonObject::set(const std::string& name, const std::vector<double>& 
 
 std::string JsonObject::line() const {
   std::vector<std::string> parts;
-  for (const Entry& entry : entries_) parts.push_back(quoted(entry.name) + ": " + entry.line);
+  for (const Entry& entry : entries_) parts.push_back(json_text(entry.name) + ": " + entry.line);
   return fmt::format("{{{}}}", fmt::join(parts, ", "));
 }
 
@@ -72,7 +72,7 @@ std::string JsonObject::text() const {
   if (entries_.empty()) return "{}";
   std::string result = "{";
   for (std::size_t n = 0; n < entries_.size(); ++n) {
-    result += (n ? ",\n  " : "\n  ") + quoted(entries_[n].name) + ": ";
+    result += (n ? ",\n  " : "\n  ") + json_text(entries_[n].name) + ": ";
     for (const char c : entries_[n].text) result += c == '\n' ? std::string("\n  ") : std::string(1, c);
   }
   return result + "\n}";

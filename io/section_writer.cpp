@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t comment_column = 44;
 
-std::string quoted(const std::string& text) {
+std::string yaml_text(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\')
@@ -99,12 +99,12 @@ void SectionWriter::value_of(const std::string& key, std::vector<double>& values
 }
 
 void SectionWriter::value_of(const std::string& key, std::optional<std::string>& value, const TextKey& about) {
-  put(value.has_value(), key, quoted(value.value_or(about.example)),
+  put(value.has_value(), key, yaml_text(value.value_or(about.example)),
       style_ == YamlStyle::plain ? "" : "text; " + about.meaning);
 }
 
 void SectionWriter::value_of(const std::string& key, std::string& value, const TextKey& about) {
-  put(true, key, quoted(value), style_ == YamlStyle::plain ? "" : "text; " + about.meaning);
+  put(true, key, yaml_text(value), style_ == YamlStyle::plain ? "" : "text; " + about.meaning);
 }
 
 void SectionWriter::value_of(const std::string& key, bool& value, const TextKey& about) {
