@@ -30,9 +30,12 @@ target_include_directories(thalweg_compile_options INTERFACE
 # What they are compiled with themselves.
 add_library(thalweg_own_options INTERFACE)
 target_compile_options(thalweg_own_options INTERFACE
-  -fno-math-errno -fno-trapping-math -Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion -Wno-missing-braces
-  $<$<NOT:$<BOOL:${CMAKE_UNITY_BUILD}>>:-Wshadow>   # sources of one unit see the names of the others
+  -fno-math-errno -fno-trapping-math -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-missing-braces
   $<$<BOOL:${THALWEG_WARNINGS_AS_ERRORS}>:-Werror>)
+if(CMAKE_UNITY_BUILD)   # the sources of one unit see the names of the others, and are headers to GCC
+  target_compile_options(thalweg_own_options INTERFACE
+    -Wno-shadow $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+endif()
 if(THALWEG_SANITIZE)
   target_compile_options(thalweg_compile_options INTERFACE
     -fsanitize=${THALWEG_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)

@@ -16,7 +16,7 @@ namespace thalweg::dem {
 // `second` is the higher id of two grains, or -1 - w for wall w.
 struct ContactKey {
   GlobalId first, second;
-  auto operator<=>(const ContactKey&) const = default;
+  auto operator<=>(const ContactKey&) const = default;  // NOLINT(modernize-use-nullptr): clang-tidy 14 means its zero
 };
 
 class ContactHistories {
