@@ -30,7 +30,8 @@ target_include_directories(thalweg_compile_options INTERFACE
 # What they are compiled with themselves.
 add_library(thalweg_own_options INTERFACE)
 target_compile_options(thalweg_own_options INTERFACE
-  -fno-math-errno -fno-trapping-math -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-missing-braces
+  -fno-math-errno -fno-trapping-math -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+  $<$<CXX_COMPILER_ID:Clang>:-Wno-missing-braces>
   $<$<BOOL:${THALWEG_WARNINGS_AS_ERRORS}>:-Werror>)
 if(CMAKE_UNITY_BUILD)   # the sources of one unit see the names of the others, and are headers to GCC
   target_compile_options(thalweg_own_options INTERFACE
