@@ -11,6 +11,16 @@ find_package(yaml-cpp 0.7 REQUIRED)
 find_package(fmt 9.0 REQUIRED)
 find_package(CLI11 2.1 REQUIRED)
 find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOGeometry IOXML)
+
+# Debian's own interpreter where there is one, since scripts/setup installs the packages for that.
+find_program(THALWEG_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH
+             DOC "Python with numpy, h5py and PyYAML, of thalweg analyze; of the tests too, with matplotlib and VTK")
+find_program(THALWEG_PYTHON python3)
+if(NOT THALWEG_PYTHON AND THALWEG_BUILD_TESTS)
+  message(FATAL_ERROR "The tests need Python 3: install it, name it with -DTHALWEG_PYTHON=..., or leave them out with "
+                      "-DTHALWEG_BUILD_TESTS=OFF")
+endif()
+
 if(THALWEG_BUILD_TESTS)
   find_package(GTest 1.12 REQUIRED)
 endif()

@@ -14,7 +14,9 @@
 #include "dem/contact_law.hpp"
 #include "dem/contact_parameters.hpp"
 
+#include <array>
 #include <cmath>
+#include <tuple>
 
 namespace thalweg::dem {
 
