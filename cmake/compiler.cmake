@@ -23,7 +23,9 @@ add_library(thalweg_compile_options INTERFACE)
 add_library(thalweg::compile_options ALIAS thalweg_compile_options)
 set_target_properties(thalweg_compile_options PROPERTIES EXPORT_NAME compile_options)
 target_compile_features(thalweg_compile_options INTERFACE cxx_std_20)
-target_compile_options(thalweg_compile_options INTERFACE -march=${THALWEG_ARCHITECTURE} -ffp-contract=off)
+# Clang 14 breaks the survey of the fluid with the AVX-512 packs of libstdc++ 12: wrong lanes, seen at the first step.
+target_compile_options(thalweg_compile_options INTERFACE
+  -march=${THALWEG_ARCHITECTURE} $<$<CXX_COMPILER_ID:Clang>:-mno-avx512f> -ffp-contract=off)
 target_include_directories(thalweg_compile_options INTERFACE
   $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/thalweg>)
 
