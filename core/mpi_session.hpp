@@ -1,4 +1,4 @@
-// MPI for the life of the program, and the few collective helpers the house uses.
+// MPI for the life of the program, and a few collective helpers.
 #pragma once
 
 #include <mpi.h>

@@ -22,6 +22,13 @@ struct Figure {
   double value;
 };
 
+// The figure of that name, if there is one.
+inline std::optional<double> find_figure(const std::vector<Figure>& figures, const std::string& name) {
+  for (const Figure& figure : figures)
+    if (figure.name == name) return figure.value;
+  return std::nullopt;
+}
+
 class System {
 public:
   virtual ~System() = default;

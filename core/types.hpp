@@ -1,4 +1,4 @@
-// The few value types every room of the house shares.
+// The few value types that all modules share.
 #pragma once
 
 #include <Eigen/Core>

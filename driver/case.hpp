@@ -12,8 +12,8 @@
 #include "dem/material_keys.hpp"
 #include "dem/population.hpp"
 #include "dem/wall_keys.hpp"
-#include "driver/out_of_bounds.hpp"
 #include "io/fluid_series.hpp"
+#include "loop/out_of_bounds.hpp"
 
 #include <array>
 #include <cstdint>
@@ -124,7 +124,7 @@ struct RunCase {
   double until = 0.0;  // s
   dem::Integrator grain_integrator = dem::Integrator::velocity_verlet;
   std::optional<AtRestCase> until_at_rest;  // of dry grains: the run ends earlier when this holds
-  OutOfBounds watchdog = OutOfBounds::stop;
+  loop::OutOfBounds watchdog = loop::OutOfBounds::stop;
   double ramp = 0.0;                // s in which gravity rises from zero, with a fluid
   std::optional<double> time_step;  // s, of dry grains; read as 1/50 of the shortest contact where it is not given
   bool operator==(const RunCase&) const = default;

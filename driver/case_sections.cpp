@@ -71,10 +71,10 @@ static void describe_run(SectionVisitor& visit, RunCase& run, bool with_fluid, b
   visit.choice(
       "grain_integrator", run.grain_integrator,
       {.meaning = "how the grains are moved", .only_if = {with_grains, "a fluid alone has no grains; remove the key"}});
-  visit.choice<OutOfBounds>("watchdog", run.watchdog,
-                            {{OutOfBounds::stop, "stop", "the run, with exit code 1"},
-                             {OutOfBounds::warn, "warn", "and go on while there are numbers"}},
-                            {.meaning = "what to do when a figure leaves its bounds (docs/stability.md)"});
+  visit.choice<loop::OutOfBounds>("watchdog", run.watchdog,
+                                  {{loop::OutOfBounds::stop, "stop", "the run, with exit code 1"},
+                                   {loop::OutOfBounds::warn, "warn", "and go on while there are numbers"}},
+                                  {.meaning = "what to do when a figure leaves its bounds (docs/stability.md)"});
   visit.section(
       "until_at_rest", run.until_at_rest,
       {.meaning = "the run ends when all grains are at rest (looked at every 200 steps), or at run.until",

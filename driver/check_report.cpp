@@ -7,10 +7,10 @@
 #include "driver/build_system.hpp"
 #include "driver/grain_setup.hpp"
 #include "driver/machine.hpp"
-#include "driver/progress.hpp"
 #include "driver/reference_grain.hpp"
 #include "driver/solid_setup.hpp"
 #include "io/run_folder.hpp"
+#include "loop/progress.hpp"
 
 #include <fmt/format.h>
 
@@ -182,7 +182,7 @@ void add_cost(const Case& c, double bandwidth, Lines& lines) {
   lines.push_back(
       fmt::format("time       about {} on one core like this one ({:.3g} GB/s); divide by the number of cores until "
                   "memory bandwidth saturates",
-                  clock_text(cost.core_seconds), bandwidth * 1e-9));
+                  loop::clock_text(cost.core_seconds), bandwidth * 1e-9));
 }
 
 // What dem would refuse when the run starts.

@@ -1,10 +1,10 @@
 #include "driver/info_report.hpp"
 
 #include "core/error.hpp"
-#include "driver/progress.hpp"
 #include "io/atomic_file.hpp"
 #include "io/hdf5_archive.hpp"
 #include "io/run_folder.hpp"
+#include "loop/progress.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,10 +1,10 @@
 // The program: one command line, the same on every rank. Only `run` starts MPI.
 #include "core/error.hpp"
+#include "core/failure_barrier.hpp"
 #include "core/mpi_session.hpp"
 #include "driver/analyze_command.hpp"
 #include "driver/case_reader.hpp"
 #include "driver/check_report.hpp"
-#include "driver/collective_failure.hpp"
 #include "driver/command_line.hpp"
 #include "driver/info_report.hpp"
 #include "driver/machine.hpp"
@@ -50,9 +50,9 @@ Failure failure() {
 void complain(const std::string& message) { std::fprintf(stderr, "thalweg: %s\n", message.c_str()); }
 
 // Ends the program after an error: in good order if it met every rank, else by force, since the others are waiting.
-int end_with(const Failure& failed, FailureCouncil& council, bool speaking) {
-  const bool together = council.everybody_failed(seconds_to_wait_for_others);
-  if (speaking || !together) complain(failed.message);
+int end_with(const Failure& failed, FailureBarrier& failures, bool prints) {
+  const bool together = failures.all_ranks_failed(seconds_to_wait_for_others);
+  if (prints || !together) complain(failed.message);
   if (!together) MPI_Abort(MPI_COMM_WORLD, failed.code);
   return failed.code;
 }
@@ -65,16 +65,16 @@ bool first_of_its_launcher() {
   return true;
 }
 
-int run(const Command& command, int argc, char** argv, WallClock::time_point started) {
+int run(const Command& command, int argc, char** argv, loop::WallClock::time_point started) {
   MpiSession session(argc, argv);
-  const bool speaking = rank_of(MPI_COMM_WORLD) == 0;
-  FailureCouncil council(MPI_COMM_WORLD);
-  Log log(speaking);
+  const bool prints = rank_of(MPI_COMM_WORLD) == 0;
+  FailureBarrier failures(MPI_COMM_WORLD);
+  loop::Log log(prints);
   try {
-    run_case(command, MPI_COMM_WORLD, started, council, log);
+    run_case(command, MPI_COMM_WORLD, started, failures, log);
     return done;
   } catch (...) {
-    return end_with(failure(), council, speaking);
+    return end_with(failure(), failures, prints);
   }
 }
 
@@ -93,7 +93,7 @@ std::string answer(const Command& command) {
 }
 
 // Every command but run, and complaints about the command line. Of several ranks only the first does anything.
-int answer_without_mpi(const CommandLine& line) {
+int all_failed_without_mpi(const CommandLine& line) {
   if (!first_of_its_launcher()) return line.exit_code;
   flush_denormals_to_zero();
   try {
@@ -110,9 +110,9 @@ int answer_without_mpi(const CommandLine& line) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const WallClock::time_point started = WallClock::now();
+  const loop::WallClock::time_point started = loop::WallClock::now();
   if (is_analyze(argc, argv)) return analyze(argc, argv);
   const CommandLine line = parse_command_line(argc, argv);
   if (line.command && line.command->kind == Command::Kind::run) return run(*line.command, argc, argv, started);
-  return answer_without_mpi(line);
+  return all_failed_without_mpi(line);
 }

@@ -2,20 +2,21 @@
 
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
+#include "core/on_first_rank.hpp"
 #include "dem/dry_grains.hpp"
 #include "driver/build_system.hpp"
 #include "driver/case_reader.hpp"
 #include "driver/machine.hpp"
-#include "driver/on_first_rank.hpp"
-#include "driver/progress.hpp"
 #include "driver/reference_grain.hpp"
 #include "driver/run_facts.hpp"
 #include "driver/run_output.hpp"
-#include "driver/stop_request.hpp"
 #include "driver/summary.hpp"
 #include "driver/version.hpp"
+#include "driver/watch_rules.hpp"
 #include "io/atomic_file.hpp"
 #include "io/bed_file.hpp"
+#include "loop/progress.hpp"
+#include "loop/stop_request.hpp"
 
 #include <fmt/format.h>
 
@@ -57,7 +58,7 @@ Places places_of(const Command& command) {
 
 // Says what is about to run, and measures what the memory of the machine allows.
 void greet(const Case& c, RunIdentity& identity, const System& system, const Places& places, MPI_Comm communicator,
-           Log& log) {
+           loop::Log& log) {
   log.line(fmt::format("Thalweg {}: {}", version_text(), c.name));
   log.line(
       fmt::format("{} on {} rank{}, layout {} x {} x {}; {} grains, {} cells; {:.6g} s a step, {:.0f} steps to {:g} s",
@@ -78,7 +79,8 @@ void greet(const Case& c, RunIdentity& identity, const System& system, const Pla
   for (const std::string& warning : warnings(c)) log.line("warning: " + warning);
 }
 
-void prepare_folder(const Places& places, const Case& c, const Command& command, MPI_Comm communicator, Log& log) {
+void prepare_folder(const Places& places, const Case& c, const Command& command, MPI_Comm communicator,
+                    loop::Log& log) {
   on_first_rank(communicator, [&] {
     if (!places.same_folder) places.folder.create(command.overwrite);
     io::make_folder(places.folder.checkpoints());
@@ -87,14 +89,14 @@ void prepare_folder(const Places& places, const Case& c, const Command& command,
   });
 }
 
-void say_how_it_ended(const RunIdentity& identity, const LoopRecord& record, const System& system,
-                      const Observers& observers, const std::vector<PhaseShare>& phases, const io::RunFolder& folder,
-                      Log& log) {
+void say_how_it_ended(const RunIdentity& identity, const loop::LoopRecord& record, const System& system,
+                      const Observers& observers, const std::vector<loop::PhaseShare>& phases,
+                      const io::RunFolder& folder, loop::Log& log) {
   log.line("");
   for (const auto& observer : observers)
     for (const std::string& remark : observer->remarks()) log.line(remark);
-  for (const std::string& line : phase_table(phases)) log.line(line);
-  const Speeds speeds = speeds_of(system, record);
+  for (const std::string& line : loop::phase_table(phases)) log.line(line);
+  const loop::Speeds speeds = loop::speeds_of(system, record);
   std::string speed = fmt::format("{:.4g} steps/s", speeds.steps_per_second);
   if (speeds.mlups > 0.0) speed += fmt::format(", {:.3g} MLUPS", speeds.mlups);
   if (identity.memory_bound_mlups > 0.0)
@@ -102,8 +104,8 @@ void say_how_it_ended(const RunIdentity& identity, const LoopRecord& record, con
                          100.0 * speeds.mlups_advancing / identity.memory_bound_mlups);
   if (speeds.grain_steps_per_second > 0.0)
     speed += fmt::format(", {:.3g} million grain-steps/s", speeds.grain_steps_per_second * 1e-6);
-  log.line(
-      fmt::format("{} steps in {}: {}", record.last_step - record.first_step, clock_text(record.wall_seconds), speed));
+  log.line(fmt::format("{} steps in {}: {}", record.last_step - record.first_step,
+                       loop::clock_text(record.wall_seconds), speed));
   if (record.finished)
     log.line(fmt::format("finished{} at {:.6g} s: {}", record.early ? ", all grains at rest," : "", system.time(),
                          folder.summary().string()));
@@ -126,9 +128,9 @@ std::string last_good(const Places& places) {
 
 }  // namespace
 
-void run_case(const Command& command, MPI_Comm communicator, WallClock::time_point started, FailureCouncil& council,
-              Log& log) {
-  listen_for_stop_signals();
+void run_case(const Command& command, MPI_Comm communicator, loop::WallClock::time_point started,
+              FailureBarrier& failures, loop::Log& log) {
+  loop::listen_for_stop_signals();
   std::vector<std::string> settings = command.settings;
   if (command.until) settings.push_back(fmt::format("run.until={}", *command.until));
   const Case c = read_case(command.path, settings);
@@ -153,7 +155,7 @@ void run_case(const Command& command, MPI_Comm communicator, WallClock::time_poi
   greet(c, identity, *system, places, communicator, log);
   RunOutput output(communicator, c, places.folder, *system, observers,
                    places.same_folder ? std::optional<double>(system->time()) : std::nullopt);
-  LoopPlan plan;
+  loop::LoopPlan plan;
   plan.until = c.run.until;
   if (c.run.until_at_rest)
     plan.enough = {{dem::DryGrains::largest_speed_figure, c.run.until_at_rest->largest_speed},
@@ -164,21 +166,21 @@ void run_case(const Command& command, MPI_Comm communicator, WallClock::time_poi
   plan.started = started;
   plan.write_at_start = !places.same_folder;
   output.add_to(plan);
-  TimeLoop loop(communicator, *system, observers, plan, log);
+  loop::TimeLoop time_loop(communicator, *system, observers, plan, log);
   try {
-    loop.run();
+    time_loop.run();
   } catch (const RunError& error) {
     const RunError told(fmt::format("{} {}", error.what(), last_good(places)));
-    LoopRecord record = loop.record();
+    loop::LoopRecord record = time_loop.record();
     record.reason = told.what();
-    if (!council.everybody_failed(seconds_to_wait_for_others) || log.speaking())
+    if (!failures.all_ranks_failed(seconds_to_wait_for_others) || log.prints())
       summary_of(identity, *system, record, observers, {}).write(places.folder.summary());
     throw told;
   }
   if (!c.grains.empty()) io::write_bed_file(communicator, places.folder.bed(), system->snapshot());
-  const std::vector<PhaseShare> phases = collect_phases(communicator, *system, loop);
-  say_how_it_ended(identity, loop.record(), *system, observers, phases, places.folder, log);
-  const io::JsonObject summary = summary_of(identity, *system, loop.record(), observers, phases);
+  const std::vector<loop::PhaseShare> phases = loop::collect_phases(communicator, *system, time_loop);
+  say_how_it_ended(identity, time_loop.record(), *system, observers, phases, places.folder, log);
+  const io::JsonObject summary = summary_of(identity, *system, time_loop.record(), observers, phases);
   on_first_rank(communicator, [&] { summary.write(places.folder.summary()); });
 }
 

@@ -1,8 +1,8 @@
 #include "driver/run_output.hpp"
 
 #include "core/error.hpp"
+#include "core/on_first_rank.hpp"
 #include "driver/build_system.hpp"
-#include "driver/on_first_rank.hpp"
 #include "driver/version.hpp"
 #include "io/hdf5_archive.hpp"
 #include "io/profile_file.hpp"
@@ -34,7 +34,7 @@ RunOutput::RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& 
   write_records();  // whether they can be written, or continued, is known before the run begins
 }
 
-void RunOutput::add_to(LoopPlan& plan) {
+void RunOutput::add_to(loop::LoopPlan& plan) {
   const double time_step = system_.time_step();
   plan.series = Schedule(case_.output.series.every, time_step);
   plan.write_row = [this](double time, std::int64_t, const std::vector<Figure>& row) { write_row(time, row); };
@@ -48,7 +48,7 @@ void RunOutput::add_to(LoopPlan& plan) {
                             [this](const Snapshot& snapshot) { fluid_->write(snapshot); }});
   // With the looks at the system's health, so that nothing is written of a state that is broken.
   if (!records_.empty())
-    plan.outputs.push_back({"records", Schedule(TimeLoop::steps_between_health_checks * time_step, time_step),
+    plan.outputs.push_back({"records", Schedule(loop::TimeLoop::steps_between_health_checks * time_step, time_step),
                             [this](const Snapshot&) { write_records(); }});
 }
 

@@ -4,12 +4,12 @@
 #include "analysis/observer.hpp"
 #include "core/system.hpp"
 #include "driver/case.hpp"
-#include "driver/time_loop.hpp"
 #include "io/fluid_series.hpp"
 #include "io/grain_series.hpp"
 #include "io/record_file.hpp"
 #include "io/run_folder.hpp"
 #include "io/series_table.hpp"
+#include "loop/time_loop.hpp"
 
 #include <mpi.h>
 
@@ -30,7 +30,7 @@ public:
             const Observers& observers, std::optional<double> continue_from);
 
   // Schedules and actions for the time loop; they refer to this object.
-  void add_to(LoopPlan& plan);
+  void add_to(loop::LoopPlan& plan);
 
 private:
   void write_row(double time, const std::vector<Figure>& row);

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "analysis/observer.hpp"
-#include "driver/time_loop.hpp"
 #include "io/json_object.hpp"
+#include "loop/phase_shares.hpp"
 
 #include <mpi.h>
 
@@ -12,30 +12,6 @@
 #include <vector>
 
 namespace thalweg::driver {
-
-// Where the wall time went, over all ranks.
-struct PhaseShare {
-  std::string name;
-  double mean_seconds;     // over ranks
-  double largest_seconds;  // of the slowest rank
-  double share;            // of the wall time of the loop, 0 .. 1 (from the mean)
-};
-
-// Phases of the system's timer, then of the loop's, then "other": what neither measured. Collective; the result is
-// complete on rank 0 only. Phases need not be the same on every rank.
-std::vector<PhaseShare> collect_phases(MPI_Comm communicator, System& system, TimeLoop& loop);
-
-// A table, one line a phase, widest column first.
-std::vector<std::string> phase_table(const std::vector<PhaseShare>& phases);
-
-// Speeds over the whole loop, output included.
-struct Speeds {
-  double steps_per_second;
-  double mlups;            // million cell updates a second over all cells of the domain; 0 without a lattice
-  double mlups_advancing;  // the same without output and checkpoints
-  double grain_steps_per_second;
-};
-Speeds speeds_of(const System& system, const LoopRecord& record);
 
 // What is known of a run before it starts.
 struct RunIdentity {
@@ -47,8 +23,8 @@ struct RunIdentity {
 };
 
 // summary.json of a run that has ended in whatever way. `phases` may be empty.
-io::JsonObject summary_of(const RunIdentity& identity, const System& system, const LoopRecord& record,
+io::JsonObject summary_of(const RunIdentity& identity, const System& system, const loop::LoopRecord& record,
                           const std::vector<std::unique_ptr<analysis::Observer>>& observers,
-                          const std::vector<PhaseShare>& phases);
+                          const std::vector<loop::PhaseShare>& phases);
 
 }  // namespace thalweg::driver

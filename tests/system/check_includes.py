@@ -1,21 +1,21 @@
 #!/usr/bin/python3
-"""Checks that the house stands as docs/architecture.md draws it.
+"""Checks that the modules depend on each other only as docs/architecture.md says.
 
     check_includes.py [ROOT]      of the repository (default: the one this file is in)
 
-- A room includes, and its CMake target links, only the rooms its arrows point to; nobody but tests uses driver.
+- A module includes, and its CMake target links, only the modules it may depend on; only tests use driver.
 - VTK and HDF5 appear only in io, and a header of io that shows them is not included from elsewhere; yaml-cpp appears
   only in io and driver.
 - Includes are written from the repository root, and what they name exists.
 - No file carries a note that something is left to do.
 
-Prints one line per breach and exits with 1 if there is any.
+Prints one line per violation and exits with 1 if there is any.
 """
 import pathlib
 import re
 import sys
 
-ROOMS = {
+MODULES = {
     "core": {"core"},
     "lbm": {"core", "lbm"},
     "dem": {"core", "dem"},
@@ -23,7 +23,8 @@ ROOMS = {
     "analysis": {"core", "analysis"},
     "io": {"core", "io"},
     "coupling": {"core", "lbm", "dem", "continuum", "coupling"},
-    "driver": {"core", "lbm", "dem", "continuum", "analysis", "io", "coupling", "driver"},
+    "loop": {"core", "analysis", "loop"},
+    "driver": {"core", "lbm", "dem", "continuum", "analysis", "io", "coupling", "loop", "driver"},
 }
 # Whoever else may use the driver: its own tests, tests of the whole program, and measurements of whole cases.
 USERS_OF_DRIVER = ("driver/", "tests/driver/", "tests/system/", "benchmarks/")
@@ -38,8 +39,8 @@ YAML = re.compile(r"^yaml-cpp/")
 UNFINISHED = re.compile(r"\b(?:" + "|".join(("TO" + "DO", "FIX" + "ME", "XX" + "X", "HA" + "CK")) + r")\b")
 
 
-def home_of(relative):
-    """The room a file belongs to: its own folder, or for a test the one it tests."""
+def module_of(relative):
+    """The module a file belongs to: its own folder, or for a test the one it tests."""
     return relative.parts[1] if relative.parts[0] == "tests" and len(relative.parts) > 2 else relative.parts[0]
 
 
@@ -69,30 +70,30 @@ def headers_that_show_vtk_or_hdf5(root):
 
 def check_quoted(root, relative, name, private):
     """What is wrong with #include "name" in a file, or None."""
-    room, target = relative.parts[0], name.split("/")[0]
+    module, target = relative.parts[0], name.split("/")[0]
     if "/" not in name or target in (".", ".."):
         return f'"{name}" is not written from the repository root'
     if not (root / name).is_file():
         return f'"{name}" does not exist in this repository (other people\'s headers go in <>)'
-    if room in ROOMS and target not in ROOMS[room]:
-        allowed = ", ".join(sorted(ROOMS[room] - {room})) or "nobody"
-        return f'{room} must not include "{name}": its arrows go to {allowed}'
-    if name in private and home_of(relative) != "io":
-        return f'"{name}" shows VTK or HDF5, which stay private to io'
+    if module in MODULES and target not in MODULES[module]:
+        allowed = ", ".join(sorted(MODULES[module] - {module})) or "no other"
+        return f'{module} must not include "{name}": it may depend on {allowed}'
+    if name in private and module_of(relative) != "io":
+        return f'"{name}" shows VTK or HDF5, which are private to io'
     if target == "driver" and not relative.as_posix().startswith(USERS_OF_DRIVER):
-        return f'nobody but the program and its tests includes the driver ("{name}")'
+        return f'only the program and its tests include the driver ("{name}")'
     return None
 
 
 def check_foreign(relative, name):
     """What is wrong with #include <name> in a file, or None."""
-    room = home_of(relative)
-    if VTK_OR_HDF5.match(name) and room not in ("io", "system"):
+    module = module_of(relative)
+    if VTK_OR_HDF5.match(name) and module not in ("io", "system"):
         return f"<{name}> belongs in io alone"
-    if YAML.match(name) and room not in ("io", "driver"):
+    if YAML.match(name) and module not in ("io", "driver"):
         return f"<{name}> belongs in io and driver alone"
-    if name.split("/")[0] in ROOMS and "/" in name:
-        return f'<{name}> is one of our own: write "{name}"'
+    if name.split("/")[0] in MODULES and "/" in name:
+        return f'<{name}> is a header of this repository: write "{name}"'
     return None
 
 
@@ -105,15 +106,15 @@ def check_source(root, relative, text, private):
 
 
 def check_targets(relative, text):
-    """A room's CMakeLists.txt may name the targets of the rooms its arrows go to."""
-    room = relative.parts[0]
+    """A module's CMakeLists.txt may name only the targets of the modules it may depend on."""
+    module = relative.parts[0]
     for match in TARGET.finditer(text):
         target = match.group(1)
-        if target in ROOMS and target not in ROOMS[room]:
-            yield line_of(text, match.start()), f"{room} must not link thalweg::{target}"
+        if target in MODULES and target not in MODULES[module]:
+            yield line_of(text, match.start()), f"{module} must not link thalweg::{target}"
 
 
-def breaches(root):
+def violations(root):
     """(file, line, what) of everything that is wrong."""
     private = headers_that_show_vtk_or_hdf5(root)
     for path, relative in files_of(root):
@@ -126,7 +127,7 @@ def breaches(root):
         found = []
         if path.suffix in SOURCE_SUFFIXES:
             found += check_source(root, relative, text, private)
-        if path.name == "CMakeLists.txt" and relative.parts[0] in ROOMS:
+        if path.name == "CMakeLists.txt" and relative.parts[0] in MODULES:
             found += check_targets(relative, text)
         found += [(line_of(text, m.start()), f'"{m.group()}": finish it, or say in an issue what is missing')
                   for m in UNFINISHED.finditer(text)]
@@ -136,14 +137,14 @@ def breaches(root):
 
 def main():
     root = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parents[2]
-    rooms = [room for room in ROOMS if (root / room).is_dir()]
-    if not rooms:
-        print(f"check_includes: {root} holds no room of the house.", file=sys.stderr)
+    modules = [module for module in MODULES if (root / module).is_dir()]
+    if not modules:
+        print(f"check_includes: {root} holds no module of Thalweg.", file=sys.stderr)
         return 2
-    found = list(breaches(root))
+    found = list(violations(root))
     for relative, line, what in found:
         print(f"{relative}:{line}: {what}")
-    print(f"{len(found)} breach{'' if len(found) == 1 else 'es'} in {', '.join(rooms)}")
+    print(f"{len(found)} violation{'' if len(found) == 1 else 's'} in {', '.join(modules)}")
     return 1 if found else 0
 
 

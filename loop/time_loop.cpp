@@ -1,9 +1,9 @@
-#include "driver/time_loop.hpp"
+#include "loop/time_loop.hpp"
 
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
-#include "driver/progress.hpp"
-#include "driver/stop_request.hpp"
+#include "loop/progress.hpp"
+#include "loop/stop_request.hpp"
 
 #include <fmt/format.h>
 
@@ -11,13 +11,13 @@
 #include <array>
 #include <cmath>
 
-namespace thalweg::driver {
+namespace thalweg::loop {
 
 namespace {
 
-constexpr double seconds_between_conferences = 0.2;  // mpirun kills one second after its SIGTERM
+constexpr double seconds_between_decisions = 0.2;  // mpirun kills one second after its SIGTERM
 constexpr double seconds_between_lines = 1.0;
-constexpr std::int64_t most_steps_between_conferences = 100000;
+constexpr std::int64_t most_steps_between_decisions = 100000;
 
 double seconds_since(WallClock::time_point start) {
   return std::chrono::duration<double>(WallClock::now() - start).count();
@@ -44,10 +44,10 @@ TimeLoop::TimeLoop(MPI_Comm communicator, System& system, std::vector<std::uniqu
 
 void TimeLoop::run() {
   begin_ = WallClock::now();
-  printed_step_ = conferred_step_ = next_conference_ = system_.step();
+  printed_step_ = decided_step_ = next_decision_ = system_.step();
   if (plan_.write_at_start) write_what_is_due();
-  Verdict verdict = Verdict::go_on;
-  while (system_.step() < final_step_ && verdict == Verdict::go_on) {
+  Decision decision = Decision::go_on;
+  while (system_.step() < final_step_ && decision == Decision::go_on) {
     const WallClock::time_point before = WallClock::now();
     if (needs_momentum_at(system_.step() + 1)) system_.book_momentum();
     system_.advance();
@@ -57,14 +57,14 @@ void TimeLoop::run() {
     if (system_.step() % steps_between_health_checks == 0) look_at_health();
     write_what_is_due();
     if (plan_.checkpoint.due(system_.step())) checkpoint();
-    if (system_.step() >= next_conference_) verdict = confer();
+    if (system_.step() >= next_decision_) decision = decide_together();
     // At the same step on any ranks and after any restart.
-    if (system_.step() % steps_between_looks_for_enough == 0 && has_enough()) verdict = Verdict::enough;
+    if (system_.step() % steps_between_looks_for_enough == 0 && has_enough()) decision = Decision::enough;
   }
   look_at_health();
   checkpoint();
-  if (log_.speaking() && printed_step_ != system_.step()) report(seconds_since(begin_));
-  record_.early = verdict == Verdict::enough;
+  if (log_.prints() && printed_step_ != system_.step()) report(seconds_since(begin_));
+  record_.early = decision == Decision::enough;
   record_.finished = record_.early || system_.step() >= final_step_;
   if (record_.finished) record_.reason.clear();
   record_.wall_seconds = seconds_since(begin_);
@@ -148,33 +148,33 @@ void TimeLoop::checkpoint() {
   longest_checkpoint_ = std::max(longest_checkpoint_, seconds_since(before));
 }
 
-TimeLoop::Verdict TimeLoop::confer() {
+TimeLoop::Decision TimeLoop::decide_together() {
   // Only rank 0 looks at the clock; all ranks may have seen a signal. One reduction settles everything.
-  enum { verdict, signal, print, steps, items };
-  std::array<std::int64_t, items> opinion{};
-  opinion[signal] = received_stop_signal();
-  if (opinion[signal] != 0) opinion[verdict] = static_cast<int>(Verdict::signal);
+  enum { decision, signal, print, steps, items };
+  std::array<std::int64_t, items> votes{};
+  votes[signal] = received_stop_signal();
+  if (votes[signal] != 0) votes[decision] = static_cast<int>(Decision::signal);
   const double now = seconds_since(begin_);
   if (rank_of(communicator_) == 0) {
-    const std::int64_t done = std::max<std::int64_t>(1, system_.step() - conferred_step_);
-    const double per_step = std::max(1e-9, (now - conferred_at_) / static_cast<double>(done));
-    opinion[steps] = std::clamp<std::int64_t>(static_cast<std::int64_t>(seconds_between_conferences / per_step), 1,
-                                              std::min(2 * done, most_steps_between_conferences));
+    const std::int64_t done = std::max<std::int64_t>(1, system_.step() - decided_step_);
+    const double per_step = std::max(1e-9, (now - decided_at_) / static_cast<double>(done));
+    votes[steps] = std::clamp<std::int64_t>(static_cast<std::int64_t>(seconds_between_decisions / per_step), 1,
+                                            std::min(2 * done, most_steps_between_decisions));
     const double reserve = 3.0 * longest_checkpoint_ + std::min(60.0, 0.05 * plan_.walltime) +
-                           2.0 * per_step * static_cast<double>(opinion[steps]);
+                           2.0 * per_step * static_cast<double>(votes[steps]);
     if (plan_.walltime > 0.0 && seconds_since(plan_.started) + reserve > plan_.walltime)
-      opinion[verdict] = std::max<std::int64_t>(opinion[verdict], static_cast<int>(Verdict::wall_time_is_up));
-    opinion[print] = now - printed_at_ >= seconds_between_lines ? 1 : 0;
-    conferred_at_ = now;
-    conferred_step_ = system_.step();
+      votes[decision] = std::max<std::int64_t>(votes[decision], static_cast<int>(Decision::wall_time_is_up));
+    votes[print] = now - printed_at_ >= seconds_between_lines ? 1 : 0;
+    decided_at_ = now;
+    decided_step_ = system_.step();
   }
-  MPI_Allreduce(MPI_IN_PLACE, opinion.data(), items, MPI_INT64_T, MPI_MAX, communicator_);
-  next_conference_ = system_.step() + opinion[steps];
-  const auto agreed = static_cast<Verdict>(opinion[verdict]);
-  if (agreed == Verdict::signal)
-    record_.reason = fmt::format("stopped by {}", signal_name(static_cast<int>(opinion[signal])));
-  if (agreed == Verdict::wall_time_is_up) record_.reason = "the wall time is nearly up";
-  if (opinion[print] != 0) report(now);
+  MPI_Allreduce(MPI_IN_PLACE, votes.data(), items, MPI_INT64_T, MPI_MAX, communicator_);
+  next_decision_ = system_.step() + votes[steps];
+  const auto agreed = static_cast<Decision>(votes[decision]);
+  if (agreed == Decision::signal)
+    record_.reason = fmt::format("stopped by {}", signal_name(static_cast<int>(votes[signal])));
+  if (agreed == Decision::wall_time_is_up) record_.reason = "the wall time is nearly up";
+  if (votes[print] != 0) report(now);
   return agreed;
 }
 
@@ -197,4 +197,4 @@ void TimeLoop::report(double now) {
   printed_step_ = system_.step();
 }
 
-}  // namespace thalweg::driver
+}  // namespace thalweg::loop

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace thalweg::driver {
+namespace thalweg::loop {
 
 // From now on these signals only leave a note; earlier ones are forgotten.
 void listen_for_stop_signals();
@@ -15,4 +15,4 @@ int received_stop_signal();
 // "SIGTERM" for SIGTERM, and so on.
 std::string signal_name(int signal);
 
-}  // namespace thalweg::driver
+}  // namespace thalweg::loop

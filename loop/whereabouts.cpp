@@ -1,4 +1,4 @@
-#include "driver/whereabouts.hpp"
+#include "loop/whereabouts.hpp"
 
 #include "core/mpi_session.hpp"
 
@@ -8,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-namespace thalweg::driver {
+namespace thalweg::loop {
 
 namespace {
 
@@ -56,4 +56,4 @@ std::string whereabouts(MPI_Comm communicator, const Place& place, const Snapsho
   return text + (near.size() == 1 ? ", beside grain " : ", in the pore between grains ") + listed(near);
 }
 
-}  // namespace thalweg::driver
+}  // namespace thalweg::loop

@@ -1,9 +1,9 @@
-#include "driver/time_loop.hpp"
+#include "loop/time_loop.hpp"
 
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
-#include "driver/stop_request.hpp"
-#include "driver/summary.hpp"
+#include "loop/phase_shares.hpp"
+#include "loop/stop_request.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include <limits>
 #include <thread>
 
-namespace thalweg::driver {
+namespace thalweg::loop {
 namespace {
 
 const MPI_Comm world = MPI_COMM_WORLD;
@@ -236,4 +236,4 @@ TEST(Summary, AccountsForTheWholeWallTime) {
 }
 
 }  // namespace
-}  // namespace thalweg::driver
+}  // namespace thalweg::loop

@@ -1,4 +1,4 @@
-#include "driver/log.hpp"
+#include "loop/log.hpp"
 
 #include "core/error.hpp"
 
@@ -6,24 +6,24 @@
 
 #include <cstdio>
 
-namespace thalweg::driver {
+namespace thalweg::loop {
 
 void Log::copy_to(const std::string& path) {
-  if (!speaking_) return;
+  if (!prints_) return;
   file_.open(path, std::ios::app);
   if (!file_) throw RunError(fmt::format("The log {} cannot be written.", path));
-  file_ << said_before_file_ << std::flush;
-  said_before_file_.clear();
+  file_ << before_file_ << std::flush;
+  before_file_.clear();
 }
 
 void Log::line(const std::string& text) {
-  if (!speaking_) return;
+  if (!prints_) return;
   std::fprintf(stdout, "%s\n", text.c_str());
   std::fflush(stdout);  // a pipe to tee or a batch system's file must not lag behind
   if (file_.is_open())
     file_ << text << '\n' << std::flush;
   else
-    said_before_file_ += text + '\n';
+    before_file_ += text + '\n';
 }
 
-}  // namespace thalweg::driver
+}  // namespace thalweg::loop

@@ -1,15 +1,15 @@
-#include "driver/watchdog.hpp"
+#include "loop/watchdog.hpp"
 
 #include "core/error.hpp"
-#include "driver/progress.hpp"
-#include "driver/whereabouts.hpp"
+#include "loop/progress.hpp"
+#include "loop/whereabouts.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace thalweg::driver {
+namespace thalweg::loop {
 
 namespace {
 
@@ -75,4 +75,4 @@ std::string Watchdog::notice() const {
   return text;
 }
 
-}  // namespace thalweg::driver
+}  // namespace thalweg::loop

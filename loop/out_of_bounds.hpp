@@ -1,8 +1,8 @@
 // What becomes of a run whose figures leave their bounds.
 #pragma once
 
-namespace thalweg::driver {
+namespace thalweg::loop {
 
 enum class OutOfBounds { stop, warn };  // beyond the second limit
 
-}  // namespace thalweg::driver
+}  // namespace thalweg::loop

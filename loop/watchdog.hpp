@@ -6,15 +6,15 @@
 #pragma once
 
 #include "core/system.hpp"
-#include "driver/out_of_bounds.hpp"
-#include "driver/watch_rule.hpp"
+#include "loop/out_of_bounds.hpp"
+#include "loop/watch_rule.hpp"
 
 #include <mpi.h>
 
 #include <string>
 #include <vector>
 
-namespace thalweg::driver {
+namespace thalweg::loop {
 
 class Watchdog {
 public:
@@ -46,4 +46,4 @@ private:
   OutOfBounds out_of_bounds_;
 };
 
-}  // namespace thalweg::driver
+}  // namespace thalweg::loop

@@ -9,8 +9,8 @@
 #include "analysis/observer.hpp"
 #include "core/schedule.hpp"
 #include "core/system.hpp"
-#include "driver/log.hpp"
-#include "driver/watchdog.hpp"
+#include "loop/log.hpp"
+#include "loop/watchdog.hpp"
 
 #include <mpi.h>
 
@@ -21,7 +21,7 @@
 #include <string>
 #include <vector>
 
-namespace thalweg::driver {
+namespace thalweg::loop {
 
 using WallClock = std::chrono::steady_clock;
 
@@ -87,7 +87,7 @@ public:
   static constexpr std::int64_t steps_between_looks_for_enough = 200;
 
 private:
-  enum class Verdict : int { go_on = 0, wall_time_is_up = 1, signal = 2, enough = 3 };
+  enum class Decision : int { go_on = 0, wall_time_is_up = 1, signal = 2, enough = 3 };
 
   void look_at_health();
   bool needs_momentum_at(std::int64_t step) const;
@@ -95,7 +95,7 @@ private:
   bool has_enough() const;
   void write_what_is_due();
   void checkpoint();
-  Verdict confer();
+  Decision decide_together();
   void report(double now);
 
   MPI_Comm communicator_;
@@ -109,12 +109,12 @@ private:
   std::vector<Schedule> schedules_;  // of each observer
   WallClock::time_point begin_;
   std::int64_t final_step_ = 0;
-  std::int64_t looked_at_step_ = -1, saved_step_ = -1, next_conference_ = 0;
+  std::int64_t looked_at_step_ = -1, saved_step_ = -1, next_decision_ = 0;
   std::vector<Figure> measured_;     // by the observers, latest
   double longest_checkpoint_ = 0.0;  // s
-  // Rank 0's own: when and where the last line was printed and the last conference held.
-  double printed_at_ = 0.0, conferred_at_ = 0.0;
-  std::int64_t printed_step_ = 0, conferred_step_ = 0;
+  // Rank 0's own: when and where the last line was printed and the latest decision was taken.
+  double printed_at_ = 0.0, decided_at_ = 0.0;
+  std::int64_t printed_step_ = 0, decided_step_ = 0;
 };
 
-}  // namespace thalweg::driver
+}  // namespace thalweg::loop

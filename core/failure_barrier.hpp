@@ -5,26 +5,26 @@
 
 #include <optional>
 
-namespace thalweg::driver {
+namespace thalweg {
 
 // How long a failed rank waits for the others before it takes them for stuck: longer than any step.
 inline constexpr double seconds_to_wait_for_others = 10.0;
 
-class FailureCouncil {
+class FailureBarrier {
 public:
-  explicit FailureCouncil(MPI_Comm communicator);  // collective, while all is well
-  ~FailureCouncil();
-  FailureCouncil(const FailureCouncil&) = delete;
-  FailureCouncil& operator=(const FailureCouncil&) = delete;
+  explicit FailureBarrier(MPI_Comm communicator);  // collective, while all is well
+  ~FailureBarrier();
+  FailureBarrier(const FailureBarrier&) = delete;
+  FailureBarrier& operator=(const FailureBarrier&) = delete;
 
   // Called by a rank that has failed. True if all ranks get here within `patience` seconds. False: the others wait in
   // some exchange for this rank and will do so for ever; only MPI_Abort ends them. Asked again, it gives the same
   // answer.
-  bool everybody_failed(double patience);
+  bool all_ranks_failed(double patience);
 
 private:
   MPI_Comm communicator_ = MPI_COMM_NULL;
-  std::optional<bool> answer_;
+  std::optional<bool> all_failed_;
 };
 
-}  // namespace thalweg::driver
+}  // namespace thalweg

@@ -5,10 +5,10 @@
 
 #include <functional>
 
-namespace thalweg::driver {
+namespace thalweg {
 
 // Runs `work` on rank 0. If it throws, every rank throws: InputError as InputError, anything else as RunError.
 // Collective.
 void on_first_rank(MPI_Comm communicator, const std::function<void()>& work);
 
-}  // namespace thalweg::driver
+}  // namespace thalweg

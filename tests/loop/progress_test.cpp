@@ -1,8 +1,8 @@
-#include "driver/progress.hpp"
+#include "loop/progress.hpp"
 
 #include <gtest/gtest.h>
 
-namespace thalweg::driver {
+namespace thalweg::loop {
 namespace {
 
 TEST(Progress, ShowsWhatAPersonWantsToSee) {
@@ -32,4 +32,4 @@ TEST(Progress, ClockTexts) {
 }
 
 }  // namespace
-}  // namespace thalweg::driver
+}  // namespace thalweg::loop

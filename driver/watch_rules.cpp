@@ -1,6 +1,4 @@
-#include "driver/watch_rule.hpp"
-
-#include "driver/progress.hpp"
+#include "driver/watch_rules.hpp"
 
 #include <fmt/format.h>
 
@@ -10,6 +8,9 @@
 #include <numbers>
 
 namespace thalweg::driver {
+
+using loop::WatchLimits;
+using loop::WatchRule;
 
 namespace {
 
@@ -206,10 +207,6 @@ void add_grain_rules(const Case& c, std::vector<WatchRule>& rules) {
 }
 
 }  // namespace
-
-double WatchRule::badness(double value) const {
-  return side == Side::above ? value : side == Side::below ? -value : std::abs(value);
-}
 
 double expected_grain_speed(const Case& c) {
   return fall_speed(c) + prescribed_speed(c) + expected_flow_speed(c) + speed_of_overlaps(c);

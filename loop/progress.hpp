@@ -3,11 +3,10 @@
 
 #include "core/system.hpp"
 
-#include <optional>
 #include <string>
 #include <vector>
 
-namespace thalweg::driver {
+namespace thalweg::loop {
 
 struct ProgressState {
   double time;          // s, simulated
@@ -28,7 +27,4 @@ std::string progress_line(const ProgressState& state);
 // "59 s", "12:03" (minutes and seconds), "3:04:05", "2 d 03:04" (hours and minutes).
 std::string clock_text(double seconds);
 
-// The figure of that name, if there is one.
-std::optional<double> find_figure(const std::vector<Figure>& figures, const std::string& name);
-
-}  // namespace thalweg::driver
+}  // namespace thalweg::loop

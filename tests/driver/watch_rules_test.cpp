@@ -1,7 +1,7 @@
-#include "driver/watch_rule.hpp"
+#include "driver/watch_rules.hpp"
 
 #include "tests/driver/case_texts.hpp"
-#include "tests/driver/made_up_system.hpp"
+#include "tests/loop/made_up_system.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +9,8 @@
 
 namespace thalweg::driver {
 namespace {
+
+using namespace loop;
 
 using testing::flume;
 using testing::read_text;

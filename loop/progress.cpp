@@ -1,16 +1,10 @@
-#include "driver/progress.hpp"
+#include "loop/progress.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-namespace thalweg::driver {
-
-std::optional<double> find_figure(const std::vector<Figure>& figures, const std::string& name) {
-  for (const Figure& figure : figures)
-    if (figure.name == name) return figure.value;
-  return std::nullopt;
-}
+namespace thalweg::loop {
 
 std::string clock_text(double seconds) {
   const auto whole = static_cast<long long>(std::llround(std::max(0.0, seconds)));
@@ -35,4 +29,4 @@ std::string progress_line(const ProgressState& state) {
   return line.substr(0, line.find_last_not_of(' ') + 1);
 }
 
-}  // namespace thalweg::driver
+}  // namespace thalweg::loop

@@ -1,10 +1,10 @@
-#include "driver/stop_request.hpp"
+#include "loop/stop_request.hpp"
 
 #include <fmt/format.h>
 
 #include <csignal>
 
-namespace thalweg::driver {
+namespace thalweg::loop {
 
 namespace {
 
@@ -40,4 +40,4 @@ std::string signal_name(int signal) {
   }
 }
 
-}  // namespace thalweg::driver
+}  // namespace thalweg::loop

@@ -1,14 +1,14 @@
-#include "driver/watchdog.hpp"
+#include "loop/watchdog.hpp"
 
-#include "driver/whereabouts.hpp"
-#include "tests/driver/made_up_system.hpp"
+#include "loop/whereabouts.hpp"
+#include "tests/loop/made_up_system.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-namespace thalweg::driver {
+namespace thalweg::loop {
 namespace {
 
 const MPI_Comm world = MPI_COMM_WORLD;
@@ -79,4 +79,4 @@ TEST(Whereabouts, SaysWhatIsAround) {
 }
 
 }  // namespace
-}  // namespace thalweg::driver
+}  // namespace thalweg::loop

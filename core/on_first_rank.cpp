@@ -1,11 +1,11 @@
-#include "driver/on_first_rank.hpp"
+#include "core/on_first_rank.hpp"
 
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
 
 #include <string>
 
-namespace thalweg::driver {
+namespace thalweg {
 
 void on_first_rank(MPI_Comm communicator, const std::function<void()>& work) {
   enum Outcome : int { well, input_error, run_error };
@@ -31,4 +31,4 @@ void on_first_rank(MPI_Comm communicator, const std::function<void()>& work) {
   throw RunError(message);
 }
 
-}  // namespace thalweg::driver
+}  // namespace thalweg

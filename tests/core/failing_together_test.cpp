@@ -1,14 +1,14 @@
 #include "core/error.hpp"
+#include "core/failure_barrier.hpp"
 #include "core/mpi_session.hpp"
-#include "driver/collective_failure.hpp"
-#include "driver/on_first_rank.hpp"
+#include "core/on_first_rank.hpp"
 
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <thread>
 
-namespace thalweg::driver {
+namespace thalweg {
 namespace {
 
 const MPI_Comm world = MPI_COMM_WORLD;
@@ -33,24 +33,24 @@ TEST(OnFirstRank, WorksOnceAndTellsEveryRankOfItsErrors) {
   }
 }
 
-TEST(FailureCouncil, AgreesWhenEveryRankHasFailed) {
-  FailureCouncil council(world);
+TEST(FailureBarrier, AgreesWhenEveryRankHasFailed) {
+  FailureBarrier failures(world);
   std::this_thread::sleep_for(std::chrono::milliseconds(20 * rank_of(world)));
-  EXPECT_TRUE(council.everybody_failed(30.0));
-  EXPECT_TRUE(council.everybody_failed(0.0));  // remembered
+  EXPECT_TRUE(failures.all_ranks_failed(30.0));
+  EXPECT_TRUE(failures.all_ranks_failed(0.0));  // remembered
 }
 
-TEST(FailureCouncil, NoticesThatTheOthersDoNotCome) {
+TEST(FailureBarrier, NoticesThatTheOthersDoNotCome) {
   const int last = size_of(world) - 1;
   if (last == 0) GTEST_SKIP() << "one rank is everybody";
-  FailureCouncil council(world);
+  FailureBarrier failures(world);
   if (rank_of(world) == last) {
-    EXPECT_FALSE(council.everybody_failed(0.05));
-    EXPECT_FALSE(council.everybody_failed(30.0));  // remembered, without waiting again
+    EXPECT_FALSE(failures.all_ranks_failed(0.05));
+    EXPECT_FALSE(failures.all_ranks_failed(30.0));  // remembered, without waiting again
   }
-  MPI_Barrier(world);                                          // where the others wait for the failed rank
-  if (rank_of(world) != last) council.everybody_failed(30.0);  // completes the barrier the failed rank has left
+  MPI_Barrier(world);                                           // where the others wait for the failed rank
+  if (rank_of(world) != last) failures.all_ranks_failed(30.0);  // completes the barrier the failed rank has left
 }
 
 }  // namespace
-}  // namespace thalweg::driver
+}  // namespace thalweg

@@ -3,14 +3,14 @@
 
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
-#include "driver/watchdog.hpp"
+#include "loop/watchdog.hpp"
 
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
-namespace thalweg::driver {
+namespace thalweg::loop {
 
 // At step 250 of 0.01 s, in a box of 1 m with cells of 0.1 m and three grains of 0.1 m, dealt out to the ranks; every
 // figure is found in the pore between two of them.
@@ -70,4 +70,4 @@ inline void expect_words(const std::string& text, const std::vector<std::string>
   for (const std::string& word : words) EXPECT_NE(text.find(word), std::string::npos) << word << " in: " << text;
 }
 
-}  // namespace thalweg::driver
+}  // namespace thalweg::loop

@@ -1,15 +1,15 @@
-// What is watched while a run goes on: a figure of the system, from where on it is suspicious, and from where on the
-// run is not worth going on.
+// A figure of the system that is watched while a run goes on: beyond which value it is suspicious, and beyond which the
+// run stops.
 #pragma once
 
 #include "core/system.hpp"
-#include "driver/case.hpp"
 
+#include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
 
-namespace thalweg::driver {
+namespace thalweg::loop {
 
 // In the figure's unit, of its badness (WatchRule::badness); infinite: never. warn is at most stop.
 struct WatchLimits {
@@ -26,17 +26,9 @@ struct WatchRule {
   std::string advice;                                             // likely cause and remedy, in whole sentences
 
   // How bad a value is, to be compared with the limits: the value, its negative or its size.
-  double badness(double value) const;
+  double badness(double value) const {
+    return side == Side::above ? value : side == Side::below ? -value : std::abs(value);
+  }
 };
 
-// The rules for a case. Where the limits come from: docs/stability.md.
-std::vector<WatchRule> watch_rules(const Case& c);
-
-// m/s: what grains can reach by falling, by what moves them, and with the flow the case expects, without the flow's own
-// speed at the time; an upper estimate.
-double expected_grain_speed(const Case& c);
-
-// The deviation of the mean density from which a warning is due, and that at which the run stops.
-WatchLimits mean_density_limits(const Case& c);
-
-}  // namespace thalweg::driver
+}  // namespace thalweg::loop

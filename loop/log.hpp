@@ -1,0 +1,26 @@
+// What the program tells its user: lines on standard output and, once a run folder exists, the same lines in run.log.
+#pragma once
+
+#include <fstream>
+#include <string>
+
+namespace thalweg::loop {
+
+class Log {
+public:
+  // prints: true on rank 0; the log of all other ranks does nothing.
+  explicit Log(bool prints) : prints_(prints) {}
+
+  // From now on every line goes to this file as well (appended), also the earlier ones.
+  void copy_to(const std::string& path);
+
+  void line(const std::string& text);
+  bool prints() const { return prints_; }
+
+private:
+  bool prints_;
+  std::string before_file_;
+  std::ofstream file_;
+};
+
+}  // namespace thalweg::loop
