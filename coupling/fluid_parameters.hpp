@@ -52,9 +52,8 @@ void set_gravity(lbm::Fluid<Real>& fluid, const FluidParameters& parameters, std
 
 // No face lets fluid in or out.
 inline bool closed(const lbm::FaceConditions& faces) {
-  return std::none_of(faces.begin(), faces.end(), [](const lbm::FaceCondition& face) {
-    return face.type == lbm::FaceType::velocity_inlet || face.type == lbm::FaceType::pressure_outlet;
-  });
+  return std::none_of(faces.begin(), faces.end(),
+                      [](const lbm::FaceCondition& face) { return lbm::is_open(face.type); });
 }
 
 // The rest state of the fluid; no density of its own in reduced gravity.

@@ -42,7 +42,7 @@ double slope_for(const FlowNumbers& flow, double shields) { return flow.slope / 
 
 double settled_fraction(const Case& c) {
   const bool between_walls =
-      c.domain.faces[y_low].type != FaceType::periodic && c.domain.faces[y_high].type != FaceType::periodic;
+      c.domain.faces[y_low].type != lbm::FaceType::periodic && c.domain.faces[y_high].type != lbm::FaceType::periodic;
   const bool narrow = !c.grains.empty() && c.domain.size.y() < 3.0 * reference_grain(c).diameter;
   return between_walls && narrow ? 0.554 : 0.6;
 }

@@ -13,7 +13,7 @@ namespace {
 std::vector<std::string> measured_walls(const Case& c) {
   std::vector<std::string> walls;
   for (std::size_t face = 0; face < dem::face_names.size() && c.analysis.wall_forces; ++face)
-    if (c.domain.faces[face].type != FaceType::periodic) walls.emplace_back(dem::face_names[face]);
+    if (c.domain.faces[face].type != lbm::FaceType::periodic) walls.emplace_back(dem::face_names[face]);
   for (std::size_t wall = 0; wall < c.walls.size() && c.analysis.wall_forces; ++wall)
     walls.push_back(fmt::format("wall_{}", wall));
   return walls;

@@ -24,7 +24,7 @@ Index3 cells_of(const DomainCase& domain) {
 }
 
 std::array<bool, 3> periodic_axes(const DomainCase& domain) {
-  const auto periodic = [&](FaceIndex face) { return domain.faces[face].type == FaceType::periodic; };
+  const auto periodic = [&](FaceIndex face) { return domain.faces[face].type == lbm::FaceType::periodic; };
   return {periodic(x_low), periodic(y_low), periodic(bottom)};
 }
 
@@ -129,9 +129,8 @@ double velocity_between_side_walls(double along, double depth, double width, dou
                                     : std::numeric_limits<double>::infinity();
 }
 
-bool holds_back(const Face& face) {
-  return face.type == FaceType::no_slip || face.type == FaceType::law_of_the_wall ||
-         face.type == FaceType::law_of_the_wall_as_printed;
+bool holds_back(const coupling::FaceKeys& face) {
+  return face.type == lbm::FaceType::no_slip || face.type == lbm::FaceType::law_of_the_wall;
 }
 
 }  // namespace

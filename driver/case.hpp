@@ -6,6 +6,7 @@
 #include "core/types.hpp"
 #include "core/units.hpp"
 #include "coupling/coupling_keys.hpp"
+#include "coupling/face_keys.hpp"
 #include "coupling/fluid_keys.hpp"
 #include "coupling/initial_fluid.hpp"
 #include "dem/integrator.hpp"
@@ -25,54 +26,13 @@ namespace thalweg::driver {
 
 enum class SystemKind { resolved, fluid, grains };
 
-enum class FaceType {
-  periodic,
-  no_slip,
-  free_slip,
-  moving,
-  navier_slip,
-  law_of_the_wall,
-  law_of_the_wall_as_printed,  // the same with the coefficient the paper prints, 2.35
-  velocity_inlet,
-  pressure_outlet
-};
-
-struct Face {
-  FaceType type = FaceType::no_slip;
-  double coefficient = 8.36;     // law of the wall: slip velocity over friction velocity (U+ at the wall)
-  bool of_first_cell = false;    // law of the wall: the coefficient follows from the first cell's distance instead
-  double slip_length = 0.0;      // m, navier_slip
-  bool on_node = false;          // of the two slips: the wall runs through the outermost cell centres
-  Vec3 velocity = Vec3::Zero();  // m/s, moving and velocity_inlet
-  double pressure = 0.0;         // Pa above the reference, pressure_outlet
-  std::optional<dem::Oscillation> oscillation = {};  // moving; dry grains only
-
-  bool slips() const {
-    return type == FaceType::navier_slip || type == FaceType::law_of_the_wall ||
-           type == FaceType::law_of_the_wall_as_printed;
-  }
-  bool same_coefficient(const Face& other) const {
-    return of_first_cell == other.of_first_cell && (of_first_cell || coefficient == other.coefficient);
-  }
-  // Takes a share of the shear of a flow along it.
-  bool drags() const { return type == FaceType::no_slip || type == FaceType::moving || slips(); }
-  bool has_velocity() const { return type == FaceType::moving || type == FaceType::velocity_inlet; }
-  bool operator==(const Face& other) const {  // what the type does not use does not count
-    return type == other.type && (type != FaceType::law_of_the_wall || same_coefficient(other)) &&
-           (type != FaceType::navier_slip || slip_length == other.slip_length) &&
-           (!slips() || on_node == other.on_node) && (!has_velocity() || velocity == other.velocity) &&
-           (type != FaceType::moving || oscillation == other.oscillation) &&
-           (type != FaceType::pressure_outlet || pressure == other.pressure);
-  }
-};
-
 // The order of the faces everywhere in the driver.
 enum FaceIndex { x_low, x_high, y_low, y_high, bottom, top };
 
 struct DomainCase {
   Vec3 size = Vec3::Zero();  // m
   double spacing = 0.0;      // m
-  std::array<Face, 6> faces{};
+  std::array<coupling::FaceKeys, 6> faces{};
   bool operator==(const DomainCase&) const = default;
 };
 

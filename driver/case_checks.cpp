@@ -134,7 +134,7 @@ void check_fluid(const Case& c, const io::YamlDocument& document) {
         fmt::format("the force is steered every 10 steps and needs ten times as long to answer; give at "
                     "least {:.3g} s",
                     100.0 * fluid_time_step(c)));
-  for (const Face& face : c.domain.faces)
+  for (const coupling::FaceKeys& face : c.domain.faces)
     if (face.has_velocity()) check_lattice_velocity(c, document, "domain.boundaries", face.velocity.norm());
   check_initial_fluid(c, document);
   for (std::size_t n = 0; n < c.grains.size(); ++n) {
@@ -153,19 +153,20 @@ void check_fluid(const Case& c, const io::YamlDocument& document) {
 }
 
 void check_gravity(const Case& c, const io::YamlDocument& document) {
-  const auto any = [&c](FaceType type) {
-    return std::any_of(c.domain.faces.begin(), c.domain.faces.end(), [type](const Face& f) { return f.type == type; });
+  const auto any = [&c](lbm::FaceType type) {
+    return std::any_of(c.domain.faces.begin(), c.domain.faces.end(),
+                       [type](const coupling::FaceKeys& f) { return f.type == type; });
   };
   if (!has_fluid(c) || c.gravity.mode != GravityMode::full) return;
   if (c.run.ramp > 0.0)
     throw document.error("run.ramp",
                          "in full gravity the fluid begins at rest under its whole weight, which leaves nothing to "
                          "raise; remove the key or set gravity.mode: reduced");
-  if (c.domain.faces[bottom].type == FaceType::periodic)
+  if (c.domain.faces[bottom].type == lbm::FaceType::periodic)
     throw document.error("gravity.mode",
                          "a box that is periodic along z has no hydrostatic pressure; give domain.boundaries a bottom "
                          "and a top, or set mode: reduced");
-  if (any(FaceType::pressure_outlet))
+  if (any(lbm::FaceType::pressure_outlet))
     throw document.error("gravity.mode",
                          "an outlet of one pressure contradicts the hydrostatic pressure; set mode: reduced or remove "
                          "the outlet");

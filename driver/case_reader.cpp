@@ -23,8 +23,9 @@ Case example_case(SystemKind system) {
   c.system = system;
   c.domain.size = {0.060, 0.0105, 0.075};
   c.domain.spacing = 0.5e-3;
-  const Face periodic{FaceType::periodic}, floor{FaceType::no_slip}, lid{FaceType::free_slip};
-  const Face side{has_fluid(c) ? FaceType::law_of_the_wall : FaceType::no_slip};
+  const coupling::FaceKeys periodic{lbm::FaceType::periodic}, floor{lbm::FaceType::no_slip},
+      lid{lbm::FaceType::free_slip};
+  const coupling::FaceKeys side{has_fluid(c) ? lbm::FaceType::law_of_the_wall : lbm::FaceType::no_slip};
   c.domain.faces = {periodic, periodic, side, side, floor, lid};
   c.gravity.magnitude = 9.8;
   c.gravity.slope = 0.07;

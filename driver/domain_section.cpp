@@ -7,10 +7,10 @@ namespace {
 
 // The faces as the file names them: an axis at once, or each side.
 struct BoundaryKeys {
-  std::optional<Face> x, y, x_low, x_high, y_low, y_high, bottom, top;
+  std::optional<coupling::FaceKeys> x, y, x_low, x_high, y_low, y_high, bottom, top;
 };
 
-BoundaryKeys keys_of(const std::array<Face, 6>& faces) {
+BoundaryKeys keys_of(const std::array<coupling::FaceKeys, 6>& faces) {
   BoundaryKeys keys;
   if (faces[x_low] == faces[x_high]) {
     keys.x = faces[x_low];
@@ -29,14 +29,14 @@ BoundaryKeys keys_of(const std::array<Face, 6>& faces) {
   return keys;
 }
 
-std::array<Face, 6> faces_of(const BoundaryKeys& keys) {
-  std::array<Face, 6> faces;
-  faces[x_low] = keys.x.value_or(keys.x_low.value_or(Face{}));
-  faces[x_high] = keys.x.value_or(keys.x_high.value_or(Face{}));
-  faces[y_low] = keys.y.value_or(keys.y_low.value_or(Face{}));
-  faces[y_high] = keys.y.value_or(keys.y_high.value_or(Face{}));
-  faces[bottom] = keys.bottom.value_or(Face{});
-  faces[top] = keys.top.value_or(Face{});
+std::array<coupling::FaceKeys, 6> faces_of(const BoundaryKeys& keys) {
+  std::array<coupling::FaceKeys, 6> faces;
+  faces[x_low] = keys.x.value_or(keys.x_low.value_or(coupling::FaceKeys{}));
+  faces[x_high] = keys.x.value_or(keys.x_high.value_or(coupling::FaceKeys{}));
+  faces[y_low] = keys.y.value_or(keys.y_low.value_or(coupling::FaceKeys{}));
+  faces[y_high] = keys.y.value_or(keys.y_high.value_or(coupling::FaceKeys{}));
+  faces[bottom] = keys.bottom.value_or(coupling::FaceKeys{});
+  faces[top] = keys.top.value_or(coupling::FaceKeys{});
   return faces;
 }
 
@@ -44,8 +44,8 @@ const std::string face_forms =
     "periodic, no_slip, free_slip, law_of_the_wall, or with its numbers, for example {type: law_of_the_wall, "
     "coefficient: 8.36}, {type: navier_slip, slip_length: 1e-4} or {type: moving, velocity: [0.1, 0, 0]}";
 
-void check_axis(SectionVisitor& visit, const std::string& axis, const std::optional<Face>& both,
-                const std::optional<Face>& low, const std::optional<Face>& high) {
+void check_axis(SectionVisitor& visit, const std::string& axis, const std::optional<coupling::FaceKeys>& both,
+                const std::optional<coupling::FaceKeys>& low, const std::optional<coupling::FaceKeys>& high) {
   const std::string low_key = axis + "_low", high_key = axis + "_high";
   visit.require(!both || (!low && !high), low ? low_key : high_key,
                 fmt::format("the axis is given twice; give either {} or {} and {}", axis, low_key, high_key));
@@ -55,67 +55,14 @@ void check_axis(SectionVisitor& visit, const std::string& axis, const std::optio
   visit.require(high.has_value(), high_key, fmt::format("this face is missing; give one of {}", face_forms));
 }
 
-bool half_periodic(const std::optional<Face>& a, const std::optional<Face>& b) {
-  return a && b && (a->type == FaceType::periodic) != (b->type == FaceType::periodic);
+bool half_periodic(const std::optional<coupling::FaceKeys>& a, const std::optional<coupling::FaceKeys>& b) {
+  return a && b && (a->type == lbm::FaceType::periodic) != (b->type == lbm::FaceType::periodic);
 }
 
 }  // namespace
 
-// Not in the unnamed namespace, where argument-dependent lookup would not find it.
-static void describe(SectionVisitor& visit, Face& face) {
-  visit.choice<FaceType>(
-      "type", face.type,
-      {{FaceType::periodic, "periodic"},
-       {FaceType::no_slip, "no_slip"},
-       {FaceType::free_slip, "free_slip"},
-       {FaceType::moving, "moving", "no slip on a wall that moves, with a fluid in its plane"},
-       {FaceType::navier_slip, "navier_slip", "slip velocity = slip length x shear rate"},
-       {FaceType::law_of_the_wall, "law_of_the_wall", "slip velocity = coefficient x friction velocity"},
-       {FaceType::law_of_the_wall_as_printed, "law_of_the_wall_as_printed", "with coefficient 2.35"},
-       {FaceType::velocity_inlet, "velocity_inlet"},
-       {FaceType::pressure_outlet, "pressure_outlet"}},
-      {.meaning = "kind of face, by half-link rules unless on_node", .required = true});
-  const bool law = face.type == FaceType::law_of_the_wall;
-  const std::string of_the_law = "only a law_of_the_wall has a coefficient; remove it";
-  visit.flag("of_first_cell", face.of_first_cell,
-             {.meaning = "take the coefficient from the law of the wall at the first cell's centre, whose distance in "
-                         "wall units grows with the stress",
-              .only_if = {law, of_the_law}});
-  visit.real("coefficient", face.coefficient,
-             {.meaning = "slip velocity at the wall over the friction velocity",
-              .above = 0.0,
-              .only_if = {law && !face.of_first_cell,
-                          law ? "of_first_cell finds the coefficient; remove one of the two" : of_the_law}});
-  visit.real("slip_length", face.slip_length,
-             {.unit = "m",
-              .meaning = "from the wall to where the profile would come to rest",
-              .required = true,
-              .at_least = 0.0,
-              .example = 1e-4,
-              .only_if = {face.type == FaceType::navier_slip, "only a navier_slip wall has a slip length; remove it"}});
-  visit.flag("on_node", face.on_node,
-             {.meaning = "the wall runs through the outermost cell centres, not beyond them",
-              .only_if = {face.slips() && !face.of_first_cell,
-                          face.of_first_cell
-                              ? "of_first_cell needs the first cell half a cell from the wall; remove one of the two"
-                              : "only slip walls can stand on the cell centres; remove it"}});
-  visit.vec3("velocity", face.velocity,
-             {.unit = "m/s",
-              .meaning = "of the wall or of the fluid that enters",
-              .required = true,
-              .example = 0.1,
-              .only_if = {face.has_velocity(), "only a moving wall or a velocity_inlet has a velocity; remove it"}});
-  visit.section("oscillation", face.oscillation,
-                {.meaning = "dry grains only: on top of the velocity",
-                 .only_if = {face.type == FaceType::moving, "only a moving wall swings; remove it"}});
-  visit.real("pressure", face.pressure,
-             {.unit = "Pa",
-              .meaning = "above the reference pressure",
-              .only_if = {face.type == FaceType::pressure_outlet, "only a pressure_outlet has a pressure; remove it"}});
-}
-
 static void describe_boundaries(SectionVisitor& visit, BoundaryKeys& keys, bool with_fluid) {
-  const auto face = [&](const std::string& key, std::optional<Face>& value, const std::string& meaning) {
+  const auto face = [&](const std::string& key, std::optional<coupling::FaceKeys>& value, const std::string& meaning) {
     visit.section(key, value, {.meaning = meaning, .shorthand = "type"});
   };
   face("x", keys.x, "both faces across the stream; or x_low and x_high");
@@ -134,7 +81,7 @@ static void describe_boundaries(SectionVisitor& visit, BoundaryKeys& keys, bool 
   visit.require(!half_periodic(keys.x_low, keys.x_high), "x_low", together);
   visit.require(!half_periodic(keys.y_low, keys.y_high), "y_low", together);
   visit.require(!half_periodic(keys.bottom, keys.top), "bottom", together);
-  const std::pair<const char*, const std::optional<Face>*> by_axis[3][3] = {
+  const std::pair<const char*, const std::optional<coupling::FaceKeys>*> by_axis[3][3] = {
       {{"x", &keys.x}, {"x_low", &keys.x_low}, {"x_high", &keys.x_high}},
       {{"y", &keys.y}, {"y_low", &keys.y_low}, {"y_high", &keys.y_high}},
       {{"bottom", &keys.bottom}, {"top", &keys.top}, {"top", &keys.top}}};
@@ -142,9 +89,9 @@ static void describe_boundaries(SectionVisitor& visit, BoundaryKeys& keys, bool 
     for (const auto& [key, face_there] : by_axis[axis]) {
       visit.require(!*face_there || !(*face_there)->oscillation, key,
                     "only dry grains have walls that swing; remove the oscillation");
-      visit.require(!*face_there || (*face_there)->type != FaceType::moving || (*face_there)->velocity[axis] == 0.0,
-                    key,
-                    "a moving wall moves in its own plane; give it no velocity across, or make it a velocity_inlet");
+      visit.require(
+          !*face_there || (*face_there)->type != lbm::FaceType::moving || (*face_there)->velocity[axis] == 0.0, key,
+          "a moving wall moves in its own plane; give it no velocity across, or make it a velocity_inlet");
     }
 }
 

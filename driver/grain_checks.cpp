@@ -75,7 +75,7 @@ void check_walls(const Case& c, const io::YamlDocument& document) {
 
 void check_disks(const Case& c, const io::YamlDocument& document) {
   if (!c.disks) return;
-  if (c.domain.faces[y_low].type != FaceType::periodic)
+  if (c.domain.faces[y_low].type != lbm::FaceType::periodic)
     throw document.error("domain.boundaries", "disks move in the plane x-z; give y: periodic");
   if (gravity_vector(c.gravity).y() != 0.0)
     throw document.error("gravity.vector", "disks move in the plane x-z; give a vector in m/s^2 with 0 along y");

@@ -20,9 +20,9 @@ dem::LubricationParameters lubrication_parameters(const Case& c, std::size_t wal
   parameters.normal_cut_off = asked_for.normal_cut_off * c.domain.spacing;
   parameters.tangential_cut_off = asked_for.tangential_cut_off * c.domain.spacing;
   parameters.minimum_gap = asked_for.minimum_gap;
-  for (const Face& face : c.domain.faces)  // in the order of planes_of()
-    if (face.type != FaceType::periodic)
-      parameters.walls.push_back(face.type == FaceType::no_slip || face.type == FaceType::moving);
+  for (const coupling::FaceKeys& face : c.domain.faces)  // in the order of planes_of()
+    if (face.type != lbm::FaceType::periodic)
+      parameters.walls.push_back(face.type == lbm::FaceType::no_slip || face.type == lbm::FaceType::moving);
   parameters.walls.resize(walls, false);
   return parameters;
 }
@@ -31,10 +31,11 @@ dem::LubricationParameters lubrication_parameters(const Case& c, std::size_t wal
 std::vector<dem::Plane> planes_of(const Case& c, const PeriodicBox& box, const dem::ContactParameters& contact) {
   std::vector<dem::Plane> planes = dem::face_planes(box, contact);
   std::size_t number = 0;
-  for (const Face& face : c.domain.faces) {  // face_planes() has the same order and leaves out the periodic ones
-    if (face.type == FaceType::periodic) continue;
+  for (const coupling::FaceKeys& face :
+       c.domain.faces) {  // face_planes() has the same order and leaves out the periodic ones
+    if (face.type == lbm::FaceType::periodic) continue;
     dem::Plane& plane = planes[number++];
-    if (face.type != FaceType::moving) continue;
+    if (face.type != lbm::FaceType::moving) continue;
     plane.velocity = face.velocity;
     plane.oscillation = face.oscillation.value_or(dem::Oscillation{});
   }

@@ -40,9 +40,8 @@ double oscillation_speed(const std::optional<dem::Oscillation>& oscillation) {
 }
 
 bool is_open(const Case& c) {
-  return std::any_of(c.domain.faces.begin(), c.domain.faces.end(), [](const Face& face) {
-    return face.type == FaceType::velocity_inlet || face.type == FaceType::pressure_outlet;
-  });
+  return std::any_of(c.domain.faces.begin(), c.domain.faces.end(),
+                     [](const coupling::FaceKeys& face) { return lbm::is_open(face.type); });
 }
 
 // rho/rho_0 - 1 of a pressure in Pa: p = c_s^2 rho, c_s^2 = (dx/dt)^2/3.
@@ -53,8 +52,8 @@ double density_of_pressure(const Case& c, double pressure) {
 
 double outlet_deviation(const Case& c) {
   double largest = 0.0;
-  for (const Face& face : c.domain.faces)
-    if (face.type == FaceType::pressure_outlet)
+  for (const coupling::FaceKeys& face : c.domain.faces)
+    if (face.type == lbm::FaceType::pressure_outlet)
       largest = std::max(largest, std::abs(density_of_pressure(c, face.pressure)));
   return largest;
 }
@@ -97,7 +96,7 @@ double prescribed_speed(const Case& c) {
     for (const BedGrain& grain : grains.file) speed = std::max(speed, grain.velocity.norm());
     largest = std::max(largest, speed);
   }
-  for (const Face& face : c.domain.faces)
+  for (const coupling::FaceKeys& face : c.domain.faces)
     if (face.has_velocity()) largest = std::max(largest, face.velocity.norm() + oscillation_speed(face.oscillation));
   for (const dem::WallKeys& wall : c.walls)
     largest = std::max(largest, wall.velocity.norm() + oscillation_speed(wall.oscillation));

@@ -19,6 +19,9 @@ enum class FaceType {
   pressure_outlet   // fluid leaves (or enters) at a given density
 };
 
+// Lets fluid in or out.
+constexpr bool is_open(FaceType type) { return type == FaceType::velocity_inlet || type == FaceType::pressure_outlet; }
+
 // Slip velocity over friction velocity of a law_of_the_wall. Zhang et al. (2022) print 2.35; their own recipe, the
 // tangent of u+ = ln(y+)/0.41 + 5 at y+ = 10.8 taken to the wall, gives 8.36.
 constexpr double derived_slip_coefficient = 8.36, printed_slip_coefficient = 2.35;

@@ -29,9 +29,9 @@ TEST(CaseReader, ReadsWhatTheFileSays) {
   EXPECT_EQ(c.system, SystemKind::resolved);
   EXPECT_EQ(c.name, "small flume");
   EXPECT_EQ(cells_of(c.domain), (Index3{120, 21, 150}));
-  EXPECT_EQ(c.domain.faces[x_high].type, FaceType::periodic);
-  EXPECT_EQ(c.domain.faces[y_low], (Face{FaceType::law_of_the_wall, 2.35}));
-  EXPECT_EQ(c.domain.faces[top].type, FaceType::free_slip);
+  EXPECT_EQ(c.domain.faces[x_high].type, lbm::FaceType::periodic);
+  EXPECT_EQ(c.domain.faces[y_low], (coupling::FaceKeys{lbm::FaceType::law_of_the_wall, 2.35}));
+  EXPECT_EQ(c.domain.faces[top].type, lbm::FaceType::free_slip);
   EXPECT_EQ(c.fluid.smagorinsky_constant, 0.27);
   EXPECT_EQ(c.fluid.precision, coupling::Precision::single);
   EXPECT_EQ(*c.gravity.slope, 0.07);
@@ -68,9 +68,9 @@ TEST(CaseReader, ReadsEveryFormOfFacesGravityStepAndStart) {
                               "contact={damping: 0.09, attraction: none}",
                               "initial.fluid={log_profile: {bed_height: 0.05, shear_velocity: 0.06, roughness: 2e-4}}",
                               "grains.1.fixed=false", "grains.1.prescribed_angular_velocity=[0, 1, 0]"});
-  EXPECT_EQ(c.domain.faces[x_low].type, FaceType::no_slip);
-  EXPECT_EQ(c.domain.faces[x_high].type, FaceType::free_slip);
-  EXPECT_EQ(c.domain.faces[top], (Face{FaceType::law_of_the_wall, 8.36}));
+  EXPECT_EQ(c.domain.faces[x_low].type, lbm::FaceType::no_slip);
+  EXPECT_EQ(c.domain.faces[x_high].type, lbm::FaceType::free_slip);
+  EXPECT_EQ(c.domain.faces[top], (coupling::FaceKeys{lbm::FaceType::law_of_the_wall, 8.36}));
   EXPECT_EQ(gravity_vector(c.gravity), Vec3(0.1, 0, -9.8));
   EXPECT_EQ(c.gravity.mode, GravityMode::reduced);
   EXPECT_EQ(fluid_time_step(c), 0.05 * 0.5e-3);
@@ -149,7 +149,8 @@ TEST(CaseReader, ReadsEveryWallAndCollision) {
   EXPECT_EQ(c.domain.faces[x_high].pressure, 3.0);
   EXPECT_EQ(c.domain.faces[y_high].slip_length, 1e-4);
   EXPECT_TRUE(c.domain.faces[y_low].on_node);
-  EXPECT_EQ(c.domain.faces[bottom].type, FaceType::law_of_the_wall_as_printed);
+  EXPECT_EQ(c.domain.faces[bottom].type, lbm::FaceType::law_of_the_wall);
+  EXPECT_TRUE(c.domain.faces[bottom].as_printed);
   EXPECT_EQ(c.domain.faces[top].velocity, Vec3(0.1, 0, 0));
   EXPECT_EQ(c.fluid.collision, lbm::CollisionModel::trt);
   EXPECT_EQ(c.fluid.magic_parameter, 0.25);

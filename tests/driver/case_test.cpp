@@ -14,8 +14,9 @@ Case wide_bed() {
   Case c;
   c.domain.size = {0.120, 0.040, 0.0};
   c.domain.spacing = 0.5e-3;
-  c.domain.faces = {Face{FaceType::periodic}, Face{FaceType::periodic}, Face{FaceType::periodic},
-                    Face{FaceType::periodic}, Face{FaceType::no_slip},  Face{FaceType::free_slip}};
+  c.domain.faces = {coupling::FaceKeys{lbm::FaceType::periodic}, coupling::FaceKeys{lbm::FaceType::periodic},
+                    coupling::FaceKeys{lbm::FaceType::periodic}, coupling::FaceKeys{lbm::FaceType::periodic},
+                    coupling::FaceKeys{lbm::FaceType::no_slip},  coupling::FaceKeys{lbm::FaceType::free_slip}};
   c.fluid.density = 1000.0;
   c.fluid.kinematic_viscosity = 1e-6;
   c.fluid.time_step = 2e-5;
@@ -71,10 +72,10 @@ TEST(Case, TheVelocityEstimateKnowsSideWalls) {
   c.grains.clear();
   c.gravity.slope = 0.06;
   c.domain.size = Vec3(0.048, 0.0105, 0.036);
-  c.domain.faces[y_low].type = FaceType::law_of_the_wall;
-  c.domain.faces[y_high].type = FaceType::no_slip;
+  c.domain.faces[y_low].type = lbm::FaceType::law_of_the_wall;
+  c.domain.faces[y_high].type = lbm::FaceType::no_slip;
   EXPECT_NEAR(estimated_velocity(c), 0.988, 0.003);
-  c.domain.faces[y_high].type = FaceType::free_slip;
+  c.domain.faces[y_high].type = lbm::FaceType::free_slip;
   EXPECT_GT(estimated_velocity(c), 3.0);
 }
 

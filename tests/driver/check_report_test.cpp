@@ -10,7 +10,7 @@ namespace thalweg::driver {
 namespace {
 
 TEST(Cost, CountsCellsAndSteps) {
-  Case c = water_over_glass(5e-3, 0.016, 0.0412, 0.040, FaceType::periodic);
+  Case c = water_over_glass(5e-3, 0.016, 0.0412, 0.040, lbm::FaceType::periodic);
   c.domain.size = Vec3(0.120, 0.040, 0.106);
   const Cost cost = cost_of(c, 10e9);
   EXPECT_EQ(cost.cells, 240.0 * 80.0 * 212.0);
@@ -25,8 +25,21 @@ TEST(Cost, CountsCellsAndSteps) {
   EXPECT_GT(on_faster_memory.core_seconds, 0.5 * cost.core_seconds);  // the grains do not get faster
 }
 
+// A link takes 10 ns (docs/architecture.md) and up to four times that on other machines, and the sweep half of what that bandwidth allows: the
+// 1.6 million links of 1000 grains, 10 cells each, cost several times as much as the water without them.
+TEST(Cost, TakesAccountOfTheLinks) {
+  Case c = water_over_glass(5e-3, 0.016, 0.0412, 0.040, lbm::FaceType::periodic);
+  c.domain.size = Vec3(0.120, 0.040, 0.106);
+  const double with_grains = cost_of(c, 42e9).core_seconds;
+  c.grains.clear();
+  const double water = cost_of(c, 42e9).core_seconds;
+  EXPECT_NEAR(water, 1.5e6 * 240.0 * 80.0 * 212.0 * 152.0 / (0.5 * 42e9), 0.5 * water);
+  EXPECT_GT(with_grains - water, 1.5e6 * 1.58e6 * 10e-9);
+  EXPECT_LT(with_grains - water, 1.5e6 * (1.58e6 * 40e-9 + 50.0 * 1000.0 * 400e-9));
+}
+
 TEST(CheckReport, AsksForContactsAsLongAsSoundGoesAroundAGrain) {
-  Case c = water_over_glass(5e-3, 0.016, 0.0412, 0.040, FaceType::periodic);
+  Case c = water_over_glass(5e-3, 0.016, 0.0412, 0.040, lbm::FaceType::periodic);
   const auto line = [&c]() -> std::string {
     for (const std::string& text : check_report(c, 10e9))
       if (text.starts_with("rebound")) return text;

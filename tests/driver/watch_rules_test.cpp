@@ -59,8 +59,8 @@ TEST(WatchRules, MeanDensityIsLimitedByTheWeightOfAGrain) {
   Case empty = coarse;
   empty.grains.clear();
   EXPECT_NEAR(mean_density_limits(empty).warn, 0.01, 1e-15);
-  empty.domain.faces[x_low].type = FaceType::velocity_inlet;
-  empty.domain.faces[x_high].type = FaceType::pressure_outlet;
+  empty.domain.faces[x_low].type = lbm::FaceType::velocity_inlet;
+  empty.domain.faces[x_high].type = lbm::FaceType::pressure_outlet;
   empty.domain.faces[x_high].pressure = -83.3333;
   EXPECT_NEAR(mean_density_limits(empty).warn, 0.06, 1e-6);
   EXPECT_NEAR(mean_density_limits(empty).stop, 0.21, 1e-6);

@@ -8,7 +8,7 @@
 namespace thalweg::driver {
 
 // Water over glass spheres (2550 kg/m^3) of diameter d in a box that leaves `depth` above the settled bed.
-inline Case water_over_glass(double d, double slope, double depth, double width, FaceType sides) {
+inline Case water_over_glass(double d, double slope, double depth, double width, lbm::FaceType sides) {
   Case c;
   c.system = SystemKind::resolved;
   c.fluid.density = 1000.0;
@@ -22,13 +22,13 @@ inline Case water_over_glass(double d, double slope, double depth, double width,
   grains.density = 2550.0;
   c.grains = {grains};
   const double length = 24.0 * d;
-  const double fraction = width < 3.0 * d && sides != FaceType::periodic ? 0.554 : 0.6;
+  const double fraction = width < 3.0 * d && sides != lbm::FaceType::periodic ? 0.554 : 0.6;
   const double bed = 1000.0 * std::numbers::pi / 6.0 * d * d * d / (fraction * length * width);
   c.domain.size = Vec3(length, width, bed + depth);
   c.domain.spacing = 5e-4;
-  for (const FaceIndex face : {x_low, x_high}) c.domain.faces[face].type = FaceType::periodic;
+  for (const FaceIndex face : {x_low, x_high}) c.domain.faces[face].type = lbm::FaceType::periodic;
   for (const FaceIndex face : {y_low, y_high}) c.domain.faces[face].type = sides;
-  c.domain.faces[top].type = FaceType::free_slip;
+  c.domain.faces[top].type = lbm::FaceType::free_slip;
   c.contact.restitution = 0.93;
   c.run.until = 30.0;
   return c;

@@ -1,0 +1,37 @@
+// How a case describes a face of the box, in SI units, and what that is on the lattice.
+#pragma once
+
+#include "core/section_visitor.hpp"
+#include "core/units.hpp"
+#include "dem/motion_keys.hpp"
+#include "lbm/boundary.hpp"
+
+#include <array>
+#include <optional>
+
+namespace thalweg::coupling {
+
+struct FaceKeys {
+  lbm::FaceType type = lbm::FaceType::no_slip;
+  double coefficient = lbm::derived_slip_coefficient;  // law of the wall: U+ at the wall
+  bool of_first_cell = false;                          // law of the wall: lbm::slip_coefficient_at instead
+  bool as_printed = false;                             // law of the wall: with the coefficient of the paper, 2.35
+  double slip_length = 0.0;                            // m, navier_slip
+  bool on_node = false;                                // of the two slips: through the outermost cell centres
+  Vec3 velocity = Vec3::Zero();                        // m/s, moving and velocity_inlet
+  double pressure = 0.0;                               // Pa above the reference, pressure_outlet
+  std::optional<dem::Oscillation> oscillation = {};    // moving; dry grains only
+
+  bool slips() const { return type == lbm::FaceType::navier_slip || type == lbm::FaceType::law_of_the_wall; }
+  // Takes a share of the shear of a flow along it.
+  bool drags() const { return type == lbm::FaceType::no_slip || type == lbm::FaceType::moving || slips(); }
+  bool has_velocity() const { return type == lbm::FaceType::moving || type == lbm::FaceType::velocity_inlet; }
+  bool operator==(const FaceKeys& other) const;  // what the type does not use does not count
+};
+
+void describe(SectionVisitor& visit, FaceKeys& face);
+
+// In the order of lbm::FaceConditions.
+lbm::FaceConditions conditions_of(const std::array<FaceKeys, 6>& faces, const Units& units);
+
+}  // namespace thalweg::coupling
