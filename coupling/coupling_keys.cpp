@@ -63,7 +63,7 @@ void describe(SectionVisitor& visit, CouplingKeys& coupling, bool with_grains) {
   visit.section("virtual_mass", coupling.virtual_mass,
                 {.meaning = "for grains much lighter than the fluid: filters their load; {}"});
   visit.flag("grain_stress", coupling.grain_stress,
-             {.meaning = "measure the fluid's stress on every grain, for its pictures: fluid_stress"});
+             {.meaning = "measure the fluid's stress on every grain, for the VTK output: fluid_stress"});
   visit.flag("mass_balance", coupling.mass_balance,
              {.meaning = "show in series.csv which part of the link rule gives and takes the fluid's mass"});
 }

@@ -13,7 +13,7 @@
 #include "dem/material_keys.hpp"
 #include "dem/population.hpp"
 #include "dem/wall_keys.hpp"
-#include "io/fluid_series.hpp"
+#include "io/output_keys.hpp"
 #include "loop/out_of_bounds.hpp"
 
 #include <array>
@@ -90,35 +90,6 @@ struct RunCase {
   bool operator==(const RunCase&) const = default;
 };
 
-// every: s of simulated time; 0: never (checkpoint: only at the end of the run).
-struct SeriesOutputCase {
-  double every = 0.01;
-  bool operator==(const SeriesOutputCase&) const = default;
-};
-struct FluidOutputCase {
-  double every = 0.0;
-  io::FluidRegion region = io::FluidRegion::whole;
-  std::vector<io::FluidField> fields{io::FluidField::velocity, io::FluidField::pressure, io::FluidField::grain_id};
-  bool operator==(const FluidOutputCase&) const = default;
-};
-struct GrainOutputCase {
-  double every = 0.0;
-  bool operator==(const GrainOutputCase&) const = default;
-};
-struct CheckpointOutputCase {
-  double every = 0.0;
-  std::int64_t keep = 2;  // newest checkpoints that stay on the disk
-  bool operator==(const CheckpointOutputCase&) const = default;
-};
-
-struct OutputCase {
-  SeriesOutputCase series;
-  FluidOutputCase fluid;
-  GrainOutputCase grains;
-  CheckpointOutputCase checkpoint;
-  bool operator==(const OutputCase&) const = default;
-};
-
 // Columns of series.csv that the system itself measures; it has no keys.
 struct WallForcesCase {
   bool operator==(const WallForcesCase&) const = default;
@@ -151,7 +122,7 @@ struct Case {
   coupling::CouplingKeys coupling;
   InitialCase initial;
   RunCase run;
-  OutputCase output;
+  io::OutputKeys output;
   AnalysisCase analysis;
   bool operator==(const Case&) const = default;
 };

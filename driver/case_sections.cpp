@@ -92,53 +92,6 @@ static void describe_run(SectionVisitor& visit, RunCase& run, bool with_fluid, b
               .only_if = {!with_fluid, "with a fluid the step is fluid.time_step; remove the key"}});
 }
 
-static void describe(SectionVisitor& visit, SeriesOutputCase& series) {
-  visit.real("every", series.every, {.unit = "s", .meaning = "between rows of series.csv; 0: none", .at_least = 0.0});
-}
-
-static void describe(SectionVisitor& visit, FluidOutputCase& fluid) {
-  using io::FluidField;
-  using io::FluidRegion;
-  visit.real("every", fluid.every, {.unit = "s", .meaning = "between pictures of the fluid; 0: none", .at_least = 0.0});
-  visit.choice<FluidRegion>("region", fluid.region,
-                            {{FluidRegion::whole, "whole"},
-                             {FluidRegion::slice_x, "slice_x"},
-                             {FluidRegion::slice_y, "slice_y"},
-                             {FluidRegion::slice_z, "slice_z"}},
-                            {.meaning = "the whole box, or the middle layer of cells across an axis"});
-  visit.choice_list<FluidField>("fields", fluid.fields,
-                                {{FluidField::velocity, "velocity", "m/s"},
-                                 {FluidField::pressure, "pressure", "Pa above the reference"},
-                                 {FluidField::grain_id, "grain_id", "-1 in the fluid"},
-                                 {FluidField::density, "density", "kg/m^3"},
-                                 {FluidField::shear_rate, "shear_rate", "1/s, of the subgrid model"},
-                                 {FluidField::eddy_viscosity, "eddy_viscosity", "m^2/s, of the subgrid model"},
-                                 {FluidField::vorticity, "vorticity", "1/s"},
-                                 {FluidField::q_criterion, "q_criterion", "1/s^2, vortices where positive"}},
-                                {.meaning = "what the pictures show"});
-}
-
-static void describe(SectionVisitor& visit, GrainOutputCase& grains) {
-  visit.real("every", grains.every,
-             {.unit = "s", .meaning = "between pictures of the grains; 0: none", .at_least = 0.0});
-}
-
-static void describe(SectionVisitor& visit, CheckpointOutputCase& checkpoint) {
-  visit.real("every", checkpoint.every,
-             {.unit = "s", .meaning = "between checkpoints; 0: only at the end of the run", .at_least = 0.0});
-  visit.integer("keep", checkpoint.keep, {.meaning = "number of newest checkpoints that are kept", .at_least = 1});
-}
-
-static void describe_output(SectionVisitor& visit, OutputCase& output, bool with_fluid, bool with_grains) {
-  visit.section("series", output.series, {.meaning = "the table series.csv"});
-  visit.section("fluid", output.fluid,
-                {.meaning = "pictures of the fluid, fluid.pvd",
-                 .only_if = {with_fluid, "a run without fluid has no pictures of it; remove the section"}});
-  visit.section("grains", output.grains,
-                {.meaning = "pictures of the grains, grains.pvd", .only_if = only_with_grains(with_grains)});
-  visit.section("checkpoint", output.checkpoint, {.meaning = "states from which the run can be continued"});
-}
-
 static void describe(SectionVisitor&, WallForcesCase&) {}
 
 template <typename Keys>
@@ -214,7 +167,10 @@ void describe(SectionVisitor& visit, Case& c) {
   visit.section("run", {.meaning = "how long", .required = true},
                 [&](SectionVisitor& inside) { describe_run(inside, c.run, with_fluid, with_grains); });
   visit.section("output", {.meaning = "what the run writes, besides run.log and summary.json"},
-                [&](SectionVisitor& inside) { describe_output(inside, c.output, with_fluid, with_grains); });
+                [&](SectionVisitor& inside) {
+                  describe(inside, c.output,
+                           {with_fluid, "a run without fluid has no output of it; remove the section"}, of_grains);
+                });
   visit.section("analysis", {.meaning = "what is measured while the run goes"},
                 [&](SectionVisitor& inside) { describe_analysis(inside, c.analysis, with_fluid, with_grains); });
 }

@@ -41,10 +41,10 @@ void RunOutput::add_to(loop::LoopPlan& plan) {
   plan.checkpoint = Schedule(case_.output.checkpoint.every, time_step);
   plan.write_checkpoint = [this] { write_checkpoint(); };
   if (grains_)
-    plan.outputs.push_back({"grain pictures", Schedule(case_.output.grains.every, time_step),
+    plan.outputs.push_back({"grain output", Schedule(case_.output.grains.every, time_step),
                             [this](const Snapshot& snapshot) { grains_->write(snapshot); }});
   if (fluid_)
-    plan.outputs.push_back({"fluid pictures", Schedule(case_.output.fluid.every, time_step),
+    plan.outputs.push_back({"fluid output", Schedule(case_.output.fluid.every, time_step),
                             [this](const Snapshot& snapshot) { fluid_->write(snapshot); }});
   // With the looks at the system's health, so that nothing is written of a state that is broken.
   if (!records_.empty())

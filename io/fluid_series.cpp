@@ -216,7 +216,7 @@ void FluidSeries::agree(const std::function<void()>& work) const {
     failure = error.what();
   }
   if (any_rank(communicator_, !failure.empty()))
-    throw RunError(failure.empty() ? "the fluid's pictures cannot be written." : failure);
+    throw RunError(failure.empty() ? "the VTK output of the fluid cannot be written." : failure);
 }
 
 }  // namespace thalweg::io

@@ -1,4 +1,4 @@
-// The fluid as a time series for ParaView: cell data of an image, and fluid.pvd that gives each picture its time.
+// The fluid as a time series for ParaView: cell data of an image, and fluid.pvd that gives each frame its time.
 #pragma once
 
 #include "core/snapshot.hpp"

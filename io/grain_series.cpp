@@ -65,10 +65,10 @@ void add_values(vtkPolyData& points, const std::vector<Row>& rows, const char* n
   points.GetPointData()->AddArray(array);
 }
 
-vtkSmartPointer<vtkPolyData> picture_of(const std::vector<Row>& rows, bool with_fluid, bool with_clumps,
-                                        bool with_stress) {
+vtkSmartPointer<vtkPolyData> poly_data_of(const std::vector<Row>& rows, bool with_fluid, bool with_clumps,
+                                          bool with_stress) {
   const auto count = static_cast<vtkIdType>(rows.size());
-  auto picture = vtkSmartPointer<vtkPolyData>::New();
+  auto frame = vtkSmartPointer<vtkPolyData>::New();
   auto points = vtkSmartPointer<vtkPoints>::New();
   points->SetDataTypeToDouble();
   points->SetNumberOfPoints(count);
@@ -84,23 +84,23 @@ vtkSmartPointer<vtkPolyData> picture_of(const std::vector<Row>& rows, bool with_
     radius->SetValue(n, row.radius);
     speed->SetValue(n, Vec3(row.velocity[0], row.velocity[1], row.velocity[2]).norm());
   }
-  picture->SetPoints(points);
-  picture->SetVerts(vertices);
-  picture->GetPointData()->AddArray(id);
+  frame->SetPoints(points);
+  frame->SetVerts(vertices);
+  frame->GetPointData()->AddArray(id);
   if (with_clumps) {
     auto clump = new_array<vtkTypeInt64Array>("clump", 1, count);
     for (vtkIdType n = 0; n < count; ++n) clump->SetValue(n, rows[static_cast<std::size_t>(n)].clump);
-    picture->GetPointData()->AddArray(clump);
+    frame->GetPointData()->AddArray(clump);
   }
-  picture->GetPointData()->AddArray(radius);
-  picture->GetPointData()->AddArray(speed);
-  add_values(*picture, rows, "velocity", &Row::velocity);
-  add_values(*picture, rows, "angular_velocity", &Row::angular_velocity);
-  add_values(*picture, rows, "contact_force", &Row::contact_force);
-  add_values(*picture, rows, "contact_stress", &Row::contact_stress);
-  if (with_fluid) add_values(*picture, rows, "fluid_force", &Row::fluid_force);
-  if (with_stress) add_values(*picture, rows, "fluid_stress", &Row::fluid_stress);
-  return picture;
+  frame->GetPointData()->AddArray(radius);
+  frame->GetPointData()->AddArray(speed);
+  add_values(*frame, rows, "velocity", &Row::velocity);
+  add_values(*frame, rows, "angular_velocity", &Row::angular_velocity);
+  add_values(*frame, rows, "contact_force", &Row::contact_force);
+  add_values(*frame, rows, "contact_stress", &Row::contact_stress);
+  if (with_fluid) add_values(*frame, rows, "fluid_force", &Row::fluid_force);
+  if (with_stress) add_values(*frame, rows, "fluid_stress", &Row::fluid_stress);
+  return frame;
 }
 
 }  // namespace
@@ -118,9 +118,9 @@ void GrainSeries::write(const Snapshot& snapshot) {
     try {
       make_folder(folder_ / "grains");
       const auto file = std::filesystem::path("grains") / fmt::format("grains_{:09d}.vtp", snapshot.step);
-      const auto picture = picture_of(rows, with_fluid, snapshot.grains.clump_count > 0, with_stress);
+      const auto frame = poly_data_of(rows, with_fluid, snapshot.grains.clump_count > 0, with_stress);
       auto writer = vtkSmartPointer<vtkXMLPolyDataWriter>::New();
-      writer->SetInputData(picture);
+      writer->SetInputData(frame);
       write_vtk_file(*writer, folder_ / file);
       index_.add(snapshot.time, file);
     } catch (const RunError& error) {
@@ -128,7 +128,7 @@ void GrainSeries::write(const Snapshot& snapshot) {
     }
   }
   if (any_rank(communicator_, !failure.empty()))
-    throw RunError(failure.empty() ? "the grains' pictures cannot be written." : failure);
+    throw RunError(failure.empty() ? "the VTK output of the grains cannot be written." : failure);
 }
 
 }  // namespace thalweg::io

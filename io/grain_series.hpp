@@ -1,4 +1,4 @@
-// The grains as a time series for ParaView: one .vtp a picture, and grains.pvd that gives each its time.
+// The grains as a time series for ParaView: one .vtp a frame, and grains.pvd that gives each its time.
 #pragma once
 
 #include "core/snapshot.hpp"
@@ -18,7 +18,7 @@ namespace thalweg::io {
 // -1 for others). All calls are collective and throw RunError on every rank if a file cannot be written.
 class GrainSeries {
 public:
-  // continue_from: simulated time (s) at which a restarted run takes up an existing series; later pictures leave the
+  // continue_from: simulated time (s) at which a restarted run takes up an existing series; later frames leave the
   // index. Empty: a new series.
   GrainSeries(MPI_Comm communicator, const std::filesystem::path& run_folder,
               std::optional<double> continue_from = std::nullopt);

@@ -1,4 +1,4 @@
-// ParaView's list of the pictures of a series with their times: a .pvd file.
+// ParaView's list of the frames of a series with their times: a .pvd file.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +18,7 @@ public:
   // continue_from: read an existing index and keep its entries up to that time (s). Empty: start with none.
   PvdIndex(std::filesystem::path path, std::optional<double> continue_from);
 
-  // Adds a picture (in place of one of the same time) and rewrites the file in one atomic step. Throws RunError.
+  // Adds a frame (in place of one of the same time) and rewrites the file in one atomic step. Throws RunError.
   // Called by one rank.
   void add(double time, const std::filesystem::path& file);
 

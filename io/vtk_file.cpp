@@ -19,7 +19,7 @@ void write_vtk_file(vtkXMLWriter& writer, const std::filesystem::path& path) {
   writer.SetCompressionLevel(1);     // half the time of the default level 5, and half a per cent more bytes
   if (writer.Write() == 0 || writer.GetErrorCode() != 0)
     throw RunError(
-        fmt::format("{}: cannot write the picture; is the disk full or the folder write-protected?", path.string()));
+        fmt::format("{}: cannot write the file; is the disk full or the folder write-protected?", path.string()));
   rename_into_place(partial, path);
 }
 

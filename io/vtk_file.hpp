@@ -9,7 +9,7 @@
 
 namespace thalweg::io {
 
-// Writes through a temporary name, so that a viewer never opens half a picture. Throws RunError.
+// Writes through a temporary name, so that a viewer never opens half a file. Throws RunError.
 void write_vtk_file(vtkXMLWriter& writer, const std::filesystem::path& path);
 
 // An empty array of `tuples` tuples of `components` values each.

@@ -25,7 +25,7 @@ namespace thalweg::loop {
 
 using WallClock = std::chrono::steady_clock;
 
-// Something done with the state at regular simulated times, e.g. writing a picture.
+// Something done with the state at regular simulated times, e.g. writing VTK output.
 struct OutputTask {
   std::string phase;  // its line in the table of phases
   Schedule schedule;
@@ -48,7 +48,7 @@ struct LoopPlan {
   OutOfBounds out_of_bounds = OutOfBounds::stop;     // what becomes of the run if it does
   double walltime = 0.0;                             // s of wall time from `started` on; 0: as long as it takes
   WallClock::time_point started = WallClock::now();  // of the program
-  bool write_at_start = true;                        // false where a run goes on: its first picture exists already
+  bool write_at_start = true;                        // false where a run goes on: its first frame exists already
   Schedule series;                                   // when observers measure and a row of figures is written
   Schedule checkpoint;                               // a last one is written in any case
   SeriesRow write_row;                               // none: not written

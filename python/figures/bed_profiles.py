@@ -2,7 +2,7 @@
 """Means over the height of a bed, as fig. 7(a) of Zhang et al. (2022): bed_profiles.py RUN_FOLDER [options]
 
 Reads profiles.h5 (analysis.grain_profiles, and analysis.fluid_statistics where it is there) and, for the stress of the fluid on
-the grains, their pictures (coupling.grain_stress). Heights are from the surface by solid fraction. With
+the grains, their frames (coupling.grain_stress). Heights are from the surface by solid fraction. With
 analysis.stress_balance it draws the stresses of that, the total and the line of the driving force, to which the total comes,
 with what side walls take, in steady flow. Without, and without side walls, it draws the driving stress, the weight along the
 slope of all that is above, and what is left of it for the fluid.
@@ -66,8 +66,8 @@ def stresses(run):
         reynolds = -run.case["fluid"]["density"] * share * component(fluid, "reynolds_stress", "xz")
         found.append(("fluid: resolved eddies", fluid["z"], reynolds))
     if len(run.grains) and "fluid_stress" in run.grains[-1].arrays:
-        pictures = layer_profiles(run, start=run.averaged_from("grain_profiles"))
-        found.append(("rotation stress", pictures["z"], pictures["rotation_stress"]))
+        frames = layer_profiles(run, start=run.averaged_from("grain_profiles"))
+        found.append(("rotation stress", frames["z"], frames["rotation_stress"]))
     return found
 
 

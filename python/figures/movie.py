@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """A film of the side view: movie.py RUN_FOLDER [--out FILE] [--from S] [--to S] [--every S] [--rate N]
 
-FILE ends in .gif, or in .mp4 where ffmpeg is installed; a folder takes numbered pictures instead. The scales of the colours
-are the same in all pictures. A film has as many pictures as the run (output.grains.every).
+FILE ends in .gif, or in .mp4 where ffmpeg is installed; a folder takes numbered images instead. The scales of the colours
+are the same in all images. A film has as many images as the run has frames (output.grains.every).
 """
 import argparse
 import shutil
@@ -20,19 +20,19 @@ from thalweg import drawing
 
 
 def chosen_frames(run, start, stop, every):
-    """The pictures between two times (s), one in every so many seconds."""
+    """The frames between two times (s), one in every so many seconds."""
     frames, found, due = run.grains.between(start, stop), [], -np.inf
     for k, time in enumerate(frames.times):
         if time >= due - 1e-9:
             found.append(frames[k])
             due = time + every
     if not found:
-        raise thalweg.RunFolderError(f"{run.folder}: there is no picture of the grains in this time.")
+        raise thalweg.RunFolderError(f"{run.folder}: there is no frame of the grains in this time.")
     return found
 
 
 def scales(run, frames):
-    """Ends of the scales (m/s) of grains and fluid that a dozen of the pictures call for."""
+    """Ends of the scales (m/s) of grains and fluid that a dozen of the frames call for."""
     some = frames[::max(1, len(frames) // 12)]
     speeds = np.concatenate([np.linalg.norm(f.velocity, axis=1) for f in some])
     layers = [drawing.fluid_slice(f) for f in (run.fluid.nearest(f.time) for f in some) if f]
@@ -40,7 +40,7 @@ def scales(run, frames):
             max((layer[0].max() for layer in layers if layer), default=None))
 
 
-def pictures(run, frames, width):
+def images(run, frames, width):
     """RGB arrays of the figures, all of the same even size."""
     speed, flow = scales(run, frames)
     scale = width / max(run.size[0], run.size[2])   # pixels per metre: the axes take most of the width
@@ -74,23 +74,23 @@ def main():
     parser.add_argument("--out", type=Path, default=Path("movie.gif"))
     parser.add_argument("--from", dest="start", type=float, default=-np.inf)
     parser.add_argument("--to", dest="stop", type=float, default=np.inf)
-    parser.add_argument("--every", type=float, default=0.0, help="s between pictures (default: all)")
-    parser.add_argument("--rate", type=float, default=20.0, help="pictures a second")
+    parser.add_argument("--every", type=float, default=0.0, help="s between frames (default: all)")
+    parser.add_argument("--rate", type=float, default=20.0, help="images a second")
     parser.add_argument("--width", type=int, default=900, help="pixels")
     arguments = parser.parse_args()
     try:
         run = thalweg.Run(arguments.run)
-        images = pictures(run, chosen_frames(run, arguments.start, arguments.stop, arguments.every), arguments.width)
+        rendered = images(run, chosen_frames(run, arguments.start, arguments.stop, arguments.every), arguments.width)
         if arguments.out.suffix == ".mp4":
             if not shutil.which("ffmpeg"):
                 raise thalweg.RunFolderError(f"{arguments.out}: ffmpeg is not installed; give a .gif or a folder.")
-            write_mp4(images, arguments.out, arguments.rate)
+            write_mp4(rendered, arguments.out, arguments.rate)
         elif arguments.out.suffix == ".gif":
-            write_gif(images, arguments.out, arguments.rate)
+            write_gif(rendered, arguments.out, arguments.rate)
         else:
             arguments.out.mkdir(parents=True, exist_ok=True)
-            for number, image in enumerate(images):
-                plt.imsave(arguments.out / f"picture_{number:05d}.png", image)
+            for number, image in enumerate(rendered):
+                plt.imsave(arguments.out / f"image_{number:05d}.png", image)
     except thalweg.RunFolderError as error:
         print(f"movie: {error}", file=sys.stderr)
         return 1

@@ -23,14 +23,14 @@ def main():
     parser.add_argument("runs", nargs="+", type=Path, metavar="RUN_FOLDER")
     parser.add_argument("--from", dest="start", type=float, default=-np.inf, help="s, beginning of the means")
     parser.add_argument("--to", dest="stop", type=float, default=np.inf, help="s, their end")
-    parser.add_argument("--pictures", type=int, default=50, help="how many are evaluated at most")
+    parser.add_argument("--frames", type=int, default=50, help="how many are evaluated at most")
     parser.add_argument("--out", default="visible_grains.png")
     arguments = parser.parse_args()
     figure, axes = plt.subplots(1, 3, figsize=(10, 4), sharey=True, layout="constrained")
     try:
         for folder in arguments.runs:
             run = thalweg.Run(folder)
-            means = visible_profiles(run, arguments.start, arguments.stop, pictures=arguments.pictures)
+            means = visible_profiles(run, arguments.start, arguments.stop, most_frames=arguments.frames)
             z = means["z"] / run.diameter
             axes[0].plot(means["areal_fraction"], z, "o-", ms=3, lw=0.8, label=run.name)
             axes[1].semilogx(np.where(means["velocity"][:, 0] > 0, means["velocity"][:, 0], np.nan), z, "o-", ms=3, lw=0.8)

@@ -23,7 +23,7 @@ def surface_by_solid_fraction(z, fraction):
 
 def bed_height(run, start=-np.inf, stop=np.inf):
     """Height (m) of the surface by solid fraction, from profiles.h5 or, if it has none or times (s) are given, from the
-    pictures between them, in layers of a quarter of a diameter."""
+    frames between them, in layers of a quarter of a diameter."""
     if "grain_profiles" in run.profiles and not np.isfinite([start, stop]).any():
         profiles = run.profiles["grain_profiles"]
     else:
@@ -31,12 +31,12 @@ def bed_height(run, start=-np.inf, stop=np.inf):
     return surface_by_solid_fraction(profiles["z"], profiles["solid_fraction"])
 
 
-def static_bed_height(run, start=-np.inf, stop=np.inf, pictures=10):
+def static_bed_height(run, start=-np.inf, stop=np.inf, frames=10):
     """Height (m) of the surface by static pixels, the mean over that many times between two (s)."""
     times = run.grains.between(start, stop).times
     if len(times) == 0:
-        raise RunFolderError(f"{run.folder}: there is no picture of the grains between {start:g} and {stop:g} s.")
-    chosen = np.unique(np.linspace(0, len(times) - 1, pictures).astype(int))
+        raise RunFolderError(f"{run.folder}: there is no frame of the grains between {start:g} and {stop:g} s.")
+    chosen = np.unique(np.linspace(0, len(times) - 1, frames).astype(int))
     return float(np.mean([static_surface(run, times[k]).mean for k in chosen]))
 
 

@@ -12,7 +12,7 @@ PIXELS_PER_DIAMETER = 48
 
 
 def fluid_slice(frame):
-    """Speed (m/s; masked inside grains) in the middle layer across y as [z, x], and its extent in m; None if the picture is
+    """Speed (m/s; masked inside grains) in the middle layer across y as [z, x], and its extent in m; None if the frame is
     not one of the velocity in the x-z plane."""
     cells = frame.arrays
     if "velocity" not in cells or 1 in (cells["velocity"].shape[0], cells["velocity"].shape[2]):
@@ -106,8 +106,8 @@ def largest_speed_of(speed, diameter):
 
 
 def bed_figure(run, frame, fluid=None, largest_speed=None, largest_flow=None, scale=None):
-    """A figure of the grains, coloured by speed, before the fluid's speed in the middle plane (`fluid`: its picture).
-    largest_speed, largest_flow: ends of the scales in m/s, of this picture if None. scale: pixels per metre."""
+    """A figure of the grains, coloured by speed, before the fluid's speed in the middle plane (`fluid`: its frame).
+    largest_speed, largest_flow: ends of the scales in m/s, of this frame if None. scale: pixels per metre."""
     size = run.size
     speed = np.linalg.norm(frame.velocity, axis=1)
     if largest_speed is None:
@@ -136,7 +136,7 @@ def flow_figure(run, fluid):
     """A figure of the fluid's speed in the middle plane."""
     layer = fluid_slice(fluid) if fluid else None
     if layer is None:
-        raise RunFolderError(f"{run.folder}: no picture of the velocity yet (output.fluid in the case).")
+        raise RunFolderError(f"{run.folder}: no frame of the velocity yet (output.fluid in the case).")
     figure, axes, bars = side_view_axes(run.size)
     draw_water(figure, axes, bars[0], layer)
     bars[1].remove()

@@ -1,4 +1,4 @@
-"""Pictures of grains and fluid, read when they are asked for."""
+"""Frames of grains and fluid, read when they are asked for."""
 from collections.abc import Sequence
 from functools import cached_property
 
@@ -26,7 +26,7 @@ class GrainFrame:
     def arrays(self):
         position, arrays = read_points(self.path)
         if len(position) == 0:
-            raise RunFolderError(f"{self.path}: there are no grains in this picture.")
+            raise RunFolderError(f"{self.path}: there are no grains in this frame.")
         arrays = {name: values.reshape(-1, 3, 3) if name.endswith("_stress") else values
                   for name, values in arrays.items()}
         return Columns({"position": position, **arrays}, GRAIN_UNITS)
@@ -81,7 +81,7 @@ class FluidFrame:
 
 
 class Frames(Sequence):
-    """The pictures of a .pvd index in their order; `times` in s. A slice is a series as well."""
+    """The frames of a .pvd index in their order; `times` in s. A slice is a series as well."""
 
     def __init__(self, entries, kind):
         self._entries, self._kind = entries, kind
@@ -100,18 +100,18 @@ class Frames(Sequence):
         return self._kind(*self._entries[which])
 
     def nearest(self, time):
-        """The picture nearest to a time in s; the last one if it is None; None if there is none."""
+        """The frame nearest to a time in s; the last one if it is None; None if there is none."""
         if not self._entries:
             return None
         return self[-1 if time is None else int(np.argmin(np.abs(self.times - time)))]
 
     def between(self, start=-np.inf, stop=np.inf):
-        """The pictures of start <= time <= stop (s), to a billionth of a second."""
+        """The frames of start <= time <= stop (s), to a billionth of a second."""
         return Frames([e for e in self._entries if start - 1e-9 <= e[0] <= stop + 1e-9], self._kind)
 
 
 def trajectory(frames, grain=0):
-    """Times (s), positions (m) and velocities (m/s) of one grain, by its place in the pictures: that of its id, unless
+    """Times (s), positions (m) and velocities (m/s) of one grain, by its place in the frames: that of its id, unless
     grains were lost."""
     states = [(frame.time, frame.position[grain], frame.velocity[grain]) for frame in frames]
     times, positions, velocities = (np.array(column) for column in zip(*states))

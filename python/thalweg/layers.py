@@ -1,7 +1,7 @@
-"""Layer means of grains, from pictures, with the exact volume of every sphere in every layer.
+"""Layer means of grains, from frames, with the exact volume of every sphere in every layer.
 
 The quantities are those of `analysis.grain_profiles`, which gathers them in the run and should be preferred for means over
-time; this is for pictures that are there already, and for heights measured from a surface that moves.
+time; this is for frames that are there already, and for heights measured from a surface that moves.
 """
 import numpy as np
 
@@ -36,18 +36,18 @@ def layer_edges(bottom, top, thickness):
 
 
 class LayerSums:
-    """Sums over pictures of what the grains bring into layers; profiles() makes means of them. Lengths in m."""
+    """Sums over frames of what the grains bring into layers; profiles() makes means of them. Lengths in m."""
 
     def __init__(self, edges, area):
         self.edges, self.layer_volumes = np.asarray(edges, float), area * np.diff(edges)
         layers = len(edges) - 1
-        self.pictures, self.volume = 0, np.zeros(layers)
+        self.frames, self.volume = 0, np.zeros(layers)
         self.momentum, self.square = np.zeros((layers, 3)), np.zeros(layers)
         self.stresses = {}
 
     def add(self, frame):
         part = parts_in_layers(self.edges, frame.position[:, 2], frame.radius)
-        self.pictures += 1
+        self.frames += 1
         self.volume += part.sum(axis=1)
         self.momentum += part @ frame.velocity
         self.square += part @ np.sum(frame.velocity**2, axis=1)
@@ -58,11 +58,11 @@ class LayerSums:
 
     def profiles(self):
         """Columns over z, the middle of the layers: solid fraction, velocity (NaN where no grain was), flux, granular
-        temperature (sum V |v|^2/sum V - |U|^2)/3 over grains and pictures, stresses weighted with the solid fraction, and of
+        temperature (sum V |v|^2/sum V - |U|^2)/3 over grains and frames, stresses weighted with the solid fraction, and of
         the fluid's on grains the rotation stress sigma_xz - sigma_zx (Zhang et al. 2022, sec. 2.4)."""
-        if self.pictures == 0:
-            raise RunFolderError("there is no picture of the grains in this time.")
-        whole = self.pictures * self.layer_volumes
+        if self.frames == 0:
+            raise RunFolderError("there is no frame of the grains in this time.")
+        whole = self.frames * self.layer_volumes
         volume = np.where(self.volume > 1e-9 * whole, self.volume, np.nan)
         velocity = self.momentum / volume[:, None]
         found = {"z": 0.5 * (self.edges[1:] + self.edges[:-1]), "solid_fraction": self.volume / whole,
@@ -76,7 +76,7 @@ class LayerSums:
 
 
 def layer_profiles(run, start=-np.inf, stop=np.inf, thickness=None):
-    """Profiles over the height of the box from the pictures between two times (s); layers of half a diameter if no
+    """Profiles over the height of the box from the frames between two times (s); layers of half a diameter if no
     thickness (m) is given."""
     edges = layer_edges(0.0, run.size[2], thickness or 0.5 * run.diameter)
     sums = LayerSums(edges, run.size[0] * run.size[1])

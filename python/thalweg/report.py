@@ -14,7 +14,7 @@ from thalweg.layers import layer_profiles
 from thalweg.means import is_steady, mean_with_error
 from thalweg.visible_profiles import visible_profiles
 
-VISIBLE_PICTURES = 20   # the most that are looked at pixel by pixel
+VISIBLE_FRAMES = 20   # the most that are looked at pixel by pixel
 
 
 class Report:
@@ -131,7 +131,7 @@ def describe_camera(report):
         return
     static = bed.static_bed_height(run, report.start, report.stop)
     describe_surface(report, "surface_by_static_pixels", "static", static)
-    report.profiles["visible_grains"] = visible_profiles(run, report.start, report.stop, pictures=VISIBLE_PICTURES)
+    report.profiles["visible_grains"] = visible_profiles(run, report.start, report.stop, most_frames=VISIBLE_FRAMES)
 
 
 def report_of(run, start=None, stop=None):

@@ -52,12 +52,12 @@ class Run:
 
     @cached_property
     def grains(self):
-        """Pictures of the grains."""
+        """Frames of the grains."""
         return Frames.of_index(self.folder / "grains.pvd", GrainFrame)
 
     @cached_property
     def fluid(self):
-        """Pictures of the fluid."""
+        """Frames of the fluid."""
         return Frames.of_index(self.folder / "fluid.pvd", FluidFrame)
 
     @cached_property
@@ -149,7 +149,7 @@ class Run:
         if isinstance(diameter, (int, float)):
             return float(diameter)
         if not self.grains:
-            raise RunFolderError(f"{self.folder}: the case has no single diameter and there is no picture of the grains.")
+            raise RunFolderError(f"{self.folder}: the case has no single diameter and there is no frame of the grains.")
         sizes = np.sort(self.grains[0].diameter)
         return float(sizes[np.searchsorted(np.cumsum(sizes**3), 0.5 * np.sum(sizes**3))])
 

@@ -60,16 +60,16 @@ class Surface(NamedTuple):
 
 
 def static_surface(run, time=None, duration=AT_REST):
-    """Surface of the bed at a time in s (the last picture if None): the outline, from above, of the pixels that showed the
-    same grain in all pictures of the `duration` (s) around it, or at the ends of a run before or after it."""
+    """Surface of the bed at a time in s (the last frame if None): the outline, from above, of the pixels that showed the
+    same grain in all frames of the `duration` (s) around it, or at the ends of a run before or after it."""
     times = run.grains.times
     if len(times) < 2 or times[-1] - times[0] < duration:
-        raise RunFolderError(f"{run.folder}: static pixels need pictures of the grains over {duration:g} s.")
+        raise RunFolderError(f"{run.folder}: static pixels need frames of the grains over {duration:g} s.")
     middle = times[-1] if time is None else time
     start = min(max(middle - duration / 2, times[0]), times[-1] - duration)
     window = run.grains.between(start, start + duration)
     if len(window) < 3:
-        raise RunFolderError(f"{run.folder}: static pixels need three pictures of the grains in {duration:g} s; "
+        raise RunFolderError(f"{run.folder}: static pixels need three frames of the grains in {duration:g} s; "
                              f"set output.grains.every to {duration / 5:g} s or less.")
     return surface_of(window, run.size, PIXEL * run.diameter, run.periodic[0])
 

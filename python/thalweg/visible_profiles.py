@@ -10,17 +10,17 @@ UNITS = {"z": "m", "areal_fraction": "1", "velocity": "m/s", "temperature": "m^2
 
 
 class VisibleSums:
-    """Sums over pictures of the visible grains in layers; edges in m from the surface, length of the box in m.
+    """Sums over frames of the visible grains in layers; edges in m from the surface, length of the box in m.
 
     Zhang et al. (2022), sec. 2.2: the height of a grain is that of its centre over the surface below it; the areal fraction
     is that of the visible disks, the velocity that of a layer's momentum. The temperature is half the variance of the two
-    velocities in the picture's plane about the mean of the layer in the same picture.
+    velocities in the frame's plane about the mean of the layer in the same frame.
     """
 
     def __init__(self, edges, length):
         self.edges, self.length = np.asarray(edges, float), length
         layers = len(edges) - 1
-        self.pictures, self.area = 0, np.zeros(layers)
+        self.frames, self.area = 0, np.zeros(layers)
         self.momentum, self.deviation = np.zeros((layers, 2)), np.zeros(layers)
 
     def add(self, frame, surface):
@@ -29,7 +29,7 @@ class VisibleSums:
         height = position[:, 2] - surface.at(position[:, 0], self.length)
         part = parts_in_layers(self.edges, height, radius, disk_below)
         area, momentum = part.sum(axis=1), part @ velocity
-        self.pictures += 1
+        self.frames += 1
         self.area += area
         self.momentum += momentum
         mean = momentum / np.where(area > 0.0, area, 1.0)[:, None]
@@ -37,20 +37,20 @@ class VisibleSums:
 
     def profiles(self):
         """Columns over z: areal fraction, velocity (x, z) and temperature, NaN where no grain was seen."""
-        if self.pictures == 0:
-            raise RunFolderError("there is no picture of the grains in this time.")
+        if self.frames == 0:
+            raise RunFolderError("there is no frame of the grains in this time.")
         area = np.where(self.area > 0.0, self.area, np.nan)
-        whole = self.pictures * self.length * np.diff(self.edges)
+        whole = self.frames * self.length * np.diff(self.edges)
         return Columns({"z": 0.5 * (self.edges[1:] + self.edges[:-1]), "areal_fraction": self.area / whole,
                         "velocity": self.momentum / area[:, None], "temperature": 0.5 * self.deviation / area}, UNITS)
 
 
-def visible_profiles(run, start=-np.inf, stop=np.inf, thickness=None, pictures=None):
-    """Profiles from the pictures between two times (s), or from so many of them; layers of half a diameter from twelve
+def visible_profiles(run, start=-np.inf, stop=np.inf, thickness=None, most_frames=None):
+    """Profiles from the frames between two times (s), or from so many of them; layers of half a diameter from twelve
     diameters below the surface to six above if no thickness (m) is given."""
     frames = run.grains.between(start, stop)
-    chosen = range(len(frames)) if pictures is None or len(frames) <= pictures else np.unique(
-        np.linspace(0, len(frames) - 1, pictures).astype(int))
+    chosen = range(len(frames)) if most_frames is None or len(frames) <= most_frames else np.unique(
+        np.linspace(0, len(frames) - 1, most_frames).astype(int))
     step = thickness or 0.5 * run.diameter
     below, above = (round(n * run.diameter / step) for n in (12.0, 6.0))
     sums = VisibleSums(step * np.arange(-below, above + 1), run.size[0])

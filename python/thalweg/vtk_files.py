@@ -45,7 +45,7 @@ class Appended:
 def open_file(path):
     """The XML tree of a file and its appended section (None without one)."""
     if not path.exists():
-        raise RunFolderError(f"{path}: the picture its index names does not exist.")
+        raise RunFolderError(f"{path}: the frame its index names does not exist.")
     content = path.read_bytes()
     mark = content.find(b"<AppendedData")
     if mark < 0:

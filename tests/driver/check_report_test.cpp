@@ -25,8 +25,9 @@ TEST(Cost, CountsCellsAndSteps) {
   EXPECT_GT(on_faster_memory.core_seconds, 0.5 * cost.core_seconds);  // the grains do not get faster
 }
 
-// A link takes 10 ns (docs/architecture.md) and up to four times that on other machines, and the sweep half of what that bandwidth allows: the
-// 1.6 million links of 1000 grains, 10 cells each, cost several times as much as the water without them.
+// A link takes 10 ns (docs/architecture.md) and up to four times that on other machines, and the sweep half of what
+// that bandwidth allows: the 1.6 million links of 1000 grains, 10 cells each, cost several times as much as the water
+// without them.
 TEST(Cost, TakesAccountOfTheLinks) {
   Case c = water_over_glass(5e-3, 0.016, 0.0412, 0.040, lbm::FaceType::periodic);
   c.domain.size = Vec3(0.120, 0.040, 0.106);

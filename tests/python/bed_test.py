@@ -74,7 +74,7 @@ class Layers(made_up.MadeUpFolder):
         self.assertAlmostEqual(bed.shields_number(run, height), exact, 12)
 
     def test_the_surface_by_static_pixels(self):
-        # Layers at rest end 8 d high; on them a layer that slides by a diameter between pictures, and one grain that flies.
+        # Layers at rest end 8 d high; on them a layer that slides by a diameter between frames, and one grain that flies.
         # The outline of spheres side by side is below their tops by 1 - pi/4 of half a diameter in the mean.
         still = self.bed_of_layers(8)
         moving = self.bed_of_layers(9)[-200:]
@@ -83,11 +83,11 @@ class Layers(made_up.MadeUpFolder):
         for n, places in enumerate(frames):
             places[len(still) - 1, 0] = (0.06 + 0.01 * n) % SIZE[0]
         self.write_frames(np.arange(11) * 0.1, frames)
-        height = bed.static_bed_height(thalweg.Run(self.folder), pictures=3) / D
+        height = bed.static_bed_height(thalweg.Run(self.folder), frames=3) / D
         self.assertLess(height, 8.0)
         self.assertGreater(height, 8.0 - 0.5 * (1 - np.pi / 4) - 2 / 25)
 
-    def test_static_pixels_need_pictures(self):
+    def test_static_pixels_need_frames(self):
         self.write_frames((0.0, 0.3), [self.bed_of_layers(2)] * 2)
         with self.assertRaisesRegex(thalweg.RunFolderError, "over 0.5 s"):
             bed.static_bed_height(thalweg.Run(self.folder))

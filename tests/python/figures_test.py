@@ -96,7 +96,7 @@ class Figures(made_up.MadeUpFolder):
             self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual((self.folder / "film.gif").read_bytes()[:3], b"GIF")
         self.assertEqual(len(list((self.folder / "film").glob("*.png"))), 4)   # at 0, 0.2, 0.4, 0.6 s
-        self.refused(self.script("movie.py", "--from", "5"), "no picture of the grains in this time")
+        self.refused(self.script("movie.py", "--from", "5"), "no frame of the grains in this time")
 
 
 if __name__ == "__main__":

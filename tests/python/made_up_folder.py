@@ -35,7 +35,7 @@ class MadeUpFolder(unittest.TestCase):
         (self.folder / "case.yaml").write_text(CASE)
 
     def write_frames(self, times, places, **arrays):
-        """grains.pvd and its pictures: positions, and arrays by name, at each time."""
+        """grains.pvd and its frames: positions, and arrays by name, at each time."""
         names = []
         for n, time in enumerate(times):
             names.append((time, f"grains/grains_{n}.vtp"))

@@ -36,7 +36,7 @@ class Report(made_up.MadeUpFolder):
         self.assertAlmostEqual(report.numbers["q_star"]["deviation"], 0.02 / np.sqrt(2), 4)
         self.assertTrue(report.numbers["q_star"]["steady"])
         self.assertEqual(report.numbers["moving_grains"]["mean"], 5.0)
-        # No pictures: said, and no table.
+        # No frames: said, and no table.
         self.assertTrue(any(line.startswith("surface") and "left out" in line for line in report.lines))
         self.assertEqual(report.profiles, {})
 

@@ -1,0 +1,44 @@
+// What a case says about output files: the section `output`.
+#pragma once
+
+#include "core/section_visitor.hpp"
+#include "io/fluid_series.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace thalweg::io {
+
+// every: s of simulated time; 0: never (checkpoint: only at the end of the run).
+struct SeriesOutputKeys {
+  double every = 0.01;
+  bool operator==(const SeriesOutputKeys&) const = default;
+};
+struct FluidOutputKeys {
+  double every = 0.0;
+  FluidRegion region = FluidRegion::whole;
+  std::vector<FluidField> fields{FluidField::velocity, FluidField::pressure, FluidField::grain_id};
+  bool operator==(const FluidOutputKeys&) const = default;
+};
+struct GrainOutputKeys {
+  double every = 0.0;
+  bool operator==(const GrainOutputKeys&) const = default;
+};
+struct CheckpointOutputKeys {
+  double every = 0.0;
+  std::int64_t keep = 2;  // newest checkpoints that stay on the disk
+  bool operator==(const CheckpointOutputKeys&) const = default;
+};
+
+struct OutputKeys {
+  SeriesOutputKeys series;
+  FluidOutputKeys fluid;
+  GrainOutputKeys grains;
+  CheckpointOutputKeys checkpoint;
+  bool operator==(const OutputKeys&) const = default;
+};
+
+// of_fluid, of_grains: the case has a fluid, or grains, whose output can be asked for.
+void describe(SectionVisitor& visit, OutputKeys& output, const OnlyIf& of_fluid, const OnlyIf& of_grains);
+
+}  // namespace thalweg::io
