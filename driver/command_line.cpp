@@ -20,6 +20,7 @@ constexpr const char* examples = R"(Examples:
   mpirun -n 4 thalweg run case.yaml --out run/a --restart run/a --until 60
   thalweg info run/a                                   how far it has come
   thalweg analyze run/a --from 4                       transport, surface and profiles of what it has stored
+  thalweg sweep slopes.yaml                            many runs of one case, into one table (docs/sweep.md)
   thalweg defaults > all_keys.yaml                     every key of a case with its default and meaning
 
 Exit codes: 0 done, or stopped in good order by a signal or --walltime (summary.json says which; the last checkpoint
@@ -56,8 +57,9 @@ void add_others(CLI::App& app, Command& command) {
   CLI::App* info = app.add_subcommand("info", "Say what a run folder or a checkpoint holds");
   info->add_option("PATH", command.path, "Run folder or checkpoint file")->required();
   info->final_callback([&] { command.kind = Command::Kind::info; });
-  // For the help alone: analyze_command.hpp.
+  // For the help alone: python_command.hpp.
   app.add_subcommand("analyze", "Say what a run's sediment does between two times (analyze --help)");
+  app.add_subcommand("sweep", "Run a case with many values of its keys, on all cores (sweep --help)");
 }
 
 // CLI11 would only say that a subcommand is missing.
@@ -65,8 +67,8 @@ void refuse_unknown_command(const CLI::App& app, int argc, const char* const* ar
   if (argc < 2 || argv[1][0] == '-') return;
   for (const CLI::App* known : app.get_subcommands({}))
     if (known->get_name() == argv[1]) return;
-  throw InputError(
-      fmt::format("{} is not a command: there are run, check, analyze, defaults and info (thalweg --help).", argv[1]));
+  throw InputError(fmt::format(
+      "{} is not a command: there are run, check, analyze, sweep, defaults and info (thalweg --help).", argv[1]));
 }
 
 // CLI11's messages are fragments; users get a whole sentence that says where to look.

@@ -2,12 +2,12 @@
 #include "core/error.hpp"
 #include "core/failure_barrier.hpp"
 #include "core/mpi_session.hpp"
-#include "driver/analyze_command.hpp"
 #include "driver/case_reader.hpp"
 #include "driver/check_report.hpp"
 #include "driver/command_line.hpp"
 #include "driver/info_report.hpp"
 #include "driver/machine.hpp"
+#include "driver/python_command.hpp"
 #include "driver/run_command.hpp"
 
 #include <fmt/format.h>
@@ -111,7 +111,7 @@ int all_failed_without_mpi(const CommandLine& line) {
 
 int main(int argc, char** argv) {
   const loop::WallClock::time_point started = loop::WallClock::now();
-  if (is_analyze(argc, argv)) return analyze(argc, argv);
+  if (is_python_command(argc, argv)) return run_python_command(argc, argv);
   const CommandLine line = parse_command_line(argc, argv);
   if (line.command && line.command->kind == Command::Kind::run) return run(*line.command, argc, argv, started);
   return all_failed_without_mpi(line);

@@ -8,9 +8,12 @@ namespace thalweg::driver {
 
 namespace {
 
-io::JsonObject figures_as_json(const std::vector<Figure>& figures) {
+io::JsonObject figures_as_json(const std::vector<Figure>& figures, io::JsonObject& units) {
   io::JsonObject object;
-  for (const Figure& figure : figures) object.set(figure.name, figure.value);
+  for (const Figure& figure : figures) {
+    object.set(figure.name, figure.value);
+    units.set(figure.name, figure.unit);
+  }
   return object;
 }
 
@@ -44,8 +47,10 @@ io::JsonObject summary_of(const RunIdentity& identity, const System& system, con
                               .set("share", phase.share));
   summary.set("phases", table);
   summary.set("warnings", record.warnings);
-  summary.set("figures", figures_as_json(record.figures)).set("largest", figures_as_json(record.largest));
-  for (const auto& observer : observers) summary.set(observer->name(), figures_as_json(observer->results()));
+  io::JsonObject units;  // of figures and results, by name
+  summary.set("figures", figures_as_json(record.figures, units)).set("largest", figures_as_json(record.largest, units));
+  for (const auto& observer : observers) summary.set(observer->name(), figures_as_json(observer->results(), units));
+  summary.set("units", units);
   return summary;
 }
 

@@ -1,9 +1,10 @@
-"""`thalweg analyze RUN`, which is `python -m thalweg analyze RUN`."""
+"""`thalweg analyze RUN` and `thalweg sweep SWEEP.yaml`, which are `python -m thalweg analyze RUN` and so on."""
 import argparse
 import sys
 from pathlib import Path
 
 try:
+    import thalweg.sweep.command
     from thalweg.errors import RunFolderError
     from thalweg.report import report_of
     from thalweg.run import Run
@@ -14,7 +15,8 @@ except ModuleNotFoundError as missing:
 
 def parse(arguments):
     parser = argparse.ArgumentParser(prog="thalweg", description=__doc__)
-    analyze = parser.add_subparsers(dest="command", required=True).add_parser(
+    commands = parser.add_subparsers(dest="command", required=True)
+    analyze = commands.add_parser(
         "analyze", description="Transport, surface, Shields number and profiles of a run between two times, from what it "
                                "has stored. A run that is still going can be looked at, too.")
     analyze.add_argument("run", type=Path, metavar="RUN", help="Run folder")
@@ -23,20 +25,25 @@ def parse(arguments):
     analyze.add_argument("--until", dest="stop", type=float, metavar="SECONDS", help="Their end (default: of the run)")
     analyze.add_argument("--out", type=Path, metavar="FOLDER",
                          help="Where summary.json and the tables go (default: analysis in the run folder)")
+    thalweg.sweep.command.add_to(commands)
     return parser.parse_args(arguments)
+
+
+def analyze(wanted):
+    report = report_of(Run(wanted.run), wanted.start, wanted.stop)
+    files = report.write(wanted.out or wanted.run / "analysis")
+    print("\n".join(report.lines))
+    print(f"{'written':<11}{', '.join(str(file) for file in files)}")
+    return 0
 
 
 def main(arguments=None):
     wanted = parse(arguments)
     try:
-        report = report_of(Run(wanted.run), wanted.start, wanted.stop)
-        files = report.write(wanted.out or wanted.run / "analysis")
+        return analyze(wanted) if wanted.command == "analyze" else thalweg.sweep.command.sweep(wanted)
     except RunFolderError as error:
         print(f"thalweg: {error}", file=sys.stderr)
         return 2
-    print("\n".join(report.lines))
-    print(f"{'written':<11}{', '.join(str(file) for file in files)}")
-    return 0
 
 
 if __name__ == "__main__":

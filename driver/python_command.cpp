@@ -1,0 +1,55 @@
+#include "driver/python_command.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace thalweg::driver {
+
+namespace fs = std::filesystem;
+
+// Empty if the system does not tell.
+static fs::path this_program() {
+  std::error_code unknown;
+  return fs::read_symlink("/proc/self/exe", unknown);
+}
+
+// The Python package beside the installed program, PREFIX/share/thalweg/python, else that of the source tree.
+static std::string python_package(const fs::path& program) {
+  std::error_code unknown;
+  const fs::path installed = program.parent_path().parent_path() / "share/thalweg/python";
+  return !program.empty() && fs::exists(installed / "thalweg", unknown) ? installed.string() : THALWEG_PYTHON_PACKAGE;
+}
+
+bool is_python_command(int argc, const char* const* argv) {
+  return argc > 1 && (std::strcmp(argv[1], "analyze") == 0 || std::strcmp(argv[1], "sweep") == 0);
+}
+
+int run_python_command(int argc, char** argv) {
+  const fs::path program = this_program();
+  const char* named = std::getenv("THALWEG_PYTHON");
+  std::string interpreter = named ? named : THALWEG_PYTHON;
+  std::string path = python_package(program);
+  if (const char* more = std::getenv("PYTHONPATH"); more && *more) path.append(":").append(more);
+  setenv("PYTHONPATH", path.c_str(), 1);
+  if (!program.empty()) setenv("THALWEG_PROGRAM", program.c_str(), 1);
+  std::string module_flag = "-m", module = "thalweg";
+  std::vector<char*> arguments = {interpreter.data(), module_flag.data(), module.data()};
+  arguments.insert(arguments.end(), argv + 1, argv + argc);
+  arguments.push_back(nullptr);
+  execvp(interpreter.c_str(), arguments.data());
+  std::fprintf(
+      stderr,
+      "thalweg: %s needs Python, and %s cannot be started (%s); set THALWEG_PYTHON to an interpreter with numpy, h5py "
+      "and PyYAML.\n",
+      argv[1], interpreter.c_str(), std::strerror(errno));
+  return 2;
+}
+
+}  // namespace thalweg::driver

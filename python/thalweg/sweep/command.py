@@ -1,0 +1,109 @@
+"""The command `thalweg sweep`."""
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from thalweg.run import read_case
+from thalweg.sweep.plan import SweepError, read_plan
+from thalweg.sweep.runner import Runner
+from thalweg.sweep.runs import DONE, FAILED
+from thalweg.sweep.tables import units_of_keys, write_tables
+from thalweg.sweep.tasks import tasks_of
+
+
+def add_to(commands):
+    sweep = commands.add_parser(
+        "sweep", description="Run a case with many values of its keys, as many runs at a time as there are cores. The same "
+                             "command goes on where it was stopped or killed; finished runs are not repeated.")
+    sweep.add_argument("sweep", type=Path, metavar="SWEEP.yaml", help="Which runs there are (docs/sweep.md)")
+    sweep.add_argument("--out", type=Path, metavar="FOLDER",
+                       help="Where runs and tables go (default: named after the file, beside it)")
+    sweep.add_argument("--jobs", type=int, metavar="N", help="Runs at a time (default: one a core, or a core a rank)")
+    sweep.add_argument("--retry", action="store_true", help="Run those again that have failed")
+    sweep.add_argument("--dry-run", action="store_true", help="Print the runs, or the bisections, and stop")
+    sweep.add_argument("--task", type=int, metavar="N", help="Only run (or bisection) N of the dry run, from 0 on")
+    sweep.add_argument("--tables", action="store_true", help="Only write the tables of what there is")
+    sweep.add_argument("--slurm", action="store_true", help="Print a Slurm array job with a task for each run or bisection")
+
+
+def available_cores():
+    return len(os.sched_getaffinity(0))
+
+
+def program():
+    found = os.environ.get("THALWEG_PROGRAM") or shutil.which("thalweg")
+    if not found:
+        raise SweepError("the program thalweg is not on the path; start this as `thalweg sweep`.")
+    return found
+
+
+def units_of(plan):
+    system = str(read_case(plan.case).get("system", "resolved"))
+    said = subprocess.run([program(), "defaults", system], capture_output=True, text=True)
+    return units_of_keys(said.stdout) if said.returncode == 0 else {}
+
+
+def describe(task):
+    settings = ", ".join(f"{key} = {value}" for key, value in task.settings.items())
+    return settings or "the case as it is"
+
+
+def slurm_job(wanted, tasks, folder):
+    return f"""#!/usr/bin/env bash
+#SBATCH --job-name={wanted.sweep.stem}
+#SBATCH --array=0-{len(tasks) - 1}
+#SBATCH --ntasks=1
+#SBATCH --cpus-per-task={max(1, wanted.jobs or 1)}
+#SBATCH --time=24:00:00
+#SBATCH --signal=B:TERM@300
+#SBATCH --requeue
+# Made by thalweg sweep --slurm. Afterwards, for the tables: thalweg sweep {wanted.sweep} --out {folder} --tables
+exec {program()} sweep {wanted.sweep.resolve()} --out {folder.resolve()} --task "$SLURM_ARRAY_TASK_ID" \\
+     --jobs "$SLURM_CPUS_PER_TASK"
+"""
+
+
+def sweep(wanted):
+    """Exit code 0: all done, or stopped in good order; 1: some runs have failed; 2 comes with a SweepError."""
+    plan = read_plan(wanted.sweep)
+    folder = wanted.out or wanted.sweep.with_suffix("")
+    tasks = tasks_of(plan, folder)
+    names = [task.runs[0].name for task in tasks] if not plan.bisection else []
+    if len(set(names)) < len(names):
+        raise SweepError(f"{wanted.sweep}: two runs have the same values; there is {max(names, key=names.count)} twice.")
+    if wanted.slurm:
+        print(slurm_job(wanted, tasks, folder), end="")
+        return 0
+    if wanted.dry_run:
+        for number, task in enumerate(tasks):
+            print(f"{number:<5}{describe(task)}{'' if plan.bisection else f': {task.run.state}'}")
+        return 0
+    if wanted.task is not None:
+        if not 0 <= wanted.task < len(tasks):
+            raise SweepError(f"--task {wanted.task}: the sweep has tasks 0 to {len(tasks) - 1}.")
+        tasks = [tasks[wanted.task]]
+    if wanted.tables:
+        return written(plan, tasks, folder)
+    jobs = wanted.jobs or max(1, available_cores() // plan.ranks)
+    runner = Runner(plan, tasks, units_of(plan), program(), folder, jobs, wanted.retry)
+    finished = runner.work()
+    if wanted.task is None:
+        code = written(plan, tasks, folder)
+        if not finished:
+            print("stopped; the same command goes on")
+        return code if finished else 0
+    return int(any(run.state == FAILED for task in tasks for run in task.runs))
+
+
+def written(plan, tasks, folder):
+    for task in tasks:
+        task.wanted()   # a bisection comes to know its runs as it goes on
+    files = write_tables(plan, tasks, units_of(plan), folder)
+    print(f"written {', '.join(str(file) for file in files)}")
+    failed = [run for task in tasks for run in task.runs if run.state == FAILED]
+    if failed:
+        print(f"thalweg: {len(failed)} of the runs have failed (column failure of runs.csv; --retry runs them again).",
+              file=sys.stderr)
+    return 1 if failed else 0

@@ -1,0 +1,229 @@
+"""A sweep file: which runs there are, and what each sets. docs/sweep.md explains the keys."""
+import hashlib
+import itertools
+import json
+import math
+import operator
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import yaml
+
+from thalweg.errors import RunFolderError
+from thalweg.run import CaseLoader
+
+KEYS = {"case", "set", "vary", "together", "bisect", "ranks", "columns"}
+BISECT_KEYS = {"key", "from", "to", "width", "spacing", "holds", "repeat", "share"}
+OPERATORS = {">": operator.gt, ">=": operator.ge, "<": operator.lt, "<=": operator.le}
+
+
+class SweepError(RunFolderError):
+    """One sentence about something in a sweep file that the user can put right."""
+
+
+@dataclass(frozen=True)
+class Condition:
+    """Whether a run shows what is looked for: a figure of its summary.json, compared with a number."""
+    figure: str
+    sign: str
+    limit: float
+
+    @staticmethod
+    def of(text):
+        match = re.fullmatch(r"\s*([\w.]+)\s*(>=|<=|>|<)\s*([-+.\deE]+)\s*", str(text))
+        if not match:
+            raise SweepError(f"bisect.holds: {text}: write a figure of summary.json and what it is compared with, e.g. "
+                             "transport_rate.q_star_mean > 1e-3.")
+        return Condition(match[1], match[2], float(match[3]))
+
+    def holds(self, summary):
+        value = figure_of(summary, self.figure)
+        if value is None:
+            section = summary.get(self.figure.partition(".")[0])
+            there = ", ".join(section if isinstance(section, dict) else summary)
+            raise SweepError(f"bisect.holds: the runs have no number {self.figure} in summary.json, only {there}.")
+        return OPERATORS[self.sign](value, self.limit)
+
+
+@dataclass(frozen=True)
+class Bisection:
+    """Of each combination of the varied keys: the value of one more key from which on a condition holds."""
+    key: str
+    lower: float
+    upper: float
+    width: float        # of the bracket at the end; with geometric steps over its lower end
+    geometric: bool
+    condition: Condition
+    repetitions: tuple   # of settings, one a repetition
+    share: float         # of the repetitions: it holds where more than this show it
+
+    def middle(self, lower, upper):
+        return math.sqrt(lower * upper) if self.geometric else 0.5 * (lower + upper)
+
+    def narrow(self, lower, upper):
+        return upper - lower <= self.width * (lower if self.geometric else 1.0) * (1.0 + 1e-9)
+
+    def most_levels(self):
+        """Values looked at, both ends included, where the bracket is halved to the end."""
+        lower, upper, levels = self.lower, self.upper, 2
+        while not self.narrow(lower, upper):
+            upper = self.middle(lower, upper)   # the wider half, where steps are arithmetic: equal
+            levels += 1
+        return levels
+
+
+@dataclass
+class Plan:
+    """points: the settings (key: value) of each combination, without those of a bisection."""
+    case: Path
+    points: list
+    bisection: Bisection = None
+    ranks: int = 1
+    columns: list = field(default_factory=list)
+    case_digest: str = ""
+
+    def keys(self):
+        """The keys that differ between runs, in the order of the file."""
+        names = dict.fromkeys(key for point in self.points for key in point)
+        return [key for key in names if len({json.dumps(point.get(key)) for point in self.points}) > 1]
+
+
+def figure_of(summary, path):
+    """A number of summary.json by its path, e.g. transport_rate.q_star_mean; None if it is not there."""
+    value = summary
+    for part in path.split("."):
+        value = value.get(part) if isinstance(value, dict) else None
+    return float(value) if isinstance(value, (int, float)) else None
+
+
+def read_plan(path):
+    path = Path(path)
+    try:
+        content = yaml.load(path.read_text(), CaseLoader)
+    except OSError as error:
+        raise SweepError(f"{path}: {error.strerror}.") from None
+    except yaml.YAMLError as error:
+        raise SweepError(f"{path} is not YAML: {' '.join(str(error).split())}.") from None
+    try:
+        return plan_of(content, path.parent)
+    except SweepError as error:
+        raise SweepError(f"{path}: {error}") from None
+
+
+def plan_of(content, folder):
+    refuse_unknown(content, KEYS, "")
+    if "case" not in content:
+        raise SweepError("case is missing; give the case file that is run, relative to this file.")
+    case = (folder / content["case"]).resolve()
+    try:
+        digest = digest_of(yaml.load(case.read_text(), CaseLoader))
+    except OSError:
+        raise SweepError(f"case: {case} cannot be read.") from None
+    bisection = bisection_of(content["bisect"]) if content.get("bisect") else None
+    points = points_of(content)
+    taken = bisection.key if bisection else None
+    if any(taken in point for point in points):
+        raise SweepError(f"bisect.key: {taken} is also in set, vary or together; give it in one place.")
+    ranks = content.get("ranks", 1)
+    if not isinstance(ranks, int) or ranks < 1:
+        raise SweepError(f"ranks: {ranks} is not a number of MPI ranks; give a whole number from 1 on.")
+    return Plan(case, points, bisection, ranks, list(content.get("columns") or []), digest)
+
+
+def points_of(content):
+    fixed = section(content, "set")
+    varied = [[{key: value} for value in values_of(key, given)] for key, given in section(content, "vary").items()]
+    together = content.get("together") or []
+    if not all(isinstance(entry, dict) and entry for entry in together):
+        raise SweepError("together: give a list of sections, each with the keys of one run.")
+    if together:
+        varied.append(together)
+    points = []
+    for combination in itertools.product(*varied):
+        point = dict(fixed)
+        for settings in combination:
+            twice = set(point) & set(settings)
+            if twice:
+                raise SweepError(f"{min(twice)} is given twice; give it in one of set, vary and together.")
+            point |= settings
+        points.append(point)
+    return points
+
+
+def bisection_of(given):
+    refuse_unknown(given, BISECT_KEYS, "bisect.")
+    for key in ("key", "from", "to", "width", "holds"):
+        if key not in given:
+            raise SweepError(f"bisect.{key} is missing; a bisection has key, from, to, width and holds.")
+    lower, upper, width, share = (number(f"bisect.{key}", value) for key, value in (
+        ("from", given["from"]), ("to", given["to"]), ("width", given["width"]), ("share", given.get("share", 0.5))))
+    geometric = spacing_is_log("bisect.spacing", given.get("spacing", "linear"))
+    if not lower < upper or (geometric and lower <= 0.0):
+        raise SweepError(f"bisect: from {lower:g} to {upper:g} is no range to search; give from below to"
+                         + (", both above 0 for spacing: log." if geometric else "."))
+    if width <= 0.0 or not 0.0 <= share < 1.0:
+        raise SweepError("bisect: give a width above 0, and a share of the repetitions from 0 on and below 1.")
+    repeat = [[{key: value} for value in values_of(key, values)] for key, values in section(given, "repeat").items()]
+    repetitions = tuple({key: value for settings in combination for key, value in settings.items()}
+                        for combination in itertools.product(*repeat))
+    return Bisection(str(given["key"]), lower, upper, width, geometric, Condition.of(given["holds"]), repetitions, share)
+
+
+def values_of(key, given):
+    """A list of values, or {from, to, count or step, spacing: linear or log}; without count and step whole numbers."""
+    if isinstance(given, list) and given:
+        return given
+    if not isinstance(given, dict) or not {"from", "to"} <= set(given):
+        raise SweepError(f"{key}: give a list of values, or a range, e.g. {{from: 1, to: 10}} of whole numbers or "
+                         "{from: 0.01, to: 1, count: 5, spacing: log}.")
+    refuse_unknown(given, {"from", "to", "count", "step", "spacing"}, f"{key}.")
+    start, stop = number(f"{key}.from", given["from"]), number(f"{key}.to", given["to"])
+    if "count" in given:
+        count = int(number(f"{key}.count", given["count"]))
+        if count < 2:
+            raise SweepError(f"{key}.count: {count}: a range has at least 2 values.")
+        shares = [n / (count - 1) for n in range(count)]
+        if spacing_is_log(f"{key}.spacing", given.get("spacing", "linear")):
+            if min(start, stop) <= 0.0:
+                raise SweepError(f"{key}: a range with spacing: log begins and ends above 0.")
+            return [float(f"{start * (stop / start) ** share:.12g}") for share in shares]
+        return [float(f"{start + share * (stop - start):.12g}") for share in shares]
+    step = number(f"{key}.step", given.get("step", 1))
+    if step <= 0.0 or stop < start:
+        raise SweepError(f"{key}: a range goes from a smaller to a larger value in steps above 0.")
+    values = [start + n * step for n in range(int((stop - start) / step * (1.0 + 1e-12)) + 1)]
+    whole = all(isinstance(given.get(name, 1), int) for name in ("from", "to", "step"))
+    return [int(value) if whole else float(f"{value:.12g}") for value in values]
+
+
+def spacing_is_log(key, given):
+    if given not in ("linear", "log"):
+        raise SweepError(f"{key}: {given} is neither linear nor log.")
+    return given == "log"
+
+
+def number(key, value):
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise SweepError(f"{key}: {value} is not a number.")
+    return float(value)
+
+
+def section(content, key):
+    given = content.get(key) or {}
+    if not isinstance(given, dict):
+        raise SweepError(f"{key}: give keys of the case and their values, e.g. gravity.slope.")
+    return given
+
+
+def refuse_unknown(given, known, prefix):
+    if not isinstance(given, dict):
+        raise SweepError(f"{prefix.rstrip('.') or 'the file'} is not a section of keys; there are "
+                         f"{', '.join(sorted(known))}.")
+    for key in given:
+        if key not in known:
+            raise SweepError(f"{prefix}{key} is not a key here; there are {', '.join(sorted(known))}.")
+
+
+def digest_of(content):
+    return hashlib.sha256(json.dumps(content, sort_keys=True, default=str).encode()).hexdigest()

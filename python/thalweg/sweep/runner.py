@@ -1,0 +1,117 @@
+"""Keeps the cores busy with the runs that the tasks of a sweep want."""
+import signal
+import sys
+import time
+
+from thalweg.sweep.runs import DONE, FAILED
+from thalweg.sweep.tables import write_tables
+
+SECONDS_BETWEEN_LOOKS = 0.1
+SECONDS_BETWEEN_LINES = 5.0
+
+
+class Runner:
+    """plan, tasks: of the sweep; units: of the case's keys; jobs: runs at a time."""
+
+    def __init__(self, plan, tasks, units, program, folder, jobs, retry=False):
+        self.plan, self.tasks, self.units, self.program, self.folder = plan, tasks, units, program, folder
+        self.jobs = jobs
+        self.going = {}   # by run: (process, when it was started)
+        self.stopping = False
+        self.printed = 0.0
+        if retry:
+            for run in self.known_runs():
+                if run.state == FAILED:
+                    run.remember(None)
+
+    def known_runs(self):
+        for task in self.tasks:
+            task.wanted()   # a bisection comes to know its runs as it goes on
+        return [run for task in self.tasks for run in task.runs]
+
+    def work(self):
+        """Until all tasks are done or a signal asks to stop. Returns whether all are done."""
+        before = {number: signal.signal(number, self.stop) for number in (signal.SIGINT, signal.SIGTERM)}
+        try:
+            while True:
+                self.collect()
+                waiting = self.waiting()
+                self.start(waiting)
+                if not self.going and (self.stopping or not waiting):
+                    break
+                self.report()
+                time.sleep(SECONDS_BETWEEN_LOOKS)
+        finally:
+            for number, handler in before.items():
+                signal.signal(number, handler)
+            for process, _ in self.going.values():   # after an exception
+                process.send_signal(signal.SIGUSR1)
+        self.report(last=True)
+        return not self.waiting()
+
+    def stop(self, *_):
+        """The runs that are going save their state and stop; mpirun passes this signal on to its ranks."""
+        self.stopping = True
+        for process, _ in self.going.values():
+            process.send_signal(signal.SIGUSR1)
+
+    def waiting(self):
+        return [run for task in self.tasks for run in task.wanted() if run not in self.going]
+
+    def start(self, waiting):
+        for run in waiting:
+            if self.stopping or len(self.going) >= self.jobs:
+                return
+            run.look()   # another sweep may have finished it
+            process = run.start(self.program) if run.state not in (DONE, FAILED) else None
+            if process:
+                self.going[run] = (process, time.monotonic())
+
+    def collect(self):
+        ended = [run for run, (process, _) in self.going.items() if process.poll() is not None]
+        for run in ended:
+            process, _ = self.going.pop(run)
+            if self.stopping:
+                run.look()
+                continue
+            run.ended(process.returncode)
+            if run.state == FAILED:
+                self.say(f"{run.name} failed: {run.failure}")
+            elif run.state != DONE:
+                run.remember("the run was stopped from outside before its end")
+        if ended:
+            write_tables(self.plan, self.tasks, self.units, self.folder)
+
+    def progress(self):
+        """e.g. "12 of 90 runs done, 1 failed, 2 going, left about 3:20"."""
+        runs = [run for task in self.tasks for run in task.runs]
+        done, failed = (sum(run.state == state for run in runs) for state in (DONE, FAILED))
+        left = sum(task.most_runs_left() for task in self.tasks)
+        at_most = "at most " if self.plan.bisection and left else ""
+        text = f"{done} of {at_most}{done + failed + left} runs done"
+        text += (f", {failed} failed" if failed else "") + (f", {len(self.going)} going" if self.going else "")
+        times = [run.wall_seconds for run in runs if run.state == DONE]
+        if times and left:
+            mean, now = sum(times) / len(times), time.monotonic()
+            going = sum(min(mean, now - begun) for _, begun in self.going.values())
+            text += f", left {at_most or 'about '}{clock_text((left * mean - going) / self.jobs)}"
+        return text
+
+    def report(self, last=False):
+        now = time.monotonic()
+        if last or now - self.printed >= SECONDS_BETWEEN_LINES:
+            self.printed = now
+            self.say(self.progress(), passing=not last)
+
+    def say(self, text, passing=False):
+        """passing: on a terminal the next line takes its place; a file gets it only where it has changed."""
+        if sys.stdout.isatty():
+            print(f"\r{text:<100}", end="" if passing else "\n", flush=True)
+        elif text != getattr(self, "said", None):
+            self.said = text
+            print(text, flush=True)
+
+
+def clock_text(seconds):
+    whole = max(0, round(seconds))
+    return f"{whole // 3600}:{whole // 60 % 60:02}:{whole % 60:02}" if whole >= 60 else f"{whole} s"

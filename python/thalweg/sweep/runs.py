@@ -1,0 +1,123 @@
+"""One run of a sweep: its folder, what is known of it, and its process.
+
+runs/NAME        the run folder
+runs/NAME.json   what the run sets, and why it failed
+runs/NAME.txt    what the program said; locked while the run is going
+"""
+import ctypes
+import fcntl
+import json
+import os
+import signal
+import subprocess
+from pathlib import Path
+
+from thalweg.sweep.plan import SweepError
+
+WAITING, DONE, FAILED, BEGUN = "waiting", "done", "failed", "begun"
+
+
+class SweepRun:
+    def __init__(self, folder, name, plan, settings):
+        self.folder, self.name, self.settings = folder / name, name, settings
+        self.case, self.ranks = plan.case, plan.ranks
+        self.identity = {"case": plan.case_digest, "settings": settings}
+        self.note, self.output = folder / f"{name}.json", folder / f"{name}.txt"
+        self.summary, self.failure = None, None
+        self.look()
+
+    def look(self):
+        """Reads what the folder knows; a run of other settings or of a case that was changed is not taken for this one."""
+        known = json.loads(self.note.read_text()) if self.note.exists() else None
+        if known and {key: known.get(key) for key in self.identity} != self.identity:
+            raise SweepError(f"{self.folder} was run with other settings, or the case has changed since; give another --out, "
+                             "or remove that folder.")
+        self.failure = (known or {}).get("failure")
+        path = self.folder / "summary.json"
+        self.summary = json.loads(path.read_text()) if path.exists() else None
+
+    @property
+    def state(self):
+        if self.summary and self.summary.get("finished"):
+            return DONE
+        if self.failure:
+            return FAILED
+        return BEGUN if self.folder.exists() else WAITING
+
+    @property
+    def wall_seconds(self):
+        return float(self.summary["wall_seconds"]) if self.summary else None
+
+    def command(self, program):
+        arguments = ["run", str(self.case), "--out", str(self.folder)]
+        arguments += ["--restart", str(self.folder)] if self.has_checkpoint() else ["--overwrite"]
+        for key, value in self.settings.items():
+            arguments += ["--set", f"{key}={json.dumps(value)}"]
+        launcher = ["mpirun", "-n", str(self.ranks)] if self.ranks > 1 else []
+        return launcher + [program] + arguments
+
+    def has_checkpoint(self):
+        return (self.folder / "checkpoints" / "latest").exists()
+
+    def start(self, program):
+        """The process of the run, which saves its state and stops at SIGUSR1 and when the sweep is killed; None while
+        another sweep has it."""
+        self.folder.parent.mkdir(parents=True, exist_ok=True)
+        # Several runs beside each other must not all be bound to the first core.
+        environment = os.environ | {"OMPI_MCA_hwloc_base_binding_policy": "none"}
+        with open(self.output, "a") as output:
+            try:
+                fcntl.flock(output, fcntl.LOCK_EX | fcntl.LOCK_NB)   # kept by the process, which inherits the file
+            except BlockingIOError:
+                return None
+            output.truncate(0)
+            self.remember(None)
+            return subprocess.Popen(self.command(program), stdout=output, stderr=subprocess.STDOUT, env=environment,
+                                    stdin=subprocess.DEVNULL, start_new_session=True, preexec_fn=die_with_parent)
+
+    def ended(self, exit_code):
+        """To be called when the process has ended."""
+        if exit_code != 0:
+            self.remember(complaint_in(self.output) or f"the program ended with exit code {exit_code}; see {self.output}")
+        self.look()
+
+    def remember(self, failure):
+        self.failure = failure
+        temporary = self.note.with_suffix(".partial")
+        temporary.write_text(json.dumps(self.identity | {"failure": failure}, indent=1) + "\n")
+        temporary.replace(self.note)
+
+
+def die_with_parent():
+    """Linux only: the calling process gets SIGTERM when its parent ends, however that happens."""
+    PR_SET_PDEATHSIG = 1
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
+
+
+def complaint_in(path):
+    """What the program complained of, one sentence; None if it did not."""
+    lines = [line for line in Path(path).read_text(errors="replace").splitlines() if line.startswith("thalweg: ")]
+    return lines[-1].removeprefix("thalweg: ") if lines else None
+
+
+def short_keys(keys):
+    """Each key by as many of its last words as tell it from the others."""
+    short = {}
+    for key in keys:
+        words = key.split(".")
+        for count in range(1, len(words) + 1):
+            short[key] = ".".join(words[-count:])
+            if sum(other == short[key] or other.endswith("." + short[key]) for other in keys) == 1:
+                break
+    return short
+
+
+def name_of(settings, keys):
+    """The name of the run that sets these keys, in their order: slope_0.05-seed_1."""
+    short = short_keys(keys)
+    parts = []
+    for key in keys:
+        value = settings.get(key)
+        text = str(value) if isinstance(value, (int, float, str)) else json.dumps(value)
+        parts.append(f"{short[key]}_{''.join(c if c.isalnum() or c in '.+-' else '_' for c in text)}")
+    return "-".join(parts) or "run"

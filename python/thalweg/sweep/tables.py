@@ -1,0 +1,94 @@
+"""What a sweep has found, as CSV: runs.csv, and thresholds.csv of a bisection. Units stand in the heads."""
+import csv
+import io
+import re
+
+from thalweg.sweep.plan import figure_of
+from thalweg.sweep.runs import WAITING
+from thalweg.sweep.tasks import result_columns
+
+
+def write_tables(plan, tasks, units, folder):
+    """units: of the keys of the case, by their paths. Returns the files."""
+    # A bisection needs no more repetitions of a value once enough of them agree.
+    runs = [run for task in tasks for run in task.runs if run.state != WAITING or not plan.bisection]
+    files = [write(folder / "runs.csv", runs_table(plan, runs, units))]
+    if plan.bisection:
+        files.append(write(folder / "thresholds.csv", thresholds_table(plan, tasks, units)))
+    return files
+
+
+def runs_table(plan, runs, units):
+    keys = list(dict.fromkeys(key for run in runs for key in run.settings))
+    columns = result_columns(plan, runs)
+    measured = {}
+    for run in runs:
+        measured |= (run.summary or {}).get("units", {})
+    head = (["run"] + [headed(key, units) for key in keys] + ["state", "wall_time [s]"] +
+            [headed(column, measured, column.rpartition(".")[2]) for column in columns] + ["failure"])
+    rows = [head]
+    for run in sorted(runs, key=lambda run: [order(run.settings.get(key)) for key in keys]):
+        figures = [figure_of(run.summary or {}, column) for column in columns]
+        rows.append([run.name] + [run.settings.get(key, "") for key in keys] + [run.state, text(run.wall_seconds)] +
+                    [text(figure) for figure in figures] + [run.failure or ""])
+    return rows
+
+
+def thresholds_table(plan, tasks, units):
+    search, keys = plan.bisection, plan.keys()
+    unit = units.get(without_numbers(search.key), "")
+    ending = f" [{unit}]" if unit else ""
+    rows = [[headed(key, units) for key in keys] +
+            [f"{search.key}{ending}", f"half_width{ending}", f"lower{ending}", f"upper{ending}", "state", "runs"]]
+    for task in tasks:
+        state, lower, upper, threshold = task.result()
+        half = 0.5 * (upper - lower) if state == "found" else None
+        rows.append([task.settings.get(key, "") for key in keys] +
+                    [text(threshold), text(half), text(lower), text(upper), state,
+                     sum(run.state == "done" for run in task.runs)])
+    return rows
+
+
+def order(value):
+    return (0, value, "") if isinstance(value, (int, float)) else (1, 0, str(value))
+
+
+def text(value):
+    return "" if value is None or value != value else f"{value:.9g}"
+
+
+def headed(name, units, measured=None):
+    unit = units.get(measured if measured is not None else without_numbers(name), "")
+    return f"{name} [{unit}]" if unit else name
+
+
+def without_numbers(key):
+    return re.sub(r"\.\d+(?=\.|$)", "", key)
+
+
+def units_of_keys(defaults):
+    """Units by key, without the numbers of list entries, from the text of `thalweg defaults`."""
+    units, path = {}, []
+    for line in defaults.splitlines():
+        match = re.match(r"^( *)(?:# )?(- )?([a-z_0-9]+):( +[^# ].*?)?(?:  +# (.*))?$", line)
+        if not match:
+            continue
+        depth = len(match[1]) // 2 + (1 if match[2] else 0)
+        path = path[:depth] + [""] * (depth - len(path)) + [match[3]]
+        unit = re.match(r"(?:required, )?(1|[A-Za-z]+(?:/\([A-Za-z^0-9 /]+\)|/[A-Za-z^0-9]+|\^\d)?)[,;]", match[5] or "")
+        if match[4] and unit and unit[1] not in ("text", "required"):
+            words = [word for word in path if word]
+            units[".".join(words)] = unit[1]
+            if words[-1] == "value":   # which may be given without this word
+                units[".".join(words[:-1])] = unit[1]
+    return units
+
+
+def write(path, rows):
+    stream = io.StringIO()
+    csv.writer(stream, lineterminator="\n").writerows(rows)
+    temporary = path.with_suffix(".partial")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary.write_text(stream.getvalue())
+    temporary.replace(path)
+    return path

@@ -1,0 +1,107 @@
+"""What a sweep is made of: tasks, each of which says which runs it wants next. A task is one point, or the bisection of one
+point, and independent of the others."""
+import math
+
+from thalweg.sweep.plan import figure_of
+from thalweg.sweep.runs import DONE, FAILED, SweepRun, name_of
+
+
+class PointTask:
+    """One run."""
+
+    def __init__(self, folder, plan, number):
+        self.settings = plan.points[number]
+        self.run = SweepRun(folder, name_of(self.settings, plan.keys()), plan, self.settings)
+        self.runs = [self.run]
+
+    def wanted(self):
+        return [] if self.run.state in (DONE, FAILED) else [self.run]
+
+    def most_runs_left(self):
+        return len(self.wanted())
+
+
+class BisectionTask:
+    """Looks at both ends of the range, then at the middle of what is left of it, until that is narrow. A value is settled
+    as soon as enough repetitions agree."""
+
+    def __init__(self, folder, plan, number):
+        self.folder, self.plan, self.search = folder, plan, plan.bisection
+        self.settings = plan.points[number]
+        self.keys = plan.keys() + [self.search.key] + list(self.search.repetitions[0])
+        self.known = {}   # runs by value
+
+    @property
+    def runs(self):
+        return [run for runs in self.known.values() for run in runs]
+
+    def runs_at(self, value):
+        if value not in self.known:
+            self.known[value] = []
+            for repetition in self.search.repetitions:
+                settings = self.settings | {self.search.key: float(f"{value:.12g}")} | repetition
+                self.known[value].append(SweepRun(self.folder, name_of(settings, self.keys), self.plan, settings))
+        return self.known[value]
+
+    def verdict(self, value):
+        """Whether the condition holds at a value; None while that is open."""
+        runs = self.runs_at(value)
+        shown = [self.search.condition.holds(run.summary) for run in runs if run.state == DONE]
+        needed = self.search.share * len(runs)
+        if sum(shown) > needed:
+            return True
+        return False if sum(shown) + len(runs) - len(shown) <= needed else None
+
+    def bracket(self):
+        """The range in which the threshold is, as far as it is known, and the values that are to be settled next."""
+        lower, upper = self.search.lower, self.search.upper
+        open_ends = [value for value in (lower, upper) if self.verdict(value) is None]
+        if open_ends or self.verdict(lower) or not self.verdict(upper):
+            return lower, upper, open_ends
+        while not self.search.narrow(lower, upper):
+            middle = self.search.middle(lower, upper)
+            verdict = self.verdict(middle)
+            if verdict is None:
+                return lower, upper, [middle]
+            lower, upper = (lower, middle) if verdict else (middle, upper)
+        return lower, upper, []
+
+    def wanted(self):
+        return [run for value in self.bracket()[2] for run in self.runs_at(value) if run.state not in (DONE, FAILED)]
+
+    def most_runs_left(self):
+        lower, upper, unsettled = self.bracket()
+        left, levels = len(self.wanted()), self.search.most_levels()
+        settled = sum(self.verdict(value) is not None for value in self.known)
+        if not unsettled or not self.wanted():
+            return left
+        return left + max(0, levels - settled - len(unsettled)) * len(self.search.repetitions)
+
+    def result(self):
+        """(state, lower, upper, threshold): the ends of the bracket and its middle, not numbers where there is none."""
+        lower, upper, unsettled = self.bracket()
+        if unsettled:
+            stuck = not self.wanted()
+            return "failed" if stuck else "unfinished", lower, upper, math.nan
+        if self.verdict(self.search.lower):
+            return "holds everywhere", math.nan, lower, math.nan
+        if not self.verdict(self.search.upper):
+            return "holds nowhere", upper, math.nan, math.nan
+        return "found", lower, upper, self.search.middle(lower, upper)
+
+
+def tasks_of(plan, folder):
+    kind = BisectionTask if plan.bisection else PointTask
+    return [kind(folder / "runs", plan, number) for number in range(len(plan.points))]
+
+
+def result_columns(plan, runs):
+    """Paths in summary.json: those the plan names, else all that the observers of any run have measured."""
+    if plan.columns:
+        return plan.columns
+    columns = {}
+    for run in runs:
+        for section, figures in (run.summary or {}).items():
+            if isinstance(figures, dict) and section not in ("phases", "largest", "units", "figures"):
+                columns |= {f"{section}.{name}": None for name in figures if figure_of(figures, name) is not None}
+    return list(columns)

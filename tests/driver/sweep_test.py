@@ -1,0 +1,138 @@
+"""`thalweg sweep` as its user meets it: tables, a kill and going on, what is refused.
+
+Called by ctest: sweep_test.py THALWEG MPIEXEC [unittest arguments]
+"""
+import csv
+import os
+import signal
+import subprocess
+import sys
+import time
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+import program
+from program import THALWEG, ProgramTest
+
+# Two grains that lie on a floor with friction and slide, without rolling, where it is steep enough.
+CASE = """
+system: grains
+domain:
+  size: [0.02, 0.02, 0.02]
+  spacing: 1.0e-3
+  boundaries: {x: periodic, y: periodic, bottom: no_slip, top: free_slip}
+gravity: {magnitude: 9.8, slope: 0.5}
+grains:
+  - {density: 2550, shape: {clump: [{position: [0, 0, 0], diameter: 5.0e-3}, {position: [6.0e-3, 0, 0], diameter: 5.0e-3},
+     {position: [3.0e-3, 5.0e-3, 0], diameter: 5.0e-3}]}, orientation: {axis: [0, 0, 1], angle: 0},
+     placement: {positions: [[0.01, 0.01, 2.5e-3]]}}
+contact: {normal_stiffness: 20000, tangential_stiffness: 5714, restitution: 0.5, wall_friction: 0.3}
+run: {until: 0.2, time_step: 5.0e-6}
+output: {checkpoint: {every: 0.02}}
+"""
+
+
+class Sweep(ProgramTest):
+    CASE = CASE
+
+    def write(self, text, name="sweep.yaml"):
+        (self.folder / name).write_text("case: case.yaml\n" + text)
+        return name
+
+    def table(self, name):
+        with open(self.folder / name, newline="") as file:
+            return list(csv.DictReader(file))
+
+    def test_one_table_of_all_runs_and_none_is_repeated(self):
+        sweep = self.write("vary: {gravity.slope: [0.1, 0.6], contact.wall_friction: {from: 0.2, to: 0.4, count: 2}}\n"
+                           "columns: [grain_energy.grain_momentum_x, figures.largest_grain_speed]\n")
+        self.assertIn("4 of 4 runs done", self.run_well("sweep", sweep).stdout)
+        rows = self.table("sweep/runs.csv")
+        self.assertEqual([(row["gravity.slope [1]"], row["contact.wall_friction [1]"], row["state"]) for row in rows],
+                         [("0.1", "0.2", "done"), ("0.1", "0.4", "done"), ("0.6", "0.2", "done"), ("0.6", "0.4", "done")])
+        speeds = [float(row["figures.largest_grain_speed [m/s]"]) for row in rows]
+        # Down a slope S with friction mu: t g (sin - mu cos), or rest.
+        for speed, slope, friction in zip(speeds, (0.1, 0.1, 0.6, 0.6), (0.2, 0.4, 0.2, 0.4)):
+            expected = 0.2 * 9.8 * max(0.0, slope - friction) / (1.0 + slope * slope) ** 0.5
+            self.assertAlmostEqual(speed, expected, delta=0.02 * 9.8 * 0.2)
+        before = {path: path.stat().st_mtime_ns for path in (self.folder / "sweep/runs").rglob("*.h5")}
+        self.run_well("sweep", sweep)
+        self.assertEqual(before, {path: path.stat().st_mtime_ns for path in (self.folder / "sweep/runs").rglob("*.h5")})
+
+    def test_bisection_finds_the_angle_of_friction(self):
+        sweep = self.write("vary: {contact.wall_friction: [0.2, 0.4]}\n"
+                           "bisect: {key: gravity.slope, from: 0.05, to: 1.0, width: 0.02,\n"
+                           "         holds: figures.largest_grain_speed > 1e-2}\n")
+        self.run_well("sweep", sweep)
+        for row in self.table("sweep/thresholds.csv"):
+            self.assertEqual(row["state"], "found")
+            # tan of the angle of friction is mu; what slides at 0.01 m/s after 0.2 s is 0.005 g steeper.
+            friction = float(row["contact.wall_friction [1]"])
+            self.assertLessEqual(float(row["lower [1]"]), friction + 0.006)
+            self.assertGreaterEqual(float(row["upper [1]"]), friction)
+            self.assertLessEqual(float(row["half_width [1]"]), 0.01)
+
+    def test_goes_on_after_a_kill_with_the_same_bits(self):
+        sweep = self.write("set: {run.until: 1.0}\nvary: {gravity.slope: [0.5, 0.6]}\n")
+        going = subprocess.Popen([THALWEG, "sweep", sweep, "--jobs", "2"], cwd=self.folder, stdout=subprocess.DEVNULL)
+        latest = self.folder / "sweep/runs/slope_0.5/checkpoints/latest"
+        deadline = time.monotonic() + 60.0
+        while not latest.exists() and time.monotonic() < deadline:
+            time.sleep(0.02)
+        going.kill()
+        going.wait()
+        said = self.run_well("sweep", sweep).stdout
+        self.assertIn("2 of 2 runs done", said)
+        self.run_well("run", self.case, "--set", "gravity.slope=0.5", "--set", "run.until=1.0", "--out", "alone")
+        self.assert_same_grains("sweep/runs/slope_0.5", "alone")
+
+    def assert_same_grains(self, one, other):
+        a, b = self.bed(one), self.bed(other)
+        for name in b:
+            self.assertEqual(a[name].tobytes(), b[name].tobytes(), name)
+
+    def test_a_signal_stops_it_in_good_order(self):
+        sweep = self.write("set: {run.until: 100.0}\nvary: {gravity.slope: [0.5, 0.6, 0.7]}\n")
+        going = subprocess.Popen([THALWEG, "sweep", sweep, "--jobs", "1"], cwd=self.folder, stdout=subprocess.PIPE, text=True)
+        log = self.folder / "sweep/runs/slope_0.5/run.log"
+        deadline = time.monotonic() + 60.0
+        while not log.exists() and time.monotonic() < deadline:
+            time.sleep(0.02)
+        time.sleep(0.5)
+        os.kill(going.pid, signal.SIGTERM)
+        said, _ = going.communicate(timeout=60)
+        self.assertEqual(going.returncode, 0)
+        self.assertIn("the same command goes on", said)
+        self.assertEqual([row["state"] for row in self.table("sweep/runs.csv")], ["begun", "waiting", "waiting"])
+        self.assertTrue((self.folder / "sweep/runs/slope_0.5/checkpoints/latest").exists())
+
+    def test_a_run_that_fails_is_named_and_the_others_go_on(self):
+        sweep = self.write("vary: {contact.wall_friction: [-1, 0.3]}\nset: {run.until: 0.01}\n")
+        result = self.thalweg("sweep", sweep)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("1 of the runs have failed", result.stderr)
+        failed, done = self.table("sweep/runs.csv")
+        self.assertEqual((failed["state"], done["state"]), ("failed", "done"))
+        self.assertIn("contact.wall_friction", failed["failure"])
+
+    def test_tasks_of_an_array_job_and_their_tables(self):
+        sweep = self.write("set: {run.until: 0.01}\nvary: {contact.wall_friction: [0.2, 0.3]}\n")
+        self.assertIn("--array=0-1", self.run_well("sweep", sweep, "--slurm").stdout)
+        self.assertIn("contact.wall_friction = 0.3: waiting", self.run_well("sweep", sweep, "--dry-run").stdout)
+        self.run_well("sweep", sweep, "--task", "1")
+        self.run_well("sweep", sweep, "--tables")
+        self.assertEqual([row["state"] for row in self.table("sweep/runs.csv")], ["waiting", "done"])
+
+    def test_refusals(self):
+        self.assert_refused("sweep", "gone.yaml", words=["gone.yaml", "No such file"])
+        self.assert_refused("sweep", self.write("vary: {contact.wall_friction: 1}\n"), words=["sweep.yaml", "contact.wall_friction",
+                                                                                          "list of values"])
+        sweep = self.write("set: {run.until: 0.01}\nvary: {contact.wall_friction: [0.2]}\n")
+        self.run_well("sweep", sweep)
+        self.case.write_text(CASE.replace("restitution: 0.5", "restitution: 0.6"))
+        self.assert_refused("sweep", sweep, words=["the case has changed since"])
+
+
+if __name__ == "__main__":
+    program.main()

@@ -1,0 +1,143 @@
+"""What a sweep file means, and what is said of one that means nothing."""
+import json
+import math
+import tempfile
+import unittest
+from pathlib import Path
+
+import made_up_folder   # noqa: F401  finds the package
+from thalweg.sweep import tables
+from thalweg.sweep.plan import SweepError, plan_of
+from thalweg.sweep.runs import name_of, short_keys
+from thalweg.sweep.tasks import BisectionTask
+
+BISECT = {"key": "gravity.slope", "from": 0.0, "to": 1.0, "width": 0.2, "holds": "transport_rate.q_star_mean > 0.1"}
+
+
+class Folder(unittest.TestCase):
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.folder = Path(holder.name)
+        (self.folder / "case.yaml").write_text("system: grains\n")
+
+    def plan(self, **content):
+        return plan_of({"case": "case.yaml"} | content, self.folder)
+
+
+class Points(Folder):
+    def test_every_combination_with_the_last_key_fastest(self):
+        plan = self.plan(set={"contact.friction": 0.3}, vary={"a.x": [1, 2], "b": {"from": 3, "to": 5}},
+                         together=[{"c": "wide", "d": [1, 2]}, {"c": "narrow"}])
+        self.assertEqual(len(plan.points), 12)
+        self.assertEqual(plan.points[0], {"contact.friction": 0.3, "a.x": 1, "b": 3, "c": "wide", "d": [1, 2]})
+        self.assertEqual(plan.points[-1], {"contact.friction": 0.3, "a.x": 2, "b": 5, "c": "narrow"})
+        self.assertEqual(plan.keys(), ["a.x", "b", "c", "d"])
+        self.assertEqual(self.plan().points, [{}])
+
+    def test_ranges(self):
+        points = self.plan(vary={"a": {"from": 0.01, "to": 1, "count": 3, "spacing": "log"}}).points
+        self.assertEqual([point["a"] for point in points], [0.01, 0.1, 1.0])
+        points = self.plan(vary={"a": {"from": 0, "to": 0.3, "step": 0.1}}).points
+        self.assertEqual([point["a"] for point in points], [0.0, 0.1, 0.2, 0.3])
+
+    def test_names_tell_the_runs_apart(self):
+        self.assertEqual(short_keys(["grains.0.count", "grains.1.count", "gravity.slope"]),
+                         {"grains.0.count": "0.count", "grains.1.count": "1.count", "gravity.slope": "slope"})
+        self.assertEqual(name_of({"gravity.slope": 1e-3, "name": "a/b"}, ["gravity.slope", "name"]),
+                         "slope_0.001-name_a_b")
+
+    def test_what_cannot_be_meant_is_refused_with_its_key(self):
+        for content, words in (({"very": 1}, "very is not a key here"),
+                               ({"case": "gone.yaml"}, "gone.yaml cannot be read"),
+                               ({"vary": {"a": []}}, "a: give a list of values"),
+                               ({"vary": {"a": {"from": 2, "to": 1}}}, "from a smaller to a larger"),
+                               ({"vary": {"a": {"from": 0, "to": 1, "count": 3, "spacing": "log"}}}, "above 0"),
+                               ({"vary": {"a": {"from": 1, "to": "x"}}}, "a.to: x is not a number"),
+                               ({"vary": {"a": [1]}, "set": {"a": 2}}, "a is given twice"),
+                               ({"ranks": 0}, "ranks: 0"),
+                               ({"bisect": {"key": "a"}}, "bisect.from is missing"),
+                               ({"bisect": BISECT | {"from": 2}}, "no range to search"),
+                               ({"bisect": BISECT | {"width": 0}}, "width above 0"),
+                               ({"bisect": BISECT | {"spacing": "log"}}, "above 0"),
+                               ({"bisect": BISECT | {"holds": "q_star"}}, "compared with"),
+                               ({"bisect": BISECT, "vary": {"gravity.slope": [1, 2]}}, "bisect.key: gravity.slope is also")):
+            with self.subTest(content=content), self.assertRaisesRegex(SweepError, words.replace("(", r"\(")):
+                self.plan(**content)
+
+
+class Bisection(Folder):
+    """The runs are answered here: a run at a slope moves where the slope is above the threshold of its seed."""
+
+    def search(self, threshold, **more):
+        task = BisectionTask(self.folder, self.plan(bisect=BISECT | more), 0)
+        asked = []
+        while wanted := task.wanted():
+            run = wanted[0]
+            slope = run.settings["gravity.slope"]
+            asked.append(slope)
+            rate = 1.0 if slope > threshold(run.settings) else 0.0
+            run.folder.mkdir()
+            (run.folder / "summary.json").write_text(
+                json.dumps({"finished": True, "wall_seconds": 1.0, "transport_rate": {"q_star_mean": rate}}))
+            run.look()
+        return task, asked
+
+    def test_halves_the_range_until_it_is_narrow(self):
+        task, asked = self.search(lambda settings: 0.3)
+        self.assertEqual(asked, [0.0, 1.0, 0.5, 0.25, 0.375])
+        self.assertEqual(task.result(), ("found", 0.25, 0.375, 0.3125))
+
+    def test_looks_at_the_ends_before_it_believes_them(self):
+        for threshold, state in ((-1.0, "holds everywhere"), (2.0, "holds nowhere")):
+            with tempfile.TemporaryDirectory() as folder:
+                self.folder, outer = Path(folder), self.folder
+                (self.folder / "case.yaml").write_text("system: grains\n")
+                task, asked = self.search(lambda settings: threshold)
+                self.folder = outer
+            self.assertEqual((task.result()[0], asked), (state, [0.0, 1.0]))
+
+    def test_geometric_steps(self):
+        task, _ = self.search(lambda settings: 0.03, **{"from": 0.01, "spacing": "log", "width": 0.5})
+        state, lower, upper, threshold = task.result()
+        self.assertEqual(state, "found")
+        self.assertTrue(lower < 0.03 <= upper <= 1.5 * lower)
+        self.assertAlmostEqual(threshold, math.sqrt(lower * upper), 15)
+
+    def test_the_majority_of_the_repetitions_decides_and_no_more_are_run_than_it_needs(self):
+        # Seeds 1 to 5 begin to move at 0.1, 0.2, 0.3, 0.4 and 0.9: more than half of them above 0.3.
+        thresholds = [0.1, 0.2, 0.3, 0.4, 0.9]
+        task, asked = self.search(lambda settings: thresholds[settings["seed"] - 1], width=0.05,
+                                  repeat={"seed": {"from": 1, "to": 5}})
+        state, lower, upper, _ = task.result()
+        self.assertEqual(state, "found")
+        self.assertTrue(lower <= 0.3 < upper, (lower, upper))
+        self.assertEqual(asked.count(0.0), 3)   # three that rest decide
+        self.assertLess(len(asked), task.search.most_levels() * 5)
+
+    def test_the_count_of_what_is_left_is_never_too_small(self):
+        task = BisectionTask(self.folder, self.plan(bisect=BISECT), 0)
+        self.assertEqual(task.search.most_levels(), 5)
+        self.assertEqual(task.most_runs_left(), 5)
+
+
+class Units(unittest.TestCase):
+    def test_units_of_keys_from_the_list_of_all_keys(self):
+        units = tables.units_of_keys("# Every key.\n"
+                                     "gravity:                  # given by magnitude and slope\n"
+                                     "  magnitude: 9.8          # m/s^2, at least 0; with slope\n"
+                                     "  # vector: [0, 0, 0]     # m/s^2; in place of both\n"
+                                     "grains:                   # populations\n"
+                                     "  - placement:            # where\n"
+                                     "      seed: 1             # whole number, at least 0; of the packing\n"
+                                     "    diameter:             # the same for all\n"
+                                     "      value: 5e-3         # required, m, above 0; of every grain\n"
+                                     "    # contact:            # material\n"
+                                     "      # damping: 1        # kg/(s m^1/2), at least 0; of the dashpot\n")
+        self.assertEqual(units, {"gravity.magnitude": "m/s^2", "gravity.vector": "m/s^2", "grains.diameter.value": "m",
+                                 "grains.diameter": "m", "grains.contact.damping": "kg/(s m^1/2)"})
+        self.assertEqual(tables.headed("grains.0.diameter", units), "grains.0.diameter [m]")
+
+
+if __name__ == "__main__":
+    unittest.main()
