@@ -17,7 +17,7 @@ namespace {
 
 // A grain as the sums take it. The members of a clump share its volume, mass and contact moment as their own volumes
 // are to each other, and move with its centre, so that its parts add up to the clump.
-struct Weighed {
+struct Body {
   double spheres = 0.0;             // m^3, of all spheres that share what follows: one, or the members
   double volume = 0.0, mass = 0.0;  // m^3, kg
   Vec3 velocity = Vec3::Zero();     // m/s
@@ -25,23 +25,23 @@ struct Weighed {
 };
 
 // In the order of the grains; the arms r of the snapshot are from the centre of the grain or of the clump.
-std::vector<Weighed> weighed(const Snapshot& snapshot) {
+std::vector<Body> bodies_of(const Snapshot& snapshot) {
   const GrainView& grains = snapshot.grains;
   const std::vector<Mat3> moments = contact_moments(snapshot);
-  std::vector<Weighed> result(grains.id.size());
+  std::vector<Body> result(grains.id.size());
   for (std::size_t i = 0; i < result.size(); ++i) {
     const double volume = volume_of(grains.radius[i], grains.disk_thickness);
     result[i] = {volume, volume, grains.mass[i], grains.velocity[i], moments[i]};
   }
-  std::map<GlobalId, Weighed> sums;
+  std::map<GlobalId, Body> sums;
   for (std::size_t i = 0; i < result.size(); ++i)
     if (grains.is_member(i)) {
-      Weighed& sum = sums[grains.clump[i]];
+      Body& sum = sums[grains.clump[i]];
       sum.spheres += result[i].spheres;
       sum.moment += result[i].moment;
     }
   for (const ClumpState& clump : grains.clumps) {  // owned here, and so are their members
-    Weighed& sum = sums.at(clump.id);
+    Body& sum = sums.at(clump.id);
     sum.volume = clump.volume;
     sum.mass = clump.mass;
     sum.velocity = clump.velocity;
@@ -68,12 +68,12 @@ void GrainProfiles::observe(const Snapshot& snapshot) {
   counted_step_ = snapshot.step;
   ++measurements_;
   const GrainView& grains = snapshot.grains;
-  const std::vector<Weighed> bodies = weighed(snapshot);
+  const std::vector<Body> bodies = bodies_of(snapshot);
   std::vector<int> layer_of_row;
   std::vector<double> terms;
   for (std::size_t i = 0; i < grains.id.size(); ++i) {
     const double radius = grains.radius[i], bottom = grains.position[i][2] - radius;
-    const Weighed& body = bodies[i];
+    const Body& body = bodies[i];
     const Vec3& v = body.velocity;
     const int first = static_cast<int>(std::floor(bottom / thickness_));
     const int last = static_cast<int>(std::floor((bottom + 2.0 * radius) / thickness_));

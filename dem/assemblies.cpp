@@ -48,20 +48,20 @@ void Assemblies::find_largest_speed() {
 }
 
 void Assemblies::find(const GrainStore& store) {
-  here_.clear();
+  owned_.clear();
   auto member = members_.begin();
   for (std::size_t s = 0; s < store.owned && member != members_.end(); ++s) {  // both sorted by id
     while (member != members_.end() && member->id < store.id[s]) ++member;
     if (member != members_.end() && member->id == store.id[s])
-      here_.push_back({static_cast<std::uint32_t>(s), static_cast<std::size_t>(member - members_.begin())});
+      owned_.push_back({static_cast<std::uint32_t>(s), static_cast<std::size_t>(member - members_.begin())});
   }
 }
 
 void Assemblies::place(MovingGrains& grains, const PeriodicBox& box, double time, double time_of_velocity) const {
-  for (const Here& here : here_) {
-    const Member& member = members_[here.member];
+  for (const OwnedMember& owned : owned_) {
+    const Member& member = members_[owned.member];
     const PrescribedMotion& motion = motions_[static_cast<std::size_t>(member.assembly)];
-    MovingGrain& grain = grains[here.slot];
+    MovingGrain& grain = grains[owned.slot];
     grain.position = row_of(wrapped(box, motion.place(member.at_start, time)), grain.position[3]);
     grain.velocity = row_of(motion.velocity_of(member.at_start, time_of_velocity));
     grain.spin = row_of(motion.spin());
@@ -87,7 +87,7 @@ void Assemblies::save(ArchiveWriter& archive, const std::string& group, MPI_Comm
 }
 
 void Assemblies::load(ArchiveReader& archive, const std::string& group) {
-  here_.clear();
+  owned_.clear();
   if (motions_.empty()) return;
   if (!archive.has(group + "/assembly_members"))
     throw InputError("The saved grains have no rigid assemblies, but this case has; the populations must be the same.");

@@ -42,7 +42,7 @@ private:
     std::int64_t assembly;
     Vec3 at_start;  // m
   };
-  struct Here {
+  struct OwnedMember {
     std::uint32_t slot;
     std::size_t member;
   };
@@ -50,8 +50,8 @@ private:
   void find_largest_speed();
 
   std::vector<PrescribedMotion> motions_;
-  std::vector<Member> members_;  // sorted by id
-  std::vector<Here> here_;       // of this rank
+  std::vector<Member> members_;     // sorted by id
+  std::vector<OwnedMember> owned_;  // of this rank
   double largest_speed_ = 0.0;
 };
 

@@ -70,7 +70,7 @@ Clump clump_of(const ClumpSeed& seed, const PeriodicBox& box) {
           seed.angular_velocity};
 }
 
-void Clumps::settle_in(const GrainStore& store) {
+void Clumps::find_members(const GrainStore& store) {
   first_slot_.clear();
   first_arm_.clear();
   offsets_.clear();
@@ -86,7 +86,7 @@ void Clumps::settle_in(const GrainStore& store) {
   for (std::size_t n = 0; n < clumps_.size(); ++n) turn_arms(n);
 }
 
-void Clumps::weigh(const std::function<Vec3(double, double)>& body_force) {
+void Clumps::compute_body_forces(const std::function<Vec3(double, double)>& body_force) {
   body_force_.clear();
   for (const Clump& clump : clumps_) body_force_.push_back(body_force(clump.mass, radius_of_volume(clump.volume)));
 }

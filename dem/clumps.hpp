@@ -59,14 +59,14 @@ public:
   const Clump& operator[](std::size_t n) const { return clumps_[n]; }
   std::size_t first_slot(std::size_t n) const { return first_slot_[n]; }  // of its members in the store
 
-  // Replaces all clumps by those whose ids rise; settle_in() and weigh() must follow.
-  void adopt(std::vector<Clump> clumps) { clumps_ = std::move(clumps); }
+  // Replaces all clumps by those whose ids rise; find_members() and compute_body_forces() must follow.
+  void replace(std::vector<Clump> clumps) { clumps_ = std::move(clumps); }
 
-  // Finds the members among the owned grains of the store; weigh() must follow.
-  void settle_in(const GrainStore& store);
+  // Finds the members among the owned grains of the store; compute_body_forces() must follow.
+  void find_members(const GrainStore& store);
 
   // body_force: as in GrainParameters, of a clump's mass and the radius of the sphere of its volume.
-  void weigh(const std::function<Vec3(double, double)>& body_force);
+  void compute_body_forces(const std::function<Vec3(double, double)>& body_force);
 
   // Gives every member an equal share of its clump's body force.
   void share_body_force(std::vector<Vec3>& of_slot) const;

@@ -1,6 +1,6 @@
 #include "dem/contact_archive.hpp"
 
-#include "dem/archive_share.hpp"
+#include "dem/row_range.hpp"
 
 #include <cstdint>
 #include <vector>
@@ -16,7 +16,7 @@ std::string part_name(const std::string& group, const HistoryPart& part) { retur
 
 void write_histories(ArchiveWriter& archive, const std::string& group, const ContactHistories& histories,
                      std::span<const HistoryPart> parts, MPI_Comm communicator) {
-  const Share share = Share::of_rows(static_cast<std::int64_t>(histories.size()), communicator);
+  const RowRange share = RowRange::of_rows(static_cast<std::int64_t>(histories.size()), communicator);
   std::vector<std::int64_t> ids;
   for (std::size_t n = 0; n < histories.size(); ++n)
     ids.insert(ids.end(), {histories.key(n).first, histories.key(n).second});
@@ -35,8 +35,8 @@ void write_histories(ArchiveWriter& archive, const std::string& group, const Con
 
 ContactHistories read_histories(ArchiveReader& archive, const std::string& group, std::span<const HistoryPart> parts,
                                 bool walls, MPI_Comm communicator) {
-  const Share share(static_cast<std::int64_t>(archive.shape(ids_name(group)).at(0)), size_of(communicator),
-                    rank_of(communicator));
+  const RowRange share(static_cast<std::int64_t>(archive.shape(ids_name(group)).at(0)), size_of(communicator),
+                       rank_of(communicator));
   const auto rows = static_cast<std::size_t>(share.size());
   std::vector<std::int64_t> ids(2 * rows);
   archive.read(ids_name(group), ids, share.box(2));

@@ -74,8 +74,8 @@ template <typename ContactLaw>
     const WallContact& c = contacts[number];
     MovingGrain& grain = grains[c.grain];
     const Plane& wall = walls[c.wall];
-    const WallSight sight = wall.seen_from(vector_of(grain.position), box);
-    const ContactMotion motion = motion_of(body_of(grain), sight, wall.velocity);
+    const WallView view = wall.seen_from(vector_of(grain.position), box);
+    const ContactMotion motion = motion_of(body_of(grain), view, wall.velocity);
     if (!(motion.overlap > -law.range())) {
       rows.forget(number);
       continue;
@@ -84,8 +84,8 @@ template <typename ContactLaw>
     const ContactLoad f = load_of(law, motion, materials.wall(material[c.grain]), wall.friction, rows[number], history);
     std::copy(history.begin(), history.end(), rows[number]);
     const Vec3 tangential(f.tx, f.ty, f.tz);
-    grain.force += row_of(f.normal * sight.normal + tangential);
-    grain.torque += row_of(sight.distance * tangential.cross(sight.normal));
+    grain.force += row_of(f.normal * view.normal + tangential);
+    grain.torque += row_of(view.distance * tangential.cross(view.normal));
     if constexpr (ContactLaw::rolls) grain.torque += Row{f.mx, f.my, f.mz, 0.0};
   }
 }

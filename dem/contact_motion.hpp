@@ -38,7 +38,7 @@ inline ContactMotion motion_of(const ContactBody& first, const ContactBody& seco
   return {overlap, n[0], n[1], n[2], v[0], v[1], v[2], first.radius * second.radius / reach, w[0], w[1], w[2]};
 }
 
-inline ContactMotion motion_of(const ContactBody& grain, const WallSight& wall, const Vec3& wall_velocity) {
+inline ContactMotion motion_of(const ContactBody& grain, const WallView& wall, const Vec3& wall_velocity) {
   const Vec3& n = wall.normal;
   const Vec3 v = grain.velocity - wall_velocity - wall.distance * grain.spin.cross(n), &w = grain.spin;
   return {grain.radius - wall.distance, n[0], n[1], n[2], v[0], v[1], v[2], grain.radius, w[0], w[1], w[2]};

@@ -44,7 +44,7 @@ GrainBatch owned_grains(const GrainStore& store) {
   return batch;
 }
 
-void adopt(GrainStore& store, const GrainBatch& batch) {
+void replace_owned(GrainStore& store, const GrainBatch& batch) {
   store.clear();
   store.reserve(batch.rows.size());
   for (const GrainRow& row : batch.rows) {

@@ -36,7 +36,7 @@ struct GrainBatch {
 GrainBatch owned_grains(const GrainStore& store);
 
 // Replaces all grains of the store by those of the batch; no ghosts. Rows must be sorted by id.
-void adopt(GrainStore& store, const GrainBatch& batch);
+void replace_owned(GrainStore& store, const GrainBatch& batch);
 
 // Sends row i to rank destination[i]; returns what arrived here, sorted by id. Collective.
 GrainBatch exchange_grains(MPI_Comm communicator, const GrainBatch& batch, const std::vector<int>& destination,

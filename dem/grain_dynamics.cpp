@@ -100,9 +100,9 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
 
   const int me = rank_of(communicator_);
   const std::vector<Clump> mine = clumps_of(clumps, decomposition_, me);
-  adopt(store_, batch_of(seeds, mine, decomposition_, me, store_.attached_width));
-  clumps_.adopt(mine);
-  settle_in({});
+  replace_owned(store_, batch_of(seeds, mine, decomposition_, me, store_.attached_width));
+  clumps_.replace(mine);
+  build_dependents({});
   moving_.load(store_, body_force_);
   assemblies_.place(moving_, box_, 0.0, 0.0);
   ghosts_.refresh(moving_);
@@ -205,7 +205,7 @@ void GrainDynamics::rebuild() {
     if (parameters_.movable_cuts) move_cuts();
     migrate(histories);
   }
-  settle_in(histories);
+  build_dependents(histories);
   ++rebuilds_;
 }
 
@@ -238,12 +238,12 @@ void GrainDynamics::migrate(ContactHistories& histories) {
       }
   histories.add(leaving.exchanged(communicator_, destination));
   histories.sort();
-  adopt(store_, exchange_grains(communicator_, owned_grains(store_), owner, store_.attached_width));
+  replace_owned(store_, exchange_grains(communicator_, owned_grains(store_), owner, store_.attached_width));
   if (clump_count_ > 0) clumps_.migrate(decomposition_, communicator_);
 }
 
 // Makes everything that follows from the owned grains: ghosts, contact list, body forces.
-void GrainDynamics::settle_in(const ContactHistories& histories) {
+void GrainDynamics::build_dependents(const ContactHistories& histories) {
   ghosts_.build(store_);
   assemblies_.find(store_);
   listed_planes_ = planes_;
@@ -251,11 +251,11 @@ void GrainDynamics::settle_in(const ContactHistories& histories) {
   restore_histories(list_, store_, histories);
   const auto owned_end = static_cast<std::ptrdiff_t>(store_.owned);
   listed_position_.assign(store_.position.begin(), store_.position.begin() + owned_end);
-  clumps_.settle_in(store_);
-  weigh();
+  clumps_.find_members(store_);
+  compute_body_forces();
 }
 
-void GrainDynamics::weigh() {
+void GrainDynamics::compute_body_forces() {
   const auto force = [this](double mass, double radius) -> Vec3 {
     if (!parameters_.body_force) return Vec3::Zero();
     return body_force_factor_ * parameters_.body_force(mass, radius);
@@ -263,14 +263,14 @@ void GrainDynamics::weigh() {
   body_force_.assign(store_.owned, Vec3::Zero());
   for (std::size_t s = 0; s < store_.owned; ++s)
     if (store_.clump[s] < 0) body_force_[s] = force(store_.mass[s], store_.radius[s]);
-  clumps_.weigh(force);
+  clumps_.compute_body_forces(force);
   clumps_.share_body_force(body_force_);
 }
 
 void GrainDynamics::set_body_force_factor(double factor) {
   if (factor == body_force_factor_) return;
   body_force_factor_ = factor;
-  weigh();
+  compute_body_forces();
 }
 
 void GrainDynamics::evaluate_forces(double time_step) {

@@ -209,8 +209,8 @@ private:
                                   bool with_walls);
   std::vector<Clump> load_clumps(ArchiveReader& archive, const std::string& group, const GrainBatch& batch,
                                  std::vector<int>& owner);
-  void settle_in(const ContactHistories& histories);
-  void weigh();
+  void build_dependents(const ContactHistories& histories);
+  void compute_body_forces();
   void evaluate_forces(double time_step);
   template <typename Work>
   void timed(int phase, Work&& work);

@@ -6,11 +6,11 @@
 // clump_members, clump_motion, clump_mass and so on with the names of struct ClumpRow.
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
-#include "dem/archive_share.hpp"
 #include "dem/contact_archive.hpp"
 #include "dem/grain_batch.hpp"
 #include "dem/grain_dynamics.hpp"
 #include "dem/grain_space.hpp"
+#include "dem/row_range.hpp"
 
 #include <fmt/format.h>
 
@@ -26,7 +26,7 @@ namespace {
 constexpr const char* vector_names[GrainRow::vectors] = {
     "position", "velocity", "angular_velocity", "contact_force", "contact_torque", "load_force", "load_torque"};
 
-void write_grains(ArchiveWriter& archive, const std::string& group, const GrainBatch& batch, const Share& share,
+void write_grains(ArchiveWriter& archive, const std::string& group, const GrainBatch& batch, const RowRange& share,
                   int attached_width, bool with_clumps) {
   std::vector<double> radius, mass, vectors;
   std::vector<std::int64_t> motion, material;
@@ -57,7 +57,7 @@ void write_grains(ArchiveWriter& archive, const std::string& group, const GrainB
   archive.write(group + "/offset", vectors, share.box(3));
 }
 
-GrainBatch read_grains(ArchiveReader& archive, const std::string& group, const Share& share, int attached_width) {
+GrainBatch read_grains(ArchiveReader& archive, const std::string& group, const RowRange& share, int attached_width) {
   const auto rows = static_cast<std::size_t>(share.last - share.first);
   GrainBatch batch;
   batch.rows.resize(rows);
@@ -107,7 +107,7 @@ constexpr RealColumn clump_reals[] = {
     {"clump_angular_momentum", 3, [](ClumpRow& row) -> double* { return row.angular_momentum; }},
     {"clump_angular_velocity", 3, [](ClumpRow& row) -> double* { return row.angular_velocity; }}};
 
-void write_clumps(ArchiveWriter& archive, const std::string& group, std::vector<ClumpRow> rows, const Share& share) {
+void write_clumps(ArchiveWriter& archive, const std::string& group, std::vector<ClumpRow> rows, const RowRange& share) {
   std::sort(rows.begin(), rows.end(), [](const ClumpRow& a, const ClumpRow& b) { return a.id < b.id; });
   for (const auto& [name, field] : clump_numbers) {
     std::vector<std::int64_t> values;
@@ -121,7 +121,7 @@ void write_clumps(ArchiveWriter& archive, const std::string& group, std::vector<
   }
 }
 
-std::vector<ClumpRow> read_clumps(ArchiveReader& archive, const std::string& group, const Share& share) {
+std::vector<ClumpRow> read_clumps(ArchiveReader& archive, const std::string& group, const RowRange& share) {
   std::vector<ClumpRow> rows(static_cast<std::size_t>(share.last - share.first));
   for (const auto& [name, field] : clump_numbers) {
     std::vector<std::int64_t> values(rows.size());
@@ -145,25 +145,26 @@ int saved_width(const ArchiveReader& archive, const std::string& group) {
 
 // Throws on every rank, naming the same grain, the one with the lowest id.
 void check_loaded(const GrainBatch& batch, const GrainSpace& space, MPI_Comm communicator) {
-  struct Stray {
+  struct Outlier {
     std::int64_t id = std::numeric_limits<std::int64_t>::max(), axis = 0;
     double x = 0.0;
-  } stray;
+  } outlier;
   for (const GrainRow& row : batch.rows)
     for (int axis = 0; axis < 3; ++axis) {
       const double x = row.value[GrainRow::position][axis];
       const bool inside = x >= space.lower()[axis] - row.radius && x <= space.upper()[axis] + row.radius;
-      if (!inside && row.id < stray.id) stray = {row.id, axis, x};
+      if (!inside && row.id < outlier.id) outlier = {row.id, axis, x};
     }
   std::int64_t lowest = 0;
-  MPI_Allreduce(&stray.id, &lowest, 1, MPI_INT64_T, MPI_MIN, communicator);
+  MPI_Allreduce(&outlier.id, &lowest, 1, MPI_INT64_T, MPI_MIN, communicator);
   if (lowest == std::numeric_limits<std::int64_t>::max()) return;
-  int teller = stray.id == lowest ? rank_of(communicator) : 0, root = 0;
-  MPI_Allreduce(&teller, &root, 1, MPI_INT, MPI_MAX, communicator);
-  MPI_Bcast(&stray, sizeof(Stray), MPI_BYTE, root, communicator);
+  int sender = outlier.id == lowest ? rank_of(communicator) : 0, root = 0;
+  MPI_Allreduce(&sender, &root, 1, MPI_INT, MPI_MAX, communicator);
+  MPI_Bcast(&outlier, sizeof(Outlier), MPI_BYTE, root, communicator);
   throw InputError(fmt::format("Grain {} of the saved state has {} = {:g} m, outside the box of {:g} to {:g} m.",
-                               stray.id, "xyz"[stray.axis], stray.x, space.lower()[static_cast<int>(stray.axis)],
-                               space.upper()[static_cast<int>(stray.axis)]));
+                               outlier.id, "xyz"[outlier.axis], outlier.x,
+                               space.lower()[static_cast<int>(outlier.axis)],
+                               space.upper()[static_cast<int>(outlier.axis)]));
 }
 
 // Of each material, over all ranks: grains, and clumps as their contacts feel them.
@@ -196,18 +197,18 @@ void GrainDynamics::save(ArchiveWriter& archive, const std::string& group) const
   archive.attribute(group + "/sub_steps", steps_done_);
   assemblies_.save(archive, group, communicator_);
   std::vector<int> home;
-  for (std::size_t s = 0; s < store_.owned; ++s) home.push_back(home_of(store_.id[s], global_count_, ranks));
+  for (std::size_t s = 0; s < store_.owned; ++s) home.push_back(rank_of_row(store_.id[s], global_count_, ranks));
   write_grains(archive, group, exchange_grains(communicator_, owned_grains(store_), home, store_.attached_width),
-               Share(global_count_, ranks, me), store_.attached_width, clump_count_ > 0);
+               RowRange(global_count_, ranks, me), store_.attached_width, clump_count_ > 0);
   if (clump_count_ > 0) {
     std::vector<ClumpRow> clumps;
     home.clear();
     for (std::size_t n = 0; n < clumps_.size(); ++n) {
       clumps.push_back(row_of(clumps_[n]));
-      home.push_back(home_of(clumps.back().id, global_count_, ranks));
+      home.push_back(rank_of_row(clumps.back().id, global_count_, ranks));
     }
     clumps = exchange_rows(communicator_, clumps, home);
-    const Share clump_share = Share::of_rows(static_cast<std::int64_t>(clumps.size()), communicator_);
+    const RowRange clump_share = RowRange::of_rows(static_cast<std::int64_t>(clumps.size()), communicator_);
     write_clumps(archive, group, std::move(clumps), clump_share);
   }
 
@@ -220,7 +221,7 @@ void GrainDynamics::save(ArchiveWriter& archive, const std::string& group) const
     const GlobalId first = known.key(n).first;
     if (!std::binary_search(store_.id.begin(), owned_end, first)) continue;
     mine.add(known.key(n), known.values(n));
-    home.push_back(home_of(first, global_count_, ranks));
+    home.push_back(rank_of_row(first, global_count_, ranks));
   }
   ContactHistories rows = mine.exchanged(communicator_, home);
   rows.sort();
@@ -251,7 +252,7 @@ void GrainDynamics::restore(ArchiveReader& archive, const std::string& group, bo
   // A start may be that of another kind of run, whose columns mean something else.
   const bool same_columns = !as_start || saved_width(archive, group) == store_.attached_width;
   GrainBatch batch =
-      read_grains(archive, group, Share(global_count_, ranks, me), same_columns ? store_.attached_width : 0);
+      read_grains(archive, group, RowRange(global_count_, ranks, me), same_columns ? store_.attached_width : 0);
   if (!same_columns) batch.attached.assign(batch.rows.size() * store_.attached_width, 0.0);
 
   // A state saved before walls could move has no count, and no need of one.
@@ -287,10 +288,10 @@ void GrainDynamics::restore(ArchiveReader& archive, const std::string& group, bo
   const std::vector<Clump> clumps = load_clumps(archive, group, batch, owner);
   const ContactHistories histories = load_histories(archive, group, owner, same_walls);
 
-  adopt(store_, exchange_grains(communicator_, batch, owner, store_.attached_width));
+  replace_owned(store_, exchange_grains(communicator_, batch, owner, store_.attached_width));
   check_time_step(parameters_, lightest_of(store_, clumps, materials_.count(), communicator_), body_count());
-  clumps_.adopt(clumps);
-  settle_in(histories);
+  clumps_.replace(clumps);
+  build_dependents(histories);
   rebuilds_ = 0;
 }
 
@@ -315,8 +316,8 @@ ContactHistories GrainDynamics::load_histories(ArchiveReader& archive, const std
   };
   // First to the ranks that read one of its grains and so know the owner, then to the owners.
   const ContactHistories read = read_histories(archive, group, history_parts_of(list_), with_walls, communicator_);
-  const ContactHistories met = sent_on(read, [&](GlobalId id) { return home_of(id, global_count_, ranks); });
-  const Share grains(global_count_, ranks, me);
+  const ContactHistories met = sent_on(read, [&](GlobalId id) { return rank_of_row(id, global_count_, ranks); });
+  const RowRange grains(global_count_, ranks, me);
   return sent_on(
       met, [&](GlobalId id) { return grains.has(id) ? owner[static_cast<std::size_t>(id - grains.first)] : nobody; });
 }
@@ -331,16 +332,16 @@ std::vector<Clump> GrainDynamics::load_clumps(ArchiveReader& archive, const std:
   clump_count_ = static_cast<std::int64_t>(archive.shape(group + "/clump_id").at(0));
   refuse_gear_of_clumps();
   // Every rank that read a member is told of the clump; the one that read the first member passes it on.
-  const std::vector<ClumpRow> read = read_clumps(archive, group, Share(clump_count_, ranks, me));
+  const std::vector<ClumpRow> read = read_clumps(archive, group, RowRange(clump_count_, ranks, me));
   std::vector<ClumpRow> sent;
   std::vector<int> to;
   for (const ClumpRow& row : read)
-    for (int rank = home_of(row.id, global_count_, ranks);
-         rank <= home_of(row.id + row.members - 1, global_count_, ranks); ++rank) {
+    for (int rank = rank_of_row(row.id, global_count_, ranks);
+         rank <= rank_of_row(row.id + row.members - 1, global_count_, ranks); ++rank) {
       sent.push_back(row);
       to.push_back(rank);
     }
-  const std::int64_t first = Share(global_count_, ranks, me).first;
+  const std::int64_t first = RowRange(global_count_, ranks, me).first;
   const auto last = first + static_cast<std::int64_t>(batch.rows.size());
   std::vector<ClumpRow> passed;
   std::vector<int> destination;

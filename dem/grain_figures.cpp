@@ -40,7 +40,7 @@ std::vector<Contact> GrainDynamics::contacts() const {
   });
   for (std::size_t number = 0; number < list_.walls.size(); ++number) {
     const WallContact& c = list_.walls[number];
-    const WallSight wall = planes_[c.wall].seen_from(store_.position[c.grain], box_);
+    const WallView wall = planes_[c.wall].seen_from(store_.position[c.grain], box_);
     const double overlap = store_.radius[c.grain] - wall.distance;
     if (overlap > 0.0)
       touching.push_back({store_.id[c.grain], -1 - static_cast<GlobalId>(c.wall), overlap, wall.normal,

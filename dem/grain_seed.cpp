@@ -42,13 +42,13 @@ void check_alone(const GrainSeed& seed, const PeriodicBox& box, std::span<const 
                       place(seed.position), "xyz"[axis], box.size[axis]));
   if (is_fixed(seed.motion)) return;
   for (const Plane& wall : walls) {
-    const WallSight sight = wall.seen_from(seed.position, box);
-    const double overlap = seed.radius - sight.distance;
+    const WallView view = wall.seen_from(seed.position, box);
+    const double overlap = seed.radius - view.distance;
     if (overlap > allowed_overlap * 2.0 * seed.radius)
       throw InputError(fmt::format(
           "Grain {} at {} with radius {:g} m reaches {:g} m into the wall with normal ({:g}, "
           "{:g}, {:g}); move it away by that much.",
-          seed.id, place(seed.position), seed.radius, overlap, sight.normal[0], sight.normal[1], sight.normal[2]));
+          seed.id, place(seed.position), seed.radius, overlap, view.normal[0], view.normal[1], view.normal[2]));
   }
 }
 

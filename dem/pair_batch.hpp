@@ -78,7 +78,7 @@ public:
     std::fill(pair_ + count, pair_ + rounded, near[0]);
     for (int k = 0; k < rounded; k += 4) {
       if constexpr (fetch)
-        for (std::size_t n = k; n < std::min<std::size_t>(k + 4, behind.size()); ++n) ask_for(behind[n]);
+        for (std::size_t n = k; n < std::min<std::size_t>(k + 4, behind.size()); ++n) prefetch(behind[n]);
       gather(k);
     }
     if (materials_.count() > 1) gather_coefficients(rounded);
@@ -114,7 +114,7 @@ private:
   }
 
   // Inlined, because to the compiler a function that only asks does nothing, and a call of it can go.
-  [[gnu::always_inline]] void ask_for(const NearPair& next) const {
+  [[gnu::always_inline]] void prefetch(const NearPair& next) const {
     const char* values = reinterpret_cast<const char*>(row(next));
     for (std::size_t line = 0; line < width * sizeof(double); line += 64) __builtin_prefetch(values + line, 1);
     for (const std::uint32_t slot : {next.first, next.second}) {

@@ -72,11 +72,11 @@ ClumpSeed clump_seed_of(const GrainSeed& as_grain, ClumpSeed clump) {
 }
 
 // Who is given a place first.
-enum class Turn { given, uniform, random };
+enum class PlacementOrder { given, uniform, random };
 
-Turn turn_of(const PlacementKeys& placement) {
-  if (placement.file || !placement.positions.empty()) return Turn::given;
-  return placement.pattern == PlacementPattern::uniform ? Turn::uniform : Turn::random;
+PlacementOrder order_of(const PlacementKeys& placement) {
+  if (placement.file || !placement.positions.empty()) return PlacementOrder::given;
+  return placement.pattern == PlacementPattern::uniform ? PlacementOrder::uniform : PlacementOrder::random;
 }
 
 std::vector<Vec3> place(const Population& population, const PeriodicBox& box, const std::vector<Sphere>& placed) {
@@ -87,13 +87,13 @@ std::vector<Vec3> place(const Population& population, const PeriodicBox& box, co
   Region region = region_of(placement, box);
   region.plane = population.thickness > 0.0;
   if (region.plane) region.lower[1] = 0.0, region.upper[1] = box.size[1];
-  switch (turn_of(placement)) {
-    case Turn::given:
+  switch (order_of(placement)) {
+    case PlacementOrder::given:
       for (const BedGrain& grain : population.file) positions.push_back(grain.position);
       return placement.file ? positions : placement.positions;
-    case Turn::uniform:
+    case PlacementOrder::uniform:
       return uniform_packing(box, region, population.count, 0.5 * population.room_of_all(), 0.0, seed);
-    case Turn::random:
+    case PlacementOrder::random:
       break;
   }
   for (std::size_t n = 0; n < static_cast<std::size_t>(population.count); ++n)
@@ -161,9 +161,9 @@ private:
 GrainSeeds grain_seeds(std::span<const Population> populations, const PeriodicBox& box) {
   std::vector<std::vector<Vec3>> positions(populations.size());
   std::vector<Sphere> placed;
-  for (const Turn turn : {Turn::given, Turn::uniform, Turn::random})
+  for (const PlacementOrder order : {PlacementOrder::given, PlacementOrder::uniform, PlacementOrder::random})
     for (std::size_t p = 0; p < populations.size(); ++p) {
-      if (turn_of(populations[p].placement) != turn) continue;
+      if (order_of(populations[p].placement) != order) continue;
       try {
         positions[p] = place(populations[p], box, placed);
       } catch (const InputError& error) {

@@ -37,7 +37,7 @@ bool Plane::changes() const {
   return moves || (oscillation.frequency > 0.0 && !oscillation.amplitude.isZero(0.0));
 }
 
-WallSight Plane::seen_as_plate(Vec3 from_point, const PeriodicBox& box) const {
+WallView Plane::seen_as_plate(Vec3 from_point, const PeriodicBox& box) const {
   for (int axis = 0; axis < 3; ++axis)
     if (box.periodic[axis]) from_point[axis] -= box.size[axis] * std::round(from_point[axis] / box.size[axis]);
   const Vec3 across = normal.cross(plate->along);

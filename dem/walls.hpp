@@ -22,7 +22,7 @@ struct PlateExtent {
 };
 
 // A wall as a grain sees it.
-struct WallSight {
+struct WallView {
   double distance;  // m, of the nearest point of the wall; of a plane negative beyond it
   Vec3 normal;      // unit, from there to the grain
 };
@@ -36,9 +36,9 @@ struct Plane {
   Oscillation oscillation;        // on top of the velocity
   std::optional<PlateExtent> plate;
 
-  WallSight seen_from(const Vec3& position, const PeriodicBox& box) const {
+  WallView seen_from(const Vec3& position, const PeriodicBox& box) const {
     const Vec3 from_point = position - point;
-    return plate ? seen_as_plate(from_point, box) : WallSight{from_point.dot(normal), normal};
+    return plate ? seen_as_plate(from_point, box) : WallView{from_point.dot(normal), normal};
   }
   // Whether its place or its velocity changes with time: of a plane, a velocity in itself alone changes neither.
   bool changes() const;
@@ -48,7 +48,7 @@ struct Plane {
   double moved_since(const Plane& earlier) const;  // m: no grain is nearer or further by more than this
 
 private:
-  WallSight seen_as_plate(Vec3 from_point, const PeriodicBox& box) const;
+  WallView seen_as_plate(Vec3 from_point, const PeriodicBox& box) const;
 };
 
 // The faces in the order of all lists of them, as cases and figures name them.

@@ -38,8 +38,8 @@ const char* name_of(SystemKind kind) {
   return "";
 }
 
-Index3 choose_layout(const Case& c, int ranks, const std::optional<Index3>& asked_for) {
-  const Index3 layout = asked_for ? *asked_for : Decomposition::best_layout(cells_of(c.domain), ranks);
+Index3 choose_layout(const Case& c, int ranks, const std::optional<Index3>& requested) {
+  const Index3 layout = requested ? *requested : Decomposition::best_layout(cells_of(c.domain), ranks);
   if (layout[0] * layout[1] * layout[2] != ranks)
     throw InputError(fmt::format("--layout {},{},{} needs {} rank(s), but the program runs on {}.", layout[0],
                                  layout[1], layout[2], layout[0] * layout[1] * layout[2], ranks));

@@ -14,7 +14,7 @@ namespace thalweg::driver {
 
 // The layout of ranks a run uses: the one asked for, or the best one. Throws InputError where the layout does not use
 // every rank, or blocks would get too small.
-Index3 choose_layout(const Case& c, int ranks, const std::optional<Index3>& asked_for);
+Index3 choose_layout(const Case& c, int ranks, const std::optional<Index3>& requested);
 
 // Cells, axes and blocks of the case's domain.
 Decomposition decomposition_of(const Case& c, const Index3& layout);

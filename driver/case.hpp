@@ -162,7 +162,4 @@ std::int64_t sub_steps_needed(const Case& c);
 // slope.
 double estimated_velocity(const Case& c);
 
-// What does not forbid a run but deserves a second look: whole sentences.
-std::vector<std::string> warnings(const Case& c);
-
 }  // namespace thalweg::driver

@@ -5,6 +5,7 @@
 #include "dem/material.hpp"
 #include "driver/bed_flow.hpp"
 #include "driver/build_system.hpp"
+#include "driver/case_warnings.hpp"
 #include "driver/grain_setup.hpp"
 #include "driver/machine.hpp"
 #include "driver/reference_grain.hpp"

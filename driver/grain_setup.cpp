@@ -14,12 +14,12 @@ constexpr double skin_in_diameters = 0.1, dry_skin_in_diameters = 0.5;
 
 // Faces the fluid sticks to; the other walls of the case are not the fluid's.
 dem::LubricationParameters lubrication_parameters(const Case& c, std::size_t walls) {
-  const coupling::LubricationKeys& asked_for = *c.coupling.lubrication;
+  const coupling::LubricationKeys& given = *c.coupling.lubrication;
   dem::LubricationParameters parameters;
   parameters.viscosity = c.fluid.density * c.fluid.kinematic_viscosity;
-  parameters.normal_cut_off = asked_for.normal_cut_off * c.domain.spacing;
-  parameters.tangential_cut_off = asked_for.tangential_cut_off * c.domain.spacing;
-  parameters.minimum_gap = asked_for.minimum_gap;
+  parameters.normal_cut_off = given.normal_cut_off * c.domain.spacing;
+  parameters.tangential_cut_off = given.tangential_cut_off * c.domain.spacing;
+  parameters.minimum_gap = given.minimum_gap;
   for (const coupling::FaceKeys& face : c.domain.faces)  // in the order of planes_of()
     if (face.type != lbm::FaceType::periodic)
       parameters.walls.push_back(face.type == lbm::FaceType::no_slip || face.type == lbm::FaceType::moving);

@@ -6,6 +6,7 @@
 #include "dem/dry_grains.hpp"
 #include "driver/build_system.hpp"
 #include "driver/case_reader.hpp"
+#include "driver/case_warnings.hpp"
 #include "driver/machine.hpp"
 #include "driver/reference_grain.hpp"
 #include "driver/run_facts.hpp"
@@ -57,8 +58,8 @@ Places places_of(const Command& command) {
 }
 
 // Says what is about to run, and measures what the memory of the machine allows.
-void greet(const Case& c, RunIdentity& identity, const System& system, const Places& places, MPI_Comm communicator,
-           loop::Log& log) {
+void print_header(const Case& c, RunIdentity& identity, const System& system, const Places& places,
+                  MPI_Comm communicator, loop::Log& log) {
   log.line(fmt::format("Thalweg {}: {}", version_text(), c.name));
   log.line(
       fmt::format("{} on {} rank{}, layout {} x {} x {}; {} grains, {} cells; {:.6g} s a step, {:.0f} steps to {:g} s",
@@ -89,9 +90,9 @@ void prepare_folder(const Places& places, const Case& c, const Command& command,
   });
 }
 
-void say_how_it_ended(const RunIdentity& identity, const loop::LoopRecord& record, const System& system,
-                      const Observers& observers, const std::vector<loop::PhaseShare>& phases,
-                      const io::RunFolder& folder, loop::Log& log) {
+void print_outcome(const RunIdentity& identity, const loop::LoopRecord& record, const System& system,
+                   const Observers& observers, const std::vector<loop::PhaseShare>& phases, const io::RunFolder& folder,
+                   loop::Log& log) {
   log.line("");
   for (const auto& observer : observers)
     for (const std::string& remark : observer->remarks()) log.line(remark);
@@ -152,7 +153,7 @@ void run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
 
   prepare_folder(places, c, command, communicator, log);
   RunIdentity identity{c.name, name_of(c.system), command.line, c.run.until, layout, size_of(communicator)};
-  greet(c, identity, *system, places, communicator, log);
+  print_header(c, identity, *system, places, communicator, log);
   RunOutput output(communicator, c, places.folder, *system, observers,
                    places.same_folder ? std::optional<double>(system->time()) : std::nullopt);
   loop::LoopPlan plan;
@@ -179,7 +180,7 @@ void run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   }
   if (!c.grains.empty()) io::write_bed_file(communicator, places.folder.bed(), system->snapshot());
   const std::vector<loop::PhaseShare> phases = loop::collect_phases(communicator, *system, time_loop);
-  say_how_it_ended(identity, time_loop.record(), *system, observers, phases, places.folder, log);
+  print_outcome(identity, time_loop.record(), *system, observers, phases, places.folder, log);
   const io::JsonObject summary = summary_of(identity, *system, time_loop.record(), observers, phases);
   on_first_rank(communicator, [&] { summary.write(places.folder.summary()); });
 }

@@ -70,11 +70,11 @@ void LinkPass<Real, S>::apply_links(int tile) {
   const LinkTable::Tile& t = links_.tiles()[tile];
   const std::vector<LinkTable::Run>& runs = links_.runs_in_order(tile);
   constexpr std::size_t ahead = 3;  // runs
-  for (std::size_t r = 0; r < std::min(ahead, runs.size()); ++r) t.links.ask_for(runs[r].first, runs[r].count);
+  for (std::size_t r = 0; r < std::min(ahead, runs.size()); ++r) t.links.prefetch(runs[r].first, runs[r].count);
   int turn = 0;
   batches_[0].count = batches_[1].count = 0;
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    if (r + ahead < runs.size()) t.links.ask_for(runs[r + ahead].first, runs[r + ahead].count);
+    if (r + ahead < runs.size()) t.links.prefetch(runs[r + ahead].first, runs[r + ahead].count);
     const LinkTable::Run& run = runs[r];
     for (std::uint32_t first = 0; first < run.count; first += capacity, turn ^= 1) {
       prepare(batches_[turn], t, z, run.body, run.first + first, std::min<int>(capacity, run.count - first));

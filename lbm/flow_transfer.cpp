@@ -27,10 +27,10 @@ public:
 
   // Two stretches without a wrap between them, the second of which may be empty: where they begin in the archive, where
   // in this rank's part, and how long they are.
-  struct Stretch {
+  struct Segment {
     int from, to, count;
   };
-  std::array<Stretch, 2> stretches() const {
+  std::array<Segment, 2> segments() const {
     const int straight = std::min(count_, saved_ - first_);
     return {{{first_, 0, straight}, {0, straight, count_ - straight}}};
   }
@@ -65,9 +65,9 @@ public:
     const auto n = [this](int axis) { return static_cast<std::size_t>(axes_[static_cast<std::size_t>(axis)].count()); };
     states_.resize(n(0) * n(1) * n(2));
     for (int i = 0; i < D3Q19::directions; ++i)
-      for (const SourceAxis::Stretch& z : axes_[2].stretches())
-        for (const SourceAxis::Stretch& y : axes_[1].stretches())
-          for (const SourceAxis::Stretch& x : axes_[0].stretches()) add<Real>(archive, i, x, y, z);
+      for (const SourceAxis::Segment& z : axes_[2].segments())
+        for (const SourceAxis::Segment& y : axes_[1].segments())
+          for (const SourceAxis::Segment& x : axes_[0].segments()) add<Real>(archive, i, x, y, z);
     for (FluidState& s : states_) s.velocity /= 1.0 + s.density_deviation;
   }
 
@@ -107,8 +107,8 @@ private:
 
   // Adds direction i of a box to density and momentum. A rank whose box is empty reads along.
   template <typename Real>
-  void add(ArchiveReader& archive, int i, const SourceAxis::Stretch& x, const SourceAxis::Stretch& y,
-           const SourceAxis::Stretch& z) {
+  void add(ArchiveReader& archive, int i, const SourceAxis::Segment& x, const SourceAxis::Segment& y,
+           const SourceAxis::Segment& z) {
     const auto whole = [](int n) { return static_cast<std::uint64_t>(n); };
     const std::string path = fmt::format("fluid/populations_{:02d}", i);
     const ArrayBox box{

@@ -33,7 +33,7 @@ Mat3 LinkSums::second() const {
   return m;
 }
 
-void LinkStream::ask_for(std::size_t first, std::size_t count) const {
+void LinkStream::prefetch(std::size_t first, std::size_t count) const {
   constexpr std::size_t line = 64 / sizeof(std::uint32_t);  // links in a cache line
   for (std::size_t k = first; k < first + count + line; k += line) {
     __builtin_prefetch(place.data() + k);

@@ -73,7 +73,7 @@ struct LinkStream {
   std::vector<LinkCrossing> crossing;
 
   // Asks the memory for these links. To the compiler this does nothing, so it must not look inside from the caller.
-  [[gnu::noinline]] void ask_for(std::size_t first, std::size_t count) const;
+  [[gnu::noinline]] void prefetch(std::size_t first, std::size_t count) const;
 };
 
 // A rigid body as the links see it; lattice units, global coordinates (cell centres at integer + 1/2).

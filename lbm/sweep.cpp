@@ -40,10 +40,10 @@ struct Streams {
   }
 };
 
-// What the first pass over a stretch of a row leaves for the second, pack by pack. Four packs of 19 populations stay in
+// What the first pass over a segment of a row leaves for the second, pack by pack. Four packs of 19 populations stay in
 // the first-level cache between the passes with room to spare; eight and more were measured to be slower.
 template <typename Real>
-struct Stretch {
+struct RowSegment {
   static constexpr int packs = 4;
   Pack<Real> deviation[packs], mx[packs], my[packs], mz[packs], inverse_rho[packs], omega[packs];
   Pack<Real> xx[packs], yy[packs], zz[packs], xy[packs], xz[packs], yz[packs], bulk[packs];
@@ -83,34 +83,34 @@ struct Kind {
 
 template <Kind kind, typename Real>
 [[gnu::always_inline]] inline void measure_pack(const Streams<Real>& streams, std::ptrdiff_t cell,
-                                                const CollisionConstants<Pack<Real>>& constants, Stretch<Real>& stretch,
-                                                int p) {
+                                                const CollisionConstants<Pack<Real>>& constants,
+                                                RowSegment<Real>& segment, int p) {
   Pack<Real> f[D3Q19::directions];
   load(f, streams, cell);
   const CellMoments<Pack<Real>> m = moments_of<kind.eddies, kind.bulk>(f, constants);
-  stretch.deviation[p] = m.deviation;
-  stretch.mx[p] = m.mx;
-  stretch.my[p] = m.my;
-  stretch.mz[p] = m.mz;
-  stretch.inverse_rho[p] = m.inverse_rho;
-  stretch.omega[p] = m.omega;
-  if constexpr (kind.bulk) stretch.bulk[p] = m.bulk;
+  segment.deviation[p] = m.deviation;
+  segment.mx[p] = m.mx;
+  segment.my[p] = m.my;
+  segment.mz[p] = m.mz;
+  segment.inverse_rho[p] = m.inverse_rho;
+  segment.omega[p] = m.omega;
+  if constexpr (kind.bulk) segment.bulk[p] = m.bulk;
   if constexpr (kind.model == CollisionModel::regularised) {
-    stretch.xx[p] = m.pi.xx;
-    stretch.yy[p] = m.pi.yy;
-    stretch.zz[p] = m.pi.zz;
+    segment.xx[p] = m.pi.xx;
+    segment.yy[p] = m.pi.yy;
+    segment.zz[p] = m.pi.zz;
   }
   if constexpr (kind.model == CollisionModel::regularised || kind.shear) {
-    stretch.xy[p] = m.pi.xy;
-    stretch.xz[p] = m.pi.xz;
-    stretch.yz[p] = m.pi.yz;
+    segment.xy[p] = m.pi.xy;
+    segment.xz[p] = m.pi.xz;
+    segment.yz[p] = m.pi.yz;
   }
 }
 
 template <Kind kind, typename Real>
 [[gnu::always_inline]] inline void relax_pack(const Streams<Real>& streams, std::ptrdiff_t cell,
-                                              const CollisionConstants<Pack<Real>>& constants, const Stretch<Real>& s,
-                                              int p) {
+                                              const CollisionConstants<Pack<Real>>& constants,
+                                              const RowSegment<Real>& s, int p) {
   Pack<Real> f[D3Q19::directions];
   CellMoments<Pack<Real>> m;
   m.deviation = s.deviation[p];
@@ -132,7 +132,7 @@ template <Kind kind, typename Real>
 
 // On its own, so that what a row computes does not depend on whether its shear rates are wanted.
 template <typename Real>
-[[gnu::noinline]] void store_shear(const Stretch<Real>& s, int p, const RowShear<Real>& shear, int x) {
+[[gnu::noinline]] void store_shear(const RowSegment<Real>& s, int p, const RowShear<Real>& shear, int x) {
   const Pack<Real> factor = Real(3) * s.omega[p] * s.inverse_rho[p];
   const Pack<Real> xy = s.xy[p] * s.xy[p], xz = s.xz[p] * s.xz[p], yz = s.yz[p] * s.yz[p];
   (factor * sqrt(xy + xz)).copy_to(shear.normal_to[0] + x, stdx::element_aligned);
@@ -140,26 +140,26 @@ template <typename Real>
   (factor * sqrt(xz + yz)).copy_to(shear.normal_to[2] + x, stdx::element_aligned);
 }
 
-// Moments of a whole stretch first, then its relaxation: either pass alone is short enough for the processor to work on
+// Moments of a whole segment first, then its relaxation: either pass alone is short enough for the processor to work on
 // several packs at once, while one long pass waits for its own divisions and roots.
 template <Kind kind, typename Real>
 void sweep_packs(const Streams<Real>& streams, std::ptrdiff_t row, const std::uint8_t* fluid_in_packs, int packs,
                  const CollisionParameters& parameters, const RowShear<Real>* shear) {
   constexpr int width = static_cast<int>(Pack<Real>::size());
   const CollisionConstants<Pack<Real>> constants(parameters);
-  Stretch<Real> stretch;
-  for (int first = 0; first < packs; first += Stretch<Real>::packs) {
-    const int count = std::min(Stretch<Real>::packs, packs - first);
+  RowSegment<Real> segment;
+  for (int first = 0; first < packs; first += RowSegment<Real>::packs) {
+    const int count = std::min(RowSegment<Real>::packs, packs - first);
     for (int p = 0; p < count; ++p) {
       if (fluid_in_packs[first + p] == 0) continue;
-      measure_pack<kind>(streams, row + (first + p) * width, constants, stretch, p);
+      measure_pack<kind>(streams, row + (first + p) * width, constants, segment, p);
     }
     for (int p = 0; p < count; ++p) {
       if (fluid_in_packs[first + p] == 0) continue;
       const std::ptrdiff_t cell = row + (first + p) * width;
       prefetch(streams, cell);
-      relax_pack<kind>(streams, cell, constants, stretch, p);
-      if constexpr (kind.shear) store_shear(stretch, p, *shear, (first + p) * width);
+      relax_pack<kind>(streams, cell, constants, segment, p);
+      if constexpr (kind.shear) store_shear(segment, p, *shear, (first + p) * width);
     }
   }
 }

@@ -50,7 +50,24 @@ template <typename Real>
 void Walls<Real>::apply_face(Populations<Real>& populations, const CellMap& cells, int face) const {
   const int axis = face / 2, inward = face % 2 == 0 ? 1 : -1;
   for (int o = 1; o < D3Q19::directions; ++o)
-    if (D3Q19::c[o][axis] == inward) apply_direction(populations, cells, face, o);
+    if (D3Q19::c[o][axis] == inward) {
+      const Entry entry(indexing_, face, o);
+      for (int v = 0; v < entry.nv; ++v) apply_row(populations, cells, entry, v);
+    }
+}
+
+template <typename Real>
+Walls<Real>::Entry::Entry(const CellIndexing& indexing, int from_face, int along)
+    : face(from_face), direction(along), opposite(D3Q19::opposite(along)), axis(from_face / 2) {
+  mirror = D3Q19::mirror(direction, axis);
+  u_axis = first_axis(axis);
+  v_axis = second_axis(axis);
+  nu = indexing.size()[u_axis];
+  nv = indexing.size()[v_axis];
+  cu = D3Q19::c[direction][u_axis];
+  cv = D3Q19::c[direction][v_axis];
+  stride = axis_stride(indexing, u_axis);
+  tangential = cu * stride + cv * axis_stride(indexing, v_axis);
 }
 
 template <typename Real>
@@ -112,82 +129,89 @@ void Walls<Real>::reflect_run(Populations<Real>& populations, const CellMap& cel
   }
 }
 
+// The other face if this population comes out of an edge, or -1.
 template <typename Real>
-void Walls<Real>::apply_direction(Populations<Real>& populations, const CellMap& cells, int face, int o) const {
-  const FaceCondition& wall = faces_[face];
-  const int axis = face / 2, u_axis = first_axis(axis), v_axis = second_axis(axis);
-  const int nu = indexing_.size()[u_axis], nv = indexing_.size()[v_axis];
-  const int cu = D3Q19::c[o][u_axis], cv = D3Q19::c[o][v_axis];
-  const int opposite = D3Q19::opposite(o), mirror = D3Q19::mirror(o, axis);
-  const std::ptrdiff_t stride = axis_stride(indexing_, u_axis);
-  const std::ptrdiff_t tangential = cu * stride + cv * axis_stride(indexing_, v_axis);
-  const bool along_u = cu != 0, along_v = cv != 0;
+int Walls<Real>::edge_face(const Entry& e, int u, int v) const {
+  if (e.cu > 0 && u == 0 && present(e.u_axis, false)) return face_of(e.u_axis, false);
+  if (e.cu < 0 && u == e.nu - 1 && present(e.u_axis, true)) return face_of(e.u_axis, true);
+  if (e.cv > 0 && v == 0 && present(e.v_axis, false)) return face_of(e.v_axis, false);
+  if (e.cv < 0 && v == e.nv - 1 && present(e.v_axis, true)) return face_of(e.v_axis, true);
+  return -1;
+}
 
-  // What an ordinary cell gets from a wall that does not merely reflect; u, v only matter to a slip wall.
-  const auto ordinary = [&](std::ptrdiff_t cell, int u, int v) -> Real {
-    const Real own = populations.post_collision(opposite, cell);
-    switch (wall.type) {
-      case FaceType::moving:
-      case FaceType::velocity_inlet:
-        return with_velocity(populations, o, cell, wall.velocity);
-      case FaceType::pressure_outlet:
-        return at_pressure(populations, o, cell, wall.density_deviation);
-      case FaceType::navier_slip:
-      case FaceType::law_of_the_wall: {
-        const Real r = bounced_[face].at(u, v);
-        const bool by_edge =
-            (along_u && ((u == 0 && present(u_axis, false)) || (u == nu - 1 && present(u_axis, true)))) ||
-            (along_v && ((v == 0 && present(v_axis, false)) || (v == nv - 1 && present(v_axis, true))));
-        const bool by_body =
-            !cells.is_fluid(cell + indexing_.offset(o)) || !cells.is_fluid(cell - indexing_.offset(mirror));
-        if (by_edge || by_body) return own;
-        return r * populations.incoming(opposite, cell) + (Real(1) - r) * populations.incoming(mirror, cell);
-      }
-      default:
-        return own;
+// What a cell gets out of the edge with another face.
+template <typename Real>
+Real Walls<Real>::from_edge(const Populations<Real>& populations, const Entry& entry, std::ptrdiff_t cell,
+                            int other) const {
+  const FaceCondition& wall = faces_[entry.face];
+  if (wall.type == FaceType::pressure_outlet)
+    return at_pressure(populations, entry.direction, cell, wall.density_deviation);
+  Vec3 velocity = Vec3::Zero();
+  for (const int face : {std::min(entry.face, other), std::max(entry.face, other)})
+    if (has_velocity(faces_[face].type)) velocity += faces_[face].velocity;
+  return with_velocity(populations, entry.direction, cell, velocity);
+}
+
+template <typename Real>
+Real Walls<Real>::from_slip_on_node(Populations<Real>& populations, const CellMap& cells, const Entry& e,
+                                    std::ptrdiff_t cell, int u, int v) const {
+  const bool along_u = e.cu != 0, along_v = e.cv != 0;
+  const bool by_edge =
+      (along_u && ((u == 0 && present(e.u_axis, false)) || (u == e.nu - 1 && present(e.u_axis, true)))) ||
+      (along_v && ((v == 0 && present(e.v_axis, false)) || (v == e.nv - 1 && present(e.v_axis, true))));
+  const bool by_body =
+      !cells.is_fluid(cell + indexing_.offset(e.direction)) || !cells.is_fluid(cell - indexing_.offset(e.mirror));
+  if (by_edge || by_body) return populations.post_collision(e.opposite, cell);
+  const Real r = bounced_[e.face].at(u, v);
+  return r * populations.incoming(e.opposite, cell) + (Real(1) - r) * populations.incoming(e.mirror, cell);
+}
+
+// What a cell away from edges gets from a wall that does not merely reflect; u, v only matter to a slip wall.
+template <typename Real>
+Real Walls<Real>::from_wall(Populations<Real>& populations, const CellMap& cells, const Entry& entry,
+                            std::ptrdiff_t cell, int u, int v) const {
+  const FaceCondition& wall = faces_[entry.face];
+  switch (wall.type) {
+    case FaceType::moving:
+    case FaceType::velocity_inlet:
+      return with_velocity(populations, entry.direction, cell, wall.velocity);
+    case FaceType::pressure_outlet:
+      return at_pressure(populations, entry.direction, cell, wall.density_deviation);
+    case FaceType::navier_slip:
+    case FaceType::law_of_the_wall:
+      return from_slip_on_node(populations, cells, entry, cell, u, v);
+    default:
+      return populations.post_collision(entry.opposite, cell);
+  }
+}
+
+// Edges with the faces at the ends of the row, or with the face along the whole of it; the rest is one run.
+template <typename Real>
+void Walls<Real>::apply_row(Populations<Real>& populations, const CellMap& cells, const Entry& e, int v) const {
+  Index3 at{0, 0, 0};
+  at[e.axis] = e.face % 2 == 0 ? 0 : indexing_.size()[e.axis] - 1;
+  at[e.v_axis] = v;
+  const std::ptrdiff_t first = indexing_.index(at[0], at[1], at[2]);
+  const bool row_in_edge =
+      (e.cv > 0 && v == 0 && present(e.v_axis, false)) || (e.cv < 0 && v == e.nv - 1 && present(e.v_axis, true));
+  const int begin = row_in_edge ? e.nu : e.cu > 0 && present(e.u_axis, false) ? 1 : 0;
+  const int end = row_in_edge ? e.nu : e.cu < 0 && present(e.u_axis, true) ? e.nu - 1 : e.nu;
+  const auto edges = [&](int from, int to) {
+    for (int u = from; u < to; ++u) {
+      const std::ptrdiff_t cell = first + u * e.stride;
+      const int other = edge_face(e, u, v);
+      if (decides_edge(e.face, other)) populations.incoming(e.direction, cell) = from_edge(populations, e, cell, other);
     }
   };
-  // What a cell gets out of the edge with another face.
-  const auto from_edge = [&](std::ptrdiff_t cell, int other) -> Real {
-    if (wall.type == FaceType::pressure_outlet) return at_pressure(populations, o, cell, wall.density_deviation);
-    Vec3 velocity = Vec3::Zero();
-    for (const int f : {std::min(face, other), std::max(face, other)})
-      if (has_velocity(faces_[f].type)) velocity += faces_[f].velocity;
-    return with_velocity(populations, o, cell, velocity);
-  };
-  // The other face if this population comes out of an edge, or -1.
-  const auto edge_face = [&](int u, int v) {
-    if (cu > 0 && u == 0 && present(u_axis, false)) return face_of(u_axis, false);
-    if (cu < 0 && u == nu - 1 && present(u_axis, true)) return face_of(u_axis, true);
-    if (cv > 0 && v == 0 && present(v_axis, false)) return face_of(v_axis, false);
-    if (cv < 0 && v == nv - 1 && present(v_axis, true)) return face_of(v_axis, true);
-    return -1;
-  };
-
-  for (int v = 0; v < nv; ++v) {
-    Index3 at{0, 0, 0};
-    at[axis] = face % 2 == 0 ? 0 : indexing_.size()[axis] - 1;
-    at[v_axis] = v;
-    const std::ptrdiff_t first = indexing_.index(at[0], at[1], at[2]);
-    // Edges with the faces at the ends of the row, or with the face along the whole of it; the rest is one run.
-    const bool row_in_edge =
-        (cv > 0 && v == 0 && present(v_axis, false)) || (cv < 0 && v == nv - 1 && present(v_axis, true));
-    const int begin = row_in_edge ? nu : cu > 0 && present(u_axis, false) ? 1 : 0;
-    const int end = row_in_edge ? nu : cu < 0 && present(u_axis, true) ? nu - 1 : nu;
-    const auto edges = [&](int from, int to) {
-      for (int u = from; u < to; ++u) {
-        const std::ptrdiff_t cell = first + u * stride;
-        const int other = edge_face(u, v);
-        if (decides_edge(face, other)) populations.incoming(o, cell) = from_edge(cell, other);
-      }
-    };
-    edges(0, begin);
-    edges(end, nu);
-    if (reflects(wall))
-      reflect_run(populations, cells, {face, o, v, begin, end, first, stride, tangential});
-    else
-      for (int u = begin; u < end; ++u)
-        populations.incoming(o, first + u * stride) = ordinary(first + u * stride, u, v);
+  edges(0, begin);
+  edges(end, e.nu);
+  if (reflects(faces_[e.face])) {
+    reflect_run(populations, cells, {e.face, e.direction, v, begin, end, first, e.stride, e.tangential});
+    return;
+  }
+  for (int u = begin; u < end; ++u) {
+    const std::ptrdiff_t cell = first + u * e.stride;
+    populations.incoming(e.direction, cell) = from_wall(populations, cells, e, cell, u, v);
   }
 }
 

@@ -97,11 +97,26 @@ private:
     std::ptrdiff_t first, stride, tangential;
   };
 
+  // One direction that comes out of one face: how far it runs along the two axes of the face, and how many cells these
+  // have.
+  struct Entry {
+    Entry(const CellIndexing& indexing, int from_face, int along);
+    int face, direction, opposite, mirror;
+    int axis, u_axis, v_axis, nu, nv, cu, cv;
+    std::ptrdiff_t stride, tangential;  // of u in memory, and of the part of the direction along the face
+  };
+
   void apply_face(Populations<Real>& populations, const CellMap& cells, int face) const;
-  void apply_direction(Populations<Real>& populations, const CellMap& cells, int face, int direction) const;
+  void apply_row(Populations<Real>& populations, const CellMap& cells, const Entry& entry, int v) const;
   void reflect_run(Populations<Real>& populations, const CellMap& cells, const Run& run) const;
   void update_bounced_cell(int face, int x, int y, int z, double shear_rate, const CellMap& cells);
   bool decides_edge(int face, int other) const;
+  int edge_face(const Entry& entry, int u, int v) const;
+  Real from_edge(const Populations<Real>& populations, const Entry& entry, std::ptrdiff_t cell, int other) const;
+  Real from_wall(Populations<Real>& populations, const CellMap& cells, const Entry& entry, std::ptrdiff_t cell, int u,
+                 int v) const;
+  Real from_slip_on_node(Populations<Real>& populations, const CellMap& cells, const Entry& entry, std::ptrdiff_t cell,
+                         int u, int v) const;
   int face_of_population(int face, int direction, const Index3& at) const;
   bool follows_shear(int face) const;
   double bounced_fraction(int face, double shear_rate) const;

@@ -45,11 +45,11 @@ TEST(Plate, ShowsItsNearestPoint) {
         for (int i = -8; i <= 8; ++i)
           for (int j = -8; j <= 8; ++j)
             nearest = std::min(nearest, (at - wall.point - i * 0.5e-3 * Vec3::UnitX() - j * 0.25e-3 * across).norm());
-        const WallSight sight = wall.seen_from(at, PeriodicBox{});
-        EXPECT_NEAR(sight.distance, nearest, 1e-15);  // all u and v are at points of the grid
-        EXPECT_NEAR(sight.normal.norm(), 1.0, 1e-14);
+        const WallView view = wall.seen_from(at, PeriodicBox{});
+        EXPECT_NEAR(view.distance, nearest, 1e-15);  // all u and v are at points of the grid
+        EXPECT_NEAR(view.normal.norm(), 1.0, 1e-14);
         // From the grain back along the normal one is on the plate.
-        const Vec3 foot = at - sight.distance * sight.normal - wall.point;
+        const Vec3 foot = at - view.distance * view.normal - wall.point;
         EXPECT_NEAR(foot.dot(wall.normal), 0.0, 1e-16);
         EXPECT_LE(std::abs(foot.x()), 4e-3 + 1e-15);
         EXPECT_LE(std::abs(foot.dot(across)), 2e-3 + 1e-15);
@@ -167,8 +167,8 @@ TEST(Plate, HasPeriodicImages) {
   const Plane inside = plate(Vec3(0.025, 0.025, 0.02), 5e-3, 4e-3), across = plate(Vec3(0.0, 0.05, 0.02), 5e-3, 4e-3);
   for (double x = 0.4e-3; x < 0.05; x += 1.7e-3)
     for (double y = 0.4e-3; y < 0.05; y += 2.3e-3) {
-      const WallSight there = inside.seen_from(Vec3(x, y, 0.021), box);
-      const WallSight here = across.seen_from(box.wrapped(Vec3(x + 0.025, y + 0.025, 0.021)), box);
+      const WallView there = inside.seen_from(Vec3(x, y, 0.021), box);
+      const WallView here = across.seen_from(box.wrapped(Vec3(x + 0.025, y + 0.025, 0.021)), box);
       EXPECT_NEAR(here.distance, there.distance, 1e-15);
       EXPECT_LT((here.normal - there.normal).norm(), 1e-12);
       EXPECT_EQ(plate(Vec3(0.01, 0.0, 0.02), 0.025, 1.0).seen_from(Vec3(x, y, 0.021), box).normal, Vec3::UnitZ());

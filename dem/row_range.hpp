@@ -9,13 +9,13 @@
 namespace thalweg::dem {
 
 // The rows [first, last) of `count` that a rank writes or reads.
-struct Share {
-  Share(std::int64_t rows, int ranks, int rank)
+struct RowRange {
+  RowRange(std::int64_t rows, int ranks, int rank)
       : count(rows), first(rows * rank / ranks), last(rows * (rank + 1) / ranks) {}
 
   // Rows that this rank holds one after the other of all ranks' rows. Collective.
-  static Share of_rows(std::int64_t rows, MPI_Comm communicator) {
-    Share share(sum_over_ranks(communicator, rows), 1, 0);
+  static RowRange of_rows(std::int64_t rows, MPI_Comm communicator) {
+    RowRange share(sum_over_ranks(communicator, rows), 1, 0);
     MPI_Scan(&rows, &share.last, 1, MPI_INT64_T, MPI_SUM, communicator);
     share.first = share.last - rows;
     return share;
@@ -38,7 +38,7 @@ struct Share {
 };
 
 // The rank in whose share a row falls.
-inline int home_of(std::int64_t row, std::int64_t count, int ranks) {
+inline int rank_of_row(std::int64_t row, std::int64_t count, int ranks) {
   auto rank = static_cast<int>(row * ranks / count);
   while (row >= count * (rank + 1) / ranks) ++rank;
   return rank;

@@ -1,0 +1,108 @@
+#include "driver/case_warnings.hpp"
+
+#include "driver/run_facts.hpp"
+#include "driver/stability.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace thalweg::driver {
+
+namespace {
+
+using Warnings = std::vector<std::string>;
+
+// Cells a step, the largest.
+double expected_lattice_velocity(const Case& c) {
+  return c.fluid.expected_velocity.value_or(estimated_velocity(c)) / units_of(c).velocity();
+}
+
+void warn_of_fast_flow(const Case& c, Warnings& found) {
+  const double velocity = estimated_velocity(c), lattice_velocity = velocity / units_of(c).velocity();
+  if (c.fluid.expected_velocity || !(lattice_velocity > 0.1)) return;
+  found.push_back(
+      fmt::format("The flow may reach about {:.2g} m/s, which is {:.2g} cells a step; results are accurate below 0.1 "
+                  "and the limit is 0.173: consider a fluid.time_step of at most {:.2g} s.",
+                  velocity, lattice_velocity, 0.1 * c.domain.spacing / velocity));
+}
+
+void warn_of_compression(const Case& c, Warnings& found) {
+  const double compression =
+      3.0 * std::abs(gravity_vector(c.gravity).z()) / units_of(c).acceleration() * c.domain.size[2] / c.domain.spacing;
+  if (c.gravity.mode != GravityMode::full || !(compression > 0.05)) return;
+  found.push_back(
+      fmt::format("The weight of the fluid compresses it by {:.2g} % from top to bottom: consider a fluid.time_step "
+                  "of at most {:.2g} s or gravity.mode: reduced.",
+                  100.0 * compression, fluid_time_step(c) * std::sqrt(0.05 / compression)));
+}
+
+void warn_of_collision(const Case& c, Warnings& found) {
+  const double excess = relaxation_time(c) - 0.5, fastest = expected_lattice_velocity(c);
+  const double stable = stable_lattice_velocity(c.fluid.collision, excess);
+  const bool eddies = c.fluid.smagorinsky_constant > 0.0,
+             regularised = c.fluid.collision == lbm::CollisionModel::regularised;
+  if ((!eddies || regularised) && (stable == 0.0 || fastest > stable))
+    found.push_back(fmt::format(
+        "The relaxation time is only {:.2g} above 1/2{}; the collision {} was stable there {}: consider {}{}.", excess,
+        eddies ? "" : " and there is no subgrid model", regularised ? "'regularised'" : "chosen",
+        stable == 0.0 ? std::string("at no velocity") : fmt::format("up to {:g} cells a step", stable),
+        eddies ? "" : "fluid.smagorinsky_constant: 0.27",
+        regularised ? (eddies ? "fluid.collision: trt" : " and fluid.collision: trt") : ""));
+  if (excess > 1.0)
+    found.push_back(
+        fmt::format("The relaxation time, {:.2g}, is so large that walls and grains lose accuracy: consider a "
+                    "shorter fluid.time_step.",
+                    excess + 0.5));
+}
+
+void warn_of_bulk_relaxation(const Case& c, Warnings& found) {
+  const double bulk = c.fluid.bulk_relaxation_time.value_or(0.0), excess = relaxation_time(c) - 0.5;
+  const bool eddies = c.fluid.smagorinsky_constant > 0.0;
+  if (!eddies && c.fluid.collision == lbm::CollisionModel::trt && bulk > 0.0 && excess < 0.0299)
+    found.push_back(
+        fmt::format("With a bulk relaxation time of its own and no subgrid model the collision trt is unstable at a "
+                    "relaxation time only {:.2g} above 1/2: consider fluid.collision: bgk or "
+                    "fluid.bulk_relaxation_time: 0.",
+                    excess));
+  // The largest stable stream at tau - 1/2 = 0.003, where the subgrid model brings water (docs/stability.md), to 5 %.
+  const double calm = 0.17 / std::sqrt(bulk), fastest = expected_lattice_velocity(c);
+  if (c.fluid.collision == lbm::CollisionModel::bgk && bulk > 1.0 && excess < 0.003 && fastest > calm)
+    found.push_back(
+        fmt::format("With a bulk relaxation time of {:g} steps a stream faster than about {:.2g} cells a step "
+                    "grows stripes, and this one may reach {:.2g}: consider fluid.bulk_relaxation_time: 1.",
+                    bulk, calm, fastest));
+}
+
+// The fluid resists a sudden motion of a sphere with 3.8 dx/d of the displaced mass, and the load, extrapolated in
+// time, stands up to 1.15 times the mass of the grain (coupling/load_rule.hpp); the mean was stable down to half the
+// fluid's.
+void warn_of_grains(const Case& c, Warnings& found) {
+  if (!c.grains.empty() && smallest_diameter(c) < 5.99 * c.domain.spacing)
+    found.push_back(fmt::format("A grain is only {:.2g} cells across; drag is accurate to a few percent from about 8.",
+                                smallest_diameter(c) / c.domain.spacing));
+  for (const dem::Population& population : c.grains) {
+    const double least = c.coupling.load == coupling::LoadRule::mean
+                             ? 0.5
+                             : 3.8 / 1.15 * c.domain.spacing / population.smallest_diameter();
+    if (!c.coupling.virtual_mass && !population.fixed && !population.prescribed_velocity &&
+        population.density < least * c.fluid.density)
+      found.push_back(
+          fmt::format("Grains of {} kg/m^3 are so light that the explicit coupling may become unstable: consider "
+                      "coupling.virtual_mass: {{}}.",
+                      population.density));
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> warnings(const Case& c) {
+  Warnings found = warnings(c.analysis.observers, run_facts(c));
+  if (!has_fluid(c)) return found;
+  for (const auto warn :
+       {warn_of_fast_flow, warn_of_compression, warn_of_collision, warn_of_bulk_relaxation, warn_of_grains})
+    warn(c, found);
+  return found;
+}
+
+}  // namespace thalweg::driver

@@ -1,0 +1,14 @@
+// What does not forbid a run but deserves a second look.
+#pragma once
+
+#include "driver/case.hpp"
+
+#include <string>
+#include <vector>
+
+namespace thalweg::driver {
+
+// Whole sentences.
+std::vector<std::string> warnings(const Case& c);
+
+}  // namespace thalweg::driver
