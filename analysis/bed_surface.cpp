@@ -137,16 +137,16 @@ void describe(SectionVisitor& visit, BedSurfaceKeys& keys) {
   describe_every(visit, keys.every);
   visit.real("layer", keys.layer,
              {.unit = "m",
-              .meaning = "height over which the solid fraction is averaged; the reference diameter where not given",
+              .meaning = "height over which the solid fraction is averaged; default: the reference diameter",
               .above = 0.0,
               .example = 5e-3});
   visit.real("pixel", keys.pixel,
              {.unit = "m",
-              .meaning = "side of a pixel of the side view; 1/25 of the reference diameter where not given",
+              .meaning = "side of a pixel of the side view; default: 1/25 of the reference diameter",
               .above = 0.0,
               .example = 2e-4});
   visit.real("static_time", keys.static_time,
-             {.unit = "s", .meaning = "a pixel is static that one grain has covered for so long", .above = 0.0});
+             {.unit = "s", .meaning = "a pixel is static after one grain has covered it for this long", .above = 0.0});
 }
 
 void check(const BedSurfaceKeys&, const RunFacts& run) {

@@ -28,13 +28,13 @@ namespace thalweg::analysis {
 struct EntrainmentKeys {
   static constexpr const char* section = "entrainment";
   static constexpr const char* meaning =
-      "what acted on grains that start to move, and the torques about the hinge they roll over, in entrainment.h5";
+      "forces on grains that start to move and torques about the hinge they roll over, in entrainment.h5";
   static constexpr Needs needs = Needs::both;
   std::vector<GlobalId> grains;  // ids; empty: free grains above the bed height less one diameter
   double from = 0.0;             // s
   double memory = 0.2;           // s
   double every = 0.0;            // s, between samples; 0: every step
-  double refresh = 0.5;          // s, until the grains of the surface are chosen anew
+  double refresh = 0.5;          // s, between two selections of the surface grains
   double displacement = 0.1;     // grain diameters from the rest place that count as a start
   double rest_time = 0.1;        // s
   bool operator==(const EntrainmentKeys&) const = default;
@@ -46,7 +46,7 @@ std::unique_ptr<Observer> make_observer(const EntrainmentKeys& keys, const RunFa
 // The same for a run: the ids ascending, and what follows from its step and its grains.
 struct EntrainmentSettings : EntrainmentKeys {
   double interval = 0.0;           // s, between samples
-  std::int64_t refresh_steps = 0;  // until the grains of the surface are chosen anew
+  std::int64_t refresh_steps = 0;  // between two selections of the surface grains
   double window = 0.0;             // m, over which the solid fraction is averaged for the bed height
   double diameter = 0.0;           // m, the depth below the bed height that belongs to its surface
   double moving_speed = 0.0;       // m/s

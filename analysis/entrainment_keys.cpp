@@ -14,20 +14,19 @@ void describe(SectionVisitor& visit, EntrainmentKeys& keys) {
                                  "centre is above the bed's height less one reference diameter",
                       .at_least = 0,
                       .example = 0});
-  visit.real("from", keys.from, {.unit = "s", .meaning = "start of the watch", .at_least = 0.0});
-  visit.real(
-      "memory", keys.memory,
-      {.unit = "s", .meaning = "what is kept of each grain, and goes into the file with its start", .above = 0.0});
-  visit.real("every", keys.every,
-             {.unit = "s", .meaning = "between the states that are kept; 0: every step", .at_least = 0.0});
+  visit.real("from", keys.from, {.unit = "s", .meaning = "start of the observation", .at_least = 0.0});
+  visit.real("memory", keys.memory,
+             {.unit = "s", .meaning = "time before entrainment that is recorded for each grain", .above = 0.0});
+  visit.real("every", keys.every, {.unit = "s", .meaning = "between recorded states; 0: every step", .at_least = 0.0});
   visit.real("refresh", keys.refresh,
-             {.unit = "s", .meaning = "until the grains of the surface are chosen anew", .above = 0.0});
-  visit.real(
-      "displacement", keys.displacement,
-      {.unit = "1", .meaning = "a grain starts that is so many of its diameters from its rest place", .above = 0.0});
+             {.unit = "s", .meaning = "between two selections of the surface grains", .above = 0.0});
+  visit.real("displacement", keys.displacement,
+             {.unit = "1",
+              .meaning = "a grain counts as entrained this many of its diameters away from its rest position",
+              .above = 0.0});
   visit.real("rest_time", keys.rest_time,
              {.unit = "s",
-              .meaning = "a grain rests that has been slower for so long than the speed from which it moves",
+              .meaning = "a grain is at rest after it has been slower than the threshold of motion for this long",
               .at_least = 0.0});
 }
 

@@ -157,8 +157,8 @@ void describe(SectionVisitor& visit, GrainProfilesKeys& keys) {
   describe_every(visit, keys.every);
   visit.real("layer", keys.layer,
              {.unit = "m",
-              .meaning = "height of a layer, of which a whole number fills the box; half of the largest diameter where "
-                         "not given",
+              .meaning = "height of a layer, adjusted so that a whole number of them fills the box; default: half the "
+                         "largest diameter",
               .above = 0.0,
               .example = 2.5e-3});
 }

@@ -98,7 +98,7 @@ static void describe(SectionVisitor& visit, ProbeLine& line) {
 }
 
 void describe(SectionVisitor& visit, ProbesKeys& keys) {
-  visit.vec3_list("points", keys.points, {.unit = "m", .meaning = "each stands for the cell that it lies in"});
+  visit.vec3_list("points", keys.points, {.unit = "m", .meaning = "each is measured in the cell that contains it"});
   visit.list("lines", keys.lines, {.meaning = "rows of points"});
   describe_every(visit, keys.every);
 }

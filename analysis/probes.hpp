@@ -33,7 +33,7 @@ std::unique_ptr<Observer> make_observer(const ProbesKeys& keys, const RunFacts& 
 
 class Probes : public Observer {
 public:
-  // points: m, in the box; each stands for the cell that it lies in. every: s, between measurements.
+  // points: m, in the box; each is measured in the cell that contains it. every: s, between measurements.
   Probes(MPI_Comm communicator, const Decomposition& decomposition, const std::vector<Vec3>& points, double every);
 
   std::string name() const override { return "probes"; }

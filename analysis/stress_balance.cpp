@@ -153,13 +153,11 @@ void StressBalance::load(ArchiveReader& archive) {
 void describe(SectionVisitor& visit, StressBalanceKeys& keys) {
   describe_from(visit, keys.from);
   describe_every(visit, keys.every);
-  visit.real(
-      "layer", keys.layer,
-      {.unit = "m",
-       .meaning = "height of a layer, in whole cells as near as can be; a quarter of the smallest diameter where "
-                  "not given",
-       .above = 0.0,
-       .example = 1.25e-3});
+  visit.real("layer", keys.layer,
+             {.unit = "m",
+              .meaning = "height of a layer, rounded to whole cells; default: a quarter of the smallest diameter",
+              .above = 0.0,
+              .example = 1.25e-3});
 }
 
 void check(const StressBalanceKeys& keys, const RunFacts& run) {

@@ -17,7 +17,8 @@ namespace thalweg::analysis {
 
 struct TracksKeys {
   static constexpr const char* section = "tracks";
-  static constexpr const char* meaning = "places, motion and forces of chosen grains at short intervals, in tracks.h5";
+  static constexpr const char* meaning =
+      "positions, motion and forces of chosen grains at short intervals, in tracks.h5";
   static constexpr Needs needs = Needs::grains;
   std::vector<GlobalId> grains;  // ids; empty: every one_in-th grain
   std::int64_t one_in = 1;

@@ -40,7 +40,7 @@ TransportScales transport_scales(const RunFacts& run);  // of a run with grains
 struct TransportRateKeys {
   static constexpr const char* section = "transport_rate";
   static constexpr const char* meaning =
-      "the grains' flux q and q* along x with its error, how many move, how fast, and how far they hop";
+      "transport rate q and q* along x with its error; number, speed and hop length of the moving grains";
   static constexpr Needs needs = Needs::grains;
   double from = 0.0;   // s: means, hops and distributions begin here
   double every = 0.0;  // s: between measurements; 0: with the rows of the series

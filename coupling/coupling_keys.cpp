@@ -8,12 +8,12 @@ static void describe(SectionVisitor& visit, LubricationKeys& lubrication) {
       {.unit = "cells", .meaning = "gap below which the squeezing flow is not resolved", .above = 0.0, .at_most = 2.0});
   visit.real("tangential_cut_off", lubrication.tangential_cut_off,
              {.unit = "cells",
-              .meaning = "the same of sliding and rolling; 0: none of these",
+              .meaning = "the same for sliding and rolling; 0: no correction of these",
               .at_least = 0.0,
               .at_most = 2.0});
   visit.real("minimum_gap", lubrication.minimum_gap,
              {.unit = "radii",
-              .meaning = "gaps count as at least this wide: the roughness of the grains",
+              .meaning = "narrower gaps count as this wide: the roughness of the grains",
               .at_least = 1e-6,
               .at_most = 0.1});
 }
@@ -24,7 +24,7 @@ static void describe(SectionVisitor& visit, VirtualMassKeys& virtual_mass) {
 }
 
 void describe(SectionVisitor& visit, CouplingKeys& coupling, bool with_grains) {
-  visit.choice("links", coupling.links, {.meaning = "how populations come back from a surface"});
+  visit.choice("links", coupling.links, {.meaning = "interpolated bounce-back at grain surfaces"});
   visit.not_here("mass_correction", "the fluid's mass is always kept; remove the key");
   if (!with_grains) {
     for (const char* key :
@@ -39,8 +39,8 @@ void describe(SectionVisitor& visit, CouplingKeys& coupling, bool with_grains) {
                  .automatic = CouplingKeys::as_many_as_needed});
   visit.real("link_tolerance", coupling.link_tolerance,
              {.unit = "cells",
-              .meaning = "how far a grain may move before the map of its cells follows (the surface itself is cut "
-                         "exactly at all times)",
+              .meaning = "distance a grain moves before the cells it covers are updated (its surface is always at the "
+                         "exact position)",
               .at_least = 0.0,
               .at_most = 0.1});
   visit.choice("momentum_exchange", coupling.momentum_exchange, {.meaning = "how the force on a grain is summed"});
@@ -49,13 +49,13 @@ void describe(SectionVisitor& visit, CouplingKeys& coupling, bool with_grains) {
   visit.choice<NearContact>("near_contact", coupling.near_contact,
                             {{NearContact::subtracted, "subtracted", "reference pressure taken out of every link"},
                              {NearContact::paper, "paper", "and the paper's links between grains"}},
-                            {.meaning = "patches of its surface that a grain's neighbours hide"});
-  visit.choice("refill", coupling.refill, {.meaning = "populations of a cell that a grain has uncovered"});
+                            {.meaning = "patches of a grain's surface that its neighbours hide"});
+  visit.choice("refill", coupling.refill, {.meaning = "initial populations of a cell that a grain has uncovered"});
   visit.choice<CoveredMomentum>(
       "covered_momentum", coupling.covered_momentum,
       {{CoveredMomentum::lost, "lost", "as published: grains get a little less than the fluid loses"},
        {CoveredMomentum::to_grain, "to_grain"}},
-      {.meaning = "what a cell that a grain covers carries relative to the grain"});
+      {.meaning = "momentum, relative to the grain, of a cell that a grain covers"});
   visit.choice("load", coupling.load, {.meaning = "the force and torque of the fluid that move a grain in a step"});
   visit.section(
       "lubrication", coupling.lubrication,
@@ -65,7 +65,7 @@ void describe(SectionVisitor& visit, CouplingKeys& coupling, bool with_grains) {
   visit.flag("grain_stress", coupling.grain_stress,
              {.meaning = "measure the fluid's stress on every grain, for the VTK output: fluid_stress"});
   visit.flag("mass_balance", coupling.mass_balance,
-             {.meaning = "show in series.csv which part of the link rule gives and takes the fluid's mass"});
+             {.meaning = "report in series.csv where the fluid gains and loses mass"});
 }
 
 }  // namespace thalweg::coupling

@@ -17,7 +17,7 @@ const std::vector<NamedChoice<FaceKind>> face_kinds{
     {{FaceType::periodic}, "periodic"},
     {{FaceType::no_slip}, "no_slip"},
     {{FaceType::free_slip}, "free_slip"},
-    {{FaceType::moving}, "moving", "no slip on a wall that moves, with a fluid in its plane"},
+    {{FaceType::moving}, "moving", "no slip on a moving wall; with a fluid it moves in its own plane"},
     {{FaceType::navier_slip}, "navier_slip", "slip velocity = slip length x shear rate"},
     {{FaceType::law_of_the_wall}, "law_of_the_wall", "slip velocity = coefficient x friction velocity"},
     {{FaceType::law_of_the_wall, true}, "law_of_the_wall_as_printed", "with coefficient 2.35"},

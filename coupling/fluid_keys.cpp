@@ -7,7 +7,7 @@ static void describe(SectionVisitor& visit, FlowTargetKeys& target) {
              {.unit = "m/s", .meaning = "mean over the fluid, along x", .required = true, .example = 0.3});
   visit.real("response_time", target.response_time,
              {.unit = "s",
-              .meaning = "in which the force answers; not longer than the flow needs to come to rest",
+              .meaning = "response time of the force; at most the time the flow needs to come to rest",
               .required = true,
               .above = 0.0,
               .example = 0.1});
@@ -44,13 +44,14 @@ void describe(SectionVisitor& visit, FluidKeys& fluid) {
               .above = 0.0,
               .only_if = {fluid.collision == lbm::CollisionModel::trt,
                           "only collision trt has a magic parameter; remove it"}});
-  visit.real("bulk_relaxation_time", fluid.bulk_relaxation_time,
-             {.meaning = "of the trace of the stress, in steps: damps sound, and nothing else, by a bulk viscosity of "
-                         "2/9 (it - 1/2); 0: as the shear's, the published method; where not given 1 with grains, bgk "
-                         "and a subgrid model, else 0",
-              .at_least = 0.0,
-              .at_most = 1000.0,
-              .example = 1.0});
+  visit.real(
+      "bulk_relaxation_time", fluid.bulk_relaxation_time,
+      {.meaning =
+           "relaxation time of the trace of the stress, in steps; damps only sound, by a bulk viscosity of 2/9 (tau - "
+           "1/2); 0: the same as for shear, as published; default: 1 with grains, bgk and a subgrid model, else 0",
+       .at_least = 0.0,
+       .at_most = 1000.0,
+       .example = 1.0});
   const double bulk = fluid.bulk_relaxation_time.value_or(0.0);
   visit.require(bulk == 0.0 || bulk > 0.5, "bulk_relaxation_time",
                 "a fluid damps sound only above 1/2; give more than 0.5 steps, for example 1, or 0 for that of the "
@@ -58,7 +59,7 @@ void describe(SectionVisitor& visit, FluidKeys& fluid) {
   visit.choice<Precision>("precision", fluid.precision, {{Precision::single, "single"}, {Precision::double_, "double"}},
                           {.meaning = "of the stored populations"});
   visit.section("mean_velocity", fluid.mean_velocity,
-                {.meaning = "hold this flow by a body force along x, in place of gravity along x"});
+                {.meaning = "maintain this mean flow by a body force along x, in place of gravity along x"});
 }
 
 }  // namespace thalweg::coupling

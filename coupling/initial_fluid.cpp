@@ -10,7 +10,7 @@ static void describe(SectionVisitor& visit, PerturbationKeys& perturbation) {
   visit.real(
       "amplitude", perturbation.amplitude,
       {.meaning = "root mean square of a velocity component away from walls, over shear_velocity", .above = 0.0});
-  visit.integer("seed", perturbation.seed, {.meaning = "another seed, other eddies", .at_least = 0});
+  visit.integer("seed", perturbation.seed, {.meaning = "seed of the random eddies", .at_least = 0});
 }
 
 static void describe(SectionVisitor& visit, LogProfileKeys& profile) {
@@ -32,7 +32,8 @@ static void describe(SectionVisitor& visit, LogProfileKeys& profile) {
               .required = true,
               .above = 0.0,
               .example = 3.3e-4});
-  visit.section("perturbation", profile.perturbation, {.meaning = "random eddies without divergence on top"});
+  visit.section("perturbation", profile.perturbation,
+                {.meaning = "divergence-free random eddies, added to the profile"});
 }
 
 void describe(SectionVisitor& visit, InitialFluidKeys& fluid) {

@@ -35,9 +35,9 @@ void describe(SectionVisitor& visit, ContactParameters& contact) {
   const OnlyIf elastic{contact.law == Law::hertz_mindlin,
                        "the linear law has stiffnesses; remove it or set law: hertz_mindlin"};
   visit.real("normal_stiffness", contact.normal_stiffness,
-             {.unit = "N/m", .meaning = "of the spring across a contact", .above = 0.0, .only_if = linear});
+             {.unit = "N/m", .meaning = "of the normal spring", .above = 0.0, .only_if = linear});
   visit.real("tangential_stiffness", contact.tangential_stiffness,
-             {.unit = "N/m", .meaning = "of the spring along a contact", .above = 0.0, .only_if = linear});
+             {.unit = "N/m", .meaning = "of the tangential spring", .above = 0.0, .only_if = linear});
   visit.real("youngs_modulus", contact.youngs_modulus,
              {.unit = "Pa",
               .meaning = "of grains and walls",
@@ -48,9 +48,9 @@ void describe(SectionVisitor& visit, ContactParameters& contact) {
   visit.real("poisson_ratio", contact.poisson_ratio,
              {.meaning = "of grains and walls", .at_least = 0.0, .at_most = 0.5, .only_if = elastic});
   visit.real("tangential_damping", contact.tangential_damping,
-             {.meaning = "dashpot along a contact over the one across it", .at_least = 0.0});
+             {.meaning = "tangential over normal damping coefficient", .at_least = 0.0});
   visit.real("restitution", contact.restitution,
-             {.meaning = "speed after over speed before a dry collision; or give damping",
+             {.meaning = "coefficient of restitution of a dry collision; or give damping",
               .above = 0.0,
               .at_most = 1.0,
               .example = 0.93});
@@ -78,7 +78,7 @@ void describe(SectionVisitor& visit, ContactParameters& contact) {
                       {true, "allowed", "the dashpot may pull as grains part, as in the linear law"}},
                      {.meaning = "sign of the normal force"});
   visit.section("liquid_bridge", contact.liquid_bridge,
-                {.meaning = "a drop of liquid holds grains, and grains and walls, together that have touched"});
+                {.meaning = "liquid bridges between grains, and between grains and walls, that have touched"});
 }
 
 void require(bool good, const char* name, double value, const char* unit, const char* remedy) {

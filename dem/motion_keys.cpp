@@ -9,14 +9,14 @@ void describe(SectionVisitor& visit, Oscillation& oscillation) {
               .required = true,
               .example = 1e-3});
   visit.real("frequency", oscillation.frequency,
-             {.unit = "Hz", .meaning = "swings a second", .required = true, .above = 0.0, .example = 20.0});
+             {.unit = "Hz", .meaning = "oscillations per second", .required = true, .above = 0.0, .example = 20.0});
   visit.real("phase", oscillation.phase, {.unit = "rad", .meaning = "at the start; pi/2 begins at rest"});
 }
 
 static void describe(SectionVisitor& visit, RotationKeys& rotation) {
   visit.vec3("point", rotation.point,
              {.unit = "m", .meaning = "on the axis, at the start", .required = true, .example = 0.03});
-  visit.vec3("axis", rotation.axis, {.meaning = "along the axis, of any length"});
+  visit.vec3("axis", rotation.axis, {.meaning = "direction of the axis; need not be a unit vector"});
   visit.real("angular_velocity", rotation.angular_velocity,
              {.unit = "rad/s", .meaning = "right-handed about the axis", .required = true, .example = 6.28});
   visit.require(!rotation.axis.isZero(0.0), "axis", "a direction cannot be zero; give for example [0, 1, 0]");

@@ -16,7 +16,7 @@ void describe(SectionVisitor& visit, PlacementKeys& placement) {
   const OnlyIf of_none{!by_file, "the file says where the grains are; remove this key or the file"};
   visit.real("largest_overlap", placement.largest_overlap,
              {.unit = "diameters",
-              .meaning = "that grains of the file may have; 0.01 where not given",
+              .meaning = "of grains in the file; default: 0.01",
               .at_least = 0.0,
               .at_most = 0.1,
               .example = PlacementKeys::bed_overlap,
@@ -36,10 +36,10 @@ void describe(SectionVisitor& visit, PlacementKeys& placement) {
        {PlacementPattern::random, "random", "at random without overlap"}},
       {.meaning = "how the grains are spread over the region", .only_if = by_file ? of_none : spread_out});
   visit.integer("seed", placement.seed,
-                {.meaning = "another seed, another packing", .at_least = 0, .only_if = by_file ? of_none : spread_out});
+                {.meaning = "seed of the random placement", .at_least = 0, .only_if = by_file ? of_none : spread_out});
   visit.section("region", placement.region,
                 {.meaning = by_file ? "only the grains of the file with their centre in it"
-                                    : "where the grains are put; the whole box where not given",
+                                    : "where the grains are put; default: the whole box",
                  .only_if = spread_out});
 }
 

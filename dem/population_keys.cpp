@@ -13,7 +13,7 @@
 namespace thalweg::dem {
 
 static void describe(SectionVisitor& visit, MemberKeys& member) {
-  visit.vec3("position", member.position, {.unit = "m", .meaning = "from any origin", .required = true});
+  visit.vec3("position", member.position, {.unit = "m", .meaning = "relative to any origin", .required = true});
   visit.real("diameter", member.diameter,
              {.unit = "m", .meaning = "of the sphere", .required = true, .above = 0.0, .example = 4e-3});
 }
@@ -26,8 +26,9 @@ static void describe(SectionVisitor& visit, ShapeKeys& shape) {
 }
 
 static void describe(SectionVisitor& visit, OrientationKeys& orientation) {
-  visit.vec3("axis", orientation.axis, {.meaning = "along the axis, of any length"});
-  visit.real("angle", orientation.angle, {.unit = "rad", .meaning = "right-handed about it from the shape as given"});
+  visit.vec3("axis", orientation.axis, {.meaning = "direction of the axis; need not be a unit vector"});
+  visit.real("angle", orientation.angle,
+             {.unit = "rad", .meaning = "of rotation about the axis, right-handed, from the shape as given"});
   visit.require(!orientation.axis.isZero(0.0), "axis", "a direction cannot be zero; give for example [0, 1, 0]");
 }
 
@@ -36,9 +37,8 @@ static void describe_size(SectionVisitor& visit, PopulationKeys& grains, const O
   visit.section("shape", grains.shape,
                 {.meaning = "in place of a diameter, for grains that are no spheres", .only_if = no_file});
   const OnlyIf of_shape{grains.shape || !visit.reading(), "spheres have none; give a shape or remove the key"};
-  visit.section(
-      "orientation", grains.orientation,
-      {.meaning = "of all clumps; each at random where not given", .only_if = no_file.holds ? of_shape : no_file});
+  visit.section("orientation", grains.orientation,
+                {.meaning = "of all clumps; default: each at random", .only_if = no_file.holds ? of_shape : no_file});
   const OnlyIf of_spheres{!grains.shape, "the members of the shape have diameters; remove this key or the shape"};
   visit.section("diameter",
                 {.meaning = "the same for all grains, or a distribution",
@@ -88,11 +88,12 @@ void describe(SectionVisitor& visit, PopulationKeys& grains) {
                 {.meaning = "material of these grains where it differs from the section contact"});
   visit.flag("fixed", grains.fixed, {.meaning = "the grains never move"});
   visit.vec3("prescribed_velocity", grains.prescribed_velocity,
-             {.unit = "m/s", .meaning = "kept whatever the forces", .example = 0.0});
+             {.unit = "m/s", .meaning = "held regardless of the forces", .example = 0.0});
   visit.vec3("prescribed_angular_velocity", grains.prescribed_angular_velocity,
-             {.unit = "rad/s", .meaning = "kept whatever the torques", .example = 0.0});
-  visit.section("motion", grains.motion,
-                {.meaning = "all grains move as one rigid body, whatever the forces (a bumpy wall, a plate, a drum)"});
+             {.unit = "rad/s", .meaning = "held regardless of the torques", .example = 0.0});
+  visit.section(
+      "motion", grains.motion,
+      {.meaning = "all grains move as one rigid body with prescribed motion (a bumpy wall, a plate, a drum)"});
   visit.require(
       !grains.motion || (!grains.fixed && !grains.prescribed_velocity && !grains.prescribed_angular_velocity &&
                          grains.velocity.isZero(0.0) && grains.angular_velocity.isZero(0.0)),

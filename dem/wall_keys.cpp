@@ -7,7 +7,8 @@
 namespace thalweg::dem {
 
 static void describe(SectionVisitor& visit, PlateKeys& plate) {
-  visit.vec3("along", plate.along, {.meaning = "direction of its length in the plane of the wall, of any length"});
+  visit.vec3("along", plate.along,
+             {.meaning = "direction of its length, in the plane of the wall; need not be a unit vector"});
   visit.real("length", plate.length,
              {.unit = "m",
               .meaning = "along it, half on either side of point",
@@ -24,15 +25,17 @@ static void describe(SectionVisitor& visit, PlateKeys& plate) {
 }
 
 void describe(SectionVisitor& visit, WallKeys& wall) {
-  visit.vec3(
-      "point", wall.point,
-      {.unit = "m", .meaning = "on the plane, of a plate its middle, at the start", .required = true, .example = 0.0});
+  visit.vec3("point", wall.point,
+             {.unit = "m",
+              .meaning = "a point on the plane, for a plate its centre; at the start",
+              .required = true,
+              .example = 0.0});
   visit.vec3("normal", wall.normal,
-             {.meaning = "into the side of the grains, of a plate either way; of any length", .required = true});
-  visit.real("friction", wall.friction,
-             {.meaning = "contact.wall_friction where not given", .at_least = 0.0, .example = 0.3});
+             {.meaning = "towards the side with the grains, for a plate either way; need not be a unit vector",
+              .required = true});
+  visit.real("friction", wall.friction, {.meaning = "default: contact.wall_friction", .at_least = 0.0, .example = 0.3});
   visit.real("rolling_friction", wall.rolling_friction,
-             {.meaning = "contact.wall_rolling_friction where not given", .at_least = 0.0, .example = 0.05});
+             {.meaning = "default: contact.wall_rolling_friction", .at_least = 0.0, .example = 0.05});
   visit.vec3("velocity", wall.velocity, {.unit = "m/s", .meaning = "constant"});
   visit.section("oscillation", wall.oscillation, {.meaning = "on top of the velocity"});
   visit.section("plate", wall.plate,

@@ -22,7 +22,7 @@ static void describe_gravity(SectionVisitor& visit, GravityCase& gravity, bool w
   visit.real("magnitude", gravity.magnitude,
              {.unit = "m/s^2", .meaning = "with slope; or give vector", .at_least = 0.0, .example = 9.8});
   visit.real("slope", gravity.slope,
-             {.meaning = "tangent of the bed's angle, downhill along x; 0 where not given", .example = 0.016});
+             {.meaning = "tangent of the bed's angle, downhill along x; default: 0", .example = 0.016});
   visit.vec3("vector", gravity.vector, {.unit = "m/s^2", .meaning = "in place of magnitude and slope", .example = 0.0});
   visit.require(!gravity.vector || (!gravity.magnitude && !gravity.slope), "vector",
                 "gravity is given twice; give either magnitude and slope or vector");
@@ -56,9 +56,9 @@ static void describe_initial(SectionVisitor& visit, InitialCase& initial, bool w
 }
 
 static void describe(SectionVisitor& visit, AtRestCase& rest) {
-  visit.real("largest_speed", rest.largest_speed, {.unit = "m/s", .meaning = "no free grain is faster", .above = 0.0});
+  visit.real("largest_speed", rest.largest_speed, {.unit = "m/s", .meaning = "of any free grain", .above = 0.0});
   visit.real("largest_acceleration", rest.largest_acceleration,
-             {.unit = "m/s^2", .meaning = "no free grain has more, of all forces together", .above = 0.0});
+             {.unit = "m/s^2", .meaning = "of any free grain, by all forces together", .above = 0.0});
 }
 
 static void describe_run(SectionVisitor& visit, RunCase& run, bool with_fluid, bool with_grains) {
@@ -72,21 +72,22 @@ static void describe_run(SectionVisitor& visit, RunCase& run, bool with_fluid, b
       "grain_integrator", run.grain_integrator,
       {.meaning = "how the grains are moved", .only_if = {with_grains, "a fluid alone has no grains; remove the key"}});
   visit.choice<loop::OutOfBounds>("watchdog", run.watchdog,
-                                  {{loop::OutOfBounds::stop, "stop", "the run, with exit code 1"},
-                                   {loop::OutOfBounds::warn, "warn", "and go on while there are numbers"}},
+                                  {{loop::OutOfBounds::stop, "stop", "end the run with exit code 1"},
+                                   {loop::OutOfBounds::warn, "warn", "continue as long as all figures are finite"}},
                                   {.meaning = "what to do when a figure leaves its bounds (docs/stability.md)"});
   visit.section(
       "until_at_rest", run.until_at_rest,
       {.meaning = "the run ends when all grains are at rest (looked at every 200 steps), or at run.until",
        .only_if = {!with_fluid, "grains in a fluid are never at rest; remove the section or set system: grains"}});
-  visit.real("ramp", run.ramp,
-             {.unit = "s",
-              .meaning = "in which gravity, on fluid and grains, rises smoothly from zero; 0: it is there at once",
-              .at_least = 0.0,
-              .only_if = {with_fluid, "without a fluid there is no column of water that would ring; remove the key"}});
+  visit.real(
+      "ramp", run.ramp,
+      {.unit = "s",
+       .meaning = "over which gravity, on fluid and grains, rises smoothly from zero; 0: full gravity from the start",
+       .at_least = 0.0,
+       .only_if = {with_fluid, "without a fluid there is no column of water that would ring; remove the key"}});
   visit.real("time_step", run.time_step,
              {.unit = "s",
-              .meaning = "of the grains; 1/50 of the shortest contact where not given",
+              .meaning = "of the grains; default: 1/50 of the shortest contact",
               .above = 0.0,
               .example = 4e-6,
               .only_if = {!with_fluid, "with a fluid the step is fluid.time_step; remove the key"}});
@@ -107,8 +108,8 @@ OnlyIf belonging(bool with_fluid, bool with_grains) {
 static void describe_analysis(SectionVisitor& visit, AnalysisCase& analysis, bool with_fluid, bool with_grains) {
   visit.real("reference_diameter", analysis.reference_diameter,
              {.unit = "m",
-              .meaning = "d of q*, the Shields number and the speed that counts as moving; where not given, half of "
-                         "the volume of all free grains is finer",
+              .meaning = "d of q*, the Shields number and the speed that counts as moving; default: half of the volume "
+                         "of all free grains is finer",
               .above = 0.0,
               .example = 5e-3,
               .only_if = {with_grains, "system: fluid has no grains; remove the key or set system: resolved"}});
@@ -137,14 +138,14 @@ void describe(SectionVisitor& visit, Case& c) {
   visit.text("name", c.name, {.meaning = "what the run is called in its output"});
   visit.section("domain", {.meaning = "the box, its cells and its faces", .required = true},
                 [&](SectionVisitor& inside) { describe_domain(inside, c.domain, with_fluid); });
-  visit.section("fluid", c.fluid, {.meaning = "what fills the box", .required = true, .only_if = of_fluid});
+  visit.section("fluid", c.fluid, {.meaning = "properties of the fluid", .required = true, .only_if = of_fluid});
   visit.section("gravity", {.meaning = "given by magnitude and slope, or as a vector", .required = true},
                 [&](SectionVisitor& inside) { describe_gravity(inside, c.gravity, with_fluid); });
   visit.section("disks", c.disks,
-                {.meaning = "two dimensions: the grains are disks that move in the plane x-z, in the middle of y",
+                {.meaning = "two dimensions: the grains are disks that move in the x-z plane",
                  .only_if = {!with_fluid, "only dry grains can be disks; remove the section or set system: grains"}});
   visit.list("walls", c.walls,
-             {.meaning = "planes the grains bounce off, besides the faces of the box",
+             {.meaning = "solid planes, in addition to the faces of the box",
               .only_if = {!with_fluid, "with a fluid there are only the faces of the box; remove the section"}});
   visit.list("grains", c.grains, {.meaning = "populations of grains", .required = !with_fluid, .only_if = of_grains});
   visit.require(with_fluid || !c.grains.empty(), "grains", "a run of dry grains needs at least one population of them");
@@ -155,7 +156,7 @@ void describe(SectionVisitor& visit, Case& c) {
                       c.grains.empty() || c.contact.restitution || c.contact.damping, "restitution",
                       "the loss in a collision is missing; give restitution, for example 0.93, or damping in kg/s");
                 });
-  visit.section("coupling", {.meaning = "how fluid and grains, or solids, act on each other", .only_if = of_fluid},
+  visit.section("coupling", {.meaning = "interaction of the fluid with grains or solids", .only_if = of_fluid},
                 [&](SectionVisitor& inside) { describe(inside, c.coupling, with_grains); });
   visit.section("initial", {.meaning = "state at the start"},
                 [&](SectionVisitor& inside) { describe_initial(inside, c.initial, with_fluid, with_grains); });
@@ -164,14 +165,14 @@ void describe(SectionVisitor& visit, Case& c) {
               .only_if = {!with_grains,
                           "only system: fluid has them, because grains would not feel them; for spheres give a "
                           "population of grains with fixed: true"}});
-  visit.section("run", {.meaning = "how long", .required = true},
+  visit.section("run", {.meaning = "duration and time integration", .required = true},
                 [&](SectionVisitor& inside) { describe_run(inside, c.run, with_fluid, with_grains); });
   visit.section("output", {.meaning = "what the run writes, besides run.log and summary.json"},
                 [&](SectionVisitor& inside) {
                   describe(inside, c.output,
                            {with_fluid, "a run without fluid has no output of it; remove the section"}, of_grains);
                 });
-  visit.section("analysis", {.meaning = "what is measured while the run goes"},
+  visit.section("analysis", {.meaning = "what is measured during the run"},
                 [&](SectionVisitor& inside) { describe_analysis(inside, c.analysis, with_fluid, with_grains); });
 }
 

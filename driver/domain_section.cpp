@@ -104,13 +104,13 @@ void describe_domain(SectionVisitor& visit, DomainCase& domain, bool with_fluid)
               .example = 0.1});
   visit.real("spacing", domain.spacing,
              {.unit = "m",
-              .meaning = "side of a cell, of which every length holds a whole number; without a fluid only "
-                         "the grid on which ranks share the box",
+              .meaning = "side of a cell, which divides every length; without a fluid it is only the grid by which the "
+                         "box is divided among ranks",
               .required = true,
               .above = 0.0,
               .example = 0.5e-3});
   BoundaryKeys keys = keys_of(domain.faces);
-  visit.section("boundaries", {.meaning = "what stands at each face: " + face_forms, .required = true},
+  visit.section("boundaries", {.meaning = "type of each face: " + face_forms, .required = true},
                 [&](SectionVisitor& inside) { describe_boundaries(inside, keys, with_fluid); });
   if (visit.reading()) domain.faces = faces_of(keys);
 }
