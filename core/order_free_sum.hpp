@@ -1,4 +1,4 @@
-// Sums over the grains of all ranks with the same bits whoever owns which grain and in whatever order.
+// Sums over the grains of all ranks with the same bits for any distribution of the grains over ranks and in any order.
 //
 // Every term is turned into a 64-bit integer multiple of a power of two that is chosen from the largest term and the
 // number of terms, so that the sum of integers, which is associative, cannot overflow. The rounding of one term is at

@@ -1,4 +1,4 @@
-// When something is due: every so many steps, counted from step 0, so that a restarted run keeps the same beat.
+// When something is due: every n steps, counted from step 0, so that a restarted run keeps the same schedule.
 #pragma once
 
 #include <cstdint>

@@ -7,7 +7,7 @@
 //   reach()                      of the sphere about the centre that holds the body
 //   volume()
 //   chord(y, z)                  the line along x at (y, z): where missed() it holds nothing of the inside, else
-//                                holds(x) tells whether (x, y, z) is strictly inside
+//                                holds(x) says whether (x, y, z) is strictly inside
 //   crossing(from, along)        the fraction t > 0 of the vector `along` at which the line from a point outside first
 //                                meets the surface; none where it misses it or leads away
 //   link_crossing(dx, dy, dz, cx, cy, cz)

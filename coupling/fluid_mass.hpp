@@ -21,7 +21,7 @@ inline ExcessMass excess_mass(const lbm::FluidSurvey& survey, const Hydrostatic&
 }
 
 // What the mass of the whole fluid has lost or gained to round-off, and to walls and solids that do not conserve it, is
-// looked for and given back every so many steps.
+// looked for and given back every few hundred steps.
 inline constexpr std::int64_t steps_between_mass_looks = 200;
 
 inline bool looks_at_mass(std::int64_t step) { return step > 0 && step % steps_between_mass_looks == 0; }

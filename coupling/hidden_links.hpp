@@ -40,7 +40,7 @@ public:
 
   bool wanted() const { return options_.moving || !options_.rest.none(); }
 
-  // Finds anew the hidden links around cells that changed hands since the last call; does nothing where nobody wants
+  // Finds anew the hidden links around cells that changed hands since the last call; does nothing where none are wanted
   // them. A link belongs to the rank that owns its solid cell.
   void update(const CellClaims& map);
 

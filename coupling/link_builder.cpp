@@ -48,8 +48,8 @@ void LinkBuilder::mark(std::int32_t slot, int tile) {
   tiles.push_back(tile);
 }
 
-// A link is told by its fluid cell, its solid cell and the cell upstream, and a changed cell may be any of them. The
-// neighbours may have changed in the same update, so it does not count what they are now.
+// A link is identified by its fluid cell, its solid cell and the cell upstream, and a changed cell may be any of them.
+// The neighbours may have changed in the same update, so it does not count what they are now.
 void LinkBuilder::mark_around(const CellChange& change) {
   const lbm::CellIndexing& indexing = cells_.indexing();
   const Index3 &at = change.cell, &n = indexing.size();
@@ -94,7 +94,7 @@ void LinkBuilder::rebuild(int slot, const MappedGrain& grain, lbm::LinkTable& ta
   }
 }
 
-// The map alone tells where links are: all neighbours of the cells of a row are compared with the grain at once.
+// The map alone determines where links are: all neighbours of the cells of a row are compared with the grain at once.
 void LinkBuilder::find_in_row(int slot, int y, int z) {
   const lbm::CellIndexing& indexing = cells_.indexing();
   for (std::size_t begin = 0; begin < xs_.size();) {

@@ -44,7 +44,7 @@ void evaluate_pairs(const ContactLaw& law, MovingGrains& grains, ContactList& li
                     const MaterialTable& materials, std::span<const std::uint8_t> material) {
   if (list.near.stale()) look_for_near_pairs(grains, list, law.range(), MinimumImage(box));
   PairBatch<ContactLaw> batch(law, grains, list.pair_rows, box, materials, material);
-  // What does not stay in the cache from one sub-step to the next is asked for ahead.
+  // What does not stay in the cache from one sub-step to the next is prefetched.
   constexpr std::size_t cached = 2 << 20;  // bytes
   constexpr std::size_t bytes_a_pair = sizeof(NearPair) + sizeof(double) * ContactRows::width_of<ContactLaw>;
   const std::vector<NearPair>& near = list.near.pairs();

@@ -300,13 +300,13 @@ void GrainDynamics::restore(ArchiveReader& archive, const std::string& group, bo
 ContactHistories GrainDynamics::load_histories(ArchiveReader& archive, const std::string& group,
                                                const std::vector<int>& owner, bool with_walls) {
   const int ranks = size_of(communicator_), me = rank_of(communicator_);
-  constexpr int nobody = -1;
+  constexpr int no_rank = -1;
   const auto sent_on = [&](const ContactHistories& histories, const auto& rank_for) {
     ContactHistories sent(histories.width());
     std::vector<int> to;
     for (std::size_t n = 0; n < histories.size(); ++n)
       for (const GlobalId id : {histories.key(n).first, histories.key(n).second})
-        if (const int rank = id < 0 ? nobody : rank_for(id); rank != nobody) {
+        if (const int rank = id < 0 ? no_rank : rank_for(id); rank != no_rank) {
           sent.add(histories.key(n), histories.values(n));
           to.push_back(rank);
         }
@@ -319,7 +319,7 @@ ContactHistories GrainDynamics::load_histories(ArchiveReader& archive, const std
   const ContactHistories met = sent_on(read, [&](GlobalId id) { return rank_of_row(id, global_count_, ranks); });
   const RowRange grains(global_count_, ranks, me);
   return sent_on(
-      met, [&](GlobalId id) { return grains.has(id) ? owner[static_cast<std::size_t>(id - grains.first)] : nobody; });
+      met, [&](GlobalId id) { return grains.has(id) ? owner[static_cast<std::size_t>(id - grains.first)] : no_rank; });
 }
 
 // The clumps with their centre here. Members go to the rank of their clump's centre: `owner` of the rows of `batch` is

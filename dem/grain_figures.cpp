@@ -22,7 +22,7 @@ void for_each_touching(const ContactList& list, const GrainStore& store, const P
   }
 }
 
-// Grains that are held may overlap each other as they like: a bumpy wall does.
+// Overlaps between grains that are held do not count: those of a bumpy wall overlap on purpose.
 double overlap_in_diameters(const GrainStore& store, const PairContact& c, double overlap) {
   if (holds_translation(store.motion[c.first]) && holds_translation(store.motion[c.second])) return 0.0;
   return overlap / (2.0 * std::min(store.radius[c.first], store.radius[c.second]));

@@ -45,7 +45,7 @@ public:
   void forget_forces();
 
   // A bound of the speed (m/s) of every grain now: those of owned grains from the last drift, unless `written` says
-  // that somebody has written velocities since, and those of ghosts.
+  // that velocities have been written since, and those of ghosts.
   double speed_bound(bool written) const;
 
   std::size_t size() const { return grains_.size(); }

@@ -1,4 +1,5 @@
-// A flow over a bed of grains driven by the slope: depth, Shields number, slope, as far as the case alone tells them.
+// A flow over a bed of grains driven by the slope: depth, Shields number, slope, as far as they follow from the case
+// alone.
 #pragma once
 
 #include "driver/case.hpp"

@@ -43,7 +43,7 @@ Failure failure() {
   } catch (const std::bad_alloc&) {
     return {run_failed, "The memory of this machine is not enough for the case."};
   } catch (const std::exception& error) {
-    return {run_failed, fmt::format("An error nobody expected: {}.", error.what())};
+    return {run_failed, fmt::format("Unexpected error: {}.", error.what())};
   }
 }
 

@@ -10,8 +10,8 @@
 
 namespace thalweg::driver {
 
-// Runs the case to its end, or until it is told to stop. Throws InputError before anything was written; throws RunError
-// after summary.json has been written with the reason. Collective.
+// Runs the case to its end, or until a signal or the wall time stops it. Throws InputError before anything was written;
+// throws RunError after summary.json has been written with the reason. Collective.
 void run_case(const Command& command, MPI_Comm communicator, loop::WallClock::time_point started,
               FailureBarrier& failures, loop::Log& log);
 

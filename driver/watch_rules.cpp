@@ -20,7 +20,8 @@ constexpr double never = std::numeric_limits<double>::infinity();
 constexpr double fast_lattice_velocity = 0.2, broken_lattice_velocity = 0.3;
 constexpr double most_fast_cells = 1e-3;
 
-// Mean density: within a per mille nobody notices; a closed box of water that deviates by 1 % is no longer that water.
+// Mean density: a deviation of a per mille does not matter; a closed box of water that deviates by 1 % is no longer
+// that water.
 constexpr double least_density_warning = 1e-3, largest_density_warning = 1e-2, stop_over_warning = 10.0;
 // A velocity head at 0.173 cells a step is 3/2 0.173^2 = 4.5 %: what an open channel may lose or gain along its way.
 constexpr double open_density_warning = 0.05, open_density_stop = 0.2;

@@ -46,7 +46,7 @@ inline void silence_hdf5() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 // the file is always the same.
 Handle mpi_access(MPI_Comm communicator);
 
-// Access by this process alone, without MPI, to a file that nobody writes.
+// Access by this process alone, without MPI, to a file that is not being written.
 Handle lone_access();
 
 // Rows, columns, ... of a dataset; none if it cannot be asked.

@@ -6,7 +6,7 @@
 
 namespace thalweg::io {
 
-// Throws InputError at the first thing wrong. finish() finds the keys nobody asked for.
+// Throws InputError at the first thing wrong. finish() finds unknown keys.
 class SectionReader final : public SectionVisitor {
 public:
   // The section of `document` at key_path ("": the root), which must exist.

@@ -6,7 +6,7 @@
 //   swapped:  S[i'][x]     = f_i^c(x)      (left by a sweep that stays in its own cells)
 //   moved:    S[i][x + c_i] = f_i^c(x)     (left by a sweep that pulls from and pushes to the neighbours)
 // Either way the next sweep reads and writes exactly the 19 slots that belong to a cell, so cells may be swept in any
-// order, and solid cells may be swept or skipped at will: nobody reads what they write.
+// order, and solid cells may be swept or skipped at will: their output is never read.
 #pragma once
 
 #include "core/decomposition.hpp"

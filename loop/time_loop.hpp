@@ -45,7 +45,7 @@ struct LoopPlan {
   double until = 0.0;                                // s, simulated
   std::vector<FigureLimit> enough;                   // the run is finished when all hold; none: at `until` only
   std::vector<WatchRule> watch;                      // what may not happen to the figures of the system
-  OutOfBounds out_of_bounds = OutOfBounds::stop;     // what becomes of the run if it does
+  OutOfBounds out_of_bounds = OutOfBounds::stop;     // what to do if it does
   double walltime = 0.0;                             // s of wall time from `started` on; 0: as long as it takes
   WallClock::time_point started = WallClock::now();  // of the program
   bool write_at_start = true;                        // false where a run goes on: its first frame exists already
