@@ -47,6 +47,11 @@ class Points(Folder):
         self.assertEqual(name_of({"gravity.slope": 1e-3, "name": "a/b"}, ["gravity.slope", "name"]),
                          "slope_0.001-name_a_b")
 
+    def test_what_changes_together_is_named_by_its_first_key(self):
+        plan = self.plan(vary={"a": [1, 2]}, together=[{"b": 1, "c": [1, 2]}, {"b": 2, "c": [3, 4]}])
+        self.assertEqual((plan.keys(), plan.naming_keys()), (["a", "b", "c"], ["a", "b"]))
+        self.assertEqual(self.plan(together=[{"b": 1, "c": 1}, {"b": 1, "c": 2}]).naming_keys(), ["c"])
+
     def test_what_cannot_be_meant_is_refused_with_its_key(self):
         for content, words in (({"very": 1}, "very is not a key here"),
                                ({"case": "gone.yaml"}, "gone.yaml cannot be read"),

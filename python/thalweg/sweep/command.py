@@ -45,9 +45,8 @@ def units_of(plan):
     return units_of_keys(said.stdout) if said.returncode == 0 else {}
 
 
-def describe(task):
-    settings = ", ".join(f"{key} = {value}" for key, value in task.settings.items())
-    return settings or "the case as it is"
+def describe(task, keys):
+    return ", ".join(f"{key} = {task.settings[key]}" for key in keys if key in task.settings) or "the case as it is"
 
 
 def slurm_job(wanted, tasks, folder):
@@ -78,7 +77,7 @@ def sweep(wanted):
         return 0
     if wanted.dry_run:
         for number, task in enumerate(tasks):
-            print(f"{number:<5}{describe(task)}{'' if plan.bisection else f': {task.run.state}'}")
+            print(f"{number:<5}{describe(task, plan.keys())}{'' if plan.bisection else f': {task.run.state}'}")
         return 0
     if wanted.task is not None:
         if not 0 <= wanted.task < len(tasks):

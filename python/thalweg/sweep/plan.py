@@ -82,11 +82,16 @@ class Plan:
     ranks: int = 1
     columns: list = field(default_factory=list)
     case_digest: str = ""
+    followers: set = field(default_factory=set)   # keys of `together` that follow from the first of their entry
 
     def keys(self):
         """The keys that differ between runs, in the order of the file."""
         names = dict.fromkeys(key for point in self.points for key in point)
         return [key for key in names if len({json.dumps(point.get(key)) for point in self.points}) > 1]
+
+    def naming_keys(self):
+        """Those that tell the runs apart."""
+        return [key for key in self.keys() if key not in self.followers]
 
 
 def figure_of(summary, path):
@@ -128,7 +133,7 @@ def plan_of(content, folder):
     ranks = content.get("ranks", 1)
     if not isinstance(ranks, int) or ranks < 1:
         raise SweepError(f"ranks: {ranks} is not a number of MPI ranks; give a whole number from 1 on.")
-    return Plan(case, points, bisection, ranks, list(content.get("columns") or []), digest)
+    return Plan(case, points, bisection, ranks, list(content.get("columns") or []), digest, followers_in(content))
 
 
 def points_of(content):
@@ -149,6 +154,15 @@ def points_of(content):
             point |= settings
         points.append(point)
     return points
+
+
+def followers_in(content):
+    """The first key of an entry of `together` names it, if it is the same key with another value in each."""
+    together = content.get("together") or []
+    first = [next(iter(entry.items())) for entry in together]
+    if not together or len({key for key, _ in first}) > 1 or len({json.dumps(value) for _, value in first}) < len(first):
+        return set()
+    return {key for entry in together for key in entry} - {first[0][0]}
 
 
 def bisection_of(given):
