@@ -17,7 +17,7 @@ namespace {
 
 // A grain as the sums take it. The members of a clump share its volume, mass and contact moment as their own volumes
 // are to each other, and move with its centre, so that its parts add up to the clump.
-struct Body {
+struct WeightedBody {
   double spheres = 0.0;             // m^3, of all spheres that share what follows: one, or the members
   double volume = 0.0, mass = 0.0;  // m^3, kg
   Vec3 velocity = Vec3::Zero();     // m/s
@@ -25,23 +25,23 @@ struct Body {
 };
 
 // In the order of the grains; the arms r of the snapshot are from the centre of the grain or of the clump.
-std::vector<Body> bodies_of(const Snapshot& snapshot) {
+std::vector<WeightedBody> weighted_bodies(const Snapshot& snapshot) {
   const GrainView& grains = snapshot.grains;
   const std::vector<Mat3> moments = contact_moments(snapshot);
-  std::vector<Body> result(grains.id.size());
+  std::vector<WeightedBody> result(grains.id.size());
   for (std::size_t i = 0; i < result.size(); ++i) {
     const double volume = volume_of(grains.radius[i], grains.disk_thickness);
     result[i] = {volume, volume, grains.mass[i], grains.velocity[i], moments[i]};
   }
-  std::map<GlobalId, Body> sums;
+  std::map<GlobalId, WeightedBody> sums;
   for (std::size_t i = 0; i < result.size(); ++i)
     if (grains.is_member(i)) {
-      Body& sum = sums[grains.clump[i]];
+      WeightedBody& sum = sums[grains.clump[i]];
       sum.spheres += result[i].spheres;
       sum.moment += result[i].moment;
     }
   for (const ClumpState& clump : grains.clumps) {  // owned here, and so are their members
-    Body& sum = sums.at(clump.id);
+    WeightedBody& sum = sums.at(clump.id);
     sum.volume = clump.volume;
     sum.mass = clump.mass;
     sum.velocity = clump.velocity;
@@ -68,12 +68,12 @@ void GrainProfiles::observe(const Snapshot& snapshot) {
   counted_step_ = snapshot.step;
   ++measurements_;
   const GrainView& grains = snapshot.grains;
-  const std::vector<Body> bodies = bodies_of(snapshot);
+  const std::vector<WeightedBody> bodies = weighted_bodies(snapshot);
   std::vector<int> layer_of_row;
   std::vector<double> terms;
   for (std::size_t i = 0; i < grains.id.size(); ++i) {
     const double radius = grains.radius[i], bottom = grains.position[i][2] - radius;
-    const Body& body = bodies[i];
+    const WeightedBody& body = bodies[i];
     const Vec3& v = body.velocity;
     const int first = static_cast<int>(std::floor(bottom / thickness_));
     const int last = static_cast<int>(std::floor((bottom + 2.0 * radius) / thickness_));
