@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 
 namespace thalweg::dem {
 
@@ -17,7 +18,15 @@ GrainParameters dry_parameters(const DryParameters& dry) {
   GrainParameters parameters = dry.grains;
   parameters.sub_steps = std::min(parameters.sub_steps, sub_steps_between_list_checks);
   parameters.movable_cuts = true;
-  parameters.body_force = [gravity = dry.gravity](double mass, double) -> Vec3 { return mass * gravity; };
+  parameters.field = dry.field;
+  if (dry.field) parameters.attached_width = dry.field->attached_columns();
+  // A disk's volume goes with the square of its radius.
+  const auto volume = [thickness = dry.disk_thickness](double r) {
+    return thickness > 0.0 ? std::numbers::pi * r * r * thickness : 4.0 / 3.0 * std::numbers::pi * r * r * r;
+  };
+  parameters.body_force = [gravity = dry.gravity, density = dry.fluid_density, volume](double mass, double radius) {
+    return Vec3((mass - density * volume(radius)) * gravity);
+  };
   return parameters;
 }
 
@@ -25,7 +34,8 @@ GrainParameters dry_parameters(const DryParameters& dry) {
 
 DryGrains::DryGrains(const Decomposition& decomposition, MPI_Comm communicator, const DryParameters& parameters,
                      const GrainSeeds& seeds)
-    : sub_steps_(parameters.grains.sub_steps),
+    : with_field_(parameters.field != nullptr),
+      sub_steps_(parameters.grains.sub_steps),
       time_step_(parameters.grains.time_step * sub_steps_),
       wall_names_(parameters.measured_walls),
       disk_thickness_(parameters.disk_thickness),
@@ -66,6 +76,10 @@ Snapshot DryGrains::snapshot() const {
   snapshot.grains.angular_velocity = {store.angular_velocity.data(), owned};
   snapshot.grains.contact_force = {store.contact_force.data(), owned};
   snapshot.grains.contact_torque = {store.contact_torque.data(), owned};
+  if (with_field_) {
+    snapshot.grains.fluid_force = {store.load_force.data(), owned};
+    snapshot.grains.fluid_torque = {store.load_torque.data(), owned};
+  }
   grains_.show_clumps(snapshot.grains);
   return snapshot;
 }
@@ -107,6 +121,7 @@ void DryGrains::take_grains(ArchiveReader& archive, double /*spacing*/) {
   GrainStore& store = grains_.store();
   std::fill(store.load_force.begin(), store.load_force.end(), Vec3::Zero());
   std::fill(store.load_torque.begin(), store.load_torque.end(), Vec3::Zero());
+  std::fill(store.attached.begin(), store.attached.end(), 0.0);
 }
 
 }  // namespace thalweg::dem

@@ -1,4 +1,5 @@
-// Grains alone, under gravity, between the walls of the box: the system `grains`.
+// Grains alone, under gravity, between the walls of the box: the system `grains`. With a force field in place of a
+// fluid it is the system `model_fluid`.
 //
 // One step is as many sub-steps as its parameters say: the same beat as in a fluid.
 #pragma once
@@ -19,6 +20,9 @@ struct DryParameters {
   Vec3 gravity = Vec3::Zero();              // m/s^2
   std::vector<std::string> measured_walls;  // names of all walls, in their order, or none
   double disk_thickness = 0.0;              // m; 0: spheres
+  // Of a fluid that is no more than a force (model_fluid.hpp): what the load of a grain is, and its attached columns.
+  std::shared_ptr<ForceField> field = {};
+  double fluid_density = 0.0;  // kg/m^3, of the buoyancy
 };
 
 class DryGrains final : public System, private ContactSource {
@@ -50,6 +54,7 @@ private:
     grains_.for_each_contact_of(chosen, visit);
   }
 
+  bool with_field_;
   int sub_steps_;
   double time_step_;                     // s, of sub_steps_ sub-steps
   std::vector<std::string> wall_names_;  // whose forces are measured

@@ -111,8 +111,11 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
 }
 
 void GrainDynamics::refuse_gear_of_clumps() const {
-  if (clump_count_ > 0 && parameters_.integrator == Integrator::gear)
+  const bool gear = parameters_.integrator == Integrator::gear;
+  if (clump_count_ > 0 && gear)
     throw InputError("Clumps are moved by velocity Verlet, not by Gear's predictor-corrector; use the former.");
+  if (parameters_.field && (clump_count_ > 0 || gear))
+    throw InputError("A force field acts on single grains that are moved by velocity Verlet; use these.");
 }
 
 // The contact list must outlast a step.
@@ -133,7 +136,8 @@ double GrainDynamics::largest_prescribed_speed() const {
 
 double GrainDynamics::ghost_reach() const {
   // A grain may come half a skin nearer before the ghosts are made anew.
-  return std::max(parameters_.ghost_width + 0.5 * parameters_.skin, 2.0 * largest_radius_ + list_range());
+  const double known = std::max(parameters_.ghost_width, parameters_.field ? parameters_.field->reach() : 0.0);
+  return std::max(known + 0.5 * parameters_.skin, 2.0 * largest_radius_ + list_range());
 }
 
 // The gap up to which pairs are listed: what acts across a gap must be known there until the list is made anew.
@@ -249,6 +253,7 @@ void GrainDynamics::build_dependents(const ContactHistories& histories) {
   listed_planes_ = planes_;
   list_ = find_contacts(store_, box_, planes_, materials_, list_range(), largest_radius_);
   restore_histories(list_, store_, histories);
+  if (parameters_.field) parameters_.field->find_neighbours(store_, parameters_.skin);
   const auto owned_end = static_cast<std::ptrdiff_t>(store_.owned);
   listed_position_.assign(store_.position.begin(), store_.position.begin() + owned_end);
   clumps_.find_members(store_);
@@ -277,6 +282,7 @@ void GrainDynamics::evaluate_forces(double time_step) {
   const auto scope = timer_.measure(forces_phase_);
   evaluate_contacts(moving_, list_, box_, planes_, materials_, store_.material, time_step);
   if (parameters_.lubrication) add_lubrication(moving_, list_, box_, planes_, *parameters_.lubrication);
+  if (parameters_.field) parameters_.field->act(moving_, store_, body_force_);
 }
 
 void GrainDynamics::place_walls(double time, double time_of_velocity) {

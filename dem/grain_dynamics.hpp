@@ -19,6 +19,7 @@
 #include "dem/clump_seed.hpp"
 #include "dem/clumps.hpp"
 #include "dem/contact_list.hpp"
+#include "dem/force_field.hpp"
 #include "dem/gear_predictor.hpp"
 #include "dem/ghost_exchange.hpp"
 #include "dem/grain_batch.hpp"
@@ -35,6 +36,7 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -57,6 +59,7 @@ struct GrainParameters {
   double ghost_width = 0.0;  // m: grains at least this near to a rank's block are its ghosts at all times
   int attached_width = 0;    // columns attached to every grain, the caller's (Gear's predictor has more after them)
   std::optional<LubricationParameters> lubrication;  // between near surfaces, in every sub-step
+  std::shared_ptr<ForceField> field;                 // on every grain, in every sub-step; with no clumps, and no Gear
   bool disks = false;                                // the grains are disks in an x-z plane: I = 1/2 m R^2
   bool movable_cuts = false;                         // whether the cuts between ranks follow the grains
   double initial_overlap = allowed_initial_overlap;  // diameters the seeds may overlap by: a settled bed's do

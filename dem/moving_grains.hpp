@@ -41,6 +41,9 @@ public:
   // half_kick(), half_kick(), drift(): from the end of one sub-step to the forces of the next, in one pass.
   void two_half_kicks_and_drift(double time_step);
 
+  // Replaces what pulls at an owned grain besides its contacts (N), until the next load().
+  void set_load(std::size_t slot, const Vec3& force) { loads_[slot].force = row_of(force, loads_[slot].force[3]); }
+
   // The contact forces of all grains begin anew at zero.
   void forget_forces();
 

@@ -1,4 +1,4 @@
-// From a case to dry grains.
+// From a case to grains without a fluid, or with a force in its place.
 #include "dem/dry_grains.hpp"
 #include "driver/build_system.hpp"
 #include "driver/grain_setup.hpp"
@@ -19,6 +19,10 @@ std::vector<std::string> measured_walls(const Case& c) {
   return walls;
 }
 
+dem::ModelFluidParameters model_fluid_of(const Case& c) {
+  return model_fluid_parameters(c.model_fluid, mean_grain(c), -gravity_vector(c.gravity).z(), c.disks.has_value());
+}
+
 }  // namespace
 
 std::unique_ptr<System> build_grains_system(const Case& c, MPI_Comm communicator, const Index3& layout) {
@@ -28,6 +32,10 @@ std::unique_ptr<System> build_grains_system(const Case& c, MPI_Comm communicator
   parameters.gravity = gravity_vector(c.gravity);
   parameters.measured_walls = measured_walls(c);
   parameters.disk_thickness = c.disks ? c.disks->thickness : 0.0;
+  if (c.system == SystemKind::model_fluid) {
+    parameters.fluid_density = c.model_fluid.fluid_density;
+    parameters.field = std::make_shared<dem::ModelFluidField>(decomposition.box(), model_fluid_of(c));
+  }
   return std::make_unique<dem::DryGrains>(decomposition, communicator, parameters, grain_seeds(c));
 }
 

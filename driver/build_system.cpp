@@ -22,6 +22,7 @@ constexpr Entry builders[] = {
     {SystemKind::resolved, build_resolved_system},
     {SystemKind::fluid, build_fluid_system},
     {SystemKind::grains, build_grains_system},
+    {SystemKind::model_fluid, build_grains_system},
 };
 
 }  // namespace
@@ -34,6 +35,8 @@ const char* name_of(SystemKind kind) {
       return "fluid";
     case SystemKind::grains:
       return "grains";
+    case SystemKind::model_fluid:
+      return "model_fluid";
   }
   return "";
 }

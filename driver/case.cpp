@@ -10,7 +10,7 @@
 
 namespace thalweg::driver {
 
-bool has_fluid(const Case& c) { return c.system != SystemKind::grains; }
+bool has_fluid(const Case& c) { return c.system == SystemKind::resolved || c.system == SystemKind::fluid; }
 
 Index3 cells_of(const DomainCase& domain) {
   Index3 cells;
@@ -30,7 +30,7 @@ double fluid_time_step(const Case& c) {
 }
 
 double grain_time_step(const Case& c) {
-  if (c.system == SystemKind::grains) return *c.run.time_step;
+  if (!has_fluid(c)) return *c.run.time_step;
   return fluid_time_step(c) / static_cast<double>(c.coupling.grain_steps_per_fluid_step);
 }
 
@@ -85,6 +85,33 @@ double grain_volume(const Case& c) {
   double volume = 0.0;
   for (const dem::Population& population : c.grains) volume += population.volume();
   return volume;
+}
+
+dem::MeanGrain mean_grain(const Case& c) {
+  double count = 0.0;
+  dem::MeanGrain mean{0.0, 0.0, 0.0, largest_diameter(c)};
+  for (const dem::Population& population : c.grains)
+    for (std::size_t n = 0; n < static_cast<std::size_t>(population.count); ++n) {
+      const double d = population.diameter_of(n), thickness = population.thickness;
+      const double volume = std::numbers::pi * d * d * (thickness > 0.0 ? thickness / 4.0 : d / 6.0);
+      count += 1.0;
+      mean.diameter += d;
+      mean.volume += volume;
+      mean.mass += population.density_of(n) * volume;
+    }
+  mean.diameter /= count;
+  mean.volume /= count;
+  mean.mass /= count;
+  return mean;
+}
+
+double fastest_model_fluid(const Case& c) {
+  if (c.system != SystemKind::model_fluid) return 0.0;
+  const double gravity = -gravity_vector(c.gravity).z();
+  const dem::ModelFluidParameters fluid =
+      model_fluid_parameters(c.model_fluid, mean_grain(c), gravity, c.disks.has_value());
+  const double alone = c.disks ? 1.0 / 9.0 : 1.0 / 27.0;  // the solid fraction of the grain itself
+  return fluid.coefficients.velocity * fluid.profile(alone);
 }
 
 double shortest_contact(const Case& c) {

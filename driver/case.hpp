@@ -11,6 +11,7 @@
 #include "coupling/initial_fluid.hpp"
 #include "dem/integrator.hpp"
 #include "dem/material_keys.hpp"
+#include "dem/model_fluid_keys.hpp"
 #include "dem/population.hpp"
 #include "dem/wall_keys.hpp"
 #include "io/output_keys.hpp"
@@ -24,7 +25,7 @@
 
 namespace thalweg::driver {
 
-enum class SystemKind { resolved, fluid, grains };
+enum class SystemKind { resolved, fluid, grains, model_fluid };
 
 // The order of the faces everywhere in the driver.
 enum FaceIndex { x_low, x_high, y_low, y_high, bottom, top };
@@ -119,6 +120,7 @@ struct Case {
   std::vector<dem::WallKeys> walls;  // of dry grains, besides the faces
   std::vector<SolidCase> solids;     // of system: fluid
   dem::ContactKeys contact;
+  dem::ModelFluidKeys model_fluid;  // of system: model_fluid
   coupling::CouplingKeys coupling;
   InitialCase initial;
   RunCase run;
@@ -141,11 +143,14 @@ double relaxation_time(const Case& c);            // BGK, without the subgrid mo
 double bulk_relaxation_time_for(const Case& c);   // where the case does not give it
 double bulk_viscosity(const Case& c);             // m^2/s: 2/9 (tau_b - 1/2), without the subgrid model
 
-std::int64_t grain_count(const Case& c);  // of all populations
-double largest_diameter(const Case& c);   // m; 0 without grains
-double largest_extent(const Case& c);     // m, the same with clumps as they are long
-double smallest_diameter(const Case& c);  // m; 0 without grains
-double grain_volume(const Case& c);       // m^3, of all grains
+std::int64_t grain_count(const Case& c);   // of all populations
+double largest_diameter(const Case& c);    // m; 0 without grains
+double largest_extent(const Case& c);      // m, the same with clumps as they are long
+double smallest_diameter(const Case& c);   // m; 0 without grains
+double grain_volume(const Case& c);        // m^3, of all grains
+dem::MeanGrain mean_grain(const Case& c);  // of all grains
+// m/s, of the model fluid around a grain without neighbours, the fastest there is; 0 without a model fluid
+double fastest_model_fluid(const Case& c);
 
 // The shortest contact there can be (damping makes it longer), between two of the lightest grains of a population or
 // of one of them with a wall: half a period of the undamped spring, pi sqrt(m / 2 / k_n), or Hertz's contact at 1 m/s

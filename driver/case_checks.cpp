@@ -176,6 +176,27 @@ void check_gravity(const Case& c, const io::YamlDocument& document) {
                          "reduced");
 }
 
+void check_model_fluid(const Case& c, const io::YamlDocument& document) {
+  if (c.system != SystemKind::model_fluid) return;
+  const Vec3 gravity = gravity_vector(c.gravity);
+  if (gravity.x() != 0.0 || gravity.y() != 0.0 || !(gravity.z() < 0.0))
+    throw document.error("gravity",
+                         "the model fluid drives the grains, and gravity is downwards; give a magnitude alone");
+  if (c.domain.faces[bottom].type == lbm::FaceType::periodic)
+    throw document.error("domain.boundaries", "the bed needs a floor; give a bottom and a top that are not periodic");
+  for (std::size_t n = 0; n < c.grains.size(); ++n)
+    if (c.grains[n].clumps.count > 0)
+      throw document.error(fmt::format("grains.{}", n), "the model fluid acts on single grains; give no clumps");
+  if (c.run.grain_integrator != dem::Integrator::velocity_verlet)
+    throw document.error("run.grain_integrator",
+                         "with a model fluid grains are moved by velocity_verlet; remove the key");
+  try {
+    check(c.model_fluid, mean_grain(c), -gravity.z());
+  } catch (const KeyError& error) {
+    throw document.error("model_fluid." + error.key, error.what());
+  }
+}
+
 void check_observers(const Case& c, const io::YamlDocument& document) {
   try {
     check(c.analysis.observers, run_facts(c));
@@ -194,6 +215,7 @@ void check_case(const Case& c, const io::YamlDocument& document) {
   check_fluid(c, document);
   check_gravity(c, document);
   check_grains(c, document);
+  check_model_fluid(c, document);
   check_observers(c, document);
 }
 

@@ -40,6 +40,12 @@ Case example_case(SystemKind system) {
     c.contact.restitution = 0.93;
     c.analysis.observers.of<analysis::TransportRateKeys>().emplace();
   }
+  if (system == SystemKind::model_fluid) {
+    c.gravity.slope.reset();
+    c.model_fluid.shields_number = 0.1;
+    c.model_fluid.reynolds_number = 1.0;
+    c.model_fluid.drag = dem::ModelDrag::quadratic;
+  }
   if (has_fluid(c)) {
     c.fluid.density = 1000.0;
     c.fluid.kinematic_viscosity = 1e-6;
@@ -59,14 +65,14 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
   fill_in_grains(c, document);
   if (has_fluid(c) && !c.fluid.bulk_relaxation_time) c.fluid.bulk_relaxation_time = bulk_relaxation_time_for(c);
   if (c.coupling.grain_steps_per_fluid_step == coupling::CouplingKeys::as_many_as_needed) {
-    if (c.system == SystemKind::grains)
+    if (!has_fluid(c))
       throw document.error("coupling.grain_steps_per_fluid_step",
                            "auto goes by the step of the fluid, and here is none; give a number");
     // Where the step itself is missing, check_case() says so.
     const bool has_step = c.fluid.time_step || (c.fluid.expected_velocity && c.fluid.maximum_lattice_velocity);
     c.coupling.grain_steps_per_fluid_step = has_step ? sub_steps_needed(c) : 1;
   }
-  if (c.system == SystemKind::grains && !c.run.time_step) c.run.time_step = shortest_contact(c) / steps_per_contact;
+  if (!has_fluid(c) && !c.run.time_step) c.run.time_step = shortest_contact(c) / steps_per_contact;
   if (!c.initial.from.empty())
     c.initial.from = (std::filesystem::absolute(path).parent_path() / c.initial.from).lexically_normal().string();
   for (SolidCase& solid : c.solids)
@@ -79,12 +85,15 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
 std::string resolved_yaml(const Case& c) { return io::written(c, io::YamlStyle::plain); }
 
 std::string defaults_yaml(const std::string& system) {
-  constexpr std::pair<const char*, SystemKind> systems[] = {
-      {"resolved", SystemKind::resolved}, {"fluid", SystemKind::fluid}, {"grains", SystemKind::grains}};
+  constexpr std::pair<const char*, SystemKind> systems[] = {{"resolved", SystemKind::resolved},
+                                                            {"fluid", SystemKind::fluid},
+                                                            {"grains", SystemKind::grains},
+                                                            {"model_fluid", SystemKind::model_fluid}};
   const auto found =
       std::find_if(std::begin(systems), std::end(systems), [&](const auto& entry) { return entry.first == system; });
   if (found == std::end(systems))
-    throw InputError(fmt::format("There is no system \"{}\": give one of resolved, fluid, grains.", system));
+    throw InputError(
+        fmt::format("There is no system \"{}\": give one of resolved, fluid, grains, model_fluid.", system));
   const Case example = example_case(found->second);
   return fmt::format(
              "# Every key of a case with system: {}, with its default. Comments give the unit, the range and the\n"

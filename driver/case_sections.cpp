@@ -10,8 +10,15 @@
 // visitor's templates would not find them.
 namespace thalweg::driver {
 
-static OnlyIf only_with_fluid(bool with_fluid) {
-  return {with_fluid, "system: grains has no fluid; remove the section or set system: resolved"};
+// The words for a system without lattice fluid.
+static std::string no_fluid(SystemKind system) {
+  return system == SystemKind::model_fluid ? "system: model_fluid has only its section model_fluid"
+                                           : "system: grains has no fluid";
+}
+
+static OnlyIf only_with_fluid(SystemKind system) {
+  const bool with_fluid = system == SystemKind::resolved || system == SystemKind::fluid;
+  return {with_fluid, no_fluid(system) + "; remove the section or set system: resolved"};
 }
 
 static OnlyIf only_with_grains(bool with_grains) {
@@ -36,7 +43,9 @@ static void describe_gravity(SectionVisitor& visit, GravityCase& gravity, bool w
        .only_if = {with_fluid, "a run without fluid has only one kind of gravity; remove the key"}});
 }
 
-static void describe_initial(SectionVisitor& visit, InitialCase& initial, bool with_fluid, bool with_grains) {
+static void describe_initial(SectionVisitor& visit, InitialCase& initial, SystemKind system) {
+  const OnlyIf of_fluid = only_with_fluid(system);
+  const bool with_fluid = of_fluid.holds, with_grains = system != SystemKind::fluid;
   visit.text("from", initial.from,
              {.meaning = "run folder or checkpoint of another run to begin from, relative to this file; \"\": none"});
   if (!with_fluid && initial.fields == InitialCase{}.fields) initial.fields = {InitialField::grains};
@@ -44,10 +53,9 @@ static void describe_initial(SectionVisitor& visit, InitialCase& initial, bool w
   if (with_fluid) fields.push_back({InitialField::fluid, "fluid"});
   if (with_grains) fields.push_back({InitialField::grains, "grains", "as many as the populations have"});
   visit.choice_list<InitialField>("fields", initial.fields, fields, {.meaning = "what is taken from it"});
-  visit.section("fluid", initial.fluid,
-                {.meaning = "velocity at the start: rest, uniform or log_profile",
-                 .empty_name = "rest",
-                 .only_if = only_with_fluid(with_fluid)});
+  visit.section(
+      "fluid", initial.fluid,
+      {.meaning = "velocity at the start: rest, uniform or log_profile", .empty_name = "rest", .only_if = of_fluid});
   const bool fluid_of_other_run = !initial.from.empty() && std::find(initial.fields.begin(), initial.fields.end(),
                                                                      InitialField::fluid) != initial.fields.end();
   visit.require(
@@ -96,16 +104,18 @@ static void describe_run(SectionVisitor& visit, RunCase& run, bool with_fluid, b
 static void describe(SectionVisitor&, WallForcesCase&) {}
 
 template <typename Keys>
-OnlyIf belonging(bool with_fluid, bool with_grains) {
-  if (Keys::needs != analysis::Needs::fluid && !with_grains) return only_with_grains(false);
-  if (Keys::needs == analysis::Needs::grains || with_fluid) return {};
+OnlyIf belonging(SystemKind system) {
+  const OnlyIf of_fluid = only_with_fluid(system);
+  if (Keys::needs != analysis::Needs::fluid && system == SystemKind::fluid) return only_with_grains(false);
+  if (Keys::needs == analysis::Needs::grains || of_fluid.holds) return {};
   if constexpr (requires { Keys::without_fluid; })
-    return {false, fmt::format("system: grains has no fluid; remove the section, {}, or set system: resolved",
-                               Keys::without_fluid)};
-  return only_with_fluid(false);
+    return {false,
+            fmt::format("{}; remove the section, {}, or set system: resolved", no_fluid(system), Keys::without_fluid)};
+  return of_fluid;
 }
 
-static void describe_analysis(SectionVisitor& visit, AnalysisCase& analysis, bool with_fluid, bool with_grains) {
+static void describe_analysis(SectionVisitor& visit, AnalysisCase& analysis, SystemKind system) {
+  const bool with_grains = system != SystemKind::fluid;
   visit.real("reference_diameter", analysis.reference_diameter,
              {.unit = "m",
               .meaning = "d of q*, the Shields number and the speed that counts as moving; default: half of the volume "
@@ -115,7 +125,7 @@ static void describe_analysis(SectionVisitor& visit, AnalysisCase& analysis, boo
               .only_if = {with_grains, "system: fluid has no grains; remove the key or set system: resolved"}});
   analysis.observers.for_each([&](auto& keys) {
     using Keys = std::decay_t<decltype(*keys)>;
-    visit.section(Keys::section, keys, {.meaning = Keys::meaning, .only_if = belonging<Keys>(with_fluid, with_grains)});
+    visit.section(Keys::section, keys, {.meaning = Keys::meaning, .only_if = belonging<Keys>(system)});
   });
   visit.section("wall_forces", analysis.wall_forces,
                 {.meaning = "force of grains and of the fluid on each wall, in series.csv; no keys: {}",
@@ -131,10 +141,11 @@ void describe(SectionVisitor& visit, Case& c) {
   visit.choice<SystemKind>("system", c.system,
                            {{SystemKind::resolved, "resolved", "fluid with grains in it, every grain resolved"},
                             {SystemKind::fluid, "fluid", "fluid alone"},
-                            {SystemKind::grains, "grains", "dry grains"}},
+                            {SystemKind::grains, "grains", "dry grains"},
+                            {SystemKind::model_fluid, "model_fluid", "grains under a prescribed fluid force"}},
                            {.meaning = "what is simulated", .required = true});
   const bool with_fluid = has_fluid(c), with_grains = c.system != SystemKind::fluid;
-  const OnlyIf of_fluid = only_with_fluid(with_fluid), of_grains = only_with_grains(with_grains);
+  const OnlyIf of_fluid = only_with_fluid(c.system), of_grains = only_with_grains(with_grains);
   visit.text("name", c.name, {.meaning = "what the run is called in its output"});
   visit.section("domain", {.meaning = "the box, its cells and its faces", .required = true},
                 [&](SectionVisitor& inside) { describe_domain(inside, c.domain, with_fluid); });
@@ -156,10 +167,16 @@ void describe(SectionVisitor& visit, Case& c) {
                       c.grains.empty() || c.contact.restitution || c.contact.damping, "restitution",
                       "the loss in a collision is missing; give restitution, for example 0.93, or damping in kg/s");
                 });
+  visit.section("model_fluid",
+                {.meaning = "the force of Clark et al. (2017) in place of a fluid",
+                 .required = true,
+                 .only_if = {c.system == SystemKind::model_fluid,
+                             "only system: model_fluid has it; remove the section or set system: model_fluid"}},
+                [&](SectionVisitor& inside) { describe(inside, c.model_fluid, c.disks.has_value()); });
   visit.section("coupling", {.meaning = "interaction of the fluid with grains or solids", .only_if = of_fluid},
                 [&](SectionVisitor& inside) { describe(inside, c.coupling, with_grains); });
   visit.section("initial", {.meaning = "state at the start"},
-                [&](SectionVisitor& inside) { describe_initial(inside, c.initial, with_fluid, with_grains); });
+                [&](SectionVisitor& inside) { describe_initial(inside, c.initial, c.system); });
   visit.list("solids", c.solids,
              {.meaning = "bodies that stand still in the fluid",
               .only_if = {!with_grains,
@@ -173,7 +190,7 @@ void describe(SectionVisitor& visit, Case& c) {
                            {with_fluid, "a run without fluid has no output of it; remove the section"}, of_grains);
                 });
   visit.section("analysis", {.meaning = "what is measured during the run"},
-                [&](SectionVisitor& inside) { describe_analysis(inside, c.analysis, with_fluid, with_grains); });
+                [&](SectionVisitor& inside) { describe_analysis(inside, c.analysis, c.system); });
 }
 
 }  // namespace thalweg::driver

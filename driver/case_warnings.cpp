@@ -94,10 +94,21 @@ void warn_of_grains(const Case& c, Warnings& found) {
   }
 }
 
+// A step must be short against what a single grain in the fluid covers: a twentieth of a diameter.
+void warn_of_model_fluid(const Case& c, Warnings& found) {
+  const double fastest = fastest_model_fluid(c), longest = 0.05 * mean_grain(c).diameter / fastest;
+  if (*c.run.time_step > longest)
+    found.push_back(
+        fmt::format("The fluid around a single grain moves at {:.3g} m/s, which is more than a twentieth of a "
+                    "diameter a step: consider a run.time_step of at most {:.2g} s.",
+                    fastest, longest));
+}
+
 }  // namespace
 
 std::vector<std::string> warnings(const Case& c) {
   Warnings found = warnings(c.analysis.observers, run_facts(c));
+  if (c.system == SystemKind::model_fluid) warn_of_model_fluid(c, found);
   if (!has_fluid(c)) return found;
   for (const auto warn :
        {warn_of_fast_flow, warn_of_compression, warn_of_collision, warn_of_bulk_relaxation, warn_of_grains})

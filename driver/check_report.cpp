@@ -179,6 +179,22 @@ void add_solids(const Case& c, Lines& lines) {
   }
 }
 
+void add_model_fluid(const Case& c, Lines& lines) {
+  if (c.system != SystemKind::model_fluid) return;
+  const double gravity = -gravity_vector(c.gravity).z();
+  const dem::ModelFluidNumbers n = c.model_fluid.numbers();
+  const dem::GrainScales s = scales_of(c.model_fluid, mean_grain(c), gravity);
+  const dem::ModelFluidCoefficients k = coefficients_of(n, s);
+  lines.push_back(fmt::format(
+      "model      Shields number {:.4g}; Re_* {:.4g} as printed, u_* D/nu {:.4g}; Re_p {:.4g}; "
+      "lift over drag {:g}",
+      n.shields, n.reynolds, n.reynolds * dem::printed_to_physical_reynolds, particle_reynolds(k), n.lift_ratio));
+  lines.push_back(fmt::format("           fluid at {:.4g} m/s at the top of the bed; B_1 {:.4g} kg/s, B_2 {:.4g} kg/m",
+                              k.velocity, k.viscous, k.inertial));
+  lines.push_back(fmt::format("           mean grain {:.4g} m, {:.4g} kg; reduced gravity {:.4g} m/s^2; time {:.4g} s",
+                              s.diameter, s.mass, s.gravity, std::sqrt(s.diameter / s.gravity)));
+}
+
 std::string bytes_text(double bytes) {
   return bytes < 1e9 ? fmt::format("{:.3g} MB", bytes * 1e-6) : fmt::format("{:.3g} GB", bytes * 1e-9);
 }
@@ -240,6 +256,7 @@ std::vector<std::string> check_report(const Case& c, double bandwidth) {
   add_grains(c, lines);
   add_solids(c, lines);
   add_bed(c, lines);
+  add_model_fluid(c, lines);
   add_cost(c, bandwidth, lines);
   for (const std::string& warning : warnings(c)) lines.push_back("warning    " + warning);
   return lines;

@@ -52,7 +52,7 @@ void add_others(CLI::App& app, Command& command) {
   check->add_option("--set", command.settings, set_help)->allow_extra_args(false)->type_name("KEY.SUB=VALUE");
   check->final_callback([&] { command.kind = Command::Kind::check; });
   CLI::App* defaults = app.add_subcommand("defaults", "Print every key with its default, unit and meaning");
-  defaults->add_option("SYSTEM", command.system, "resolved (default), fluid or grains");
+  defaults->add_option("SYSTEM", command.system, "resolved (default), fluid, grains or model_fluid");
   defaults->final_callback([&] { command.kind = Command::Kind::defaults; });
   CLI::App* info = app.add_subcommand("info", "Say what a run folder or a checkpoint holds");
   info->add_option("PATH", command.path, "Run folder or checkpoint file")->required();

@@ -209,7 +209,7 @@ void add_grain_rules(const Case& c, std::vector<WatchRule>& rules) {
 }  // namespace
 
 double expected_grain_speed(const Case& c) {
-  return fall_speed(c) + prescribed_speed(c) + expected_flow_speed(c) + speed_of_overlaps(c);
+  return fall_speed(c) + prescribed_speed(c) + expected_flow_speed(c) + fastest_model_fluid(c) + speed_of_overlaps(c);
 }
 
 WatchLimits mean_density_limits(const Case& c) {

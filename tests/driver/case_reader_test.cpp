@@ -171,8 +171,13 @@ TEST(CaseReader, TheDefaultsAreValidAndNameEveryKey) {
   for (const std::string key : {"domain.boundaries.y.coefficient", "coupling.link_tolerance", "gravity.mode",
                                 "output.checkpoint.keep", "contact.attraction", "fluid.collision"})
     EXPECT_NE(std::find(keys.begin(), keys.end(), key), keys.end()) << key;
-  EXPECT_NE(message_of<InputError>([] { defaults_yaml("model_fluid"); }).find("give one of resolved, fluid, grains"),
+  EXPECT_NE(message_of<InputError>([] { defaults_yaml("continuum"); }).find("give one of resolved, fluid, grains"),
             std::string::npos);
+}
+
+TEST(CaseReader, TheDefaultsOfEverySystemAreValid) {
+  for (const char* system : {"resolved", "fluid", "grains", "model_fluid"})
+    EXPECT_NO_THROW(read(defaults_yaml(system))) << system;
 }
 
 struct Bad {
@@ -201,7 +206,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Bad{"system_not_built",
             {"system=continuum"},
-            {"system = \"continuum\": expected one of resolved, fluid, grains."}},
+            {"system = \"continuum\": expected one of resolved, fluid, grains, model_fluid."}},
         Bad{"collision_not_built",
             {"fluid.collision=mrt"},
             {"fluid.collision = \"mrt\": expected one of bgk, trt, regularised."}},

@@ -1,0 +1,27 @@
+// A force on every grain by where it is and how it moves, evaluated with the contacts in every sub-step.
+#pragma once
+
+#include "dem/grain_store.hpp"
+#include "dem/moving_grains.hpp"
+
+#include <span>
+
+namespace thalweg::dem {
+
+class ForceField {
+public:
+  virtual ~ForceField() = default;
+
+  // The columns it keeps with every grain (GrainStore::attached), zero in a new grain. Nobody else may attach any.
+  virtual int attached_columns() const { return 0; }
+  // m: grains at least this near to a grain's centre, surface or not, must be known to its rank.
+  virtual double reach() const { return 0.0; }
+  // Slots and neighbours have changed: what is known of them begins anew. skin: m, of the contact list; no grain moves
+  // further than half of it before the next call.
+  virtual void find_neighbours(const GrainStore& store, double skin) = 0;
+  // After the contacts: sets the loads of owned grains, in the store and, with the body forces (N), in what the
+  // sub-steps work on. May hold velocities and change the contact forces of grains that touch what it holds.
+  virtual void act(MovingGrains& grains, GrainStore& store, std::span<const Vec3> body_force) = 0;
+};
+
+}  // namespace thalweg::dem

@@ -1,0 +1,52 @@
+// How a case describes the model fluid (model_fluid.hpp): the section `model_fluid`.
+#pragma once
+
+#include "core/section_visitor.hpp"
+#include "dem/model_fluid_field.hpp"
+
+#include <optional>
+
+namespace thalweg::dem {
+
+// grain: the mean diameter, the mean mass and the reduced gravity are 1, as in the paper; nothing is converted, but
+// this is checked.
+enum class ModelUnits { si, grain };
+
+struct ModelFluidKeys {
+  double shields_number = 0.0;                  // Theta
+  std::optional<double> reynolds_number;        // Re_*, as printed
+  std::optional<double> shear_reynolds_number;  // u_* D/nu, physical
+  std::optional<ModelDrag> drag;
+  double lift_ratio = 0.0;             // F_l/F_d
+  double inertial_coefficient = 0.5;   // B_2 D/m
+  double fluid_density = 0.0;          // kg/m^3: buoyancy; 0: gravity is the reduced one
+  double decay = 5.0;                  // b
+  std::optional<double> top_fraction;  // phi_t
+  double densest_fraction = 0.7;       // phi_m, of spheres
+  std::optional<double> margin;        // m
+  double tolerance = 0.01;             // mean diameters
+  bool rough_floor = true;
+  ModelUnits units = ModelUnits::si;
+  bool operator==(const ModelFluidKeys&) const = default;
+
+  ModelFluidNumbers numbers() const;
+};
+
+// disks: the grains are disks.
+void describe(SectionVisitor& visit, ModelFluidKeys& fluid, bool disks);
+
+// Means over all grains, by number, and the largest of them.
+struct MeanGrain {
+  double diameter, mass, volume;  // m, kg, m^3
+  double largest_diameter;        // m
+};
+
+// Throws KeyError where units and grains do not fit together. gravity: m/s^2, downwards, without buoyancy.
+void check(const ModelFluidKeys& fluid, const MeanGrain& mean, double gravity);
+
+GrainScales scales_of(const ModelFluidKeys& fluid, const MeanGrain& mean, double gravity);
+
+ModelFluidParameters model_fluid_parameters(const ModelFluidKeys& fluid, const MeanGrain& mean, double gravity,
+                                            bool disks);
+
+}  // namespace thalweg::dem

@@ -1,0 +1,83 @@
+#!/usr/bin/python3
+"""Grains under the prescribed force of a model fluid: the same bits on any ranks and after a restart, motion that stops or
+goes on, refusals.
+
+Called by ctest: model_fluid_run_test.py THALWEG MPIEXEC [unittest arguments]
+"""
+import sys
+from pathlib import Path
+
+import numpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+import program
+from program import ProgramTest
+
+
+class ModelFluidRun(ProgramTest):
+    CASE = """
+system: model_fluid
+name: model fluid
+domain:
+  size: [6, 4, 16]
+  spacing: 1
+  boundaries: {x: periodic, y: periodic, bottom: no_slip, top: free_slip}
+gravity: {magnitude: 1}
+model_fluid: {units: grain, shields_number: 0.5, reynolds_number: 100, drag: quadratic, lift_ratio: 1}
+grains:
+  - {count: 40, diameter: 1.0909090909090908, density: 1.8636530433018714, placement: {pattern: random, seed: 1}}
+  - {count: 40, diameter: 0.9090909090909091, density: 1.8636530433018714, placement: {pattern: random, seed: 2}}
+contact: {normal_stiffness: 5000, tangential_stiffness: 1667, restitution: 0.5, friction: 0, wall_friction: 0}
+run: {until: 4, time_step: 7.8e-4}
+output: {series: {every: 0.1}, checkpoint: {every: 2, keep: 3}}
+"""
+
+    def test_the_same_bits_on_any_ranks_and_after_a_restart(self):
+        self.run_well("run", self.case, "--out", "one")
+        for ranks in (2, 4):
+            self.run_well("run", self.case, "--out", f"on_{ranks}", ranks=ranks)
+        self.run_well("run", self.case, "--out", "half", "--until", "2")
+        self.run_well("run", self.case, "--out", "half", "--restart", "half", ranks=2)
+        one = self.bed("one")
+        for other in ("on_2", "on_4", "half"):
+            bed = self.bed(other)
+            for name in one:
+                self.assertEqual(one[name].tobytes(), bed[name].tobytes(), (other, name))
+
+    def test_grains_that_touch_the_floor_do_not_move_along_it(self):
+        self.run_well("run", self.case, "--until", "15", "--out", "run")
+        bed = self.bed()
+        low = bed["position"][:, 2] < bed["radius"]
+        self.assertGreater(low.sum(), 5)
+        self.assertEqual(abs(bed["velocity"][low, :2]).max(), 0.0)
+        self.assertGreater(abs(bed["velocity"][~low, 0]).max(), 0.1)
+
+    def test_a_bed_comes_to_rest_well_below_the_threshold_and_not_well_above(self):
+        # Clark et al. (2017): at high Re_* quadratic drag needs a Shields number of 0.11.
+        rest = ["--set", "run.until_at_rest={largest_speed: 1e-2, largest_acceleration: 0.1}", "--until", "100"]
+        for shields, stops in ((0.02, True), (0.6, False)):
+            out = f"at_{shields}"
+            self.run_well("run", self.case, "--set", f"model_fluid.shields_number={shields}",
+                          "--set", "model_fluid.lift_ratio=0", "--out", out, *rest)
+            self.assertEqual(self.summary(out)["simulated_time"] < 99.0, stops, shields)
+
+    def test_what_check_says(self):
+        said = self.run_well("check", self.case).stdout
+        self.assertIn("Shields number 0.5; Re_* 100 as printed, u_* D/nu 600", said)
+        self.assertIn("mean grain 1 m, 1 kg; reduced gravity 1 m/s^2", said)
+
+    def test_refusals(self):
+        for settings, words in (
+                (["grains.0.density=2550"], ["model_fluid.units", "mean mass", "are 1"]),
+                (["model_fluid={shields_number: 0.1, reynolds_number: 1}"], ["drag law is missing"]),
+                (["model_fluid.densest_fraction=0.3"], ["densest_fraction", "larger than top_fraction"]),
+                (["model_fluid.shear_reynolds_number=6"], ["Reynolds number is given twice"]),
+                (["gravity.slope=0.1"], ["gravity", "downwards"]),
+                (["model_fluid.fluid_density=3"], ["float"]),
+                (["system=grains"], ["model_fluid", "only system: model_fluid has it"])):
+            with self.subTest(settings=settings):
+                self.assert_refused("run", self.case, *[word for s in settings for word in ("--set", s)], words=words)
+
+
+if __name__ == "__main__":
+    program.main()
