@@ -38,6 +38,7 @@ void refuse_missing_start(const Case& c) {
 // the quickstart, which run within 30 % of the estimate.
 constexpr double cell_cost = 2.5, link_cost = 1000.0;
 constexpr double grain_steps_per_second = 8e6;
+constexpr double model_fluid_steps_per_second = 3e5;  // of grains that all move
 
 // Bytes: per cell 19 populations, streamed in place, and flags; per link a record; per grain its columns, neighbours
 // and history.
@@ -243,7 +244,9 @@ Cost cost_of(const Case& c, double bandwidth) {
   cost.memory += link_count(c) * link_bytes;
   const double traffic = cost.cell_updates * cell_cost * bytes_per_cell_update(static_cast<int>(bytes_per_value(c))) +
                          cost.steps * link_count(c) * link_cost;
-  cost.core_seconds = traffic / bandwidth + cost.grain_steps / grain_steps_per_second;
+  cost.core_seconds =
+      traffic / bandwidth +
+      cost.grain_steps / (c.system == SystemKind::model_fluid ? model_fluid_steps_per_second : grain_steps_per_second);
   return cost;
 }
 
