@@ -1,11 +1,11 @@
 #include "dem/dry_grains.hpp"
 
 #include "core/same_time_step.hpp"
+#include "dem/grain_volume.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 
 namespace thalweg::dem {
 
@@ -20,12 +20,9 @@ GrainParameters dry_parameters(const DryParameters& dry) {
   parameters.movable_cuts = true;
   parameters.field = dry.field;
   if (dry.field) parameters.attached_width = dry.field->attached_columns();
-  // A disk's volume goes with the square of its radius.
-  const auto volume = [thickness = dry.disk_thickness](double r) {
-    return thickness > 0.0 ? std::numbers::pi * r * r * thickness : 4.0 / 3.0 * std::numbers::pi * r * r * r;
-  };
-  parameters.body_force = [gravity = dry.gravity, density = dry.fluid_density, volume](double mass, double radius) {
-    return Vec3((mass - density * volume(radius)) * gravity);
+  parameters.body_force = [gravity = dry.gravity, density = dry.fluid_density, thickness = dry.disk_thickness](
+                              double mass, double radius) {
+    return Vec3((mass - density * grain_volume(radius, thickness)) * gravity);
   };
   return parameters;
 }

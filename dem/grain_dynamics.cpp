@@ -79,7 +79,7 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
   const std::vector<GrainSeed> seeds = with_members(grains, clumps, box_);
   check(clumps, box_);
   check(seeds, box_, parameters_.walls, parameters_.initial_overlap);
-  refuse_gear_of_clumps();
+  check_integrator();
   std::vector<LightestGrain> lightest(static_cast<std::size_t>(materials_.count()));
   for (const GrainSeed& seed : seeds) {
     if (seed.material < 0 || seed.material >= materials_.count())
@@ -110,7 +110,7 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
   moving_.unload(store_);
 }
 
-void GrainDynamics::refuse_gear_of_clumps() const {
+void GrainDynamics::check_integrator() const {
   const bool gear = parameters_.integrator == Integrator::gear;
   if (clump_count_ > 0 && gear)
     throw InputError("Clumps are moved by velocity Verlet, not by Gear's predictor-corrector; use the former.");

@@ -201,7 +201,7 @@ private:
   double ghost_reach() const;
   template <typename Visitor>
   void for_each_body(Visitor&& visit) const;
-  void refuse_gear_of_clumps() const;
+  void check_integrator() const;
   double list_range() const;
   void wrap_positions();
   double fastest_member() const;

@@ -330,7 +330,7 @@ std::vector<Clump> GrainDynamics::load_clumps(ArchiveReader& archive, const std:
   clump_count_ = 0;
   if (!archive.has(group + "/clump_id")) return {};
   clump_count_ = static_cast<std::int64_t>(archive.shape(group + "/clump_id").at(0));
-  refuse_gear_of_clumps();
+  check_integrator();
   // Every rank that read a member is told of the clump; the one that read the first member passes it on.
   const std::vector<ClumpRow> read = read_clumps(archive, group, RowRange(clump_count_, ranks, me));
   std::vector<ClumpRow> sent;

@@ -1,107 +1,211 @@
 #include "dem/local_solid_fraction.hpp"
 
 #include "dem/cell_grid.hpp"
+#include "dem/grain_volume.hpp"
 #include "dem/lens.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 namespace thalweg::dem {
 
 namespace {
 
-Vec3 remembered_position(const GrainStore& store, std::size_t slot) {
-  return Vec3::Map(store.attached_of(slot).data());
-}
+constexpr std::size_t group = 8;  // doubles of the widest vector
 
-double size_of_grain(double radius, bool disk) {
-  return disk ? std::numbers::pi * radius * radius : 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
-}
+// m^3, of disks of a thickness of 1, which is their area (m^2).
+double size_of_grain(double radius, bool disk) { return grain_volume(radius, disk ? 1.0 : 0.0); }
 
 }  // namespace
 
 LocalSolidFraction::LocalSolidFraction(const PeriodicBox& box, const SolidFractionParameters& parameters)
-    : box_(box), parameters_(parameters) {
-  std::array<int, 3> most{0, 0, 0};
-  for (int axis = 0; axis < 3; ++axis) most[axis] = box.periodic[axis] && box.size[axis] < 2.0 * reach() ? 1 : 0;
-  for (int k = -most[2]; k <= most[2]; ++k)
-    for (int j = -most[1]; j <= most[1]; ++j)
-      for (int i = -most[0]; i <= most[0]; ++i) images_.emplace_back(i * box.size[0], j * box.size[1], k * box.size[2]);
+    : box_(box), parameters_(parameters), heights_{0.0} {
+  if (parameters.lift) heights_ = {0.0, -1.0, 1.0};
+  // Multiples of 2^-42 of the largest sphere, so that a sum of a thousand spheres still has them all.
+  const double largest = size_of_grain(parameters.largest_radius + parameters.margin, parameters.disks);
+  rounding_ = std::ldexp(1.5, std::ilogb(largest) - 42 + 52);
+  // The second nearest image is at least half the box away, the third the whole box, and so on.
+  std::array<int, 3> count{1, 1, 1};
+  for (int axis = 0; axis < 3; ++axis)
+    if (box.periodic[axis]) count[axis] = std::max(1, static_cast<int>(std::ceil(2.0 * reach() / box.size[axis])));
+  const auto further = [&box](int axis, int n) { return (n % 2 == 1 ? (n + 1) / 2 : -n / 2) * box.size[axis]; };
+  for (int k = 0; k < count[2]; ++k)
+    for (int j = 0; j < count[1]; ++j)
+      for (int i = 0; i < count[0]; ++i) images_.emplace_back(further(0, i), further(1, j), further(2, k));
+}
+
+double LocalSolidFraction::reach() const {
+  const double to_sphere = parameters_.lift ? parameters_.largest_radius : 0.0;
+  // Either grain may be the tolerance away from where it counts.
+  return to_sphere + 2.0 * parameters_.largest_radius + parameters_.margin + 2.0 * parameters_.tolerance;
 }
 
 void LocalSolidFraction::find_neighbours(const GrainStore& store, double skin) {
   const double limit = reach() + skin;
   const CellGrid grid(box_, limit, store.position);
   const std::span<const std::uint32_t> slot = grid.order();
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;  // of slot, to slot
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  first_.assign(store.total() + 1, 0);
   grid.for_each_near_pair([&](std::uint32_t m, std::uint32_t n) {
     const std::uint32_t a = slot[m], b = slot[n];
     if (store.is_ghost(a) && store.is_ghost(b)) return;
     if (box_.difference(store.position[a], store.position[b]).squaredNorm() > limit * limit) return;
     pairs.emplace_back(a, b);
-    pairs.emplace_back(b, a);
+    ++first_[a + 1];
+    ++first_[b + 1];
   });
-  std::sort(pairs.begin(), pairs.end(), [&store](const auto& p, const auto& q) {
-    return p.first != q.first ? p.first < q.first : store.id[p.second] < store.id[q.second];
-  });
-  first_.assign(store.total() + 1, 0);
-  for (const auto& [from, to] : pairs) ++first_[from + 1];
   for (std::size_t s = 0; s < store.total(); ++s) first_[s + 1] += first_[s];
-  neighbours_.clear();
-  for (const auto& [from, to] : pairs) neighbours_.push_back(to);
-  due_.assign(store.total(), 0);
-}
-
-bool LocalSolidFraction::moved(const MovingGrain& grain, std::span<double> remembered) const {
-  const Vec3 position = vector_of(grain.position);
-  const double limit = parameters_.tolerance * parameters_.tolerance;
-  if (remembered[3] != 0.0 && box_.difference(position, Vec3::Map(remembered.data())).squaredNorm() <= limit)
-    return false;
-  Vec3::Map(remembered.data()) = position;
-  remembered[3] = 1.0;
-  return true;
-}
-
-void LocalSolidFraction::update(const MovingGrains& grains, GrainStore& store) {
-  bool any = false;
-  for (std::size_t s = 0; s < store.total(); ++s) {
-    if (!moved(grains[s], store.attached_of(s))) continue;
-    any = true;
-    due_[s] = 1;
-    for (const std::uint32_t neighbour : neighbours_of(s)) due_[neighbour] = 1;
+  neighbours_.resize(first_.back());
+  std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+  for (const auto& [a, b] : pairs) {
+    neighbours_[next[a]++] = b;
+    neighbours_[next[b]++] = a;
   }
-  if (!any) return;
-  for (std::size_t s = 0; s < store.owned; ++s)
-    if (due_[s]) evaluate(store, s);
-  std::fill(due_.begin(), due_.end(), 0);
+
+  owned_ = store.owned;
+  remembered_.resize(store.total());
+  for (std::size_t s = 0; s < store.total(); ++s) {
+    const std::span<const double> attached = store.attached_of(s);
+    remembered_[s] = Row{attached[0], attached[1], attached[2], attached[3] != 0.0 ? store.radius[s] : 0.0};
+  }
+  sums_.assign(owned_ * heights_.size(), 0.0);
+  is_changed_.assign(owned_, 0);
+  changed_.clear();
+  for (std::size_t s = 0; s < owned_; ++s) {
+    mark(s);
+    if (!is_remembered(s)) continue;
+    copy_neighbours(s);
+    sum_own(s);
+  }
 }
 
-void LocalSolidFraction::evaluate(GrainStore& store, std::size_t slot) const {
-  const Vec3 centre = remembered_position(store, slot), down = Vec3(0.0, 0.0, store.radius[slot]);
-  const std::span<double> columns_here = store.attached_of(slot);
-  columns_here[4] = fraction_about(store, slot, centre);
-  columns_here[5] = fraction_about(store, slot, centre - down) - fraction_about(store, slot, centre + down);
+std::span<const std::uint32_t> LocalSolidFraction::update(const MovingGrains& grains, GrainStore& store) {
+  for (const std::uint32_t s : changed_) is_changed_[s] = 0;
+  changed_.clear();
+  for (std::size_t s = 0; s < grains.size(); ++s) {
+    if (!has_moved(grains[s], s)) continue;
+    copy_neighbours(s);
+    if (is_remembered(s)) add_to_neighbours(s, -1.0);
+    remember(s, grains[s].position, store);
+    add_to_neighbours(s, 1.0);
+    if (s < owned_) sum_own(s);
+    mark(s);
+    for (const std::uint32_t neighbour : neighbours_of(s)) mark(neighbour);
+  }
+  return changed_;
 }
 
-double LocalSolidFraction::fraction_about(const GrainStore& store, std::size_t slot, const Vec3& centre) const {
-  const bool disks = parameters_.disks;
-  const double radius = store.radius[slot] + parameters_.margin;
-  const auto common = [&](std::size_t other) {
-    const Vec3 nearest = box_.difference(remembered_position(store, other), centre);
+bool LocalSolidFraction::has_moved(const MovingGrain& grain, std::size_t slot) const {
+  if (!is_remembered(slot)) return true;
+  const double limit = parameters_.tolerance * parameters_.tolerance;
+  return box_.difference(vector_of(grain.position), vector_of(remembered_[slot])).squaredNorm() > limit;
+}
+
+void LocalSolidFraction::remember(std::size_t slot, const Row& position, GrainStore& store) {
+  remembered_[slot] = position;
+  const std::span<double> attached = store.attached_of(slot);
+  for (int axis = 0; axis < 3; ++axis) attached[axis] = position[axis];
+  attached[3] = 1.0;
+}
+
+void LocalSolidFraction::mark(std::size_t slot) {
+  if (slot >= owned_ || is_changed_[slot]) return;
+  is_changed_[slot] = 1;
+  changed_.push_back(static_cast<std::uint32_t>(slot));
+}
+
+void LocalSolidFraction::copy_neighbours(std::size_t slot) {
+  const std::span<const std::uint32_t> neighbours = neighbours_of(slot);
+  if (near_.slot.size() < neighbours.size() + 1 + group) {
+    near_.slot.resize(2 * (neighbours.size() + 1 + group));
+    for (std::vector<double>* column : {&near_.x, &near_.y, &near_.z, &near_.radius, &near_.common})
+      column->resize(near_.slot.size());
+  }
+  std::size_t n = 0;
+  for (const std::uint32_t neighbour : neighbours) {
+    if (!is_remembered(neighbour)) continue;
+    const Row& at = remembered_[neighbour];
+    near_.slot[n] = neighbour;
+    near_.x[n] = at[0];
+    near_.y[n] = at[1];
+    near_.z[n] = at[2];
+    near_.radius[n] = at[3];
+    ++n;
+  }
+  near_.size = n + 1;
+}
+
+// What all near it have in common with a grain's own spheres. The neighbours have been copied.
+void LocalSolidFraction::sum_own(std::size_t slot) {
+  const std::size_t itself = near_.size - 1;
+  near_.x[itself] = remembered_[slot][0];
+  near_.y[itself] = remembered_[slot][1];
+  near_.z[itself] = remembered_[slot][2];
+  near_.radius[itself] = remembered_[slot][3];
+  for (std::size_t h = 0; h < heights_.size(); ++h) {
+    intersect(slot, About::grain, heights_[h]);
     double sum = 0.0;
-    for (const Vec3& image : images_) {
-      const double distance = (nearest + image).norm();
-      sum += disks ? common_area(radius, store.radius[other], distance)
-                   : common_volume(radius, store.radius[other], distance);
-    }
-    return sum;
+    for (std::size_t n = 0; n < near_.size; ++n) sum += near_.common[n];
+    sums_[slot * heights_.size() + h] = sum;
+  }
+}
+
+// Adds what a grain has in common with the spheres of its owned neighbours to their sums, or takes it away.
+void LocalSolidFraction::add_to_neighbours(std::size_t slot, double sign) {
+  for (std::size_t h = 0; h < heights_.size(); ++h) {
+    intersect(slot, About::neighbours, heights_[h]);
+    for (std::size_t n = 0; n + 1 < near_.size; ++n)
+      if (near_.slot[n] < owned_) sums_[near_.slot[n] * heights_.size() + h] += sign * near_.common[n];
+  }
+}
+
+void LocalSolidFraction::intersect(std::size_t slot, About about, double height) {
+  std::fill_n(near_.common.begin(), near_.size, 0.0);
+  const Row grain = remembered_[slot];
+  for (const Vec3& image : images_) {
+    if (about == About::grain && parameters_.disks) add_image<About::grain, true>(grain, image, height);
+    if (about == About::grain && !parameters_.disks) add_image<About::grain, false>(grain, image, height);
+    if (about == About::neighbours && parameters_.disks) add_image<About::neighbours, true>(grain, image, height);
+    if (about == About::neighbours && !parameters_.disks) add_image<About::neighbours, false>(grain, image, height);
+  }
+}
+
+// Adds what a grain and each of its neighbours have in common, the sphere being about the one or the other. It gives
+// the same bits seen from either.
+template <LocalSolidFraction::About about, bool disks>
+void LocalSolidFraction::add_image(const Row& grain, const Vec3& image, double height) {
+  const double *x = near_.x.data(), *y = near_.y.data(), *z = near_.z.data(), *radius = near_.radius.data();
+  double* common = near_.common.data();
+  const double margin = parameters_.margin, rounding = rounding_;
+  const auto along = [this, &image](int axis) {
+    const double size = box_.size[axis], inverse = box_.periodic[axis] ? 1.0 / size : 0.0, further = image[axis];
+    return [size, inverse, further](double difference) {
+      const double nearest = difference - size * std::nearbyint(difference * inverse);
+      return nearest - std::copysign(1.0, nearest) * further;
+    };
   };
-  double solid = common(slot);
-  for (const std::uint32_t neighbour : neighbours_of(slot)) solid += common(neighbour);
-  if (!parameters_.floor) return solid / size_of_grain(radius, disks);
-  return solid / (disks ? area_above(radius, centre.z()) : volume_above(radius, centre.z()));
+  const auto along_x = along(0), along_y = along(1), along_z = along(2);
+  // Whole groups, so that every pair is computed by the same instructions, wherever it stands; what is too much is not
+  // used.
+  const std::size_t end = (near_.size + group - 1) / group * group;
+  for (std::size_t n = 0; n < end; ++n) {
+    const double counted = about == About::grain ? grain[3] : radius[n];
+    const double other = about == About::grain ? radius[n] : grain[3];
+    const double dx = along_x(x[n] - grain[0]), dy = along_y(y[n] - grain[1]);
+    const double dz = along_z(z[n] - grain[2]) + (about == About::grain ? -height : height) * counted;
+    const double distance = std::sqrt(dx * dx + dy * dy + dz * dz);
+    const double part =
+        disks ? common_area(counted + margin, other, distance) : common_volume(counted + margin, other, distance);
+    common[n] += (part + rounding) - rounding;
+  }
+}
+
+double LocalSolidFraction::fraction(std::size_t slot, int which) const {
+  const double own = remembered_[slot][3], radius = own + parameters_.margin;
+  const double solid = sums_[slot * heights_.size() + which];
+  if (!parameters_.floor) return solid / size_of_grain(radius, parameters_.disks);
+  const double height = remembered_[slot][2] + heights_[which] * own;
+  return solid / (parameters_.disks ? area_above(radius, height) : volume_above(radius, height));
 }
 
 }  // namespace thalweg::dem

@@ -1,11 +1,12 @@
-// The solid fraction around every grain: of a sphere (disk) of diameter D_i + 2 margin about its centre, and about its
-// lowest and highest point, with the grain itself, from the exact common volumes (areas) of spheres (disks); what of
-// the sphere lies below the floor at z = 0 does not count.
+// The solid fraction around every grain: of a sphere (disk) of diameter D_i + 2 margin about its centre, and if asked
+// for about its lowest and highest point, with the grain itself, from the exact common volumes (areas) of spheres
+// (disks); what of the sphere lies below the floor at z = 0 does not count.
 //
-// It is computed again only where the grain or one of its neighbours has moved by more than a tolerance from where it
-// was when last looked at; the positions then remembered, of all of them, are those that count. They are columns
-// attached to every grain, so that every rank that knows a grain moves them in the same step, and a restart has the
-// same bits.
+// What counts is the position a grain had when last looked at; it is looked at again once it has moved from there by
+// more than a tolerance, and only then are its own solid fractions and those of its neighbours brought up to date. The
+// remembered positions are columns attached to every grain, so that every rank that knows a grain looks in the same
+// step, and a restart has the same bits. Common volumes are rounded to a multiple of a small power of two: sums of them
+// are exact, and depend neither on their order nor on the way the grains took.
 #pragma once
 
 #include "core/periodic_box.hpp"
@@ -25,38 +26,68 @@ struct SolidFractionParameters {
   double tolerance = 0.0;       // m
   bool disks = false;           // upright in the plane x-z
   bool floor = true;            // at z = 0
+  bool lift = true;             // below_less_above() is wanted
 };
 
 class LocalSolidFraction {
 public:
-  static constexpr int columns = 6;  // remembered position, whether there is one, phi, phi_below - phi_above
+  static constexpr int columns = 4;  // remembered position, whether there is one
 
   LocalSolidFraction(const PeriodicBox& box, const SolidFractionParameters& parameters);
 
   // m: no grain further from the centre of another counts for it.
-  double reach() const { return 3.0 * parameters_.largest_radius + parameters_.margin; }
+  double reach() const;
 
   void find_neighbours(const GrainStore& store, double skin);
-  // Brings the columns of owned grains up to date; positions are those of `grains`.
-  void update(const MovingGrains& grains, GrainStore& store);
+  // Brings the columns and the solid fractions of owned grains up to date; positions are those of `grains`. Returns the
+  // slots of owned grains whose solid fraction may be another than before, in no order, valid until the next call.
+  std::span<const std::uint32_t> update(const MovingGrains& grains, GrainStore& store);
 
-  static double around(const GrainStore& store, std::size_t slot) { return store.attached_of(slot)[4]; }
-  static double below_less_above(const GrainStore& store, std::size_t slot) { return store.attached_of(slot)[5]; }
+  double around(std::size_t slot) const { return fraction(slot, 0); }
+  // phi_below - phi_above; only with SolidFractionParameters::lift.
+  double below_less_above(std::size_t slot) const { return fraction(slot, 1) - fraction(slot, 2); }
 
 private:
+  // Which of a pair has the sphere.
+  enum class About { grain, neighbours };
+  // A grain's remembered neighbours, and the grain itself as the last of them, copied for loops over all of them.
+  struct Near {
+    std::vector<std::uint32_t> slot;
+    std::vector<double> x, y, z, radius;  // m, remembered
+    std::vector<double> common;           // m^3 (m^2), of the last pass
+    std::size_t size = 0;                 // the vectors are longer
+  };
+
   std::span<const std::uint32_t> neighbours_of(std::size_t slot) const {
     return {neighbours_.data() + first_[slot], first_[slot + 1] - first_[slot]};
   }
-  bool moved(const MovingGrain& grain, std::span<double> remembered) const;
-  void evaluate(GrainStore& store, std::size_t slot) const;
-  double fraction_about(const GrainStore& store, std::size_t slot, const Vec3& centre) const;
+  bool is_remembered(std::size_t slot) const { return remembered_[slot][3] > 0.0; }
+  bool has_moved(const MovingGrain& grain, std::size_t slot) const;
+  void remember(std::size_t slot, const Row& position, GrainStore& store);
+  void mark(std::size_t slot);
+
+  void copy_neighbours(std::size_t slot);
+  void sum_own(std::size_t slot);
+  void add_to_neighbours(std::size_t slot, double sign);
+  void intersect(std::size_t slot, About about, double height);
+  template <About about, bool disks>
+  void add_image(const Row& grain, const Vec3& image, double height);
+
+  double fraction(std::size_t slot, int which) const;
 
   PeriodicBox box_;
   SolidFractionParameters parameters_;
-  std::vector<Vec3> images_;               // m, of which a small periodic box may have several near
-  std::vector<std::size_t> first_;         // of each slot's neighbours
-  std::vector<std::uint32_t> neighbours_;  // by id; of a ghost only owned ones
-  std::vector<char> due_;
+  std::vector<double> heights_;     // radii: where the spheres of a grain are, above its centre
+  double rounding_;                 // added and taken away, rounds a common volume
+  std::vector<Vec3> images_;        // m, beyond the nearest image, that may reach a grain as well
+  std::size_t owned_ = 0;           // slots
+  std::vector<Row> remembered_;     // m, position and radius; radius 0: not yet
+  std::vector<double> sums_;        // m^3 (m^2), of each owned slot's spheres
+  std::vector<std::size_t> first_;  // of each slot's neighbours
+  std::vector<std::uint32_t> neighbours_;
+  std::vector<std::uint32_t> changed_;  // owned slots
+  std::vector<char> is_changed_;
+  Near near_;
 };
 
 }  // namespace thalweg::dem

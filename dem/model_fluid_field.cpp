@@ -5,18 +5,28 @@ namespace thalweg::dem {
 ModelFluidField::ModelFluidField(const PeriodicBox& box, const ModelFluidParameters& parameters)
     : parameters_(parameters), fraction_(box, parameters.solid_fraction) {}
 
+void ModelFluidField::find_neighbours(const GrainStore& store, double skin) {
+  fraction_.find_neighbours(store, skin);
+  velocity_.assign(store.owned, 0.0);
+  lift_.assign(store.owned, 0.0);
+  for (std::size_t s = 0; s < store.owned; ++s) update_flow(s);
+}
+
+void ModelFluidField::update_flow(std::size_t slot) {
+  velocity_[slot] = parameters_.coefficients.velocity * parameters_.profile(fraction_.around(slot));
+  if (parameters_.solid_fraction.lift) lift_[slot] = fraction_.below_less_above(slot) / lift_scale;
+}
+
 void ModelFluidField::act(MovingGrains& grains, GrainStore& store, std::span<const Vec3> body_force) {
-  fraction_.update(grains, store);
+  for (const std::uint32_t s : fraction_.update(grains, store)) update_flow(s);
   const ModelFluidCoefficients& c = parameters_.coefficients;
   for (std::size_t s = 0; s < store.owned; ++s) {
     MovingGrain& grain = grains[s];
     const double radius = grain.position[3];
     const bool held = parameters_.rough_floor && grain.position[2] < radius;
     if (held) grain.velocity[0] = grain.velocity[1] = 0.0;
-    const double fluid = c.velocity * parameters_.profile(LocalSolidFraction::around(store, s));
-    const double lift = LocalSolidFraction::below_less_above(store, s) / lift_scale;
-    const ModelForce f = model_force(c, 2.0 * radius / parameters_.mean_diameter, fluid, grain.velocity[0],
-                                     grain.velocity[1], grain.velocity[2], lift);
+    const ModelForce f = model_force(c, 2.0 * radius / parameters_.mean_diameter, velocity_[s], grain.velocity[0],
+                                     grain.velocity[1], grain.velocity[2], lift_[s]);
     store.load_force[s] = Vec3(f.x, f.y, f.z);
     const Vec3 load = store.load_force[s] + body_force[s];
     if (held) {  // the floor takes what would move it along

@@ -5,6 +5,8 @@
 #include "dem/local_solid_fraction.hpp"
 #include "dem/model_fluid.hpp"
 
+#include <vector>
+
 namespace thalweg::dem {
 
 struct ModelFluidParameters {
@@ -21,12 +23,16 @@ public:
 
   int attached_columns() const override { return LocalSolidFraction::columns; }
   double reach() const override { return fraction_.reach(); }
-  void find_neighbours(const GrainStore& store, double skin) override { fraction_.find_neighbours(store, skin); }
+  void find_neighbours(const GrainStore& store, double skin) override;
   void act(MovingGrains& grains, GrainStore& store, std::span<const Vec3> body_force) override;
 
 private:
+  void update_flow(std::size_t slot);
+
   ModelFluidParameters parameters_;
   LocalSolidFraction fraction_;
+  std::vector<double> velocity_;  // m/s, of the fluid around each owned grain
+  std::vector<double> lift_;      // (phi_below - phi_above)/0.3
 };
 
 }  // namespace thalweg::dem

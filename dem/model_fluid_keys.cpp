@@ -114,6 +114,7 @@ ModelFluidParameters model_fluid_parameters(const ModelFluidKeys& fluid, const M
   parameters.solid_fraction.margin = fluid.margin.value_or(mean.largest_diameter);
   parameters.solid_fraction.tolerance = fluid.tolerance * mean.diameter;
   parameters.solid_fraction.disks = disks;
+  parameters.solid_fraction.lift = fluid.lift_ratio > 0.0;
   return parameters;
 }
 

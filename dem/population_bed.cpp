@@ -3,12 +3,12 @@
 #include "core/error.hpp"
 #include "core/key_error.hpp"
 #include "dem/grain_seed.hpp"
+#include "dem/grain_volume.hpp"
 #include "dem/population_clumps.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 #include <span>
 #include <string>
 #include <vector>
@@ -94,8 +94,7 @@ BedSizes take_bodies(Population& population, const Bed& bed) {
     double volume = 0.0, radius = first.radius;
     if (first.clump < 0) {
       if (region && !inside(first.position, *region)) continue;
-      volume = bed.disk_thickness > 0.0 ? std::numbers::pi * radius * radius * bed.disk_thickness
-                                        : 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
+      volume = grain_volume(radius, bed.disk_thickness);
     } else {
       const ClumpSeed clump = clump_from(body, box, bed.disk_thickness);
       if (region && !inside(clump.position, *region)) continue;

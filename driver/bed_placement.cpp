@@ -1,8 +1,8 @@
 #include "driver/bed_placement.hpp"
 
 #include "core/error.hpp"
-#include "core/key_error.hpp"
 #include "dem/population_bed.hpp"
+#include "driver/case_checks.hpp"
 #include "io/bed_file.hpp"
 
 #include <fmt/format.h>
@@ -35,14 +35,10 @@ Bed read_bed(dem::Population& population, const io::YamlDocument& document, cons
 void fill_in_grains(Case& c, const io::YamlDocument& document) {
   const PeriodicBox box{c.domain.size, periodic_axes(c.domain)};
   for (std::size_t n = 0; n < c.grains.size(); ++n) {
-    const std::string key = fmt::format("grains.{}.", n);
+    const std::string key = fmt::format("grains.{}", n);
     std::optional<Bed> bed;
-    if (c.grains[n].placement.file) bed = read_bed(c.grains[n], document, key + "placement.file");
-    try {
-      complete(c.grains[n], c.disks ? c.disks->thickness : 0.0, bed, box);
-    } catch (const KeyError& error) {
-      throw document.error(key + error.key, error.what());
-    }
+    if (c.grains[n].placement.file) bed = read_bed(c.grains[n], document, key + ".placement.file");
+    at_place(document, key, [&] { complete(c.grains[n], c.disks ? c.disks->thickness : 0.0, bed, box); });
   }
 }
 

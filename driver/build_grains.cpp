@@ -19,10 +19,6 @@ std::vector<std::string> measured_walls(const Case& c) {
   return walls;
 }
 
-dem::ModelFluidParameters model_fluid_of(const Case& c) {
-  return model_fluid_parameters(c.model_fluid, mean_grain(c), -gravity_vector(c.gravity).z(), c.disks.has_value());
-}
-
 }  // namespace
 
 std::unique_ptr<System> build_grains_system(const Case& c, MPI_Comm communicator, const Index3& layout) {

@@ -1,5 +1,6 @@
 #include "driver/case.hpp"
 
+#include "dem/grain_volume.hpp"
 #include "dem/population_seeds.hpp"
 #include "driver/bed_flow.hpp"
 
@@ -92,8 +93,7 @@ dem::MeanGrain mean_grain(const Case& c) {
   dem::MeanGrain mean{0.0, 0.0, 0.0, largest_diameter(c)};
   for (const dem::Population& population : c.grains)
     for (std::size_t n = 0; n < static_cast<std::size_t>(population.count); ++n) {
-      const double d = population.diameter_of(n), thickness = population.thickness;
-      const double volume = std::numbers::pi * d * d * (thickness > 0.0 ? thickness / 4.0 : d / 6.0);
+      const double d = population.diameter_of(n), volume = dem::grain_volume(0.5 * d, population.thickness);
       count += 1.0;
       mean.diameter += d;
       mean.volume += volume;
@@ -105,11 +105,13 @@ dem::MeanGrain mean_grain(const Case& c) {
   return mean;
 }
 
+dem::ModelFluidParameters model_fluid_of(const Case& c) {
+  return model_fluid_parameters(c.model_fluid, mean_grain(c), -gravity_vector(c.gravity).z(), c.disks.has_value());
+}
+
 double fastest_model_fluid(const Case& c) {
   if (c.system != SystemKind::model_fluid) return 0.0;
-  const double gravity = -gravity_vector(c.gravity).z();
-  const dem::ModelFluidParameters fluid =
-      model_fluid_parameters(c.model_fluid, mean_grain(c), gravity, c.disks.has_value());
+  const dem::ModelFluidParameters fluid = model_fluid_of(c);
   const double alone = c.disks ? 1.0 / 9.0 : 1.0 / 27.0;  // the solid fraction of the grain itself
   return fluid.coefficients.velocity * fluid.profile(alone);
 }

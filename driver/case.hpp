@@ -149,6 +149,7 @@ double largest_extent(const Case& c);      // m, the same with clumps as they ar
 double smallest_diameter(const Case& c);   // m; 0 without grains
 double grain_volume(const Case& c);        // m^3, of all grains
 dem::MeanGrain mean_grain(const Case& c);  // of all grains
+dem::ModelFluidParameters model_fluid_of(const Case& c);
 // m/s, of the model fluid around a grain without neighbours, the fastest there is; 0 without a model fluid
 double fastest_model_fluid(const Case& c);
 

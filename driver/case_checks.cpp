@@ -190,19 +190,11 @@ void check_model_fluid(const Case& c, const io::YamlDocument& document) {
   if (c.run.grain_integrator != dem::Integrator::velocity_verlet)
     throw document.error("run.grain_integrator",
                          "with a model fluid grains are moved by velocity_verlet; remove the key");
-  try {
-    check(c.model_fluid, mean_grain(c), -gravity.z());
-  } catch (const KeyError& error) {
-    throw document.error("model_fluid." + error.key, error.what());
-  }
+  at_place(document, "model_fluid", [&] { check(c.model_fluid, mean_grain(c), -gravity.z()); });
 }
 
 void check_observers(const Case& c, const io::YamlDocument& document) {
-  try {
-    check(c.analysis.observers, run_facts(c));
-  } catch (const KeyError& error) {
-    throw document.error("analysis." + error.key, error.what());
-  }
+  at_place(document, "analysis", [&] { check(c.analysis.observers, run_facts(c)); });
 }
 
 }  // namespace

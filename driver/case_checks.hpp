@@ -1,14 +1,26 @@
 // Whether a case that is complete can be run at all: what follows from several keys together.
 #pragma once
 
+#include "core/key_error.hpp"
 #include "driver/case.hpp"
 #include "io/yaml_document.hpp"
+
+#include <string>
 
 namespace thalweg::driver {
 
 inline constexpr const char* axis_name[3] = {"x", "y", "z"};
 // Decimal numbers such as 0.12 / 0.0005 are whole up to a few units in the last place.
 inline constexpr double whole_number_tolerance = 1e-6;
+
+// Calls a check that throws KeyError, and names the place of the key in the document.
+void at_place(const io::YamlDocument& document, const std::string& section, const auto& check_section) {
+  try {
+    check_section();
+  } catch (const KeyError& error) {
+    throw document.error(section + "." + error.key, error.what());
+  }
+}
 
 // Throws InputError at the first thing that cannot be, with the place of the key to change in the document.
 void check_case(const Case& c, const io::YamlDocument& document);

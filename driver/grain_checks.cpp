@@ -1,6 +1,5 @@
 #include "driver/grain_checks.hpp"
 
-#include "core/key_error.hpp"
 #include "dem/material.hpp"
 #include "dem/packing.hpp"
 #include "driver/case_checks.hpp"
@@ -11,15 +10,6 @@
 
 namespace thalweg::driver {
 namespace {
-
-// Calls a check that throws KeyError, and names the place of the key in the document.
-void at_place(const io::YamlDocument& document, const std::string& section, const auto& check_section) {
-  try {
-    check_section();
-  } catch (const KeyError& error) {
-    throw document.error(section + "." + error.key, error.what());
-  }
-}
 
 void check_room(const Case& c, const io::YamlDocument& document) {
   const std::array<bool, 3> periodic = periodic_axes(c.domain);

@@ -51,6 +51,13 @@ class ProgramTest(unittest.TestCase):
         with h5py.File(self.folder / run / "bed.h5") as file:
             return {name: data[()] for name, data in file["grains"].items()}
 
+    def assert_same_bed(self, one, other):
+        """The grains of both runs end with the same bits."""
+        a, b = self.bed(one), self.bed(other)
+        self.assertEqual(list(a), list(b))
+        for name in a:
+            self.assertEqual(a[name].tobytes(), b[name].tobytes(), f"{name} of {one} and {other}")
+
     def series(self, run="run"):
         """The columns of series.csv by name, without units."""
         with open(self.folder / run / "series.csv", newline="") as file:

@@ -38,11 +38,8 @@ output: {series: {every: 0.1}, checkpoint: {every: 2, keep: 3}}
             self.run_well("run", self.case, "--out", f"on_{ranks}", ranks=ranks)
         self.run_well("run", self.case, "--out", "half", "--until", "2")
         self.run_well("run", self.case, "--out", "half", "--restart", "half", ranks=2)
-        one = self.bed("one")
         for other in ("on_2", "on_4", "half"):
-            bed = self.bed(other)
-            for name in one:
-                self.assertEqual(one[name].tobytes(), bed[name].tobytes(), (other, name))
+            self.assert_same_bed("one", other)
 
     def test_grains_that_touch_the_floor_do_not_move_along_it(self):
         self.run_well("run", self.case, "--until", "15", "--out", "run")

@@ -10,7 +10,7 @@ from thalweg.sweep.plan import SweepError, read_plan
 from thalweg.sweep.runner import Runner
 from thalweg.sweep.runs import DONE, FAILED
 from thalweg.sweep.tables import units_of_keys, write_tables
-from thalweg.sweep.tasks import tasks_of
+from thalweg.sweep.tasks import known_runs, tasks_of
 
 
 def add_to(commands):
@@ -84,24 +84,24 @@ def sweep(wanted):
             raise SweepError(f"--task {wanted.task}: the sweep has tasks 0 to {len(tasks) - 1}.")
         tasks = [tasks[wanted.task]]
     if wanted.tables:
-        return written(plan, tasks, folder)
+        return written(plan, tasks, units_of(plan), folder)
     jobs = wanted.jobs or max(1, available_cores() // plan.ranks)
-    runner = Runner(plan, tasks, units_of(plan), program(), folder, jobs, wanted.retry)
+    units = units_of(plan)
+    runner = Runner(plan, tasks, units, program(), folder, jobs, wanted.retry)
     finished = runner.work()
     if wanted.task is None:
-        code = written(plan, tasks, folder)
+        code = written(plan, tasks, units, folder)
         if not finished:
             print("stopped; the same command goes on")
         return code if finished else 0
     return int(any(run.state == FAILED for task in tasks for run in task.runs))
 
 
-def written(plan, tasks, folder):
-    for task in tasks:
-        task.wanted()   # a bisection comes to know its runs as it goes on
-    files = write_tables(plan, tasks, units_of(plan), folder)
+def written(plan, tasks, units, folder):
+    runs = known_runs(tasks)
+    files = write_tables(plan, tasks, units, folder)
     print(f"written {', '.join(str(file) for file in files)}")
-    failed = [run for task in tasks for run in task.runs if run.state == FAILED]
+    failed = [run for run in runs if run.state == FAILED]
     if failed:
         print(f"thalweg: {len(failed)} of the runs have failed (column failure of runs.csv; --retry runs them again).",
               file=sys.stderr)

@@ -5,6 +5,7 @@ import time
 
 from thalweg.sweep.runs import DONE, FAILED
 from thalweg.sweep.tables import write_tables
+from thalweg.sweep.tasks import known_runs
 
 SECONDS_BETWEEN_LOOKS = 0.1
 SECONDS_BETWEEN_LINES = 5.0
@@ -18,16 +19,11 @@ class Runner:
         self.jobs = jobs
         self.going = {}   # by run: (process, when it was started)
         self.stopping = False
-        self.printed = 0.0
+        self.printed, self.said = 0.0, None
         if retry:
-            for run in self.known_runs():
+            for run in known_runs(tasks):
                 if run.state == FAILED:
                     run.remember(None)
-
-    def known_runs(self):
-        for task in self.tasks:
-            task.wanted()   # a bisection comes to know its runs as it goes on
-        return [run for task in self.tasks for run in task.runs]
 
     def work(self):
         """Until all tasks are done or a signal asks to stop. Returns whether all are done."""
@@ -107,7 +103,7 @@ class Runner:
         """passing: on a terminal the next line takes its place; a file gets it only where it has changed."""
         if sys.stdout.isatty():
             print(f"\r{text:<100}", end="" if passing else "\n", flush=True)
-        elif text != getattr(self, "said", None):
+        elif text != self.said:
             self.said = text
             print(text, flush=True)
 

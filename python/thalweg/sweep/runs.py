@@ -83,9 +83,14 @@ class SweepRun:
 
     def remember(self, failure):
         self.failure = failure
-        temporary = self.note.with_suffix(".partial")
-        temporary.write_text(json.dumps(self.identity | {"failure": failure}, indent=1) + "\n")
-        temporary.replace(self.note)
+        replace_text(self.note, json.dumps(self.identity | {"failure": failure}, indent=1) + "\n")
+
+
+def replace_text(path, text):
+    """Writes a file at once: whoever reads it meanwhile sees the old one or the new one."""
+    temporary = path.with_suffix(".partial")
+    temporary.write_text(text)
+    temporary.replace(path)
 
 
 def die_with_parent():

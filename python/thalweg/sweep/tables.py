@@ -4,7 +4,7 @@ import io
 import re
 
 from thalweg.sweep.plan import figure_of
-from thalweg.sweep.runs import WAITING
+from thalweg.sweep.runs import DONE, WAITING, replace_text
 from thalweg.sweep.tasks import result_columns
 
 
@@ -45,7 +45,7 @@ def thresholds_table(plan, tasks, units):
         half = 0.5 * (upper - lower) if state == "found" else None
         rows.append([task.settings.get(key, "") for key in keys] +
                     [text(threshold), text(half), text(lower), text(upper), state,
-                     sum(run.state == "done" for run in task.runs)])
+                     sum(run.state == DONE for run in task.runs)])
     return rows
 
 
@@ -87,8 +87,6 @@ def units_of_keys(defaults):
 def write(path, rows):
     stream = io.StringIO()
     csv.writer(stream, lineterminator="\n").writerows(rows)
-    temporary = path.with_suffix(".partial")
     path.parent.mkdir(parents=True, exist_ok=True)
-    temporary.write_text(stream.getvalue())
-    temporary.replace(path)
+    replace_text(path, stream.getvalue())
     return path

@@ -95,6 +95,13 @@ def tasks_of(plan, folder):
     return [kind(folder / "runs", plan, number) for number in range(len(plan.points))]
 
 
+def known_runs(tasks):
+    """All runs of the tasks so far."""
+    for task in tasks:
+        task.wanted()   # a bisection comes to know its runs as it goes on
+    return [run for task in tasks for run in task.runs]
+
+
 def result_columns(plan, runs):
     """Paths in summary.json: those the plan names, else all that the observers of any run have measured."""
     if plan.columns:
