@@ -37,6 +37,10 @@ analysis:
 """
 
 
+# As on the login nodes of some clusters: there is no such way to send messages, for Open MPI and for MPICH's libraries.
+NO_MPI = {"OMPI_MCA_pml": "none_such", "FI_PROVIDER": "none_such", "UCX_TLS": "none_such"}
+
+
 class DryGrains(ProgramTest):
     CASE = CASE
 
@@ -61,8 +65,7 @@ class CommandLine(DryGrains):
         self.assertEqual(self.run_well("check", self.case, ranks=2).stdout.count("tumbling grains"), 1)
 
     def test_answers_where_mpi_cannot_start(self):
-        # As on the login nodes of some clusters: there is no such way to send messages.
-        with unittest.mock.patch.dict(os.environ, OMPI_MCA_pml="none_such"):
+        with unittest.mock.patch.dict(os.environ, NO_MPI):
             self.assertNotEqual(self.thalweg("run", self.case).returncode, 0)   # the only command that needs MPI
             self.run_well("--help")
             self.run_well("defaults", "fluid")
@@ -76,7 +79,7 @@ class CommandLine(DryGrains):
         with_mpi = self.run_well("info", "run").stdout
         placed = ["--set", "grains.0={placement: {file: run/bed.h5}}"]
         bed = self.run_well("check", self.case, *placed).stdout
-        with unittest.mock.patch.dict(os.environ, OMPI_MCA_pml="none_such"):
+        with unittest.mock.patch.dict(os.environ, NO_MPI):
             self.assertEqual(self.run_well("info", "run").stdout, with_mpi)
             self.assertIn("grains/position", with_mpi)
             without_speed = [line for line in bed.splitlines() if not line.startswith("time ")]
@@ -227,11 +230,10 @@ class Stopping(DryGrains):
     def start(self, *arguments, ranks=0):
         """A run that would take hours, once it has begun to report."""
         command = self.command(("run", self.case) + self.LONG + arguments, ranks)
-        if ranks:
-            # Open MPI's mpirun answers SIGTERM by passing it on and killing a second later; a busy machine needs more.
-            command[1:1] = ["--mca", "odls_base_sigkill_timeout", "5"]
+        # Open MPI's mpirun answers SIGTERM by passing it on and killing a second later; a busy machine needs more.
+        patient = os.environ | {"OMPI_MCA_odls_base_sigkill_timeout": "5"}
         process = subprocess.Popen(command, cwd=self.folder, stdout=subprocess.DEVNULL,
-                                   stderr=subprocess.PIPE, text=True)
+                                   stderr=subprocess.PIPE, text=True, env=patient)
         self.addCleanup(process.stderr.close)
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)
