@@ -31,7 +31,7 @@ GrainParameters dry_parameters(const DryParameters& dry) {
 
 DryGrains::DryGrains(const Decomposition& decomposition, MPI_Comm communicator, const DryParameters& parameters,
                      const GrainSeeds& seeds)
-    : with_field_(parameters.field != nullptr),
+    : field_(parameters.field),
       sub_steps_(parameters.grains.sub_steps),
       time_step_(parameters.grains.time_step * sub_steps_),
       wall_names_(parameters.measured_walls),
@@ -53,6 +53,7 @@ void DryGrains::advance() {
     done += now;
   }
   ++step_;
+  if (field_) field_->step_ended(grains_, time());
 }
 
 Snapshot DryGrains::snapshot() const {
@@ -73,7 +74,7 @@ Snapshot DryGrains::snapshot() const {
   snapshot.grains.angular_velocity = {store.angular_velocity.data(), owned};
   snapshot.grains.contact_force = {store.contact_force.data(), owned};
   snapshot.grains.contact_torque = {store.contact_torque.data(), owned};
-  if (with_field_) {
+  if (field_) {
     snapshot.grains.fluid_force = {store.load_force.data(), owned};
     snapshot.grains.fluid_torque = {store.load_torque.data(), owned};
   }
@@ -86,6 +87,8 @@ std::vector<Figure> DryGrains::figures() const {
                               {"largest_overlap", "1", grains_.largest_overlap()},
                               {largest_speed_figure, "m/s", grains_.largest_free_speed()},
                               {largest_acceleration_figure, "m/s^2", grains_.largest_acceleration()}};
+  if (field_)
+    for (const Figure& figure : field_->figures(time())) figures.push_back(figure);
   if (wall_names_.empty()) return figures;
   const std::vector<Vec3> forces = grains_.wall_forces();
   for (std::size_t wall = 0; wall < forces.size(); ++wall)
@@ -103,12 +106,14 @@ std::optional<Place> DryGrains::place_of(const std::string& figure) const {
 void DryGrains::save(ArchiveWriter& archive) const {
   archive.attribute("system/step", step_);
   archive.attribute("system/time_step", time_step_);
+  if (field_) field_->save(archive);
   grains_.save(archive);
 }
 
 void DryGrains::load(ArchiveReader& archive) {
   require_same_time_step(archive, time_step_);
   step_ = archive.integer_attribute("system/step");
+  if (field_) field_->load(archive);
   grains_.load(archive);
 }
 

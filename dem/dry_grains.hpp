@@ -10,6 +10,7 @@
 
 #include <mpi.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -54,7 +55,7 @@ private:
     grains_.for_each_contact_of(chosen, visit);
   }
 
-  bool with_field_;
+  std::shared_ptr<ForceField> field_;  // if there is one
   int sub_steps_;
   double time_step_;                     // s, of sub_steps_ sub-steps
   std::vector<std::string> wall_names_;  // whose forces are measured

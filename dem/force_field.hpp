@@ -1,12 +1,17 @@
 // A force on every grain by where it is and how it moves, evaluated with the contacts in every sub-step.
 #pragma once
 
+#include "core/archive.hpp"
+#include "core/system.hpp"
 #include "dem/grain_store.hpp"
 #include "dem/moving_grains.hpp"
 
 #include <span>
+#include <vector>
 
 namespace thalweg::dem {
+
+class GrainDynamics;
 
 class ForceField {
 public:
@@ -22,6 +27,13 @@ public:
   // After the contacts: sets the loads of owned grains, in the store and, with the body forces (N), in what the
   // sub-steps work on. May hold velocities and change the contact forces of grains that touch what it holds.
   virtual void act(MovingGrains& grains, GrainStore& store, std::span<const Vec3> body_force) = 0;
+
+  // A step of the system has ended (time: s). Collective, as are the next three.
+  virtual void step_ended(const GrainDynamics&, double /*time*/) {}
+  // Of its own state, besides what it keeps with the grains.
+  virtual std::vector<Figure> figures(double /*time*/) const { return {}; }
+  virtual void save(ArchiveWriter&) const {}
+  virtual void load(ArchiveReader&) {}
 };
 
 }  // namespace thalweg::dem

@@ -52,14 +52,21 @@ struct ModelFluidCoefficients {
 
 inline constexpr double printed_to_physical_reynolds = 6.0;
 
-// B_1 follows from Re_*, v_0 from Theta with B_2.
-inline ModelFluidCoefficients coefficients_of(const ModelFluidNumbers& n, const GrainScales& s) {
-  const double weight = n.shields * s.mass * s.gravity;  // Theta m g' = 2/3 (B_1 v_0 + B_2 v_0^2)
-  const double b1 = std::sqrt(3.0) * s.mass * std::sqrt(n.shields * s.gravity / s.diameter) / n.reynolds;
-  const double b2 = n.drag == ModelDrag::linear ? 0.0 : n.inertial * s.mass / s.diameter;
+// The same fluid, B_1 and B_2, at another v_0, so that it has this Shields number; lift goes with drag.
+inline ModelFluidCoefficients at_shields_number(double shields, double lift_ratio, const ModelFluidCoefficients& fluid,
+                                                const GrainScales& s) {
+  const double weight = shields * s.mass * s.gravity;  // Theta m g' = 2/3 (B_1 v_0 + B_2 v_0^2)
+  const double b1 = fluid.viscous, b2 = fluid.inertial;
   // The root of B_2 v^2 + B_1 v = 3/2 Theta m g', written so that nothing cancels where B_2 is small.
   const double velocity = 3.0 * weight / (b1 + std::sqrt(b1 * b1 + 6.0 * b2 * weight));
-  return {b1, b2, 1.5 * n.lift_ratio * weight, velocity};
+  return {b1, b2, 1.5 * lift_ratio * weight, velocity};
+}
+
+// B_1 follows from Re_*, v_0 from Theta with B_2.
+inline ModelFluidCoefficients coefficients_of(const ModelFluidNumbers& n, const GrainScales& s) {
+  const double b1 = std::sqrt(3.0) * s.mass * std::sqrt(n.shields * s.gravity / s.diameter) / n.reynolds;
+  const double b2 = n.drag == ModelDrag::linear ? 0.0 : n.inertial * s.mass / s.diameter;
+  return at_shields_number(n.shields, n.lift_ratio, {b1, b2, 0.0, 0.0}, s);
 }
 
 inline double particle_reynolds(const ModelFluidCoefficients& c) { return 60.0 * c.inertial * c.velocity / c.viscous; }

@@ -1,9 +1,20 @@
 #include "dem/model_fluid_field.hpp"
 
+#include "dem/grain_dynamics.hpp"
+
 namespace thalweg::dem {
 
 ModelFluidField::ModelFluidField(const PeriodicBox& box, const ModelFluidParameters& parameters)
-    : parameters_(parameters), fraction_(box, parameters.solid_fraction) {}
+    : parameters_(parameters), fraction_(box, parameters.solid_fraction) {
+  if (parameters.ramp) ramp_.emplace(*parameters.ramp);
+  update_coefficients();
+}
+
+void ModelFluidField::update_coefficients() {
+  const ModelFluidNumbers& n = parameters_.numbers;
+  coefficients_ = coefficients_of(n, parameters_.scales);
+  if (ramp_) coefficients_ = at_shields_number(shields_number(), n.lift_ratio, coefficients_, parameters_.scales);
+}
 
 void ModelFluidField::find_neighbours(const GrainStore& store, double skin) {
   fraction_.find_neighbours(store, skin);
@@ -13,20 +24,19 @@ void ModelFluidField::find_neighbours(const GrainStore& store, double skin) {
 }
 
 void ModelFluidField::update_flow(std::size_t slot) {
-  velocity_[slot] = parameters_.coefficients.velocity * parameters_.profile(fraction_.around(slot));
+  velocity_[slot] = coefficients_.velocity * parameters_.profile(fraction_.around(slot));
   if (parameters_.solid_fraction.lift) lift_[slot] = fraction_.below_less_above(slot) / lift_scale;
 }
 
 void ModelFluidField::act(MovingGrains& grains, GrainStore& store, std::span<const Vec3> body_force) {
   for (const std::uint32_t s : fraction_.update(grains, store)) update_flow(s);
-  const ModelFluidCoefficients& c = parameters_.coefficients;
   for (std::size_t s = 0; s < store.owned; ++s) {
     MovingGrain& grain = grains[s];
     const double radius = grain.position[3];
     const bool held = parameters_.rough_floor && grain.position[2] < radius;
     if (held) grain.velocity[0] = grain.velocity[1] = 0.0;
-    const ModelForce f = model_force(c, 2.0 * radius / parameters_.mean_diameter, velocity_[s], grain.velocity[0],
-                                     grain.velocity[1], grain.velocity[2], lift_[s]);
+    const ModelForce f = model_force(coefficients_, 2.0 * radius / parameters_.scales.diameter, velocity_[s],
+                                     grain.velocity[0], grain.velocity[1], grain.velocity[2], lift_[s]);
     store.load_force[s] = Vec3(f.x, f.y, f.z);
     const Vec3 load = store.load_force[s] + body_force[s];
     if (held) {  // the floor takes what would move it along
@@ -35,6 +45,27 @@ void ModelFluidField::act(MovingGrains& grains, GrainStore& store, std::span<con
     }
     grains.set_load(s, load);
   }
+}
+
+void ModelFluidField::step_ended(const GrainDynamics& grains, double time) {
+  if (!ramp_ || !ramp_->advance(time, grains.largest_free_speed(), grains.largest_acceleration())) return;
+  update_coefficients();
+  for (std::size_t s = 0; s < velocity_.size(); ++s) update_flow(s);
+}
+
+std::vector<Figure> ModelFluidField::figures(double time) const {
+  if (!ramp_) return {};
+  return {{"shields_number", "1", shields_number()}, {hold_left_figure, "s", ramp_->hold_left(time)}};
+}
+
+void ModelFluidField::save(ArchiveWriter& archive) const {
+  if (ramp_) ramp_->save(archive);
+}
+
+void ModelFluidField::load(ArchiveReader& archive) {
+  if (!ramp_) return;
+  ramp_->load(archive);
+  update_coefficients();
 }
 
 }  // namespace thalweg::dem

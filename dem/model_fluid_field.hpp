@@ -4,17 +4,20 @@
 #include "dem/force_field.hpp"
 #include "dem/local_solid_fraction.hpp"
 #include "dem/model_fluid.hpp"
+#include "dem/shields_ramp.hpp"
 
+#include <optional>
 #include <vector>
 
 namespace thalweg::dem {
 
 struct ModelFluidParameters {
-  ModelFluidCoefficients coefficients;
+  ModelFluidNumbers numbers;
+  GrainScales scales;
   VelocityProfile profile;
-  double mean_diameter;  // m
   SolidFractionParameters solid_fraction;
-  bool rough_floor = true;  // grains that touch the floor at z = 0 do not move along it
+  std::optional<ShieldsRampParameters> ramp;  // else the Shields number is constant
+  bool rough_floor = true;                    // grains that touch the floor at z = 0 do not move along it
 };
 
 class ModelFluidField final : public ForceField {
@@ -25,11 +28,22 @@ public:
   double reach() const override { return fraction_.reach(); }
   void find_neighbours(const GrainStore& store, double skin) override;
   void act(MovingGrains& grains, GrainStore& store, std::span<const Vec3> body_force) override;
+  void step_ended(const GrainDynamics& grains, double time) override;
+  // With a ramp: shields_number, and hold_left (s): the motion since the last step up counts as one without end when it
+  // is over.
+  std::vector<Figure> figures(double time) const override;
+  static constexpr const char* hold_left_figure = "hold_left";
+  void save(ArchiveWriter& archive) const override;
+  void load(ArchiveReader& archive) override;
 
 private:
+  double shields_number() const { return parameters_.numbers.shields * (ramp_ ? ramp_->factor() : 1.0); }
+  void update_coefficients();
   void update_flow(std::size_t slot);
 
   ModelFluidParameters parameters_;
+  ModelFluidCoefficients coefficients_;
+  std::optional<ShieldsRamp> ramp_;
   LocalSolidFraction fraction_;
   std::vector<double> velocity_;  // m/s, of the fluid around each owned grain
   std::vector<double> lift_;      // (phi_below - phi_above)/0.3

@@ -18,7 +18,29 @@ VelocityProfile profile_of(const ModelFluidKeys& fluid, bool disks) {
   return profile;
 }
 
+ShieldsRampParameters ramp_parameters(const ShieldsRampKeys& ramp, const GrainScales& s) {
+  const double speed = std::sqrt(s.gravity * s.diameter);
+  return {ramp.step, ramp.every, ramp.hold, ramp.largest_speed * speed, ramp.largest_acceleration * s.gravity};
+}
+
 }  // namespace
+
+void describe(SectionVisitor& visit, ShieldsRampKeys& ramp) {
+  visit.real("step", ramp.step, {.meaning = "of the Shields number, relative", .above = 0.0, .at_most = 1.0});
+  visit.real("every", ramp.every,
+             {.unit = "s", .meaning = "at least, between two steps", .required = true, .above = 0.0, .example = 5.0});
+  visit.real("hold", ramp.hold,
+             {.unit = "s",
+              .meaning = "motion that lasts longer counts as one without end, and the run is finished",
+              .required = true,
+              .above = 0.0,
+              .example = 1000.0});
+  visit.require(ramp.hold > ramp.every, "hold", "it must be longer than `every`; give for example 100 times as much");
+  visit.real("largest_speed", ramp.largest_speed,
+             {.unit = "sqrt(g'D)", .meaning = "grains that are slower", .above = 0.0});
+  visit.real("largest_acceleration", ramp.largest_acceleration,
+             {.unit = "g'", .meaning = "and accelerated by less are at rest", .above = 0.0});
+}
 
 ModelFluidNumbers ModelFluidKeys::numbers() const {
   const double printed = reynolds_number ? *reynolds_number : *shear_reynolds_number / printed_to_physical_reynolds;
@@ -78,6 +100,10 @@ void describe(SectionVisitor& visit, ModelFluidKeys& fluid, bool disks) {
               .meaning = "distance a grain moves before solid fractions are computed again",
               .at_least = 0.0,
               .at_most = 0.1});
+  visit.section(
+      "ramp", fluid.ramp,
+      {.meaning = "raises the Shields number in steps, each time all grains are at rest, until motion does not "
+                  "end; it is then the threshold of the bed"});
   visit.flag("rough_floor", fluid.rough_floor, {.meaning = "grains that touch the floor do not move along it"});
   visit.choice<ModelUnits>(
       "units", fluid.units,
@@ -106,15 +132,17 @@ void check(const ModelFluidKeys& fluid, const MeanGrain& mean, double gravity) {
 ModelFluidParameters model_fluid_parameters(const ModelFluidKeys& fluid, const MeanGrain& mean, double gravity,
                                             bool disks) {
   ModelFluidParameters parameters;
-  parameters.coefficients = coefficients_of(fluid.numbers(), scales_of(fluid, mean, gravity));
+  const GrainScales scales = scales_of(fluid, mean, gravity);
+  parameters.numbers = fluid.numbers();
+  parameters.scales = scales;
   parameters.profile = profile_of(fluid, disks);
-  parameters.mean_diameter = mean.diameter;
   parameters.rough_floor = fluid.rough_floor;
   parameters.solid_fraction.largest_radius = 0.5 * mean.largest_diameter;
   parameters.solid_fraction.margin = fluid.margin.value_or(mean.largest_diameter);
   parameters.solid_fraction.tolerance = fluid.tolerance * mean.diameter;
   parameters.solid_fraction.disks = disks;
   parameters.solid_fraction.lift = fluid.lift_ratio > 0.0;
+  if (fluid.ramp) parameters.ramp = ramp_parameters(*fluid.ramp, scales);
   return parameters;
 }
 

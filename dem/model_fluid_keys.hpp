@@ -12,19 +12,30 @@ namespace thalweg::dem {
 // this is checked.
 enum class ModelUnits { si, grain };
 
+struct ShieldsRampKeys {
+  double step = 0.05;
+  double every = 0.0;                 // s
+  double hold = 0.0;                  // s
+  double largest_speed = 1e-3;        // sqrt(g'D)
+  double largest_acceleration = 0.1;  // g'
+  bool operator==(const ShieldsRampKeys&) const = default;
+};
+void describe(SectionVisitor& visit, ShieldsRampKeys& ramp);
+
 struct ModelFluidKeys {
   double shields_number = 0.0;                  // Theta
   std::optional<double> reynolds_number;        // Re_*, as printed
   std::optional<double> shear_reynolds_number;  // u_* D/nu, physical
   std::optional<ModelDrag> drag;
-  double lift_ratio = 0.0;             // F_l/F_d
-  double inertial_coefficient = 0.5;   // B_2 D/m
-  double fluid_density = 0.0;          // kg/m^3: buoyancy; 0: gravity is the reduced one
-  double decay = 5.0;                  // b
-  std::optional<double> top_fraction;  // phi_t
-  double densest_fraction = 0.7;       // phi_m, of spheres
-  std::optional<double> margin;        // m
-  double tolerance = 0.01;             // mean diameters
+  double lift_ratio = 0.0;              // F_l/F_d
+  double inertial_coefficient = 0.5;    // B_2 D/m
+  double fluid_density = 0.0;           // kg/m^3: buoyancy; 0: gravity is the reduced one
+  double decay = 5.0;                   // b
+  std::optional<double> top_fraction;   // phi_t
+  double densest_fraction = 0.7;        // phi_m, of spheres
+  std::optional<double> margin;         // m
+  double tolerance = 0.01;              // mean diameters
+  std::optional<ShieldsRampKeys> ramp;  // else the Shields number is constant
   bool rough_floor = true;
   ModelUnits units = ModelUnits::si;
   bool operator==(const ModelFluidKeys&) const = default;

@@ -111,9 +111,10 @@ dem::ModelFluidParameters model_fluid_of(const Case& c) {
 
 double fastest_model_fluid(const Case& c) {
   if (c.system != SystemKind::model_fluid) return 0.0;
-  const dem::ModelFluidParameters fluid = model_fluid_of(c);
+  dem::ModelFluidParameters fluid = model_fluid_of(c);
+  if (fluid.ramp) fluid.numbers.shields = std::max(fluid.numbers.shields, 1.0);  // that no bed withstands
   const double alone = c.disks ? 1.0 / 9.0 : 1.0 / 27.0;  // the solid fraction of the grain itself
-  return fluid.coefficients.velocity * fluid.profile(alone);
+  return coefficients_of(fluid.numbers, fluid.scales).velocity * fluid.profile(alone);
 }
 
 double shortest_contact(const Case& c) {

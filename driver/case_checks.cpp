@@ -190,6 +190,11 @@ void check_model_fluid(const Case& c, const io::YamlDocument& document) {
   if (c.run.grain_integrator != dem::Integrator::velocity_verlet)
     throw document.error("run.grain_integrator",
                          "with a model fluid grains are moved by velocity_verlet; remove the key");
+  if (c.model_fluid.ramp && c.run.until_at_rest)
+    throw document.error(
+        "run.until_at_rest",
+        "a rising Shields number begins where grains are at rest, and the run goes on; remove the section, "
+        "or model_fluid.ramp");
   at_place(document, "model_fluid", [&] { check(c.model_fluid, mean_grain(c), -gravity.z()); });
 }
 

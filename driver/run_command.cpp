@@ -4,6 +4,7 @@
 #include "core/mpi_session.hpp"
 #include "core/on_first_rank.hpp"
 #include "dem/dry_grains.hpp"
+#include "dem/model_fluid_field.hpp"
 #include "driver/build_system.hpp"
 #include "driver/case_reader.hpp"
 #include "driver/case_warnings.hpp"
@@ -108,11 +109,23 @@ void print_outcome(const RunIdentity& identity, const loop::LoopRecord& record, 
   log.line(fmt::format("{} steps in {}: {}", record.last_step - record.first_step,
                        loop::clock_text(record.wall_seconds), speed));
   if (record.finished)
-    log.line(fmt::format("finished{} at {:.6g} s: {}", record.early ? ", all grains at rest," : "", system.time(),
-                         folder.summary().string()));
+    log.line(fmt::format("finished{} at {:.6g} s: {}", record.early.empty() ? "" : ", " + record.early + ",",
+                         system.time(), folder.summary().string()));
   else
     log.line(fmt::format("not finished, {}: at {:.6g} s; to go on: --restart {}", record.reason, system.time(),
                          folder.path().string()));
+}
+
+// What may finish the run before its time.
+void set_end(const Case& c, loop::LoopPlan& plan) {
+  if (c.run.until_at_rest) {
+    plan.enough = {{dem::DryGrains::largest_speed_figure, c.run.until_at_rest->largest_speed},
+                   {dem::DryGrains::largest_acceleration_figure, c.run.until_at_rest->largest_acceleration}};
+    plan.enough_means = "all grains at rest";
+  } else if (c.system == SystemKind::model_fluid && c.model_fluid.ramp) {
+    plan.enough = {{dem::ModelFluidField::hold_left_figure, 0.0}};
+    plan.enough_means = "motion without end";
+  }
 }
 
 // Which checkpoint a run that has failed can go on from, in a sentence.
@@ -158,9 +171,7 @@ void run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
                    places.same_folder ? std::optional<double>(system->time()) : std::nullopt);
   loop::LoopPlan plan;
   plan.until = c.run.until;
-  if (c.run.until_at_rest)
-    plan.enough = {{dem::DryGrains::largest_speed_figure, c.run.until_at_rest->largest_speed},
-                   {dem::DryGrains::largest_acceleration_figure, c.run.until_at_rest->largest_acceleration}};
+  set_end(c, plan);
   plan.watch = watch_rules(c);
   plan.out_of_bounds = c.run.watchdog;
   plan.walltime = command.walltime;

@@ -64,8 +64,8 @@ void TimeLoop::run() {
   look_at_health();
   checkpoint();
   if (log_.prints() && printed_step_ != system_.step()) report(seconds_since(begin_));
-  record_.early = decision == Decision::enough;
-  record_.finished = record_.early || system_.step() >= final_step_;
+  if (decision == Decision::enough) record_.early = plan_.enough_means;
+  record_.finished = decision == Decision::enough || system_.step() >= final_step_;
   if (record_.finished) record_.reason.clear();
   record_.wall_seconds = seconds_since(begin_);
 }

@@ -44,6 +44,7 @@ struct FigureLimit {
 struct LoopPlan {
   double until = 0.0;                                // s, simulated
   std::vector<FigureLimit> enough;                   // the run is finished when all hold; none: at `until` only
+  std::string enough_means;                          // in words for the log, e.g. "all grains at rest"
   std::vector<WatchRule> watch;                      // what may not happen to the figures of the system
   OutOfBounds out_of_bounds = OutOfBounds::stop;     // what to do if it does
   double walltime = 0.0;                             // s of wall time from `started` on; 0: as long as it takes
@@ -59,7 +60,7 @@ struct LoopPlan {
 // What has become of a run so far.
 struct LoopRecord {
   bool finished = false;
-  bool early = false;  // finished by LoopPlan::enough
+  std::string early;   // LoopPlan::enough_means, where that has finished the run
   std::string reason;  // why it is not finished; empty if it is
   std::int64_t first_step = 0, last_step = 0;
   double wall_seconds = 0.0;     // in run(), this time

@@ -58,6 +58,33 @@ output: {series: {every: 0.1}, checkpoint: {every: 2, keep: 3}}
                           "--set", "model_fluid.lift_ratio=0", "--out", out, *rest)
             self.assertEqual(self.summary(out)["simulated_time"] < 99.0, stops, shields)
 
+    RAMP = ["--set", "model_fluid.shields_number=0.05", "--set", "model_fluid.lift_ratio=0",
+            "--set", "model_fluid.ramp={every: 2, hold: 20, step: 0.2, largest_speed: 0.02}"]
+
+    def test_a_rising_shields_number_ends_with_motion_without_end(self):
+        self.run_well("run", self.case, *self.RAMP, "--until", "400", "--out", "run")
+        summary, series = self.summary("run"), self.series()
+        self.assertTrue(summary["finished"])
+        self.assertLess(summary["simulated_time"], 399.0)
+        self.assertIn("motion without end", (self.folder / "run/run.log").read_text())
+        # Clark et al. (2017) find 0.11 for large beds, and more for small ones; steps are of 20 %.
+        self.assertGreater(summary["figures"]["shields_number"], 0.09)
+        self.assertLess(summary["figures"]["shields_number"], 0.5)
+        shields = series["shields_number"]
+        rises = numpy.flatnonzero(numpy.diff(shields) > 0.0)
+        self.assertTrue((numpy.diff(shields) >= 0.0).all())
+        numpy.testing.assert_allclose(shields, 0.05 * 1.2 ** numpy.round(numpy.log(shields / 0.05) / numpy.log(1.2)),
+                                      rtol=1e-12)
+        # Two steps are at least `every` apart; the series has a row each 0.1.
+        self.assertGreaterEqual(numpy.diff(series["time"][rises]).min(), 2.0 - 0.11)
+
+    def test_a_rising_shields_number_on_any_ranks_and_after_a_restart(self):
+        self.run_well("run", self.case, *self.RAMP, "--out", "one", "--until", "40")
+        self.assertGreater(self.summary("one")["figures"]["shields_number"], 0.055)   # it has risen
+        self.run_well("run", self.case, *self.RAMP, "--out", "half", "--until", "25", ranks=2)
+        self.run_well("run", self.case, *self.RAMP, "--out", "half", "--restart", "half", "--until", "40")
+        self.assert_same_bed("one", "half")
+
     def test_what_check_says(self):
         said = self.run_well("check", self.case).stdout
         self.assertIn("Shields number 0.5; Re_* 100 as printed, u_* D/nu 600", said)
@@ -69,6 +96,8 @@ output: {series: {every: 0.1}, checkpoint: {every: 2, keep: 3}}
                 (["model_fluid={shields_number: 0.1, reynolds_number: 1}"], ["drag law is missing"]),
                 (["model_fluid.densest_fraction=0.3"], ["densest_fraction", "larger than top_fraction"]),
                 (["model_fluid.shear_reynolds_number=6"], ["Reynolds number is given twice"]),
+                (["model_fluid.ramp={every: 5}"], ["ramp.hold", "missing"]),
+                (["model_fluid.ramp={every: 5, hold: 9}", "run.until_at_rest={}"], ["until_at_rest", "model_fluid.ramp"]),
                 (["gravity.slope=0.1"], ["gravity", "downwards"]),
                 (["model_fluid.fluid_density=3"], ["float"]),
                 (["system=grains"], ["model_fluid", "only system: model_fluid has it"])):

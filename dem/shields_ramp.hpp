@@ -1,0 +1,42 @@
+// A Shields number that is raised in small steps, and held as soon as grains move until all are at rest again: the
+// second protocol of Clark et al. (2017). Motion that outlasts a given time is taken for motion without end; the
+// Shields number is then the threshold of this bed.
+#pragma once
+
+#include "core/archive.hpp"
+
+#include <cstdint>
+
+namespace thalweg::dem {
+
+struct ShieldsRampParameters {
+  double step = 0.05;                 // relative, of the Shields number
+  double every = 0.0;                 // s, at least, between two steps
+  double hold = 0.0;                  // s, motion that lasts longer has no end
+  double largest_speed = 0.0;         // m/s: grains that are slower
+  double largest_acceleration = 0.0;  // m/s^2, and accelerated by less, are at rest
+};
+
+class ShieldsRamp {
+public:
+  explicit ShieldsRamp(const ShieldsRampParameters& parameters) : parameters_(parameters) {}
+
+  // To be called after every step with the figures of all free grains: raises the Shields number, if it is time, and
+  // returns whether it has.
+  bool advance(double time, double largest_speed, double largest_acceleration);
+
+  // Over that at the start.
+  double factor() const;
+  // s, until the motion since the last step counts as one without end; before the first step the grains settle.
+  double hold_left(double time) const { return parameters_.hold - (steps_ > 0 ? time - last_step_ : 0.0); }
+
+  void save(ArchiveWriter& archive) const;
+  void load(ArchiveReader& archive);
+
+private:
+  ShieldsRampParameters parameters_;
+  std::int64_t steps_ = 0;
+  double last_step_ = 0.0;  // s
+};
+
+}  // namespace thalweg::dem
