@@ -4,6 +4,8 @@
 #include "dem/grain_volume.hpp"
 #include "dem/lens.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -72,7 +74,6 @@ void LocalSolidFraction::find_neighbours(const GrainStore& store, double skin) {
   is_changed_.assign(owned_, 0);
   changed_.clear();
   for (std::size_t s = 0; s < owned_; ++s) {
-    mark(s);
     if (!is_remembered(s)) continue;
     copy_neighbours(s);
     sum_own(s);

@@ -13,7 +13,6 @@
 #include "dem/grain_store.hpp"
 #include "dem/moving_grains.hpp"
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>

@@ -11,7 +11,8 @@
 
 namespace thalweg::driver {
 
-bool has_fluid(const Case& c) { return c.system == SystemKind::resolved || c.system == SystemKind::fluid; }
+bool has_fluid(SystemKind system) { return system == SystemKind::resolved || system == SystemKind::fluid; }
+bool has_fluid(const Case& c) { return has_fluid(c.system); }
 
 Index3 cells_of(const DomainCase& domain) {
   Index3 cells;

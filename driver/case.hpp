@@ -131,6 +131,7 @@ struct Case {
 
 // What follows from a case that read_case() has accepted.
 
+bool has_fluid(SystemKind system);
 bool has_fluid(const Case& c);  // system: resolved or fluid
 
 Index3 cells_of(const DomainCase& domain);  // size over spacing

@@ -17,8 +17,7 @@ static std::string no_fluid(SystemKind system) {
 }
 
 static OnlyIf only_with_fluid(SystemKind system) {
-  const bool with_fluid = system == SystemKind::resolved || system == SystemKind::fluid;
-  return {with_fluid, no_fluid(system) + "; remove the section or set system: resolved"};
+  return {has_fluid(system), no_fluid(system) + "; remove the section or set system: resolved"};
 }
 
 static OnlyIf only_with_grains(bool with_grains) {

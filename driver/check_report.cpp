@@ -182,9 +182,9 @@ void add_solids(const Case& c, Lines& lines) {
 
 void add_model_fluid(const Case& c, Lines& lines) {
   if (c.system != SystemKind::model_fluid) return;
-  const double gravity = -gravity_vector(c.gravity).z();
-  const dem::ModelFluidNumbers n = c.model_fluid.numbers();
-  const dem::GrainScales s = scales_of(c.model_fluid, mean_grain(c), gravity);
+  const dem::ModelFluidParameters fluid = model_fluid_of(c);
+  const dem::ModelFluidNumbers& n = fluid.numbers;
+  const dem::GrainScales& s = fluid.scales;
   const dem::ModelFluidCoefficients k = coefficients_of(n, s);
   lines.push_back(fmt::format(
       "model      Shields number {:.4g}; Re_* {:.4g} as printed, u_* D/nu {:.4g}; Re_p {:.4g}; "
