@@ -90,17 +90,33 @@ class Bisection(Folder):
 
     def test_halves_the_range_until_it_is_narrow(self):
         task, asked = self.search(lambda settings: 0.3)
-        self.assertEqual(asked, [0.0, 1.0, 0.5, 0.25, 0.375])
+        self.assertEqual(asked, [0.5, 0.25, 0.375])
         self.assertEqual(task.result(), ("found", 0.25, 0.375, 0.3125))
 
-    def test_looks_at_the_ends_before_it_believes_them(self):
-        for threshold, state in ((-1.0, "holds everywhere"), (2.0, "holds nowhere")):
+    def test_looks_at_an_end_before_it_believes_it(self):
+        for threshold, state, looked in ((-1.0, "holds everywhere", [0.5, 0.25, 0.125, 0.0]),
+                                         (0.1, "found", [0.5, 0.25, 0.125, 0.0]),
+                                         (2.0, "holds nowhere", [0.5, 0.75, 0.875, 1.0])):
             with tempfile.TemporaryDirectory() as folder:
                 self.folder, outer = Path(folder), self.folder
                 (self.folder / "case.yaml").write_text("system: grains\n")
                 task, asked = self.search(lambda settings: threshold)
                 self.folder = outer
-            self.assertEqual((task.result()[0], asked), (state, [0.0, 1.0]))
+            self.assertEqual((task.result()[0], asked), (state, looked))
+
+    def test_a_combination_with_a_range_of_its_own(self):
+        plan = self.plan(bisect=BISECT, together=[{"a": 1, "bisect.from": 0.4, "bisect.to": 0.6}, {"a": 2}])
+        self.assertEqual(plan.points, [{"a": 1}, {"a": 2}])
+        self.assertEqual([(search.lower, search.upper) for search in plan.bisections], [(0.4, 0.6), (0.0, 1.0)])
+        with self.assertRaisesRegex(SweepError, "take a section bisect"):
+            self.plan(together=[{"a": 1, "bisect.from": 0.4}])
+
+    def test_a_figure_compared_with_another(self):
+        condition = self.plan(bisect=BISECT | {"holds": "simulated_time >= until"}).bisections[0].condition
+        self.assertTrue(condition.holds({"simulated_time": 2.1, "until": 2.0}))
+        self.assertFalse(condition.holds({"simulated_time": 1.9, "until": 2.0}))
+        with self.assertRaisesRegex(SweepError, "no number until"):
+            condition.holds({"simulated_time": 1.9})
 
     def test_geometric_steps(self):
         task, _ = self.search(lambda settings: 0.03, **{"from": 0.01, "spacing": "log", "width": 0.5})
@@ -117,13 +133,13 @@ class Bisection(Folder):
         state, lower, upper, _ = task.result()
         self.assertEqual(state, "found")
         self.assertTrue(lower <= 0.3 < upper, (lower, upper))
-        self.assertEqual(asked.count(0.0), 3)   # three that rest decide
+        self.assertEqual(asked.count(0.5), 3)   # three that move decide
         self.assertLess(len(asked), task.search.most_levels() * 5)
 
     def test_the_count_of_what_is_left_is_never_too_small(self):
         task = BisectionTask(self.folder, self.plan(bisect=BISECT), 0)
-        self.assertEqual(task.search.most_levels(), 5)
-        self.assertEqual(task.most_runs_left(), 5)
+        self.assertEqual(task.search.most_levels(), 4)
+        self.assertEqual(task.most_runs_left(), 4)
 
 
 class Units(unittest.TestCase):

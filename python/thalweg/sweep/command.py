@@ -69,7 +69,7 @@ def sweep(wanted):
     plan = read_plan(wanted.sweep)
     folder = wanted.out or wanted.sweep.with_suffix("")
     tasks = tasks_of(plan, folder)
-    names = [task.runs[0].name for task in tasks] if not plan.bisection else []
+    names = [task.runs[0].name for task in tasks] if not plan.bisections else []
     if len(set(names)) < len(names):
         raise SweepError(f"{wanted.sweep}: two runs have the same values; there is {max(names, key=names.count)} twice.")
     if wanted.slurm:
@@ -77,7 +77,7 @@ def sweep(wanted):
         return 0
     if wanted.dry_run:
         for number, task in enumerate(tasks):
-            print(f"{number:<5}{describe(task, plan.keys())}{'' if plan.bisection else f': {task.run.state}'}")
+            print(f"{number:<5}{describe(task, plan.keys())}{'' if plan.bisections else f': {task.run.state}'}")
         return 0
     if wanted.task is not None:
         if not 0 <= wanted.task < len(tasks):

@@ -24,26 +24,32 @@ class SweepError(RunFolderError):
 
 @dataclass(frozen=True)
 class Condition:
-    """Whether a run shows what is looked for: a figure of its summary.json, compared with a number."""
+    """Whether a run shows what is looked for: a figure of its summary.json, compared with a number or another figure."""
     figure: str
     sign: str
-    limit: float
+    limit: float | str
 
     @staticmethod
     def of(text):
-        match = re.fullmatch(r"\s*([\w.]+)\s*(>=|<=|>|<)\s*([-+.\deE]+)\s*", str(text))
+        match = re.fullmatch(r"\s*([\w.]+)\s*(>=|<=|>|<)\s*(?:([-+.\d][-+.\deE]*)|([a-zA-Z][\w.]*))\s*", str(text))
         if not match:
             raise SweepError(f"bisect.holds: {text}: write a figure of summary.json and what it is compared with, e.g. "
                              "transport_rate.q_star_mean > 1e-3.")
-        return Condition(match[1], match[2], float(match[3]))
+        return Condition(match[1], match[2], float(match[3]) if match[3] else match[4])
 
     def holds(self, summary):
-        value = figure_of(summary, self.figure)
-        if value is None:
-            section = summary.get(self.figure.partition(".")[0])
-            there = ", ".join(section if isinstance(section, dict) else summary)
-            raise SweepError(f"bisect.holds: the runs have no number {self.figure} in summary.json, only {there}.")
-        return OPERATORS[self.sign](value, self.limit)
+        limit = found(summary, self.limit) if isinstance(self.limit, str) else self.limit
+        return OPERATORS[self.sign](found(summary, self.figure), limit)
+
+
+def found(summary, path):
+    """A number of summary.json that bisect.holds names."""
+    value = figure_of(summary, path)
+    if value is None:
+        section = summary.get(path.partition(".")[0])
+        there = ", ".join(section if isinstance(section, dict) else summary)
+        raise SweepError(f"bisect.holds: the runs have no number {path} in summary.json, only {there}.")
+    return value
 
 
 @dataclass(frozen=True)
@@ -65,20 +71,21 @@ class Bisection:
         return upper - lower <= self.width * (lower if self.geometric else 1.0) * (1.0 + 1e-9)
 
     def most_levels(self):
-        """Values looked at, both ends included, where the bracket is halved to the end."""
-        lower, upper, levels = self.lower, self.upper, 2
+        """Values looked at where the bracket is halved down to an end of the range, which is then looked at as well."""
+        lower, upper, halvings = self.lower, self.upper, 0
         while not self.narrow(lower, upper):
             upper = self.middle(lower, upper)   # the wider half, where steps are arithmetic: equal
-            levels += 1
-        return levels
+            halvings += 1
+        return halvings + (1 if halvings else 2)
 
 
 @dataclass
 class Plan:
-    """points: the settings (key: value) of each combination, without those of a bisection."""
+    """points: the settings (key: value) of each combination, without those of a bisection; bisections: that of each point,
+    or none at all."""
     case: Path
     points: list
-    bisection: Bisection = None
+    bisections: list = field(default_factory=list)
     ranks: int = 1
     columns: list = field(default_factory=list)
     case_digest: str = ""
@@ -125,15 +132,12 @@ def plan_of(content, folder):
         digest = digest_of(yaml.load(case.read_text(), CaseLoader))
     except OSError:
         raise SweepError(f"case: {case} cannot be read.") from None
-    bisection = bisection_of(content["bisect"]) if content.get("bisect") else None
     points = points_of(content)
-    taken = bisection.key if bisection else None
-    if any(taken in point for point in points):
-        raise SweepError(f"bisect.key: {taken} is also in set, vary or together; give it in one place.")
+    bisections = bisections_of(content, points)
     ranks = content.get("ranks", 1)
     if not isinstance(ranks, int) or ranks < 1:
         raise SweepError(f"ranks: {ranks} is not a number of MPI ranks; give a whole number from 1 on.")
-    return Plan(case, points, bisection, ranks, list(content.get("columns") or []), digest, followers_in(content))
+    return Plan(case, points, bisections, ranks, list(content.get("columns") or []), digest, followers_in(content))
 
 
 def points_of(content):
@@ -163,6 +167,20 @@ def followers_in(content):
     if not together or len({key for key, _ in first}) > 1 or len({json.dumps(value) for _, value in first}) < len(first):
         return set()
     return {key for entry in together for key in entry} - {first[0][0]}
+
+
+def bisections_of(content, points):
+    """That of each point, whose own bisect.from and bisect.to are taken out of it; none if nothing is searched."""
+    ranges = [{end: point.pop(f"bisect.{end}") for end in ("from", "to") if f"bisect.{end}" in point} for point in points]
+    if not content.get("bisect"):
+        if any(ranges):
+            raise SweepError("bisect.from and bisect.to of a run take a section bisect, which says what is searched.")
+        return []
+    bisections = [bisection_of(content["bisect"] | own) for own in ranges]
+    taken = bisections[0].key
+    if any(taken in point for point in points):
+        raise SweepError(f"bisect.key: {taken} is also in set, vary or together; give it in one place.")
+    return bisections
 
 
 def bisection_of(given):

@@ -83,7 +83,7 @@ class Runner:
         runs = [run for task in self.tasks for run in task.runs]
         done, failed = (sum(run.state == state for run in runs) for state in (DONE, FAILED))
         left = sum(task.most_runs_left() for task in self.tasks)
-        at_most = "at most " if self.plan.bisection and left else ""
+        at_most = "at most " if self.plan.bisections and left else ""
         text = f"{done} of {at_most}{done + failed + left} runs done"
         text += (f", {failed} failed" if failed else "") + (f", {len(self.going)} going" if self.going else "")
         times = [run.wall_seconds for run in runs if run.state == DONE]

@@ -11,9 +11,9 @@ from thalweg.sweep.tasks import result_columns
 def write_tables(plan, tasks, units, folder):
     """units: of the keys of the case, by their paths. Returns the files."""
     # A bisection needs no more repetitions of a value once enough of them agree.
-    runs = [run for task in tasks for run in task.runs if run.state != WAITING or not plan.bisection]
+    runs = [run for task in tasks for run in task.runs if run.state != WAITING or not plan.bisections]
     files = [write(folder / "runs.csv", runs_table(plan, runs, units))]
-    if plan.bisection:
+    if plan.bisections:
         files.append(write(folder / "thresholds.csv", thresholds_table(plan, tasks, units)))
     return files
 
@@ -35,7 +35,7 @@ def runs_table(plan, runs, units):
 
 
 def thresholds_table(plan, tasks, units):
-    search, keys = plan.bisection, plan.keys()
+    search, keys = plan.bisections[0], plan.keys()
     unit = units.get(without_numbers(search.key), "")
     ending = f" [{unit}]" if unit else ""
     rows = [[headed(key, units) for key in keys] +

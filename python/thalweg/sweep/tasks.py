@@ -22,11 +22,11 @@ class PointTask:
 
 
 class BisectionTask:
-    """Looks at both ends of the range, then at the middle of what is left of it, until that is narrow. A value is settled
-    as soon as enough repetitions agree."""
+    """Looks at the middle of what is left of the range until that is narrow, and at an end of the range only if it is left
+    at last. A value is settled as soon as enough repetitions agree."""
 
     def __init__(self, folder, plan, number):
-        self.folder, self.plan, self.search = folder, plan, plan.bisection
+        self.folder, self.plan, self.search = folder, plan, plan.bisections[number]
         self.settings = plan.points[number]
         self.keys = plan.naming_keys() + [self.search.key] + list(self.search.repetitions[0])
         self.known = {}   # runs by value
@@ -55,16 +55,16 @@ class BisectionTask:
     def bracket(self):
         """The range in which the threshold is, as far as it is known, and the values that are to be settled next."""
         lower, upper = self.search.lower, self.search.upper
-        open_ends = [value for value in (lower, upper) if self.verdict(value) is None]
-        if open_ends or self.verdict(lower) or not self.verdict(upper):
-            return lower, upper, open_ends
         while not self.search.narrow(lower, upper):
             middle = self.search.middle(lower, upper)
             verdict = self.verdict(middle)
             if verdict is None:
                 return lower, upper, [middle]
             lower, upper = (lower, middle) if verdict else (middle, upper)
-        return lower, upper, []
+        return lower, upper, [value for value in (lower, upper) if self.is_end(value) and self.verdict(value) is None]
+
+    def is_end(self, value):
+        return value in (self.search.lower, self.search.upper)
 
     def wanted(self):
         return [run for value in self.bracket()[2] for run in self.runs_at(value) if run.state not in (DONE, FAILED)]
@@ -83,15 +83,15 @@ class BisectionTask:
         if unsettled:
             stuck = not self.wanted()
             return "failed" if stuck else "unfinished", lower, upper, math.nan
-        if self.verdict(self.search.lower):
+        if self.is_end(lower) and self.verdict(lower):
             return "holds everywhere", math.nan, lower, math.nan
-        if not self.verdict(self.search.upper):
+        if self.is_end(upper) and not self.verdict(upper):
             return "holds nowhere", upper, math.nan, math.nan
         return "found", lower, upper, self.search.middle(lower, upper)
 
 
 def tasks_of(plan, folder):
-    kind = BisectionTask if plan.bisection else PointTask
+    kind = BisectionTask if plan.bisections else PointTask
     return [kind(folder / "runs", plan, number) for number in range(len(plan.points))]
 
 
