@@ -73,6 +73,15 @@ class Sweep(ProgramTest):
             self.assertGreaterEqual(float(row["upper [1]"]), friction)
             self.assertLessEqual(float(row["half_width [1]"]), 0.01)
 
+    def test_a_repetition_that_no_longer_matters_is_stopped(self):
+        sweep = self.write("bisect: {key: gravity.slope, from: 0.1, to: 1.0, width: 0.6,\n"
+                           "         holds: figures.largest_grain_speed > 1e-2,\n"
+                           "         repeat: {run.until: [0.01, 0.02, 1000.0]}}\n")
+        self.run_well("sweep", sweep, "--jobs", "3")
+        self.assertEqual({row["run.until [s]"]: row["state"] for row in self.table("sweep/runs.csv")
+                          if row["state"] != "waiting"}, {"0.01": "done", "0.02": "done", "1000.0": "begun"})
+        self.assertEqual(self.table("sweep/thresholds.csv")[0]["state"], "found")
+
     def test_goes_on_after_a_kill_with_the_same_bits(self):
         sweep = self.write("set: {run.until: 1.0}\nvary: {gravity.slope: [0.5, 0.6]}\n")
         going = subprocess.Popen([THALWEG, "sweep", sweep, "--jobs", "2"], cwd=self.folder, stdout=subprocess.DEVNULL)

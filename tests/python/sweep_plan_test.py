@@ -81,12 +81,14 @@ class Bisection(Folder):
             run = wanted[0]
             slope = run.settings["gravity.slope"]
             asked.append(slope)
-            rate = 1.0 if slope > threshold(run.settings) else 0.0
-            run.folder.mkdir()
-            (run.folder / "summary.json").write_text(
-                json.dumps({"finished": True, "wall_seconds": 1.0, "transport_rate": {"q_star_mean": rate}}))
-            run.look()
+            self.answer(run, 1.0 if slope > threshold(run.settings) else 0.0)
         return task, asked
+
+    def answer(self, run, rate):
+        run.folder.mkdir()
+        (run.folder / "summary.json").write_text(
+            json.dumps({"finished": True, "wall_seconds": 1.0, "transport_rate": {"q_star_mean": rate}}))
+        run.look()
 
     def test_halves_the_range_until_it_is_narrow(self):
         task, asked = self.search(lambda settings: 0.3)
@@ -135,6 +137,17 @@ class Bisection(Folder):
         self.assertTrue(lower <= 0.3 < upper, (lower, upper))
         self.assertEqual(asked.count(0.5), 3)   # three that move decide
         self.assertLess(len(asked), task.search.most_levels() * 5)
+
+    def test_asks_first_for_as_many_repetitions_as_may_settle_a_value(self):
+        task = BisectionTask(self.folder, self.plan(bisect=BISECT | {"repeat": {"seed": {"from": 1, "to": 5}}}), 0)
+        self.assertEqual(([run.settings["seed"] for run in task.wanted()], [run.settings["seed"] for run in task.spare()]),
+                         ([1, 2, 3], [4, 5]))
+        self.answer(task.wanted()[0], 1.0)
+        self.assertEqual(([run.settings["seed"] for run in task.wanted()], [run.settings["seed"] for run in task.spare()]),
+                         ([2, 3], [4, 5]))
+        self.answer(task.wanted()[0], 0.0)
+        self.assertEqual(([run.settings["seed"] for run in task.wanted()], [run.settings["seed"] for run in task.spare()]),
+                         ([3, 4], [5]))
 
     def test_the_count_of_what_is_left_is_never_too_small(self):
         task = BisectionTask(self.folder, self.plan(bisect=BISECT), 0)

@@ -18,6 +18,7 @@ class Runner:
         self.plan, self.tasks, self.units, self.program, self.folder = plan, tasks, units, program, folder
         self.jobs = jobs
         self.going = {}   # by run: (process, when it was started)
+        self.dropped = set()   # going, asked to stop because the others have settled what they were to show
         self.stopping = False
         self.printed, self.said = 0.0, None
         if retry:
@@ -31,6 +32,7 @@ class Runner:
         try:
             while True:
                 self.collect()
+                self.drop_unwanted()
                 waiting = self.waiting()
                 self.start(waiting)
                 if not self.going and (self.stopping or not waiting):
@@ -51,8 +53,17 @@ class Runner:
         for process, _ in self.going.values():
             process.send_signal(signal.SIGUSR1)
 
+    def wanted(self):
+        return ([run for task in self.tasks for run in task.wanted()] +
+                [run for task in self.tasks for run in task.spare()])
+
     def waiting(self):
-        return [run for task in self.tasks for run in task.wanted() if run not in self.going]
+        return [run for run in self.wanted() if run not in self.going]
+
+    def drop_unwanted(self):
+        for run in set(self.going) - set(self.wanted()) - self.dropped:
+            self.going[run][0].send_signal(signal.SIGUSR1)
+            self.dropped.add(run)
 
     def start(self, waiting):
         for run in waiting:
@@ -67,7 +78,8 @@ class Runner:
         ended = [run for run, (process, _) in self.going.items() if process.poll() is not None]
         for run in ended:
             process, _ = self.going.pop(run)
-            if self.stopping:
+            if self.stopping or run in self.dropped:
+                self.dropped.discard(run)
                 run.look()
                 continue
             run.ended(process.returncode)

@@ -17,6 +17,9 @@ class PointTask:
     def wanted(self):
         return [] if self.run.state in (DONE, FAILED) else [self.run]
 
+    def spare(self):
+        return []
+
     def most_runs_left(self):
         return len(self.wanted())
 
@@ -66,14 +69,29 @@ class BisectionTask:
     def is_end(self, value):
         return value in (self.search.lower, self.search.upper)
 
+    def open_at(self, value):
+        return [run for run in self.runs_at(value) if run.state not in (DONE, FAILED)]
+
     def wanted(self):
-        return [run for value in self.bracket()[2] for run in self.runs_at(value) if run.state not in (DONE, FAILED)]
+        """As many repetitions as settle the next value if they agree."""
+        return [run for value in self.bracket()[2] for run in self.open_at(value)[:self.least_to_settle(value)]]
+
+    def spare(self):
+        """The others, for cores that have nothing better to do."""
+        return [run for value in self.bracket()[2] for run in self.open_at(value)[self.least_to_settle(value):]]
+
+    def least_to_settle(self, value):
+        runs = self.runs_at(value)
+        shown = [self.search.condition.holds(run.summary) for run in runs if run.state == DONE]
+        most_shown = math.floor(self.search.share * len(runs))   # with which it does not hold
+        failing = len(shown) - sum(shown)
+        return max(1, min(most_shown + 1 - sum(shown), len(runs) - most_shown - failing))
 
     def most_runs_left(self):
-        lower, upper, unsettled = self.bracket()
-        left, levels = len(self.wanted()), self.search.most_levels()
+        unsettled = self.bracket()[2]
+        left, levels = len(self.wanted() + self.spare()), self.search.most_levels()
         settled = sum(self.verdict(value) is not None for value in self.known)
-        if not unsettled or not self.wanted():
+        if not unsettled or not left:
             return left
         return left + max(0, levels - settled - len(unsettled)) * len(self.search.repetitions)
 
