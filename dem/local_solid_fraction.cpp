@@ -3,6 +3,7 @@
 #include "dem/cell_grid.hpp"
 #include "dem/grain_volume.hpp"
 #include "dem/lens.hpp"
+#include "dem/minimum_image.hpp"
 
 #include <algorithm>
 #include <array>
@@ -17,6 +18,30 @@ constexpr std::size_t group = 8;  // doubles of the widest vector
 
 // m^3, of disks of a thickness of 1, which is their area (m^2).
 double size_of_grain(double radius, bool disk) { return grain_volume(radius, disk ? 1.0 : 0.0); }
+
+using SlotPair = std::pair<std::uint32_t, std::uint32_t>;
+
+// All pairs of grains whose centres are at most a distance (m) apart, without those of two ghosts. Half of the pairs of
+// the grid are further apart, in no order that a processor could foresee: hence without branches.
+std::vector<SlotPair> pairs_within(double distance, const PeriodicBox& box, const GrainStore& store) {
+  const CellGrid grid(box, distance, store.position);
+  const std::span<const std::uint32_t> slot = grid.order();
+  std::vector<Row> position;
+  for (const std::uint32_t s : slot) position.push_back(row_of(store.position[s], store.is_ghost(s) ? 1.0 : 0.0));
+  const MinimumImage image(box);
+  const double limit = distance * distance;
+  std::vector<SlotPair> pairs(64 * store.total() + 1);
+  std::size_t count = 0;
+  grid.for_each_near_pair([&](std::uint32_t m, std::uint32_t n) {
+    if (count == pairs.size()) pairs.resize(2 * count);
+    const Row d = image(position[m] - position[n]), square = d * d;
+    pairs[count] = {slot[m], slot[n]};
+    count += static_cast<std::size_t>((square[0] + square[1] + square[2] <= limit) &
+                                      (position[m][3] + position[n][3] < 2.0));
+  });
+  pairs.resize(count);
+  return pairs;
+}
 
 }  // namespace
 
@@ -43,19 +68,12 @@ double LocalSolidFraction::reach() const {
 }
 
 void LocalSolidFraction::find_neighbours(const GrainStore& store, double skin) {
-  const double limit = reach() + skin;
-  const CellGrid grid(box_, limit, store.position);
-  const std::span<const std::uint32_t> slot = grid.order();
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  const std::vector<SlotPair> pairs = pairs_within(reach() + skin, box_, store);
   first_.assign(store.total() + 1, 0);
-  grid.for_each_near_pair([&](std::uint32_t m, std::uint32_t n) {
-    const std::uint32_t a = slot[m], b = slot[n];
-    if (store.is_ghost(a) && store.is_ghost(b)) return;
-    if (box_.difference(store.position[a], store.position[b]).squaredNorm() > limit * limit) return;
-    pairs.emplace_back(a, b);
+  for (const auto& [a, b] : pairs) {
     ++first_[a + 1];
     ++first_[b + 1];
-  });
+  }
   for (std::size_t s = 0; s < store.total(); ++s) first_[s + 1] += first_[s];
   neighbours_.resize(first_.back());
   std::vector<std::size_t> next(first_.begin(), first_.end() - 1);

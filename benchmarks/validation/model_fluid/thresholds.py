@@ -1,0 +1,137 @@
+#!/usr/bin/python3
+"""Thresholds of motion beside Clark et al. (2017): thresholds.py [--figure FILE]
+
+Reads the tables thresholds.csv of the sweeps shields_curve.yaml, linear_drag.yaml, lift.yaml and friction.yaml, which are
+kept here under the names of the sweeps; those that are missing are left out. Prints every threshold with half the width of
+its bracket, the value of the paper, what is accepted, and pass or fail. Exit code 0 if all pass.
+"""
+import argparse
+import sys
+from pathlib import Path
+
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[2] / "python"))
+from thalweg.tables import HEADING, read_rows
+
+LOW, HIGH = 0.28, 0.11                       # section III B: the plateaus at Re_* << 1 and Re_* >> 1
+LOW_ACCEPTED, HIGH_ACCEPTED = 0.03, 0.015
+LIFT_ACCEPTED = 0.1                          # relative
+DISKS_FACTOR = 2.0                           # section III E: "roughly"
+FRICTION_ACCEPTED = 1.5                      # section III E: increases by less than 50 %
+
+
+def thresholds(name):
+    """Rows of a table as dictionaries of numbers by the last words of their headings; thresholds that were found."""
+    path = HERE / f"{name}.csv"
+    if not path.exists():
+        return []
+    rows = [{HEADING.match(head)[1].rpartition(".")[2]: value for head, value in row.items()} for row in read_rows(path)]
+    return [{head: float(value) for head, value in row.items() if head != "state"} for row in rows if row["state"] == "found"]
+
+
+class Report:
+    def __init__(self):
+        self.passed = True
+
+    def line(self, what, row, expected, accepted):
+        """accepted: the distance from the expected value beyond half the bracket."""
+        good = abs(row["shields_number"] - expected) <= accepted + row["half_width"]
+        self.passed = self.passed and good
+        print(f"{what:<42} {row['shields_number']:.4f} +- {row['half_width']:.4f}   paper {expected:.4f}   "
+              f"accepted +- {accepted:.4f}   {'pass' if good else 'FAIL'}")
+
+
+def points(axes, rows, x, **style):
+    if rows:
+        axes.errorbar([row[x] for row in rows], [row["shields_number"] for row in rows], [row["half_width"] for row in rows],
+                      capsize=3, **style)
+
+
+def with_lift(threshold, ratio):
+    return threshold / (1.0 + 1.5 * threshold * ratio)   # equation 12
+
+
+def shields_curve(axes, report):
+    rows = thresholds("shields_curve")
+    points(axes, rows, "reynolds_number", fmt="ks-", label="quadratic drag")
+    for row in rows:
+        if row["reynolds_number"] <= 0.1 or row["reynolds_number"] >= 100:
+            low = row["reynolds_number"] < 1
+            report.line(f"quadratic drag, Re_* {row['reynolds_number']:g}", row, LOW if low else HIGH,
+                        LOW_ACCEPTED if low else HIGH_ACCEPTED)
+    linear = thresholds("linear_drag")
+    for restitution, colour in ((0.2, "tab:blue"), (0.9, "tab:red")):
+        of_this = [row for row in linear if row["restitution"] == restitution]
+        points(axes, of_this, "reynolds_number", fmt="o--", color=colour, mfc="none",
+               label=f"linear drag, restitution {restitution:g}")
+    for row in linear:
+        if row["restitution"] == 0.2 and row["reynolds_number"] > 10:
+            report.line(f"linear drag, e_n 0.2, Re_* {row['reynolds_number']:g}", row, HIGH, HIGH_ACCEPTED)
+    for level in (LOW, HIGH):
+        axes.axhline(level, color="0.6", lw=0.8)
+    axes.text(0.98, 0.97, "lines: plateaus of the paper", transform=axes.transAxes, ha="right", va="top", fontsize=8, color="0.4")
+    axes.set(xscale="log", xlabel="Re$_*$, as printed", ylabel="Θ$_c$", ylim=(0.0, None), title="drag")
+    return rows
+
+
+def lift(axes, report, without):
+    rows = thresholds("lift")
+    for reynolds, colour in ((0.5, "tab:green"), (100.0, "k")):
+        at_rest = [row for row in without if row["reynolds_number"] == reynolds]
+        of_this = [row for row in rows if row["reynolds_number"] == reynolds]
+        if not at_rest or not of_this:
+            continue
+        points(axes, [row | {"lift_ratio": 0.0} for row in at_rest] + sorted(of_this, key=lambda row: row["lift_ratio"]),
+               "lift_ratio", fmt="s", color=colour, label=f"Re$_*$ {reynolds:g}")
+        ratio = np.linspace(0.0, 3.0, 50)
+        axes.plot(ratio, with_lift(at_rest[0]["shields_number"], ratio), color=colour, lw=0.8)
+        for row in of_this:
+            expected = with_lift(at_rest[0]["shields_number"], row["lift_ratio"])
+            report.line(f"lift over drag {row['lift_ratio']:g}, Re_* {reynolds:g}, equation 12", row, expected,
+                        LIFT_ACCEPTED * expected)
+    axes.set(xlabel="lift over drag", ylim=(0.0, None), title="lift (lines: equation 12)")
+
+
+def friction(axes, report, without):
+    rows = thresholds("friction")
+    for reynolds, plateau, colour in ((0.5, LOW, "tab:green"), (30.0, HIGH, "k")):
+        of_this = sorted((row for row in rows if row["reynolds_number"] == reynolds), key=lambda row: row["friction"])
+        points(axes, of_this, "friction", fmt="o-", color=colour, mfc="none", label=f"Re$_*$ {reynolds:g}")
+        if not of_this:
+            continue
+        axes.axhline(DISKS_FACTOR * plateau, color=colour, lw=0.8, ls=":")
+        least = min(row["shields_number"] for row in of_this)
+        most = max(row["shields_number"] for row in of_this)
+        good = most <= FRICTION_ACCEPTED * least
+        report.passed = report.passed and good
+        print(f"disks, Re_* {reynolds:g}: {least:.3f} to {most:.3f} with friction, {100 * (most / least - 1):.0f} % "
+              f"(paper: less than 50 %; twice the value of spheres: {DISKS_FACTOR * plateau:.2f})   "
+              f"{'pass' if good else 'FAIL'}")
+    axes.set(xscale="log", xlabel="friction coefficient", ylim=(0.0, None), title="disks (dotted: twice the plateaus)")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--figure", default="thresholds.png")
+    arguments = parser.parse_args()
+    figure, axes = plt.subplots(1, 3, figsize=(12, 4), layout="constrained")
+    report = Report()
+    without = shields_curve(axes[0], report)
+    lift(axes[1], report, without)
+    friction(axes[2], report, without)
+    for panel in axes:
+        panel.grid(color="#e5e8ea", linewidth=0.8)
+        if panel.get_legend_handles_labels()[0]:
+            panel.legend(fontsize=8)
+    figure.savefig(arguments.figure, dpi=110)
+    print(arguments.figure)
+    return 0 if report.passed else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
