@@ -17,6 +17,7 @@
 
 #include "core/periodic_box.hpp"
 #include "core/shape.hpp"
+#include "core/sphere.hpp"
 #include "lbm/fluid.hpp"
 #include "lbm/link_crossings.hpp"
 #include "lbm/link_options.hpp"
@@ -130,7 +131,9 @@ private:
 
   template <typename Rule, Extra extra>
   void apply_links(int tile);
-  void measure_densities(int tile);
+  void measure_cells(int tile);
+  template <bool momentum_too>
+  void measure_rows(int tile);
   void prepare(Batch& batch, const LinkTable::Tile& tile, int plane, std::int32_t body, std::uint32_t first,
                int count) const;
   template <typename Rule, Extra extra>
@@ -138,7 +141,7 @@ private:
   template <typename Rule>
   void gather(const Batch& batch);
   void look_at_covered(const Batch& batch, int covered);
-  void find_normals(const Batch& batch, int covered);
+  void let_gaps_flow(const Batch& batch, int covered);
   void look_upstream(const Batch& batch);
   void subtract_rest(const Batch& batch);
   template <typename Rule, Extra extra>
@@ -165,9 +168,9 @@ private:
   Real* base_ = nullptr;
   const Real* sent_[D3Q19::directions];  // f_i^c of the cell with index 0
 
-  // rho - 1 of the cells of two neighbouring planes, even z and odd z.
-  std::vector<Real> deviations_[2];
-  const Real* deviation_ = nullptr;  // of the present plane
+  // rho - 1 of the cells of two neighbouring planes, even z and odd z, and where gaps flow sum c_i f_i^c.
+  std::vector<Real> deviations_[2], momenta_[2][3];
+  int parity_ = 0;  // of the present plane
 
   Batch batches_[2];
   Values values_;

@@ -35,7 +35,11 @@ LinkPass<Real, S>::LinkPass(Fluid<Real>& fluid, const LinkTable& links, const Pe
       gaps_(has_normals && options.gaps == GapRule::slip ? gap_flow(fluid.parameters()) : GapFlow{}) {
   std::copy_n(fluid.parameters().force, 3, force_);
   Populations<Real>& populations = fluid.populations();
-  for (auto& plane : deviations_) plane.resize(static_cast<std::size_t>(populations.indexing().plane_stride()));
+  const auto plane = static_cast<std::size_t>(populations.indexing().plane_stride());
+  for (const int parity : {0, 1}) {
+    deviations_[parity].resize(plane);
+    for (std::vector<Real>& component : momenta_[parity]) component.resize(gaps_.kept < 1.0 ? plane : 0);
+  }
   for (int i = 0; i < D3Q19::directions; ++i) sent_[i] = &populations.post_collision(i, 0);
   slots_ = LinkSlots(populations);
   base_ = populations.plane(LinkSlots::middle);
@@ -63,9 +67,9 @@ void LinkPass<Real, S>::apply_links(int tile) {
   // One plane ahead, because links reach for slots in the next plane: the straight pass for the densities brings them
   // into the cache at the speed of memory.
   const int z = tiles_.plane_of(tile);
-  if (z == 0) measure_densities(tile);
-  if (z + 1 < tiles_.planes()) measure_densities(tile + 1);
-  deviation_ = deviations_[z % 2].data();
+  if (z == 0) measure_cells(tile);
+  if (z + 1 < tiles_.planes()) measure_cells(tile + 1);
+  parity_ = z % 2;
 
   const LinkTable::Tile& t = links_.tiles()[tile];
   const std::vector<LinkTable::Run>& runs = links_.runs_in_order(tile);
@@ -84,13 +88,19 @@ void LinkPass<Real, S>::apply_links(int tile) {
   finish<Rule, extra>(batches_[turn ^ 1]);
 }
 
-// Links never change a density: they write incoming slots of fluid cells, which hold no post-collision population of a
-// fluid cell.
+// Links never change what is measured: they write incoming slots of fluid cells, which hold no post-collision
+// population of a fluid cell.
 template <typename Real, LinkShape S>
-void LinkPass<Real, S>::measure_densities(int tile) {
+void LinkPass<Real, S>::measure_cells(int tile) {
+  if (links_.tiles()[tile].live == 0) return;
+  gaps_.kept < 1.0 ? measure_rows<true>(tile) : measure_rows<false>(tile);
+}
+
+template <typename Real, LinkShape S>
+template <bool momentum_too>
+void LinkPass<Real, S>::measure_rows(int tile) {
   constexpr std::ptrdiff_t width = Pack::size(), ahead = prefetch_bytes / static_cast<std::ptrdiff_t>(sizeof(Real));
   const CellIndexing& indexing = cells_.indexing();
-  if (links_.tiles()[tile].live == 0) return;
   const int z = tiles_.plane_of(tile), block = tiles_.block_of(tile);
   const std::ptrdiff_t start = (z + 1) * indexing.plane_stride();
   for (int y = tiles_.first_row(block); y < tiles_.end_row(block); ++y) {
@@ -98,12 +108,19 @@ void LinkPass<Real, S>::measure_densities(int tile) {
     for (int p = 0; p < indexing.packs_per_row(); ++p) {
       if (fluid[p] == 0) continue;
       const std::ptrdiff_t cell = indexing.index(0, y, z) + p * width;
-      Pack sum = 0;
-      for (int i = 0; i < D3Q19::directions; ++i) {
+      Pack sum = 0, momentum[3] = {0, 0, 0};
+      for_each_direction([&]<int i>() __attribute__((always_inline)) {
         __builtin_prefetch(sent_[i] + cell + ahead, 1);
-        sum += Pack(sent_[i] + cell, stdx::element_aligned);
-      }
+        const Pack f(sent_[i] + cell, stdx::element_aligned);
+        sum += f;
+        if constexpr (momentum_too)
+          for (int a = 0; a < 3; ++a)
+            if (D3Q19::c[i][a] != 0) momentum[a] += D3Q19::c[i][a] > 0 ? f : -f;
+      });
       sum.copy_to(deviations_[z % 2].data() + (cell - start), stdx::element_aligned);
+      if constexpr (momentum_too)
+        for (int a = 0; a < 3; ++a)
+          momentum[a].copy_to(momenta_[z % 2][a].data() + (cell - start), stdx::element_aligned);
     }
   }
 }
@@ -133,6 +150,8 @@ void LinkPass<Real, S>::prepare(Batch& b, const LinkTable::Tile& tile, int plane
     __builtin_prefetch(base_ + b.incident_at[k], 0);
     __builtin_prefetch(base_ + b.second_at[k], 0);
     __builtin_prefetch(base_ + b.reflected_at[k], 1);
+    // Of a link without a covered cell the first body, which is always there.
+    __builtin_prefetch(&bodies_[b.tag[k] >> LinkTag::body_shift].centre, 0);
   }
 }
 
@@ -153,9 +172,10 @@ template <typename Real, LinkShape S>
 template <typename Rule>
 void LinkPass<Real, S>::gather(const Batch& b) {
   const int wanted_at_any_distance = gaps_.kept < 1.0 ? 1 : 0;
+  const Real* deviation = deviations_[parity_].data();
   int covered = 0;
   for (int k = 0; k < b.count; ++k) {
-    values_.deviation[k] = deviation_[b.cell[k]];
+    values_.deviation[k] = deviation[b.cell[k]];
     values_.incident[k] = base_[b.incident_at[k]];
     values_.second[k] = base_[b.second_at[k]];
     covered_[covered] = k;
@@ -185,45 +205,49 @@ void LinkPass<Real, S>::subtract_rest(const Batch& b) {
 
 template <typename Real, LinkShape S>
 void LinkPass<Real, S>::look_at_covered(const Batch& b, int covered) {
-  upstream_.clear();
-  std::int32_t last = -1;  // links of one covering body follow each other
-  Vec3 apart;
+  const auto other_of = [&](int c) { return b.tag[covered_[c]] >> LinkTag::body_shift; };
+  for (int first = 0, end = 0; first < covered; first = end) {
+    const std::uint32_t slot = other_of(first);
+    for (end = first + 1; end < covered && other_of(end) == slot;) ++end;
+    const LinkBody& other = bodies_[slot];
+    upstream_.take_other(first, end, other, box_.difference(b.body->centre, other.centre));
+  }
+  upstream_.take_links(covered_, covered, b.tag, values_.deviation, b.distance, b.arm);
+  if (slips_) let_gaps_flow(b, covered);
+  upstream_.find_populations(options_.rest_gradient);
   for (int c = 0; c < covered; ++c) {
     const int k = covered_[c];
-    const auto slot = static_cast<std::int32_t>(b.tag[k] >> LinkTag::body_shift);
-    const LinkBody& other = bodies_[static_cast<std::size_t>(slot)];
-    if (slot != last) apart = box_.difference(b.body->centre, other.centre);
-    last = slot;
-    const auto arm = [&](int axis) { return static_cast<double>(b.arm[axis][k]); };
-    upstream_.add(b.tag[k], b.cell[k], static_cast<double>(values_.deviation[k]), static_cast<double>(b.distance[k]),
-                  {arm(0), arm(1), arm(2)}, other, apart);
+    // Without a branch: which it is cannot be foreseen.
+    const Real either[2] = {values_.second[k], static_cast<Real>(upstream_.population(c))};
+    values_.second[k] = either[static_cast<int>(b.distance[k] < Real(0.5))];
   }
-  if (slips_) {
-    find_normals(b, covered);
-    const Real* sent[D3Q19::directions];
-    for (int i = 0; i < D3Q19::directions; ++i) sent[i] = sent_[i] + (b.plane + 1) * cells_.indexing().plane_stride();
-    upstream_.let_flow(sent, force_, gaps_, *b.body);
-    std::fill_n(values_.slip, padded(b.count), Real(0));
-    std::fill_n(values_.odd_change, padded(b.count), Real(0));
-    for (int c = 0; c < covered; ++c) {
-      values_.slip[covered_[c]] = static_cast<Real>(upstream_.slip_along(c));
-      values_.odd_change[covered_[c]] = static_cast<Real>(upstream_.odd_change(c));
-    }
-  }
-  upstream_.find_populations(options_.rest_gradient);
-  for (int c = 0; c < covered; ++c)
-    if (b.distance[covered_[c]] < Real(0.5)) values_.second[covered_[c]] = static_cast<Real>(upstream_.population(c));
 }
 
-// At x_f, of the body that the links run into and of those behind them.
 template <typename Real, LinkShape S>
-void LinkPass<Real, S>::find_normals(const Batch& b, int covered) {
-  if constexpr (Shape<S>) {
+void LinkPass<Real, S>::let_gaps_flow(const Batch& b, int covered) {
+  if constexpr (std::same_as<S, Sphere>) {
+    upstream_.set_radial_normals();
+  } else if constexpr (Shape<S>) {
     const S& own = shapes_[static_cast<std::size_t>(b.body - bodies_.data())];
     for (int c = 0; c < covered; ++c) {
       const S& other = shapes_[b.tag[covered_[c]] >> LinkTag::body_shift];
       upstream_.set_normals(c, own.outward(upstream_.from_own(c)), other.outward(upstream_.from_other(c)));
     }
+  }
+  const std::vector<Real>(&momentum)[3] = momenta_[parity_];
+  for (int c = 0; c < covered; ++c) {
+    const int k = covered_[c];
+    const auto cell = static_cast<std::size_t>(b.cell[k]);
+    const Vec3 flow(momentum[0][cell], momentum[1][cell], momentum[2][cell]);
+    const Real back = base_[slots_.one_back(b.reflected_at[k], b.tag[k])];
+    upstream_.set_flow(c, flow, 0.5 * (static_cast<double>(values_.incident[k]) - static_cast<double>(back)));
+  }
+  upstream_.let_flow(force_, gaps_, *b.body);
+  std::fill_n(values_.slip, padded(b.count), Real(0));
+  std::fill_n(values_.odd_change, padded(b.count), Real(0));
+  for (int c = 0; c < covered; ++c) {
+    values_.slip[covered_[c]] = static_cast<Real>(upstream_.slip_along(c));
+    values_.odd_change[covered_[c]] = static_cast<Real>(upstream_.odd_change(c));
   }
 }
 

@@ -6,6 +6,8 @@
 
 #include "core/types.hpp"
 
+#include <utility>
+
 namespace thalweg::lbm {
 
 struct D3Q19 {
@@ -35,5 +37,16 @@ struct D3Q19 {
     return index_of(axis == 0 ? -c[i][0] : c[i][0], axis == 1 ? -c[i][1] : c[i][1], axis == 2 ? -c[i][2] : c[i][2]);
   }
 };
+
+// Calls visit.operator()<i>() for every direction: a loop the compiler cannot leave rolled up, or it would keep the
+// populations in memory instead of in registers.
+template <typename Visit, int... i>
+[[gnu::always_inline]] inline void unrolled(std::integer_sequence<int, i...>, Visit visit) {
+  (visit.template operator()<i>(), ...);
+}
+template <typename Visit>
+[[gnu::always_inline]] inline void for_each_direction(Visit visit) {
+  unrolled(std::make_integer_sequence<int, D3Q19::directions>(), visit);
+}
 
 }  // namespace thalweg::lbm

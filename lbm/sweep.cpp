@@ -49,17 +49,6 @@ struct RowSegment {
   Pack<Real> xx[packs], yy[packs], zz[packs], xy[packs], xz[packs], yz[packs], bulk[packs];
 };
 
-// Calls visit.operator()<i>() for every direction: a loop the compiler cannot leave rolled up, or it would keep the
-// populations in memory instead of in registers.
-template <typename Visit, int... i>
-[[gnu::always_inline]] inline void unrolled(std::integer_sequence<int, i...>, Visit visit) {
-  (visit.template operator()<i>(), ...);
-}
-template <typename Visit>
-[[gnu::always_inline]] inline void for_each_direction(Visit visit) {
-  unrolled(std::make_integer_sequence<int, D3Q19::directions>(), visit);
-}
-
 template <typename Real>
 [[gnu::always_inline]] inline void load(Pack<Real> (&f)[D3Q19::directions], const Streams<Real>& streams,
                                         std::ptrdiff_t cell) {

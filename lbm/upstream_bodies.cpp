@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <experimental/simd>
 
 namespace thalweg::lbm {
 
@@ -12,20 +13,31 @@ GapFlow gap_flow(const CollisionParameters& collision) {
   return {std::min(1.0, (1.0 - k) / (k - 1.0 + rate)), 0.0};
 }
 
-void UpstreamBodies::add(std::uint32_t tag, std::int32_t cell, double deviation, double distance, const Vec3& arm,
-                         const LinkBody& other, const Vec3& apart) {
-  const int k = count_++;
-  tag_[k] = tag;
-  cell_[k] = cell;
-  deviation_[k] = deviation;
-  distance_[k] = distance;
-  for (int a = 0; a < 3; ++a) {
-    own_arm_[a][k] = arm[a];
-    arm_[a][k] = apart[a] + arm[a];
-    velocity_[a][k] = other.velocity[a];
-    spin_[a][k] = other.angular_velocity[a];
-    slip_[a][k] = 0.0;
-  }
+void UpstreamBodies::take_other(int first, int end, const LinkBody& other, const Vec3& apart) {
+  using Wide = std::experimental::native_simd<double>;
+  static_assert(Wide::size() <= length - capacity);
+  const auto fill = [first, end](const Vec3& value, double(&to)[3][length]) {
+    for (int a = 0; a < 3; ++a)
+      for (int k = first; k < end; k += static_cast<int>(Wide::size()))
+        Wide(value[a]).copy_to(to[a] + k, std::experimental::element_aligned);
+  };
+  fill(apart, apart_);
+  fill(other.velocity, velocity_);
+  fill(other.angular_velocity, spin_);
+}
+
+template <typename Real>
+void UpstreamBodies::take_links(const int* chosen, int count, const std::uint32_t* tag, const Real* deviation,
+                                const Real* distance, const Real (&arm)[3][capacity]) {
+  count_ = count;
+  for (int k = 0; k < count; ++k) tag_[k] = tag[chosen[k]];
+  for (int k = 0; k < count; ++k) deviation_[k] = static_cast<double>(deviation[chosen[k]]);
+  for (int k = 0; k < count; ++k) distance_[k] = static_cast<double>(distance[chosen[k]]);
+  for (int a = 0; a < 3; ++a)
+    for (int k = 0; k < count; ++k) {
+      own_arm_[a][k] = static_cast<double>(arm[a][chosen[k]]);
+      arm_[a][k] = apart_[a][k] + own_arm_[a][k];
+    }
 }
 
 void UpstreamBodies::set_normals(int link, const Vec3& own, const Vec3& other) {
@@ -35,57 +47,53 @@ void UpstreamBodies::set_normals(int link, const Vec3& own, const Vec3& other) {
   }
 }
 
-// Direction by direction, so that the inner loop gathers from one plane of memory.
-template <typename Real>
-void UpstreamBodies::measure_velocity(const Real* const (&sent)[D3Q19::directions], const double (&force)[3]) {
-  const int n = count_;
-  for (int a = 0; a < 3; ++a) std::fill_n(fluid_velocity_[a], n, -0.5 * force[a]);
-  for (int i = 1; i < D3Q19::directions; ++i)
-    for (int k = 0; k < n; ++k) {
-      const auto f = static_cast<double>(sent[i][cell_[k]]);
-      for (int a = 0; a < 3; ++a) fluid_velocity_[a][k] += D3Q19::c[i][a] * f;
+void UpstreamBodies::set_radial_normals() {
+  for (int a = 0; a < 3; ++a)
+    for (int k = 0; k < padded(count_); ++k) {
+      const double back = distance_[k] * LinkTag::velocity(static_cast<int>(tag_[k]), a);
+      own_normal_[a][k] = own_arm_[a][k] - back;
+      normal_[a][k] = arm_[a][k] - back;
     }
-  for (double(&component)[capacity] : fluid_velocity_)
-    for (int k = 0; k < n; ++k) component[k] /= 1.0 + deviation_[k];
 }
 
-template <typename Real>
-void UpstreamBodies::let_flow(const Real* const (&sent)[D3Q19::directions], const double (&force)[3],
-                              const GapFlow& flow, const LinkBody& own) {
-  measure_velocity(sent, force);
-  const Vec3 &v = own.velocity, &w = own.angular_velocity;
-  for (int k = 0; k < count_; ++k) {
-    const int tag = static_cast<int>(tag_[k]);
-    const double cx = LinkTag::velocity(tag, 0), cy = LinkTag::velocity(tag, 1), cz = LinkTag::velocity(tag, 2);
-    const double x1[3] = {own_arm_[0][k] - distance_[k] * cx, own_arm_[1][k] - distance_[k] * cy,
-                          own_arm_[2][k] - distance_[k] * cz};
-    const double x2[3] = {arm_[0][k] - distance_[k] * cx, arm_[1][k] - distance_[k] * cy,
-                          arm_[2][k] - distance_[k] * cz};
-    const double n1[3] = {own_normal_[0][k], own_normal_[1][k], own_normal_[2][k]};
-    const double n2[3] = {normal_[0][k], normal_[1][k], normal_[2][k]};
-    const double to_1 = 1.0 / std::sqrt(n1[0] * n1[0] + n1[1] * n1[1] + n1[2] * n1[2]),
-                 to_2 = 1.0 / std::sqrt(n2[0] * n2[0] + n2[1] * n2[1] + n2[2] * n2[2]);
-    const double mx = to_1 * n1[0] - to_2 * n2[0], my = to_1 * n1[1] - to_2 * n2[1], mz = to_1 * n1[2] - to_2 * n2[2];
-    const double u2x = velocity_[0][k] + (spin_[1][k] * x2[2] - spin_[2][k] * x2[1]),
-                 u2y = velocity_[1][k] + (spin_[2][k] * x2[0] - spin_[0][k] * x2[2]),
-                 u2z = velocity_[2][k] + (spin_[0][k] * x2[1] - spin_[1][k] * x2[0]);
-    const double wx = 0.5 * ((v.x() + (w.y() * x1[2] - w.z() * x1[1])) + u2x),
-                 wy = 0.5 * ((v.y() + (w.z() * x1[0] - w.x() * x1[2])) + u2y),
-                 wz = 0.5 * ((v.z() + (w.x() * x1[1] - w.y() * x1[0])) + u2z);
-    const double vx = fluid_velocity_[0][k] - wx, vy = fluid_velocity_[1][k] - wy, vz = fluid_velocity_[2][k] - wz;
-    // The link enters one body and leaves the other, so m is not zero.
-    const double across = (vx * mx + vy * my + vz * mz) / (mx * mx + my * my + mz * mz);
-    slip_[0][k] = flow.slip * (vx - across * mx);
-    slip_[1][k] = flow.slip * (vy - across * my);
-    slip_[2][k] = flow.slip * (vz - across * mz);
-    slip_along_[k] = cx * slip_[0][k] + cy * slip_[1][k] + cz * slip_[2][k];
-    const double weight = (3.0 - (cx * cx + cy * cy + cz * cz)) * (1.0 / 36.0);
-    const double at_rest = 3.0 * weight * (1.0 + deviation_[k]) * (cx * wx + cy * wy + cz * wz + slip_along_[k]);
-    const int i = tag & static_cast<int>(LinkTag::direction_mask);
-    const double odd =
-        0.5 * (static_cast<double>(sent[i][cell_[k]]) - static_cast<double>(sent[D3Q19::opposite(i)][cell_[k]]));
-    odd_change_[k] = (1.0 - flow.kept) * (at_rest - odd);
-  }
+void UpstreamBodies::let_flow(const double (&force)[3], const GapFlow& flow, const LinkBody& own) {
+  const double v0x = own.velocity.x(), v0y = own.velocity.y(), v0z = own.velocity.z();
+  const double w0x = own.angular_velocity.x(), w0y = own.angular_velocity.y(), w0z = own.angular_velocity.z();
+  const double fx = 0.5 * force[0], fy = 0.5 * force[1], fz = 0.5 * force[2];
+  const double slip = flow.slip, changed = 1.0 - flow.kept;
+  const int n = padded(count_);
+  for (int first = 0; first < n; first += links_at_a_time)
+    for (int k = first; k < first + links_at_a_time; ++k) {
+      const int tag = static_cast<int>(tag_[k]);
+      const double cx = LinkTag::velocity(tag, 0), cy = LinkTag::velocity(tag, 1), cz = LinkTag::velocity(tag, 2);
+      const double d = distance_[k];
+      const double x1 = own_arm_[0][k] - d * cx, y1 = own_arm_[1][k] - d * cy, z1 = own_arm_[2][k] - d * cz;
+      const double x2 = arm_[0][k] - d * cx, y2 = arm_[1][k] - d * cy, z2 = arm_[2][k] - d * cz;
+      const double n1x = own_normal_[0][k], n1y = own_normal_[1][k], n1z = own_normal_[2][k];
+      const double n2x = normal_[0][k], n2y = normal_[1][k], n2z = normal_[2][k];
+      const double to_1 = 1.0 / std::sqrt(n1x * n1x + n1y * n1y + n1z * n1z);
+      const double to_2 = 1.0 / std::sqrt(n2x * n2x + n2y * n2y + n2z * n2z);
+      const double mx = to_1 * n1x - to_2 * n2x, my = to_1 * n1y - to_2 * n2y, mz = to_1 * n1z - to_2 * n2z;
+      const double u1x = v0x + (w0y * z1 - w0z * y1), u1y = v0y + (w0z * x1 - w0x * z1),
+                   u1z = v0z + (w0x * y1 - w0y * x1);
+      const double u2x = velocity_[0][k] + (spin_[1][k] * z2 - spin_[2][k] * y2),
+                   u2y = velocity_[1][k] + (spin_[2][k] * x2 - spin_[0][k] * z2),
+                   u2z = velocity_[2][k] + (spin_[0][k] * y2 - spin_[1][k] * x2);
+      const double wx = 0.5 * (u1x + u2x), wy = 0.5 * (u1y + u2y), wz = 0.5 * (u1z + u2z);
+      const double density = 1.0 + deviation_[k];
+      const double vx = (momentum_[0][k] - fx) / density - wx, vy = (momentum_[1][k] - fy) / density - wy,
+                   vz = (momentum_[2][k] - fz) / density - wz;
+      // The link enters one body and leaves the other, so m is not zero.
+      const double across = (vx * mx + vy * my + vz * mz) / (mx * mx + my * my + mz * mz);
+      const double sx = slip * (vx - across * mx), sy = slip * (vy - across * my), sz = slip * (vz - across * mz);
+      slip_[0][k] = sx;
+      slip_[1][k] = sy;
+      slip_[2][k] = sz;
+      const double along = cx * sx + cy * sy + cz * sz;
+      slip_along_[k] = along;
+      const double weight = (3.0 - (cx * cx + cy * cy + cz * cz)) * (1.0 / 36.0);
+      odd_change_[k] = changed * (3.0 * weight * density * (cx * wx + cy * wy + cz * wz + along) - odd_[k]);
+    }
 }
 
 void UpstreamBodies::find_populations(const Vec3& rest_gradient) {
@@ -107,9 +115,9 @@ void UpstreamBodies::find_populations(const Vec3& rest_gradient) {
     }
 }
 
-template void UpstreamBodies::let_flow(const float* const (&)[D3Q19::directions], const double (&)[3], const GapFlow&,
-                                       const LinkBody&);
-template void UpstreamBodies::let_flow(const double* const (&)[D3Q19::directions], const double (&)[3], const GapFlow&,
-                                       const LinkBody&);
+template void UpstreamBodies::take_links(const int*, int, const std::uint32_t*, const float*, const float*,
+                                         const float (&)[3][capacity]);
+template void UpstreamBodies::take_links(const int*, int, const std::uint32_t*, const double*, const double*,
+                                         const double (&)[3][capacity]);
 
 }  // namespace thalweg::lbm

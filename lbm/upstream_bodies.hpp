@@ -36,29 +36,40 @@ GapFlow gap_flow(const CollisionParameters& collision);
 
 // Arrays of doubles, whatever the precision of the populations: the arithmetic is the same for every link whatever its
 // place in the batch.
+//
+// With gaps that flow a link also has what the fluid does at x_f, and the normals of both bodies.
 class UpstreamBodies {
 public:
   static constexpr int capacity = 128;
 
-  void clear() { count_ = 0; }
   int count() const { return count_; }
 
-  // A link with delta = distance and the arm from its own body's centre, deviation = rho - 1 at x_f, and cell, the
-  // index of x_f within its plane. apart: from the centre of `other`, which covers x_ff, to that of the own body.
-  void add(std::uint32_t tag, std::int32_t cell, double deviation, double distance, const Vec3& arm,
-           const LinkBody& other, const Vec3& apart);
+  // What covers x_ff of the links [first, end). apart: from the centre of `other` to that of the own body. In rising
+  // order, before take_links().
+  void take_other(int first, int end, const LinkBody& other, const Vec3& apart);
+
+  // Of a batch of links to one own body, those whose numbers are in `chosen`: delta, the arm from the own body's
+  // centre, and rho - 1 at x_f.
+  template <typename Real>
+  void take_links(const int* chosen, int count, const std::uint32_t* tag, const Real* deviation, const Real* distance,
+                  const Real (&arm)[3][capacity]);
+
+  // momentum: sum c_i f_i^c at x_f; odd: o there.
+  void set_flow(int link, const Vec3& momentum, double odd) {
+    for (int a = 0; a < 3; ++a) momentum_[a][link] = momentum[a];
+    odd_[link] = odd;
+  }
 
   // x_f of a link from the centres of the own body and of the other, and the outward normals of both there, of any
   // length.
   Vec3 from_own(int link) const { return before_arm(own_arm_, link); }
   Vec3 from_other(int link) const { return before_arm(arm_, link); }
   void set_normals(int link, const Vec3& own, const Vec3& other);
+  void set_radial_normals();  // of all links, between spheres
 
-  // Lets the fluid flow between `own`, to which all links belong, and the bodies behind; normals must be set. sent:
-  // f_i^c of the cell with index 0 within the plane, for every i; force: on the fluid, of which f^c has half too much.
-  template <typename Real>
-  void let_flow(const Real* const (&sent)[D3Q19::directions], const double (&force)[3], const GapFlow& flow,
-                const LinkBody& own);
+  // Lets the fluid flow between `own`, to which all links belong, and the bodies behind. force: on the fluid, of which
+  // f^c has half too much.
+  void let_flow(const double (&force)[3], const GapFlow& flow, const LinkBody& own);
 
   // The equilibrium at x_ff: density as at x_f, velocity that of the covering body, and the slip. With a hydrostatic
   // gradient c_i.gradient = 3 c_i.F: the density a cell further out, and 3/2 w_i c_i.F.
@@ -69,25 +80,24 @@ public:
   double odd_change(int link) const { return odd_change_[link]; }  // of o
 
 private:
-  Vec3 before_arm(const double (&arm)[3][capacity], int link) const {
+  static constexpr int length = capacity + 8;  // whole vectors are written, beyond the last link too
+
+  Vec3 before_arm(const double (&arm)[3][length], int link) const {
     Vec3 from;
     for (int a = 0; a < 3; ++a)
       from[a] = arm[a][link] - distance_[link] * LinkTag::velocity(static_cast<int>(tag_[link]), a);
     return from;
   }
-  template <typename Real>
-  void measure_velocity(const Real* const (&sent)[D3Q19::directions], const double (&force)[3]);
 
   int count_ = 0;
-  std::uint32_t tag_[capacity] = {};
-  std::int32_t cell_[capacity] = {};
-  // The crossing from both centres, and the other's motion.
-  alignas(64) double distance_[capacity] = {}, own_arm_[3][capacity] = {};
-  alignas(64) double arm_[3][capacity] = {}, velocity_[3][capacity] = {}, spin_[3][capacity] = {};
-  alignas(64) double deviation_[capacity] = {}, fluid_velocity_[3][capacity] = {};
-  alignas(64) double own_normal_[3][capacity] = {}, normal_[3][capacity] = {};
-  alignas(64) double slip_[3][capacity] = {}, slip_along_[capacity] = {}, odd_change_[capacity] = {},
-                     population_[capacity] = {};
+  std::uint32_t tag_[length] = {};
+  // The crossing from both centres, and the other's place and motion.
+  alignas(64) double distance_[length] = {}, own_arm_[3][length] = {}, arm_[3][length] = {};
+  alignas(64) double apart_[3][length] = {}, velocity_[3][length] = {}, spin_[3][length] = {};
+  alignas(64) double deviation_[length] = {}, momentum_[3][length] = {}, odd_[length] = {};
+  alignas(64) double own_normal_[3][length] = {}, normal_[3][length] = {};
+  alignas(64) double slip_[3][length] = {}, slip_along_[length] = {}, odd_change_[length] = {},
+                     population_[length] = {};
 };
 
 }  // namespace thalweg::lbm

@@ -1,6 +1,7 @@
 // Speed of the whole coupled step on a settled bed under flowing water, everything included.
 //
 //   mpirun -n 2 coupled_bed [--box bed|box|flume|quickstart] [--steps N] [--flow N] [--storage single|double]
+//                                 [--narrow-gaps no_slip|slip]
 //
 // bed: 240 x 80 x 200 cells and 2884 grains of 10 cells; box: 160 x 160 x 128 cells and 2250 grains of 10 cells; flume:
 // 147 x 13 x 184 cells and 969 grains of 6.13 cells between law-of-the-wall sides; quickstart: that case, 72 x 13 x 90
@@ -120,8 +121,10 @@ lbm::FaceConditions faces_of(const Box& box) {
 
 template <typename Real>
 std::unique_ptr<coupling::ResolvedSystem<Real>> flowing_bed(const Box& box, const Decomposition& decomposition,
-                                                            const std::vector<dem::GrainSeed>& seeds) {
+                                                            const std::vector<dem::GrainSeed>& seeds,
+                                                            lbm::GapRule gaps) {
   coupling::ResolvedParameters p;
+  p.links.gaps = gaps;
   p.units = {box.spacing, box.time_step, water};
   p.collision = collision_of(box);
   p.faces = faces_of(box);
@@ -159,10 +162,10 @@ double pure_sweep(const Box& box, const Decomposition& decomposition, int steps)
 
 template <typename Real>
 void measure(const Box& box, const Decomposition& decomposition, const std::vector<dem::GrainSeed>& seeds, int steps,
-             int flow, io::JsonObject& json) {
+             int flow, lbm::GapRule gaps, io::JsonObject& json) {
   const bool first_rank = rank_of(MPI_COMM_WORLD) == 0;
   const std::string storage = sizeof(Real) == 4 ? "single" : "double";
-  const auto system = flowing_bed<Real>(box, decomposition, seeds);
+  const auto system = flowing_bed<Real>(box, decomposition, seeds, gaps);
   for (int k = 0; k < flow; ++k) system->advance();
   system->timer().reset();
   double best = 1e9;
@@ -216,7 +219,11 @@ int main(int argc, char** argv) {
   app.add_option("--storage", storage, "single or double; both if not given")
       ->check(CLI::IsMember({"single", "double"}));
   app.add_option("--flow", flow, "steps of flow before the timing")->check(CLI::NonNegativeNumber);
+  std::string gap_rule = "no_slip";
+  app.add_option("--narrow-gaps", gap_rule, "no_slip or slip: gaps of one cell between grains")
+      ->check(CLI::IsMember({"no_slip", "slip"}));
   CLI11_PARSE(app, argc, argv);
+  const lbm::GapRule gaps = gap_rule == "slip" ? lbm::GapRule::slip : lbm::GapRule::no_slip;
   steps = std::max(2, steps / 2 * 2);
   const Box& box = *std::find_if(boxes.begin(), boxes.end(), [&](const Box& b) { return b.name == name; });
   const Index3 layout = Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD));
@@ -227,8 +234,11 @@ int main(int argc, char** argv) {
     fmt::print("{} grains settled in {:.1f} s; {} ranks, layout {} x {} x {}\n", box.grains, seconds_since(start),
                size_of(MPI_COMM_WORLD), layout[0], layout[1], layout[2]);
   io::JsonObject json;
-  json.set("benchmark", "coupled_bed").set("box", box.name).set("ranks", size_of(MPI_COMM_WORLD));
-  if (storage != "double") measure<float>(box, decomposition, seeds, steps, flow, json);
-  if (storage != "single") measure<double>(box, decomposition, seeds, steps, flow, json);
+  json.set("benchmark", "coupled_bed")
+      .set("box", box.name)
+      .set("narrow_gaps", gap_rule)
+      .set("ranks", size_of(MPI_COMM_WORLD));
+  if (storage != "double") measure<float>(box, decomposition, seeds, steps, flow, gaps, json);
+  if (storage != "single") measure<double>(box, decomposition, seeds, steps, flow, gaps, json);
   if (rank_of(MPI_COMM_WORLD) == 0) fmt::print("{}\n", json.line());
 }
