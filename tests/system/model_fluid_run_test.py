@@ -41,6 +41,30 @@ output: {series: {every: 0.1}, checkpoint: {every: 2, keep: 3}}
         for other in ("on_2", "on_4", "half"):
             self.assert_same_bed("one", other)
 
+    def test_grain_units_and_si_are_the_same_motion(self):
+        diameter, density, fluid, gravity = 5e-3, 2550.0, 1000.0, 9.81
+        reduced = gravity * (1.0 - fluid / density)
+        mass = density * numpy.pi / 6.0 * diameter**3 * 0.5 * ((12 / 11)**3 + (10 / 11)**3)
+        second, stiffness = numpy.sqrt(diameter / reduced), mass * reduced / diameter
+        in_si = self.CASE.replace("units: grain", f"units: si, fluid_density: {fluid}").replace(
+            "size: [6, 4, 16]", f"size: [{6 * diameter}, {4 * diameter}, {16 * diameter}]").replace(
+            "spacing: 1\n", f"spacing: {diameter}\n").replace(
+            "{magnitude: 1}", f"{{magnitude: {gravity}}}").replace(
+            "1.0909090909090908", repr(12 / 11 * diameter)).replace("0.9090909090909091", repr(10 / 11 * diameter)).replace(
+            "1.8636530433018714", repr(density)).replace(
+            "normal_stiffness: 5000, tangential_stiffness: 1667",
+            f"normal_stiffness: {5000 * stiffness!r}, tangential_stiffness: {1667 * stiffness!r}").replace(
+            "until: 4, time_step: 7.8e-4", f"until: {4 * second!r}, time_step: {7.8e-4 * second!r}").replace(
+            "every: 0.1}", f"every: {0.1 * second!r}}}").replace("every: 2,", f"every: {2 * second!r},")
+        (self.folder / "si.yaml").write_text(in_si)
+        self.run_well("run", self.case, "--out", "grain")
+        self.run_well("run", self.folder / "si.yaml", "--out", "si")
+        grain, si = self.bed("grain"), self.bed("si")
+        self.assertGreater(abs(grain["velocity"]).max(), 1.0)
+        # They differ by rounding, which collisions enlarge.
+        self.assertLess(abs(si["position"] / diameter - grain["position"]).max(), 1e-8)
+        self.assertLess(abs(si["velocity"] * second / diameter - grain["velocity"]).max(), 1e-7)
+
     def test_grains_that_touch_the_floor_do_not_move_along_it(self):
         self.run_well("run", self.case, "--until", "15", "--out", "run")
         bed = self.bed()
