@@ -94,7 +94,7 @@ std::vector<std::string> info_report(const fs::path& path) {
   else
     lines.push_back("state       still running, or killed without notice");
   if (fs::exists(folder.log(), ignored)) lines.push_back("last line   " + last_line(folder.log()));
-  if (fs::exists(folder.checkpoints() / "latest", ignored))
+  if (folder.has_checkpoint())
     add_checkpoint(folder.latest_checkpoint(), lines);
   else
     lines.push_back("checkpoint  none yet");

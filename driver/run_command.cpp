@@ -33,9 +33,9 @@ namespace fs = std::filesystem;
 
 // Where a run starts and where it writes.
 struct Places {
-  fs::path checkpoint;  // to go on from; empty: from the start
+  std::vector<fs::path> checkpoints;  // to go on from, the best first; none: from the start
   io::RunFolder folder;
-  bool same_folder = false;  // the checkpoint is the folder's own: its series go on
+  bool same_folder = false;  // the checkpoints are the folder's own: its series go on
 };
 
 // The run folder a checkpoint lies in; empty if it lies anywhere else.
@@ -46,29 +46,37 @@ fs::path run_folder_of(const fs::path& checkpoint) {
 }
 
 Places places_of(const Command& command) {
-  fs::path checkpoint, origin;
+  std::vector<fs::path> checkpoints;
+  fs::path origin;
   if (!command.restart.empty()) {
-    checkpoint = io::checkpoint_at(command.restart);
-    origin = run_folder_of(checkpoint);
+    checkpoints = io::checkpoints_at(command.restart);
+    origin = run_folder_of(checkpoints.front());
   }
   fs::path out = command.out;
   if (out.empty()) out = origin.empty() ? fs::path(command.path).parent_path() / "run" : origin;
   std::error_code ignored;
   const bool same = !origin.empty() && fs::equivalent(out, origin, ignored);
-  return {checkpoint, io::RunFolder(out), same};
+  return {checkpoints, io::RunFolder(out), same};
 }
+
+// What a run begins with.
+struct Beginning {
+  fs::path checkpoint;              // empty: from the start
+  std::vector<std::string> damage;  // of checkpoints that were passed over
+};
 
 // Says what is about to run, and measures what the memory of the machine allows.
 void print_header(const Case& c, RunIdentity& identity, const System& system, const Places& places,
-                  MPI_Comm communicator, loop::Log& log) {
+                  const Beginning& beginning, MPI_Comm communicator, loop::Log& log) {
   log.line(fmt::format("Thalweg {}: {}", version_text(), c.name));
   log.line(
       fmt::format("{} on {} rank{}, layout {} x {} x {}; {} grains, {} cells; {:.6g} s a step, {:.0f} steps to {:g} s",
                   identity.system, identity.ranks, identity.ranks == 1 ? "" : "s", identity.layout[0],
                   identity.layout[1], identity.layout[2], system.snapshot().grains.body_count(), system.cells(),
                   system.time_step(), c.run.until / system.time_step(), c.run.until));
-  if (!places.checkpoint.empty())
-    log.line(fmt::format("going on from {} at {:.6g} s", places.checkpoint.string(), system.time()));
+  for (const std::string& damage : beginning.damage) log.line("warning: " + damage);
+  if (!beginning.checkpoint.empty())
+    log.line(fmt::format("going on from {} at {:.6g} s", beginning.checkpoint.string(), system.time()));
   log.line(fmt::format("writing {}", places.folder.path().string()));
   if (!c.grains.empty()) log.line("reference grain: " + reference_text(c));
   if (system.cells() > 0) {
@@ -130,7 +138,7 @@ void set_end(const Case& c, loop::LoopPlan& plan) {
 
 // Which checkpoint a run that has failed can go on from, in a sentence.
 std::string last_good(const Places& places) {
-  fs::path checkpoint = places.checkpoint;
+  fs::path checkpoint = places.checkpoints.empty() ? fs::path() : places.checkpoints.front();
   try {
     checkpoint = places.folder.latest_checkpoint();
   } catch (const InputError&) {  // none has been written in this folder
@@ -156,17 +164,19 @@ void run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   const std::unique_ptr<System> system = build_system(c, communicator, layout);
   Observers observers = make_observers(c.analysis.observers, run_facts(c),
                                        {communicator, *system->snapshot().decomposition, system->time_step()});
-  if (places.checkpoint.empty())
+  Beginning beginning;
+  if (places.checkpoints.empty())
     take_initial_fields(communicator, c, *system);
   else
-    read_checkpoint_file(communicator, places.checkpoint, c, *system, observers);
+    beginning.checkpoint =
+        read_first_whole_checkpoint(communicator, places.checkpoints, c, *system, observers, beginning.damage);
   if (system->time() > c.run.until * (1.0 + 1e-12))
     throw InputError(fmt::format("{} is at {:.6g} s already and the run ends at {:.6g} s: give a later --until.",
-                                 places.checkpoint.string(), system->time(), c.run.until));
+                                 beginning.checkpoint.string(), system->time(), c.run.until));
 
   prepare_folder(places, c, command, communicator, log);
   RunIdentity identity{c.name, name_of(c.system), command.line, c.run.until, layout, size_of(communicator)};
-  print_header(c, identity, *system, places, communicator, log);
+  print_header(c, identity, *system, places, beginning, communicator, log);
   RunOutput output(communicator, c, places.folder, *system, observers,
                    places.same_folder ? std::optional<double>(system->time()) : std::nullopt);
   loop::LoopPlan plan;

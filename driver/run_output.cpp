@@ -39,7 +39,8 @@ void RunOutput::add_to(loop::LoopPlan& plan) {
   plan.series = Schedule(case_.output.series.every, time_step);
   plan.write_row = [this](double time, std::int64_t, const std::vector<Figure>& row) { write_row(time, row); };
   plan.checkpoint = Schedule(case_.output.checkpoint.every, time_step);
-  plan.write_checkpoint = [this] { write_checkpoint(); };
+  plan.checkpoint_wall = case_.output.checkpoint.every_wall;
+  plan.write_checkpoint = [this] { return write_checkpoint(); };
   if (grains_)
     plan.outputs.push_back({"grain output", Schedule(case_.output.grains.every, time_step),
                             [this](const Snapshot& snapshot) { grains_->write(snapshot); }});
@@ -77,17 +78,27 @@ void RunOutput::write_records() {
   for (auto& [observer, file] : records_) file.add(observer->take_records());
 }
 
-void RunOutput::write_checkpoint() {
+std::uint64_t RunOutput::write_checkpoint() {
   write_records();
-  write_checkpoint_file(communicator_, folder_.checkpoint(system_.step()), case_, system_, observers_);
-  on_first_rank(communicator_,
-                [this] { folder_.rotate_checkpoints(system_.step(), static_cast<int>(case_.output.checkpoint.keep)); });
+  const std::filesystem::path path = folder_.checkpoint(system_.step());
+  write_checkpoint_file(communicator_, path, case_, system_, observers_);
+  std::uint64_t bytes = 0;
+  on_first_rank(communicator_, [&] {
+    folder_.rotate_checkpoints(system_.step(), static_cast<int>(case_.output.checkpoint.keep));
+    std::error_code ignored;
+    bytes = std::filesystem::file_size(path, ignored);
+  });
   write_profiles();
+  return bytes;
 }
+
+// Of what a checkpoint contains and how; those without a number were written before 2.
+static constexpr std::int64_t checkpoint_format = 2;
 
 void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c,
                            const System& system, const Observers& observers) {
   io::Hdf5Writer archive(communicator, path);
+  archive.attribute("run/format", checkpoint_format);
   archive.attribute("run/system", std::string(name_of(c.system)));
   archive.attribute("run/name", c.name);
   archive.attribute("run/version", version_number());  // the commit would make equal states differ
@@ -128,12 +139,34 @@ void read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& pa
   io::Hdf5Reader archive(communicator, path);
   if (!archive.has("run/system"))
     throw InputError(fmt::format("{} is an HDF5 file but not a checkpoint of this program.", path.string()));
+  if (const std::int64_t format = archive.has("run/format") ? archive.integer_attribute("run/format") : 1;
+      format > checkpoint_format)
+    throw InputError(fmt::format(
+        "{} was written by version {} in format {}, and this is version {}, which reads formats up to {}; go "
+        "on with that version.",
+        path.string(), archive.text_attribute("run/version"), format, version_number(), checkpoint_format));
   const std::string saved = archive.text_attribute("run/system");
   if (saved != name_of(c.system))
     throw InputError(fmt::format("{} holds a run with system: {}, but this case has system: {}.", path.string(), saved,
                                  name_of(c.system)));
   system.load(archive);
   for (const auto& observer : observers) observer->load(archive);
+}
+
+std::filesystem::path read_first_whole_checkpoint(MPI_Comm communicator,
+                                                  const std::vector<std::filesystem::path>& checkpoints, const Case& c,
+                                                  System& system, Observers& observers,
+                                                  std::vector<std::string>& damage) {
+  for (const std::filesystem::path& path : checkpoints) {
+    try {
+      read_checkpoint_file(communicator, path, c, system, observers);
+      return path;
+    } catch (const io::DamagedFile& error) {
+      if (path == checkpoints.back()) throw;
+      damage.emplace_back(error.what());
+    }
+  }
+  throw InputError("There is no checkpoint to go on from.");
 }
 
 }  // namespace thalweg::driver

@@ -13,9 +13,11 @@
 
 #include <mpi.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace thalweg::driver {
@@ -34,7 +36,7 @@ public:
 
 private:
   void write_row(double time, const std::vector<Figure>& row);
-  void write_checkpoint();
+  std::uint64_t write_checkpoint();  // bytes, on the first rank
   void write_profiles();
   void write_records();
 
@@ -50,8 +52,8 @@ private:
   std::vector<std::pair<analysis::Observer*, io::RecordFile>> records_;
 };
 
-// A checkpoint: what it is (group "run": system, name, version, step, time in s, time_step in s), the system, the
-// observers. Nothing in it tells how many ranks wrote it. Collective; RunError on every rank.
+// A checkpoint: what it is (group "run": format, system, name, version, step, time in s, time_step in s), the system,
+// the observers. Nothing in it tells how many ranks wrote it. Collective; RunError on every rank.
 void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c,
                            const System& system, const Observers& observers);
 
@@ -59,8 +61,15 @@ void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& p
 // fit. Collective.
 void take_initial_fields(MPI_Comm communicator, const Case& c, System& system);
 
-// The state of a checkpoint into a system and observers built from a case. Throws InputError where they do not fit.
+// The state of a checkpoint into a system and observers built from a case. Throws InputError where they do not fit, and
+// io::DamagedFile.
 void read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c, System& system,
                           Observers& observers);
+
+// That of the first one which is not damaged; `damage`, a sentence about each before it, is added to. Returns its path.
+std::filesystem::path read_first_whole_checkpoint(MPI_Comm communicator,
+                                                  const std::vector<std::filesystem::path>& checkpoints, const Case& c,
+                                                  System& system, Observers& observers,
+                                                  std::vector<std::string>& damage);
 
 }  // namespace thalweg::driver

@@ -4,21 +4,52 @@
 
 #include <fmt/format.h>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <sstream>
 
 namespace thalweg::io {
 
-void write_text_atomically(const std::filesystem::path& path, const std::string& text) {
+namespace {
+
+// Returns the name under which the text stands until it is renamed.
+std::filesystem::path write_partial(const std::filesystem::path& path, const std::string& text) {
   std::filesystem::path partial = path;
   partial += ".partial";
   std::ofstream file(partial, std::ios::binary | std::ios::trunc);
   file << text;
   file.close();
   if (!file) throw RunError(fmt::format("{}: cannot write the file: {}.", path.string(), std::strerror(errno)));
-  rename_into_place(partial, path);
+  return partial;
+}
+
+// Of a file or a folder; some file systems cannot wait for a folder.
+bool sync(const std::filesystem::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return false;
+  const bool synced = ::fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP;
+  ::close(file);
+  return synced;
+}
+
+}  // namespace
+
+void write_text_atomically(const std::filesystem::path& path, const std::string& text) {
+  rename_into_place(write_partial(path, text), path);
+}
+
+void write_text_durably(const std::filesystem::path& path, const std::string& text) {
+  if (!put_on_disk(write_partial(path, text), path))
+    throw RunError(fmt::format("{}: cannot write the file: {}.", path.string(), std::strerror(errno)));
+}
+
+bool put_on_disk(const std::filesystem::path& from, const std::filesystem::path& to) {
+  return sync(from) && std::rename(from.c_str(), to.c_str()) == 0 && sync(std::filesystem::absolute(to).parent_path());
 }
 
 void rename_into_place(const std::filesystem::path& from, const std::filesystem::path& to) {

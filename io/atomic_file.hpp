@@ -9,6 +9,13 @@ namespace thalweg::io {
 // Writes `text` under a temporary name beside `path` and renames it into place. Throws RunError.
 void write_text_atomically(const std::filesystem::path& path, const std::string& text);
 
+// The same, and it outlasts a loss of power once this returns.
+void write_text_durably(const std::filesystem::path& path, const std::string& text);
+
+// Waits until the data of `from` are on the disk, then renames it to `to` and waits for the folder. False if that
+// fails.
+bool put_on_disk(const std::filesystem::path& from, const std::filesystem::path& to);
+
 // Renames a finished file into place. Throws RunError.
 void rename_into_place(const std::filesystem::path& from, const std::filesystem::path& to);
 

@@ -2,11 +2,14 @@
 
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
+#include "io/atomic_file.hpp"
+#include "io/checksum.hpp"
 #include "io/hdf5_handle.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <bit>
 #include <exception>
 #include <functional>
 #include <numeric>
@@ -70,6 +73,8 @@ struct Selection {
     H5Sselect_hyperslab(file, H5S_SELECT_SET, offset.data(), nullptr, shape.data(), nullptr);
   }
 };
+
+constexpr const char* checksum_name = "checksum";
 
 Handle collective_transfer() {
   Handle properties(H5Pcreate(H5P_DATASET_XFER), H5Pclose);
@@ -138,6 +143,10 @@ struct Hdf5Writer::File {
     agree(dataset.good());
     const std::uint64_t bytes = volume(box.global_shape) * sizeof(Number);
     if (bytes == 0) return;  // it has no place in the file that could be written
+    std::uint64_t sum = checksum(values, box);
+    MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_UINT64_T, MPI_SUM, communicator);
+    const auto stored = std::bit_cast<std::int64_t>(sum);
+    attribute(name + "/" + checksum_name, Stored<std::int64_t>::file(), Stored<std::int64_t>::memory(), &stored);
     agree(rank_of(communicator) != 0 || reserve_on_disk(partial, H5Dget_offset(dataset), bytes));
     const Handle transfer = collective_transfer();
     agree(H5Dwrite(dataset, Stored<Number>::memory(), selection.memory, selection.file, transfer, values.data()) >= 0);
@@ -168,7 +177,10 @@ Hdf5Writer::Hdf5Writer(MPI_Comm communicator, const std::filesystem::path& path)
   }
   file_->agree(creatable);
   const Handle access = mpi_access(communicator);
-  file_->file = Handle(H5Fcreate(file_->partial.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose);
+  H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18);  // the earliest format with checksums of metadata
+  const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  H5Pset_obj_track_times(creation, false);
+  file_->file = Handle(H5Fcreate(file_->partial.c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose);
   file_->agree(file_->file.good());
 }
 
@@ -242,7 +254,8 @@ struct Hdf5Reader::File {
     const Handle access = alone() ? lone_access() : mpi_access(communicator);
     if (outcome == well) file = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
     if (any(!file.good()))
-      throw InputError(fmt::format("{}: this is not an HDF5 file or it is damaged; give a checkpoint.", path.string()));
+      throw DamagedFile(
+          fmt::format("{}: this is not an HDF5 file or it is damaged; give a checkpoint.", path.string()));
   }
 
   InputError error(const std::string& name, const std::string& what) const {
@@ -254,7 +267,9 @@ struct Hdf5Reader::File {
   bool has_link(const std::string& name) const {
     for (std::size_t end = 0; end != std::string::npos;) {
       end = name.find('/', end + 1);
-      if (H5Lexists(file, name.substr(0, end).c_str(), H5P_DEFAULT) <= 0) return false;
+      const htri_t exists = H5Lexists(file, name.substr(0, end).c_str(), H5P_DEFAULT);
+      if (exists < 0) throw damaged(name, "the table of contents cannot be read");
+      if (exists == 0) return false;
     }
     return true;
   }
@@ -262,13 +277,15 @@ struct Hdf5Reader::File {
   bool has_attribute(const std::string& name) const {
     const auto [group_name, leaf] = group_and_name(name);
     if (group_name != "/" && !has_link(group_name)) return false;
-    return H5Aexists_by_name(file, group_name.c_str(), leaf.c_str(), H5P_DEFAULT) > 0;
+    const htri_t exists = H5Aexists_by_name(file, group_name.c_str(), leaf.c_str(), H5P_DEFAULT);
+    if (exists < 0) throw damaged(name, "the attributes cannot be read");
+    return exists > 0;
   }
 
   Handle dataset(const std::string& name) const {
-    Handle found;
-    if (has_link(name)) found = Handle(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose);
-    if (!found.good()) throw error(name, "the file has no such data");
+    if (!has_link(name)) throw error(name, "the file has no such data");
+    Handle found(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose);
+    if (!found.good()) throw damaged(name, "the description of the data cannot be read");
     return found;
   }
 
@@ -289,7 +306,26 @@ struct Hdf5Reader::File {
     const Handle transfer = alone() ? Handle(H5Pcreate(H5P_DATASET_XFER), H5Pclose) : collective_transfer();
     const bool good =
         H5Dread(found, Stored<Number>::memory(), selection.memory, selection.file, transfer, values.data()) >= 0;
-    if (any(!good)) throw error(name, "the data cannot be read, the file is damaged");
+    if (any(!good)) throw damaged(name, "the data cannot be read");
+    if (has_attribute(name + "/" + checksum_name)) verify(name, checksum(std::span<const Number>(values), box), box);
+  }
+
+  // mine: the checksum of what this rank has read.
+  void verify(const std::string& name, std::uint64_t mine, const ArrayBox& box) const {
+    const std::vector<std::uint64_t> start(box.global_shape.size(), 0);
+    enum { sum, covered, whole, ranks, items };
+    std::uint64_t all[items] = {mine, coverage(box.offset, box.shape), box.shape == box.global_shape ? 1u : 0u, 1u};
+    if (!alone()) MPI_Allreduce(MPI_IN_PLACE, all, items, MPI_UINT64_T, MPI_SUM, communicator);
+    const auto stored = std::bit_cast<std::uint64_t>(number_attribute<std::int64_t>(name + "/" + checksum_name));
+    const bool each_all = all[whole] == all[ranks];
+    const bool shared_out = !each_all && all[covered] == coverage(start, box.global_shape);
+    if ((shared_out && all[sum] != stored) || (each_all && any(mine != stored)))
+      throw damaged(name, "the data are not those that were written");
+  }
+
+  DamagedFile damaged(const std::string& name, const std::string& what) const {
+    return DamagedFile(
+        fmt::format("{}: {}: {}, the file is damaged; take an earlier checkpoint.", path.string(), name, what));
   }
 
   Handle attribute(const std::string& name) const {

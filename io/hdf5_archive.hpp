@@ -2,9 +2,13 @@
 //
 // The file's bytes depend on the data alone, not on the number of ranks that wrote it: every dataset is contiguous, of
 // a little-endian type of fixed size, without time stamps, and all metadata are created collectively in the same order.
+//
+// Every dataset has an attribute "checksum" (checksum.hpp), and HDF5 itself keeps one of its metadata, so that a file
+// in which a bit has changed is refused.
 #pragma once
 
 #include "core/archive.hpp"
+#include "core/error.hpp"
 
 #include <mpi.h>
 
@@ -39,10 +43,18 @@ private:
   std::unique_ptr<File> file_;
 };
 
-// Reads what Hdf5Writer wrote, on any number of ranks. The constructor throws InputError if the file is missing or not
-// HDF5; reading throws InputError (naming file and path) where the path is missing or of another shape or type.
-// The constructor and read() are collective; the questions may be asked by any rank alone. Without a communicator the
-// file is read by this process alone, also where there is no MPI.
+// A file that is no longer what was written: cut short, or with bits changed.
+class DamagedFile : public InputError {
+public:
+  using InputError::InputError;
+};
+
+// Reads what Hdf5Writer wrote, on any number of ranks. The constructor throws InputError if the file is missing, and
+// DamagedFile if it cannot be opened as HDF5. Reading throws InputError (naming file and path) where the path is
+// missing or of another shape or type, and DamagedFile where the ranks have read a whole dataset, shared out or each
+// all of it, and its checksum is another one; parts of a dataset are not checked. The constructor and read() are
+// collective; the questions may be asked by any rank alone. Without a communicator the file is read by this process
+// alone, also where there is no MPI.
 class Hdf5Reader final : public ArchiveReader {
 public:
   explicit Hdf5Reader(const std::filesystem::path& path);

@@ -45,12 +45,4 @@ bool reserve_on_disk(const std::filesystem::path& path, std::uint64_t offset, st
   return error == 0 || error == EOPNOTSUPP || error == ENOSYS;  // a file system that cannot promise
 }
 
-bool put_on_disk(const std::filesystem::path& from, const std::filesystem::path& to) {
-  const int file = ::open(from.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) return false;
-  const bool synced = ::fsync(file) == 0;
-  ::close(file);
-  return synced && std::rename(from.c_str(), to.c_str()) == 0;
-}
-
 }  // namespace thalweg::io

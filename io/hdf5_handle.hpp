@@ -59,7 +59,4 @@ bool can_create(const std::filesystem::path& path);
 // does not always report that the disk is full (Open MPI's does not), so the room is taken beforehand.
 bool reserve_on_disk(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t bytes);
 
-// Waits until the data of `from` are on the disk, then renames it to `to`. False if either fails.
-bool put_on_disk(const std::filesystem::path& from, const std::filesystem::path& to);
-
 }  // namespace thalweg::io

@@ -33,7 +33,11 @@ static void describe(SectionVisitor& visit, GrainOutputKeys& grains) {
 
 static void describe(SectionVisitor& visit, CheckpointOutputKeys& checkpoint) {
   visit.real("every", checkpoint.every,
-             {.unit = "s", .meaning = "between checkpoints; 0: only at the end of the run", .at_least = 0.0});
+             {.unit = "s", .meaning = "between checkpoints; 0: only by wall time", .at_least = 0.0});
+  visit.real("every_wall", checkpoint.every_wall,
+             {.unit = "s of wall time",
+              .meaning = "since the last checkpoint, after which another one is written; 0: only by simulated time",
+              .at_least = 0.0});
   visit.integer("keep", checkpoint.keep, {.meaning = "number of newest checkpoints that are kept", .at_least = 1});
 }
 

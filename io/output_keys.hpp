@@ -9,7 +9,7 @@
 
 namespace thalweg::io {
 
-// every: s of simulated time; 0: never (checkpoint: only at the end of the run).
+// every: s of simulated time; 0: never (checkpoint: only at the end of the run, and by every_wall).
 struct SeriesOutputKeys {
   double every = 0.01;
   bool operator==(const SeriesOutputKeys&) const = default;
@@ -26,7 +26,8 @@ struct GrainOutputKeys {
 };
 struct CheckpointOutputKeys {
   double every = 0.0;
-  std::int64_t keep = 2;  // newest checkpoints that stay on the disk
+  double every_wall = 1800.0;  // s of wall time; 0: never
+  std::int64_t keep = 2;       // newest checkpoints that stay on the disk
   bool operator==(const CheckpointOutputKeys&) const = default;
 };
 

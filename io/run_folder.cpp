@@ -81,47 +81,51 @@ void RunFolder::write_case(const std::string& comment_lines, const std::string& 
 
 fs::path RunFolder::checkpoint(std::int64_t step) const { return checkpoints() / fmt::format("step_{}.h5", step); }
 
-void RunFolder::rotate_checkpoints(std::int64_t step, int keep) const {
-  write_text_atomically(checkpoints() / latest_name, checkpoint(step).filename().string() + "\n");
+std::vector<std::int64_t> RunFolder::steps_of_checkpoints() const {
   std::vector<std::int64_t> steps;
-  for (const auto& entry : fs::directory_iterator(checkpoints()))
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(checkpoints(), ignored))
     if (const auto found = step_of_checkpoint(entry.path().filename().string())) steps.push_back(*found);
   std::sort(steps.rbegin(), steps.rend());
+  return steps;
+}
+
+void RunFolder::rotate_checkpoints(std::int64_t step, int keep) const {
+  write_text_durably(checkpoints() / latest_name, checkpoint(step).filename().string() + "\n");
+  std::vector<fs::path> superfluous;
   int kept = 0;
-  for (const std::int64_t found : steps) {
-    if (found <= step && kept < std::max(keep, 1)) {
-      ++kept;
-      continue;
-    }
+  for (const std::int64_t found : steps_of_checkpoints())
+    if (found > step || kept++ >= std::max(keep, 1)) superfluous.push_back(checkpoint(found));
+  for (const auto& entry : fs::directory_iterator(checkpoints()))
+    if (entry.path().extension() == ".partial") superfluous.push_back(entry.path());
+  for (const fs::path& file : superfluous) {
     std::error_code error;
-    fs::remove(checkpoint(found), error);
-    if (error) throw RunError(fmt::format("{}: cannot remove: {}.", checkpoint(found).string(), error.message()));
+    fs::remove(file, error);
+    if (error) throw RunError(fmt::format("{}: cannot remove: {}.", file.string(), error.message()));
   }
 }
 
-fs::path RunFolder::latest_checkpoint() const {
+std::vector<fs::path> RunFolder::checkpoints_to_try() const {
+  std::vector<fs::path> found;
+  for (const std::int64_t step : steps_of_checkpoints()) found.push_back(checkpoint(step));
+  if (found.empty())
+    throw InputError(
+        fmt::format("{}: the folder has no checkpoint ({}); give the path of a checkpoint or of a run that wrote one.",
+                    path_.string(), (checkpoints() / "step_*.h5").string()));
   std::error_code ignored;
   const fs::path latest = checkpoints() / latest_name;
-  if (!fs::exists(latest, ignored))
-    throw InputError(
-        fmt::format("{}: the folder has no checkpoint ({} is missing); give the path of a checkpoint or of a "
-                    "run that wrote one.",
-                    path_.string(), latest.string()));
+  if (!fs::is_regular_file(latest, ignored)) return found;
   std::string name = read_text(latest);
   while (!name.empty() && (name.back() == '\n' || name.back() == ' ')) name.pop_back();
-  const fs::path file = checkpoints() / name;
-  if (!step_of_checkpoint(name) || !fs::exists(file, ignored))
-    throw InputError(
-        fmt::format("{}: the checkpoint \"{}\" it names does not exist; give the path of another checkpoint "
-                    "of this folder.",
-                    latest.string(), name));
-  return file;
+  const auto named = std::find(found.begin(), found.end(), checkpoints() / name);
+  if (named != found.end()) std::rotate(found.begin(), named, named + 1);
+  return found;
 }
 
-fs::path checkpoint_at(const fs::path& path) {
+std::vector<fs::path> checkpoints_at(const fs::path& path) {
   std::error_code ignored;
-  if (fs::is_directory(path, ignored)) return RunFolder(path).latest_checkpoint();
-  if (fs::exists(path, ignored)) return path;
+  if (fs::is_directory(path, ignored)) return RunFolder(path).checkpoints_to_try();
+  if (fs::exists(path, ignored)) return {path};
   throw InputError(
       fmt::format("{}: there is no such file or folder; give a checkpoint, for example "
                   "run/checkpoints/step_1000.h5, or a run folder.",

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace thalweg::io {
 
@@ -39,18 +40,25 @@ public:
 
   // After the checkpoint of `step` has been closed: makes it the latest (checkpoints/latest holds its file name) and
   // removes all but the newest `keep` of those up to `step`, and any after it, which a restart from an earlier time has
-  // made wrong. Throws RunError.
+  // made wrong; also what killed runs have left half written. Throws RunError.
   void rotate_checkpoints(std::int64_t step, int keep) const;
 
-  // The latest checkpoint; InputError if there is none.
-  std::filesystem::path latest_checkpoint() const;
+  bool has_checkpoint() const { return !steps_of_checkpoints().empty(); }
+
+  // The checkpoints to go on from, the best first: the latest, as far as that is known, then the others from new to
+  // old. InputError if there is none.
+  std::vector<std::filesystem::path> checkpoints_to_try() const;
+  std::filesystem::path latest_checkpoint() const { return checkpoints_to_try().front(); }
 
 private:
+  std::vector<std::int64_t> steps_of_checkpoints() const;  // from new to old
+
   std::filesystem::path path_;
 };
 
-// The checkpoint a `--restart PATH` means: the file itself, or the latest checkpoint of a run folder. Throws
+// The checkpoints a `--restart PATH` means, the best first: the file itself, or those of a run folder. Throws
 // InputError.
-std::filesystem::path checkpoint_at(const std::filesystem::path& path);
+std::vector<std::filesystem::path> checkpoints_at(const std::filesystem::path& path);
+inline std::filesystem::path checkpoint_at(const std::filesystem::path& path) { return checkpoints_at(path).front(); }
 
 }  // namespace thalweg::io

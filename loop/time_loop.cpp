@@ -140,17 +140,22 @@ void TimeLoop::checkpoint() {
   if (!plan_.write_checkpoint || saved_step_ == system_.step()) return;
   look_at_health();  // a broken state must not replace a good checkpoint
   const WallClock::time_point before = WallClock::now();
+  std::uint64_t bytes = 0;
   {
     const auto scope = timer_.measure(timer_.phase("checkpoints"));
-    plan_.write_checkpoint();
+    bytes = plan_.write_checkpoint();
   }
+  const double seconds = seconds_since(before);
+  if (saved_step_ < 0)
+    log_.line(fmt::format("first checkpoint: {:.1f} MB in {:.2g} s", static_cast<double>(bytes) * 1e-6, seconds));
   saved_step_ = system_.step();
-  longest_checkpoint_ = std::max(longest_checkpoint_, seconds_since(before));
+  saved_at_ = seconds_since(begin_);
+  longest_checkpoint_ = std::max(longest_checkpoint_, seconds);
 }
 
 TimeLoop::Decision TimeLoop::decide_together() {
   // Only rank 0 looks at the clock; all ranks may have seen a signal. One reduction settles everything.
-  enum { decision, signal, print, steps, items };
+  enum { decision, signal, print, save, steps, items };
   std::array<std::int64_t, items> votes{};
   votes[signal] = received_stop_signal();
   if (votes[signal] != 0) votes[decision] = static_cast<int>(Decision::signal);
@@ -165,6 +170,7 @@ TimeLoop::Decision TimeLoop::decide_together() {
     if (plan_.walltime > 0.0 && seconds_since(plan_.started) + reserve > plan_.walltime)
       votes[decision] = std::max<std::int64_t>(votes[decision], static_cast<int>(Decision::wall_time_is_up));
     votes[print] = now - printed_at_ >= seconds_between_lines ? 1 : 0;
+    votes[save] = plan_.checkpoint_wall > 0.0 && now - saved_at_ >= plan_.checkpoint_wall ? 1 : 0;
     decided_at_ = now;
     decided_step_ = system_.step();
   }
@@ -175,6 +181,7 @@ TimeLoop::Decision TimeLoop::decide_together() {
     record_.reason = fmt::format("stopped by {}", signal_name(static_cast<int>(votes[signal])));
   if (agreed == Decision::wall_time_is_up) record_.reason = "the wall time is nearly up";
   if (votes[print] != 0) report(now);
+  if (votes[save] != 0) checkpoint();
   return agreed;
 }
 

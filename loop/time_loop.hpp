@@ -33,7 +33,7 @@ struct OutputTask {
 };
 
 using SeriesRow = std::function<void(double time, std::int64_t step, const std::vector<Figure>&)>;  // collective
-using WriteCheckpoint = std::function<void()>;                                                      // collective
+using WriteCheckpoint = std::function<std::uint64_t()>;  // collective; returns its size in bytes, on the first rank
 
 // A figure of the system and what it must fall below.
 struct FigureLimit {
@@ -52,6 +52,7 @@ struct LoopPlan {
   bool write_at_start = true;                        // false where a run goes on: its first frame exists already
   Schedule series;                                   // when observers measure and a row of figures is written
   Schedule checkpoint;                               // a last one is written in any case
+  double checkpoint_wall = 0.0;                      // s of wall time since the last one; 0: only as scheduled
   SeriesRow write_row;                               // none: not written
   WriteCheckpoint write_checkpoint;                  // none: not written
   std::vector<OutputTask> outputs;
@@ -113,6 +114,7 @@ private:
   std::int64_t looked_at_step_ = -1, saved_step_ = -1, next_decision_ = 0;
   std::vector<Figure> measured_;     // by the observers, latest
   double longest_checkpoint_ = 0.0;  // s
+  double saved_at_ = 0.0;            // s since the beginning of run()
   // Rank 0's own: when and where the last line was printed and the latest decision was taken.
   double printed_at_ = 0.0, decided_at_ = 0.0;
   std::int64_t printed_step_ = 0, decided_step_ = 0;

@@ -25,7 +25,11 @@ latest() { cat "$folder/checkpoints/latest" 2>/dev/null || true; }
 
 before=$(latest)
 start=(--out "$folder")
-[[ -z $before ]] || start+=(--restart "$folder")
+if compgen -G "$folder/checkpoints/step_*.h5" > /dev/null; then
+  start+=(--restart "$folder")
+elif [[ -f $folder/case.yaml ]]; then   # an earlier turn was killed before its first checkpoint: nothing to lose
+  start+=(--overwrite)
+fi
 
 mpirun "$thalweg" run "$case_file" "${start[@]}" --walltime "$walltime" &
 job=$!

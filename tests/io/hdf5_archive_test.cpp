@@ -157,6 +157,73 @@ TEST(Hdf5Archive, ReadErrorsNameFileAndPath) {
             std::string::npos);
 }
 
+// Reads what write_all() has written, each rank its own piece; false if the file is refused as damaged.
+bool reads_what_was_written(const std::filesystem::path& path) {
+  try {
+    Hdf5Reader reader(MPI_COMM_WORLD, path);
+    const Piece expected = piece_of(MPI_COMM_WORLD);
+    std::vector<double> values(expected.values.size());
+    reader.read("fluid/f", std::span<double>(values), expected.box);
+    EXPECT_EQ(values, expected.values);
+    std::vector<float> single(values.size());
+    reader.read("fluid/single", std::span<float>(single), expected.box);
+    EXPECT_EQ(single, std::vector<float>(expected.values.begin(), expected.values.end()));
+    std::vector<std::int64_t> ids(11);
+    reader.read("grains/deep/id", std::span<std::int64_t>(ids), ArrayBox{{11}, {0}, {11}});
+    EXPECT_EQ(ids[3], 3000000016LL);
+    EXPECT_EQ(reader.integer_attribute("step"), 123456789012);
+    EXPECT_EQ(reader.real_attribute("fluid/density"), 1.0 / 3.0);
+  } catch (const DamagedFile&) {
+    return false;
+  }
+  return true;
+}
+
+// Wherever a bit changes, the file is refused or, where the bit has no meaning, reads as it was written.
+TEST(Hdf5Archive, ABitThatHasChangedIsNoticed) {
+  const ScratchFolder folder;
+  const auto whole = folder / "state.h5", damaged = folder / "damaged.h5";
+  write_all(MPI_COMM_WORLD, whole);
+  EXPECT_TRUE(reads_what_was_written(whole));
+  const std::string before = contents(whole);
+  std::size_t refused = 0, tried = 0;
+  for (std::size_t at = 0; at < before.size(); at += at < 4096 ? 13 : 1009) {
+    if (rank_of(MPI_COMM_WORLD) == 0) {
+      std::string text = before;
+      text[at] = static_cast<char>(text[at] ^ (1 << at % 8));
+      testing::put(damaged, text);
+    }
+    MPI_Barrier(MPI_COMM_WORLD);
+    ++tried;
+    refused += reads_what_was_written(damaged) ? 0 : 1;
+    MPI_Barrier(MPI_COMM_WORLD);
+  }
+  EXPECT_GT(refused, tried / 2);
+}
+
+TEST(Hdf5Archive, AFileCutShortIsRefused) {
+  const ScratchFolder folder;
+  write_all(MPI_COMM_WORLD, folder / "state.h5");
+  const std::string before = contents(folder / "state.h5");
+  for (const std::size_t length : {std::size_t{0}, std::size_t{100}, before.size() / 2, before.size() - 1}) {
+    if (rank_of(MPI_COMM_WORLD) == 0) testing::put(folder / "short.h5", before.substr(0, length));
+    MPI_Barrier(MPI_COMM_WORLD);
+    EXPECT_FALSE(reads_what_was_written(folder / "short.h5")) << length;
+    MPI_Barrier(MPI_COMM_WORLD);
+  }
+}
+
+// Boxes that overlap are as many values as the dataset has, but not the dataset.
+TEST(Hdf5Archive, ReadingPartsRaisesNoFalseAlarm) {
+  const ScratchFolder folder;
+  write_all(MPI_COMM_WORLD, folder / "state.h5");
+  Hdf5Reader reader(MPI_COMM_WORLD, folder / "state.h5");
+  const auto ranks = static_cast<std::uint64_t>(size_of(MPI_COMM_WORLD));
+  std::vector<double> values(12 * 16 * 9 / ranks);
+  if (9 * 12 * 16 % ranks == 0 && 16 % ranks == 0)
+    reader.read("fluid/f", std::span<double>(values), ArrayBox{{9, 12, 16}, {0, 0, 0}, {9, 12, 16 / ranks}});
+}
+
 TEST(Hdf5Archive, TheNameNeverStandsForAnUnfinishedFile) {
   const ScratchFolder folder;
   write_all(MPI_COMM_WORLD, folder / "state.h5");

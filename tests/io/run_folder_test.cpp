@@ -109,9 +109,24 @@ TEST_F(RunFolderTest, RotationKeepsTheNewestAndNamesTheLatest) {
   EXPECT_EQ(folder.latest_checkpoint(), folder.checkpoint(1050));
   EXPECT_TRUE(fs::exists(folder.checkpoints() / "mine.h5"));
 
-  fs::remove(folder.checkpoint(1050));
-  EXPECT_NE(message_of<InputError>([&] { checkpoint_at(path); }).find("\"step_1050.h5\" it names does not exist"),
-            std::string::npos);
+  // What killed runs leave behind goes with the next checkpoint.
+  put(folder.checkpoints() / "step_1070.h5.partial", "half a state");
+  put(folder.checkpoints() / "latest.partial", "step_10");
+  folder.rotate_checkpoints(1050, 2);
+  EXPECT_FALSE(fs::exists(folder.checkpoints() / "step_1070.h5.partial"));
+  EXPECT_FALSE(fs::exists(folder.checkpoints() / "latest.partial"));
+
+  // Which is the latest need not be known.
+  const std::vector<fs::path> newest_first{folder.checkpoint(1050), folder.checkpoint(1000)};
+  EXPECT_EQ(folder.checkpoints_to_try(), newest_first);
+  for (const char* text : {"", "step_", "step_990.h5\n", "../step_1000.h5\n"}) {
+    put(folder.checkpoints() / "latest", text);
+    EXPECT_EQ(folder.checkpoints_to_try(), newest_first) << text;
+  }
+  put(folder.checkpoints() / "latest", "step_1000.h5\n");
+  EXPECT_EQ(folder.latest_checkpoint(), folder.checkpoint(1000));
+  fs::remove(folder.checkpoints() / "latest");
+  EXPECT_EQ(folder.checkpoints_to_try(), newest_first);
   EXPECT_NE(message_of<InputError>([&] { checkpoint_at(scratch("nowhere")); }).find("there is no such file or folder"),
             std::string::npos);
   EXPECT_NE(message_of<InputError>([&] { checkpoint_at(path.parent_path()); }).find("has no checkpoint"),

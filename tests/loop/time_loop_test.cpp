@@ -82,7 +82,10 @@ struct Bench {
       rows.push_back(step);
       columns = row.size();
     };
-    plan.write_checkpoint = [this] { checkpoints.push_back(system.step()); };
+    plan.write_checkpoint = [this] {
+      checkpoints.push_back(system.step());
+      return std::uint64_t{0};
+    };
     plan.outputs.push_back(
         {"pictures", Schedule(0.005, 0.001), [this](const Snapshot& s) { pictures.push_back(s.step); }});
     auto observer = std::make_unique<LooksOn>();
@@ -116,6 +119,17 @@ TEST(TimeLoop, KeepsEveryBeatAndEndsWithACheckpoint) {
   EXPECT_EQ(bench.columns, 2u);
   EXPECT_EQ(bench.pictures, (Steps{0, 5, 10}));
   EXPECT_EQ(bench.checkpoints, (Steps{4, 8, 10}));
+}
+
+TEST(TimeLoop, SavesByWallTimeAsWell) {
+  for (const double wall : {1e-9, 1e9}) {
+    Bench bench(0.100);
+    bench.plan.checkpoint = Schedule();
+    bench.plan.checkpoint_wall = wall;
+    bench.run();
+    EXPECT_EQ(bench.checkpoints.back(), 100);
+    EXPECT_EQ(bench.checkpoints.size() > 1, wall < 1.0);
+  }
 }
 
 // The largest figure of all looks: of step 7, unless an observer has the system looked into at every step.
