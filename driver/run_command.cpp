@@ -6,6 +6,7 @@
 #include "dem/dry_grains.hpp"
 #include "dem/model_fluid_field.hpp"
 #include "driver/build_system.hpp"
+#include "driver/case_changes.hpp"
 #include "driver/case_reader.hpp"
 #include "driver/case_warnings.hpp"
 #include "driver/machine.hpp"
@@ -34,6 +35,7 @@ namespace fs = std::filesystem;
 // Where a run starts and where it writes.
 struct Places {
   std::vector<fs::path> checkpoints;  // to go on from, the best first; none: from the start
+  fs::path origin;                    // the run folder they lie in; empty: none
   io::RunFolder folder;
   bool same_folder = false;  // the checkpoints are the folder's own: its series go on
 };
@@ -56,14 +58,23 @@ Places places_of(const Command& command) {
   if (out.empty()) out = origin.empty() ? fs::path(command.path).parent_path() / "run" : origin;
   std::error_code ignored;
   const bool same = !origin.empty() && fs::equivalent(out, origin, ignored);
-  return {checkpoints, io::RunFolder(out), same};
+  return {checkpoints, origin, io::RunFolder(out), same};
 }
 
 // What a run begins with.
 struct Beginning {
   fs::path checkpoint;              // empty: from the start
   std::vector<std::string> damage;  // of checkpoints that were passed over
+  std::vector<CaseChange> changes;  // since the run that is continued
 };
+
+// Throws InputError where the case is not one with which that run can go on.
+std::vector<CaseChange> changes_since(const fs::path& origin, const Case& c) {
+  if (origin.empty()) return {};
+  std::vector<CaseChange> changes = case_changes(io::read_text(io::RunFolder(origin).case_file()), resolved_yaml(c));
+  refuse_changes_of_state(changes);
+  return changes;
+}
 
 // Says what is about to run, and measures what the memory of the machine allows.
 void print_header(const Case& c, RunIdentity& identity, const System& system, const Places& places,
@@ -77,6 +88,8 @@ void print_header(const Case& c, RunIdentity& identity, const System& system, co
   for (const std::string& damage : beginning.damage) log.line("warning: " + damage);
   if (!beginning.checkpoint.empty())
     log.line(fmt::format("going on from {} at {:.6g} s", beginning.checkpoint.string(), system.time()));
+  for (const CaseChange& change : beginning.changes)
+    log.line(fmt::format("changed since then: {}: {} -> {}", change.key, change.before, change.now));
   log.line(fmt::format("writing {}", places.folder.path().string()));
   if (!c.grains.empty()) log.line("reference grain: " + reference_text(c));
   if (system.cells() > 0) {
@@ -89,10 +102,14 @@ void print_header(const Case& c, RunIdentity& identity, const System& system, co
   for (const std::string& warning : warnings(c)) log.line("warning: " + warning);
 }
 
-void prepare_folder(const Places& places, const Case& c, const Command& command, MPI_Comm communicator,
-                    loop::Log& log) {
+// step: of the state the run begins with.
+void prepare_folder(const Places& places, const Case& c, const Command& command, std::int64_t step,
+                    MPI_Comm communicator, loop::Log& log) {
   on_first_rank(communicator, [&] {
-    if (!places.same_folder) places.folder.create(command.overwrite);
+    if (places.same_folder)
+      places.folder.keep_case(step);
+    else
+      places.folder.create(command.overwrite);
     io::make_folder(places.folder.checkpoints());
     places.folder.write_case(fmt::format("version {}\ncommand {}", version_text(), command.line), resolved_yaml(c));
     log.copy_to(places.folder.log().string());
@@ -160,11 +177,12 @@ void run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   on_first_rank(communicator, [&] {
     if (!places.same_folder) places.folder.check_new(command.overwrite);
   });
+  Beginning beginning;
+  beginning.changes = changes_since(places.origin, c);
   const Index3 layout = choose_layout(c, size_of(communicator), command.layout);
   const std::unique_ptr<System> system = build_system(c, communicator, layout);
   Observers observers = make_observers(c.analysis.observers, run_facts(c),
                                        {communicator, *system->snapshot().decomposition, system->time_step()});
-  Beginning beginning;
   if (places.checkpoints.empty())
     take_initial_fields(communicator, c, *system);
   else
@@ -174,7 +192,7 @@ void run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
     throw InputError(fmt::format("{} is at {:.6g} s already and the run ends at {:.6g} s: give a later --until.",
                                  beginning.checkpoint.string(), system->time(), c.run.until));
 
-  prepare_folder(places, c, command, communicator, log);
+  prepare_folder(places, c, command, system->step(), communicator, log);
   RunIdentity identity{c.name, name_of(c.system), command.line, c.run.until, layout, size_of(communicator)};
   print_header(c, identity, *system, places, beginning, communicator, log);
   RunOutput output(communicator, c, places.folder, *system, observers,

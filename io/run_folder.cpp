@@ -20,6 +20,7 @@ constexpr std::array run_contents{"case.yaml", "run.log",        "series.csv",  
                                   "tracks.h5", "entrainment.h5", "bed.h5",      "grains.pvd",   "fluid.pvd",
                                   "grains",    "fluid",          "checkpoints", "summary.json", "analysis"};
 constexpr const char* latest_name = "latest";
+constexpr const char* kept_case = "case_until_step_";
 
 std::optional<std::int64_t> step_of_checkpoint(const std::string& name) {
   constexpr std::string_view before = "step_", after = ".h5";
@@ -60,11 +61,15 @@ void RunFolder::check_new(bool overwrite) const {
 void RunFolder::create(bool overwrite) const {
   check_new(overwrite);
   make_folder(path_);
+  std::vector<fs::path> old;
+  for (const auto& entry : fs::directory_iterator(path_))
+    if (entry.path().filename().string().starts_with(kept_case)) old.push_back(entry.path());
   // case.yaml, by which the folder is known, goes last: an interrupted removal can be taken up again.
-  for (auto name = run_contents.rbegin(); name != run_contents.rend(); ++name) {
+  for (auto name = run_contents.rbegin(); name != run_contents.rend(); ++name) old.push_back(path_ / *name);
+  for (const fs::path& path : old) {
     std::error_code error;
-    fs::remove_all(path_ / *name, error);
-    if (error) throw RunError(fmt::format("{}: cannot remove: {}.", (path_ / *name).string(), error.message()));
+    fs::remove_all(path, error);
+    if (error) throw RunError(fmt::format("{}: cannot remove: {}.", path.string(), error.message()));
   }
 }
 
@@ -77,6 +82,13 @@ void RunFolder::write_case(const std::string& comment_lines, const std::string& 
     start = end + 1;
   }
   write_text_atomically(case_file(), text + yaml);
+}
+
+void RunFolder::keep_case(std::int64_t step) const {
+  const fs::path kept = path_ / fmt::format("{}{}.yaml", kept_case, step);
+  std::error_code ignored;
+  if (fs::is_regular_file(case_file(), ignored) && !fs::exists(kept, ignored))
+    write_text_atomically(kept, read_text(case_file()));
 }
 
 fs::path RunFolder::checkpoint(std::int64_t step) const { return checkpoints() / fmt::format("step_{}.h5", step); }

@@ -27,6 +27,10 @@ public:
   void write_case(const std::string& comment_lines, const std::string& yaml) const;
   static constexpr const char* case_marker = "# Thalweg run:";
 
+  // Keeps the case of the run so far, which goes on from `step` with another one perhaps: case_until_step_<step>.yaml,
+  // unless it is there already. Throws RunError.
+  void keep_case(std::int64_t step) const;
+
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path case_file() const { return path_ / "case.yaml"; }
   std::filesystem::path log() const { return path_ / "run.log"; }

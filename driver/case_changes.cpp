@@ -1,0 +1,91 @@
+#include "driver/case_changes.hpp"
+
+#include "core/error.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <string_view>
+#include <utility>
+
+namespace thalweg::driver {
+
+namespace {
+
+using Values = std::vector<std::pair<std::string, std::string>>;  // by key
+
+bool is_of_scalars(const YAML::Node& list) {
+  return std::all_of(list.begin(), list.end(), [](const YAML::Node& item) { return item.IsScalar(); });
+}
+
+void add_values(const YAML::Node& node, const std::string& key, Values& values) {
+  const auto below = [&key](const std::string& name) { return key.empty() ? name : key + "." + name; };
+  if (node.IsMap()) {
+    for (const auto& entry : node) add_values(entry.second, below(entry.first.as<std::string>()), values);
+  } else if (node.IsSequence() && !is_of_scalars(node)) {
+    for (std::size_t n = 0; n < node.size(); ++n) add_values(node[n], below(std::to_string(n)), values);
+  } else if (node.IsSequence()) {
+    values.emplace_back(key, fmt::format("[{}]", fmt::join(node.as<std::vector<std::string>>(), ", ")));
+  } else {
+    values.emplace_back(key, node.IsNull() ? "none" : node.as<std::string>());
+  }
+}
+
+Values values_of(const std::string& yaml) {
+  Values values;
+  add_values(YAML::Load(yaml), "", values);
+  std::erase_if(values, [](const auto& value) {
+    return value.first.starts_with("initial.") || value.first.find(".placement") != std::string::npos;
+  });
+  return values;
+}
+
+std::string find(const Values& values, const std::string& key) {
+  const auto found =
+      std::find_if(values.begin(), values.end(), [&key](const auto& value) { return value.first == key; });
+  return found == values.end() ? "none" : found->second;
+}
+
+bool same(const std::string& one, const std::string& other) {
+  if (one == other) return true;
+  char *end_of_one = nullptr, *end_of_other = nullptr;
+  const double a = std::strtod(one.c_str(), &end_of_one), b = std::strtod(other.c_str(), &end_of_other);
+  return *end_of_one == '\0' && *end_of_other == '\0' && !one.empty() && !other.empty() && a == b;
+}
+
+bool is_in_the_checkpoint(std::string_view key) {
+  constexpr std::array state{"system", "domain.size", "domain.spacing", "disks", "fluid.precision"};
+  const auto is_or_is_below = [key](std::string_view section) {
+    return key.starts_with(section) && (key.size() == section.size() || key[section.size()] == '.');
+  };
+  if (std::any_of(state.begin(), state.end(), is_or_is_below)) return true;
+  return is_or_is_below("grains") && key.find(".contact") == std::string_view::npos &&
+         key.find(".motion") == std::string_view::npos;
+}
+
+}  // namespace
+
+std::vector<CaseChange> case_changes(const std::string& before, const std::string& now) {
+  const Values old_values = values_of(before), new_values = values_of(now);
+  std::vector<CaseChange> changes;
+  for (const auto& [key, value] : old_values)
+    if (const std::string other = find(new_values, key); !same(value, other)) changes.push_back({key, value, other});
+  for (const auto& [key, value] : new_values)
+    if (find(old_values, key) == "none" && value != "none") changes.push_back({key, "none", value});
+  return changes;
+}
+
+void refuse_changes_of_state(const std::vector<CaseChange>& changes) {
+  for (const CaseChange& change : changes)
+    if (is_in_the_checkpoint(change.key))
+      throw InputError(
+          fmt::format("{} = {}: the run that is to go on has {}, which is in its checkpoint and stays as it is; set it "
+                      "back, or begin a new run from that one with initial.from.",
+                      change.key, change.now, change.before));
+}
+
+}  // namespace thalweg::driver

@@ -1,0 +1,22 @@
+// What differs between the case a run was begun with and the one it is continued with.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace thalweg::driver {
+
+struct CaseChange {
+  std::string key;          // e.g. "grains.0.density"
+  std::string before, now;  // as written in the file; "none" where it has no such key
+};
+
+// Of two cases as resolved_yaml() writes them, in the order of the first, then of what is new. Where grains are placed
+// and what a run begins from (initial) do not count: a checkpoint has the grains and the flow.
+std::vector<CaseChange> case_changes(const std::string& before, const std::string& now);
+
+// Throws InputError, naming the first, if a change is of something that the checkpoint contains and the case cannot
+// alter: the system, the box, the cells, their precision, the grains themselves.
+void refuse_changes_of_state(const std::vector<CaseChange>& changes);
+
+}  // namespace thalweg::driver
