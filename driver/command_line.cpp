@@ -19,12 +19,13 @@ constexpr const char* examples = R"(Examples:
   mpirun -n 8 thalweg run case.yaml --walltime 23:50:00 --set fluid.time_step=1e-5
   mpirun -n 4 thalweg run case.yaml --out run/a --restart run/a --until 60
   thalweg info run/a                                   how far it has come
+  thalweg stop run/a                                   save and end; --restart goes on
   thalweg analyze run/a --from 4                       transport, surface and profiles of what it has stored
   thalweg sweep slopes.yaml                            many runs of one case, into one table (docs/sweep.md)
   thalweg defaults > all_keys.yaml                     every key of a case with its default and meaning
 
-Exit codes: 0 done, or stopped in good order by a signal or --walltime (summary.json says which; the last checkpoint
-takes up from there); 1 the run failed; 2 the input cannot be run (nothing was written).)";
+Exit codes: 0 done; 1 the run failed; 2 the input cannot be run (nothing was written); 3 stopped in good order by a signal,
+--walltime or thalweg stop (summary.json says which; --restart goes on from there).)";
 
 constexpr const char* set_help = "Replace one value of the case, e.g. fluid.time_step=1e-5 (repeatable)";
 
@@ -57,6 +58,9 @@ void add_others(CLI::App& app, Command& command) {
   CLI::App* info = app.add_subcommand("info", "Say what a run folder or a checkpoint holds");
   info->add_option("PATH", command.path, "Run folder or checkpoint file")->required();
   info->final_callback([&] { command.kind = Command::Kind::info; });
+  CLI::App* stop = app.add_subcommand("stop", "Ask a run to save its state and end");
+  stop->add_option("RUN_FOLDER", command.path, "The folder it writes")->required();
+  stop->final_callback([&] { command.kind = Command::Kind::stop; });
   // For the help alone: python_command.hpp.
   app.add_subcommand("analyze", "Say what a run's sediment does between two times (analyze --help)");
   app.add_subcommand("sweep", "Run a case with many values of its keys, on all cores (sweep --help)");
@@ -68,7 +72,7 @@ void refuse_unknown_command(const CLI::App& app, int argc, const char* const* ar
   for (const CLI::App* known : app.get_subcommands({}))
     if (known->get_name() == argv[1]) return;
   throw InputError(fmt::format(
-      "{} is not a command: there are run, check, analyze, sweep, defaults and info (thalweg --help).", argv[1]));
+      "{} is not a command: there are run, check, analyze, sweep, defaults, info and stop (thalweg --help).", argv[1]));
 }
 
 // CLI11's messages are fragments; users get a whole sentence that says where to look.

@@ -10,8 +10,8 @@
 namespace thalweg::driver {
 
 struct Command {
-  enum class Kind { run, check, defaults, info } kind = Kind::run;
-  std::string path;                   // CASE.yaml of run and check; run folder or checkpoint of info
+  enum class Kind { run, check, defaults, info, stop } kind = Kind::run;
+  std::string path;                   // CASE.yaml of run and check; run folder of stop, or checkpoint of info
   std::string system;                 // of defaults; empty: resolved
   std::vector<std::string> settings;  // "key.sub=VALUE" of --set, in order
   std::string out;                    // run folder; empty: "run" beside the case file

@@ -9,6 +9,7 @@
 #include "driver/machine.hpp"
 #include "driver/python_command.hpp"
 #include "driver/run_command.hpp"
+#include "driver/stop_command.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -25,7 +26,7 @@ namespace {
 using namespace thalweg;
 using namespace thalweg::driver;
 
-enum ExitCode { done = 0, run_failed = 1, bad_input = 2 };
+enum ExitCode { done = 0, run_failed = 1, bad_input = 2, stopped = 3 };
 
 struct Failure {
   ExitCode code;
@@ -71,8 +72,7 @@ int run(const Command& command, int argc, char** argv, loop::WallClock::time_poi
   FailureBarrier failures(MPI_COMM_WORLD);
   loop::Log log(prints);
   try {
-    run_case(command, MPI_COMM_WORLD, started, failures, log);
-    return done;
+    return run_case(command, MPI_COMM_WORLD, started, failures, log) ? done : stopped;
   } catch (...) {
     return end_with(failure(), failures, prints);
   }
@@ -87,6 +87,8 @@ std::string answer(const Command& command) {
       return joined(check_report(read_case(command.path, command.settings), measure_bandwidth()));
     case Command::Kind::info:
       return joined(info_report(command.path));
+    case Command::Kind::stop:
+      return joined({ask_to_stop(command.path)});
     default:
       return defaults_yaml(command.system.empty() ? "resolved" : command.system);
   }

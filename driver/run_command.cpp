@@ -110,6 +110,8 @@ void prepare_folder(const Places& places, const Case& c, const Command& command,
       places.folder.keep_case(step);
     else
       places.folder.create(command.overwrite);
+    std::error_code ignored;
+    fs::remove(places.folder.stop(), ignored);  // meant an earlier run
     io::make_folder(places.folder.checkpoints());
     places.folder.write_case(fmt::format("version {}\ncommand {}", version_text(), command.line), resolved_yaml(c));
     log.copy_to(places.folder.log().string());
@@ -167,7 +169,7 @@ std::string last_good(const Places& places) {
 
 }  // namespace
 
-void run_case(const Command& command, MPI_Comm communicator, loop::WallClock::time_point started,
+bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::time_point started,
               FailureBarrier& failures, loop::Log& log) {
   loop::listen_for_stop_signals();
   std::vector<std::string> settings = command.settings;
@@ -204,6 +206,7 @@ void run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   plan.out_of_bounds = c.run.watchdog;
   plan.walltime = command.walltime;
   plan.started = started;
+  plan.stop_file = places.folder.stop();
   plan.write_at_start = !places.same_folder;
   output.add_to(plan);
   loop::TimeLoop time_loop(communicator, *system, observers, plan, log);
@@ -222,6 +225,7 @@ void run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   print_outcome(identity, time_loop.record(), *system, observers, phases, places.folder, log);
   const io::JsonObject summary = summary_of(identity, *system, time_loop.record(), observers, phases);
   on_first_rank(communicator, [&] { summary.write(places.folder.summary()); });
+  return time_loop.record().finished;
 }
 
 }  // namespace thalweg::driver

@@ -10,9 +10,9 @@
 
 namespace thalweg::driver {
 
-// Runs the case to its end, or until a signal or the wall time stops it. Throws InputError before anything was written;
-// throws RunError after summary.json has been written with the reason. Collective.
-void run_case(const Command& command, MPI_Comm communicator, loop::WallClock::time_point started,
+// Runs the case to its end (true), or until a signal, the wall time or a stop file stops it (false). Throws InputError
+// before anything was written; throws RunError after summary.json has been written with the reason. Collective.
+bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::time_point started,
               FailureBarrier& failures, loop::Log& log);
 
 }  // namespace thalweg::driver

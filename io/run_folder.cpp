@@ -16,9 +16,9 @@ namespace fs = std::filesystem;
 namespace {
 
 // All a run writes, and thalweg analyze; --overwrite removes these and nothing else.
-constexpr std::array run_contents{"case.yaml", "run.log",        "series.csv",  "profiles.h5",  "probes.h5",
-                                  "tracks.h5", "entrainment.h5", "bed.h5",      "grains.pvd",   "fluid.pvd",
-                                  "grains",    "fluid",          "checkpoints", "summary.json", "analysis"};
+constexpr std::array run_contents{
+    "case.yaml",  "run.log",   "series.csv", "profiles.h5", "probes.h5",   "tracks.h5",    "entrainment.h5", "bed.h5",
+    "grains.pvd", "fluid.pvd", "grains",     "fluid",       "checkpoints", "summary.json", "analysis",       "stop"};
 constexpr const char* latest_name = "latest";
 constexpr const char* kept_case = "case_until_step_";
 

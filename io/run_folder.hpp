@@ -39,6 +39,7 @@ public:
   std::filesystem::path records(const std::string& observer) const { return path_ / (observer + ".h5"); }
   std::filesystem::path bed() const { return path_ / "bed.h5"; }
   std::filesystem::path summary() const { return path_ / "summary.json"; }
+  std::filesystem::path stop() const { return path_ / "stop"; }  // asks the run to stop
   std::filesystem::path checkpoints() const { return path_ / "checkpoints"; }
   std::filesystem::path checkpoint(std::int64_t step) const;  // checkpoints/step_<step>.h5
 

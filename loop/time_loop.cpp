@@ -23,6 +23,12 @@ double seconds_since(WallClock::time_point start) {
   return std::chrono::duration<double>(WallClock::now() - start).count();
 }
 
+// Takes the request away, so that the run can go on later.
+bool was_asked_to_stop(const std::filesystem::path& file) {
+  std::error_code ignored;
+  return !file.empty() && std::filesystem::remove(file, ignored);
+}
+
 }  // namespace
 
 TimeLoop::TimeLoop(MPI_Comm communicator, System& system, std::vector<std::unique_ptr<analysis::Observer>>& observers,
@@ -169,6 +175,8 @@ TimeLoop::Decision TimeLoop::decide_together() {
                            2.0 * per_step * static_cast<double>(votes[steps]);
     if (plan_.walltime > 0.0 && seconds_since(plan_.started) + reserve > plan_.walltime)
       votes[decision] = std::max<std::int64_t>(votes[decision], static_cast<int>(Decision::wall_time_is_up));
+    if (was_asked_to_stop(plan_.stop_file))
+      votes[decision] = std::max<std::int64_t>(votes[decision], static_cast<int>(Decision::asked));
     votes[print] = now - printed_at_ >= seconds_between_lines ? 1 : 0;
     votes[save] = plan_.checkpoint_wall > 0.0 && now - saved_at_ >= plan_.checkpoint_wall ? 1 : 0;
     decided_at_ = now;
@@ -179,6 +187,7 @@ TimeLoop::Decision TimeLoop::decide_together() {
   const auto agreed = static_cast<Decision>(votes[decision]);
   if (agreed == Decision::signal)
     record_.reason = fmt::format("stopped by {}", signal_name(static_cast<int>(votes[signal])));
+  if (agreed == Decision::asked) record_.reason = "stopped by a file named stop";
   if (agreed == Decision::wall_time_is_up) record_.reason = "the wall time is nearly up";
   if (votes[print] != 0) report(now);
   if (votes[save] != 0) checkpoint();

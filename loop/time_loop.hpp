@@ -16,6 +16,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -49,6 +50,7 @@ struct LoopPlan {
   OutOfBounds out_of_bounds = OutOfBounds::stop;     // what to do if it does
   double walltime = 0.0;                             // s of wall time from `started` on; 0: as long as it takes
   WallClock::time_point started = WallClock::now();  // of the program
+  std::filesystem::path stop_file;                   // if it appears, the run stops and removes it; empty: none
   bool write_at_start = true;                        // false where a run goes on: its first frame exists already
   Schedule series;                                   // when observers measure and a row of figures is written
   Schedule checkpoint;                               // a last one is written in any case
@@ -89,7 +91,7 @@ public:
   static constexpr std::int64_t steps_between_looks_for_enough = 200;
 
 private:
-  enum class Decision : int { go_on = 0, wall_time_is_up = 1, signal = 2, enough = 3 };
+  enum class Decision : int { go_on = 0, wall_time_is_up = 1, asked = 2, signal = 3, enough = 4 };
 
   void look_at_health();
   bool needs_momentum_at(std::int64_t step) const;

@@ -40,7 +40,7 @@ while kill -0 $job 2>/dev/null; do   # that was the trap and not the end; the pr
   status=0
   wait $job || status=$?
 done
-((status == 0)) || exit "$status"
+((status == 0 || status == 3)) || exit "$status"   # 3: stopped in good order
 
 finished=$(python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["finished"])' "$folder/summary.json")
 [[ $finished == True ]] && exit 0

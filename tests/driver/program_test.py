@@ -263,7 +263,7 @@ class Stopping(DryGrains):
     def test_sigterm(self):
         process = self.start()
         process.send_signal(signal.SIGTERM)
-        self.assertEqual(process.wait(timeout=30), 0)
+        self.assertEqual(process.wait(timeout=30), 3)
         self.assertEqual(self.summary("run")["reason"], "stopped by SIGTERM")
         self.assertIn("SIGTERM", self.run_well("info", "run").stdout)
         self.assert_can_go_on(1)
@@ -271,7 +271,7 @@ class Stopping(DryGrains):
     def test_sigusr1_through_mpirun(self):
         process = self.start(ranks=2)
         process.send_signal(signal.SIGUSR1)
-        self.assertEqual(process.wait(timeout=30), 0)
+        self.assertEqual(process.wait(timeout=30), 3)
         self.assertEqual(self.summary("run")["reason"], "stopped by SIGUSR1")
         self.assert_can_go_on(2)
 
@@ -283,9 +283,25 @@ class Stopping(DryGrains):
         self.assertEqual(self.summary("run")["reason"], "stopped by SIGTERM")
         self.assert_can_go_on(2)
 
+    def stop_by_command(self, ranks):
+        process = self.start(ranks=ranks)
+        self.assertIn("--restart run", self.run_well("stop", "run").stdout)
+        self.assertEqual(process.wait(timeout=30), 3)
+        self.assertEqual(self.summary("run")["reason"], "stopped by a file named stop")
+        self.assertFalse((self.folder / "run/stop").exists())
+        self.run_well("stop", "run")   # nothing is running, and the next run is not meant
+        self.assert_can_go_on(ranks)
+
+    def test_thalweg_stop(self):
+        self.stop_by_command(0)
+        self.assert_refused("stop", "nowhere", words=["nowhere is not a run folder"])
+
+    def test_thalweg_stop_of_two_ranks(self):
+        self.stop_by_command(2)
+
     def test_walltime(self):
         start = time.monotonic()
-        self.run_well("run", self.case, *self.LONG, "--walltime", "00:00:03")
+        self.assertEqual(self.thalweg("run", self.case, *self.LONG, "--walltime", "00:00:03").returncode, 3)
         # Within the three seconds; the bound leaves room for a busy machine (the whole run would take minutes).
         self.assertLess(time.monotonic() - start, 15.0)
         self.assertIn("wall time", self.summary("run")["reason"])

@@ -15,6 +15,7 @@ from pathlib import Path
 from thalweg.sweep.plan import SweepError
 
 WAITING, DONE, FAILED, BEGUN = "waiting", "done", "failed", "begun"
+STOPPED = 3   # exit code of thalweg run
 
 
 class SweepRun:
@@ -77,7 +78,7 @@ class SweepRun:
 
     def ended(self, exit_code):
         """To be called when the process has ended."""
-        if exit_code != 0:
+        if exit_code not in (0, STOPPED):
             self.remember(complaint_in(self.output) or f"the program ended with exit code {exit_code}; see {self.output}")
         self.look()
 
