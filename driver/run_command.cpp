@@ -9,6 +9,7 @@
 #include "driver/case_changes.hpp"
 #include "driver/case_reader.hpp"
 #include "driver/case_warnings.hpp"
+#include "driver/cores.hpp"
 #include "driver/machine.hpp"
 #include "driver/reference_grain.hpp"
 #include "driver/run_facts.hpp"
@@ -24,7 +25,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <filesystem>
+#include <new>
 
 namespace thalweg::driver {
 
@@ -100,6 +103,7 @@ void print_header(const Case& c, RunIdentity& identity, const System& system, co
                          bandwidth * 1e-9, bytes, identity.memory_bound_mlups));
   }
   for (const std::string& warning : warnings(c)) log.line("warning: " + warning);
+  if (const std::string warning = crowding_warning(communicator); !warning.empty()) log.line("warning: " + warning);
 }
 
 // step: of the state the run begins with.
@@ -153,6 +157,13 @@ void set_end(const Case& c, loop::LoopPlan& plan) {
     plan.enough = {{dem::ModelFluidField::hold_left_figure, 0.0}};
     plan.enough_means = "motion without end";
   }
+}
+
+std::string what_happened(const std::exception& error) {
+  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) return "The memory of this machine is not enough.";
+  const bool is_a_sentence =
+      dynamic_cast<const RunError*>(&error) != nullptr || dynamic_cast<const InputError*>(&error) != nullptr;
+  return is_a_sentence ? error.what() : fmt::format("Unexpected error: {}.", error.what());
 }
 
 // Which checkpoint a run that has failed can go on from, in a sentence.
@@ -212,12 +223,15 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   loop::TimeLoop time_loop(communicator, *system, observers, plan, log);
   try {
     time_loop.run();
-  } catch (const RunError& error) {
-    const RunError told(fmt::format("{} {}", error.what(), last_good(places)));
+  } catch (const std::exception& error) {  // whatever it is, it is the run that has failed
+    const RunError told(fmt::format("{} {}", what_happened(error), last_good(places)));
     loop::LoopRecord record = time_loop.record();
     record.reason = told.what();
-    if (!failures.all_ranks_failed(seconds_to_wait_for_others) || log.prints())
-      summary_of(identity, *system, record, observers, {}).write(places.folder.summary());
+    try {
+      if (!failures.all_ranks_failed(seconds_to_wait_for_others) || log.prints())
+        summary_of(identity, *system, record, observers, {}).write(places.folder.summary());
+    } catch (const RunError&) {  // the first error is the one to tell
+    }
     throw told;
   }
   if (!c.grains.empty()) io::write_bed_file(communicator, places.folder.bed(), system->snapshot());

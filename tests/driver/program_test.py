@@ -8,7 +8,6 @@ import signal
 import subprocess
 import sys
 import time
-import unittest.mock
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
@@ -208,6 +207,16 @@ class Running(DryGrains):
             self.assertFalse(summary["finished"])
             self.assertIn("rain 0", summary["reason"])
             self.assertEqual(self.last_checkpoint(out).name, "step_100.h5")
+
+    def test_says_that_ranks_outnumber_cores(self):
+        """Two ranks on one core, which mpirun does not notice."""
+        core = str(min(os.sched_getaffinity(0)))
+        for yields in ("0", "1"):
+            command = self.command(("run", self.case, "--until", "2e-4", "--overwrite"), 2)
+            result = subprocess.run(["taskset", "-c", core] + command, cwd=self.folder, capture_output=True, text=True,
+                                    timeout=120, env=os.environ | {"OMPI_MCA_mpi_yield_when_idle": yields})
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual("2 ranks share 1 core of a node" in result.stdout, yields == "0", result.stdout)
 
 
 # Grains that never come to rest: no gravity, no loss in contacts along the normal, no friction.
