@@ -1,6 +1,7 @@
 // The case file: YAML in, a checked Case out, and back.
 #pragma once
 
+#include "core/error.hpp"
 #include "driver/case.hpp"
 
 #include <filesystem>
@@ -16,6 +17,16 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
 
 // The case with every default filled in, as YAML that read_case() reads back as the same case.
 std::string resolved_yaml(const Case& c);
+
+// Does what may find that a case cannot be run after all, so that an InputError names the file of the case.
+template <typename Work>
+auto about_case(const std::filesystem::path& path, Work&& work) {
+  try {
+    return work();
+  } catch (const InputError& error) {
+    throw InputError(path.string() + ": " + error.what());
+  }
+}
 
 // Every key of a system ("resolved", "fluid" or "grains"; InputError for another) with its default, unit and meaning: a
 // valid case, with plausible values for the keys that have no default, and the optional ones commented out.

@@ -80,11 +80,16 @@ int run(const Command& command, int argc, char** argv, loop::WallClock::time_poi
 
 std::string joined(const std::vector<std::string>& lines) { return fmt::format("{}\n", fmt::join(lines, "\n")); }
 
+std::vector<std::string> check_of(const Command& command) {
+  const Case c = read_case(command.path, command.settings);
+  return about_case(command.path, [&] { return check_report(c, measure_bandwidth()); });
+}
+
 // What a command other than run prints.
 std::string answer(const Command& command) {
   switch (command.kind) {
     case Command::Kind::check:
-      return joined(check_report(read_case(command.path, command.settings), measure_bandwidth()));
+      return joined(check_of(command));
     case Command::Kind::info:
       return joined(info_report(command.path));
     case Command::Kind::stop:

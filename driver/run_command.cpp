@@ -193,11 +193,12 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   Beginning beginning;
   beginning.changes = changes_since(places.origin, c);
   const Index3 layout = choose_layout(c, size_of(communicator), command.layout);
-  const std::unique_ptr<System> system = build_system(c, communicator, layout);
+  const std::unique_ptr<System> system =
+      about_case(command.path, [&] { return build_system(c, communicator, layout); });
   Observers observers = make_observers(c.analysis.observers, run_facts(c),
                                        {communicator, *system->snapshot().decomposition, system->time_step()});
   if (places.checkpoints.empty())
-    take_initial_fields(communicator, c, *system);
+    about_case(command.path, [&] { take_initial_fields(communicator, c, *system); });
   else
     beginning.checkpoint =
         read_first_whole_checkpoint(communicator, places.checkpoints, c, *system, observers, beginning.damage);

@@ -1,0 +1,129 @@
+#!/usr/bin/python3
+"""Cases as people mistype them: `thalweg check` of mutations of every shipped case either reports or refuses in one sentence.
+
+Called by ctest: check_fuzz_test.py THALWEG NUMBER_OF_MUTATIONS [SEED]. A mutation changes one key: removed, misspelt, of
+another type, negative, zero, huge, tiny, not a number, infinite, off by a thousand, a list, or given twice. No crash, no hang,
+and what is refused names the file; the first ten failures are printed with the case that shows them.
+"""
+import copy
+import random
+import resource
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import yaml
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "python"))
+from thalweg.run import CaseLoader
+
+THALWEG, NUMBER = sys.argv[1], int(sys.argv[2])
+SEED = int(sys.argv[3]) if len(sys.argv) > 3 else 1
+SECONDS, BYTES = 30, 6 << 30   # a check takes a tenth of a second and measures the memory with 256 MiB
+
+VALUES = [None, True, "text", "", -1, 0, 1, -1e-300, 1e-30, 1e30, 1e308, float("nan"), float("inf"), float("-inf"),
+          9223372036854775808, -9223372036854775808, [], {}, [1], [1, 2], [1, 2, 3], [1, 2, 3, 4], [[1]], {"key": 1},
+          "1e-3 m", "0x10", "../nowhere", "é", "a: b"]
+
+
+def shipped_cases():
+    for path in sorted((ROOT / "cases").glob("*/*.yaml")):
+        content = yaml.load(path.read_text(), CaseLoader)
+        if "case" not in content:   # else it is a sweep
+            yield path, content
+
+
+def keys_of(node, path=()):
+    """The paths of all keys and list entries."""
+    items = node.items() if isinstance(node, dict) else enumerate(node) if isinstance(node, list) else ()
+    for key, value in items:
+        yield path + (key,)
+        yield from keys_of(value, path + (key,))
+
+
+def parent_of(content, path):
+    for key in path[:-1]:
+        content = content[key]
+    return content
+
+
+def misspelt(key, chance):
+    at = chance.randrange(len(key))
+    return key[:at] + chance.choice(["", key[at] * 2, "_"]) + key[at + 1:]
+
+
+def mutated(content, chance):
+    """A copy with one thing changed, and what it is in words."""
+    content = copy.deepcopy(content)
+    path = chance.choice(list(keys_of(content)))
+    parent, key = parent_of(content, path), path[-1]
+    value = parent[key]
+    name = ".".join(map(str, path))
+    kind = chance.choice(["remove", "misspell", "value", "value", "value", "scale", "negate", "wrap"])
+    if kind == "remove":
+        del parent[key]
+    elif kind == "misspell" and isinstance(key, str):
+        parent[misspelt(key, chance)] = parent.pop(key)
+    elif kind in ("scale", "negate") and isinstance(value, (int, float)) and not isinstance(value, bool):
+        factor = -1 if kind == "negate" else chance.choice([1e3, 1e-3, 10, 0.1, 1e6, 1e-6])
+        parent[key] = type(value)(value * factor) if kind == "negate" else value * factor
+    elif kind == "wrap":
+        parent[key] = [value]
+    else:
+        parent[key] = chance.choice(VALUES)
+    return content, f"{kind} {name}"
+
+
+def text_of(content, chance):
+    text = yaml.safe_dump(content, sort_keys=False, allow_unicode=True)
+    if chance.random() < 0.05:   # a line twice: often a key given twice
+        lines = text.splitlines(keepends=True)
+        at = chance.randrange(len(lines))
+        text = "".join(lines[:at + 1] + lines[at:])
+    return text
+
+
+def limit_memory():
+    resource.setrlimit(resource.RLIMIT_AS, (BYTES, BYTES))
+
+
+def complaint(path):
+    """What is wrong with the answer to this case; empty if nothing is."""
+    try:
+        done = subprocess.run([THALWEG, "check", str(path)], capture_output=True, text=True, timeout=SECONDS,
+                              preexec_fn=limit_memory)
+    except subprocess.TimeoutExpired:
+        return f"no answer within {SECONDS} s"
+    if done.returncode == 0:
+        wrong = [word for word in ("nan", "inf ", "-nan") if f" {word}" in done.stdout]
+        return f"reports {', '.join(wrong)}:\n{done.stdout}" if wrong else ""
+    lines = done.stderr.splitlines()
+    if done.returncode != 2:
+        return f"exit code {done.returncode}: {done.stderr}"
+    if len(lines) != 1 or not lines[0].startswith("thalweg: ") or lines[0][-1] not in ".?":
+        return f"not one sentence: {done.stderr}"
+    return "" if str(path) in lines[0] else f"does not name the file: {lines[0]}"
+
+
+def main():
+    chance = random.Random(SEED)
+    cases, failures = list(shipped_cases()), []
+    with tempfile.TemporaryDirectory() as folder:
+        for number in range(NUMBER):
+            original, content = cases[number % len(cases)]
+            content, what = mutated(content, chance)
+            path = Path(folder) / "case.yaml"
+            path.write_text(text_of(content, chance))
+            wrong = complaint(path)
+            if wrong:
+                failures.append(f"{original.relative_to(ROOT)}, {what}: {wrong}")
+    for failure in failures[:10]:
+        print(failure)
+    print(f"{NUMBER} mutations, seed {SEED}: {len(failures)} failures")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
