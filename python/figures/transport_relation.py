@@ -17,6 +17,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import thalweg
 from thalweg import bed, literature
+from thalweg.tables import merged_rows
 
 SMALLEST = 1e-3   # q* that is drawn; what is below stands on the axis
 
@@ -53,10 +54,17 @@ def draw_paper(axes):
                       label=f"Zhang et al., flume, start: {start}")
 
 
-def draw_runs(axes, folders, found):
-    for n, (folder, (shields, rate, steady, _)) in enumerate(zip(folders, found)):
-        axes.errorbar(shields, max(rate.mean, SMALLEST), rate.error, fmt="o", color=f"C{n % 10}", ms=7, capsize=3,
-                      mfc=f"C{n % 10}" if steady else "none", label=folder.name)
+def row_of(folder, shields, rate, steady, height):
+    return {"run": folder.name, "Shields number [1]": f"{shields:.4f}", "bed [d]": f"{height:.2f}",
+            "q_star [1]": f"{rate.mean:.4f}", "error [1]": f"{rate.error:.4f}", "deviation [1]": f"{rate.deviation:.4f}",
+            "steady": "yes" if steady else "no"}
+
+
+def draw_runs(axes, rows):
+    for n, row in enumerate(rows):
+        shields, rate, error = (float(row[name]) for name in ("Shields number [1]", "q_star [1]", "error [1]"))
+        axes.errorbar(shields, max(rate, SMALLEST), error, fmt="o", color=f"C{n % 10}", ms=7, capsize=3,
+                      mfc=f"C{n % 10}" if row["steady"] == "yes" else "none", label=row["run"])
 
 
 def main():
@@ -66,6 +74,7 @@ def main():
     parser.add_argument("--to", dest="stop", type=float, default=np.inf, help="s, their end")
     parser.add_argument("--surface", choices=("fraction", "static"), default="fraction",
                         help="of the bed: half its solid fraction, or the paper's static pixels")
+    parser.add_argument("--table", help="of the points, which is brought up to date; all that it has are drawn")
     parser.add_argument("--out", default="transport_relation.png")
     arguments = parser.parse_args()
     try:
@@ -82,7 +91,7 @@ def main():
     figure, axes = plt.subplots(figsize=(7, 4.8), layout="constrained")
     draw_literature(axes)
     draw_paper(axes)
-    draw_runs(axes, arguments.runs, found)
+    draw_runs(axes, merged_rows(arguments.table, [row_of(folder, *one) for folder, one in zip(arguments.runs, found)]))
     axes.set(xlabel="Shields number", ylabel="q*", xlim=(0.015, 0.15), ylim=(SMALLEST, 1.0))
     axes.legend(fontsize=7, loc="lower right")
     axes.grid(color="#e5e8ea", linewidth=0.8)

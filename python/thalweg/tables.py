@@ -1,6 +1,7 @@
 """Tables of comma-separated values whose headings carry units: `q_s [m^2/s]`."""
 import csv
 import re
+from pathlib import Path
 
 import numpy as np
 
@@ -14,6 +15,28 @@ def read_rows(path):
     """Rows of a table as dictionaries of text by heading; lines that begin with # are comments."""
     with open(path, newline="") as file:
         return list(csv.DictReader(line for line in file if not line.startswith("#")))
+
+
+def merged_rows(path, rows):
+    """Rows (dictionaries by heading) of a table of runs, with `rows` in place of those of the same runs; written back. None:
+    there is no table, and rows are all there is. What is in it outlives the folders of the runs."""
+    if path is None:
+        return rows
+    path = Path(path)
+    given = {row["run"]: [] for row in rows}
+    for row in rows:
+        given[row["run"]].append(row)
+    merged = []
+    for row in read_rows(path) if path.exists() else []:
+        merged += given.pop(row["run"]) if row["run"] in given else []
+        if row["run"] not in {row["run"] for row in rows}:
+            merged.append(row)
+    merged += [row for group in given.values() for row in group]
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, list(rows[0] if rows else merged[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(merged)
+    return merged
 
 
 def read_series(path):

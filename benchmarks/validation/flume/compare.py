@@ -1,11 +1,10 @@
 #!/usr/bin/python3
 """q* of the flume against time: compare.py RUN_FOLDER... [--figure FILE] [--table FILE]
 
-Draws means over half a second, and the mean and the deviation that Zhang et al. (2022) print at the Shields number 0.028;
-the table has the same means. python/figures/transport_relation.py draws the runs against the Shields number.
+Draws means over half a second, and the mean and the deviation that Zhang et al. (2022) print at the Shields number 0.028.
+The table of these means is brought up to date, and all that it has are drawn. python/figures/transport_relation.py draws the runs against the Shields number.
 """
 import argparse
-import csv
 import sys
 from pathlib import Path
 
@@ -17,6 +16,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 import thalweg
 from thalweg import literature
+from thalweg.tables import merged_rows
 
 WINDOW = 0.5                       # s
 
@@ -32,7 +32,7 @@ def window_means(series):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("runs", nargs="+", type=Path, metavar="RUN_FOLDER")
+    parser.add_argument("runs", nargs="*", type=Path, metavar="RUN_FOLDER")
     parser.add_argument("--figure", default="flume.png")
     parser.add_argument("--table")
     arguments = parser.parse_args()
@@ -41,9 +41,12 @@ def main():
     rows = []
     for run in arguments.runs:
         folder = thalweg.Run(run)
-        ends, means = window_means(folder.series)
-        plt.plot(ends - 0.5 * WINDOW, means, "o-", markersize=3, label=run.name)
-        rows += [[run.name, f"{end:.1f}", f"{mean:.4f}"] for end, mean in zip(ends, means)]
+        rows += [{"run": run.name, "until [s]": f"{end:.1f}", "q_star [1]": f"{mean:.4f}"}
+                 for end, mean in zip(*window_means(folder.series))]
+    rows = merged_rows(arguments.table, rows)
+    for name in dict.fromkeys(row["run"] for row in rows):
+        ends, means = np.array([[float(row["until [s]"]), float(row["q_star [1]"])] for row in rows if row["run"] == name]).T
+        plt.plot(ends - 0.5 * WINDOW, means, "o-", markersize=3, label=name)
     plt.axhspan(*literature.flume_band(), color="0.9",
                 label="Zhang et al. at 0.028, mean and deviation")
     plt.xlabel("time [s]")
@@ -52,9 +55,6 @@ def main():
     plt.legend(fontsize=8)
     plt.tight_layout()
     plt.savefig(arguments.figure, dpi=100)
-    if arguments.table:
-        with open(arguments.table, "w", newline="", encoding="utf-8") as file:
-            csv.writer(file).writerows([["run", "until [s]", "q_star [1]"], *rows])
 
 
 if __name__ == "__main__":

@@ -3,10 +3,10 @@
 
 A point is the mean of a run while its fluid was averaged (analysis.fluid_statistics.from): q* with its standard error, and
 the speed of the water over the width, from two widths above the bed, over that of the law of the wall at the side walls
-(thalweg.water). Open symbols: trt; squares: ten cells a diameter.
+(thalweg.water). Open symbols: trt; squares: ten cells a diameter. The table of the points is brought up to date, and all that it
+has are drawn.
 """
 import argparse
-import csv
 import sys
 from pathlib import Path
 
@@ -17,7 +17,10 @@ import matplotlib.pyplot as plt
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 import thalweg
 from thalweg import bed, literature, water
+from thalweg.tables import merged_rows
 
+HEADINGS = ["run", "collision", "cells per diameter [1]", "mean speed over law of the wall [1]",
+            "middle speed over law of the wall [1]", "q_star [1]", "error [1]"]
 
 
 def measure(run):
@@ -31,31 +34,30 @@ def measure(run):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("runs", nargs="+", type=Path, metavar="RUN_FOLDER")
+    parser.add_argument("runs", nargs="*", type=Path, metavar="RUN_FOLDER")
     parser.add_argument("--figure", default="water_speed.png")
     parser.add_argument("--table")
     arguments = parser.parse_args()
-    table = []
+    rows = []
     _, axes = plt.subplots(figsize=(6.5, 4.2), layout="constrained")
-    for n, folder in enumerate(arguments.runs):
+    for folder in arguments.runs:
         run = thalweg.Run(folder)
         rate, mean, middle = measure(run)
-        open_symbol = run.case["fluid"]["collision"] == "trt"
-        fine = run.diameter / run.case["domain"]["spacing"] > 8.0
-        axes.errorbar(mean, rate.mean, rate.error, fmt="s" if fine else "o", color=f"C{n % 10}", capsize=3,
-                      mfc="none" if open_symbol else None, label=folder.name)
-        table.append([folder.name, f"{mean:.3f}", f"{middle:.3f}", f"{rate.mean:.4f}", f"{rate.error:.4f}"])
+        rows.append(dict(zip(HEADINGS, [
+            folder.name, run.case["fluid"]["collision"], f"{run.diameter / run.case['domain']['spacing']:.1f}", f"{mean:.3f}",
+            f"{middle:.3f}", f"{rate.mean:.4f}", f"{rate.error:.4f}"])))
+    rows = merged_rows(arguments.table, rows)
+    for n, row in enumerate(rows):
+        speed, rate, error = (float(row[HEADINGS[column]]) for column in (3, 5, 6))
+        axes.errorbar(speed, rate, error, fmt="s" if float(row[HEADINGS[2]]) > 8.0 else "o", color=f"C{n % 10}", capsize=3,
+                      mfc="none" if row["collision"] == "trt" else None, label=row["run"])
     axes.axhspan(*literature.flume_band(), color="0.9",
                  label="Zhang et al. at 0.028, mean and deviation")
     axes.axvline(1.0, color="0.6", lw=1)
     axes.set(xlabel="mean speed of the water over that of the law of the wall", ylabel="q*", ylim=(0.0, None))
     axes.legend(fontsize=7, loc="lower right")
     plt.savefig(arguments.figure, dpi=110)
-    header = ["run", "mean speed over law of the wall [1]", "middle speed over law of the wall [1]", "q_star [1]", "error [1]"]
-    print("\n".join(", ".join(row) for row in [header, *table]))
-    if arguments.table:
-        with open(arguments.table, "w", newline="", encoding="utf-8") as file:
-            csv.writer(file).writerows([header, *table])
+    print("\n".join(", ".join(row) for row in [HEADINGS, *(list(row.values()) for row in rows)]))
 
 
 if __name__ == "__main__":
