@@ -15,6 +15,8 @@
 
 #include <fmt/format.h>
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -200,13 +202,18 @@ std::string bytes_text(double bytes) {
   return bytes < 1e9 ? fmt::format("{:.3g} MB", bytes * 1e-6) : fmt::format("{:.3g} GB", bytes * 1e-9);
 }
 
+// Bytes.
+double memory_of_this_machine() {
+  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+}
+
 void add_cost(const Case& c, double bandwidth, Lines& lines) {
   const Cost cost = cost_of(c, bandwidth);
   std::string work = fmt::format("work       {:.0f} steps to {:g} s", cost.steps, c.run.until);
   if (cost.cell_updates > 0.0) work += fmt::format(": {:.3g} cell updates", cost.cell_updates);
   if (cost.grain_steps > 0.0) work += fmt::format(", {:.3g} grain-steps", cost.grain_steps);
   lines.push_back(work);
-  lines.push_back("memory     about " + bytes_text(cost.memory));
+  lines.push_back(memory_line(cost.memory, memory_of_this_machine()));
   lines.push_back(
       fmt::format("time       about {} on one core like this one ({:.3g} GB/s); divide by the number of cores until "
                   "memory bandwidth saturates",
@@ -231,6 +238,15 @@ void refuse_impossible_grains(const Case& c) {
 }
 
 }  // namespace
+
+std::string memory_line(double needed, double there) {
+  constexpr double usable = 0.9;  // the rest is the system's
+  std::string line = "memory     about " + bytes_text(needed);
+  if (needed > usable * there)
+    line += fmt::format(": more than the {} of this machine; take at least {:.0f} such nodes", bytes_text(there),
+                        std::ceil(needed / (usable * there)));
+  return line;
+}
 
 Cost cost_of(const Case& c, double bandwidth) {
   const Index3 n = cells_of(c.domain);

@@ -9,6 +9,12 @@
 namespace thalweg::driver {
 namespace {
 
+TEST(CheckReport, SaysHowManyNodesTheMemoryTakes) {
+  EXPECT_EQ(memory_line(10e9, 24e9), "memory     about 10 GB");
+  EXPECT_EQ(memory_line(95e9, 24e9),
+            "memory     about 95 GB: more than the 24 GB of this machine; take at least 5 such nodes");
+}
+
 TEST(Cost, CountsCellsAndSteps) {
   Case c = water_over_glass(5e-3, 0.016, 0.0412, 0.040, lbm::FaceType::periodic);
   c.domain.size = Vec3(0.120, 0.040, 0.106);
