@@ -33,7 +33,7 @@ endfunction()
 set(THALWEG_MPI_ENVIRONMENT
     "OMPI_ALLOW_RUN_AS_ROOT=1;OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1;OMPI_MCA_rmaps_base_oversubscribe=1;OMPI_MCA_mpi_yield_when_idle=1;OMPI_MCA_btl_base_warn_component_unused=0;OMPI_MCA_hwloc_base_binding_policy=none;OMPI_MCA_btl_vader_single_copy_mechanism=none")
 if(THALWEG_SANITIZE)
-  list(APPEND THALWEG_MPI_ENVIRONMENT "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/support/leaks_of_mpi.txt"
+  list(APPEND THALWEG_MPI_ENVIRONMENT "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/support/leaks_of_libraries.txt"
        "UBSAN_OPTIONS=print_stacktrace=1")
 endif()
 function(thalweg_mpi_test_properties test ranks)

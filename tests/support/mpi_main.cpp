@@ -11,7 +11,7 @@
 
 namespace {
 
-// What MPI_Init leaks in plugins that it has unloaded again cannot be named in leaks_of_mpi.txt.
+// What MPI_Init leaks in plugins that it has unloaded again cannot be named in leaks_of_libraries.txt.
 std::unique_ptr<thalweg::MpiSession> start_mpi(int& argc, char**& argv) {
 #ifdef THALWEG_FINDS_LEAKS
   const __lsan::ScopedDisabler leaks_are_not_ours;
