@@ -11,6 +11,11 @@ FLUID_COLOURS = colors.LinearSegmentedColormap.from_list("water", ["#f4f8fb", "#
 PIXELS_PER_DIAMETER = 48
 
 
+def colour_of(number):
+    """Of one of up to twenty curves: ten colours, then the same paler."""
+    return matplotlib.colormaps["tab20"]((2 * number) % 20 + number // 10 % 2)
+
+
 def fluid_slice(frame):
     """Speed (m/s; masked inside grains) in the middle layer across y as [z, x], and its extent in m; None if the frame is
     not one of the velocity in the x-z plane."""

@@ -16,6 +16,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 import thalweg
 from thalweg import literature
+from thalweg.drawing import colour_of
 from thalweg.tables import merged_rows
 
 WINDOW = 0.5                       # s
@@ -44,9 +45,9 @@ def main():
         rows += [{"run": run.name, "until [s]": f"{end:.1f}", "q_star [1]": f"{mean:.4f}"}
                  for end, mean in zip(*window_means(folder.series))]
     rows = merged_rows(arguments.table, rows)
-    for name in dict.fromkeys(row["run"] for row in rows):
+    for n, name in enumerate(dict.fromkeys(row["run"] for row in rows)):
         ends, means = np.array([[float(row["until [s]"]), float(row["q_star [1]"])] for row in rows if row["run"] == name]).T
-        plt.plot(ends - 0.5 * WINDOW, means, "o-", markersize=3, label=name)
+        plt.plot(ends - 0.5 * WINDOW, means, "o-", markersize=3, color=colour_of(n), label=name)
     plt.axhspan(*literature.flume_band(), color="0.9",
                 label="Zhang et al. at 0.028, mean and deviation")
     plt.xlabel("time [s]")

@@ -17,6 +17,7 @@ import matplotlib.pyplot as plt
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 import thalweg
 from thalweg import bed, literature, water
+from thalweg.drawing import colour_of
 from thalweg.tables import merged_rows
 
 HEADINGS = ["run", "collision", "cells per diameter [1]", "mean speed over law of the wall [1]",
@@ -49,7 +50,7 @@ def main():
     rows = merged_rows(arguments.table, rows)
     for n, row in enumerate(rows):
         speed, rate, error = (float(row[HEADINGS[column]]) for column in (3, 5, 6))
-        axes.errorbar(speed, rate, error, fmt="s" if float(row[HEADINGS[2]]) > 8.0 else "o", color=f"C{n % 10}", capsize=3,
+        axes.errorbar(speed, rate, error, fmt="s" if float(row[HEADINGS[2]]) > 8.0 else "o", color=colour_of(n), capsize=3,
                       mfc="none" if row["collision"] == "trt" else None, label=row["run"])
     axes.axhspan(*literature.flume_band(), color="0.9",
                  label="Zhang et al. at 0.028, mean and deviation")
