@@ -66,8 +66,7 @@ std::string crowding_warning(MPI_Comm communicator) {
   if (worst.too_many <= 0 || waiting_ranks_yield()) return "";
   return fmt::format(
       "{} ranks share {} core{} of a node, and ranks that wait keep the others from working: use at most as many ranks "
-      "as "
-      "cores or, with Open MPI, set OMPI_MCA_mpi_yield_when_idle=1.",
+      "as cores or, with Open MPI, set OMPI_MCA_mpi_yield_when_idle=1.",
       crowd[0], crowd[1], crowd[1] == 1 ? "" : "s");
 }
 

@@ -5,6 +5,7 @@
 #include "driver/case_reader.hpp"
 #include "driver/check_report.hpp"
 #include "driver/command_line.hpp"
+#include "driver/error_message.hpp"
 #include "driver/info_report.hpp"
 #include "driver/machine.hpp"
 #include "driver/python_command.hpp"
@@ -17,7 +18,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <new>
 #include <string>
 #include <vector>
 
@@ -38,13 +38,9 @@ Failure failure() {
   try {
     throw;
   } catch (const InputError& error) {
-    return {bad_input, error.what()};
-  } catch (const RunError& error) {
-    return {run_failed, error.what()};
-  } catch (const std::bad_alloc&) {
-    return {run_failed, "The memory of this machine is not enough for the case."};
+    return {bad_input, error_message(error)};
   } catch (const std::exception& error) {
-    return {run_failed, fmt::format("Unexpected error: {}.", error.what())};
+    return {run_failed, error_message(error)};
   }
 }
 

@@ -10,6 +10,7 @@
 #include "driver/case_reader.hpp"
 #include "driver/case_warnings.hpp"
 #include "driver/cores.hpp"
+#include "driver/error_message.hpp"
 #include "driver/machine.hpp"
 #include "driver/reference_grain.hpp"
 #include "driver/run_facts.hpp"
@@ -27,7 +28,6 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
-#include <new>
 
 namespace thalweg::driver {
 
@@ -159,13 +159,6 @@ void set_end(const Case& c, loop::LoopPlan& plan) {
   }
 }
 
-std::string what_happened(const std::exception& error) {
-  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) return "The memory of this machine is not enough.";
-  const bool is_a_sentence =
-      dynamic_cast<const RunError*>(&error) != nullptr || dynamic_cast<const InputError*>(&error) != nullptr;
-  return is_a_sentence ? error.what() : fmt::format("Unexpected error: {}.", error.what());
-}
-
 // Which checkpoint a run that has failed can go on from, in a sentence.
 std::string last_good(const Places& places) {
   fs::path checkpoint = places.checkpoints.empty() ? fs::path() : places.checkpoints.front();
@@ -225,7 +218,7 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   try {
     time_loop.run();
   } catch (const std::exception& error) {  // whatever it is, it is the run that has failed
-    const RunError told(fmt::format("{} {}", what_happened(error), last_good(places)));
+    const RunError told(fmt::format("{} {}", error_message(error), last_good(places)));
     loop::LoopRecord record = time_loop.record();
     record.reason = told.what();
     try {

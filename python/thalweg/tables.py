@@ -23,15 +23,11 @@ def merged_rows(path, rows):
     if path is None:
         return rows
     path = Path(path)
-    given = {row["run"]: [] for row in rows}
-    for row in rows:
-        given[row["run"]].append(row)
+    kept = read_rows(path) if path.exists() else []
     merged = []
-    for row in read_rows(path) if path.exists() else []:
-        merged += given.pop(row["run"]) if row["run"] in given else []
-        if row["run"] not in {row["run"] for row in rows}:
-            merged.append(row)
-    merged += [row for group in given.values() for row in group]
+    for name in dict.fromkeys(row["run"] for row in kept + rows):
+        of_this = [row for row in rows if row["run"] == name]
+        merged += of_this or [row for row in kept if row["run"] == name]
     with open(path, "w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, list(rows[0] if rows else merged[0]), lineterminator="\n")
         writer.writeheader()

@@ -2,7 +2,8 @@
 """q* of the flume against time: compare.py RUN_FOLDER... [--figure FILE] [--table FILE]
 
 Draws means over half a second, and the mean and the deviation that Zhang et al. (2022) print at the Shields number 0.028.
-The table of these means is brought up to date, and all that it has are drawn. python/figures/transport_relation.py draws the runs against the Shields number.
+The table of these means is brought up to date, and all that it has are drawn. python/figures/transport_relation.py draws
+the runs against the Shields number.
 """
 import argparse
 import sys

@@ -20,21 +20,21 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[2] / "python"))
 from thalweg.tables import read_rows
+from thresholds import thresholds
 
 ACCEPTED = 0.3   # of alpha
 RAMP_STEP = 0.03
 # Name of the sweep, exponent of the paper, table and row of the threshold, grains per diameter of length.
-SYSTEMS = (("first_motion", "spheres", 2.2, "shields_curve", {"model_fluid.reynolds_number [1]": 100.0}, 20),
+SYSTEMS = (("first_motion", "spheres", 2.2, "shields_curve", {"reynolds_number": 100.0}, 20),
            ("first_motion_disks", "disks with friction", 2.4, "friction",
-            {"model_fluid.reynolds_number [1]": 30.0, "contact.friction [1]": 0.6}, 10))
+            {"reynolds_number": 30.0, "friction": 0.6}, 10))
 
 
 def threshold(table, wanted):
     """Theta_c and half its bracket, None if it has not been found."""
-    path = HERE / f"{table}.csv"
-    for row in read_rows(path) if path.exists() else []:
-        if row["state"] == "found" and all(float(row[head]) == value for head, value in wanted.items()):
-            return float(row["model_fluid.shields_number [1]"]), float(row["half_width [1]"])
+    for row in thresholds(table):
+        if all(row[key] == value for key, value in wanted.items()):
+            return row["shields_number"], row["half_width"]
     return None
 
 

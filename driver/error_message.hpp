@@ -1,0 +1,12 @@
+// What an exception means to the user.
+#pragma once
+
+#include <exception>
+#include <string>
+
+namespace thalweg::driver {
+
+// One sentence: that of an InputError or a RunError, or what stands for any other exception.
+std::string error_message(const std::exception& error);
+
+}  // namespace thalweg::driver
