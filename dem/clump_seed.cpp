@@ -1,6 +1,7 @@
 #include "dem/clump_seed.hpp"
 
 #include "core/error.hpp"
+#include "dem/grain_volume.hpp"
 #include "dem/union_moments.hpp"
 
 #include <fmt/format.h>
@@ -39,7 +40,7 @@ Eigen::Matrix3d principal_axes(const Eigen::Matrix3d& inertia) {
 
 }  // namespace
 
-double ClumpShape::equivalent_radius() const { return std::cbrt(0.75 * volume / std::numbers::pi); }
+double ClumpShape::equivalent_radius() const { return radius_of_volume(volume, thickness); }
 
 double ClumpShape::least_contact_mass(double density) const {
   std::vector<Vec3> offsets;

@@ -24,7 +24,7 @@ struct ClumpShape {
   double bounding_radius = 0.0;  // m: of the sphere about the centre that holds all members
   double thickness = 0.0;        // m, of disks in the plane x-z; 0: spheres
 
-  double equivalent_radius() const;  // m, of the sphere of the same volume
+  double equivalent_radius() const;  // m, of the sphere (disk) of the same volume
 
   double least_contact_mass(double density) const;  // kg, see below
 };

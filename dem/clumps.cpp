@@ -1,6 +1,7 @@
 #include "dem/clumps.hpp"
 
 #include "core/mpi_session.hpp"
+#include "dem/grain_volume.hpp"
 
 #include <Eigen/Geometry>
 
@@ -14,8 +15,6 @@ namespace thalweg::dem {
 namespace {
 
 void copy(const Vec3& from, double (&to)[3]) { std::copy(from.data(), from.data() + 3, to); }
-
-double radius_of_volume(double volume) { return std::cbrt(0.75 * volume / std::numbers::pi); }
 
 }  // namespace
 
@@ -83,13 +82,16 @@ void Clumps::find_members(const GrainStore& store) {
       offsets_.push_back(store.offset[first_slot_.back() + static_cast<std::size_t>(m)]);
   }
   arms_.resize(offsets_.size());
+  loads_.resize(clumps_.size());
   for (std::size_t n = 0; n < clumps_.size(); ++n) turn_arms(n);
 }
 
 void Clumps::compute_body_forces(const std::function<Vec3(double, double)>& body_force) {
   body_force_.clear();
-  for (const Clump& clump : clumps_) body_force_.push_back(body_force(clump.mass, radius_of_volume(clump.volume)));
+  for (const Clump& clump : clumps_) body_force_.push_back(body_force(clump.mass, radius_of(clump)));
 }
+
+double Clumps::radius_of(const Clump& clump) const { return radius_of_volume(clump.volume, disk_thickness_); }
 
 void Clumps::turn_arms(std::size_t n) {
   const Eigen::Matrix3d turn = rotation_matrix(clumps_[n].orientation);
@@ -106,7 +108,7 @@ void Clumps::share_body_force(std::vector<Vec3>& of_slot) const {
 double Clumps::volume_radius(GlobalId id) const {
   const auto clump = std::lower_bound(clumps_.begin(), clumps_.end(), id,
                                       [](const Clump& c, GlobalId wanted) { return c.id < wanted; });
-  return radius_of_volume(clump->volume);
+  return radius_of(*clump);
 }
 
 void Clumps::wrap(const PeriodicBox& box) {
@@ -142,8 +144,35 @@ void Clumps::add_loads(std::size_t n, const GrainStore& store, Vec3& force, Vec3
 }
 
 void Clumps::load(const GrainStore& store) {
-  loads_.assign(clumps_.size(), {Vec3::Zero(), Vec3::Zero()});
-  for (std::size_t n = 0; n < clumps_.size(); ++n) add_loads(n, store, loads_[n].force, loads_[n].torque);
+  for (std::size_t n = 0; n < clumps_.size(); ++n) load(n, store);
+}
+
+void Clumps::load(std::size_t n, const GrainStore& store) {
+  loads_[n] = {Vec3::Zero(), Vec3::Zero()};
+  add_loads(n, store, loads_[n].force, loads_[n].torque);
+}
+
+void Clumps::set_central_force(std::size_t n, const Vec3& force, GrainStore& store) {
+  const Vec3 share = force / static_cast<double>(count(n));
+  for (std::size_t m = 0; m < count(n); ++m) {
+    const std::size_t slot = first_slot_[n] + m;
+    store.load_force[slot] = share;
+    store.load_torque[slot] = -arm(n, m).cross(share);
+  }
+  load(n, store);
+}
+
+void Clumps::stop_along_floor(std::size_t n, MovingGrains& grains) {
+  Clump& clump = clumps_[n];
+  clump.velocity[0] = clump.velocity[1] = 0.0;
+  Vec3 pull = loads_[n].force;
+  for (std::size_t m = 0; m < count(n); ++m) pull += vector_of(grains[first_slot_[n] + m].force);
+  const Vec3 share(-pull[0] / static_cast<double>(count(n)), -pull[1] / static_cast<double>(count(n)), 0.0);
+  for (std::size_t m = 0; m < count(n); ++m) {
+    MovingGrain& member = grains[first_slot_[n] + m];
+    member.force += row_of(share);
+    member.torque -= row_of(arm(n, m).cross(share));
+  }
 }
 
 void Clumps::half_kicks(const MovingGrains& grains, double time_step, int kicks) {

@@ -54,6 +54,8 @@ Clump clump_of(const ClumpSeed& seed, const PeriodicBox& box);
 
 class Clumps {
 public:
+  explicit Clumps(double disk_thickness = 0.0) : disk_thickness_(disk_thickness) {}  // m; 0: of spheres
+
   bool empty() const { return clumps_.empty(); }
   std::size_t size() const { return clumps_.size(); }
   const Clump& operator[](std::size_t n) const { return clumps_[n]; }
@@ -65,13 +67,15 @@ public:
   // Finds the members among the owned grains of the store; compute_body_forces() must follow.
   void find_members(const GrainStore& store);
 
-  // body_force: as in GrainParameters, of a clump's mass and the radius of the sphere of its volume.
+  // body_force: as in GrainParameters, of a clump's mass and the radius of the sphere (disk) of its volume.
   void compute_body_forces(const std::function<Vec3(double, double)>& body_force);
 
   // Gives every member an equal share of its clump's body force.
   void share_body_force(std::vector<Vec3>& of_slot) const;
 
-  double volume_radius(GlobalId clump) const;  // m, of the sphere of the volume of a clump owned here
+  double volume_radius(GlobalId clump) const;  // m, of the sphere (disk) of the volume of a clump owned here
+  double radius_of(const Clump& clump) const;  // the same
+  std::size_t member_count(std::size_t n) const { return count(n); }
 
   void wrap(const PeriodicBox& box);
 
@@ -82,6 +86,10 @@ public:
 
   // Before the sub-steps: the loads of the store, about the centres as the members are now.
   void load(const GrainStore& store);
+  // During the sub-steps: a load (N) that acts at the centre, which the store gets in equal shares of the members.
+  void set_central_force(std::size_t n, const Vec3& force, GrainStore& store);
+  // The clump stops along x and y, and whatever would move it there is taken up, without a couple.
+  void stop_along_floor(std::size_t n, MovingGrains& grains);
   // One or two half kicks by the members' present forces.
   void half_kicks(const MovingGrains& grains, double time_step, int count);
   void drift(double time_step);
@@ -99,6 +107,7 @@ private:
   Vec3 arm(std::size_t n, std::size_t member) const { return arms_[first_arm_[n] + member]; }
   std::size_t count(std::size_t n) const { return static_cast<std::size_t>(clumps_[n].members); }
   void turn_arms(std::size_t n);
+  void load(std::size_t n, const GrainStore& store);
   void add_loads(std::size_t n, const GrainStore& store, Vec3& force, Vec3& torque) const;
 
   // What pulls at a clump besides contacts, about its centre.
@@ -106,6 +115,7 @@ private:
     Vec3 force, torque;
   };
 
+  double disk_thickness_;
   std::vector<Clump> clumps_;  // sorted by id
   std::vector<std::size_t> first_slot_, first_arm_;
   std::vector<Vec3> offsets_, arms_;  // m, centre to member: in the frame of the principal axes, in space

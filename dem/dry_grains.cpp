@@ -20,7 +20,7 @@ GrainParameters dry_parameters(const DryParameters& dry) {
   parameters.movable_cuts = true;
   parameters.field = dry.field;
   if (dry.field) parameters.attached_width = dry.field->attached_columns();
-  parameters.body_force = [gravity = dry.gravity, density = dry.fluid_density, thickness = dry.disk_thickness](
+  parameters.body_force = [gravity = dry.gravity, density = dry.fluid_density, thickness = dry.grains.disk_thickness](
                               double mass, double radius) {
     return Vec3((mass - density * grain_volume(radius, thickness)) * gravity);
   };
@@ -35,7 +35,6 @@ DryGrains::DryGrains(const Decomposition& decomposition, MPI_Comm communicator, 
       sub_steps_(parameters.grains.sub_steps),
       time_step_(parameters.grains.time_step * sub_steps_),
       wall_names_(parameters.measured_walls),
-      disk_thickness_(parameters.disk_thickness),
       grains_(decomposition, communicator, dry_parameters(parameters), seeds.grains, seeds.clumps),
       lists_(timer_.phase("grain lists")),
       motion_(timer_.phase("grain motion")) {}
@@ -65,7 +64,7 @@ Snapshot DryGrains::snapshot() const {
   snapshot.decomposition = &grains_.decomposition();
   snapshot.contacts = this;
   snapshot.grains.global_count = grains_.global_count();
-  snapshot.grains.disk_thickness = disk_thickness_;
+  snapshot.grains.disk_thickness = grains_.parameters().disk_thickness;
   snapshot.grains.id = {store.id.data(), owned};
   snapshot.grains.radius = {store.radius.data(), owned};
   snapshot.grains.mass = {store.mass.data(), owned};

@@ -20,7 +20,6 @@ struct DryParameters {
   GrainParameters grains;                   // without body force
   Vec3 gravity = Vec3::Zero();              // m/s^2
   std::vector<std::string> measured_walls;  // names of all walls, in their order, or none
-  double disk_thickness = 0.0;              // m; 0: spheres
   // Of a fluid that is no more than a force (model_fluid.hpp): what the load of a grain is, and its attached columns.
   std::shared_ptr<ForceField> field = {};
   double fluid_density = 0.0;  // kg/m^3, of the buoyancy
@@ -59,7 +58,6 @@ private:
   int sub_steps_;
   double time_step_;                     // s, of sub_steps_ sub-steps
   std::vector<std::string> wall_names_;  // whose forces are measured
-  double disk_thickness_;                // m; 0: spheres
   GrainDynamics grains_;
   std::int64_t step_ = 0;
   PhaseTimer timer_;

@@ -1,8 +1,9 @@
-// A force on every grain by where it is and how it moves, evaluated with the contacts in every sub-step.
+// A force on every grain or clump by where it is and how it moves, evaluated with the contacts in every sub-step.
 #pragma once
 
 #include "core/archive.hpp"
 #include "core/system.hpp"
+#include "dem/clumps.hpp"
 #include "dem/grain_store.hpp"
 #include "dem/moving_grains.hpp"
 
@@ -21,12 +22,15 @@ public:
   virtual int attached_columns() const { return 0; }
   // m: grains at least this near to a grain's centre, surface or not, must be known to its rank.
   virtual double reach() const { return 0.0; }
+  // Before find_neighbours() and before there are ghosts, which get the columns: those that follow from the owned
+  // grains and clumps alone.
+  virtual void fill_columns(GrainStore&, const Clumps&) {}
   // Slots and neighbours have changed: what is known of them begins anew. skin: m, of the contact list; no grain moves
   // further than half of it before the next call.
-  virtual void find_neighbours(const GrainStore& store, double skin) = 0;
-  // After the contacts: sets the loads of owned grains, in the store and, with the body forces (N), in what the
-  // sub-steps work on. May hold velocities and change the contact forces of grains that touch what it holds.
-  virtual void act(MovingGrains& grains, GrainStore& store, std::span<const Vec3> body_force) = 0;
+  virtual void find_neighbours(const GrainStore& store, double skin, const Clumps& clumps) = 0;
+  // After the contacts: sets the loads of owned grains and clumps, in the store and, with the body forces (N), in what
+  // the sub-steps work on. May hold velocities and change the contact forces of what touches what it holds.
+  virtual void act(MovingGrains& grains, GrainStore& store, Clumps& clumps, std::span<const Vec3> body_force) = 0;
 
   // A step of the system has ended (time: s). Collective, as are the next three.
   virtual void step_ended(const GrainDynamics&, double /*time*/) {}

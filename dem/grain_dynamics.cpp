@@ -69,7 +69,7 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
       walls_change_(std::any_of(parameters.walls.begin(), parameters.walls.end(),
                                 [](const Plane& wall) { return wall.changes(); })),
       assemblies_(parameters.assemblies, grains),
-      store_(columns_of(parameters), parameters.disks ? GrainStore::of_disk : GrainStore::of_sphere),
+      store_(columns_of(parameters), parameters.disk_thickness > 0.0 ? GrainStore::of_disk : GrainStore::of_sphere),
       ghosts_(decomposition, communicator, ghost_reach(), largest_offset_),
       lists_phase_(timer_.phase("contact lists")),
       forces_phase_(timer_.phase("contact forces")),
@@ -85,9 +85,9 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
     if (seed.material < 0 || seed.material >= materials_.count())
       throw InputError(
           fmt::format("Grain {} is of material {}, but there are {}.", seed.id, seed.material, materials_.count()));
-    if ((seed.thickness > 0.0) != parameters_.disks)
-      throw InputError(fmt::format("Grain {} is a {}, and the run is one of {}.", seed.id,
-                                   seed.thickness > 0.0 ? "disk" : "sphere", parameters_.disks ? "disks" : "spheres"));
+    if (seed.thickness != parameters_.disk_thickness)
+      throw InputError(fmt::format("Grain {} is {:g} m thick, and the grains of the run {:g} m (0: spheres).", seed.id,
+                                   seed.thickness, parameters_.disk_thickness));
     if (holds_translation(seed.motion)) continue;
     lightest[static_cast<std::size_t>(seed.material)].include(seed.contact_mass(), seed.radius);
   }
@@ -114,8 +114,8 @@ void GrainDynamics::check_integrator() const {
   const bool gear = parameters_.integrator == Integrator::gear;
   if (clump_count_ > 0 && gear)
     throw InputError("Clumps are moved by velocity Verlet, not by Gear's predictor-corrector; use the former.");
-  if (parameters_.field && (clump_count_ > 0 || gear))
-    throw InputError("A force field acts on single grains that are moved by velocity Verlet; use these.");
+  if (parameters_.field && gear)
+    throw InputError("A force field acts on grains that are moved by velocity Verlet; use that.");
 }
 
 // The contact list must outlast a step.
@@ -248,15 +248,16 @@ void GrainDynamics::migrate(ContactHistories& histories) {
 
 // Makes everything that follows from the owned grains: ghosts, contact list, body forces.
 void GrainDynamics::build_dependents(const ContactHistories& histories) {
+  clumps_.find_members(store_);
+  if (parameters_.field) parameters_.field->fill_columns(store_, clumps_);
   ghosts_.build(store_);
   assemblies_.find(store_);
   listed_planes_ = planes_;
   list_ = find_contacts(store_, box_, planes_, materials_, list_range(), largest_radius_);
   restore_histories(list_, store_, histories);
-  if (parameters_.field) parameters_.field->find_neighbours(store_, parameters_.skin);
+  if (parameters_.field) parameters_.field->find_neighbours(store_, parameters_.skin, clumps_);
   const auto owned_end = static_cast<std::ptrdiff_t>(store_.owned);
   listed_position_.assign(store_.position.begin(), store_.position.begin() + owned_end);
-  clumps_.find_members(store_);
   compute_body_forces();
 }
 
@@ -282,7 +283,7 @@ void GrainDynamics::evaluate_forces(double time_step) {
   const auto scope = timer_.measure(forces_phase_);
   evaluate_contacts(moving_, list_, box_, planes_, materials_, store_.material, time_step);
   if (parameters_.lubrication) add_lubrication(moving_, list_, box_, planes_, *parameters_.lubrication);
-  if (parameters_.field) parameters_.field->act(moving_, store_, body_force_);
+  if (parameters_.field) parameters_.field->act(moving_, store_, clumps_, body_force_);
 }
 
 void GrainDynamics::place_walls(double time, double time_of_velocity) {

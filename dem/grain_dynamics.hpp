@@ -50,7 +50,7 @@ struct GrainParameters {
   std::optional<ContactParameters> wall_contact;   // of grains with walls, where it differs (but for the friction)
   std::vector<Plane> walls;
   std::vector<PrescribedMotion> assemblies;  // of the rigid assemblies the seeds name
-  // N of a grain (kg, m; of a clump the radius of the sphere of its volume), constant; empty: none
+  // N of a grain (kg, m; of a clump the radius of the sphere or disk of its volume), constant; empty: none
   std::function<Vec3(double mass, double radius)> body_force;
   double time_step = 0.0;  // s, of a sub-step: at most a 20th of the shortest contact time
   Integrator integrator = Integrator::velocity_verlet;
@@ -59,8 +59,8 @@ struct GrainParameters {
   double ghost_width = 0.0;  // m: grains at least this near to a rank's block are its ghosts at all times
   int attached_width = 0;    // columns attached to every grain, the caller's (Gear's predictor has more after them)
   std::optional<LubricationParameters> lubrication;  // between near surfaces, in every sub-step
-  std::shared_ptr<ForceField> field;                 // on every grain, in every sub-step; with no clumps, and no Gear
-  bool disks = false;                                // the grains are disks in an x-z plane: I = 1/2 m R^2
+  std::shared_ptr<ForceField> field;                 // on every grain, in every sub-step; not with Gear's integrator
+  double disk_thickness = 0.0;                       // m, of disks in an x-z plane: I = 1/2 m R^2; 0: spheres
   bool movable_cuts = false;                         // whether the cuts between ranks follow the grains
   double initial_overlap = allowed_initial_overlap;  // diameters the seeds may overlap by: a settled bed's do
 };
@@ -132,7 +132,7 @@ public:
   const GrainStore& store() const { return store_; }
   // N; of a clump's member an equal share of the clump's
   const Vec3& body_force(std::size_t owned_slot) const { return body_force_[owned_slot]; }
-  // m, of the sphere with the volume of a grain, or of a member's whole clump
+  // m, of the sphere (disk) with the volume of a grain, or of a member's whole clump
   double volume_radius(std::size_t owned_slot) const {
     return store_.clump[owned_slot] < 0 ? store_.radius[owned_slot] : clumps_.volume_radius(store_.clump[owned_slot]);
   }
@@ -241,7 +241,7 @@ private:
   ContactList list_;
   GearPredictor gear_;
   MovingGrains moving_;  // the state during the sub-steps
-  Clumps clumps_;
+  Clumps clumps_{parameters_.disk_thickness};
   std::vector<Vec3> listed_position_;  // of owned grains, when the list was built
   std::vector<Plane> listed_planes_;
   std::vector<Vec3> body_force_;  // of owned grains, times the factor

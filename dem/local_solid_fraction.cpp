@@ -16,6 +16,9 @@ namespace {
 
 constexpr std::size_t group = 8;  // doubles of the widest vector
 
+// Attached columns.
+constexpr std::size_t solid_at = 0, solid_known = 3, weight_at = 4, clump_at = 5, clump_known = 8;
+
 // m^3, of disks of a thickness of 1, which is their area (m^2).
 double size_of_grain(double radius, bool disk) { return grain_volume(radius, disk ? 1.0 : 0.0); }
 
@@ -54,7 +57,8 @@ LocalSolidFraction::LocalSolidFraction(const PeriodicBox& box, const SolidFracti
   // The second nearest image is at least half the box away, the third the whole box, and so on.
   std::array<int, 3> count{1, 1, 1};
   for (int axis = 0; axis < 3; ++axis)
-    if (box.periodic[axis]) count[axis] = std::max(1, static_cast<int>(std::ceil(2.0 * reach() / box.size[axis])));
+    if (box.periodic[axis] && !(parameters.disks && axis == 1))  // across their plane there is one of each
+      count[axis] = std::max(1, static_cast<int>(std::ceil(2.0 * reach() / box.size[axis])));
   const auto further = [&box](int axis, int n) { return (n % 2 == 1 ? (n + 1) / 2 : -n / 2) * box.size[axis]; };
   for (int k = 0; k < count[2]; ++k)
     for (int j = 0; j < count[1]; ++j)
@@ -62,12 +66,25 @@ LocalSolidFraction::LocalSolidFraction(const PeriodicBox& box, const SolidFracti
 }
 
 double LocalSolidFraction::reach() const {
-  const double to_sphere = parameters_.lift ? parameters_.largest_radius : 0.0;
+  const double to_sphere = parameters_.largest_offset + (parameters_.lift ? parameters_.largest_radius : 0.0);
+  const double solid = std::max(parameters_.largest_radius, parameters_.largest_member);
   // Either grain may be the tolerance away from where it counts.
-  return to_sphere + 2.0 * parameters_.largest_radius + parameters_.margin + 2.0 * parameters_.tolerance;
+  return to_sphere + parameters_.largest_radius + parameters_.margin + solid + 2.0 * parameters_.tolerance;
 }
 
-void LocalSolidFraction::find_neighbours(const GrainStore& store, double skin) {
+void LocalSolidFraction::weigh(GrainStore& store, const Clumps& clumps) const {
+  if (!parameters_.clumps) return;
+  for (std::size_t s = 0; s < store.owned; ++s) store.attached_of(s)[weight_at] = 1.0;
+  for (std::size_t n = 0; n < clumps.size(); ++n) {
+    const std::size_t first = clumps.first_slot(n), end = first + clumps.member_count(n);
+    double members = 0.0;
+    for (std::size_t s = first; s < end; ++s) members += size_of_grain(store.radius[s], parameters_.disks);
+    const double whole = size_of_grain(clumps.radius_of(clumps[n]), parameters_.disks);
+    for (std::size_t s = first; s < end; ++s) store.attached_of(s)[weight_at] = whole / members;
+  }
+}
+
+void LocalSolidFraction::find_neighbours(const GrainStore& store, double skin, const Clumps& clumps) {
   const std::vector<SlotPair> pairs = pairs_within(reach() + skin, box_, store);
   first_.assign(store.total() + 1, 0);
   for (const auto& [a, b] : pairs) {
@@ -83,48 +100,84 @@ void LocalSolidFraction::find_neighbours(const GrainStore& store, double skin) {
   }
 
   owned_ = store.owned;
-  remembered_.resize(store.total());
-  for (std::size_t s = 0; s < store.total(); ++s) {
-    const std::span<const double> attached = store.attached_of(s);
-    remembered_[s] = Row{attached[0], attached[1], attached[2], attached[3] != 0.0 ? store.radius[s] : 0.0};
-  }
+  recall(store, clumps);
   sums_.assign(owned_ * heights_.size(), 0.0);
   is_changed_.assign(owned_, 0);
   changed_.clear();
   for (std::size_t s = 0; s < owned_; ++s) {
-    if (!is_remembered(s)) continue;
-    copy_neighbours(s);
+    if (bodies()[s][3] == 0.0) continue;
+    copy_neighbours(s, solids_);
     sum_own(s);
   }
 }
 
-std::span<const std::uint32_t> LocalSolidFraction::update(const MovingGrains& grains, GrainStore& store) {
+// Takes what is remembered from the columns.
+void LocalSolidFraction::recall(const GrainStore& store, const Clumps& clumps) {
+  const auto remembered = [&store](std::size_t slot, std::size_t at, std::size_t known, double radius) {
+    const std::span<const double> attached = store.attached_of(slot);
+    return Row{attached[at], attached[at + 1], attached[at + 2], attached[known] != 0.0 ? radius : 0.0};
+  };
+  solids_.resize(store.total());
+  weights_.assign(store.total(), 1.0);
+  for (std::size_t s = 0; s < store.total(); ++s) {
+    solids_[s] = remembered(s, solid_at, solid_known, store.radius[s]);
+    if (parameters_.clumps) weights_[s] = store.attached_of(s)[weight_at];
+  }
+  if (!parameters_.clumps) return;
+  bodies_.assign(store.total(), Row{});
+  for (std::size_t s = 0; s < owned_; ++s)
+    if (store.clump[s] < 0) bodies_[s] = solids_[s];
+  for (std::size_t n = 0; n < clumps.size(); ++n) {
+    const std::size_t first = clumps.first_slot(n);
+    bodies_[first] = remembered(first, clump_at, clump_known, clumps.radius_of(clumps[n]));
+  }
+}
+
+std::span<const std::uint32_t> LocalSolidFraction::update(const MovingGrains& grains, const Clumps& clumps,
+                                                          GrainStore& store) {
   for (const std::uint32_t s : changed_) is_changed_[s] = 0;
   changed_.clear();
-  for (std::size_t s = 0; s < grains.size(); ++s) {
-    if (!has_moved(grains[s], s)) continue;
-    copy_neighbours(s);
-    if (is_remembered(s)) add_to_neighbours(s, -1.0);
-    remember(s, grains[s].position, store);
-    add_to_neighbours(s, 1.0);
-    if (s < owned_) sum_own(s);
-    mark(s);
-    for (const std::uint32_t neighbour : neighbours_of(s)) mark(neighbour);
+  for (std::size_t s = 0; s < grains.size(); ++s)
+    if (has_moved(solids_[s], grains[s].position)) move_solid(s, grains[s].position, store);
+  for (std::size_t n = 0; n < clumps.size(); ++n) {
+    const Row centre = row_of(clumps[n].centre, clumps.radius_of(clumps[n]));
+    if (has_moved(bodies_[clumps.first_slot(n)], centre)) move_clump(clumps.first_slot(n), centre, store);
   }
   return changed_;
 }
 
-bool LocalSolidFraction::has_moved(const MovingGrain& grain, std::size_t slot) const {
-  if (!is_remembered(slot)) return true;
+bool LocalSolidFraction::has_moved(const Row& remembered, const Row& now) const {
+  if (remembered[3] == 0.0) return true;
   const double limit = parameters_.tolerance * parameters_.tolerance;
-  return box_.difference(vector_of(grain.position), vector_of(remembered_[slot])).squaredNorm() > limit;
+  return box_.difference(vector_of(now), vector_of(remembered)).squaredNorm() > limit;
 }
 
-void LocalSolidFraction::remember(std::size_t slot, const Row& position, GrainStore& store) {
-  remembered_[slot] = position;
+void LocalSolidFraction::move_solid(std::size_t slot, const Row& position, GrainStore& store) {
+  copy_neighbours(slot, bodies());
+  if (solids_[slot][3] > 0.0) add_to_neighbours(slot, -1.0);
+  solids_[slot] = position;
+  add_to_neighbours(slot, 1.0);
   const std::span<double> attached = store.attached_of(slot);
-  for (int axis = 0; axis < 3; ++axis) attached[axis] = position[axis];
-  attached[3] = 1.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) attached[solid_at + axis] = position[axis];
+  attached[solid_known] = 1.0;
+  mark(slot);
+  for (const std::uint32_t neighbour : neighbours_of(slot)) mark(neighbour);
+
+  if (slot >= owned_) return;
+  if (parameters_.clumps && store.clump[slot] < 0) bodies_[slot] = position;
+  if (bodies()[slot][3] == 0.0) return;
+  if (parameters_.clumps) copy_neighbours(slot, solids_);
+  sum_own(slot);
+}
+
+void LocalSolidFraction::move_clump(std::size_t first_member, const Row& centre, GrainStore& store) {
+  bodies_[first_member] = centre;
+  const std::span<double> attached = store.attached_of(first_member);
+  for (std::size_t axis = 0; axis < 3; ++axis) attached[clump_at + axis] = centre[axis];
+  attached[clump_known] = 1.0;
+  copy_neighbours(first_member, solids_);
+  sum_own(first_member);
+  mark(first_member);
 }
 
 void LocalSolidFraction::mark(std::size_t slot) {
@@ -133,34 +186,37 @@ void LocalSolidFraction::mark(std::size_t slot) {
   changed_.push_back(static_cast<std::uint32_t>(slot));
 }
 
-void LocalSolidFraction::copy_neighbours(std::size_t slot) {
+// remembered: solids_ or bodies().
+void LocalSolidFraction::copy_neighbours(std::size_t slot, const std::vector<Row>& remembered) {
   const std::span<const std::uint32_t> neighbours = neighbours_of(slot);
   if (near_.slot.size() < neighbours.size() + 1 + group) {
     near_.slot.resize(2 * (neighbours.size() + 1 + group));
-    for (std::vector<double>* column : {&near_.x, &near_.y, &near_.z, &near_.radius, &near_.common})
+    for (std::vector<double>* column : {&near_.x, &near_.y, &near_.z, &near_.radius, &near_.weight, &near_.common})
       column->resize(near_.slot.size());
   }
   std::size_t n = 0;
   for (const std::uint32_t neighbour : neighbours) {
-    if (!is_remembered(neighbour)) continue;
-    const Row& at = remembered_[neighbour];
+    const Row& at = remembered[neighbour];
+    if (at[3] == 0.0) continue;
     near_.slot[n] = neighbour;
     near_.x[n] = at[0];
     near_.y[n] = at[1];
     near_.z[n] = at[2];
     near_.radius[n] = at[3];
+    near_.weight[n] = weights_[neighbour];
     ++n;
   }
   near_.size = n + 1;
 }
 
-// What all near it have in common with a grain's own spheres. The neighbours have been copied.
+// What all solids near it have in common with a grain's own spheres. They have been copied.
 void LocalSolidFraction::sum_own(std::size_t slot) {
   const std::size_t itself = near_.size - 1;
-  near_.x[itself] = remembered_[slot][0];
-  near_.y[itself] = remembered_[slot][1];
-  near_.z[itself] = remembered_[slot][2];
-  near_.radius[itself] = remembered_[slot][3];
+  near_.x[itself] = solids_[slot][0];
+  near_.y[itself] = solids_[slot][1];
+  near_.z[itself] = solids_[slot][2];
+  near_.radius[itself] = solids_[slot][3];
+  near_.weight[itself] = weights_[slot];
   for (std::size_t h = 0; h < heights_.size(); ++h) {
     intersect(slot, About::grain, heights_[h]);
     double sum = 0.0;
@@ -169,7 +225,8 @@ void LocalSolidFraction::sum_own(std::size_t slot) {
   }
 }
 
-// Adds what a grain has in common with the spheres of its owned neighbours to their sums, or takes it away.
+// Adds what a solid has in common with the spheres of its owned neighbours to their sums, or takes it away. These have
+// been copied.
 void LocalSolidFraction::add_to_neighbours(std::size_t slot, double sign) {
   for (std::size_t h = 0; h < heights_.size(); ++h) {
     intersect(slot, About::neighbours, heights_[h]);
@@ -180,20 +237,24 @@ void LocalSolidFraction::add_to_neighbours(std::size_t slot, double sign) {
 
 void LocalSolidFraction::intersect(std::size_t slot, About about, double height) {
   std::fill_n(near_.common.begin(), near_.size, 0.0);
-  const Row grain = remembered_[slot];
+  const Row grain = about == About::grain ? bodies()[slot] : solids_[slot];
+  const double weight = weights_[slot];
   for (const Vec3& image : images_) {
-    if (about == About::grain && parameters_.disks) add_image<About::grain, true>(grain, image, height);
-    if (about == About::grain && !parameters_.disks) add_image<About::grain, false>(grain, image, height);
-    if (about == About::neighbours && parameters_.disks) add_image<About::neighbours, true>(grain, image, height);
-    if (about == About::neighbours && !parameters_.disks) add_image<About::neighbours, false>(grain, image, height);
+    if (about == About::grain && parameters_.disks) add_image<About::grain, true>(grain, weight, image, height);
+    if (about == About::grain && !parameters_.disks) add_image<About::grain, false>(grain, weight, image, height);
+    if (about == About::neighbours && parameters_.disks)
+      add_image<About::neighbours, true>(grain, weight, image, height);
+    if (about == About::neighbours && !parameters_.disks)
+      add_image<About::neighbours, false>(grain, weight, image, height);
   }
 }
 
-// Adds what a grain and each of its neighbours have in common, the sphere being about the one or the other. It gives
-// the same bits seen from either.
+// Adds what a grain and each of its neighbours have in common, the sphere being about the one or the other, times the
+// weight of the solid. It gives the same bits seen from either.
 template <LocalSolidFraction::About about, bool disks>
-void LocalSolidFraction::add_image(const Row& grain, const Vec3& image, double height) {
-  const double *x = near_.x.data(), *y = near_.y.data(), *z = near_.z.data(), *radius = near_.radius.data();
+void LocalSolidFraction::add_image(const Row& grain, double weight, const Vec3& image, double height) {
+  const double *x = near_.x.data(), *y = near_.y.data(), *z = near_.z.data(), *radius = near_.radius.data(),
+               *weights = near_.weight.data();
   double* common = near_.common.data();
   const double margin = parameters_.margin, rounding = rounding_;
   const auto along = [this, &image](int axis) {
@@ -215,15 +276,15 @@ void LocalSolidFraction::add_image(const Row& grain, const Vec3& image, double h
     const double distance = std::sqrt(dx * dx + dy * dy + dz * dz);
     const double part =
         disks ? common_area(counted + margin, other, distance) : common_volume(counted + margin, other, distance);
-    common[n] += (part + rounding) - rounding;
+    common[n] += (part * (about == About::grain ? weights[n] : weight) + rounding) - rounding;
   }
 }
 
 double LocalSolidFraction::fraction(std::size_t slot, int which) const {
-  const double own = remembered_[slot][3], radius = own + parameters_.margin;
+  const double own = bodies()[slot][3], radius = own + parameters_.margin;
   const double solid = sums_[slot * heights_.size() + which];
   if (!parameters_.floor) return solid / size_of_grain(radius, parameters_.disks);
-  const double height = remembered_[slot][2] + heights_[which] * own;
+  const double height = bodies()[slot][2] + heights_[which] * own;
   return solid / (parameters_.disks ? area_above(radius, height) : volume_above(radius, height));
 }
 

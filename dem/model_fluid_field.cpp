@@ -16,8 +16,8 @@ void ModelFluidField::update_coefficients() {
   if (ramp_) coefficients_ = at_shields_number(shields_number(), n.lift_ratio, coefficients_, parameters_.scales);
 }
 
-void ModelFluidField::find_neighbours(const GrainStore& store, double skin) {
-  fraction_.find_neighbours(store, skin);
+void ModelFluidField::find_neighbours(const GrainStore& store, double skin, const Clumps& clumps) {
+  fraction_.find_neighbours(store, skin, clumps);
   velocity_.assign(store.owned, 0.0);
   lift_.assign(store.owned, 0.0);
   for (std::size_t s = 0; s < store.owned; ++s) update_flow(s);
@@ -28,15 +28,20 @@ void ModelFluidField::update_flow(std::size_t slot) {
   if (parameters_.solid_fraction.lift) lift_[slot] = fraction_.below_less_above(slot) / lift_scale;
 }
 
-void ModelFluidField::act(MovingGrains& grains, GrainStore& store, std::span<const Vec3> body_force) {
-  for (const std::uint32_t s : fraction_.update(grains, store)) update_flow(s);
+ModelForce ModelFluidField::force_on(std::size_t slot, double radius, const Vec3& v) const {
+  return model_force(coefficients_, 2.0 * radius / parameters_.scales.diameter, velocity_[slot], v.x(), v.y(), v.z(),
+                     lift_[slot]);
+}
+
+void ModelFluidField::act(MovingGrains& grains, GrainStore& store, Clumps& clumps, std::span<const Vec3> body_force) {
+  for (const std::uint32_t s : fraction_.update(grains, clumps, store)) update_flow(s);
   for (std::size_t s = 0; s < store.owned; ++s) {
+    if (store.clump[s] >= 0) continue;
     MovingGrain& grain = grains[s];
     const double radius = grain.position[3];
     const bool held = parameters_.rough_floor && grain.position[2] < radius;
     if (held) grain.velocity[0] = grain.velocity[1] = 0.0;
-    const ModelForce f = model_force(coefficients_, 2.0 * radius / parameters_.scales.diameter, velocity_[s],
-                                     grain.velocity[0], grain.velocity[1], grain.velocity[2], lift_[s]);
+    const ModelForce f = force_on(s, radius, vector_of(grain.velocity));
     store.load_force[s] = Vec3(f.x, f.y, f.z);
     const Vec3 load = store.load_force[s] + body_force[s];
     if (held) {  // the floor takes what would move it along
@@ -45,6 +50,19 @@ void ModelFluidField::act(MovingGrains& grains, GrainStore& store, std::span<con
     }
     grains.set_load(s, load);
   }
+  for (std::size_t n = 0; n < clumps.size(); ++n) act_on_clump(n, grains, store, clumps);
+}
+
+void ModelFluidField::act_on_clump(std::size_t n, MovingGrains& grains, GrainStore& store, Clumps& clumps) const {
+  const std::size_t first = clumps.first_slot(n), end = first + clumps.member_count(n);
+  const auto touches_floor = [&grains](std::size_t s) { return grains[s].position[2] < grains[s].position[3]; };
+  bool held = false;
+  for (std::size_t s = first; s < end; ++s) held = held || (parameters_.rough_floor && touches_floor(s));
+  Vec3 velocity = clumps[n].velocity;
+  if (held) velocity.x() = velocity.y() = 0.0;
+  const ModelForce f = force_on(first, clumps.radius_of(clumps[n]), velocity);
+  clumps.set_central_force(n, Vec3(f.x, f.y, f.z), store);
+  if (held) clumps.stop_along_floor(n, grains);
 }
 
 void ModelFluidField::step_ended(const GrainDynamics& grains, double time) {

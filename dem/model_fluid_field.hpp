@@ -1,4 +1,5 @@
-// The force of model_fluid.hpp on every grain, as a force field, with a floor that no grain slides on.
+// The force of model_fluid.hpp on every grain, as a force field, with a floor that no grain slides on. On a clump it
+// acts at the centre, as on a sphere (disk) of its volume.
 #pragma once
 
 #include "dem/force_field.hpp"
@@ -24,10 +25,11 @@ class ModelFluidField final : public ForceField {
 public:
   ModelFluidField(const PeriodicBox& box, const ModelFluidParameters& parameters);
 
-  int attached_columns() const override { return LocalSolidFraction::columns; }
+  int attached_columns() const override { return fraction_.columns(); }
   double reach() const override { return fraction_.reach(); }
-  void find_neighbours(const GrainStore& store, double skin) override;
-  void act(MovingGrains& grains, GrainStore& store, std::span<const Vec3> body_force) override;
+  void fill_columns(GrainStore& store, const Clumps& clumps) override { fraction_.weigh(store, clumps); }
+  void find_neighbours(const GrainStore& store, double skin, const Clumps& clumps) override;
+  void act(MovingGrains& grains, GrainStore& store, Clumps& clumps, std::span<const Vec3> body_force) override;
   void step_ended(const GrainDynamics& grains, double time) override;
   // With a ramp: shields_number, and hold_left (s): the motion since the last step up counts as one without end when it
   // is over.
@@ -40,12 +42,14 @@ private:
   double shields_number() const { return parameters_.numbers.shields * (ramp_ ? ramp_->factor() : 1.0); }
   void update_coefficients();
   void update_flow(std::size_t slot);
+  ModelForce force_on(std::size_t slot, double radius, const Vec3& velocity) const;
+  void act_on_clump(std::size_t n, MovingGrains& grains, GrainStore& store, Clumps& clumps) const;
 
   ModelFluidParameters parameters_;
   ModelFluidCoefficients coefficients_;
   std::optional<ShieldsRamp> ramp_;
   LocalSolidFraction fraction_;
-  std::vector<double> velocity_;  // m/s, of the fluid around each owned grain
+  std::vector<double> velocity_;  // m/s, of the fluid around each owned grain, of a clump by its first member
   std::vector<double> lift_;      // (phi_below - phi_above)/0.3
 };
 

@@ -142,6 +142,9 @@ ModelFluidParameters model_fluid_parameters(const ModelFluidKeys& fluid, const M
   parameters.solid_fraction.tolerance = fluid.tolerance * mean.diameter;
   parameters.solid_fraction.disks = disks;
   parameters.solid_fraction.lift = fluid.lift_ratio > 0.0;
+  parameters.solid_fraction.clumps = mean.longest > 0.0;
+  parameters.solid_fraction.largest_member = 0.5 * mean.largest_member;
+  parameters.solid_fraction.largest_offset = 0.5 * mean.longest;
   if (fluid.ramp) parameters.ramp = ramp_parameters(*fluid.ramp, scales);
   return parameters;
 }

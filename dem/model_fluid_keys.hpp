@@ -46,10 +46,13 @@ struct ModelFluidKeys {
 // disks: the grains are disks.
 void describe(SectionVisitor& visit, ModelFluidKeys& fluid, bool disks);
 
-// Means over all grains, by number, and the largest of them.
+// Means over all grains, by number, and the largest of them; a clump is one, with the diameter of the sphere (disk) of
+// its volume.
 struct MeanGrain {
   double diameter, mass, volume;  // m, kg, m^3
   double largest_diameter;        // m
+  double largest_member = 0.0;    // m, diameter of the members of clumps; 0: there are none
+  double longest = 0.0;           // m, of clumps
 };
 
 // Throws KeyError where units and grains do not fit together. gravity: m/s^2, downwards, without buoyancy.

@@ -39,7 +39,7 @@ struct OrientationKeys {
 struct PopulationKeys {
   std::int64_t count = 0;  // completed from the positions, or the grains of the file, where those are given
   double diameter = 0.0;   // m; completed: where they differ, the one that half of the mass is finer than; of the
-                           // sphere of a clump's volume
+                           // sphere (disk) of a clump's volume
   double density = 0.0;    // kg/m^3; completed from a file: mass over volume of all its grains
   SizesKeys sizes;
   std::optional<ShapeKeys> shape;
@@ -72,12 +72,14 @@ struct Population : PopulationKeys {
   double thickness = 0.0;              // m, of disks; 0: spheres
   std::vector<double> diameters;       // m, one a grain or row of the file; empty: all `diameter`
   std::vector<BedGrain> file;          // rows of placement.file: grains, and members of clumps one after the other
-  std::vector<double> body_diameters;  // m, of a file: one a grain, of a clump that of the sphere of its volume
+  std::vector<double> body_diameters;  // m, of a file: one a grain, of a clump that of the sphere (disk) of its volume
   ClumpFigures clumps;                 // of shape or file
 
   bool operator==(const Population&) const = default;
 
   std::int64_t row_count() const;  // ids that its grains take, one each, but one each member of a clump
+  // m; of a clump that of the sphere (disk) of its volume
+  double body_diameter_of(std::size_t body) const { return file.empty() ? diameter_of(body) : body_diameters[body]; }
   double diameter_of(std::size_t grain) const { return diameters.empty() ? diameter : diameters[grain]; }
   // m, of the sphere that a grain of its own, not from a file, needs where it is put
   double room_of(std::size_t grain) const { return shape ? clumps.largest_extent : diameter_of(grain); }

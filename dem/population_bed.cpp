@@ -80,7 +80,7 @@ bool inside(const Vec3& point, const RegionKeys& region) {
 
 // Of the grains of a bed file, a clump being one.
 struct BedSizes {
-  std::vector<double> diameters;  // m, of a clump that of the sphere of its volume
+  std::vector<double> diameters;  // m, of a clump that of the sphere (disk) of its volume
   double mass = 0.0, volume = 0.0;
 };
 

@@ -27,7 +27,6 @@ std::unique_ptr<System> build_grains_system(const Case& c, MPI_Comm communicator
   parameters.grains = grain_parameters(c, decomposition.box());
   parameters.gravity = gravity_vector(c.gravity);
   parameters.measured_walls = measured_walls(c);
-  parameters.disk_thickness = c.disks ? c.disks->thickness : 0.0;
   if (c.system == SystemKind::model_fluid) {
     parameters.fluid_density = c.model_fluid.fluid_density;
     parameters.field = std::make_shared<dem::ModelFluidField>(decomposition.box(), model_fluid_of(c));

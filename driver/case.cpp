@@ -91,15 +91,20 @@ double grain_volume(const Case& c) {
 
 dem::MeanGrain mean_grain(const Case& c) {
   double count = 0.0;
-  dem::MeanGrain mean{0.0, 0.0, 0.0, largest_diameter(c)};
-  for (const dem::Population& population : c.grains)
+  dem::MeanGrain mean{0.0, 0.0, 0.0, 0.0};
+  for (const dem::Population& population : c.grains) {
     for (std::size_t n = 0; n < static_cast<std::size_t>(population.count); ++n) {
-      const double d = population.diameter_of(n), volume = dem::grain_volume(0.5 * d, population.thickness);
+      const double d = population.body_diameter_of(n), volume = dem::grain_volume(0.5 * d, population.thickness);
       count += 1.0;
       mean.diameter += d;
       mean.volume += volume;
-      mean.mass += population.density_of(n) * volume;
+      mean.mass += population.density * volume;
+      mean.largest_diameter = std::max(mean.largest_diameter, d);
     }
+    if (population.clumps.count == 0) continue;
+    mean.largest_member = std::max(mean.largest_member, population.largest_diameter());
+    mean.longest = std::max(mean.longest, population.clumps.largest_extent);
+  }
   mean.diameter /= count;
   mean.volume /= count;
   mean.mass /= count;

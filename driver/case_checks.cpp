@@ -184,9 +184,6 @@ void check_model_fluid(const Case& c, const io::YamlDocument& document) {
                          "the model fluid drives the grains, and gravity is downwards; give a magnitude alone");
   if (c.domain.faces[bottom].type == lbm::FaceType::periodic)
     throw document.error("domain.boundaries", "the bed needs a floor; give a bottom and a top that are not periodic");
-  for (std::size_t n = 0; n < c.grains.size(); ++n)
-    if (c.grains[n].clumps.count > 0)
-      throw document.error(fmt::format("grains.{}", n), "the model fluid acts on single grains; give no clumps");
   if (c.run.grain_integrator != dem::Integrator::velocity_verlet)
     throw document.error("run.grain_integrator",
                          "with a model fluid grains are moved by velocity_verlet; remove the key");

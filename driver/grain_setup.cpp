@@ -55,7 +55,7 @@ dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box) {
   parameters.assemblies = dem::assemblies_of(c.grains);
   if (c.coupling.lubrication) parameters.lubrication = lubrication_parameters(c, parameters.walls.size());
   parameters.time_step = grain_time_step(c);
-  parameters.disks = c.disks.has_value();
+  parameters.disk_thickness = c.disks ? c.disks->thickness : 0.0;
   parameters.integrator = c.run.grain_integrator;
   parameters.sub_steps = static_cast<int>(c.coupling.grain_steps_per_fluid_step);
   parameters.skin = (has_fluid(c) ? skin_in_diameters : dry_skin_in_diameters) * smallest_diameter(c);

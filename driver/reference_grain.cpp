@@ -19,7 +19,7 @@ std::vector<const dem::Population*> populations_that_count(const Case& c) {
   return chosen;
 }
 
-// One a grain; a clump counts with the sphere of its volume.
+// One a grain; a clump counts with the sphere (disk) of its volume.
 std::vector<double> diameters_of(const dem::Population& population) {
   if (!population.file.empty()) return population.body_diameters;
   if (!population.diameters.empty()) return population.diameters;

@@ -73,7 +73,7 @@ bool slides(const Model& m, double friction) {
   p.time_step = 2e-6;
   p.sub_steps = 50;
   p.skin = 0.1 * diameter;
-  p.disks = true;
+  p.disk_thickness = thickness;
   p.body_force = [load](double mass, double /*radius*/) { return Vec3(mass * load); };
 
   const Decomposition plane({10, 2, 10}, 2e-3, {false, true, false}, {1, 1, 1});

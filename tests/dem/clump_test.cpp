@@ -283,7 +283,7 @@ TEST(Clump, OfDisksTurnsInItsPlane) {
 
   const Decomposition plane({20, 4, 20}, 2.5e-3, {true, true, false}, {1, 1, 1});
   GrainParameters p = free_flight(4e-7, 25);
-  p.disks = true;
+  p.disk_thickness = thickness;
   p.contact = glass(1.0);
   p.contact.normal_stiffness = 2e5;
   p.contact.tangential_stiffness = 0.0;

@@ -28,7 +28,7 @@ GrainParameters disk_parameters(double restitution, double friction, const Vec3&
   p.time_step = 2e-6;
   p.sub_steps = 50;
   p.skin = 1e-3;
-  p.disks = true;
+  p.disk_thickness = thickness;
   p.initial_overlap = 0.01;
   return p;
 }

@@ -72,22 +72,23 @@ TEST(ModelFluid, ForceOnAGrainByHand) {
   EXPECT_NEAR(f.z, drag * 4.0 + 5.0 * 2.25 * 0.5, 1e-13);
 }
 
-// A packing in a box so narrow that a grain's neighbourhood meets two images of another; some of it is cut by the
-// floor.
+// A packing in a box so narrow that a grain's neighbourhood meets two images of another, or disks in a box as thick as
+// they are; some of it is cut by the floor.
 struct Packing {
   PeriodicBox box{Vec3(3.0, 4.0, 6.0), {true, true, false}};
-  GrainStore store{LocalSolidFraction::columns};
+  GrainStore store{4};
   MovingGrains moving;
   SolidFractionParameters parameters;
 
   explicit Packing(bool disks) {
+    if (disks) box.size[1] = 1.0;
     const double radii[2] = {6.0 / 11.0, 5.0 / 11.0};
     std::mt19937 random(7);
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
     for (int n = 0; n < 40; ++n)
       store.append(
           n, radii[n % 2], 1.0, Motion::free,
-          Vec3(box.size[0] * uniform(random), disks ? 2.0 : box.size[1] * uniform(random), 4.0 * uniform(random)));
+          Vec3(box.size[0] * uniform(random), disks ? 0.5 : box.size[1] * uniform(random), 4.0 * uniform(random)));
     store.owned = store.total();
     moving.load(store, std::vector<Vec3>(store.total(), Vec3::Zero()));
     parameters = {radii[0], 2.0 * radii[0], 0.01, disks, true};
@@ -143,8 +144,8 @@ TEST(LocalSolidFraction, IsTheShareOfPoints) {
     Packing packing(disks);
     lift_above_floor(packing);
     LocalSolidFraction fraction(packing.box, packing.parameters);
-    fraction.find_neighbours(packing.store, 0.1);
-    fraction.update(packing.moving, packing.store);
+    fraction.find_neighbours(packing.store, 0.1, Clumps());
+    fraction.update(packing.moving, Clumps(), packing.store);
     for (const std::size_t slot : {0u, 1u, 2u, 3u}) {
       const Vec3 up(0.0, 0.0, packing.store.radius[slot]);
       EXPECT_NEAR(fraction.around(slot), packing.counted(slot, Vec3::Zero(), 1000000), 1e-3);
@@ -159,14 +160,14 @@ TEST(LocalSolidFraction, FollowsTheGrainsToATolerance) {
   Packing packing(false);
   lift_above_floor(packing);
   LocalSolidFraction fraction(packing.box, packing.parameters);
-  fraction.find_neighbours(packing.store, 0.5);
-  fraction.update(packing.moving, packing.store);
+  fraction.find_neighbours(packing.store, 0.5, Clumps());
+  fraction.update(packing.moving, Clumps(), packing.store);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-0.008, 0.008);
   for (int step = 0; step < 20; ++step) {
     for (std::size_t s = 0; s < packing.moving.size(); s += 3)
       packing.moving[s].position += row_of(Vec3(uniform(random), uniform(random), uniform(random)));
-    fraction.update(packing.moving, packing.store);
+    fraction.update(packing.moving, Clumps(), packing.store);
   }
   Packing fresh(false);
   for (std::size_t s = 0; s < fresh.store.total(); ++s) {
@@ -176,8 +177,8 @@ TEST(LocalSolidFraction, FollowsTheGrainsToATolerance) {
   }
   fresh.moving.load(fresh.store, std::vector<Vec3>(fresh.store.total(), Vec3::Zero()));
   LocalSolidFraction again(fresh.box, fresh.parameters);
-  again.find_neighbours(fresh.store, 0.5);
-  again.update(fresh.moving, fresh.store);
+  again.find_neighbours(fresh.store, 0.5, Clumps());
+  again.update(fresh.moving, Clumps(), fresh.store);
   for (std::size_t s = 0; s < fresh.store.total(); ++s) EXPECT_EQ(fraction.around(s), again.around(s));
 }
 

@@ -4,6 +4,7 @@ goes on, refusals.
 
 Called by ctest: model_fluid_run_test.py THALWEG MPIEXEC [unittest arguments]
 """
+import json
 import sys
 from pathlib import Path
 
@@ -38,6 +39,23 @@ output: {series: {every: 0.1}, checkpoint: {every: 2, keep: 3}}
             self.run_well("run", self.case, "--out", f"on_{ranks}", ranks=ranks)
         self.run_well("run", self.case, "--out", "half", "--until", "2")
         self.run_well("run", self.case, "--out", "half", "--restart", "half", ranks=2)
+        for other in ("on_2", "on_4", "half"):
+            self.assert_same_bed("one", other)
+
+    def test_clumps_on_any_ranks_and_after_a_restart(self):
+        members = [{"position": [0.33 * numpy.cos(a), 0, 0.33 * numpy.sin(a)], "diameter": 0.55}
+                   for a in 2 * numpy.pi * numpy.arange(5) / 5]
+        text = json.dumps({"clump": [{"position": [float(x) for x in m["position"]], "diameter": m["diameter"]}
+                                     for m in members]})
+        case = self.CASE.replace("units: grain", "units: si").replace("time_step: 7.8e-4", "time_step: 2e-4").replace(
+            "count: 40, diameter: 1.0909090909090908,", f"count: 20, shape: {text},")
+        (self.folder / "clumps.yaml").write_text(case)
+        self.run_well("run", "clumps.yaml", "--out", "one")
+        self.assertGreater(self.summary("one")["figures"]["largest_grain_speed"], 0.5)
+        for ranks in (2, 4):
+            self.run_well("run", "clumps.yaml", "--out", f"on_{ranks}", ranks=ranks)
+        self.run_well("run", "clumps.yaml", "--out", "half", "--until", "2")
+        self.run_well("run", "clumps.yaml", "--out", "half", "--restart", "half", ranks=2)
         for other in ("on_2", "on_4", "half"):
             self.assert_same_bed("one", other)
 
