@@ -12,9 +12,6 @@
 
 namespace thalweg::dem {
 
-namespace {
-
-// Does the region meet itself through the periodic faces of this axis?
 bool wraps(const PeriodicBox& box, const Region& region, int axis) {
   return box.periodic[axis] && region.upper[axis] - region.lower[axis] >= box.size[axis] * (1.0 - 1e-12);
 }
@@ -28,6 +25,8 @@ void check_region(const PeriodicBox& box, const Region& region) {
                       "{:g} m.",
                       region.lower[axis], region.upper[axis], "xyz"[axis], box.size[axis]));
 }
+
+namespace {
 
 struct Lattice {
   std::array<std::int64_t, 3> count{0, 0, 0};

@@ -18,6 +18,12 @@ struct Region {
 
 inline Region whole(const PeriodicBox& box) { return {Vec3::Zero(), box.size}; }
 
+// Whether the region meets itself through the periodic faces of this axis.
+bool wraps(const PeriodicBox& box, const Region& region, int axis);
+
+// Throws InputError where the region is not in the box, or empty.
+void check_region(const PeriodicBox& box, const Region& region);
+
 struct Sphere {
   Vec3 position;  // m
   double radius;  // m
@@ -37,5 +43,11 @@ std::vector<Vec3> uniform_packing(const PeriodicBox& box, const Region& region, 
 // beyond about a third of the volume that gets hard. Throws InputError saying how many would fit.
 std::vector<Vec3> random_packing(const PeriodicBox& box, const Region& region, std::span<const double> radii,
                                  double clearance, std::uint64_t seed, std::span<const Sphere> obstacles = {});
+
+// The same for beds and suspensions that fill up to 0.6 of the volume: grains begin anywhere and push each other apart,
+// by overlapping shares of the way, until none overlap (after W. S. Jodrey and E. M. Tory, Phys. Rev. A 32 (1985)
+// 2347). Nearest neighbours are then at a distance of at least a diameter, most of them little more.
+std::vector<Vec3> dense_packing(const PeriodicBox& box, const Region& region, std::span<const double> radii,
+                                double clearance, std::uint64_t seed, std::span<const Sphere> obstacles = {});
 
 }  // namespace thalweg::dem

@@ -33,7 +33,8 @@ void describe(SectionVisitor& visit, PlacementKeys& placement) {
   visit.choice<PlacementPattern>(
       "pattern", placement.pattern,
       {{PlacementPattern::uniform, "uniform", "evenly spread, slightly disturbed"},
-       {PlacementPattern::random, "random", "at random without overlap"}},
+       {PlacementPattern::random, "random", "at random without overlap, up to a third of the volume"},
+       {PlacementPattern::dense, "dense", "the same up to 0.6: they push each other apart"}},
       {.meaning = "how the grains are spread over the region", .only_if = by_file ? of_none : spread_out});
   visit.integer("seed", placement.seed,
                 {.meaning = "seed of the random placement", .at_least = 0, .only_if = by_file ? of_none : spread_out});

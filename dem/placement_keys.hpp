@@ -11,7 +11,7 @@
 
 namespace thalweg::dem {
 
-enum class PlacementPattern { uniform, random };
+enum class PlacementPattern { uniform, random, dense };
 
 struct RegionKeys {
   Vec3 lower = Vec3::Zero();  // m

@@ -37,10 +37,11 @@ struct OrientationKeys {
 };
 
 struct PopulationKeys {
-  std::int64_t count = 0;  // completed from the positions, or the grains of the file, where those are given
-  double diameter = 0.0;   // m; completed: where they differ, the one that half of the mass is finer than; of the
-                           // sphere (disk) of a clump's volume
-  double density = 0.0;    // kg/m^3; completed from a file: mass over volume of all its grains
+  std::int64_t count = 0;  // completed from the positions, the grains of the file or the solid fraction where given
+  std::optional<double> solid_fraction;  // of the region; none once the count is completed
+  double diameter = 0.0;  // m; completed: where they differ, the one that half of the mass is finer than; of the
+                          // sphere (disk) of a clump's volume
+  double density = 0.0;   // kg/m^3; completed from a file: mass over volume of all its grains
   SizesKeys sizes;
   std::optional<ShapeKeys> shape;
   std::optional<OrientationKeys> orientation;  // of all its clumps; none: each at random

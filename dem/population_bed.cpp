@@ -137,11 +137,37 @@ void take_shape(Population& population) {
   }
 }
 
+// m^3, of all its grains if there were so many.
+double volume_of_grains(const Population& population, std::int64_t count) {
+  const auto volume = [&](double diameter) { return grain_volume(0.5 * diameter, population.thickness); };
+  if (population.shape) return static_cast<double>(count) * clump_shape_of(population)->volume;
+  if (!population.sizes.given()) return static_cast<double>(count) * volume(population.diameter);
+  double sum = 0.0;
+  for (const double d : sampled_diameters(population.sizes, count, population.placement.seed)) sum += volume(d);
+  return sum;
+}
+
+// The number of grains that fills the region, or the box, to the solid fraction as nearly as possible; of mixed sizes
+// to the accuracy of their mean.
+void take_solid_fraction(Population& population, const PeriodicBox& box) {
+  const std::optional<RegionKeys>& region = population.placement.region;
+  Vec3 extent = region ? Vec3(region->upper - region->lower) : box.size;
+  if (population.thickness > 0.0) extent[1] = population.thickness;
+  const double wanted = *population.solid_fraction * extent.prod();
+  constexpr std::int64_t sample = 1000;
+  double mean = volume_of_grains(population, sample) / sample;
+  population.count = std::max<std::int64_t>(1, std::llround(wanted / mean));
+  mean = volume_of_grains(population, population.count) / static_cast<double>(population.count);
+  population.count = std::max<std::int64_t>(1, std::llround(wanted / mean));
+  population.solid_fraction.reset();
+}
+
 }  // namespace
 
 void complete(Population& population, double disk_thickness, const std::optional<Bed>& bed, const PeriodicBox& box) {
   population.thickness = disk_thickness;
   if (bed) take_bed(population, *bed, box);
+  if (population.solid_fraction) take_solid_fraction(population, box);
   if (population.shape) take_shape(population);
   if (!population.sizes.given()) return;
   population.diameters = sampled_diameters(population.sizes, population.count, population.placement.seed);

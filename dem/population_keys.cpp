@@ -55,9 +55,17 @@ static void describe_count(SectionVisitor& visit, PopulationKeys& grains, const 
   visit.integer(
       "count", grains.count,
       {.meaning = "number of grains; not needed with positions", .at_least = 1, .example = 100, .only_if = no_file});
+  const OnlyIf no_count{grains.count == 0 || !visit.reading(), "the number of grains is given; remove one of the two"};
+  visit.real("solid_fraction", grains.solid_fraction,
+             {.meaning = "of the placement's region, or of the box; in place of count",
+              .above = 0.0,
+              .at_most = densest_disks,
+              .example = 0.3,
+              .only_if = no_file.holds ? no_count : no_file});
   if (!no_file.holds) return;
-  visit.require(grains.count > 0, "count",
-                "the number of grains is missing; give a whole number, for example 100, or placement.positions");
+  visit.require(grains.count > 0 || grains.solid_fraction, "count",
+                "the number of grains is missing; give a whole number, for example 100, solid_fraction or "
+                "placement.positions");
   visit.require(given == 0 || grains.count == given, "count",
                 fmt::format("there are {} positions; give this number or leave the key out", given));
 }

@@ -72,18 +72,25 @@ ClumpSeed clump_seed_of(const GrainSeed& as_grain, ClumpSeed clump) {
 }
 
 // Who is given a place first.
-enum class PlacementOrder { given, uniform, random };
+enum class PlacementOrder { given, uniform, dense, random };
 
 PlacementOrder order_of(const PlacementKeys& placement) {
   if (placement.file || !placement.positions.empty()) return PlacementOrder::given;
-  return placement.pattern == PlacementPattern::uniform ? PlacementOrder::uniform : PlacementOrder::random;
+  switch (placement.pattern) {
+    case PlacementPattern::uniform:
+      return PlacementOrder::uniform;
+    case PlacementPattern::dense:
+      return PlacementOrder::dense;
+    case PlacementPattern::random:
+      break;
+  }
+  return PlacementOrder::random;
 }
 
 std::vector<Vec3> place(const Population& population, const PeriodicBox& box, const std::vector<Sphere>& placed) {
   const PlacementKeys& placement = population.placement;
   const auto seed = static_cast<std::uint64_t>(placement.seed);
   std::vector<Vec3> positions;
-  std::vector<double> radii;
   Region region = region_of(placement, box);
   region.plane = population.thickness > 0.0;
   if (region.plane) region.lower[1] = 0.0, region.upper[1] = box.size[1];
@@ -93,11 +100,14 @@ std::vector<Vec3> place(const Population& population, const PeriodicBox& box, co
       return placement.file ? positions : placement.positions;
     case PlacementOrder::uniform:
       return uniform_packing(box, region, population.count, 0.5 * population.room_of_all(), 0.0, seed);
+    case PlacementOrder::dense:
     case PlacementOrder::random:
       break;
   }
+  std::vector<double> radii;
   for (std::size_t n = 0; n < static_cast<std::size_t>(population.count); ++n)
     radii.push_back(0.5 * population.room_of(n));
+  if (order_of(placement) == PlacementOrder::dense) return dense_packing(box, region, radii, 0.0, seed, placed);
   return random_packing(box, region, radii, 0.0, seed, placed);
 }
 
@@ -161,7 +171,8 @@ private:
 GrainSeeds grain_seeds(std::span<const Population> populations, const PeriodicBox& box) {
   std::vector<std::vector<Vec3>> positions(populations.size());
   std::vector<Sphere> placed;
-  for (const PlacementOrder order : {PlacementOrder::given, PlacementOrder::uniform, PlacementOrder::random})
+  for (const PlacementOrder order :
+       {PlacementOrder::given, PlacementOrder::uniform, PlacementOrder::dense, PlacementOrder::random})
     for (std::size_t p = 0; p < populations.size(); ++p) {
       if (order_of(populations[p].placement) != order) continue;
       try {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 
 namespace thalweg::dem {
 namespace {
@@ -42,6 +43,54 @@ TEST(UniformPacking, FillsTheBoxWithoutOverlap) {
   }
   EXPECT_EQ(centres, uniform_packing(flume, whole(flume), 2884, 2.5e-3, 1e-3, 1));
   EXPECT_NE(centres, uniform_packing(flume, whole(flume), 2884, 2.5e-3, 1e-3, 2));
+}
+
+// The share of the volume that spheres within `cut` of a sphere's centre have their centres in, over that of points at
+// random: the pair correlation up to there.
+double neighbours_within(const PeriodicBox& box, const std::vector<Vec3>& centres, double cut) {
+  std::int64_t pairs = 0;
+  for (std::size_t a = 0; a < centres.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b) pairs += box.difference(centres[a], centres[b]).norm() < cut;
+  return 2.0 * static_cast<double>(pairs) / static_cast<double>(centres.size());
+}
+
+TEST(DensePacking, FillsAPeriodicBoxToThreeFifthsWithoutOverlap) {
+  const double radius = 2.5e-3, volume = 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
+  const PeriodicBox cube{Vec3::Constant(0.04), {true, true, true}};
+  const auto count = static_cast<std::size_t>(0.6 * cube.size.prod() / volume);
+  const std::vector<double> radii(count, radius);
+  const std::vector<Vec3> centres = dense_packing(cube, whole(cube), radii, 0.0, 1);
+  ASSERT_EQ(centres.size(), count);
+  EXPECT_NO_THROW(check(seeds_at(centres, radius), cube, {}));
+  EXPECT_EQ(centres, dense_packing(cube, whole(cube), radii, 0.0, 1));
+  EXPECT_NE(centres, dense_packing(cube, whole(cube), radii, 0.0, 2));
+  // A random packing: a grain has six neighbours or so that nearly touch (a crystal twelve), and thirteen to fourteen
+  // within the first minimum of the pair correlation at 1.4 diameters.
+  EXPECT_LT(neighbours_within(cube, centres, 2.04 * radius), 8.0);
+  EXPECT_NEAR(neighbours_within(cube, centres, 2.8 * radius), 13.5, 1.5);
+}
+
+TEST(DensePacking, KeepsToItsRegionAndClearOfObstacles) {
+  const PeriodicBox box{Vec3(0.04, 0.03, 0.05), {true, true, false}};
+  const Region region{Vec3(0.0, 0.0, 0.01), Vec3(0.04, 0.03, 0.04)};
+  const std::vector<Sphere> obstacles{{Vec3(0.02, 0.015, 0.02), 6e-3}, {Vec3(0.0, 0.0, 0.03), 4e-3}};
+  std::vector<double> radii;
+  for (int n = 0; n < 200; ++n) radii.push_back(n % 2 == 0 ? 2.5e-3 : 2e-3);
+  const std::vector<Vec3> centres = dense_packing(box, region, radii, 1e-3, 3, obstacles);
+  for (std::size_t n = 0; n < centres.size(); ++n) {
+    EXPECT_GE(centres[n].z(), 0.011 + radii[n] - 1e-15);
+    EXPECT_LE(centres[n].z(), 0.039 - radii[n] + 1e-15);
+    for (const Sphere& obstacle : obstacles)
+      EXPECT_GE(box.difference(centres[n], obstacle.position).norm(), radii[n] + obstacle.radius);
+    for (std::size_t m = 0; m < n; ++m) EXPECT_GE(box.difference(centres[n], centres[m]).norm(), radii[n] + radii[m]);
+  }
+}
+
+TEST(DensePacking, RefusesWhatDoesNotFit) {
+  const PeriodicBox cube{Vec3::Constant(0.03), {true, true, true}};
+  const std::string message =
+      refusal([&] { dense_packing(cube, whole(cube), std::vector<double>(320, 2.5e-3), 0.0, 1); });
+  EXPECT_NE(message.find("do not fit"), std::string::npos) << message;  // 0.78 of the volume
 }
 
 TEST(UniformPacking, TakesExactlyAsManyAsFitAndNamesThem) {
