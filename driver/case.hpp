@@ -39,8 +39,9 @@ struct DomainCase {
 
 // reduced: the fluid is driven by rho g_x, _y alone and the grains feel their submerged weight. full: the fluid has its
 // weight and its hydrostatic pressure, which carries the grains through the links, and the grains have their whole
-// weight.
-enum class GravityMode { reduced, full };
+// weight. balanced: in a periodic box; the mean pressure gradient carries the submerged weight of all grains, so that
+// the momentum of the whole does not change.
+enum class GravityMode { reduced, full, balanced };
 
 struct GravityCase {
   std::optional<double> magnitude;  // m/s^2, with slope ...

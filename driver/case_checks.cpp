@@ -1,6 +1,7 @@
 #include "driver/case_checks.hpp"
 
 #include "driver/grain_checks.hpp"
+#include "driver/grain_weight.hpp"
 #include "driver/run_facts.hpp"
 
 #include <fmt/format.h>
@@ -152,11 +153,26 @@ void check_fluid(const Case& c, const io::YamlDocument& document) {
   }
 }
 
+void check_balanced_gravity(const Case& c, const io::YamlDocument& document) {
+  const Vec3 gravity = gravity_vector(c.gravity);
+  const std::array<bool, 3> periodic = periodic_axes(c.domain);
+  for (int axis = 0; axis < 3; ++axis)
+    if (gravity[axis] != 0.0 && !periodic[static_cast<std::size_t>(axis)])
+      throw document.error(
+          "gravity.mode",
+          fmt::format("walls across {} would carry the weight that balanced gravity leaves to the fluid; "
+                      "make domain.boundaries.{} periodic, or set mode: reduced",
+                      axis_name[axis], axis_name[axis]));
+  if (c.grains.empty() || balancing_acceleration(c).isZero(0.0))
+    throw document.error("gravity.mode", "there is no weight of free grains to balance; set mode: reduced");
+}
+
 void check_gravity(const Case& c, const io::YamlDocument& document) {
   const auto any = [&c](lbm::FaceType type) {
     return std::any_of(c.domain.faces.begin(), c.domain.faces.end(),
                        [type](const coupling::FaceKeys& f) { return f.type == type; });
   };
+  if (has_fluid(c) && c.gravity.mode == GravityMode::balanced) check_balanced_gravity(c, document);
   if (!has_fluid(c) || c.gravity.mode != GravityMode::full) return;
   if (c.run.ramp > 0.0)
     throw document.error("run.ramp",

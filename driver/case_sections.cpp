@@ -37,7 +37,9 @@ static void describe_gravity(SectionVisitor& visit, GravityCase& gravity, bool w
   visit.choice<GravityMode>(
       "mode", gravity.mode,
       {{GravityMode::reduced, "reduced", "hydrostatic pressure left out"},
-       {GravityMode::full, "full", "in the fluid, and buoyancy from it"}},
+       {GravityMode::full, "full", "in the fluid, and buoyancy from it"},
+       {GravityMode::balanced, "balanced",
+        "in a periodic box, the weight of the grains carried by a mean pressure gradient"}},
       {.meaning = "how the weight of the resting fluid is treated",
        .only_if = {with_fluid, "a run without fluid has only one kind of gravity; remove the key"}});
 }

@@ -1,14 +1,29 @@
 // From a case to the lattice: SI to lattice units, faces to wall rules, gravity along the bed to a body force.
 #include "driver/fluid_setup.hpp"
 
+#include "driver/grain_weight.hpp"
+
 #include <cmath>
 
 namespace thalweg::driver {
 
 namespace {
 
-// Reduced gravity: the hydrostatic pressure is taken out of the flow. The fluid is driven along the bed only. Full
-// gravity: all of it acts on the fluid.
+// m/s^2. Reduced gravity: the hydrostatic pressure is taken out of the flow, which is driven along the bed only. Full
+// gravity: all of it acts on the fluid. Balanced gravity: the mean pressure gradient alone.
+Vec3 driving_acceleration(const Case& c) {
+  const Vec3 gravity = gravity_vector(c.gravity);
+  switch (c.gravity.mode) {
+    case GravityMode::full:
+      return gravity;
+    case GravityMode::balanced:
+      return balancing_acceleration(c);
+    case GravityMode::reduced:
+      break;
+  }
+  return {gravity.x(), gravity.y(), 0.0};
+}
+
 lbm::CollisionParameters collision_parameters(const Case& c) {
   lbm::CollisionParameters parameters;
   parameters.model = c.fluid.collision;
@@ -16,9 +31,8 @@ lbm::CollisionParameters collision_parameters(const Case& c) {
   parameters.relaxation_time = relaxation_time(c);
   parameters.bulk_relaxation_time = c.fluid.bulk_relaxation_time.value_or(0.0);
   parameters.smagorinsky_constant = c.fluid.smagorinsky_constant;
-  const Vec3 gravity = gravity_vector(c.gravity);
-  const int axes = c.gravity.mode == GravityMode::full ? 3 : 2;
-  for (int a = 0; a < axes; ++a) parameters.force[a] = gravity[a] / units_of(c).acceleration();
+  const Vec3 acceleration = driving_acceleration(c);
+  for (int a = 0; a < 3; ++a) parameters.force[a] = acceleration[a] / units_of(c).acceleration();
   return parameters;
 }
 

@@ -19,9 +19,21 @@ ForceOnGrain submerged_weight(const Case& c) {
   };
 }
 
+Vec3 balancing_acceleration(const Case& c) {
+  double excess = 0.0;  // kg
+  for (const dem::Population& grains : c.grains)
+    if (!grains.held()) excess += (grains.density - c.fluid.density) * grains.volume();
+  return -excess / (c.fluid.density * c.domain.size.prod()) * gravity_vector(c.gravity);
+}
+
 ForceOnGrain body_force(const Case& c) {
-  if (c.gravity.mode != GravityMode::full) return submerged_weight(c);
-  return [gravity = gravity_vector(c.gravity)](double mass, double) { return Vec3(mass * gravity); };
+  const Vec3 gravity = gravity_vector(c.gravity);
+  if (c.gravity.mode == GravityMode::full) return [gravity](double mass, double) { return Vec3(mass * gravity); };
+  if (c.gravity.mode == GravityMode::reduced) return submerged_weight(c);
+  return [gravity, carried = balancing_acceleration(c), density = c.fluid.density](double mass, double radius) {
+    const double displaced = displaced_mass(density, radius);
+    return Vec3((mass - displaced) * gravity + displaced * carried);
+  };
 }
 
 ForceOnGrain buoyancy_in_load(const Case& c) {
