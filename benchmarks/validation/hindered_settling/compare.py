@@ -1,0 +1,97 @@
+#!/usr/bin/python3
+"""Settling velocity of suspensions against their solid fraction, beside Richardson and Zaki (1954):
+compare.py [RUN...] [--table FILE] [--figure FILE]
+
+RUN: folders of runs of hindered_settling.yaml; their velocities go into the table (a row a run; those of other runs stay). The
+velocity of the grains relative to that of the whole volume is averaged from a third of the run on. Prints it over that of a
+single sphere (Schiller and Naumann) and, of each Reynolds number, the exponent n of (1 - phi)^n with its error, the exponent of
+Richardson and Zaki, what is accepted, and pass or fail. Exit code 0 if all pass.
+"""
+import argparse
+import sys
+from pathlib import Path
+
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[2] / "python"))
+from thalweg import Run, mean_with_error
+from thalweg.tables import merged_rows, read_rows
+
+COLUMNS = ["run", "reynolds_number [1]", "solid_fraction [1]", "velocity [m/s]", "velocity_error [m/s]", "single_sphere [m/s]"]
+ACCEPTED = 0.3
+
+
+def single_sphere(diameter, density, fluid_density, viscosity, gravity):
+    """Settling velocity (m/s) and Reynolds number of a single sphere: Stokes' drag times 1 + 0.15 Re^0.687."""
+    stokes = (density / fluid_density - 1.0) * gravity * diameter**2 / (18.0 * viscosity)
+    velocity = stokes
+    for _ in range(200):
+        velocity = 0.5 * (velocity + stokes / (1.0 + 0.15 * (velocity * diameter / viscosity)**0.687))
+    return velocity, velocity * diameter / viscosity
+
+
+def exponent_of_richardson_and_zaki(reynolds):
+    """n for spheres far from walls, at the Reynolds number of a single one."""
+    return 4.65 if reynolds < 0.2 else 4.35 * reynolds**-0.03 if reynolds < 1.0 else 4.45 * reynolds**-0.1
+
+
+def measured(folder):
+    run = Run(folder)
+    grains, fluid = run.case["grains"][0], run.case["fluid"]
+    diameter, density = float(grains["diameter"]), float(grains["density"])
+    solid = run.summary["grains"] * np.pi / 6.0 * diameter**3
+    fraction = solid / run.size.prod()
+    later = run.series["time"] > run.series["time"][-1] / 3.0
+    mean = mean_with_error(run.series["grain_momentum_z"][later] / (density * solid))
+    of_grains = mean.mean
+    # The momentum of the whole is zero, and so is the velocity of the volume in a vessel.
+    of_fluid = -density * fraction * of_grains / (float(fluid["density"]) * (1.0 - fraction))
+    of_volume = fraction * of_grains + (1.0 - fraction) * of_fluid
+    alone, reynolds = single_sphere(diameter, density, float(fluid["density"]), float(fluid["kinematic_viscosity"]),
+                                    float(run.case["gravity"]["magnitude"]))
+    values = [reynolds, fraction, of_volume - of_grains, mean.error, alone]
+    return dict(zip(COLUMNS, [run.folder.name] + [f"{value:.6g}" for value in values]))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("runs", nargs="*", metavar="RUN")
+    parser.add_argument("--table", default=HERE / "velocities.csv")
+    parser.add_argument("--figure", default="hindered_settling.png")
+    arguments = parser.parse_args()
+    rows = [measured(folder) for folder in arguments.runs]
+    rows = merged_rows(arguments.table, rows) if rows else read_rows(arguments.table)
+    table = np.array([[float(row[column]) for column in COLUMNS[1:]] for row in rows])
+    figure, axes = plt.subplots(figsize=(6, 4.5), layout="constrained")
+    passed = True
+    for reynolds, colour in zip(np.unique(np.round(table[:, 0], 3)), ("tab:blue", "tab:red", "k")):
+        of_this = table[np.isclose(table[:, 0], reynolds, atol=1e-3)]
+        of_this = of_this[np.argsort(of_this[:, 1])]
+        phi, ratio, error = of_this[:, 1], of_this[:, 2] / of_this[:, 4], of_this[:, 3] / of_this[:, 4]
+        for p, r, e in zip(phi, ratio, error):
+            print(f"Re {reynolds:<6g} solid fraction {p:.3f}: {r:.3f} +- {e:.3f} of a single sphere")
+        expected = exponent_of_richardson_and_zaki(reynolds)
+        axes.errorbar(phi, ratio, error, fmt="o", color=colour, capsize=3, label=f"Re {reynolds:g}")
+        curve = np.linspace(0.0, 0.45, 50)
+        axes.plot(curve, (1.0 - curve)**expected, color=colour, lw=0.8, label=f"(1 - φ)$^{{{expected:.2f}}}$")
+        if len(phi) < 4:
+            continue
+        (slope, intercept), covariance = np.polyfit(np.log(1.0 - phi), np.log(ratio), 1, cov=True)
+        good = abs(slope - expected) <= ACCEPTED
+        passed = passed and good
+        print(f"Re {reynolds:<6g} n {slope:.2f} +- {np.sqrt(covariance[0, 0]):.2f}, {np.exp(intercept):.2f} at phi -> 0; Richardson and "
+              f"Zaki {expected:.2f}, accepted +- {ACCEPTED}: {'pass' if good else 'FAIL'}")
+    axes.set(xlabel="solid fraction φ", ylabel="settling velocity over that of a single sphere", yscale="log")
+    axes.grid(color="#e5e8ea", linewidth=0.8)
+    axes.legend(fontsize=8)
+    figure.savefig(arguments.figure, dpi=110)
+    print(arguments.figure)
+    return 0 if passed else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
