@@ -114,11 +114,11 @@ void BedSurface::save(ArchiveWriter& archive) const {
   pixels_.save(archive, "bed_surface");
 }
 
-void BedSurface::load(ArchiveReader& archive) {
+bool BedSurface::load(ArchiveReader& archive) {
   if (!archive.has("bed_surface/mean_from") || archive.real_attribute("bed_surface/mean_from") != keys_.from ||
       archive.shape("bed_surface/sums") != std::vector<std::uint64_t>{sums_.size()} ||
       archive.shape("bed_surface/surface_sums") != std::vector<std::uint64_t>{surface_sums_.size()})
-    return;
+    return false;
   seen_step_ = archive.integer_attribute("bed_surface/seen_step");
   measurements_ = archive.integer_attribute("bed_surface/measurements");
   pictures_ = archive.integer_attribute("bed_surface/pictures");
@@ -130,6 +130,7 @@ void BedSurface::load(ArchiveReader& archive) {
   read("bed_surface/sums", sums_);
   read("bed_surface/surface_sums", surface_sums_);
   pixels_.load(archive, "bed_surface");
+  return true;
 }
 
 void describe(SectionVisitor& visit, BedSurfaceKeys& keys) {

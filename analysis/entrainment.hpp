@@ -80,7 +80,7 @@ public:
   Records take_records() override;
 
   void save(ArchiveWriter& archive) const override;
-  void load(ArchiveReader& archive) override;  // begins anew where other grains were chosen
+  bool load(ArchiveReader& archive) override;  // begins anew where other grains were chosen
 
 private:
   enum Phase { unsettled, at_rest, moving };

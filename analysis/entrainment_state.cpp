@@ -65,8 +65,8 @@ void Entrainment::save(ArchiveWriter& archive) const {
                 box_of_rows(communicator_, static_cast<std::int64_t>(touches.size()), touch_columns));
 }
 
-void Entrainment::load(ArchiveReader& archive) {
-  if (!archive.has("entrainment/grains")) return;
+bool Entrainment::load(ArchiveReader& archive) {
+  if (!archive.has("entrainment/grains")) return false;
   homes_.emplace(communicator_, static_cast<GlobalId>(archive.shape("entrainment/grains")[0]));
   memory_.assign(homes_->size(), {});
   std::vector<double> rows(memory_.size() * memory_columns);
@@ -81,7 +81,7 @@ void Entrainment::load(ArchiveReader& archive) {
     if (watched[id] != 0) chosen.push_back(static_cast<GlobalId>(id));
   if (!settings_.grains.empty() && chosen != settings_.grains) {
     homes_.reset();
-    return;
+    return false;
   }
   watched_.assign(watched.size(), 0);
   watch(chosen);
@@ -92,6 +92,7 @@ void Entrainment::load(ArchiveReader& archive) {
   shares_ = archive.integer_attribute("entrainment/shares");
   sum_of_shares_ = archive.real_attribute("entrainment/sum_of_shares");
   sum_of_squares_ = archive.real_attribute("entrainment/sum_of_squares");
+  return true;
 }
 
 void Entrainment::restore_rings(ArchiveReader& archive, std::span<const double> rows) {

@@ -132,17 +132,18 @@ void FluidStatistics::save(ArchiveWriter& archive) const {
                 {shape, nothing, first ? shape : nothing});
 }
 
-void FluidStatistics::load(ArchiveReader& archive) {
+bool FluidStatistics::load(ArchiveReader& archive) {
   const std::vector<std::uint64_t> shape{static_cast<std::uint64_t>(bins()), quantities, 2};
   if (!archive.has("fluid_statistics/mean_from") ||
       archive.real_attribute("fluid_statistics/mean_from") != keys_.from ||
       archive.shape("fluid_statistics/sums") != shape)
-    return;
+    return false;
   measurements_ = archive.integer_attribute("fluid_statistics/measurements");
   counted_step_ = archive.integer_attribute("fluid_statistics/counted_step");
   std::vector<std::int64_t> values(2 * sums_.size());
   archive.read("fluid_statistics/sums", std::span<std::int64_t>(values), {shape, {0, 0, 0}, shape});
   for (std::size_t s = 0; s < sums_.size(); ++s) sums_[s] = {values[2 * s], values[2 * s + 1]};
+  return true;
 }
 
 void describe(SectionVisitor& visit, FluidStatisticsKeys& keys) {

@@ -53,7 +53,7 @@ public:
   std::vector<Profile> profiles() const override;
 
   void save(ArchiveWriter& archive) const override;
-  void load(ArchiveReader& archive) override;  // takes the sums over only if they were begun at the same `from`
+  bool load(ArchiveReader& archive) override;  // takes the sums over only if they were begun at the same `from`
 
 private:
   enum Quantity { count, velocity = 1, product = 4, quantities = 10 };  // columns of a bin

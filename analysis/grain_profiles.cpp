@@ -142,14 +142,15 @@ void GrainProfiles::save(ArchiveWriter& archive) const {
                 {shape, nothing, first ? shape : nothing});
 }
 
-void GrainProfiles::load(ArchiveReader& archive) {
+bool GrainProfiles::load(ArchiveReader& archive) {
   const std::vector<std::uint64_t> shape{static_cast<std::uint64_t>(layers_), quantities};
   if (!archive.has("grain_profiles/mean_from") || archive.real_attribute("grain_profiles/mean_from") != keys_.from ||
       archive.shape("grain_profiles/sums") != shape)
-    return;
+    return false;
   measurements_ = archive.integer_attribute("grain_profiles/measurements");
   counted_step_ = archive.integer_attribute("grain_profiles/counted_step");
   archive.read("grain_profiles/sums", std::span<double>(sums_), {shape, {0, 0}, shape});
+  return true;
 }
 
 void describe(SectionVisitor& visit, GrainProfilesKeys& keys) {

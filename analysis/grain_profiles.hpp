@@ -61,7 +61,7 @@ public:
   std::vector<Profile> profiles() const override;
 
   void save(ArchiveWriter& archive) const override;
-  void load(ArchiveReader& archive) override;  // takes the sums over only if they were begun at the same `from`
+  bool load(ArchiveReader& archive) override;  // takes the sums over only if they were begun at the same `from`
 
 private:
   // Columns of a layer.

@@ -51,7 +51,7 @@ public:
 
   // Running sums, so that a restarted run reports the same means as one that was never interrupted. Collective.
   virtual void save(ArchiveWriter& archive) const = 0;
-  virtual void load(ArchiveReader& archive) = 0;  // does nothing if the archive holds no sums that fit
+  virtual bool load(ArchiveReader& archive) = 0;  // false: the archive holds none that fit, and they begin here
 };
 
 }  // namespace thalweg::analysis

@@ -85,10 +85,11 @@ void Probes::save(ArchiveWriter& archive) const {
   archive.attribute("probes/measurements", measurements_);
 }
 
-void Probes::load(ArchiveReader& archive) {
-  if (!archive.has("probes/seen_step")) return;
+bool Probes::load(ArchiveReader& archive) {
+  if (!archive.has("probes/seen_step")) return false;
   seen_step_ = archive.integer_attribute("probes/seen_step");
   measurements_ = archive.integer_attribute("probes/measurements");
+  return true;
 }
 
 static void describe(SectionVisitor& visit, ProbeLine& line) {

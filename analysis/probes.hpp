@@ -51,7 +51,7 @@ public:
   Records take_records() override;
 
   void save(ArchiveWriter& archive) const override;
-  void load(ArchiveReader& archive) override;
+  bool load(ArchiveReader& archive) override;
 
 private:
   MPI_Comm communicator_;

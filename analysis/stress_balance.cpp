@@ -133,12 +133,12 @@ void StressBalance::save(ArchiveWriter& archive) const {
   archive.write("stress_balance/sums", std::span<const double>(all), {shape, nothing, first ? shape : nothing});
 }
 
-void StressBalance::load(ArchiveReader& archive) {
+bool StressBalance::load(ArchiveReader& archive) {
   const std::vector<std::uint64_t> shape{stored_size()};
   if (!archive.has("stress_balance/mean_from") || archive.real_attribute("stress_balance/mean_from") != keys_.from ||
       archive.integer_attribute("stress_balance/layers") != layers_.count() ||
       archive.shape("stress_balance/sums") != shape)
-    return;
+    return false;
   measurements_ = archive.integer_attribute("stress_balance/measurements");
   counted_step_ = archive.integer_attribute("stress_balance/counted_step");
   std::vector<double> all(stored_size());
@@ -148,6 +148,7 @@ void StressBalance::load(ArchiveReader& archive) {
     std::copy_n(next, (this->*sums).size(), (this->*sums).begin());
     next += static_cast<std::ptrdiff_t>((this->*sums).size());
   }
+  return true;
 }
 
 void describe(SectionVisitor& visit, StressBalanceKeys& keys) {

@@ -77,23 +77,24 @@ void Tracks::save(ArchiveWriter& archive) const {
                 {shape, {0, 0}, first ? shape : std::vector<std::uint64_t>{0, columns}});
 }
 
-void Tracks::load(ArchiveReader& archive) {
-  if (!archive.has("tracks/id") || archive.shape("tracks/id").at(0) != grains_.size()) return;
+bool Tracks::load(ArchiveReader& archive) {
+  if (!archive.has("tracks/id") || archive.shape("tracks/id").at(0) != grains_.size()) return false;
   std::vector<std::int64_t> grains(grains_.size());
   archive.read("tracks/id", std::span<std::int64_t>(grains), {{grains.size()}, {0}, {grains.size()}});
-  if (grains != grains_) return;
+  if (grains != grains_) return false;
   seen_step_ = archive.integer_attribute("tracks/seen_step");
   measurements_ = archive.integer_attribute("tracks/measurements");
   last_time_ = archive.real_attribute("tracks/last_time");
   const std::vector<std::uint64_t> shape = archive.shape("tracks/last");
   std::vector<double> values(shape.at(0) * shape.at(1));
   archive.read("tracks/last", std::span<double>(values), {shape, {0, 0}, shape});
-  if (rank_of(communicator_) != 0) return;
+  if (rank_of(communicator_) != 0) return true;
   last_.assign(shape[0], {});
   for (std::size_t n = 0; n < last_.size(); ++n) {
     last_[n].id = grains_[n];
     std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(n * shape[1]), shape[1], last_[n].values.begin());
   }
+  return true;
 }
 
 void describe(SectionVisitor& visit, TracksKeys& keys) {

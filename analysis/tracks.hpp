@@ -48,7 +48,7 @@ public:
   Records take_records() override;
 
   void save(ArchiveWriter& archive) const override;
-  void load(ArchiveReader& archive) override;  // begins anew where the archive has other grains
+  bool load(ArchiveReader& archive) override;  // begins anew where the archive has other grains
 
 private:
   void go_on(GrainRecord& record, const GrainRecord& last, double interval, const PeriodicBox& box) const;

@@ -218,12 +218,12 @@ void TransportRate::save(ArchiveWriter& archive) const {
   hops_.save(archive, "transport_rate");
 }
 
-void TransportRate::load(ArchiveReader& archive) {
+bool TransportRate::load(ArchiveReader& archive) {
   const std::size_t cells = velocities_[0].counts().size();
   const std::vector<std::uint64_t> shape{3 * cells};
   if (!archive.has("transport_rate/mean_from") || archive.real_attribute("transport_rate/mean_from") != keys_.from ||
       !archive.has("transport_rate/velocity_counts") || archive.shape("transport_rate/velocity_counts") != shape)
-    return;
+    return false;
   counted_step_ = archive.integer_attribute("transport_rate/counted_step");
   const auto sums = read_all<double>(archive, "transport_rate/sums");
   first_time_ = sums.at(0);
@@ -237,6 +237,7 @@ void TransportRate::load(ArchiveReader& archive) {
   const auto counts = read_all<std::int64_t>(archive, "transport_rate/velocity_counts");
   for (std::size_t c = 0; c < counts.size(); ++c) velocities_[c / cells].counts()[c % cells] = counts[c];
   hops_.load(archive, "transport_rate");
+  return true;
 }
 
 void describe(SectionVisitor& visit, TransportRateKeys& keys) {

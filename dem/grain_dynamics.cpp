@@ -53,6 +53,14 @@ void check_time_step(const GrainParameters& p, std::span<const LightestGrain> li
   }
 }
 
+void check_lubrication(const GrainParameters& parameters, std::span<const LightestGrain> lightest,
+                       double largest_radius, const PeriodicBox& box) {
+  if (!parameters.lubrication) return;
+  double radius_per_mass = 0.0;
+  for (const LightestGrain& grain : lightest) radius_per_mass = std::max(radius_per_mass, grain.radius_per_mass);
+  check(*parameters.lubrication, largest_radius, radius_per_mass, box, parameters.time_step);
+}
+
 GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm communicator,
                              const GrainParameters& parameters, const std::vector<GrainSeed>& grains,
                              const std::vector<ClumpSeed>& clumps)
@@ -95,7 +103,7 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
   check_prescribed_speed();
   planes_ = parameters_.walls;
   if (walls_change_) place_walls(0.0, 0.0);
-  if (parameters_.lubrication) check(*parameters_.lubrication, seeds, box_, parameters_.time_step);
+  check_lubrication(parameters_, lightest, largest_radius_, box_);
   check_range();
 
   const int me = rank_of(communicator_);

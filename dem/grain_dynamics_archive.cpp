@@ -185,7 +185,8 @@ std::vector<LightestGrain> lightest_of(const GrainStore& store, const std::vecto
       lightest[store.material[m]].include(mass, store.radius[m]);
   }
   for (LightestGrain& grain : lightest)
-    grain = {-max_over_ranks(communicator, -grain.mass), -max_over_ranks(communicator, -grain.radius)};
+    grain = {-max_over_ranks(communicator, -grain.mass), -max_over_ranks(communicator, -grain.radius),
+             max_over_ranks(communicator, grain.radius_per_mass)};
   return lightest;
 }
 
@@ -289,7 +290,9 @@ void GrainDynamics::restore(ArchiveReader& archive, const std::string& group, bo
   const ContactHistories histories = load_histories(archive, group, owner, same_walls);
 
   replace_owned(store_, exchange_grains(communicator_, batch, owner, store_.attached_width));
-  check_time_step(parameters_, lightest_of(store_, clumps, materials_.count(), communicator_), body_count());
+  const std::vector<LightestGrain> lightest = lightest_of(store_, clumps, materials_.count(), communicator_);
+  check_time_step(parameters_, lightest, body_count());
+  check_lubrication(parameters_, lightest, largest_radius_, box_);
   clumps_.replace(clumps);
   build_dependents(histories);
   rebuilds_ = 0;

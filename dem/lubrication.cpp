@@ -84,8 +84,8 @@ LubricationResistance lubrication_resistance(const LubricationParameters& parame
   return resistance;
 }
 
-void check(const LubricationParameters& parameters, std::span<const GrainSeed> seeds, const PeriodicBox& box,
-           double time_step) {
+void check(const LubricationParameters& parameters, double largest_radius, double radius_per_mass,
+           const PeriodicBox& box, double time_step) {
   if (!(parameters.viscosity >= 0.0 && parameters.normal_cut_off >= 0.0 && parameters.tangential_cut_off >= 0.0))
     throw InputError(
         fmt::format("The viscosity of {:g} Pa s and the cut-offs of {:g} m and {:g} m of the lubrication "
@@ -95,24 +95,19 @@ void check(const LubricationParameters& parameters, std::span<const GrainSeed> s
     throw InputError(
         fmt::format("The minimum gap of the lubrication force is {:g} radii; it must be positive, for example 1e-3.",
                     parameters.minimum_gap));
-  for (const GrainSeed& seed : seeds) {
-    const double shortest = 2.0 * (2.0 * seed.radius + parameters.reach());
-    for (int axis = 0; axis < 3; ++axis)
-      if (box.periodic[axis] && box.size[axis] < shortest)
-        throw InputError(
-            fmt::format("The box is {:g} m long along the periodic axis {}; with the lubrication force on "
-                        "grain {} give at least {:g} m, two diameters and twice the cut-off.",
-                        box.size[axis], "xyz"[axis], seed.id, shortest));
-    if (holds_translation(seed.motion)) continue;
-    const double rate =
-        6.0 * std::numbers::pi * parameters.viscosity * seed.radius / (parameters.minimum_gap * seed.contact_mass());
-    if (rate * time_step <= largest_damping_a_step) continue;
-    throw InputError(
-        fmt::format("A step of the grains of {:g} s is too long for the lubrication force on grain {}; give "
-                    "at most {:g} s or a minimum gap of at least {:g} radii.",
-                    time_step, seed.id, largest_damping_a_step / rate,
-                    parameters.minimum_gap * rate * time_step / largest_damping_a_step));
-  }
+  const double shortest = 2.0 * (2.0 * largest_radius + parameters.reach());
+  for (int axis = 0; axis < 3; ++axis)
+    if (box.periodic[axis] && box.size[axis] < shortest)
+      throw InputError(fmt::format(
+          "The box is {:g} m long along the periodic axis {}; with the lubrication force on grains of {:g} m "
+          "give at least {:g} m, two diameters and twice the cut-off.",
+          box.size[axis], "xyz"[axis], 2.0 * largest_radius, shortest));
+  const double rate = 6.0 * std::numbers::pi * parameters.viscosity * radius_per_mass / parameters.minimum_gap;
+  if (rate * time_step <= largest_damping_a_step) return;
+  throw InputError(fmt::format(
+      "A step of the grains of {:g} s is too long for the lubrication force on the smallest that are free; "
+      "give at most {:g} s or a minimum gap of at least {:g} radii.",
+      time_step, largest_damping_a_step / rate, parameters.minimum_gap * rate * time_step / largest_damping_a_step));
 }
 
 void add_lubrication(MovingGrains& grains, const ContactList& list, const PeriodicBox& box,

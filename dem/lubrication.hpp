@@ -19,7 +19,6 @@
 
 #include "core/periodic_box.hpp"
 #include "dem/contact_list.hpp"
-#include "dem/grain_seed.hpp"
 #include "dem/moving_grains.hpp"
 #include "dem/walls.hpp"
 
@@ -51,8 +50,10 @@ LubricationResistance lubrication_resistance(const LubricationParameters& parame
 // near a wall: 6 pi eta a/(minimum_gap m) times the step must not exceed 1/2. Twelve neighbours damp no more than a
 // wall does, because each has a quarter of its resistance. A periodic axis must be two diameters and twice the reach
 // long, so that no pair is near across both of its ends.
-void check(const LubricationParameters& parameters, std::span<const GrainSeed> seeds, const PeriodicBox& box,
-           double time_step);
+// largest_radius: m, of all grains; radius_per_mass: m/kg, the largest of free grains with the mass their contacts
+// feel.
+void check(const LubricationParameters& parameters, double largest_radius, double radius_per_mass,
+           const PeriodicBox& box, double time_step);
 
 // Adds these forces and torques for all pairs and walls of the list whose gap is below the cut-offs. Surfaces that
 // touch feel their contact law alone. Sums run in the order of the list.

@@ -12,15 +12,15 @@
 namespace thalweg::driver {
 namespace {
 
-Bed read_bed(dem::Population& population, const io::YamlDocument& document, const std::string& key) {
-  std::optional<std::string>& file = population.placement.file;
-  const std::filesystem::path path =
-      std::filesystem::absolute(document.path().parent_path() / *file).lexically_normal();
+std::filesystem::path absolute_path(const std::string& file, const io::YamlDocument& document) {
+  return std::filesystem::absolute(document.path().parent_path() / file).lexically_normal();
+}
+
+Bed read_bed(const std::filesystem::path& path, const io::YamlDocument& document, const std::string& key) {
   if (!std::filesystem::is_regular_file(path))
     throw document.error(key, fmt::format("there is no file {}; give the path of a bed file relative to the case file, "
                                           "for example run/bed.h5 as thalweg run leaves it",
                                           path.string()));
-  file = path.string();
   try {
     return io::read_bed_file(path);
   } catch (const InputError& error) {
@@ -32,12 +32,17 @@ Bed read_bed(dem::Population& population, const io::YamlDocument& document, cons
 
 }  // namespace
 
-void fill_in_grains(Case& c, const io::YamlDocument& document) {
+void fill_in_grains(Case& c, const io::YamlDocument& document, const KnownBeds& known) {
   const PeriodicBox box{c.domain.size, periodic_axes(c.domain)};
   for (std::size_t n = 0; n < c.grains.size(); ++n) {
     const std::string key = fmt::format("grains.{}", n);
     std::optional<Bed> bed;
-    if (c.grains[n].placement.file) bed = read_bed(c.grains[n], document, key + ".placement.file");
+    if (std::optional<std::string>& file = c.grains[n].placement.file) {
+      const std::filesystem::path path = absolute_path(*file, document);
+      file = path.string();
+      if (known) bed = known(c, n);
+      if (!bed) bed = read_bed(path, document, key + ".placement.file");
+    }
     at_place(document, key, [&] { complete(c.grains[n], c.disks ? c.disks->thickness : 0.0, bed, box); });
   }
 }

@@ -2,14 +2,22 @@
 // distribution, figures of clumps.
 #pragma once
 
+#include "core/bed.hpp"
 #include "driver/case.hpp"
 #include "io/yaml_document.hpp"
 
+#include <functional>
+#include <optional>
+
 namespace thalweg::driver {
 
-// Reads the bed file of every population placed by one and makes its path absolute; draws the sizes of every
-// population with a distribution. Throws InputError with the place in the case file where a bed file is missing or no
-// bed file, was made in a periodic box of another size, or holds grains outside the box or overlapping too much.
-void fill_in_grains(Case& c, const io::YamlDocument& document);
+// The bed that the population of this number began with, where that is known from elsewhere than its file; else none.
+using KnownBeds = std::function<std::optional<Bed>(const Case&, std::size_t population)>;
+
+// Takes the bed of every population placed by a file, known already or from this file, and makes its path absolute;
+// draws the sizes of every population with a distribution. Throws InputError with the place in the case file where a
+// bed file is missing or no bed file, was made in a periodic box of another size, or holds grains outside the box or
+// overlapping too much.
+void fill_in_grains(Case& c, const io::YamlDocument& document, const KnownBeds& known = {});
 
 }  // namespace thalweg::driver

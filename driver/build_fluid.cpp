@@ -16,7 +16,7 @@ std::unique_ptr<System> build_fluid(const Case& c, MPI_Comm communicator, const 
 
 }  // namespace
 
-std::unique_ptr<System> build_fluid_system(const Case& c, MPI_Comm communicator, const Index3& layout) {
+std::unique_ptr<System> build_fluid_system(const Case& c, MPI_Comm communicator, const Index3& layout, Start) {
   return c.fluid.precision == coupling::Precision::single ? build_fluid<float>(c, communicator, layout)
                                                           : build_fluid<double>(c, communicator, layout);
 }

@@ -21,7 +21,7 @@ std::vector<std::string> measured_walls(const Case& c) {
 
 }  // namespace
 
-std::unique_ptr<System> build_grains_system(const Case& c, MPI_Comm communicator, const Index3& layout) {
+std::unique_ptr<System> build_grains_system(const Case& c, MPI_Comm communicator, const Index3& layout, Start start) {
   const Decomposition decomposition = decomposition_of(c, layout);
   dem::DryParameters parameters;
   parameters.grains = grain_parameters(c, decomposition.box());
@@ -31,7 +31,8 @@ std::unique_ptr<System> build_grains_system(const Case& c, MPI_Comm communicator
     parameters.fluid_density = c.model_fluid.fluid_density;
     parameters.field = std::make_shared<dem::ModelFluidField>(decomposition.box(), model_fluid_of(c));
   }
-  return std::make_unique<dem::DryGrains>(decomposition, communicator, parameters, grain_seeds(c));
+  return std::make_unique<dem::DryGrains>(decomposition, communicator, parameters,
+                                          start == Start::as_placed ? grain_seeds(c) : dem::GrainSeeds{});
 }
 
 }  // namespace thalweg::driver

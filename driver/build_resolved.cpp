@@ -10,7 +10,7 @@ namespace thalweg::driver {
 namespace {
 
 template <typename Real>
-std::unique_ptr<System> build_resolved(const Case& c, MPI_Comm communicator, const Index3& layout) {
+std::unique_ptr<System> build_resolved(const Case& c, MPI_Comm communicator, const Index3& layout, Start start) {
   auto decomposition = std::make_unique<Decomposition>(decomposition_of(c, layout));
   coupling::ResolvedParameters parameters;
   static_cast<coupling::FluidParameters&>(parameters) = fluid_parameters(c);
@@ -33,7 +33,7 @@ std::unique_ptr<System> build_resolved(const Case& c, MPI_Comm communicator, con
   grains.body_force = body_force(c);
   grains.ghost_width = System::ghost_reach(0.5 * largest_diameter(c), c.domain.spacing);
   grains.attached_width = System::attached_width(parameters);
-  const dem::GrainSeeds seeds = grain_seeds(c);
+  const dem::GrainSeeds seeds = start == Start::as_placed ? grain_seeds(c) : dem::GrainSeeds{};
   auto dynamics =
       std::make_unique<dem::GrainDynamics>(*decomposition, communicator, grains, seeds.grains, seeds.clumps);
   return std::make_unique<System>(std::move(decomposition), communicator, parameters, std::move(dynamics));
@@ -41,9 +41,9 @@ std::unique_ptr<System> build_resolved(const Case& c, MPI_Comm communicator, con
 
 }  // namespace
 
-std::unique_ptr<System> build_resolved_system(const Case& c, MPI_Comm communicator, const Index3& layout) {
-  return c.fluid.precision == coupling::Precision::single ? build_resolved<float>(c, communicator, layout)
-                                                          : build_resolved<double>(c, communicator, layout);
+std::unique_ptr<System> build_resolved_system(const Case& c, MPI_Comm communicator, const Index3& layout, Start start) {
+  return c.fluid.precision == coupling::Precision::single ? build_resolved<float>(c, communicator, layout, start)
+                                                          : build_resolved<double>(c, communicator, layout, start);
 }
 
 }  // namespace thalweg::driver

@@ -1,7 +1,6 @@
 #include "driver/case_reader.hpp"
 
 #include "core/error.hpp"
-#include "driver/bed_placement.hpp"
 #include "driver/case_checks.hpp"
 #include "driver/case_sections.hpp"
 #include "io/section_reader.hpp"
@@ -58,11 +57,11 @@ constexpr double steps_per_contact = 50.0;  // dry grains, where the user gives 
 
 }  // namespace
 
-Case read_case(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
+Case read_case(const std::filesystem::path& path, const std::vector<std::string>& overrides, const KnownBeds& known) {
   const io::YamlDocument document(path, overrides);
   Case c;
   io::read_document(document, c);
-  fill_in_grains(c, document);
+  fill_in_grains(c, document, known);
   if (has_fluid(c) && !c.fluid.bulk_relaxation_time) c.fluid.bulk_relaxation_time = bulk_relaxation_time_for(c);
   if (c.coupling.grain_steps_per_fluid_step == coupling::CouplingKeys::as_many_as_needed) {
     if (!has_fluid(c))

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/error.hpp"
+#include "driver/bed_placement.hpp"
 #include "driver/case.hpp"
 
 #include <filesystem>
@@ -12,8 +13,9 @@ namespace thalweg::driver {
 
 // Reads and checks a case. overrides: texts of the form "key.sub=VALUE" (items of a list by index: grains.0.count=10)
 // that replace or add to what the file says. Throws InputError: one sentence with file and line (or the override), key,
-// value, and what would be right. Writes nothing.
-Case read_case(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
+// value, and what would be right. Writes nothing. known: beds that need not be read from their files.
+Case read_case(const std::filesystem::path& path, const std::vector<std::string>& overrides = {},
+               const KnownBeds& known = {});
 
 // The case with every default filled in, as YAML that read_case() reads back as the same case.
 std::string resolved_yaml(const Case& c);

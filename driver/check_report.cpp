@@ -230,11 +230,14 @@ void refuse_impossible_grains(const Case& c) {
   const dem::GrainSeeds start = grain_seeds(c);
   dem::check(start.clumps, box);
   const std::vector<dem::GrainSeed> seeds = dem::with_members(start.grains, start.clumps, box);
-  for (const dem::GrainSeed& seed : seeds)
+  double largest_radius = 0.0;
+  for (const dem::GrainSeed& seed : seeds) {
     lightest[static_cast<std::size_t>(seed.material)].include(seed.contact_mass(), seed.radius);
+    largest_radius = std::max(largest_radius, seed.radius);
+  }
   dem::check_time_step(parameters, lightest, grain_count(c));
   dem::check(seeds, box, parameters.walls, parameters.initial_overlap);
-  if (parameters.lubrication) dem::check(*parameters.lubrication, seeds, box, parameters.time_step);
+  dem::check_lubrication(parameters, lightest, largest_radius, box);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "core/on_first_rank.hpp"
 #include "dem/dry_grains.hpp"
 #include "dem/model_fluid_field.hpp"
+#include "driver/bed_archive.hpp"
 #include "driver/build_system.hpp"
 #include "driver/case_changes.hpp"
 #include "driver/case_reader.hpp"
@@ -69,6 +70,7 @@ struct Beginning {
   fs::path checkpoint;              // empty: from the start
   std::vector<std::string> damage;  // of checkpoints that were passed over
   std::vector<CaseChange> changes;  // since the run that is continued
+  Accounts accounts;                // of that run
 };
 
 // Throws InputError where the case is not one with which that run can go on.
@@ -93,7 +95,12 @@ void print_header(const Case& c, RunIdentity& identity, const System& system, co
     log.line(fmt::format("going on from {} at {:.6g} s", beginning.checkpoint.string(), system.time()));
   for (const CaseChange& change : beginning.changes)
     log.line(fmt::format("changed since then: {}: {} -> {}", change.key, change.before, change.now));
+  for (const auto& [observer, time] : beginning.accounts.since)
+    log.line(fmt::format("analysis.{}: its sums count from {:.6g} s on", observer, time));
   log.line(fmt::format("writing {}", places.folder.path().string()));
+  if (const double strokes = loop::seconds_between_strokes(); strokes > 0.0)
+    log.line(fmt::format("to stop early: thalweg stop {} (after Ctrl-C or SIGTERM mpirun leaves only {:.2g} s to save)",
+                         places.folder.path().string(), 2.0 * strokes));
   if (!c.grains.empty()) log.line("reference grain: " + reference_text(c));
   if (system.cells() > 0) {
     const double bandwidth = measure_bandwidth(communicator);
@@ -178,23 +185,24 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   loop::listen_for_stop_signals();
   std::vector<std::string> settings = command.settings;
   if (command.until) settings.push_back(fmt::format("run.until={}", *command.until));
-  const Case c = read_case(command.path, settings);
   const Places places = places_of(command);
+  const Case c = read_case(command.path, settings, beds_of(places.checkpoints));
   on_first_rank(communicator, [&] {
     if (!places.same_folder) places.folder.check_new(command.overwrite);
   });
   Beginning beginning;
   beginning.changes = changes_since(places.origin, c);
   const Index3 layout = choose_layout(c, size_of(communicator), command.layout);
+  const Start start = places.checkpoints.empty() ? Start::as_placed : Start::from_checkpoint;
   const std::unique_ptr<System> system =
-      about_case(command.path, [&] { return build_system(c, communicator, layout); });
+      about_case(command.path, [&] { return build_system(c, communicator, layout, start); });
   Observers observers = make_observers(c.analysis.observers, run_facts(c),
                                        {communicator, *system->snapshot().decomposition, system->time_step()});
   if (places.checkpoints.empty())
     about_case(command.path, [&] { take_initial_fields(communicator, c, *system); });
   else
-    beginning.checkpoint =
-        read_first_whole_checkpoint(communicator, places.checkpoints, c, *system, observers, beginning.damage);
+    beginning.checkpoint = read_first_whole_checkpoint(communicator, places.checkpoints, c, *system, observers,
+                                                       beginning.damage, beginning.accounts);
   if (system->time() > c.run.until * (1.0 + 1e-12))
     throw InputError(fmt::format("{} is at {:.6g} s already and the run ends at {:.6g} s: give a later --until.",
                                  beginning.checkpoint.string(), system->time(), c.run.until));
@@ -202,7 +210,7 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   prepare_folder(places, c, command, system->step(), communicator, log);
   RunIdentity identity{c.name, name_of(c.system), command.line, c.run.until, layout, size_of(communicator)};
   print_header(c, identity, *system, places, beginning, communicator, log);
-  RunOutput output(communicator, c, places.folder, *system, observers,
+  RunOutput output(communicator, c, places.folder, *system, observers, beginning.accounts.since,
                    places.same_folder ? std::optional<double>(system->time()) : std::nullopt);
   loop::LoopPlan plan;
   plan.until = c.run.until;
@@ -212,6 +220,9 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   plan.walltime = command.walltime;
   plan.started = started;
   plan.stop_file = places.folder.stop();
+  plan.between_strokes = loop::seconds_between_strokes();
+  plan.largest = beginning.accounts.largest;
+  plan.largest_from = beginning.accounts.largest_from;
   plan.write_at_start = !places.same_folder;
   output.add_to(plan);
   loop::TimeLoop time_loop(communicator, *system, observers, plan, log);
@@ -223,7 +234,7 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
     record.reason = told.what();
     try {
       if (!failures.all_ranks_failed(seconds_to_wait_for_others) || log.prints())
-        summary_of(identity, *system, record, observers, {}).write(places.folder.summary());
+        summary_of(identity, *system, record, observers, beginning.accounts, {}).write(places.folder.summary());
     } catch (const RunError&) {  // the first error is the one to tell
     }
     throw told;
@@ -231,7 +242,8 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   if (!c.grains.empty()) io::write_bed_file(communicator, places.folder.bed(), system->snapshot());
   const std::vector<loop::PhaseShare> phases = loop::collect_phases(communicator, *system, time_loop);
   print_outcome(identity, time_loop.record(), *system, observers, phases, places.folder, log);
-  const io::JsonObject summary = summary_of(identity, *system, time_loop.record(), observers, phases);
+  const io::JsonObject summary =
+      summary_of(identity, *system, time_loop.record(), observers, beginning.accounts, phases);
   on_first_rank(communicator, [&] { summary.write(places.folder.summary()); });
   return time_loop.record().finished;
 }

@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/on_first_rank.hpp"
+#include "driver/bed_archive.hpp"
 #include "driver/build_system.hpp"
 #include "driver/version.hpp"
 #include "io/hdf5_archive.hpp"
@@ -10,16 +11,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace thalweg::driver {
 
 RunOutput::RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& folder, const System& system,
-                     const Observers& observers, std::optional<double> continue_from)
+                     const Observers& observers, std::map<std::string, double> since,
+                     std::optional<double> continue_from)
     : communicator_(communicator),
       case_(c),
       folder_(folder),
       system_(system),
       observers_(observers),
+      since_(std::move(since)),
       continue_from_(continue_from) {
   const Snapshot snapshot = system.snapshot();
   if (c.output.grains.every > 0.0 && snapshot.grains.global_count > 0)
@@ -40,7 +45,7 @@ void RunOutput::add_to(loop::LoopPlan& plan) {
   plan.write_row = [this](double time, std::int64_t, const std::vector<Figure>& row) { write_row(time, row); };
   plan.checkpoint = Schedule(case_.output.checkpoint.every, time_step);
   plan.checkpoint_wall = case_.output.checkpoint.every_wall;
-  plan.write_checkpoint = [this] { return write_checkpoint(); };
+  plan.write_checkpoint = [this](const loop::LoopRecord& record) { return write_checkpoint(record); };
   if (grains_)
     plan.outputs.push_back({"grain output", Schedule(case_.output.grains.every, time_step),
                             [this](const Snapshot& snapshot) { grains_->write(snapshot); }});
@@ -78,10 +83,10 @@ void RunOutput::write_records() {
   for (auto& [observer, file] : records_) file.add(observer->take_records());
 }
 
-std::uint64_t RunOutput::write_checkpoint() {
+std::uint64_t RunOutput::write_checkpoint(const loop::LoopRecord& record) {
   write_records();
   const std::filesystem::path path = folder_.checkpoint(system_.step());
-  write_checkpoint_file(communicator_, path, case_, system_, observers_);
+  write_checkpoint_file(communicator_, path, case_, system_, observers_, {record.largest, record.largest_from, since_});
   std::uint64_t bytes = 0;
   on_first_rank(communicator_, [&] {
     folder_.rotate_checkpoints(system_.step(), static_cast<int>(case_.output.checkpoint.keep));
@@ -96,7 +101,7 @@ std::uint64_t RunOutput::write_checkpoint() {
 static constexpr std::int64_t checkpoint_format = 2;
 
 void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c,
-                           const System& system, const Observers& observers) {
+                           const System& system, const Observers& observers, const Accounts& accounts) {
   io::Hdf5Writer archive(communicator, path);
   archive.attribute("run/format", checkpoint_format);
   archive.attribute("run/system", std::string(name_of(c.system)));
@@ -106,6 +111,8 @@ void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& p
   archive.attribute("run/time", system.time());
   archive.attribute("run/time_step", system.time_step());
   archive.attribute("run/spacing", c.domain.spacing);
+  accounts.save(archive);
+  save_beds(archive, communicator, c);
   system.save(archive);
   for (const auto& observer : observers) observer->save(archive);
   archive.close();
@@ -134,8 +141,8 @@ void take_initial_fields(MPI_Comm communicator, const Case& c, System& system) {
   }
 }
 
-void read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c, System& system,
-                          Observers& observers) {
+Accounts read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c, System& system,
+                              Observers& observers) {
   io::Hdf5Reader archive(communicator, path);
   if (!archive.has("run/system"))
     throw InputError(fmt::format("{} is an HDF5 file but not a checkpoint of this program.", path.string()));
@@ -150,16 +157,16 @@ void read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& pa
     throw InputError(fmt::format("{} holds a run with system: {}, but this case has system: {}.", path.string(), saved,
                                  name_of(c.system)));
   system.load(archive);
-  for (const auto& observer : observers) observer->load(archive);
+  return Accounts::load(archive, system, observers);
 }
 
 std::filesystem::path read_first_whole_checkpoint(MPI_Comm communicator,
                                                   const std::vector<std::filesystem::path>& checkpoints, const Case& c,
                                                   System& system, Observers& observers,
-                                                  std::vector<std::string>& damage) {
+                                                  std::vector<std::string>& damage, Accounts& accounts) {
   for (const std::filesystem::path& path : checkpoints) {
     try {
-      read_checkpoint_file(communicator, path, c, system, observers);
+      accounts = read_checkpoint_file(communicator, path, c, system, observers);
       return path;
     } catch (const io::DamagedFile& error) {
       if (path == checkpoints.back()) throw;

@@ -3,6 +3,7 @@
 
 #include "analysis/observer.hpp"
 #include "core/system.hpp"
+#include "driver/accounts.hpp"
 #include "driver/case.hpp"
 #include "io/fluid_series.hpp"
 #include "io/grain_series.hpp"
@@ -15,6 +16,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,21 +24,19 @@
 
 namespace thalweg::driver {
 
-using Observers = std::vector<std::unique_ptr<analysis::Observer>>;
-
 class RunOutput {
 public:
   // folder exists. continue_from: the simulated time (s) at which a restarted run takes up the folder's own series;
   // empty: new series. Everything referred to must outlive this.
   RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& folder, const System& system,
-            const Observers& observers, std::optional<double> continue_from);
+            const Observers& observers, std::map<std::string, double> since, std::optional<double> continue_from);
 
   // Schedules and actions for the time loop; they refer to this object.
   void add_to(loop::LoopPlan& plan);
 
 private:
   void write_row(double time, const std::vector<Figure>& row);
-  std::uint64_t write_checkpoint();  // bytes, on the first rank
+  std::uint64_t write_checkpoint(const loop::LoopRecord& record);  // bytes, on the first rank
   void write_profiles();
   void write_records();
 
@@ -45,6 +45,7 @@ private:
   const io::RunFolder& folder_;
   const System& system_;
   const Observers& observers_;
+  std::map<std::string, double> since_;
   std::optional<double> continue_from_;
   std::unique_ptr<io::SeriesTable> series_;  // from the first row on: only then the columns are known
   std::unique_ptr<io::GrainSeries> grains_;
@@ -53,9 +54,9 @@ private:
 };
 
 // A checkpoint: what it is (group "run": format, system, name, version, step, time in s, time_step in s), the system,
-// the observers. Nothing in it tells how many ranks wrote it. Collective; RunError on every rank.
+// the observers, and the accounts. Nothing in it tells how many ranks wrote it. Collective; RunError on every rank.
 void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c,
-                           const System& system, const Observers& observers);
+                           const System& system, const Observers& observers, const Accounts& accounts);
 
 // The initial state of the case where it is that of another run (initial.from). Throws InputError where it does not
 // fit. Collective.
@@ -63,13 +64,13 @@ void take_initial_fields(MPI_Comm communicator, const Case& c, System& system);
 
 // The state of a checkpoint into a system and observers built from a case. Throws InputError where they do not fit, and
 // io::DamagedFile.
-void read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c, System& system,
-                          Observers& observers);
+Accounts read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c, System& system,
+                              Observers& observers);
 
 // That of the first one which is not damaged; `damage`, a sentence about each before it, is added to. Returns its path.
 std::filesystem::path read_first_whole_checkpoint(MPI_Comm communicator,
                                                   const std::vector<std::filesystem::path>& checkpoints, const Case& c,
                                                   System& system, Observers& observers,
-                                                  std::vector<std::string>& damage);
+                                                  std::vector<std::string>& damage, Accounts& accounts);
 
 }  // namespace thalweg::driver

@@ -20,7 +20,7 @@ io::JsonObject figures_as_json(const std::vector<Figure>& figures, io::JsonObjec
 }  // namespace
 
 io::JsonObject summary_of(const RunIdentity& identity, const System& system, const loop::LoopRecord& record,
-                          const std::vector<std::unique_ptr<analysis::Observer>>& observers,
+                          const Observers& observers, const Accounts& accounts,
                           const std::vector<loop::PhaseShare>& phases) {
   const loop::Speeds speeds = loop::speeds_of(system, record);
   io::JsonObject summary;
@@ -49,7 +49,9 @@ io::JsonObject summary_of(const RunIdentity& identity, const System& system, con
   summary.set("warnings", record.warnings);
   io::JsonObject units;  // of figures and results, by name
   summary.set("figures", figures_as_json(record.figures, units)).set("largest", figures_as_json(record.largest, units));
-  for (const auto& observer : observers) summary.set(observer->name(), figures_as_json(observer->results(), units));
+  summary.set("largest_from", record.largest_from);
+  for (const auto& observer : observers)
+    summary.set(observer->name(), figures_as_json(accounts.results_of(*observer), units));
   summary.set("units", units);
   return summary;
 }

@@ -1,13 +1,12 @@
 // What a run leaves behind in figures: summary.json for scripts, a table of phases for people.
 #pragma once
 
-#include "analysis/observer.hpp"
+#include "driver/accounts.hpp"
 #include "io/json_object.hpp"
 #include "loop/phase_shares.hpp"
 
 #include <mpi.h>
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -24,7 +23,7 @@ struct RunIdentity {
 
 // summary.json of a run that has ended in whatever way. `phases` may be empty.
 io::JsonObject summary_of(const RunIdentity& identity, const System& system, const loop::LoopRecord& record,
-                          const std::vector<std::unique_ptr<analysis::Observer>>& observers,
+                          const Observers& observers, const Accounts& accounts,
                           const std::vector<loop::PhaseShare>& phases);
 
 }  // namespace thalweg::driver

@@ -3,14 +3,19 @@
 #include <fmt/format.h>
 
 #include <csignal>
+#include <cstdlib>
 
 namespace thalweg::loop {
 
 namespace {
 
 volatile std::sig_atomic_t received = 0;
+volatile std::sig_atomic_t continued = 0;
 
 extern "C" void note_signal(int signal) { received = signal; }
+extern "C" void note_continuation(int) { continued = 1; }
+
+constexpr double default_sigkill_timeout = 1.0;  // s, Open MPI 4
 
 }  // namespace
 
@@ -21,9 +26,25 @@ void listen_for_stop_signals() {
   sigemptyset(&action.sa_mask);
   action.sa_flags = SA_RESTART;  // file writes and MPI's own calls go on undisturbed
   for (int signal : {SIGTERM, SIGINT, SIGUSR1, SIGUSR2}) sigaction(signal, &action, nullptr);
+  continued = 0;
+  action.sa_handler = note_continuation;
+  if (seconds_between_strokes() > 0.0) sigaction(SIGCONT, &action, nullptr);
 }
 
 int received_stop_signal() { return received; }
+
+double seconds_between_strokes() {
+  if (std::getenv("OMPI_COMM_WORLD_RANK") == nullptr) return 0.0;
+  const char* given = std::getenv("OMPI_MCA_odls_base_sigkill_timeout");
+  const double seconds = given == nullptr ? 0.0 : std::atof(given);
+  return seconds > 0.0 ? seconds : default_sigkill_timeout;
+}
+
+bool take_first_stroke() {
+  const bool came = continued != 0;
+  continued = 0;
+  return came;
+}
 
 std::string signal_name(int signal) {
   switch (signal) {

@@ -6,11 +6,20 @@
 
 namespace thalweg::loop {
 
-// From now on these signals only leave a note; earlier ones are forgotten.
+// From now on these signals only leave a note; earlier ones are forgotten. Under Open MPI's mpirun SIGCONT leaves one
+// as well.
 void listen_for_stop_signals();
 
 // Number of the last stop signal this process has received since then; 0: none.
 int received_stop_signal();
+
+// Open MPI's mpirun answers SIGTERM and Ctrl-C in three strokes: SIGCONT to every rank at once, SIGTERM after its
+// odls_base_sigkill_timeout, SIGKILL after the same again. The time between two strokes in s; 0: this process was not
+// started by it.
+double seconds_between_strokes();
+
+// Whether a first stroke has come since the last call. (It may be a run that was suspended and goes on.)
+bool take_first_stroke();
 
 // "SIGTERM" for SIGTERM, and so on.
 std::string signal_name(int signal);

@@ -10,18 +10,26 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <csignal>
+#include <limits>
+#include <thread>
 
 namespace thalweg::loop {
 
 namespace {
 
 constexpr double seconds_between_decisions = 0.2;  // mpirun kills one second after its SIGTERM
+constexpr double seconds_a_stroke_may_be_late = 0.5;
+constexpr double most_of_the_time = 0.7;  // that a signal leaves: what a checkpoint may take
 constexpr double seconds_between_lines = 1.0;
 constexpr std::int64_t most_steps_between_decisions = 100000;
 
 double seconds_since(WallClock::time_point start) {
   return std::chrono::duration<double>(WallClock::now() - start).count();
 }
+
+// SIGUSR1 and SIGUSR2 are passed on by mpirun, and nothing follows.
+bool is_followed_by_a_kill(int signal) { return signal == SIGTERM || signal == SIGINT; }
 
 // Takes the request away, so that the run can go on later.
 bool was_asked_to_stop(const std::filesystem::path& file) {
@@ -46,6 +54,7 @@ TimeLoop::TimeLoop(MPI_Comm communicator, System& system, std::vector<std::uniqu
     schedules_.push_back(every > 0.0 ? Schedule(every, system.time_step()) : plan.series);
   }
   record_.first_step = record_.last_step = system.step();
+  record_.largest_from = plan.largest_from;
 }
 
 void TimeLoop::run() {
@@ -62,13 +71,14 @@ void TimeLoop::run() {
     record_.wall_seconds = seconds_since(begin_);
     if (system_.step() % steps_between_health_checks == 0) look_at_health();
     write_what_is_due();
-    if (plan_.checkpoint.due(system_.step())) checkpoint();
+    if (plan_.checkpoint.due(system_.step())) checkpoint(true);
     if (system_.step() >= next_decision_) decision = decide_together();
     // At the same step on any ranks and after any restart.
     if (system_.step() % steps_between_looks_for_enough == 0 && has_enough()) decision = Decision::enough;
   }
-  look_at_health();
+  look_at_health(false);
   checkpoint();
+  count_among_largest();
   if (log_.prints() && printed_step_ != system_.step()) report(seconds_since(begin_));
   if (decision == Decision::enough) record_.early = plan_.enough_means;
   record_.finished = decision == Decision::enough || system_.step() >= final_step_;
@@ -76,16 +86,26 @@ void TimeLoop::run() {
   record_.wall_seconds = seconds_since(begin_);
 }
 
-void TimeLoop::look_at_health() {
+void TimeLoop::look_at_health(bool is_due) {
   if (looked_at_step_ == system_.step()) return;
   looked_at_step_ = system_.step();
   const auto scope = timer_.measure(timer_.phase("figures"));
   record_.figures = system_.figures();
-  if (record_.largest.empty()) record_.largest = record_.figures;
+  if (record_.largest.empty()) begin_largest();
   for (const std::string& warning : watchdog_.judge(record_.figures)) {
     ++record_.warnings;
     log_.line("warning: " + warning);
   }
+  if (is_due) count_among_largest();
+}
+
+void TimeLoop::begin_largest() {
+  record_.largest = record_.figures;
+  for (Figure& figure : record_.largest)
+    figure.value = find_figure(plan_.largest, figure.name).value_or(-std::numeric_limits<double>::infinity());
+}
+
+void TimeLoop::count_among_largest() {
   for (std::size_t f = 0; f < record_.figures.size(); ++f)
     record_.largest[f].value = std::max(record_.largest[f].value, record_.figures[f].value);
 }
@@ -142,56 +162,103 @@ void TimeLoop::write_what_is_due() {
   }
 }
 
-void TimeLoop::checkpoint() {
+void TimeLoop::checkpoint(bool is_due) {
   if (!plan_.write_checkpoint || saved_step_ == system_.step()) return;
-  look_at_health();  // a broken state must not replace a good checkpoint
+  look_at_health(is_due);  // a broken state must not replace a good checkpoint
   const WallClock::time_point before = WallClock::now();
   std::uint64_t bytes = 0;
   {
     const auto scope = timer_.measure(timer_.phase("checkpoints"));
-    bytes = plan_.write_checkpoint();
+    bytes = plan_.write_checkpoint(record_);
   }
   const double seconds = seconds_since(before);
   if (saved_step_ < 0)
     log_.line(fmt::format("first checkpoint: {:.1f} MB in {:.2g} s", static_cast<double>(bytes) * 1e-6, seconds));
+  if (const double left = 2.0 * plan_.between_strokes;
+      left > 0.0 && seconds > most_of_the_time * left && longest_checkpoint_ <= most_of_the_time * left)
+    log_.line(
+        fmt::format("warning: this checkpoint took {:.2g} s, and mpirun kills the ranks {:.2g} s after Ctrl-C or "
+                    "SIGTERM: stop this "
+                    "run with thalweg stop {}, with SIGUSR1 or SIGUSR2 to mpirun, or by --walltime",
+                    seconds, left, plan_.stop_file.parent_path().string()));
   saved_step_ = system_.step();
   saved_at_ = seconds_since(begin_);
   longest_checkpoint_ = std::max(longest_checkpoint_, seconds);
 }
 
+double TimeLoop::seconds_per_step(double now) const {
+  const std::int64_t done = std::max<std::int64_t>(1, system_.step() - decided_step_);
+  return std::max(1e-9, (now - decided_at_) / static_cast<double>(done));
+}
+
+std::int64_t TimeLoop::steps_to_next_decision(double now) const {
+  const std::int64_t done = std::max<std::int64_t>(1, system_.step() - decided_step_);
+  return std::clamp<std::int64_t>(static_cast<std::int64_t>(seconds_between_decisions / seconds_per_step(now)), 1,
+                                  std::min(2 * done, most_steps_between_decisions));
+}
+
+// Of rank 0, by the clock and the file.
+std::int64_t TimeLoop::own_decision() {
+  const double now = seconds_since(begin_);
+  const double reserve = 3.0 * longest_checkpoint_ + std::min(60.0, 0.05 * plan_.walltime) +
+                         2.0 * seconds_per_step(now) * static_cast<double>(steps_to_next_decision(now));
+  if (was_asked_to_stop(plan_.stop_file)) return static_cast<int>(Decision::asked);
+  const bool is_up = plan_.walltime > 0.0 && seconds_since(plan_.started) + reserve > plan_.walltime;
+  return static_cast<int>(is_up ? Decision::wall_time_is_up : Decision::go_on);
+}
+
 TimeLoop::Decision TimeLoop::decide_together() {
   // Only rank 0 looks at the clock; all ranks may have seen a signal. One reduction settles everything.
-  enum { decision, signal, print, save, steps, items };
+  enum { decision, signal, stroke, print, save, steps, items };
   std::array<std::int64_t, items> votes{};
   votes[signal] = received_stop_signal();
-  if (votes[signal] != 0) votes[decision] = static_cast<int>(Decision::signal);
+  votes[stroke] = take_first_stroke() ? 1 : 0;
   const double now = seconds_since(begin_);
   if (rank_of(communicator_) == 0) {
-    const std::int64_t done = std::max<std::int64_t>(1, system_.step() - decided_step_);
-    const double per_step = std::max(1e-9, (now - decided_at_) / static_cast<double>(done));
-    votes[steps] = std::clamp<std::int64_t>(static_cast<std::int64_t>(seconds_between_decisions / per_step), 1,
-                                            std::min(2 * done, most_steps_between_decisions));
-    const double reserve = 3.0 * longest_checkpoint_ + std::min(60.0, 0.05 * plan_.walltime) +
-                           2.0 * per_step * static_cast<double>(votes[steps]);
-    if (plan_.walltime > 0.0 && seconds_since(plan_.started) + reserve > plan_.walltime)
-      votes[decision] = std::max<std::int64_t>(votes[decision], static_cast<int>(Decision::wall_time_is_up));
-    if (was_asked_to_stop(plan_.stop_file))
-      votes[decision] = std::max<std::int64_t>(votes[decision], static_cast<int>(Decision::asked));
+    votes[decision] = own_decision();
+    votes[steps] = steps_to_next_decision(now);
     votes[print] = now - printed_at_ >= seconds_between_lines ? 1 : 0;
     votes[save] = plan_.checkpoint_wall > 0.0 && now - saved_at_ >= plan_.checkpoint_wall ? 1 : 0;
     decided_at_ = now;
     decided_step_ = system_.step();
   }
+  if (votes[signal] != 0) votes[decision] = static_cast<int>(Decision::signal);
   MPI_Allreduce(MPI_IN_PLACE, votes.data(), items, MPI_INT64_T, MPI_MAX, communicator_);
   next_decision_ = system_.step() + votes[steps];
   const auto agreed = static_cast<Decision>(votes[decision]);
-  if (agreed == Decision::signal)
+  if (agreed == Decision::signal) {
     record_.reason = fmt::format("stopped by {}", signal_name(static_cast<int>(votes[signal])));
+    if (saved_step_ != system_.step() && is_followed_by_a_kill(static_cast<int>(votes[signal])))
+      log_.line(fmt::format("{}: saving{}", signal_name(static_cast<int>(votes[signal])), danger_of_being_killed()));
+  }
   if (agreed == Decision::asked) record_.reason = "stopped by a file named stop";
   if (agreed == Decision::wall_time_is_up) record_.reason = "the wall time is nearly up";
   if (votes[print] != 0) report(now);
   if (votes[save] != 0) checkpoint();
+  if (agreed == Decision::go_on && votes[stroke] != 0) return decide_after_first_stroke();
   return agreed;
+}
+
+// Saves while there is time, and then waits for the second stroke. If none comes, the run goes on.
+TimeLoop::Decision TimeLoop::decide_after_first_stroke() {
+  const WallClock::time_point stroke = WallClock::now();
+  log_.line("SIGCONT, as mpirun sends it before it kills: saving" + danger_of_being_killed());
+  checkpoint();
+  while (rank_of(communicator_) == 0 && received_stop_signal() == 0 &&
+         seconds_since(stroke) < plan_.between_strokes + seconds_a_stroke_may_be_late)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  return decide_together();
+}
+
+// For a line of the log; empty where there is none, as far as is known.
+std::string TimeLoop::danger_of_being_killed() const {
+  const double left = 2.0 * plan_.between_strokes;
+  if (left <= 0.0 || longest_checkpoint_ < most_of_the_time * left) return "";
+  return fmt::format(
+      ", which took up to {:.2g} s so far, and mpirun leaves {:.2g} s; if this checkpoint is lost, a restart goes on "
+      "from "
+      "the one of step {}",
+      longest_checkpoint_, left, saved_step_);
 }
 
 void TimeLoop::report(double now) {

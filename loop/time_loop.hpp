@@ -34,7 +34,24 @@ struct OutputTask {
 };
 
 using SeriesRow = std::function<void(double time, std::int64_t step, const std::vector<Figure>&)>;  // collective
-using WriteCheckpoint = std::function<std::uint64_t()>;  // collective; returns its size in bytes, on the first rank
+// What has become of a run so far.
+struct LoopRecord {
+  bool finished = false;
+  std::string early;   // LoopPlan::enough_means, where that has finished the run
+  std::string reason;  // why it is not finished; empty if it is
+  std::int64_t first_step = 0, last_step = 0;
+  double wall_seconds = 0.0;     // in run(), this time
+  double advance_seconds = 0.0;  // of which in System::advance()
+  std::vector<Figure> figures;   // of the system, at the latest look
+  // Of the system: the largest value of each figure since largest_from (s, simulated), at the looks that are due and at
+  // the end; minus infinity as long as there was none.
+  std::vector<Figure> largest;
+  double largest_from = 0.0;
+  std::int64_t warnings = 0;  // of the watchdog
+};
+
+using WriteCheckpoint =
+    std::function<std::uint64_t(const LoopRecord&)>;  // collective; returns its bytes, on the first rank
 
 // A figure of the system and what it must fall below.
 struct FigureLimit {
@@ -51,6 +68,9 @@ struct LoopPlan {
   double walltime = 0.0;                             // s of wall time from `started` on; 0: as long as it takes
   WallClock::time_point started = WallClock::now();  // of the program
   std::filesystem::path stop_file;                   // if it appears, the run stops and removes it; empty: none
+  double between_strokes = 0.0;                      // s, stop_request.hpp: of who kills after a signal; 0: nobody
+  std::vector<Figure> largest;                       // before the loop, since largest_from
+  double largest_from = 0.0;                         // s, simulated
   bool write_at_start = true;                        // false where a run goes on: its first frame exists already
   Schedule series;                                   // when observers measure and a row of figures is written
   Schedule checkpoint;                               // a last one is written in any case
@@ -58,19 +78,6 @@ struct LoopPlan {
   SeriesRow write_row;                               // none: not written
   WriteCheckpoint write_checkpoint;                  // none: not written
   std::vector<OutputTask> outputs;
-};
-
-// What has become of a run so far.
-struct LoopRecord {
-  bool finished = false;
-  std::string early;   // LoopPlan::enough_means, where that has finished the run
-  std::string reason;  // why it is not finished; empty if it is
-  std::int64_t first_step = 0, last_step = 0;
-  double wall_seconds = 0.0;     // in run(), this time
-  double advance_seconds = 0.0;  // of which in System::advance()
-  std::vector<Figure> figures;   // of the system, at the latest look
-  std::vector<Figure> largest;   // of the system: the largest value of each figure at any look of this run
-  std::int64_t warnings = 0;     // of the watchdog
 };
 
 class TimeLoop {
@@ -93,13 +100,22 @@ public:
 private:
   enum class Decision : int { go_on = 0, wall_time_is_up = 1, asked = 2, signal = 3, enough = 4 };
 
-  void look_at_health();
+  // Only a look that is due at this step in any run counts among the largest figures: one at which a run happens to be
+  // saved would make a run that was stopped differ from one that was not.
+  void look_at_health(bool is_due = true);
+  void begin_largest();
+  void count_among_largest();
   bool needs_momentum_at(std::int64_t step) const;
   void measure();
   bool has_enough() const;
   void write_what_is_due();
-  void checkpoint();
+  void checkpoint(bool is_due = false);
+  std::int64_t own_decision();
+  std::int64_t steps_to_next_decision(double now) const;
+  double seconds_per_step(double now) const;
   Decision decide_together();
+  Decision decide_after_first_stroke();
+  std::string danger_of_being_killed() const;
   void report(double now);
 
   MPI_Comm communicator_;

@@ -237,11 +237,12 @@ class Stopping(DryGrains):
         super().setUp()
         self.case.write_text(PERPETUAL)
 
-    def start(self, *arguments, ranks=0):
+    def start(self, *arguments, ranks=0, patience=5):
         """A run that would take hours, once it has begun to report."""
         command = self.command(("run", self.case) + self.LONG + arguments, ranks)
-        # Open MPI's mpirun answers SIGTERM by passing it on and killing a second later; a busy machine needs more.
-        patient = os.environ | {"OMPI_MCA_odls_base_sigkill_timeout": "5"}
+        # Open MPI's mpirun answers SIGTERM by passing it on after one second and killing after another; a busy machine
+        # needs more.
+        patient = os.environ | {"OMPI_MCA_odls_base_sigkill_timeout": str(patience)}
         process = subprocess.Popen(command, cwd=self.folder, stdout=subprocess.DEVNULL,
                                    stderr=subprocess.PIPE, text=True, env=patient)
         self.addCleanup(process.stderr.close)
@@ -291,7 +292,23 @@ class Stopping(DryGrains):
         process.send_signal(signal.SIGTERM)
         process.wait(timeout=40)
         self.assertEqual(self.summary("run")["reason"], "stopped by SIGTERM")
+        log = (self.folder / "run/run.log").read_text()
+        self.assertRegex(log, r"to stop early: thalweg stop \S+ \(after Ctrl-C or SIGTERM mpirun leaves only 10 s to save\)")
+        self.assertIn("SIGCONT, as mpirun sends it before it kills: saving\n", log)
         self.assert_can_go_on(2)
+
+    def test_ctrl_c_of_mpirun_without_patience_loses_nothing_that_is_whole(self):
+        # Two seconds, which a busy machine may exceed: then the run ends without a summary, and what is there counts.
+        process = self.start("--set", "output.checkpoint.every=100", ranks=2, patience=1)
+        process.send_signal(signal.SIGINT)
+        process.wait(timeout=40)
+        if (self.folder / "run/summary.json").exists():
+            self.assertEqual(self.summary("run")["reason"], "stopped by SIGTERM")
+            self.assert_can_go_on(2)
+        elif (self.folder / "run/checkpoints/latest").exists():
+            self.assertIn("going on from", self.run_well("run", self.case, "--restart", "run", "--until", "1").stdout)
+        else:
+            self.assert_refused("run", self.case, "--restart", "run", words=["has no checkpoint"])
 
     def stop_by_command(self, ranks):
         process = self.start(ranks=ranks)

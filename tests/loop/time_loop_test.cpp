@@ -7,9 +7,16 @@
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
 #include <functional>
 #include <limits>
+#include <sstream>
+#include <string>
 #include <thread>
 
 namespace thalweg::loop {
@@ -58,7 +65,7 @@ public:
   void observe(const Snapshot& snapshot) override { steps.push_back(snapshot.step); }
   std::vector<Figure> figures() const override { return {{"seen", "1", static_cast<double>(steps.size())}}; }
   void save(ArchiveWriter&) const override {}
-  void load(ArchiveReader&) override {}
+  bool load(ArchiveReader&) override { return true; }
   std::vector<std::int64_t> steps;
 
 private:
@@ -82,7 +89,7 @@ struct Bench {
       rows.push_back(step);
       columns = row.size();
     };
-    plan.write_checkpoint = [this] {
+    plan.write_checkpoint = [this](const LoopRecord&) {
       checkpoints.push_back(system.step());
       return std::uint64_t{0};
     };
@@ -143,6 +150,37 @@ TEST(TimeLoop, DoesNotLookIntoTheSystemForWhoLooksInPassing) {
     const LoopRecord& record = bench.run().record();
     EXPECT_EQ(busy.steps.size(), 11u);
     EXPECT_EQ(record.largest.at(0).value, in_passing ? 0.05 : 0.19);
+  }
+}
+
+// Whatever else a run happens to look at, and wherever it was interrupted, step 8 has the largest figure of all looks
+// that are due (steps 0, 3, 4, 5, 6, 8, 9), and step 10, the end, that of all.
+TEST(TimeLoop, LargestFiguresGoOnWithARun) {
+  const auto speed = [](std::int64_t step) {
+    return step == 10 ? 0.2 : step == 7 ? 0.19 : 0.001 * static_cast<double>(step);
+  };
+  for (const std::int64_t stop : {4, 5, 7, 9}) {
+    std::vector<Figure> saved;
+    Bench first(0.001 * static_cast<double>(stop));
+    first.system.lattice_velocity = speed;
+    first.plan.write_checkpoint = [&saved](const LoopRecord& record) {
+      saved = record.largest;
+      return std::uint64_t{0};
+    };
+    first.run();
+    ASSERT_EQ(saved.size(), 1u);
+    EXPECT_DOUBLE_EQ(saved[0].value, stop == 7 ? 0.006 : 0.001 * static_cast<double>(stop));
+    Bench second(0.010, stop);
+    second.system.lattice_velocity = speed;
+    second.plan.largest = saved;
+    second.plan.write_at_start = false;
+    double before_the_end = 0.0;
+    second.plan.write_checkpoint = [&before_the_end](const LoopRecord& record) {
+      before_the_end = record.largest.at(0).value;
+      return std::uint64_t{0};
+    };
+    EXPECT_EQ(second.run().record().largest.at(0).value, 0.2);
+    EXPECT_DOUBLE_EQ(before_the_end, 0.2);  // pictures are due at step 10
   }
 }
 
@@ -222,6 +260,73 @@ TEST(TimeLoop, StopsEverywhereWhenOneRankReceivesASignal) {
   EXPECT_EQ(record.reason, "stopped by SIGUSR1");
   EXPECT_GE(record.last_step, 50);
   EXPECT_EQ(bench.checkpoints, (Steps{record.last_step}));
+}
+
+// Open MPI's mpirun kills in three strokes, SIGCONT, SIGTERM, SIGKILL; the first of them saves.
+class Strokes : public testing::Test {
+protected:
+  Strokes() { setenv("OMPI_COMM_WORLD_RANK", std::to_string(rank_of(world)).c_str(), 1); }  // also without mpirun
+};
+
+TEST_F(Strokes, AreASecondApartUnlessMpirunIsToldOtherwise) {
+  unsetenv("OMPI_MCA_odls_base_sigkill_timeout");
+  EXPECT_EQ(seconds_between_strokes(), 1.0);
+  setenv("OMPI_MCA_odls_base_sigkill_timeout", "7", 1);
+  EXPECT_EQ(seconds_between_strokes(), 7.0);
+  unsetenv("OMPI_MCA_odls_base_sigkill_timeout");
+}
+
+TEST_F(Strokes, TheFirstSavesAndTheSecondStopsThere) {
+  Bench bench(1e9);
+  bench.plan.checkpoint = Schedule();
+  bench.plan.between_strokes = 10.0;
+  bench.system.on_advance = [](std::int64_t step) {
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+    if (step == 50 && rank_of(world) == size_of(world) - 1) std::raise(SIGCONT);
+  };
+  bench.plan.write_checkpoint = [&bench](const LoopRecord&) {
+    bench.checkpoints.push_back(bench.system.step());
+    std::raise(SIGTERM);  // comes while the checkpoint is written: nothing is written twice
+    return std::uint64_t{0};
+  };
+  const LoopRecord& record = bench.run().record();
+  EXPECT_EQ(record.reason, "stopped by SIGTERM");
+  EXPECT_GE(record.last_step, 50);
+  EXPECT_EQ(bench.checkpoints, (Steps{record.last_step}));
+}
+
+TEST_F(Strokes, WithoutASecondTheRunGoesOn) {
+  Bench bench(0.2);
+  bench.plan.checkpoint = Schedule();
+  bench.plan.between_strokes = 0.01;
+  bench.system.on_advance = [](std::int64_t step) {
+    if (step == 50) std::raise(SIGCONT);
+  };
+  const LoopRecord& record = bench.run().record();
+  EXPECT_TRUE(record.finished);
+  ASSERT_EQ(bench.checkpoints.size(), 2u);
+  EXPECT_GE(bench.checkpoints[0], 50);
+  EXPECT_EQ(bench.checkpoints[1], 200);
+}
+
+TEST_F(Strokes, ACheckpointThatWouldComeTooLateIsToldOf) {
+  for (const double between : {0.001, 100.0}) {
+    const std::string path = testing::TempDir() + "strokes_" + std::to_string(getpid()) + ".log";
+    Bench bench(0.010);
+    bench.log = Log(true);
+    bench.log.copy_to(path);
+    bench.plan.between_strokes = between;
+    bench.plan.stop_file = "some/run/stop";
+    bench.plan.write_checkpoint = [](const LoopRecord&) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      return std::uint64_t{0};
+    };
+    bench.run();
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    EXPECT_EQ(text.str().find("thalweg stop some/run,") != std::string::npos, between < 1.0);
+    std::remove(path.c_str());
+  }
 }
 
 TEST(Summary, AccountsForTheWholeWallTime) {

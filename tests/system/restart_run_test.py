@@ -55,12 +55,136 @@ output: {series: {every: 0.01}}
             self.assert_refused("run", self.case, "--restart", "run", "--set", f"{key}={value}", "--until", "0.1",
                                 words=[key, "in its checkpoint", "initial.from"])
 
+    def test_grains_are_not_placed_again(self):
+        # Forty grains would fill 58 % of this, more than a random packing can: a new run is refused, and one that goes on does not look for it.
+        tight = ("--set", "grains.0.placement.region={lower: [0, 0, 0], upper: [0.0165, 0.0165, 0.0165]}", "--until", "0.1")
+        self.assert_refused("run", self.case, "--out", "new", *tight, words=["grains.0", "region"])
+        self.run_well("run", self.case, "--out", "straight", "--until", "0.1")
+        self.run_well("run", self.case, "--restart", "run", *tight, ranks=2)
+        self.assert_same_bed("run", "straight")
+
     def test_in_another_folder_too(self):
         checkpoint = self.last_checkpoint("run")
         self.assert_refused("run", self.case, "--restart", checkpoint, "--out", "other", "--set", "grains.0.density=2650",
                             words=["grains.0.density = 2650", "2550"])
         said = self.run_well("run", self.case, "--restart", checkpoint, "--out", "other", "--until", "0.1").stdout
         self.assertIn("changed since then: run.until: 0.05 -> 0.1", said)
+
+
+class RestartOfSums(ProgramTest):
+    """What is summed up over a run goes on with it, or says from when it counts."""
+    CASE = RestartRun.CASE
+
+    def test_largest_figures_go_on(self):
+        rate = ("--set", "analysis.transport_rate={}")
+        self.run_well("run", self.case, "--out", "straight", "--until", "0.1", *rate)
+        # Grains fall for 0.05 s: the largest acceleration and overlap come early or late, and both count.
+        self.run_well("run", self.case, "--until", "0.033", *rate)
+        self.run_well("run", self.case, "--restart", "run", "--until", "0.1", *rate, ranks=2)
+        straight, resumed = self.summary("straight"), self.summary("run")
+        self.assertEqual(resumed["largest"], straight["largest"])
+        self.assertEqual(resumed["largest_from"], 0.0)
+        self.assertEqual(resumed["transport_rate"], straight["transport_rate"])
+        self.assertEqual(self.last_checkpoint("run").read_bytes(), self.last_checkpoint("straight").read_bytes())
+
+    def test_what_is_added_says_from_when_it_counts(self):
+        self.run_well("run", self.case, "--out", "first")
+        with_rate = ("--out", "second", "--set", "analysis.transport_rate={from: 0.02}", "--until")
+        said = self.run_well("run", self.case, "--restart", "first", *with_rate, "0.1").stdout
+        self.assertIn("analysis.transport_rate: its sums count from 0.05 s on", said)
+        self.assertEqual(self.summary("second")["transport_rate"]["mean_from"], 0.05)
+        # And still after another restart.
+        self.run_well("run", self.case, "--restart", "second", *with_rate, "0.12")
+        self.assertEqual(self.summary("second")["transport_rate"]["mean_from"], 0.05)
+
+
+class RestartWithoutBedFile(ProgramTest):
+    """What a bed file gives (sizes, densities, clumps, and the time step that follows) is in the checkpoint."""
+    PAIR = "shape: {clump: [{position: [0, 0, 0], diameter: 4.0e-3}, {position: [2.0e-3, 0, 0], diameter: 3.0e-3}]}"
+    BED = f"""
+system: grains
+name: bed
+domain:
+  size: [0.04, 0.03, 0.05]
+  spacing: 0.5e-3
+  boundaries: {{x: periodic, y: no_slip, bottom: no_slip, top: free_slip}}
+gravity: {{magnitude: 9.8, slope: 0.0}}
+grains:
+  - {{count: 15, diameter: {{distribution: lognormal, median: 4.0e-3, geometric_deviation: 1.2, minimum: 3.0e-3, maximum: 5.0e-3}}, density: 2550, placement: {{pattern: random, seed: 3}}}}
+  - {{count: 8, density: 2650, {PAIR}, placement: {{pattern: random, seed: 4}}}}
+contact: {{normal_stiffness: 2000, tangential_stiffness: 571, restitution: 0.7, friction: 0.3, wall_friction: 0.3}}
+run: {{until: 0.05}}
+"""
+    CASE = """
+system: grains
+name: on a bed
+domain:
+  size: [0.04, 0.03, 0.05]
+  spacing: 0.5e-3
+  boundaries: {x: periodic, y: no_slip, bottom: no_slip, top: free_slip}
+gravity: {magnitude: 9.8, slope: 0.3}
+grains:
+  - {count: 2, diameter: 3.0e-3, density: 2550, placement: {positions: [[0.01, 0.01, 0.045], [0.03, 0.02, 0.045]]}}
+  - {placement: {file: bed.h5}}
+contact: {normal_stiffness: 2000, tangential_stiffness: 571, restitution: 0.7, friction: 0.3, wall_friction: 0.3}
+run: {until: 0.04}
+output: {series: {every: 0.01}, checkpoint: {every: 0.01, keep: 3}}
+analysis: {transport_rate: {}, bed_surface: {}}
+"""
+
+    def setUp(self):
+        super().setUp()
+        (self.folder / "bed.yaml").write_text(self.BED)
+        self.run_well("run", "bed.yaml", "--out", "made")
+        (self.folder / "made/bed.h5").rename(self.folder / "bed.h5")
+
+    def test_the_bed_file_may_be_gone(self):
+        self.run_well("run", self.case, "--out", "straight")
+        self.run_well("run", self.case, "--until", "0.02")
+        (self.folder / "bed.h5").unlink()
+        self.assert_refused("run", self.case, "--out", "new", words=["grains.1.placement.file", "no file"])
+        said = self.run_well("run", self.case, "--restart", "run", ranks=2).stdout
+        self.assertNotIn("changed since then: grains", said)
+        self.assert_same_bed("run", "straight")
+        self.assertEqual((self.folder / "run/series.csv").read_text(), (self.folder / "straight/series.csv").read_text())
+        self.assertEqual(self.last_checkpoint("run").read_bytes(), self.last_checkpoint("straight").read_bytes())
+        # Also where the newest checkpoint is damaged, from the one before.
+        newest = self.last_checkpoint("run")
+        newest.write_bytes(newest.read_bytes()[:newest.stat().st_size // 2])
+        said = self.run_well("run", self.case, "--restart", "run").stdout
+        self.assertIn("at 0.0304208 s", said)   # 102 steps
+        self.assert_same_bed("run", "straight")
+
+
+class RestartInWater(ProgramTest):
+    """A resolved run, whose system is built without grains before the checkpoint brings them."""
+    CASE = """
+system: resolved
+name: three settle
+domain:
+  size: [0.012, 0.012, 0.016]
+  spacing: 0.8e-3
+  boundaries: {x: periodic, y: periodic, bottom: no_slip, top: free_slip}
+fluid: {density: 1000, kinematic_viscosity: 1.0e-5, smagorinsky_constant: 0.27, time_step: 1.0e-4}
+gravity: {magnitude: 9.8, slope: 0.05}
+grains: [{count: 3, diameter: 4.8e-3, density: 2550, placement: {pattern: random, seed: 1}}]
+contact: {restitution: 0.9}
+coupling: {grain_steps_per_fluid_step: 20, lubrication: {}}
+run: {until: 0.01}
+output: {series: {every: 0.001}}
+"""
+
+    def test_same_bits_on_other_ranks(self):
+        self.run_well("run", self.case, "--out", "straight")
+        self.run_well("run", self.case, "--until", "0.005", ranks=2)
+        self.run_well("run", self.case, "--restart", "run")
+        self.assertEqual(self.last_checkpoint("run").read_bytes(), self.last_checkpoint("straight").read_bytes())
+        self.assertEqual((self.folder / "run/series.csv").read_text(), (self.folder / "straight/series.csv").read_text())
+
+    def test_the_lubrication_of_the_grains_of_the_checkpoint_is_looked_at(self):
+        self.run_well("run", self.case, "--until", "0.005")
+        self.assert_refused("run", self.case, "--restart", "run", "--set", "coupling.lubrication.minimum_gap=1e-6",
+                            words=["lubrication force", "minimum gap"])
 
 
 if __name__ == "__main__":

@@ -1,0 +1,53 @@
+#include "driver/accounts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace thalweg::driver {
+
+namespace {
+
+std::string largest_path(const std::string& figure) { return "largest/" + figure; }
+std::string since_path(const std::string& observer) { return "run/since_" + observer; }
+
+}  // namespace
+
+void Accounts::save(ArchiveWriter& archive) const {
+  archive.attribute("largest/from", largest_from);
+  for (const Figure& figure : largest)
+    if (std::isfinite(figure.value)) archive.attribute(largest_path(figure.name), figure.value);
+  for (const auto& [observer, time] : since) archive.attribute(since_path(observer), time);
+}
+
+Accounts Accounts::load(ArchiveReader& archive, const System& system, Observers& observers) {
+  Accounts accounts;
+  accounts.largest_from = archive.has("largest/from") ? archive.real_attribute("largest/from") : system.time();
+  for (Figure figure : system.figures())
+    if (archive.has(largest_path(figure.name))) {
+      figure.value = archive.real_attribute(largest_path(figure.name));
+      accounts.largest.push_back(figure);
+    }
+  for (const auto& observer : observers) {
+    const std::string name = observer->name(), path = since_path(name);
+    if (!observer->load(archive))
+      accounts.since[name] = system.time();
+    else if (archive.has(path))
+      accounts.since[name] = archive.real_attribute(path);
+  }
+  return accounts;
+}
+
+std::vector<Figure> Accounts::results_of(const analysis::Observer& observer) const {
+  std::vector<Figure> results = observer.results();
+  const auto begun = since.find(observer.name());
+  if (begun == since.end()) return results;
+  const auto from =
+      std::find_if(results.begin(), results.end(), [](const Figure& figure) { return figure.name == "mean_from"; });
+  if (from != results.end())
+    from->value = std::max(from->value, begun->second);
+  else
+    results.push_back({"since", "s", begun->second});
+  return results;
+}
+
+}  // namespace thalweg::driver

@@ -1,0 +1,34 @@
+// What a checkpoint keeps of a run besides its state: how far back its largest figures and its means go.
+#pragma once
+
+#include "analysis/observer.hpp"
+#include "core/archive.hpp"
+#include "core/system.hpp"
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace thalweg::driver {
+
+using Observers = std::vector<std::unique_ptr<analysis::Observer>>;
+
+struct Accounts {
+  std::vector<Figure> largest;  // of the system, since largest_from
+  double largest_from = 0.0;    // s, simulated
+  // s, by the name of an observer: from when its sums count, where that is later than the start of the run.
+  std::map<std::string, double> since;
+
+  // Attributes largest/<figure>, largest/from and run/since_<observer>. Collective.
+  void save(ArchiveWriter& archive) const;
+
+  // Loads the observers as well. What the archive does not have begins at its time. `system` is loaded already.
+  // Collective.
+  static Accounts load(ArchiveReader& archive, const System& system, Observers& observers);
+
+  // The results of an observer with the time from which they really count: mean_from, or since where it has none.
+  std::vector<Figure> results_of(const analysis::Observer& observer) const;
+};
+
+}  // namespace thalweg::driver
