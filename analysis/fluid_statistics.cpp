@@ -4,6 +4,7 @@
 #include "core/fixed_point.hpp"
 #include "core/mpi_session.hpp"
 #include "core/symmetric_pairs.hpp"
+#include "core/wide_sums_over_ranks.hpp"
 
 #include <fmt/format.h>
 
@@ -39,12 +40,13 @@ void FluidStatistics::observe(const Snapshot& snapshot) {
     std::int64_t* columns = sums.data() + static_cast<std::size_t>(bin) * quantities;
     const Vec3 u = velocity_si / velocity_unit_;
     columns[count] += 1;
-    for (int a = 0; a < 3; ++a) columns[velocity + a] += VelocitySum::from(u[a]);
+    for (int a = 0; a < 3; ++a) columns[velocity + a] = exact_sum(columns[velocity + a], VelocitySum::from(u[a]));
     for (int p = 0; p < 6; ++p)
-      columns[product + p] += VelocitySum::from(u[symmetric_pairs[p][0]] * u[symmetric_pairs[p][1]]);
+      columns[product + p] =
+          exact_sum(columns[product + p], VelocitySum::from(u[symmetric_pairs[p][0]] * u[symmetric_pairs[p][1]]));
   });
-  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_INT64_T, MPI_SUM, communicator_);
-  for (std::size_t s = 0; s < sums.size(); ++s) sums_[s].add(sums[s]);
+  const std::vector<WideSum> totals = wide_sums_over_ranks(communicator_, sums);
+  for (std::size_t s = 0; s < sums.size(); ++s) sums_[s].add(totals[s]);
 }
 
 std::vector<WideSum> FluidStatistics::layer(int z) const {

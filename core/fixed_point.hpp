@@ -2,27 +2,34 @@
 //
 // A floating-point number is turned into a 64-bit integer multiple of 2^-bits; integer addition is associative, so a
 // sum over links, threads or ranks has the same bits whatever the order. The rounding of one term is at most
-// 2^-(bits+1).
+// 2^-(bits+1). Terms and sums that are too large leave a note (sum_range.hpp).
 #pragma once
 
+#include "core/sum_range.hpp"
 #include "core/types.hpp"
 
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 
 namespace thalweg {
 
 template <int fraction_bits>
 struct FixedPoint {
+  static constexpr int bits = fraction_bits;
   static constexpr double scale = static_cast<double>(std::int64_t{1} << fraction_bits);
   static constexpr double largest_term = 0x1p51 / scale;
-  static constexpr double largest_sum = 0x1p63 / scale;  // sums beyond this overflow
+  static constexpr double largest_sum = 0x1p63 / scale;  // of 64 bits
   static constexpr double rounding_shift = 0x3p51;
 
   // Rounds to the nearest multiple, ties to even. |value| * scale must be below 2^51: adding 3 * 2^51 then leaves the
-  // integer in the low bits of the double, in two instructions that vectorise on any machine.
+  // integer in the low bits of the double. What is larger, or no number, counts as nothing and leaves a note.
   static std::int64_t from(double value) {
+    if (!(std::abs(value) < largest_term)) [[unlikely]] {
+      SumRange::leave();
+      return 0;
+    }
     return std::bit_cast<std::int64_t>(value * scale + rounding_shift) - std::bit_cast<std::int64_t>(rounding_shift);
   }
   static double to_double(std::int64_t sum) { return static_cast<double>(sum) / scale; }
@@ -39,9 +46,9 @@ struct FixedVec3 {
     return {LatticeFixed::from(v.x()), LatticeFixed::from(v.y()), LatticeFixed::from(v.z())};
   }
   FixedVec3& operator+=(const FixedVec3& other) {
-    x += other.x;
-    y += other.y;
-    z += other.z;
+    x = exact_sum(x, other.x);
+    y = exact_sum(y, other.y);
+    z = exact_sum(z, other.z);
     return *this;
   }
   Vec3 to_vec3() const { return {LatticeFixed::to_double(x), LatticeFixed::to_double(y), LatticeFixed::to_double(z)}; }
@@ -51,9 +58,13 @@ struct FixedVec3 {
 struct FixedTensor {
   std::array<std::int64_t, 9> sums{};
 
+  void add(int entry, std::int64_t term) {
+    std::int64_t& sum = sums[static_cast<std::size_t>(entry)];
+    sum = exact_sum(sum, term);
+  }
   // Adds a_i b_j.
   void add(const Vec3& a, const Vec3& b) {
-    for (int k = 0; k < 9; ++k) sums[static_cast<std::size_t>(k)] += LatticeFixed::from(a[k / 3] * b[k % 3]);
+    for (int k = 0; k < 9; ++k) add(k, LatticeFixed::from(a[k / 3] * b[k % 3]));
   }
   Mat3 to_mat3() const {
     Mat3 m;

@@ -1,6 +1,8 @@
 // A 128-bit integer sum of 64-bit integers: what fixed-point sums (fixed_point.hpp) grow into over a long run.
 #pragma once
 
+#include "core/sum_range.hpp"
+
 #include <cmath>
 #include <cstdint>
 
@@ -27,6 +29,12 @@ struct WideSum {
     }
     return std::ldexp(static_cast<double>(high), 64 - fraction_bits) +
            std::ldexp(static_cast<double>(static_cast<std::uint64_t>(low)), -fraction_bits);
+  }
+
+  // In 64 bits; where they are too few a note is left (sum_range.hpp).
+  std::int64_t narrowed() const {
+    if (high != (low < 0 ? -1 : 0)) SumRange::leave();
+    return low;
   }
 
   bool operator==(const WideSum&) const = default;

@@ -1,7 +1,5 @@
 #include "core/wide_sums_over_ranks.hpp"
 
-#include <vector>
-
 namespace thalweg {
 
 // MPI adds no 128-bit integers: value = upper 2^32 + lower with 0 <= lower < 2^32, and either part leaves room for the
@@ -20,6 +18,13 @@ void sum_over_ranks(MPI_Comm communicator, std::span<WideSum> sums) {
     sums[s] = {upper >> 32, static_cast<std::int64_t>(static_cast<std::uint64_t>(upper) << 32)};
     sums[s].add(parts[2 * s + 1]);
   }
+}
+
+std::vector<WideSum> wide_sums_over_ranks(MPI_Comm communicator, std::span<const std::int64_t> sums) {
+  std::vector<WideSum> wide(sums.size());
+  for (std::size_t s = 0; s < sums.size(); ++s) wide[s].add(sums[s]);
+  sum_over_ranks(communicator, wide);
+  return wide;
 }
 
 }  // namespace thalweg

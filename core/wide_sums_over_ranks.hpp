@@ -5,12 +5,17 @@
 
 #include <mpi.h>
 
+#include <cstdint>
 #include <span>
+#include <vector>
 
 namespace thalweg {
 
 // Replaces every sum by its total over the ranks, on every rank. Sums must be below 2^94 in size, ranks fewer than
 // 2^31. Collective.
 void sum_over_ranks(MPI_Comm communicator, std::span<WideSum> sums);
+
+// Of sums that every rank has in 64 bits.
+std::vector<WideSum> wide_sums_over_ranks(MPI_Comm communicator, std::span<const std::int64_t> sums);
 
 }  // namespace thalweg

@@ -75,24 +75,28 @@ void HiddenPatches::press(const Patch& patch, const Vec3& arm, const Vec3& norma
                           FixedTensor* moment) {
   const double line = 2.0 * excess / 36.0;
   const std::int64_t force = LatticeFixed::from(line);
-  body.force += FixedVec3{force * patch.sum[0], force * patch.sum[1], force * patch.sum[2]};
+  body.force +=
+      {exact_product(force, patch.sum[0]), exact_product(force, patch.sum[1]), exact_product(force, patch.sum[2])};
   // Exactly zero where the normal passes through the centre.
   const Vec3 turning = arm.cross(normal) / normal.squaredNorm();
   if (!turning.isZero(0.0))
     for (int a = 0; a < 3; ++a) {
       const FixedVec3 torque = FixedVec3::from(line * normal[a] * turning);
-      body.torque += {torque.x * patch.sum[a], torque.y * patch.sum[a], torque.z * patch.sum[a]};
+      body.torque += {exact_product(torque.x, patch.sum[a]), exact_product(torque.y, patch.sum[a]),
+                      exact_product(torque.z, patch.sum[a])};
     }
   if (!moment) return;
   std::array<std::int64_t, 3> half;
   for (int b = 0; b < 3; ++b) half[b] = LatticeFixed::from(0.5 * line * arm[b]);
   for (std::size_t k = 0; k < 9; ++k)
-    moment->sums[k] += half[k % 3] * patch.sum[k / 3] + half[k / 3] * patch.sum[k % 3];
+    moment->add(static_cast<int>(k),
+                exact_sum(exact_product(half[k % 3], patch.sum[k / 3]), exact_product(half[k / 3], patch.sum[k % 3])));
 }
 
 void HiddenPatches::give_mass(const Patch& patch, lbm::LinkBody& body, const lbm::LinkBody& other) {
   const Vec3 velocity = 0.5 * (body.velocity + other.velocity);
-  for (int a = 0; a < 3; ++a) body.mass -= LatticeFixed::from(6.0 / 36.0 * velocity[a]) * patch.sum[a];
+  for (int a = 0; a < 3; ++a)
+    body.mass = exact_sum(body.mass, -exact_product(LatticeFixed::from(6.0 / 36.0 * velocity[a]), patch.sum[a]));
 }
 
 }  // namespace thalweg::coupling

@@ -1,6 +1,7 @@
 #include "coupling/momentum_book.hpp"
 
 #include "core/symmetric_pairs.hpp"
+#include "core/wide_sums_over_ranks.hpp"
 #include "lbm/flow_fields.hpp"
 #include "lbm/for_each_cell.hpp"
 
@@ -14,31 +15,35 @@ using CellSum = FixedPoint<40>;
 // Columns of a plane of cells.
 enum Column { cells, density = 1, flow = 2, flow_flux = 5, viscous = 11, subgrid = 17, columns = 23 };
 
+void add(double term, std::int64_t& sum) { sum = exact_sum(sum, CellSum::from(term)); }
+
 void add_stress(const lbm::Symmetric<double>& s, std::int64_t* into) {
   const double components[6] = {s.xx, s.yy, s.zz, s.xy, s.xz, s.yz};
-  for (int p = 0; p < 6; ++p) into[p] += CellSum::from(components[p]);
+  for (int p = 0; p < 6; ++p) add(components[p], into[p]);
 }
 
 void add_cell(const lbm::MomentumFlux& flux, std::int64_t* sums) {
   const Vec3& u = flux.velocity;
   sums[cells] += 1;
-  sums[density] += CellSum::from(flux.density);
-  for (int a = 0; a < 3; ++a) sums[flow + a] += CellSum::from(flux.density * u[a]);
+  add(flux.density, sums[density]);
+  for (int a = 0; a < 3; ++a) add(flux.density * u[a], sums[flow + a]);
   for (int p = 0; p < 6; ++p)
-    sums[flow_flux + p] += CellSum::from(flux.density * u[symmetric_pairs[p][0]] * u[symmetric_pairs[p][1]]);
+    add(flux.density * u[symmetric_pairs[p][0]] * u[symmetric_pairs[p][1]], sums[flow_flux + p]);
   add_stress(flux.viscous, sums + viscous);
   add_stress(flux.subgrid, sums + subgrid);
 }
 
-PlaneMomentum in_si(const std::int64_t* sums, const Units& units) {
+PlaneMomentum in_si(const WideSum* sums, const Units& units) {
+  const auto sum = [&](std::size_t column) { return sums[column].to_double(CellSum::bits); };
   PlaneMomentum plane;
-  plane.cells = sums[cells];
-  plane.density = CellSum::to_double(sums[density]) * units.density;
-  for (int a = 0; a < 3; ++a) plane.flow[a] = CellSum::to_double(sums[flow + a]) * units.density * units.velocity();
+  plane.cells = sums[cells].narrowed();
+  plane.density = sum(density) * units.density;
+  for (int a = 0; a < 3; ++a)
+    plane.flow[a] = sum(flow + static_cast<std::size_t>(a)) * units.density * units.velocity();
   for (std::size_t p = 0; p < 6; ++p) {
-    plane.flow_flux[p] = CellSum::to_double(sums[flow_flux + p]) * units.stress();
-    plane.viscous[p] = CellSum::to_double(sums[viscous + p]) * units.stress();
-    plane.subgrid[p] = CellSum::to_double(sums[subgrid + p]) * units.stress();
+    plane.flow_flux[p] = sum(flow_flux + p) * units.stress();
+    plane.viscous[p] = sum(viscous + p) * units.stress();
+    plane.subgrid[p] = sum(subgrid + p) * units.stress();
   }
   return plane;
 }
@@ -51,9 +56,9 @@ std::vector<PlaneMomentum> planes_of(const lbm::Fluid<Real>& fluid, const Units&
   lbm::for_each_fluid_cell(fluid.cells(), [&](std::ptrdiff_t cell, const Index3& at) {
     add_cell(lbm::momentum_flux(fluid, cell), &sums[(from[2] + at[2]) * columns]);
   });
-  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_INT64_T, MPI_SUM, fluid.communicator());
+  const std::vector<WideSum> totals = wide_sums_over_ranks(fluid.communicator(), sums);
   std::vector<PlaneMomentum> all;
-  for (int z = 0; z < planes; ++z) all.push_back(in_si(&sums[z * columns], units));
+  for (int z = 0; z < planes; ++z) all.push_back(in_si(&totals[static_cast<std::size_t>(z * columns)], units));
   return all;
 }
 
@@ -68,10 +73,10 @@ std::vector<Vec3> over_ranks(const std::vector<FixedVec3>& entries, const lbm::F
     sums[3 * (first + h) + 1] = entries[h].y;
     sums[3 * (first + h) + 2] = entries[h].z;
   }
-  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_INT64_T, MPI_SUM, fluid.communicator());
+  const std::vector<WideSum> totals = wide_sums_over_ranks(fluid.communicator(), sums);
   std::vector<Vec3> in_si(all);
-  for (std::size_t h = 0; h < all; ++h)
-    in_si[h] = FixedVec3{sums[3 * h], sums[3 * h + 1], sums[3 * h + 2]}.to_vec3() * unit;
+  for (std::size_t k = 0; k < totals.size(); ++k)
+    in_si[k / 3][static_cast<int>(k % 3)] = totals[k].to_double(LatticeFixed::bits) * unit;
   return in_si;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/mpi_session.hpp"
+#include "core/wide_sums_over_ranks.hpp"
 #include "coupling/fluid_mass.hpp"
 #include "coupling/mass_return.hpp"
 #include "coupling/resolved_system.hpp"
@@ -58,7 +59,7 @@ void ResolvedSystem<Real, S>::book_links(const lbm::LinkBalance& balance) {
     const Vec3 force = body.force.to_vec3();
     step_totals_.link_momentum += force;
     step_totals_.link_angular_momentum += body.centre.cross(force) + body.torque.to_vec3();
-    step_totals_.link_mass += body.mass;
+    step_totals_.link_mass = exact_sum(step_totals_.link_mass, body.mass);
   }
   step_totals_.link_momentum -= step_totals_.kept;
   step_totals_.link_angular_momentum -= step_totals_.kept_angular_momentum;
@@ -134,7 +135,7 @@ void ResolvedSystem<Real, S>::settle_mass(std::size_t first, std::size_t count) 
     const lbm::LinkBody& body = bodies_[map_slot_[g]];
     const std::int64_t* sums = &exchanged_[sums_per_grain() * g + 6];
     links += of_grain;
-    sum += sums[0];
+    sum = exact_sum(sum, sums[0]);
     came_back += MassReturn{body.returned, body.returned_slope}.mass(of_grain);
     // A grain without links has no fluid around it: what was there last stays.
     if (of_grain.weight() > 0.0) exchange_of(g).surrounding() = LatticeFixed::to_double(sums[1]) / of_grain.weight();
@@ -160,13 +161,13 @@ void ResolvedSystem<Real, S>::settle_masses() {
     settle_mass(clumps.first_slot(n), static_cast<std::size_t>(clumps[n].members));
 }
 
-// Multiples of 2^-44 below 500, whose sum in any order is exact.
+// Multiples of 2^-44, whose sum in any order is exact.
 template <typename Real, GrainShape S>
 double ResolvedSystem<Real, S>::mass_owed() const {
   std::int64_t owed = 0;
-  for (std::size_t g = 0; g < grains_->store().owned; ++g) owed += LatticeFixed::from(exchange_of(g).owed_mass());
-  MPI_Allreduce(MPI_IN_PLACE, &owed, 1, MPI_INT64_T, MPI_SUM, communicator_);
-  return LatticeFixed::to_double(owed);
+  for (std::size_t g = 0; g < grains_->store().owned; ++g)
+    owed = exact_sum(owed, LatticeFixed::from(exchange_of(g).owed_mass()));
+  return wide_sums_over_ranks(communicator_, {&owed, 1}).front().to_double(LatticeFixed::bits);
 }
 
 // sigma_ab = (1/V) sum F_a x_b over the surface (Zhang et al. 2022, eq. 13), the mean of two exchanges.

@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
+#include "core/wide_sums_over_ranks.hpp"
 #include "coupling/lattice_vectors.hpp"
 #include "lbm/for_each_cell.hpp"
 
@@ -56,6 +57,7 @@ StaticSolids::StaticSolids(const Decomposition& decomposition, MPI_Comm communic
   }
   for (std::size_t s = 0; s < shapes.size(); ++s) {
     const Extent extent = coupling::extent_of(shapes[s]);
+    bodies_[s].turns = false;
     bodies_[s].centre = 0.5 * (extent.lower + extent.upper);
     std::visit([&](const auto& shape) { cover(static_cast<int>(s), shape); }, shapes[s]);
   }
@@ -246,7 +248,8 @@ std::vector<std::int64_t> StaticSolids::summed() const {
   if (!loaded_.empty()) return loaded_;
   std::vector<std::int64_t> sums;
   for (const lbm::LinkBody& body : bodies_) sums.insert(sums.end(), {body.force.x, body.force.y, body.force.z});
-  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_INT64_T, MPI_SUM, communicator_);
+  const std::vector<WideSum> totals = wide_sums_over_ranks(communicator_, sums);
+  std::transform(totals.begin(), totals.end(), sums.begin(), [](const WideSum& total) { return total.narrowed(); });
   return sums;
 }
 

@@ -1,6 +1,7 @@
 #include "dem/ghost_exchange.hpp"
 
 #include "core/mpi_session.hpp"
+#include "core/sum_range.hpp"
 #include "dem/grain_batch.hpp"
 
 #include <algorithm>
@@ -184,7 +185,10 @@ void GhostExchange::add_to_owners(std::vector<std::int64_t>& values, int width) 
   for (std::size_t n = 0; n < neighbours_.size(); ++n) {
     const auto* value = values_.receive_buffer<std::int64_t>(n);
     for (const std::uint32_t s : neighbours_[n].send)
-      for (int k = 0; k < width; ++k) values[static_cast<std::size_t>(s) * width + k] += *value++;
+      for (int k = 0; k < width; ++k) {
+        std::int64_t& sum = values[static_cast<std::size_t>(s) * width + k];
+        sum = exact_sum(sum, *value++);
+      }
   }
 }
 

@@ -336,10 +336,11 @@ void LinkPass<Real, S>::add_momentum(const Batch& b) const {
               wide(v.torque[1] + k), wide(v.torque[2] + k), wide(v.pressure + k),
               // The difference is exact in double: single storage loses nothing here.
               wide(v.reflected + k) - wide(v.incident + k)});
+  static_assert(capacity <= FixedSums<8>::most_terms);
   b.body->force += {sums[0], sums[1], sums[2]};
-  b.body->torque += {sums[3], sums[4], sums[5]};
-  b.body->pressure += sums[6];
-  b.body->mass += sums[7];
+  if (b.body->turns) b.body->torque += {sums[3], sums[4], sums[5]};
+  b.body->pressure = exact_sum(b.body->pressure, sums[6]);
+  b.body->mass = exact_sum(b.body->mass, sums[7]);
 }
 
 template <typename Real, LinkShape S>
@@ -351,7 +352,7 @@ void LinkPass<Real, S>::add_moments(const Batch& b) const {
               wide(v.moment[4] + k), wide(v.moment[5] + k), wide(v.moment[6] + k), wide(v.moment[7] + k),
               wide(v.moment[8] + k)});
   FixedTensor& moments = (*moments_)[static_cast<std::size_t>(b.body - bodies_.data())];
-  for (int k = 0; k < 9; ++k) moments.sums[static_cast<std::size_t>(k)] += sums[k];
+  for (int k = 0; k < 9; ++k) moments.add(k, sums[k]);
 }
 
 template <typename Real, LinkShape S>
@@ -369,8 +370,9 @@ void LinkPass<Real, S>::add_balance(const Batch& b) const {
     const bool near_wall = b.distance[k] < Real(0.5), has_covered = (b.tag[k] >> LinkTag::covered_shift & 1) != 0;
     const bool reads_upstream = Rule::needs_both ? near_wall || !has_covered : near_wall;
     std::int64_t& part = !reads_upstream ? balance_->same_cell : has_covered ? balance_->covered : balance_->upstream;
-    part += LatticeFixed::from(static_cast<double>(values_.interpolated[k]));
-    balance_->moving_wall += LatticeFixed::from(static_cast<double>(values_.moving_wall[k]));
+    part = exact_sum(part, LatticeFixed::from(static_cast<double>(values_.interpolated[k])));
+    balance_->moving_wall =
+        exact_sum(balance_->moving_wall, LatticeFixed::from(static_cast<double>(values_.moving_wall[k])));
   }
 }
 

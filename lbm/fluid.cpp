@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
+#include "core/wide_sums_over_ranks.hpp"
 #include "lbm/equilibrium.hpp"
 #include "lbm/fluid_survey.hpp"
 #include "lbm/for_each_cell.hpp"
@@ -94,11 +95,13 @@ template <typename Real>
 std::array<Vec3, 6> Fluid<Real>::wall_forces(double reference, std::vector<FixedVec3>* sides_by_height) {
   exchange_halo();
   apply_walls();
-  std::array<FixedVec3, 6> sums = walls_.forces(populations_, cells_, reference, sides_by_height);
-  static_assert(sizeof(sums) == 18 * sizeof(std::int64_t));
-  MPI_Allreduce(MPI_IN_PLACE, sums.data(), 18, MPI_INT64_T, MPI_SUM, communicator_);
+  const std::array<FixedVec3, 6> mine = walls_.forces(populations_, cells_, reference, sides_by_height);
+  std::vector<std::int64_t> parts;
+  for (const FixedVec3& sum : mine) parts.insert(parts.end(), {sum.x, sum.y, sum.z});
+  const std::vector<WideSum> sums = wide_sums_over_ranks(communicator_, parts);
   std::array<Vec3, 6> forces;
-  std::transform(sums.begin(), sums.end(), forces.begin(), [](const FixedVec3& sum) { return sum.to_vec3(); });
+  for (std::size_t k = 0; k < sums.size(); ++k)
+    forces[k / 3][static_cast<int>(k % 3)] = sums[k].to_double(LatticeFixed::bits);
   return forces;
 }
 

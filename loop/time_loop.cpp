@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
+#include "core/sum_range.hpp"
 #include "loop/progress.hpp"
 #include "loop/stop_request.hpp"
 
@@ -96,6 +97,11 @@ void TimeLoop::look_at_health(bool is_due) {
     ++record_.warnings;
     log_.line("warning: " + warning);
   }
+  if (any_rank(communicator_, SumRange::was_left()))
+    throw RunError(fmt::format(
+        "At {:.6g} s (step {}) a sum over cells, links or grains has left the range in which it is exact: the flow has "
+        "broken down (shorten fluid.time_step), or the lattice is larger than these sums are made for.",
+        system_.time(), system_.step()));
   if (is_due) count_among_largest();
 }
 

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 #include <random>
 #include <vector>
@@ -37,6 +39,56 @@ TEST(FixedPoint, RoundsToTheNearestAndTiesToEven) {
   EXPECT_EQ(Quarter::from(-0.375), -2);
   EXPECT_EQ(LatticeFixed::from(-100.0), -100 * (std::int64_t{1} << 44));
   EXPECT_EQ(LatticeFixed::to_double(LatticeFixed::from(100.0 + 0x1p-44)), 100.0 + 0x1p-44);
+}
+
+// Whether the work leaves the range in which sums are exact.
+template <typename Work>
+bool leaves_range(Work&& work) {
+  SumRange::reset();
+  work();
+  const bool left = SumRange::was_left();
+  SumRange::reset();
+  return left;
+}
+
+TEST(SumRange, IsLeftByTermsThatAreTooLargeOrNoNumber) {
+  const double largest = LatticeFixed::largest_term;
+  EXPECT_EQ(largest, 128.0);
+  EXPECT_FALSE(leaves_range([&] { EXPECT_EQ(LatticeFixed::to_double(LatticeFixed::from(127.5)), 127.5); }));
+  EXPECT_FALSE(leaves_range([&] { EXPECT_EQ(LatticeFixed::to_double(LatticeFixed::from(-127.5)), -127.5); }));
+  for (const double term : {largest, -largest, 1e300, std::numeric_limits<double>::infinity(), std::nan("")})
+    EXPECT_TRUE(leaves_range([&] { EXPECT_EQ(LatticeFixed::from(term), 0); })) << term;
+  EXPECT_TRUE(leaves_range([] { FixedTensor().add(Vec3(1.0, 20.0, 0.0), Vec3(0.0, 7.0, 0.0)); }));
+}
+
+// 1e9 cells at a tenth of a cell a step, in the resolution that sums over all cells once had: 2^36 times 1e8 is in
+// range and 1.4e8 is not, where an unchecked sum changes its sign.
+TEST(SumRange, IsLeftBySumsThatWouldWrap) {
+  using Sum = FixedPoint<36>;
+  const std::int64_t a_tenth = Sum::from(0.1);
+  const auto after = [&](std::int64_t cells) { return [=] { exact_product(a_tenth, cells); }; };
+  EXPECT_FALSE(leaves_range(after(1'000'000'000)));
+  EXPECT_TRUE(leaves_range(after(1'400'000'000)));
+  static constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
+  EXPECT_FALSE(leaves_range([] { EXPECT_EQ(exact_sum(most - 1, 1), most); }));
+  EXPECT_TRUE(leaves_range([] { exact_sum(most, 1); }));
+  EXPECT_TRUE(leaves_range([] { exact_sum(-most, -2); }));
+  FixedVec3 vector{0, most, 0};
+  EXPECT_FALSE(leaves_range([&] { vector += {1, 0, -1}; }));
+  EXPECT_TRUE(leaves_range([&] { vector += {0, 1, 0}; }));
+}
+
+TEST(WideSum, BecomesNarrowOnlyWhereItFits) {
+  static constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
+  for (const std::int64_t value : {std::int64_t{0}, std::int64_t{-1}, most, -most - 1}) {
+    WideSum sum;
+    sum.add(value);
+    EXPECT_FALSE(leaves_range([&] { EXPECT_EQ(sum.narrowed(), value); }));
+  }
+  WideSum sum;
+  sum.add(most);
+  sum.add(most);
+  EXPECT_TRUE(leaves_range([&] { sum.narrowed(); }));
 }
 
 TEST(WideSum, GrowsBeyondSixtyFourBitsAndBack) {

@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
+#include "core/sum_range.hpp"
 #include "loop/phase_shares.hpp"
 #include "loop/stop_request.hpp"
 
@@ -151,6 +152,23 @@ TEST(TimeLoop, DoesNotLookIntoTheSystemForWhoLooksInPassing) {
     EXPECT_EQ(busy.steps.size(), 11u);
     EXPECT_EQ(record.largest.at(0).value, in_passing ? 0.05 : 0.19);
   }
+}
+
+TEST(TimeLoop, EndsWhereASumHasLeftItsRangeBeforeAnythingIsWritten) {
+  Bench bench(1.0);
+  bench.system.on_advance = [](std::int64_t step) {
+    if (step == 7 && rank_of(world) == size_of(world) - 1) SumRange::leave();
+  };
+  try {
+    bench.run();
+    ADD_FAILURE() << "no error";
+  } catch (const RunError& error) {
+    EXPECT_NE(std::string(error.what()).find("(step 8) a sum over cells, links or grains has left"), std::string::npos);
+  }
+  SumRange::reset();
+  EXPECT_EQ(bench.rows, (Steps{0, 3, 6}));
+  EXPECT_EQ(bench.checkpoints, (Steps{4}));
+  EXPECT_EQ(bench.pictures, (Steps{0, 5}));
 }
 
 // Whatever else a run happens to look at, and wherever it was interrupted, step 8 has the largest figure of all looks

@@ -1,0 +1,34 @@
+// Whether the exact sums of this process (fixed_point.hpp) have stayed within their range. A term or a sum that has not
+// leaves a note, and the time loop ends the run before anything of such a state is written: no number ever wraps
+// unseen.
+#pragma once
+
+#include <cstdint>
+
+namespace thalweg {
+
+class SumRange {
+public:
+  static void leave() { left_ = true; }
+  static bool was_left() { return left_; }
+  static void reset() { left_ = false; }
+
+private:
+  static inline bool left_ = false;
+};
+
+inline std::int64_t exact_sum(std::int64_t a, std::int64_t b) {
+  std::int64_t sum = 0;
+  if (__builtin_add_overflow(a, b, &sum)) [[unlikely]]
+    SumRange::leave();
+  return sum;
+}
+
+inline std::int64_t exact_product(std::int64_t a, std::int64_t b) {
+  std::int64_t product = 0;
+  if (__builtin_mul_overflow(a, b, &product)) [[unlikely]]
+    SumRange::leave();
+  return product;
+}
+
+}  // namespace thalweg
