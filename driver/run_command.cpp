@@ -122,9 +122,11 @@ void prepare_folder(const Places& places, const Case& c, const Command& command,
     else
       places.folder.create(command.overwrite);
     std::error_code ignored;
-    fs::remove(places.folder.stop(), ignored);  // meant an earlier run
-    io::make_folder(places.folder.checkpoints());
+    fs::remove(places.folder.stop(), ignored);     // meant an earlier run
+    fs::remove(places.folder.summary(), ignored);  // told of one
+    // First of all, because the folder is known by it.
     places.folder.write_case(fmt::format("version {}\ncommand {}", version_text(), command.line), resolved_yaml(c));
+    io::make_folder(places.folder.checkpoints());
     log.copy_to(places.folder.log().string());
   });
 }
@@ -228,9 +230,11 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   loop::TimeLoop time_loop(communicator, *system, observers, plan, log);
   try {
     time_loop.run();
+    if (!c.grains.empty()) io::write_bed_file(communicator, places.folder.bed(), system->snapshot());
   } catch (const std::exception& error) {  // whatever it is, it is the run that has failed
     const RunError told(fmt::format("{} {}", error_message(error), last_good(places)));
     loop::LoopRecord record = time_loop.record();
+    record.finished = false;
     record.reason = told.what();
     try {
       if (!failures.all_ranks_failed(seconds_to_wait_for_others) || log.prints())
@@ -239,7 +243,6 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
     }
     throw told;
   }
-  if (!c.grains.empty()) io::write_bed_file(communicator, places.folder.bed(), system->snapshot());
   const std::vector<loop::PhaseShare> phases = loop::collect_phases(communicator, *system, time_loop);
   print_outcome(identity, time_loop.record(), *system, observers, phases, places.folder, log);
   const io::JsonObject summary =

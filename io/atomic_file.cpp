@@ -24,8 +24,11 @@ std::filesystem::path write_partial(const std::filesystem::path& path, const std
   std::ofstream file(partial, std::ios::binary | std::ios::trunc);
   file << text;
   file.close();
-  if (!file) throw RunError(fmt::format("{}: cannot write the file: {}.", path.string(), std::strerror(errno)));
-  return partial;
+  if (file) return partial;
+  const std::string why = std::strerror(errno);
+  std::error_code ignored;
+  std::filesystem::remove(partial, ignored);  // what is left of a full disk is needed for other files
+  throw RunError(fmt::format("{}: cannot write the file: {}.", path.string(), why));
 }
 
 // Of a file or a folder; some file systems cannot wait for a folder.

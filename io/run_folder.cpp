@@ -20,6 +20,7 @@ constexpr std::array run_contents{
     "case.yaml",  "run.log",   "series.csv", "profiles.h5", "probes.h5",   "tracks.h5",    "entrainment.h5", "bed.h5",
     "grains.pvd", "fluid.pvd", "grains",     "fluid",       "checkpoints", "summary.json", "analysis",       "stop"};
 constexpr const char* latest_name = "latest";
+constexpr const char* unfinished_case = "case.yaml.partial";
 constexpr const char* kept_case = "case_until_step_";
 
 std::optional<std::int64_t> step_of_checkpoint(const std::string& name) {
@@ -45,7 +46,11 @@ void RunFolder::check_new(bool overwrite) const {
   if (!fs::is_directory(path_, ignored))
     throw InputError(
         fmt::format("{}: there is a file of this name; choose another folder with --out.", path_.string()));
-  if (fs::is_empty(path_, ignored)) return;
+  const bool has_something =
+      std::any_of(fs::directory_iterator(path_), fs::directory_iterator(), [](const auto& entry) {
+        return entry.path().filename() != unfinished_case;  // of a run that was killed at once
+      });
+  if (!has_something) return;
   if (!is_run_folder())
     throw InputError(
         fmt::format("{}: the folder holds something that is not a run of Thalweg and is left alone; choose "

@@ -17,9 +17,12 @@ void write_vtk_file(vtkXMLWriter& writer, const std::filesystem::path& path) {
   writer.EncodeAppendedDataOff();
   writer.SetCompressorTypeToZLib();  // which every reader knows
   writer.SetCompressionLevel(1);     // half the time of the default level 5, and half a per cent more bytes
-  if (writer.Write() == 0 || writer.GetErrorCode() != 0)
+  if (writer.Write() == 0 || writer.GetErrorCode() != 0) {
+    std::error_code ignored;
+    std::filesystem::remove(partial, ignored);  // what is left of a full disk is needed for other files
     throw RunError(
         fmt::format("{}: cannot write the file; is the disk full or the folder write-protected?", path.string()));
+  }
   rename_into_place(partial, path);
 }
 

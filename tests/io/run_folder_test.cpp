@@ -72,6 +72,8 @@ TEST_F(RunFolderTest, AnEmptyOrMissingFolderIsFine) {
   RunFolder(path / "deep").create(false);
   EXPECT_TRUE(fs::is_directory(path / "deep"));
   RunFolder(path / "deep").create(false);
+  put(path / "deep/case.yaml.partial", "# Thal");  // of a run that was killed at once
+  RunFolder(path / "deep").create(false);
 }
 
 TEST_F(RunFolderTest, TheCaseBeginsWithItsMarkerAndComments) {

@@ -1,0 +1,112 @@
+#!/usr/bin/python3
+"""Runs whose disk is full, or whose folder cannot be written: what they say, how they end, and what is left.
+
+Called by ctest: full_disk_run_test.py THALWEG MPIEXEC [unittest arguments]. The full disk is a small file system in memory,
+for which the test has to be allowed to mount one; it is skipped otherwise.
+"""
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+import program
+from program import ProgramTest
+
+CASE = """
+system: grains
+name: full disk
+domain:
+  size: [0.05, 0.03, 0.05]
+  spacing: 0.5e-3
+  boundaries: {x: periodic, y: no_slip, bottom: no_slip, top: free_slip}
+gravity: {magnitude: 9.8, slope: 0.3}
+grains: [{count: 60, diameter: 5.0e-3, density: 2550, placement: {pattern: random, seed: 3}}]
+contact: {normal_stiffness: 2000, tangential_stiffness: 571, restitution: 0.7, friction: 0.3, wall_friction: 0.3}
+run: {until: 0.2, time_step: 1.0e-5}
+output: {series: {every: 0.001}, checkpoint: {every: 0.02, keep: 2}, grains: {every: 0.01}}
+"""
+
+
+class FullDisk(ProgramTest):
+    CASE = CASE
+
+    def mount(self, kilobytes):
+        disk = self.folder / f"disk_{kilobytes}"
+        disk.mkdir()
+        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={kilobytes}k", "none", disk], capture_output=True, text=True)
+        if mounted.returncode != 0:
+            self.skipTest(f"no file system can be mounted here: {mounted.stderr.strip()}")
+        self.addCleanup(subprocess.run, ["umount", disk], check=True)
+        return disk
+
+    def test_the_first_file_that_fails_is_named_and_the_last_good_checkpoint_stays(self):
+        self.run_well("run", self.case, "--out", "whole")
+        failed, with_summary = set(), 0
+        for kilobytes in (60, 100, 124, 148, 172):   # all files of the run take more than 200
+            with self.subTest(kilobytes=kilobytes):
+                disk = self.mount(kilobytes)
+                run = disk / "run"
+                result = self.thalweg("run", self.case, "--out", run, ranks=2)
+                self.assertEqual(result.returncode, 1, result.stderr + result.stdout)
+                said = [line for line in result.stderr.splitlines() if line.startswith("thalweg: ")]
+                self.assertEqual(len(said), 1, result.stderr)
+                named = re.search(r"run/(\S+): cannot write", said[0])
+                self.assertIsNotNone(named, said[0])
+                self.assertNotIn("summary.json", said[0])
+                failed.add(re.sub(r"\d+", "", named[1]))
+                if (run / "summary.json").exists():
+                    with_summary += 1
+                    summary = self.summary(run)
+                    self.assertFalse(summary["finished"])
+                    self.assertIn(named[0], summary["reason"])
+                self.assertEqual([path.name for path in run.rglob("*.partial")], [])
+                if not any((run / "checkpoints").glob("step_*.h5")):
+                    self.assertIn("There is no checkpoint to go on from", said[0])
+                    continue
+                good = re.search(r"The last good checkpoint is (\S+)\.$", said[0])
+                self.assertIsNotNone(good, said[0])
+                self.assertTrue(Path(good[1]).is_file())
+                # And it is good: on a larger disk the run goes on to the same end.
+                subprocess.run(["mount", "-o", "remount,size=2m", disk], check=True)
+                self.run_well("run", self.case, "--restart", run)
+                self.assert_same_bed("whole", run)
+                self.assertEqual(list(self.series("whole")["time"]), list(self.series(run)["time"]))
+        self.assertGreater(len(failed), 1, failed)   # not always the same file
+        self.assertGreater(with_summary, 0)
+
+
+class NoPermission(ProgramTest):
+    CASE = CASE
+
+    def test_a_folder_that_cannot_be_written_is_found_at_the_start(self):
+        # A file where a folder should be stops root as well as anyone else.
+        (self.folder / "file").write_text("")
+        result = self.thalweg("run", self.case, "--out", "file/run", ranks=2)
+        self.assertIn(result.returncode, (1, 2))
+        self.assertIn("file/run: cannot create the folder", result.stderr)
+
+    def test_a_folder_without_permission(self):
+        if os.geteuid() == 0:
+            self.skipTest("root may write everywhere")
+        locked = self.folder / "locked"
+        locked.mkdir(mode=0o555)
+        result = self.thalweg("run", self.case, "--out", "locked/run")
+        self.assertIn("locked/run: cannot create the folder: Permission denied", result.stderr)
+        self.assertEqual(result.returncode, 1)
+
+    def test_a_file_system_that_is_read_only(self):
+        disk = self.folder / "disk"
+        disk.mkdir()
+        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "ro,size=100k", "none", disk], capture_output=True, text=True)
+        if mounted.returncode != 0:
+            self.skipTest(f"no file system can be mounted here: {mounted.stderr.strip()}")
+        self.addCleanup(subprocess.run, ["umount", disk], check=True)
+        result = self.thalweg("run", self.case, "--out", disk / "run", ranks=2)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("disk/run: cannot create the folder: Read-only file system", result.stderr)
+
+
+if __name__ == "__main__":
+    program.main()
