@@ -1,0 +1,151 @@
+#!/usr/bin/python3
+"""The job scripts of scripts/cluster under a stand-in for the queue, which interrupts a run in every way there is.
+
+Called by ctest: cluster_run_test.py THALWEG MPIEXEC [unittest arguments]. Commands of the queue and mpirun are small scripts
+ahead in PATH: mpirun is the real one with two ranks, and scontrol and qsub only write down what they are asked for.
+"""
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+import program
+from program import MPIEXEC, THALWEG, ProgramTest
+
+SCRIPTS = Path(__file__).resolve().parents[2] / "scripts/cluster"
+
+
+class Turns(ProgramTest):
+    """Of either queue: subclasses have the script and what it is called with."""
+    CASE = """
+system: grains
+name: in turns
+domain:
+  size: [0.05, 0.03, 0.05]
+  spacing: 0.5e-3
+  boundaries: {x: periodic, y: no_slip, bottom: no_slip, top: free_slip}
+gravity: {magnitude: 9.8, slope: 0.3}
+grains: [{count: 60, diameter: 5.0e-3, density: 2550, placement: {pattern: random, seed: 3}}]
+contact: {normal_stiffness: 2000, tangential_stiffness: 571, restitution: 0.7, friction: 0.3, wall_friction: 0.3}
+run: {until: 0.8, time_step: 0.5e-5}
+output: {series: {every: 0.001}}
+"""
+    SCRIPT = ""
+
+    def setUp(self):
+        super().setUp()
+        commands = self.folder / "commands"
+        commands.mkdir()
+        self.asked = self.folder / "asked"
+        for name, text in (("mpirun", f'exec "{shutil.which(MPIEXEC)}" -n 2 "$@"'),
+                           ("scontrol", f'echo "$*" >> "{self.asked}"'), ("qsub", f'echo "$*" >> "{self.asked}"')):
+            (commands / name).write_text(f"#!/bin/sh\n{text}\n")
+            (commands / name).chmod(0o755)
+        self.environment = os.environ | {
+            "PATH": f"{commands}:{os.environ['PATH']}", "THALWEG": THALWEG, "THALWEG_SCRIPTS": str(SCRIPTS),
+            "THALWEG_WALLTIME": "01:00:00", "SLURM_JOB_ID": "17", "PBS_O_WORKDIR": str(self.folder), "CASE": str(self.case),
+            "FOLDER": "run"}
+
+    def submit(self, **environment):
+        process = subprocess.Popen(["bash", str(SCRIPTS / self.SCRIPT), str(self.case), "run"], cwd=self.folder,
+                                   env=self.environment | environment, start_new_session=True, stdout=subprocess.PIPE,
+                                   stderr=subprocess.STDOUT, text=True)
+        self.addCleanup(process.stdout.close)
+        return process
+
+    def wait_for(self, happened, process):
+        for _ in range(1200):
+            if happened():
+                return
+            if process.poll() is not None:
+                self.fail("the turn ended: " + process.stdout.read())
+            time.sleep(0.02)
+        self.fail("nothing has happened within 24 s")
+
+    def is_running(self):
+        log = self.folder / "run/run.log"
+        return log.exists() and "steps/s" in log.read_text()[self.log_before:]
+
+    def begin_turn(self, **environment):
+        log = self.folder / "run/run.log"
+        self.log_before = len(log.read_text()) if log.exists() else 0
+        process = self.submit(**environment)
+        self.wait_for(self.is_running, process)
+        return process
+
+    def assert_wants_another_turn(self, process):
+        said = process.communicate(timeout=60)[0]
+        self.assertEqual(process.returncode, 0, said)
+        self.assertTrue(self.asked.exists(), said)
+        self.assert_asked_for_the_next(self.asked.read_text().strip())
+        self.asked.unlink()
+
+    def end_and_compare(self):
+        process = self.submit()
+        said = process.communicate(timeout=300)[0]
+        self.assertEqual(process.returncode, 0, said)
+        self.assertFalse(self.asked.exists())
+        self.run_well("run", self.case, "--out", "straight")
+        self.assertEqual(self.last_checkpoint("run").read_bytes(), self.last_checkpoint("straight").read_bytes())
+        self.assertEqual((self.folder / "run/series.csv").read_text(), (self.folder / "straight/series.csv").read_text())
+
+    def test_any_interruption_is_survived(self):
+        # The node dies before the first checkpoint: everything is killed at once, and the queue runs the job again.
+        process = self.begin_turn()
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait(timeout=30)
+        for pid in self.left_running():
+            os.kill(pid, signal.SIGKILL)
+        self.assertFalse(any((self.folder / "run/checkpoints").glob("step_*.h5")))
+        # The queue announces the end, in its two ways; and the program's own wall time is up.
+        for number in (signal.SIGUSR1, signal.SIGTERM):
+            process = self.begin_turn()
+            process.send_signal(number)
+            self.assert_wants_another_turn(process)
+        self.assert_wants_another_turn(self.submit(THALWEG_WALLTIME="00:00:02"))
+        self.end_and_compare()
+
+    def left_running(self):
+        """mpirun puts its ranks into groups of their own, which outlive it for a moment."""
+        found = []
+        for entry in Path("/proc").glob("[0-9]*"):
+            try:
+                if entry.joinpath("cwd").resolve() == self.folder and entry.joinpath("exe").resolve() == Path(THALWEG).resolve():
+                    found.append(int(entry.name))
+            except OSError:
+                pass
+        return found
+
+    def test_what_cannot_go_on_is_not_queued_again(self):
+        self.case.write_text(self.CASE.replace("count: 60", "count: -1"))
+        process = self.submit()
+        said = process.communicate(timeout=60)[0]
+        self.assertEqual(process.returncode, 2, said)
+        self.assertFalse(self.asked.exists())
+
+
+class Slurm(Turns):
+    SCRIPT = "slurm.sh"
+
+    def assert_asked_for_the_next(self, asked):
+        self.assertEqual(asked, "requeue 17")
+
+
+class Pbs(Turns):
+    SCRIPT = "pbs.sh"
+
+    def assert_asked_for_the_next(self, asked):
+        option, variables, script = asked.split(" ")
+        self.assertEqual((option, script), ("-v", str(SCRIPTS / "pbs.sh")))
+        self.assertIn(f"CASE={self.case},FOLDER=run,", variables)
+
+
+del Turns   # only what there are queues for
+
+
+if __name__ == "__main__":
+    program.main()
