@@ -5,6 +5,7 @@
 #include "core/error.hpp"
 #include "core/phase_timer.hpp"
 #include "core/place.hpp"
+#include "core/profile.hpp"
 #include "core/snapshot.hpp"
 
 #include <cstdint>
@@ -43,6 +44,9 @@ public:
 
   virtual Snapshot snapshot() const = 0;            // valid until the next advance()
   virtual std::vector<Figure> figures() const = 0;  // state of health; collective, the same on every rank
+
+  // The state as arrays, for profiles.h5, where it is one of them; the same on every rank.
+  virtual std::vector<Profile> profiles() const { return {}; }
 
   // Where the figure of that name, one of figures(), has its value; empty where it belongs to no place. Collective, the
   // same on every rank; may cost as much as figures().

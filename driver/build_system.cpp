@@ -19,10 +19,9 @@ struct Entry {
 };
 
 constexpr Entry builders[] = {
-    {SystemKind::resolved, build_resolved_system},
-    {SystemKind::fluid, build_fluid_system},
-    {SystemKind::grains, build_grains_system},
-    {SystemKind::model_fluid, build_grains_system},
+    {SystemKind::resolved, build_resolved_system},   {SystemKind::fluid, build_fluid_system},
+    {SystemKind::grains, build_grains_system},       {SystemKind::model_fluid, build_grains_system},
+    {SystemKind::continuum, build_continuum_system},
 };
 
 }  // namespace
@@ -37,11 +36,18 @@ const char* name_of(SystemKind kind) {
       return "grains";
     case SystemKind::model_fluid:
       return "model_fluid";
+    case SystemKind::continuum:
+      return "continuum";
   }
   return "";
 }
 
 Index3 choose_layout(const Case& c, int ranks, const std::optional<Index3>& requested) {
+  if (c.system == SystemKind::continuum) {
+    if (requested)
+      throw InputError("--layout divides a box among ranks, and every rank has the whole column; remove it.");
+    return {1, 1, 1};
+  }
   const Index3 layout = requested ? *requested : Decomposition::best_layout(cells_of(c.domain), ranks);
   if (layout[0] * layout[1] * layout[2] != ranks)
     throw InputError(fmt::format("--layout {},{},{} needs {} rank(s), but the program runs on {}.", layout[0],

@@ -30,6 +30,7 @@ std::unique_ptr<System> build_system(const Case& c, MPI_Comm communicator, const
 std::unique_ptr<System> build_resolved_system(const Case& c, MPI_Comm communicator, const Index3& layout, Start start);
 std::unique_ptr<System> build_fluid_system(const Case& c, MPI_Comm communicator, const Index3& layout, Start start);
 std::unique_ptr<System> build_grains_system(const Case& c, MPI_Comm communicator, const Index3& layout, Start start);
+std::unique_ptr<System> build_continuum_system(const Case& c, MPI_Comm communicator, const Index3& layout, Start start);
 
 // The name of a kind of system in a case file: "resolved", "fluid", "grains".
 const char* name_of(SystemKind kind);

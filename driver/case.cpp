@@ -13,6 +13,14 @@ namespace thalweg::driver {
 
 bool has_fluid(SystemKind system) { return system == SystemKind::resolved || system == SystemKind::fluid; }
 bool has_fluid(const Case& c) { return has_fluid(c.system); }
+bool has_grains(SystemKind system) { return system != SystemKind::fluid && system != SystemKind::continuum; }
+
+continuum::SystemParameters column_of(const Case& c) {
+  const Vec3 gravity = gravity_vector(c.gravity);
+  continuum::SystemParameters parameters = system_parameters(c.continuum, gravity.x(), -gravity.z());
+  parameters.time_step = c.run.time_step.value_or(0.0);
+  return parameters;
+}
 
 Index3 cells_of(const DomainCase& domain) {
   Index3 cells;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "analysis/observer_list.hpp"
+#include "continuum/column_keys.hpp"
 #include "core/types.hpp"
 #include "core/units.hpp"
 #include "coupling/coupling_keys.hpp"
@@ -25,7 +26,7 @@
 
 namespace thalweg::driver {
 
-enum class SystemKind { resolved, fluid, grains, model_fluid };
+enum class SystemKind { resolved, fluid, grains, model_fluid, continuum };
 
 // The order of the faces everywhere in the driver.
 enum FaceIndex { x_low, x_high, y_low, y_high, bottom, top };
@@ -82,13 +83,21 @@ struct AtRestCase {
   bool operator==(const AtRestCase&) const = default;
 };
 
+// A column is steady where its figure `unsteadiness` (continuum/continuum_system.hpp) is below this.
+struct SteadyCase {
+  double unsteadiness = 1e-4;
+  bool operator==(const SteadyCase&) const = default;
+};
+
 struct RunCase {
   double until = 0.0;  // s
   dem::Integrator grain_integrator = dem::Integrator::velocity_verlet;
   std::optional<AtRestCase> until_at_rest;  // of dry grains: the run ends earlier when this holds
+  std::optional<SteadyCase> until_steady;   // of a column: the run ends earlier when this holds
   loop::OutOfBounds watchdog = loop::OutOfBounds::stop;
-  double ramp = 0.0;                // s in which gravity rises from zero, with a fluid
-  std::optional<double> time_step;  // s, of dry grains; read as 1/50 of the shortest contact where it is not given
+  double ramp = 0.0;  // s in which gravity rises from zero, with a fluid
+  // s, of dry grains, or a column; read as 1/50 of the shortest contact, or 5 s, where it is not given
+  std::optional<double> time_step;
   bool operator==(const RunCase&) const = default;
 };
 
@@ -113,7 +122,7 @@ struct DisksCase {
 struct Case {
   SystemKind system = SystemKind::resolved;
   std::string name;
-  DomainCase domain;
+  DomainCase domain;          // of a column: what follows from its sections
   coupling::FluidKeys fluid;  // meaningless for dry grains, as are coupling and initial
   GravityCase gravity;
   std::optional<DisksCase> disks;
@@ -121,7 +130,8 @@ struct Case {
   std::vector<dem::WallKeys> walls;  // of dry grains, besides the faces
   std::vector<SolidCase> solids;     // of system: fluid
   dem::ContactKeys contact;
-  dem::ModelFluidKeys model_fluid;  // of system: model_fluid
+  dem::ModelFluidKeys model_fluid;     // of system: model_fluid
+  continuum::ContinuumKeys continuum;  // of system: continuum
   coupling::CouplingKeys coupling;
   InitialCase initial;
   RunCase run;
@@ -133,7 +143,9 @@ struct Case {
 // What follows from a case that read_case() has accepted.
 
 bool has_fluid(SystemKind system);
-bool has_fluid(const Case& c);  // system: resolved or fluid
+bool has_fluid(const Case& c);                         // system: resolved or fluid
+bool has_grains(SystemKind system);                    // that a case gives one by one
+continuum::SystemParameters column_of(const Case& c);  // of system: continuum
 
 Index3 cells_of(const DomainCase& domain);  // size over spacing
 std::array<bool, 3> periodic_axes(const DomainCase& domain);

@@ -217,6 +217,11 @@ void check_observers(const Case& c, const io::YamlDocument& document) {
 
 }  // namespace
 
+void check_column(const Case& c, const io::YamlDocument& document) {
+  const Vec3 gravity = gravity_vector(c.gravity);
+  at_place(document, "", [&] { check(c.continuum, gravity.x(), -gravity.z()); });
+}
+
 void check_case(const Case& c, const io::YamlDocument& document) {
   check_whole_cells(c.domain, document);
   check_resolution(c, document);

@@ -18,11 +18,14 @@ void at_place(const io::YamlDocument& document, const std::string& section, cons
   try {
     check_section();
   } catch (const KeyError& error) {
-    throw document.error(section + "." + error.key, error.what());
+    throw document.error(section.empty() ? error.key : section + "." + error.key, error.what());
   }
 }
 
 // Throws InputError at the first thing that cannot be, with the place of the key to change in the document.
+// The same of the sections of a column, before the box is known that follows from them.
+void check_column(const Case& c, const io::YamlDocument& document);
+
 void check_case(const Case& c, const io::YamlDocument& document);
 
 }  // namespace thalweg::driver

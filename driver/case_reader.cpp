@@ -16,7 +16,19 @@
 namespace thalweg::driver {
 namespace {
 
+constexpr double column_time_step = 5.0;  // s, where the user gives none: of figures, and of looks whether it is steady
+
 // Plausible values for the keys that have no default: a small flume of glass spheres in water.
+Case example_column(Case c) {
+  c.gravity.slope = 0.016;
+  c.run.until = 120.0;
+  c.run.time_step = column_time_step;
+  c.continuum.fluid = {1000.0, 1e-6};
+  c.continuum.grains = {5e-3, 2550.0};
+  c.continuum.column.shields_number = 0.085;
+  return c;
+}
+
 Case example_case(SystemKind system) {
   Case c;
   c.system = system;
@@ -29,6 +41,7 @@ Case example_case(SystemKind system) {
   c.gravity.magnitude = 9.8;
   c.gravity.slope = 0.07;
   c.run.until = 3.0;
+  if (system == SystemKind::continuum) return example_column(c);
   if (system == SystemKind::fluid) c.solids = {{SphereCase{{0.02, 0.00525, 0.02}, 2.5e-3}, {}, 1.0, Vec3::Zero()}};
   if (system != SystemKind::fluid) {
     dem::Population glass;
@@ -53,6 +66,16 @@ Case example_case(SystemKind system) {
   return c;
 }
 
+// What the parts common to all systems need to know of the box.
+void fill_in_column(Case& c) {
+  if (!c.run.time_step) c.run.time_step = column_time_step;
+  const continuum::ColumnParameters column = column_of(c).column;
+  c.domain.spacing = column.spacing;
+  c.domain.size = {column.spacing, column.spacing, column.cells * column.spacing};
+  c.domain.faces[bottom].type = lbm::FaceType::no_slip;
+  c.domain.faces[top].type = lbm::FaceType::free_slip;
+}
+
 constexpr double steps_per_contact = 50.0;  // dry grains, where the user gives no step
 
 }  // namespace
@@ -61,6 +84,10 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
   const io::YamlDocument document(path, overrides);
   Case c;
   io::read_document(document, c);
+  if (c.system == SystemKind::continuum) {
+    check_column(c, document);
+    fill_in_column(c);
+  }
   fill_in_grains(c, document, known);
   if (has_fluid(c) && !c.fluid.bulk_relaxation_time) c.fluid.bulk_relaxation_time = bulk_relaxation_time_for(c);
   if (c.coupling.grain_steps_per_fluid_step == coupling::CouplingKeys::as_many_as_needed) {
@@ -87,12 +114,13 @@ std::string defaults_yaml(const std::string& system) {
   constexpr std::pair<const char*, SystemKind> systems[] = {{"resolved", SystemKind::resolved},
                                                             {"fluid", SystemKind::fluid},
                                                             {"grains", SystemKind::grains},
-                                                            {"model_fluid", SystemKind::model_fluid}};
+                                                            {"model_fluid", SystemKind::model_fluid},
+                                                            {"continuum", SystemKind::continuum}};
   const auto found =
       std::find_if(std::begin(systems), std::end(systems), [&](const auto& entry) { return entry.first == system; });
   if (found == std::end(systems))
     throw InputError(
-        fmt::format("There is no system \"{}\": give one of resolved, fluid, grains, model_fluid.", system));
+        fmt::format("There is no system \"{}\": give one of resolved, fluid, grains, model_fluid, continuum.", system));
   const Case example = example_case(found->second);
   return fmt::format(
              "# Every key of a case with system: {}, with its default. Comments give the unit, the range and the\n"

@@ -138,16 +138,69 @@ static void describe(SectionVisitor& visit, DisksCase& disks) {
              {.unit = "m", .meaning = "along y: gives their mass", .required = true, .above = 0.0, .example = 5e-3});
 }
 
+static void describe(SectionVisitor& visit, SteadyCase& steady) {
+  visit.real("unsteadiness", steady.unsteadiness,
+             {.meaning = "over one step: change of momentum over that of the driving force, and relative change of q_s",
+              .above = 0.0});
+}
+
+static void describe_column_run(SectionVisitor& visit, RunCase& run) {
+  visit.real("until", run.until,
+             {.unit = "s",
+              .meaning = "simulated time at which the run ends",
+              .required = true,
+              .above = 0.0,
+              .example = 120.0});
+  visit.section("until_steady", run.until_steady,
+                {.meaning = "the run ends when the column is steady, or at run.until; no keys: {}"});
+  visit.real("time_step", run.time_step,
+             {.unit = "s",
+              .meaning = "between figures, and looks whether the column is steady; the equations are integrated with "
+                         "steps of their own; default: 5",
+              .above = 0.0,
+              .example = 5.0});
+}
+
+// Of a column only; all other sections are those of a box.
+static void describe_column(SectionVisitor& visit, Case& c) {
+  const std::string no_box = "system: continuum is a column and has no box of cells and grains; remove the section";
+  for (const char* section : {"domain", "disks", "walls", "contact", "model_fluid", "coupling", "initial", "solids"})
+    visit.not_here(section, no_box);
+  visit.not_here("analysis", "system: continuum shows all it knows in series.csv and profiles.h5; remove the section");
+  visit.section("fluid", c.continuum.fluid, {.meaning = "properties of the fluid", .required = true});
+  visit.section("grains", c.continuum.grains, {.meaning = "properties of the grains", .required = true});
+  visit.section("gravity", {.meaning = "given by magnitude and slope, or as a vector", .required = true},
+                [&](SectionVisitor& inside) { describe_gravity(inside, c.gravity, false); });
+  visit.section("column", c.continuum.column, {.meaning = "heights of water and bed", .required = true});
+  visit.section("closures", c.continuum.closures, {.meaning = "what the two phases exchange and resist with"});
+  visit.section("creep", c.continuum.creep,
+                {.meaning = "slow flow of the grains below the surface, by granular fluidity; no keys: {}"});
+  visit.section("run", {.meaning = "duration and time integration", .required = true},
+                [&](SectionVisitor& inside) { describe_column_run(inside, c.run); });
+  visit.section("output", {.meaning = "what the run writes, besides run.log, profiles.h5 and summary.json"},
+                [&](SectionVisitor& inside) {
+                  const OnlyIf nothing{false, "a column has neither cells nor grains to show; remove the section"};
+                  describe(inside, c.output, nothing, nothing);
+                });
+}
+
 void describe(SectionVisitor& visit, Case& c) {
   visit.choice<SystemKind>("system", c.system,
                            {{SystemKind::resolved, "resolved", "fluid with grains in it, every grain resolved"},
                             {SystemKind::fluid, "fluid", "fluid alone"},
                             {SystemKind::grains, "grains", "dry grains"},
-                            {SystemKind::model_fluid, "model_fluid", "grains under a prescribed fluid force"}},
+                            {SystemKind::model_fluid, "model_fluid", "grains under a prescribed fluid force"},
+                            {SystemKind::continuum, "continuum", "a column of grains and water as two continua"}},
                            {.meaning = "what is simulated", .required = true});
-  const bool with_fluid = has_fluid(c), with_grains = c.system != SystemKind::fluid;
+  const bool with_fluid = has_fluid(c), with_grains = has_grains(c.system);
   const OnlyIf of_fluid = only_with_fluid(c.system), of_grains = only_with_grains(with_grains);
   visit.text("name", c.name, {.meaning = "what the run is called in its output"});
+  if (c.system == SystemKind::continuum) {
+    describe_column(visit, c);
+    return;
+  }
+  for (const char* section : {"column", "closures", "creep"})
+    visit.not_here(section, "only system: continuum has it; remove the section or set system: continuum");
   visit.section("domain", {.meaning = "the box, its cells and its faces", .required = true},
                 [&](SectionVisitor& inside) { describe_domain(inside, c.domain, with_fluid); });
   visit.section("fluid", c.fluid, {.meaning = "properties of the fluid", .required = true, .only_if = of_fluid});

@@ -198,6 +198,27 @@ void add_model_fluid(const Case& c, Lines& lines) {
                               s.diameter, s.mass, s.gravity, std::sqrt(s.diameter / s.gravity)));
 }
 
+// Of a column. Wall time: measured, for the columns of cases/continuum.
+Lines column_report(const Case& c) {
+  const continuum::SystemParameters parameters = column_of(c);
+  const continuum::ColumnParameters& column = parameters.column;
+  const continuum::Mixture& mixture = column.mixture;
+  const double d = mixture.diameter, gravity = gravity_vector(c.gravity).norm();
+  const double stress = mixture.fluid_density * column.gravity_x * parameters.depth;
+  return {
+      fmt::format("{} (system: {})", c.name, name_of(c.system)),
+      fmt::format("column     {} cells of {:.4g} m: a bed of {:.4g} m under {:.4g} m of water ({:.3g} diameters)",
+                  column.cells, column.spacing, parameters.bed_cells * column.spacing, parameters.depth,
+                  parameters.depth / d),
+      fmt::format("Shields    {:.4g}: {:.4g} Pa on the bed, friction velocity {:.3g} m/s",
+                  stress / (mixture.excess_density() * gravity * d), stress, std::sqrt(stress / mixture.fluid_density)),
+      fmt::format(
+          "work       {:.0f} intervals of {:g} s to {:g} s{}; seconds to a minute on one core, and every rank does "
+          "the same",
+          std::ceil(c.run.until / *c.run.time_step * (1.0 - 1e-12)), *c.run.time_step, c.run.until,
+          c.run.until_steady ? ", fewer if it is steady before" : "")};
+}
+
 std::string bytes_text(double bytes) {
   return bytes < 1e9 ? fmt::format("{:.3g} MB", bytes * 1e-6) : fmt::format("{:.3g} GB", bytes * 1e-9);
 }
@@ -270,6 +291,7 @@ Cost cost_of(const Case& c, double bandwidth) {
 }
 
 std::vector<std::string> check_report(const Case& c, double bandwidth) {
+  if (c.system == SystemKind::continuum) return column_report(c);
   refuse_missing_start(c);
   refuse_impossible_grains(c);
   Lines lines{fmt::format("{} (system: {})", c.name, name_of(c.system))};

@@ -1,5 +1,6 @@
 #include "driver/run_command.hpp"
 
+#include "continuum/continuum_system.hpp"
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
 #include "core/on_first_rank.hpp"
@@ -162,6 +163,10 @@ void set_end(const Case& c, loop::LoopPlan& plan) {
     plan.enough = {{dem::DryGrains::largest_speed_figure, c.run.until_at_rest->largest_speed},
                    {dem::DryGrains::largest_acceleration_figure, c.run.until_at_rest->largest_acceleration}};
     plan.enough_means = "all grains at rest";
+  } else if (c.run.until_steady) {
+    plan.enough = {{continuum::ContinuumSystem::unsteadiness_figure, c.run.until_steady->unsteadiness}};
+    plan.enough_means = "steady";
+    plan.steps_between_looks_for_enough = 1;
   } else if (c.system == SystemKind::model_fluid && c.model_fluid.ramp) {
     plan.enough = {{dem::ModelFluidField::hold_left_figure, 0.0}};
     plan.enough_means = "motion without end";

@@ -76,6 +76,8 @@ void RunOutput::write_profiles() {
     std::vector<Profile> profiles = observer->profiles();
     if (!profiles.empty()) groups.emplace_back(observer->name(), std::move(profiles));
   }
+  if (std::vector<Profile> own = system_.profiles(); !own.empty())
+    groups.emplace_back(name_of(case_.system), std::move(own));
   if (!groups.empty()) io::write_profiles(communicator_, folder_.profiles(), system_.time(), groups);
 }
 

@@ -75,7 +75,7 @@ void TimeLoop::run() {
     if (plan_.checkpoint.due(system_.step())) checkpoint(true);
     if (system_.step() >= next_decision_) decision = decide_together();
     // At the same step on any ranks and after any restart.
-    if (system_.step() % steps_between_looks_for_enough == 0 && has_enough()) decision = Decision::enough;
+    if (system_.step() % plan_.steps_between_looks_for_enough == 0 && has_enough()) decision = Decision::enough;
   }
   look_at_health(false);
   checkpoint();

@@ -60,8 +60,9 @@ struct FigureLimit {
 };
 
 struct LoopPlan {
-  double until = 0.0;                                // s, simulated
-  std::vector<FigureLimit> enough;                   // the run is finished when all hold; none: at `until` only
+  double until = 0.0;               // s, simulated
+  std::vector<FigureLimit> enough;  // the run is finished when all hold; none: at `until` only
+  std::int64_t steps_between_looks_for_enough = 200;
   std::string enough_means;                          // in words for the log, e.g. "all grains at rest"
   std::vector<WatchRule> watch;                      // what may not happen to the figures of the system
   OutOfBounds out_of_bounds = OutOfBounds::stop;     // what to do if it does
@@ -95,7 +96,6 @@ public:
 
   // A look costs less than a step (lbm/fluid_survey.hpp), so that these cost below 1 %.
   static constexpr std::int64_t steps_between_health_checks = 100;
-  static constexpr std::int64_t steps_between_looks_for_enough = 200;
 
 private:
   enum class Decision : int { go_on = 0, wall_time_is_up = 1, asked = 2, signal = 3, enough = 4 };

@@ -1,0 +1,118 @@
+#include "continuum/column_keys.hpp"
+
+#include "core/key_error.hpp"
+
+#include <cmath>
+
+namespace thalweg::continuum {
+
+void describe(SectionVisitor& visit, FluidPhaseKeys& fluid) {
+  visit.real("density", fluid.density,
+             {.unit = "kg/m^3", .meaning = "mass density", .required = true, .above = 0.0, .example = 1000.0});
+  visit.real("kinematic_viscosity", fluid.kinematic_viscosity,
+             {.unit = "m^2/s", .meaning = "of the clear fluid", .required = true, .above = 0.0, .example = 1e-6});
+}
+
+void describe(SectionVisitor& visit, GrainPhaseKeys& grains) {
+  visit.real("diameter", grains.diameter,
+             {.unit = "m", .meaning = "of all grains", .required = true, .above = 0.0, .example = 5e-3});
+  visit.real("density", grains.density,
+             {.unit = "kg/m^3", .meaning = "mass density", .required = true, .above = 0.0, .example = 2550.0});
+}
+
+void describe(SectionVisitor& visit, HeightKeys& height) {
+  visit.real("shields_number", height.shields_number,
+             {.meaning = "of the water over the bed at the start: gives its depth", .above = 0.0, .example = 0.085});
+  visit.real("depth", height.depth,
+             {.unit = "m", .meaning = "in its place: of the water over the bed", .above = 0.0, .example = 0.04});
+  visit.require(height.shields_number || height.depth, "shields_number",
+                "the depth is missing; give shields_number, for example 0.085, or depth in m");
+  visit.require(!height.shields_number || !height.depth, "depth",
+                "the depth is given twice; remove this key or shields_number");
+  visit.real("bed", height.bed,
+             {.unit = "diameters", .meaning = "thickness of the bed, as dense as it can be at rest", .at_least = 2.0});
+  visit.integer("cells_per_diameter", height.cells_per_diameter,
+                {.meaning = "wanted; a whole number of cells fills the water", .at_least = 2});
+  visit.choice("start", height.start, {.meaning = "state at the start"});
+}
+
+static void describe_rheology(SectionVisitor& visit, Rheology& r) {
+  visit.real("static_friction", r.static_friction, {.meaning = "mu_1", .above = 0.0});
+  visit.real("limit_friction", r.limit_friction, {.meaning = "mu_2, of fast flow", .above = 0.0});
+  visit.require(r.limit_friction > r.static_friction, "limit_friction",
+                "it must be larger than static_friction; give for example 0.7");
+  visit.real("densest_fraction", r.densest_fraction,
+             {.meaning = "phi_m: solid fraction of grains that begin to flow", .above = 0.0, .below = 0.75});
+  visit.real("friction_scale", r.friction_scale, {.meaning = "b", .above = 0.0});
+  visit.real("dilation", r.dilation, {.meaning = "a", .above = 0.0});
+  visit.real("elastic_modulus", r.elastic_modulus,
+             {.unit = "Pa", .meaning = "pressure of grains at rest over phi - phi_m", .above = 0.0});
+  visit.real("smallest_gap", r.smallest_gap,
+             {.meaning = "phi_m - phi is no smaller in the pressure of flow", .above = 0.0, .below = 0.1});
+  visit.real("creeping_rate", r.creeping_rate,
+             {.unit = "1/s", .meaning = "shear rate below which friction falls to zero", .above = 0.0});
+}
+
+static void describe_turbulence(SectionVisitor& visit, Turbulence& t) {
+  visit.real("mixing_length_factor", t.mixing_length_factor,
+             {.meaning = "of l_m = factor d (phi_m - phi)^3", .above = 0.0});
+  visit.real("smallest_mixing_length", t.smallest_mixing_length,
+             {.unit = "diameters", .meaning = "floor of l_m; 0: none", .at_least = 0.0});
+  visit.real("schmidt_number", t.schmidt_number, {.meaning = "Sigma_s of the drift", .above = 0.0});
+  visit.choice("strain_norm", t.strain_norm, {.meaning = "norm of the rate of strain in the eddy viscosity"});
+}
+
+void describe(SectionVisitor& visit, Closures& closures) {
+  visit.section("rheology", {.meaning = "flow rule of the grains"},
+                [&](SectionVisitor& inside) { describe_rheology(inside, closures.rheology); });
+  visit.section("turbulence", {.meaning = "stress of the fluid and drift"},
+                [&](SectionVisitor& inside) { describe_turbulence(inside, closures.turbulence); });
+  visit.choice("drag", closures.drag.function, {.meaning = "drag function F"});
+  visit.choice("drag_crowding", closures.drag.crowding, {.meaning = "term of the solid fraction in F_2"});
+  visit.choice("drag_speed", closures.speed, {.meaning = "velocity difference in the Reynolds number of the drag"});
+  visit.choice("drift_sign", closures.drift, {.meaning = "which way the drift velocity u_d acts"});
+}
+
+void describe(SectionVisitor& visit, CreepParameters& creep) {
+  visit.real("nonlocal_amplitude", creep.nonlocal_amplitude, {.meaning = "A", .above = 0.0});
+  visit.real("upper", creep.upper,
+             {.unit = "diameters", .meaning = "depth below the surface where the fluidity is given", .above = 0.0});
+  visit.real("lower", creep.lower, {.unit = "diameters", .meaning = "depth where it is zero", .above = 0.0});
+  visit.require(creep.lower > creep.upper, "lower", "it must be deeper than upper; give for example 10");
+  visit.real("surface_fluidity", creep.surface_fluidity,
+             {.unit = "1/s", .meaning = "fluidity at `upper`: shear rate over the ratio of stresses", .above = 0.0});
+}
+
+SystemParameters system_parameters(const ContinuumKeys& keys, double gravity_x, double gravity_z) {
+  SystemParameters parameters;
+  ColumnParameters& column = parameters.column;
+  column.mixture = {keys.fluid.density, keys.fluid.density * keys.fluid.kinematic_viscosity, keys.grains.density,
+                    keys.grains.diameter};
+  column.closures = keys.closures;
+  column.gravity_x = gravity_x;
+  column.gravity_z = gravity_z;
+  const double d = keys.grains.diameter, weight = column.mixture.excess_density() * std::hypot(gravity_x, gravity_z);
+  parameters.depth = keys.column.depth ? *keys.column.depth
+                                       : *keys.column.shields_number * weight * d / (keys.fluid.density * gravity_x);
+  const double wanted = d / static_cast<double>(keys.column.cells_per_diameter);
+  const int water = std::max(4, static_cast<int>(std::lround(parameters.depth / wanted)));
+  column.spacing = parameters.depth / water;
+  parameters.bed_cells = static_cast<int>(std::lround(keys.column.bed * d / column.spacing));
+  column.cells = parameters.bed_cells + water;
+  parameters.start = keys.column.start;
+  parameters.creep = keys.creep;
+  return parameters;
+}
+
+void check(const ContinuumKeys& keys, double gravity_x, double gravity_z) {
+  if (!(gravity_x > 0.0 && gravity_z > 0.0))
+    throw KeyError("gravity", "the column flows downhill along x; give magnitude and a slope above 0");
+  if (!(keys.grains.density > keys.fluid.density))
+    throw KeyError("grains.density", "the grains float; give a density above that of the fluid in kg/m^3");
+  constexpr double most_cells = 1e5;
+  const SystemParameters parameters = system_parameters(keys, gravity_x, gravity_z);
+  if (parameters.depth / parameters.column.spacing + parameters.bed_cells > most_cells)
+    throw KeyError("column.cells_per_diameter", "the column would have more than 100000 cells; give fewer");
+}
+
+}  // namespace thalweg::continuum

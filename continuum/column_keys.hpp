@@ -1,0 +1,57 @@
+// How a case describes a column of the continuum (system: continuum): its sections fluid, grains, column, closures and
+// creep.
+#pragma once
+
+#include "continuum/continuum_system.hpp"
+#include "core/section_visitor.hpp"
+
+#include <cstdint>
+#include <optional>
+
+namespace thalweg::continuum {
+
+struct FluidPhaseKeys {
+  double density = 0.0;              // kg/m^3
+  double kinematic_viscosity = 0.0;  // m^2/s
+  bool operator==(const FluidPhaseKeys&) const = default;
+};
+void describe(SectionVisitor& visit, FluidPhaseKeys& fluid);
+
+struct GrainPhaseKeys {
+  double diameter = 0.0;  // m
+  double density = 0.0;   // kg/m^3
+  bool operator==(const GrainPhaseKeys&) const = default;
+};
+void describe(SectionVisitor& visit, GrainPhaseKeys& grains);
+
+struct HeightKeys {
+  std::optional<double> shields_number;  // 1, or
+  std::optional<double> depth;           // m, of clear water over the bed at the start
+  double bed = 5.0;                      // diameters, at the start
+  std::int64_t cells_per_diameter = 10;  // wanted
+  ColumnStart start = ColumnStart::flow;
+  bool operator==(const HeightKeys&) const = default;
+};
+void describe(SectionVisitor& visit, HeightKeys& height);
+
+void describe(SectionVisitor& visit, Closures& closures);
+void describe(SectionVisitor& visit, CreepParameters& creep);
+
+struct ContinuumKeys {
+  FluidPhaseKeys fluid;
+  GrainPhaseKeys grains;
+  HeightKeys column;
+  Closures closures;
+  std::optional<CreepParameters> creep;
+  bool operator==(const ContinuumKeys&) const = default;
+};
+
+// What the keys mean under a gravity (m/s^2: along the bed, downwards into it). A whole number of cells fills the
+// water, so that they are about as high as wanted. tau* = rho_f g_x h/((rho_s - rho_f) g d), g the magnitude of
+// gravity.
+SystemParameters system_parameters(const ContinuumKeys& keys, double gravity_x, double gravity_z);
+
+// Throws KeyError where the keys do not fit together.
+void check(const ContinuumKeys& keys, double gravity_x, double gravity_z);
+
+}  // namespace thalweg::continuum

@@ -1,0 +1,79 @@
+#!/usr/bin/python3
+"""A column of the continuum: steady by the stated test, its files, the same bits on any ranks and after a restart, refusals.
+
+Called by ctest: continuum_run_test.py THALWEG MPIEXEC [unittest arguments]
+"""
+import json
+import sys
+from pathlib import Path
+
+import h5py
+import numpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
+import program
+import thalweg
+from program import ProgramTest
+
+
+class ContinuumRun(ProgramTest):
+    CASE = """
+system: continuum
+name: column
+fluid: {density: 1000, kinematic_viscosity: 1e-6}
+grains: {diameter: 5e-3, density: 2550}
+gravity: {magnitude: 9.8, slope: 0.016}
+column: {shields_number: 0.085, bed: 3, cells_per_diameter: 5}
+creep: {}
+run: {until: 100, time_step: 5, until_steady: {}}
+output: {series: {every: 5}, checkpoint: {every: 5, keep: 30}}
+"""
+
+    def unknowns(self, run):
+        with h5py.File(self.last_checkpoint(run)) as file:
+            return file["column/unknowns"][:]
+
+    def test_the_same_bits_on_any_ranks_and_after_a_restart(self):
+        self.run_well("run", self.case, "--out", "one")
+        for ranks in (2, 4):
+            self.run_well("run", self.case, "--out", f"on_{ranks}", ranks=ranks)
+        self.run_well("run", self.case, "--out", "half", "--until", "10")
+        self.run_well("run", self.case, "--out", "half", "--restart", "half", ranks=2)
+        for other in ("on_2", "on_4", "half"):
+            self.assertTrue(numpy.array_equal(self.unknowns(other), self.unknowns("one")), other)
+            self.assertEqual((self.folder / other / "series.csv").read_text(),
+                             (self.folder / "one" / "series.csv").read_text())
+
+    def test_it_ends_when_it_is_steady_and_shows_its_profiles(self):
+        self.run_well("run", self.case, "--out", "run")
+        self.assertIn("finished, steady,", (self.folder / "run" / "run.log").read_text())
+        figures = json.loads((self.folder / "run" / "summary.json").read_text())["figures"]
+        self.assertLess(figures["unsteadiness"], 1e-4)
+        run = thalweg.Run(self.folder / "run")
+        column = run.profiles["continuum"]
+        self.assertEqual(column["grain_velocity"].shape, (len(column["z"]), 3))
+        q_s = numpy.sum(column["solid_fraction"] * column["grain_velocity"][:, 0] * column["thickness"])
+        self.assertAlmostEqual(q_s / figures["q_s"], 1.0, delta=1e-12)
+        self.assertEqual(run.series["q_star"][-1], figures["q_star"])
+        # Of fig. 11 at this Shields number, to 2 %.
+        self.assertAlmostEqual(figures["creep_decade_length"] / 5e-3, 2.22, delta=0.02 * 2.22)
+
+    def test_refusals(self):
+        for setting, words in (
+                ("gravity.slope=0", ["gravity", "a slope above 0"]),
+                ("grains.density=900", ["grains.density", "the grains float"]),
+                ("column.depth=0.04", ["column.depth", "given twice"]),
+                ("column.cells_per_diameter=1", ["cells_per_diameter"]),
+                ("closures.drag=stokes", ["closures.drag", "mobile"]),
+                ("creep.lower=1", ["creep.lower", "deeper than upper"]),
+                ("domain.spacing=1e-3", ["domain", "has no box"]),
+                ("analysis.transport_rate.from=1", ["analysis", "remove the section"]),
+                ("column.speed=1", ["speed"])):
+            with self.subTest(setting=setting):
+                self.assert_refused("run", self.case, "--set", setting, words=words)
+        self.assert_refused("run", self.case, "--layout", "1,1,1", words=["--layout"])
+
+
+if __name__ == "__main__":
+    program.main()
