@@ -20,6 +20,10 @@ namespace thalweg::continuum {
 namespace {
 
 constexpr long most_steps = 200000;  // of one interval
+// What is left of the error of Newton's method, over that of a step. With CVODE's own 0.1, what is left in stiff
+// unknowns passes for an error of the step, which then gets ever shorter.
+constexpr double newton_share = 0.01;
+constexpr int highest_order = 2;  // A-stable; beyond it, fast oscillations of drag and friction would grow
 
 // What CVODE makes in C, with its end.
 template <typename Handle>
@@ -67,6 +71,8 @@ struct StiffIntegrator::Memory {
     require(CVodeWFtolerances(cvode.get(), weigh), "CVodeWFtolerances");
     require(CVodeSetUserData(cvode.get(), this), "CVodeSetUserData");
     require(CVodeSetLinearSolver(cvode.get(), solver.get(), matrix.get()), "CVodeSetLinearSolver");
+    require(CVodeSetMaxOrd(cvode.get(), highest_order), "CVodeSetMaxOrd");
+    require(CVodeSetNonlinConvCoef(cvode.get(), newton_share), "CVodeSetNonlinConvCoef");
     require(CVodeSetMaxNumSteps(cvode.get(), most_steps), "CVodeSetMaxNumSteps");
   }
 
