@@ -171,12 +171,12 @@ TEST(CaseReader, TheDefaultsAreValidAndNameEveryKey) {
   for (const std::string key : {"domain.boundaries.y.coefficient", "coupling.link_tolerance", "gravity.mode",
                                 "output.checkpoint.keep", "contact.attraction", "fluid.collision"})
     EXPECT_NE(std::find(keys.begin(), keys.end(), key), keys.end()) << key;
-  EXPECT_NE(message_of<InputError>([] { defaults_yaml("continuum"); }).find("give one of resolved, fluid, grains"),
+  EXPECT_NE(message_of<InputError>([] { defaults_yaml("shallow_water"); }).find("give one of resolved, fluid, grains"),
             std::string::npos);
 }
 
 TEST(CaseReader, TheDefaultsOfEverySystemAreValid) {
-  for (const char* system : {"resolved", "fluid", "grains", "model_fluid"})
+  for (const char* system : {"resolved", "fluid", "grains", "model_fluid", "continuum"})
     EXPECT_NO_THROW(read(defaults_yaml(system))) << system;
 }
 
@@ -205,8 +205,8 @@ INSTANTIATE_TEST_SUITE_P(
     All, BadCase,
     ::testing::Values(
         Bad{"system_not_built",
-            {"system=continuum"},
-            {"system = \"continuum\": expected one of resolved, fluid, grains, model_fluid."}},
+            {"system=shallow_water"},
+            {"system = \"shallow_water\": expected one of resolved, fluid, grains, model_fluid, continuum."}},
         Bad{"collision_not_built",
             {"fluid.collision=mrt"},
             {"fluid.collision = \"mrt\": expected one of bgk, trt, regularised."}},
