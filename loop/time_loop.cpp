@@ -70,14 +70,14 @@ void TimeLoop::run() {
     record_.advance_seconds += seconds_since(before);
     record_.last_step = system_.step();
     record_.wall_seconds = seconds_since(begin_);
-    if (system_.step() % steps_between_health_checks == 0) look_at_health();
+    if (system_.step() % steps_between_health_checks == 0) look_at_health(true);
     write_what_is_due();
-    if (plan_.checkpoint.due(system_.step())) checkpoint(true);
+    if (plan_.checkpoint.due(system_.step())) checkpoint();
     if (system_.step() >= next_decision_) decision = decide_together();
     // At the same step on any ranks and after any restart.
     if (system_.step() % plan_.steps_between_looks_for_enough == 0 && has_enough()) decision = Decision::enough;
   }
-  look_at_health(false);
+  look_at_health();
   checkpoint();
   count_among_largest();
   if (log_.prints() && printed_step_ != system_.step()) report(seconds_since(begin_));
@@ -87,7 +87,7 @@ void TimeLoop::run() {
   record_.wall_seconds = seconds_since(begin_);
 }
 
-void TimeLoop::look_at_health(bool is_due) {
+void TimeLoop::look_at_health(bool is_regular) {
   if (looked_at_step_ == system_.step()) return;
   looked_at_step_ = system_.step();
   const auto scope = timer_.measure(timer_.phase("figures"));
@@ -102,7 +102,7 @@ void TimeLoop::look_at_health(bool is_due) {
         "At {:.6g} s (step {}) a sum over cells, links or grains has left the range in which it is exact: the flow has "
         "broken down (shorten fluid.time_step), or the lattice is larger than these sums are made for.",
         system_.time(), system_.step()));
-  if (is_due) count_among_largest();
+  if (is_regular) count_among_largest();
 }
 
 void TimeLoop::begin_largest() {
@@ -168,9 +168,9 @@ void TimeLoop::write_what_is_due() {
   }
 }
 
-void TimeLoop::checkpoint(bool is_due) {
+void TimeLoop::checkpoint() {
   if (!plan_.write_checkpoint || saved_step_ == system_.step()) return;
-  look_at_health(is_due);  // a broken state must not replace a good checkpoint
+  look_at_health();  // a broken state must not replace a good checkpoint
   const WallClock::time_point before = WallClock::now();
   std::uint64_t bytes = 0;
   {

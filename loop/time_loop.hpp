@@ -43,8 +43,8 @@ struct LoopRecord {
   double wall_seconds = 0.0;     // in run(), this time
   double advance_seconds = 0.0;  // of which in System::advance()
   std::vector<Figure> figures;   // of the system, at the latest look
-  // Of the system: the largest value of each figure since largest_from (s, simulated), at the looks that are due and at
-  // the end; minus infinity as long as there was none.
+  // Of the system: the largest value of each figure since largest_from (s, simulated), at the regular looks and at the
+  // end; minus infinity as long as there was none.
   std::vector<Figure> largest;
   double largest_from = 0.0;
   std::int64_t warnings = 0;  // of the watchdog
@@ -100,16 +100,16 @@ public:
 private:
   enum class Decision : int { go_on = 0, wall_time_is_up = 1, asked = 2, signal = 3, enough = 4 };
 
-  // Only a look that is due at this step in any run counts among the largest figures: one at which a run happens to be
-  // saved would make a run that was stopped differ from one that was not.
-  void look_at_health(bool is_due = true);
+  // Only the regular looks, by the number of the step alone, count among the largest figures: a run that writes more,
+  // or is saved elsewhere, has the same checkpoints.
+  void look_at_health(bool is_regular = false);
   void begin_largest();
   void count_among_largest();
   bool needs_momentum_at(std::int64_t step) const;
   void measure();
   bool has_enough() const;
   void write_what_is_due();
-  void checkpoint(bool is_due = false);
+  void checkpoint();
   std::int64_t own_decision();
   std::int64_t steps_to_next_decision(double now) const;
   double seconds_per_step(double now) const;
