@@ -22,6 +22,7 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[2] / "python"))
 import thalweg
 from thalweg import literature
+from thalweg.tables import read_rows
 
 BOUND, STEADY = 0.02, 1e-4
 DIAMETER = 5e-3
@@ -86,7 +87,8 @@ def main(points_folder, grids_folder, *resolved_folders):
     points = table(Path(points_folder) / "runs.csv")
     rows = compared(points)
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.6))
-    draw_relation(left, rows, [(0.0855, 0.055), (0.1431, 0.189)])   # wide_bed/README.md
+    resolved = read_rows(HERE.parent / "wide_bed" / "relation.csv")
+    draw_relation(left, rows, [(float(row["Shields number [1]"]), float(row["q_star [1]"])) for row in resolved])
     for speed, style in (("total", "-"), ("streamwise", ":")):
         folder = Path(points_folder) / "runs" / f"drag_speed_{speed}-slope_0.01-shields_number_0.085"
         draw_profiles(right, thalweg.Run(folder).profiles["continuum"], style, speed)
