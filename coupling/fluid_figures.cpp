@@ -1,5 +1,7 @@
 #include "coupling/fluid_figures.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace thalweg::coupling {
@@ -14,6 +16,13 @@ void add_extremes(const lbm::FluidSurvey& survey, std::vector<Figure>& figures) 
   figures.push_back({"smallest_density_deviation", "1", survey.lowest.value});
   figures.push_back({"largest_density_deviation", "1", survey.highest.value});
   figures.push_back({"fast_cell_fraction", "1", static_cast<double>(survey.fast_cells) / cells});
+}
+
+void add_momentum(const lbm::FluidSurvey& survey, const Vec3& force, const Units& units, std::vector<Figure>& figures) {
+  const Vec3 lattice = survey.totals.momentum - 0.5 * static_cast<double>(survey.totals.cells) * force;
+  const Vec3 momentum = lattice * units.force() * units.time_step;
+  for (int axis = 0; axis < 3; ++axis)
+    figures.push_back({fmt::format("fluid_momentum_{}", "xyz"[axis]), "kg m/s", momentum[axis]});
 }
 
 std::optional<Place> place_in_fluid(const lbm::FluidSurvey& survey, const Units& units, const std::string& figure) {

@@ -19,6 +19,10 @@ std::vector<Figure> speed_figures(const lbm::FluidSurvey& survey, const Units& u
 // gravity), and fast_cell_fraction: the share of fluid cells with a lattice velocity above FluidSurvey::fast (all 1).
 void add_extremes(const lbm::FluidSurvey& survey, std::vector<Figure>& figures);
 
+// Appends fluid_momentum_x, _y, _z (kg m/s). force: lattice units, on a cell; half of it is in the survey's sums
+// already, which are those after the collision.
+void add_momentum(const lbm::FluidSurvey& survey, const Vec3& force, const Units& units, std::vector<Figure>& figures);
+
 // Where the survey found the extreme value of one of these figures; where cells are broken, the first of them for any
 // name. Empty for a name that belongs to no place.
 std::optional<Place> place_in_fluid(const lbm::FluidSurvey& survey, const Units& units, const std::string& figure);

@@ -262,6 +262,8 @@ std::vector<Figure> ResolvedSystem<Real, S>::figures() const {
   figures.push_back({"largest_grain_speed", "m/s", grains_->largest_speed()});
   for (const Figure& figure : mass_.figures(excess.sum, mass_owed(), parameters_.units, parameters_.mass_balance))
     figures.push_back(figure);
+  const auto& force = fluid_.parameters().force;
+  add_momentum(survey, Vec3(force[0], force[1], force[2]), parameters_.units, figures);
   return figures;
 }
 

@@ -31,8 +31,8 @@ domain:
 gravity: {magnitude: 9.8, slope: 0.3}
 grains: [{count: 60, diameter: 5.0e-3, density: 2550, placement: {pattern: random, seed: 3}}]
 contact: {normal_stiffness: 2000, tangential_stiffness: 571, restitution: 0.7, friction: 0.3, wall_friction: 0.3}
-run: {until: 0.8, time_step: 0.5e-5}
-output: {series: {every: 0.001}}
+run: {until: 7, time_step: 0.5e-5}
+output: {series: {every: 0.01}}
 """
     SCRIPT = ""
 
@@ -96,21 +96,22 @@ output: {series: {every: 0.001}}
     def test_any_interruption_is_survived(self):
         # The node dies before the first checkpoint: everything is killed at once, and the queue runs the job again.
         process = self.begin_turn()
+        os.killpg(process.pid, signal.SIGSTOP)   # nobody is to see the others go
+        for pid in self.ranks():
+            os.kill(pid, signal.SIGKILL)
         os.killpg(process.pid, signal.SIGKILL)
         process.wait(timeout=30)
-        for pid in self.left_running():
-            os.kill(pid, signal.SIGKILL)
         self.assertFalse(any((self.folder / "run/checkpoints").glob("step_*.h5")))
         # The queue announces the end, in its two ways; and the program's own wall time is up.
         for number in (signal.SIGUSR1, signal.SIGTERM):
             process = self.begin_turn()
             process.send_signal(number)
             self.assert_wants_another_turn(process)
-        self.assert_wants_another_turn(self.submit(THALWEG_WALLTIME="00:00:02"))
+        self.assert_wants_another_turn(self.submit(THALWEG_WALLTIME="00:00:01"))
         self.end_and_compare()
 
-    def left_running(self):
-        """mpirun puts its ranks into groups of their own, which outlive it for a moment."""
+    def ranks(self):
+        """Process ids. mpirun puts its ranks into groups of their own."""
         found = []
         for entry in Path("/proc").glob("[0-9]*"):
             try:

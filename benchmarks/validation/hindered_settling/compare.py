@@ -3,9 +3,9 @@
 compare.py [RUN...] [--table FILE] [--figure FILE]
 
 RUN: folders of runs of hindered_settling.yaml; their velocities go into the table (a row a run; those of other runs stay). The
-velocity of the grains relative to that of the whole volume is averaged from a third of the run on. Prints it over that of a
-single sphere (Schiller and Naumann) and, of each Reynolds number, the exponent n of (1 - phi)^n with its error, the exponent of
-Richardson and Zaki, what is accepted, and pass or fail. Exit code 0 if all pass.
+velocity of the grains relative to that of the whole volume is averaged from a third of the run on and corrected for the size of
+the box (Ladd 1990). Prints it over that of a single sphere (Schiller and Naumann) and, of each Reynolds number, the exponent n of
+(1 - phi)^n with its error, the exponent of Richardson and Zaki, what is accepted, and pass or fail. Exit code 0 if all pass.
 """
 import argparse
 import sys
@@ -21,7 +21,8 @@ sys.path.insert(0, str(HERE.parents[2] / "python"))
 from thalweg import Run, mean_with_error
 from thalweg.tables import merged_rows, read_rows
 
-COLUMNS = ["run", "reynolds_number [1]", "solid_fraction [1]", "velocity [m/s]", "velocity_error [m/s]", "single_sphere [m/s]"]
+COLUMNS = ["run", "reynolds_number [1]", "solid_fraction [1]", "grains [1]", "velocity [m/s]", "velocity_error [m/s]",
+           "single_sphere [m/s]"]
 ACCEPTED = 0.3
 
 
@@ -39,6 +40,15 @@ def exponent_of_richardson_and_zaki(reynolds):
     return 4.65 if reynolds < 0.2 else 4.35 * reynolds**-0.03 if reynolds < 1.0 else 4.45 * reynolds**-0.1
 
 
+def missing_in_a_small_box(fraction, count):
+    """Of the velocity, over that of a single sphere: 1.76 S(0) (eta/eta_s) (phi/N)^(1/3), with the structure factor of hard spheres
+    (Carnahan and Starling) and the viscosity eta_s of the suspension (Krieger and Dougherty); A. J. C. Ladd, J. Chem. Phys. 93
+    (1990) 3484. For slow flow."""
+    structure = (1.0 - fraction)**4 / (1.0 + 4.0 * fraction + 4.0 * fraction**2 - 4.0 * fraction**3 + fraction**4)
+    fluidity = (1.0 - fraction / 0.64)**1.6
+    return 1.76 * structure * fluidity * (fraction / count)**(1.0 / 3.0)
+
+
 def measured(folder):
     run = Run(folder)
     grains, fluid = run.case["grains"][0], run.case["fluid"]
@@ -46,14 +56,12 @@ def measured(folder):
     solid = run.summary["grains"] * np.pi / 6.0 * diameter**3
     fraction = solid / run.size.prod()
     later = run.series["time"] > run.series["time"][-1] / 3.0
-    mean = mean_with_error(run.series["grain_momentum_z"][later] / (density * solid))
-    of_grains = mean.mean
-    # The momentum of the whole is zero, and so is the velocity of the volume in a vessel.
-    of_fluid = -density * fraction * of_grains / (float(fluid["density"]) * (1.0 - fraction))
-    of_volume = fraction * of_grains + (1.0 - fraction) * of_fluid
+    of_grains = run.series["grain_momentum_z"][later] / (density * solid)
+    of_fluid = run.series["fluid_momentum_z"][later] / (float(fluid["density"]) * run.size.prod() * (1.0 - fraction))
+    settling = mean_with_error((1.0 - fraction) * (of_fluid - of_grains))   # relative to the volume
     alone, reynolds = single_sphere(diameter, density, float(fluid["density"]), float(fluid["kinematic_viscosity"]),
                                     float(run.case["gravity"]["magnitude"]))
-    values = [reynolds, fraction, of_volume - of_grains, mean.error, alone]
+    values = [reynolds, fraction, run.summary["grains"], settling.mean, settling.error, alone]
     return dict(zip(COLUMNS, [run.folder.name] + [f"{value:.6g}" for value in values]))
 
 
@@ -71,9 +79,11 @@ def main():
     for reynolds, colour in zip(np.unique(np.round(table[:, 0], 3)), ("tab:blue", "tab:red", "k")):
         of_this = table[np.isclose(table[:, 0], reynolds, atol=1e-3)]
         of_this = of_this[np.argsort(of_this[:, 1])]
-        phi, ratio, error = of_this[:, 1], of_this[:, 2] / of_this[:, 4], of_this[:, 3] / of_this[:, 4]
-        for p, r, e in zip(phi, ratio, error):
-            print(f"Re {reynolds:<6g} solid fraction {p:.3f}: {r:.3f} +- {e:.3f} of a single sphere")
+        phi, ratio, error = of_this[:, 1], of_this[:, 3] / of_this[:, 5], of_this[:, 4] / of_this[:, 5]
+        missing = missing_in_a_small_box(phi, of_this[:, 2])
+        for p, r, e, m in zip(phi, ratio, error, missing):
+            print(f"Re {reynolds:<6g} solid fraction {p:.3f}: {r:.3f} +- {e:.3f} of a single sphere, in a large box {r + m:.3f}")
+        ratio = ratio + missing
         expected = exponent_of_richardson_and_zaki(reynolds)
         axes.errorbar(phi, ratio, error, fmt="o", color=colour, capsize=3, label=f"Re {reynolds:g}")
         curve = np.linspace(0.0, 0.45, 50)
