@@ -27,4 +27,14 @@ std::vector<WideSum> wide_sums_over_ranks(MPI_Comm communicator, std::span<const
   return wide;
 }
 
+std::vector<Vec3> vectors_over_ranks(MPI_Comm communicator, std::span<const FixedVec3> sums) {
+  std::vector<std::int64_t> parts;
+  for (const FixedVec3& sum : sums) parts.insert(parts.end(), {sum.x, sum.y, sum.z});
+  const std::vector<WideSum> totals = wide_sums_over_ranks(communicator, parts);
+  std::vector<Vec3> vectors(sums.size());
+  for (std::size_t k = 0; k < totals.size(); ++k)
+    vectors[k / 3][static_cast<int>(k % 3)] = totals[k].to_double(LatticeFixed::bits);
+  return vectors;
+}
+
 }  // namespace thalweg

@@ -1,6 +1,8 @@
 // Sums of 128-bit integers over all ranks: exact, so the same whatever the ranks.
 #pragma once
 
+#include "core/fixed_point.hpp"
+#include "core/types.hpp"
 #include "core/wide_sum.hpp"
 
 #include <mpi.h>
@@ -17,5 +19,6 @@ void sum_over_ranks(MPI_Comm communicator, std::span<WideSum> sums);
 
 // Of sums that every rank has in 64 bits.
 std::vector<WideSum> wide_sums_over_ranks(MPI_Comm communicator, std::span<const std::int64_t> sums);
+std::vector<Vec3> vectors_over_ranks(MPI_Comm communicator, std::span<const FixedVec3> sums);
 
 }  // namespace thalweg

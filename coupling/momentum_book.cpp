@@ -67,17 +67,11 @@ template <typename Real>
 std::vector<Vec3> over_ranks(const std::vector<FixedVec3>& entries, const lbm::Fluid<Real>& fluid, double unit) {
   const auto first = static_cast<std::size_t>(2 * fluid.block().lower[2]),
              all = static_cast<std::size_t>(2 * fluid.decomposition().cells()[2] + 1);
-  std::vector<std::int64_t> sums(3 * all, 0);
-  for (std::size_t h = 0; h < entries.size(); ++h) {
-    sums[3 * (first + h)] = entries[h].x;
-    sums[3 * (first + h) + 1] = entries[h].y;
-    sums[3 * (first + h) + 2] = entries[h].z;
-  }
-  const std::vector<WideSum> totals = wide_sums_over_ranks(fluid.communicator(), sums);
-  std::vector<Vec3> in_si(all);
-  for (std::size_t k = 0; k < totals.size(); ++k)
-    in_si[k / 3][static_cast<int>(k % 3)] = totals[k].to_double(LatticeFixed::bits) * unit;
-  return in_si;
+  std::vector<FixedVec3> mine(all);
+  std::copy(entries.begin(), entries.end(), mine.begin() + static_cast<std::ptrdiff_t>(first));
+  std::vector<Vec3> sums = vectors_over_ranks(fluid.communicator(), mine);
+  for (Vec3& sum : sums) sum *= unit;
+  return sums;
 }
 
 }  // namespace

@@ -130,6 +130,7 @@ void take_bed(Population& population, const Bed& bed, const PeriodicBox& box) {
 void take_shape(Population& population) {
   try {
     const auto shape = clump_shape_of(population);
+    population.clumps = {};
     add_clumps(population.clumps, *shape, population.density, population.count);
     population.diameter = 2.0 * shape->equivalent_radius();
   } catch (const InputError& error) {
@@ -137,14 +138,12 @@ void take_shape(Population& population) {
   }
 }
 
-// m^3, of all its grains if there were so many.
-double volume_of_grains(const Population& population, std::int64_t count) {
-  const auto volume = [&](double diameter) { return grain_volume(0.5 * diameter, population.thickness); };
-  if (population.shape) return static_cast<double>(count) * clump_shape_of(population)->volume;
-  if (!population.sizes.given()) return static_cast<double>(count) * volume(population.diameter);
-  double sum = 0.0;
-  for (const double d : sampled_diameters(population.sizes, count, population.placement.seed)) sum += volume(d);
-  return sum;
+// Shape and sizes, once the number of grains is known.
+void take_sizes(Population& population) {
+  if (population.shape) take_shape(population);
+  if (!population.sizes.given()) return;
+  population.diameters = sampled_diameters(population.sizes, population.count, population.placement.seed);
+  population.diameter = median_by_volume(population.diameters);
 }
 
 // The number of grains that fills the region, or the box, to the solid fraction as nearly as possible; of mixed sizes
@@ -154,11 +153,16 @@ void take_solid_fraction(Population& population, const PeriodicBox& box) {
   Vec3 extent = region ? Vec3(region->upper - region->lower) : box.size;
   if (population.thickness > 0.0) extent[1] = population.thickness;
   const double wanted = *population.solid_fraction * extent.prod();
-  constexpr std::int64_t sample = 1000;
-  double mean = volume_of_grains(population, sample) / sample;
-  population.count = std::max<std::int64_t>(1, std::llround(wanted / mean));
-  mean = volume_of_grains(population, population.count) / static_cast<double>(population.count);
-  population.count = std::max<std::int64_t>(1, std::llround(wanted / mean));
+  constexpr double most = 1e15;  // that can be counted with room to spare
+  population.count = 1000;       // a sample, and then nearly all
+  for (int pass = 0; pass < 2; ++pass) {
+    take_sizes(population);
+    const double needed = wanted / (population.volume() / static_cast<double>(population.count));
+    if (!(needed < most))
+      throw KeyError("solid_fraction",
+                     fmt::format("it takes {:.3g} grains of this size; give a larger diameter in m", needed));
+    population.count = std::max<std::int64_t>(1, std::llround(needed));
+  }
   population.solid_fraction.reset();
 }
 
@@ -168,10 +172,7 @@ void complete(Population& population, double disk_thickness, const std::optional
   population.thickness = disk_thickness;
   if (bed) take_bed(population, *bed, box);
   if (population.solid_fraction) take_solid_fraction(population, box);
-  if (population.shape) take_shape(population);
-  if (!population.sizes.given()) return;
-  population.diameters = sampled_diameters(population.sizes, population.count, population.placement.seed);
-  population.diameter = median_by_volume(population.diameters);
+  take_sizes(population);
 }
 
 }  // namespace thalweg::dem

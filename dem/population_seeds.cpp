@@ -107,8 +107,8 @@ std::vector<Vec3> place(const Population& population, const PeriodicBox& box, co
   std::vector<double> radii;
   for (std::size_t n = 0; n < static_cast<std::size_t>(population.count); ++n)
     radii.push_back(0.5 * population.room_of(n));
-  if (order_of(placement) == PlacementOrder::dense) return dense_packing(box, region, radii, 0.0, seed, placed);
-  return random_packing(box, region, radii, 0.0, seed, placed);
+  const auto pack = placement.pattern == PlacementPattern::dense ? dense_packing : random_packing;
+  return pack(box, region, radii, 0.0, seed, placed);
 }
 
 // Adds the grains of a population one after the other, with ids that count up.

@@ -23,9 +23,9 @@ void at_place(const io::YamlDocument& document, const std::string& section, cons
 }
 
 // Throws InputError at the first thing that cannot be, with the place of the key to change in the document.
+void check_case(const Case& c, const io::YamlDocument& document);
+
 // The same of the sections of a column, before the box is known that follows from them.
 void check_column(const Case& c, const io::YamlDocument& document);
-
-void check_case(const Case& c, const io::YamlDocument& document);
 
 }  // namespace thalweg::driver

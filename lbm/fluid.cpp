@@ -96,12 +96,9 @@ std::array<Vec3, 6> Fluid<Real>::wall_forces(double reference, std::vector<Fixed
   exchange_halo();
   apply_walls();
   const std::array<FixedVec3, 6> mine = walls_.forces(populations_, cells_, reference, sides_by_height);
-  std::vector<std::int64_t> parts;
-  for (const FixedVec3& sum : mine) parts.insert(parts.end(), {sum.x, sum.y, sum.z});
-  const std::vector<WideSum> sums = wide_sums_over_ranks(communicator_, parts);
+  const std::vector<Vec3> sums = vectors_over_ranks(communicator_, mine);
   std::array<Vec3, 6> forces;
-  for (std::size_t k = 0; k < sums.size(); ++k)
-    forces[k / 3][static_cast<int>(k % 3)] = sums[k].to_double(LatticeFixed::bits);
+  std::copy(sums.begin(), sums.end(), forces.begin());
   return forces;
 }
 

@@ -184,8 +184,7 @@ void TimeLoop::checkpoint() {
       left > 0.0 && seconds > most_of_the_time * left && longest_checkpoint_ <= most_of_the_time * left)
     log_.line(
         fmt::format("warning: this checkpoint took {:.2g} s, and mpirun kills the ranks {:.2g} s after Ctrl-C or "
-                    "SIGTERM: stop this "
-                    "run with thalweg stop {}, with SIGUSR1 or SIGUSR2 to mpirun, or by --walltime",
+                    "SIGTERM: stop this run with thalweg stop {}, with SIGUSR1 or SIGUSR2 to mpirun, or by --walltime",
                     seconds, left, plan_.stop_file.parent_path().string()));
   saved_step_ = system_.step();
   saved_at_ = seconds_since(begin_);
@@ -262,8 +261,7 @@ std::string TimeLoop::danger_of_being_killed() const {
   if (left <= 0.0 || longest_checkpoint_ < most_of_the_time * left) return "";
   return fmt::format(
       ", which took up to {:.2g} s so far, and mpirun leaves {:.2g} s; if this checkpoint is lost, a restart goes on "
-      "from "
-      "the one of step {}",
+      "from the one of step {}",
       longest_checkpoint_, left, saved_step_);
 }
 

@@ -34,6 +34,7 @@ struct OutputTask {
 };
 
 using SeriesRow = std::function<void(double time, std::int64_t step, const std::vector<Figure>&)>;  // collective
+
 // What has become of a run so far.
 struct LoopRecord {
   bool finished = false;

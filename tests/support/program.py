@@ -16,6 +16,20 @@ import numpy
 THALWEG, MPIEXEC = sys.argv[1:3]
 
 
+# Sixty dry grains that slide down a steep floor; `run` and `output` are to follow.
+SLIDING_GRAINS = """
+system: grains
+name: sliding
+domain:
+  size: [0.05, 0.03, 0.05]
+  spacing: 0.5e-3
+  boundaries: {x: periodic, y: no_slip, bottom: no_slip, top: free_slip}
+gravity: {magnitude: 9.8, slope: 0.3}
+grains: [{count: 60, diameter: 5.0e-3, density: 2550, placement: {pattern: random, seed: 3}}]
+contact: {normal_stiffness: 2000, tangential_stiffness: 571, restitution: 0.7, friction: 0.3, wall_friction: 0.3}
+"""
+
+
 def files_below(folder):
     return sorted(str(p.relative_to(folder)) for p in Path(folder).rglob("*"))
 
@@ -42,6 +56,18 @@ class ProgramTest(unittest.TestCase):
         result = self.thalweg(*arguments, ranks=ranks)
         self.assertEqual(result.returncode, 0, result.stderr + result.stdout)
         return result
+
+    def processes(self):
+        """Ids of the processes of the program that work in the folder of the test. mpirun puts its ranks into groups of their
+        own, and they outlive it for a moment."""
+        found = []
+        for entry in Path("/proc").glob("[0-9]*"):
+            try:
+                if entry.joinpath("cwd").resolve() == self.folder and entry.joinpath("exe").resolve() == Path(THALWEG).resolve():
+                    found.append(int(entry.name))
+            except OSError:   # it has ended
+                pass
+        return found
 
     def summary(self, run):
         return json.loads((self.folder / run / "summary.json").read_text())

@@ -14,23 +14,14 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 import program
-from program import MPIEXEC, THALWEG, ProgramTest
+from program import MPIEXEC, SLIDING_GRAINS, THALWEG, ProgramTest
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts/cluster"
 
 
 class Turns(ProgramTest):
     """Of either queue: subclasses have the script and what it is called with."""
-    CASE = """
-system: grains
-name: in turns
-domain:
-  size: [0.05, 0.03, 0.05]
-  spacing: 0.5e-3
-  boundaries: {x: periodic, y: no_slip, bottom: no_slip, top: free_slip}
-gravity: {magnitude: 9.8, slope: 0.3}
-grains: [{count: 60, diameter: 5.0e-3, density: 2550, placement: {pattern: random, seed: 3}}]
-contact: {normal_stiffness: 2000, tangential_stiffness: 571, restitution: 0.7, friction: 0.3, wall_friction: 0.3}
+    CASE = SLIDING_GRAINS + """
 run: {until: 7, time_step: 0.5e-5}
 output: {series: {every: 0.01}}
 """
@@ -97,7 +88,7 @@ output: {series: {every: 0.01}}
         # The node dies before the first checkpoint: everything is killed at once, and the queue runs the job again.
         process = self.begin_turn()
         os.killpg(process.pid, signal.SIGSTOP)   # nobody is to see the others go
-        for pid in self.ranks():
+        for pid in self.processes():
             os.kill(pid, signal.SIGKILL)
         os.killpg(process.pid, signal.SIGKILL)
         process.wait(timeout=30)
@@ -109,17 +100,6 @@ output: {series: {every: 0.01}}
             self.assert_wants_another_turn(process)
         self.assert_wants_another_turn(self.submit(THALWEG_WALLTIME="00:00:01"))
         self.end_and_compare()
-
-    def ranks(self):
-        """Process ids. mpirun puts its ranks into groups of their own."""
-        found = []
-        for entry in Path("/proc").glob("[0-9]*"):
-            try:
-                if entry.joinpath("cwd").resolve() == self.folder and entry.joinpath("exe").resolve() == Path(THALWEG).resolve():
-                    found.append(int(entry.name))
-            except OSError:
-                pass
-        return found
 
     def test_what_cannot_go_on_is_not_queued_again(self):
         self.case.write_text(self.CASE.replace("count: 60", "count: -1"))

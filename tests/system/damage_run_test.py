@@ -11,7 +11,7 @@ import h5py
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 import program
-from program import ProgramTest
+from program import SLIDING_GRAINS, ProgramTest
 
 
 def flip(at):
@@ -48,16 +48,7 @@ def exchanged(dataset):
 
 
 class DamageRun(ProgramTest):
-    CASE = """
-system: grains
-name: damaged
-domain:
-  size: [0.05, 0.03, 0.05]
-  spacing: 0.5e-3
-  boundaries: {x: periodic, y: no_slip, bottom: no_slip, top: free_slip}
-gravity: {magnitude: 9.8, slope: 0.3}
-grains: [{count: 60, diameter: 5.0e-3, density: 2550, placement: {pattern: random, seed: 3}}]
-contact: {normal_stiffness: 2000, tangential_stiffness: 571, restitution: 0.7, friction: 0.3, wall_friction: 0.3}
+    CASE = SLIDING_GRAINS + """
 run: {until: 0.2, time_step: 1.0e-5}
 output: {series: {every: 0.01}, checkpoint: {every: 0.05, keep: 2}}
 """

@@ -19,7 +19,7 @@ SEED = int(sys.argv[4]) if len(sys.argv) > 4 else 1
 del sys.argv[3:]
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 import program
-from program import THALWEG, ProgramTest
+from program import ProgramTest
 
 
 class Killed(ProgramTest):
@@ -46,24 +46,13 @@ analysis: {transport_rate: {}}
         self.chance = random.Random(SEED)
         self.case.write_text(self.CASE + f"run: {{until: {self.STEPS_A_KILL * KILLS * 1e-4:.6g}}}\n")
 
-    def ours(self):
-        """Every process of the run: ranks have groups of their own, and outlive mpirun for a moment."""
-        found = []
-        for entry in Path("/proc").glob("[0-9]*"):
-            try:
-                if entry.joinpath("cwd").resolve() == self.folder and entry.joinpath("exe").resolve() == Path(THALWEG).resolve():
-                    found.append(int(entry.name))
-            except OSError:
-                pass
-        return found
-
     def kill(self, process, ranks):
         """ranks: those known so far; to look for them takes longer than to write a checkpoint."""
         for pid in ranks:
             self.kill_one(pid)
         os.killpg(process.pid, signal.SIGKILL)
         for _ in range(100):
-            left = self.ours()
+            left = self.processes()
             if not left:
                 break
             for pid in left:
@@ -108,7 +97,7 @@ analysis: {transport_rate: {}}
             ranks = []
             if number % 2 == 0:   # within a checkpoint: its file is there from its first byte to the last
                 self.wait_until(lambda: self.step() > before, process, 60)   # the run gets on
-                ranks = self.ours()
+                ranks = self.processes()
                 self.wait_until(self.unfinished, process, 60)
                 time.sleep(self.chance.uniform(0.0, 0.004))
             else:

@@ -69,6 +69,7 @@ output: {series: {every: 0.01}, grains: {every: 0.01}, fluid: {every: 0.01, fiel
                  ["gravity.mode", "walls across z", "mode: reduced"]),
                 (["grains.0.fixed=true"], ["gravity.mode", "no weight of free grains"]),
                 (["grains.0.count=5"], ["solid_fraction", "remove one of the two"]),
+                (["grains.0.diameter=1e-9"], ["grains.0.solid_fraction", "larger diameter"]),
                 (["grains.0.solid_fraction=0.7"], ["do not fit"])):
             self.assert_refused("check", self.case, *[part for s in settings for part in ("--set", s)], words=words)
 
