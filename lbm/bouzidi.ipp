@@ -172,6 +172,7 @@ template <typename Real, LinkShape S>
 template <typename Rule>
 void LinkPass<Real, S>::gather(const Batch& b) {
   const int wanted_at_any_distance = gaps_.kept < 1.0 ? 1 : 0;
+  const int wanted_near_wall = Rule::needs_both ? 0 : 1;
   const Real* deviation = deviations_[parity_].data();
   int covered = 0;
   for (int k = 0; k < b.count; ++k) {
@@ -179,7 +180,7 @@ void LinkPass<Real, S>::gather(const Batch& b) {
     values_.incident[k] = base_[b.incident_at[k]];
     values_.second[k] = base_[b.second_at[k]];
     covered_[covered] = k;
-    covered += (static_cast<int>(b.distance[k] < Real(0.5)) | wanted_at_any_distance) &
+    covered += ((static_cast<int>(b.distance[k] < Real(0.5)) & wanted_near_wall) | wanted_at_any_distance) &
                static_cast<int>(b.tag[k] >> LinkTag::covered_shift & 1);
   }
   slips_ = wanted_at_any_distance != 0 && covered > 0;
@@ -251,7 +252,7 @@ void LinkPass<Real, S>::let_gaps_flow(const Batch& b, int covered) {
   }
 }
 
-// For a rule that needs both: what of the batch has no x_ff keeps the second value of Bouzidi's rule.
+// For a rule that needs both. Without x_ff the second value has no weight.
 template <typename Real, LinkShape S>
 void LinkPass<Real, S>::look_upstream(const Batch& b) {
   for (int k = 0; k < b.count; ++k) {
@@ -288,11 +289,9 @@ void LinkPass<Real, S>::reflect(const Batch& b) {
     if (slips_) towards_wall += at(values_.slip);
     LinkWeights<Pack> rule = Rule::weights(at(b.distance));
     if constexpr (Rule::needs_both) {
-      const LinkWeights<Pack> without = BouzidiLink::weights(at(b.distance));
       const typename Pack::mask_type covered = at(values_.covered) != Pack(Real(0));
-      rule.incident = chosen<Pack>(covered, without.incident, rule.incident);
-      rule.second = chosen<Pack>(covered, without.second, rule.second);
-      rule.wall = chosen<Pack>(covered, without.wall, rule.wall);
+      rule.second = chosen<Pack>(covered, Pack(Real(0)), rule.second);
+      rule.wall = chosen<Pack>(covered, Pack(Real(6)), rule.wall);
     }
     const Pack deviation = at(values_.deviation), incident = at(values_.incident);
     const Pack density = local ? Pack(Real(1)) + deviation : Pack(Real(1));
@@ -368,7 +367,7 @@ template <typename Rule>
 void LinkPass<Real, S>::add_balance(const Batch& b) const {
   for (int k = 0; k < b.count; ++k) {
     const bool near_wall = b.distance[k] < Real(0.5), has_covered = (b.tag[k] >> LinkTag::covered_shift & 1) != 0;
-    const bool reads_upstream = Rule::needs_both ? near_wall || !has_covered : near_wall;
+    const bool reads_upstream = Rule::needs_both ? !has_covered : near_wall;
     std::int64_t& part = !reads_upstream ? balance_->same_cell : has_covered ? balance_->covered : balance_->upstream;
     part = exact_sum(part, LatticeFixed::from(static_cast<double>(values_.interpolated[k])));
     balance_->moving_wall =

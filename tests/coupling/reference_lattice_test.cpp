@@ -108,6 +108,8 @@ private:
       const double k = (1 - 2 * delta) / (1 + 2 * delta);
       result =
           f_[at][i] + k * upstream - k * f_[at][back] - 12 / (1 + 2 * delta) * weight * (1 + density) * towards_wall;
+    } else if (options.rule == lbm::LinkRule::cli) {  // a gap of one cell: bounce-back
+      result = incident - 6 * weight * (1 + density) * towards_wall;
     } else if (delta < 0.5) {
       result = 2 * delta * incident + (1 - 2 * delta) * upstream - 6 * weight * (1 + density) * towards_wall;
     } else {

@@ -133,6 +133,30 @@ TEST(Case, WarnsOfABulkViscosityThatMakesTrtUnstable) {
   EXPECT_EQ(warnings(c).size(), without);
 }
 
+// The drag of dense arrays is off by tens of percent where it depends on the relaxation time
+// (benchmarks/validation/simple_cubic_arrays), which it does except with trt and cli.
+TEST(Case, WarnsOfLinksWhoseDragDependsOnTheViscosity) {
+  Case c = wide_bed();
+  c.run.until = 30.0;
+  c.fluid.smagorinsky_constant = 0.0;
+  c.fluid.bulk_relaxation_time = 0.0;
+  c.fluid.kinematic_viscosity = 0.5 / 3.0 * c.domain.spacing * c.domain.spacing / fluid_time_step(c);  // tau = 1
+  const auto recommends = [&](const char* words) {
+    for (const std::string& warning : warnings(c))
+      if (warning.find("In a dense bed") != std::string::npos) return warning.find(words) != std::string::npos;
+    return false;
+  };
+  c.fluid.collision = lbm::CollisionModel::bgk;
+  EXPECT_TRUE(recommends("consider fluid.collision: trt and coupling.links: cli"));
+  c.fluid.collision = lbm::CollisionModel::trt;
+  EXPECT_TRUE(recommends("consider coupling.links: cli"));
+  c.coupling.links = lbm::LinkRule::cli;
+  EXPECT_FALSE(recommends(""));
+  c.coupling.links = lbm::LinkRule::bouzidi;
+  c.fluid.smagorinsky_constant = 0.27;  // water
+  EXPECT_FALSE(recommends(""));
+}
+
 // docs/stability.md: at tau - 1/2 = 0.003 a stream is stable up to 0.10 cells a step with three steps, 0.16 with one.
 TEST(Case, WarnsOfABulkViscosityThatMakesAFastStreamUnstable) {
   Case c = wide_bed();

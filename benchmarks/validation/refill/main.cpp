@@ -5,6 +5,7 @@
 //   bin/refill covered        the first refill, with the momentum of covered cells lost and given to the grain, and
 //   past a sphere
 //                             at rest, which covers none
+//   bin/refill links          the first refill, with each rule of links, bgk and trt, bulk relaxation time 1
 //   bin/refill drag           the first refill from Re_p = 1 to 200 (0.02 cells a step)
 //
 // A sphere of ten cells moves at constant velocity, not along the lattice and without turning, through fluid at rest in
@@ -38,10 +39,19 @@ struct Regime {
   double relaxation_time, smagorinsky_constant, speed;  // lattice units
 };
 
+struct Setting {
+  std::string name;
+  RefillRule refill = RefillRule::equilibrium;
+  double bulk_relaxation_time = 0.0;
+  Covered covered = Covered::lost;
+  lbm::LinkRule links = lbm::LinkRule::bouzidi;
+  lbm::CollisionModel collision = lbm::CollisionModel::bgk;
+};
+
 constexpr double radius = 5.0;
 
-std::unique_ptr<coupling::ResolvedSystem<double>> make(const Regime& regime, const Vec3& velocity, RefillRule rule,
-                                                       double bulk_relaxation_time, Covered covered) {
+std::unique_ptr<coupling::ResolvedSystem<double>> make(const Regime& regime, const Vec3& velocity,
+                                                       const Setting& setting) {
   const Index3 cells{56, 48, 48};
   auto decomposition =
       std::make_unique<Decomposition>(cells, 1.0, std::array<bool, 3>{true, true, true}, Index3{1, 1, 1});
@@ -49,10 +59,12 @@ std::unique_ptr<coupling::ResolvedSystem<double>> make(const Regime& regime, con
   p.units = {1.0, 1.0, 1.0};
   p.collision.relaxation_time = regime.relaxation_time;
   p.collision.smagorinsky_constant = regime.smagorinsky_constant;
-  p.collision.bulk_relaxation_time = bulk_relaxation_time;
-  p.refill = rule;
-  p.keep_covered_momentum = covered != Covered::lost;
-  const bool held = covered == Covered::none;
+  p.collision.bulk_relaxation_time = setting.bulk_relaxation_time;
+  p.collision.model = setting.collision;
+  p.links.rule = setting.links;
+  p.refill = setting.refill;
+  p.keep_covered_momentum = setting.covered != Covered::lost;
+  const bool held = setting.covered == Covered::none;
   p.initial_fluid = [u = held ? Vec3(-velocity) : Vec3(Vec3::Zero())](const Vec3&) {
     return coupling::FluidInitialState{0.0, u};
   };
@@ -95,10 +107,9 @@ double roughness(const std::vector<Vec3>& values, int half) {
   return std::sqrt(sum / count);
 }
 
-void measure(const Regime& regime, RefillRule rule, double bulk_relaxation_time, const std::string& name,
-             Covered covered = Covered::lost) {
+void measure(const Regime& regime, const Setting& setting) {
   const Vec3 along = Vec3(1.0, 0.37, 0.21).normalized();
-  const auto system = make(regime, regime.speed * along, rule, bulk_relaxation_time, covered);
+  const auto system = make(regime, regime.speed * along, setting);
   const int crossing = static_cast<int>(1.0 / regime.speed), steps = static_cast<int>(120.0 / regime.speed);
   std::vector<Vec3> force, torque, load, load_torque;
   Vec3 total = Vec3::Zero();
@@ -115,11 +126,48 @@ void measure(const Regime& regime, RefillRule rule, double bulk_relaxation_time,
   }
   const double drag = -total.dot(along) / static_cast<double>(load.size()), moment = drag * radius;
   const int half = crossing / 2;
-  std::printf("%s\n", fmt::format("| {} | {} | {:.4f} | {:.4f} | {:.4f} | {:.4f} | {:.5g} |", regime.name, name,
+  std::printf("%s\n", fmt::format("| {} | {} | {:.4f} | {:.4f} | {:.4f} | {:.4f} | {:.5g} |", regime.name, setting.name,
                                   step_to_step(force) / drag, roughness(load, half) / drag,
                                   step_to_step(torque) / moment, roughness(load_torque, half) / moment, drag)
                           .c_str());
   std::fflush(stdout);
+}
+
+// What is varied, by the words of the command line; the heading of its column first.
+std::pair<std::string, std::vector<Setting>> settings_of(int argc, char** argv) {
+  const std::string mode = argc == 2 ? argv[1] : "";
+  if (mode == "covered") {
+    std::vector<Setting> settings;
+    for (const double bulk : {0.0, 3.0})
+      for (const auto& [covered, name] :
+           {std::pair{Covered::lost, "lost"}, {Covered::to_grain, "to_grain"}, {Covered::none, "none: sphere at rest"}})
+        settings.push_back({fmt::format("{}, tau_b = {}", name, bulk), RefillRule::equilibrium, bulk, covered});
+    return {"covered", settings};
+  }
+  if (mode == "links") {
+    std::vector<Setting> settings;
+    for (const auto& [collision, name] :
+         {std::pair{lbm::CollisionModel::bgk, "bgk"}, {lbm::CollisionModel::trt, "trt"}})
+      for (const auto& [links, rule] : {std::pair{lbm::LinkRule::bouzidi, "bouzidi"}, {lbm::LinkRule::cli, "cli"}})
+        settings.push_back(
+            {fmt::format("{}, {}", rule, name), RefillRule::equilibrium, 1.0, Covered::lost, links, collision});
+    return {"links", settings};
+  }
+  if (argc > 1) {
+    std::vector<Setting> settings;
+    for (int n = 1; n < argc; ++n) settings.push_back({argv[n], RefillRule::equilibrium, std::atof(argv[n])});
+    return {"tau_b", settings};
+  }
+  return {"refill",
+          {{"equilibrium", RefillRule::equilibrium},
+           {"non_equilibrium", RefillRule::non_equilibrium},
+           {"grad", RefillRule::grad}}};
+}
+
+void print_heading(const std::string& varied) {
+  fmt::print("| flow | {} | force, step to step | within a cell | torque, step to step | within a cell | drag |\n",
+             varied);
+  fmt::print("|---|---|---|---|---|---|---|\n");
 }
 
 }  // namespace
@@ -128,36 +176,18 @@ void measure(const Regime& regime, RefillRule rule, double bulk_relaxation_time,
 int main(int argc, char** argv) {
   using namespace thalweg;
   MpiSession session(argc, argv);
-  const std::string mode = argc == 2 ? argv[1] : "";
-  const bool drag = mode == "drag", by_covered = mode == "covered";
-  fmt::print("| flow | {} | force, step to step | within a cell | torque, step to step | within a cell | drag |\n",
-             by_covered          ? "covered"
-             : argc > 1 && !drag ? "tau_b"
-                                 : "refill");
-  std::printf("|---|---|---|---|---|---|---|\n");
-  if (drag) {
+  if (argc == 2 && std::string(argv[1]) == "drag") {
+    benchmark::print_heading("refill");
     for (const int reynolds : {1, 5, 20, 50, 100, 200}) {
       const std::string name = fmt::format("Re_p = {}", reynolds);
-      const benchmark::Regime regime{name.c_str(), 0.5 + 3.0 * 0.02 * 10.0 / reynolds, 0.0, 0.02};
-      measure(regime, coupling::RefillRule::equilibrium, 0.0, "equilibrium");
+      benchmark::measure({name.c_str(), 0.5 + 3.0 * 0.02 * 10.0 / reynolds, 0.0, 0.02}, {"equilibrium"});
     }
     return 0;
   }
+  const auto [varied, settings] = benchmark::settings_of(argc, argv);
+  benchmark::print_heading(varied);
   for (const benchmark::Regime& regime : {benchmark::Regime{"Re_p = 20", 0.55, 0.0, 20.0 * 0.05 / 3.0 / 10.0},
-                                          benchmark::Regime{"water", 0.50024, 0.27, 0.012}}) {
-    if (by_covered) {
-      for (const double bulk : {0.0, 3.0})
-        for (const auto& [covered, name] : {std::pair{benchmark::Covered::lost, "lost"},
-                                            {benchmark::Covered::to_grain, "to_grain"},
-                                            {benchmark::Covered::none, "none: sphere at rest"}})
-          measure(regime, coupling::RefillRule::equilibrium, bulk, fmt::format("{}, tau_b = {}", name, bulk), covered);
-      continue;
-    }
-    for (int n = 1; n < argc; ++n) measure(regime, coupling::RefillRule::equilibrium, std::atof(argv[n]), argv[n]);
-    if (argc > 1) continue;
-    measure(regime, coupling::RefillRule::equilibrium, 0.0, "equilibrium");
-    measure(regime, coupling::RefillRule::non_equilibrium, 0.0, "non_equilibrium");
-    measure(regime, coupling::RefillRule::grad, 0.0, "grad");
-  }
+                                          benchmark::Regime{"water", 0.50024, 0.27, 0.012}})
+    for (const benchmark::Setting& setting : settings) measure(regime, setting);
   return 0;
 }

@@ -13,7 +13,8 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+from arrays import reference_drags
+
 from thalweg.tables import read_rows
 
 ACCEPTED, FROM_CELLS = 0.05, 10.0
@@ -25,9 +26,7 @@ def main():
     parser.add_argument("--figure", default="simple_cubic_arrays.png")
     arguments = parser.parse_args()
 
-    rows = read_rows(Path(__file__).with_name("reference.csv"))
-    reference = {row["solid_fraction [1]"]: float(row["drag [1]"]) for row in rows}
-    drags = {}
+    reference, drags = reference_drags(), {}
     for table in arguments.tables:
         for row in read_rows(table):
             group = drags.setdefault((row["links"], row["solid_fraction [1]"]), {})

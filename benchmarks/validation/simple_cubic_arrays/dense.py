@@ -1,0 +1,77 @@
+#!/usr/bin/python3
+"""Drag on dense arrays at ten cells a diameter: dense.py THALWEG OUTPUT_FOLDER [--collision bgk] [--tau 0.6 1 1.5]
+
+Runs arrays of five solid fractions, up to that of spheres that touch, with both rules of links and several relaxation times,
+each with the spheres at a few places between the cells; appends a line a run to OUTPUT_FOLDER/dense.csv, passes over those
+that are there, and prints the mean difference from Zick and Homsy for each. Exit code 0 if `cli` with trt is within 3 %.
+"""
+import argparse
+import random
+import sys
+from pathlib import Path
+
+from arrays import overrides, reference_drags, run_array
+
+from thalweg.tables import read_rows
+
+CELLS = {0.125: 32, 0.216: 27, 0.343: 23, 0.45: 21, 0.5236: 20}  # of the box, two spheres wide: 9.9 to 10.05 a diameter
+PLACES, ACCEPTED = 3, 0.03
+HEADINGS = ["links", "collision", "tau", "solid_fraction [1]", "diameter [cells]", "place", "drag [1]"]
+
+
+def setting(row):
+    return tuple(row[name] for name in HEADINGS[:4])
+
+
+def run_missing(thalweg, table, collision, taus):
+    done = {setting(row) + (row["place"],) for row in read_rows(table)}
+    for fraction, cells in CELLS.items():
+        for tau in taus:
+            for links in ("bouzidi", "cli"):
+                place = random.Random(1)
+                for number in range(PLACES):
+                    diameter, until, values = overrides(fraction, cells, place, tau)
+                    name = (links, collision, str(tau), str(fraction))
+                    if name + (str(number),) in done:
+                        continue
+                    values |= {"coupling.links": links, "fluid.collision": collision}
+                    drag = run_array(thalweg, table.parent / "_".join(name + (str(number),)), until, values)
+                    with open(table, "a") as file:
+                        file.write(f"{','.join(name)},{diameter:.4f},{number},{drag:.5f}\n")
+
+
+def report(table):
+    exact = reference_drags()
+    drags = {}
+    for row in read_rows(table):
+        drags.setdefault(setting(row), []).append(float(row["drag [1]"]))
+    passed = True
+    for (links, collision, tau, fraction), values in sorted(drags.items()):
+        error = sum(values) / len(values) / exact[fraction] - 1.0
+        spread = (max(values) - min(values)) / exact[fraction]
+        verdict = ""
+        if (links, collision) == ("cli", "trt"):
+            good = abs(error) <= ACCEPTED
+            passed, verdict = passed and good, ": pass" if good else ": FAIL"
+        print(f"{links} {collision}, tau {tau}, solid fraction {fraction}: {100 * error:+.1f} %, places {100 * spread:.1f} % "
+              f"apart{verdict}")
+    return passed
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("thalweg")
+    parser.add_argument("output", type=Path, metavar="OUTPUT_FOLDER")
+    parser.add_argument("--collision", default="trt")
+    parser.add_argument("--tau", nargs="+", type=float, default=[0.6, 1.0, 1.5])
+    arguments = parser.parse_args()
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    table = arguments.output / "dense.csv"
+    if not table.exists():
+        table.write_text(",".join(HEADINGS) + "\n")
+    run_missing(arguments.thalweg, table, arguments.collision, arguments.tau)
+    return 0 if report(table) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
