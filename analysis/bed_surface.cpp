@@ -55,18 +55,28 @@ void BedSurface::measure(const Snapshot& snapshot) {
   const BedLayers::Bed bed = layers_.bed(snapshot);
   bulk_ = bed.solid_fraction;
   bed_height_ = bed.height;
+  if (!flow_ || flow_->shields_stress <= 0.0) return;
+  bed_stress_ = flow_->driving_stress * hydraulic_radius();
+  if (!flow_->measured || snapshot.fluid == nullptr) return;
+  const FluidSource::Drive drive = snapshot.fluid->drive();
+  const double on_top = -drive.on_top.x() / (box_.size.x() * box_.size.y());
+  bed_stress_ = (drive.body_force.x() + on_top / flow_depth()) * hydraulic_radius();
+}
+
+double BedSurface::flow_depth() const { return box_.size.z() - bed_height_; }
+
+double BedSurface::hydraulic_radius() const {
+  return flow_depth() * layers_.width() / (layers_.width() + flow_->side_walls * flow_depth());
 }
 
 std::vector<Figure> BedSurface::figures() const {
   std::vector<Figure> figures{{"bed_height", "m", bed_height_}, {static_height, "m", mean_of(pixels_.surface())}};
   if (!flow_) return figures;
-  const double depth = box_.size.z() - bed_height_;
-  const double radius = depth * layers_.width() / (layers_.width() + flow_->side_walls * depth);
-  figures.push_back({"flow_depth", "m", depth});
-  figures.push_back({"hydraulic_radius", "m", radius});
-  if (flow_->driving_stress <= 0.0) return figures;
-  figures.push_back({"bed_stress", "Pa", flow_->driving_stress * radius});
-  figures.push_back({"shields_number", "1", flow_->driving_stress * radius / flow_->shields_stress});
+  figures.push_back({"flow_depth", "m", flow_depth()});
+  figures.push_back({"hydraulic_radius", "m", hydraulic_radius()});
+  if (flow_->shields_stress <= 0.0) return figures;
+  figures.push_back({"bed_stress", "Pa", bed_stress_});
+  figures.push_back({"shields_number", "1", bed_stress_ / flow_->shields_stress});
   return figures;
 }
 
@@ -104,6 +114,7 @@ void BedSurface::save(ArchiveWriter& archive) const {
   archive.attribute("bed_surface/pictures", pictures_);
   archive.attribute("bed_surface/latest_bed_height", bed_height_);  // a row of the series may come before the next
   archive.attribute("bed_surface/latest_bulk", bulk_);
+  archive.attribute("bed_surface/latest_bed_stress", bed_stress_);
   const bool first = rank_of(communicator_) == 0;
   const auto write = [&](const std::string& path, const std::vector<double>& values) {
     const std::uint64_t size = values.size(), mine = first ? size : 0;
@@ -124,6 +135,8 @@ bool BedSurface::load(ArchiveReader& archive) {
   pictures_ = archive.integer_attribute("bed_surface/pictures");
   bed_height_ = archive.real_attribute("bed_surface/latest_bed_height");
   bulk_ = archive.real_attribute("bed_surface/latest_bulk");
+  if (archive.has("bed_surface/latest_bed_stress"))  // older checkpoints have none
+    bed_stress_ = archive.real_attribute("bed_surface/latest_bed_stress");
   const auto read = [&](const std::string& path, std::vector<double>& values) {
     archive.read(path, std::span<double>(values), {{values.size()}, {0}, {values.size()}});
   };
@@ -160,13 +173,14 @@ void check(const BedSurfaceKeys&, const RunFacts& run) {
 
 std::optional<BedFlow> bed_flow(const RunFacts& run) {
   if (!run.fluid) return std::nullopt;
-  const double g = run.gravity.norm();
   BedFlow flow;
   flow.side_walls = run.fluid->side_walls;
-  flow.shields_stress = (run.grains->reference_density - run.fluid->density) * g * run.grains->reference_diameter;
   const bool by_slope = run.gravity.x() > 0.0 && run.gravity.z() < 0.0 && !run.fluid->steered;
-  if (by_slope && flow.shields_stress > 0.0)
-    flow.driving_stress = run.fluid->density * g * run.gravity.x() / -run.gravity.z();
+  if (!by_slope && !run.fluid->steered && !run.fluid->top_moves) return flow;
+  flow.shields_stress =
+      (run.grains->reference_density - run.fluid->density) * run.gravity.norm() * run.grains->reference_diameter;
+  flow.driving_stress = run.fluid->density * run.gravity.x();
+  flow.measured = run.fluid->steered || run.fluid->top_drags;
   return flow;
 }
 

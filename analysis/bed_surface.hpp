@@ -4,8 +4,14 @@
 //                     (static_pixels.hpp)
 //   flow depth        H   = height of the box - bed height, that of the solid fraction
 //   hydraulic radius  R_h = H W / (W + n H)                n: side walls that hold the flow back, 0 to 2
-//   bed stress        tau_b = rho_f g S R_h                Pa, of a flow that is steady (Zhang et al. 2022)
+//   bed stress        tau_b = f R_h                        Pa, of a flow that is steady (Zhang et al. 2022)
+//                     f     = rho_f g_x                    N/m^3, downstream part of gravity: g times the sine of the
+//                     slope
 //   Shields number    tau*  = tau_b / ((rho_s - rho_f) g d)
+//
+// Where the mean velocity is steered, f is the force that does so, as it is then; where the top of the box drags the
+// flow, or holds it back, it takes part with its stress tau_top as measured (Pa, on the fluid, along x):
+//   tau_b = (f H + tau_top) W / (W + n H)
 #pragma once
 
 #include "analysis/bed_layers.hpp"
@@ -40,8 +46,9 @@ std::unique_ptr<Observer> make_observer(const BedSurfaceKeys& keys, const RunFac
 // The flow over the bed; none for dry grains.
 struct BedFlow {
   int side_walls = 0;           // that hold the flow back
-  double driving_stress = 0.0;  // Pa/m: rho_f g S; 0: no slope drives the flow, and no stress is shown
-  double shields_stress = 0.0;  // Pa: (rho_s - rho_f) g d
+  double driving_stress = 0.0;  // Pa/m: rho_f g_x
+  double shields_stress = 0.0;  // Pa: (rho_s - rho_f) g d; 0: nothing drives the flow, and no stress is shown
+  bool measured = false;        // force and stress at the top are those of the moment (FluidSource::drive())
 };
 
 class BedSurface : public Observer {
@@ -55,7 +62,8 @@ public:
   void observe(const Snapshot& snapshot) override;  // a step seen before does not count again
 
   // bed_height (m), static_bed_height (m; not a number before the first half second is over); over a bed in a fluid
-  // flow_depth (m), hydraulic_radius (m), and where a slope drives the flow bed_stress (Pa), shields_number (1).
+  // flow_depth (m), hydraulic_radius (m), and where a slope, a steering force or a moving top drives the flow
+  // bed_stress (Pa), shields_number (1).
   std::vector<Figure> figures() const override;
 
   // The means of all of these (with _mean), bulk_solid_fraction_mean, mean_from (s), measurements, static_pictures.
@@ -69,13 +77,15 @@ public:
 
 private:
   void measure(const Snapshot& snapshot);
+  double flow_depth() const;        // m
+  double hydraulic_radius() const;  // m
 
   MPI_Comm communicator_;
   PeriodicBox box_;
   BedSurfaceKeys keys_;
   std::optional<BedFlow> flow_;
   BedLayers layers_;
-  double bed_height_ = 0.0, bulk_ = 0.0;  // m, 1: latest
+  double bed_height_ = 0.0, bulk_ = 0.0, bed_stress_ = 0.0;  // m, 1, Pa: latest
   StaticPixels pixels_;
   std::int64_t seen_step_ = -1, measurements_ = 0, pictures_ = 0;
   std::vector<double> sums_;          // of the figures but static_bed_height, and of the bulk's solid fraction

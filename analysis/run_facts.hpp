@@ -20,6 +20,8 @@ struct FluidFacts {
   double velocity_unit = 0.0;        // m/s of one cell a step
   bool steered = false;              // its mean velocity is prescribed, so that no slope drives it
   int side_walls = 0;                // of those across y, how many hold the flow back: 0 to 2
+  bool top_drags = false;            // the face z_high exchanges shear with the flow
+  bool top_moves = false;            // and moves along x
 };
 
 // Grains of a case that belong together, with the ids first ... end - 1.

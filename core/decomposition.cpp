@@ -53,6 +53,14 @@ Index3 Decomposition::best_layout(const Index3& cells, int ranks) {
   return best;
 }
 
+Block intersection(Block a, const Block& b) {
+  for (int axis = 0; axis < 3; ++axis) {
+    a.lower[axis] = std::max(a.lower[axis], b.lower[axis]);
+    a.upper[axis] = std::max(a.lower[axis], std::min(a.upper[axis], b.upper[axis]));
+  }
+  return a;
+}
+
 Decomposition::Decomposition(const Index3& cells, double spacing, const std::array<bool, 3>& periodic,
                              const Index3& layout)
     : cells_(cells), spacing_(spacing), periodic_(periodic), layout_(layout) {

@@ -25,7 +25,23 @@ struct Block {
       if (cell[a] < lower[a] || cell[a] >= upper[a]) return false;
     return true;
   }
+  // Cells; zero where an axis is empty or turned round.
+  std::int64_t volume() const {
+    std::int64_t cells = 1;
+    for (const int n : size()) cells *= n > 0 ? n : 0;
+    return cells;
+  }
+  // Number of a cell of the block in arrays of its values: x fastest, z slowest.
+  std::int64_t place_of(const Index3& cell) const {
+    const Index3 n = size();
+    const std::int64_t row = static_cast<std::int64_t>(cell[2] - lower[2]) * n[1] + (cell[1] - lower[1]);
+    return row * n[0] + (cell[0] - lower[0]);
+  }
+  bool operator==(const Block& other) const = default;
 };
+
+// The cells that both blocks hold; of volume zero where there are none.
+Block intersection(Block a, const Block& b);
 
 class Decomposition {
 public:

@@ -50,9 +50,9 @@ struct GrainView {
 
 enum class FluidField { velocity, pressure, grain_id, density, shear_rate, eddy_viscosity, vorticity, q_criterion };
 
-// Fluid fields of this rank's block, x fastest, sampled on request; empty where not asked for. Zero in solid cells.
+// Fluid fields of the cells of a block, x fastest, sampled on request; empty where not asked for. Zero in solid cells.
 struct FluidFields {
-  Block block;
+  Block block;                         // in global coordinates
   std::vector<float> velocity;         // m/s, three values a cell (x, y, z together)
   std::vector<float> pressure;         // Pa above the reference (without the hydrostatic part in reduced gravity)
   std::vector<std::int32_t> grain_id;  // id of the covering grain; -1 fluid; -2, -3, ... static solids
@@ -74,7 +74,9 @@ const std::vector<float>& values_of(const FluidFields& fields, FluidField field)
 class FluidSource {
 public:
   virtual ~FluidSource() = default;
-  virtual FluidFields sample(const std::vector<FluidField>& wanted) const = 0;  // collective
+
+  // Of those cells of a region (global coordinates, the same on every rank) that this rank owns. Collective.
+  virtual FluidFields sample(const std::vector<FluidField>& wanted, const Block& region) const = 0;
 
   // Calls visit(cell, velocity) for every fluid cell this rank owns: global cell, m/s in full precision.
   using VelocityVisitor = std::function<void(const Index3&, const Vec3&)>;
@@ -86,6 +88,14 @@ public:
   };
   // Of a cell that this rank owns, by its global coordinates; none where a body covers it.
   virtual std::optional<State> state_in(const Index3& cell) const = 0;
+
+  struct Drive {
+    Vec3 body_force = Vec3::Zero();  // N/m^3, on every cell
+    Vec3 on_top = Vec3::Zero();      // N, of the fluid on the whole face z_high, without the reference pressure
+  };
+  // What drives the fluid and what the upper face takes from it, in the step to come. Collective, the same bits on any
+  // ranks.
+  virtual Drive drive() const { return {}; }
 };
 
 // What a plane of cells carries of momentum through itself (docs/theory.md, section 5, "Momentum balance by layers"):

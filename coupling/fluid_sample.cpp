@@ -22,11 +22,26 @@ void put(std::vector<float>& values, std::size_t at, const Vec3& v) {
   for (int a = 0; a < 3; ++a) values[3 * at + a] = static_cast<float>(v[a]);
 }
 
+// Calls visit(index in memory, local coordinates, place in the fields) for every cell of the fields.
+template <typename Real, typename Visit>
+void for_each_shown_cell(const lbm::Fluid<Real>& fluid, const FluidFields& fields, Visit visit) {
+  const Block part = lbm::local_block(fluid.block(), fields.block);
+  lbm::for_each_cell(fluid.indexing(), part, [&](std::ptrdiff_t cell, const Index3& local) {
+    visit(cell, local, static_cast<std::size_t>(part.place_of(local)));
+  });
+}
+
+template <typename Real, typename Visit>
+void for_each_shown_fluid_cell(const lbm::Fluid<Real>& fluid, const FluidFields& fields, Visit visit) {
+  for_each_shown_cell(fluid, fields, [&](std::ptrdiff_t cell, const Index3& local, std::size_t at) {
+    if (fluid.cells().is_fluid(cell)) visit(cell, local, at);
+  });
+}
+
 template <typename Real>
 void sample_states(const lbm::Fluid<Real>& fluid, const SampleContext& context, FluidFields& fields) {
   const Units& units = context.units;
-  lbm::for_each_cell(fluid.indexing(), [&](std::ptrdiff_t cell, const Index3& local) {
-    const std::size_t at = lbm::place_in_block(fluid.indexing(), local);
+  for_each_shown_cell(fluid, fields, [&](std::ptrdiff_t cell, const Index3&, std::size_t at) {
     const std::int32_t body = fluid.cells().body(cell);
     if (!fields.grain_id.empty()) fields.grain_id[at] = body == lbm::CellMap::fluid ? -1 : context.grain_id(body);
     if (body != lbm::CellMap::fluid) return;
@@ -44,8 +59,7 @@ void sample_subgrid(lbm::Fluid<Real>& fluid, const SampleContext& context, Fluid
   fluid.exchange_halo();
   fluid.apply_walls();
   if (context.apply_links) context.apply_links();
-  lbm::for_each_fluid_cell(fluid.cells(), [&](std::ptrdiff_t cell, const Index3& local) {
-    const std::size_t at = lbm::place_in_block(fluid.indexing(), local);
+  for_each_shown_fluid_cell(fluid, fields, [&](std::ptrdiff_t cell, const Index3&, std::size_t at) {
     const lbm::SubgridState state = lbm::subgrid_state(fluid, cell);
     if (!fields.shear_rate.empty())
       fields.shear_rate[at] = static_cast<float>(state.shear_rate / context.units.time_step);
@@ -55,11 +69,11 @@ void sample_subgrid(lbm::Fluid<Real>& fluid, const SampleContext& context, Fluid
 }
 
 template <typename Real>
-void sample_gradients(const lbm::Fluid<Real>& fluid, const SampleContext& context, FluidFields& fields) {
-  const GhostedField velocity = lbm::velocity_field(fluid);
+void sample_gradients(const lbm::Fluid<Real>& fluid, const SampleContext& context, const Block& region,
+                      FluidFields& fields) {
+  const GhostedField velocity = lbm::velocity_field(fluid, region);
   const double rate = 1.0 / context.units.time_step;
-  lbm::for_each_fluid_cell(fluid.cells(), [&](std::ptrdiff_t, const Index3& local) {
-    const std::size_t at = lbm::place_in_block(fluid.indexing(), local);
+  for_each_shown_fluid_cell(fluid, fields, [&](std::ptrdiff_t, const Index3& local, std::size_t at) {
     const lbm::Gradient gradient = lbm::velocity_gradient(velocity, local[0], local[1], local[2]);
     if (!fields.vorticity.empty()) put(fields.vorticity, at, lbm::vorticity(gradient) * rate);
     if (!fields.q_criterion.empty())
@@ -70,12 +84,11 @@ void sample_gradients(const lbm::Fluid<Real>& fluid, const SampleContext& contex
 }  // namespace
 
 template <typename Real>
-FluidFields sample_fields(lbm::Fluid<Real>& fluid, const SampleContext& context,
-                          const std::vector<FluidField>& wanted) {
-  const Index3& n = fluid.indexing().size();
-  const std::size_t cells = static_cast<std::size_t>(n[0]) * n[1] * n[2];
+FluidFields sample_fields(lbm::Fluid<Real>& fluid, const SampleContext& context, const std::vector<FluidField>& wanted,
+                          const Block& region) {
   FluidFields fields;
-  fields.block = fluid.block();
+  fields.block = intersection(fluid.block(), region);
+  const auto cells = static_cast<std::size_t>(fields.block.volume());
   for (const FluidField field : wanted) {
     if (field == FluidField::grain_id)
       fields.grain_id.assign(cells, -1);
@@ -84,7 +97,7 @@ FluidFields sample_fields(lbm::Fluid<Real>& fluid, const SampleContext& context,
   }
   using enum FluidField;
   if (wants(wanted, {velocity, pressure, density, grain_id})) sample_states(fluid, context, fields);
-  if (wants(wanted, {vorticity, q_criterion})) sample_gradients(fluid, context, fields);
+  if (wants(wanted, {vorticity, q_criterion})) sample_gradients(fluid, context, region, fields);
   if (wants(wanted, {shear_rate, eddy_viscosity})) sample_subgrid(fluid, context, fields);
   return fields;
 }
@@ -105,11 +118,24 @@ std::optional<FluidSource::State> state_of(const lbm::Fluid<Real>& fluid, const 
   return in_si(fluid.state_at(index), units);
 }
 
+template <typename Real>
+FluidSource::Drive drive_of(lbm::Fluid<Real>& fluid, const Units& units, double reference) {
+  const double(&force)[3] = fluid.parameters().force;
+  FluidSource::Drive drive;
+  drive.on_top = fluid.wall_forces(reference)[5] * units.force();
+  drive.body_force = Vec3(force[0], force[1], force[2]) * (units.stress() / units.spacing);
+  return drive;
+}
+
+template FluidSource::Drive drive_of(lbm::Fluid<float>&, const Units&, double);
+template FluidSource::Drive drive_of(lbm::Fluid<double>&, const Units&, double);
 template std::optional<FluidSource::State> state_of(const lbm::Fluid<float>&, const Units&, const Index3&);
 template std::optional<FluidSource::State> state_of(const lbm::Fluid<double>&, const Units&, const Index3&);
 template void visit_velocities(const lbm::Fluid<float>&, const Units&, const FluidSource::VelocityVisitor&);
 template void visit_velocities(const lbm::Fluid<double>&, const Units&, const FluidSource::VelocityVisitor&);
-template FluidFields sample_fields(lbm::Fluid<float>&, const SampleContext&, const std::vector<FluidField>&);
-template FluidFields sample_fields(lbm::Fluid<double>&, const SampleContext&, const std::vector<FluidField>&);
+template FluidFields sample_fields(lbm::Fluid<float>&, const SampleContext&, const std::vector<FluidField>&,
+                                   const Block&);
+template FluidFields sample_fields(lbm::Fluid<double>&, const SampleContext&, const std::vector<FluidField>&,
+                                   const Block&);
 
 }  // namespace thalweg::coupling

@@ -17,10 +17,13 @@ struct SampleContext {
   std::function<void()> apply_links;                        // of bodies, where there are any
 };
 
-// The wanted fields of this rank's block. Fills the slots that stream in from beyond walls and bodies, as the next step
-// will do again: no post-collision population changes. Collective.
+// The wanted fields of those cells of the region (global coordinates) that this rank owns. Only these cells are looked
+// at, and for gradients their neighbours; but shear rate and eddy viscosity take all that streams in, so for these the
+// slots that are filled from beyond walls and bodies are filled everywhere, as the next step will do again: no
+// post-collision population changes. Collective.
 template <typename Real>
-FluidFields sample_fields(lbm::Fluid<Real>& fluid, const SampleContext& context, const std::vector<FluidField>& wanted);
+FluidFields sample_fields(lbm::Fluid<Real>& fluid, const SampleContext& context, const std::vector<FluidField>& wanted,
+                          const Block& region);
 
 // Every owned fluid cell's velocity.
 template <typename Real>
@@ -29,5 +32,10 @@ void visit_velocities(const lbm::Fluid<Real>& fluid, const Units& units, const F
 // Of one owned cell; none where a body covers it.
 template <typename Real>
 std::optional<FluidSource::State> state_of(const lbm::Fluid<Real>& fluid, const Units& units, const Index3& cell);
+
+// What drives the fluid, and what the upper face takes from it in the step to come; reference: the density (lattice)
+// whose pressure is left out. Fills the slots at walls, as the next step will do again. Collective.
+template <typename Real>
+FluidSource::Drive drive_of(lbm::Fluid<Real>& fluid, const Units& units, double reference);
 
 }  // namespace thalweg::coupling

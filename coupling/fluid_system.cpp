@@ -90,7 +90,7 @@ Snapshot FluidSystem<Real>::snapshot() const {
 }
 
 template <typename Real>
-FluidFields FluidSystem<Real>::sample(const std::vector<FluidField>& wanted) const {
+FluidFields FluidSystem<Real>::sample(const std::vector<FluidField>& wanted, const Block& region) const {
   SampleContext context;
   context.units = parameters_.units;
   context.grain_id = [](std::int32_t solid) { return -2 - solid; };
@@ -100,7 +100,7 @@ FluidFields FluidSystem<Real>::sample(const std::vector<FluidField>& wanted) con
       lbm::LinkPass<Real> links(fluid_, solids_->links(), lattice_box_, parameters_.links, bodies);
       for (int tile = 0; tile < fluid_.tiles().count(); ++tile) links.apply_tile(tile);
     };
-  return sample_fields(fluid_, context, wanted);
+  return sample_fields(fluid_, context, wanted, region);
 }
 
 template <typename Real>
@@ -111,6 +111,11 @@ void FluidSystem<Real>::for_each_velocity(const VelocityVisitor& visit) const {
 template <typename Real>
 std::optional<FluidSource::State> FluidSystem<Real>::state_in(const Index3& cell) const {
   return state_of(fluid_, parameters_.units, cell);
+}
+
+template <typename Real>
+FluidSource::Drive FluidSystem<Real>::drive() const {
+  return drive_of(fluid_, parameters_.units, parameters_.links.reference_density);
 }
 
 template <typename Real>

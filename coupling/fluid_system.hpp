@@ -41,9 +41,10 @@ public:
 private:
   void advance_around_solids();
   void keep_mass();
-  FluidFields sample(const std::vector<FluidField>& wanted) const override;
+  FluidFields sample(const std::vector<FluidField>& wanted, const Block& region) const override;
   void for_each_velocity(const VelocityVisitor& visit) const override;
   std::optional<State> state_in(const Index3& cell) const override;
+  Drive drive() const override;
 
   std::unique_ptr<Decomposition> decomposition_;
   MPI_Comm communicator_;

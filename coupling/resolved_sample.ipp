@@ -8,7 +8,7 @@
 namespace thalweg::coupling {
 
 template <typename Real, GrainShape S>
-FluidFields ResolvedSystem<Real, S>::sample(const std::vector<FluidField>& wanted) const {
+FluidFields ResolvedSystem<Real, S>::sample(const std::vector<FluidField>& wanted, const Block& region) const {
   SampleContext context;
   context.units = parameters_.units;
   context.grain_id = [this](std::int32_t slot) { return static_cast<std::int32_t>(map_.grains()[slot].id); };
@@ -17,7 +17,7 @@ FluidFields ResolvedSystem<Real, S>::sample(const std::vector<FluidField>& wante
     lbm::LinkPass<Real, S> links(fluid_, links_, lattice_box_, parameters_.links, bodies, map_.shapes());
     for (int tile = 0; tile < fluid_.tiles().count(); ++tile) links.apply_tile(tile);
   };
-  return sample_fields(fluid_, context, wanted);
+  return sample_fields(fluid_, context, wanted, region);
 }
 
 template <typename Real, GrainShape S>
@@ -28,6 +28,11 @@ void ResolvedSystem<Real, S>::for_each_velocity(const VelocityVisitor& visit) co
 template <typename Real, GrainShape S>
 std::optional<FluidSource::State> ResolvedSystem<Real, S>::state_in(const Index3& cell) const {
   return state_of(fluid_, parameters_.units, cell);
+}
+
+template <typename Real, GrainShape S>
+FluidSource::Drive ResolvedSystem<Real, S>::drive() const {
+  return drive_of(fluid_, parameters_.units, parameters_.links.reference_density);
 }
 
 // The links of this step are applied twice: here on copies of the bodies, so that all that streams in lies ready.

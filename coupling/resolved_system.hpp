@@ -92,9 +92,10 @@ public:
   const ExchangeTotals& step_totals() const { return step_totals_; }
 
 private:
-  FluidFields sample(const std::vector<FluidField>& wanted) const override;
+  FluidFields sample(const std::vector<FluidField>& wanted, const Block& region) const override;
   void for_each_velocity(const VelocityVisitor& visit) const override;
   std::optional<State> state_in(const Index3& cell) const override;
+  Drive drive() const override;
   void for_each_contact(const ContactVisitor& visit) const override { grains_->for_each_contact(visit); }
   void for_each_contact_of(std::span<const char> chosen, const ContactEndVisitor& visit) const override {
     grains_->for_each_contact_of(chosen, visit);

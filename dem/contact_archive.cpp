@@ -1,6 +1,6 @@
 #include "dem/contact_archive.hpp"
 
-#include "dem/row_range.hpp"
+#include "core/row_range.hpp"
 
 #include <cstdint>
 #include <vector>

@@ -6,11 +6,11 @@
 // clump_members, clump_motion, clump_mass and so on with the names of struct ClumpRow.
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
+#include "core/row_range.hpp"
 #include "dem/contact_archive.hpp"
 #include "dem/grain_batch.hpp"
 #include "dem/grain_dynamics.hpp"
 #include "dem/grain_space.hpp"
-#include "dem/row_range.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "driver/bed_archive.hpp"
 
-#include "core/mpi_session.hpp"
+#include "core/row_range.hpp"
 #include "io/hdf5_archive.hpp"
 
 #include <fmt/format.h>
@@ -15,32 +15,29 @@ namespace {
 
 std::string group_of(std::size_t population) { return fmt::format("bed_{}", population); }
 
-// What rank 0 alone writes, and any rank reads: all of it.
-ArrayBox whole(bool mine, std::uint64_t rows, std::uint64_t columns = 1) {
-  if (columns == 1) return {{rows}, {0}, {mine ? rows : 0}};
-  return {{rows, columns}, {0, 0}, {mine ? rows : 0, columns}};
-}
-
-void save_bed(ArchiveWriter& archive, bool mine, const std::string& group, const std::vector<BedGrain>& grains) {
+// share: the grains that this rank writes.
+void save_bed(ArchiveWriter& archive, const RowRange& share, const std::string& group,
+              const std::vector<BedGrain>& grains) {
   std::vector<std::int64_t> clump;
   std::vector<double> radius, density, position;
-  for (const BedGrain& grain : grains) {
-    if (!mine) break;
+  for (std::int64_t n = share.first; n < share.last; ++n) {
+    const BedGrain& grain = grains[static_cast<std::size_t>(n)];
     clump.push_back(grain.clump);
     radius.push_back(grain.radius);
     density.push_back(grain.density);
     position.insert(position.end(), grain.position.data(), grain.position.data() + 3);
   }
-  archive.write(group + "/radius", radius, whole(mine, grains.size()));
-  archive.write(group + "/density", density, whole(mine, grains.size()));
-  archive.write(group + "/position", position, whole(mine, grains.size(), 3));
-  archive.write(group + "/clump", clump, whole(mine, grains.size()));
+  archive.write(group + "/radius", radius, share.box());
+  archive.write(group + "/density", density, share.box());
+  archive.write(group + "/position", position, share.box(3));
+  archive.write(group + "/clump", clump, share.box());
 }
 
 template <typename Number>
 std::vector<Number> column(io::Hdf5Reader& file, const std::string& path, std::uint64_t rows, std::uint64_t width = 1) {
   std::vector<Number> values(rows * width);
-  file.read(path, values, whole(true, rows, width));
+  const RowRange all(static_cast<std::int64_t>(rows), 1, 0);
+  file.read(path, values, width == 1 ? all.box() : all.box(width));
   return values;
 }
 
@@ -61,9 +58,12 @@ std::optional<Bed> load_bed(io::Hdf5Reader& file, const std::string& group) {
 }  // namespace
 
 void save_beds(ArchiveWriter& archive, MPI_Comm communicator, const Case& c) {
-  const bool mine = rank_of(communicator) == 0;
-  for (std::size_t n = 0; n < c.grains.size(); ++n)
-    if (!c.grains[n].file.empty()) save_bed(archive, mine, group_of(n), c.grains[n].file);
+  const int ranks = size_of(communicator), me = rank_of(communicator);
+  for (std::size_t n = 0; n < c.grains.size(); ++n) {
+    const std::vector<BedGrain>& grains = c.grains[n].file;
+    if (!grains.empty())
+      save_bed(archive, RowRange(static_cast<std::int64_t>(grains.size()), ranks, me), group_of(n), grains);
+  }
 }
 
 KnownBeds beds_of(std::vector<std::filesystem::path> checkpoints) {

@@ -22,23 +22,26 @@ FlowNumbers flow_numbers(const Case& c) {
   flow.density_ratio = grain.density / c.fluid.density;
   const double excess = flow.density_ratio - 1.0;
   flow.galileo = std::sqrt(std::abs(excess) * g * d * d * d) / c.fluid.kinematic_viscosity;
-  if (gravity.x() <= 0.0 || gravity.z() >= 0.0 || excess <= 0.0) return flow;
+  if (gravity.z() >= 0.0 || excess <= 0.0 || periodic_axes(c.domain)[2]) return flow;
 
   const Vec3 size = c.domain.size;
   flow.slope = gravity.x() / -gravity.z();
   flow.bed_height = grain_volume(c) / (settled_fraction(c) * size.x() * size.y());
   flow.depth = size.z() - flow.bed_height;
-  if (flow.depth <= 0.0) return flow;
+  if (flow.depth <= 0.0 || gravity.x() <= 0.0 || c.fluid.mean_velocity) return flow;
   flow.side_walls = c.domain.faces[y_low].drags() && c.domain.faces[y_high].drags();
   flow.hydraulic_radius = flow.side_walls ? flow.depth * size.y() / (2.0 * flow.depth + size.y()) : flow.depth;
-  flow.shields_depth = flow.slope * flow.depth / (excess * d);
-  flow.shields_hydraulic = flow.slope * flow.hydraulic_radius / (excess * d);
-  flow.friction_velocity = std::sqrt(g * flow.slope * flow.hydraulic_radius);
+  flow.shields_depth = gravity.x() * flow.depth / (excess * g * d);
+  flow.shields_hydraulic = gravity.x() * flow.hydraulic_radius / (excess * g * d);
+  flow.friction_velocity = std::sqrt(gravity.x() * flow.hydraulic_radius);
   flow.particle_reynolds = flow.friction_velocity * d / c.fluid.kinematic_viscosity;
   return flow;
 }
 
-double slope_for(const FlowNumbers& flow, double shields) { return flow.slope / flow.shields_hydraulic * shields; }
+double slope_for(const FlowNumbers& flow, double shields) {
+  const double sine = std::sin(std::atan(flow.slope)) / flow.shields_hydraulic * shields;
+  return sine < 1.0 ? std::tan(std::asin(sine)) : std::numeric_limits<double>::infinity();
+}
 
 double settled_fraction(const Case& c) {
   const bool between_walls =

@@ -6,8 +6,9 @@
 
 namespace thalweg::driver {
 
-// Shields number and depth follow Zhang et al. 2022: tau_b = rho_f g S H far from side walls, rho_f g S H W/(2 H + W)
-// between two of them, and tau* = tau_b / ((rho_s - rho_f) g d). Not a number where a case lacks what a number needs.
+// Shields number and depth follow Zhang et al. 2022: tau_b = rho_f g_x H far from side walls, rho_f g_x H W/(2 H + W)
+// between two of them, and tau* = tau_b / ((rho_s - rho_f) g d). g_x is the part of gravity along the bed, g times the
+// sine of its angle. Not a number where a case lacks what a number needs.
 struct FlowNumbers {
   double slope;             // tangent of the bed's angle
   double bed_height;        // m: the grains settled at settled_fraction()
@@ -23,8 +24,8 @@ struct FlowNumbers {
 };
 FlowNumbers flow_numbers(const Case& c);
 
-// The slope with which the hydraulic radius R gives the Shields number: S = tau* (s - 1) d / R, the reverse of
-// shields_hydraulic.
+// The slope, a tangent, with which the hydraulic radius R gives the Shields number, the reverse of shields_hydraulic:
+// sin = tau* (s - 1) d / R. Infinite where no slope is steep enough.
 double slope_for(const FlowNumbers& flow, double shields);
 
 // What part of a settled bed's volume is grain, 1: 0.6 (random loose to close packing is 0.55 to 0.64); 0.554 between

@@ -158,8 +158,6 @@ std::int64_t sub_steps_needed(const Case& c) {
 
 namespace {
 
-constexpr double karman = 0.41;
-
 // Smooth walls on either side carry their share of the weight: the stress is that of the hydraulic radius, and the law
 // of the wall holds over half the width.
 double velocity_between_side_walls(double along, double depth, double width, double nu) {

@@ -173,6 +173,8 @@ double fastest_model_fluid(const Case& c);
 // grains.
 double shortest_contact(const Case& c);
 
+inline constexpr double karman = 0.41;  // von Karman's constant of the logarithmic law
+
 // Sub-steps of the grains in one step of the fluid with which the shortest contact takes
 // dem::fewest_steps_per_contact of them; at least 1.
 std::int64_t sub_steps_needed(const Case& c);

@@ -8,9 +8,11 @@
 #include "io/yaml_document.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <iterator>
+#include <sstream>
 #include <utility>
 
 namespace thalweg::driver {
@@ -110,24 +112,64 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
 
 std::string resolved_yaml(const Case& c) { return io::written(c, io::YamlStyle::plain); }
 
-std::string defaults_yaml(const std::string& system) {
-  constexpr std::pair<const char*, SystemKind> systems[] = {{"resolved", SystemKind::resolved},
-                                                            {"fluid", SystemKind::fluid},
-                                                            {"grains", SystemKind::grains},
-                                                            {"model_fluid", SystemKind::model_fluid},
-                                                            {"continuum", SystemKind::continuum}};
-  const auto found =
-      std::find_if(std::begin(systems), std::end(systems), [&](const auto& entry) { return entry.first == system; });
-  if (found == std::end(systems))
-    throw InputError(
-        fmt::format("There is no system \"{}\": give one of resolved, fluid, grains, model_fluid, continuum.", system));
-  const Case example = example_case(found->second);
-  return fmt::format(
-             "# Every key of a case with system: {}, with its default. Comments give the unit, the range and the\n"
-             "# meaning. What has no default (required keys and one of each set of alternatives) shows an\n"
-             "# example; keys that are commented out are optional.\n",
-             system) +
-         io::written(example, io::YamlStyle::documented);
+namespace {
+
+struct NamedSystem {
+  const char* name;
+  SystemKind kind;
+};
+constexpr NamedSystem systems[] = {{"resolved", SystemKind::resolved},
+                                   {"fluid", SystemKind::fluid},
+                                   {"grains", SystemKind::grains},
+                                   {"model_fluid", SystemKind::model_fluid},
+                                   {"continuum", SystemKind::continuum}};
+
+constexpr const char* how_to_read =
+    "Comments give the unit, the range and the\n# meaning. \"example\": the key has no default, and the value is only "
+    "plausible; keys that are commented out\n# are optional, and their values are examples as well.\n";
+
+io::SectionWriter documentation_of(SystemKind system) {
+  io::SectionWriter writer(io::YamlStyle::documented);
+  Case example = example_case(system);
+  describe(writer, example);
+  return writer;
+}
+
+// Of one section in one system; none where that system lacks it.
+std::optional<std::string> section_yaml(const NamedSystem& system, const std::vector<std::string>& path) {
+  const std::optional<std::string> text = documentation_of(system.kind).yaml_of(path);
+  if (!text) return std::nullopt;
+  return fmt::format("# {} of a case with system: {}, with its keys. {}{}", fmt::join(path, "."), system.name,
+                     how_to_read, *text);
+}
+
+std::vector<std::string> parts_of(const std::string& path) {
+  std::vector<std::string> parts;
+  std::string part;
+  std::istringstream stream(path);
+  while (std::getline(stream, part, '.')) parts.push_back(part);
+  return parts;
+}
+
+}  // namespace
+
+std::string defaults_yaml(const std::string& what) {
+  const std::vector<std::string> path = parts_of(what);
+  const auto* const named = std::find_if(std::begin(systems), std::end(systems), [&](const NamedSystem& system) {
+    return !path.empty() && system.name == path.front();
+  });
+  if (named != std::end(systems)) {
+    if (path.size() == 1)
+      return fmt::format("# Every key of a case with system: {}, with its default. {}{}", named->name, how_to_read,
+                         documentation_of(named->kind).yaml());
+    if (const auto text = section_yaml(*named, {path.begin() + 1, path.end()})) return *text;
+  }
+  for (const NamedSystem& system : systems)
+    if (const auto text = path.empty() ? std::nullopt : section_yaml(system, path)) return *text;
+  throw InputError(fmt::format(
+      "There is no system or section \"{}\": give one of resolved, fluid, grains, model_fluid, continuum, or a section "
+      "such as contact, or both, such as grains.contact; the sections of resolved are {}.",
+      what, fmt::join(documentation_of(SystemKind::resolved).sections(), ", ")));
 }
 
 }  // namespace thalweg::driver

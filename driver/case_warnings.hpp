@@ -11,4 +11,7 @@ namespace thalweg::driver {
 // Whole sentences.
 std::vector<std::string> warnings(const Case& c);
 
+// Of how the run is planned, its start and its length, for `thalweg check`.
+std::vector<std::string> warnings_of_plan(const Case& c);
+
 }  // namespace thalweg::driver

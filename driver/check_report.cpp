@@ -3,12 +3,13 @@
 #include "core/error.hpp"
 #include "dem/grain_seed.hpp"
 #include "dem/material.hpp"
-#include "driver/bed_flow.hpp"
 #include "driver/build_system.hpp"
 #include "driver/case_warnings.hpp"
+#include "driver/contact_estimate.hpp"
+#include "driver/disk_space.hpp"
+#include "driver/flow_report.hpp"
 #include "driver/grain_setup.hpp"
 #include "driver/machine.hpp"
-#include "driver/reference_grain.hpp"
 #include "driver/solid_setup.hpp"
 #include "io/run_folder.hpp"
 #include "loop/progress.hpp"
@@ -65,50 +66,12 @@ double link_count(const Case& c) {
 
 using Lines = std::vector<std::string>;
 
+void append(const Lines& more, Lines& lines) { lines.insert(lines.end(), more.begin(), more.end()); }
+
 void add_domain(const Case& c, Lines& lines) {
   const Index3 n = cells_of(c.domain);
   lines.push_back(fmt::format("domain     {:g} x {:g} x {:g} m: {} x {} x {} cells of {:g} m", c.domain.size.x(),
                               c.domain.size.y(), c.domain.size.z(), n[0], n[1], n[2], c.domain.spacing));
-}
-
-void add_fluid(const Case& c, Lines& lines) {
-  if (!has_fluid(c)) return;
-  const Units units = units_of(c);
-  lines.push_back(fmt::format("fluid      {:g} kg/m^3, {:g} m^2/s; relaxation time 1/2 + {:.3g}; {:g} s a step",
-                              c.fluid.density, c.fluid.kinematic_viscosity, relaxation_time(c) - 0.5, units.time_step));
-  if (c.fluid.bulk_relaxation_time.value_or(0.0) > 0.0)
-    lines.push_back(
-        fmt::format("sound      damped by a bulk viscosity of {:.3g} m^2/s, {:.3g} times the shear viscosity",
-                    bulk_viscosity(c), bulk_viscosity(c) / c.fluid.kinematic_viscosity));
-  if (c.run.ramp > 0.0)
-    lines.push_back(fmt::format("gravity    rises to its full value during the first {:g} s, {:.3g} steps", c.run.ramp,
-                                c.run.ramp / units.time_step));
-  const double expected = c.fluid.expected_velocity.value_or(estimated_velocity(c));
-  const double lattice = expected / units.velocity();
-  lines.push_back(
-      fmt::format("flow       up to about {:.3g} m/s: {:.3g} cells a step, Mach number {:.3g} (good below 0.3)",
-                  expected, lattice, lattice * std::sqrt(3.0)));
-}
-
-void add_bed(const Case& c, Lines& lines) {
-  const FlowNumbers flow = flow_numbers(c);
-  if (!std::isfinite(flow.galileo)) return;
-  if (c.grains.size() > 1 || c.analysis.reference_diameter) lines.push_back("reference  " + reference_text(c));
-  lines.push_back(fmt::format("density    ratio {:.4g}; Galileo number {:.4g}", flow.density_ratio, flow.galileo));
-  if (!std::isfinite(flow.shields_depth)) return;
-  lines.push_back(fmt::format(
-      "bed        settles at about {:.3g} m ({:.3g} diameters, solid fraction {:g}), {:.3g} m of flow above, "
-      "slope {:g}",
-      flow.bed_height, flow.bed_height / reference_grain(c).diameter, settled_fraction(c), flow.depth, flow.slope));
-  lines.push_back(fmt::format("Shields    {:.4g} from depth and slope", flow.shields_depth) +
-                  (flow.side_walls ? fmt::format("; {:.4g} from the hydraulic radius between the side walls",
-                                                 flow.shields_hydraulic)
-                                   : ""));
-  lines.push_back(
-      fmt::format("slope      is {:.4g} times the Shields number at this depth: {:.3g} for 0.03, {:.3g} for 0.1",
-                  slope_for(flow, 1.0), slope_for(flow, 0.03), slope_for(flow, 0.1)));
-  lines.push_back(fmt::format("Reynolds   {:.4g} of a grain at the friction velocity {:.3g} m/s",
-                              flow.particle_reynolds, flow.friction_velocity));
 }
 
 // Of the lightest two grains of each population.
@@ -140,6 +103,17 @@ void add_rebound(const Case& c, Lines& lines) {
                   contact, around, advice));
 }
 
+void add_overlaps(const Case& c, Lines& lines) {
+  const Overlaps overlaps = expected_overlaps(c);
+  if (c.system == SystemKind::model_fluid) return;  // its speeds are not those of a fall
+  const std::string weight =
+      overlaps.under_weight > 0.0
+          ? fmt::format("{:.2g} % of a diameter under the weight of the bed, ", 100.0 * overlaps.under_weight)
+          : std::string();
+  lines.push_back(fmt::format("overlap    about {}{:.2g} % {}in an impact at {:.2g} m/s", weight,
+                              100.0 * overlaps.in_impact, weight.empty() ? "of a diameter " : "", overlaps.speed));
+}
+
 void add_grains(const Case& c, Lines& lines) {
   for (const dem::Population& population : c.grains) {
     const double smallest = population.smallest_diameter(), largest = population.largest_diameter();
@@ -160,6 +134,7 @@ void add_grains(const Case& c, Lines& lines) {
   lines.push_back(fmt::format("contact    lasts {:.3g} s: {:.3g} sub-steps of {:.3g} s (at least {:g}); damping {}",
                               shortest_contact(c), shortest_contact(c) / step, step, dem::fewest_steps_per_contact,
                               damping_text(c)));
+  add_overlaps(c, lines);
   if (!has_fluid(c)) return;
   lines.push_back(
       fmt::format("flight     a grain moves a fiftieth of a cell a step at {:.3g} m/s; faster grains are less accurate",
@@ -219,10 +194,6 @@ Lines column_report(const Case& c) {
           c.run.until_steady ? ", fewer if it is steady before" : "")};
 }
 
-std::string bytes_text(double bytes) {
-  return bytes < 1e9 ? fmt::format("{:.3g} MB", bytes * 1e-6) : fmt::format("{:.3g} GB", bytes * 1e-9);
-}
-
 // Bytes.
 double memory_of_this_machine() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
@@ -235,6 +206,7 @@ void add_cost(const Case& c, double bandwidth, Lines& lines) {
   if (cost.grain_steps > 0.0) work += fmt::format(", {:.3g} grain-steps", cost.grain_steps);
   lines.push_back(work);
   lines.push_back(memory_line(cost.memory, memory_of_this_machine()));
+  lines.push_back(disk_line(disk_space(c)));
   lines.push_back(
       fmt::format("time       about {} on one core like this one ({:.3g} GB/s); divide by the number of cores until "
                   "memory bandwidth saturates",
@@ -296,13 +268,14 @@ std::vector<std::string> check_report(const Case& c, double bandwidth) {
   refuse_impossible_grains(c);
   Lines lines{fmt::format("{} (system: {})", c.name, name_of(c.system))};
   add_domain(c, lines);
-  add_fluid(c, lines);
+  append(fluid_lines(c), lines);
   add_grains(c, lines);
   add_solids(c, lines);
-  add_bed(c, lines);
+  append(bed_lines(c), lines);
   add_model_fluid(c, lines);
   add_cost(c, bandwidth, lines);
   for (const std::string& warning : warnings(c)) lines.push_back("warning    " + warning);
+  for (const std::string& warning : warnings_of_plan(c)) lines.push_back("warning    " + warning);
   return lines;
 }
 

@@ -19,10 +19,12 @@ constexpr const char* examples = R"(Examples:
   mpirun -n 8 thalweg run case.yaml --walltime 23:50:00 --set fluid.time_step=1e-5
   mpirun -n 4 thalweg run case.yaml --out run/a --restart run/a --until 60
   thalweg info run/a                                   how far it has come
+  thalweg info --csv run/* > runs.csv                  the figures of many runs, one row each
   thalweg stop run/a                                   save and end; --restart goes on
   thalweg analyze run/a --from 4                       transport, surface and profiles of what it has stored
   thalweg sweep slopes.yaml                            many runs of one case, into one table (docs/sweep.md)
   thalweg defaults > all_keys.yaml                     every key of a case with its default and meaning
+  thalweg defaults coupling.lubrication                one section of it
 
 Exit codes: 0 done; 1 the run failed; 2 the input cannot be run (nothing was written); 3 stopped in good order by a signal,
 --walltime or thalweg stop (summary.json says which; --restart goes on from there).)";
@@ -53,10 +55,14 @@ void add_others(CLI::App& app, Command& command) {
   check->add_option("--set", command.settings, set_help)->allow_extra_args(false)->type_name("KEY.SUB=VALUE");
   check->final_callback([&] { command.kind = Command::Kind::check; });
   CLI::App* defaults = app.add_subcommand("defaults", "Print every key with its default, unit and meaning");
-  defaults->add_option("SYSTEM", command.system, "resolved (default), fluid, grains or model_fluid");
+  defaults->add_option("SYSTEM.SECTION", command.system,
+                       "resolved (default), fluid, grains, model_fluid or continuum; a section, e.g. contact; or both, "
+                       "e.g. grains.contact");
   defaults->final_callback([&] { command.kind = Command::Kind::defaults; });
   CLI::App* info = app.add_subcommand("info", "Say what a run folder or a checkpoint holds");
-  info->add_option("PATH", command.path, "Run folder or checkpoint file")->required();
+  info->add_option("PATH", command.runs, "Run folder or checkpoint file; with --csv any number of run folders")
+      ->required();
+  info->add_flag("--csv", command.csv, "A table with one row a run: every figure of the summaries, with its unit");
   info->final_callback([&] { command.kind = Command::Kind::info; });
   CLI::App* stop = app.add_subcommand("stop", "Ask a run to save its state and end");
   stop->add_option("RUN_FOLDER", command.path, "The folder it writes")->required();
@@ -64,6 +70,14 @@ void add_others(CLI::App& app, Command& command) {
   // For the help alone: python_command.hpp.
   app.add_subcommand("analyze", "Say what a run's sediment does between two times (analyze --help)");
   app.add_subcommand("sweep", "Run a case with many values of its keys, on all cores (sweep --help)");
+}
+
+void take_info_paths(Command& command) {
+  command.path = command.runs.front();
+  if (command.runs.size() > 1 && !command.csv)
+    throw InputError(
+        fmt::format("info describes one run and not {}: give one path, or --csv for a table with one row a run.",
+                    command.runs.size()));
 }
 
 // CLI11 would only say that a subcommand is missing.
@@ -124,6 +138,7 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     refuse_unknown_command(app, argc, argv);
     app.parse(argc, argv);
     if (!texts.walltime.empty()) command.walltime = parse_walltime(texts.walltime);
+    if (command.kind == Command::Kind::info) take_info_paths(command);
     if (!texts.layout.empty()) command.layout = parse_layout(texts.layout);
   } catch (const CLI::Success& asked) {
     std::ostringstream text;

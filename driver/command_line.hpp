@@ -12,7 +12,8 @@ namespace thalweg::driver {
 struct Command {
   enum class Kind { run, check, defaults, info, stop } kind = Kind::run;
   std::string path;                   // CASE.yaml of run and check; run folder of stop, or checkpoint of info
-  std::string system;                 // of defaults; empty: resolved
+  std::vector<std::string> runs;      // of info: with --csv any number, else only `path`
+  std::string system;                 // of defaults, or section; empty: resolved
   std::vector<std::string> settings;  // "key.sub=VALUE" of --set, in order
   std::string out;                    // run folder; empty: "run" beside the case file
   std::string restart;                // run folder or checkpoint; empty: start anew
@@ -20,6 +21,7 @@ struct Command {
   double walltime = 0.0;              // s; 0: none
   std::optional<Index3> layout;       // ranks along x, y, z
   bool overwrite = false;
+  bool csv = false;  // of info
   std::string line;  // the command as given
 };
 

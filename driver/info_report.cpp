@@ -44,14 +44,7 @@ void add_group(const YAML::Node& group, const std::string& title, Lines& lines) 
                                 entry.second.IsScalar() ? entry.second.Scalar() : "-"));
 }
 
-// JSON is YAML, so the reader is at hand.
-void add_summary(const fs::path& file, Lines& lines) {
-  YAML::Node summary;
-  try {
-    summary = YAML::Load(io::read_text(file));
-  } catch (const YAML::Exception&) {
-    throw InputError(fmt::format("{} is damaged: it is not JSON.", file.string()));
-  }
+void add_summary(const YAML::Node& summary, Lines& lines) {
   const bool finished = value(summary, "finished") == "true";
   lines.push_back(fmt::format("run         {} (system: {}), version {}", value(summary, "name"),
                               value(summary, "system"), value(summary, "version")));
@@ -76,6 +69,25 @@ std::string last_line(const fs::path& file) {
 
 }  // namespace
 
+void require_run_folder(const io::RunFolder& folder) {
+  if (!folder.is_run_folder())
+    throw InputError(
+        fmt::format("{} is neither a run folder nor a checkpoint: give a folder that thalweg run has written, "
+                    "or an .h5 file in its checkpoints.",
+                    folder.path().string()));
+}
+
+// JSON is YAML, so the reader is at hand.
+YAML::Node summary_in(const io::RunFolder& folder) {
+  std::error_code ignored;
+  if (!fs::exists(folder.summary(), ignored)) return {};
+  try {
+    return YAML::Load(io::read_text(folder.summary()));
+  } catch (const YAML::Exception&) {
+    throw InputError(fmt::format("{} is damaged: it is not JSON.", folder.summary().string()));
+  }
+}
+
 std::vector<std::string> info_report(const fs::path& path) {
   Lines lines;
   std::error_code ignored;
@@ -84,13 +96,9 @@ std::vector<std::string> info_report(const fs::path& path) {
     return lines;
   }
   const io::RunFolder folder(path);
-  if (!folder.is_run_folder())
-    throw InputError(
-        fmt::format("{} is neither a run folder nor a checkpoint: give a folder that thalweg run has written, "
-                    "or an .h5 file in its checkpoints.",
-                    path.string()));
-  if (fs::exists(folder.summary(), ignored))
-    add_summary(folder.summary(), lines);
+  require_run_folder(folder);
+  if (const YAML::Node summary = summary_in(folder); summary.IsMap())
+    add_summary(summary, lines);
   else
     lines.push_back("state       still running, or killed without notice");
   if (fs::exists(folder.log(), ignored)) lines.push_back("last line   " + last_line(folder.log()));

@@ -7,6 +7,7 @@
 #include "driver/command_line.hpp"
 #include "driver/error_message.hpp"
 #include "driver/info_report.hpp"
+#include "driver/info_table.hpp"
 #include "driver/machine.hpp"
 #include "driver/python_command.hpp"
 #include "driver/run_command.hpp"
@@ -87,7 +88,7 @@ std::string answer(const Command& command) {
     case Command::Kind::check:
       return joined(check_of(command));
     case Command::Kind::info:
-      return joined(info_report(command.path));
+      return joined(command.csv ? info_table(command.runs) : info_report(command.path));
     case Command::Kind::stop:
       return joined({ask_to_stop(command.path)});
     default:

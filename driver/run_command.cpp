@@ -13,6 +13,7 @@
 #include "driver/case_warnings.hpp"
 #include "driver/cores.hpp"
 #include "driver/error_message.hpp"
+#include "driver/final_bed.hpp"
 #include "driver/machine.hpp"
 #include "driver/reference_grain.hpp"
 #include "driver/run_facts.hpp"
@@ -133,9 +134,10 @@ void prepare_folder(const Places& places, const Case& c, const Command& command,
 }
 
 void print_outcome(const RunIdentity& identity, const loop::LoopRecord& record, const System& system,
-                   const Observers& observers, const std::vector<loop::PhaseShare>& phases, const io::RunFolder& folder,
-                   loop::Log& log) {
+                   const Observers& observers, const std::vector<Figure>& bed,
+                   const std::vector<loop::PhaseShare>& phases, const io::RunFolder& folder, loop::Log& log) {
   log.line("");
+  if (!bed.empty()) log.line(final_bed_text(bed));
   for (const auto& observer : observers)
     for (const std::string& remark : observer->remarks()) log.line(remark);
   for (const std::string& line : loop::phase_table(phases)) log.line(line);
@@ -196,6 +198,7 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   const Case c = read_case(command.path, settings, beds_of(places.checkpoints));
   on_first_rank(communicator, [&] {
     if (!places.same_folder) places.folder.check_new(command.overwrite);
+    places.folder.check_writable();
   });
   Beginning beginning;
   beginning.changes = changes_since(places.origin, c);
@@ -216,6 +219,7 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
 
   prepare_folder(places, c, command, system->step(), communicator, log);
   RunIdentity identity{c.name, name_of(c.system), command.line, c.run.until, layout, size_of(communicator)};
+  if (!c.grains.empty()) identity.reference = reference_grain(c);
   print_header(c, identity, *system, places, beginning, communicator, log);
   RunOutput output(communicator, c, places.folder, *system, observers, beginning.accounts.since,
                    places.same_folder ? std::optional<double>(system->time()) : std::nullopt);
@@ -243,15 +247,16 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
     record.reason = told.what();
     try {
       if (!failures.all_ranks_failed(seconds_to_wait_for_others) || log.prints())
-        summary_of(identity, *system, record, observers, beginning.accounts, {}).write(places.folder.summary());
+        summary_of(identity, *system, record, observers, beginning.accounts, {}, {}).write(places.folder.summary());
     } catch (const RunError&) {  // the first error is the one to tell
     }
     throw told;
   }
   const std::vector<loop::PhaseShare> phases = loop::collect_phases(communicator, *system, time_loop);
-  print_outcome(identity, time_loop.record(), *system, observers, phases, places.folder, log);
+  const std::vector<Figure> bed = final_bed(communicator, c, *system);
+  print_outcome(identity, time_loop.record(), *system, observers, bed, phases, places.folder, log);
   const io::JsonObject summary =
-      summary_of(identity, *system, time_loop.record(), observers, beginning.accounts, phases);
+      summary_of(identity, *system, time_loop.record(), observers, beginning.accounts, bed, phases);
   on_first_rank(communicator, [&] { summary.write(places.folder.summary()); });
   return time_loop.record().finished;
 }

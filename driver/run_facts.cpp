@@ -28,8 +28,13 @@ std::vector<analysis::Population> populations_of(const Case& c) {
 }
 
 analysis::FluidFacts fluid_facts(const Case& c) {
-  return {c.fluid.density, c.fluid.kinematic_viscosity, units_of(c).velocity(), c.fluid.mean_velocity.has_value(),
-          c.domain.faces[y_low].drags() + c.domain.faces[y_high].drags()};
+  return {c.fluid.density,
+          c.fluid.kinematic_viscosity,
+          units_of(c).velocity(),
+          c.fluid.mean_velocity.has_value(),
+          c.domain.faces[y_low].drags() + c.domain.faces[y_high].drags(),
+          c.domain.faces[top].drags(),
+          c.domain.faces[top].type == lbm::FaceType::moving && c.domain.faces[top].velocity.x() != 0.0};
 }
 
 analysis::GrainFacts grain_facts(const Case& c) {

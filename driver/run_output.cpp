@@ -4,6 +4,7 @@
 #include "core/on_first_rank.hpp"
 #include "driver/bed_archive.hpp"
 #include "driver/build_system.hpp"
+#include "driver/reference_grain.hpp"
 #include "driver/version.hpp"
 #include "io/hdf5_archive.hpp"
 #include "io/profile_file.hpp"
@@ -36,6 +37,10 @@ RunOutput::RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& 
     if (observer->has_records())
       records_.emplace_back(observer.get(),
                             io::RecordFile(communicator, folder.records(observer->name()), continue_from));
+  if (!c.grains.empty()) {
+    const ReferenceGrain reference = reference_grain(c);
+    constants_ = {{"reference_diameter", "m", reference.diameter}, {"reference_density", "kg/m^3", reference.density}};
+  }
   write_records();  // whether they can be written, or continued, is known before the run begins
 }
 
@@ -58,7 +63,9 @@ void RunOutput::add_to(loop::LoopPlan& plan) {
                             [this](const Snapshot&) { write_records(); }});
 }
 
-void RunOutput::write_row(double time, const std::vector<Figure>& row) {
+void RunOutput::write_row(double time, const std::vector<Figure>& measured) {
+  std::vector<Figure> row = measured;
+  row.insert(row.end(), constants_.begin(), constants_.end());
   if (!series_) {
     std::vector<io::SeriesTable::Column> columns;
     for (const Figure& figure : row) columns.push_back({figure.name, figure.unit});

@@ -35,7 +35,7 @@ public:
   void add_to(loop::LoopPlan& plan);
 
 private:
-  void write_row(double time, const std::vector<Figure>& row);
+  void write_row(double time, const std::vector<Figure>& measured);
   std::uint64_t write_checkpoint(const loop::LoopRecord& record);  // bytes, on the first rank
   void write_profiles();
   void write_records();
@@ -47,6 +47,7 @@ private:
   const Observers& observers_;
   std::map<std::string, double> since_;
   std::optional<double> continue_from_;
+  std::vector<Figure> constants_;            // of the run, in every row of the series
   std::unique_ptr<io::SeriesTable> series_;  // from the first row on: only then the columns are known
   std::unique_ptr<io::GrainSeries> grains_;
   std::unique_ptr<io::FluidSeries> fluid_;

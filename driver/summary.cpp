@@ -20,7 +20,7 @@ io::JsonObject figures_as_json(const std::vector<Figure>& figures, io::JsonObjec
 }  // namespace
 
 io::JsonObject summary_of(const RunIdentity& identity, const System& system, const loop::LoopRecord& record,
-                          const Observers& observers, const Accounts& accounts,
+                          const Observers& observers, const Accounts& accounts, const std::vector<Figure>& bed,
                           const std::vector<loop::PhaseShare>& phases) {
   const loop::Speeds speeds = loop::speeds_of(system, record);
   io::JsonObject summary;
@@ -33,6 +33,9 @@ io::JsonObject summary_of(const RunIdentity& identity, const System& system, con
   summary.set("ranks", identity.ranks);
   summary.set("layout", fmt::format("{},{},{}", identity.layout[0], identity.layout[1], identity.layout[2]));
   summary.set("cells", system.cells()).set("grains", system.snapshot().grains.body_count());
+  if (identity.reference)
+    summary.set("reference_diameter", identity.reference->diameter)
+        .set("reference_density", identity.reference->density);
   summary.set("wall_seconds", record.wall_seconds).set("steps_per_second", speeds.steps_per_second);
   summary.set("mlups", speeds.mlups).set("mlups_advancing", speeds.mlups_advancing);
   if (identity.memory_bound_mlups > 0.0)
@@ -52,6 +55,8 @@ io::JsonObject summary_of(const RunIdentity& identity, const System& system, con
   summary.set("largest_from", record.largest_from);
   for (const auto& observer : observers)
     summary.set(observer->name(), figures_as_json(accounts.results_of(*observer), units));
+  if (!bed.empty()) summary.set("bed", figures_as_json(bed, units));
+  if (identity.reference) units.set("reference_diameter", "m").set("reference_density", "kg/m^3");
   summary.set("units", units);
   return summary;
 }

@@ -2,11 +2,13 @@
 #pragma once
 
 #include "driver/accounts.hpp"
+#include "driver/reference_grain.hpp"
 #include "io/json_object.hpp"
 #include "loop/phase_shares.hpp"
 
 #include <mpi.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,12 +20,13 @@ struct RunIdentity {
   double until;  // s
   Index3 layout;
   int ranks;
-  double memory_bound_mlups = 0.0;  // what the measured memory bandwidth allows; 0 without a lattice
+  std::optional<ReferenceGrain> reference = {};  // none without grains
+  double memory_bound_mlups = 0.0;               // what the measured memory bandwidth allows; 0 without a lattice
 };
 
-// summary.json of a run that has ended in whatever way. `phases` may be empty.
+// summary.json of a run that has ended in whatever way. `bed` (final_bed.hpp) and `phases` may be empty.
 io::JsonObject summary_of(const RunIdentity& identity, const System& system, const loop::LoopRecord& record,
-                          const Observers& observers, const Accounts& accounts,
+                          const Observers& observers, const Accounts& accounts, const std::vector<Figure>& bed,
                           const std::vector<loop::PhaseShare>& phases);
 
 }  // namespace thalweg::driver

@@ -61,6 +61,23 @@ void rename_into_place(const std::filesystem::path& from, const std::filesystem:
   if (error) throw RunError(fmt::format("{}: cannot write the file: {}.", to.string(), error.message()));
 }
 
+bool create_file(const std::filesystem::path& path) {
+  const int file = ::open(path.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0666);
+  if (file < 0) return false;
+  ::close(file);
+  return true;
+}
+
+bool can_create(const std::filesystem::path& path) { return create_file(path) && std::remove(path.c_str()) == 0; }
+
+bool reserve_on_disk(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t bytes) {
+  const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  if (file < 0) return false;
+  const int error = ::fallocate(file, 0, static_cast<off_t>(offset), static_cast<off_t>(bytes)) == 0 ? 0 : errno;
+  ::close(file);
+  return error == 0 || error == EOPNOTSUPP || error == ENOSYS;  // a file system that cannot promise
+}
+
 void make_folder(const std::filesystem::path& path) {
   std::error_code error;
   std::filesystem::create_directories(path, error);

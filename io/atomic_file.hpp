@@ -1,6 +1,7 @@
-// Small text files that are either wholly there or not at all.
+// Files that are either wholly there or not at all.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -18,6 +19,16 @@ bool put_on_disk(const std::filesystem::path& from, const std::filesystem::path&
 
 // Renames a finished file into place. Throws RunError.
 void rename_into_place(const std::filesystem::path& from, const std::filesystem::path& to);
+
+// Creates an empty file, or empties one; false if that fails.
+bool create_file(const std::filesystem::path& path);
+
+// True if an empty file could be created under this name; leaves nothing behind.
+bool can_create(const std::filesystem::path& path);
+
+// Takes the room for `bytes` bytes from `offset` on the disk, false if there is none. A collective write through MPI-IO
+// does not always report that the disk is full (Open MPI's does not), so the room is taken beforehand.
+bool reserve_on_disk(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t bytes);
 
 // Creates a folder and its parents if they are missing. Throws RunError.
 void make_folder(const std::filesystem::path& path);

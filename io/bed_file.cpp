@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
+#include "core/rows_by_id.hpp"
 #include "io/hdf5_archive.hpp"
 
 #include <fmt/format.h>
@@ -15,7 +16,7 @@ namespace {
 
 const std::string format = "thalweg bed 1";
 
-// One grain on its way to rank 0.
+// One grain on its way to the rank that writes it.
 struct BedRow {
   GlobalId id, clump;
   double radius, density;
@@ -29,7 +30,7 @@ double clump_density(const GrainView& grains, GlobalId id) {
   return clump->mass / clump->volume;
 }
 
-std::vector<BedRow> gathered(MPI_Comm communicator, const GrainView& grains) {
+std::vector<BedRow> rows_of(const GrainView& grains) {
   std::vector<BedRow> rows(grains.id.size());
   for (std::size_t n = 0; n < rows.size(); ++n) {
     const double r = grains.radius[n];
@@ -43,26 +44,23 @@ std::vector<BedRow> gathered(MPI_Comm communicator, const GrainView& grains) {
     std::copy_n(grains.velocity[n].data(), 3, rows[n].velocity);
     std::copy_n(grains.angular_velocity[n].data(), 3, rows[n].angular_velocity);
   }
-  rows = exchange_rows(communicator, rows, std::vector<int>(rows.size(), 0));
-  std::sort(rows.begin(), rows.end(), [](const BedRow& a, const BedRow& b) { return a.id < b.id; });
   return rows;
 }
 
-// What rank 0 alone has to write: all of it, or nothing.
-ArrayBox whole(bool mine, std::uint64_t rows, std::uint64_t columns) {
-  if (columns == 1) return {{rows}, {0}, {mine ? rows : 0}};
-  return {{rows, columns}, {0, 0}, {mine ? rows : 0, columns}};
+ArrayBox box_of(const RowRange& range, std::uint64_t columns) {
+  return columns == 1 ? range.box() : range.box(columns);
 }
 
 class BedWriter {
 public:
-  BedWriter(MPI_Comm communicator, const std::filesystem::path& path, std::int64_t count)
-      : archive_(communicator, path), mine_(rank_of(communicator) == 0), count_(static_cast<std::uint64_t>(count)) {}
+  // share: the grains whose rows this rank writes.
+  BedWriter(MPI_Comm communicator, const std::filesystem::path& path, const RowRange& share)
+      : archive_(communicator, path), first_(rank_of(communicator) == 0), share_(share) {}
 
-  // values: of all grains, on rank 0.
+  // values: of the grains of the share.
   template <typename Number>
   void column(const std::string& name, const char* unit, const std::vector<Number>& values, std::uint64_t width = 1) {
-    archive_.write("grains/" + name, values, whole(mine_, count_, width));
+    archive_.write("grains/" + name, values, box_of(share_, width));
     archive_.attribute("grains/" + name + "/unit", std::string(unit));
   }
   void scalars(const std::vector<BedRow>& rows, const std::string& name, const char* unit, double BedRow::*field) {
@@ -77,31 +75,32 @@ public:
   }
   template <typename Number>
   void triple(const std::string& name, const char* unit, std::vector<Number> values) {
-    if (!mine_) values.clear();
-    archive_.write("bed/" + name, values, whole(mine_, 3, 1));
+    if (!first_) values.clear();
+    archive_.write("bed/" + name, values, {{3}, {0}, {values.size()}});
     archive_.attribute("bed/" + name + "/unit", std::string(unit));
   }
   Hdf5Writer& archive() { return archive_; }
 
 private:
   Hdf5Writer archive_;
-  bool mine_;
-  std::uint64_t count_;
+  bool first_;
+  RowRange share_;
 };
 
 template <typename Number>
 std::vector<Number> column(Hdf5Reader& file, const std::string& path, std::uint64_t rows, std::uint64_t width = 1) {
   std::vector<Number> values(rows * width);
-  file.read(path, values, whole(true, rows, width));
+  file.read(path, values, box_of(RowRange(static_cast<std::int64_t>(rows), 1, 0), width));
   return values;
 }
 
 }  // namespace
 
 void write_bed_file(MPI_Comm communicator, const std::filesystem::path& path, const Snapshot& snapshot) {
-  const std::vector<BedRow> rows = gathered(communicator, snapshot.grains);
+  const BlockShare share(snapshot.grains.global_count, 1, size_of(communicator));
+  const std::vector<BedRow> rows = rows_by_id(communicator, rows_of(snapshot.grains), share);
   const PeriodicBox box = snapshot.decomposition->box();
-  BedWriter writer(communicator, path, snapshot.grains.global_count);
+  BedWriter writer(communicator, path, share.rows_of(rank_of(communicator)));
   writer.archive().attribute("bed/format", format);
   writer.archive().attribute("bed/time", snapshot.time);
   writer.archive().attribute("bed/disk_thickness", snapshot.grains.disk_thickness);

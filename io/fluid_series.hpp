@@ -7,7 +7,6 @@
 #include <mpi.h>
 
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -16,8 +15,8 @@ namespace thalweg::io {
 enum class FluidRegion { whole, slice_x, slice_y, slice_z };  // a slice: the middle layer of cells across that axis
 using thalweg::FluidField;
 
-// Writes fluid/fluid_<step>.vti in the run folder, or, for the whole box on several ranks, fluid/fluid_<step>.pvti with
-// one .vti a rank in fluid/fluid_<step>/. The cell arrays have the names of FluidField and the units of FluidFields.
+// Writes fluid/fluid_<step>.vti in the run folder. The cell arrays have the names of FluidField and the units of
+// FluidFields. All ranks write one file together; only the cells of the region are sampled, and no rank gathers them.
 // All calls are collective and throw RunError on every rank if a file cannot be written.
 class FluidSeries {
 public:
@@ -29,8 +28,6 @@ public:
   void write(const Snapshot& snapshot);
 
 private:
-  void agree(const std::function<void()>& work) const;  // throws RunError on every rank if it failed on one
-
   MPI_Comm communicator_;
   std::filesystem::path folder_;
   FluidRegion region_;

@@ -1,30 +1,25 @@
 #include "io/grain_series.hpp"
 
 #include "core/contact_stress.hpp"
-#include "core/error.hpp"
 #include "core/mpi_session.hpp"
+#include "core/on_first_rank.hpp"
 #include "io/atomic_file.hpp"
-#include "io/vtk_file.hpp"
+#include "io/vtk_xml_file.hpp"
 
 #include <fmt/format.h>
-#include <vtkCellArray.h>
-#include <vtkDoubleArray.h>
-#include <vtkPointData.h>
-#include <vtkPoints.h>
-#include <vtkPolyData.h>
-#include <vtkTypeInt64Array.h>
-#include <vtkXMLPolyDataWriter.h>
 
 #include <algorithm>
+#include <numeric>
 #include <string>
+#include <vector>
 
 namespace thalweg::io {
 namespace {
 
-// One grain on its way to rank 0.
+// One grain on its way to the rank that writes it.
 struct Row {
   std::int64_t id, clump;
-  double radius;
+  double radius, speed;
   double position[3], velocity[3], angular_velocity[3], fluid_force[3], contact_force[3], fluid_stress[9],
       contact_stress[9];
 };
@@ -35,7 +30,7 @@ void copy(const Mat3& from, double* to) {
   for (int k = 0; k < 9; ++k) to[k] = from(k / 3, k % 3);
 }
 
-std::vector<Row> gathered(MPI_Comm communicator, const Snapshot& snapshot) {
+std::vector<Row> rows_of(const Snapshot& snapshot) {
   const GrainView& grains = snapshot.grains;
   const std::vector<Mat3> contact_stress = contact_stresses(snapshot);
   std::vector<Row> rows(grains.id.size());
@@ -45,6 +40,7 @@ std::vector<Row> gathered(MPI_Comm communicator, const Snapshot& snapshot) {
     rows[n].clump = grains.is_member(n) ? grains.clump[n] : -1;
     rows[n].radius = grains.radius[n];
     copy(grains.position[n], rows[n].position);
+    rows[n].speed = grains.velocity[n].norm();
     copy(grains.velocity[n], rows[n].velocity);
     copy(grains.angular_velocity[n], rows[n].angular_velocity);
     if (!grains.fluid_force.empty()) copy(grains.fluid_force[n], rows[n].fluid_force);
@@ -52,56 +48,43 @@ std::vector<Row> gathered(MPI_Comm communicator, const Snapshot& snapshot) {
     copy(contact_stress[n], rows[n].contact_stress);
     if (!grains.contact_force.empty()) copy(grains.contact_force[n], rows[n].contact_force);
   }
-  rows = exchange_rows(communicator, rows, std::vector<int>(rows.size(), 0));
-  std::sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.id < b.id; });
   return rows;
 }
 
-template <int components>
-void add_values(vtkPolyData& points, const std::vector<Row>& rows, const char* name,
-                const double (Row::*field)[components]) {
-  auto array = new_array<vtkDoubleArray>(name, components, static_cast<vtkIdType>(rows.size()));
-  for (std::size_t n = 0; n < rows.size(); ++n) array->SetTuple(static_cast<vtkIdType>(n), rows[n].*field);
-  points.GetPointData()->AddArray(array);
-}
+// The columns of the rows that this rank writes.
+class Columns {
+public:
+  Columns(const std::vector<Row>& rows, VtkXmlFile& file) : rows_(rows), file_(file) {}
 
-vtkSmartPointer<vtkPolyData> poly_data_of(const std::vector<Row>& rows, bool with_fluid, bool with_clumps,
-                                          bool with_stress) {
-  const auto count = static_cast<vtkIdType>(rows.size());
-  auto frame = vtkSmartPointer<vtkPolyData>::New();
-  auto points = vtkSmartPointer<vtkPoints>::New();
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(count);
-  auto vertices = vtkSmartPointer<vtkCellArray>::New();
-  auto id = new_array<vtkTypeInt64Array>("id", 1, count);
-  auto radius = new_array<vtkDoubleArray>("radius", 1, count);
-  auto speed = new_array<vtkDoubleArray>("speed", 1, count);
-  for (vtkIdType n = 0; n < count; ++n) {
-    const Row& row = rows[static_cast<std::size_t>(n)];
-    points->SetPoint(n, row.position);
-    vertices->InsertNextCell(1, &n);
-    id->SetValue(n, row.id);
-    radius->SetValue(n, row.radius);
-    speed->SetValue(n, Vec3(row.velocity[0], row.velocity[1], row.velocity[2]).norm());
+  void add(const char* name, std::int64_t Row::*field) const {
+    std::vector<std::int64_t> values;
+    for (const Row& row : rows_) values.push_back(row.*field);
+    file_.add("PointData", name, 1, values);
   }
-  frame->SetPoints(points);
-  frame->SetVerts(vertices);
-  frame->GetPointData()->AddArray(id);
-  if (with_clumps) {
-    auto clump = new_array<vtkTypeInt64Array>("clump", 1, count);
-    for (vtkIdType n = 0; n < count; ++n) clump->SetValue(n, rows[static_cast<std::size_t>(n)].clump);
-    frame->GetPointData()->AddArray(clump);
+  void add(const char* name, double Row::*field) const {
+    std::vector<double> values;
+    for (const Row& row : rows_) values.push_back(row.*field);
+    file_.add("PointData", name, 1, values);
   }
-  frame->GetPointData()->AddArray(radius);
-  frame->GetPointData()->AddArray(speed);
-  add_values(*frame, rows, "velocity", &Row::velocity);
-  add_values(*frame, rows, "angular_velocity", &Row::angular_velocity);
-  add_values(*frame, rows, "contact_force", &Row::contact_force);
-  add_values(*frame, rows, "contact_stress", &Row::contact_stress);
-  if (with_fluid) add_values(*frame, rows, "fluid_force", &Row::fluid_force);
-  if (with_stress) add_values(*frame, rows, "fluid_stress", &Row::fluid_stress);
-  return frame;
-}
+  template <int components>
+  void add(const char* name, double (Row::*field)[components], const char* section = "PointData") const {
+    std::vector<double> values;
+    for (const Row& row : rows_) values.insert(values.end(), row.*field, row.*field + components);
+    file_.add(section, name, components, values);
+  }
+  // A point for ParaView is a cell of its own.
+  void add_vertices() const {
+    std::vector<std::int64_t> numbers(rows_.size());
+    std::iota(numbers.begin(), numbers.end(), file_.first_row());
+    file_.add("Verts", "connectivity", 1, numbers);
+    std::iota(numbers.begin(), numbers.end(), file_.first_row() + 1);
+    file_.add("Verts", "offsets", 1, numbers);
+  }
+
+private:
+  const std::vector<Row>& rows_;
+  VtkXmlFile& file_;
+};
 
 }  // namespace
 
@@ -112,23 +95,30 @@ GrainSeries::GrainSeries(MPI_Comm communicator, const std::filesystem::path& run
 void GrainSeries::write(const Snapshot& snapshot) {
   const bool with_fluid = any_rank(communicator_, !snapshot.grains.fluid_force.empty());
   const bool with_stress = any_rank(communicator_, !snapshot.grains.fluid_stress.empty());
-  const std::vector<Row> rows = gathered(communicator_, snapshot);
-  std::string failure;
-  if (rank_of(communicator_) == 0) {
-    try {
-      make_folder(folder_ / "grains");
-      const auto file = std::filesystem::path("grains") / fmt::format("grains_{:09d}.vtp", snapshot.step);
-      const auto frame = poly_data_of(rows, with_fluid, snapshot.grains.clump_count > 0, with_stress);
-      auto writer = vtkSmartPointer<vtkXMLPolyDataWriter>::New();
-      writer->SetInputData(frame);
-      write_vtk_file(*writer, folder_ / file);
-      index_.add(snapshot.time, file);
-    } catch (const RunError& error) {
-      failure = error.what();
-    }
-  }
-  if (any_rank(communicator_, !failure.empty()))
-    throw RunError(failure.empty() ? "the VTK output of the grains cannot be written." : failure);
+  const std::int64_t count = snapshot.grains.global_count;
+  VtkXmlFile picture(communicator_, count);
+  const std::vector<Row> rows = rows_by_id(communicator_, rows_of(snapshot), picture.share());
+  const Columns columns(rows, picture);
+  columns.add("id", &Row::id);
+  if (snapshot.grains.clump_count > 0) columns.add("clump", &Row::clump);
+  columns.add("radius", &Row::radius);
+  columns.add("speed", &Row::speed);
+  columns.add("velocity", &Row::velocity);
+  columns.add("angular_velocity", &Row::angular_velocity);
+  columns.add("contact_force", &Row::contact_force);
+  columns.add("contact_stress", &Row::contact_stress);
+  if (with_fluid) columns.add("fluid_force", &Row::fluid_force);
+  if (with_stress) columns.add("fluid_stress", &Row::fluid_stress);
+  columns.add("Points", &Row::position, "Points");
+  columns.add_vertices();
+
+  const auto file = std::filesystem::path("grains") / fmt::format("grains_{:09d}.vtp", snapshot.step);
+  on_first_rank(communicator_, [&] { make_folder(folder_ / "grains"); });
+  picture.write(folder_ / file, "PolyData", "",
+                fmt::format(" NumberOfPoints=\"{0}\" NumberOfVerts=\"{0}\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
+                            "NumberOfPolys=\"0\"",
+                            count));
+  on_first_rank(communicator_, [&] { index_.add(snapshot.time, file); });
 }
 
 }  // namespace thalweg::io

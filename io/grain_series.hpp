@@ -15,7 +15,8 @@ namespace thalweg::io {
 // (m), velocity (m/s), speed (m/s), angular_velocity (rad/s), contact_force (N), contact_stress (Pa; nine components,
 // row by row: xx, xy, xz, yx, ...; core/contact_stress.hpp), with a fluid fluid_force (N), where it is measured
 // fluid_stress (Pa, nine components as well) and, where there are clumps, clump (id of the clump a member belongs to,
-// -1 for others). All calls are collective and throw RunError on every rank if a file cannot be written.
+// -1 for others). All ranks write one file together, and no rank gathers the grains. All calls are collective and throw
+// RunError on every rank if a file cannot be written.
 class GrainSeries {
 public:
   // continue_from: simulated time (s) at which a restarted run takes up an existing series; later frames leave the

@@ -52,11 +52,4 @@ Handle lone_access();
 // Rows, columns, ... of a dataset; none if it cannot be asked.
 std::vector<hsize_t> extents_of(hid_t dataset);
 
-// True if an empty file could be created under this name; leaves nothing behind.
-bool can_create(const std::filesystem::path& path);
-
-// Takes the room for `bytes` bytes from `offset` on the disk, false if there is none. A collective write through MPI-IO
-// does not always report that the disk is full (Open MPI's does not), so the room is taken beforehand.
-bool reserve_on_disk(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t bytes);
-
 }  // namespace thalweg::io

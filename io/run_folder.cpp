@@ -5,9 +5,14 @@
 
 #include <fmt/format.h>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <charconv>
+#include <cstring>
 #include <optional>
 #include <vector>
 
@@ -19,6 +24,8 @@ namespace {
 constexpr std::array run_contents{
     "case.yaml",  "run.log",   "series.csv", "profiles.h5", "probes.h5",   "tracks.h5",    "entrainment.h5", "bed.h5",
     "grains.pvd", "fluid.pvd", "grains",     "fluid",       "checkpoints", "summary.json", "analysis",       "stop"};
+// Of these, what a run that goes on changes in its place: folders, and files that are not replaced as a whole.
+constexpr std::array added_to{"checkpoints", "grains", "fluid", "run.log", "probes.h5", "tracks.h5", "entrainment.h5"};
 constexpr const char* latest_name = "latest";
 constexpr const char* unfinished_case = "case.yaml.partial";
 constexpr const char* kept_case = "case_until_step_";
@@ -31,6 +38,12 @@ std::optional<std::int64_t> step_of_checkpoint(const std::string& name) {
   const auto parsed = std::from_chars(name.data() + before.size(), end, step);
   if (parsed.ec != std::errc() || parsed.ptr != end) return std::nullopt;
   return step;
+}
+
+// Empty if this process may change the file, or add to the folder.
+std::string why_not_writable(const fs::path& path) {
+  const int mode = fs::is_directory(path) ? W_OK | X_OK : W_OK;
+  return ::faccessat(AT_FDCWD, path.c_str(), mode, AT_EACCESS) == 0 ? "" : std::strerror(errno);
 }
 
 }  // namespace
@@ -61,6 +74,22 @@ void RunFolder::check_new(bool overwrite) const {
         fmt::format("{}: the folder holds a run already; choose another with --out, continue it with "
                     "--restart {}, or replace it with --overwrite.",
                     path_.string(), path_.string()));
+}
+
+void RunFolder::check_writable() const {
+  std::error_code ignored;
+  fs::path above = fs::absolute(path_).lexically_normal();
+  while (!fs::exists(above, ignored) && above.has_relative_path()) above = above.parent_path();
+  if (const std::string why = why_not_writable(above); !why.empty() || !fs::is_directory(above, ignored))
+    throw InputError(fmt::format("{}: cannot {} the folder: {}; choose another one with --out.", path_.string(),
+                                 fs::exists(path_, ignored) ? "write to" : "create",
+                                 why.empty() ? std::strerror(ENOTDIR) : why));
+  for (const char* name : added_to) {
+    const std::string why = fs::exists(path_ / name, ignored) ? why_not_writable(path_ / name) : "";
+    if (!why.empty())
+      throw InputError(fmt::format("{}: cannot write to it: {}; change that or choose another folder with --out.",
+                                   (path_ / name).string(), why));
+  }
 }
 
 void RunFolder::create(bool overwrite) const {

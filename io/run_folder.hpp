@@ -23,6 +23,10 @@ public:
   void check_new(bool overwrite) const;
   void create(bool overwrite) const;
 
+  // Throws InputError where a run could not write: the folder or what it would add to in it (checkpoints, pictures,
+  // records, log); where the folder does not exist, the nearest one above it that does.
+  void check_writable() const;
+
   // Writes case.yaml: the marker, the given lines as comments (version, command), the case. Throws RunError.
   void write_case(const std::string& comment_lines, const std::string& yaml) const;
   static constexpr const char* case_marker = "# Thalweg run:";

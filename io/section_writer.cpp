@@ -41,29 +41,34 @@ std::string SectionWriter::comment_of(const RealKey& about) const {
   return fmt::format("{}{}{}; {}", about.required ? "required, " : "", about.unit, range, about.meaning);
 }
 
-void SectionWriter::put(bool given, const std::string& key, const std::string& value, const std::string& comment) {
+void SectionWriter::put(bool given, const std::string& key, const std::string& value, const std::string& comment,
+                        Source source) {
   given = given && given_;
   if (!given && style_ == YamlStyle::plain) return;
-  lines_.push_back({given, item_begins_, depth_, key, value, comment});
+  const bool example = given && source == Source::example && style_ == YamlStyle::documented;
+  lines_.push_back({given, item_begins_, depth_, key, value, (example ? "example, " : "") + comment});
   item_begins_ = false;
 }
 
 void SectionWriter::value_of(const std::string& key, double& value, const RealKey& about) {
-  put(true, key, shortest(given_ ? value : about.example.value_or(value)), comment_of(about));
+  put(true, key, shortest(given_ ? value : about.example.value_or(value)), comment_of(about),
+      source_of(about.required));
 }
 
 void SectionWriter::value_of(const std::string& key, std::optional<double>& value, const RealKey& about) {
-  put(value.has_value(), key, shortest(value.value_or(about.example.value_or(1.0))), comment_of(about));
+  put(value.has_value(), key, shortest(value.value_or(about.example.value_or(1.0))), comment_of(about),
+      Source::example);
 }
 
 void SectionWriter::value_of(const std::string& key, Vec3& value, const RealKey& about) {
   const bool show_example = !given_ && about.example;
-  put(true, key, bracketed(show_example ? Vec3(Vec3::Constant(*about.example)) : value), comment_of(about));
+  put(true, key, bracketed(show_example ? Vec3(Vec3::Constant(*about.example)) : value), comment_of(about),
+      source_of(about.required));
 }
 
 void SectionWriter::value_of(const std::string& key, std::optional<Vec3>& value, const RealKey& about) {
-  put(value.has_value(), key, bracketed(value.value_or(Vec3::Constant(about.example.value_or(0.0)))),
-      comment_of(about));
+  put(value.has_value(), key, bracketed(value.value_or(Vec3::Constant(about.example.value_or(0.0)))), comment_of(about),
+      Source::example);
 }
 
 void SectionWriter::value_of(const std::string& key, std::vector<Vec3>& values, const RealKey& about) {
@@ -81,7 +86,8 @@ void SectionWriter::value_of(const std::string& key, std::int64_t& value, const 
   const std::string range =
       fmt::format("whole number, at least {}{}", about.at_least, about.automatic ? ", or auto" : "");
   put(true, key, about.automatic == value ? "auto" : fmt::format("{}", value),
-      style_ == YamlStyle::plain ? "" : range + "; " + about.meaning);
+      style_ == YamlStyle::plain ? "" : range + "; " + about.meaning,
+      source_of(about.required || about.example.has_value()));
 }
 
 void SectionWriter::value_of(const std::string& key, std::vector<std::int64_t>& values, const IntegerKey& about) {
@@ -121,12 +127,12 @@ std::string SectionWriter::comment_of(const std::vector<Word>& words, const Sect
 
 void SectionWriter::word(const std::string& key, std::size_t& index, const std::vector<Word>& words,
                          const SectionKey& about) {
-  put(true, key, words[index].name, comment_of(words, about));
+  put(true, key, words[index].name, comment_of(words, about), source_of(about.required));
 }
 
 void SectionWriter::word(const std::string& key, std::optional<std::size_t>& index, const std::vector<Word>& words,
                          const SectionKey& about) {
-  put(index.has_value(), key, words[index.value_or(0)].name, comment_of(words, about));
+  put(index.has_value(), key, words[index.value_or(0)].name, comment_of(words, about), Source::example);
 }
 
 void SectionWriter::word_list(const std::string& key, std::vector<std::size_t>& indices, const std::vector<Word>& words,
@@ -136,12 +142,18 @@ void SectionWriter::word_list(const std::string& key, std::vector<std::size_t>& 
   put(true, key, fmt::format("[{}]", fmt::join(names, ", ")), comment_of(words, about));
 }
 
-bool SectionWriter::is_given(const std::string&, bool has_value) { return has_value; }
+// Asked of sections that a case may leave out.
+bool SectionWriter::is_given(const std::string&, bool has_value) {
+  optional_section_ = true;
+  return has_value;
+}
 
 void SectionWriter::nested(const std::string& key, bool given, const SectionKey& about, const Body& body) {
   const bool given_outside = given_;
+  const Source source = source_of(optional_section_);
+  optional_section_ = false;
   if (!given && style_ == YamlStyle::plain) return;
-  put(given, key, "", style_ == YamlStyle::plain ? "" : about.meaning);
+  put(given, key, "", style_ == YamlStyle::plain ? "" : about.meaning, source);
   const std::size_t head = lines_.size() - 1;
   given_ = given_ && given;
   ++depth_;
@@ -184,23 +196,63 @@ void SectionWriter::example_item(const Body& body) {
   if (lines_.size() > first) lines_[first].example = true;
 }
 
+std::string SectionWriter::text_of(const Line& line) {
+  const std::size_t indent = 2 * static_cast<std::size_t>(line.depth - (line.item && !line.key.empty() ? 1 : 0));
+  std::string text(indent, ' ');
+  if (line.example) text += "# ";
+  if (line.item) text += "- ";
+  if (!line.given && !line.example) text += "# ";
+  if (!line.key.empty()) text += line.key + ":" + (line.value.empty() ? "" : " ");
+  text += line.value;
+  if (!line.comment.empty()) {
+    text.resize(std::max(text.size() + 2, comment_column), ' ');
+    text += "# " + line.comment;
+  }
+  return text + "\n";
+}
+
 std::string SectionWriter::yaml() const {
   std::string result;
-  for (const Line& line : lines_) {
-    const std::size_t indent = 2 * static_cast<std::size_t>(line.depth - (line.item && !line.key.empty() ? 1 : 0));
-    std::string text(indent, ' ');
-    if (line.example) text += "# ";
-    if (line.item) text += "- ";
-    if (!line.given && !line.example) text += "# ";
-    if (!line.key.empty()) text += line.key + ":" + (line.value.empty() ? "" : " ");
-    text += line.value;
-    if (!line.comment.empty()) {
-      text.resize(std::max(text.size() + 2, comment_column), ' ');
-      text += "# " + line.comment;
-    }
-    result += text + "\n";
-  }
+  for (const Line& line : lines_) result += text_of(line);
   return result;
+}
+
+SectionWriter::Range SectionWriter::inside(std::size_t head) const {
+  Range range{head + 1, head + 1};
+  while (range.end < lines_.size() && lines_[range.end].depth > lines_[head].depth) ++range.end;
+  return range;
+}
+
+std::vector<std::size_t> SectionWriter::heads_in(const Range& range) const {
+  std::vector<std::size_t> heads;
+  for (std::size_t n = range.begin; n < range.end; ++n)
+    if (lines_[n].depth == lines_[range.begin].depth && !lines_[n].key.empty()) heads.push_back(n);
+  return heads;
+}
+
+std::optional<std::string> SectionWriter::yaml_of(const std::vector<std::string>& path) const {
+  Range range{0, lines_.size()};
+  std::string result;
+  int depth = -1;
+  for (const std::string& name : path) {
+    const std::vector<std::size_t> heads = heads_in(range);
+    const auto found = std::find_if(heads.begin(), heads.end(), [&](std::size_t n) { return lines_[n].key == name; });
+    if (found == heads.end()) return std::nullopt;
+    Line head = lines_[*found];
+    head.item = head.depth > depth + 1;  // the first that is shown of an entry of a list
+    depth = head.depth;
+    result += text_of(head);
+    range = inside(*found);
+  }
+  for (std::size_t n = range.begin; n < range.end; ++n) result += text_of(lines_[n]);
+  return result;
+}
+
+std::vector<std::string> SectionWriter::sections() const {
+  std::vector<std::string> names;
+  for (const std::size_t head : heads_in({0, lines_.size()}))
+    if (const Range range = inside(head); range.end > range.begin) names.push_back(lines_[head].key);
+  return names;
 }
 
 }  // namespace thalweg::io

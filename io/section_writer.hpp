@@ -3,10 +3,15 @@
 
 #include "core/section_visitor.hpp"
 
+#include <optional>
+#include <string>
+#include <vector>
+
 namespace thalweg::io {
 
 // plain: every key that has a value, its unit as a comment. documented: meanings as well, and the keys that are not
-// given as comments, so that the text is both a valid file and the reference of all keys.
+// given as comments, so that the text is both a valid file and the reference of all keys; a value that is no default
+// is marked as an example.
 enum class YamlStyle { plain, documented };
 
 class SectionWriter final : public SectionVisitor {
@@ -19,7 +24,15 @@ public:
 
   std::string yaml() const;
 
+  // The section, or key, of that path alone ("contact", "liquid_bridge"; entries of lists count as one), under the
+  // lines of the sections it is in; none where there is no such path.
+  std::optional<std::string> yaml_of(const std::vector<std::string>& path) const;
+  std::vector<std::string> sections() const;  // names of those at the top
+
 private:
+  // Whether a value that is shown has been chosen for the documentation, because the key has no default.
+  enum class Source { default_value, example };
+  static Source source_of(bool no_default) { return no_default ? Source::example : Source::default_value; }
   struct Line {
     bool given;  // false: shown as a comment
     bool item;   // the first line of an entry of a list
@@ -27,6 +40,12 @@ private:
     std::string key, value, comment;
     bool example = false;  // with item: of an entry that is a comment altogether
   };
+  struct Range {
+    std::size_t begin, end;  // of lines
+  };
+  static std::string text_of(const Line& line);
+  Range inside(std::size_t head) const;                         // what is deeper than that line, behind it
+  std::vector<std::size_t> heads_in(const Range& range) const;  // lines with the keys of the first level there
 
   void value_of(const std::string& key, double& value, const RealKey& about) override;
   void value_of(const std::string& key, std::optional<double>& value, const RealKey& about) override;
@@ -51,13 +70,15 @@ private:
   void item(const std::string& key, std::size_t index, const Body& body) override;
   void example_item(const Body& body) override;
 
-  void put(bool given, const std::string& key, const std::string& value, const std::string& comment);
+  void put(bool given, const std::string& key, const std::string& value, const std::string& comment,
+           Source source = Source::default_value);
   std::string comment_of(const RealKey& about) const;
   std::string comment_of(const std::vector<Word>& words, const SectionKey& about) const;
 
   YamlStyle style_;
-  bool given_ = true;         // false inside a section that is not given
-  bool item_begins_ = false;  // the next line is the first of an entry of a list
+  bool given_ = true;              // false inside a section that is not given
+  bool item_begins_ = false;       // the next line is the first of an entry of a list
+  bool optional_section_ = false;  // the next section may be left out
   int depth_ = 0;
   std::vector<Line> lines_;
 };

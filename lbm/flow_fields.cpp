@@ -10,6 +10,19 @@ namespace thalweg::lbm {
 namespace {
 
 constexpr int fluid_flag = 3;  // component of a velocity_field after the velocity
+constexpr int layers = 2;      // that a one-sided difference looks at
+
+// With the neighbours of its cells; the whole of an axis where these may lie beyond its end.
+Block widened(Block region, const Index3& cells) {
+  for (int a = 0; a < 3; ++a) {
+    region.lower[a] -= layers;
+    region.upper[a] += layers;
+    if (region.lower[a] >= 0 && region.upper[a] <= cells[a]) continue;
+    region.lower[a] = 0;
+    region.upper[a] = cells[a];
+  }
+  return region;
+}
 
 // The derivative along an axis from the cells at hand.
 Vec3 derivative(const GhostedField& velocity, const Index3& cell, int axis) {
@@ -35,9 +48,11 @@ Vec3 derivative(const GhostedField& velocity, const Index3& cell, int axis) {
 }  // namespace
 
 template <typename Real>
-GhostedField velocity_field(const Fluid<Real>& fluid) {
-  GhostedField field(fluid.decomposition(), fluid.communicator(), fluid_flag + 1, 2);
-  for_each_fluid_cell(fluid.cells(), [&](std::ptrdiff_t cell, const Index3& at) {
+GhostedField velocity_field(const Fluid<Real>& fluid, const Block& region) {
+  GhostedField field(fluid.decomposition(), fluid.communicator(), fluid_flag + 1, layers);
+  const Block part = local_block(fluid.block(), widened(region, fluid.decomposition().cells()));
+  for_each_cell(fluid.indexing(), part, [&](std::ptrdiff_t cell, const Index3& at) {
+    if (!fluid.cells().is_fluid(cell)) return;
     const Vec3 u = fluid.state_at(cell).velocity;
     double* values = field.at(at[0], at[1], at[2]);
     for (int a = 0; a < 3; ++a) values[a] = u[a];
@@ -107,8 +122,8 @@ MomentumFlux momentum_flux(const Fluid<Real>& fluid, std::ptrdiff_t cell) {
   return flux;
 }
 
-template GhostedField velocity_field(const Fluid<float>&);
-template GhostedField velocity_field(const Fluid<double>&);
+template GhostedField velocity_field(const Fluid<float>&, const Block&);
+template GhostedField velocity_field(const Fluid<double>&, const Block&);
 template SubgridState subgrid_state(const Fluid<float>&, std::ptrdiff_t);
 template SubgridState subgrid_state(const Fluid<double>&, std::ptrdiff_t);
 template MomentumFlux momentum_flux(const Fluid<float>&, std::ptrdiff_t);

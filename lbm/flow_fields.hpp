@@ -18,12 +18,12 @@ namespace thalweg::lbm {
 // Rows a, columns b: du_a/dx_b.
 using Gradient = Eigen::Matrix3d;
 
-// Velocity of every cell and whether it is fluid, with the two layers of ghosts that one-sided differences need.
-// Collective.
+// Velocity and whether it is fluid, of the cells of a region (global coordinates) and those up to two cells from it,
+// which one-sided differences need, also across the borders of ranks and periodic ones; zero elsewhere. Collective.
 template <typename Real>
-GhostedField velocity_field(const Fluid<Real>& fluid);
+GhostedField velocity_field(const Fluid<Real>& fluid, const Block& region);
 
-// At an owned fluid cell of a velocity_field.
+// At an owned fluid cell of the region of a velocity_field.
 Gradient velocity_gradient(const GhostedField& velocity, int x, int y, int z);
 
 Vec3 vorticity(const Gradient& gradient);

@@ -1,17 +1,23 @@
 // The loops over the cells of a block, in memory order.
 #pragma once
 
+#include "core/decomposition.hpp"
 #include "lbm/cell_map.hpp"
 
 namespace thalweg::lbm {
 
-// Calls visit(index in memory, local coordinates) for every owned cell.
+// Calls visit(index in memory, local coordinates) for every cell of a block in local coordinates.
+template <typename Visit>
+void for_each_cell(const CellIndexing& indexing, const Block& part, Visit visit) {
+  for (int z = part.lower[2]; z < part.upper[2]; ++z)
+    for (int y = part.lower[1]; y < part.upper[1]; ++y)
+      for (int x = part.lower[0]; x < part.upper[0]; ++x) visit(indexing.index(x, y, z), Index3{x, y, z});
+}
+
+// For every owned cell.
 template <typename Visit>
 void for_each_cell(const CellIndexing& indexing, Visit visit) {
-  const Index3& n = indexing.size();
-  for (int z = 0; z < n[2]; ++z)
-    for (int y = 0; y < n[1]; ++y)
-      for (int x = 0; x < n[0]; ++x) visit(indexing.index(x, y, z), Index3{x, y, z});
+  for_each_cell(indexing, Block{{0, 0, 0}, indexing.size()}, visit);
 }
 
 // For those that no body covers.
@@ -20,6 +26,16 @@ void for_each_fluid_cell(const CellMap& cells, Visit visit) {
   for_each_cell(cells.indexing(), [&](std::ptrdiff_t cell, const Index3& at) {
     if (cells.is_fluid(cell)) visit(cell, at);
   });
+}
+
+// The cells of a region (global coordinates) that a rank owns, in its local coordinates.
+inline Block local_block(const Block& owned, const Block& region) {
+  Block part = intersection(owned, region);
+  for (int a = 0; a < 3; ++a) {
+    part.lower[a] -= owned.lower[a];
+    part.upper[a] -= owned.lower[a];
+  }
+  return part;
 }
 
 // Where an owned cell stands in arrays without ghosts and padding.

@@ -46,18 +46,28 @@ def hydraulic_radius(depth, width=None):
 
 
 def shields_of(slope, depth, diameter, density_ratio, width=None):
-    """Shields number S R/((s - 1) d) of a slope, with R the hydraulic radius; lengths in m."""
-    return slope * hydraulic_radius(depth, width) / ((density_ratio - 1.0) * diameter)
+    """Shields number R sin(atan(slope))/((s - 1) d), with R the hydraulic radius; lengths in m."""
+    return np.sin(np.arctan(slope)) * hydraulic_radius(depth, width) / ((density_ratio - 1.0) * diameter)
 
 
 def slope_of(shields, depth, diameter, density_ratio, width=None):
     """Slope that gives a Shields number: the reverse of shields_of()."""
-    return shields * (density_ratio - 1.0) * diameter / hydraulic_radius(depth, width)
+    return np.tan(np.arcsin(shields * (density_ratio - 1.0) * diameter / hydraulic_radius(depth, width)))
+
+
+def measured_shields_number(run, start, stop):
+    """Mean between two times (s) of the Shields number that `analysis.bed_surface` wrote into series.csv."""
+    if "shields_number" not in run.series:
+        raise RunFolderError(f"{run.folder}: no slope alone drives this flow, so its Shields number needs the stress at the top: "
+                             "add analysis.bed_surface to the case.")
+    time = run.series["time"]
+    counted = (time >= start - 1e-9) & (time <= stop + 1e-9)
+    return float(np.mean(run.series["shields_number"][counted]))
 
 
 def shields_number(run, surface):
-    """Shields number of a run whose bed ends at the height `surface` (m), by depth and slope, or by hydraulic radius between
-    side walls."""
+    """Shields number of a run that a slope drives and whose bed ends at the height `surface` (m), by depth and slope, or by
+    hydraulic radius between side walls."""
     return shields_of(run.slope, run.size[2] - surface, run.diameter, run.density_ratio,
                       run.size[1] if run.side_walls else None)
 

@@ -95,11 +95,20 @@ def describe_transport(report):
 
 def describe_surface(report, name, title, surface):
     run = report.run
-    depth, shields = float(run.size[2] - surface), float(bed.shields_number(run, surface))
-    report.numbers[name] = {"bed_height": surface, "depth": depth, "shields": shields}
-    by = "hydraulic radius" if run.side_walls else "depth"
-    report.say(title, f"at {surface:.4g} m ({surface / run.diameter:.3g} d), {depth:.4g} m of water above: Shields number "
-                      f"{shields:.4g} by {by} at slope {run.slope:.4g}")
+    depth = float(run.size[2] - surface)
+    report.numbers[name] = {"bed_height": surface, "depth": depth}
+    place = f"at {surface:.4g} m ({surface / run.diameter:.3g} d), {depth:.4g} m of water above"
+    if run.driven_by_slope:
+        shields, by = float(bed.shields_number(run, surface)), "hydraulic radius" if run.side_walls else "depth"
+        how = f"by {by} at slope {run.slope:.4g}"
+    else:
+        try:
+            shields, how = bed.measured_shields_number(run, report.start, report.stop), "by the forces on the water, as measured"
+        except RunFolderError as error:
+            report.say(title, f"{place}; Shields number left out: {error}")
+            return
+    report.numbers[name]["shields"] = shields
+    report.say(title, f"{place}: Shields number {shields:.4g} {how}")
 
 
 def describe_profiles(report):

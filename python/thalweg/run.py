@@ -142,21 +142,47 @@ class Run:
         """Whether both faces across y hold the water back, so that the hydraulic radius counts."""
         return all(face not in ("periodic", "free_slip", None) for face in self.faces("y"))
 
+    @property
+    def free_populations(self):
+        """Populations of the case that are free to move, or all where none is."""
+        populations = self.case["grains"]
+        held = ("fixed", "prescribed_velocity", "motion")
+        return [grains for grains in populations if not any(grains.get(key) for key in held)] or populations
+
+    def reference(self, name):
+        """What the run says of its reference grain (`diameter`, `density`) in every row of series.csv; None where there is no
+        row, or the run is older than these columns."""
+        if not (self.folder / "series.csv").exists():
+            return None
+        column = self.series.get(f"reference_{name}", ())
+        return float(column[-1]) if len(column) else None
+
     @cached_property
     def diameter(self):
-        """m: of the first population, or where that is more than one number the one that half of the mass is finer than."""
-        diameter = self.case["grains"][0].get("diameter")
-        if isinstance(diameter, (int, float)):
-            return float(diameter)
-        if not self.grains:
+        """m: the reference diameter, `analysis.reference_diameter` or the one that half of the mass of all free grains is finer
+        than."""
+        given = self.reference("diameter") or (self.case.get("analysis") or {}).get("reference_diameter")
+        if given:
+            return float(given)
+        sizes = [(grains.get("diameter"), grains.get("count", 1)) for grains in self.free_populations]
+        if all(isinstance(diameter, (int, float)) for diameter, _ in sizes):
+            sizes = np.sort(np.concatenate([np.full(int(count), float(diameter)) for diameter, count in sizes]))
+        elif self.grains:
+            sizes = np.sort(self.grains[0].diameter)
+        else:
             raise RunFolderError(f"{self.folder}: the case has no single diameter and there is no frame of the grains.")
-        sizes = np.sort(self.grains[0].diameter)
         return float(sizes[np.searchsorted(np.cumsum(sizes**3), 0.5 * np.sum(sizes**3))])
 
     @property
     def density_ratio(self):
-        """Of the first population's grains to the fluid, 1."""
-        return self.case["grains"][0]["density"] / self.case["fluid"]["density"]
+        """Of the free grains, mass over volume, to the fluid, 1."""
+        density = self.reference("density")
+        if density is None:
+            populations = [grains for grains in self.free_populations if isinstance(grains.get("diameter"), (int, float))]
+            volumes = [grains.get("count", 1) * grains["diameter"] ** 3 for grains in populations] or [1.0]
+            densities = [grains["density"] for grains in populations] or [self.free_populations[0]["density"]]
+            density = float(np.average(densities, weights=volumes))
+        return density / self.case["fluid"]["density"]
 
     @property
     def gravity(self):
@@ -172,6 +198,12 @@ class Run:
         """Tangent of the bed's angle, 1."""
         gravity = self.gravity
         return float(gravity[0] / -gravity[2])
+
+    @property
+    def driven_by_slope(self):
+        """Whether gravity along the bed is all that drives the fluid: no mean velocity is held, and no top moves or drags."""
+        steered = bool((self.case.get("fluid") or {}).get("mean_velocity"))
+        return not steered and self.faces("z")[1] in ("free_slip", "periodic", None)
 
 
 def columns_of(group):

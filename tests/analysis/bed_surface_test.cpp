@@ -109,6 +109,62 @@ TEST(BedSurface, OfACubicLatticeIsTheTopOfItsHighestLayer) {
   EXPECT_EQ(dry.figures().size(), 2u);
 }
 
+// A fluid that a force drives and whose top takes or gives stress.
+class DrivenFluid final : public FluidSource {
+public:
+  explicit DrivenFluid(const Drive& drive) : drive_(drive) {}
+  FluidFields sample(const std::vector<FluidField>&, const Block&) const override { return {}; }
+  void for_each_velocity(const VelocityVisitor&) const override {}
+  std::optional<State> state_in(const Index3&) const override { return std::nullopt; }
+  Drive drive() const override { return drive_; }
+
+private:
+  Drive drive_;
+};
+
+// Momentum of the water above the bed, per length: tau_b (W + n H) = f H W + tau_top W.
+TEST(BedSurface, TakesTheStressFromTheForcesOnTheWater) {
+  Spheres spheres(world);
+  const double depth = 22.0 * d, width = 8.0 * d, plan = 16.0 * d * width;
+  struct Example {
+    double force, top;  // N/m^3; Pa on the water
+    int walls;
+  };
+  for (const Example& e : {Example{300.0, 0.0, 0}, {0.0, 2.5, 0}, {300.0, -7.0, 2}, {100.0, 2.5, 1}}) {
+    const DrivenFluid fluid({Vec3(e.force, 1.0, 2.0), Vec3(-e.top * plan, 3.0, 4.0)});
+    BedSurface surface(world, spheres.box(), keys(), d, BedFlow{e.walls, 1e9, 80.0, true}, 0.0);
+    Snapshot snapshot = spheres.at(0, cubic_lattice(10));
+    snapshot.fluid = &fluid;
+    surface.observe(snapshot);
+    const double stress = (e.force * depth + e.top) * width / (width + e.walls * depth);
+    EXPECT_NEAR(value_of(surface.figures(), "bed_stress"), stress, 1e-9);
+    EXPECT_NEAR(value_of(surface.results(), "shields_number_mean"), stress / 80.0, 1e-11);
+  }
+}
+
+// Which runs have a stress at all, and where it comes from. The grains: 1 mm, 2000 kg/m^3 heavier than the water.
+TEST(BedSurface, KnowsWhatDrivesTheWater) {
+  const auto figure_count = [](const Vec3& gravity, bool steered, bool top_drags, bool top_moves) {
+    Spheres spheres(world);
+    RunFacts run;
+    run.box = spheres.box();
+    run.gravity = gravity;
+    run.fluid = FluidFacts{1000.0, 1e-6, 1.0, steered, 0, top_drags, top_moves};
+    run.grains.emplace();
+    run.grains->reference_diameter = 1e-3;
+    run.grains->reference_density = 3000.0;
+    const Decomposition decomposition({32, 16, 64}, d / 2.0, {true, true, false}, {1, 1, 1});
+    const auto observer = make_observer(BedSurfaceKeys{}, run, {world, decomposition, 1e-3});
+    return observer->figures().size();
+  };
+  const Vec3 down(0.0, 0.0, -9.8), tilted(1.0, 0.0, -9.7);
+  EXPECT_EQ(figure_count(down, false, false, false), 4u);  // heights, depth, radius
+  EXPECT_EQ(figure_count(down, false, true, false), 4u);   // a lid at rest
+  EXPECT_EQ(figure_count(tilted, false, false, false), 6u);
+  EXPECT_EQ(figure_count(down, true, false, false), 6u);
+  EXPECT_EQ(figure_count(down, false, true, true), 6u);
+}
+
 // Places that jiggle by up to half a diameter about a drift of half a box in a picture, for some of them.
 std::vector<Vec3> jiggling(std::int64_t step) {
   std::vector<Vec3> positions;

@@ -24,7 +24,7 @@ class MadeUpFlow final : public FluidSource {
 public:
   MadeUpFlow(MPI_Comm communicator, const Decomposition& decomposition)
       : decomposition_(decomposition), block_(decomposition.block_of(rank_of(communicator))) {}
-  FluidFields sample(const std::vector<FluidField>&) const override { return {}; }
+  FluidFields sample(const std::vector<FluidField>&, const Block&) const override { return {}; }
   void for_each_velocity(const VelocityVisitor& visit) const override {
     for (int z = block_.lower[2]; z < block_.upper[2]; ++z)
       for (int y = block_.lower[1]; y < block_.upper[1]; ++y)

@@ -27,7 +27,7 @@ TEST(FlowNumbers, OfTheFlumeWithSideWalls) {
   for (const lbm::FaceType wall : {lbm::FaceType::no_slip, lbm::FaceType::law_of_the_wall}) {
     const FlowNumbers flow = flow_numbers(water_over_glass(4.95e-3, 0.0748, 0.0594, 0.0105, wall));
     EXPECT_TRUE(flow.side_walls);
-    EXPECT_NEAR(flow.shields_hydraulic, 0.047, 1e-4);  // S is printed with three digits
+    EXPECT_NEAR(flow.shields_hydraulic, 0.047, 3e-5 + 0.003 * 0.047);  // S has three digits; they take it for the sine
     EXPECT_NEAR(flow.shields_depth / flow.shields_hydraulic, (2.0 * 59.4 + 10.5) / 10.5, 1e-9);
   }
 }
@@ -36,11 +36,23 @@ TEST(FlowNumbers, OfTheFlumeWithSideWalls) {
 TEST(FlowNumbers, GiveTheSlopeForAShieldsNumber) {
   const FlowNumbers flow =
       flow_numbers(water_over_glass(4.95e-3, 0.05, 0.0594, 0.0105, lbm::FaceType::law_of_the_wall));
-  EXPECT_NEAR(slope_for(flow, 0.028), 0.0445, 5e-5);
-  EXPECT_NEAR(slope_for(flow, 0.068), 0.1082, 5e-5);
+  EXPECT_NEAR(std::sin(std::atan(slope_for(flow, 0.028))), 0.0445, 5e-5);
+  EXPECT_NEAR(std::sin(std::atan(slope_for(flow, 0.068))), 0.1082, 5e-5);
   const FlowNumbers wide = flow_numbers(water_over_glass(5e-3, 0.05, 0.0412, 0.040, lbm::FaceType::periodic));
-  EXPECT_NEAR(slope_for(wide, 0.085), 0.085 * 1.55 * 5e-3 / 0.0412, 1e-12);
+  EXPECT_NEAR(std::sin(std::atan(slope_for(wide, 0.085))), 0.085 * 1.55 * 5e-3 / 0.0412, 1e-12);
   EXPECT_NEAR(slope_for(wide, wide.shields_hydraulic), wide.slope, 1e-15);
+  EXPECT_TRUE(std::isinf(slope_for(wide, 6.0)));  // the sine would be 1.13
+}
+
+// The force along the bed is g times the sine: at a slope of 5 a fifth of what the tangent would make of it.
+TEST(FlowNumbers, TakeTheSineOfTheSlope) {
+  for (const double slope : {0.01, 0.5, 5.0}) {
+    const FlowNumbers flow = flow_numbers(water_over_glass(5e-3, slope, 0.0412, 0.040, lbm::FaceType::periodic));
+    const double sine = slope / std::sqrt(1.0 + slope * slope);
+    EXPECT_NEAR(flow.shields_depth, sine * 0.0412 / (1.55 * 5e-3), 1e-9);
+    EXPECT_NEAR(flow.friction_velocity, std::sqrt(9.8 * sine * 0.0412), 1e-9);
+    EXPECT_NEAR(flow.slope, slope, 1e-12);
+  }
 }
 
 // 969 grains in the paper's flume are 18 diameters high, 2884 on its wide bed 13 (0.6 of the volume is grain).

@@ -175,6 +175,44 @@ TEST(CaseReader, TheDefaultsAreValidAndNameEveryKey) {
             std::string::npos);
 }
 
+// Whatever has no default is marked, and nothing that has one: the comment behind a key.
+TEST(CaseReader, DefaultsAndExamplesAreToldApart) {
+  const std::string text = "\n" + defaults_yaml("resolved");
+  const auto comment_of = [&text](const std::string& key) {
+    const std::size_t at = text.find("\n" + key), mark = text.find("# ", at);
+    return at == std::string::npos ? std::string("?") : text.substr(mark + 2, text.find('\n', mark) - mark - 2);
+  };
+  for (const std::string key :
+       {"  size: [", "  spacing: ", "  density: 1000",
+        "  time_step: ", "  magnitude: ", "  slope: ", "  restitution: ", "      value: ", "    density: 2550",
+        "    count: ", "  until: ", "  transport_rate:", "      type: law_of_the_wall", "    x: periodic"})
+    EXPECT_TRUE(comment_of(key).starts_with("example, ")) << key << comment_of(key);
+  for (const std::string key :
+       {"  smagorinsky_constant: ", "  collision: ", "  mode: ", "      seed: ", "    velocity: ", "  friction: ",
+        "  normal_stiffness: ", "  links: ", "  grain_steps_per_fluid_step: ", "  grain_integrator: ", "domain:",
+        "contact:", "    fixed: "})
+    EXPECT_EQ(comment_of(key).find("example"), std::string::npos) << key << comment_of(key);
+}
+
+TEST(CaseReader, OneSectionOfTheDefaults) {
+  const std::string dry = defaults_yaml("grains.contact"), wet = defaults_yaml("contact"),
+                    population = defaults_yaml("resolved.grains.contact");
+  EXPECT_NE(dry.find("system: grains"), std::string::npos);
+  EXPECT_NE(wet.find("system: resolved"), std::string::npos);
+  EXPECT_EQ(YAML::Load(dry)["contact"]["law"].as<std::string>(), "linear");
+  EXPECT_EQ(YAML::Load(dry).size(), 1u);
+  EXPECT_NE(population.find("\ngrains:"), std::string::npos) << population;
+  EXPECT_NE(population.find("  - # contact:"), std::string::npos) << population;
+  EXPECT_EQ(population.find("liquid_bridge"), std::string::npos);
+  EXPECT_EQ(YAML::Load(defaults_yaml("gravity"))["gravity"]["mode"].as<std::string>(), "reduced");
+  EXPECT_NE(defaults_yaml("fluid.mean_velocity").find("response_time"), std::string::npos);  // system and section
+  EXPECT_NE(defaults_yaml("closures").find("system: continuum"), std::string::npos);
+  for (const std::string what : {"grains.kontakt", "kontakt", "", "."})
+    EXPECT_NE(message_of<InputError>([&] { defaults_yaml(what); }).find("or a section such as contact"),
+              std::string::npos)
+        << what;
+}
+
 TEST(CaseReader, TheDefaultsOfEverySystemAreValid) {
   for (const char* system : {"resolved", "fluid", "grains", "model_fluid", "continuum"})
     EXPECT_NO_THROW(read(defaults_yaml(system))) << system;

@@ -1,4 +1,6 @@
 #include "driver/check_report.hpp"
+
+#include "driver/disk_space.hpp"
 #include "tests/driver/water_over_glass.hpp"
 
 #include <gtest/gtest.h>
@@ -43,6 +45,45 @@ TEST(Cost, TakesAccountOfTheLinks) {
   EXPECT_NEAR(water, 1.5e6 * 240.0 * 80.0 * 212.0 * 152.0 / (0.5 * 42e9), 0.5 * water);
   EXPECT_GT(with_grains - water, 1.5e6 * 1.58e6 * 10e-9);
   EXPECT_LT(with_grains - water, 1.5e6 * (1.58e6 * 40e-9 + 50.0 * 1000.0 * 400e-9));
+}
+
+// 30 s: 301 frames every 0.1 s, of 5 floats a cell in one layer of cells; 61 of grains; 3 of 30 checkpoints at a time.
+TEST(DiskSpace, IsThatOfFramesCheckpointsAndRecords) {
+  Case c = water_over_glass(5e-3, 0.016, 0.0412, 0.040, lbm::FaceType::periodic);
+  c.domain.size = Vec3(0.120, 0.040, 0.106);
+  c.output.fluid = {.every = 0.1, .region = io::FluidRegion::slice_y};
+  c.output.grains.every = 0.5;
+  c.output.checkpoint = {.every = 1.0, .every_wall = 0.0, .keep = 2};
+  c.analysis.observers.of<analysis::TracksKeys>().emplace().one_in = 3;
+  const DiskSpace space = disk_space(c);
+  EXPECT_NEAR(space.fluid, 301.0 * 240.0 * 212.0 * 5.0 * 4.0, 1.0);
+  EXPECT_NEAR(space.grains, 61.0 * 1000.0 * 29.0 * 8.0, 1.0);
+  EXPECT_NEAR(space.records, 30001.0 * 334.0 * 144.0, 1.0);
+  const double state = 240.0 * 80.0 * 212.0 * 19.0 * 4.0;
+  EXPECT_GT(space.checkpoints, 3.0 * state);
+  EXPECT_LT(space.checkpoints, 3.0 * (state + 1000.0 * 1000.0));
+  EXPECT_NE(disk_line(space).find("fluid 306 MB, grains 14.2 MB, checkpoints"), std::string::npos) << disk_line(space);
+  c.output.checkpoint.every = 0.0;
+  EXPECT_NEAR(disk_space(c).checkpoints, space.checkpoints / 3.0, 1.0);
+}
+
+// What a user plans a run by, in lines of their own.
+TEST(CheckReport, ShowsTimesOverlapsAndWhatTheSlopeAsksFor) {
+  Case c = water_over_glass(5e-3, 0.016, 0.0412, 0.040, lbm::FaceType::periodic);
+  const auto line = [&c](const std::string& name) -> std::string {
+    for (const std::string& text : check_report(c, 10e9))
+      if (text.starts_with(name)) return text;
+    return {};
+  };
+  EXPECT_NE(line("times").find("H/u* 0.513 s"), std::string::npos) << line("times");  // 0.0412 m over 0.0804 m/s
+  EXPECT_NE(line("flow").find("0.944 m/s (slope and depth)"), std::string::npos) << line("flow");
+  EXPECT_NE(line("reference").find("diameter 0.005 m"), std::string::npos);
+  EXPECT_NE(line("fall").find("0.48 m/s"), std::string::npos) << line("fall");
+  for (const char* name : {"overlap", "drag", "base", "disk"}) EXPECT_NE(line(name), "") << name;
+  c.gravity.slope = 0.0;
+  c.domain.faces[top] = {.type = lbm::FaceType::moving, .velocity = Vec3(0.2, 0.0, 0.0)};
+  EXPECT_NE(line("Shields").find("by a moving face, turbulent flow"), std::string::npos) << line("Shields");
+  EXPECT_EQ(line("base"), "");
 }
 
 TEST(CheckReport, AsksForContactsAsLongAsSoundGoesAroundAGrain) {

@@ -34,6 +34,8 @@ TEST(CommandLine, KnowsItsFourCommands) {
   EXPECT_EQ(parse({"defaults"}).command->kind, Command::Kind::defaults);
   EXPECT_EQ(parse({"defaults", "grains"}).command->system, "grains");
   EXPECT_EQ(parse({"info", "run"}).command->path, "run");
+  EXPECT_EQ(parse({"info", "--csv", "a", "b"}).command->runs, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(parse({"info", "a", "b"}).exit_code, 2);
 }
 
 TEST(CommandLine, HelpAndVersionEndWithZero) {

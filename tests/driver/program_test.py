@@ -3,6 +3,7 @@
 
 Called by ctest: program_test.py THALWEG MPIEXEC [unittest arguments]
 """
+import csv
 import os
 import signal
 import subprocess
@@ -116,6 +117,9 @@ class CommandLine(DryGrains):
         (self.folder / "defaults.yaml").write_text(text)
         self.run_well("check", "defaults.yaml")
         self.assert_refused("defaults", "plasma", words=["plasma"])
+        section = self.run_well("defaults", "grains.contact").stdout
+        self.assertIn("\ncontact: ", section)
+        self.assertNotIn("\nrun:", section)
 
     def test_check_says_what_a_case_means(self):
         report = self.run_well("check", self.case).stdout
@@ -192,6 +196,24 @@ class Running(DryGrains):
                 if name.startswith("transport_rate/"):   # what the observer remembers of what it saw
                     continue
                 self.assertEqual(a[name][()].tobytes(), b[name][()].tobytes(), name)
+
+    def test_a_table_of_runs(self):
+        self.run_well("run", self.case, "--out", "a", "--set", 'name="fast, loose"')
+        self.run_well("run", self.case, "--out", "b", "--until", "0.02", "--set", "analysis={}")
+        self.run_well("run", self.case, "--out", "c", "--until", "0.02")
+        (self.folder / "c/summary.json").unlink()   # as while it goes on
+        header, *rows = csv.reader(self.run_well("info", "--csv", "a", "b", "c").stdout.splitlines())
+        a, b, c = (dict(zip(header, row)) for row in rows)
+        self.assertEqual([row["run"] for row in (a, b, c)], ["a", "b", "c"])
+        self.assertEqual((a["state"], a["name"], b["state"]), ("finished", "fast, loose", "finished"))
+        self.assertIn("running", c["state"])
+        self.assertEqual(set(c.values()), {"c", c["state"], ""})
+        summary = self.summary("b")
+        self.assertEqual(float(b["reference_diameter [m]"]), summary["reference_diameter"])
+        self.assertEqual(float(b["bed.porosity"]), summary["bed"]["porosity"])
+        self.assertFalse(any(name.startswith(("phases", "units")) for name in header))
+        self.assert_refused("info", "a", "b", words=["--csv"])
+        self.assert_refused("info", "--csv", "a", "nowhere", words=["nowhere"])
 
     def test_a_failed_run_says_so_and_keeps_its_checkpoint(self):
         # A grain held at 1 m/s leaves the box through its top, 0.02 m away, after about 0.02 s.

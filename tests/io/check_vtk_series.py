@@ -1,6 +1,7 @@
-"""Opens the series that io_vtk_test wrote with VTK's own readers, as ParaView would, and compares every number.
+"""Opens the series that io_vtk_test wrote with VTK's own readers, as ParaView would, and compares every number; and with the
+reader of python/thalweg, which must find the same.
 
-Usage: check_vtk_series.py FOLDER RANKS
+Usage: check_vtk_series.py FOLDER [OTHER]; the pictures in FOLDER must also be those in OTHER, byte for byte.
 """
 import sys
 import xml.etree.ElementTree as xml
@@ -8,10 +9,13 @@ from pathlib import Path
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkIOXML import vtkXMLImageDataReader, vtkXMLPImageDataReader, vtkXMLPolyDataReader
+from vtkmodules.vtkIOXML import vtkXMLImageDataReader, vtkXMLPolyDataReader
 
-FOLDER, RANKS = Path(sys.argv[1]), int(sys.argv[2])
-CELLS, SPACING, GRAINS = (12, 9, 8), 0.25e-3, 37
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
+from thalweg.vtk_files import read_image, read_points
+
+FOLDER, OTHERS = Path(sys.argv[1]), [Path(name) for name in sys.argv[2:]]
+CELLS, SPACING, GRAINS = (24, 20, 18), 0.25e-3, 9001
 TIMES = [0.0, 0.2, 0.1 * 7]
 
 
@@ -40,6 +44,7 @@ def check_grains(name, with_fluid, with_stress=False):
     for time, path in pictures(FOLDER / name / "grains.pvd"):
         data = read(vtkXMLPolyDataReader(), path)
         n = np.arange(GRAINS)
+        assert np.array_equal(vtk_to_numpy(data.GetVerts().GetConnectivityArray()), n)
         zero, one = np.zeros(GRAINS), np.ones(GRAINS)
         assert data.GetNumberOfPoints() == GRAINS and data.GetNumberOfVerts() == GRAINS
         points = vtk_to_numpy(data.GetPoints().GetData())
@@ -63,6 +68,9 @@ def check_grains(name, with_fluid, with_stress=False):
             expected["contact_stress"][:, 0] = -radius / volume
             expected["contact_stress"][:, 6] = n * radius / volume
         found = arrays(data.GetPointData())
+        ours = read_points(path)
+        assert np.array_equal(ours[0], points) and ours[1].keys() == found.keys()
+        assert all(np.array_equal(ours[1][key], values) for key, values in found.items())
         assert found.keys() == expected.keys(), found.keys()
         for key, values in expected.items():
             same = np.allclose(found[key], values, rtol=1e-14, atol=0) if key == "contact_stress" \
@@ -70,10 +78,9 @@ def check_grains(name, with_fluid, with_stress=False):
             assert same, f"{path}: {key}"
 
 
-def check_fluid(name, fields, lower, upper, in_pieces):
+def check_fluid(name, fields, lower, upper):
     for time, path in pictures(FOLDER / name / "fluid.pvd"):
-        assert path.suffix == (".pvti" if in_pieces else ".vti"), path
-        data = read(vtkXMLPImageDataReader() if in_pieces else vtkXMLImageDataReader(), path)
+        data = read(vtkXMLImageDataReader(), path)
         extent = [bound for pair in zip(lower, upper) for bound in pair]
         assert list(data.GetExtent()) == extent, data.GetExtent()
         assert data.GetSpacing() == (SPACING,) * 3 and data.GetOrigin() == (0.0, 0.0, 0.0)
@@ -86,6 +93,9 @@ def check_fluid(name, fields, lower, upper, in_pieces):
             "grain_id": (i + j + k) % 5 - 1,
         }
         found = arrays(data.GetCellData())
+        ours = read_image(path)[2]
+        assert ours.keys() == found.keys()
+        assert all(np.array_equal(ours[key].reshape(values.shape), values) for key, values in found.items())
         assert list(found) == fields, list(found)
         for key, values in found.items():
             assert np.array_equal(values, expected[key]), f"{path}: {key}"
@@ -94,7 +104,17 @@ def check_fluid(name, fields, lower, upper, in_pieces):
 check_grains("wet", True)
 check_grains("stressed", True, True)
 check_grains("dry", False)
-check_fluid("whole", ["velocity", "pressure", "grain_id"], (0, 0, 0), CELLS, RANKS > 1)
-check_fluid("slice_y", ["pressure", "velocity"], (0, 4, 0), (12, 5, 8), False)
-check_fluid("slice_z", ["grain_id"], (0, 0, 4), (12, 9, 5), False)
+check_fluid("whole", ["velocity", "pressure", "grain_id"], (0, 0, 0), CELLS)
+check_fluid("slice_x", ["velocity"], (12, 0, 0), (13, 20, 18))
+check_fluid("slice_y", ["pressure", "velocity"], (0, 10, 0), (24, 11, 18))
+check_fluid("slice_z", ["grain_id"], (0, 0, 9), (24, 20, 10))
+
+# One file a picture, and the same one on any number of ranks.
+files = sorted(path.relative_to(FOLDER) for path in FOLDER.rglob("*") if path.is_file())
+assert {path.suffix for path in files} == {".pvd", ".vtp", ".vti"}, files
+assert sum(path.suffix == ".vti" for path in files) == 4 * 5, files   # two of the five frames have left the index
+for other in OTHERS:
+    assert files == sorted(path.relative_to(other) for path in other.rglob("*") if path.is_file()), other
+    for path in files:
+        assert (FOLDER / path).read_bytes() == (other / path).read_bytes(), path
 print(f"{FOLDER}: every array, extent and time as written")

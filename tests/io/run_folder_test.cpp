@@ -49,6 +49,17 @@ TEST_F(RunFolderTest, AnExistingRunNeedsOverwriteAndIsOtherwiseUntouched) {
   EXPECT_EQ(contents(path / "notes.txt"), "mine");
 }
 
+TEST_F(RunFolderTest, APlaceThatCannotBeWrittenIsRefusedBeforeAnythingIsMade) {
+  const fs::path path = scratch("no_folder");
+  put(path, "a file");
+  EXPECT_EQ(message_of<InputError>([&] { RunFolder(path / "below" / "run").check_writable(); }),
+            (path / "below" / "run").string() +
+                ": cannot create the folder: Not a directory; choose another one with --out.");
+  const fs::path run = scratch("not_yet") / "run";
+  EXPECT_EQ(message_of<InputError>([&] { RunFolder(run).check_writable(); }), "");
+  EXPECT_FALSE(fs::exists(run.parent_path()));
+}
+
 TEST_F(RunFolderTest, WhatIsNotARunIsNeverTouched) {
   const fs::path path = scratch("foreign");
   put(path / "case.yaml", "system: grains\n");  // a case somebody wrote, not the record of a run

@@ -17,20 +17,20 @@ using testing::contents;
 using testing::message_of;
 using testing::ScratchFolder;
 
-constexpr Index3 cells{12, 9, 8};
+constexpr Index3 cells{24, 20, 18};  // more than the two blocks of a file
 constexpr double spacing = 0.25e-3;  // m
-constexpr std::int64_t grain_count = 37;
+constexpr std::int64_t grain_count = 9001;
 
 // Fields that tell every cell apart; check_vtk_series.py computes the same.
 class CellNumbers final : public FluidSource {
 public:
   CellNumbers(Block block, double time) : block_(block), time_(time) {}
-  FluidFields sample(const std::vector<FluidField>&) const override {
+  FluidFields sample(const std::vector<FluidField>&, const Block& region) const override {
     FluidFields fields;
-    fields.block = block_;
-    for (int k = block_.lower[2]; k < block_.upper[2]; ++k)
-      for (int j = block_.lower[1]; j < block_.upper[1]; ++j)
-        for (int i = block_.lower[0]; i < block_.upper[0]; ++i) {
+    fields.block = intersection(block_, region);
+    for (int k = fields.block.lower[2]; k < fields.block.upper[2]; ++k)
+      for (int j = fields.block.lower[1]; j < fields.block.upper[1]; ++j)
+        for (int i = fields.block.lower[0]; i < fields.block.upper[0]; ++i) {
           for (const int c : {i, j, k}) fields.velocity.push_back(static_cast<float>(c) + 0.5f);
           fields.pressure.push_back(static_cast<float>(i + 100 * j + 10000 * k + time_));
           fields.grain_id.push_back((i + j + k) % 5 - 1);
@@ -128,6 +128,8 @@ public:
     snapshot.contacts = nullptr;
     series<FluidSeries>("whole", continue_from, snapshot, FluidRegion::whole,
                         std::vector<FluidField>{FluidField::velocity, FluidField::pressure, FluidField::grain_id});
+    series<FluidSeries>("slice_x", continue_from, snapshot, FluidRegion::slice_x,
+                        std::vector<FluidField>{FluidField::velocity});
     series<FluidSeries>("slice_y", continue_from, snapshot, FluidRegion::slice_y,
                         std::vector<FluidField>{FluidField::pressure, FluidField::velocity});
     series<FluidSeries>("slice_z", continue_from, snapshot, FluidRegion::slice_z,

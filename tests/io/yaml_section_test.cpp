@@ -122,7 +122,7 @@ TEST(YamlSection, WhatIsWrittenReadsBackTheSame) {
 
 TEST(YamlSection, DocumentationShowsUnitRangeMeaningAndWhatIsNotGiven) {
   const std::string text = written(read(minimal), YamlStyle::documented);
-  for (const std::string part : {"length: 2.5   ", "# required, m, above 0; overall\n", "paint: red   ",
+  for (const std::string part : {"length: 2.5   ", "# example, required, m, above 0; overall\n", "paint: red   ",
                                  "cargo: none   ", "# mass: 1   ", "# lining: red   ", "# red | green; flown\n"})
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
 }

@@ -1,6 +1,7 @@
 // Vorticity, Q, shear rate and eddy viscosity against flows where they are known, and on any number of ranks.
 #include "lbm/flow_fields.hpp"
 #include "core/mpi_session.hpp"
+#include "lbm/for_each_cell.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,6 +20,8 @@ void for_each_cell(const Index3& n, Visit visit) {
       for (int x = 0; x < n[0]; ++x) visit(x, y, z);
 }
 
+Block whole_of(const Decomposition& decomposition) { return {{0, 0, 0}, decomposition.cells()}; }
+
 struct Errors {
   double vorticity = 0.0, q = 0.0;  // largest, in units of k U and (k U)^2
 };
@@ -34,7 +37,7 @@ Errors taylor_green_errors(int n) {
     return FluidState{
         0.0, u * Vec3(-std::cos(k * p.x()) * std::sin(k * p.y()), std::sin(k * p.x()) * std::cos(k * p.y()), 0.0)};
   });
-  const GhostedField velocity = velocity_field(fluid);
+  const GhostedField velocity = velocity_field(fluid, whole_of(fluid.decomposition()));
   Errors errors;
   for_each_cell(fluid.indexing().size(), [&](int x, int y, int z) {
     const double kx = k * (fluid.block().lower[0] + x + 0.5), ky = k * (fluid.block().lower[1] + y + 0.5);
@@ -80,7 +83,7 @@ TEST(FlowFields, GradientsOfALinearFlowAreExactAtWallsAndBesideSolidCells) {
     for (int y = -1; y <= n[1]; ++y)
       for (int x = -1; x <= n[0]; ++x)
         if (solid({from[0] + x, from[1] + y, from[2] + z})) fluid.cells().assign(x, y, z, 0);
-  const GhostedField velocity = velocity_field(fluid);
+  const GhostedField velocity = velocity_field(fluid, whole_of(fluid.decomposition()));
   std::int64_t looked_at = 0;
   for_each_cell(n, [&](int x, int y, int z) {
     const Index3 g{from[0] + x, from[1] + y, from[2] + z};
@@ -146,7 +149,8 @@ void compare_with_one_rank() {
     fluid->exchange_halo();
     fluid->apply_walls();
   }
-  const GhostedField velocity_alone = velocity_field(alone), velocity_shared = velocity_field(shared);
+  const GhostedField velocity_alone = velocity_field(alone, whole_of(whole)),
+                     velocity_shared = velocity_field(shared, whole_of(whole));
   const Index3 from = shared.block().lower;
   int differing = 0;
   for_each_cell(shared.indexing().size(), [&](int x, int y, int z) {
@@ -157,6 +161,29 @@ void compare_with_one_rank() {
                  velocity_gradient(velocity_shared, x, y, z);
   });
   EXPECT_EQ(differing, 0);
+}
+
+// Of a slab at the periodic border and of one inside, whose neighbours the field must know as well.
+TEST(FlowFields, TheGradientsOfARegionAreThoseOfTheWhole) {
+  const Index3 cells{16, 12, 12};
+  const Decomposition decomposition(cells, 1.0, {true, true, true}, layout_of_all_ranks(cells));
+  Fluid<double> fluid(decomposition, MPI_COMM_WORLD, {}, {});
+  fluid.initialise([](const Vec3& p) {
+    return FluidState{0.0, 0.05 * Vec3(std::sin(0.5 * p.y()), std::cos(0.7 * p.x()), std::sin(0.4 * p.x() + p.z()))};
+  });
+  const GhostedField whole = velocity_field(fluid, whole_of(decomposition));
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int first : {0, 1, 5, cells[axis] - 1}) {
+      Block region = whole_of(decomposition);
+      region.lower[axis] = first;
+      region.upper[axis] = first + 1;
+      const GhostedField near = velocity_field(fluid, region);
+      int differing = 0;
+      for_each_cell(fluid.indexing(), local_block(fluid.block(), region), [&](std::ptrdiff_t, const Index3& at) {
+        differing += velocity_gradient(near, at[0], at[1], at[2]) != velocity_gradient(whole, at[0], at[1], at[2]);
+      });
+      EXPECT_EQ(differing, 0) << "axis " << axis << ", layer " << first;
+    }
 }
 
 TEST(FlowFields, AreTheSameOnAnyRanks) {

@@ -60,7 +60,7 @@ class Figures(made_up.MadeUpFolder):
         name, shields, bed, mean = done.stdout.splitlines()[2].split("|")[1:5]
         # The surface of the made-up profiles is half way from the middle of the sixth layer to that of the seventh.
         depth = 0.1485 - 6 * D
-        exact = 0.0748 * depth * 0.0105 / (2 * depth + 0.0105) / (1.55 * D)
+        exact = np.sin(np.arctan(0.0748)) * depth * 0.0105 / (2 * depth + 0.0105) / (1.55 * D)
         self.assertLess(abs(float(shields) - exact), 5.1e-5)   # printed with four decimals
         self.assertLess(abs(float(bed) - 6.0), 5.1e-3)
         self.assertLess(abs(float(mean) - self.rate[100:].mean()), 5.1e-5)   # from 1 s on, as the case says

@@ -51,7 +51,7 @@ class Report(made_up.MadeUpFolder):
         depth = SIZE[2] - static["bed_height"]
         self.assertAlmostEqual(static["depth"], depth, 12)
         radius = depth * SIZE[1] / (2 * depth + SIZE[1])
-        self.assertAlmostEqual(static["shields"], 0.0748 * radius / (1.55 * D), 9)
+        self.assertAlmostEqual(static["shields"], np.sin(np.arctan(0.0748)) * radius / (1.55 * D), 9)
         self.assertAlmostEqual(report.numbers["surface_by_solid_fraction"]["bed_height"], 10.0 * D, delta=0.5 * D)
         files = report.write(self.folder / "out")
         self.assertEqual([file.name for file in files], ["summary.json", "layers.csv", "visible_grains.csv"])
@@ -61,6 +61,17 @@ class Report(made_up.MadeUpFolder):
         volume = np.sum(layers["solid_fraction"]) * SIZE.prod() / len(layers["z"])
         self.assertAlmostEqual(volume / (480 * np.pi / 6 * D**3), 1.0, 6)
         self.assertEqual(layers.units["velocity_x"], "m/s")
+
+    def test_the_shields_number_under_a_moving_top_is_the_measured_one(self):
+        self.write_bed()
+        case = self.folder / "case.yaml"
+        case.write_text(case.read_text().replace("top: free_slip", "top: {type: moving, velocity: [0.1, 0, 0]}"))
+        numbers = report_of(thalweg.Run(self.folder)).numbers
+        self.assertNotIn("shields", numbers["surface_by_static_pixels"])
+        (self.folder / "series.csv").write_text("time [s],shields_number [1]\n0.5,9\n1.0,0.1\n2.0,0.2\n4.0,0.6\n")
+        report = report_of(thalweg.Run(self.folder))
+        self.assertAlmostEqual(report.numbers["surface_by_static_pixels"]["shields"], 0.3, 12)
+        self.assertTrue(any("as measured" in line for line in report.lines))
 
     def write_water(self, shape):
         """profiles.h5 with the fluid at shape (fractions of one, across the width) from 0.06 m up and at rest below."""

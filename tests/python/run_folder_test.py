@@ -86,6 +86,33 @@ class RunFolder(made_up.MadeUpFolder):
         self.assertAlmostEqual(run.slope, 0.0748, 12)
         self.assertAlmostEqual(np.linalg.norm(run.gravity), 9.8, 12)
 
+    def with_case(self, old, new):
+        case = self.folder / "case.yaml"
+        case.write_text(case.read_text().replace(old, new))
+        return thalweg.Run(self.folder)
+
+    def test_the_reference_grain_does_not_depend_on_the_order_of_the_populations(self):
+        fixed, small = "{count: 50, diameter: 9e-3, density: 5000, fixed: true}", "{count: 60, diameter: 1e-3, density: 2000}"
+        large, before = "{count: 8, diameter: 2e-3, density: 3000}", "[{count: 969, diameter: 4.95e-3, density: 2550}]"
+        for order in ((fixed, small, large), (large, small, fixed), (small, fixed, large)):
+            now = "[" + ", ".join(order) + "]"
+            run = self.with_case(before, now)
+            before = now
+            # Volumes are as 60 to 64: half of it is finer than 2 mm, and the mean density is (60 * 2000 + 64 * 3000)/124.
+            self.assertEqual(run.diameter, 2e-3)
+            self.assertAlmostEqual(run.density_ratio, 312.0 / 124.0, 12)
+
+    def test_the_reference_grain_is_the_one_in_the_series(self):
+        (self.folder / "series.csv").write_text("time [s],reference_diameter [m],reference_density [kg/m^3]\n0,3e-3,2650\n")
+        run = thalweg.Run(self.folder)
+        self.assertEqual(run.diameter, 3e-3)
+        self.assertAlmostEqual(run.density_ratio, 2.65, 12)
+
+    def test_what_drives_the_fluid(self):
+        self.assertTrue(thalweg.Run(self.folder).driven_by_slope)
+        self.assertFalse(self.with_case("top: free_slip", "top: {type: moving, velocity: [0.1, 0, 0]}").driven_by_slope)
+        self.assertFalse(self.with_case("fluid: {density", "fluid: {mean_velocity: {velocity: 0.1}, density").driven_by_slope)
+
     def test_the_series_with_its_units(self):
         (self.folder / "series.csv").write_text("time [s],fast_cell_fraction [1],q_s [m^2/s],nothing\n"
                                                 "0,0,1e-3,5\n0.5,1,2e-3,6\n")

@@ -159,13 +159,13 @@ class Units(unittest.TestCase):
     def test_units_of_keys_from_the_list_of_all_keys(self):
         units = tables.units_of_keys("# Every key.\n"
                                      "gravity:                  # given by magnitude and slope\n"
-                                     "  magnitude: 9.8          # m/s^2, at least 0; with slope\n"
+                                     "  magnitude: 9.8          # example, m/s^2, at least 0; with slope\n"
                                      "  # vector: [0, 0, 0]     # m/s^2; in place of both\n"
                                      "grains:                   # populations\n"
                                      "  - placement:            # where\n"
                                      "      seed: 1             # whole number, at least 0; of the packing\n"
                                      "    diameter:             # the same for all\n"
-                                     "      value: 5e-3         # required, m, above 0; of every grain\n"
+                                     "      value: 5e-3         # example, required, m, above 0; of every grain\n"
                                      "    # contact:            # material\n"
                                      "      # damping: 1        # kg/(s m^1/2), at least 0; of the dashpot\n")
         self.assertEqual(units, {"gravity.magnitude": "m/s^2", "gravity.vector": "m/s^2", "grains.diameter.value": "m",

@@ -20,18 +20,22 @@ output: {series: {every: 0.001}, checkpoint: {every: 0.02, keep: 2}, grains: {ev
 """
 
 
-class FullDisk(ProgramTest):
+class SmallDisks(ProgramTest):
     CASE = CASE
 
-    def mount(self, kilobytes):
+    def mount(self, kilobytes, options=""):
+        """A file system of its own; the test is skipped where that is not allowed."""
         disk = self.folder / f"disk_{kilobytes}"
         disk.mkdir()
-        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={kilobytes}k", "none", disk], capture_output=True, text=True)
+        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={kilobytes}k{options}", "none", disk], capture_output=True,
+                                 text=True)
         if mounted.returncode != 0:
             self.skipTest(f"no file system can be mounted here: {mounted.stderr.strip()}")
         self.addCleanup(subprocess.run, ["umount", disk], check=True)
         return disk
 
+
+class FullDisk(SmallDisks):
     def test_the_first_file_that_fails_is_named_and_the_last_good_checkpoint_stays(self):
         self.run_well("run", self.case, "--out", "whole")
         failed, with_summary = set(), 0
@@ -68,35 +72,44 @@ class FullDisk(ProgramTest):
         self.assertGreater(with_summary, 0)
 
 
-class NoPermission(ProgramTest):
-    CASE = CASE
-
-    def test_a_folder_that_cannot_be_written_is_found_at_the_start(self):
+class NoPermission(SmallDisks):
+    def test_a_place_where_no_folder_can_be_made_is_refused(self):
         # A file where a folder should be stops root as well as anyone else.
         (self.folder / "file").write_text("")
-        result = self.thalweg("run", self.case, "--out", "file/run", ranks=2)
-        self.assertIn(result.returncode, (1, 2))
-        self.assertIn("file/run: cannot create the folder", result.stderr)
+        for ranks in (0, 2):
+            self.assert_refused("run", self.case, "--out", "file/run", ranks=ranks,
+                                words=["file/run: cannot create the folder: Not a directory", "--out"])
 
-    def test_a_folder_without_permission(self):
+    def test_a_folder_without_permission_is_refused(self):
         if os.geteuid() == 0:
             self.skipTest("root may write everywhere")
         locked = self.folder / "locked"
         locked.mkdir(mode=0o555)
-        result = self.thalweg("run", self.case, "--out", "locked/run")
-        self.assertIn("locked/run: cannot create the folder: Permission denied", result.stderr)
-        self.assertEqual(result.returncode, 1)
+        self.assert_refused("run", self.case, "--out", "locked/run",
+                            words=["locked/run: cannot create the folder: Permission denied"])
+        self.run_well("run", self.case, "--until", "0.05")
+        for path, words in (("run", "run: cannot write to the folder"), ("run/checkpoints", "run/checkpoints: cannot write to it"),
+                            ("run/run.log", "run/run.log: cannot write to it")):
+            before = (self.folder / path).stat().st_mode
+            (self.folder / path).chmod(0o555)
+            self.assert_refused("run", self.case, "--restart", "run", words=[words, "Permission denied"])
+            (self.folder / path).chmod(before)
 
-    def test_a_file_system_that_is_read_only(self):
-        disk = self.folder / "disk"
-        disk.mkdir()
-        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "ro,size=100k", "none", disk], capture_output=True, text=True)
-        if mounted.returncode != 0:
-            self.skipTest(f"no file system can be mounted here: {mounted.stderr.strip()}")
-        self.addCleanup(subprocess.run, ["umount", disk], check=True)
-        result = self.thalweg("run", self.case, "--out", disk / "run", ranks=2)
-        self.assertEqual(result.returncode, 1)
-        self.assertIn("disk/run: cannot create the folder: Read-only file system", result.stderr)
+    def test_a_file_system_that_is_read_only_is_refused(self):
+        disk = self.mount(100, ",ro")
+        self.assert_refused("run", self.case, "--out", disk / "run", ranks=2,
+                            words=["disk_100/run: cannot create the folder: Read-only file system"])
+
+    def test_a_run_whose_folder_has_become_read_only_is_refused(self):
+        disk = self.mount(2000)
+        run = disk / "run"
+        self.run_well("run", self.case, "--out", run, "--until", "0.05")
+        subprocess.run(["mount", "-o", "remount,ro", disk], check=True)
+        for ranks in (0, 2):
+            self.assert_refused("run", self.case, "--restart", run, ranks=ranks,
+                                words=["disk_2000/run: cannot write to the folder: Read-only file system", "--out"])
+        # Elsewhere it can go on from there.
+        self.run_well("run", self.case, "--restart", run, "--out", "elsewhere", "--until", "0.06")
 
 
 if __name__ == "__main__":

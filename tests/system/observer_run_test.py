@@ -81,12 +81,25 @@ analysis:
         depth = 0.0264 - series["bed_height"][-1]
         radius = depth * 0.010725 / (2 * depth + 0.010725)
         self.assertAlmostEqual(series["hydraulic_radius"][-1], radius, delta=1e-9)
-        self.assertAlmostEqual(series["bed_stress"][-1], 1000 * 9.8 * 0.1 * radius, delta=1e-4)
+        along = 9.8 * 0.1 / (1 + 0.1 ** 2) ** 0.5   # the sine of the slope
+        self.assertAlmostEqual(series["bed_stress"][-1], 1000 * along * radius, delta=1e-9)
         excess = (transport["reference_density"] - 1000) * 9.8 * 4.95e-3
-        self.assertAlmostEqual(series["shields_number"][-1], 980 * radius / excess, delta=1e-6)
+        self.assertAlmostEqual(series["shields_number"][-1], 1000 * along * radius / excess, delta=1e-9)
+        # The bed at the very end, two steps of the series later at most, and the grain that all of it refers to in every place.
+        bed = self.summary("run")["bed"]
+        self.assertAlmostEqual(bed["bed_height"], series["bed_height"][-1], delta=0.1 * 4.95e-3)
+        depth = 0.0264 - bed["bed_height"]
+        self.assertAlmostEqual(bed["bed_stress"], 1000 * along * depth * 0.010725 / (2 * depth + 0.010725), delta=1e-9)
+        self.assertAlmostEqual(bed["shields_number"], bed["bed_stress"] / excess, delta=1e-9)
+        for name in ("reference_diameter", "reference_density"):
+            self.assertEqual(self.summary("run")[name], transport[name])
+            self.assertTrue((series[name] == transport[name]).all())
+        checked = self.run_well("check", self.case).stdout
+        self.assertIn("reference  diameter 0.00495 m", checked)
         log = (self.folder / "run/run.log").read_text()
         self.assertIn("reference grain: diameter 0.00495 m", log)
         self.assertIn("transport: q* = ", log)
+        self.assertIn("bed: ", log)
         with h5py.File(self.folder / "run/profiles.h5") as profiles:
             outline = profiles["bed_surface/static_surface"][()]
             self.assertEqual(len(outline), round(0.0264 / (4.95e-3 / 25)))
@@ -102,6 +115,109 @@ analysis:
                             words=["analysis.bed_surface", "no grains"])
         self.assert_refused("run", self.case, "--set", "analysis.reference_diameter=0",
                             words=["analysis.reference_diameter = 0", "a number in m above 0"])
+
+
+class OrderOfPopulations(ProgramTest):
+    """A fixed layer of large heavy spheres and two kinds of free ones, in three orders: the same figures."""
+    HEAD = """
+system: resolved
+name: three populations
+domain:
+  size: [0.030, 0.018, 0.030]   # m
+  spacing: 1.0e-3               # m
+  boundaries: {x: periodic, y: periodic, bottom: no_slip, top: free_slip}
+fluid: {density: 1000, kinematic_viscosity: 1.0e-6, smagorinsky_constant: 0.27, time_step: 1.0e-4}
+gravity: {magnitude: 9.8, slope: 0.1}
+contact: {normal_stiffness: 20000, tangential_stiffness: 5714, restitution: 0.5, friction: 0.5}
+coupling: {grain_steps_per_fluid_step: 20}
+initial: {fluid: {uniform: [0.2, 0.0, 0.0]}}
+run: {until: 0.02}
+output: {series: {every: 0.002}, checkpoint: {every: 0.02}}
+analysis: {transport_rate: {every: 1.0e-3}, bed_surface: {every: 2.0e-3, static_time: 0.01}}
+grains:
+"""
+    POPULATIONS = {
+        "fixed": "  - {diameter: 9.0e-3, density: 5000, fixed: true, placement: {positions: "
+                 "[[0.005, 0.009, 0.005], [0.015, 0.009, 0.005], [0.025, 0.009, 0.005]]}}\n",
+        "small": "  - {diameter: 5.0e-3, density: 2000, velocity: [0.2, 0, 0], placement: {positions: "
+                 "[[0.004, 0.009, 0.013], [0.010, 0.004, 0.013], [0.016, 0.009, 0.013]]}}\n",
+        "large": "  - {diameter: 6.0e-3, density: 2550, velocity: [0.1, 0, 0], placement: {positions: "
+                 "[[0.005, 0.009, 0.021], [0.018, 0.009, 0.021]]}}\n"}
+
+    def test_changes_no_result(self):
+        orders = (("fixed", "small", "large"), ("large", "fixed", "small"), ("small", "large", "fixed"))
+        runs = []
+        for number, order in enumerate(orders):
+            self.case.write_text(self.HEAD + "".join(self.POPULATIONS[name] for name in order))
+            self.run_well("run", self.case, "--out", f"run_{number}")
+            runs.append((self.series(f"run_{number}"), self.summary(f"run_{number}")))
+        # Of 3 grains of 5 mm and 2 of 6 mm: 375 and 432 in volume, so the half is finer than 6 mm.
+        self.assertEqual(runs[0][1]["reference_diameter"], 6.0e-3)
+        self.assertAlmostEqual(runs[0][1]["reference_density"], (375 * 2000 + 432 * 2550) / 807, delta=1e-9)
+        self.assertGreater(runs[0][0]["q_star"][-1], 1e-3)
+        for series, summary in runs[1:]:
+            for name, column in runs[0][0].items():
+                if name in ("q_s", "q_star", "shields_number", "bed_height", "moving_grains", "reference_diameter"):
+                    numpy.testing.assert_allclose(series[name], column, rtol=1e-9, atol=1e-12, err_msg=name)
+            for group in ("transport_rate", "bed"):
+                for name, value in runs[0][1][group].items():
+                    if value is not None:
+                        self.assertAlmostEqual(summary[group][name], value, delta=1e-9 * max(1.0, abs(value)), msg=name)
+
+
+class BedStress(ProgramTest):
+    """Slow flow over four fixed spheres, driven otherwise than by a slope."""
+    CASE = """
+system: resolved
+name: oil over spheres
+domain:
+  size: [0.012, 0.012, 0.024]   # m
+  spacing: 1.0e-3               # m
+  boundaries: {x: periodic, y: periodic, bottom: no_slip, top: {type: moving, velocity: [0.05, 0, 0]}}
+fluid: {density: 900, kinematic_viscosity: 1.0e-4, smagorinsky_constant: 0, time_step: 1.0e-3, collision: trt, precision: double}
+gravity: {magnitude: 9.8, slope: 0}
+grains:
+  - {diameter: 5.0e-3, density: 2500, fixed: true,
+     placement: {positions: [[0.003, 0.003, 0.0025], [0.009, 0.003, 0.0025], [0.003, 0.009, 0.0025], [0.009, 0.009, 0.0025]]}}
+contact: {restitution: 0.5, normal_stiffness: 2000, tangential_stiffness: 571}
+coupling: {grain_steps_per_fluid_step: auto}
+run: {until: 6.0}
+output: {series: {every: 0.1}}
+analysis: {bed_surface: {every: 0.1}, wall_forces: {}, population_loads: {}}
+"""
+    AREA = 0.012 * 0.012
+    SHIELDS = 1600 * 9.8 * 5e-3   # Pa a unit of the Shields number
+
+    def resistance(self, series):
+        """Force (N) of the steady water on floor and spheres along x."""
+        return series["fluid_wall_force_bottom_x"][-1] + series["grains_0_fluid_force_x"][-1]
+
+    def test_under_a_moving_lid_it_is_the_stress_at_the_lid(self):
+        self.run_well("run", self.case)
+        series = self.series()
+        stress = self.resistance(series) / self.AREA   # what the lid gives, floor and spheres take
+        self.assertAlmostEqual(series["bed_stress"][-1] / stress, 1.0, delta=0.01)
+        self.assertAlmostEqual(self.summary("run")["bed"]["shields_number"], series["bed_stress"][-1] / self.SHIELDS, delta=1e-12)
+        # Couette flow from somewhere between the floor and the tops of the spheres.
+        self.assertGreater(stress, 900 * 1e-4 * 0.05 / 0.024)
+        self.assertLess(stress, 900 * 1e-4 * 0.05 / 0.019)
+
+    def test_of_a_held_mean_velocity_it_is_that_of_the_force(self):
+        self.run_well("run", self.case, "--set", "domain.boundaries.top=free_slip",
+                      "--set", "fluid.mean_velocity={velocity: 0.02, response_time: 0.5}")
+        series = self.series()
+        # The force acts on the water; its share above the bed is the stress there.
+        water = self.AREA * 0.024 - 4 * numpy.pi / 6 * 5e-3 ** 3
+        force = self.resistance(series) / water
+        self.assertAlmostEqual(series["bed_stress"][-1] / (force * series["flow_depth"][-1]), 1.0, delta=0.03)
+
+    def test_a_lid_at_rest_takes_its_share(self):
+        self.run_well("run", self.case, "--set", "domain.boundaries.top=no_slip", "--set", "gravity.slope=0.01")
+        series = self.series()
+        # Between two plates at rest the upper one takes about half of the force; the spheres only shift it.
+        force = 900 * 9.8 * 0.01 * series["flow_depth"][-1]
+        self.assertGreater(series["bed_stress"][-1], 0.4 * force)
+        self.assertLess(series["bed_stress"][-1], 0.6 * force)
 
 
 if __name__ == "__main__":

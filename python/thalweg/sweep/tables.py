@@ -75,7 +75,7 @@ def units_of_keys(defaults):
             continue
         depth = len(match[1]) // 2 + (1 if match[2] else 0)
         path = path[:depth] + [""] * (depth - len(path)) + [match[3]]
-        unit = re.match(r"(?:required, )?(1|[A-Za-z]+(?:/\([A-Za-z^0-9 /]+\)|/[A-Za-z^0-9]+|\^\d)?)[,;]", match[5] or "")
+        unit = re.match(r"(?:example, )?(?:required, )?(1|[A-Za-z]+(?:/\([A-Za-z^0-9 /]+\)|/[A-Za-z^0-9]+|\^\d)?)[,;]", match[5] or "")
         if match[4] and unit and unit[1] not in ("text", "required"):
             words = [word for word in path if word]
             units[".".join(words)] = unit[1]

@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-namespace thalweg::dem {
+namespace thalweg {
 
 // The rows [first, last) of `count` that a rank writes or reads.
 struct RowRange {
@@ -44,4 +44,4 @@ inline int rank_of_row(std::int64_t row, std::int64_t count, int ranks) {
   return rank;
 }
 
-}  // namespace thalweg::dem
+}  // namespace thalweg

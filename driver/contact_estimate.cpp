@@ -1,0 +1,87 @@
+#include "driver/contact_estimate.hpp"
+
+#include "dem/population_seeds.hpp"
+#include "driver/bed_flow.hpp"
+#include "driver/flow_estimate.hpp"
+#include "driver/reference_grain.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace thalweg::driver {
+
+namespace {
+
+double settled_height(const Case& c) {
+  return grain_volume(c) / (settled_fraction(c) * c.domain.size.x() * c.domain.size.y());
+}
+
+// kg/m^3, of grains less that of the fluid around them.
+double submerged_density(const Case& c, double density) { return density - (has_fluid(c) ? c.fluid.density : 0.0); }
+
+// m, under a force (N) and in an impact of an effective mass (kg) at a speed (m/s), of two grains of a diameter (m).
+double overlap_under(const dem::ContactParameters& material, double force, double diameter) {
+  if (material.law == dem::Law::linear) return force / material.normal_stiffness;
+  const double modulus = material.youngs_modulus / (2.0 * (1.0 - material.poisson_ratio * material.poisson_ratio));
+  return std::pow(0.75 * force / (modulus * std::sqrt(0.25 * diameter)), 2.0 / 3.0);
+}
+
+double overlap_in_impact(const dem::ContactParameters& material, double mass, double speed, double diameter) {
+  if (material.law == dem::Law::linear) return speed * std::sqrt(mass / material.normal_stiffness);
+  const double modulus = material.youngs_modulus / (2.0 * (1.0 - material.poisson_ratio * material.poisson_ratio));
+  return std::pow(15.0 * mass * speed * speed / (16.0 * modulus * std::sqrt(0.25 * diameter)), 0.4);
+}
+
+double impact_speed(const Case& c) {
+  if (has_fluid(c)) return settling_velocity(c);
+  const double height = std::max(0.0, c.domain.size.z() - settled_height(c));
+  return periodic_axes(c.domain)[2] ? 0.0 : std::sqrt(2.0 * std::abs(gravity_vector(c.gravity).z()) * height);
+}
+
+}  // namespace
+
+Overlaps expected_overlaps(const Case& c) {
+  Overlaps found{0.0, 0.0, impact_speed(c)};
+  const std::vector<dem::ContactParameters> materials = dem::materials_of(c.contact, c.grains);
+  const bool bed = !periodic_axes(c.domain)[2] && !c.disks;
+  for (std::size_t p = 0; p < c.grains.size(); ++p) {
+    const dem::Population& grains = c.grains[p];
+    const dem::ContactParameters& material = materials[static_cast<std::size_t>(dem::material_of(c.grains, p))];
+    const double d = grains.smallest_diameter(), mass = 0.5 * grains.lightest_mass();
+    const double pressure = settled_fraction(c) * std::abs(submerged_density(c, grains.density)) *
+                            std::abs(gravity_vector(c.gravity).z()) * settled_height(c);
+    if (bed) found.under_weight = std::max(found.under_weight, overlap_under(material, pressure * d * d, d) / d);
+    if (!grains.held())
+      found.in_impact = std::max(found.in_impact, overlap_in_impact(material, mass, found.speed, d) / d);
+  }
+  return found;
+}
+
+double stress_ratio_at_base(const Case& c) {
+  const Vec3 gravity = gravity_vector(c.gravity);
+  const bool walls = c.domain.faces[y_low].drags() && c.domain.faces[y_high].drags();
+  if (c.grains.empty() || walls || periodic_axes(c.domain)[2] || gravity.x() <= 0.0 || gravity.z() >= 0.0) return 0.0;
+  if (c.system == SystemKind::model_fluid || (has_fluid(c) && c.fluid.mean_velocity)) return 0.0;
+  const ReferenceGrain grain = reference_grain(c);
+  const double height = settled_height(c), depth = c.domain.size.z() - height;
+  if (height < 2.0 * grain.diameter || depth < 0.0 || c.disks) return 0.0;
+  const double water = has_fluid(c) ? c.fluid.density : 0.0;
+  const double excess = settled_fraction(c) * (grain.density - water);
+  if (excess <= 0.0) return 0.0;
+  return (water * depth + (water + excess) * height) * gravity.x() / (excess * height * -gravity.z());
+}
+
+double bulk_friction(double friction) {
+  struct Row {
+    double particle, bulk;
+  };
+  constexpr Row table[] = {{0.0, 0.105}, {0.1, 0.268}, {0.3, 0.357}, {0.5, 0.382}, {1.0, 0.405}};
+  for (std::size_t n = 1; n < std::size(table); ++n) {
+    const Row &a = table[n - 1], &b = table[n];
+    if (friction <= b.particle) return a.bulk + (b.bulk - a.bulk) * (friction - a.particle) / (b.particle - a.particle);
+  }
+  return std::end(table)[-1].bulk;
+}
+
+}  // namespace thalweg::driver

@@ -1,0 +1,234 @@
+#include "driver/flow_estimate.hpp"
+
+#include "driver/bed_flow.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace thalweg::driver {
+
+namespace {
+
+// Transition: of a film U H/nu, of Couette flow V H/nu (Tillmark and Alfredsson 1992: 360 with half of both).
+constexpr double film_transition = 500.0, couette_transition = 1440.0;
+constexpr double turnovers_to_adapt = 10.0, response_times_to_settle = 9.5;
+
+struct Channel {
+  double depth;      // m, H
+  double reach;      // m, h: of one surface
+  double roughness;  // m, z_0 over grains; 0: a bare floor
+  double viscosity;  // m^2/s
+  double radius;     // m, of the share that the bed has: h, or the hydraulic radius between side walls
+};
+
+Channel channel_of(const Case& c) {
+  const Vec3 size = c.domain.size;
+  Channel channel{};
+  channel.depth = size.z() - grain_volume(c) / (settled_fraction(c) * size.x() * size.y());
+  channel.reach = c.domain.faces[top].drags() ? 0.5 * channel.depth : channel.depth;
+  channel.roughness = largest_diameter(c) / 15.0;
+  channel.viscosity = c.fluid.kinematic_viscosity;
+  const bool walls = c.domain.faces[y_low].drags() && c.domain.faces[y_high].drags();
+  channel.radius = walls ? channel.reach * size.y() / (2.0 * channel.reach + size.y()) : channel.reach;
+  return channel;
+}
+
+// ln(distance/z_0), at least 1 so that a flow as deep as its roughness has a velocity.
+double log_of(double distance, double friction_velocity, const Channel& channel) {
+  const double zero = channel.roughness > 0.0 ? channel.roughness : channel.viscosity / (9.0 * friction_velocity);
+  return std::max(1.0, std::log(distance / zero));
+}
+
+// The friction velocity at which law(u_tau) kappa is u_tau, by iteration from a twentieth of the velocity.
+template <typename Law>
+double friction_velocity_of(double velocity, const Law& logarithms) {
+  double friction_velocity = velocity / 20.0;
+  for (int n = 0; n < 50; ++n) friction_velocity = karman * velocity / logarithms(friction_velocity);
+  return friction_velocity;
+}
+
+FlowEstimate flow_of_slope(const Case& c, const Channel& channel) {
+  FlowEstimate flow;
+  const Vec3 gravity = gravity_vector(c.gravity);
+  const double along = std::hypot(gravity.x(), gravity.y());
+  if (c.fluid.mean_velocity || along == 0.0) return flow;
+  flow.cause = flow.drive = FlowCause::slope;
+  flow.speed = estimated_velocity(c);
+  flow.friction_velocity = std::sqrt(along * channel.radius);
+  const double film = along * channel.depth * channel.depth / (2.0 * channel.viscosity);
+  flow.laminar = flow.speed >= film * (1.0 - 1e-9);
+  flow.bulk_velocity =
+      flow.laminar ? 2.0 / 3.0 * flow.speed : std::max(0.5 * flow.speed, flow.speed - flow.friction_velocity / karman);
+  flow.spin_up =
+      flow.laminar ? 1.2 * channel.reach * channel.reach / channel.viscosity : 2.0 * flow.bulk_velocity / along;
+  return flow;
+}
+
+FlowEstimate flow_of_mean_velocity(const Case& c, const Channel& channel) {
+  FlowEstimate flow;
+  if (!c.fluid.mean_velocity || c.fluid.mean_velocity->velocity == 0.0) return flow;
+  const Vec3 size = c.domain.size;
+  const double water = size.x() * size.y() * size.z() - grain_volume(c);
+  const double mean = std::abs(c.fluid.mean_velocity->velocity) * water / (size.x() * size.y() * channel.depth);
+  flow.cause = flow.drive = FlowCause::mean_velocity;
+  flow.bulk_velocity = mean;
+  flow.laminar = mean * channel.reach / channel.viscosity < film_transition;
+  flow.friction_velocity = flow.laminar
+                               ? std::sqrt(3.0 * channel.viscosity * mean / channel.reach)
+                               : friction_velocity_of(mean, [&](double friction_velocity) {
+                                   return std::max(1.0, log_of(channel.reach, friction_velocity, channel) - 1.0);
+                                 });
+  flow.speed = flow.laminar ? 1.5 * mean : mean + flow.friction_velocity / karman;
+  flow.spin_up = response_times_to_settle * c.fluid.mean_velocity->response_time +
+                 (flow.laminar ? 1.2 * channel.reach * channel.reach / channel.viscosity
+                               : turnovers_to_adapt * channel.depth / flow.friction_velocity);
+  return flow;
+}
+
+FlowEstimate flow_of_moving_top(const Case& c, const Channel& channel) {
+  FlowEstimate flow;
+  const coupling::FaceKeys& lid = c.domain.faces[top];
+  const double velocity = std::hypot(lid.velocity.x(), lid.velocity.y()), depth = channel.depth;
+  if (lid.type != lbm::FaceType::moving || velocity == 0.0) return flow;
+  flow.cause = flow.drive = FlowCause::moving_face;
+  flow.speed = velocity;
+  flow.bulk_velocity = 0.5 * velocity;
+  flow.laminar = velocity * depth / channel.viscosity < couette_transition;
+  if (flow.laminar) {
+    flow.friction_velocity = std::sqrt(channel.viscosity * velocity / depth);
+    flow.spin_up = 0.3 * depth * depth / channel.viscosity;
+    return flow;
+  }
+  flow.friction_velocity = friction_velocity_of(velocity, [&](double friction_velocity) {
+    return log_of(0.5 * depth, friction_velocity, channel) +
+           std::max(1.0, std::log(4.5 * friction_velocity * depth / channel.viscosity));
+  });
+  flow.spin_up = velocity * depth / (flow.friction_velocity * flow.friction_velocity);
+  return flow;
+}
+
+// What a face that is not the top, or the start, or grains that move as prescribed do to the fluid next to them; m/s.
+void consider(FlowEstimate& flow, double speed, FlowCause cause) {
+  if (!(speed > flow.speed)) return;
+  flow.speed = speed;
+  flow.cause = cause;
+}
+
+void consider_faces(const Case& c, const Channel& channel, FlowEstimate& flow) {
+  for (std::size_t face = 0; face < c.domain.faces.size(); ++face) {
+    const coupling::FaceKeys& keys = c.domain.faces[face];
+    if (keys.type == lbm::FaceType::moving) consider(flow, keys.velocity.norm(), FlowCause::moving_face);
+    // All that comes in beside a bed has to flow above it.
+    const double squeezed = face < bottom && channel.depth > 0.0 ? c.domain.size.z() / channel.depth : 1.0;
+    if (keys.type == lbm::FaceType::velocity_inlet) consider(flow, keys.velocity.norm() * squeezed, FlowCause::inlet);
+  }
+}
+
+void consider_start(const Case& c, FlowEstimate& flow) {
+  const coupling::InitialFluidKeys& start = c.initial.fluid;
+  if (start.uniform) consider(flow, start.uniform->norm(), FlowCause::initial_fluid);
+  if (!start.log_profile) return;
+  const double height = (c.domain.size.z() - start.log_profile->bed_height) / start.log_profile->roughness;
+  if (height > 1.0)
+    consider(flow, start.log_profile->shear_velocity / karman * std::log(height), FlowCause::initial_fluid);
+}
+
+// The speed that grains of a population are given, m/s.
+double given_speed(const dem::Population& grains) {
+  if (grains.prescribed_velocity) return grains.prescribed_velocity->norm();
+  if (!grains.motion) return grains.fixed ? 0.0 : grains.velocity.norm();
+  const double oscillation = grains.motion->oscillation
+                                 ? 2.0 * std::numbers::pi * grains.motion->oscillation->frequency *
+                                       grains.motion->oscillation->amplitude.norm()
+                                 : 0.0;
+  return grains.motion->velocity.norm() + oscillation;
+}
+
+bool starts_from_a_bed(const Case& c, const dem::Population& grains) {
+  const bool taken = !c.initial.from.empty() && std::find(c.initial.fields.begin(), c.initial.fields.end(),
+                                                          InitialField::grains) != c.initial.fields.end();
+  return taken || !grains.file.empty();
+}
+
+}  // namespace
+
+const char* words_of(FlowCause cause) {
+  switch (cause) {
+    case FlowCause::none:
+      return "nothing moves it";
+    case FlowCause::slope:
+      return "slope and depth";
+    case FlowCause::mean_velocity:
+      return "the mean velocity over the bed";
+    case FlowCause::moving_face:
+      return "a moving face";
+    case FlowCause::inlet:
+      return "an inlet";
+    case FlowCause::initial_fluid:
+      return "the start";
+    case FlowCause::moving_grains:
+      return "the given speed of grains";
+    case FlowCause::settling:
+      return "around grains that fall";
+  }
+  return "";
+}
+
+double settling_velocity(double diameter, double density_ratio, double gravity, double viscosity) {
+  const double weight = std::abs(density_ratio - 1.0) * gravity * diameter;  // 3/4 C_D v^2
+  if (!(weight > 0.0)) return 0.0;
+  const auto resistance = [&](double velocity) {
+    const double reynolds = velocity * diameter / viscosity;
+    const double drag = reynolds < 1000.0 ? 24.0 / reynolds * (1.0 + 0.15 * std::pow(reynolds, 0.687)) : 0.44;
+    return 0.75 * drag * velocity * velocity;
+  };
+  double low = 0.0, high = std::sqrt(weight / (0.75 * 0.3)) + weight * diameter / (18.0 * viscosity);
+  for (int n = 0; n < 100; ++n) {
+    const double middle = 0.5 * (low + high);
+    (resistance(middle) < weight ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+double settling_velocity(const Case& c) {
+  double fastest = 0.0;
+  if (!has_fluid(c)) return fastest;
+  for (const dem::Population& grains : c.grains)
+    if (!grains.held())
+      fastest = std::max(fastest, settling_velocity(grains.largest_diameter(), grains.density / c.fluid.density,
+                                                    gravity_vector(c.gravity).norm(), c.fluid.kinematic_viscosity));
+  return fastest;
+}
+
+FlowEstimate flow_estimate(const Case& c) {
+  FlowEstimate flow;
+  if (!has_fluid(c)) return flow;
+  const Channel channel = channel_of(c);
+  if (channel.depth > 0.0 && c.domain.faces[bottom].type != lbm::FaceType::periodic) {
+    const FlowEstimate drives[] = {flow_of_slope(c, channel), flow_of_mean_velocity(c, channel),
+                                   flow_of_moving_top(c, channel)};
+    flow = *std::max_element(std::begin(drives), std::end(drives), [](const FlowEstimate& a, const FlowEstimate& b) {
+      return a.friction_velocity < b.friction_velocity;
+    });
+    flow.depth = channel.depth;
+    for (const FlowEstimate& drive : drives) consider(flow, drive.speed, drive.cause);
+  } else if (c.fluid.mean_velocity) {
+    consider(flow, std::abs(c.fluid.mean_velocity->velocity), FlowCause::mean_velocity);
+  } else {
+    consider(flow, estimated_velocity(c), FlowCause::slope);
+  }
+  consider_faces(c, channel, flow);
+  consider_start(c, flow);
+  for (const dem::Population& grains : c.grains) {
+    consider(flow, given_speed(grains), FlowCause::moving_grains);
+    if (!grains.held() && !starts_from_a_bed(c, grains))
+      consider(flow,
+               settling_velocity(grains.largest_diameter(), grains.density / c.fluid.density,
+                                 gravity_vector(c.gravity).norm(), c.fluid.kinematic_viscosity),
+               FlowCause::settling);
+  }
+  return flow;
+}
+
+}  // namespace thalweg::driver

@@ -1,0 +1,39 @@
+// The cells of a region in the order of a file (x fastest, z slowest), from the ranks whose blocks they lie in to the
+// ranks that write them. No rank sees more than its own part of either.
+#pragma once
+
+#include "core/decomposition.hpp"
+#include "core/rows_by_id.hpp"
+
+#include <mpi.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace thalweg::io {
+
+class RegionOrder {
+public:
+  // region: in global coordinates; share: of its cells in the order of the file. The decomposition must outlive this.
+  RegionOrder(MPI_Comm communicator, const Decomposition& decomposition, const Block& region, const BlockShare& share);
+
+  // values: of the cells of the region in this rank's block, x fastest, with all components of a cell together.
+  // Returns those of this rank's share. Collective.
+  std::vector<float> share_of(const std::vector<float>& values, int components) const;
+  std::vector<std::int32_t> share_of(const std::vector<std::int32_t>& values, int components) const;
+
+private:
+  template <typename Number>
+  std::vector<Number> exchanged(const std::vector<Number>& values, int components, MPI_Datatype type) const;
+  std::vector<int> cells_to_ranks() const;
+  template <typename Visit>
+  void for_each_row_from(int rank, Visit visit) const;
+
+  MPI_Comm communicator_;
+  const Decomposition& decomposition_;
+  Block region_;
+  BlockShare share_;
+  RowRange mine_;
+};
+
+}  // namespace thalweg::io

@@ -1,0 +1,45 @@
+// A file that all ranks write together, through MPI-IO.
+#pragma once
+
+#include <mpi.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+namespace thalweg::io {
+
+// Writes to `path` + ".partial" and gives the file its name in close(), so that a reader never opens half a file. All
+// calls are collective, and so are the errors: the constructor and close() throw RunError on every rank if anything has
+// failed on one of them, and no file is left. A file that is given up without close(), because a rank has failed
+// elsewhere, is left to the end of the program: closing it is collective.
+class SharedFile {
+public:
+  // bytes: size of the whole file, the same on every rank. The room is taken at once.
+  SharedFile(MPI_Comm communicator, const std::filesystem::path& path, std::uint64_t bytes);
+  SharedFile(const SharedFile&) = delete;
+  SharedFile& operator=(const SharedFile&) = delete;
+
+  // What a rank writes: bytes, and where they begin in the file.
+  struct Piece {
+    std::uint64_t offset;
+    std::span<const std::byte> bytes;
+  };
+
+  // Writes this rank's pieces, perhaps none, in order of their offsets.
+  void write(const std::vector<Piece>& pieces);
+
+  void close();
+
+private:
+  void agree(bool good);
+
+  MPI_Comm communicator_;
+  std::filesystem::path path_, partial_;
+  MPI_File file_ = MPI_FILE_NULL;
+  bool good_ = true;  // on this rank, so far
+};
+
+}  // namespace thalweg::io
