@@ -29,7 +29,10 @@ LinkBuilder::LinkBuilder(const Decomposition& decomposition, const Block& block,
 
 void LinkBuilder::update(const CellClaims& map, lbm::LinkTable& table) {
   stale_tiles_.resize(map.grains().size());
-  for (const CellChange& change : map.changes()) mark_around(change);
+  for (const CellChange& change : map.changes()) {
+    mark_around(change);
+    look_for_enclosed(change);
+  }
   std::sort(stale_.begin(), stale_.end());
   for (const int slot : stale_) {
     if (map.grains()[slot].id < 0)
@@ -74,6 +77,24 @@ void LinkBuilder::mark_around(const CellChange& change) {
   }
 }
 
+// The tags of all links of a cell say whether it is enclosed, so they all change with it.
+void LinkBuilder::look_for_enclosed(const CellChange& change) {
+  const lbm::CellIndexing& indexing = cells_.indexing();
+  for (int i = 0; i < D3Q19::directions; ++i) {
+    const int x = change.cell[0] + D3Q19::c[i][0], y = change.cell[1] + D3Q19::c[i][1],
+              z = change.cell[2] + D3Q19::c[i][2];
+    if (!indexing.owned(x, y, z)) continue;
+    const std::ptrdiff_t cell = indexing.index(x, y, z);
+    const bool is_enclosed = cells_.is_enclosed(cell), was_enclosed = enclosed_.count(cell) > 0;
+    if (is_enclosed == was_enclosed) continue;
+    is_enclosed ? (void)enclosed_.insert(cell) : (void)enclosed_.erase(cell);
+    for (int j = 1; j < D3Q19::directions; ++j) {
+      const std::int32_t body = cells_.body(cell + indexing.offset(j));
+      if (body != CellMap::fluid) mark(body, tiles_.tile_of(y, z));
+    }
+  }
+}
+
 void LinkBuilder::rebuild(int slot, const MappedGrain& grain, lbm::LinkTable& table) {
   const double half_width = grain.reach + longest_link;
   std::vector<LocalCell>* places[2] = {&xs_, &ys_};
@@ -112,9 +133,10 @@ void LinkBuilder::find_in_row(int slot, int y, int z) {
     for (int k = 0; k < count; ++k) {
       if (hits[k] == 0 || row[k] != CellMap::fluid) continue;
       const std::uint32_t place = lbm::LinkPlace::of(first + k, y);
+      const bool is_enclosed = cells_.is_enclosed(indexing.index(first + k, y, z));
       for (std::uint32_t left = hits[k]; left != 0; left &= left - 1) {
         const int i = std::countr_zero(left);
-        links_.push_back({place, lbm::LinkTag::of(i, row[k - indexing.offset(i)])});
+        links_.push_back({place, lbm::LinkTag::of(i, row[k - indexing.offset(i)], is_enclosed)});
       }
     }
   }

@@ -9,6 +9,8 @@
 #include "lbm/link_table.hpp"
 #include "lbm/row_tiles.hpp"
 
+#include <cstddef>
+#include <unordered_set>
 #include <vector>
 
 namespace thalweg::coupling {
@@ -24,6 +26,7 @@ public:
 
 private:
   void mark_around(const CellChange& change);
+  void look_for_enclosed(const CellChange& change);
   void mark(std::int32_t slot, int tile);
   void rebuild(int slot, const MappedGrain& grain, lbm::LinkTable& table);
   void find_in_row(int slot, int y, int z);
@@ -31,10 +34,11 @@ private:
   LocalCells local_cells_;
   const lbm::CellMap& cells_;
   const lbm::RowTiles& tiles_;
-  std::vector<std::vector<int>> stale_tiles_;  // of each slot
-  std::vector<int> stale_;                     // slots that have any
-  std::vector<LocalCell> xs_, ys_;             // scratch from here on
-  std::vector<std::uint32_t> hits_;            // of the cells of a row, the directions that end in the grain
+  std::vector<std::vector<int>> stale_tiles_;    // of each slot
+  std::vector<int> stale_;                       // slots that have any
+  std::unordered_set<std::ptrdiff_t> enclosed_;  // cells (CellMap::is_enclosed)
+  std::vector<LocalCell> xs_, ys_;               // scratch from here on
+  std::vector<std::uint32_t> hits_;              // of the cells of a row, the directions that end in the grain
   std::vector<lbm::Link> links_;
 };
 

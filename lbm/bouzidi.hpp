@@ -13,6 +13,11 @@
 //
 // Mass: a link takes f_i^c and gives f_i', which is not the same. What a body's links have taken more than given comes
 // back in the next steps as w_i (a + b.c_i) on top of f_i', with LinkBody's a and b.
+//
+// Enclosed cells: a cell whose neighbours are all covered (near a contact, one in a few hundred grains from ten cells a
+// diameter on) can pass nothing on, and would add up whatever its links give it too much or too little, without bound.
+// The gaps around it are too narrow for the cells, but they would hold its pressure at that outside. Its links
+// therefore take w_i (rho - rho_rest), two thirds of its excess in a step, and owe it like all else that they take.
 #pragma once
 
 #include "core/periodic_box.hpp"
@@ -34,7 +39,7 @@
 namespace thalweg::lbm {
 
 // Where the mass comes from that links give to the fluid (LatticeFixed sums over a rank's links in one step), by what
-// the rule reads besides f_i^c(x_f). What is returned (LinkBody) is the rest of LinkBody::mass.
+// the rule reads besides f_i^c(x_f). The rest of LinkBody::mass is what is returned and what enclosed cells lose.
 struct LinkBalance {
   std::int64_t upstream = 0;     // f_i^c(x_ff): Bouzidi's rule below a half, cli
   std::int64_t same_cell = 0;    // f_i'^c(x_f): Bouzidi's rule from a half on
@@ -91,6 +96,7 @@ private:
     alignas(64) Real excess[capacity];                      // rho - rho_rest at x_f
     alignas(64) Real incident[capacity], second[capacity];  // f_i^c(x_f); the rule's other value
     alignas(64) Real covered[capacity];                     // of a rule that needs both: 1 where a body covers x_ff
+    alignas(64) Real leak[capacity];                        // rho - rho_rest where x_f is enclosed, else 0
     alignas(64) Real reflected[capacity];                   // f_i'(x_f, t+1)
     alignas(64) Real slip[capacity], odd_change[capacity];  // c_i.v, change of o (upstream_bodies.hpp)
     alignas(64) Real pressure[capacity];                    // w_i (rho - rho_rest)(x_f)
@@ -144,6 +150,7 @@ private:
   void let_gaps_flow(const Batch& batch, int covered);
   void look_upstream(const Batch& batch);
   void subtract_rest(const Batch& batch);
+  void find_leaks(const Batch& batch);
   template <typename Rule, Extra extra>
   void reflect(const Batch& batch);
   void add_momentum(const Batch& batch) const;
@@ -179,6 +186,7 @@ private:
   GapFlow gaps_;
   double force_[3];     // on the fluid
   bool slips_ = false;  // of the batch: values_.slip and odd_change count
+  bool leaks_ = false;  // of the batch: values_.leak counts
 };
 
 }  // namespace thalweg::lbm

@@ -175,7 +175,9 @@ void LinkPass<Real, S>::gather(const Batch& b) {
   const int wanted_near_wall = Rule::needs_both ? 0 : 1;
   const Real* deviation = deviations_[parity_].data();
   int covered = 0;
+  std::uint32_t flags = 0;
   for (int k = 0; k < b.count; ++k) {
+    flags |= b.tag[k];
     values_.deviation[k] = deviation[b.cell[k]];
     values_.incident[k] = base_[b.incident_at[k]];
     values_.second[k] = base_[b.second_at[k]];
@@ -190,6 +192,15 @@ void LinkPass<Real, S>::gather(const Batch& b) {
   for (int k = b.count; k < n; ++k) values_.deviation[k] = values_.incident[k] = values_.second[k] = Real(0);
   std::copy_n(values_.deviation, n, values_.excess);
   if (!options_.rest_gradient.isZero(0.0)) subtract_rest(b);
+  leaks_ = (flags & LinkTag::enclosed) != 0;
+  if (leaks_) find_leaks(b);
+}
+
+template <typename Real, LinkShape S>
+void LinkPass<Real, S>::find_leaks(const Batch& b) {
+  std::fill_n(values_.leak, padded(b.count), Real(0));
+  for (int k = 0; k < b.count; ++k)
+    if ((b.tag[k] & LinkTag::enclosed) != 0) values_.leak[k] = values_.excess[k];
 }
 
 // x_f from the body's centre: the arm, back by the distance.
@@ -302,7 +313,8 @@ void LinkPass<Real, S>::reflect(const Batch& b) {
       interpolated += at(values_.odd_change) * (rule.incident - opposite);
     }
     const Pack moving_wall = rule.wall * weight * density * towards_wall;
-    const Pack returned = body.returned + (cx * body.sx + cy * body.sy + cz * body.sz);
+    Pack returned = body.returned + (cx * body.sx + cy * body.sy + cz * body.sz);
+    if (leaks_) returned -= at(values_.leak);
     const Pack reflected = interpolated - moving_wall + weight * returned;
     put(reflected, values_.reflected);
     put(weight * at(values_.excess), values_.pressure);

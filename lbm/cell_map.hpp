@@ -26,6 +26,13 @@ public:
   const CellIndexing& indexing() const { return indexing_; }
   bool is_fluid(std::ptrdiff_t cell) const { return body_[cell] == fluid; }
   std::int32_t body(std::ptrdiff_t cell) const { return body_[cell]; }
+  // Whether an owned cell is fluid and exchanges nothing with others, because bodies cover all that c_i leads to.
+  bool is_enclosed(std::ptrdiff_t cell) const {
+    if (!is_fluid(cell)) return false;
+    for (int i = 1; i < D3Q19::directions; ++i)
+      if (is_fluid(cell + indexing_.offset(i))) return false;
+    return true;
+  }
   const std::int32_t* bodies() const { return body_.data(); }
 
   // Gives a cell (local coordinates; owned or ghost) to a body, or back to the fluid.

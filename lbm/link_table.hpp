@@ -32,6 +32,7 @@ struct LinkPlace {
 // The rest of it in one word.
 struct LinkTag {
   static constexpr std::uint32_t direction_mask = 31;  // i, from the fluid cell into the body
+  static constexpr std::uint32_t enclosed = 32;        // flag: no neighbour of x_f is fluid
   static constexpr int covered_shift = 12;             // 1: a body covers x_f - c_i
   static constexpr int body_shift = 13;                // that body
   static constexpr std::int32_t bodies = 1 << (32 - body_shift);
@@ -44,8 +45,8 @@ struct LinkTag {
   }
 
   // upstream_body: which covers x_f - c_i; -1: none.
-  static constexpr std::uint32_t of(int direction, std::int32_t upstream_body) {
-    std::uint32_t tag = static_cast<std::uint32_t>(direction);
+  static constexpr std::uint32_t of(int direction, std::int32_t upstream_body, bool is_enclosed = false) {
+    std::uint32_t tag = static_cast<std::uint32_t>(direction) | (is_enclosed ? enclosed : 0u);
     if (upstream_body >= 0) tag |= 1u << covered_shift | static_cast<std::uint32_t>(upstream_body) << body_shift;
     for (int a = 0; a < 3; ++a) tag |= static_cast<std::uint32_t>(D3Q19::c[direction][a] + 1) << velocity_shift(a);
     return tag;

@@ -29,10 +29,23 @@ std::set<std::array<std::uint32_t, 4>> links_by_definition(const lbm::Fluid<doub
           if (!cells.is_fluid(cell) || body == lbm::CellMap::fluid) continue;
           const std::int32_t upstream = cells.body(cell - fluid.indexing().offset(i));
           links.insert({static_cast<std::uint32_t>(body), static_cast<std::uint32_t>(fluid.tiles().tile_of(y, z)),
-                        lbm::LinkPlace::of(x, y), lbm::LinkTag::of(i, upstream)});
+                        lbm::LinkPlace::of(x, y), lbm::LinkTag::of(i, upstream, cells.is_enclosed(cell))});
         }
       }
   return links;
+}
+
+// The same of a table.
+std::set<std::array<std::uint32_t, 4>> links_kept(const lbm::LinkTable& table) {
+  std::set<std::array<std::uint32_t, 4>> kept;
+  for (std::size_t tile = 0; tile < table.tiles().size(); ++tile) {
+    const lbm::LinkTable::Tile& t = table.tiles()[tile];
+    for (const lbm::LinkTable::Chunk& chunk : t.chunks)
+      for (std::uint32_t k = chunk.first; k < chunk.first + chunk.count; ++k)
+        kept.insert({static_cast<std::uint32_t>(chunk.body), static_cast<std::uint32_t>(tile), t.links.place[k],
+                     t.links.tag[k]});
+  }
+  return kept;
 }
 
 // Sum of w_i c_i over all lattice lines from a cell of q, or from beyond a wall, into an owned cell of p.
@@ -91,14 +104,7 @@ TEST(LinkBuilder, FollowsTheMapThroughAnyMoves) {
     }
     map.settle();
     builder.update(map, table);
-    std::set<std::array<std::uint32_t, 4>> kept;
-    for (int tile = 0; tile < fluid.tiles().count(); ++tile) {
-      const lbm::LinkTable::Tile& t = table.tiles()[tile];
-      for (const lbm::LinkTable::Chunk& chunk : t.chunks)
-        for (std::uint32_t k = chunk.first; k < chunk.first + chunk.count; ++k)
-          kept.insert({static_cast<std::uint32_t>(chunk.body), static_cast<std::uint32_t>(tile), t.links.place[k],
-                       t.links.tag[k]});
-    }
+    const std::set<std::array<std::uint32_t, 4>> kept = links_kept(table);
     ASSERT_EQ(kept.size(), table.count()) << "a link twice, round " << round;
     ASSERT_EQ(kept, links_by_definition(fluid)) << "round " << round;
     std::array<Vec3, grains>
@@ -110,6 +116,42 @@ TEST(LinkBuilder, FollowsTheMapThroughAnyMoves) {
       whole[static_cast<std::size_t>(pair.first)] += sum;
     }
     for (const Vec3& sum : whole) ASSERT_LT(sum.norm(), 1e-12) << "round " << round;
+  }
+}
+
+// A grain on each of the 18 cells around one, of which one after the other leaves and comes back: all links of that
+// cell change, also those to grains that stay.
+TEST(LinkBuilder, KnowsWhichCellsAreEnclosed) {
+  const Index3 middle{9, 0, 4};
+  const Decomposition decomposition({18, 9, 9}, 1.0, {true, true, false}, {1, 1, 1});
+  lbm::Fluid<double> fluid(decomposition, MPI_COMM_SELF, {}, {});
+  GrainMap map(decomposition, fluid.block(), fluid.cells());
+  lbm::LinkTable table(fluid.tiles().count());
+  LinkBuilder builder(decomposition, fluid.block(), fluid.cells(), fluid.tiles());
+  const PeriodicBox box{Vec3(18, 9, 9), {true, true, false}};
+  const auto beside = [&](int i) {
+    Vec3 centre;
+    for (int a = 0; a < 3; ++a) centre[a] = middle[a] + lbm::D3Q19::c[i][a] + 0.5;
+    return box.wrapped(centre);
+  };
+  const auto enclosed_links = [&] {
+    map.settle();
+    builder.update(map, table);
+    EXPECT_EQ(links_kept(table), links_by_definition(fluid));
+    int count = 0;
+    for (const auto& link : links_kept(table)) count += (link[3] & lbm::LinkTag::enclosed) != 0 ? 1 : 0;
+    return count;
+  };
+  map.begin_update();
+  for (int i = 1; i < 19; ++i) map.place(map.add(i, {0.6}), beside(i));
+  EXPECT_EQ(enclosed_links(), 18);
+  for (int i = 1; i < 19; ++i) {
+    map.begin_update();
+    map.place(map.slot_of(i), Vec3(2.5, 4.5, 4.5));
+    EXPECT_EQ(enclosed_links(), 0) << "grain " << i << " away";
+    map.begin_update();
+    map.place(map.slot_of(i), beside(i));
+    EXPECT_EQ(enclosed_links(), 18) << "grain " << i << " back";
   }
 }
 
