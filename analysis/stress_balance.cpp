@@ -67,7 +67,8 @@ void StressBalance::add_fluid(const MomentumBook& book) {
 void StressBalance::add_grains(const Snapshot& snapshot) {
   const GrainView& grains = snapshot.grains;
   if (grains.global_count == 0) return;
-  const std::vector<Mat3> contact_moments_of = contact_moments(snapshot);
+  const std::vector<Mat3> contact_moments_of = contact_moments(snapshot),
+                          lubrication_moments_of = lubrication_moments(snapshot);
   std::vector<int> layer_of_row;
   std::vector<double> terms;
   for (std::size_t i = 0; i < grains.id.size(); ++i) {
@@ -83,7 +84,7 @@ void StressBalance::add_grains(const Snapshot& snapshot) {
       layer_of_row.push_back(layer);
       terms.insert(terms.end(), {part, m, m * v[0], m * v[1], m * v[2]});
       for (const auto& [a, b] : symmetric_pairs) terms.push_back(m * v[a] * v[b]);
-      for (const Mat3* moment : {&contact_moments_of[i], &of_fluid})
+      for (const Mat3* moment : {&contact_moments_of[i], &of_fluid, &lubrication_moments_of[i]})
         for (int k = 0; k < 9; ++k) terms.push_back(share * (*moment)(k / 3, k % 3));
       terms.insert(terms.end(), {share * by_fluid[0], share * by_fluid[1], share * by_fluid[2], share * by_contacts[0],
                                  share * outer});
@@ -177,7 +178,8 @@ void check(const StressBalanceKeys& keys, const RunFacts& run) {
 std::unique_ptr<Observer> make_observer(const StressBalanceKeys& keys, const RunFacts& run,
                                         const RunningSystem& system) {
   const BalanceScales scales{run.fluid->density, run.fluid->density * run.fluid->kinematic_viscosity,
-                             run.grains->reference_diameter, run.gravity.x()};
+                             run.grains->reference_diameter, run.gravity.x(),
+                             run.fluid->velocity_unit / std::sqrt(3.0)};
   return std::make_unique<StressBalance>(system.communicator, system.decomposition,
                                          0.25 * run.grains->smallest_diameter, keys, scales, run.grains->held());
 }

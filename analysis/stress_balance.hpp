@@ -6,6 +6,7 @@
 // Grains by volume shares, V_il the part of grain i within layer l, A b the layer's volume (grain_profiles.hpp):
 //   contact stress         (1/Ab) sum_i (V_il/V_i) sum_c F_a r_b              (Christoffersen et al. 1981)
 //   fluid part on grains   (1/Ab) sum_i (V_il/V_i) sum_links F_a x_b          (Zhang et al. 2022, eq. 13)
+//   lubrication stress     as the contacts', of the forces between near surfaces (dem/lubrication.hpp)
 //   rotation stress        xz - zx of the last                                (Zhang et al. 2022, section 2.4)
 //   drag density           (1/Ab) sum_i (V_il/V_i) F_i                        N/m^3, given by the fluid
 //   drag function          F = f_x d^2/(18 phi (1 - phi) eta (U_f - U_s)),  Re_d = (1 - phi) rho_f |U_f - U_s| d/eta
@@ -58,6 +59,7 @@ struct BalanceScales {
   double viscosity = 0.0;      // Pa s
   double diameter = 0.0;       // m, that stands for all grains
   double gravity_x = 0.0;      // m/s^2, on grains that are free
+  double sound_speed = 0.0;    // m/s, of the lattice: gives the pressure
 };
 
 class StressBalance : public Observer {
@@ -80,8 +82,9 @@ public:
   std::vector<std::string> remarks() const override;
 
   // Over z (m, middle of the layer): thickness (m), solid_fraction (1), grain_velocity, fluid_velocity (m/s: x, y, z),
-  // granular_temperature (m^2/s^2), drag_density (N/m^3: x, y, z), drag_function, drag_reynolds_number (1; zero without
-  // grains), and in Pa: contact_stress, grain_fluid_stress (xx, xy, xz, yx, ... zz), kinetic_stress, viscous_stress,
+  // fluid_pressure (Pa, relative to its mean over the box), granular_temperature (m^2/s^2),
+  // drag_density (N/m^3: x, y, z), drag_function, drag_reynolds_number (1; zero without grains), and in Pa:
+  // contact_stress, grain_fluid_stress, lubrication_stress (xx, xy, xz, yx, ... zz), kinetic_stress, viscous_stress,
   // subgrid_stress, reynolds_stress, mean_flow_stress (xx, yy, zz, xy, xz, yz), rotation_stress,
   // contact_rotation_stress, sum_of_stresses, total_stress, side_wall_stress, driving_stress.
   std::vector<Profile> profiles() const override;
@@ -101,13 +104,14 @@ private:
     momentum_flux = 5,
     contact_moment = 11,
     fluid_moment = 20,
-    fluid_force = 29,
-    contact_force_x = 32,
-    outer_force_x = 33,
-    fluid_lever = 34,
-    contact_lever = 35,
-    outer_lever = 36,
-    grain_columns = 37
+    lubrication_moment = 29,
+    fluid_force = 38,
+    contact_force_x = 41,
+    outer_force_x = 42,
+    fluid_lever = 43,
+    contact_lever = 44,
+    outer_lever = 45,
+    grain_columns = 46
   };
   using Tensor = std::array<double, 6>;  // xx, yy, zz, xy, xz, yz
   struct LayerMeans;
@@ -125,6 +129,7 @@ private:
   void set_grain_means(int layer, LayerMeans& means) const;
   void set_drag_law(LayerMeans& means) const;
   void set_totals(int layer, LayerMeans& means) const;
+  double mean_density() const;
   double by_height_above(const std::vector<double>& half_planes, int layer) const;
   double driven_above(int layer) const;
   double above(int layer, const std::vector<double>& sums, int columns, int force, int lever) const;

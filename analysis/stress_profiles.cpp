@@ -18,10 +18,10 @@ constexpr int row_xz = 2, row_zx = 6;  // among all nine, row by row
 }  // namespace
 
 struct StressBalance::LayerMeans {
-  double solid_fraction = 0.0, temperature = 0.0;
+  double solid_fraction = 0.0, temperature = 0.0, pressure = 0.0;
   Vec3 grain_velocity = Vec3::Zero(), fluid_velocity = Vec3::Zero(), drag = Vec3::Zero();
   double drag_function = 0.0, drag_reynolds = 0.0;
-  std::array<double, 9> contact{}, grain_fluid{};
+  std::array<double, 9> contact{}, grain_fluid{}, lubrication{};
   Tensor kinetic{}, viscous{}, subgrid{}, reynolds{}, mean_flow{};
   double rotation = 0.0, contact_rotation = 0.0, sum = 0.0, total = 0.0, sides = 0.0, driving = 0.0;
 
@@ -35,11 +35,22 @@ std::array<double, StressBalance::fluid_columns> StressBalance::fluid_of(int lay
   return sums;
 }
 
+// kg/m^3, of the fluid's cells in the whole box.
+double StressBalance::mean_density() const {
+  double whole = 0.0, count = 0.0;
+  for (std::size_t plane = 0; plane < fluid_.size(); plane += fluid_columns) {
+    whole += fluid_[plane + density];
+    count += fluid_[plane + cells];
+  }
+  return whole / count;
+}
+
 void StressBalance::set_fluid_means(int layer, LayerMeans& means) const {
   const std::array<double, fluid_columns> sum = fluid_of(layer);
   if (sum[cells] == 0.0) return;
   const double planes = layers_.first_plane(layer + 1) - layers_.first_plane(layer);
   const double unit = 1.0 / (planes * n_[0] * n_[1] * static_cast<double>(measurements_));
+  means.pressure = (sum[density] / sum[cells] - mean_density()) * scales_.sound_speed * scales_.sound_speed;
   for (int a = 0; a < 3; ++a) means.fluid_velocity[a] = sum[static_cast<std::size_t>(flow + a)] / sum[density];
   for (std::size_t p = 0; p < 6; ++p) {
     const double carried = sum[static_cast<std::size_t>(flow + symmetric_pairs[p][0])] *
@@ -69,6 +80,7 @@ void StressBalance::set_grain_means(int layer, LayerMeans& means) const {
   for (std::size_t k = 0; k < 9; ++k) {
     means.contact[k] = sum[contact_moment + k] / room;
     means.grain_fluid[k] = sum[fluid_moment + k] / room;
+    means.lubrication[k] = sum[lubrication_moment + k] / room;
   }
   means.rotation = means.grain_fluid[row_xz] - means.grain_fluid[row_zx];
   means.contact_rotation = means.contact[row_xz] - means.contact[row_zx];
@@ -117,7 +129,7 @@ void StressBalance::set_totals(int layer, LayerMeans& means) const {
   const double area = n_[0] * n_[1] * spacing_ * spacing_ * static_cast<double>(measurements_);
   const double carried =
       means.kinetic[xz] + means.viscous[xz] + means.subgrid[xz] + means.reynolds[xz] + means.mean_flow[xz];
-  means.sum = carried + means.contact[row_xz] + means.grain_fluid[row_xz];
+  means.sum = carried + means.contact[row_xz] + means.grain_fluid[row_xz] + means.lubrication[row_xz];
   const double walls_on_grains = above(layer, held_up_, 2, 0, 1);
   means.total = carried + (by_height_above(given_, layer) - above(layer, fluid_force, fluid_lever) -
                            above(layer, contact_force_x, contact_lever) + walls_on_grains) /
@@ -219,12 +231,14 @@ std::vector<Profile> StressBalance::profiles() const {
   add("solid_fraction", "1", {}, member(&LayerMeans::solid_fraction));
   add("grain_velocity", "m/s", vector_names, member(&LayerMeans::grain_velocity));
   add("fluid_velocity", "m/s", vector_names, member(&LayerMeans::fluid_velocity));
+  add("fluid_pressure", "Pa", {}, member(&LayerMeans::pressure));
   add("granular_temperature", "m^2/s^2", {}, member(&LayerMeans::temperature));
   add("drag_density", "N/m^3", vector_names, member(&LayerMeans::drag));
   add("drag_function", "1", {}, member(&LayerMeans::drag_function));
   add("drag_reynolds_number", "1", {}, member(&LayerMeans::drag_reynolds));
   add("contact_stress", "Pa", tensor_names, member(&LayerMeans::contact));
   add("grain_fluid_stress", "Pa", tensor_names, member(&LayerMeans::grain_fluid));
+  add("lubrication_stress", "Pa", tensor_names, member(&LayerMeans::lubrication));
   add("kinetic_stress", "Pa", symmetric_names, member(&LayerMeans::kinetic));
   add("viscous_stress", "Pa", symmetric_names, member(&LayerMeans::viscous));
   add("subgrid_stress", "Pa", symmetric_names, member(&LayerMeans::subgrid));

@@ -14,6 +14,14 @@ std::vector<Mat3> contact_moments(const Snapshot& snapshot) {
   return moments;
 }
 
+std::vector<Mat3> lubrication_moments(const Snapshot& snapshot) {
+  std::vector<Mat3> moments(snapshot.grains.id.size(), Mat3::Zero());
+  if (snapshot.contacts)
+    snapshot.contacts->for_each_lubrication(
+        [&](std::size_t grain, const Vec3& arm, const Vec3& force) { moments[grain] += force * arm.transpose(); });
+  return moments;
+}
+
 std::vector<Mat3> contact_stresses(const Snapshot& snapshot) {
   const GrainView& grains = snapshot.grains;
   std::vector<Mat3> stresses = contact_moments(snapshot);

@@ -14,6 +14,9 @@ namespace thalweg {
 // contacts, with arms from the clump's centre. Zero without contacts.
 std::vector<Mat3> contact_moments(const Snapshot& snapshot);
 
+// The same of the lubrication forces.
+std::vector<Mat3> lubrication_moments(const Snapshot& snapshot);
+
 // The stress (Pa) of every grain of the view; a clump's members all have that of the clump.
 std::vector<Mat3> contact_stresses(const Snapshot& snapshot);
 

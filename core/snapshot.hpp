@@ -137,7 +137,10 @@ public:
   using ContactVisitor = std::function<void(std::size_t, const Vec3&, const Vec3&)>;
   virtual void for_each_contact(const ContactVisitor& visit) const = 0;
 
-  // The same of some grains (chosen[n] != 0 for number n of the GrainView) and with their partners, arms always from
+  // The same of the forces between near surfaces that the cells of the fluid do not resolve.
+  virtual void for_each_lubrication(const ContactVisitor& /*visit*/) const {}
+
+  // Contacts of some grains (chosen[n] != 0 for number n of the GrainView) and with their partners, arms always from
   // their own centre; of the other grains' contacts nothing is calculated.
   using ContactEndVisitor = std::function<void(std::size_t, const ContactEnd&)>;
   virtual void for_each_contact_of(std::span<const char> chosen, const ContactEndVisitor& visit) const = 0;

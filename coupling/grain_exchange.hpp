@@ -21,7 +21,7 @@ public:
 
   explicit GrainExchange(std::span<Number> columns) : columns_(columns) {}
 
-  static constexpr int width = 23, width_with_stress = 41;  // columns
+  static constexpr int width = 24, width_with_stress = 42;  // columns
 
   Vector link_position() const { return vector(0); }  // the place its cells stand for, m
   Vector last_force() const { return vector(3); }     // of the last exchange, N
@@ -39,13 +39,14 @@ public:
   Number& returned_density() const { return columns_[18]; }  // what the links return in the coming step:
   Vector returned_slope() const { return vector(19); }       // mass_return.hpp
   Number& surrounding() const { return columns_[22]; }       // rho - rho_rest of the fluid around the grain
+  Number& wanted_return() const { return columns_[23]; }     // of mass; the links return the mean of the last two
   void forget_lattice_units() const {
-    for (Number& value : columns_.subspan(16, 7)) value = 0.0;
+    for (Number& value : columns_.subspan(16, 8)) value = 0.0;
   }
 
   // Only where asked for, Pa: of the last exchange, and the mean of the last two.
-  Tensor last_stress() const { return tensor(23); }
-  Tensor mean_stress() const { return tensor(32); }
+  Tensor last_stress() const { return tensor(24); }
+  Tensor mean_stress() const { return tensor(33); }
 
 private:
   Vector vector(std::size_t first) const { return Vector(columns_.data() + first); }

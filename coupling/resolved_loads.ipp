@@ -126,6 +126,7 @@ lbm::LinkSums ResolvedSystem<Real, S>::link_sums_of(std::size_t grain) const {
 template <typename Real, GrainShape S>
 void ResolvedSystem<Real, S>::settle_mass(std::size_t first, std::size_t count) {
   // What comes back changes what the links take, with cli most of all: returned at once and whole it swings and grows.
+  // A cell at a surface can swing by itself from step to step, hardly damped; the mean of two steps does not push it.
   constexpr double share_of_owed = 0.5, share_of_last_step = 0.125;
   lbm::LinkSums links;
   std::int64_t sum = 0;
@@ -144,7 +145,9 @@ void ResolvedSystem<Real, S>::settle_mass(std::size_t first, std::size_t count) 
   double &owed = exchange_of(first).owed_mass(), &loss = exchange_of(first).mean_loss();
   owed -= given;
   loss += share_of_last_step * (came_back - given - loss);
-  const MassReturn next = unit_mass_return(links).scaled(share_of_owed * owed + loss);
+  const double wanted = share_of_owed * owed + loss;
+  const MassReturn next = unit_mass_return(links).scaled(0.5 * (wanted + exchange_of(first).wanted_return()));
+  exchange_of(first).wanted_return() = wanted;
   for (std::size_t g = first; g < first + count; ++g) {
     exchange_of(g).returned_density() = next.density;
     exchange_of(g).returned_slope() = next.slope;

@@ -97,6 +97,7 @@ private:
   std::optional<State> state_in(const Index3& cell) const override;
   Drive drive() const override;
   void for_each_contact(const ContactVisitor& visit) const override { grains_->for_each_contact(visit); }
+  void for_each_lubrication(const ContactVisitor& visit) const override { grains_->for_each_lubrication(visit); }
   void for_each_contact_of(std::span<const char> chosen, const ContactEndVisitor& visit) const override {
     grains_->for_each_contact_of(chosen, visit);
   }

@@ -164,7 +164,10 @@ public:
   // Every contact of every owned grain, as it feels it (contact_forces.hpp); of a clump's member, with the arm from the
   // clump's centre.
   void for_each_contact(const std::function<void(std::size_t slot, const Vec3& arm, const Vec3& force)>& visit) const;
-  // Those of some owned grains (chosen[slot] != 0), of a clump's member with the arm from its own centre.
+  // The same of the lubrication forces (lubrication.hpp), of which there are none without them.
+  void for_each_lubrication(
+      const std::function<void(std::size_t slot, const Vec3& arm, const Vec3& force)>& visit) const;
+  // Contacts of some owned grains (chosen[slot] != 0), of a clump's member with the arm from its own centre.
   void for_each_contact_of(std::span<const char> chosen,
                            const std::function<void(std::size_t slot, const ContactEnd& end)>& visit) const;
 
@@ -222,6 +225,7 @@ private:
                                  std::vector<int>& owner);
   void build_dependents(const ContactHistories& histories);
   void compute_body_forces();
+  std::vector<Vec3> places_in_clumps() const;
   void evaluate_forces(double time_step);
   template <typename Work>
   void timed(int phase, Work&& work);

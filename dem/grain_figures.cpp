@@ -49,17 +49,33 @@ std::vector<Contact> GrainDynamics::contacts() const {
   return touching;
 }
 
-void GrainDynamics::for_each_contact(
-    const std::function<void(std::size_t slot, const Vec3& arm, const Vec3& force)>& visit) const {
+// From the centre of a member's clump to the member, of every owned grain; empty without clumps.
+std::vector<Vec3> GrainDynamics::places_in_clumps() const {
   std::vector<Vec3> from_centre(clumps_.empty() ? 0 : store_.owned, Vec3::Zero());
   for (std::size_t n = 0; n < clumps_.size(); ++n)
     for (std::size_t m = 0; m < static_cast<std::size_t>(clumps_[n].members); ++m) {
       const std::size_t slot = clumps_.first_slot(n) + m;
       from_centre[slot] = box_.difference(store_.position[slot], clumps_[n].centre);
     }
+  return from_centre;
+}
+
+void GrainDynamics::for_each_contact(
+    const std::function<void(std::size_t slot, const Vec3& arm, const Vec3& force)>& visit) const {
+  const std::vector<Vec3> from_centre = places_in_clumps();
   for_each_contact_end(store_, list_, box_, planes_, materials_, {}, [&](std::size_t slot, const ContactEnd& end) {
     visit(slot, from_centre.empty() ? end.arm : Vec3(end.arm + from_centre[slot]), end.force);
   });
+}
+
+void GrainDynamics::for_each_lubrication(
+    const std::function<void(std::size_t slot, const Vec3& arm, const Vec3& force)>& visit) const {
+  if (!parameters_.lubrication) return;
+  const std::vector<Vec3> from_centre = places_in_clumps();
+  for_each_lubrication_end(store_, list_, box_, planes_, *parameters_.lubrication,
+                           [&](std::size_t slot, const Vec3& arm, const Vec3& force) {
+                             visit(slot, from_centre.empty() ? arm : Vec3(arm + from_centre[slot]), force);
+                           });
 }
 
 void GrainDynamics::for_each_contact_of(

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace thalweg::dem {
 
@@ -31,37 +32,70 @@ LubricationLoad load_of(const LubricationResistance& resistance, const Vec3& nor
           resistance.mixed * normal.cross(sliding) - resistance.rolling * rolling};
 }
 
+// What the force asks of a grain.
+struct Sphere {
+  double radius;
+  Vec3 velocity, spin;
+};
+Sphere sphere_of(const MovingGrain& grain) {
+  return {grain.position[3], vector_of(grain.velocity), vector_of(grain.spin)};
+}
+Sphere sphere_of(const GrainStore& store, std::size_t slot) {
+  return {store.radius[slot], store.velocity[slot], store.angular_velocity[slot]};
+}
+
+// Between two surfaces that are near: where, and what acts on the first.
+struct NearSurfaces {
+  Vec3 normal;                   // from the second to the first
+  double first_arm, second_arm;  // m, from each centre to the middle of the gap; of a wall the first to its surface
+  LubricationLoad load;
+};
+
+std::optional<NearSurfaces> between(const Sphere& first, const Sphere& second, const Vec3& separation,
+                                    const LubricationParameters& parameters) {
+  const double reach = first.radius + second.radius + parameters.reach(), square = separation.squaredNorm();
+  if (square >= reach * reach) return std::nullopt;
+  const double distance = std::sqrt(square), gap = distance - first.radius - second.radius;
+  if (!(gap > 0.0)) return std::nullopt;
+  const Vec3 normal = separation / distance;
+  const double first_arm = first.radius + 0.5 * gap, second_arm = second.radius + 0.5 * gap;
+  const Vec3 approach = first.velocity - second.velocity, spin = first_arm * first.spin + second_arm * second.spin;
+  return NearSurfaces{normal, first_arm, second_arm,
+                      load_of(lubrication_resistance(parameters, first.radius, first.radius / second.radius, gap),
+                              normal, approach, approach - spin.cross(normal), first.spin - second.spin)};
+}
+
+std::optional<NearSurfaces> between(const Sphere& sphere, const WallView& view, const Vec3& wall_velocity,
+                                    const LubricationParameters& parameters) {
+  const auto [height, n] = view;
+  const double gap = height - sphere.radius;
+  if (!(gap > 0.0 && gap < parameters.reach())) return std::nullopt;
+  const Vec3 approach = sphere.velocity - wall_velocity;
+  return NearSurfaces{n, height, 0.0,
+                      load_of(lubrication_resistance(parameters, sphere.radius, 0.0, gap), n, approach,
+                              approach - height * sphere.spin.cross(n), sphere.spin)};
+}
+
 void add_to_pair(MovingGrain& first, MovingGrain& second, const Vec3& separation,
                  const LubricationParameters& parameters) {
-  const double reach = first.position[3] + second.position[3] + parameters.reach();
-  const double square = separation.squaredNorm();
-  if (square >= reach * reach) return;
-  const double distance = std::sqrt(square), gap = distance - first.position[3] - second.position[3];
-  if (!(gap > 0.0)) return;
-  const Vec3 normal = separation / distance;
-  const double first_arm = first.position[3] + 0.5 * gap, second_arm = second.position[3] + 0.5 * gap;
-  const Vec3 approach = vector_of(first.velocity - second.velocity);
-  const Vec3 spin = vector_of(first_arm * first.spin + second_arm * second.spin);
-  const LubricationLoad load =
-      load_of(lubrication_resistance(parameters, first.position[3], first.position[3] / second.position[3], gap),
-              normal, approach, approach - spin.cross(normal), vector_of(first.spin - second.spin));
-  const Row force = row_of(load.force), turn = row_of(load.force.cross(normal)), couple = row_of(load.couple);
+  const auto near = between(sphere_of(first), sphere_of(second), separation, parameters);
+  if (!near) return;
+  const LubricationLoad& load = near->load;
+  const Row force = row_of(load.force), turn = row_of(load.force.cross(near->normal)), couple = row_of(load.couple);
   first.force += force;
   second.force -= force;
-  first.torque += first_arm * turn + couple;
-  second.torque += second_arm * turn - couple;
+  first.torque += near->first_arm * turn + couple;
+  second.torque += near->second_arm * turn - couple;
 }
 
 void add_to_wall(MovingGrain& grain, const Plane& wall, const PeriodicBox& box,
                  const LubricationParameters& parameters) {
-  const auto [height, n] = wall.seen_from(vector_of(grain.position), box);
-  const double gap = height - grain.position[3];
-  if (!(gap > 0.0 && gap < parameters.reach())) return;
-  const Vec3 approach = vector_of(grain.velocity) - wall.velocity, spin = vector_of(grain.spin);
-  const LubricationLoad load = load_of(lubrication_resistance(parameters, grain.position[3], 0.0, gap), n, approach,
-                                       approach - height * spin.cross(n), spin);
+  const auto near =
+      between(sphere_of(grain), wall.seen_from(vector_of(grain.position), box), wall.velocity, parameters);
+  if (!near) return;
+  const LubricationLoad& load = near->load;
   grain.force += row_of(load.force);
-  grain.torque += row_of(height * load.force.cross(n) + load.couple);
+  grain.torque += row_of(near->first_arm * load.force.cross(near->normal) + load.couple);
 }
 
 }  // namespace
@@ -118,6 +152,25 @@ void add_lubrication(MovingGrains& grains, const ContactList& list, const Period
   }
   for (const WallContact& c : list.walls)
     if (parameters.walls[c.wall]) add_to_wall(grains[c.grain], walls[c.wall], box, parameters);
+}
+
+void for_each_lubrication_end(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
+                              std::span<const Plane> walls, const LubricationParameters& parameters,
+                              const LubricationVisitor& visit) {
+  for (const PairContact& c : list.pairs) {
+    const auto near = between(sphere_of(store, c.first), sphere_of(store, c.second),
+                              box.difference(store.position[c.first], store.position[c.second]), parameters);
+    if (!near) continue;
+    if (!store.is_ghost(c.first)) visit(c.first, -near->first_arm * near->normal, near->load.force);
+    if (!store.is_ghost(c.second)) visit(c.second, near->second_arm * near->normal, -near->load.force);
+  }
+  for (const WallContact& c : list.walls) {
+    if (!parameters.walls[c.wall] || store.is_ghost(c.grain)) continue;
+    const Plane& wall = walls[c.wall];
+    if (const auto near =
+            between(sphere_of(store, c.grain), wall.seen_from(store.position[c.grain], box), wall.velocity, parameters))
+      visit(c.grain, -near->first_arm * near->normal, near->load.force);
+  }
 }
 
 }  // namespace thalweg::dem

@@ -22,6 +22,7 @@
 #include "dem/moving_grains.hpp"
 #include "dem/walls.hpp"
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -59,5 +60,12 @@ void check(const LubricationParameters& parameters, double largest_radius, doubl
 // touch feel their contact law alone. Sums run in the order of the list.
 void add_lubrication(MovingGrains& grains, const ContactList& list, const PeriodicBox& box,
                      std::span<const Plane> walls, const LubricationParameters& parameters);
+
+// Calls visit(slot, arm, force) for every such force on every owned grain, in the order of the list, pairs first: m
+// from its centre to the middle of the gap (to a wall's surface), N. By the present positions and velocities.
+using LubricationVisitor = std::function<void(std::size_t slot, const Vec3& arm, const Vec3& force)>;
+void for_each_lubrication_end(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
+                              std::span<const Plane> walls, const LubricationParameters& parameters,
+                              const LubricationVisitor& visit);
 
 }  // namespace thalweg::dem

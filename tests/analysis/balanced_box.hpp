@@ -5,6 +5,7 @@
 #include "core/mpi_session.hpp"
 #include "tests/coupling/water_box.hpp"
 
+#include <cmath>
 #include <map>
 #include <string>
 #include <vector>
@@ -30,7 +31,8 @@ inline std::unique_ptr<ResolvedSystem<double>> system_of(const WaterBox& box) {
 
 inline StressBalance balance_of(const WaterBox& box, const ResolvedSystem<double>& system, double layer,
                                 std::vector<HeldGrains> held) {
-  const BalanceScales scales{1000.0, 1000.0 * box.viscosity, 5e-3, box.gravity.x()};
+  const BalanceScales scales{1000.0, 1000.0 * box.viscosity, 5e-3, box.gravity.x(),
+                             box.spacing / box.time_step / std::sqrt(3.0)};
   return StressBalance(MPI_COMM_WORLD, *system.snapshot().decomposition, layer, {0.0, 1e-4}, scales, std::move(held));
 }
 

@@ -195,6 +195,35 @@ TEST(StressBalance, OfABedAtRestHasTheWeightOfItsGrains) {
   EXPECT_NEAR(holding, weight, 0.1 * weight);  // the floor under the spheres sees little of the flow
 }
 
+// Nothing moves under full gravity: the pressure is that of the height, and a sphere has that of its centre on every
+// axis (eq. 13), a few per cent more or less by the cells that it covers.
+TEST(StressBalance, HasThePressureOfAFluidAtRest) {
+  WaterBox box = viscous_box({18, 18, 36}, 9.0, 1.0);
+  box.full_gravity = true;
+  box.gravity = Vec3(0.0, 0.0, -0.5);
+  const double centre = 4.8e-3, top = 36.0 * box.spacing;
+  box.seeds.push_back(glass_sphere(0, Vec3(5.1e-3, 4.9e-3, centre)));
+  box.seeds.back().motion = dem::Motion::fixed;
+  const auto system = system_of(box);
+  StressBalance balance = balance_of(box, *system, 1.25e-3, {{0, 1}});
+  measure(balance, *system);
+  const Values values = by_name(balance);
+  double mean = 0.0;  // height of the fluid
+  const double fluid = top - integral(values, "solid_fraction");
+  for (std::size_t l = 0; l < values.at("z").size(); ++l)
+    mean += values.at("z")[l] * (1.0 - values.at("solid_fraction")[l]) * values.at("thickness")[l] / fluid;
+  const double weight = 1000.0 * 0.5, largest = 0.5 * weight * top;
+  for (std::size_t l = 0; l < values.at("z").size(); ++l)
+    EXPECT_NEAR(values.at("fluid_pressure")[l], weight * (mean - values.at("z")[l]), 0.02 * largest) << "layer " << l;
+  double stress[3] = {0.0, 0.0, 0.0};
+  for (std::size_t l = 0; l < values.at("z").size(); ++l)
+    for (std::size_t a = 0; a < 3; ++a)
+      stress[a] += values.at("grain_fluid_stress")[9 * l + 4 * a] * values.at("thickness")[l];
+  for (const double s : stress)
+    EXPECT_NEAR(s, -weight * (0.5 * top - centre) * integral(values, "solid_fraction"),
+                0.05 * weight * (0.5 * top - centre) * integral(values, "solid_fraction"));
+}
+
 // Between side walls two held spheres, one of which touches a wall; the walls take what does not arrive at the floor.
 // The slowest part of a start at rest decays faster than between plates H apart, T = H^2/(pi^2 nu) with H the width; 12
 // T.

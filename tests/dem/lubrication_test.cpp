@@ -34,6 +34,21 @@ LubricationParameters parameters() {
   return p;
 }
 
+// What observers see is the force that acts, and meets in the middle of the gap.
+void expect_seen(GrainStore& store, const MovingGrains& grains, const ContactList& list, const PeriodicBox& box,
+                 std::span<const Plane> walls) {
+  store.owned = store.total();
+  std::vector<Vec3> force(store.owned, Vec3::Zero()), place(store.owned, Vec3::Zero());
+  for_each_lubrication_end(store, list, box, walls, parameters(),
+                           [&](std::size_t slot, const Vec3& arm, const Vec3& on_it) {
+                             force[slot] += on_it;
+                             place[slot] = store.position[slot] + arm;
+                           });
+  for (std::size_t slot = 0; slot < store.owned; ++slot) EXPECT_EQ(force[slot], vector_of(grains[slot].force));
+  if (store.owned == 2) EXPECT_LT((place[0] - place[1]).norm(), 1e-15);
+  if (store.owned == 1 && !force[0].isZero(0.0)) EXPECT_NEAR(place[0].z(), 0.0, 1e-15);
+}
+
 // Two bodies along `direction` (from the first to the second) with a gap between them.
 Loads pair_loads(const Body& first, const Body& second, const Vec3& direction, double gap) {
   GrainStore store;
@@ -48,7 +63,9 @@ Loads pair_loads(const Body& first, const Body& second, const Vec3& direction, d
   grains.load(store, {});
   ContactList list;
   list.pairs.push_back({0, 1, first.radius + second.radius});
-  add_lubrication(grains, list, {Vec3(0.1, 0.1, 0.1), {false, false, false}}, {}, parameters());
+  const PeriodicBox box{Vec3(0.1, 0.1, 0.1), {false, false, false}};
+  add_lubrication(grains, list, box, {}, parameters());
+  expect_seen(store, grains, list, box, {});
   return {{vector_of(grains[0].force), vector_of(grains[1].force)},
           {vector_of(grains[0].torque), vector_of(grains[1].torque)}};
 }
@@ -62,7 +79,9 @@ Loads wall_loads(const Body& body, double gap) {
   ContactList list;
   list.walls.push_back({0, 0});
   const Plane floor;
-  add_lubrication(grains, list, {Vec3(0.1, 0.1, 0.1), {false, false, false}}, {&floor, 1}, parameters());
+  const PeriodicBox box{Vec3(0.1, 0.1, 0.1), {false, false, false}};
+  add_lubrication(grains, list, box, {&floor, 1}, parameters());
+  expect_seen(store, grains, list, box, {&floor, 1});
   return {{vector_of(grains[0].force), Vec3::Zero()}, {vector_of(grains[0].torque), Vec3::Zero()}};
 }
 
