@@ -45,8 +45,11 @@ void expect_seen(GrainStore& store, const MovingGrains& grains, const ContactLis
                              place[slot] = store.position[slot] + arm;
                            });
   for (std::size_t slot = 0; slot < store.owned; ++slot) EXPECT_EQ(force[slot], vector_of(grains[slot].force));
-  if (store.owned == 2) EXPECT_LT((place[0] - place[1]).norm(), 1e-15);
-  if (store.owned == 1 && !force[0].isZero(0.0)) EXPECT_NEAR(place[0].z(), 0.0, 1e-15);
+  if (store.owned == 2) {
+    EXPECT_LT((place[0] - place[1]).norm(), 1e-15);
+  } else if (!force[0].isZero(0.0)) {
+    EXPECT_NEAR(place[0].z(), 0.0, 1e-15);
+  }
 }
 
 // Two bodies along `direction` (from the first to the second) with a gap between them.
