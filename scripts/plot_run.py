@@ -1,10 +1,13 @@
 #!/usr/bin/python3
-"""Draws a run: bed.png (the grains from the side before the flow) and transport_rate.png (q* against time).
+"""Draws a run: bed.png (the grains from the side before the flow), transport_rate.png (q* against time) and profiles.png.
 
-    plot_run.py RUN_FOLDER [--out FOLDER] [--time SECONDS]
+    plot_run.py RUN_FOLDER [--out FOLDER] [--time SECONDS] [--movie FILE]
 
-Of a fluid alone: flow.png (the flow in the middle plane) and profiles.png (means over the height), as far as they were
-asked for in the case.
+profiles.png has means over the height, as far as profiles.h5 has them: of a bed the solid fraction, the velocities of grains and
+fluid, and the stresses beside the driving stress (analysis.grain_profiles, stress_balance), of a fluid alone the velocity and the
+Reynolds stresses (analysis.fluid_statistics). Of a fluid alone flow.png is the flow in the middle plane. --movie writes the side
+view of all stored frames as a .gif, as an .mp4 (where ffmpeg is installed) or as numbered images in a folder;
+python/figures/movie.py has more options.
 
 Works on a finished run and on one that is still going. The interpreter is Debian's own, whose packages scripts/setup
 installs.
@@ -22,7 +25,7 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
 import thalweg
-from thalweg import drawing
+from thalweg import drawing, film, height_profiles
 from thalweg.means import running_mean
 
 
@@ -42,7 +45,7 @@ def draw_bed(run, time, path):
     save(drawing.bed_figure(run, grains, run.fluid.nearest(grains.time)), path)
 
 
-def draw_profiles(run, path):
+def draw_fluid_profiles(run, path):
     """Mean velocity along x and Reynolds stresses over the height."""
     means = run.profiles["fluid_statistics"]
     z, velocity, stress = 1e3 * means["z"], means["velocity"][:, 0], means["reynolds_stress"]
@@ -54,7 +57,7 @@ def draw_profiles(run, path):
     right.set(xlabel=r"Reynolds stress [m$^2$/s$^2$]")
     right.legend(frameon=False, fontsize=9)
     for axes in (left, right):
-        axes.grid(color="#e5e8ea", linewidth=0.8)
+        axes.grid(**height_profiles.GRID)
     figure.suptitle(run.name, fontsize=11)
     save(figure, path)
 
@@ -92,7 +95,7 @@ def draw_transport_rate(run, path):
     axes.set(xlabel="time [s]", ylabel=label, xlim=(time[0], time[-1] if time[-1] > time[0] else time[0] + 1))
     axes.set_ylim(*range_of_interest(rate, rate[counted] if counted.any() else rate))
     axes.set_title(run.name, fontsize=11)
-    axes.grid(color="#e5e8ea", linewidth=0.8)
+    axes.grid(**height_profiles.GRID)
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
     axes.legend(frameon=False, fontsize=9)
@@ -105,11 +108,13 @@ def pictures_of(run, time):
     if case.get("system") == "fluid":
         pictures = [("flow.png", lambda path: save(drawing.flow_figure(run, run.fluid.nearest(time)), path))]
         if "fluid_statistics" in analysis and "fluid_statistics" in run.profiles:
-            pictures.append(("profiles.png", lambda path: draw_profiles(run, path)))
+            pictures.append(("profiles.png", lambda path: draw_fluid_profiles(run, path)))
         return pictures
     pictures = [("bed.png", lambda path: draw_bed(run, time, path))]
-    if case.get("system") != "grains" or "transport_rate" in analysis:
+    if "transport_rate" in analysis:
         pictures.append(("transport_rate.png", lambda path: draw_transport_rate(run, path)))
+    if height_profiles.has_grains(run):
+        pictures.append(("profiles.png", lambda path: save(height_profiles.figure_of(run), path)))
     return pictures
 
 
@@ -118,6 +123,7 @@ def main():
     parser.add_argument("run_folder", type=pathlib.Path)
     parser.add_argument("--out", type=pathlib.Path, help="folder for the pictures (default: the run folder)")
     parser.add_argument("--time", type=float, help="simulated time in s of bed.png (default: the last picture)")
+    parser.add_argument("--movie", type=pathlib.Path, metavar="FILE", help="film of the side view: a .gif, an .mp4 or a folder")
     arguments = parser.parse_args()
     folder = arguments.run_folder
     out = arguments.out or folder
@@ -129,6 +135,9 @@ def main():
         for name, draw in pictures_of(run, arguments.time):
             draw(out / name)
             print(out / name)
+        if arguments.movie:
+            film.write_film(run, film.chosen_frames(run), arguments.movie)
+            print(arguments.movie)
     except thalweg.RunFolderError as error:
         print(f"plot_run: {error}", file=sys.stderr)
         return 1

@@ -1,4 +1,4 @@
-"""The side view: lit grains before the water, as plot_run.py and the movie draw it."""
+"""The side view: lit grains before the water, as plot_run.py and its film draw it."""
 import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
@@ -133,20 +133,20 @@ def bed_figure(run, frame, fluid=None, largest_speed=None, largest_flow=None, sc
     else:
         draw_water(figure, axes, bars[1], layer, largest_flow)
     axes.set(xlabel="x [mm], flow to the right", ylabel="z [mm]", xlim=(0, 1e3 * size[0]), ylim=(0, 1e3 * size[2]))
-    axes.set_title(f"{run.name}, t = {frame.time:.3g} s", fontsize=11)
+    axes.set_title(f"{run.name}, t = {frame.time:.4g} s", fontsize=11)
     return figure
 
 
-def flow_figure(run, fluid):
-    """A figure of the fluid's speed in the middle plane."""
+def flow_figure(run, fluid, largest_flow=None):
+    """A figure of the fluid's speed in the middle plane. largest_flow: end of the scale in m/s, of this frame if None."""
     layer = fluid_slice(fluid) if fluid else None
     if layer is None:
         raise RunFolderError(f"{run.folder}: no frame of the velocity yet (output.fluid in the case).")
     figure, axes, bars = side_view_axes(run.size)
-    draw_water(figure, axes, bars[0], layer)
+    draw_water(figure, axes, bars[0], layer, largest_flow)
     bars[1].remove()
     axes.set(xlabel="x [mm]", ylabel="z [mm]")
-    axes.set_title(f"{run.name}, t = {fluid.time:.3g} s", fontsize=11)
+    axes.set_title(f"{run.name}, t = {fluid.time:.4g} s", fontsize=11)
     return figure
 
 

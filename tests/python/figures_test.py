@@ -3,12 +3,15 @@ import subprocess
 import sys
 import unittest
 
-import h5py
 import matplotlib.image
 import numpy as np
+from PIL import Image
 
 import made_up_folder as made_up
 from made_up_folder import ROOT
+
+sys.path.insert(0, str(ROOT / "tests/support"))
+import made_up_profiles
 
 D = 4.95e-3
 
@@ -43,14 +46,7 @@ class Figures(made_up.MadeUpFolder):
         self.assertIn(words, done.stderr)
 
     def write_profiles(self):
-        z = (np.arange(30) + 0.5) * D
-        with h5py.File(self.folder / "profiles.h5", "w") as file:
-            group = file.create_group("grain_profiles")
-            group["z"], group["solid_fraction"] = z, np.where(z < 6 * D, 0.5, 0.0)
-            for name, components in (("velocity", "x y z"), ("contact_stress", "xx xy xz yx yy yz zx zy zz"),
-                                     ("kinetic_stress", "xx yy zz xy xz yz")):
-                group[name] = np.ones((30, len(components.split())))
-                group[name].attrs["components"] = components
+        made_up_profiles.write_grain_profiles(self.folder / "profiles.h5", D)
 
     def test_the_transport_relation(self):
         self.write_profiles()
@@ -77,16 +73,7 @@ class Figures(made_up.MadeUpFolder):
 
     def test_bed_profiles_with_the_balance(self):
         self.write_profiles()
-        full, half = "xx xy xz yx yy yz zx zy zz", "xx yy zz xy xz yz"
-        with h5py.File(self.folder / "profiles.h5", "a") as file:
-            group = file.create_group("stress_balance")
-            group["z"] = (np.arange(60) + 0.5) * 0.5 * D
-            for name, components in (("contact_stress", full), ("grain_fluid_stress", full), ("kinetic_stress", half),
-                                     ("viscous_stress", half), ("subgrid_stress", half), ("reynolds_stress", half)):
-                group[name] = np.ones((60, len(components.split())))
-                group[name].attrs["components"] = components
-            for name in ("rotation_stress", "total_stress", "side_wall_stress", "driving_stress"):
-                group[name] = np.ones(60)
+        made_up_profiles.add_stress_balance(self.folder / "profiles.h5", D)
         out = self.folder / "balance.png"
         self.drawn(self.script("bed_profiles.py", "--out", out), out)
 
@@ -94,9 +81,11 @@ class Figures(made_up.MadeUpFolder):
         for name in ("film.gif", "film"):
             done = self.script("movie.py", "--out", self.folder / name, "--every", "0.2", "--width", "300")
             self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual((self.folder / "film.gif").read_bytes()[:3], b"GIF")
-        self.assertEqual(len(list((self.folder / "film").glob("*.png"))), 4)   # at 0, 0.2, 0.4, 0.6 s
+        with Image.open(self.folder / "film.gif") as film:
+            self.assertEqual(film.n_frames, 4)   # at 0, 0.2, 0.4, 0.6 s
+        self.assertEqual(len(list((self.folder / "film").glob("*.png"))), 4)
         self.refused(self.script("movie.py", "--from", "5"), "no frame of the grains in this time")
+        self.refused(self.script("movie.py", "--out", self.folder / "film.webm"), "give a .gif, an .mp4 or a folder")
 
 
 if __name__ == "__main__":

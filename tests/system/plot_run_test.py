@@ -1,4 +1,5 @@
 """plot_run.py draws a run folder, and says in one sentence what is wrong with one it cannot draw."""
+import os
 import pathlib
 import subprocess
 import sys
@@ -8,14 +9,25 @@ import unittest
 import h5py
 import matplotlib.image
 import numpy as np
+from PIL import Image
 
 import made_up_run
 
-SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "plot_run.py"
-sys.path.insert(0, str(SCRIPT.parent))
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SCRIPT = ROOT / "scripts" / "plot_run.py"
+sys.path[:0] = [str(SCRIPT.parent), str(ROOT / "tests/support")]
+import made_up_profiles  # noqa: E402
 import plot_run  # noqa: E402
 import thalweg  # noqa: E402
-from thalweg import drawing  # noqa: E402
+from thalweg import drawing, height_profiles  # noqa: E402
+
+# Stands in for ffmpeg: the size of a frame follows -s; what arrives is counted into the film.
+FFMPEG = """#!{python}
+import sys
+width, height = map(int, sys.argv[sys.argv.index("-s") + 1].split("x"))
+frames, rest = divmod(len(sys.stdin.buffer.read()), 3 * width * height)
+open(sys.argv[-1], "w").write(f"{{frames}} frames and {{rest}} bytes")
+"""
 
 
 class PlotRun(unittest.TestCase):
@@ -25,8 +37,15 @@ class PlotRun(unittest.TestCase):
         self.folder = pathlib.Path(folder.name) / "run"
         self.grains = made_up_run.write_run(self.folder)
 
-    def plot(self, *options):
-        return subprocess.run([sys.executable, SCRIPT, self.folder, *options], text=True, capture_output=True)
+    def plot(self, *options, **environment):
+        return subprocess.run([sys.executable, SCRIPT, self.folder, *options], text=True, capture_output=True,
+                              env={**os.environ, **environment})
+
+    def assert_drawn(self, path):
+        """A picture of more than 400 pixels each way and of more than ten colours."""
+        pixels = matplotlib.image.imread(path)
+        self.assertGreater(min(pixels.shape[:2]), 400)
+        self.assertGreater(len(np.unique((pixels * 15).astype(int).reshape(-1, pixels.shape[2]), axis=0)), 10)
 
     def test_draws_both_pictures_and_names_them(self):
         done = self.plot()
@@ -35,9 +54,63 @@ class PlotRun(unittest.TestCase):
         names = [self.folder / "bed.png", self.folder / "transport_rate.png"]
         self.assertEqual(done.stdout.split(), [str(name) for name in names])
         for name in names:
-            pixels = matplotlib.image.imread(name)
-            self.assertGreater(min(pixels.shape[:2]), 400)
-            self.assertGreater(len(np.unique((pixels * 15).astype(int).reshape(-1, pixels.shape[2]), axis=0)), 10)
+            self.assert_drawn(name)
+
+    def test_profiles_of_a_bed(self):
+        profiles, case = self.folder / "profiles.h5", self.folder / "case.yaml"
+        case.write_text(case.read_text() + "fluid: {density: 1000}\ngravity: {magnitude: 9.8, slope: 0.06}\n"
+                        f"grains: [{{diameter: {made_up_run.DIAMETER}, density: 2550}}]\n")
+        for write in (made_up_profiles.write_grain_profiles, made_up_profiles.add_stress_balance):
+            write(profiles, made_up_run.DIAMETER)
+            done = self.plot()
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual(done.stdout.split()[-1], str(self.folder / "profiles.png"))
+            self.assert_drawn(self.folder / "profiles.png")
+        figure = height_profiles.figure_of(thalweg.Run(self.folder))
+        labels = [[line.get_label() for line in axes.lines] for axes in figure.axes]
+        self.assertEqual(labels[1][:2], ["grains", "fluid"])
+        for label in ("total", "driving", "driving less side walls", r"$\rho\, g \sin\alpha\, (z_{top} - z)$"):
+            self.assertIn(label, labels[2])
+        # The weight of the water alone: rho g sin(alpha) times the height of the box at the floor, nothing at the top.
+        line = figure.axes[2].lines[labels[2].index(r"$\rho\, g \sin\alpha\, (z_{top} - z)$")]
+        weight = 9800.0 * np.sin(np.arctan(0.06)) * made_up_run.CELLS[2] * made_up_run.SPACING
+        np.testing.assert_allclose(line.get_xdata(), (weight, 0.0), rtol=1e-12)
+        # The surface of six diameters of bed in layers of half a diameter.
+        np.testing.assert_allclose(line.get_ydata()[0], -6.0, atol=0.01)
+
+    def test_a_film_has_every_frame(self):
+        film = self.folder / "films" / "film.gif"
+        done = self.plot("--movie", film)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stdout.split()[-1], str(film))
+        with Image.open(film) as pictures:
+            self.assertEqual(pictures.n_frames, 2)
+            sizes, colours = set(), []
+            for number in range(pictures.n_frames):
+                pictures.seek(number)
+                sizes.add(pictures.size)
+                colours.append(len(set(pictures.convert("RGB").getdata())))
+        self.assertEqual(len(sizes), 1)
+        self.assertGreater(min(colours), 10)
+
+    def test_a_film_of_a_fluid_alone(self):
+        (self.folder / "grains.pvd").unlink()
+        case = self.folder / "case.yaml"
+        case.write_text("system: fluid\n" + case.read_text())
+        self.assertEqual(self.plot("--movie", self.folder / "film").returncode, 0)
+        self.assertEqual(len(list((self.folder / "film").glob("*.png"))), 1)
+
+    def test_a_film_by_ffmpeg(self):
+        ffmpeg, film = self.folder / "bin" / "ffmpeg", self.folder / "film.mp4"
+        ffmpeg.parent.mkdir()
+        done = self.plot("--movie", film, PATH=str(ffmpeg.parent))
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("ffmpeg is not installed", done.stderr)
+        ffmpeg.write_text(FFMPEG.format(python=sys.executable))
+        ffmpeg.chmod(0o755)
+        done = self.plot("--movie", film, PATH=str(ffmpeg.parent))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(film.read_text(), "2 frames and 0 bytes")
 
     def test_draws_a_fluid_alone(self):
         case = self.folder / "case.yaml"

@@ -1,0 +1,150 @@
+"""Means over the height of a run, from profiles.h5 (and, for the stress of the fluid on the grains, the frames), and their
+figure, after fig. 7(a) of Zhang et al. (2022)."""
+import matplotlib.pyplot as plt
+import numpy as np
+
+from thalweg.bed import surface_by_solid_fraction
+from thalweg.errors import RunFolderError
+from thalweg.layers import layer_profiles
+
+GRID = {"color": "#e5e8ea", "linewidth": 0.8}
+
+
+def component(group, name, which):
+    return group[name][:, group.components[name].index(which)]
+
+
+def has_grains(run):
+    """Whether profiles.h5 has means of the grains."""
+    return "grain_profiles" in run.profiles or "stress_balance" in run.profiles
+
+
+def grain_means(run):
+    """Height (m), solid fraction and velocity (m/s) of the grains along x."""
+    if "grain_profiles" in run.profiles:
+        group = run.profiles["grain_profiles"]
+        return group["z"], group["solid_fraction"], group["velocity"][:, 0]
+    if "stress_balance" in run.profiles:
+        group = run.profiles["stress_balance"]
+        return group["z"], group["solid_fraction"], group["grain_velocity"][:, 0]
+    raise RunFolderError(f"{run.folder / 'profiles.h5'}: it has no means of the grains yet "
+                         "(analysis.grain_profiles in the case; written with every checkpoint).")
+
+
+def fluid_velocity(run):
+    """Height (m) and mean velocity (m/s) of the fluid along x; None where it was not measured."""
+    for name, velocity in (("fluid_statistics", "velocity"), ("stress_balance", "fluid_velocity")):
+        if name in run.profiles and velocity in run.profiles[name]:
+            return run.profiles[name]["z"], run.profiles[name][velocity][:, 0]
+    return None
+
+
+def driving_stress(run, z, fraction):
+    """Pa at the middles z (m) of the layers: g_x times the mass of water and grains above."""
+    density = run.case["fluid"]["density"] * (1.0 - fraction) + run.case["grains"][0]["density"] * fraction
+    weight = density * run.gravity[0] * (z[1] - z[0])
+    return np.cumsum(weight[::-1])[::-1] - 0.5 * weight
+
+
+def balanced_stresses(balance):
+    """(label, z in m, Pa) of the stresses that make up the balance of momentum along x."""
+    xz = {name: component(balance, name, "xz") for name in balance.components if "xz" in balance.components[name]}
+    found = [("solid: contacts and motion", xz["contact_stress"] + xz["kinetic_stress"]),
+             ("fluid on grains", xz["grain_fluid_stress"]),
+             ("fluid: viscous and subgrid", xz["viscous_stress"] + xz["subgrid_stress"]),
+             ("fluid: resolved eddies", xz["reynolds_stress"]),
+             ("rotation stress", balance["rotation_stress"]),
+             ("total", balance["total_stress"]),
+             ("driving", balance["driving_stress"])]
+    sides = balance.get("side_wall_stress")
+    if sides is not None and np.any(sides):
+        found += [("driving less side walls", balance["driving_stress"] - sides)]
+    return [(label, balance["z"], values) for label, values in found]
+
+
+def stresses(run):
+    """(label, z in m, Pa) of every shear stress that was measured."""
+    if "stress_balance" in run.profiles:
+        return balanced_stresses(run.profiles["stress_balance"])
+    grains = run.profiles["grain_profiles"]
+    z, fraction = grains["z"], grains["solid_fraction"]
+    solid = component(grains, "contact_stress", "xz") + component(grains, "kinetic_stress", "xz")
+    found = [("solid: contacts and motion", z, solid)]
+    if not run.side_walls:   # which would take a share
+        driving = driving_stress(run, z, fraction)
+        found += [("driving", z, driving), ("fluid: what is left of the driving", z, driving - solid)]
+    if "fluid_statistics" in run.profiles:
+        fluid = run.profiles["fluid_statistics"]
+        share = 1.0 - np.interp(fluid["z"], z, fraction)
+        reynolds = -run.case["fluid"]["density"] * share * component(fluid, "reynolds_stress", "xz")
+        found.append(("fluid: resolved eddies", fluid["z"], reynolds))
+    if len(run.grains) and "fluid_stress" in run.grains[-1].arrays:
+        frames = layer_profiles(run, start=run.averaged_from("grain_profiles"))
+        found.append(("rotation stress", frames["z"], frames["rotation_stress"]))
+    return found
+
+
+def weight_of_water(run):
+    """Heights (m) and rho g sin(alpha) (z_top - z) in Pa: what the driving stress is where there are no grains above. None where
+    the slope is not all that drives the flow."""
+    if not run.driven_by_slope or not run.gravity[0] > 0.0:
+        return None
+    z = np.array([0.0, run.size[2]])
+    return z, run.case["fluid"]["density"] * run.gravity[0] * (run.size[2] - z)
+
+
+def style_of(label):
+    """How the line of a stress is drawn: the sums black and dashed, so that one lies visibly on the other in steady flow."""
+    return {"total": {"color": "k", "lw": 2.2}, "driving": {"color": "#c0392b", "ls": "--", "lw": 1.5},
+            "driving less side walls": {"color": "#e08e79", "ls": "--", "lw": 1.5}}.get(label, {"lw": 1.3})
+
+
+def draw_velocities(axes, run, scaled):
+    """Of grains and fluid, on a logarithmic scale, which shows the creep inside the bed as well."""
+    z, fraction, velocity = grain_means(run)
+    grains = np.where((fraction > 0) & (velocity > 0), velocity, np.nan)
+    curves = [("grains", "#c0392b", z, grains)]
+    fluid = fluid_velocity(run)
+    if fluid is not None:
+        curves.append(("fluid", "#14496e", fluid[0], np.where(fluid[1] > 0, fluid[1], np.nan)))
+    curves = [curve for curve in curves if np.isfinite(curve[3]).any()]
+    for label, colour, height, values in curves:
+        axes.plot(values, scaled(height), color=colour, label=label)
+    if curves:
+        shown = np.concatenate([values for *_, values in curves])
+        axes.set_xscale("log")
+        axes.set_xlim(0.5 * max(np.nanmin(shown), 1e-5 * np.nanmax(shown)), 2.0 * np.nanmax(shown))
+        axes.legend(fontsize=8, frameon=False, ncol=2, loc="lower center", bbox_to_anchor=(0.5, 1.0))
+    axes.set(xlabel="mean velocity along x [m/s]")
+
+
+def draw_stresses(axes, run, scaled):
+    for label, height, values in stresses(run):
+        axes.plot(values, scaled(height), label=label, **style_of(label))
+    water = weight_of_water(run)
+    if water is not None:
+        axes.plot(water[1], scaled(water[0]), color="0.45", ls=":", lw=1.5, label=r"$\rho\, g \sin\alpha\, (z_{top} - z)$")
+    axes.set(xlabel="shear stress [Pa]")
+
+
+def figure_of(run):
+    """Solid fraction, velocities and shear stresses; heights in diameters from the surface by solid fraction."""
+    z, fraction, _ = grain_means(run)
+    surface = surface_by_solid_fraction(z, fraction)
+    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(12.5, 4.6), sharey=True, layout="constrained",
+                                                 width_ratios=(0.8, 1, 1.2))
+
+    def scaled(height):
+        return (height - surface) / run.diameter
+
+    left.plot(fraction, scaled(z), "k-")
+    left.set(xlabel="solid fraction [1]", ylabel="height above the bed surface [d]", xlim=(0, None),
+             ylim=(scaled(0.0), scaled(run.size[2])))
+    draw_velocities(middle, run, scaled)
+    draw_stresses(right, run, scaled)
+    for axes in (left, middle, right):
+        axes.axhline(0.0, color="0.6", lw=0.8)
+        axes.grid(**GRID)
+    right.legend(fontsize=8, frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
+    figure.suptitle(f"{run.name}, d = {1e3 * run.diameter:.3g} mm", fontsize=11)
+    return figure
