@@ -1,0 +1,254 @@
+#!/usr/bin/python3
+"""A picture of a run in three dimensions: the grains by radius, coloured by speed, before a slice of the flow.
+
+    picture.py RUN_FOLDER [--out FILE] [--time SECONDS] [--from X Y Z] [--size WIDTH HEIGHT]
+
+It takes the frames of grains and fluid that are stored (output.grains and output.fluid in the case), whichever there are. The
+slice is that through the middle of the box, drawn at its far side, where it hides no grain. VTK draws on a display of its own
+(Xvfb), so this also works where there is no screen.
+"""
+import argparse
+import contextlib
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+import vtkmodules.vtkRenderingFreeType  # noqa: F401  (text)
+import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  (what renders)
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonCore import vtkLookupTable, vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
+from vtkmodules.vtkFiltersCore import vtkCellDataToPointData
+from vtkmodules.vtkFiltersSources import vtkOutlineSource, vtkSphereSource
+from vtkmodules.vtkIOImage import vtkPNGWriter
+from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
+from vtkmodules.vtkRenderingCore import (vtkActor, vtkDataSetMapper, vtkGlyph3DMapper, vtkLightKit, vtkPolyDataMapper,
+                                         vtkRenderer, vtkRenderWindow, vtkTextActor, vtkWindowToImageFilter)
+
+matplotlib.use("Agg")
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
+import thalweg
+from thalweg import drawing
+
+SCENE_WIDTH = 0.80   # share of the picture; the scales of the colours take the rest
+
+
+@contextlib.contextmanager
+def display():
+    """DISPLAY is that of an Xvfb as long as the context lasts, or stays what it is where there is none."""
+    if not shutil.which("Xvfb"):
+        if not os.environ.get("DISPLAY"):
+            raise thalweg.RunFolderError("there is neither Xvfb (package xvfb on Debian) nor a display to draw on.")
+        yield
+        return
+    read, write = os.pipe()
+    server = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "640x480x24", "-nolisten", "tcp"],
+                              pass_fds=[write], stderr=subprocess.DEVNULL)
+    os.close(write)
+    try:
+        with os.fdopen(read) as answer:
+            number = answer.readline().strip()
+        if not number:
+            raise thalweg.RunFolderError("Xvfb does not start; try it by hand.")
+        os.environ["DISPLAY"] = f":{number}"
+        yield
+    finally:
+        server.terminate()
+        server.wait()
+
+
+def named(values, name):
+    array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
+    array.SetName(name)
+    return array
+
+
+def lookup_table(colours, largest):
+    """Of a matplotlib map, from zero to the largest value."""
+    table = vtkLookupTable()
+    table.SetNumberOfTableValues(256)
+    table.SetRange(0.0, largest)
+    for k in range(256):
+        table.SetTableValue(k, *colours(k))
+    return table
+
+
+def grain_actor(frame):
+    """Spheres coloured by speed (cm/s), and the scale."""
+    speed = 1e2 * np.linalg.norm(frame.velocity, axis=1)
+    table = lookup_table(drawing.GRAIN_COLOURS, 1e2 * drawing.largest_speed_of(speed / 1e2, np.median(frame.diameter)))
+    points, grains = vtkPoints(), vtkPolyData()
+    points.SetData(numpy_to_vtk(np.ascontiguousarray(frame.position, float), deep=True))
+    grains.SetPoints(points)
+    for values, name in ((2.0 * frame.radius, "diameter"), (speed, "speed")):
+        grains.GetPointData().AddArray(named(values, name))
+    sphere = vtkSphereSource()   # of diameter 1
+    sphere.SetThetaResolution(32)
+    sphere.SetPhiResolution(24)
+    mapper = vtkGlyph3DMapper()
+    mapper.SetInputData(grains)
+    mapper.SetSourceConnection(sphere.GetOutputPort())
+    mapper.SetScaleArray("diameter")
+    mapper.SetScaleModeToScaleByMagnitude()
+    mapper.SetScalarModeToUsePointFieldData()
+    mapper.SelectColorArray("speed")
+    mapper.SetLookupTable(table)
+    mapper.UseLookupTableScalarRangeOn()
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    actor.GetProperty().SetSpecular(0.25)
+    actor.GetProperty().SetSpecularPower(30)
+    return actor, table
+
+
+def slice_actor(frame, layer, y):
+    """The fluid's speed (cm/s) in the middle layer across y, drawn at y (m), and the scale."""
+    speed, box = layer
+    values = 1e2 * drawing.without_holes(speed)
+    table = lookup_table(drawing.FLUID_COLOURS, max(float(values.max()), 1e-12))
+    image, points = vtkImageData(), vtkCellDataToPointData()
+    image.SetDimensions(values.shape[1] + 1, 1, values.shape[0] + 1)
+    image.SetOrigin(box[0], y, box[2])
+    image.SetSpacing(*frame.spacing)
+    image.GetCellData().SetScalars(named(values.ravel(), "speed"))
+    points.SetInputData(image)
+    mapper = vtkDataSetMapper()
+    mapper.SetInputConnection(points.GetOutputPort())
+    mapper.SetLookupTable(table)
+    mapper.UseLookupTableScalarRangeOn()
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    actor.GetProperty().LightingOff()
+    return actor, table
+
+
+def box_actor(size):
+    outline, mapper, actor = vtkOutlineSource(), vtkPolyDataMapper(), vtkActor()
+    outline.SetBounds(0.0, size[0], 0.0, size[1], 0.0, size[2])
+    mapper.SetInputConnection(outline.GetOutputPort())
+    actor.SetMapper(mapper)
+    actor.GetProperty().SetColor(0.35, 0.35, 0.35)
+    return actor
+
+
+def plain_text(properties, size):
+    properties.SetColor(0.1, 0.1, 0.1)
+    properties.SetFontSize(size)
+    properties.ItalicOff()
+    properties.BoldOff()
+    properties.ShadowOff()
+
+
+def scale_bar(table, title, place, font):
+    bar = vtkScalarBarActor()
+    bar.SetLookupTable(table)
+    bar.SetTitle(f"{title}\n[cm/s]\n")
+    bar.SetNumberOfLabels(5)
+    bar.SetLabelFormat("%.3g")
+    bar.UnconstrainedFontSizeOn()
+    for properties in (bar.GetTitleTextProperty(), bar.GetLabelTextProperty()):
+        plain_text(properties, font)
+    bar.SetPosition(0.08, 0.53 - 0.48 * place)
+    bar.SetWidth(0.55)
+    bar.SetHeight(0.42)
+    return bar
+
+
+def pictured(run, time):
+    """Frames of grains and fluid, as near to each other and to a time (s) as they are stored."""
+    if time is None and run.fluid:
+        time = run.fluid.times[-1]
+    grains = run.grains.nearest(time)
+    fluid = run.fluid.nearest(grains.time if grains else time)
+    if grains is None and fluid is None:
+        raise thalweg.RunFolderError(f"{run.folder}: there is no frame of grains or fluid (output.grains.every in the case).")
+    return grains, fluid
+
+
+def scene(run, grains, fluid, far_side, font):
+    """Two renderers: what there is to see, and the scales of its colours. far_side: y (m) of the slice."""
+    view, margin = vtkRenderer(), vtkRenderer()
+    view.SetViewport(0.0, 0.0, SCENE_WIDTH, 1.0)
+    margin.SetViewport(SCENE_WIDTH, 0.0, 1.0, 1.0)
+    for renderer in (view, margin):
+        renderer.SetBackground(1.0, 1.0, 1.0)
+    vtkLightKit().AddLightsToRenderer(view)
+    view.AddActor(box_actor(run.size))
+    shown = [("grain speed", *grain_actor(grains))] if grains else []
+    layer = drawing.fluid_slice(fluid) if fluid else None
+    if layer is not None:
+        shown.append(("fluid speed", *slice_actor(fluid, layer, far_side)))
+    if not shown:
+        raise thalweg.RunFolderError(f"{run.folder}: its frames of the fluid hold no velocity in the x-z plane.")
+    for place, (title, actor, table) in enumerate(shown):
+        view.AddActor(actor)
+        margin.AddActor2D(scale_bar(table, title, place, font))
+    title = vtkTextActor()
+    title.SetInput(f"{run.name}, t = {(grains or fluid).time:.4g} s; flow along x, to the right")
+    plain_text(title.GetTextProperty(), font)
+    title.GetPositionCoordinate().SetCoordinateSystemToNormalizedViewport()
+    title.SetPosition(0.03, 0.955)
+    view.AddActor2D(title)
+    return view, margin
+
+
+def look_from(view, size, direction):
+    """Towards the middle of the box from a direction, so that all of it is in sight."""
+    camera, middle = view.GetActiveCamera(), 0.5 * np.asarray(size)
+    camera.SetFocalPoint(*middle)
+    camera.SetPosition(*(middle + np.linalg.norm(size) * np.asarray(direction) / np.linalg.norm(direction)))
+    camera.SetViewUp(0.0, 0.0, 1.0)
+    view.ResetCamera()
+    camera.Zoom(1.1)
+    view.ResetCameraClippingRange()
+
+
+def write_picture(run, grains, fluid, path, direction, pixels):
+    window = vtkRenderWindow()
+    window.SetOffScreenRendering(1)
+    window.SetMultiSamples(8)   # smooth edges
+    window.SetSize(*pixels)
+    far_side = run.size[1] if direction[1] < 0.0 else 0.0
+    renderers = scene(run, grains, fluid, far_side, max(10, pixels[1] // 45))
+    for renderer in renderers:
+        window.AddRenderer(renderer)
+    look_from(renderers[0], run.size, direction)
+    window.Render()
+    image, writer = vtkWindowToImageFilter(), vtkPNGWriter()
+    image.SetInput(window)
+    image.ReadFrontBufferOff()
+    writer.SetInputConnection(image.GetOutputPort())
+    writer.SetFileName(str(path))
+    writer.Write()
+    window.Finalize()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("run", type=Path, metavar="RUN_FOLDER")
+    parser.add_argument("--out", type=Path, help="a .png (default: picture.png in the run folder)")
+    parser.add_argument("--time", type=float, help="simulated time in s (default: the last frames)")
+    parser.add_argument("--from", dest="direction", type=float, nargs=3, default=(-0.45, -1.0, 0.4), metavar=("X", "Y", "Z"),
+                        help="direction from which to look at the middle of the box")
+    parser.add_argument("--size", type=int, nargs=2, default=(1400, 1000), metavar=("WIDTH", "HEIGHT"), help="pixels")
+    arguments = parser.parse_args()
+    try:
+        run = thalweg.Run(arguments.run)
+        out = arguments.out or run.folder / "picture.png"
+        grains, fluid = pictured(run, arguments.time)
+        out.parent.mkdir(parents=True, exist_ok=True)
+        with display():
+            write_picture(run, grains, fluid, out, arguments.direction, arguments.size)
+    except thalweg.RunFolderError as error:
+        print(f"picture: {error}", file=sys.stderr)
+        return 1
+    print(out)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
