@@ -1,4 +1,4 @@
-"""Transport relations q*(tau*) of the literature, and the numbers Zhang et al. (2022) print."""
+"""Transport relations q*(tau*) and the drag of a sphere from the literature, and the numbers Zhang et al. (2022) print."""
 import numpy as np
 
 
@@ -43,3 +43,18 @@ def flume_band():
     """q* at a Shields number of 0.028 from the standard start, mean less and plus one standard deviation."""
     _, mean, deviation, _ = FLUME_POINTS[0]
     return mean - deviation, mean + deviation
+
+
+def schiller_naumann_drag(reynolds):
+    """Drag coefficient of a sphere (Schiller and Naumann 1933): 24 (1 + 0.15 Re^0.687)/Re below Re = 1000, 0.44 beyond."""
+    return 24.0 / reynolds * (1.0 + 0.15 * reynolds**0.687) if reynolds < 1000.0 else 0.44
+
+
+def settling_speed(diameter, density_ratio, gravity, viscosity):
+    """m/s: of a sphere alone in an unbounded fluid at rest, by that drag. SI units; found by bisection."""
+    low, high = 0.0, 1e3 * np.sqrt(gravity * diameter)
+    for _ in range(200):
+        speed = 0.5 * (low + high)
+        weight = 4.0 / 3.0 * (density_ratio - 1.0) * gravity * diameter
+        low, high = (low, speed) if schiller_naumann_drag(speed * diameter / viscosity) * speed**2 > weight else (speed, high)
+    return 0.5 * (low + high)

@@ -206,6 +206,15 @@ class Run:
         return not steered and self.faces("z")[1] in ("free_slip", "periodic", None)
 
 
+def runs_of_sweep(folder):
+    """The finished runs of a sweep, by the name of their folders."""
+    found = [Run(path) for path in sorted(Path(folder).glob("runs/*")) if (path / "summary.json").exists()]
+    found = [run for run in found if run.summary["finished"]]
+    if not found:
+        raise RunFolderError(f"{folder}: there is no finished run of a sweep in it.")
+    return found
+
+
 def columns_of(group):
     """The arrays of an HDF5 group with their units and components."""
     arrays = {name: data[()] for name, data in group.items()}

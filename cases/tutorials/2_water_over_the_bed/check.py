@@ -1,0 +1,26 @@
+#!/usr/bin/python3
+"""Checks the run of tutorial 2: Shields number, transport rate and the balance of momentum."""
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+from thalweg import Run
+from thalweg.checks import check_main
+
+LONGER_FLUME = 0.172   # q* at a Shields number of 0.0465, benchmarks/validation/flume
+
+
+def check(checks, folder):
+    run = Run(folder)
+    checks.finished(run)
+    transport, balance = run.summary["transport_rate"], run.summary["stress_balance"]
+    checks.expect("Shields number", run.summary["bed_surface"]["shields_number_mean"], 0.044, 0.051)
+    checks.expect("q*", transport["q_star_mean"], 0.08, 0.32)
+    print(f"  its standard error: {transport['q_star_error']:.2g}")
+    checks.compare("q*", transport["q_star_mean"], LONGER_FLUME, "the same cells in a flume twice as long")
+    checks.expect("largest difference of the total stress from the driving stress less the side walls'",
+                  abs(balance["largest_difference"]), 0.0, 0.15, "bed stresses")
+
+
+if __name__ == "__main__":
+    sys.exit(check_main(__doc__, check, ["run/water_over_bed"]))

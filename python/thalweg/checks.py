@@ -1,0 +1,49 @@
+"""What the check scripts of the tutorials share: numbers beside what is expected of them and beside the literature."""
+import argparse
+import sys
+from pathlib import Path
+
+from thalweg.errors import RunFolderError
+
+
+class Checks:
+    """Prints each number; `failed` counts those that are not as expected."""
+
+    def __init__(self):
+        self.failed = 0
+
+    def expect(self, name, value, low, high, unit="1"):
+        """A number that a run of the tutorial must bring between two bounds."""
+        good = low <= value <= high
+        self.failed += not good
+        print(f"{name}: {value:.4g} {unit}, expected {low:.4g} to {high:.4g}: {'pass' if good else 'FAIL'}")
+
+    def compare(self, name, value, reference, source):
+        """A number beside that of the literature; what the difference is, is for the reader to judge."""
+        print(f"{name}: {value:.4g}, {source}: {reference:.4g}, difference {100.0 * (value / reference - 1.0):+.1f} %")
+
+    def finished(self, run):
+        """Whether a run has come to its end."""
+        good = bool(run.summary and run.summary["finished"])
+        self.failed += not good
+        print(f"{run.folder}: {'finished' if good else 'has not finished: FAIL'}")
+
+
+def check_main(description, check, folders, figure=False):
+    """The main function of a check script: calls check(checks, *folders, figure) with the folders from the command line or those
+    that the tutorial's README uses, and ends with exit code 0 if nothing failed. figure: whether it can draw one."""
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("folders", nargs="*", type=Path, metavar="FOLDER", help="of the runs; default: " + " ".join(folders))
+    if figure:
+        parser.add_argument("--figure", type=Path, metavar="FILE", help="draw the result")
+    arguments = parser.parse_args()
+    given = arguments.folders or [Path(folder) for folder in folders]
+    if len(given) != len(folders):
+        parser.error(f"give {len(folders)} folders: those of " + ", ".join(folders))
+    checks = Checks()
+    try:
+        check(checks, *given, *([arguments.figure] if figure else []))
+    except RunFolderError as error:
+        print(f"check: {error}", file=sys.stderr)
+        return 1
+    return 1 if checks.failed else 0

@@ -1,0 +1,76 @@
+#!/usr/bin/python3
+"""The tutorials: `thalweg check` has nothing to warn of, every case starts, every sweep can be listed, and the checks tell a run
+that is as it should be from one that is not there.
+
+Called by ctest: tutorials_run_test.py THALWEG MPIEXEC [unittest arguments]
+"""
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "tests/support"), str(ROOT / "python")]
+import program
+from program import ProgramTest
+from thalweg.run import read_case
+
+TUTORIALS = "cases/tutorials"
+# Words of the warnings that a tutorial explains.
+EXPLAINED = {"6_bed_in_oil": ["coupling.links: cli"]}
+STEPS = 20
+
+
+class Tutorials(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        shutil.copytree(ROOT / "cases", self.folder / "cases")
+        self.run_well("run", "cases/settled_bed/case.yaml", "--out", "run/settled_bed")
+        self.run_well("run", f"{TUTORIALS}/1_settled_bed/case.yaml", "--out", "run/small_bed")
+
+    def check_script(self, tutorial, *folders):
+        return subprocess.run([sys.executable, "-B", ROOT / TUTORIALS / tutorial / "check.py", *folders], cwd=self.folder,
+                              capture_output=True, text=True)
+
+    def test_the_beds_are_as_expected(self):
+        done = self.check_script("1_settled_bed")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertEqual(done.stdout.count("pass"), 6)
+        # The two beds differ: in the place of the other neither is what it should be.
+        done = self.check_script("1_settled_bed", "run/small_bed", "run/settled_bed")
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertEqual(done.stdout.count("FAIL"), 2)
+
+    def test_every_case_is_checked_and_starts(self):
+        cases = sorted((self.folder / TUTORIALS).glob("*/case.yaml"))
+        self.assertEqual(len(cases), 5)   # the third varies the case of the second
+        for case in cases:
+            name = case.parent.name
+            warnings = [line for line in self.run_well("check", case).stdout.splitlines() if line.startswith("warning")]
+            words = EXPLAINED.get(name, [])
+            self.assertEqual(len(warnings), len(words), f"{name}: {warnings}")
+            for warning, word in zip(warnings, words):
+                self.assertIn(word, warning)
+            step = read_case(case).get("fluid", {}).get("time_step", 1e-4)   # s; grains alone have no step of the fluid
+            self.run_well("run", case, "--out", f"run/{name}", "--until", f"{STEPS * step:.9g}", ranks=2)
+            self.assertTrue(self.summary(f"run/{name}")["finished"])
+
+    def test_every_sweep_can_be_listed(self):
+        sweeps = [path for path in sorted((self.folder / TUTORIALS).glob("*/*.yaml")) if path.name != "case.yaml"]
+        self.assertEqual(len(sweeps), 3)
+        for sweep in sweeps:
+            listed = self.run_well("sweep", sweep, "--out", "run/sweep", "--dry-run").stdout
+            self.assertGreaterEqual(listed.count("waiting"), 3, listed)
+
+    def test_a_run_that_is_not_there(self):
+        scripts = sorted((ROOT / TUTORIALS).glob("*/check.py"))
+        self.assertEqual(len(scripts), 6)
+        for script in scripts[1:]:   # the beds of the first are there
+            done = self.check_script(script.parent.name)
+            self.assertEqual(done.returncode, 1, done.stdout)
+            self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+            self.assertIn("there is no", done.stderr)
+
+
+if __name__ == "__main__":
+    program.main()
