@@ -188,7 +188,7 @@ def scene(run, grains, fluid, far_side, font):
         view.AddActor(actor)
         margin.AddActor2D(scale_bar(table, title, place, font))
     title = vtkTextActor()
-    title.SetInput(f"{run.name}, t = {(grains or fluid).time:.4g} s; flow along x, to the right")
+    title.SetInput(f"{run.name}, t = {(grains or fluid).time:.4g} s{drawing.flow_direction(run)}")
     plain_text(title.GetTextProperty(), font)
     title.GetPositionCoordinate().SetCoordinateSystemToNormalizedViewport()
     title.SetPosition(0.03, 0.955)

@@ -104,6 +104,13 @@ def side_view_axes(size):
     return figure, place(left, below, width, height), bars
 
 
+def flow_direction(run):
+    """Words after the label of the x axis: where the flow goes, if it is driven along x."""
+    faces = {face for axis in "xyz" for face in run.faces(axis)}
+    driven = "gravity" not in run.case or run.gravity[0] > 0.0 or faces & {"moving", "velocity_inlet"}
+    return ", flow to the right" if driven or (run.case.get("fluid") or {}).get("mean_velocity") else ""
+
+
 def largest_speed_of(speed, diameter):
     """End of the scale of grain speeds (m/s): of the grains faster than a diameter (m) a second, nine tenths are slower."""
     moving = speed[speed > diameter]
@@ -132,7 +139,7 @@ def bed_figure(run, frame, fluid=None, largest_speed=None, largest_flow=None, sc
         bars[1].remove()
     else:
         draw_water(figure, axes, bars[1], layer, largest_flow)
-    axes.set(xlabel="x [mm], flow to the right", ylabel="z [mm]", xlim=(0, 1e3 * size[0]), ylim=(0, 1e3 * size[2]))
+    axes.set(xlabel=f"x [mm]{flow_direction(run)}", ylabel="z [mm]", xlim=(0, 1e3 * size[0]), ylim=(0, 1e3 * size[2]))
     axes.set_title(f"{run.name}, t = {frame.time:.4g} s", fontsize=11)
     return figure
 
@@ -145,7 +152,7 @@ def flow_figure(run, fluid, largest_flow=None):
     figure, axes, bars = side_view_axes(run.size)
     draw_water(figure, axes, bars[0], layer, largest_flow)
     bars[1].remove()
-    axes.set(xlabel="x [mm]", ylabel="z [mm]")
+    axes.set(xlabel=f"x [mm]{flow_direction(run)}", ylabel="z [mm]")
     axes.set_title(f"{run.name}, t = {fluid.time:.4g} s", fontsize=11)
     return figure
 

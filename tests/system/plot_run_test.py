@@ -157,6 +157,16 @@ class PlotRun(unittest.TestCase):
         layer.mask[:] = True
         self.assertEqual(drawing.without_holes(layer).shape, (5, 5))
 
+    def test_only_a_driven_flow_goes_to_the_right(self):
+        case, words = self.folder / "case.yaml", ", flow to the right"
+        self.assertEqual(drawing.flow_direction(thalweg.Run(self.folder)), words)
+        text = case.read_text()
+        for gravity, sides, expected in (("{magnitude: 9.8, slope: 0.1}", "law_of_the_wall", words),
+                                         ("{vector: [0, 0, -9.8]}", "law_of_the_wall", ""),
+                                         ("{vector: [0, 0, -9.8]}", "moving", words)):
+            case.write_text(text.replace("law_of_the_wall", sides) + f"gravity: {gravity}\n")
+            self.assertEqual(drawing.flow_direction(thalweg.Run(self.folder)), expected)
+
     def test_the_settling_at_the_start_does_not_dwarf_the_rest(self):
         rate = np.array([0.0, 2.0, 0.1, 0.08])
         self.assertEqual(plot_run.range_of_interest(rate, rate[2:]), (0.0, 1.5 * 0.1))
