@@ -30,8 +30,8 @@ class Checks:
 
 
 def check_main(description, check, folders, figure=False):
-    """The main function of a check script: calls check(checks, *folders, figure) with the folders from the command line or those
-    that the tutorial's README uses, and ends with exit code 0 if nothing failed. figure: whether it can draw one."""
+    """The main function of a check script: calls check(checks, *folders, figure) with the folders from the command line or
+    those that the tutorial's README uses, and returns the exit code, 0 if nothing failed. figure: whether it can draw one."""
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("folders", nargs="*", type=Path, metavar="FOLDER", help="of the runs; default: " + " ".join(folders))
     if figure:

@@ -85,8 +85,8 @@ def stresses(run):
 
 
 def weight_of_water(run):
-    """Heights (m) and rho g sin(alpha) (z_top - z) in Pa: what the driving stress is where there are no grains above. None where
-    the slope is not all that drives the flow."""
+    """Heights (m) and rho g sin(alpha) (z_top - z) in Pa: what the driving stress is where there are no grains above. None
+    where the slope is not all that drives the flow."""
     if not run.driven_by_slope or not run.gravity[0] > 0.0:
         return None
     z = np.array([0.0, run.size[2]])

@@ -37,7 +37,8 @@ class Picture(unittest.TestCase):
 
     def draw(self, *options):
         environment = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
-        return subprocess.run([sys.executable, "-B", SCRIPT, self.folder, *options], text=True, capture_output=True, env=environment)
+        return subprocess.run([sys.executable, "-B", SCRIPT, self.folder, *options], text=True, capture_output=True,
+                              env=environment)
 
     def pixels(self, *options):
         out = self.folder / "pictures" / "three.png"

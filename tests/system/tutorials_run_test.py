@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""The tutorials: `thalweg check` has nothing to warn of, every case starts, every sweep can be listed, and the checks tell a run
-that is as it should be from one that is not there.
+"""The tutorials: `thalweg check` has nothing to warn of, every case starts, every sweep can be listed, and the checks tell a
+run that is as it should be from one that is not there.
 
 Called by ctest: tutorials_run_test.py THALWEG MPIEXEC [unittest arguments]
 """

@@ -59,7 +59,8 @@ def check(checks, folder, figure):
     checks.compare("von Karman's number, fitted", kappa, VON_KARMAN, "usual")
     checks.expect("equivalent sand roughness", roughness, 0.05, 0.2, "diameters")
     checks.compare("equivalent sand roughness in diameters", roughness, DENSELY_PACKED, "densely packed spheres")
-    print(f"  in wall units: {roughness * run.diameter * friction_velocity(run) / run.case['fluid']['kinematic_viscosity']:.0f}")
+    viscous_length = run.case["fluid"]["kinematic_viscosity"] / friction_velocity(run)
+    print(f"  in wall units: {roughness * run.diameter / viscous_length:.0f}")
     if figure:
         draw(run, roughness, figure)
 
