@@ -56,6 +56,8 @@ def balanced_stresses(balance):
              ("rotation stress", balance["rotation_stress"]),
              ("total", balance["total_stress"]),
              ("driving", balance["driving_stress"])]
+    if np.any(xz.get("lubrication_stress", 0.0)):
+        found.insert(1, ("lubrication correction", xz["lubrication_stress"]))
     sides = balance.get("side_wall_stress")
     if sides is not None and np.any(sides):
         found += [("driving less side walls", balance["driving_stress"] - sides)]

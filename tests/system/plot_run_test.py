@@ -69,7 +69,7 @@ class PlotRun(unittest.TestCase):
         figure = height_profiles.figure_of(thalweg.Run(self.folder))
         labels = [[line.get_label() for line in axes.lines] for axes in figure.axes]
         self.assertEqual(labels[1][:2], ["grains", "fluid"])
-        for label in ("total", "driving", "driving less side walls", r"$\rho\, g \sin\alpha\, (z_{top} - z)$"):
+        for label in ("lubrication correction", "total", "driving", "driving less side walls", r"$\rho\, g \sin\alpha\, (z_{top} - z)$"):
             self.assertIn(label, labels[2])
         # The weight of the water alone: rho g sin(alpha) times the height of the box at the floor, nothing at the top.
         line = figure.axes[2].lines[labels[2].index(r"$\rho\, g \sin\alpha\, (z_{top} - z)$")]
