@@ -11,17 +11,26 @@ namespace thalweg::dem {
 
 enum class SizeDistribution { lognormal };
 
+// What passes each of a set of sieves; straight over ln d between them.
+struct SieveKeys {
+  std::vector<double> sizes;  // m, rising
+  std::vector<double> finer;  // 1, of the mass, from 0 to 1; as many
+  bool operator==(const SieveKeys&) const = default;
+};
+
 // Nothing given: not at all.
 struct SizesKeys {
   std::optional<SizeDistribution> distribution;
   std::optional<double> median;               // m, by number, before the tails are cut
   std::optional<double> geometric_deviation;  // 1; exp of the standard deviation of ln d
-  std::optional<double> minimum, maximum;     // m, where the tails are cut
+  std::optional<double> minimum, maximum;     // m, where the tails are cut, also those of d16 and d84
   std::vector<double> sizes;                  // m, in place of a distribution
   std::vector<double> fractions;              // of the number of grains, as many as sizes
+  std::optional<SieveKeys> sieve;
+  std::optional<double> d16, d50, d84;  // m, by mass (mass_curve.hpp)
   bool operator==(const SizesKeys&) const = default;
 
-  bool given() const { return distribution || !sizes.empty(); }
+  bool given() const { return distribution || !sizes.empty() || sieve || d50; }
 };
 
 // The section `diameter`: a distribution, or the one diameter (m) of all.
@@ -34,7 +43,8 @@ double median_by_volume(std::vector<double> diameters);
 
 // One diameter (m) a grain. Every grain takes the place in the distribution that its random number has among those of
 // the population, so that the population follows the distribution as closely as its number allows, and the seed only
-// shuffles. fractions: each size gets its share of the number, rounded so that the sum is right.
-std::vector<double> sampled_diameters(const SizesKeys& sizes, std::int64_t count, std::int64_t seed);
+// shuffles. fractions: each size gets its share of the number, rounded so that the sum is right. disks: whose mass goes
+// as d^2.
+std::vector<double> sampled_diameters(const SizesKeys& sizes, std::int64_t count, std::int64_t seed, bool disks);
 
 }  // namespace thalweg::dem

@@ -142,7 +142,8 @@ void take_shape(Population& population) {
 void take_sizes(Population& population) {
   if (population.shape) take_shape(population);
   if (!population.sizes.given()) return;
-  population.diameters = sampled_diameters(population.sizes, population.count, population.placement.seed);
+  population.diameters =
+      sampled_diameters(population.sizes, population.count, population.placement.seed, population.thickness > 0.0);
   population.diameter = median_by_volume(population.diameters);
 }
 

@@ -397,7 +397,7 @@ INSTANTIATE_TEST_SUITE_P(
             {"grains.0.diameter = \"5 mm\": expected a number in m above 0, for example 0.005"}},
         Bad{"two_kinds_of_sizes",
             {"grains.0.diameter={value: 0.005, sizes: [0.004], fractions: [1]}"},
-            {"grains.0.diameter.value = 0.005: give exactly one of value in m, distribution, and sizes"}},
+            {"grains.0.diameter.value = 0.005: give exactly one of value in m, distribution, sizes"}},
         Bad{"half_a_distribution",
             {"grains.0.diameter={distribution: lognormal, median: 0.005, minimum: 0.004, maximum: 0.006}"},
             {"grains.0.diameter.distribution = \"lognormal\"", "needs median, minimum and maximum", "deviation"}},

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace thalweg::driver {
 namespace {
@@ -106,6 +107,56 @@ TEST(GrainCaseReader, ListedSizesHaveTheirShareOfTheNumber) {
   EXPECT_NEAR(c.grains[0].volume(), std::numbers::pi / 6.0 * (30 * 64e-9 + 45 * 27e-9 + 75 * 125e-9), 1e-20);
   EXPECT_EQ(smallest_diameter(c), 3e-3);
   EXPECT_EQ(read(resolved_yaml(c)), c) << resolved_yaml(c);
+}
+
+// To within the mass of the largest grain; the seed shuffles, and the case as run has the same sizes.
+TEST(GrainCaseReader, SizesAreGivenByMass) {
+  const std::vector<std::string> all_sizes{
+      "grains.0.diameter={sieve: {sizes: [3e-3, 4e-3, 5e-3, 6e-3], finer: [0, 0.16, 0.5, 1]}}",
+      "grains.0.diameter={d16: 4e-3, d50: 5e-3, d84: 5.5e-3}"};
+  for (const std::string& sizes : all_sizes) {
+    const Case c = read(flume, {sizes});
+    const std::vector<double>& d = c.grains[0].diameters;
+    ASSERT_EQ(d.size(), 150u);
+    EXPECT_FALSE(std::is_sorted(d.begin(), d.end()));
+    const auto mass_finer = [&](double than) {
+      double sum = 0.0;
+      for (const double diameter : d) sum += diameter <= than ? dem::sphere_volume(diameter) : 0.0;
+      return sum;
+    };
+    const double grain = dem::sphere_volume(c.grains[0].largest_diameter());
+    EXPECT_NEAR(mass_finer(4e-3), 0.16 * c.grains[0].volume(), grain);
+    EXPECT_NEAR(mass_finer(5e-3), 0.5 * c.grains[0].volume(), grain);
+    EXPECT_NEAR(mass_finer(c.grains[0].diameter), 0.5 * c.grains[0].volume(), grain);
+    EXPECT_EQ(read(resolved_yaml(c)), c) << resolved_yaml(c);
+  }
+  const Case uncut = read(flume, {all_sizes[1]});  // from d16^2/d50 to d84^2/d50
+  EXPECT_GT(uncut.grains[0].smallest_diameter(), 3.2e-3);
+  EXPECT_LT(uncut.grains[0].smallest_diameter(), 3.3e-3);
+  EXPECT_LT(uncut.grains[0].largest_diameter(), 6.05e-3);
+  const Case cut = read(flume, {all_sizes[1], "grains.0.diameter.minimum=3.8e-3"});
+  EXPECT_GE(cut.grains[0].smallest_diameter(), 3.8e-3);
+}
+
+TEST(GrainCaseReader, SizesByMassThatCannotBe) {
+  const auto refused = [](const std::string& sizes) {
+    return message_of<InputError>([&] { read(flume, {"grains.0.diameter=" + sizes}); });
+  };
+  for (const auto& [sizes, words] : std::vector<std::pair<std::string, std::string>>{
+           {"{sieve: {sizes: [4e-3], finer: [1]}}", "grains.0.diameter.sieve.sizes = [4e-3]: give at least two sieves"},
+           {"{sieve: {sizes: [5e-3, 4e-3], finer: [0, 1]}}", "each at least 0.1 % wider than the one before"},
+           {"{sieve: {sizes: [4e-5, 5e-3], finer: [0, 1]}}", "the widest sieve can be 100 times the finest"},
+           {"{sieve: {sizes: [4e-3, 5e-3], finer: [0, 0.5, 1]}}", "as many shares of the mass as sieves"},
+           {"{sieve: {sizes: [4e-3, 5e-3], finer: [0.1, 1]}}", "must rise from 0 at the first sieve to 1 at the last"},
+           {"{sieve: {sizes: [4e-3, 5e-3, 6e-3], finer: [0, 1.2, 1]}}", "at most 1"},
+           {"{d16: 4e-3, d84: 5e-3}", "grains.0.diameter.d16 = 4e-3: give d16, d50 and d84 together"},
+           {"{d16: 4e-3, d50: 5e-3, d84: 5e-3}", "must rise in this order"},
+           {"{d16: 4e-3, d50: 5e-3, d84: 6e-3, minimum: 4.5e-3}", "must rise in this order"},
+           {"{d16: 4e-3, d50: 5e-3, d84: 6e-3, minimum: 5e-5}", "the largest can be 100 times the smallest"},
+           {"{d16: 4e-3, d50: 5e-3, d84: 6e-3, median: 5e-3}", "only a distribution has it"},
+           {"{sieve: {sizes: [4e-3, 5e-3], finer: [0, 1]}, minimum: 4e-3}", "only a distribution has it"},
+           {"{sieve: {sizes: [4e-3, 5e-3], finer: [0, 1]}, value: 5e-3}", "give exactly one of value in m"}})
+    EXPECT_NE(refused(sizes).find(words), std::string::npos) << refused(sizes);
 }
 
 TEST(GrainCaseReader, PopulationsAndWallsChangeTheMaterial) {
