@@ -32,6 +32,10 @@ struct Sphere {
 // Random close packing of equal spheres, and the same of disks in their plane: no bed is denser.
 inline constexpr double densest_bed = 0.64, densest_disks = 0.84;
 
+// Solid fraction of a bed that has settled, between random loose and random close packing: 0.55 to 0.64 of spheres,
+// 0.77 to 0.84 of disks.
+inline constexpr double settled_bed = 0.6, settled_disks = 0.8;
+
 // Centres of `count` equal grains spread over the region as evenly as a cubic lattice allows: the lattice with the
 // widest spacing that has enough sites, sites left over spread evenly, each centre moved at random by up to 1 % of a
 // diameter (less where there is no room) so that grains do not stack perfectly. clearance: m, surface to the region's

@@ -36,9 +36,18 @@ struct OrientationKeys {
   bool operator==(const OrientationKeys&) const = default;
 };
 
+// As many grains as make a settled bed of this depth over the floor of the region, or of the box.
+struct FillKeys {
+  std::optional<double> depth;     // m
+  std::optional<double> layers;    // 1; or the depth in reference diameters
+  std::optional<double> porosity;  // 1, of the settled bed; else that of settled_bed, or settled_disks (packing.hpp)
+  bool operator==(const FillKeys&) const = default;
+};
+
 struct PopulationKeys {
-  std::int64_t count = 0;  // completed from the positions, the grains of the file or the solid fraction where given
+  std::int64_t count = 0;  // completed from positions, the grains of the file, solid fraction or fill, where given
   std::optional<double> solid_fraction;  // of the region; none once the count is completed
+  std::optional<FillKeys> fill;          // likewise
   double diameter = 0.0;  // m; completed: where they differ, the one that half of the mass is finer than; of the
                           // sphere (disk) of a clump's volume
   double density = 0.0;   // kg/m^3; completed from a file: mass over volume of all its grains

@@ -4,6 +4,7 @@
 #include "core/key_error.hpp"
 #include "dem/grain_seed.hpp"
 #include "dem/grain_volume.hpp"
+#include "dem/packing.hpp"
 #include "dem/population_clumps.hpp"
 
 #include <fmt/format.h>
@@ -147,32 +148,60 @@ void take_sizes(Population& population) {
   population.diameter = median_by_volume(population.diameters);
 }
 
-// The number of grains that fills the region, or the box, to the solid fraction as nearly as possible; of mixed sizes
-// to the accuracy of their mean.
-void take_solid_fraction(Population& population, const PeriodicBox& box) {
+// Of the placement's region, or of the box; of disks as wide as they are thick. m
+Vec3 room_for(const Population& population, const PeriodicBox& box) {
   const std::optional<RegionKeys>& region = population.placement.region;
   Vec3 extent = region ? Vec3(region->upper - region->lower) : box.size;
   if (population.thickness > 0.0) extent[1] = population.thickness;
-  const double wanted = *population.solid_fraction * extent.prod();
-  constexpr double most = 1e15;  // that can be counted with room to spare
-  population.count = 1000;       // a sample, and then nearly all
+  return extent;
+}
+
+const char* wanted_by(const Population& population) {
+  if (population.solid_fraction) return "solid_fraction";
+  return population.fill->depth ? "fill.depth" : "fill.layers";
+}
+
+// What the grains of a solid fraction or a fill occupy; m^3. layer: m.
+double wanted_volume(const Population& population, const Vec3& room, double layer) {
+  if (population.solid_fraction) return *population.solid_fraction * room.prod();
+  const FillKeys& fill = *population.fill;
+  const double depth = fill.depth ? *fill.depth : *fill.layers * layer;
+  if (depth > room.z() && room.z() > 0.0)
+    throw KeyError(
+        wanted_by(population),
+        fmt::format("a bed of {:.4g} m is deeper than the {:g} m of its room; give {}, or more room", depth, room.z(),
+                    fill.depth ? fmt::format("at most {:g} m", room.z())
+                               : fmt::format("at most {:.3g} layers of {:.4g} m", room.z() / layer, layer)));
+  const double settled = population.thickness > 0.0 ? settled_disks : settled_bed;
+  return (1.0 - fill.porosity.value_or(1.0 - settled)) * depth * room.x() * room.y();
+}
+
+// The number of grains that comes as near as possible to the solid fraction or the fill; of mixed sizes to the accuracy
+// of their mean.
+void take_wanted_volume(Population& population, const PeriodicBox& box, std::optional<double> reference_diameter) {
+  const Vec3 room = room_for(population, box);
+  constexpr double most = 1e9;  // every rank places them all
+  population.count = 1000;      // a sample, and then nearly all
   for (int pass = 0; pass < 2; ++pass) {
     take_sizes(population);
+    const double wanted = wanted_volume(population, room, reference_diameter.value_or(population.diameter));
     const double needed = wanted / (population.volume() / static_cast<double>(population.count));
     if (!(needed < most))
-      throw KeyError("solid_fraction",
+      throw KeyError(wanted_by(population),
                      fmt::format("it takes {:.3g} grains of this size; give a larger diameter in m", needed));
     population.count = std::max<std::int64_t>(1, std::llround(needed));
   }
   population.solid_fraction.reset();
+  population.fill.reset();
 }
 
 }  // namespace
 
-void complete(Population& population, double disk_thickness, const std::optional<Bed>& bed, const PeriodicBox& box) {
+void complete(Population& population, double disk_thickness, const std::optional<Bed>& bed, const PeriodicBox& box,
+              std::optional<double> reference_diameter) {
   population.thickness = disk_thickness;
   if (bed) take_bed(population, *bed, box);
-  if (population.solid_fraction) take_solid_fraction(population, box);
+  if (population.solid_fraction || population.fill) take_wanted_volume(population, box, reference_diameter);
   take_sizes(population);
 }
 

@@ -10,9 +10,11 @@
 
 namespace thalweg::dem {
 
-// disk_thickness: m; 0: spheres. bed: of placement.file, where there is one. Throws KeyError where no clump can be made
-// of a shape, or where the bed was made in a periodic box of another size or of disks of another thickness, or has
-// grains outside the box or overlapping too much.
-void complete(Population& population, double disk_thickness, const std::optional<Bed>& bed, const PeriodicBox& box);
+// disk_thickness: m; 0: spheres. bed: of placement.file, where there is one. reference_diameter: m, of the layers of a
+// fill; none: the median by volume of the population itself. Throws KeyError where no clump can be made of a shape,
+// where more grains are asked for than can be counted or a fill is deeper than its room, or where the bed was made in a
+// periodic box of another size or of disks of another thickness, or has grains outside the box or overlapping too much.
+void complete(Population& population, double disk_thickness, const std::optional<Bed>& bed, const PeriodicBox& box,
+              std::optional<double> reference_diameter);
 
 }  // namespace thalweg::dem

@@ -49,6 +49,22 @@ static void describe_size(SectionVisitor& visit, PopulationKeys& grains, const O
                 [&](SectionVisitor& inside) { describe(inside, grains.sizes, grains.diameter); });
 }
 
+static void describe(SectionVisitor& visit, FillKeys& fill) {
+  visit.real("depth", fill.depth,
+             {.unit = "m", .meaning = "of the settled bed over the floor of its room", .above = 0.0, .example = 0.02});
+  visit.real("layers", fill.layers,
+             {.meaning = "the depth in diameters: analysis.reference_diameter, else the population's median by mass",
+              .above = 0.0,
+              .example = 4.0});
+  visit.real("porosity", fill.porosity,
+             {.meaning = "of the settled bed; default: 0.4, of disks 0.2",
+              .above = 0.0,
+              .below = 1.0,
+              .example = 1.0 - settled_bed});
+  visit.require(fill.depth.has_value() != fill.layers.has_value(), "depth",
+                "give either the depth in m or its number of layers");
+}
+
 static void describe_count(SectionVisitor& visit, PopulationKeys& grains, const OnlyIf& no_file) {
   const auto given = static_cast<std::int64_t>(grains.placement.positions.size());
   if (visit.reading() && given > 0) grains.count = given;
@@ -62,9 +78,15 @@ static void describe_count(SectionVisitor& visit, PopulationKeys& grains, const 
               .at_most = densest_disks,
               .example = 0.3,
               .only_if = no_file.holds ? no_count : no_file});
+  const OnlyIf no_number{(grains.count == 0 && !grains.solid_fraction) || !visit.reading(),
+                         "count or solid_fraction gives the number of grains; remove one of the two"};
+  visit.section("fill", grains.fill,
+                {.meaning = "depth of the bed that the grains make once settled, each population its own share; in "
+                            "place of count",
+                 .only_if = no_file.holds ? no_number : no_file});
   if (!no_file.holds) return;
-  visit.require(grains.count > 0 || grains.solid_fraction, "count",
-                "the number of grains is missing; give a whole number, for example 100, solid_fraction or "
+  visit.require(grains.count > 0 || grains.solid_fraction || grains.fill, "count",
+                "the number of grains is missing; give a whole number, for example 100, solid_fraction, fill or "
                 "placement.positions");
   visit.require(given == 0 || grains.count == given, "count",
                 fmt::format("there are {} positions; give this number or leave the key out", given));

@@ -1,5 +1,6 @@
 #include "driver/bed_flow.hpp"
 
+#include "dem/packing.hpp"
 #include "driver/reference_grain.hpp"
 
 #include <cmath>
@@ -47,7 +48,7 @@ double settled_fraction(const Case& c) {
   const bool between_walls =
       c.domain.faces[y_low].type != lbm::FaceType::periodic && c.domain.faces[y_high].type != lbm::FaceType::periodic;
   const bool narrow = !c.grains.empty() && c.domain.size.y() < 3.0 * reference_grain(c).diameter;
-  return between_walls && narrow ? 0.554 : 0.6;
+  return between_walls && narrow ? 0.554 : dem::settled_bed;
 }
 
 }  // namespace thalweg::driver

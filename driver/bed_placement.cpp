@@ -43,7 +43,9 @@ void fill_in_grains(Case& c, const io::YamlDocument& document, const KnownBeds& 
       if (known) bed = known(c, n);
       if (!bed) bed = read_bed(path, document, key + ".placement.file");
     }
-    at_place(document, key, [&] { complete(c.grains[n], c.disks ? c.disks->thickness : 0.0, bed, box); });
+    at_place(document, key, [&] {
+      complete(c.grains[n], c.disks ? c.disks->thickness : 0.0, bed, box, c.analysis.reference_diameter);
+    });
   }
 }
 
