@@ -35,6 +35,7 @@ DryGrains::DryGrains(const Decomposition& decomposition, MPI_Comm communicator, 
       sub_steps_(parameters.grains.sub_steps),
       time_step_(parameters.grains.time_step * sub_steps_),
       wall_names_(parameters.measured_walls),
+      rest_(parameters.rest),
       grains_(decomposition, communicator, dry_parameters(parameters), seeds.grains, seeds.clumps),
       lists_(timer_.phase("grain lists")),
       motion_(timer_.phase("grain motion")) {}
@@ -86,6 +87,9 @@ std::vector<Figure> DryGrains::figures() const {
                               {"largest_overlap", "1", grains_.largest_overlap()},
                               {largest_speed_figure, "m/s", grains_.largest_free_speed()},
                               {largest_acceleration_figure, "m/s^2", grains_.largest_acceleration()}};
+  if (rest_)
+    figures.push_back(
+        {restless_figure, "1", static_cast<double>(grains_.restless_count(rest_->speed, rest_->acceleration))});
   if (field_)
     for (const Figure& figure : field_->figures(time())) figures.push_back(figure);
   if (wall_names_.empty()) return figures;

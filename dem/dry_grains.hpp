@@ -11,15 +11,23 @@
 #include <mpi.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace thalweg::dem {
 
+// A grain that is slower than this, and accelerated by less, is at rest.
+struct RestBounds {
+  double speed = 0.0;         // m/s
+  double acceleration = 0.0;  // m/s^2, by all forces
+};
+
 struct DryParameters {
   GrainParameters grains;                   // without body force
   Vec3 gravity = Vec3::Zero();              // m/s^2
   std::vector<std::string> measured_walls;  // names of all walls, in their order, or none
+  std::optional<RestBounds> rest = {};      // counts the grains that are not at rest
   // Of a fluid that is no more than a force (model_fluid.hpp): what the load of a grain is, and its attached columns.
   std::shared_ptr<ForceField> field = {};
   double fluid_density = 0.0;  // kg/m^3, of the buoyancy
@@ -35,12 +43,14 @@ public:
   std::int64_t step() const override { return step_; }
   double time_step() const override { return time_step_; }
   Snapshot snapshot() const override;
-  // contacts, largest_overlap (in diameters), and of the free grains largest_grain_speed, largest_grain_acceleration
-  // and of each measured wall three: wall_force_bottom_x ..., wall_force_wall_0_x ...
+  // contacts, largest_overlap (in diameters), and of the free grains largest_grain_speed, largest_grain_acceleration,
+  // with bounds of rest restless_grains, and of each measured wall three: wall_force_bottom_x ..., wall_force_wall_0_x
+  // ...
   std::vector<Figure> figures() const override;
   std::optional<Place> place_of(const std::string& figure) const override;
   static constexpr const char* largest_speed_figure = "largest_grain_speed";
   static constexpr const char* largest_acceleration_figure = "largest_grain_acceleration";
+  static constexpr const char* restless_figure = "restless_grains";
   void save(ArchiveWriter& archive) const override;
   void load(ArchiveReader& archive) override;
   void take_grains(ArchiveReader& archive, double spacing) override;
@@ -58,6 +68,7 @@ private:
   int sub_steps_;
   double time_step_;                     // s, of sub_steps_ sub-steps
   std::vector<std::string> wall_names_;  // whose forces are measured
+  std::optional<RestBounds> rest_;
   GrainDynamics grains_;
   std::int64_t step_ = 0;
   PhaseTimer timer_;

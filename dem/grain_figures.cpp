@@ -195,6 +195,15 @@ double GrainDynamics::largest_acceleration() const {
   return max_over_ranks(communicator_, largest);
 }
 
+std::int64_t GrainDynamics::restless_count(double speed, double acceleration) const {
+  std::int64_t count = 0;
+  for_each_body([&](double mass, const Vec3& velocity, double, Motion motion, auto&& force) {
+    const bool at_rest = velocity.norm() < speed && force().norm() * (1.0 / mass) < acceleration;
+    if (!holds_translation(motion) && !at_rest) ++count;
+  });
+  return sum_over_ranks(communicator_, count);
+}
+
 std::int64_t GrainDynamics::moving_count(double speed) const {
   std::int64_t count = 0;
   for_each_body([&](double, const Vec3& velocity, double, Motion motion, auto&&) {

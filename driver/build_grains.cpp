@@ -27,6 +27,8 @@ std::unique_ptr<System> build_grains_system(const Case& c, MPI_Comm communicator
   parameters.grains = grain_parameters(c, decomposition.box());
   parameters.gravity = gravity_vector(c.gravity);
   parameters.measured_walls = measured_walls(c);
+  if (const std::optional<AtRestCase>& rest = c.run.until_at_rest; rest && rest->quantile < 1.0)
+    parameters.rest = {rest->largest_speed, rest->largest_acceleration};
   if (c.system == SystemKind::model_fluid) {
     parameters.fluid_density = c.model_fluid.fluid_density;
     parameters.field = std::make_shared<dem::ModelFluidField>(decomposition.box(), model_fluid_of(c));

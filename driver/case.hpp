@@ -76,10 +76,12 @@ struct InitialCase {
   bool operator==(const InitialCase&) const = default;
 };
 
-// Grains are at rest where both hold for all that are free to move, so that a grain at the top of its flight is not.
+// Grains are at rest where both hold for all that are free to move, or this share of them, so that a grain at the top
+// of its flight is not.
 struct AtRestCase {
   double largest_speed = 1e-4;         // m/s
   double largest_acceleration = 0.01;  // m/s^2, of all forces together
+  double quantile = 1.0;               // 1, of the number of grains; a clump is one
   bool operator==(const AtRestCase&) const = default;
 };
 

@@ -65,9 +65,11 @@ static void describe_initial(SectionVisitor& visit, InitialCase& initial, System
 }
 
 static void describe(SectionVisitor& visit, AtRestCase& rest) {
-  visit.real("largest_speed", rest.largest_speed, {.unit = "m/s", .meaning = "of any free grain", .above = 0.0});
+  visit.real("largest_speed", rest.largest_speed, {.unit = "m/s", .meaning = "of a free grain at rest", .above = 0.0});
   visit.real("largest_acceleration", rest.largest_acceleration,
-             {.unit = "m/s^2", .meaning = "of any free grain, by all forces together", .above = 0.0});
+             {.unit = "m/s^2", .meaning = "of a free grain at rest, by all forces together", .above = 0.0});
+  visit.real("quantile", rest.quantile,
+             {.meaning = "share of the free grains that must be at rest", .above = 0.0, .at_most = 1.0});
 }
 
 static void describe_run(SectionVisitor& visit, RunCase& run, bool with_fluid, bool with_grains) {
@@ -86,7 +88,7 @@ static void describe_run(SectionVisitor& visit, RunCase& run, bool with_fluid, b
                                   {.meaning = "what to do when a figure leaves its bounds (docs/stability.md)"});
   visit.section(
       "until_at_rest", run.until_at_rest,
-      {.meaning = "the run ends when all grains are at rest (looked at every 200 steps), or at run.until",
+      {.meaning = "the run ends when the grains are at rest (looked at every 200 steps), or at run.until",
        .only_if = {!with_fluid, "grains in a fluid are never at rest; remove the section or set system: grains"}});
   visit.real(
       "ramp", run.ramp,

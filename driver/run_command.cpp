@@ -159,9 +159,21 @@ void print_outcome(const RunIdentity& identity, const loop::LoopRecord& record, 
                          folder.path().string()));
 }
 
+// How many free grains need not be at rest.
+std::int64_t allowed_restless(const Case& c) {
+  std::int64_t free = 0;
+  for (const dem::Population& population : c.grains)
+    if (!population.held()) free += population.count;
+  constexpr double rounding = 1e-9;
+  return static_cast<std::int64_t>((1.0 - c.run.until_at_rest->quantile) * static_cast<double>(free) + rounding);
+}
+
 // What may finish the run before its time.
 void set_end(const Case& c, loop::LoopPlan& plan) {
-  if (c.run.until_at_rest) {
+  if (c.run.until_at_rest && c.run.until_at_rest->quantile < 1.0) {
+    plan.enough = {{dem::DryGrains::restless_figure, static_cast<double>(allowed_restless(c) + 1)}};
+    plan.enough_means = fmt::format("a share of {:g} of the grains at rest", c.run.until_at_rest->quantile);
+  } else if (c.run.until_at_rest) {
     plan.enough = {{dem::DryGrains::largest_speed_figure, c.run.until_at_rest->largest_speed},
                    {dem::DryGrains::largest_acceleration_figure, c.run.until_at_rest->largest_acceleration}};
     plan.enough_means = "all grains at rest";

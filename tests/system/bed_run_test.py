@@ -57,6 +57,37 @@ output: {series: {every: 0.02}}
         fraction = 40 * MASS / 2550 / (0.02 * 0.015 * top)
         self.assertTrue(0.4 < fraction < 0.74, fraction)
 
+    def test_a_share_of_the_grains_at_rest_is_enough(self):
+        share = ["--set", "run.until_at_rest.quantile=0.9"]
+        self.run_well("run", self.case, "--out", "one", *share)
+        summary = self.summary("one")
+        self.assertTrue(summary["finished"])
+        self.assertLess(summary["simulated_time"], self.summary("run")["simulated_time"])
+        restless = (numpy.linalg.norm(self.bed("one")["velocity"], axis=1) >= 2e-4).sum()
+        self.assertTrue(0 < restless <= 4, restless)
+        self.assertIn("a share of 0.9 of the grains at rest", (self.folder / "one/run.log").read_text())
+        # All 40 fall at first; the figure is the same on any ranks.
+        for out, ranks in (("first", 0), ("two", 2)):
+            self.run_well("run", self.case, "--out", out, *share, "--until", "0.004", "--set", "output.series.every=0.002",
+                          ranks=ranks)
+            self.assertEqual(self.series(out)["restless_grains"].tolist(), [40, 40, 40])
+
+    def test_a_fill_is_as_deep_as_it_says(self):
+        fill = ["--set", "grains=[{fill: {depth: 0.024, porosity: 0.45}, diameter: {d16: 3.5e-3, d50: 4.0e-3, d84: 4.6e-3}, "
+                "density: 2550, placement: {pattern: random, seed: 3}}]"]
+        self.run_well("run", self.case, "--out", "filled", *fill)
+        bed = self.bed("filled")
+        volume = numpy.pi / 6.0 * ((2.0 * bed["radius"]) ** 3).sum()
+        floor = 0.02 * 0.015
+        self.assertLess(abs(volume - 0.55 * 0.024 * floor), numpy.pi / 6.0 * (2.0 * bed["radius"].max()) ** 3)
+        # The surface of the bed is rough: the tops of its highest grains are up to a diameter above its mean height.
+        self.assertTrue(0.024 - 2e-3 < (bed["position"][:, 2] + bed["radius"]).max() < 0.024 + 6e-3)
+        # The number is that of the case as run, on any ranks and after a restart.
+        self.run_well("run", self.case, "--out", "two", *fill, "--set", "run={until: 0.004}", ranks=2)
+        self.run_well("run", self.case, "--out", "half", *fill, "--set", "run={until: 0.002}")
+        self.run_well("run", self.folder / "half/case.yaml", "--out", "half", "--restart", "half", "--until", "0.004")
+        self.assertEqual((self.folder / "half/bed.h5").read_bytes(), (self.folder / "two/bed.h5").read_bytes())
+
     def test_every_dataset_has_its_unit(self):
         with h5py.File(self.folder / "run/bed.h5") as file:
             units = {name: data.attrs["unit"].decode() for name, data in file["grains"].items()}
@@ -117,6 +148,7 @@ output: {series: {every: 0.02}}
                  ["grains=[{placement: {file: run/bed.h5}, diameter: 4.0e-3}]"]),
                 (["grains.0.placement.velocities", "only a placement from a file"],
                  ["grains.0.placement.velocities=zero"]),
+                (["run.until_at_rest.quantile = 1.5", "at most 1"], ["run.until_at_rest.quantile=1.5"]),
                 (["run.until_at_rest.largest_speed", "above 0"], ["run.until_at_rest.largest_speed=0"])):
             arguments = [a for setting in settings for a in ("--set", setting)]
             self.assert_refused("check", self.case, *arguments, words=words)
