@@ -27,9 +27,9 @@ void describe(SectionVisitor& visit, CouplingKeys& coupling, bool with_grains) {
   visit.choice("links", coupling.links, {.meaning = "interpolated bounce-back at grain surfaces"});
   visit.not_here("mass_correction", "the fluid's mass is always kept; remove the key");
   if (!with_grains) {
-    for (const char* key :
-         {"grain_steps_per_fluid_step", "link_tolerance", "momentum_exchange", "wall_density", "narrow_gaps",
-          "near_contact", "refill", "covered_momentum", "load", "grain_stress", "mass_balance"})
+    for (const char* key : {"grain_steps_per_fluid_step", "link_tolerance", "fewest_cells_per_diameter",
+                            "momentum_exchange", "wall_density", "narrow_gaps", "near_contact", "refill",
+                            "covered_momentum", "load", "grain_stress", "mass_balance"})
       visit.not_here(key, "system: fluid has no grains; remove the key or set system: resolved");
     return;
   }
@@ -43,6 +43,8 @@ void describe(SectionVisitor& visit, CouplingKeys& coupling, bool with_grains) {
                          "exact position)",
               .at_least = 0.0,
               .at_most = 0.1});
+  visit.real("fewest_cells_per_diameter", coupling.fewest_cells_per_diameter,
+             {.meaning = "across the smallest grain, without a warning; fewer than 1.74 are refused", .above = 0.0});
   visit.choice("momentum_exchange", coupling.momentum_exchange, {.meaning = "how the force on a grain is summed"});
   visit.choice("wall_density", coupling.wall_density, {.meaning = "density in the moving-wall term"});
   visit.choice("narrow_gaps", coupling.narrow_gaps, {.meaning = "gaps of one cell between two grains"});

@@ -17,9 +17,8 @@ namespace {
 
 // True Mach number 0.3, beyond which the lattice fluid is compressible: 0.3 / sqrt(3) cells a step.
 constexpr double largest_lattice_velocity = 0.173;
-// Fewer cells than this across a grain do not resolve the flow around it.
-constexpr double fewest_cells_per_diameter = 5.0;
-// A fixed sphere may be coarser, but must cover cells wherever it is: half the diagonal of a cell.
+// A sphere must cover cells wherever it is, or the fluid would not see it at all: half the diagonal of a cell,
+// sqrt(3)/2.
 constexpr double fewest_cells_per_radius = 0.87;
 // A component of the random eddies at the start stays below this many times its root mean square nearly everywhere.
 constexpr double strongest_gust = 4.0;
@@ -47,12 +46,13 @@ void check_whole_cells(const DomainCase& domain, const io::YamlDocument& documen
 
 void check_resolution(const Case& c, const io::YamlDocument& document) {
   if (c.grains.empty() || c.system != SystemKind::resolved) return;
-  const double largest = smallest_diameter(c) / fewest_cells_per_diameter;
+  const double largest = 0.5 * smallest_diameter(c) / fewest_cells_per_radius;
   if (c.domain.spacing > largest * (1.0 + whole_number_tolerance))
-    throw document.error("domain.spacing",
-                         fmt::format("the spacing is too coarse for grains of {} m; give at most {:.4g} m, "
-                                     "a fifth of the diameter",
-                                     smallest_diameter(c), largest));
+    throw document.error(
+        "domain.spacing",
+        fmt::format("the spacing is too coarse for grains of {:.6g} m, which would lie between the "
+                    "centres of cells and not be seen; give at most {:.4g} m, better {:.4g} m",
+                    smallest_diameter(c), largest, smallest_diameter(c) / c.coupling.fewest_cells_per_diameter));
 }
 
 void check_solids(const Case& c, const io::YamlDocument& document) {

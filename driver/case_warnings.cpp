@@ -1,5 +1,6 @@
 #include "driver/case_warnings.hpp"
 
+#include "driver/case_checks.hpp"
 #include "driver/contact_estimate.hpp"
 #include "driver/drag_accuracy.hpp"
 #include "driver/flow_estimate.hpp"
@@ -129,13 +130,23 @@ void warn_of_overlap(const Case& c, Warnings& found) {
       100.0 * overlaps.under_weight, 100.0 * overlaps.in_impact, overlaps.speed));
 }
 
+// Fewer cells than this across a grain do not resolve the flow around it.
+constexpr double barely_resolved = 5.0;
+
+void warn_of_coarse_cells(const Case& c, Warnings& found) {
+  const double cells = smallest_diameter(c) / c.domain.spacing, fewest = c.coupling.fewest_cells_per_diameter;
+  if (c.grains.empty() || cells >= fewest * (1.0 - whole_number_tolerance)) return;
+  found.push_back(
+      fmt::format("The smallest grain is only {:.2g} cells across{}; its drag is {} (docs/accuracy.md): consider a "
+                  "domain.spacing of {:.3g} m, or accept it with coupling.fewest_cells_per_diameter: {:g}.",
+                  cells, cells < barely_resolved ? ", which does not resolve the flow around it" : "", drag_text(c),
+                  smallest_diameter(c) / fewest, std::floor(10.0 * cells) / 10.0));
+}
+
 // The fluid resists a sudden motion of a sphere with 3.8 dx/d of the displaced mass, and the load, extrapolated in
 // time, stands up to 1.15 times the mass of the grain (coupling/load_rule.hpp); the mean was stable down to half the
 // fluid's.
 void warn_of_grains(const Case& c, Warnings& found) {
-  if (!c.grains.empty() && smallest_diameter(c) < 5.99 * c.domain.spacing)
-    found.push_back(fmt::format("A grain is only {:.2g} cells across; its drag is {} (docs/accuracy.md).",
-                                smallest_diameter(c) / c.domain.spacing, drag_text(c)));
   for (const dem::Population& population : c.grains) {
     const double least = c.coupling.load == coupling::LoadRule::mean
                              ? 0.5
@@ -184,8 +195,9 @@ std::vector<std::string> warnings(const Case& c) {
     warn_of_sliding_bed(c, found);
   }
   if (!has_fluid(c)) return found;
-  for (const auto warn : {warn_of_fast_flow, warn_of_compression, warn_of_collision, warn_of_unmapped_relaxation,
-                          warn_of_bulk_relaxation, warn_of_laminar_flow, warn_of_grains, warn_of_links})
+  for (const auto warn :
+       {warn_of_fast_flow, warn_of_compression, warn_of_collision, warn_of_unmapped_relaxation, warn_of_bulk_relaxation,
+        warn_of_laminar_flow, warn_of_coarse_cells, warn_of_grains, warn_of_links})
     warn(c, found);
   return found;
 }

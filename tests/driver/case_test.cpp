@@ -119,6 +119,25 @@ TEST(Case, WarnsOfWhatDeservesASecondLookAndOfNothingElse) {
   EXPECT_NE(warnings(c)[2].find("only 5 cells across"), std::string::npos);
 }
 
+TEST(Case, WarnsOfCoarseCellsUnlessTheyAreAccepted) {
+  Case c = wide_bed();
+  c.run.until = 30.0;
+  c.fluid.smagorinsky_constant = 0.27;
+  const auto warning = [&c] {
+    for (const std::string& text : warnings(c))
+      if (text.find("cells across") != std::string::npos) return text;
+    return std::string();
+  };
+  EXPECT_EQ(warning(), "");
+  c.domain.spacing = smallest_diameter(c) / 5.5;
+  EXPECT_NE(warning().find("The smallest grain is only 5.5 cells across; its drag"), std::string::npos) << warning();
+  c.domain.spacing = smallest_diameter(c) / 3.25;
+  EXPECT_NE(warning().find("only 3.2 cells across, which does not resolve"), std::string::npos) << warning();
+  EXPECT_NE(warning().find("accept it with coupling.fewest_cells_per_diameter: 3.2."), std::string::npos) << warning();
+  c.coupling.fewest_cells_per_diameter = 3.2;
+  EXPECT_EQ(warning(), "");
+}
+
 TEST(Case, WarnsOfABulkViscosityThatMakesTrtUnstable) {
   Case c = wide_bed();
   c.run.until = 30.0;
