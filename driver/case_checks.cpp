@@ -232,6 +232,8 @@ void check_case(const Case& c, const io::YamlDocument& document) {
   check_grains(c, document);
   check_model_fluid(c, document);
   check_observers(c, document);
+  if (has_fluid(c))
+    at_place(document, "output", [&] { check_fluid_output(c.output, c.domain.size, c.domain.spacing); });
 }
 
 }  // namespace thalweg::driver

@@ -17,27 +17,18 @@ double times_in(double until, double every) {
   return every > 0.0 ? std::floor(until / every * (1.0 + 1e-9)) + 1.0 : 0.0;
 }
 
-double cells_in(io::FluidRegion region, const Index3& cells) {
-  const double n[3] = {static_cast<double>(cells[0]), static_cast<double>(cells[1]), static_cast<double>(cells[2])};
-  switch (region) {
-    case io::FluidRegion::whole:
-      break;
-    case io::FluidRegion::slice_x:
-      return n[1] * n[2];
-    case io::FluidRegion::slice_y:
-      return n[0] * n[2];
-    case io::FluidRegion::slice_z:
-      return n[0] * n[1];
-  }
-  return n[0] * n[1] * n[2];
+double fluid_frames(const Case& c, const io::FluidOutputKeys& keys) {
+  double values = 0.0;
+  for (const FluidField field : keys.fields) values += components_of(field);
+  const io::ShownCells cells = shown_cells(keys, cells_of(c.domain), c.domain.spacing);
+  return times_in(c.run.until, keys.every) * static_cast<double>(cells.coarse.volume()) * values * 4.0;
 }
 
 double fluid_frames(const Case& c) {
   if (!has_fluid(c)) return 0.0;
-  double values = 0.0;
-  for (const FluidField field : c.output.fluid.fields) values += components_of(field);
-  return times_in(c.run.until, c.output.fluid.every) * cells_in(c.output.fluid.region, cells_of(c.domain)) * values *
-         4.0;
+  double bytes = fluid_frames(c, c.output.fluid);
+  for (const io::NamedFluidOutputKeys& part : c.output.fluid_parts) bytes += fluid_frames(c, part);
+  return bytes;
 }
 
 // Doubles of a grain in a frame (io/grain_series.cpp): place, id, radius, speed, connectivity, two velocities, contact

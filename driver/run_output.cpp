@@ -30,9 +30,10 @@ RunOutput::RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& 
   const Snapshot snapshot = system.snapshot();
   if (c.output.grains.every > 0.0 && snapshot.grains.global_count > 0)
     grains_ = std::make_unique<io::GrainSeries>(communicator, folder.path(), continue_from);
-  if (c.output.fluid.every > 0.0 && snapshot.fluid != nullptr)
-    fluid_ = std::make_unique<io::FluidSeries>(communicator, folder.path(), c.output.fluid.region,
-                                               c.output.fluid.fields, continue_from);
+  if (snapshot.fluid != nullptr) {
+    add_fluid(folder.path(), "fluid", c.output.fluid);
+    for (const io::NamedFluidOutputKeys& part : c.output.fluid_parts) add_fluid(folder.fluid_parts(), part.name, part);
+  }
   for (const auto& observer : observers)
     if (observer->has_records())
       records_.emplace_back(observer.get(),
@@ -42,6 +43,12 @@ RunOutput::RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& 
     constants_ = {{"reference_diameter", "m", reference.diameter}, {"reference_density", "kg/m^3", reference.density}};
   }
   write_records();  // whether they can be written, or continued, is known before the run begins
+}
+
+void RunOutput::add_fluid(const std::filesystem::path& folder, const std::string& name,
+                          const io::FluidOutputKeys& keys) {
+  if (keys.every > 0.0)
+    fluid_.emplace_back(keys.every, io::FluidSeries(communicator_, folder, name, keys, keys.fields, continue_from_));
 }
 
 void RunOutput::add_to(loop::LoopPlan& plan) {
@@ -54,9 +61,9 @@ void RunOutput::add_to(loop::LoopPlan& plan) {
   if (grains_)
     plan.outputs.push_back({"grain output", Schedule(case_.output.grains.every, time_step),
                             [this](const Snapshot& snapshot) { grains_->write(snapshot); }});
-  if (fluid_)
-    plan.outputs.push_back({"fluid output", Schedule(case_.output.fluid.every, time_step),
-                            [this](const Snapshot& snapshot) { fluid_->write(snapshot); }});
+  for (auto& [every, series] : fluid_)
+    plan.outputs.push_back({"fluid output", Schedule(every, time_step),
+                            [&written = series](const Snapshot& snapshot) { written.write(snapshot); }});
   // With the looks at the system's health, so that nothing is written of a state that is broken.
   if (!records_.empty())
     plan.outputs.push_back({"records", Schedule(loop::TimeLoop::steps_between_health_checks * time_step, time_step),

@@ -20,6 +20,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace thalweg::driver {
@@ -35,6 +36,7 @@ public:
   void add_to(loop::LoopPlan& plan);
 
 private:
+  void add_fluid(const std::filesystem::path& folder, const std::string& name, const io::FluidOutputKeys& keys);
   void write_row(double time, const std::vector<Figure>& measured);
   std::uint64_t write_checkpoint(const loop::LoopRecord& record);  // bytes, on the first rank
   void write_profiles();
@@ -50,7 +52,7 @@ private:
   std::vector<Figure> constants_;            // of the run, in every row of the series
   std::unique_ptr<io::SeriesTable> series_;  // from the first row on: only then the columns are known
   std::unique_ptr<io::GrainSeries> grains_;
-  std::unique_ptr<io::FluidSeries> fluid_;
+  std::vector<std::pair<double, io::FluidSeries>> fluid_;  // each with the time between its frames, s
   std::vector<std::pair<analysis::Observer*, io::RecordFile>> records_;
 };
 

@@ -1,5 +1,6 @@
 #include "io/fluid_series.hpp"
 
+#include "core/mpi_session.hpp"
 #include "core/on_first_rank.hpp"
 #include "io/atomic_file.hpp"
 #include "io/region_order.hpp"
@@ -9,6 +10,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace thalweg::io {
 namespace {
@@ -35,14 +37,25 @@ const char* name_of(FluidField field) {
   throw std::logic_error("unknown fluid field");
 }
 
-// The cells of the region, in global coordinates.
-Block block_of(FluidRegion region, const Index3& cells) {
-  Block block{{0, 0, 0}, cells};
-  if (region == FluidRegion::whole) return block;
-  const int axis = region == FluidRegion::slice_x ? 0 : region == FluidRegion::slice_y ? 1 : 2;
-  block.lower[axis] = cells[axis] / 2;
-  block.upper[axis] = block.lower[axis] + 1;
-  return block;
+// Of the values of the cells of a region in a block, x fastest, those of the cells that are shown.
+template <typename Number>
+std::vector<Number> shown(const std::vector<Number>& values, int components, const ShownCells& cells,
+                          const Block& block) {
+  if (cells.stride == Index3{1, 1, 1}) return values;
+  const Block fine = intersection(block, cells.region), part = cells.part_in(block);
+  std::vector<Number> chosen;
+  chosen.reserve(static_cast<std::size_t>(part.volume() * components));
+  const auto fine_place = [&](int axis, int coarse) {
+    return cells.region.lower[axis] + (coarse - cells.coarse.lower[axis]) * cells.stride[axis];
+  };
+  for (int k = part.lower[2]; k < part.upper[2]; ++k)
+    for (int j = part.lower[1]; j < part.upper[1]; ++j)
+      for (int i = part.lower[0]; i < part.upper[0]; ++i) {
+        const auto first =
+            values.begin() + fine.place_of({fine_place(0, i), fine_place(1, j), fine_place(2, k)}) * components;
+        chosen.insert(chosen.end(), first, first + components);
+      }
+  return chosen;
 }
 
 std::string extent_text(const Block& block) {
@@ -52,36 +65,46 @@ std::string extent_text(const Block& block) {
 
 }  // namespace
 
-FluidSeries::FluidSeries(MPI_Comm communicator, const std::filesystem::path& run_folder, FluidRegion region,
-                         std::vector<FluidField> fields, std::optional<double> continue_from)
+FluidSeries::FluidSeries(MPI_Comm communicator, const std::filesystem::path& folder, std::string name,
+                         FluidRegionKeys region, std::vector<FluidField> fields, std::optional<double> continue_from)
     : communicator_(communicator),
-      folder_(run_folder),
-      region_(region),
+      folder_(folder),
+      name_(std::move(name)),
+      region_(std::move(region)),
       fields_(std::move(fields)),
-      index_(run_folder / "fluid.pvd", continue_from) {}
+      index_(folder / (name_ + ".pvd"), continue_from) {}
 
 void FluidSeries::write(const Snapshot& snapshot) {
   if (!snapshot.fluid) return;
   const Decomposition& decomposition = *snapshot.decomposition;
-  const Block region = block_of(region_, decomposition.cells());
-  const FluidFields fields = snapshot.fluid->sample(fields_, region);
-  VtkXmlFile picture(communicator_, region.volume());
-  const RegionOrder order(communicator_, decomposition, region, picture.share());
+  const ShownCells cells = shown_cells(region_, decomposition.cells(), decomposition.spacing());
+  const FluidFields fields = snapshot.fluid->sample(fields_, cells.region);
+  VtkXmlFile picture(communicator_, cells.coarse.volume());
+  std::vector<Block> parts;
+  for (int rank = 0; rank < size_of(communicator_); ++rank)
+    parts.push_back(cells.part_in(decomposition.block_of(rank)));
+  const RegionOrder order(communicator_, parts, cells.coarse, picture.share());
+  const Block block = decomposition.block_of(rank_of(communicator_));
   for (const FluidField field : fields_) {
     const int components = components_of(field);
+    const auto add = [&](const auto& values) {
+      picture.add("CellData", name_of(field), components,
+                  order.share_of(shown(values, components, cells, block), components));
+    };
     if (field == FluidField::grain_id)
-      picture.add("CellData", name_of(field), components, order.share_of(fields.grain_id, components));
+      add(fields.grain_id);
     else
-      picture.add("CellData", name_of(field), components, order.share_of(values_of(fields, field), components));
+      add(values_of(fields, field));
   }
 
-  const auto file = std::filesystem::path("fluid") / fmt::format("fluid_{:09d}.vti", snapshot.step);
-  const std::string extent = extent_text(region);
-  on_first_rank(communicator_, [&] { make_folder(folder_ / "fluid"); });
-  picture.write(
-      folder_ / file, "ImageData",
-      fmt::format(" WholeExtent=\"{0}\" Origin=\"0 0 0\" Spacing=\"{1} {1} {1}\"", extent, decomposition.spacing()),
-      fmt::format(" Extent=\"{}\"", extent));
+  const auto file = std::filesystem::path(name_) / fmt::format("{}_{:09d}.vti", name_, snapshot.step);
+  const std::string extent = extent_text(cells.coarse);
+  const Vec3 &origin = cells.origin, &spacing = cells.coarse_spacing;
+  on_first_rank(communicator_, [&] { make_folder(folder_ / name_); });
+  picture.write(folder_ / file, "ImageData",
+                fmt::format(" WholeExtent=\"{}\" Origin=\"{} {} {}\" Spacing=\"{} {} {}\"", extent, origin[0],
+                            origin[1], origin[2], spacing[0], spacing[1], spacing[2]),
+                fmt::format(" Extent=\"{}\"", extent));
   on_first_rank(communicator_, [&] { index_.add(snapshot.time, file); });
 }
 

@@ -5,6 +5,7 @@
 #include "io/fluid_series.hpp"
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace thalweg::io {
@@ -14,11 +15,15 @@ struct SeriesOutputKeys {
   double every = 0.01;
   bool operator==(const SeriesOutputKeys&) const = default;
 };
-struct FluidOutputKeys {
+struct FluidOutputKeys : FluidRegionKeys {
   double every = 0.0;
-  FluidRegion region = FluidRegion::whole;
   std::vector<FluidField> fields{FluidField::velocity, FluidField::pressure, FluidField::grain_id};
   bool operator==(const FluidOutputKeys&) const = default;
+};
+// One more series of frames of the fluid.
+struct NamedFluidOutputKeys : FluidOutputKeys {
+  std::string name;
+  bool operator==(const NamedFluidOutputKeys&) const = default;
 };
 struct GrainOutputKeys {
   double every = 0.0;
@@ -34,6 +39,7 @@ struct CheckpointOutputKeys {
 struct OutputKeys {
   SeriesOutputKeys series;
   FluidOutputKeys fluid;
+  std::vector<NamedFluidOutputKeys> fluid_parts;
   GrainOutputKeys grains;
   CheckpointOutputKeys checkpoint;
   bool operator==(const OutputKeys&) const = default;
@@ -41,5 +47,9 @@ struct OutputKeys {
 
 // of_fluid, of_grains: the case has a fluid, or grains, whose output can be asked for.
 void describe(SectionVisitor& visit, OutputKeys& output, const OnlyIf& of_fluid, const OnlyIf& of_grains);
+
+// Whether every series of the fluid shows cells of a box of this size (m). Throws KeyError, from the section `output`
+// on.
+void check_fluid_output(const OutputKeys& output, const Vec3& box_size, double spacing);
 
 }  // namespace thalweg::io

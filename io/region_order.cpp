@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace thalweg::io {
 namespace {
@@ -28,10 +29,9 @@ std::vector<int> starts_of(const std::vector<int>& counts) {
 
 }  // namespace
 
-RegionOrder::RegionOrder(MPI_Comm communicator, const Decomposition& decomposition, const Block& region,
-                         const BlockShare& share)
+RegionOrder::RegionOrder(MPI_Comm communicator, std::vector<Block> parts, const Block& region, const BlockShare& share)
     : communicator_(communicator),
-      decomposition_(decomposition),
+      parts_(std::move(parts)),
       region_(region),
       share_(share),
       mine_(share.rows_of(rank_of(communicator))) {}
@@ -41,7 +41,7 @@ std::vector<int> RegionOrder::cells_to_ranks() const {
   const int ranks = size_of(communicator_);
   std::vector<int> cells(static_cast<std::size_t>(ranks), 0);
   int to = 0;
-  for_each_row(intersection(decomposition_.block_of(rank_of(communicator_)), region_), region_,
+  for_each_row(parts_[static_cast<std::size_t>(rank_of(communicator_))], region_,
                [&](std::int64_t first, std::int64_t last) {
                  while (first < last) {
                    while (share_.rows_of(to).last <= first) ++to;
@@ -57,7 +57,7 @@ std::vector<int> RegionOrder::cells_to_ranks() const {
 template <typename Visit>
 void RegionOrder::for_each_row_from(int rank, Visit visit) const {
   if (mine_.size() == 0) return;
-  Block block = intersection(decomposition_.block_of(rank), region_);
+  Block block = parts_[static_cast<std::size_t>(rank)];
   const Index3 n = region_.size();
   const std::int64_t plane = static_cast<std::int64_t>(n[0]) * n[1];
   block.lower[2] = std::max(block.lower[2], region_.lower[2] + static_cast<int>(mine_.first / plane));

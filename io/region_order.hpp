@@ -14,10 +14,10 @@ namespace thalweg::io {
 
 class RegionOrder {
 public:
-  // region: in global coordinates; share: of its cells in the order of the file. The decomposition must outlive this.
-  RegionOrder(MPI_Comm communicator, const Decomposition& decomposition, const Block& region, const BlockShare& share);
+  // parts: of the region, one a rank, empty or not; share: of its cells in the order of the file.
+  RegionOrder(MPI_Comm communicator, std::vector<Block> parts, const Block& region, const BlockShare& share);
 
-  // values: of the cells of the region in this rank's block, x fastest, with all components of a cell together.
+  // values: of the cells of this rank's part, x fastest, with all components of a cell together.
   // Returns those of this rank's share. Collective.
   std::vector<float> share_of(const std::vector<float>& values, int components) const;
   std::vector<std::int32_t> share_of(const std::vector<std::int32_t>& values, int components) const;
@@ -30,7 +30,7 @@ private:
   void for_each_row_from(int rank, Visit visit) const;
 
   MPI_Comm communicator_;
-  const Decomposition& decomposition_;
+  std::vector<Block> parts_;
   Block region_;
   BlockShare share_;
   RowRange mine_;

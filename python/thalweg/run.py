@@ -60,6 +60,10 @@ class Run:
         """Frames of the fluid."""
         return Frames.of_index(self.folder / "fluid.pvd", FluidFrame)
 
+    def fluid_part(self, name):
+        """Frames of one of `output.fluid_parts` of the case, by its name."""
+        return Frames.of_index(self.folder / "fluid_parts" / f"{name}.pvd", FluidFrame)
+
     @cached_property
     def profiles(self):
         """Means over time by group (`grain_profiles`, `fluid_statistics`), each with its arrays and their units; empty

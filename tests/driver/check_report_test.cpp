@@ -51,7 +51,8 @@ TEST(Cost, TakesAccountOfTheLinks) {
 TEST(DiskSpace, IsThatOfFramesCheckpointsAndRecords) {
   Case c = water_over_glass(5e-3, 0.016, 0.0412, 0.040, lbm::FaceType::periodic);
   c.domain.size = Vec3(0.120, 0.040, 0.106);
-  c.output.fluid = {.every = 0.1, .region = io::FluidRegion::slice_y};
+  c.output.fluid.every = 0.1;
+  c.output.fluid.region = io::FluidRegion::slice_y;
   c.output.grains.every = 0.5;
   c.output.checkpoint = {.every = 1.0, .every_wall = 0.0, .keep = 2};
   c.analysis.observers.of<analysis::TracksKeys>().emplace().one_in = 3;

@@ -78,14 +78,23 @@ def check_grains(name, with_fluid, with_stress=False):
             assert same, f"{path}: {key}"
 
 
-def check_fluid(name, fields, lower, upper):
+def check_fluid(name, fields, lower, upper, strides=(1, 1, 1)):
+    """lower, upper: of the cells that are shown, every so many of them along each axis."""
     for time, path in pictures(FOLDER / name / "fluid.pvd"):
         data = read(vtkXMLImageDataReader(), path)
-        extent = [bound for pair in zip(lower, upper) for bound in pair]
-        assert list(data.GetExtent()) == extent, data.GetExtent()
-        assert data.GetSpacing() == (SPACING,) * 3 and data.GetOrigin() == (0.0, 0.0, 0.0)
-        assert np.allclose(data.GetBounds(), [SPACING * bound for bound in extent], rtol=1e-14, atol=0)
-        k, j, i = np.meshgrid(*[np.arange(lower[a], upper[a]) for a in (2, 1, 0)], indexing="ij")
+        shown = [np.arange(lower[a], upper[a], strides[a]) for a in range(3)]
+        extent, bounds = np.reshape(data.GetExtent(), (3, 2)), np.reshape(data.GetBounds(), (3, 2))
+        for a in range(3):
+            assert extent[a, 1] - extent[a, 0] == len(shown[a]), data.GetExtent()
+            # The middle of the first and of the last cell of the picture is that of a cell of the fluid.
+            width = strides[a] * SPACING
+            ends = SPACING * (shown[a][[0, -1]] + 0.5) + 0.5 * width * np.array([-1, 1])
+            assert np.allclose(bounds[a], ends, rtol=1e-12, atol=1e-12 * SPACING), (data.GetBounds(), ends)
+            assert np.isclose(data.GetSpacing()[a], width, rtol=1e-14)
+        if max(strides) == 1:
+            assert extent.ravel().tolist() == [bound for pair in zip(lower, upper) for bound in pair], data.GetExtent()
+            assert data.GetOrigin() == (0.0, 0.0, 0.0)
+        k, j, i = np.meshgrid(*[shown[a] for a in (2, 1, 0)], indexing="ij")
         i, j, k = i.ravel(), j.ravel(), k.ravel()
         expected = {
             "velocity": np.stack([i, j, k], axis=1) + 0.5,
@@ -108,11 +117,13 @@ check_fluid("whole", ["velocity", "pressure", "grain_id"], (0, 0, 0), CELLS)
 check_fluid("slice_x", ["velocity"], (12, 0, 0), (13, 20, 18))
 check_fluid("slice_y", ["pressure", "velocity"], (0, 10, 0), (24, 11, 18))
 check_fluid("slice_z", ["grain_id"], (0, 0, 9), (24, 20, 10))
+check_fluid("sparse", ["velocity", "grain_id"], (4, 5, 3), (21, 20, 9), (3, 3, 3))
+check_fluid("plane", ["pressure"], (0, 0, 10), (24, 20, 11), (4, 4, 1))
 
 # One file a picture, and the same one on any number of ranks.
 files = sorted(path.relative_to(FOLDER) for path in FOLDER.rglob("*") if path.is_file())
 assert {path.suffix for path in files} == {".pvd", ".vtp", ".vti"}, files
-assert sum(path.suffix == ".vti" for path in files) == 4 * 5, files   # two of the five frames have left the index
+assert sum(path.suffix == ".vti" for path in files) == 6 * 5, files   # two of the five frames have left the index
 for other in OTHERS:
     assert files == sorted(path.relative_to(other) for path in other.rglob("*") if path.is_file()), other
     for path in files:

@@ -126,19 +126,30 @@ public:
     snapshot.contacts = &pressed;
     series<GrainSeries>("stressed", continue_from, snapshot);
     snapshot.contacts = nullptr;
-    series<FluidSeries>("whole", continue_from, snapshot, FluidRegion::whole,
+    series<FluidSeries>("whole", continue_from, snapshot, std::string("fluid"),
+                        FluidRegionKeys{FluidRegion::whole, {}, {}, 1},
                         std::vector<FluidField>{FluidField::velocity, FluidField::pressure, FluidField::grain_id});
-    series<FluidSeries>("slice_x", continue_from, snapshot, FluidRegion::slice_x,
+    series<FluidSeries>("slice_x", continue_from, snapshot, std::string("fluid"),
+                        FluidRegionKeys{FluidRegion::slice_x, {}, {}, 1},
                         std::vector<FluidField>{FluidField::velocity});
-    series<FluidSeries>("slice_y", continue_from, snapshot, FluidRegion::slice_y,
+    series<FluidSeries>("slice_y", continue_from, snapshot, std::string("fluid"),
+                        FluidRegionKeys{FluidRegion::slice_y, {}, {}, 1},
                         std::vector<FluidField>{FluidField::pressure, FluidField::velocity});
-    series<FluidSeries>("slice_z", continue_from, snapshot, FluidRegion::slice_z,
+    series<FluidSeries>("slice_z", continue_from, snapshot, std::string("fluid"),
+                        FluidRegionKeys{FluidRegion::slice_z, {}, {}, 1},
                         std::vector<FluidField>{FluidField::grain_id});
+    // Cells 4 to 20 along x, 5 to 19 along y, 3 to 8 along z, every third of them.
+    FluidRegionKeys sparse{FluidRegion::whole, FluidBoxKeys{{1.1e-3, 1.375e-3, 0.8e-3}, {5.2e-3, 5e-3, 2.2e-3}}, {}, 3};
+    series<FluidSeries>("sparse", continue_from, snapshot, std::string("fluid"), sparse,
+                        std::vector<FluidField>{FluidField::velocity, FluidField::grain_id});
+    FluidRegionKeys plane{FluidRegion::whole, {}, FluidPlaneKeys{Axis::z, 2.6e-3}, 4};  // layer 10
+    series<FluidSeries>("plane", continue_from, snapshot, std::string("fluid"), plane,
+                        std::vector<FluidField>{FluidField::pressure});
     snapshot.grains = grains.view(false);
     series<GrainSeries>("dry", continue_from, snapshot);
     snapshot.fluid = nullptr;
-    series<FluidSeries>("without_fluid", continue_from, snapshot, FluidRegion::whole,
-                        std::vector<FluidField>{FluidField::pressure});
+    series<FluidSeries>("without_fluid", continue_from, snapshot, std::string("fluid"),
+                        FluidRegionKeys{FluidRegion::whole, {}, {}, 1}, std::vector<FluidField>{FluidField::pressure});
   }
 
 private:
@@ -184,7 +195,7 @@ TEST(VtkSeries, AFolderThatCannotBeWrittenIsARunErrorOnEveryRank) {
   const Snapshot snapshot{0.0, 0, &decomposition, grains.view(true), &fluid};
   EXPECT_NE(message_of<RunError>([&] { GrainSeries(MPI_COMM_WORLD, folder.path()).write(snapshot); }), "");
   EXPECT_NE(message_of<RunError>([&] {
-              FluidSeries(MPI_COMM_WORLD, folder.path(), FluidRegion::whole, {FluidField::pressure}).write(snapshot);
+              FluidSeries(MPI_COMM_WORLD, folder.path(), "fluid", {}, {FluidField::pressure}).write(snapshot);
             }),
             "");
 }

@@ -10,9 +10,11 @@ import h5py
 import numpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 import program
 from pictures import cell_data
 from program import ProgramTest
+from thalweg import Run
 
 
 class Flume(ProgramTest):
@@ -52,6 +54,42 @@ output: {series: {every: 0.005}, checkpoint: {every: 0.01, keep: 3}}
         half_way = self.folder / "straight/checkpoints/step_200.h5"
         self.run_well("run", self.case, "--out", "again", "--restart", half_way)
         self.assertEqual(self.last_checkpoint("again").read_bytes(), self.last_checkpoint("straight").read_bytes())
+
+    def test_any_number_of_fluid_outputs(self):
+        parts = ("--set", "output.fluid={every: 1e-3, fields: [velocity, pressure]}", "--set",
+                 "output.fluid_parts=[{name: near_bed, every: 5e-4, fields: [velocity], box: {lower: [0, 0, 0], upper: "
+                 "[0.02, 0.0105, 0.004]}, stride: 2}, {name: plane, every: 1e-3, fields: [pressure], plane: {axis: x, at: "
+                 "0.0052}}]", "--set", "output.checkpoint.every=1e-3")
+        self.run_well("run", self.case, "--out", "one", "--until", "0.002", *parts)
+        self.run_well("run", self.case, "--out", "two", "--until", "0.001", *parts, ranks=2)
+        self.run_well("run", self.case, "--out", "two", "--restart", "two", "--until", "0.002", *parts, ranks=4)
+        one, two = (sorted(path for kind in ("*.pvd", "*.vti") for path in (self.folder / out).rglob(kind))
+                    for out in ("one", "two"))
+        self.assertEqual([path.read_bytes() for path in one], [path.read_bytes() for path in two])
+        run = Run(self.folder / "one")
+        self.assertEqual(len(run.fluid_part("near_bed")), 5)
+        self.assertEqual(len(run.fluid_part("plane")), 3)
+        whole, bed, plane = run.fluid[2], run.fluid_part("near_bed")[4], run.fluid_part("plane")[2]
+        self.assertEqual(whole.time, bed.time)
+        numpy.testing.assert_array_equal(bed.arrays["velocity"], whole.arrays["velocity"][:8:2, ::2, ::2])
+        numpy.testing.assert_array_equal(plane.arrays["pressure"], whole.arrays["pressure"][:, :, 10:11])
+        for axis in range(3):   # every second cell, where it is
+            numpy.testing.assert_allclose(bed.centres(axis), whole.centres(axis)[:2 * len(bed.centres(axis)):2], rtol=1e-12)
+
+    def test_outputs_that_show_nothing_are_refused(self):
+        for part, words in (
+                ("{name: a b, every: 1}", ["output.fluid_parts.0.name", "letters, digits and underscores"]),
+                ("{name: a}", ["output.fluid_parts.0.every", "above 0"]),
+                ("{every: 1}", ["output.fluid_parts.0.name"]),
+                ("{name: a, stride: 0}", ["output.fluid_parts.0.stride", "at least 1"]),
+                ("{name: a, every: 1}, {name: a, every: 1}", ["output.fluid_parts", "two of them have the same name"]),
+                ("{name: a, every: 1, plane: {axis: z, at: 0.1}}",
+                 ["output.fluid_parts.0.plane.at = 0.1", "between 0 and 0.013"]),
+                ("{name: a, every: 1, region: slice_x, plane: {axis: z, at: 0.01}}", ["only one of region, box and plane"]),
+                ("{name: a, every: 1, box: {lower: [0, 0, 0], upper: [0.02, 0.02, 0.01]}}",
+                 ["output.fluid_parts.0.box", "out of the domain"]),
+                ("{name: a, every: 1, box: {lower: [0, 0, 0.005], upper: [0.02, 0.01, 0.005]}}", ["no cell has its centre"])):
+            self.assert_refused("check", self.case, "--set", f"output.fluid_parts=[{part}]", words=words)
 
     ALL_FIELDS = "[velocity, pressure, density, shear_rate, eddy_viscosity, vorticity, q_criterion]"
 
