@@ -2,6 +2,7 @@
 
 #include "lbm/solenoidal_noise.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace thalweg::coupling {
@@ -36,11 +37,23 @@ static void describe(SectionVisitor& visit, LogProfileKeys& profile) {
                 {.meaning = "divergence-free random eddies, added to the profile"});
 }
 
+static void describe(SectionVisitor& visit, LinearProfileKeys& profile) {
+  visit.real("lower", profile.lower,
+             {.unit = "m", .meaning = "above the bottom; the fluid below is at rest", .at_least = 0.0});
+  visit.real(
+      "upper", profile.upper,
+      {.unit = "m", .meaning = "from where on it has the velocity", .required = true, .above = 0.0, .example = 0.04});
+  visit.vec3("velocity", profile.velocity, {.unit = "m/s", .meaning = "there", .required = true, .example = 0.0});
+  visit.require(profile.upper > profile.lower, "upper", "give a height above lower");
+}
+
 void describe(SectionVisitor& visit, InitialFluidKeys& fluid) {
   visit.vec3("uniform", fluid.uniform, {.unit = "m/s", .meaning = "the same velocity everywhere", .example = 0.0});
+  visit.section("linear_profile", fluid.linear_profile,
+                {.meaning = "velocity that rises with the height, as in simple shear"});
   visit.section("log_profile", fluid.log_profile, {.meaning = "a turbulent profile along x over a bed"});
-  visit.require(!(fluid.uniform && fluid.log_profile), "uniform",
-                "the start is given twice; give either uniform or log_profile");
+  visit.require(fluid.count() <= 1, fluid.uniform ? "uniform" : "linear_profile",
+                "the start is given twice; give only one of uniform, linear_profile and log_profile");
 }
 
 namespace {
@@ -66,6 +79,11 @@ InitialFluid with_perturbation(const LogProfileKeys& profile, const InitialFluid
 InitialFluid initial_fluid(const InitialFluidKeys& fluid, const Index3& cells, const std::array<bool, 3>& periodic,
                            double spacing) {
   if (fluid.uniform) return [u = *fluid.uniform](const Vec3&) { return FluidInitialState{0.0, u}; };
+  if (fluid.linear_profile)
+    return [profile = *fluid.linear_profile](const Vec3& position) {
+      const double share = (position.z() - profile.lower) / (profile.upper - profile.lower);
+      return FluidInitialState{0.0, std::clamp(share, 0.0, 1.0) * profile.velocity};
+    };
   if (!fluid.log_profile) return {};
   const InitialFluid calm = [profile = *fluid.log_profile](const Vec3& position) {
     constexpr double von_karman = 0.41;

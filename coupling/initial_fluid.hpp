@@ -28,10 +28,19 @@ struct LogProfileKeys {
   bool operator==(const LogProfileKeys&) const = default;
 };
 
-// Neither: at rest.
+// At rest up to `lower`, from there rising in proportion to the height up to `velocity` at `upper`, constant above.
+struct LinearProfileKeys {
+  double lower = 0.0, upper = 0.0;  // m above the bottom
+  Vec3 velocity = Vec3::Zero();     // m/s
+  bool operator==(const LinearProfileKeys&) const = default;
+};
+
+// At most one; none: at rest.
 struct InitialFluidKeys {
   std::optional<Vec3> uniform;  // m/s
+  std::optional<LinearProfileKeys> linear_profile;
   std::optional<LogProfileKeys> log_profile;
+  int count() const { return (uniform ? 1 : 0) + (linear_profile ? 1 : 0) + (log_profile ? 1 : 0); }
   bool operator==(const InitialFluidKeys&) const = default;
 };
 

@@ -82,6 +82,9 @@ void check_lattice_velocity(const Case& c, const io::YamlDocument& document, con
 void check_initial_fluid(const Case& c, const io::YamlDocument& document) {
   if (c.initial.fluid.uniform)
     check_lattice_velocity(c, document, "initial.fluid.uniform", c.initial.fluid.uniform->norm());
+  if (c.initial.fluid.linear_profile)
+    check_lattice_velocity(c, document, "initial.fluid.linear_profile.velocity",
+                           c.initial.fluid.linear_profile->velocity.norm());
   if (!c.initial.fluid.log_profile) return;
   const coupling::LogProfileKeys& profile = *c.initial.fluid.log_profile;
   const double depth = c.domain.size[2] - profile.bed_height;

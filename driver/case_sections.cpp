@@ -54,13 +54,14 @@ static void describe_initial(SectionVisitor& visit, InitialCase& initial, System
   if (with_fluid) fields.push_back({InitialField::fluid, "fluid"});
   if (with_grains) fields.push_back({InitialField::grains, "grains", "as many as the populations have"});
   visit.choice_list<InitialField>("fields", initial.fields, fields, {.meaning = "what is taken from it"});
-  visit.section(
-      "fluid", initial.fluid,
-      {.meaning = "velocity at the start: rest, uniform or log_profile", .empty_name = "rest", .only_if = of_fluid});
+  visit.section("fluid", initial.fluid,
+                {.meaning = "velocity at the start: rest, uniform, linear_profile or log_profile",
+                 .empty_name = "rest",
+                 .only_if = of_fluid});
   const bool fluid_of_other_run = !initial.from.empty() && std::find(initial.fields.begin(), initial.fields.end(),
                                                                      InitialField::fluid) != initial.fields.end();
   visit.require(
-      !fluid_of_other_run || !(initial.fluid.uniform || initial.fluid.log_profile), "from",
+      !fluid_of_other_run || initial.fluid.count() == 0, "from",
       "the start of the fluid is given twice; remove this key or the section fluid, or take fields: [grains]");
 }
 

@@ -128,6 +128,7 @@ void consider_faces(const Case& c, const Channel& channel, FlowEstimate& flow) {
 void consider_start(const Case& c, FlowEstimate& flow) {
   const coupling::InitialFluidKeys& start = c.initial.fluid;
   if (start.uniform) consider(flow, start.uniform->norm(), FlowCause::initial_fluid);
+  if (start.linear_profile) consider(flow, start.linear_profile->velocity.norm(), FlowCause::initial_fluid);
   if (!start.log_profile) return;
   const double height = (c.domain.size.z() - start.log_profile->bed_height) / start.log_profile->roughness;
   if (height > 1.0)

@@ -158,6 +158,15 @@ TEST(CaseReader, ReadsEveryWallAndCollision) {
   EXPECT_EQ(read(resolved_yaml(c)), c);  // and writes them all
 }
 
+TEST(CaseReader, StartsWithALinearProfile) {
+  const Case c = read(flume, {"initial.fluid={linear_profile: {lower: 0.01, upper: 0.05, velocity: [0.4, 0, 0.2]}}"});
+  EXPECT_EQ(read(resolved_yaml(c)), c);
+  const auto start = coupling::initial_fluid(c.initial.fluid, {1, 1, 1}, {true, true, false}, 1e-3);
+  EXPECT_EQ(start(Vec3(0, 0, 0.005)).velocity, Vec3::Zero());
+  EXPECT_LT((start(Vec3(0, 0, 0.02)).velocity - Vec3(0.1, 0, 0.05)).norm(), 1e-15);
+  EXPECT_EQ(start(Vec3(0, 0, 0.06)).velocity, Vec3(0.4, 0, 0.2));
+}
+
 TEST(CaseReader, TheDefaultsAreValidAndNameEveryKey) {
   const std::string text = defaults_yaml("resolved");
   EXPECT_EQ(read(text).grains.at(0).placement.seed, 1);
@@ -391,6 +400,13 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"log_profile_above_the_top",
             {"initial.fluid={log_profile: {bed_height: 0.08, shear_velocity: 0.06, roughness: 2e-4}}"},
             {"initial.fluid.log_profile.bed_height = 0.08: no fluid is left above the bed", "below 0.0748"}},
+        Bad{"two_starts",
+            {"initial.fluid={uniform: [0.1, 0, 0], linear_profile: {upper: 0.05, velocity: [0.1, 0, 0]}}"},
+            {"initial.fluid.uniform",
+             "the start is given twice; give only one of uniform, linear_profile and log_profile"}},
+        Bad{"linear_profile_upside_down",
+            {"initial.fluid={linear_profile: {lower: 0.05, upper: 0.04, velocity: [0.1, 0, 0]}}"},
+            {"initial.fluid.linear_profile.upper = 0.04: give a height above lower"}},
         Bad{"no_diameter", {"grains.0.diameter="}, {"grains.0.diameter is missing: give a number in m above 0"}},
         Bad{"diameter_with_unit",
             {"grains.0.diameter=5 mm"},
