@@ -30,10 +30,10 @@ inline std::unique_ptr<ResolvedSystem<double>> system_of(const WaterBox& box) {
 }
 
 inline StressBalance balance_of(const WaterBox& box, const ResolvedSystem<double>& system, double layer,
-                                std::vector<HeldGrains> held) {
+                                std::vector<HeldGrains> held, MPI_Comm communicator = MPI_COMM_WORLD) {
   const BalanceScales scales{1000.0, 1000.0 * box.viscosity, 5e-3, box.gravity.x(),
                              box.spacing / box.time_step / std::sqrt(3.0)};
-  return StressBalance(MPI_COMM_WORLD, *system.snapshot().decomposition, layer, {0.0, 1e-4}, scales, std::move(held));
+  return StressBalance(communicator, *system.snapshot().decomposition, layer, {0.0, 1e-4}, scales, std::move(held));
 }
 
 }  // namespace thalweg::analysis

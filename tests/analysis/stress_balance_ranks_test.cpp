@@ -21,8 +21,7 @@ void looks_without_touching(bool side_walls) {
   const auto watched = system_of(box), alone = system_of(box);
   StressBalance balance = balance_of(box, *watched, 1.25e-3, {});
   const auto serial = make_system<double>(box, MPI_COMM_SELF, {1, 1, 1});
-  const BalanceScales scales{1000.0, 1e-3, 5e-3, 0.5};
-  StressBalance of_one(MPI_COMM_SELF, *serial->snapshot().decomposition, 1.25e-3, {0.0, 1e-4}, scales, {});
+  StressBalance of_one = balance_of(box, *serial, 1.25e-3, {}, MPI_COMM_SELF);
   StressBalance again = balance_of(box, *watched, 1.25e-3, {});
   for (int step = 0; step < 20; ++step) {
     watched->book_momentum();
