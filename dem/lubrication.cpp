@@ -33,14 +33,14 @@ LubricationLoad load_of(const LubricationResistance& resistance, const Vec3& nor
 }
 
 // What the force asks of a grain.
-struct Sphere {
+struct MovingSphere {
   double radius;
   Vec3 velocity, spin;
 };
-Sphere sphere_of(const MovingGrain& grain) {
+MovingSphere moving_sphere_of(const MovingGrain& grain) {
   return {grain.position[3], vector_of(grain.velocity), vector_of(grain.spin)};
 }
-Sphere sphere_of(const GrainStore& store, std::size_t slot) {
+MovingSphere moving_sphere_of(const GrainStore& store, std::size_t slot) {
   return {store.radius[slot], store.velocity[slot], store.angular_velocity[slot]};
 }
 
@@ -51,7 +51,7 @@ struct NearSurfaces {
   LubricationLoad load;
 };
 
-std::optional<NearSurfaces> between(const Sphere& first, const Sphere& second, const Vec3& separation,
+std::optional<NearSurfaces> between(const MovingSphere& first, const MovingSphere& second, const Vec3& separation,
                                     const LubricationParameters& parameters) {
   const double reach = first.radius + second.radius + parameters.reach(), square = separation.squaredNorm();
   if (square >= reach * reach) return std::nullopt;
@@ -65,7 +65,7 @@ std::optional<NearSurfaces> between(const Sphere& first, const Sphere& second, c
                               normal, approach, approach - spin.cross(normal), first.spin - second.spin)};
 }
 
-std::optional<NearSurfaces> between(const Sphere& sphere, const WallView& view, const Vec3& wall_velocity,
+std::optional<NearSurfaces> between(const MovingSphere& sphere, const WallView& view, const Vec3& wall_velocity,
                                     const LubricationParameters& parameters) {
   const auto [height, n] = view;
   const double gap = height - sphere.radius;
@@ -78,7 +78,7 @@ std::optional<NearSurfaces> between(const Sphere& sphere, const WallView& view, 
 
 void add_to_pair(MovingGrain& first, MovingGrain& second, const Vec3& separation,
                  const LubricationParameters& parameters) {
-  const auto near = between(sphere_of(first), sphere_of(second), separation, parameters);
+  const auto near = between(moving_sphere_of(first), moving_sphere_of(second), separation, parameters);
   if (!near) return;
   const LubricationLoad& load = near->load;
   const Row force = row_of(load.force), turn = row_of(load.force.cross(near->normal)), couple = row_of(load.couple);
@@ -91,7 +91,7 @@ void add_to_pair(MovingGrain& first, MovingGrain& second, const Vec3& separation
 void add_to_wall(MovingGrain& grain, const Plane& wall, const PeriodicBox& box,
                  const LubricationParameters& parameters) {
   const auto near =
-      between(sphere_of(grain), wall.seen_from(vector_of(grain.position), box), wall.velocity, parameters);
+      between(moving_sphere_of(grain), wall.seen_from(vector_of(grain.position), box), wall.velocity, parameters);
   if (!near) return;
   const LubricationLoad& load = near->load;
   grain.force += row_of(load.force);
@@ -158,7 +158,7 @@ void for_each_lubrication_end(const GrainStore& store, const ContactList& list, 
                               std::span<const Plane> walls, const LubricationParameters& parameters,
                               const LubricationVisitor& visit) {
   for (const PairContact& c : list.pairs) {
-    const auto near = between(sphere_of(store, c.first), sphere_of(store, c.second),
+    const auto near = between(moving_sphere_of(store, c.first), moving_sphere_of(store, c.second),
                               box.difference(store.position[c.first], store.position[c.second]), parameters);
     if (!near) continue;
     if (!store.is_ghost(c.first)) visit(c.first, -near->first_arm * near->normal, near->load.force);
@@ -167,8 +167,8 @@ void for_each_lubrication_end(const GrainStore& store, const ContactList& list, 
   for (const WallContact& c : list.walls) {
     if (!parameters.walls[c.wall] || store.is_ghost(c.grain)) continue;
     const Plane& wall = walls[c.wall];
-    if (const auto near =
-            between(sphere_of(store, c.grain), wall.seen_from(store.position[c.grain], box), wall.velocity, parameters))
+    if (const auto near = between(moving_sphere_of(store, c.grain), wall.seen_from(store.position[c.grain], box),
+                                  wall.velocity, parameters))
       visit(c.grain, -near->first_arm * near->normal, near->load.force);
   }
 }

@@ -9,7 +9,7 @@
 namespace thalweg::dem {
 namespace {
 
-constexpr double step = 0.01;          // deviations between points; off by a tenth of its square times the peak of 0.4
+constexpr double z_step = 0.01;        // deviations between points; off by a tenth of its square times the peak of 0.4
 constexpr double farthest_tail = 6.0;  // deviations, beyond which there are 1e-9 of the mass
 
 // One distribution between two of its sizes, at z deviations of ln d from the median.
@@ -22,7 +22,7 @@ struct NormalPiece {
 // Without the first point.
 void add(const NormalPiece& piece, MassCurve& curve) {
   const double first = normal_share_below(piece.z_from), last = normal_share_below(piece.z_to);
-  const int points = std::max(1, static_cast<int>(std::ceil((piece.z_to - piece.z_from) / step)));
+  const int points = std::max(1, static_cast<int>(std::ceil((piece.z_to - piece.z_from) / z_step)));
   for (int n = 1; n <= points; ++n) {
     const double z = n < points ? piece.z_from + n * (piece.z_to - piece.z_from) / points : piece.z_to;
     const double way = n < points ? (normal_share_below(z) - first) / (last - first) : 1.0;

@@ -108,10 +108,11 @@ ShownCells shown_cells(const FluidRegionKeys& keys, const Index3& cells, double 
     const int stride = static_cast<int>(std::min<std::int64_t>(keys.stride, size[axis])),
               first = shown.region.lower[axis];
     shown.stride[axis] = stride;
-    shown.coarse.lower[axis] = first / stride;
-    shown.coarse.upper[axis] = first / stride + divided_up(size[axis], stride);
+    const int lower = first / stride;  // in strides
+    shown.coarse.lower[axis] = lower;
+    shown.coarse.upper[axis] = lower + divided_up(size[axis], stride);
     shown.coarse_spacing[axis] = stride * spacing;
-    shown.origin[axis] = spacing * (first + 0.5 - stride * (first / stride + 0.5));
+    shown.origin[axis] = spacing * (first + 0.5 - stride * (lower + 0.5));
   }
   return shown;
 }
