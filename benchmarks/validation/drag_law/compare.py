@@ -1,0 +1,122 @@
+#!/usr/bin/python3
+"""Drag on random arrays of spheres beside published drag laws: compare.py [RUN...] [--table FILE] [--figure FILE]
+
+RUN: folders of runs of drag_law.yaml; each becomes a row of the table (rows of other runs stay). F is the force on a sphere
+without the part of the mean pressure gradient, over 3 pi eta d U with the superficial velocity U: the driving force on the
+fluid, less what accelerates it, by sphere, over the last half of the run. Prints the mean of the arrays of each setting with its
+standard error, Beetstra et al. (2007) and Tenneti et al. (2011), and pass or fail. Exit code 0 if all pass.
+"""
+import argparse
+import sys
+from pathlib import Path
+
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[2] / "python"))
+from thalweg import Run
+from thalweg.tables import merged_rows, read_rows
+
+COLUMNS = ["run", "setting", "cells [1]", "collision", "solid_fraction [1]", "reynolds_number [1]", "drag [1]"]
+# Between the two laws, or beyond them by as much as their authors' own data scatter.
+ACCEPTED = 0.1
+
+
+def beetstra(phi, reynolds):
+    """R. Beetstra, M. A. van der Hoef, J. A. M. Kuipers, AIChE J. 53 (2007) 489; for slow flow the law of M. A. van der Hoef
+    et al., J. Fluid Mech. 528 (2005) 233."""
+    gap = 1.0 - phi
+    slow = 10.0 * phi / gap**2 + gap**2 * (1.0 + 1.5 * np.sqrt(phi))
+    fast = (1.0 / gap + 3.0 * phi * gap + 8.4 * reynolds**-0.343) / (1.0 + 10.0**(3.0 * phi) * reynolds**(-0.5 - 2.0 * phi))
+    return slow + 0.413 * reynolds / (24.0 * gap**2) * fast
+
+
+def tenneti(phi, reynolds):
+    """S. Tenneti, R. Garg, S. Subramaniam, Int. J. Multiphase Flow 37 (2011) 1072; times 1 - phi, since their force contains
+    the mean pressure gradient."""
+    gap = 1.0 - phi
+    alone = 1.0 + 0.15 * reynolds**0.687
+    slow = 5.81 * phi / gap**3 + 0.48 * phi**(1.0 / 3.0) / gap**4
+    fast = phi**3 * reynolds * (0.95 + 0.61 * phi**3 / gap**2)
+    return gap * (alone / gap**3 + slow + fast)
+
+
+def measured(folder):
+    run = Run(folder)
+    case, grains, count = run.case, run.case["grains"][0], run.summary["grains"]
+    density, viscosity = float(case["fluid"]["density"]), float(case["fluid"]["kinematic_viscosity"])
+    diameter, box = float(grains["diameter"]), float(run.size.prod())
+    phi = count * np.pi / 6.0 * diameter**3 / box
+    time, momentum = run.series["time"], run.series["fluid_momentum_x"]
+    later = time >= 0.5 * time[-1]
+    time, momentum = time[later], momentum[later]
+    velocity = np.trapz(momentum, time) / (time[-1] - time[0]) / (density * box)
+    acceleration = (momentum[-1] - momentum[0]) / (time[-1] - time[0])
+    driving = density * float(case["gravity"]["vector"][0]) * box * (1.0 - phi)
+    drag = (driving - acceleration) / count / (3.0 * np.pi * density * viscosity * diameter * velocity)
+    values = [run.folder.name, case["name"], f"{diameter / float(case['domain']['spacing']):.4g}", case["fluid"]["collision"]]
+    return dict(zip(COLUMNS, values + [f"{value:.6g}" for value in (phi, velocity * diameter / viscosity, drag)]))
+
+
+def means(rows):
+    """By setting: cells, collision, solid fraction, Reynolds number, drag, its standard error."""
+    settings = {}
+    for row in rows:
+        settings.setdefault((row["setting"], float(row["cells [1]"]), row["collision"]), []).append(
+            [float(row[column]) for column in COLUMNS[4:]])
+    for (_, cells, collision), values in settings.items():
+        phi, reynolds, drag = np.mean(values, axis=0)
+        error = np.std(np.array(values)[:, 2], ddof=1) / np.sqrt(len(values)) if len(values) > 1 else np.nan
+        yield cells, collision, phi, reynolds, drag, error
+
+
+def report(points):
+    passed = True
+    for cells, collision, phi, reynolds, drag, error in points:
+        laws = beetstra(phi, reynolds), tenneti(phi, reynolds)
+        good = min(laws) * (1.0 - ACCEPTED) <= drag <= max(laws) * (1.0 + ACCEPTED)
+        passed = passed and good
+        print(f"solid fraction {phi:.3f}, Re {reynolds:6.4g}, {cells:g} cells, {collision}: F {drag:.2f} +- {error:.2f}; Beetstra "
+              f"{laws[0]:.2f} ({100 * (drag / laws[0] - 1):+.0f} %), Tenneti {laws[1]:.2f} ({100 * (drag / laws[1] - 1):+.0f} %): "
+              f"{'pass' if good else 'FAIL'}")
+    return passed
+
+
+def draw(points, name):
+    figure, axes = plt.subplots(figsize=(7, 5), layout="constrained")
+    reynolds = np.logspace(-1.5, 2.6, 200)
+    points = np.array([[p[2], p[3], p[4], p[5]] for p in points])
+    fractions = np.unique(np.round(points[:, 0], 1))
+    for fraction, colour in zip(fractions, plt.cm.viridis(np.linspace(0.0, 0.9, len(fractions)))):
+        near = points[np.isclose(points[:, 0], fraction, atol=0.03)]
+        axes.errorbar(near[:, 1], near[:, 2], near[:, 3], fmt="o", color=colour, capsize=3, label=f"φ = {fraction:g}")
+        axes.plot(reynolds, beetstra(near[:, 0].mean(), reynolds), color=colour, lw=1.0)
+        axes.plot(reynolds, tenneti(near[:, 0].mean(), reynolds), color=colour, lw=1.0, ls="--")
+    axes.plot([], [], "k-", lw=1.0, label="Beetstra et al. 2007")
+    axes.plot([], [], "k--", lw=1.0, label="Tenneti et al. 2011")
+    axes.set(xscale="log", yscale="log", xlabel="Reynolds number U d/ν", ylabel="drag F over 3πηdU")
+    axes.grid(color="#e5e8ea", linewidth=0.8)
+    axes.legend(fontsize=8, ncols=2)
+    figure.savefig(name, dpi=110)
+    print(name)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("runs", nargs="*", metavar="RUN")
+    parser.add_argument("--table", default=HERE / "drag.csv")
+    parser.add_argument("--figure", default="drag_law.png")
+    arguments = parser.parse_args()
+    rows = [measured(folder) for folder in arguments.runs]
+    rows = merged_rows(arguments.table, rows) if rows else read_rows(arguments.table)
+    points = sorted(means(rows), key=lambda point: (round(point[2], 1), point[3]))
+    passed = report(points)
+    draw(points, arguments.figure)
+    return 0 if passed else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

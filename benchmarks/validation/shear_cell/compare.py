@@ -1,0 +1,146 @@
+#!/usr/bin/python3
+"""Rheology of the shear cell beside the flow rule of Zhang et al. (2022): compare.py [RUN...] [--table FILE] [--figure FILE]
+
+RUN: folders of runs of shear_cell.yaml or others of the same case; each becomes a row of the table (rows of other runs stay). All
+values are means over the heights 1.5 diameters and more from the layers of glued grains. The error is that of the stress on the top
+in time. Prints each run beside eqs. 20 and 21, the viscosity of the suspension beside the laws of Batchelor and Green (1972)
+and Boyer et al. (2011), how much the stress differs over the height, what is accepted, and pass or fail. Exit code 0 if all pass.
+"""
+import argparse
+import sys
+from pathlib import Path
+
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[2] / "python"))
+from thalweg import Run, mean_with_error
+from thalweg.rheology import flow_state, mixed_fraction, mixed_friction, solid_stress
+from thalweg.tables import merged_rows, read_rows
+
+COLUMNS = ["run", "links", "cells [1]", "lubrication", "solid_fraction [1]", "shear_rate [1/s]", "pressure [Pa]",
+           "normal_stress [Pa]", "shear_stress [Pa]", "contact_stress [Pa]", "kinetic_stress [Pa]", "fluid_part [Pa]", "total_stress [Pa]", "total_spread [1]", "error [1]",
+           "viscous_number [1]", "mixed_number [1]"]
+ACCEPTED_FRACTION = 0.03   # of the solid fraction: half the distance of the jammed states of rough and smooth spheres
+ACCEPTED_FRICTION = 0.2    # of mu
+ACCEPTED_DILUTE = 0.05     # of the viscosity below a solid fraction of 0.06
+
+
+def stress_on_top(run):
+    """Shear stress over time (Pa) on the upper wall, with all that is glued to it."""
+    columns = ["grains_2_contact_force_x", "grains_2_fluid_force_x", "wall_force_top_x", "fluid_wall_force_top_x"]
+    force = -sum(np.asarray(run.series[column]) for column in columns)
+    return force / (run.size[0] * run.size[1])
+
+
+def measured(folder):
+    run = Run(folder)
+    layers = run.profiles["stress_balance"]
+    grains, fluid = run.case["grains"], run.case["fluid"]
+    diameter = float(grains[0]["diameter"])
+    viscosity = float(fluid["density"]) * float(fluid["kinematic_viscosity"])
+    lower, upper = float(grains[1]["placement"]["region"]["upper"][2]), float(grains[2]["placement"]["region"]["lower"][2])
+    z = layers["z"]
+    core = (z > lower + 1.5 * diameter) & (z < upper - 1.5 * diameter)
+    phi = layers["solid_fraction"]
+    velocity = phi * layers["grain_velocity"][:, 0] + (1.0 - phi) * layers["fluid_velocity"][:, 0]
+    rate = np.polyfit(z[core], velocity[core], 1)[0]
+    stress = solid_stress(layers)[core].mean(axis=0)
+    state = flow_state(phi[core].mean(), stress, rate, diameter, float(grains[0]["density"]), viscosity)
+    total = layers["total_stress"][core]
+    later = run.series["time"] > run.averaged_from("stress_balance")
+    on_top = mean_with_error(stress_on_top(run)[later])
+    mean_of = lambda name, column: layers[name][core, column].mean()
+    values = [state.solid_fraction, rate, state.pressure, -stress[2, 2], state.shear_stress, mean_of("contact_stress", 2),
+              mean_of("kinetic_stress", 4), mean_of("grain_fluid_stress", 2), total.mean(), np.ptp(total) / total.mean(),
+              on_top.error / on_top.mean, state.viscous_number, state.mixed_number]
+    coupling = run.case["coupling"]
+    names = [run.folder.name, coupling.get("links", "bouzidi"), f"{diameter / float(run.case['domain']['spacing']):.4g}",
+             "on" if "lubrication" in coupling else "off"]
+    return dict(zip(COLUMNS, names + [f"{float(value):.5g}" for value in values]))
+
+
+def batchelor(phi):
+    """Viscosity of a dilute suspension over that of the fluid, in simple shear; G. K. Batchelor and J. T. Green, J. Fluid Mech. 56
+    (1972) 401; to first order Einstein's."""
+    return 1.0 + 2.5 * phi + 7.6 * phi**2
+
+
+def boyer(phi):
+    """The same of a dense suspension; F. Boyer, E. Guazzelli, O. Pouliquen, Phys. Rev. Lett. 107 (2011) 188301."""
+    densest, mu_1, mu_2, i_0 = 0.585, 0.32, 0.7, 0.005
+    ratio = phi / (densest - phi)
+    return 1.0 + 2.5 * phi / (1.0 - phi / densest) + (mu_1 + (mu_2 - mu_1) / (1.0 + i_0 * ratio**2)) * ratio**2
+
+
+def boyer_friction(viscous_number):
+    """Stress ratio of a dense suspension, over the stress normal to the shear (Boyer et al. 2011)."""
+    return 0.32 + 0.38 / (1.0 + 0.005 / viscous_number) + viscous_number + 2.5 * 0.585 * np.sqrt(viscous_number)
+
+
+def report(rows):
+    viscosity, passed = 0.417, True
+    for row in sorted(rows, key=lambda row: float(row["solid_fraction [1]"])):
+        v = {column: float(row[column]) for column in COLUMNS[4:]}
+        phi, mixed = v["solid_fraction [1]"], v["mixed_number [1]"]
+        mu, rule = v["shear_stress [Pa]"] / v["pressure [Pa]"], mixed_friction(phi, v["viscous_number [1]"], mixed)
+        relative = v["total_stress [Pa]"] / (viscosity * v["shear_rate [1/s]"])
+        normal = v["normal_stress [Pa]"]
+        of_boyer = v["total_stress [Pa]"] / normal, boyer_friction(viscosity * v["shear_rate [1/s]"] / abs(normal))
+        good = abs(mu / rule - 1.0) <= ACCEPTED_FRICTION and abs(phi - mixed_fraction(mixed)) <= ACCEPTED_FRACTION
+        if phi < 0.06:
+            good = abs(relative / batchelor(phi) - 1.0) <= ACCEPTED_DILUTE
+        passed = passed and good
+        print(f"{row['run']}: solid fraction {phi:.3f}, I_m {mixed:.3g} (eq. 21: {mixed_fraction(mixed):.3f}), mu {mu:.3f} (eq. 20: "
+              f"{rule:.3f}, {100 * (mu / rule - 1):+.0f} %), over the normal stress {of_boyer[0]:.3f} (Boyer {of_boyer[1]:.3f}), "
+              f"viscosity {relative:.3f} +- {relative * v['error [1]']:.3f} (Batchelor "
+              f"{batchelor(phi):.3f}, Boyer {boyer(phi) if phi < 0.58 else np.nan:.3g}), contacts "
+              f"{100 * v['contact_stress [Pa]'] / v['total_stress [Pa]']:.0f} %, stress over the height "
+              f"{100 * v['total_spread [1]']:.1f} %: {'pass' if good else 'FAIL'}")
+    return passed
+
+
+def draw(rows, name):
+    of = lambda column: np.array([float(row[column]) for row in rows])
+    phi, mixed, mu = of("solid_fraction [1]"), of("mixed_number [1]"), of("shear_stress [Pa]") / of("pressure [Pa]")
+    order = np.argsort(mixed)
+    figure, axes = plt.subplots(1, 3, figsize=(13, 4.2), layout="constrained")
+    curve = np.logspace(np.log10(np.nanmin(mixed)) - 0.1, np.log10(np.nanmax(mixed)) + 0.1, 100)
+    axes[0].errorbar(mixed, mu, mu * of("error [1]"), fmt="o", capsize=3, label="resolved")
+    rule = mixed_friction(phi, of("viscous_number [1]"), mixed)
+    axes[0].plot(mixed[order], rule[order], "k-", lw=1, label="Zhang et al. 2022, eq. 20")
+    axes[0].set(xscale="log", yscale="log", xlabel="mixed inertial number $I_m$", ylabel="stress ratio μ")
+    axes[1].plot(mixed, phi, "o", label="resolved")
+    axes[1].plot(curve, mixed_fraction(curve), "k-", lw=1, label="eq. 21")
+    axes[1].set(xscale="log", xlabel="mixed inertial number $I_m$", ylabel="solid fraction φ")
+    relative = of("total_stress [Pa]") / (0.417 * of("shear_rate [1/s]"))
+    fractions = np.linspace(0.0, 0.575, 100)
+    axes[2].errorbar(phi, relative, relative * of("error [1]"), fmt="o", capsize=3, label="resolved")
+    axes[2].plot(fractions, boyer(fractions), "k-", lw=1, label="Boyer et al. 2011")
+    axes[2].plot(fractions[:40], batchelor(fractions[:40]), "k--", lw=1, label="Batchelor and Green 1972")
+    axes[2].set(yscale="log", xlabel="solid fraction φ", ylabel="viscosity over the fluid's")
+    for ax in axes:
+        ax.grid(color="#e5e8ea", linewidth=0.8)
+        ax.legend(fontsize=8)
+    figure.savefig(name, dpi=110)
+    print(name)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("runs", nargs="*", metavar="RUN")
+    parser.add_argument("--table", default=HERE / "rheology.csv")
+    parser.add_argument("--figure", default="shear_cell.png")
+    arguments = parser.parse_args()
+    rows = [measured(folder) for folder in arguments.runs]
+    rows = merged_rows(arguments.table, rows) if rows else read_rows(arguments.table)
+    passed = report(rows)
+    draw(rows, arguments.figure)
+    return 0 if passed else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
