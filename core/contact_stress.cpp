@@ -6,20 +6,26 @@
 
 namespace thalweg {
 
-std::vector<Mat3> contact_moments(const Snapshot& snapshot) {
+namespace {
+
+// Of the forces that one of the source's loops visits.
+std::vector<Mat3> moments_of(const Snapshot& snapshot,
+                             void (ContactSource::*for_each)(const ContactSource::ContactVisitor&) const) {
   std::vector<Mat3> moments(snapshot.grains.id.size(), Mat3::Zero());
   if (snapshot.contacts)
-    snapshot.contacts->for_each_contact(
+    (snapshot.contacts->*for_each)(
         [&](std::size_t grain, const Vec3& arm, const Vec3& force) { moments[grain] += force * arm.transpose(); });
   return moments;
 }
 
+}  // namespace
+
+std::vector<Mat3> contact_moments(const Snapshot& snapshot) {
+  return moments_of(snapshot, &ContactSource::for_each_contact);
+}
+
 std::vector<Mat3> lubrication_moments(const Snapshot& snapshot) {
-  std::vector<Mat3> moments(snapshot.grains.id.size(), Mat3::Zero());
-  if (snapshot.contacts)
-    snapshot.contacts->for_each_lubrication(
-        [&](std::size_t grain, const Vec3& arm, const Vec3& force) { moments[grain] += force * arm.transpose(); });
-  return moments;
+  return moments_of(snapshot, &ContactSource::for_each_lubrication);
 }
 
 std::vector<Mat3> contact_stresses(const Snapshot& snapshot) {

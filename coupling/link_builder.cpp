@@ -87,7 +87,10 @@ void LinkBuilder::look_for_enclosed(const CellChange& change) {
     const std::ptrdiff_t cell = indexing.index(x, y, z);
     const bool is_enclosed = cells_.is_enclosed(cell), was_enclosed = enclosed_.count(cell) > 0;
     if (is_enclosed == was_enclosed) continue;
-    is_enclosed ? (void)enclosed_.insert(cell) : (void)enclosed_.erase(cell);
+    if (is_enclosed)
+      enclosed_.insert(cell);
+    else
+      enclosed_.erase(cell);
     for (int j = 1; j < D3Q19::directions; ++j) {
       const std::int32_t body = cells_.body(cell + indexing.offset(j));
       if (body != CellMap::fluid) mark(body, tiles_.tile_of(y, z));

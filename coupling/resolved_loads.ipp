@@ -142,12 +142,13 @@ void ResolvedSystem<Real, S>::settle_mass(std::size_t first, std::size_t count) 
     if (of_grain.weight() > 0.0) exchange_of(g).surrounding() = LatticeFixed::to_double(sums[1]) / of_grain.weight();
   }
   const double given = LatticeFixed::to_double(sum);
-  double &owed = exchange_of(first).owed_mass(), &loss = exchange_of(first).mean_loss();
+  const GrainExchange<double> account = exchange_of(first);
+  double &owed = account.owed_mass(), &loss = account.mean_loss(), &wanted_before = account.wanted_return();
   owed -= given;
   loss += share_of_last_step * (came_back - given - loss);
   const double wanted = share_of_owed * owed + loss;
-  const MassReturn next = unit_mass_return(links).scaled(0.5 * (wanted + exchange_of(first).wanted_return()));
-  exchange_of(first).wanted_return() = wanted;
+  const MassReturn next = unit_mass_return(links).scaled(0.5 * (wanted + wanted_before));
+  wanted_before = wanted;
   for (std::size_t g = first; g < first + count; ++g) {
     exchange_of(g).returned_density() = next.density;
     exchange_of(g).returned_slope() = next.slope;

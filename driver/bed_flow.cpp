@@ -25,13 +25,12 @@ FlowNumbers flow_numbers(const Case& c) {
   flow.galileo = std::sqrt(std::abs(excess) * g * d * d * d) / c.fluid.kinematic_viscosity;
   if (gravity.z() >= 0.0 || excess <= 0.0 || periodic_axes(c.domain)[2]) return flow;
 
-  const Vec3 size = c.domain.size;
   flow.slope = gravity.x() / -gravity.z();
-  flow.bed_height = grain_volume(c) / (settled_fraction(c) * size.x() * size.y());
-  flow.depth = size.z() - flow.bed_height;
+  flow.bed_height = settled_height(c);
+  flow.depth = c.domain.size.z() - flow.bed_height;
   if (flow.depth <= 0.0 || gravity.x() <= 0.0 || c.fluid.mean_velocity) return flow;
-  flow.side_walls = c.domain.faces[y_low].drags() && c.domain.faces[y_high].drags();
-  flow.hydraulic_radius = flow.side_walls ? flow.depth * size.y() / (2.0 * flow.depth + size.y()) : flow.depth;
+  flow.side_walls = between_side_walls(c);
+  flow.hydraulic_radius = hydraulic_radius(c, flow.depth);
   flow.shields_depth = gravity.x() * flow.depth / (excess * g * d);
   flow.shields_hydraulic = gravity.x() * flow.hydraulic_radius / (excess * g * d);
   flow.friction_velocity = std::sqrt(gravity.x() * flow.hydraulic_radius);
@@ -42,6 +41,17 @@ FlowNumbers flow_numbers(const Case& c) {
 double slope_for(const FlowNumbers& flow, double shields) {
   const double sine = std::sin(std::atan(flow.slope)) / flow.shields_hydraulic * shields;
   return sine < 1.0 ? std::tan(std::asin(sine)) : std::numeric_limits<double>::infinity();
+}
+
+double settled_height(const Case& c) {
+  return grain_volume(c) / (settled_fraction(c) * c.domain.size.x() * c.domain.size.y());
+}
+
+bool between_side_walls(const Case& c) { return c.domain.faces[y_low].drags() && c.domain.faces[y_high].drags(); }
+
+double hydraulic_radius(const Case& c, double depth) {
+  const double width = c.domain.size.y();
+  return between_side_walls(c) ? depth * width / (2.0 * depth + width) : depth;
 }
 
 double settled_fraction(const Case& c) {

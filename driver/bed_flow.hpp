@@ -28,6 +28,15 @@ FlowNumbers flow_numbers(const Case& c);
 // sin = tau* (s - 1) d / R. Infinite where no slope is steep enough.
 double slope_for(const FlowNumbers& flow, double shields);
 
+// m, of the grains settled at settled_fraction().
+double settled_height(const Case& c);
+
+// Whether the faces on both sides of y hold the flow back.
+bool between_side_walls(const Case& c);
+
+// m, of a flow of this depth (m): H W/(2 H + W) between such side walls, else H.
+double hydraulic_radius(const Case& c, double depth);
+
 // What part of a settled bed's volume is grain, 1: 0.6 (random loose to close packing is 0.55 to 0.64); 0.554 between
 // faces across y that are not periodic and closer than three diameters, which is that of the 969 grains in the flume of
 // Zhang et al. 2022, 18 diameters high.

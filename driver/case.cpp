@@ -176,8 +176,7 @@ bool holds_back(const coupling::FaceKeys& face) {
 double estimated_velocity(const Case& c) {
   const Vec3 gravity = gravity_vector(c.gravity);
   const double along = std::hypot(gravity[0], gravity[1]);
-  const double bed = grain_volume(c) / (settled_fraction(c) * c.domain.size[0] * c.domain.size[1]);
-  const double depth = c.domain.size[2] - bed;
+  const double depth = c.domain.size[2] - settled_height(c);
   if (!has_fluid(c) || along == 0.0 || depth <= 0.0) return 0.0;
   const double nu = c.fluid.kinematic_viscosity;
   const double laminar = along * depth * depth / (2.0 * nu);

@@ -13,24 +13,23 @@ namespace thalweg::driver {
 
 namespace {
 
-double settled_height(const Case& c) {
-  return grain_volume(c) / (settled_fraction(c) * c.domain.size.x() * c.domain.size.y());
-}
-
 // kg/m^3, of grains less that of the fluid around them.
 double submerged_density(const Case& c, double density) { return density - (has_fluid(c) ? c.fluid.density : 0.0); }
+
+// Pa, of two bodies of the same material (Hertz).
+double effective_modulus(const dem::ContactParameters& material) {
+  return material.youngs_modulus / (2.0 * (1.0 - material.poisson_ratio * material.poisson_ratio));
+}
 
 // m, under a force (N) and in an impact of an effective mass (kg) at a speed (m/s), of two grains of a diameter (m).
 double overlap_under(const dem::ContactParameters& material, double force, double diameter) {
   if (material.law == dem::Law::linear) return force / material.normal_stiffness;
-  const double modulus = material.youngs_modulus / (2.0 * (1.0 - material.poisson_ratio * material.poisson_ratio));
-  return std::pow(0.75 * force / (modulus * std::sqrt(0.25 * diameter)), 2.0 / 3.0);
+  return std::pow(0.75 * force / (effective_modulus(material) * std::sqrt(0.25 * diameter)), 2.0 / 3.0);
 }
 
 double overlap_in_impact(const dem::ContactParameters& material, double mass, double speed, double diameter) {
   if (material.law == dem::Law::linear) return speed * std::sqrt(mass / material.normal_stiffness);
-  const double modulus = material.youngs_modulus / (2.0 * (1.0 - material.poisson_ratio * material.poisson_ratio));
-  return std::pow(15.0 * mass * speed * speed / (16.0 * modulus * std::sqrt(0.25 * diameter)), 0.4);
+  return std::pow(15.0 * mass * speed * speed / (16.0 * effective_modulus(material) * std::sqrt(0.25 * diameter)), 0.4);
 }
 
 double impact_speed(const Case& c) {
@@ -60,8 +59,9 @@ Overlaps expected_overlaps(const Case& c) {
 
 double stress_ratio_at_base(const Case& c) {
   const Vec3 gravity = gravity_vector(c.gravity);
-  const bool walls = c.domain.faces[y_low].drags() && c.domain.faces[y_high].drags();
-  if (c.grains.empty() || walls || periodic_axes(c.domain)[2] || gravity.x() <= 0.0 || gravity.z() >= 0.0) return 0.0;
+  if (c.grains.empty() || between_side_walls(c) || periodic_axes(c.domain)[2] || gravity.x() <= 0.0 ||
+      gravity.z() >= 0.0)
+    return 0.0;
   if (c.system == SystemKind::model_fluid || (has_fluid(c) && c.fluid.mean_velocity)) return 0.0;
   const ReferenceGrain grain = reference_grain(c);
   const double height = settled_height(c), depth = c.domain.size.z() - height;

@@ -23,14 +23,12 @@ struct Channel {
 };
 
 Channel channel_of(const Case& c) {
-  const Vec3 size = c.domain.size;
   Channel channel{};
-  channel.depth = size.z() - grain_volume(c) / (settled_fraction(c) * size.x() * size.y());
+  channel.depth = c.domain.size.z() - settled_height(c);
   channel.reach = c.domain.faces[top].drags() ? 0.5 * channel.depth : channel.depth;
   channel.roughness = largest_diameter(c) / 15.0;
   channel.viscosity = c.fluid.kinematic_viscosity;
-  const bool walls = c.domain.faces[y_low].drags() && c.domain.faces[y_high].drags();
-  channel.radius = walls ? channel.reach * size.y() / (2.0 * channel.reach + size.y()) : channel.reach;
+  channel.radius = hydraulic_radius(c, channel.reach);
   return channel;
 }
 
@@ -146,6 +144,12 @@ double given_speed(const dem::Population& grains) {
   return grains.motion->velocity.norm() + oscillation;
 }
 
+// m/s, of the largest grain of a population.
+double settling_velocity_of(const Case& c, const dem::Population& grains) {
+  return settling_velocity(grains.largest_diameter(), grains.density / c.fluid.density,
+                           gravity_vector(c.gravity).norm(), c.fluid.kinematic_viscosity);
+}
+
 bool starts_from_a_bed(const Case& c, const dem::Population& grains) {
   const bool taken = !c.initial.from.empty() && std::find(c.initial.fields.begin(), c.initial.fields.end(),
                                                           InitialField::grains) != c.initial.fields.end();
@@ -196,9 +200,7 @@ double settling_velocity(const Case& c) {
   double fastest = 0.0;
   if (!has_fluid(c)) return fastest;
   for (const dem::Population& grains : c.grains)
-    if (!grains.held())
-      fastest = std::max(fastest, settling_velocity(grains.largest_diameter(), grains.density / c.fluid.density,
-                                                    gravity_vector(c.gravity).norm(), c.fluid.kinematic_viscosity));
+    if (!grains.held()) fastest = std::max(fastest, settling_velocity_of(c, grains));
   return fastest;
 }
 
@@ -224,10 +226,7 @@ FlowEstimate flow_estimate(const Case& c) {
   for (const dem::Population& grains : c.grains) {
     consider(flow, given_speed(grains), FlowCause::moving_grains);
     if (!grains.held() && !starts_from_a_bed(c, grains))
-      consider(flow,
-               settling_velocity(grains.largest_diameter(), grains.density / c.fluid.density,
-                                 gravity_vector(c.gravity).norm(), c.fluid.kinematic_viscosity),
-               FlowCause::settling);
+      consider(flow, settling_velocity_of(c, grains), FlowCause::settling);
   }
   return flow;
 }

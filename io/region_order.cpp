@@ -34,7 +34,9 @@ RegionOrder::RegionOrder(MPI_Comm communicator, std::vector<Block> parts, const 
       parts_(std::move(parts)),
       region_(region),
       share_(share),
-      mine_(share.rows_of(rank_of(communicator))) {}
+      mine_(share.rows_of(rank_of(communicator))),
+      sent_(cells_to_ranks()),
+      received_(cells_from_ranks()) {}
 
 // Of this rank's part of the region. Its rows lie in the order of the file, so what goes to one rank lies together.
 std::vector<int> RegionOrder::cells_to_ranks() const {
@@ -69,26 +71,27 @@ void RegionOrder::for_each_row_from(int rank, Visit visit) const {
   });
 }
 
+std::vector<int> RegionOrder::cells_from_ranks() const {
+  std::vector<int> cells(parts_.size(), 0);
+  for (std::size_t rank = 0; rank < cells.size(); ++rank)
+    for_each_row_from(static_cast<int>(rank),
+                      [&](std::int64_t first, std::int64_t last) { cells[rank] += static_cast<int>(last - first); });
+  return cells;
+}
+
 template <typename Number>
 std::vector<Number> RegionOrder::exchanged(const std::vector<Number>& values, int components, MPI_Datatype type) const {
-  const int ranks = size_of(communicator_);
-  const std::vector<int> sent = cells_to_ranks();
-  std::vector<int> received(static_cast<std::size_t>(ranks), 0);
-  for (int rank = 0; rank < ranks; ++rank)
-    for_each_row_from(rank, [&](std::int64_t first, std::int64_t last) {
-      received[static_cast<std::size_t>(rank)] += static_cast<int>(last - first);
-    });
   std::vector<Number> arrived(static_cast<std::size_t>(mine_.size() * components));
   MPI_Datatype cell_type;
   MPI_Type_contiguous(components, type, &cell_type);
   MPI_Type_commit(&cell_type);
-  MPI_Alltoallv(values.data(), sent.data(), starts_of(sent).data(), cell_type, arrived.data(), received.data(),
-                starts_of(received).data(), cell_type, communicator_);
+  MPI_Alltoallv(values.data(), sent_.data(), starts_of(sent_).data(), cell_type, arrived.data(), received_.data(),
+                starts_of(received_).data(), cell_type, communicator_);
   MPI_Type_free(&cell_type);
 
   std::vector<Number> result(arrived.size());
   const Number* next = arrived.data();
-  for (int rank = 0; rank < ranks; ++rank)
+  for (int rank = 0; rank < size_of(communicator_); ++rank)
     for_each_row_from(rank, [&](std::int64_t first, std::int64_t last) {
       const std::int64_t numbers = (last - first) * components;
       std::copy_n(next, numbers, result.begin() + static_cast<std::ptrdiff_t>((first - mine_.first) * components));

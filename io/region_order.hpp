@@ -26,6 +26,7 @@ private:
   template <typename Number>
   std::vector<Number> exchanged(const std::vector<Number>& values, int components, MPI_Datatype type) const;
   std::vector<int> cells_to_ranks() const;
+  std::vector<int> cells_from_ranks() const;
   template <typename Visit>
   void for_each_row_from(int rank, Visit visit) const;
 
@@ -34,6 +35,7 @@ private:
   Block region_;
   BlockShare share_;
   RowRange mine_;
+  std::vector<int> sent_, received_;  // cells, to and from each rank; the same for every field
 };
 
 }  // namespace thalweg::io

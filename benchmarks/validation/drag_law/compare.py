@@ -6,7 +6,6 @@ without the part of the mean pressure gradient, over 3 pi eta d U with the super
 fluid, less what accelerates it, by sphere, over the last half of the run. Prints the mean of the arrays of each setting with its
 standard error, Beetstra et al. (2007) and Tenneti et al. (2011), and pass or fail. Exit code 0 if all pass.
 """
-import argparse
 import sys
 from pathlib import Path
 
@@ -18,7 +17,7 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[2] / "python"))
 from thalweg import Run
-from thalweg.tables import merged_rows, read_rows
+from thalweg.comparison import compared_rows
 
 COLUMNS = ["run", "setting", "cells [1]", "collision", "solid_fraction [1]", "reynolds_number [1]", "drag [1]"]
 # Between the two laws, or beyond them by as much as their authors' own data scatter.
@@ -105,16 +104,10 @@ def draw(points, name):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("runs", nargs="*", metavar="RUN")
-    parser.add_argument("--table", default=HERE / "drag.csv")
-    parser.add_argument("--figure", default="drag_law.png")
-    arguments = parser.parse_args()
-    rows = [measured(folder) for folder in arguments.runs]
-    rows = merged_rows(arguments.table, rows) if rows else read_rows(arguments.table)
+    rows, figure_name = compared_rows(__doc__, HERE / "drag.csv", "drag_law.png", lambda folder: [measured(folder)])
     points = sorted(means(rows), key=lambda point: (round(point[2], 1), point[3]))
     passed = report(points)
-    draw(points, arguments.figure)
+    draw(points, figure_name)
     return 0 if passed else 1
 
 

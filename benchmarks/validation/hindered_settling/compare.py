@@ -8,7 +8,6 @@ the box (Ladd 1990). Prints it over that of a single sphere (Schiller and Nauman
 (1 - phi)^n with its error, with and without that correction, and the exponent of Richardson and Zaki, what is accepted, and pass or
 fail of the corrected one. Exit code 0 if all pass.
 """
-import argparse
 import sys
 from pathlib import Path
 
@@ -20,20 +19,12 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[2] / "python"))
 from thalweg import Run, mean_with_error
-from thalweg.tables import merged_rows, read_rows
+from thalweg.comparison import compared_rows
+from thalweg.literature import settling_speed
 
 COLUMNS = ["run", "reynolds_number [1]", "solid_fraction [1]", "grains [1]", "velocity [m/s]", "velocity_error [m/s]",
            "single_sphere [m/s]"]
 ACCEPTED = 0.3
-
-
-def single_sphere(diameter, density, fluid_density, viscosity, gravity):
-    """Settling velocity (m/s) and Reynolds number of a single sphere: Stokes' drag times 1 + 0.15 Re^0.687."""
-    stokes = (density / fluid_density - 1.0) * gravity * diameter**2 / (18.0 * viscosity)
-    velocity = stokes
-    for _ in range(200):
-        velocity = 0.5 * (velocity + stokes / (1.0 + 0.15 * (velocity * diameter / viscosity)**0.687))
-    return velocity, velocity * diameter / viscosity
 
 
 def exponent_of_richardson_and_zaki(reynolds):
@@ -60,20 +51,15 @@ def measured(folder):
     of_grains = run.series["grain_momentum_z"][later] / (density * solid)
     of_fluid = run.series["fluid_momentum_z"][later] / (float(fluid["density"]) * run.size.prod() * (1.0 - fraction))
     settling = mean_with_error((1.0 - fraction) * (of_fluid - of_grains))   # relative to the volume
-    alone, reynolds = single_sphere(diameter, density, float(fluid["density"]), float(fluid["kinematic_viscosity"]),
-                                    float(run.case["gravity"]["magnitude"]))
+    density_ratio, viscosity = density / float(fluid["density"]), float(fluid["kinematic_viscosity"])
+    alone = settling_speed(diameter, density_ratio, float(run.case["gravity"]["magnitude"]), viscosity)
+    reynolds = alone * diameter / viscosity
     values = [reynolds, fraction, run.summary["grains"], settling.mean, settling.error, alone]
     return dict(zip(COLUMNS, [run.folder.name] + [f"{value:.6g}" for value in values]))
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("runs", nargs="*", metavar="RUN")
-    parser.add_argument("--table", default=HERE / "velocities.csv")
-    parser.add_argument("--figure", default="hindered_settling.png")
-    arguments = parser.parse_args()
-    rows = [measured(folder) for folder in arguments.runs]
-    rows = merged_rows(arguments.table, rows) if rows else read_rows(arguments.table)
+    rows, figure_name = compared_rows(__doc__, HERE / "velocities.csv", "hindered_settling.png", lambda folder: [measured(folder)])
     table = np.array([[float(row[column]) for column in COLUMNS[1:]] for row in rows])
     figure, axes = plt.subplots(figsize=(6, 4.5), layout="constrained")
     passed = True
@@ -100,8 +86,8 @@ def main():
     axes.set(xlabel="solid fraction φ", ylabel="settling velocity over that of a single sphere", yscale="log")
     axes.grid(color="#e5e8ea", linewidth=0.8)
     axes.legend(fontsize=8)
-    figure.savefig(arguments.figure, dpi=110)
-    print(arguments.figure)
+    figure.savefig(figure_name, dpi=110)
+    print(figure_name)
     return 0 if passed else 1
 
 

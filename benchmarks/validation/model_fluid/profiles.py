@@ -8,7 +8,6 @@ is as there.
 
 The velocity of the fluid at a grain follows from the fluid force on it, and the solid fraction from that velocity.
 """
-import argparse
 import sys
 from pathlib import Path
 
@@ -20,7 +19,8 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[2] / "python"))
 from thalweg import Run
-from thalweg.tables import HEADING, merged_rows, read_rows
+from thalweg.comparison import compared_rows
+from thalweg.tables import HEADING
 
 BIN = 0.25         # D
 TOP_FRACTION = 0.42   # of the grains of the top layer (figure 4 of the paper)
@@ -133,21 +133,15 @@ def draw(profiles, figure):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("runs", nargs="*", metavar="RUN")
-    parser.add_argument("--table", default=HERE / "profiles.csv")
-    parser.add_argument("--figure", default="profiles.png")
-    arguments = parser.parse_args()
-    rows = [row for folder in arguments.runs for row in profile(folder)]
-    rows = merged_rows(arguments.table, rows) if rows else read_rows(arguments.table)
+    rows, figure_name = compared_rows(__doc__, HERE / "profiles.csv", "profiles.png", profile)
     numbers = sorted({float(row[COLUMNS[1]]) for row in rows})
     profiles = {number: columns_of([row for row in rows if float(row[COLUMNS[1]]) == number]) for number in numbers}
     found = np.array([means(column) for column in profiles.values()])
     print("Re_*      highest in motion, D above the bed   v_grain/v_fluid   acceleration/(Theta g')")
     for number, (highest, ratio, acceleration) in zip(numbers, found):
         print(f"{number:<8g}  {highest:34.2f}   {ratio:15.2f}   {acceleration:23.3f}")
-    draw(profiles, arguments.figure)
-    print(arguments.figure)
+    draw(profiles, figure_name)
+    print(figure_name)
     first, last = found[0], found[-1]
     of_the_paper = {"fast grains are carried higher": last[0] > first[0],   # section III B
                     "they are accelerated, slow ones hardly": last[2] > 10.0 * abs(first[2]),

@@ -6,7 +6,6 @@ values are means over the heights 1.5 diameters and more from the layers of glue
 in time. Prints each run beside eqs. 20 and 21, the viscosity of the suspension beside the laws of Batchelor and Green (1972)
 and Boyer et al. (2011), how much the stress differs over the height, what is accepted, and pass or fail. Exit code 0 if all pass.
 """
-import argparse
 import sys
 from pathlib import Path
 
@@ -18,10 +17,11 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[2] / "python"))
 from thalweg import Run, mean_with_error
+from thalweg.comparison import compared_rows
 from thalweg.rheology import flow_state, mixed_fraction, mixed_friction, solid_stress
-from thalweg.tables import merged_rows, read_rows
 
-COLUMNS = ["run", "links", "cells [1]", "lubrication", "solid_fraction [1]", "shear_rate [1/s]", "pressure [Pa]",
+COLUMNS = ["run", "links", "cells [1]", "lubrication", "solid_fraction [1]", "shear_rate [1/s]", "fluid_viscosity [Pa s]",
+           "pressure [Pa]",
            "normal_stress [Pa]", "shear_stress [Pa]", "contact_stress [Pa]", "kinetic_stress [Pa]", "fluid_part [Pa]", "total_stress [Pa]", "total_spread [1]", "error [1]",
            "viscous_number [1]", "mixed_number [1]"]
 ACCEPTED_FRACTION = 0.03   # of the solid fraction: half the distance of the jammed states of rough and smooth spheres
@@ -54,7 +54,7 @@ def measured(folder):
     later = run.series["time"] > run.averaged_from("stress_balance")
     on_top = mean_with_error(stress_on_top(run)[later])
     mean_of = lambda name, column: layers[name][core, column].mean()
-    values = [state.solid_fraction, rate, state.pressure, -stress[2, 2], state.shear_stress, mean_of("contact_stress", 2),
+    values = [state.solid_fraction, rate, viscosity, state.pressure, -stress[2, 2], state.shear_stress, mean_of("contact_stress", 2),
               mean_of("kinetic_stress", 4), mean_of("grain_fluid_stress", 2), total.mean(), np.ptp(total) / total.mean(),
               on_top.error / on_top.mean, state.viscous_number, state.mixed_number]
     coupling = run.case["coupling"]
@@ -82,14 +82,15 @@ def boyer_friction(viscous_number):
 
 
 def report(rows):
-    viscosity, passed = 0.417, True
+    passed = True
     for row in sorted(rows, key=lambda row: float(row["solid_fraction [1]"])):
         v = {column: float(row[column]) for column in COLUMNS[4:]}
         phi, mixed = v["solid_fraction [1]"], v["mixed_number [1]"]
         mu, rule = v["shear_stress [Pa]"] / v["pressure [Pa]"], mixed_friction(phi, v["viscous_number [1]"], mixed)
-        relative = v["total_stress [Pa]"] / (viscosity * v["shear_rate [1/s]"])
+        viscous = v["fluid_viscosity [Pa s]"] * v["shear_rate [1/s]"]   # Pa, of the fluid alone
+        relative = v["total_stress [Pa]"] / viscous
         normal = v["normal_stress [Pa]"]
-        of_boyer = v["total_stress [Pa]"] / normal, boyer_friction(viscosity * v["shear_rate [1/s]"] / abs(normal))
+        of_boyer = v["total_stress [Pa]"] / normal, boyer_friction(viscous / abs(normal))
         good = abs(mu / rule - 1.0) <= ACCEPTED_FRICTION and abs(phi - mixed_fraction(mixed)) <= ACCEPTED_FRACTION
         if phi < 0.06:
             good = abs(relative / batchelor(phi) - 1.0) <= ACCEPTED_DILUTE
@@ -116,7 +117,7 @@ def draw(rows, name):
     axes[1].plot(mixed, phi, "o", label="resolved")
     axes[1].plot(curve, mixed_fraction(curve), "k-", lw=1, label="eq. 21")
     axes[1].set(xscale="log", xlabel="mixed inertial number $I_m$", ylabel="solid fraction φ")
-    relative = of("total_stress [Pa]") / (0.417 * of("shear_rate [1/s]"))
+    relative = of("total_stress [Pa]") / (of("fluid_viscosity [Pa s]") * of("shear_rate [1/s]"))
     fractions = np.linspace(0.0, 0.575, 100)
     axes[2].errorbar(phi, relative, relative * of("error [1]"), fmt="o", capsize=3, label="resolved")
     axes[2].plot(fractions, boyer(fractions), "k-", lw=1, label="Boyer et al. 2011")
@@ -130,15 +131,9 @@ def draw(rows, name):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("runs", nargs="*", metavar="RUN")
-    parser.add_argument("--table", default=HERE / "rheology.csv")
-    parser.add_argument("--figure", default="shear_cell.png")
-    arguments = parser.parse_args()
-    rows = [measured(folder) for folder in arguments.runs]
-    rows = merged_rows(arguments.table, rows) if rows else read_rows(arguments.table)
+    rows, figure_name = compared_rows(__doc__, HERE / "rheology.csv", "shear_cell.png", lambda folder: [measured(folder)])
     passed = report(rows)
-    draw(rows, arguments.figure)
+    draw(rows, figure_name)
     return 0 if passed else 1
 
 

@@ -1,0 +1,19 @@
+"""What the scripts share that compare runs with the literature: their table outlives the folders of the runs."""
+import argparse
+
+from thalweg.tables import merged_rows, read_rows
+
+
+def compared_rows(description, table, figure, rows_of):
+    """Rows of the table and the name of the figure of a comparison, from the command line [RUN...] [--table FILE] [--figure FILE].
+
+    rows_of: of a run's folder, a list of rows (dictionaries by heading). Those of the runs that are given take the place of their
+    earlier ones in the table; without runs it is read as it is. table, figure: the defaults.
+    """
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("runs", nargs="*", metavar="RUN")
+    parser.add_argument("--table", default=table)
+    parser.add_argument("--figure", default=figure)
+    arguments = parser.parse_args()
+    rows = [row for folder in arguments.runs for row in rows_of(folder)]
+    return merged_rows(arguments.table, rows) if rows else read_rows(arguments.table), arguments.figure
