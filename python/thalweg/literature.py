@@ -58,3 +58,23 @@ def settling_speed(diameter, density_ratio, gravity, viscosity):
         weight = 4.0 / 3.0 * (density_ratio - 1.0) * gravity * diameter
         low, high = (low, speed) if schiller_naumann_drag(speed * diameter / viscosity) * speed**2 > weight else (speed, high)
     return 0.5 * (low + high)
+
+
+def beetstra_drag(phi, reynolds):
+    """Mean drag on a sphere of an array over Stokes' drag, without the mean pressure gradient; phi: solid fraction, reynolds: of
+    the superficial velocity and the diameter. R. Beetstra, M. A. van der Hoef, J. A. M. Kuipers, AIChE J. 53 (2007) 489; for slow
+    flow the law of M. A. van der Hoef et al., J. Fluid Mech. 528 (2005) 233."""
+    gap = 1.0 - phi
+    slow = 10.0 * phi / gap**2 + gap**2 * (1.0 + 1.5 * np.sqrt(phi))
+    fast = (1.0 / gap + 3.0 * phi * gap + 8.4 * reynolds**-0.343) / (1.0 + 10.0**(3.0 * phi) * reynolds**(-0.5 - 2.0 * phi))
+    return slow + 0.413 * reynolds / (24.0 * gap**2) * fast
+
+
+def tenneti_drag(phi, reynolds):
+    """The same by S. Tenneti, R. Garg, S. Subramaniam, Int. J. Multiphase Flow 37 (2011) 1072; times 1 - phi, since their force
+    contains the mean pressure gradient."""
+    gap = 1.0 - phi
+    alone = 1.0 + 0.15 * reynolds**0.687
+    slow = 5.81 * phi / gap**3 + 0.48 * phi**(1.0 / 3.0) / gap**4
+    fast = phi**3 * reynolds * (0.95 + 0.61 * phi**3 / gap**2)
+    return gap * (alone / gap**3 + slow + fast)

@@ -150,6 +150,8 @@ class Run:
     def free_populations(self):
         """Populations of the case that are free to move, or all where none is."""
         populations = self.case["grains"]
+        if isinstance(populations, dict):   # of a continuum
+            return [populations]
         held = ("fixed", "prescribed_velocity", "motion")
         return [grains for grains in populations if not any(grains.get(key) for key in held)] or populations
 

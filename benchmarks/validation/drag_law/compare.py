@@ -18,29 +18,11 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[2] / "python"))
 from thalweg import Run
 from thalweg.comparison import compared_rows
+from thalweg.literature import beetstra_drag, tenneti_drag
 
 COLUMNS = ["run", "setting", "cells [1]", "collision", "solid_fraction [1]", "reynolds_number [1]", "drag [1]"]
 # Between the two laws, or beyond them by as much as their authors' own data scatter.
 ACCEPTED = 0.1
-
-
-def beetstra(phi, reynolds):
-    """R. Beetstra, M. A. van der Hoef, J. A. M. Kuipers, AIChE J. 53 (2007) 489; for slow flow the law of M. A. van der Hoef
-    et al., J. Fluid Mech. 528 (2005) 233."""
-    gap = 1.0 - phi
-    slow = 10.0 * phi / gap**2 + gap**2 * (1.0 + 1.5 * np.sqrt(phi))
-    fast = (1.0 / gap + 3.0 * phi * gap + 8.4 * reynolds**-0.343) / (1.0 + 10.0**(3.0 * phi) * reynolds**(-0.5 - 2.0 * phi))
-    return slow + 0.413 * reynolds / (24.0 * gap**2) * fast
-
-
-def tenneti(phi, reynolds):
-    """S. Tenneti, R. Garg, S. Subramaniam, Int. J. Multiphase Flow 37 (2011) 1072; times 1 - phi, since their force contains
-    the mean pressure gradient."""
-    gap = 1.0 - phi
-    alone = 1.0 + 0.15 * reynolds**0.687
-    slow = 5.81 * phi / gap**3 + 0.48 * phi**(1.0 / 3.0) / gap**4
-    fast = phi**3 * reynolds * (0.95 + 0.61 * phi**3 / gap**2)
-    return gap * (alone / gap**3 + slow + fast)
 
 
 def measured(folder):
@@ -75,7 +57,7 @@ def means(rows):
 def report(points):
     passed = True
     for cells, collision, phi, reynolds, drag, error in points:
-        laws = beetstra(phi, reynolds), tenneti(phi, reynolds)
+        laws = beetstra_drag(phi, reynolds), tenneti_drag(phi, reynolds)
         good = min(laws) * (1.0 - ACCEPTED) <= drag <= max(laws) * (1.0 + ACCEPTED)
         passed = passed and good
         print(f"solid fraction {phi:.3f}, Re {reynolds:6.4g}, {cells:g} cells, {collision}: F {drag:.2f} +- {error:.2f}; Beetstra "
@@ -92,8 +74,8 @@ def draw(points, name):
     for fraction, colour in zip(fractions, plt.cm.viridis(np.linspace(0.0, 0.9, len(fractions)))):
         near = points[np.isclose(points[:, 0], fraction, atol=0.03)]
         axes.errorbar(near[:, 1], near[:, 2], near[:, 3], fmt="o", color=colour, capsize=3, label=f"φ = {fraction:g}")
-        axes.plot(reynolds, beetstra(near[:, 0].mean(), reynolds), color=colour, lw=1.0)
-        axes.plot(reynolds, tenneti(near[:, 0].mean(), reynolds), color=colour, lw=1.0, ls="--")
+        axes.plot(reynolds, beetstra_drag(near[:, 0].mean(), reynolds), color=colour, lw=1.0)
+        axes.plot(reynolds, tenneti_drag(near[:, 0].mean(), reynolds), color=colour, lw=1.0, ls="--")
     axes.plot([], [], "k-", lw=1.0, label="Beetstra et al. 2007")
     axes.plot([], [], "k--", lw=1.0, label="Tenneti et al. 2011")
     axes.set(xscale="log", yscale="log", xlabel="Reynolds number U d/ν", ylabel="drag F over 3πηdU")
