@@ -44,6 +44,7 @@ double slope_for(const FlowNumbers& flow, double shields) {
 }
 
 double settled_height(const Case& c) {
+  if (gravity_vector(c.gravity).z() == 0.0) return 0.0;
   return grain_volume(c) / (settled_fraction(c) * c.domain.size.x() * c.domain.size.y());
 }
 

@@ -28,7 +28,7 @@ FlowNumbers flow_numbers(const Case& c);
 // sin = tau* (s - 1) d / R. Infinite where no slope is steep enough.
 double slope_for(const FlowNumbers& flow, double shields);
 
-// m, of the grains settled at settled_fraction().
+// m, of the grains settled at settled_fraction(); 0 without gravity across the bed.
 double settled_height(const Case& c);
 
 // Whether the faces on both sides of y hold the flow back.

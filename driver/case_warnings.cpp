@@ -216,7 +216,7 @@ std::vector<std::string> warnings_of_plan(const Case& c) {
                     c.run.until,
                     developed ? fmt::format("one turnover H/u* takes {:.2g} s", turnover)
                               : fmt::format("from rest that takes about {:.2g} s", flow.spin_up)));
-  if (!c.initial.fluid.log_profile) return found;
+  if (!c.initial.fluid.log_profile || flow.still_gaining) return found;
   const double given = c.initial.fluid.log_profile->shear_velocity, ratio = given / flow.friction_velocity;
   if (ratio < 0.8 || ratio > 1.25)
     found.push_back(

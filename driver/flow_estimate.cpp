@@ -46,6 +46,33 @@ double friction_velocity_of(double velocity, const Law& logarithms) {
   return friction_velocity;
 }
 
+// What a face that is not the top, or the start, or grains that move as prescribed do to the fluid next to them; m/s.
+void consider(FlowEstimate& flow, double speed, FlowCause cause) {
+  if (!(speed > flow.speed)) return;
+  flow.speed = speed;
+  flow.cause = cause;
+}
+
+void consider_start(const Case& c, FlowEstimate& flow) {
+  const coupling::InitialFluidKeys& start = c.initial.fluid;
+  if (start.uniform) consider(flow, start.uniform->norm(), FlowCause::initial_fluid);
+  if (start.linear_profile) consider(flow, start.linear_profile->velocity.norm(), FlowCause::initial_fluid);
+  if (!start.log_profile) return;
+  const double height = (c.domain.size.z() - start.log_profile->bed_height) / start.log_profile->roughness;
+  if (height > 1.0)
+    consider(flow, start.log_profile->shear_velocity / karman * std::log(height), FlowCause::initial_fluid);
+}
+
+// In the time of the run a slope adds no more than g_x times that time to the speed of the start.
+void limit_to_what_the_slope_gives(const Case& c, double along, FlowEstimate& flow) {
+  if (!c.initial.from.empty()) return;
+  FlowEstimate start;
+  consider_start(c, start);
+  const double reached = start.speed + along * c.run.until;
+  flow.still_gaining = reached < flow.speed;
+  flow.speed = std::min(flow.speed, reached);
+}
+
 FlowEstimate flow_of_slope(const Case& c, const Channel& channel) {
   FlowEstimate flow;
   const Vec3 gravity = gravity_vector(c.gravity);
@@ -60,6 +87,7 @@ FlowEstimate flow_of_slope(const Case& c, const Channel& channel) {
       flow.laminar ? 2.0 / 3.0 * flow.speed : std::max(0.5 * flow.speed, flow.speed - flow.friction_velocity / karman);
   flow.spin_up =
       flow.laminar ? 1.2 * channel.reach * channel.reach / channel.viscosity : 2.0 * flow.bulk_velocity / along;
+  limit_to_what_the_slope_gives(c, along, flow);
   return flow;
 }
 
@@ -106,13 +134,6 @@ FlowEstimate flow_of_moving_top(const Case& c, const Channel& channel) {
   return flow;
 }
 
-// What a face that is not the top, or the start, or grains that move as prescribed do to the fluid next to them; m/s.
-void consider(FlowEstimate& flow, double speed, FlowCause cause) {
-  if (!(speed > flow.speed)) return;
-  flow.speed = speed;
-  flow.cause = cause;
-}
-
 void consider_faces(const Case& c, const Channel& channel, FlowEstimate& flow) {
   for (std::size_t face = 0; face < c.domain.faces.size(); ++face) {
     const coupling::FaceKeys& keys = c.domain.faces[face];
@@ -121,16 +142,6 @@ void consider_faces(const Case& c, const Channel& channel, FlowEstimate& flow) {
     const double squeezed = face < bottom && channel.depth > 0.0 ? c.domain.size.z() / channel.depth : 1.0;
     if (keys.type == lbm::FaceType::velocity_inlet) consider(flow, keys.velocity.norm() * squeezed, FlowCause::inlet);
   }
-}
-
-void consider_start(const Case& c, FlowEstimate& flow) {
-  const coupling::InitialFluidKeys& start = c.initial.fluid;
-  if (start.uniform) consider(flow, start.uniform->norm(), FlowCause::initial_fluid);
-  if (start.linear_profile) consider(flow, start.linear_profile->velocity.norm(), FlowCause::initial_fluid);
-  if (!start.log_profile) return;
-  const double height = (c.domain.size.z() - start.log_profile->bed_height) / start.log_profile->roughness;
-  if (height > 1.0)
-    consider(flow, start.log_profile->shear_velocity / karman * std::log(height), FlowCause::initial_fluid);
 }
 
 // The speed that grains of a population are given, m/s.

@@ -4,7 +4,8 @@
 // A flow along the bed has the depth H from the settled bed to the top. Where the top drags it, each of the two
 // surfaces has half of it: h = H/2, else h = H.
 //
-//   slope           u_max of estimated_velocity(); u_tau^2 = g_x R, R: hydraulic radius, from h
+//   slope           u_max of estimated_velocity(), at most that of the start + g_x times the time of the run;
+//                   u_tau^2 = g_x R, R: hydraulic radius, from h
 //   mean velocity   the water above the bed carries it all: U = mean velocity times water/(A H);
 //                   laminar (U h/nu < 500): u_tau^2 = 3 nu U/h, u_max = 3/2 U
 //                   turbulent: U = (u_tau/kappa) [ln(h/z_0) - 1], u_max = U + u_tau/kappa
@@ -39,6 +40,7 @@ struct FlowEstimate {
   double friction_velocity = 0.0;  // m/s
   bool laminar = false;
   double spin_up = 0.0;  // s
+  bool still_gaining = false;  // the run ends before a slope can have brought the flow to its speed
 };
 
 // Of a case with a fluid; all 0 without.

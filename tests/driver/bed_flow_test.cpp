@@ -67,6 +67,14 @@ TEST(FlowNumbers, KnowHowHighABedSettles) {
   EXPECT_EQ(settled_fraction(flume), 0.6);
 }
 
+// Grains without weight, as in a shear cell, are where they are put.
+TEST(FlowNumbers, KnowThatGrainsWithoutWeightDoNotSettle) {
+  Case c = water_over_glass(5e-3, 0.0, 0.05, 0.040, lbm::FaceType::periodic);
+  EXPECT_GT(settled_height(c), 0.0);
+  c.gravity.magnitude = 0.0;
+  EXPECT_EQ(settled_height(c), 0.0);
+}
+
 TEST(FlowNumbers, AreMissingWithoutAFlow) {
   Case still = water_over_glass(5e-3, 0.0, 0.04, 0.04, lbm::FaceType::periodic);
   EXPECT_TRUE(std::isnan(flow_numbers(still).shields_depth));

@@ -53,6 +53,39 @@ TEST(FlowEstimate, OfASlopeIsTheLogLaw) {
   EXPECT_NEAR(flow.spin_up, 2.0 * flow.bulk_velocity / along, 1e-12);
 }
 
+// g_x t, and as much more than the start; the friction velocity stays that of the developed flow.
+TEST(FlowEstimate, OfASlopeIsNoMoreThanTheRunHasTimeFor) {
+  Case c = wide_bed();
+  c.grains[0].fixed = true;  // or water that falling grains push aside would be faster
+  const FlowEstimate developed = flow_estimate(c);
+  const double along = 9.8 * std::sin(std::atan(0.016));
+  c.run.until = 2.0;
+  EXPECT_TRUE(flow_estimate(c).still_gaining);
+  EXPECT_NEAR(flow_estimate(c).speed, 2.0 * along, 1e-12);
+  EXPECT_EQ(flow_estimate(c).friction_velocity, developed.friction_velocity);
+  c.initial.fluid.uniform = Vec3(0.2, 0.0, 0.0);
+  EXPECT_NEAR(flow_estimate(c).speed, 0.2 + 2.0 * along, 1e-12);
+  c.run.until = 10.0;
+  EXPECT_FALSE(flow_estimate(c).still_gaining);
+  EXPECT_EQ(flow_estimate(c).speed, developed.speed);
+  c.run.until = 2.0;
+  c.initial.from = "another run";  // whose speed is not known
+  EXPECT_EQ(flow_estimate(c).speed, developed.speed);
+}
+
+// A slow start of a short run is meant to be slow; that of a long run is a mistake to warn of.
+TEST(FlowEstimate, WarnsOfAnInitialShearVelocityThatDoesNotLast) {
+  Case c = wide_bed();
+  c.initial.fluid.log_profile.emplace();
+  c.initial.fluid.log_profile->bed_height = c.domain.size.z() - depth;
+  c.initial.fluid.log_profile->shear_velocity = 0.008;
+  c.initial.fluid.log_profile->roughness = 3e-4;
+  c.run.until = 2.0;
+  EXPECT_FALSE(any_contains(warnings_of_plan(c), "shear velocity"));
+  c.run.until = 30.0;
+  EXPECT_TRUE(any_contains(warnings_of_plan(c), "shear velocity of 0.008"));
+}
+
 TEST(FlowEstimate, OfAFilmOfOilIsItsParabola) {
   const FlowEstimate flow = flow_estimate(film(1e-3));
   const double along = 9.8 * std::sin(std::atan(0.016));
@@ -151,6 +184,7 @@ TEST(Warnings, OfThePlan) {
   c.initial.fluid.log_profile = coupling::LogProfileKeys{0.06, 0.080, 2e-4, std::nullopt};
   EXPECT_TRUE(warnings_of_plan(c).empty());
   c.initial.fluid.log_profile->shear_velocity = 0.040;
+  c.run.until = 30.0;
   EXPECT_TRUE(any_contains(warnings_of_plan(c), "shear_velocity: 0.08"));
   c.run.until = 0.4;  // H/u_tau = 0.51 s
   EXPECT_TRUE(any_contains(warnings_of_plan(c), "one turnover"));
