@@ -39,7 +39,7 @@ struct FlowEstimate {
   double bulk_velocity = 0.0;      // m/s, mean over the depth
   double friction_velocity = 0.0;  // m/s
   bool laminar = false;
-  double spin_up = 0.0;  // s
+  double spin_up = 0.0;        // s
   bool still_gaining = false;  // the run ends before a slope can have brought the flow to its speed
 };
 
