@@ -43,20 +43,25 @@ def blank(text):
     return re.sub(r"[^\n]", " ", text)
 
 
+def without_fences(text):
+    """The text with fenced code as spaces, every character in its place."""
+    lines, fence = [], None
+    for line in text.split("\n"):
+        mark = FENCE.match(line)
+        inside = fence is not None
+        if inside and mark and mark.group(1).startswith(fence) and not line.strip().strip(fence[0]):
+            fence = None
+        elif not inside and mark:
+            fence = mark.group(1)
+        lines.append(blank(line) if inside or mark else line)
+    return "\n".join(lines)
+
+
 def without_blocks(text):
     """The text with fenced and indented code as spaces, every character in its place."""
-    lines, fence, in_code, in_list, before_blank = [], None, False, 0, True
-    for line in text.split("\n"):
-        opening, item = FENCE.match(line), LIST_ITEM.match(line)
-        if fence:
-            if opening and opening.group(1).startswith(fence) and not line.strip().strip(fence[0]):
-                fence = None
-            lines.append(blank(line))
-            continue
-        if opening:
-            fence = opening.group(1)
-            lines.append(blank(line))
-            continue
+    lines, in_code, in_list, before_blank = [], False, 0, True
+    for line in without_fences(text).split("\n"):
+        item = LIST_ITEM.match(line)
         if item and not in_code:
             in_list = item.end()
         elif line.strip() and before_blank and not line.startswith(" "):
