@@ -14,7 +14,8 @@ ONLY_WITH = re.compile(r"; only with ([^;]*)$")
 INTRODUCTION = """# Keys of a case
 
 Every key of a case file with its default, unit, range and meaning, as `thalweg defaults` prints them for each `system`. An
-*example* is a plausible value of a key that has no default. A key is *required* wherever its section is given. `[]` stands for the entries of a list: `grains[].count` is `grains.0.count` for `--set`. The unit 1 means none.
+*example* is a plausible value of a key that has no default. A key is *required* wherever its section is given. `[]` stands for the
+entries of a list: `grains[].count` is `grains.0.count` for `--set`. The unit 1 means none.
 [The case file](../docs/input.md) explains the concepts.
 
 """

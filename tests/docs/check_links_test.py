@@ -1,4 +1,4 @@
-"""check_links.py accepts links that work and reports every kind of dead link, each planted alone; and what it reads of Markdown."""
+"""check_links.py accepts links that work and reports every kind of dead link, each planted alone."""
 import pathlib
 import subprocess
 import sys

@@ -28,7 +28,7 @@ grains:                                     # populations of grains
 run:                                        # duration
   until: 3                                  # example, required, s, above 0; end
 """,
-    "fluid": """system: fluid                               # example, required, resolved (with grains) | fluid (alone); what is simulated
+    "fluid": """system: fluid   # example, required, resolved (with grains) | fluid (alone); what is simulated
 fluid:                                      # properties of the fluid
   collision: trt                            # bgk (one; time) | trt; collision operator
   extra: 0                                  # 1; more
