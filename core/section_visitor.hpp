@@ -27,6 +27,7 @@ namespace thalweg {
 struct OnlyIf {
   bool holds = true;
   std::string reason = {};
+  std::string with = {};  // the choice that has the key: "collision: trt"; the documentation names it
 };
 
 struct RealKey {
@@ -197,10 +198,14 @@ protected:
   virtual void item(const std::string& key, std::size_t index, const Body& body) = 0;
   virtual void example_item(const Body&) {}  // of a list that is empty
 
+  // Whether to visit the next key although only another choice has it.
+  virtual bool shows_key_with(const std::string&) { return false; }
+
 private:
   bool belongs(const std::string& key, const OnlyIf& only_if) {
-    if (!only_if.holds) not_here(key, only_if.reason);
-    return only_if.holds;
+    if (only_if.holds || (!only_if.with.empty() && shows_key_with(only_if.with))) return true;
+    not_here(key, only_if.reason);
+    return false;
   }
   void visit(const std::string& key, auto& value, const auto& about) {
     if (belongs(key, about.only_if)) value_of(key, value, about);

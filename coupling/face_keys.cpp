@@ -74,7 +74,8 @@ void describe(SectionVisitor& visit, FaceKeys& face) {
               .required = true,
               .at_least = 0.0,
               .example = 1e-4,
-              .only_if = {face.type == FaceType::navier_slip, "only a navier_slip wall has a slip length; remove it"}});
+              .only_if = {face.type == FaceType::navier_slip, "only a navier_slip wall has a slip length; remove it",
+                          "type: navier_slip"}});
   visit.flag("on_node", face.on_node,
              {.meaning = "the wall runs through the outermost cell centres, not beyond them",
               .only_if = {face.slips() && !face.of_first_cell,
@@ -86,14 +87,16 @@ void describe(SectionVisitor& visit, FaceKeys& face) {
               .meaning = "of the wall or of the fluid that enters",
               .required = true,
               .example = 0.1,
-              .only_if = {face.has_velocity(), "only a moving wall or a velocity_inlet has a velocity; remove it"}});
+              .only_if = {face.has_velocity(), "only a moving wall or a velocity_inlet has a velocity; remove it",
+                          "type: moving or velocity_inlet"}});
   visit.section("oscillation", face.oscillation,
                 {.meaning = "dry grains only: on top of the velocity",
-                 .only_if = {face.type == FaceType::moving, "only a moving wall swings; remove it"}});
+                 .only_if = {face.type == FaceType::moving, "only a moving wall swings; remove it", "type: moving"}});
   visit.real("pressure", face.pressure,
              {.unit = "Pa",
               .meaning = "above the reference pressure",
-              .only_if = {face.type == FaceType::pressure_outlet, "only a pressure_outlet has a pressure; remove it"}});
+              .only_if = {face.type == FaceType::pressure_outlet, "only a pressure_outlet has a pressure; remove it",
+                          "type: pressure_outlet"}});
 }
 
 lbm::FaceConditions conditions_of(const std::array<FaceKeys, 6>& faces, const Units& units) {

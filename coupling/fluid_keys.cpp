@@ -43,7 +43,7 @@ void describe(SectionVisitor& visit, FluidKeys& fluid) {
              {.meaning = "of trt: (1/omega+ - 1/2)(1/omega- - 1/2); 3/16 puts walls exactly half way",
               .above = 0.0,
               .only_if = {fluid.collision == lbm::CollisionModel::trt,
-                          "only collision trt has a magic parameter; remove it"}});
+                          "only collision trt has a magic parameter; remove it", "collision: trt"}});
   visit.real(
       "bulk_relaxation_time", fluid.bulk_relaxation_time,
       {.meaning =

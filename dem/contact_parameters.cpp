@@ -33,7 +33,7 @@ void describe(SectionVisitor& visit, ContactParameters& contact) {
                       "elastic spheres have youngs_modulus, poisson_ratio and restitution; remove it or set law: "
                       "linear"};
   const OnlyIf elastic{contact.law == Law::hertz_mindlin,
-                       "the linear law has stiffnesses; remove it or set law: hertz_mindlin"};
+                       "the linear law has stiffnesses; remove it or set law: hertz_mindlin", "law: hertz_mindlin"};
   visit.real("normal_stiffness", contact.normal_stiffness,
              {.unit = "N/m", .meaning = "of the normal spring", .above = 0.0, .only_if = linear});
   visit.real("tangential_stiffness", contact.tangential_stiffness,

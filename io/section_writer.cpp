@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
 
 namespace thalweg::io {
 namespace {
@@ -43,15 +45,24 @@ std::string SectionWriter::comment_of(const RealKey& about) const {
 
 void SectionWriter::put(bool given, const std::string& key, const std::string& value, const std::string& comment,
                         Source source) {
-  given = given && given_;
+  const std::string only_with = std::exchange(only_with_, {});
+  given = given && given_ && only_with.empty();
   if (!given && style_ == YamlStyle::plain) return;
   const bool example = given && source == Source::example && style_ == YamlStyle::documented;
-  lines_.push_back({given, item_begins_, depth_, key, value, (example ? "example, " : "") + comment});
+  lines_.push_back({given, item_begins_, depth_, key, value,
+                    (example ? "example, " : "") + comment + (only_with.empty() ? "" : "; only with " + only_with)});
+  lines_.back().other_choice = !only_with.empty();
   item_begins_ = false;
 }
 
+bool SectionWriter::shows_key_with(const std::string& choice) {
+  if (style_ == YamlStyle::plain) return false;
+  only_with_ = choice;
+  return true;
+}
+
 void SectionWriter::value_of(const std::string& key, double& value, const RealKey& about) {
-  put(true, key, shortest(given_ ? value : about.example.value_or(value)), comment_of(about),
+  put(true, key, shortest(value_shown() ? value : about.example.value_or(value)), comment_of(about),
       source_of(about.required));
 }
 
@@ -61,7 +72,7 @@ void SectionWriter::value_of(const std::string& key, std::optional<double>& valu
 }
 
 void SectionWriter::value_of(const std::string& key, Vec3& value, const RealKey& about) {
-  const bool show_example = !given_ && about.example;
+  const bool show_example = !value_shown() && about.example;
   put(true, key, bracketed(show_example ? Vec3(Vec3::Constant(*about.example)) : value), comment_of(about),
       source_of(about.required));
 }
@@ -153,6 +164,7 @@ void SectionWriter::nested(const std::string& key, bool given, const SectionKey&
   const Source source = source_of(optional_section_);
   optional_section_ = false;
   if (!given && style_ == YamlStyle::plain) return;
+  given = given && only_with_.empty();
   put(given, key, "", style_ == YamlStyle::plain ? "" : about.meaning, source);
   const std::size_t head = lines_.size() - 1;
   given_ = given_ && given;
@@ -163,12 +175,17 @@ void SectionWriter::nested(const std::string& key, bool given, const SectionKey&
 
   std::size_t shown_inside = 0;
   for (std::size_t n = head + 1; n < lines_.size(); ++n) shown_inside += lines_[n].given ? 1 : 0;
-  const bool only_shorthand = lines_.size() == head + 2 && lines_.back().key == about.shorthand;
+  // Keys of other choices are left to a section that is shown in full.
+  const auto own = std::find_if(lines_.begin() + static_cast<std::ptrdiff_t>(head) + 1, lines_.end(),
+                                [&](const Line& line) { return !line.other_choice && line.depth == depth_ + 1; });
+  const bool only_shorthand =
+      own != lines_.end() && own->key == about.shorthand && std::none_of(own + 1, lines_.end(), [&](const Line& line) {
+        return !line.other_choice && line.depth == depth_ + 1;
+      });
   if (only_shorthand) {
-    lines_[head].value = lines_.back().value;
-    if (style_ == YamlStyle::documented)
-      lines_[head].comment = fmt::format("{}; {}", lines_.back().comment, about.meaning);
-    lines_.pop_back();
+    lines_[head].value = own->value;
+    if (style_ == YamlStyle::documented) lines_[head].comment = fmt::format("{}; {}", own->comment, about.meaning);
+    lines_.resize(head + 1);
   } else if (shown_inside == 0 && lines_[head].given) {
     lines_[head].value = about.empty_name.empty() ? "{}" : about.empty_name;
   }

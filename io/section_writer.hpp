@@ -38,7 +38,8 @@ private:
     bool item;   // the first line of an entry of a list
     int depth;   // in sections
     std::string key, value, comment;
-    bool example = false;  // with item: of an entry that is a comment altogether
+    bool example = false;       // with item: of an entry that is a comment altogether
+    bool other_choice = false;  // a key that this case cannot have
   };
   struct Range {
     std::size_t begin, end;  // of lines
@@ -69,7 +70,10 @@ private:
   std::size_t begin_list(const std::string& key, std::size_t size, const SectionKey& about) override;
   void item(const std::string& key, std::size_t index, const Body& body) override;
   void example_item(const Body& body) override;
+  bool shows_key_with(const std::string& choice) override;
 
+  // Whether a value is that of the case, not an example of a key that is not given.
+  bool value_shown() const { return given_ && only_with_.empty(); }
   void put(bool given, const std::string& key, const std::string& value, const std::string& comment,
            Source source = Source::default_value);
   std::string comment_of(const RealKey& about) const;
@@ -79,6 +83,7 @@ private:
   bool given_ = true;              // false inside a section that is not given
   bool item_begins_ = false;       // the next line is the first of an entry of a list
   bool optional_section_ = false;  // the next section may be left out
+  std::string only_with_;          // the choice that has the next key, where the case has made another
   int depth_ = 0;
   std::vector<Line> lines_;
 };

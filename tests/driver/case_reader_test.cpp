@@ -174,6 +174,10 @@ TEST(CaseReader, TheDefaultsAreValidAndNameEveryKey) {
                                 "positions", "region", "lower", "prescribed_velocity", "prescribed_angular_velocity",
                                 "damping", "uniform", "log_profile", "bed_height", "shear_velocity", "roughness"})
     EXPECT_NE(text.find("# " + key + ": "), std::string::npos) << key;
+  // Keys that belong to a choice the defaults do not make.
+  for (const std::string key : {"magic_parameter", "slip_length", "oscillation", "pressure", "youngs_modulus"})
+    EXPECT_NE(text.find("# " + key + ": "), std::string::npos) << key;
+  EXPECT_NE(text.find("; only with collision: trt\n"), std::string::npos);
   std::vector<std::string> keys;
   collect_keys(YAML::Load(text), "", keys);
   EXPECT_GE(keys.size(), 50u);

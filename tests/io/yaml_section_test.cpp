@@ -52,6 +52,25 @@ static void describe(SectionVisitor& visit, Paint& paint) {
   else
     visit.not_here("gloss", "only green paint shines; remove the key");
 }
+// A choice, and a key of one of its words alone.
+struct Lamp {
+  Colour colour = Colour::red;
+  double range = 30.0;
+};
+static void describe(SectionVisitor& visit, Lamp& lamp) {
+  visit.choice("colour", lamp.colour, colours, {.meaning = "at night"});
+  visit.real("range", lamp.range,
+             {.unit = "m",
+              .meaning = "of sight",
+              .only_if = {lamp.colour == Colour::green, "only a green lamp has one; remove it", "colour: green"}});
+}
+struct LampPost {
+  Lamp upper, lower{Colour::green, 20.0};
+};
+static void describe(SectionVisitor& visit, LampPost& post) {
+  visit.section("upper", post.upper, {.meaning = "on top", .shorthand = "colour"});
+  visit.section("lower", post.lower, {.meaning = "at hand", .shorthand = "colour"});
+}
 static void describe(SectionVisitor& visit, Cargo& cargo) {
   visit.real("mass", cargo.mass, {.unit = "kg", .meaning = "of the load", .above = 0.0});
 }
@@ -125,6 +144,18 @@ TEST(YamlSection, DocumentationShowsUnitRangeMeaningAndWhatIsNotGiven) {
   for (const std::string part : {"length: 2.5   ", "# example, required, m, above 0; overall\n", "paint: red   ",
                                  "cargo: none   ", "# mass: 1   ", "# lining: red   ", "# red | green; flown\n"})
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+}
+
+TEST(YamlSection, DocumentationShowsTheKeysOfOtherChoicesAsComments) {
+  const std::string text = written(Lamp{}, YamlStyle::documented);
+  EXPECT_NE(text.find("\n# range: 30   "), std::string::npos) << text;
+  EXPECT_NE(text.find("# m; of sight; only with colour: green\n"), std::string::npos) << text;
+  EXPECT_EQ(written(Lamp{}, YamlStyle::plain), "colour: red\n");
+  EXPECT_EQ(written(Lamp{Colour::green, 20.0}, YamlStyle::documented).find("only with"), std::string::npos);
+  // A section that a word stands for stays that word.
+  const std::string post = written(LampPost{}, YamlStyle::documented);
+  EXPECT_NE(post.find("upper: red   "), std::string::npos) << post;
+  EXPECT_NE(post.find("lower:   "), std::string::npos) << post;
 }
 
 TEST(YamlSection, OverridesReplaceAddReachIntoListsAndRemove) {
