@@ -47,7 +47,8 @@ std::size_t expect_all_pairs(const PeriodicBox& box, double distance, const std:
   EXPECT_EQ(visits, visited.size()) << "a pair was visited twice";
   for (std::uint32_t a = 0; a < points.size(); ++a)
     for (std::uint32_t b = a + 1; b < points.size(); ++b)
-      EXPECT_TRUE(distance_between(points[a], points[b], box) >= distance || visited.contains({a, b})) << a << " and " << b;
+      EXPECT_TRUE(distance_between(points[a], points[b], box) >= distance || visited.contains({a, b}))
+          << a << " and " << b;
   return visits;
 }
 
