@@ -3,7 +3,9 @@
 
 #include <mpi.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <type_traits>
 #include <vector>
 
@@ -31,10 +33,34 @@ double max_over_ranks(MPI_Comm communicator, double value);
 bool any_rank(MPI_Comm communicator, bool value);
 
 // Sends rows[i] to rank destination[i]; returns what the others sent here, ordered by sending rank, then by the
-// sender's order. Row must be trivially copyable. Collective.
+// sender's order. Row must be trivially copyable. Collective. Memory and messages depend on the number of ranks that
+// exchange something with this one, not on all ranks.
 template <typename Row>
 std::vector<Row> exchange_rows(MPI_Comm communicator, const std::vector<Row>& rows,
                                const std::vector<int>& destination);
+
+namespace detail {
+
+// Rows for one rank.
+struct Parcel {
+  int rank;
+  std::size_t first = 0, count = 0;  // in the rows packed by receiver
+};
+
+// The parcels of rows with these destinations, in the order of the ranks, where each begins, and empty as yet.
+std::vector<Parcel> parcels_to(const std::vector<int>& destination);
+
+// The one to a rank; there must be one.
+Parcel& parcel_to(int rank, std::vector<Parcel>& parcels);
+
+// Sends the parcels of the rows at `packed`; writes all that arrives, in the order of the senders' ranks, to
+// place(count) with the number of rows. row_size: bytes. Collective. Who sends to whom is found out by messages between
+// those that do: T. Hoefler, C. Siebert, A. Lumsdaine, Scalable communication protocols for dynamic sparse data
+// exchange, PPoPP 2010.
+void exchange_parcels(MPI_Comm communicator, const std::vector<Parcel>& parcels, const void* packed,
+                      std::size_t row_size, const std::function<void*(std::size_t)>& place);
+
+}  // namespace detail
 
 }  // namespace thalweg
 

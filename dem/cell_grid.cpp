@@ -5,15 +5,54 @@
 
 namespace thalweg::dem {
 
+namespace {
+
+// Of slabs that divide one axis of the box, the one a coordinate lies in.
+int slab_of(double coordinate, double size, int slabs) {
+  return static_cast<int>(std::clamp(coordinate / size * slabs, 0.0, static_cast<double>(slabs - 1)));
+}
+
+}  // namespace
+
+CellGrid::Axis CellGrid::occupied_part(const PeriodicBox& box, int axis, double width, std::span<const Vec3> points) {
+  Axis part;
+  const double most = 8.0 * static_cast<double>(points.size()) + 64.0;
+  part.slabs = static_cast<int>(std::clamp(box.size[axis] / width, 1.0, most));
+  std::vector<char> occupied(static_cast<std::size_t>(part.slabs), 0);
+  for (const Vec3& point : points) occupied[slab_of(point[axis], box.size[axis], part.slabs)] = 1;
+  const auto first = std::find(occupied.begin(), occupied.end(), 1);
+  if (first == occupied.end()) return part;
+
+  // The longest run of empty slabs is left out: between two points of a periodic axis, else at the ends.
+  const int begin = static_cast<int>(first - occupied.begin()), slabs = part.slabs;
+  int empty = 0, longest = 0, after = begin, last = begin;
+  for (int n = 1; n <= slabs; ++n) {
+    const int slab = (begin + n) % slabs;
+    empty = occupied[slab] ? 0 : empty + 1;
+    if (occupied[slab] && slab > last) last = slab;
+    if (empty > longest) {
+      longest = empty;
+      after = (slab + 1) % slabs;
+    }
+  }
+  part.first = box.periodic[axis] ? after : begin;
+  part.count = box.periodic[axis] ? slabs - longest : last - begin + 1;
+  part.around = box.periodic[axis] && part.count == slabs;
+  if (part.around) part.first = 0;
+  return part;
+}
+
 CellGrid::CellGrid(const PeriodicBox& box, double distance, std::span<const Vec3> points) : box_(box) {
-  // Cells at least `distance` wide, and no more of them than a few for each point, however large the box is.
+  // Cells at least `distance` wide, and no more of them than a few for each point, however far apart these are.
   const double most = 8.0 * static_cast<double>(points.size()) + 64.0;
   for (double width = distance;; width *= 1.25) {
     double cells = 1.0;
-    for (int axis = 0; axis < 3; ++axis) cells *= std::max(1.0, std::floor(box.size[axis] / width));
-    if (cells > most) continue;
-    for (int axis = 0; axis < 3; ++axis) count_[axis] = std::max(1, static_cast<int>(box.size[axis] / width));
-    break;
+    for (int axis = 0; axis < 3; ++axis) {
+      axes_[axis] = occupied_part(box, axis, width, points);
+      count_[axis] = axes_[axis].count;
+      cells *= count_[axis];
+    }
+    if (cells <= most) break;
   }
 
   start_.assign(static_cast<std::size_t>(count_[0]) * count_[1] * count_[2] + 1, 0);
@@ -29,19 +68,20 @@ CellGrid::CellGrid(const PeriodicBox& box, double distance, std::span<const Vec3
 }
 
 int CellGrid::cell_along(int axis, double coordinate) const {
-  const double cell = coordinate / box_.size[axis] * count_[axis];
-  return static_cast<int>(std::clamp(cell, 0.0, static_cast<double>(count_[axis] - 1)));
+  const Axis& part = axes_[axis];
+  const int cell = slab_of(coordinate, box_.size[axis], part.slabs) - part.first;
+  return cell < 0 ? cell + part.slabs : cell;
 }
 
 CellGrid::Neighbours CellGrid::neighbours(int axis, int cell) const {
   const int count = count_[axis];
   Neighbours near;
-  if (count <= 2 || (box_.periodic[axis] && count == 3)) {
+  if (count <= 2 || (axes_[axis].around && count == 3)) {
     for (int c = 0; c < count; ++c) near.cell[near.count++] = c;
     return near;
   }
   for (int c = cell - 1; c <= cell + 1; ++c) {
-    if (box_.periodic[axis])
+    if (axes_[axis].around)
       near.cell[near.count++] = (c + count) % count;
     else if (c >= 0 && c < count)
       near.cell[near.count++] = c;

@@ -1,5 +1,6 @@
-// Points sorted into the cells of a grid over the box, to find all pairs within a distance. Knows periodic axes, also
-// those with fewer than three cells: every pair is visited once.
+// Points sorted into the cells of a grid, to find all pairs within a distance. The grid covers the part of the box in
+// which there are points, so its size depends on these and not on the box. Knows periodic axes, also those with fewer
+// than three cells, and points on both sides of a periodic face: every pair is visited once.
 #pragma once
 
 #include "core/periodic_box.hpp"
@@ -48,11 +49,20 @@ private:
         }
   }
 
+  // The cells along an axis: of `slabs` that divide the box, `count` from the slab `first` on, across a periodic face
+  // if need be.
+  struct Axis {
+    int slabs = 1, first = 0, count = 1;
+    bool around = false;  // periodic, and every slab is a cell: the last one is next to the first
+  };
+  static Axis occupied_part(const PeriodicBox& box, int axis, double width, std::span<const Vec3> points);
+
   int cell_along(int axis, double coordinate) const;
   Neighbours neighbours(int axis, int cell) const;
   std::size_t index(int i, int j, int k) const { return (static_cast<std::size_t>(k) * count_[1] + j) * count_[0] + i; }
 
   PeriodicBox box_;
+  std::array<Axis, 3> axes_;
   Index3 count_{1, 1, 1};
   std::vector<std::uint32_t> start_;    // first member of each cell, and one past the last
   std::vector<std::uint32_t> members_;  // points by cell

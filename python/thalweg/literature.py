@@ -50,19 +50,11 @@ def schiller_naumann_drag(reynolds):
     return 24.0 / reynolds * (1.0 + 0.15 * reynolds**0.687) if reynolds < 1000.0 else 0.44
 
 
-# Direct numerical simulations of open channels over one layer of spheres on a square lattice: name, u* d/nu, height of the water's
-# surface above the floor in diameters, Reynolds number of flow rate per width. C. Chan-Braun, M. Garcia-Villalba, M. Uhlmann,
-# J. Fluid Mech. 684 (2011) 441; M. Mazzuoli, M. Uhlmann, J. Fluid Mech. 824 (2017) 722.
-SPHERE_CHANNELS = (("Chan-Braun et al. (2011)", 49.3, 5.57, 2880.0), ("Mazzuoli and Uhlmann (2017)", 120.0, 5.5, 6900.0))
-
-
-def sphere_channel(grain_reynolds):
-    """Name and mean velocity (in u*, over the depth from 0.8 diameters above the floor on) of the simulation whose u* d/nu is within
-    5 % of the given one; None if there is none."""
-    for name, number, height, flow_rate in SPHERE_CHANNELS:
-        if abs(grain_reynolds / number - 1.0) < 0.05:
-            return name, flow_rate / (number * (height - 0.8))
-    return None
+# Direct numerical simulation of an open channel over one layer of spheres on a square lattice: u* d/nu, height of the surface above
+# the floor in diameters, Reynolds number of the flow rate per width (their abstract), and mean velocity in u* over the depth from
+# 0.8 diameters above the floor on. M. Mazzuoli, M. Uhlmann, J. Fluid Mech. 824 (2017) 722.
+SPHERE_CHANNEL_NUMBER, SPHERE_CHANNEL_HEIGHT, SPHERE_CHANNEL_FLOW_RATE = 120.0, 5.5, 6900.0
+SPHERE_CHANNEL_MEAN = SPHERE_CHANNEL_FLOW_RATE / (SPHERE_CHANNEL_NUMBER * (SPHERE_CHANNEL_HEIGHT - 0.8))
 
 
 def settling_speed(diameter, density_ratio, gravity, viscosity):

@@ -28,6 +28,49 @@ TEST(ExchangeRows, DeliversInOrderOfTheSendingRank) {
   }
 }
 
+// Many exchanges in a row with nothing between them, each rank with other partners in each and some with none, so that
+// ranks that are early send for the next exchange while others are in the last.
+TEST(ExchangeRows, KeepsExchangesApartThatFollowEachOther) {
+  const int rank = rank_of(MPI_COMM_WORLD), ranks = size_of(MPI_COMM_WORLD);
+  struct Row {
+    int from, round, serial;
+  };
+  const auto count = [](int from, int to, int round) { return (7 * from + 3 * to + round) % 4; };  // 0 to 3 rows
+  for (int round = 0; round < 400; ++round) {
+    std::vector<Row> rows;
+    std::vector<int> destination;
+    for (int to = ranks - 1; to >= 0; --to)
+      for (int serial = 0; serial < count(rank, to, round); ++serial) {
+        rows.push_back({rank, round, serial});
+        destination.push_back(to);
+      }
+    const std::vector<Row> received = exchange_rows(MPI_COMM_WORLD, rows, destination);
+    std::size_t next = 0;
+    for (int from = 0; from < ranks; ++from)
+      for (int serial = 0; serial < count(from, rank, round); ++serial, ++next) {
+        ASSERT_LT(next, received.size());
+        ASSERT_EQ(received[next].from, from);
+        ASSERT_EQ(received[next].round, round);
+        ASSERT_EQ(received[next].serial, serial);
+      }
+    ASSERT_EQ(next, received.size());
+  }
+}
+
+// Communicators that share ranks count their exchanges separately.
+TEST(ExchangeRows, WorksInPartsOfTheRanks) {
+  const int rank = rank_of(MPI_COMM_WORLD);
+  MPI_Comm half;
+  MPI_Comm_split(MPI_COMM_WORLD, rank % 2, rank, &half);
+  if (rank % 2 == 0) {
+    const std::size_t expected = rank == 0 ? static_cast<std::size_t>(size_of(half)) : 0;
+    EXPECT_EQ(exchange_rows(half, std::vector<int>{5}, {0}).size(), expected);
+  }
+  EXPECT_EQ(exchange_rows(MPI_COMM_WORLD, std::vector<int>{rank}, {rank}), std::vector<int>{rank});
+  EXPECT_EQ(exchange_rows(half, std::vector<int>{rank}, {rank_of(half)}), std::vector<int>{rank});
+  MPI_Comm_free(&half);
+}
+
 TEST(PackedExchange, RingPassesAgainAndAgain) {
   const int rank = rank_of(MPI_COMM_WORLD), ranks = size_of(MPI_COMM_WORLD);
   const int left = (rank + ranks - 1) % ranks, right = (rank + 1) % ranks;

@@ -7,17 +7,16 @@ long as sound takes to cross the sphere on the lattice: in a shorter one the flu
 """
 import math
 import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+from thalweg.literature import settling_speed
 
 DIAMETER, SOLID, FLUID, GRAVITY = 6.0e-3, 7800.0, 950.0, 9.81
 
 
 def terminal(viscosity):
-    velocity = 0.1
-    for _ in range(500):
-        reynolds = velocity * DIAMETER / viscosity
-        drag = 24.0 / reynolds * (1.0 + 0.15 * reynolds ** 0.687)
-        velocity = math.sqrt(velocity * math.sqrt(4.0 * (SOLID / FLUID - 1.0) * GRAVITY * DIAMETER / (3.0 * drag)))
-    return velocity
+    return settling_speed(DIAMETER, SOLID / FLUID, GRAVITY, viscosity)
 
 
 def main():

@@ -1,0 +1,71 @@
+#!/usr/bin/python3
+"""Mean velocity over a rough bed beside direct simulations of it: compare.py [RUN...] [--table FILE] [--figure FILE]
+
+RUN: folders of runs of the case of tutorial 5; each becomes a row of the table (rows of other runs stay). The mean velocity is that
+of the last third of the run. Prints each beside that of Mazzuoli and Uhlmann (2017), and pass or fail. Exit code 0 if all pass.
+"""
+import sys
+from pathlib import Path
+
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[2] / "python"))
+from thalweg import Run
+from thalweg.comparison import compared_rows
+from thalweg.literature import SPHERE_CHANNEL_MEAN
+from thalweg.rough_bed import rough_flow, roughness_of
+
+COLUMNS = ["run", "cells [1]", "subgrid_constant [1]", "grain_reynolds_number [1]", "depth [d]", "mean_velocity [u*]", "error [u*]",
+           "roughness [d]"]
+ACCEPTED = 0.05   # of the mean velocity: what the numbers of the simulations, as printed, and two errors of a run leave open
+
+
+def measured(folder):
+    run = Run(folder)
+    flow = rough_flow(run, 2.0 / 3.0 * run.series["time"][-1])
+    values = [f"{run.diameter / float(run.case['domain']['spacing']):.4g}", run.case["fluid"]["smagorinsky_constant"]]
+    numbers = [flow.grain_reynolds, flow.depth, flow.bulk_velocity, flow.bulk_error, flow.roughness]
+    return dict(zip(COLUMNS, [run.folder.name, *map(str, values), *[f"{number:.4g}" for number in numbers]]))
+
+
+def report(rows):
+    passed = True
+    for row in rows:
+        v = {column: float(row[column]) for column in COLUMNS[1:]}
+        difference = v["mean_velocity [u*]"] / SPHERE_CHANNEL_MEAN - 1.0
+        good = abs(difference) <= ACCEPTED
+        passed = passed and good
+        print(f"{row['run']}: {v['cells [1]']:.3g} cells, C_s {v['subgrid_constant [1]']:.2f}, mean velocity "
+              f"{v['mean_velocity [u*]']:.2f} +- {v['error [u*]']:.2f} u* (reference {SPHERE_CHANNEL_MEAN:.2f}, {100 * difference:+.0f} "
+              f"%), k_s {v['roughness [d]']:.2f} d ({roughness_of(SPHERE_CHANNEL_MEAN, v['depth [d]']):.2f}): "
+              f"{'pass' if good else 'FAIL'}")
+    return passed
+
+
+def draw(rows, name):
+    figure, axes = plt.subplots(figsize=(5.6, 4.0), layout="constrained")
+    for cells, colour in (("6", "#c0392b"), ("10", "#14496e")):
+        chosen = sorted((row for row in rows if row["cells [1]"] == cells), key=lambda row: float(row["subgrid_constant [1]"]))
+        of = lambda column: np.array([float(row[column]) for row in chosen])
+        axes.errorbar(of("subgrid_constant [1]"), of("mean_velocity [u*]") / SPHERE_CHANNEL_MEAN, of("error [u*]") / SPHERE_CHANNEL_MEAN,
+                      marker="o", color=colour, capsize=3, label=f"{cells} cells a diameter")
+    axes.axhspan(1.0 - ACCEPTED, 1.0 + ACCEPTED, color="0.9")
+    axes.set(xlabel="subgrid constant $C_s$", ylabel="mean velocity over that of the direct simulation")
+    axes.grid(color="#e5e8ea", linewidth=0.8)
+    axes.legend(frameon=False, fontsize=9)
+    figure.savefig(name, dpi=110)
+
+
+def main():
+    rows, figure = compared_rows(__doc__, HERE / "rough_bed.csv", HERE / "rough_bed.png", lambda folder: [measured(folder)])
+    passed = report(rows)
+    draw(rows, figure)
+    return 0 if passed else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
