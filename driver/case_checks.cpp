@@ -237,6 +237,7 @@ void check_case(const Case& c, const io::YamlDocument& document) {
   check_observers(c, document);
   if (has_fluid(c))
     at_place(document, "output", [&] { check_fluid_output(c.output, c.domain.size, c.domain.spacing); });
+  if (!c.grains.empty()) at_place(document, "output", [&] { check_grain_output(c.output, grain_output_facts(c)); });
 }
 
 }  // namespace thalweg::driver

@@ -47,6 +47,18 @@ TEST(CaseReader, ReadsWhatTheFileSays) {
   EXPECT_EQ(c.analysis.observers.of<analysis::TransportRateKeys>()->from, 1.0);
 }
 
+TEST(CaseReader, FramesOfGrainsMayBeOfSome) {
+  const Case c =
+      read(flume, {"output.grains={every: 1, fields: [density, id]}",
+                   "output.grain_parts=[{name: fixed, every: 0.1, population: 1, ids: [150, 151], box: {lower: "
+                   "[0, 0, 0], upper: [0.06, 0.0105, 0.02]}}]"});
+  EXPECT_EQ(c.output.grains.fields, (std::vector<io::GrainField>{io::GrainField::density, io::GrainField::id}));
+  ASSERT_EQ(c.output.grain_parts.size(), 1u);
+  EXPECT_EQ(c.output.grain_parts[0].population, 1);
+  EXPECT_TRUE(c.output.grain_parts[0].fields.empty());
+  EXPECT_EQ(read(resolved_yaml(c)), c) << resolved_yaml(c);
+}
+
 // The lightest pair of the flume touches for 0.000145 s: 2e-5 s of the fluid are 2.8 twentieths of it.
 TEST(CaseReader, TakesAsManySubStepsAsTheContactNeeds) {
   const Case c = read(flume, {"coupling.grain_steps_per_fluid_step=auto"});
