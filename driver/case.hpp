@@ -69,11 +69,29 @@ struct SolidCase {
 
 enum class InitialField { fluid, grains };
 
+// Run folders or checkpoints of other runs, absolute once read: one for all fields, or one for each.
+struct InitialFromCase {
+  std::optional<std::string> run, grains, fluid;
+  bool operator==(const InitialFromCase&) const = default;
+
+  bool each() const { return grains || fluid; }
+  bool none() const { return !each() && (!run || run->empty()); }
+};
+
+// Where a field is taken from: the run, and the key that says so.
+struct InitialSource {
+  std::string path;  // empty: from no other run
+  std::string key;   // "initial.from"
+};
+
 struct InitialCase {
-  std::string from;  // run folder or checkpoint of another run, absolute once read; empty: none
-  std::vector<InitialField> fields{InitialField::fluid};  // what is taken from it
+  InitialFromCase from;
+  std::vector<InitialField> fields{InitialField::fluid};  // what is taken from `from.run`
   coupling::InitialFluidKeys fluid;
   bool operator==(const InitialCase&) const = default;
+
+  InitialSource source_of(InitialField field) const;
+  bool takes(InitialField field) const { return !source_of(field).path.empty(); }
 };
 
 // Grains are at rest where both hold for all that are free to move, or this share of them, so that a grain at the top

@@ -189,7 +189,7 @@ void check_gravity(const Case& c, const io::YamlDocument& document) {
     throw document.error("gravity.mode",
                          "an outlet of one pressure contradicts the hydrostatic pressure; set mode: reduced or remove "
                          "the outlet");
-  if (!c.initial.from.empty())
+  if (!c.initial.from.none())
     throw document.error("gravity.mode",
                          "full gravity begins with its own hydrostatic pressure; remove initial.from or set mode: "
                          "reduced");

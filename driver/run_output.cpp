@@ -12,8 +12,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace thalweg::driver {
@@ -144,29 +142,6 @@ void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& p
   system.save(archive);
   for (const auto& observer : observers) observer->save(archive);
   archive.close();
-}
-
-void take_initial_fields(MPI_Comm communicator, const Case& c, System& system) {
-  if (c.initial.from.empty()) return;
-  try {
-    const std::filesystem::path path = io::checkpoint_at(c.initial.from);
-    io::Hdf5Reader archive(communicator, path);
-    const auto wanted = [&c](InitialField field) {
-      return std::find(c.initial.fields.begin(), c.initial.fields.end(), field) != c.initial.fields.end();
-    };
-    const double spacing = archive.real_attribute("run/spacing");
-    if (wanted(InitialField::grains)) {
-      if (!archive.has("grains/radius"))
-        throw InputError(fmt::format("{} holds no grains; give a run with system: resolved or grains.", path.string()));
-      system.take_grains(archive, spacing);
-    }
-    if (!wanted(InitialField::fluid)) return;
-    if (!archive.has("fluid/populations_00"))
-      throw InputError(fmt::format("{} holds no fluid; give a run with system: resolved or fluid.", path.string()));
-    system.take_fluid(archive, spacing);
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("initial.from = {}: {}", c.initial.from, error.what()));
-  }
 }
 
 Accounts read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c, System& system,

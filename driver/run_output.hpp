@@ -63,10 +63,6 @@ private:
 void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c,
                            const System& system, const Observers& observers, const Accounts& accounts);
 
-// The initial state of the case where it is that of another run (initial.from). Throws InputError where it does not
-// fit. Collective.
-void take_initial_fields(MPI_Comm communicator, const Case& c, System& system);
-
 // The state of a checkpoint into a system and observers built from a case. Throws InputError where they do not fit, and
 // io::DamagedFile.
 Accounts read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c, System& system,

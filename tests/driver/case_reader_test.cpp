@@ -47,6 +47,29 @@ TEST(CaseReader, ReadsWhatTheFileSays) {
   EXPECT_EQ(c.analysis.observers.of<analysis::TransportRateKeys>()->from, 1.0);
 }
 
+TEST(CaseReader, GrainsAndFluidMayComeFromTwoRuns) {
+  const Case none = read(flume);
+  EXPECT_TRUE(none.initial.from.none());
+  EXPECT_FALSE(none.initial.takes(InitialField::fluid));
+  for (const std::string one : {"initial={from: a, fields: [grains]}", "initial={from: {run: a}, fields: [grains]}"}) {
+    const Case c = read(flume, {one});
+    EXPECT_TRUE(c.initial.source_of(InitialField::grains).path.ends_with("/a"));
+    EXPECT_EQ(c.initial.source_of(InitialField::grains).key, "initial.from");
+    EXPECT_FALSE(c.initial.takes(InitialField::fluid));
+    EXPECT_EQ(read(resolved_yaml(c)), c) << resolved_yaml(c);
+  }
+  const Case two = read(flume, {"initial.from={grains: a, fluid: b}"});
+  EXPECT_TRUE(two.initial.source_of(InitialField::grains).path.ends_with("/a"));
+  EXPECT_TRUE(two.initial.source_of(InitialField::fluid).path.ends_with("/b"));
+  EXPECT_EQ(two.initial.source_of(InitialField::fluid).key, "initial.from.fluid");
+  EXPECT_EQ(read(resolved_yaml(two)), two) << resolved_yaml(two);
+  const Case bed = read(flume, {"initial={from: {grains: a}, fluid: {uniform: [0.1, 0, 0]}}"});
+  EXPECT_TRUE(bed.initial.takes(InitialField::grains));
+  EXPECT_FALSE(bed.initial.takes(InitialField::fluid));
+  EXPECT_THROW(read(flume, {"initial={from: {grains: a, fluid: b}, fields: [grains]}"}), InputError);
+  EXPECT_THROW(read(flume, {"initial={from: {run: a, fluid: b}}"}), InputError);
+}
+
 TEST(CaseReader, FramesOfGrainsMayBeOfSome) {
   const Case c =
       read(flume, {"output.grains={every: 1, fields: [density, id]}",
