@@ -4,6 +4,7 @@
 #include "core/named_choice.hpp"
 #include "core/snapshot.hpp"
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
