@@ -21,7 +21,9 @@ std::int64_t population_of(GlobalId id, const PopulationEnds& ends) {
   return std::upper_bound(ends.begin(), ends.end(), id) - ends.begin();
 }
 
-static void check_box(const BoxKeys& box, const Vec3& domain_size) {
+namespace {
+
+void check_shown_box(const BoxKeys& box, const Vec3& domain_size) {
   const Vec3 &lower = box.lower, &upper = box.upper;
   constexpr double rounding = 1e-9;  // of the domain
   if ((lower.array() < 0.0).any() || !(upper.array() <= (1.0 + rounding) * domain_size.array()).all())
@@ -32,6 +34,8 @@ static void check_box(const BoxKeys& box, const Vec3& domain_size) {
   if (!(lower.array() < upper.array()).all())
     throw KeyError("box", "the box has no volume; give an upper corner in m above the lower one along every axis");
 }
+
+}  // namespace
 
 void check(const GrainSelectionKeys& keys, const PopulationEnds& ends, const Vec3& domain_size) {
   const std::int64_t grains = ends.empty() ? 0 : ends.back();
@@ -48,7 +52,7 @@ void check(const GrainSelectionKeys& keys, const PopulationEnds& ends, const Vec
     throw KeyError("population", fmt::format("there is no such population; {}",
                                              populations == 1 ? "give 0, the only one"
                                                               : fmt::format("give one of 0 to {}", populations - 1)));
-  if (keys.box) check_box(*keys.box, domain_size);
+  if (keys.box) check_shown_box(*keys.box, domain_size);
 }
 
 GrainSelection::GrainSelection(GrainSelectionKeys keys, PopulationEnds ends)
