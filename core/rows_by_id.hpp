@@ -35,8 +35,8 @@ private:
   int ranks_;
 };
 
-// Rows have a member `id`, and all ranks together have each id from 0 to share.rows() - 1 once. Returns the rows with
-// the ids of share.rows_of(this rank), in their order. Collective.
+// Rows have a member `id`, and all ranks together have each id from 0 to share.rows() - 1 at most once. Returns the
+// rows with the ids of share.rows_of(this rank), in their order. Collective.
 template <typename Row>
 std::vector<Row> rows_by_id(MPI_Comm communicator, const std::vector<Row>& rows, const BlockShare& share) {
   std::vector<int> home;

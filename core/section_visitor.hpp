@@ -72,14 +72,15 @@ class SectionVisitor {
 public:
   virtual ~SectionVisitor() = default;
 
-  // Values: double, Vec3 or std::string, or an optional of them; bool; lists of double, of Vec3 or of whole numbers.
+  // Values: double, Vec3, std::int64_t or std::string, or an optional of them; bool; lists of double, of Vec3 or of
+  // whole numbers.
   void real(const std::string& key, auto& value, const RealKey& about) { visit(key, value, about); }
   void vec3(const std::string& key, auto& value, const RealKey& about) { visit(key, value, about); }
   void vec3_list(const std::string& key, std::vector<Vec3>& values, const RealKey& about) { visit(key, values, about); }
   void real_list(const std::string& key, std::vector<double>& values, const RealKey& about) {
     visit(key, values, about);
   }
-  void integer(const std::string& key, std::int64_t& value, const IntegerKey& about) { visit(key, value, about); }
+  void integer(const std::string& key, auto& value, const IntegerKey& about) { visit(key, value, about); }
   void integer_list(const std::string& key, std::vector<std::int64_t>& values, const IntegerKey& about) {
     visit(key, values, about);
   }
@@ -176,6 +177,7 @@ protected:
   virtual void value_of(const std::string& key, std::optional<Vec3>& value, const RealKey& about) = 0;
   virtual void value_of(const std::string& key, std::vector<Vec3>& values, const RealKey& about) = 0;
   virtual void value_of(const std::string& key, std::int64_t& value, const IntegerKey& about) = 0;
+  virtual void value_of(const std::string& key, std::optional<std::int64_t>& value, const IntegerKey& about) = 0;
   virtual void value_of(const std::string& key, std::vector<std::int64_t>& values, const IntegerKey& about) = 0;
   virtual void value_of(const std::string& key, std::vector<double>& values, const RealKey& about) = 0;
   virtual void value_of(const std::string& key, std::string& value, const TextKey& about) = 0;

@@ -4,7 +4,7 @@
 
 namespace thalweg {
 
-const std::vector<float>& values_of(const FluidFields& fields, FluidField field) {
+const std::vector<double>& values_of(const FluidFields& fields, FluidField field) {
   switch (field) {
     case FluidField::velocity:
       return fields.velocity;
@@ -26,8 +26,8 @@ const std::vector<float>& values_of(const FluidFields& fields, FluidField field)
   throw std::logic_error("a fluid field without real values");
 }
 
-std::vector<float>& values_of(FluidFields& fields, FluidField field) {
-  return const_cast<std::vector<float>&>(values_of(static_cast<const FluidFields&>(fields), field));
+std::vector<double>& values_of(FluidFields& fields, FluidField field) {
+  return const_cast<std::vector<double>&>(values_of(static_cast<const FluidFields&>(fields), field));
 }
 
 }  // namespace thalweg

@@ -20,6 +20,8 @@ struct ClumpState {
   Vec3 position;          // m, of its centre, inside the box
   Vec3 velocity;          // m/s, of its centre
   double kinetic_energy;  // J, with rotation
+  // Unit quaternion w, x, y, z that turns vectors from the frame of its principal axes into space.
+  std::array<double, 4> orientation{1.0, 0.0, 0.0, 0.0};
 };
 
 // The grains this rank owns, in no particular order. Every span has one entry a grain. Members of clumps are among them
@@ -45,6 +47,10 @@ struct GrainView {
   std::vector<ClumpState> clumps;                  // owned by this rank as are their members, in order of id
   bool is_member(std::size_t grain) const { return !clump.empty() && clump[grain] >= 0; }
   std::int64_t body_count() const { return global_count - member_count + clump_count; }  // a clump counts once
+  // What of a grain is held, so that no force changes it: the sum of 1 (its velocity) and 2 (its angular velocity), of
+  // a member that of its clump; other bits are without meaning here. Empty: everything is free.
+  std::span<const std::uint8_t> motion;
+  int held(std::size_t grain) const { return motion.empty() ? 0 : motion[grain] & 3; }
   std::span<const Mat3> fluid_stress;  // Pa, of the fluid on the grain: sum F_a x_b over the surface, over the volume
 };
 
@@ -53,14 +59,14 @@ enum class FluidField { velocity, pressure, grain_id, density, shear_rate, eddy_
 // Fluid fields of the cells of a block, x fastest, sampled on request; empty where not asked for. Zero in solid cells.
 struct FluidFields {
   Block block;                         // in global coordinates
-  std::vector<float> velocity;         // m/s, three values a cell (x, y, z together)
-  std::vector<float> pressure;         // Pa above the reference (without the hydrostatic part in reduced gravity)
+  std::vector<double> velocity;        // m/s, three values a cell (x, y, z together)
+  std::vector<double> pressure;        // Pa above the reference (without the hydrostatic part in reduced gravity)
   std::vector<std::int32_t> grain_id;  // id of the covering grain; -1 fluid; -2, -3, ... static solids
-  std::vector<float> density;          // kg/m^3
-  std::vector<float> shear_rate;       // 1/s, sqrt(2 S_ab S_ab) of the subgrid model
-  std::vector<float> eddy_viscosity;   // m^2/s
-  std::vector<float> vorticity;        // 1/s, three values a cell
-  std::vector<float> q_criterion;      // 1/s^2
+  std::vector<double> density;         // kg/m^3
+  std::vector<double> shear_rate;      // 1/s, sqrt(2 S_ab S_ab) of the subgrid model
+  std::vector<double> eddy_viscosity;  // m^2/s
+  std::vector<double> vorticity;       // 1/s, three values a cell
+  std::vector<double> q_criterion;     // 1/s^2
 };
 
 constexpr int components_of(FluidField field) {
@@ -68,8 +74,8 @@ constexpr int components_of(FluidField field) {
 }
 
 // The values of any field but grain_id. Throws std::logic_error for that one.
-std::vector<float>& values_of(FluidFields& fields, FluidField field);
-const std::vector<float>& values_of(const FluidFields& fields, FluidField field);
+std::vector<double>& values_of(FluidFields& fields, FluidField field);
+const std::vector<double>& values_of(const FluidFields& fields, FluidField field);
 
 class FluidSource {
 public:

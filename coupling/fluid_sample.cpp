@@ -18,8 +18,8 @@ FluidSource::State in_si(const lbm::FluidState& state, const Units& units) {
   return {state.velocity * units.velocity(), state.density_deviation * (units.stress() / 3.0)};
 }
 
-void put(std::vector<float>& values, std::size_t at, const Vec3& v) {
-  for (int a = 0; a < 3; ++a) values[3 * at + a] = static_cast<float>(v[a]);
+void put(std::vector<double>& values, std::size_t at, const Vec3& v) {
+  for (int a = 0; a < 3; ++a) values[3 * at + a] = v[a];
 }
 
 // Calls visit(index in memory, local coordinates, place in the fields) for every cell of the fields.
@@ -48,9 +48,8 @@ void sample_states(const lbm::Fluid<Real>& fluid, const SampleContext& context, 
     const lbm::FluidState state = fluid.state_at(cell);
     const FluidSource::State shown = in_si(state, units);
     if (!fields.velocity.empty()) put(fields.velocity, at, shown.velocity);
-    if (!fields.pressure.empty()) fields.pressure[at] = static_cast<float>(shown.pressure);
-    if (!fields.density.empty())
-      fields.density[at] = static_cast<float>((1.0 + state.density_deviation) * units.density);
+    if (!fields.pressure.empty()) fields.pressure[at] = shown.pressure;
+    if (!fields.density.empty()) fields.density[at] = (1.0 + state.density_deviation) * units.density;
   });
 }
 
@@ -61,10 +60,9 @@ void sample_subgrid(lbm::Fluid<Real>& fluid, const SampleContext& context, Fluid
   if (context.apply_links) context.apply_links();
   for_each_shown_fluid_cell(fluid, fields, [&](std::ptrdiff_t cell, const Index3&, std::size_t at) {
     const lbm::SubgridState state = lbm::subgrid_state(fluid, cell);
-    if (!fields.shear_rate.empty())
-      fields.shear_rate[at] = static_cast<float>(state.shear_rate / context.units.time_step);
+    if (!fields.shear_rate.empty()) fields.shear_rate[at] = state.shear_rate / context.units.time_step;
     if (!fields.eddy_viscosity.empty())
-      fields.eddy_viscosity[at] = static_cast<float>(state.eddy_viscosity * context.units.kinematic_viscosity());
+      fields.eddy_viscosity[at] = state.eddy_viscosity * context.units.kinematic_viscosity();
   });
 }
 
@@ -76,8 +74,7 @@ void sample_gradients(const lbm::Fluid<Real>& fluid, const SampleContext& contex
   for_each_shown_fluid_cell(fluid, fields, [&](std::ptrdiff_t, const Index3& local, std::size_t at) {
     const lbm::Gradient gradient = lbm::velocity_gradient(velocity, local[0], local[1], local[2]);
     if (!fields.vorticity.empty()) put(fields.vorticity, at, lbm::vorticity(gradient) * rate);
-    if (!fields.q_criterion.empty())
-      fields.q_criterion[at] = static_cast<float>(lbm::q_criterion(gradient) * rate * rate);
+    if (!fields.q_criterion.empty()) fields.q_criterion[at] = lbm::q_criterion(gradient) * rate * rate;
   });
 }
 
@@ -93,7 +90,7 @@ FluidFields sample_fields(lbm::Fluid<Real>& fluid, const SampleContext& context,
     if (field == FluidField::grain_id)
       fields.grain_id.assign(cells, -1);
     else
-      values_of(fields, field).assign(components_of(field) * cells, 0.0f);
+      values_of(fields, field).assign(components_of(field) * cells, 0.0);
   }
   using enum FluidField;
   if (wants(wanted, {velocity, pressure, density, grain_id})) sample_states(fluid, context, fields);

@@ -245,6 +245,7 @@ Snapshot ResolvedSystem<Real, S>::snapshot() const {
   if (parameters_.grain_stress) s.grains.fluid_stress = {fluid_stress_.data(), n};
   s.grains.contact_force = {store.contact_force.data(), n};
   s.grains.contact_torque = {store.contact_torque.data(), n};
+  s.grains.motion = grains_->motion();
   grains_->show_clumps(s.grains);
   return s;
 }

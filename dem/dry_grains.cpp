@@ -78,6 +78,7 @@ Snapshot DryGrains::snapshot() const {
     snapshot.grains.fluid_force = {store.load_force.data(), owned};
     snapshot.grains.fluid_torque = {store.load_torque.data(), owned};
   }
+  snapshot.grains.motion = grains_.motion();
   grains_.show_clumps(snapshot.grains);
   return snapshot;
 }

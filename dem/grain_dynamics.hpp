@@ -155,6 +155,7 @@ public:
   std::int64_t member_count() const { return member_count_; }  // members of clumps over all ranks
   std::int64_t body_count() const { return global_count_ - member_count_ + clump_count_; }  // a clump counts once
   void show_clumps(GrainView& view) const;             // the entries of the view that clumps have
+  std::span<const std::uint8_t> motion() const;        // GrainView::motion, of owned grains
   std::int64_t rebuilds() const { return rebuilds_; }  // since construction or load
   PhaseTimer& timer() { return timer_; }               // contact lists, contact forces, motion, messages
 

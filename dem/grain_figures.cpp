@@ -152,8 +152,20 @@ void GrainDynamics::show_clumps(GrainView& view) const {
   view.clump = {store_.clump.data(), store_.owned};
   for (std::size_t n = 0; n < clumps_.size(); ++n) {
     const Clump& clump = clumps_[n];
-    view.clumps.push_back({clump.id, clump.mass, clump.volume, clump.centre, clump.velocity, clump.kinetic_energy()});
+    const Quaternion& q = clump.orientation;
+    view.clumps.push_back({clump.id,
+                           clump.mass,
+                           clump.volume,
+                           clump.centre,
+                           clump.velocity,
+                           clump.kinetic_energy(),
+                           {q.w, q.x, q.y, q.z}});
   }
+}
+
+std::span<const std::uint8_t> GrainDynamics::motion() const {
+  static_assert(static_cast<int>(Motion::held_translation) == 1 && static_cast<int>(Motion::held_rotation) == 2);
+  return {reinterpret_cast<const std::uint8_t*>(store_.motion.data()), store_.owned};
 }
 
 double GrainDynamics::kinetic_energy() const {

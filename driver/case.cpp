@@ -15,6 +15,20 @@ bool has_fluid(SystemKind system) { return system == SystemKind::resolved || sys
 bool has_fluid(const Case& c) { return has_fluid(c.system); }
 bool has_grains(SystemKind system) { return system != SystemKind::fluid && system != SystemKind::continuum; }
 
+InitialSource InitialCase::source_of(InitialField field) const {
+  if (from.each()) {
+    const bool of_grains = field == InitialField::grains;
+    return {(of_grains ? from.grains : from.fluid).value_or(""),
+            of_grains ? "initial.from.grains" : "initial.from.fluid"};
+  }
+  const bool taken = std::find(fields.begin(), fields.end(), field) != fields.end();
+  return {taken ? from.run.value_or("") : "", "initial.from"};
+}
+
+bool measures_grain_stress(const Case& c) {
+  return has_fluid(c) && (c.coupling.grain_stress || c.analysis.observers.of<analysis::StressBalanceKeys>());
+}
+
 continuum::SystemParameters column_of(const Case& c) {
   const Vec3 gravity = gravity_vector(c.gravity);
   continuum::SystemParameters parameters = system_parameters(c.continuum, gravity.x(), -gravity.z());
@@ -71,6 +85,12 @@ std::int64_t grain_count(const Case& c) {
   std::int64_t count = 0;
   for (const dem::Population& population : c.grains) count += population.count;
   return count;
+}
+
+std::int64_t grain_rows(const Case& c) {
+  std::int64_t rows = 0;
+  for (const dem::Population& population : c.grains) rows += population.row_count();
+  return rows;
 }
 
 double largest_diameter(const Case& c) {

@@ -69,11 +69,29 @@ struct SolidCase {
 
 enum class InitialField { fluid, grains };
 
+// Run folders or checkpoints of other runs, absolute once read: one for all fields, or one for each.
+struct InitialFromCase {
+  std::optional<std::string> run, grains, fluid;
+  bool operator==(const InitialFromCase&) const = default;
+
+  bool each() const { return grains || fluid; }
+  bool none() const { return !each() && (!run || run->empty()); }
+};
+
+// Where a field is taken from: the run, and the key that says so.
+struct InitialSource {
+  std::string path;  // empty: from no other run
+  std::string key;   // "initial.from"
+};
+
 struct InitialCase {
-  std::string from;  // run folder or checkpoint of another run, absolute once read; empty: none
-  std::vector<InitialField> fields{InitialField::fluid};  // what is taken from it
+  InitialFromCase from;
+  std::vector<InitialField> fields{InitialField::fluid};  // what is taken from `from.run`
   coupling::InitialFluidKeys fluid;
   bool operator==(const InitialCase&) const = default;
+
+  InitialSource source_of(InitialField field) const;
+  bool takes(InitialField field) const { return !source_of(field).path.empty(); }
 };
 
 // Grains are at rest where both hold for all that are free to move, or this share of them, so that a grain at the top
@@ -159,12 +177,14 @@ double relaxation_time(const Case& c);            // BGK, without the subgrid mo
 double bulk_relaxation_time_for(const Case& c);   // where the case does not give it
 double bulk_viscosity(const Case& c);             // m^2/s: 2/9 (tau_b - 1/2), without the subgrid model
 
-std::int64_t grain_count(const Case& c);   // of all populations
-double largest_diameter(const Case& c);    // m; 0 without grains
-double largest_extent(const Case& c);      // m, the same with clumps as they are long
-double smallest_diameter(const Case& c);   // m; 0 without grains
-double grain_volume(const Case& c);        // m^3, of all grains
-dem::MeanGrain mean_grain(const Case& c);  // of all grains
+std::int64_t grain_count(const Case& c);    // of all populations
+std::int64_t grain_rows(const Case& c);     // ids that they take: a clump as many as it has members
+bool measures_grain_stress(const Case& c);  // whether the stress of the fluid on every grain is measured
+double largest_diameter(const Case& c);     // m; 0 without grains
+double largest_extent(const Case& c);       // m, the same with clumps as they are long
+double smallest_diameter(const Case& c);    // m; 0 without grains
+double grain_volume(const Case& c);         // m^3, of all grains
+dem::MeanGrain mean_grain(const Case& c);   // of all grains
 dem::ModelFluidParameters model_fluid_of(const Case& c);
 // m/s, of the model fluid around a grain without neighbours, the fastest there is; 0 without a model fluid
 double fastest_model_fluid(const Case& c);

@@ -189,7 +189,7 @@ void check_gravity(const Case& c, const io::YamlDocument& document) {
     throw document.error("gravity.mode",
                          "an outlet of one pressure contradicts the hydrostatic pressure; set mode: reduced or remove "
                          "the outlet");
-  if (!c.initial.from.empty())
+  if (!c.initial.from.none())
     throw document.error("gravity.mode",
                          "full gravity begins with its own hydrostatic pressure; remove initial.from or set mode: "
                          "reduced");
@@ -237,6 +237,7 @@ void check_case(const Case& c, const io::YamlDocument& document) {
   check_observers(c, document);
   if (has_fluid(c))
     at_place(document, "output", [&] { check_fluid_output(c.output, c.domain.size, c.domain.spacing); });
+  if (!c.grains.empty()) at_place(document, "output", [&] { check_grain_output(c.output, grain_output_facts(c)); });
 }
 
 }  // namespace thalweg::driver

@@ -101,8 +101,9 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
     c.coupling.grain_steps_per_fluid_step = has_step ? sub_steps_needed(c) : 1;
   }
   if (!has_fluid(c) && !c.run.time_step) c.run.time_step = shortest_contact(c) / steps_per_contact;
-  if (!c.initial.from.empty())
-    c.initial.from = (std::filesystem::absolute(path).parent_path() / c.initial.from).lexically_normal().string();
+  for (std::optional<std::string>* source : {&c.initial.from.run, &c.initial.from.grains, &c.initial.from.fluid})
+    if (*source && !(*source)->empty())
+      *source = (std::filesystem::absolute(path).parent_path() / **source).lexically_normal().string();
   for (SolidCase& solid : c.solids)
     if (!solid.stl.empty())
       solid.stl = (std::filesystem::absolute(path).parent_path() / solid.stl).lexically_normal().string();

@@ -44,25 +44,47 @@ static void describe_gravity(SectionVisitor& visit, GravityCase& gravity, bool w
        .only_if = {with_fluid, "a run without fluid has only one kind of gravity; remove the key"}});
 }
 
+static void describe_sources(SectionVisitor& visit, InitialFromCase& from, const OnlyIf& of_fluid, bool with_grains) {
+  visit.text("run", from.run,
+             {.meaning = "run folder or checkpoint, relative to this file, of which fields are taken",
+              .example = "../other/run"});
+  visit.text("grains", from.grains,
+             {.meaning = "the same, of which the grains are taken",
+              .example = "../bed/run",
+              .only_if = {with_grains, "system: fluid has no grains; remove the key"}});
+  visit.text("fluid", from.fluid,
+             {.meaning = "the same, of which the fluid is taken",
+              .example = "../flow/run",
+              .only_if = {of_fluid.holds, "there is no fluid in this case; remove the key"}});
+  visit.require(!from.run || !from.each(), "run", "give either run, with initial.fields, or grains and fluid");
+  visit.require(!from.grains || !from.grains->empty(), "grains", "give a run folder or checkpoint, or remove the key");
+  visit.require(!from.fluid || !from.fluid->empty(), "fluid", "give a run folder or checkpoint, or remove the key");
+}
+
 static void describe_initial(SectionVisitor& visit, InitialCase& initial, SystemKind system) {
   const OnlyIf of_fluid = only_with_fluid(system);
   const bool with_fluid = of_fluid.holds, with_grains = system != SystemKind::fluid;
-  visit.text("from", initial.from,
-             {.meaning = "run folder or checkpoint of another run to begin from, relative to this file; \"\": none"});
+  visit.section("from",
+                {.meaning = "the state of other runs to begin from: one run folder or checkpoint (or run: that), with "
+                            "fields, or one for the grains and one for the fluid; {}: none",
+                 .shorthand = "run",
+                 .expected = "a run folder or checkpoint"},
+                [&](SectionVisitor& inside) { describe_sources(inside, initial.from, of_fluid, with_grains); });
   if (!with_fluid && initial.fields == InitialCase{}.fields) initial.fields = {InitialField::grains};
   std::vector<NamedChoice<InitialField>> fields;
   if (with_fluid) fields.push_back({InitialField::fluid, "fluid"});
   if (with_grains) fields.push_back({InitialField::grains, "grains", "as many as the populations have"});
-  visit.choice_list<InitialField>("fields", initial.fields, fields, {.meaning = "what is taken from it"});
+  visit.choice_list<InitialField>(
+      "fields", initial.fields, fields,
+      {.meaning = "what is taken from the one run",
+       .only_if = {!initial.from.each(), "from says which run each field is taken from; remove this key"}});
   visit.section("fluid", initial.fluid,
                 {.meaning = "velocity at the start: rest, uniform, linear_profile or log_profile",
                  .empty_name = "rest",
                  .only_if = of_fluid});
-  const bool fluid_of_other_run = !initial.from.empty() && std::find(initial.fields.begin(), initial.fields.end(),
-                                                                     InitialField::fluid) != initial.fields.end();
-  visit.require(
-      !fluid_of_other_run || initial.fluid.count() == 0, "from",
-      "the start of the fluid is given twice; remove this key or the section fluid, or take fields: [grains]");
+  visit.require(!initial.takes(InitialField::fluid) || initial.fluid.count() == 0, "from",
+                "the start of the fluid is given twice; take the grains alone from another run (fields: [grains]), or "
+                "remove the section fluid");
 }
 
 static void describe(SectionVisitor& visit, AtRestCase& rest) {

@@ -206,7 +206,8 @@ std::vector<std::string> warnings_of_plan(const Case& c) {
   Warnings found;
   const FlowEstimate flow = flow_estimate(c);
   if (flow.drive == FlowCause::none) return found;
-  const bool developed = !c.initial.from.empty() || c.initial.fluid.log_profile || c.initial.fluid.linear_profile;
+  const bool developed =
+      c.initial.takes(InitialField::fluid) || c.initial.fluid.log_profile || c.initial.fluid.linear_profile;
   const double turnover = flow.laminar ? 0.0 : flow.depth / flow.friction_velocity;
   const double needed = developed ? turnover : flow.spin_up;
   if (c.run.until < needed)

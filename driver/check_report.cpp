@@ -9,9 +9,9 @@
 #include "driver/disk_space.hpp"
 #include "driver/flow_report.hpp"
 #include "driver/grain_setup.hpp"
+#include "driver/initial_state.hpp"
 #include "driver/machine.hpp"
 #include "driver/solid_setup.hpp"
-#include "io/run_folder.hpp"
 #include "loop/progress.hpp"
 
 #include <fmt/format.h>
@@ -25,16 +25,6 @@
 namespace thalweg::driver {
 
 namespace {
-
-// A restart may do without it, so reading a case does not ask.
-void refuse_missing_start(const Case& c) {
-  if (c.initial.from.empty()) return;
-  try {
-    io::checkpoint_at(c.initial.from);
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("initial.from = {}: {}", c.initial.from, error.what()));
-  }
-}
 
 // For the estimate of time, on one core: what sweep, halo, walls and output take, in times the memory traffic of the
 // sweep alone; what a link takes, in bytes of memory traffic; and grain-steps. Measured on the flume, the wide bed and
@@ -264,7 +254,7 @@ Cost cost_of(const Case& c, double bandwidth) {
 
 std::vector<std::string> check_report(const Case& c, double bandwidth) {
   if (c.system == SystemKind::continuum) return column_report(c);
-  refuse_missing_start(c);
+  check_initial_sources(c);  // a restart may do without them, so reading a case does not ask
   refuse_impossible_grains(c);
   Lines lines{fmt::format("{} (system: {})", c.name, name_of(c.system))};
   add_domain(c, lines);

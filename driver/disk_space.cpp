@@ -2,11 +2,13 @@
 
 #include "analysis/probes.hpp"
 #include "analysis/tracks.hpp"
+#include "driver/run_facts.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace thalweg::driver {
 
@@ -18,10 +20,12 @@ double times_in(double until, double every) {
 }
 
 double fluid_frames(const Case& c, const io::FluidOutputKeys& keys) {
-  double values = 0.0;
-  for (const FluidField field : keys.fields) values += components_of(field);
+  const double real = keys.precision == io::FieldPrecision::double_ ? 8.0 : 4.0;
+  double bytes = 0.0;
+  for (const FluidField field : keys.fields)
+    bytes += components_of(field) * (field == FluidField::grain_id ? 4.0 : real);
   const io::ShownCells cells = shown_cells(keys, cells_of(c.domain), c.domain.spacing);
-  return times_in(c.run.until, keys.every) * static_cast<double>(cells.coarse.volume()) * values * 4.0;
+  return times_in(c.run.until, keys.every) * static_cast<double>(cells.coarse.volume()) * bytes;
 }
 
 double fluid_frames(const Case& c) {
@@ -31,13 +35,36 @@ double fluid_frames(const Case& c) {
   return bytes;
 }
 
-// Doubles of a grain in a frame (io/grain_series.cpp): place, id, radius, speed, connectivity, two velocities, contact
-// force and stress; force of the fluid, its stress.
+// Of one frame: eight bytes for every number of a grain (io/grain_series.cpp), which are its place, radius,
+// connectivity and offset, and the fields.
+double bytes_of_a_grain(const Case& c, const std::vector<io::GrainField>& fields) {
+  const io::GrainOutputFacts facts = grain_output_facts(c);
+  int numbers = 3 + 1 + 2;
+  for (const NamedChoice<io::GrainField>& field : io::grain_fields()) {
+    const bool wanted = fields.empty() ? there_is(field.value, facts)
+                                       : std::find(fields.begin(), fields.end(), field.value) != fields.end();
+    if (wanted && field.value != io::GrainField::radius) numbers += components_of(field.value);
+  }
+  return 8.0 * numbers;
+}
+
+// How many grains a part shows, at most: in a box as many of the smallest spheres as can have their centres in it.
+double shown_grains(const Case& c, const io::GrainSelectionKeys& keys) {
+  double count = static_cast<double>(
+      keys.population ? c.grains.at(static_cast<std::size_t>(*keys.population)).row_count() : grain_rows(c));
+  if (!keys.ids.empty()) count = std::min(count, static_cast<double>(keys.ids.size()));
+  if (!keys.box || c.disks || grain_output_facts(c).clumps) return count;
+  const double d = smallest_diameter(c), densest = std::numbers::pi / std::sqrt(18.0);
+  const double room = (keys.box->upper - keys.box->lower + Vec3::Constant(d)).prod();
+  return std::min(count, std::ceil(densest * room / (std::numbers::pi / 6.0 * d * d * d)));
+}
+
 double grain_frames(const Case& c) {
-  double doubles = 3.0 + 3.0 + 2.0 + 6.0 + 3.0 + 9.0;
-  if (has_fluid(c)) doubles += 3.0;
-  if (c.coupling.grain_stress) doubles += 9.0;
-  return times_in(c.run.until, c.output.grains.every) * static_cast<double>(grain_count(c)) * doubles * 8.0;
+  const io::GrainOutputKeys& all = c.output.grains;
+  double bytes = times_in(c.run.until, all.every) * shown_grains(c, {}) * bytes_of_a_grain(c, all.fields);
+  for (const io::NamedGrainOutputKeys& part : c.output.grain_parts)
+    bytes += times_in(c.run.until, part.every) * shown_grains(c, part) * bytes_of_a_grain(c, part.fields);
+  return bytes;
 }
 
 double checkpoints(const Case& c) {

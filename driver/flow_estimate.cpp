@@ -65,7 +65,7 @@ void consider_start(const Case& c, FlowEstimate& flow) {
 
 // In the time of the run a slope adds no more than g_x times that time to the speed of the start.
 void limit_to_what_the_slope_gives(const Case& c, double along, FlowEstimate& flow) {
-  if (!c.initial.from.empty()) return;
+  if (c.initial.takes(InitialField::fluid)) return;
   FlowEstimate start;
   consider_start(c, start);
   const double reached = start.speed + along * c.run.until;
@@ -162,9 +162,7 @@ double settling_velocity_of(const Case& c, const dem::Population& grains) {
 }
 
 bool starts_from_a_bed(const Case& c, const dem::Population& grains) {
-  const bool taken = !c.initial.from.empty() && std::find(c.initial.fields.begin(), c.initial.fields.end(),
-                                                          InitialField::grains) != c.initial.fields.end();
-  return taken || !grains.file.empty();
+  return c.initial.takes(InitialField::grains) || !grains.file.empty();
 }
 
 }  // namespace

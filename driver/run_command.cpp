@@ -14,6 +14,7 @@
 #include "driver/cores.hpp"
 #include "driver/error_message.hpp"
 #include "driver/final_bed.hpp"
+#include "driver/initial_state.hpp"
 #include "driver/machine.hpp"
 #include "driver/reference_grain.hpp"
 #include "driver/run_facts.hpp"

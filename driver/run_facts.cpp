@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace thalweg::driver {
 
 namespace {
@@ -57,6 +59,23 @@ analysis::RunFacts run_facts(const Case& c) {
   facts.gravity = gravity_vector(c.gravity);
   if (has_fluid(c)) facts.fluid = fluid_facts(c);
   if (!c.grains.empty()) facts.grains = grain_facts(c);
+  return facts;
+}
+
+io::PopulationEnds population_ends(const Case& c) {
+  io::PopulationEnds ends;
+  for (const dem::Population& grains : c.grains) ends.push_back((ends.empty() ? 0 : ends.back()) + grains.row_count());
+  return ends;
+}
+
+io::GrainOutputFacts grain_output_facts(const Case& c) {
+  io::GrainOutputFacts facts;
+  facts.population_ends = population_ends(c);
+  facts.box_size = c.domain.size;
+  facts.clumps = std::any_of(c.grains.begin(), c.grains.end(),
+                             [](const dem::Population& grains) { return grains.clumps.count > 0; });
+  facts.fluid_force = has_fluid(c) || c.system == SystemKind::model_fluid;
+  facts.fluid_stress = measures_grain_stress(c);
   return facts;
 }
 

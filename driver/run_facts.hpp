@@ -1,4 +1,4 @@
-// From a case to what its observers may know of it.
+// From a case to what its observers, and the frames of its grains, may know of it.
 #pragma once
 
 #include "analysis/run_facts.hpp"
@@ -7,5 +7,9 @@
 namespace thalweg::driver {
 
 analysis::RunFacts run_facts(const Case& c);
+
+// For the frames of its grains.
+io::PopulationEnds population_ends(const Case& c);
+io::GrainOutputFacts grain_output_facts(const Case& c);
 
 }  // namespace thalweg::driver

@@ -5,14 +5,13 @@
 #include "driver/bed_archive.hpp"
 #include "driver/build_system.hpp"
 #include "driver/reference_grain.hpp"
+#include "driver/run_facts.hpp"
 #include "driver/version.hpp"
 #include "io/hdf5_archive.hpp"
 #include "io/profile_file.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace thalweg::driver {
@@ -28,8 +27,11 @@ RunOutput::RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& 
       since_(std::move(since)),
       continue_from_(continue_from) {
   const Snapshot snapshot = system.snapshot();
-  if (c.output.grains.every > 0.0 && snapshot.grains.global_count > 0)
-    grains_ = std::make_unique<io::GrainSeries>(communicator, folder.path(), continue_from);
+  if (snapshot.grains.global_count > 0) {
+    add_grains(folder.path(), "grains", c.output.grains, {});
+    for (const io::NamedGrainOutputKeys& part : c.output.grain_parts)
+      add_grains(folder.grain_parts(), part.name, part, part);
+  }
   if (snapshot.fluid != nullptr) {
     add_fluid(folder.path(), "fluid", c.output.fluid);
     for (const io::NamedFluidOutputKeys& part : c.output.fluid_parts) add_fluid(folder.fluid_parts(), part.name, part);
@@ -45,10 +47,18 @@ RunOutput::RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& 
   write_records();  // whether they can be written, or continued, is known before the run begins
 }
 
+void RunOutput::add_grains(const std::filesystem::path& folder, const std::string& name,
+                           const io::GrainOutputKeys& keys, const io::GrainSelectionKeys& selection) {
+  if (keys.every > 0.0)
+    grains_.emplace_back(keys.every, io::GrainSeries(communicator_, folder, name, selection, keys.fields,
+                                                     population_ends(case_), continue_from_));
+}
+
 void RunOutput::add_fluid(const std::filesystem::path& folder, const std::string& name,
                           const io::FluidOutputKeys& keys) {
   if (keys.every > 0.0)
-    fluid_.emplace_back(keys.every, io::FluidSeries(communicator_, folder, name, keys, keys.fields, continue_from_));
+    fluid_.emplace_back(
+        keys.every, io::FluidSeries(communicator_, folder, name, keys, keys.fields, keys.precision, continue_from_));
 }
 
 void RunOutput::add_to(loop::LoopPlan& plan) {
@@ -58,9 +68,9 @@ void RunOutput::add_to(loop::LoopPlan& plan) {
   plan.checkpoint = Schedule(case_.output.checkpoint.every, time_step);
   plan.checkpoint_wall = case_.output.checkpoint.every_wall;
   plan.write_checkpoint = [this](const loop::LoopRecord& record) { return write_checkpoint(record); };
-  if (grains_)
-    plan.outputs.push_back({"grain output", Schedule(case_.output.grains.every, time_step),
-                            [this](const Snapshot& snapshot) { grains_->write(snapshot); }});
+  for (auto& [every, series] : grains_)
+    plan.outputs.push_back({"grain output", Schedule(every, time_step),
+                            [&written = series](const Snapshot& snapshot) { written.write(snapshot); }});
   for (auto& [every, series] : fluid_)
     plan.outputs.push_back({"fluid output", Schedule(every, time_step),
                             [&written = series](const Snapshot& snapshot) { written.write(snapshot); }});
@@ -132,29 +142,6 @@ void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& p
   system.save(archive);
   for (const auto& observer : observers) observer->save(archive);
   archive.close();
-}
-
-void take_initial_fields(MPI_Comm communicator, const Case& c, System& system) {
-  if (c.initial.from.empty()) return;
-  try {
-    const std::filesystem::path path = io::checkpoint_at(c.initial.from);
-    io::Hdf5Reader archive(communicator, path);
-    const auto wanted = [&c](InitialField field) {
-      return std::find(c.initial.fields.begin(), c.initial.fields.end(), field) != c.initial.fields.end();
-    };
-    const double spacing = archive.real_attribute("run/spacing");
-    if (wanted(InitialField::grains)) {
-      if (!archive.has("grains/radius"))
-        throw InputError(fmt::format("{} holds no grains; give a run with system: resolved or grains.", path.string()));
-      system.take_grains(archive, spacing);
-    }
-    if (!wanted(InitialField::fluid)) return;
-    if (!archive.has("fluid/populations_00"))
-      throw InputError(fmt::format("{} holds no fluid; give a run with system: resolved or fluid.", path.string()));
-    system.take_fluid(archive, spacing);
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("initial.from = {}: {}", c.initial.from, error.what()));
-  }
 }
 
 Accounts read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c, System& system,

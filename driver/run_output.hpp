@@ -36,6 +36,8 @@ public:
   void add_to(loop::LoopPlan& plan);
 
 private:
+  void add_grains(const std::filesystem::path& folder, const std::string& name, const io::GrainOutputKeys& keys,
+                  const io::GrainSelectionKeys& selection);
   void add_fluid(const std::filesystem::path& folder, const std::string& name, const io::FluidOutputKeys& keys);
   void write_row(double time, const std::vector<Figure>& measured);
   std::uint64_t write_checkpoint(const loop::LoopRecord& record);  // bytes, on the first rank
@@ -49,10 +51,10 @@ private:
   const Observers& observers_;
   std::map<std::string, double> since_;
   std::optional<double> continue_from_;
-  std::vector<Figure> constants_;            // of the run, in every row of the series
-  std::unique_ptr<io::SeriesTable> series_;  // from the first row on: only then the columns are known
-  std::unique_ptr<io::GrainSeries> grains_;
-  std::vector<std::pair<double, io::FluidSeries>> fluid_;  // each with the time between its frames, s
+  std::vector<Figure> constants_;                           // of the run, in every row of the series
+  std::unique_ptr<io::SeriesTable> series_;                 // from the first row on: only then the columns are known
+  std::vector<std::pair<double, io::GrainSeries>> grains_;  // each with the time between its frames, s
+  std::vector<std::pair<double, io::FluidSeries>> fluid_;   // likewise
   std::vector<std::pair<analysis::Observer*, io::RecordFile>> records_;
 };
 
@@ -60,10 +62,6 @@ private:
 // the observers, and the accounts. Nothing in it tells how many ranks wrote it. Collective; RunError on every rank.
 void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c,
                            const System& system, const Observers& observers, const Accounts& accounts);
-
-// The initial state of the case where it is that of another run (initial.from). Throws InputError where it does not
-// fit. Collective.
-void take_initial_fields(MPI_Comm communicator, const Case& c, System& system);
 
 // The state of a checkpoint into a system and observers built from a case. Throws InputError where they do not fit, and
 // io::DamagedFile.

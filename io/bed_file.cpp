@@ -3,12 +3,12 @@
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
 #include "core/rows_by_id.hpp"
+#include "io/grain_fields.hpp"
 #include "io/hdf5_archive.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 #include <string>
 
 namespace thalweg::io {
@@ -23,23 +23,11 @@ struct BedRow {
   double position[3], velocity[3], angular_velocity[3];
 };
 
-double clump_density(const GrainView& grains, GlobalId id) {
-  // In order of id, and with its members here.
-  const auto clump = std::lower_bound(grains.clumps.begin(), grains.clumps.end(), id,
-                                      [](const ClumpState& state, GlobalId wanted) { return state.id < wanted; });
-  return clump->mass / clump->volume;
-}
-
 std::vector<BedRow> rows_of(const GrainView& grains) {
   std::vector<BedRow> rows(grains.id.size());
   for (std::size_t n = 0; n < rows.size(); ++n) {
-    const double r = grains.radius[n];
-    const double height = grains.disk_thickness > 0.0 ? grains.disk_thickness : 4.0 / 3.0 * r;
-    rows[n] = {grains.id[n], -1, r, grains.mass[n] / (height * std::numbers::pi * r * r), {}, {}, {}};
-    if (grains.is_member(n)) {
-      rows[n].clump = grains.clump[n];
-      rows[n].density = clump_density(grains, grains.clump[n]);
-    }
+    const GlobalId clump = grains.is_member(n) ? grains.clump[n] : -1;
+    rows[n] = {grains.id[n], clump, grains.radius[n], density_of(grains, n), {}, {}, {}};
     std::copy_n(grains.position[n].data(), 3, rows[n].position);
     std::copy_n(grains.velocity[n].data(), 3, rows[n].velocity);
     std::copy_n(grains.angular_velocity[n].data(), 3, rows[n].angular_velocity);

@@ -11,11 +11,6 @@
 // visitor's templates would not find them.
 namespace thalweg::io {
 
-static void describe(SectionVisitor& visit, FluidBoxKeys& box) {
-  visit.vec3("lower", box.lower, {.unit = "m", .meaning = "lower corner", .required = true, .example = 0.0});
-  visit.vec3("upper", box.upper, {.unit = "m", .meaning = "upper corner", .required = true, .example = 0.01});
-}
-
 static void describe(SectionVisitor& visit, FluidPlaneKeys& plane) {
   visit.choice<Axis>("axis", plane.axis, {{Axis::x, "x"}, {Axis::y, "y"}, {Axis::z, "z"}},
                      {.meaning = "across the plane", .required = true});

@@ -4,6 +4,7 @@
 #include "core/decomposition.hpp"
 #include "core/section_visitor.hpp"
 #include "core/types.hpp"
+#include "io/box_keys.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -12,12 +13,6 @@
 namespace thalweg::io {
 
 enum class FluidRegion { whole, slice_x, slice_y, slice_z };  // a slice: the middle layer of cells across that axis
-
-// The cells with their centre in it.
-struct FluidBoxKeys {
-  Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();  // m
-  bool operator==(const FluidBoxKeys&) const = default;
-};
 
 enum class Axis { x, y, z };
 
@@ -30,7 +25,7 @@ struct FluidPlaneKeys {
 
 struct FluidRegionKeys {
   FluidRegion region = FluidRegion::whole;
-  std::optional<FluidBoxKeys> box;      // in its place
+  std::optional<BoxKeys> box;           // in its place: the cells with their centre in it
   std::optional<FluidPlaneKeys> plane;  // in its place
   std::int64_t stride = 1;              // every n-th cell along each axis along which there are several
   bool operator==(const FluidRegionKeys&) const = default;

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -58,6 +59,12 @@ std::vector<Number> shown(const std::vector<Number>& values, int components, con
   return chosen;
 }
 
+std::vector<float> in_single_precision(const std::vector<double>& values) {
+  std::vector<float> rounded(values.size());
+  std::transform(values.begin(), values.end(), rounded.begin(), [](double value) { return static_cast<float>(value); });
+  return rounded;
+}
+
 std::string extent_text(const Block& block) {
   return fmt::format("{} {} {} {} {} {}", block.lower[0], block.upper[0], block.lower[1], block.upper[1],
                      block.lower[2], block.upper[2]);
@@ -66,12 +73,14 @@ std::string extent_text(const Block& block) {
 }  // namespace
 
 FluidSeries::FluidSeries(MPI_Comm communicator, const std::filesystem::path& folder, std::string name,
-                         FluidRegionKeys region, std::vector<FluidField> fields, std::optional<double> continue_from)
+                         FluidRegionKeys region, std::vector<FluidField> fields, FieldPrecision precision,
+                         std::optional<double> continue_from)
     : communicator_(communicator),
       folder_(folder),
       name_(std::move(name)),
       region_(std::move(region)),
       fields_(std::move(fields)),
+      precision_(precision),
       index_(folder / (name_ + ".pvd"), continue_from) {}
 
 void FluidSeries::write(const Snapshot& snapshot) {
@@ -88,13 +97,14 @@ void FluidSeries::write(const Snapshot& snapshot) {
   for (const FluidField field : fields_) {
     const int components = components_of(field);
     const auto add = [&](const auto& values) {
-      picture.add("CellData", name_of(field), components,
-                  order.share_of(shown(values, components, cells, block), components));
+      picture.add("CellData", name_of(field), components, order.share_of(values, components));
     };
     if (field == FluidField::grain_id)
-      add(fields.grain_id);
+      add(shown(fields.grain_id, components, cells, block));
+    else if (precision_ == FieldPrecision::double_)
+      add(shown(values_of(fields, field), components, cells, block));
     else
-      add(values_of(fields, field));
+      add(in_single_precision(shown(values_of(fields, field), components, cells, block)));
   }
 
   const auto file = std::filesystem::path(name_) / fmt::format("{}_{:09d}.vti", name_, snapshot.step);

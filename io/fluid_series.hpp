@@ -16,6 +16,8 @@ namespace thalweg::io {
 
 using thalweg::FluidField;
 
+enum class FieldPrecision { single, double_ };  // of the real numbers in a frame
+
 // Writes NAME/NAME_<step>.vti in a folder, and NAME.pvd. The cell arrays have the names of FluidField and the units of
 // FluidFields. All ranks write one file together; only the cells of the region are sampled, and no rank gathers them.
 // All calls are collective and throw RunError on every rank if a file cannot be written.
@@ -23,7 +25,8 @@ class FluidSeries {
 public:
   // continue_from: as for GrainSeries.
   FluidSeries(MPI_Comm communicator, const std::filesystem::path& folder, std::string name, FluidRegionKeys region,
-              std::vector<FluidField> fields, std::optional<double> continue_from = std::nullopt);
+              std::vector<FluidField> fields, FieldPrecision precision,
+              std::optional<double> continue_from = std::nullopt);
 
   // Does nothing for a snapshot without a fluid.
   void write(const Snapshot& snapshot);
@@ -34,6 +37,7 @@ private:
   std::string name_;
   FluidRegionKeys region_;
   std::vector<FluidField> fields_;
+  FieldPrecision precision_;
   PvdIndex index_;
 };
 

@@ -3,14 +3,17 @@
 #include "core/contact_stress.hpp"
 #include "core/mpi_session.hpp"
 #include "core/on_first_rank.hpp"
+#include "core/rows_by_id.hpp"
 #include "io/atomic_file.hpp"
 #include "io/vtk_xml_file.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace thalweg::io {
@@ -18,10 +21,10 @@ namespace {
 
 // One grain on its way to the rank that writes it.
 struct Row {
-  std::int64_t id, clump;
-  double radius, speed;
+  std::int64_t id, clump, population, held;
+  double radius, speed, density;
   double position[3], velocity[3], angular_velocity[3], fluid_force[3], contact_force[3], fluid_stress[9],
-      contact_stress[9];
+      contact_stress[9], orientation[4];
 };
 
 void copy(const Vec3& from, double* to) { std::copy(from.data(), from.data() + 3, to); }
@@ -30,25 +33,51 @@ void copy(const Mat3& from, double* to) {
   for (int k = 0; k < 9; ++k) to[k] = from(k / 3, k % 3);
 }
 
-std::vector<Row> rows_of(const Snapshot& snapshot) {
+Row row_of(const GrainView& grains, std::size_t n, const PopulationEnds& ends) {
+  Row row{};
+  row.id = grains.id[n];
+  row.clump = grains.is_member(n) ? grains.clump[n] : -1;
+  row.population = population_of(grains.id[n], ends);
+  row.held = grains.held(n);
+  row.radius = grains.radius[n];
+  row.speed = grains.velocity[n].norm();
+  row.density = density_of(grains, n);
+  copy(grains.position[n], row.position);
+  copy(grains.velocity[n], row.velocity);
+  copy(grains.angular_velocity[n], row.angular_velocity);
+  if (!grains.fluid_force.empty()) copy(grains.fluid_force[n], row.fluid_force);
+  if (!grains.fluid_stress.empty()) copy(grains.fluid_stress[n], row.fluid_stress);
+  if (!grains.contact_force.empty()) copy(grains.contact_force[n], row.contact_force);
+  const std::array<double, 4> orientation = orientation_of(grains, n);
+  std::copy(orientation.begin(), orientation.end(), row.orientation);
+  return row;
+}
+
+bool contains(const std::vector<GrainField>& fields, GrainField field) {
+  return std::find(fields.begin(), fields.end(), field) != fields.end();
+}
+
+std::vector<Row> selected_rows(const Snapshot& snapshot, const GrainSelection& selection, const PopulationEnds& ends,
+                               bool with_contact_stress) {
   const GrainView& grains = snapshot.grains;
-  const std::vector<Mat3> contact_stress = contact_stresses(snapshot);
-  std::vector<Row> rows(grains.id.size());
-  for (std::size_t n = 0; n < rows.size(); ++n) {
-    rows[n] = Row{};
-    rows[n].id = grains.id[n];
-    rows[n].clump = grains.is_member(n) ? grains.clump[n] : -1;
-    rows[n].radius = grains.radius[n];
-    copy(grains.position[n], rows[n].position);
-    rows[n].speed = grains.velocity[n].norm();
-    copy(grains.velocity[n], rows[n].velocity);
-    copy(grains.angular_velocity[n], rows[n].angular_velocity);
-    if (!grains.fluid_force.empty()) copy(grains.fluid_force[n], rows[n].fluid_force);
-    if (!grains.fluid_stress.empty()) copy(grains.fluid_stress[n], rows[n].fluid_stress);
-    copy(contact_stress[n], rows[n].contact_stress);
-    if (!grains.contact_force.empty()) copy(grains.contact_force[n], rows[n].contact_force);
+  const std::vector<Mat3> stress = with_contact_stress ? contact_stresses(snapshot) : std::vector<Mat3>{};
+  std::vector<Row> rows;
+  for (std::size_t n = 0; n < grains.id.size(); ++n) {
+    if (!selection.has(grains.id[n], grains.position[n])) continue;
+    rows.push_back(row_of(grains, n, ends));
+    if (with_contact_stress) copy(stress[n], rows.back().contact_stress);
   }
   return rows;
+}
+
+// Of rows that lie on the ranks in their order, the first of this rank at place `first`, those of the share, in the
+// same order.
+std::vector<Row> rows_by_place(MPI_Comm communicator, const std::vector<Row>& rows, std::int64_t first,
+                               const BlockShare& share) {
+  std::vector<int> home;
+  home.reserve(rows.size());
+  for (std::size_t n = 0; n < rows.size(); ++n) home.push_back(share.rank_of(first + static_cast<std::int64_t>(n)));
+  return exchange_rows(communicator, rows, home);
 }
 
 // The columns of the rows that this rank writes.
@@ -56,18 +85,18 @@ class Columns {
 public:
   Columns(const std::vector<Row>& rows, VtkXmlFile& file) : rows_(rows), file_(file) {}
 
-  void add(const char* name, std::int64_t Row::*field) const {
+  void add(const std::string& name, std::int64_t Row::*field) const {
     std::vector<std::int64_t> values;
     for (const Row& row : rows_) values.push_back(row.*field);
     file_.add("PointData", name, 1, values);
   }
-  void add(const char* name, double Row::*field) const {
+  void add(const std::string& name, double Row::*field) const {
     std::vector<double> values;
     for (const Row& row : rows_) values.push_back(row.*field);
     file_.add("PointData", name, 1, values);
   }
   template <int components>
-  void add(const char* name, double (Row::*field)[components], const char* section = "PointData") const {
+  void add(const std::string& name, double (Row::*field)[components], const char* section = "PointData") const {
     std::vector<double> values;
     for (const Row& row : rows_) values.insert(values.end(), row.*field, row.*field + components);
     file_.add(section, name, components, values);
@@ -86,38 +115,91 @@ private:
   VtkXmlFile& file_;
 };
 
+void add_field(GrainField field, const std::string& name, const Columns& columns) {
+  switch (field) {
+    case GrainField::id:
+      return columns.add(name, &Row::id);
+    case GrainField::clump:
+      return columns.add(name, &Row::clump);
+    case GrainField::radius:
+      return columns.add(name, &Row::radius);
+    case GrainField::speed:
+      return columns.add(name, &Row::speed);
+    case GrainField::velocity:
+      return columns.add(name, &Row::velocity);
+    case GrainField::angular_velocity:
+      return columns.add(name, &Row::angular_velocity);
+    case GrainField::contact_force:
+      return columns.add(name, &Row::contact_force);
+    case GrainField::contact_stress:
+      return columns.add(name, &Row::contact_stress);
+    case GrainField::fluid_force:
+      return columns.add(name, &Row::fluid_force);
+    case GrainField::fluid_stress:
+      return columns.add(name, &Row::fluid_stress);
+    case GrainField::population:
+      return columns.add(name, &Row::population);
+    case GrainField::held:
+      return columns.add(name, &Row::held);
+    case GrainField::density:
+      return columns.add(name, &Row::density);
+    case GrainField::orientation:
+      return columns.add(name, &Row::orientation);
+  }
+}
+
 }  // namespace
 
-GrainSeries::GrainSeries(MPI_Comm communicator, const std::filesystem::path& run_folder,
+GrainSeries::GrainSeries(MPI_Comm communicator, const std::filesystem::path& folder, std::string name,
+                         GrainSelectionKeys selection, std::vector<GrainField> fields, PopulationEnds population_ends,
                          std::optional<double> continue_from)
-    : communicator_(communicator), folder_(run_folder), index_(run_folder / "grains.pvd", continue_from) {}
+    : communicator_(communicator),
+      folder_(folder),
+      name_(std::move(name)),
+      selection_(std::move(selection), population_ends),
+      fields_(std::move(fields)),
+      population_ends_(std::move(population_ends)),
+      index_(folder / (name_ + ".pvd"), continue_from) {}
 
-void GrainSeries::write(const Snapshot& snapshot) {
+// In the order of the arrays.
+std::vector<GrainField> GrainSeries::fields_in(const Snapshot& snapshot) const {
   const bool with_fluid = any_rank(communicator_, !snapshot.grains.fluid_force.empty());
   const bool with_stress = any_rank(communicator_, !snapshot.grains.fluid_stress.empty());
-  const std::int64_t count = snapshot.grains.global_count;
-  VtkXmlFile picture(communicator_, count);
-  const std::vector<Row> rows = rows_by_id(communicator_, rows_of(snapshot), picture.share());
+  const auto there_is = [&](GrainField field) {
+    if (field == GrainField::fluid_force) return with_fluid;
+    if (field == GrainField::fluid_stress) return with_stress;
+    if (field == GrainField::clump || field == GrainField::orientation) return snapshot.grains.clump_count > 0;
+    return true;
+  };
+  std::vector<GrainField> fields;
+  for (const NamedChoice<GrainField>& field : grain_fields())
+    if (field.value == GrainField::radius || (fields_.empty() ? there_is(field.value) : contains(fields_, field.value)))
+      fields.push_back(field.value);
+  return fields;
+}
+
+void GrainSeries::write(const Snapshot& snapshot) {
+  const std::vector<GrainField> fields = fields_in(snapshot);
+  // By id, of which some may be missing, and then by their place in the file.
+  const std::vector<Row> selected =
+      rows_by_id(communicator_,
+                 selected_rows(snapshot, selection_, population_ends_, contains(fields, GrainField::contact_stress)),
+                 BlockShare(snapshot.grains.global_count, 1, size_of(communicator_)));
+  const RowRange places = RowRange::of_rows(static_cast<std::int64_t>(selected.size()), communicator_);
+  VtkXmlFile picture(communicator_, places.count);
+  const std::vector<Row> rows = rows_by_place(communicator_, selected, places.first, picture.share());
   const Columns columns(rows, picture);
-  columns.add("id", &Row::id);
-  if (snapshot.grains.clump_count > 0) columns.add("clump", &Row::clump);
-  columns.add("radius", &Row::radius);
-  columns.add("speed", &Row::speed);
-  columns.add("velocity", &Row::velocity);
-  columns.add("angular_velocity", &Row::angular_velocity);
-  columns.add("contact_force", &Row::contact_force);
-  columns.add("contact_stress", &Row::contact_stress);
-  if (with_fluid) columns.add("fluid_force", &Row::fluid_force);
-  if (with_stress) columns.add("fluid_stress", &Row::fluid_stress);
+  for (const NamedChoice<GrainField>& field : grain_fields())
+    if (contains(fields, field.value)) add_field(field.value, field.name, columns);
   columns.add("Points", &Row::position, "Points");
   columns.add_vertices();
 
-  const auto file = std::filesystem::path("grains") / fmt::format("grains_{:09d}.vtp", snapshot.step);
-  on_first_rank(communicator_, [&] { make_folder(folder_ / "grains"); });
+  const auto file = std::filesystem::path(name_) / fmt::format("{}_{:09d}.vtp", name_, snapshot.step);
+  on_first_rank(communicator_, [&] { make_folder(folder_ / name_); });
   picture.write(folder_ / file, "PolyData", "",
                 fmt::format(" NumberOfPoints=\"{0}\" NumberOfVerts=\"{0}\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
                             "NumberOfPolys=\"0\"",
-                            count));
+                            places.count));
   on_first_rank(communicator_, [&] { index_.add(snapshot.time, file); });
 }
 

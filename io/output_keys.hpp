@@ -3,6 +3,8 @@
 
 #include "core/section_visitor.hpp"
 #include "io/fluid_series.hpp"
+#include "io/grain_fields.hpp"
+#include "io/grain_selection.hpp"
 
 #include <cstdint>
 #include <string>
@@ -18,6 +20,7 @@ struct SeriesOutputKeys {
 struct FluidOutputKeys : FluidRegionKeys {
   double every = 0.0;
   std::vector<FluidField> fields{FluidField::velocity, FluidField::pressure, FluidField::grain_id};
+  FieldPrecision precision = FieldPrecision::single;
   bool operator==(const FluidOutputKeys&) const = default;
 };
 // One more series of frames of the fluid.
@@ -27,7 +30,13 @@ struct NamedFluidOutputKeys : FluidOutputKeys {
 };
 struct GrainOutputKeys {
   double every = 0.0;
+  std::vector<GrainField> fields;  // empty: all that the case has
   bool operator==(const GrainOutputKeys&) const = default;
+};
+// One more series of frames of the grains.
+struct NamedGrainOutputKeys : GrainOutputKeys, GrainSelectionKeys {
+  std::string name;
+  bool operator==(const NamedGrainOutputKeys&) const = default;
 };
 struct CheckpointOutputKeys {
   double every = 0.0;
@@ -41,6 +50,7 @@ struct OutputKeys {
   FluidOutputKeys fluid;
   std::vector<NamedFluidOutputKeys> fluid_parts;
   GrainOutputKeys grains;
+  std::vector<NamedGrainOutputKeys> grain_parts;
   CheckpointOutputKeys checkpoint;
   bool operator==(const OutputKeys&) const = default;
 };
@@ -51,5 +61,19 @@ void describe(SectionVisitor& visit, OutputKeys& output, const OnlyIf& of_fluid,
 // Whether every series of the fluid shows cells of a box of this size (m). Throws KeyError, from the section `output`
 // on.
 void check_fluid_output(const OutputKeys& output, const Vec3& box_size, double spacing);
+
+// What there is to show of the grains of a case.
+struct GrainOutputFacts {
+  PopulationEnds population_ends;
+  Vec3 box_size = Vec3::Zero();  // m
+  bool clumps = false;
+  bool fluid_force = false;   // the fluid, or what stands for it, acts on the grains
+  bool fluid_stress = false;  // and its stress on them is measured
+};
+
+bool there_is(GrainField field, const GrainOutputFacts& facts);
+
+// Whether every series of the grains can show what it asks for. Throws KeyError, from the section `output` on.
+void check_grain_output(const OutputKeys& output, const GrainOutputFacts& facts);
 
 }  // namespace thalweg::io

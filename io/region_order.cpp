@@ -100,6 +100,9 @@ std::vector<Number> RegionOrder::exchanged(const std::vector<Number>& values, in
   return result;
 }
 
+std::vector<double> RegionOrder::share_of(const std::vector<double>& values, int components) const {
+  return exchanged(values, components, MPI_DOUBLE);
+}
 std::vector<float> RegionOrder::share_of(const std::vector<float>& values, int components) const {
   return exchanged(values, components, MPI_FLOAT);
 }

@@ -19,6 +19,7 @@ public:
 
   // values: of the cells of this rank's part, x fastest, with all components of a cell together.
   // Returns those of this rank's share. Collective.
+  std::vector<double> share_of(const std::vector<double>& values, int components) const;
   std::vector<float> share_of(const std::vector<float>& values, int components) const;
   std::vector<std::int32_t> share_of(const std::vector<std::int32_t>& values, int components) const;
 

@@ -21,12 +21,12 @@ namespace fs = std::filesystem;
 namespace {
 
 // All a run writes, and thalweg analyze; --overwrite removes these and nothing else.
-constexpr std::array run_contents{
-    "case.yaml",      "run.log",     "series.csv",   "profiles.h5", "probes.h5", "tracks.h5",
-    "entrainment.h5", "bed.h5",      "grains.pvd",   "fluid.pvd",   "grains",    "fluid",
-    "fluid_parts",    "checkpoints", "summary.json", "analysis",    "stop"};
+constexpr std::array run_contents{"case.yaml",    "run.log",        "series.csv",  "profiles.h5", "probes.h5",
+                                  "tracks.h5",    "entrainment.h5", "bed.h5",      "grains.pvd",  "fluid.pvd",
+                                  "grains",       "fluid",          "fluid_parts", "grain_parts", "checkpoints",
+                                  "summary.json", "analysis",       "stop"};
 // Of these, what a run that goes on changes in its place: folders, and files that are not replaced as a whole.
-constexpr std::array added_to{"checkpoints", "grains",    "fluid",     "fluid_parts",
+constexpr std::array added_to{"checkpoints", "grains",    "fluid",     "fluid_parts",   "grain_parts",
                               "run.log",     "probes.h5", "tracks.h5", "entrainment.h5"};
 constexpr const char* latest_name = "latest";
 constexpr const char* unfinished_case = "case.yaml.partial";

@@ -43,6 +43,7 @@ public:
   std::filesystem::path records(const std::string& observer) const { return path_ / (observer + ".h5"); }
   std::filesystem::path bed() const { return path_ / "bed.h5"; }
   std::filesystem::path fluid_parts() const { return path_ / "fluid_parts"; }
+  std::filesystem::path grain_parts() const { return path_ / "grain_parts"; }
   std::filesystem::path summary() const { return path_ / "summary.json"; }
   std::filesystem::path stop() const { return path_ / "stop"; }  // asks the run to stop
   std::filesystem::path checkpoints() const { return path_ / "checkpoints"; }

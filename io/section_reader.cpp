@@ -189,6 +189,12 @@ void SectionReader::value_of(const std::string& key, std::int64_t& value, const 
   value = read;
 }
 
+void SectionReader::value_of(const std::string& key, std::optional<std::int64_t>& value, const IntegerKey& about) {
+  std::int64_t read = about.example.value_or(about.at_least);
+  value_of(key, read, about);
+  if (section_.find(key)) value = read;
+}
+
 void SectionReader::value_of(const std::string& key, std::vector<std::int64_t>& values, const IntegerKey& about) {
   const std::int64_t example = about.example.value_or(std::max<std::int64_t>(1, about.at_least));
   const std::string expectation =

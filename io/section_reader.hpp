@@ -25,6 +25,7 @@ private:
   void value_of(const std::string& key, std::optional<Vec3>& value, const RealKey& about) override;
   void value_of(const std::string& key, std::vector<Vec3>& values, const RealKey& about) override;
   void value_of(const std::string& key, std::int64_t& value, const IntegerKey& about) override;
+  void value_of(const std::string& key, std::optional<std::int64_t>& value, const IntegerKey& about) override;
   void value_of(const std::string& key, std::vector<std::int64_t>& values, const IntegerKey& about) override;
   void value_of(const std::string& key, std::vector<double>& values, const RealKey& about) override;
   void value_of(const std::string& key, std::string& value, const TextKey& about) override;

@@ -101,6 +101,12 @@ void SectionWriter::value_of(const std::string& key, std::int64_t& value, const 
       source_of(about.required || about.example.has_value()));
 }
 
+void SectionWriter::value_of(const std::string& key, std::optional<std::int64_t>& value, const IntegerKey& about) {
+  put(value.has_value(), key, fmt::format("{}", value.value_or(about.example.value_or(about.at_least))),
+      style_ == YamlStyle::plain ? "" : fmt::format("whole number, at least {}; {}", about.at_least, about.meaning),
+      Source::example);
+}
+
 void SectionWriter::value_of(const std::string& key, std::vector<std::int64_t>& values, const IntegerKey& about) {
   std::vector<std::int64_t> shown = values;
   if (values.empty()) shown = {about.example.value_or(1), about.example.value_or(1) + 1};
@@ -150,7 +156,8 @@ void SectionWriter::word_list(const std::string& key, std::vector<std::size_t>& 
                               const SectionKey& about) {
   std::vector<std::string> names;
   for (const std::size_t index : indices) names.push_back(words[index].name);
-  put(true, key, fmt::format("[{}]", fmt::join(names, ", ")), comment_of(words, about));
+  if (indices.empty()) names.push_back(words.front().name);
+  put(!indices.empty(), key, fmt::format("[{}]", fmt::join(names, ", ")), comment_of(words, about));
 }
 
 // Asked of sections that a case may leave out.

@@ -10,7 +10,7 @@ from thalweg.vtk_files import read_image, read_index, read_points
 
 GRAIN_UNITS = {"id": "1", "clump": "1", "radius": "m", "speed": "m/s", "position": "m", "velocity": "m/s",
                "angular_velocity": "rad/s", "contact_force": "N", "fluid_force": "N", "contact_stress": "Pa",
-               "fluid_stress": "Pa"}
+               "fluid_stress": "Pa", "population": "1", "held": "1", "density": "kg/m^3", "orientation": "1"}
 FLUID_UNITS = {"velocity": "m/s", "pressure": "Pa", "density": "kg/m^3", "grain_id": "1", "shear_rate": "1/s",
                "eddy_viscosity": "m^2/s", "vorticity": "1/s", "q_criterion": "1/s^2"}
 
@@ -19,13 +19,15 @@ class GrainFrame:
     """The grains at one time: `frame.position` [grain, axis], `frame.velocity`, `frame.contact_stress` [grain, row, column]
     and so on; `arrays` has all of them with their units."""
 
+    may_be_empty = False
+
     def __init__(self, time, path):
         self.time, self.path = time, path   # s
 
     @cached_property
     def arrays(self):
         position, arrays = read_points(self.path)
-        if len(position) == 0:
+        if len(position) == 0 and not self.may_be_empty:
             raise RunFolderError(f"{self.path}: there are no grains in this frame.")
         arrays = {name: values.reshape(-1, 3, 3) if name.endswith("_stress") else values
                   for name, values in arrays.items()}
@@ -50,6 +52,12 @@ class GrainFrame:
     def volume(self):
         """m^3"""
         return 4.0 / 3.0 * np.pi * self.radius**3
+
+
+class GrainPartFrame(GrainFrame):
+    """The grains of a part of the output at one time, with the arrays that the part asks for; perhaps none."""
+
+    may_be_empty = True
 
 
 class FluidFrame:

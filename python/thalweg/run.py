@@ -10,7 +10,7 @@ import yaml
 
 from thalweg.columns import Columns
 from thalweg.errors import RunFolderError
-from thalweg.frames import FluidFrame, Frames, GrainFrame
+from thalweg.frames import FluidFrame, Frames, GrainFrame, GrainPartFrame
 from thalweg.tables import read_series
 
 
@@ -63,6 +63,10 @@ class Run:
     def fluid_part(self, name):
         """Frames of one of `output.fluid_parts` of the case, by its name."""
         return Frames.of_index(self.folder / "fluid_parts" / f"{name}.pvd", FluidFrame)
+
+    def grain_part(self, name):
+        """Frames of one of `output.grain_parts` of the case, by its name; they may show no grain."""
+        return Frames.of_index(self.folder / "grain_parts" / f"{name}.pvd", GrainPartFrame)
 
     @cached_property
     def profiles(self):

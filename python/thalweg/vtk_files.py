@@ -76,9 +76,7 @@ def read_points(path):
     """Positions (m) of the points in a .vtp file and their arrays by name."""
     root, appended = open_file(path)
     piece = root.find("PolyData/Piece")
-    if int(piece.get("NumberOfPoints")) == 0:
-        return np.zeros((0, 3)), {}
-    points = next(iter(arrays_in(piece.find("Points"), appended, path).values()))
+    points = next(iter(arrays_in(piece.find("Points"), appended, path).values()), np.zeros((0, 3)))
     return points.astype(float), arrays_in(piece.find("PointData"), appended, path)
 
 

@@ -47,6 +47,41 @@ TEST(CaseReader, ReadsWhatTheFileSays) {
   EXPECT_EQ(c.analysis.observers.of<analysis::TransportRateKeys>()->from, 1.0);
 }
 
+TEST(CaseReader, GrainsAndFluidMayComeFromTwoRuns) {
+  const Case none = read(flume);
+  EXPECT_TRUE(none.initial.from.none());
+  EXPECT_FALSE(none.initial.takes(InitialField::fluid));
+  for (const std::string one : {"initial={from: a, fields: [grains]}", "initial={from: {run: a}, fields: [grains]}"}) {
+    const Case c = read(flume, {one});
+    EXPECT_TRUE(c.initial.source_of(InitialField::grains).path.ends_with("/a"));
+    EXPECT_EQ(c.initial.source_of(InitialField::grains).key, "initial.from");
+    EXPECT_FALSE(c.initial.takes(InitialField::fluid));
+    EXPECT_EQ(read(resolved_yaml(c)), c) << resolved_yaml(c);
+  }
+  const Case two = read(flume, {"initial.from={grains: a, fluid: b}"});
+  EXPECT_TRUE(two.initial.source_of(InitialField::grains).path.ends_with("/a"));
+  EXPECT_TRUE(two.initial.source_of(InitialField::fluid).path.ends_with("/b"));
+  EXPECT_EQ(two.initial.source_of(InitialField::fluid).key, "initial.from.fluid");
+  EXPECT_EQ(read(resolved_yaml(two)), two) << resolved_yaml(two);
+  const Case bed = read(flume, {"initial={from: {grains: a}, fluid: {uniform: [0.1, 0, 0]}}"});
+  EXPECT_TRUE(bed.initial.takes(InitialField::grains));
+  EXPECT_FALSE(bed.initial.takes(InitialField::fluid));
+  EXPECT_THROW(read(flume, {"initial={from: {grains: a, fluid: b}, fields: [grains]}"}), InputError);
+  EXPECT_THROW(read(flume, {"initial={from: {run: a, fluid: b}}"}), InputError);
+}
+
+TEST(CaseReader, FramesOfGrainsMayBeOfSome) {
+  const Case c =
+      read(flume, {"output.grains={every: 1, fields: [density, id]}",
+                   "output.grain_parts=[{name: fixed, every: 0.1, population: 1, ids: [150, 151], box: {lower: "
+                   "[0, 0, 0], upper: [0.06, 0.0105, 0.02]}}]"});
+  EXPECT_EQ(c.output.grains.fields, (std::vector<io::GrainField>{io::GrainField::density, io::GrainField::id}));
+  ASSERT_EQ(c.output.grain_parts.size(), 1u);
+  EXPECT_EQ(c.output.grain_parts[0].population, 1);
+  EXPECT_TRUE(c.output.grain_parts[0].fields.empty());
+  EXPECT_EQ(read(resolved_yaml(c)), c) << resolved_yaml(c);
+}
+
 // The lightest pair of the flume touches for 0.000145 s: 2e-5 s of the fluid are 2.8 twentieths of it.
 TEST(CaseReader, TakesAsManySubStepsAsTheContactNeeds) {
   const Case c = read(flume, {"coupling.grain_steps_per_fluid_step=auto"});

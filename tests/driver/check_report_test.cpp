@@ -58,14 +58,44 @@ TEST(DiskSpace, IsThatOfFramesCheckpointsAndRecords) {
   c.analysis.observers.of<analysis::TracksKeys>().emplace().one_in = 3;
   const DiskSpace space = disk_space(c);
   EXPECT_NEAR(space.fluid, 301.0 * 240.0 * 212.0 * 5.0 * 4.0, 1.0);
-  EXPECT_NEAR(space.grains, 61.0 * 1000.0 * 29.0 * 8.0, 1.0);
+  EXPECT_NEAR(space.grains, 61.0 * 1000.0 * 32.0 * 8.0, 1.0);
   EXPECT_NEAR(space.records, 30001.0 * 334.0 * 144.0, 1.0);
   const double state = 240.0 * 80.0 * 212.0 * 19.0 * 4.0;
   EXPECT_GT(space.checkpoints, 3.0 * state);
   EXPECT_LT(space.checkpoints, 3.0 * (state + 1000.0 * 1000.0));
-  EXPECT_NE(disk_line(space).find("fluid 306 MB, grains 14.2 MB, checkpoints"), std::string::npos) << disk_line(space);
+  EXPECT_NE(disk_line(space).find("fluid 306 MB, grains 15.6 MB, checkpoints"), std::string::npos) << disk_line(space);
   c.output.checkpoint.every = 0.0;
   EXPECT_NEAR(disk_space(c).checkpoints, space.checkpoints / 3.0, 1.0);
+}
+
+// A grain has six numbers for its place, radius and vertex in any frame.
+TEST(DiskSpace, CountsTheGrainsAndFieldsOfParts) {
+  Case c = water_over_glass(5e-3, 0.016, 0.0412, 0.040, lbm::FaceType::periodic);
+  c.output.grains = {.every = 1.0, .fields = {io::GrainField::radius}};
+  double frames = 31.0 * 1000.0 * 6.0 * 8.0;
+  EXPECT_NEAR(disk_space(c).grains, frames, 1.0);
+  const auto add = [&c](double every, const io::GrainSelectionKeys& selection,
+                        const std::vector<io::GrainField>& fields) {
+    io::NamedGrainOutputKeys& part = c.output.grain_parts.emplace_back();
+    static_cast<io::GrainSelectionKeys&>(part) = selection;
+    part.every = every;
+    part.fields = fields;
+  };
+  add(0.5, {{4, 5, 6}, {}, {}}, {io::GrainField::id, io::GrainField::velocity});
+  frames += 61.0 * 3.0 * 10.0 * 8.0;
+  EXPECT_NEAR(disk_space(c).grains, frames, 1.0);
+  add(10.0, {{}, 0, {}}, {io::GrainField::fluid_stress});
+  frames += 4.0 * 1000.0 * 15.0 * 8.0;
+  EXPECT_NEAR(disk_space(c).grains, frames, 1.0);
+  // A tenth of a diameter wide: of 5 mm, at most 1.1^3 sqrt(2) = 1.9 have their centres in it.
+  add(10.0, {{}, {}, io::BoxKeys{Vec3::Constant(0.01), Vec3::Constant(0.0105)}}, {io::GrainField::id});
+  frames += 4.0 * 2.0 * 7.0 * 8.0;
+  EXPECT_NEAR(disk_space(c).grains, frames, 1.0);
+
+  c.output.fluid.every = 10.0;
+  const double single = disk_space(c).fluid;
+  c.output.fluid.precision = io::FieldPrecision::double_;
+  EXPECT_NEAR(disk_space(c).fluid, single * 36.0 / 20.0, 1.0);  // four reals and one id
 }
 
 // What a user plans a run by, in lines of their own.

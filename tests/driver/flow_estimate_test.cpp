@@ -69,7 +69,7 @@ TEST(FlowEstimate, OfASlopeIsNoMoreThanTheRunHasTimeFor) {
   EXPECT_FALSE(flow_estimate(c).still_gaining);
   EXPECT_EQ(flow_estimate(c).speed, developed.speed);
   c.run.until = 2.0;
-  c.initial.from = "another run";  // whose speed is not known
+  c.initial.from.run = "another run";  // whose speed is not known
   EXPECT_EQ(flow_estimate(c).speed, developed.speed);
 }
 

@@ -40,13 +40,15 @@ def arrays(data):
     return {data.GetArrayName(n): vtk_to_numpy(data.GetArray(n)) for n in range(data.GetNumberOfArrays())}
 
 
-def check_grains(name, with_fluid, with_stress=False):
-    for time, path in pictures(FOLDER / name / "grains.pvd"):
+def check_grains(name, with_fluid, with_stress=False, index="grains", shown=lambda time: np.arange(GRAINS), fields=None):
+    """shown: the ids of the grains in a frame; fields: those of its arrays, None for all."""
+    for time, path in pictures(FOLDER / name / f"{index}.pvd"):
         data = read(vtkXMLPolyDataReader(), path)
-        n = np.arange(GRAINS)
-        assert np.array_equal(vtk_to_numpy(data.GetVerts().GetConnectivityArray()), n)
-        zero, one = np.zeros(GRAINS), np.ones(GRAINS)
-        assert data.GetNumberOfPoints() == GRAINS and data.GetNumberOfVerts() == GRAINS
+        n = shown(time)
+        count = len(n)
+        assert np.array_equal(vtk_to_numpy(data.GetVerts().GetConnectivityArray()), np.arange(count))
+        zero, one = np.zeros(count), np.ones(count)
+        assert data.GetNumberOfPoints() == count and data.GetNumberOfVerts() == count
         points = vtk_to_numpy(data.GetPoints().GetData())
         assert np.array_equal(points, np.stack([0.1 * n, 0.2 * n, 0.3 * n + time], axis=1))
         expected = {
@@ -59,7 +61,7 @@ def check_grains(name, with_fluid, with_stress=False):
         }
         if with_fluid:
             expected["fluid_force"] = np.stack([zero, n, one], axis=1)
-        expected["contact_stress"] = np.zeros((GRAINS, 9))
+        expected["contact_stress"] = np.zeros((count, 9))
         if with_stress:
             expected["fluid_stress"] = np.stack([n] + [k * one for k in range(1, 9)], axis=1)
             # One force of (-1, 0, n) N at the end of the radius along x: F_a r_b over the volume.
@@ -67,19 +69,24 @@ def check_grains(name, with_fluid, with_stress=False):
             volume = 4.0 / 3.0 * np.pi * radius**3
             expected["contact_stress"][:, 0] = -radius / volume
             expected["contact_stress"][:, 6] = n * radius / volume
+        expected["population"] = (n >= 4000).astype(int)
+        expected["held"] = n % 4
+        expected["density"] = 1.0 / (4.0 / 3.0 * np.pi * expected["radius"]**3)   # of 1 kg
+        if fields:
+            expected = {name: expected[name] for name in ["radius"] + fields}
         found = arrays(data.GetPointData())
         ours = read_points(path)
         assert np.array_equal(ours[0], points) and ours[1].keys() == found.keys()
         assert all(np.array_equal(ours[1][key], values) for key, values in found.items())
         assert found.keys() == expected.keys(), found.keys()
         for key, values in expected.items():
-            same = np.allclose(found[key], values, rtol=1e-14, atol=0) if key == "contact_stress" \
+            same = np.allclose(found[key], values, rtol=1e-14, atol=0) if key in ("contact_stress", "density") \
                 else np.array_equal(found[key], values)
             assert same, f"{path}: {key}"
 
 
-def check_fluid(name, fields, lower, upper, strides=(1, 1, 1)):
-    """lower, upper: of the cells that are shown, every so many of them along each axis."""
+def check_fluid(name, fields, lower, upper, strides=(1, 1, 1), real=np.float32):
+    """lower, upper: of the cells that are shown, every so many of them along each axis; real: type of the numbers."""
     for time, path in pictures(FOLDER / name / "fluid.pvd"):
         data = read(vtkXMLImageDataReader(), path)
         shown = [np.arange(lower[a], upper[a], strides[a]) for a in range(3)]
@@ -98,7 +105,7 @@ def check_fluid(name, fields, lower, upper, strides=(1, 1, 1)):
         i, j, k = i.ravel(), j.ravel(), k.ravel()
         expected = {
             "velocity": np.stack([i, j, k], axis=1) + 0.5,
-            "pressure": (i + 100 * j + 10000 * k + time).astype(np.float32),
+            "pressure": (i + 100 * j + 10000 * k + time).astype(real),
             "grain_id": (i + j + k) % 5 - 1,
         }
         found = arrays(data.GetCellData())
@@ -108,22 +115,28 @@ def check_fluid(name, fields, lower, upper, strides=(1, 1, 1)):
         assert list(found) == fields, list(found)
         for key, values in found.items():
             assert np.array_equal(values, expected[key]), f"{path}: {key}"
+            assert values.dtype == (np.int32 if key == "grain_id" else real), f"{path}: {key}"
 
 
 check_grains("wet", True)
 check_grains("stressed", True, True)
 check_grains("dry", False)
+check_grains("some", True, True, "part", lambda time: np.array([0, 7, 4096, 9000]))
+check_grains("second", True, True, "part", lambda time: np.arange(4000, GRAINS), ["id", "population"])
+check_grains("boxed", True, True, "part", lambda time: np.arange(3, 8 if time < 0.1 else 7 if time < 0.5 else 6), ["id", "held"])
+check_grains("nobody", True, True, "part", lambda time: np.arange(0), ["velocity"])
 check_fluid("whole", ["velocity", "pressure", "grain_id"], (0, 0, 0), CELLS)
 check_fluid("slice_x", ["velocity"], (12, 0, 0), (13, 20, 18))
 check_fluid("slice_y", ["pressure", "velocity"], (0, 10, 0), (24, 11, 18))
 check_fluid("slice_z", ["grain_id"], (0, 0, 9), (24, 20, 10))
 check_fluid("sparse", ["velocity", "grain_id"], (4, 5, 3), (21, 20, 9), (3, 3, 3))
+check_fluid("precise", ["pressure", "grain_id"], (0, 0, 9), (24, 20, 10), real=np.float64)
 check_fluid("plane", ["pressure"], (0, 0, 10), (24, 20, 11), (4, 4, 1))
 
 # One file a picture, and the same one on any number of ranks.
 files = sorted(path.relative_to(FOLDER) for path in FOLDER.rglob("*") if path.is_file())
 assert {path.suffix for path in files} == {".pvd", ".vtp", ".vti"}, files
-assert sum(path.suffix == ".vti" for path in files) == 6 * 5, files   # two of the five frames have left the index
+assert sum(path.suffix == ".vti" for path in files) == 7 * 5, files   # two of the five frames have left the index
 for other in OTHERS:
     assert files == sorted(path.relative_to(other) for path in other.rglob("*") if path.is_file()), other
     for path in files:

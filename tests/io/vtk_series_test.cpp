@@ -20,6 +20,7 @@ using testing::ScratchFolder;
 constexpr Index3 cells{24, 20, 18};  // more than the two blocks of a file
 constexpr double spacing = 0.25e-3;  // m
 constexpr std::int64_t grain_count = 9001;
+const PopulationEnds ends{4000, grain_count};
 
 // Fields that tell every cell apart; check_vtk_series.py computes the same.
 class CellNumbers final : public FluidSource {
@@ -31,8 +32,8 @@ public:
     for (int k = fields.block.lower[2]; k < fields.block.upper[2]; ++k)
       for (int j = fields.block.lower[1]; j < fields.block.upper[1]; ++j)
         for (int i = fields.block.lower[0]; i < fields.block.upper[0]; ++i) {
-          for (const int c : {i, j, k}) fields.velocity.push_back(static_cast<float>(c) + 0.5f);
-          fields.pressure.push_back(static_cast<float>(i + 100 * j + 10000 * k + time_));
+          for (const int c : {i, j, k}) fields.velocity.push_back(c + 0.5);
+          fields.pressure.push_back(i + 100 * j + 10000 * k + time_);
           fields.grain_id.push_back((i + j + k) % 5 - 1);
         }
     return fields;
@@ -50,6 +51,7 @@ private:
 struct Grains {
   std::vector<GlobalId> id;
   std::vector<double> radius, mass;
+  std::vector<std::uint8_t> motion;
   std::vector<Vec3> position, velocity, angular_velocity, fluid_force, fluid_torque, contact_force;
   std::vector<Mat3> fluid_stress;
 
@@ -60,6 +62,7 @@ struct Grains {
       id.push_back(n);
       radius.push_back(1e-3 + 1e-5 * x);
       mass.push_back(1.0);
+      motion.push_back(static_cast<std::uint8_t>(n % 8));
       position.emplace_back(0.1 * x, 0.2 * x, 0.3 * x + time);
       velocity.emplace_back(3.0 * x, 4.0 * x, 0.0);
       angular_velocity.emplace_back(x, 0.0, -x);
@@ -77,6 +80,7 @@ struct Grains {
     view.id = id;
     view.radius = radius;
     view.mass = mass;
+    view.motion = motion;
     view.position = position;
     view.velocity = velocity;
     view.angular_velocity = angular_velocity;
@@ -120,39 +124,59 @@ public:
     const Grains grains(time);
     Snapshot snapshot{time, step, &decomposition, grains.view(true), &fluid};
 
-    series<GrainSeries>("wet", continue_from, snapshot);
+    series<GrainSeries>("wet", continue_from, snapshot, std::string("grains"), GrainSelectionKeys{},
+                        std::vector<GrainField>{}, ends);
     snapshot.grains.fluid_stress = grains.fluid_stress;
     const Pressed pressed(snapshot.grains);
     snapshot.contacts = &pressed;
-    series<GrainSeries>("stressed", continue_from, snapshot);
+    series<GrainSeries>("stressed", continue_from, snapshot, std::string("grains"), GrainSelectionKeys{},
+                        std::vector<GrainField>{}, ends);
+    write_grain_parts(continue_from, snapshot);
     snapshot.contacts = nullptr;
     series<FluidSeries>("whole", continue_from, snapshot, std::string("fluid"),
                         FluidRegionKeys{FluidRegion::whole, {}, {}, 1},
-                        std::vector<FluidField>{FluidField::velocity, FluidField::pressure, FluidField::grain_id});
+                        std::vector<FluidField>{FluidField::velocity, FluidField::pressure, FluidField::grain_id},
+                        FieldPrecision::single);
     series<FluidSeries>("slice_x", continue_from, snapshot, std::string("fluid"),
-                        FluidRegionKeys{FluidRegion::slice_x, {}, {}, 1},
-                        std::vector<FluidField>{FluidField::velocity});
+                        FluidRegionKeys{FluidRegion::slice_x, {}, {}, 1}, std::vector<FluidField>{FluidField::velocity},
+                        FieldPrecision::single);
     series<FluidSeries>("slice_y", continue_from, snapshot, std::string("fluid"),
                         FluidRegionKeys{FluidRegion::slice_y, {}, {}, 1},
-                        std::vector<FluidField>{FluidField::pressure, FluidField::velocity});
+                        std::vector<FluidField>{FluidField::pressure, FluidField::velocity}, FieldPrecision::single);
     series<FluidSeries>("slice_z", continue_from, snapshot, std::string("fluid"),
-                        FluidRegionKeys{FluidRegion::slice_z, {}, {}, 1},
-                        std::vector<FluidField>{FluidField::grain_id});
+                        FluidRegionKeys{FluidRegion::slice_z, {}, {}, 1}, std::vector<FluidField>{FluidField::grain_id},
+                        FieldPrecision::single);
     // Cells 4 to 20 along x, 5 to 19 along y, 3 to 8 along z, every third of them.
-    FluidRegionKeys sparse{FluidRegion::whole, FluidBoxKeys{{1.1e-3, 1.375e-3, 0.8e-3}, {5.2e-3, 5e-3, 2.2e-3}}, {}, 3};
+    FluidRegionKeys sparse{FluidRegion::whole, BoxKeys{{1.1e-3, 1.375e-3, 0.8e-3}, {5.2e-3, 5e-3, 2.2e-3}}, {}, 3};
     series<FluidSeries>("sparse", continue_from, snapshot, std::string("fluid"), sparse,
-                        std::vector<FluidField>{FluidField::velocity, FluidField::grain_id});
+                        std::vector<FluidField>{FluidField::velocity, FluidField::grain_id}, FieldPrecision::single);
     FluidRegionKeys plane{FluidRegion::whole, {}, FluidPlaneKeys{Axis::z, 2.6e-3}, 4};  // layer 10
     series<FluidSeries>("plane", continue_from, snapshot, std::string("fluid"), plane,
-                        std::vector<FluidField>{FluidField::pressure});
+                        std::vector<FluidField>{FluidField::pressure}, FieldPrecision::single);
+    series<FluidSeries>("precise", continue_from, snapshot, std::string("fluid"),
+                        FluidRegionKeys{FluidRegion::slice_z, {}, {}, 1},
+                        std::vector<FluidField>{FluidField::pressure, FluidField::grain_id}, FieldPrecision::double_);
     snapshot.grains = grains.view(false);
-    series<GrainSeries>("dry", continue_from, snapshot);
+    series<GrainSeries>("dry", continue_from, snapshot, std::string("grains"), GrainSelectionKeys{},
+                        std::vector<GrainField>{}, ends);
     snapshot.fluid = nullptr;
     series<FluidSeries>("without_fluid", continue_from, snapshot, std::string("fluid"),
-                        FluidRegionKeys{FluidRegion::whole, {}, {}, 1}, std::vector<FluidField>{FluidField::pressure});
+                        FluidRegionKeys{FluidRegion::whole, {}, {}, 1}, std::vector<FluidField>{FluidField::pressure},
+                        FieldPrecision::single);
   }
 
 private:
+  void write_grain_parts(std::optional<double> continue_from, const Snapshot& snapshot) {
+    const auto part = [&](const std::string& name, const GrainSelectionKeys& selection,
+                          const std::vector<GrainField>& fields) {
+      series<GrainSeries>(name, continue_from, snapshot, std::string("part"), selection, fields, ends);
+    };
+    part("some", {{9000, 7, 4096, 0}, {}, {}}, {});
+    part("second", {{}, 1, {}}, {GrainField::population, GrainField::id});
+    // Grains 3 to 7 at first, and fewer as they rise.
+    part("boxed", {{}, {}, BoxKeys{{0.25, 0.5, 0.0}, {10.0, 10.0, 2.25}}}, {GrainField::held, GrainField::id});
+    part("nobody", {{1}, 1, {}}, {GrainField::velocity});
+  }
   template <typename Series, typename... Options>
   void series(const std::string& name, std::optional<double> continue_from, const Snapshot& snapshot,
               const Options&... options) {
@@ -193,9 +217,12 @@ TEST(VtkSeries, AFolderThatCannotBeWrittenIsARunErrorOnEveryRank) {
   const CellNumbers fluid(decomposition.block_of(rank_of(MPI_COMM_WORLD)), 0.0);
   const Grains grains(0.0);
   const Snapshot snapshot{0.0, 0, &decomposition, grains.view(true), &fluid};
-  EXPECT_NE(message_of<RunError>([&] { GrainSeries(MPI_COMM_WORLD, folder.path()).write(snapshot); }), "");
+  EXPECT_NE(message_of<RunError>(
+                [&] { GrainSeries(MPI_COMM_WORLD, folder.path(), "grains", {}, {}, {grain_count}).write(snapshot); }),
+            "");
   EXPECT_NE(message_of<RunError>([&] {
-              FluidSeries(MPI_COMM_WORLD, folder.path(), "fluid", {}, {FluidField::pressure}).write(snapshot);
+              FluidSeries(MPI_COMM_WORLD, folder.path(), "fluid", {}, {FluidField::pressure}, FieldPrecision::single)
+                  .write(snapshot);
             }),
             "");
 }

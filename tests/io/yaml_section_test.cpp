@@ -36,6 +36,8 @@ struct Cart {
   std::vector<Wheel> wheels;
   std::vector<Vec3> track;
   std::vector<Colour> flags{Colour::green};
+  std::optional<std::int64_t> doors;
+  std::vector<Colour> stripes;  // empty: none given
   bool operator==(const Cart&) const = default;
 };
 
@@ -87,6 +89,8 @@ static void describe(SectionVisitor& visit, Cart& cart) {
   visit.list("wheels", cart.wheels, {.meaning = "all of them"});
   visit.vec3_list("track", cart.track, {.unit = "m", .meaning = "way points"});
   visit.choice_list("flags", cart.flags, colours, {.meaning = "flown"});
+  visit.integer("doors", cart.doors, {.meaning = "on both sides", .at_least = 1});
+  visit.choice_list("stripes", cart.stripes, colours, {.meaning = "from the front"});
   visit.require(cart.seats < 10 || cart.length > 5.0, "seats", "a short cart has fewer than 10");
 }
 
@@ -119,6 +123,8 @@ Cart full_cart() {
   cart.wheels = {{0.3, std::nullopt}, {0.4, Vec3(0, 1, 0)}};
   cart.track = {{1, 2, 3}, {-4, 5e-5, 6}};
   cart.flags = {Colour::red, Colour::green};
+  cart.doors = 4;
+  cart.stripes = {Colour::green};
   return cart;
 }
 
@@ -129,6 +135,8 @@ TEST(YamlSection, FillsInDefaults) {
   EXPECT_EQ(cart.seats, 2);
   EXPECT_FALSE(cart.lining.has_value());
   EXPECT_EQ(cart.flags, std::vector<Colour>{Colour::green});
+  EXPECT_FALSE(cart.doors.has_value());
+  EXPECT_TRUE(cart.stripes.empty());
 }
 
 TEST(YamlSection, WhatIsWrittenReadsBackTheSame) {
@@ -142,7 +150,8 @@ TEST(YamlSection, WhatIsWrittenReadsBackTheSame) {
 TEST(YamlSection, DocumentationShowsUnitRangeMeaningAndWhatIsNotGiven) {
   const std::string text = written(read(minimal), YamlStyle::documented);
   for (const std::string part : {"length: 2.5   ", "# example, required, m, above 0; overall\n", "paint: red   ",
-                                 "cargo: none   ", "# mass: 1   ", "# lining: red   ", "# red | green; flown\n"})
+                                 "cargo: none   ", "# mass: 1   ", "# lining: red   ", "# red | green; flown\n",
+                                 "# doors: 1   ", "# whole number, at least 1; on both sides\n", "# stripes: [red]   "})
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
 }
 
@@ -220,6 +229,10 @@ INSTANTIATE_TEST_SUITE_P(
             "FILE:4: length: the key is given twice (first at FILE:2); remove one of the two."},
         Bad{"fraction_for_integer", minimal + "seats: 2.5\n", "",
             "FILE:3: seats = 2.5: expected a whole number, at least 1, for example 2."},
+        Bad{"negative_optional_integer", minimal + "doors: -2\n", "",
+            "FILE:3: doors = -2: expected a whole number, at least 1, for example 1."},
+        Bad{"no_words", minimal + "stripes: []\n", "",
+            "FILE:3: stripes = []: expected a list of some of red, green, for example [red]."},
         Bad{"flag", minimal + "brake: maybe\n", "", "FILE:3: brake = \"maybe\": expected true or false."},
         Bad{"short_vector", minimal + "position: [1, 2]\n", "",
             "FILE:3: position = [1, 2]: expected a list of 3 numbers in m, each at least 0, for example [0.1, 0.1, "

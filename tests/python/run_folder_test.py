@@ -175,6 +175,21 @@ class RunFolder(made_up.MadeUpFolder):
         np.testing.assert_allclose(frame.volume, np.pi / 6 * frame.diameter**3, rtol=1e-15)
         self.assertFalse(hasattr(frame, "fluid_stress"))
 
+    def test_a_part_of_the_grains_may_show_none(self):
+        (self.folder / "grain_parts/tracers").mkdir(parents=True)
+        for n, count in enumerate((2, 0)):
+            arrays = {"radius": np.full(count, 1e-3), "contact_stress": np.ones((count, 9)), "orientation": np.ones((count, 4))}
+            made_up.write_points(self.folder / f"grain_parts/tracers/{n}.vtp", np.zeros((count, 3)), arrays)
+        made_up.write_index(self.folder / "grain_parts/tracers.pvd", [(0.1 * n, f"tracers/{n}.vtp") for n in (0, 1)])
+        frames = thalweg.Run(self.folder).grain_part("tracers")
+        self.assertEqual([len(frame) for frame in frames], [2, 0])
+        self.assertEqual(frames[0].contact_stress.shape, (2, 3, 3))
+        self.assertEqual(frames[0].arrays.units["orientation"], "1")
+        self.assertEqual(len(thalweg.Run(self.folder).grain_part("others")), 0)
+        self.write_frames((0.0,), [np.zeros((0, 3))])
+        with self.assertRaisesRegex(thalweg.RunFolderError, "no grains in this frame"):
+            thalweg.Run(self.folder).grains[0].position
+
     def test_a_grain_on_its_way(self):
         places = np.arange(18.0).reshape(3, 2, 3)
         self.write_frames((0.0, 0.1, 0.2), places, velocity=10 * places)

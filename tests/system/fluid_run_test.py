@@ -76,6 +76,24 @@ output: {series: {every: 0.005}, checkpoint: {every: 0.01, keep: 3}}
         for axis in range(3):   # every second cell, where it is
             numpy.testing.assert_allclose(bed.centres(axis), whole.centres(axis)[:2 * len(bed.centres(axis)):2], rtol=1e-12)
 
+    def test_frames_in_double_precision(self):
+        frames = ("--set", "fluid.precision=double", "--set", "output.fluid={every: 2e-3, fields: [velocity, pressure]}",
+                  "--set", "output.fluid_parts=[{name: precise, every: 2e-3, precision: double, region: slice_y, fields: "
+                  "[velocity, pressure, grain_id]}]", "--until", "0.002")
+        for out, ranks in (("one", 1), ("four", 4)):
+            self.run_well("run", self.case, "--out", out, *frames, ranks=ranks)
+        file = "fluid_parts/precise/precise_000000040.vti"
+        self.assertEqual((self.folder / "one" / file).read_bytes(), (self.folder / "four" / file).read_bytes())
+        run = Run(self.folder / "one")
+        whole, precise = run.fluid[1].arrays, run.fluid_part("precise")[1].arrays
+        self.assertEqual(precise["grain_id"].dtype, numpy.int32)
+        for name in ("velocity", "pressure"):
+            self.assertEqual((whole[name].dtype, precise[name].dtype), (numpy.float32, numpy.float64))
+            numpy.testing.assert_array_equal(precise[name].astype(numpy.float32), whole[name][:, 10:11], name)
+            self.assertTrue((precise[name] != whole[name][:, 10:11]).mean() > 0.9)
+        self.assert_refused("check", self.case, "--set", "output.fluid.precision=half",
+                            words=["output.fluid.precision = \"half\"", "single, double"])
+
     def test_outputs_that_show_nothing_are_refused(self):
         for part, words in (
                 ("{name: a b, every: 1}", ["output.fluid_parts.0.name", "letters, digits and underscores"]),

@@ -9,9 +9,11 @@ from pathlib import Path
 import numpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 import program
 from pictures import cell_data
 from program import ProgramTest
+from thalweg import Run
 
 
 class InitialRun(ProgramTest):
@@ -83,6 +85,81 @@ run: {until: 0.1}
         self.assertLess(abs(self.series("flow")["largest_fluid_speed"][0] - 0.25), 1.001 * half_step)
         for fields in ("[fluid]", "[grains, fluid]"):
             self.assert_refused("check", self.case, *begin, "--set", f"initial.fields={fields}", words=["given twice"])
+
+    FLOW = """
+system: fluid
+name: the flow alone
+domain:
+  size: [0.0128, 0.0128, 0.0192]
+  spacing: 0.8e-3
+  boundaries: {x: periodic, y: periodic, bottom: no_slip, top: free_slip}
+fluid: {density: 1000, kinematic_viscosity: 1.0e-5, time_step: 1.0e-4, precision: double}
+gravity: {magnitude: 9.8, slope: 0.1}
+initial: {fluid: {uniform: [0.25, 0, 0]}}
+run: {until: 0.01}
+"""
+
+    def test_grains_of_one_run_and_the_fluid_of_another(self):
+        dry, flow = (self.folder / name for name in ("dry.yaml", "flow.yaml"))
+        dry.write_text(self.DRY)
+        flow.write_text(self.FLOW)
+        frames = ("--set", "output={grains: {every: 0.01}, fluid: {every: 0.01, fields: [velocity, pressure, grain_id]}}")
+        self.run_well("run", dry, "--set", "gravity.slope=0", "--until", "0.3", "--out", "bed")
+        self.run_well("run", flow, *frames[:1], "output.fluid={every: 0.01, fields: [velocity, pressure]}", "--out", "flow")
+        begin = ("--set", "initial.from={grains: bed, fluid: flow}", "--until", "0.002", *frames)
+        for out, ranks in (("one", 1), ("two", 2), ("four", 4)):
+            self.run_well("run", self.case, *begin, "--out", out, ranks=ranks)
+            self.assertEqual(self.last_checkpoint(out).read_bytes(), self.last_checkpoint("one").read_bytes(), out)
+        # The grains are those that the bed alone gives, with their springs and so their contact forces ...
+        self.run_well("run", self.case, "--set", "initial={from: bed, fields: [grains]}", "--until", "0.002", *frames,
+                      "--out", "alone")
+        start, alone = (Run(self.folder / out).grains[0] for out in ("one", "alone"))
+        for name in ("position", "velocity", "angular_velocity", "contact_force", "contact_stress"):
+            numpy.testing.assert_array_equal(start.arrays[name], alone.arrays[name], name)
+        numpy.testing.assert_allclose(start.position, self.bed("bed")["position"], atol=1e-15)
+        self.assertGreater(abs(start.contact_force[:, :2]).max(), 1e-5)   # N; a grain weighs 1.6e-3
+        # ... and around them is the fluid of the other run, which falls under the same slope.
+        start, other = (Run(self.folder / out).fluid[which].arrays for out, which in (("one", 0), ("flow", -1)))
+        free = start["grain_id"] < 0
+        self.assertTrue(0.5 < free.mean() < 1)
+        for name in ("velocity", "pressure"):
+            numpy.testing.assert_array_equal(start[name][free], other[name][free], name)
+        self.assertGreater(other["velocity"][..., 0].max(), 0.2)
+        # The saved case is one as well, and says the same.
+        self.run_well("run", self.folder / "one/case.yaml", "--out", "again")
+        self.assertEqual(self.last_checkpoint("again").read_bytes(), self.last_checkpoint("one").read_bytes())
+
+    def test_both_of_the_same_run_are_what_one_source_with_both_fields_is(self):
+        self.run_well("run", self.case, "--out", "first")
+        ways = {"one": "{from: first, fields: [grains, fluid]}", "each": "{from: {grains: first, fluid: first}}",
+                "named": "{from: {run: first}, fields: [grains, fluid]}"}
+        for out, initial in ways.items():
+            self.run_well("run", self.case, "--set", f"initial={initial}", "--until", "0.002", "--out", out)
+            self.assertEqual(self.last_checkpoint(out).read_bytes(), self.last_checkpoint("one").read_bytes(), out)
+
+    def test_sources_that_do_not_fit_are_refused_by_check_and_run(self):
+        dry, flow = (self.folder / name for name in ("dry.yaml", "flow.yaml"))
+        dry.write_text(self.DRY)
+        flow.write_text(self.FLOW)
+        self.run_well("run", dry, "--until", "0.001", "--out", "bed")
+        self.run_well("run", flow, "--until", "0.001", "--out", "flow")
+        for initial, words in (
+                ("{from: {grains: nowhere, fluid: flow}}", ["case.yaml", "initial.from.grains", "nowhere", "no such file"]),
+                ("{from: {grains: bed, fluid: nowhere}}", ["case.yaml", "initial.from.fluid", "nowhere", "no such file"]),
+                ("{from: {grains: flow, fluid: flow}}", ["initial.from.grains", "holds no grains"]),
+                ("{from: {grains: bed, fluid: bed}}", ["initial.from.fluid", "holds no fluid"]),
+                ("{from: {run: bed, fluid: flow}}", ["initial.from.run", "either run"]),
+                ("{from: {grains: ''}}", ["initial.from.grains", "give a run folder"]),
+                ("{from: {grians: bed}}", ["initial.from.grians", "did you mean initial.from.grains"]),
+                ("{from: {grains: bed, fluid: flow}, fields: [grains]}", ["initial.fields", "remove this key"]),
+                ("{from: {fluid: flow}, fluid: {uniform: [0.1, 0, 0]}}", ["initial.from", "given twice"])):
+            for command in ("check", "run"):
+                self.assert_refused(command, self.case, "--set", f"initial={initial}", words=words)
+        for command in ("check", "run"):
+            self.assert_refused(command, self.case, "--set", "initial.from={grains: bed}", "--set", "grains.0.count=5",
+                                words=["initial.from.grains", "6 grains", "has 5"])
+            self.assert_refused(command, dry, "--set", "initial.from={fluid: flow}", words=["initial.from.fluid"])
+            self.assert_refused(command, flow, "--set", "initial={from: {grains: bed}}", words=["initial.from.grains"])
 
     def test_grains_and_flow_go_on_on_a_finer_lattice(self):
         pictures = ("--set", "output={fluid: {every: 0.01, fields: [velocity]}}")

@@ -1,0 +1,18 @@
+// The start of a run from the states of other runs (`initial.from`).
+#pragma once
+
+#include "core/system.hpp"
+#include "driver/case.hpp"
+
+#include <mpi.h>
+
+namespace thalweg::driver {
+
+// Throws InputError where a run that the case begins from is missing, or lacks what is to be taken from it: a fluid, or
+// as many grains as the case has. Any process may ask alone.
+void check_initial_sources(const Case& c);
+
+// Grains and fluid of the system from where the case says. Throws InputError where they do not fit. Collective.
+void take_initial_fields(MPI_Comm communicator, const Case& c, System& system);
+
+}  // namespace thalweg::driver
