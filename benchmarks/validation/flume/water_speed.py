@@ -40,7 +40,7 @@ def main():
     parser.add_argument("--table")
     arguments = parser.parse_args()
     rows = []
-    _, axes = plt.subplots(figsize=(6.5, 4.2), layout="constrained")
+    _, axes = plt.subplots(figsize=(8.5, 4.2), layout="constrained")
     for folder in arguments.runs:
         run = thalweg.Run(folder)
         rate, mean, middle = measure(run)
@@ -56,7 +56,7 @@ def main():
                  label="Zhang et al. at 0.028, mean and deviation")
     axes.axvline(1.0, color="0.6", lw=1)
     axes.set(xlabel="mean speed of the water over that of the law of the wall", ylabel="q*", ylim=(0.0, None))
-    axes.legend(fontsize=7, loc="lower right")
+    axes.legend(fontsize=7, frameon=False, loc="center left", bbox_to_anchor=(1.01, 0.5))
     plt.savefig(arguments.figure, dpi=110)
     print("\n".join(", ".join(row) for row in [HEADINGS, *(list(row.values()) for row in rows)]))
 
