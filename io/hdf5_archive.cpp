@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <bit>
 #include <exception>
 #include <functional>
@@ -82,6 +83,15 @@ Handle collective_transfer() {
   return properties;
 }
 
+// The tables of the file (metadata) stay in memory until there is room for all of them, see close().
+void keep_tables_until_close(hid_t access) {
+  H5AC_cache_config_t config;
+  config.version = H5AC__CURR_CACHE_CONFIG_VERSION;
+  if (H5Pget_mdc_config(access, &config) < 0) return;
+  config.dirty_bytes_threshold = 8 << 20;  // bytes changed before HDF5 writes them by itself; 256 kB by default
+  H5Pset_mdc_config(access, &config);
+}
+
 void check_box(const std::string& path, const ArrayBox& box, std::size_t values) {
   const std::size_t rank = box.global_shape.size();
   if (rank < 1 || rank > 4 || box.offset.size() != rank || box.shape.size() != rank || volume(box.shape) != values)
@@ -102,6 +112,8 @@ struct Hdf5Writer::File {
   std::filesystem::path path, partial;
   Handle file;
   bool failed_everywhere = false;  // every rank knows that writing failed, so closing together is safe
+  std::uint64_t data_end = 0;      // bytes: end of the last dataset so far
+  std::uint64_t tables = 2048;     // bytes: more than the superblock, headers, names and attributes so far
 
   // Every rank learns whether all went well.
   void agree(bool good) {
@@ -112,7 +124,7 @@ struct Hdf5Writer::File {
   }
 
   // Opens a group, or a dataset whose attributes are meant, creating groups where they are missing.
-  Handle group(const std::string& name) const {
+  Handle group(const std::string& name) {
     if (name == "/") return Handle(H5Oopen(file, "/", H5P_DEFAULT), H5Oclose);
     const Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
     H5Pset_obj_track_times(creation, false);
@@ -120,6 +132,7 @@ struct Hdf5Writer::File {
     for (std::size_t end = 0; end != std::string::npos;) {
       end = name.find('/', end + 1);
       const std::string part = name.substr(0, end);
+      if (H5Lexists(file, part.c_str(), H5P_DEFAULT) <= 0) tables += 1536;
       current = H5Lexists(file, part.c_str(), H5P_DEFAULT) > 0
                     ? Handle(H5Oopen(file, part.c_str(), H5P_DEFAULT), H5Oclose)
                     : Handle(H5Gcreate2(file, part.c_str(), H5P_DEFAULT, creation, H5P_DEFAULT), H5Gclose);
@@ -141,13 +154,16 @@ struct Hdf5Writer::File {
         H5Dcreate2(parent, leaf.c_str(), Stored<Number>::file(), selection.file, H5P_DEFAULT, creation, H5P_DEFAULT),
         H5Dclose);
     agree(dataset.good());
+    tables += 384;
     const std::uint64_t bytes = volume(box.global_shape) * sizeof(Number);
     if (bytes == 0) return;  // it has no place in the file that could be written
     std::uint64_t sum = checksum(values, box);
     MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_UINT64_T, MPI_SUM, communicator);
     const auto stored = std::bit_cast<std::int64_t>(sum);
     attribute(name + "/" + checksum_name, Stored<std::int64_t>::file(), Stored<std::int64_t>::memory(), &stored);
-    agree(rank_of(communicator) != 0 || reserve_on_disk(partial, H5Dget_offset(dataset), bytes));
+    const std::uint64_t offset = H5Dget_offset(dataset);
+    data_end = std::max(data_end, offset + bytes);
+    agree(rank_of(communicator) != 0 || reserve_on_disk(partial, offset, bytes));
     const Handle transfer = collective_transfer();
     agree(H5Dwrite(dataset, Stored<Number>::memory(), selection.memory, selection.file, transfer, values.data()) >= 0);
   }
@@ -155,6 +171,7 @@ struct Hdf5Writer::File {
   void attribute(const std::string& name, hid_t file_type, hid_t memory_type, const void* value) {
     const auto [group_name, leaf] = group_and_name(name);
     const Handle parent = group(group_name);
+    tables += 128 + H5Tget_size(file_type);
     const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
     const Handle attribute(H5Acreate2(parent, leaf.c_str(), file_type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
     agree(attribute.good() && H5Awrite(attribute, memory_type, value) >= 0);
@@ -178,6 +195,7 @@ Hdf5Writer::Hdf5Writer(MPI_Comm communicator, const std::filesystem::path& path)
   file_->agree(creatable);
   const Handle access = mpi_access(communicator);
   H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18);  // the earliest format with checksums of metadata
+  keep_tables_until_close(access);
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_obj_track_times(creation, false);
   file_->file = Handle(H5Fcreate(file_->partial.c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose);
@@ -223,6 +241,10 @@ void Hdf5Writer::attribute(const std::string& path, const std::string& value) {
 }
 
 void Hdf5Writer::close() {
+  // The tables that are still to be written need room first: where writing them fails on one rank only, the ranks can
+  // no longer close the file together. HDF5 gives back what is too much.
+  file_->agree(rank_of(file_->communicator) != 0 ||
+               reserve_on_disk(file_->partial, 0, file_->data_end + file_->tables));
   file_->agree(H5Fflush(file_->file, H5F_SCOPE_GLOBAL) >= 0);
   file_->agree(H5Fclose(file_->file.release()) >= 0);
   bool renamed = true;
