@@ -42,6 +42,12 @@ MPI_Datatype bytes_of(std::size_t row_size) {
   return row;
 }
 
+// Of parcels in the order of ranks, the first to this rank or a higher one.
+std::vector<Parcel>::iterator first_from(int rank, std::vector<Parcel>& parcels) {
+  return std::lower_bound(parcels.begin(), parcels.end(), rank,
+                          [](const Parcel& parcel, int wanted) { return parcel.rank < wanted; });
+}
+
 // Who sends how many rows to this rank, in the order of ranks.
 std::vector<Parcel> announced(MPI_Comm communicator, int tag, const std::vector<Parcel>& parcels) {
   std::vector<std::uint64_t> counts(parcels.size());
@@ -84,8 +90,7 @@ std::vector<Parcel> parcels_to(const std::vector<int>& destination) {
   for (const int rank : destination) {
     if (rank == previous) continue;
     previous = rank;
-    const auto place = std::lower_bound(parcels.begin(), parcels.end(), rank,
-                                        [](const Parcel& parcel, int wanted) { return parcel.rank < wanted; });
+    const auto place = first_from(rank, parcels);
     if (place == parcels.end() || place->rank != rank) parcels.insert(place, Parcel{rank});
   }
   for (const int rank : destination) ++parcel_to(rank, parcels).count;
@@ -97,10 +102,7 @@ std::vector<Parcel> parcels_to(const std::vector<int>& destination) {
   return parcels;
 }
 
-Parcel& parcel_to(int rank, std::vector<Parcel>& parcels) {
-  return *std::lower_bound(parcels.begin(), parcels.end(), rank,
-                           [](const Parcel& parcel, int wanted) { return parcel.rank < wanted; });
-}
+Parcel& parcel_to(int rank, std::vector<Parcel>& parcels) { return *first_from(rank, parcels); }
 
 void exchange_parcels(MPI_Comm communicator, const std::vector<Parcel>& parcels, const void* packed,
                       std::size_t row_size, const std::function<void*(std::size_t)>& place) {
@@ -112,9 +114,7 @@ void exchange_parcels(MPI_Comm communicator, const std::vector<Parcel>& parcels,
     if (parcel.rank != self) elsewhere.push_back(parcel);
   if (size_of(communicator) > 1) senders = announced(communicator, tags.counts, elsewhere);
   for (const Parcel& parcel : parcels)
-    if (parcel.rank == self)
-      senders.insert(std::find_if(senders.begin(), senders.end(), [&](const Parcel& p) { return p.rank > self; }),
-                     parcel);
+    if (parcel.rank == self) senders.insert(first_from(self, senders), parcel);
 
   std::size_t arriving = 0;
   for (const Parcel& sender : senders) arriving += sender.count;

@@ -14,9 +14,9 @@ int slab_of(double coordinate, double size, int slabs) {
 
 }  // namespace
 
-CellGrid::Axis CellGrid::occupied_part(const PeriodicBox& box, int axis, double width, std::span<const Vec3> points) {
+CellGrid::Axis CellGrid::occupied_part(const PeriodicBox& box, int axis, double width, double most,
+                                       std::span<const Vec3> points) {
   Axis part;
-  const double most = 8.0 * static_cast<double>(points.size()) + 64.0;
   part.slabs = static_cast<int>(std::clamp(box.size[axis] / width, 1.0, most));
   std::vector<char> occupied(static_cast<std::size_t>(part.slabs), 0);
   for (const Vec3& point : points) occupied[slab_of(point[axis], box.size[axis], part.slabs)] = 1;
@@ -48,14 +48,13 @@ CellGrid::CellGrid(const PeriodicBox& box, double distance, std::span<const Vec3
   for (double width = distance;; width *= 1.25) {
     double cells = 1.0;
     for (int axis = 0; axis < 3; ++axis) {
-      axes_[axis] = occupied_part(box, axis, width, points);
-      count_[axis] = axes_[axis].count;
-      cells *= count_[axis];
+      axes_[axis] = occupied_part(box, axis, width, most, points);
+      cells *= axes_[axis].count;
     }
     if (cells <= most) break;
   }
 
-  start_.assign(static_cast<std::size_t>(count_[0]) * count_[1] * count_[2] + 1, 0);
+  start_.assign(index(0, 0, axes_[2].count) + 1, 0);
   std::vector<std::size_t> cell_of(points.size());
   for (std::size_t p = 0; p < points.size(); ++p) {
     cell_of[p] = index(cell_along(0, points[p][0]), cell_along(1, points[p][1]), cell_along(2, points[p][2]));
@@ -74,7 +73,7 @@ int CellGrid::cell_along(int axis, double coordinate) const {
 }
 
 CellGrid::Neighbours CellGrid::neighbours(int axis, int cell) const {
-  const int count = count_[axis];
+  const int count = axes_[axis].count;
   Neighbours near;
   if (count <= 2 || (axes_[axis].around && count == 3)) {
     for (int c = 0; c < count; ++c) near.cell[near.count++] = c;

@@ -23,9 +23,9 @@ public:
   // Calls visit(m, n) for every pair of points order()[m], order()[n] that may be within `distance` of each other.
   template <typename Visitor>
   void for_each_near_pair(Visitor&& visit) const {
-    for (int k = 0; k < count_[2]; ++k)
-      for (int j = 0; j < count_[1]; ++j)
-        for (int i = 0; i < count_[0]; ++i)
+    for (int k = 0; k < axes_[2].count; ++k)
+      for (int j = 0; j < axes_[1].count; ++j)
+        for (int i = 0; i < axes_[0].count; ++i)
           if (const std::size_t cell = index(i, j, k); start_[cell] < start_[cell + 1])
             visit_pairs_of(cell, {neighbours(0, i), neighbours(1, j), neighbours(2, k)}, visit);
   }
@@ -55,15 +55,17 @@ private:
     int slabs = 1, first = 0, count = 1;
     bool around = false;  // periodic, and every slab is a cell: the last one is next to the first
   };
-  static Axis occupied_part(const PeriodicBox& box, int axis, double width, std::span<const Vec3> points);
+  // No more slabs than `most` cells are worth it.
+  static Axis occupied_part(const PeriodicBox& box, int axis, double width, double most, std::span<const Vec3> points);
 
   int cell_along(int axis, double coordinate) const;
   Neighbours neighbours(int axis, int cell) const;
-  std::size_t index(int i, int j, int k) const { return (static_cast<std::size_t>(k) * count_[1] + j) * count_[0] + i; }
+  std::size_t index(int i, int j, int k) const {
+    return (static_cast<std::size_t>(k) * axes_[1].count + j) * axes_[0].count + i;
+  }
 
   PeriodicBox box_;
   std::array<Axis, 3> axes_;
-  Index3 count_{1, 1, 1};
   std::vector<std::uint32_t> start_;    // first member of each cell, and one past the last
   std::vector<std::uint32_t> members_;  // points by cell
 };

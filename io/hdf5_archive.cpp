@@ -132,10 +132,10 @@ struct Hdf5Writer::File {
     for (std::size_t end = 0; end != std::string::npos;) {
       end = name.find('/', end + 1);
       const std::string part = name.substr(0, end);
-      if (H5Lexists(file, part.c_str(), H5P_DEFAULT) <= 0) tables += 1536;
-      current = H5Lexists(file, part.c_str(), H5P_DEFAULT) > 0
-                    ? Handle(H5Oopen(file, part.c_str(), H5P_DEFAULT), H5Oclose)
-                    : Handle(H5Gcreate2(file, part.c_str(), H5P_DEFAULT, creation, H5P_DEFAULT), H5Gclose);
+      const bool exists = H5Lexists(file, part.c_str(), H5P_DEFAULT) > 0;
+      if (!exists) tables += 1536;
+      current = exists ? Handle(H5Oopen(file, part.c_str(), H5P_DEFAULT), H5Oclose)
+                       : Handle(H5Gcreate2(file, part.c_str(), H5P_DEFAULT, creation, H5P_DEFAULT), H5Gclose);
     }
     return current;
   }
