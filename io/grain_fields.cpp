@@ -51,6 +51,13 @@ int components_of(GrainField field) {
   }
 }
 
+bool there_is(GrainField field, const GrainFieldFacts& facts) {
+  if (field == GrainField::clump || field == GrainField::orientation) return facts.clumps;
+  if (field == GrainField::fluid_force) return facts.fluid_force;
+  if (field == GrainField::fluid_stress) return facts.fluid_stress;
+  return true;
+}
+
 double density_of(const GrainView& grains, std::size_t n) {
   if (grains.is_member(n)) {
     const ClumpState& clump = clump_of_member(grains, n);

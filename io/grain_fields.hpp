@@ -33,6 +33,14 @@ const std::vector<NamedChoice<GrainField>>& grain_fields();
 
 int components_of(GrainField field);
 
+// What there is to show of grains, beyond what all have.
+struct GrainFieldFacts {
+  bool clumps = false;
+  bool fluid_force = false;   // the fluid, or what stands for it, acts on the grains
+  bool fluid_stress = false;  // and its stress on them is measured
+};
+bool there_is(GrainField field, const GrainFieldFacts& facts);
+
 // kg/m^3, of grain number n of the view; of a clump's member the density of the clump.
 double density_of(const GrainView& grains, std::size_t n);
 

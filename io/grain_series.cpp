@@ -162,35 +162,33 @@ GrainSeries::GrainSeries(MPI_Comm communicator, const std::filesystem::path& fol
       index_(folder / (name_ + ".pvd"), continue_from) {}
 
 // In the order of the arrays.
-std::vector<GrainField> GrainSeries::fields_in(const Snapshot& snapshot) const {
-  const bool with_fluid = any_rank(communicator_, !snapshot.grains.fluid_force.empty());
-  const bool with_stress = any_rank(communicator_, !snapshot.grains.fluid_stress.empty());
-  const auto there_is = [&](GrainField field) {
-    if (field == GrainField::fluid_force) return with_fluid;
-    if (field == GrainField::fluid_stress) return with_stress;
-    if (field == GrainField::clump || field == GrainField::orientation) return snapshot.grains.clump_count > 0;
-    return true;
-  };
-  std::vector<GrainField> fields;
-  for (const NamedChoice<GrainField>& field : grain_fields())
-    if (field.value == GrainField::radius || (fields_.empty() ? there_is(field.value) : contains(fields_, field.value)))
-      fields.push_back(field.value);
+std::vector<NamedChoice<GrainField>> GrainSeries::fields_in(const Snapshot& snapshot) const {
+  GrainFieldFacts facts;
+  facts.clumps = snapshot.grains.clump_count > 0;
+  facts.fluid_force = any_rank(communicator_, !snapshot.grains.fluid_force.empty());
+  facts.fluid_stress = any_rank(communicator_, !snapshot.grains.fluid_stress.empty());
+  std::vector<NamedChoice<GrainField>> fields;
+  for (const NamedChoice<GrainField>& field : grain_fields()) {
+    const bool wanted = fields_.empty() ? there_is(field.value, facts) : contains(fields_, field.value);
+    if (wanted || field.value == GrainField::radius) fields.push_back(field);
+  }
   return fields;
 }
 
 void GrainSeries::write(const Snapshot& snapshot) {
-  const std::vector<GrainField> fields = fields_in(snapshot);
+  const std::vector<NamedChoice<GrainField>> fields = fields_in(snapshot);
+  const bool with_contact_stress = std::any_of(fields.begin(), fields.end(), [](const NamedChoice<GrainField>& field) {
+    return field.value == GrainField::contact_stress;
+  });
   // By id, of which some may be missing, and then by their place in the file.
   const std::vector<Row> selected =
-      rows_by_id(communicator_,
-                 selected_rows(snapshot, selection_, population_ends_, contains(fields, GrainField::contact_stress)),
+      rows_by_id(communicator_, selected_rows(snapshot, selection_, population_ends_, with_contact_stress),
                  BlockShare(snapshot.grains.global_count, 1, size_of(communicator_)));
   const RowRange places = RowRange::of_rows(static_cast<std::int64_t>(selected.size()), communicator_);
   VtkXmlFile picture(communicator_, places.count);
   const std::vector<Row> rows = rows_by_place(communicator_, selected, places.first, picture.share());
   const Columns columns(rows, picture);
-  for (const NamedChoice<GrainField>& field : grain_fields())
-    if (contains(fields, field.value)) add_field(field.value, field.name, columns);
+  for (const NamedChoice<GrainField>& field : fields) add_field(field.value, field.name, columns);
   columns.add("Points", &Row::position, "Points");
   columns.add_vertices();
 

@@ -31,7 +31,7 @@ public:
   void write(const Snapshot& snapshot);
 
 private:
-  std::vector<GrainField> fields_in(const Snapshot& snapshot) const;
+  std::vector<NamedChoice<GrainField>> fields_in(const Snapshot& snapshot) const;
 
   MPI_Comm communicator_;
   std::filesystem::path folder_;

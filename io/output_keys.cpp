@@ -107,13 +107,6 @@ void check_fluid_output(const OutputKeys& output, const Vec3& box_size, double s
     check_in(fmt::format("fluid_parts.{}", n), [&] { check(output.fluid_parts[n], box_size, spacing); });
 }
 
-bool there_is(GrainField field, const GrainOutputFacts& facts) {
-  if (field == GrainField::clump || field == GrainField::orientation) return facts.clumps;
-  if (field == GrainField::fluid_force) return facts.fluid_force;
-  if (field == GrainField::fluid_stress) return facts.fluid_stress;
-  return true;
-}
-
 // Of fields that there are in some cases only.
 static std::string refusal_of(GrainField field) {
   if (field == GrainField::fluid_force)
@@ -124,7 +117,7 @@ static std::string refusal_of(GrainField field) {
   return "no population has clumps, and the orientation of spheres is not followed; remove the word";
 }
 
-static void check_fields(const std::vector<GrainField>& fields, const GrainOutputFacts& facts) {
+static void check_fields(const std::vector<GrainField>& fields, const GrainFieldFacts& facts) {
   for (std::size_t n = 0; n < fields.size(); ++n)
     if (!there_is(fields[n], facts)) throw KeyError(fmt::format("fields.{}", n), refusal_of(fields[n]));
 }

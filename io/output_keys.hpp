@@ -62,16 +62,11 @@ void describe(SectionVisitor& visit, OutputKeys& output, const OnlyIf& of_fluid,
 // on.
 void check_fluid_output(const OutputKeys& output, const Vec3& box_size, double spacing);
 
-// What there is to show of the grains of a case.
-struct GrainOutputFacts {
+// What there is to show of the grains of a case, and to choose from.
+struct GrainOutputFacts : GrainFieldFacts {
   PopulationEnds population_ends;
   Vec3 box_size = Vec3::Zero();  // m
-  bool clumps = false;
-  bool fluid_force = false;   // the fluid, or what stands for it, acts on the grains
-  bool fluid_stress = false;  // and its stress on them is measured
 };
-
-bool there_is(GrainField field, const GrainOutputFacts& facts);
 
 // Whether every series of the grains can show what it asks for. Throws KeyError, from the section `output` on.
 void check_grain_output(const OutputKeys& output, const GrainOutputFacts& facts);

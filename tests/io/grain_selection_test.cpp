@@ -44,7 +44,7 @@ TEST(GrainSelection, ABoxHasItsFaces) {
 }
 
 // The key and the remedy of what a part gets wrong; empty: nothing.
-std::string refusal(const NamedGrainOutputKeys& part, const GrainOutputFacts& facts = {ends, domain}) {
+std::string refusal(const NamedGrainOutputKeys& part, const GrainOutputFacts& facts = {{}, ends, domain}) {
   OutputKeys output;
   output.grain_parts = {{}, part};
   try {
@@ -75,7 +75,7 @@ TEST(GrainSelection, WhatThereIsNotIsRefused) {
 
 TEST(GrainSelection, FieldsAreThoseTheCaseHas) {
   const auto with = [](GrainField field) { return part_of({}, {GrainField::speed, field}); };
-  GrainOutputFacts facts{ends, domain};
+  GrainOutputFacts facts{{}, ends, domain};
   for (const GrainField field :
        {GrainField::clump, GrainField::orientation, GrainField::fluid_force, GrainField::fluid_stress}) {
     EXPECT_EQ(refusal(with(field), facts).find("grain_parts.1.fields.1: "), 0u);
