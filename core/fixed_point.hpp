@@ -21,16 +21,17 @@ struct FixedPoint {
   static constexpr double scale = static_cast<double>(std::int64_t{1} << fraction_bits);
   static constexpr double largest_term = 0x1p51 / scale;
   static constexpr double largest_sum = 0x1p63 / scale;  // of 64 bits
-  static constexpr double rounding_shift = 0x3p51;
+  static constexpr double rounding_shift = 0x3p51 / scale;
 
-  // Rounds to the nearest multiple, ties to even. |value| * scale must be below 2^51: adding 3 * 2^51 then leaves the
-  // integer in the low bits of the double. What is larger, or no number, counts as nothing and leaves a note.
+  // Rounds to the nearest multiple, ties to even. |value| * scale must be below 2^51: with rounding_shift added, the
+  // last bit of the double is worth one multiple, so that its low bits are the integer. What is larger, or no number,
+  // counts as nothing and leaves a note.
   static std::int64_t from(double value) {
     if (!(std::abs(value) < largest_term)) [[unlikely]] {
       SumRange::leave();
       return 0;
     }
-    return std::bit_cast<std::int64_t>(value * scale + rounding_shift) - std::bit_cast<std::int64_t>(rounding_shift);
+    return std::bit_cast<std::int64_t>(value + rounding_shift) - std::bit_cast<std::int64_t>(rounding_shift);
   }
   static double to_double(std::int64_t sum) { return static_cast<double>(sum) / scale; }
 };

@@ -28,6 +28,7 @@
 #include "lbm/link_options.hpp"
 #include "lbm/link_slots.hpp"
 #include "lbm/link_table.hpp"
+#include "lbm/tile_prefetch.hpp"
 #include "lbm/upstream_bodies.hpp"
 
 #include <concepts>
@@ -62,8 +63,9 @@ concept LinkShape = Shape<S> || std::same_as<S, StoredCrossings>;
 // The links of a row read what cells of the rows around it sent out, so they must be applied before any of these rows
 // is swept; Fluid::stream_and_collide(before_tile) does so while the tile is still in the cache. Tiles in order.
 //
-// Links go through in batches of one body: prepare() finds where they cross the surface and asks the cache for what
-// they read and write, and finish(), one batch later, does the exchange.
+// Links go through in batches, each of several bodies: prepare() finds what they read and write and asks the cache for
+// it, and finish(), one batch later, does the exchange. Meanwhile the populations of the plane after the next are asked
+// for.
 //
 // moments: where given, one for each body, to which sum F_a x_b is added, F the momentum of a link and x its arm; the
 // torque is its antisymmetric part. balance: where given (with moments), what the mass is made of is added to it.
@@ -82,24 +84,40 @@ public:
 
 private:
   static constexpr int capacity = UpstreamBodies::capacity;
+  // Links of one body in a batch: [first, first + count), and copies of the first up to padded(count).
+  struct Piece {
+    std::int32_t body;
+    int first, count;
+  };
   struct Batch {
-    LinkBody* body = nullptr;
-    const std::uint32_t* tag = nullptr;
-    int count = 0, plane = 0;
+    int size = 0, plane = 0;  // size: with the copies
+    int pieces = 0;
+    Piece piece[capacity / links_at_a_time];
+    std::int32_t body[capacity / links_at_a_time];  // of every links_at_a_time links
+    bool leaks = false;                             // whether there is an enclosed cell
+    int covered_count = 0;
+    std::int32_t covered[capacity];  // the links whose x_ff a body covers, if they want to know of it
+    alignas(64) std::uint32_t place[capacity], tag[capacity];
     alignas(64) std::int32_t cell[capacity];  // index of x_f within its plane
     alignas(64) std::int32_t incident_at[capacity], second_at[capacity], reflected_at[capacity];  // LinkSlots
     alignas(64) Real distance[capacity], arm[3][capacity];
+
+    void clear(int z) {
+      plane = z;
+      size = pieces = 0;
+    }
   };
   // What a batch reads and what comes of it.
   struct Values {
     alignas(64) Real deviation[capacity];                   // rho - 1 at x_f
-    alignas(64) Real excess[capacity];                      // rho - rho_rest at x_f
+    alignas(64) Real excess[capacity];                      // rho - rho_rest at x_f, where it is not the same
     alignas(64) Real incident[capacity], second[capacity];  // f_i^c(x_f); the rule's other value
     alignas(64) Real covered[capacity];                     // of a rule that needs both: 1 where a body covers x_ff
     alignas(64) Real leak[capacity];                        // rho - rho_rest where x_f is enclosed, else 0
     alignas(64) Real reflected[capacity];                   // f_i'(x_f, t+1)
     alignas(64) Real slip[capacity], odd_change[capacity];  // c_i.v, change of o (upstream_bodies.hpp)
-    alignas(64) Real pressure[capacity];                    // w_i (rho - rho_rest)(x_f)
+    // What is summed, zero for copies. taken, given: f_i^c(x_f), f_i'(x_f, t+1); pressure: w_i (rho - rho_rest)(x_f).
+    alignas(64) Real taken[capacity], given[capacity], pressure[capacity];
     alignas(64) Real momentum[3][capacity], torque[3][capacity];
     alignas(64) Real moment[9][capacity];
     alignas(64) Real interpolated[capacity], moving_wall[capacity];  // parts of f_i' - f_i^c
@@ -140,24 +158,32 @@ private:
   void measure_cells(int tile);
   template <bool momentum_too>
   void measure_rows(int tile);
-  void prepare(Batch& batch, const LinkTable::Tile& tile, int plane, std::int32_t body, std::uint32_t first,
-               int count) const;
+  LinkBody& body_of(const Batch& batch, int link) const {
+    return bodies_[static_cast<std::size_t>(batch.body[link / links_at_a_time])];
+  }
+  const Real* excess() const { return has_rest_ ? values_.excess : values_.deviation; }
+
+  void append(Batch& batch, const LinkTable::Tile& tile, std::int32_t body, std::uint32_t first, int count) const;
+  template <typename Rule>
+  void prepare(Batch& batch) const;
+  template <typename Rule>
+  void find_covered(Batch& batch) const;
   template <typename Rule, Extra extra>
   void finish(const Batch& batch);
   template <typename Rule>
   void gather(const Batch& batch);
-  void look_at_covered(const Batch& batch, int covered);
-  void let_gaps_flow(const Batch& batch, int covered);
+  void look_at_covered(const Batch& batch);
+  void let_gaps_flow(const Batch& batch);
   void look_upstream(const Batch& batch);
   void subtract_rest(const Batch& batch);
   void find_leaks(const Batch& batch);
   template <typename Rule, Extra extra>
-  void reflect(const Batch& batch);
-  void add_momentum(const Batch& batch) const;
-  void add_moments(const Batch& batch) const;
-  void add_by_height(const Batch& batch) const;
+  void reflect(const Batch& batch, const Piece& piece);
+  void add_momentum(const Piece& piece) const;
+  void add_moments(const Piece& piece) const;
+  void add_by_height(const Batch& batch, const Piece& piece) const;
   template <typename Rule>
-  void add_balance(const Batch& batch) const;
+  void add_balance(const Batch& batch, const Piece& piece) const;
 
   const CellMap& cells_;
   const RowTiles& tiles_;
@@ -179,14 +205,14 @@ private:
   std::vector<Real> deviations_[2], momenta_[2][3];
   int parity_ = 0;  // of the present plane
 
+  TilePrefetch<Real> next_;
   Batch batches_[2];
   Values values_;
   UpstreamBodies upstream_;
-  int covered_[capacity];  // links of the batch whose x_ff a body covers, if they want to know of it
   GapFlow gaps_;
   double force_[3];     // on the fluid
+  bool has_rest_;       // the fluid at rest is not the same everywhere
   bool slips_ = false;  // of the batch: values_.slip and odd_change count
-  bool leaks_ = false;  // of the batch: values_.leak counts
 };
 
 }  // namespace thalweg::lbm

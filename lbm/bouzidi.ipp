@@ -32,7 +32,9 @@ LinkPass<Real, S>::LinkPass(Fluid<Real>& fluid, const LinkTable& links, const Pe
       balance_(balance),
       by_height_(by_height),
       block_(box, fluid.block().lower),
-      gaps_(has_normals && options.gaps == GapRule::slip ? gap_flow(fluid.parameters()) : GapFlow{}) {
+      next_(fluid.populations(), fluid.tiles()),
+      gaps_(has_normals && options.gaps == GapRule::slip ? gap_flow(fluid.parameters()) : GapFlow{}),
+      has_rest_(!options.rest_gradient.isZero(0.0)) {
   std::copy_n(fluid.parameters().force, 3, force_);
   Populations<Real>& populations = fluid.populations();
   const auto plane = static_cast<std::size_t>(populations.indexing().plane_stride());
@@ -72,19 +74,41 @@ void LinkPass<Real, S>::apply_links(int tile) {
   parity_ = z % 2;
 
   const LinkTable::Tile& t = links_.tiles()[tile];
+  if (z + 2 < tiles_.planes() && links_.tiles()[tile + 2].live > 0)
+    next_.begin(tile + 2);
+  else
+    next_.begin_nothing();
   const std::vector<LinkTable::Run>& runs = links_.runs_in_order(tile);
+  const auto ask_for = [&](std::size_t r) {
+    if (r >= runs.size()) return;
+    t.links.prefetch(runs[r].first, runs[r].count);
+    bodies_[static_cast<std::size_t>(runs[r].body)].prefetch();
+  };
   constexpr std::size_t ahead = 3;  // runs
-  for (std::size_t r = 0; r < std::min(ahead, runs.size()); ++r) t.links.prefetch(runs[r].first, runs[r].count);
+  for (std::size_t r = 0; r < ahead; ++r) ask_for(r);
   int turn = 0;
-  batches_[0].count = batches_[1].count = 0;
+  std::size_t done = 0;
+  for (Batch& batch : batches_) batch.clear(z);
+  const auto pass_on = [&] {
+    prepare<Rule>(batches_[turn]);
+    turn ^= 1;
+    finish<Rule, extra>(batches_[turn]);
+    batches_[turn].clear(z);
+    next_.advance(static_cast<double>(done) / static_cast<double>(t.live));
+  };
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    if (r + ahead < runs.size()) t.links.prefetch(runs[r + ahead].first, runs[r + ahead].count);
+    ask_for(r + ahead);
     const LinkTable::Run& run = runs[r];
-    for (std::uint32_t first = 0; first < run.count; first += capacity, turn ^= 1) {
-      prepare(batches_[turn], t, z, run.body, run.first + first, std::min<int>(capacity, run.count - first));
-      finish<Rule, extra>(batches_[turn ^ 1]);
+    for (std::uint32_t first = 0; first < run.count;) {
+      Batch& batch = batches_[turn];
+      const int count = std::min<int>(capacity - batch.size, run.count - first);
+      append(batch, t, run.body, run.first + first, count);
+      first += count;
+      done += count;
+      if (batch.size == capacity) pass_on();
     }
   }
+  pass_on();
   finish<Rule, extra>(batches_[turn ^ 1]);
 }
 
@@ -99,7 +123,7 @@ void LinkPass<Real, S>::measure_cells(int tile) {
 template <typename Real, LinkShape S>
 template <bool momentum_too>
 void LinkPass<Real, S>::measure_rows(int tile) {
-  constexpr std::ptrdiff_t width = Pack::size(), ahead = prefetch_bytes / static_cast<std::ptrdiff_t>(sizeof(Real));
+  constexpr std::ptrdiff_t width = Pack::size();
   const CellIndexing& indexing = cells_.indexing();
   const int z = tiles_.plane_of(tile), block = tiles_.block_of(tile);
   const std::ptrdiff_t start = (z + 1) * indexing.plane_stride();
@@ -110,7 +134,6 @@ void LinkPass<Real, S>::measure_rows(int tile) {
       const std::ptrdiff_t cell = indexing.index(0, y, z) + p * width;
       Pack sum = 0, momentum[3] = {0, 0, 0};
       for_each_direction([&]<int i>() __attribute__((always_inline)) {
-        __builtin_prefetch(sent_[i] + cell + ahead, 1);
         const Pack f(sent_[i] + cell, stdx::element_aligned);
         sum += f;
         if constexpr (momentum_too)
@@ -125,110 +148,123 @@ void LinkPass<Real, S>::measure_rows(int tile) {
   }
 }
 
+// Links [first, first + count) of the tile's stream, where there is room for them.
 template <typename Real, LinkShape S>
-void LinkPass<Real, S>::prepare(Batch& b, const LinkTable::Tile& tile, int plane, std::int32_t body,
-                                std::uint32_t first, int count) const {
-  const std::uint32_t *places = tile.links.place.data() + first, *tags = tile.links.tag.data() + first;
-  b.body = &bodies_[body];
-  b.tag = tags;
-  b.count = count;
-  b.plane = plane;
-  const int n = padded(count);
+void LinkPass<Real, S>::append(Batch& b, const LinkTable::Tile& tile, std::int32_t body, std::uint32_t first,
+                               int count) const {
+  const int start = b.size, n = padded(count);
+  b.piece[b.pieces++] = {body, start, count};
+  for (int k = 0; k < n; k += links_at_a_time) {
+    std::copy_n(tile.links.place.data() + first + k, links_at_a_time, b.place + start + k);
+    std::copy_n(tile.links.tag.data() + first + k, links_at_a_time, b.tag + start + k);
+    b.body[(start + k) / links_at_a_time] = body;
+  }
+  b.size += n;
   if constexpr (Shape<S>) {
-    find_crossings(shapes_[static_cast<std::size_t>(body)], b.body->centre, block_, plane, places, tags, n, b.distance,
-                   b.arm[0], b.arm[1], b.arm[2]);
+    find_crossings(shapes_[static_cast<std::size_t>(body)], bodies_[static_cast<std::size_t>(body)].centre, block_,
+                   b.plane, b.place + start, b.tag + start, n, b.distance + start, b.arm[0] + start, b.arm[1] + start,
+                   b.arm[2] + start);
   } else {
-    for (int k = 0; k < count; ++k) {
+    for (int k = 0; k < n; ++k) {
       const LinkCrossing& crossing = tile.links.crossing[first + k];
-      b.distance[k] = Real(crossing.distance);
-      for (int a = 0; a < 3; ++a) b.arm[a][k] = Real(crossing.arm[a]);
+      b.distance[start + k] = Real(crossing.distance);
+      for (int a = 0; a < 3; ++a) b.arm[a][start + k] = Real(crossing.arm[a]);
     }
   }
-  for (int k = count; k < n; ++k) b.distance[k] = Real(1), b.arm[0][k] = b.arm[1][k] = b.arm[2][k] = Real(0);
-  slots_.find(plane, places, tags, n, b.distance, b.cell, b.incident_at, b.second_at, b.reflected_at);
-  for (int k = 0; k < count; ++k) {
+}
+
+template <typename Real, LinkShape S>
+template <typename Rule>
+void LinkPass<Real, S>::prepare(Batch& b) const {
+  slots_.find(b.plane, b.place, b.tag, b.size, b.distance, b.cell, b.incident_at, b.second_at, b.reflected_at);
+  for (int k = 0; k < b.size; ++k) {
     __builtin_prefetch(base_ + b.incident_at[k], 0);
     __builtin_prefetch(base_ + b.second_at[k], 0);
     __builtin_prefetch(base_ + b.reflected_at[k], 1);
-    // Of a link without a covered cell the first body, which is always there.
-    __builtin_prefetch(&bodies_[b.tag[k] >> LinkTag::body_shift].centre, 0);
   }
+  std::uint32_t flags = 0;
+  for (int k = 0; k < b.size; ++k) flags |= b.tag[k];
+  b.leaks = (flags & LinkTag::enclosed) != 0;
+  find_covered<Rule>(b);
+}
+
+template <typename Real, LinkShape S>
+template <typename Rule>
+void LinkPass<Real, S>::find_covered(Batch& b) const {
+  const std::uint32_t at_any_distance = gaps_.kept < 1.0 ? 1 : 0, near_wall = Rule::needs_both ? 0 : 1;
+  alignas(64) std::uint32_t wanted[capacity];
+  for (int k = 0; k < b.size; ++k)
+    wanted[k] = (b.tag[k] >> LinkTag::covered_shift & 1u) &
+                (at_any_distance | (near_wall & static_cast<std::uint32_t>(b.distance[k] < Real(0.5))));
+  int count = 0;
+  for (int k = 0; k < b.size; ++k) {
+    b.covered[count] = k;
+    count += static_cast<int>(wanted[k]);
+  }
+  b.covered_count = count;
+  for (int c = 0; c < count; ++c) bodies_[b.tag[b.covered[c]] >> LinkTag::body_shift].prefetch();
 }
 
 template <typename Real, LinkShape S>
 template <typename Rule, typename LinkPass<Real, S>::Extra extra>
 void LinkPass<Real, S>::finish(const Batch& b) {
-  if (b.count == 0) return;
   gather<Rule>(b);
-  reflect<Rule, extra>(b);
-  for (int k = 0; k < b.count; ++k) base_[b.reflected_at[k]] = values_.reflected[k];
-  add_momentum(b);
-  if (by_height_) add_by_height(b);
-  if constexpr (extra != Extra::none) add_moments(b);
-  if constexpr (extra == Extra::moments_and_balance) add_balance<Rule>(b);
+  for (int p = 0; p < b.pieces; ++p) {
+    const Piece& piece = b.piece[p];
+    reflect<Rule, extra>(b, piece);
+    add_momentum(piece);
+    if (by_height_) add_by_height(b, piece);
+    if constexpr (extra != Extra::none) add_moments(piece);
+    if constexpr (extra == Extra::moments_and_balance) add_balance<Rule>(b, piece);
+  }
+  for (int k = 0; k < b.size; ++k) base_[b.reflected_at[k]] = values_.reflected[k];
 }
 
 template <typename Real, LinkShape S>
 template <typename Rule>
 void LinkPass<Real, S>::gather(const Batch& b) {
-  const int wanted_at_any_distance = gaps_.kept < 1.0 ? 1 : 0;
-  const int wanted_near_wall = Rule::needs_both ? 0 : 1;
   const Real* deviation = deviations_[parity_].data();
-  int covered = 0;
-  std::uint32_t flags = 0;
-  for (int k = 0; k < b.count; ++k) {
-    flags |= b.tag[k];
+  for (int k = 0; k < b.size; ++k) {
     values_.deviation[k] = deviation[b.cell[k]];
     values_.incident[k] = base_[b.incident_at[k]];
     values_.second[k] = base_[b.second_at[k]];
-    covered_[covered] = k;
-    covered += ((static_cast<int>(b.distance[k] < Real(0.5)) & wanted_near_wall) | wanted_at_any_distance) &
-               static_cast<int>(b.tag[k] >> LinkTag::covered_shift & 1);
   }
-  slips_ = wanted_at_any_distance != 0 && covered > 0;
-  if (covered > 0) look_at_covered(b, covered);
+  slips_ = gaps_.kept < 1.0 && b.covered_count > 0;
+  if (b.covered_count > 0) look_at_covered(b);
   if constexpr (Rule::needs_both) look_upstream(b);
-  const int n = padded(b.count);
-  for (int k = b.count; k < n; ++k) values_.deviation[k] = values_.incident[k] = values_.second[k] = Real(0);
-  std::copy_n(values_.deviation, n, values_.excess);
-  if (!options_.rest_gradient.isZero(0.0)) subtract_rest(b);
-  leaks_ = (flags & LinkTag::enclosed) != 0;
-  if (leaks_) find_leaks(b);
+  if (has_rest_) subtract_rest(b);
+  if (b.leaks) find_leaks(b);
 }
 
 template <typename Real, LinkShape S>
 void LinkPass<Real, S>::find_leaks(const Batch& b) {
-  std::fill_n(values_.leak, padded(b.count), Real(0));
-  for (int k = 0; k < b.count; ++k)
-    if ((b.tag[k] & LinkTag::enclosed) != 0) values_.leak[k] = values_.excess[k];
+  for (int k = 0; k < b.size; ++k) values_.leak[k] = (b.tag[k] & LinkTag::enclosed) != 0 ? excess()[k] : Real(0);
 }
 
 // x_f from the body's centre: the arm, back by the distance.
 template <typename Real, LinkShape S>
 void LinkPass<Real, S>::subtract_rest(const Batch& b) {
   const Vec3& gradient = options_.rest_gradient;
-  const double at_centre = gradient.dot(b.body->centre - options_.rest_middle);
-  for (int k = 0; k < b.count; ++k) {
+  for (int k = 0; k < b.size; ++k) {
+    const double at_centre = gradient.dot(body_of(b, k).centre - options_.rest_middle);
     const Vec3 c(component(b.tag[k], 0), component(b.tag[k], 1), component(b.tag[k], 2));
     const Vec3 arm(b.arm[0][k], b.arm[1][k], b.arm[2][k]);
-    values_.excess[k] -= static_cast<Real>(at_centre + gradient.dot(arm - static_cast<double>(b.distance[k]) * c));
+    values_.excess[k] = values_.deviation[k] - static_cast<Real>(at_centre + gradient.dot(arm - static_cast<double>(b.distance[k]) * c));
   }
 }
 
 template <typename Real, LinkShape S>
-void LinkPass<Real, S>::look_at_covered(const Batch& b, int covered) {
-  const auto other_of = [&](int c) { return b.tag[covered_[c]] >> LinkTag::body_shift; };
-  for (int first = 0, end = 0; first < covered; first = end) {
-    const std::uint32_t slot = other_of(first);
-    for (end = first + 1; end < covered && other_of(end) == slot;) ++end;
-    const LinkBody& other = bodies_[slot];
-    upstream_.take_other(first, end, other, box_.difference(b.body->centre, other.centre));
+void LinkPass<Real, S>::look_at_covered(const Batch& b) {
+  for (int c = 0; c < b.covered_count; ++c) {
+    const int k = b.covered[c];
+    const LinkBody& other = bodies_[b.tag[k] >> LinkTag::body_shift];
+    upstream_.take_other(c, other, box_.difference(body_of(b, k).centre, other.centre));
   }
-  upstream_.take_links(covered_, covered, b.tag, values_.deviation, b.distance, b.arm);
-  if (slips_) let_gaps_flow(b, covered);
+  upstream_.take_links(b.covered, b.covered_count, b.tag, values_.deviation, b.distance, b.arm);
+  if (slips_) let_gaps_flow(b);
   upstream_.find_populations(options_.rest_gradient);
-  for (int c = 0; c < covered; ++c) {
-    const int k = covered_[c];
+  for (int c = 0; c < b.covered_count; ++c) {
+    const int k = b.covered[c];
     // Without a branch: which it is cannot be foreseen.
     const Real either[2] = {values_.second[k], static_cast<Real>(upstream_.population(c))};
     values_.second[k] = either[static_cast<int>(b.distance[k] < Real(0.5))];
@@ -236,64 +272,64 @@ void LinkPass<Real, S>::look_at_covered(const Batch& b, int covered) {
 }
 
 template <typename Real, LinkShape S>
-void LinkPass<Real, S>::let_gaps_flow(const Batch& b, int covered) {
+void LinkPass<Real, S>::let_gaps_flow(const Batch& b) {
   if constexpr (std::same_as<S, Sphere>) {
     upstream_.set_radial_normals();
   } else if constexpr (Shape<S>) {
-    const S& own = shapes_[static_cast<std::size_t>(b.body - bodies_.data())];
-    for (int c = 0; c < covered; ++c) {
-      const S& other = shapes_[b.tag[covered_[c]] >> LinkTag::body_shift];
+    for (int c = 0; c < b.covered_count; ++c) {
+      const int k = b.covered[c];
+      const S &own = shapes_[static_cast<std::size_t>(b.body[k / links_at_a_time])],
+              &other = shapes_[b.tag[k] >> LinkTag::body_shift];
       upstream_.set_normals(c, own.outward(upstream_.from_own(c)), other.outward(upstream_.from_other(c)));
     }
   }
   const std::vector<Real>(&momentum)[3] = momenta_[parity_];
-  for (int c = 0; c < covered; ++c) {
-    const int k = covered_[c];
+  for (int c = 0; c < b.covered_count; ++c) {
+    const int k = b.covered[c];
     const auto cell = static_cast<std::size_t>(b.cell[k]);
     const Vec3 flow(momentum[0][cell], momentum[1][cell], momentum[2][cell]);
     const Real back = base_[slots_.one_back(b.reflected_at[k], b.tag[k])];
-    upstream_.set_flow(c, flow, 0.5 * (static_cast<double>(values_.incident[k]) - static_cast<double>(back)));
+    const double odd = 0.5 * (static_cast<double>(values_.incident[k]) - static_cast<double>(back));
+    upstream_.set_flow(c, body_of(b, k), flow, odd);
   }
-  upstream_.let_flow(force_, gaps_, *b.body);
-  std::fill_n(values_.slip, padded(b.count), Real(0));
-  std::fill_n(values_.odd_change, padded(b.count), Real(0));
-  for (int c = 0; c < covered; ++c) {
-    values_.slip[covered_[c]] = static_cast<Real>(upstream_.slip_along(c));
-    values_.odd_change[covered_[c]] = static_cast<Real>(upstream_.odd_change(c));
+  upstream_.let_flow(force_, gaps_);
+  std::fill_n(values_.slip, b.size, Real(0));
+  std::fill_n(values_.odd_change, b.size, Real(0));
+  for (int c = 0; c < b.covered_count; ++c) {
+    values_.slip[b.covered[c]] = static_cast<Real>(upstream_.slip_along(c));
+    values_.odd_change[b.covered[c]] = static_cast<Real>(upstream_.odd_change(c));
   }
 }
 
 // For a rule that needs both. Without x_ff the second value has no weight.
 template <typename Real, LinkShape S>
 void LinkPass<Real, S>::look_upstream(const Batch& b) {
-  for (int k = 0; k < b.count; ++k) {
+  for (int k = 0; k < b.size; ++k) {
     const bool covered = (b.tag[k] >> LinkTag::covered_shift & 1) != 0;
     values_.covered[k] = covered ? Real(1) : Real(0);
     if (!covered)
       values_.second[k] =
           base_[slots_.one_back(b.incident_at[k], b.tag[k])] - base_[slots_.one_back(b.reflected_at[k], b.tag[k])];
   }
-  for (int k = b.count; k < padded(b.count); ++k) values_.covered[k] = Real(0);
 }
 
 template <typename Real, LinkShape S>
 template <typename Rule, typename LinkPass<Real, S>::Extra extra>
-void LinkPass<Real, S>::reflect(const Batch& b) {
+void LinkPass<Real, S>::reflect(const Batch& b, const Piece& piece) {
   constexpr int width = static_cast<int>(Pack::size());
-  const Body body(*b.body);
+  const Body body(bodies_[static_cast<std::size_t>(piece.body)]);
+  const Pack zero = Real(0), lane([](auto j) { return Real(static_cast<int>(j)); });
   const Pack galilean = options_.momentum_exchange == MomentumExchange::galilean_invariant ? Real(1) : Real(0);
   const Pack reference = Real(2.0 * options_.reference_density);
   const bool local = options_.wall_density == WallDensity::local;
-  for (int k = 0; k < padded(b.count); k += width) {
+  const int end = piece.first + padded(piece.count);
+  for (int k = piece.first; k < end; k += width) {
     const auto at = [k](const Real* values) { return Pack(values + k, stdx::element_aligned); };
     const auto put = [k](const Pack& pack, Real* values) { pack.copy_to(values + k, stdx::element_aligned); };
     const Ints tag(b.tag + k, stdx::element_aligned);
     const Pack cx = velocity(tag, 0), cy = velocity(tag, 1), cz = velocity(tag, 2);
     const Pack squared = cx * cx + cy * cy + cz * cz, ax = at(b.arm[0]), ay = at(b.arm[1]), az = at(b.arm[2]);
-    // No weight beyond the last link.
-    const Pack lane([k](auto j) { return Real(k + static_cast<int>(j)); });
-    const Pack weight =
-        chosen<Pack>(lane < Pack(Real(b.count)), (Pack(Real(3)) - squared) * Pack(Real(1.0 / 36.0)), Pack(Real(0)));
+    const Pack weight = (Pack(Real(3)) - squared) * Pack(Real(1.0 / 36.0));
     const Pack ux = body.vx + (body.wy * az - body.wz * ay), uy = body.vy + (body.wz * ax - body.wx * az),
                uz = body.vz + (body.wx * ay - body.wy * ax);
     Pack towards_wall = cx * ux + cy * uy + cz * uz;
@@ -314,11 +350,17 @@ void LinkPass<Real, S>::reflect(const Batch& b) {
     }
     const Pack moving_wall = rule.wall * weight * density * towards_wall;
     Pack returned = body.returned + (cx * body.sx + cy * body.sy + cz * body.sz);
-    if (leaks_) returned -= at(values_.leak);
+    if (b.leaks) returned -= at(values_.leak);
     const Pack reflected = interpolated - moving_wall + weight * returned;
     put(reflected, values_.reflected);
-    put(weight * at(values_.excess), values_.pressure);
-    const Pack sum = incident + reflected - reference * weight, flux = galilean * (incident - reflected);
+    // Copies count nowhere.
+    const typename Pack::mask_type counts = lane < Pack(Real(piece.first + piece.count - k));
+    const Pack taken = chosen<Pack>(counts, incident, zero), given = chosen<Pack>(counts, reflected, zero),
+               counted = chosen<Pack>(counts, weight, zero);
+    put(taken, values_.taken);
+    put(given, values_.given);
+    put(counted * at(excess()), values_.pressure);
+    const Pack sum = taken + given - reference * counted, flux = galilean * (taken - given);
     const Pack mx = sum * cx - flux * ux, my = sum * cy - flux * uy, mz = sum * cz - flux * uz;
     put(mx, values_.momentum[0]);
     put(my, values_.momentum[1]);
@@ -339,36 +381,39 @@ void LinkPass<Real, S>::reflect(const Batch& b) {
 }
 
 template <typename Real, LinkShape S>
-void LinkPass<Real, S>::add_momentum(const Batch& b) const {
+void LinkPass<Real, S>::add_momentum(const Piece& piece) const {
   const Values& v = values_;
   FixedSums<8> sums;
-  for (int k = 0; k < padded(b.count); k += FixedSums<8>::width)
+  const int end = piece.first + padded(piece.count);
+  for (int k = piece.first; k < end; k += FixedSums<8>::width)
     sums.add({wide(v.momentum[0] + k), wide(v.momentum[1] + k), wide(v.momentum[2] + k), wide(v.torque[0] + k),
               wide(v.torque[1] + k), wide(v.torque[2] + k), wide(v.pressure + k),
               // The difference is exact in double: single storage loses nothing here.
-              wide(v.reflected + k) - wide(v.incident + k)});
+              wide(v.given + k) - wide(v.taken + k)});
   static_assert(capacity <= FixedSums<8>::most_terms);
-  b.body->force += {sums[0], sums[1], sums[2]};
-  if (b.body->turns) b.body->torque += {sums[3], sums[4], sums[5]};
-  b.body->pressure = exact_sum(b.body->pressure, sums[6]);
-  b.body->mass = exact_sum(b.body->mass, sums[7]);
+  LinkBody& body = bodies_[static_cast<std::size_t>(piece.body)];
+  body.force += {sums[0], sums[1], sums[2]};
+  if (body.turns) body.torque += {sums[3], sums[4], sums[5]};
+  body.pressure = exact_sum(body.pressure, sums[6]);
+  body.mass = exact_sum(body.mass, sums[7]);
 }
 
 template <typename Real, LinkShape S>
-void LinkPass<Real, S>::add_moments(const Batch& b) const {
+void LinkPass<Real, S>::add_moments(const Piece& piece) const {
   const Values& v = values_;
   FixedSums<9> sums;
-  for (int k = 0; k < padded(b.count); k += FixedSums<9>::width)
+  const int end = piece.first + padded(piece.count);
+  for (int k = piece.first; k < end; k += FixedSums<9>::width)
     sums.add({wide(v.moment[0] + k), wide(v.moment[1] + k), wide(v.moment[2] + k), wide(v.moment[3] + k),
               wide(v.moment[4] + k), wide(v.moment[5] + k), wide(v.moment[6] + k), wide(v.moment[7] + k),
               wide(v.moment[8] + k)});
-  FixedTensor& moments = (*moments_)[static_cast<std::size_t>(b.body - bodies_.data())];
+  FixedTensor& moments = (*moments_)[static_cast<std::size_t>(piece.body)];
   for (int k = 0; k < 9; ++k) moments.add(k, sums[k]);
 }
 
 template <typename Real, LinkShape S>
-void LinkPass<Real, S>::add_by_height(const Batch& b) const {
-  for (int k = 0; k < b.count; ++k) {
+void LinkPass<Real, S>::add_by_height(const Batch& b, const Piece& piece) const {
+  for (int k = piece.first; k < piece.first + piece.count; ++k) {
     const auto at = [&](int axis) { return LatticeFixed::from(static_cast<double>(values_.momentum[axis][k])); };
     (*by_height_)[static_cast<std::size_t>(2 * b.plane + 1 + component(b.tag[k], 2))] += {at(0), at(1), at(2)};
   }
@@ -376,8 +421,8 @@ void LinkPass<Real, S>::add_by_height(const Batch& b) const {
 
 template <typename Real, LinkShape S>
 template <typename Rule>
-void LinkPass<Real, S>::add_balance(const Batch& b) const {
-  for (int k = 0; k < b.count; ++k) {
+void LinkPass<Real, S>::add_balance(const Batch& b, const Piece& piece) const {
+  for (int k = piece.first; k < piece.first + piece.count; ++k) {
     const bool near_wall = b.distance[k] < Real(0.5), has_covered = (b.tag[k] >> LinkTag::covered_shift & 1) != 0;
     const bool reads_upstream = Rule::needs_both ? !has_covered : near_wall;
     std::int64_t& part = !reads_upstream ? balance_->same_cell : has_covered ? balance_->covered : balance_->upstream;

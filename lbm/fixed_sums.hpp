@@ -11,9 +11,9 @@
 
 namespace thalweg::lbm {
 
-// Sums of LatticeFixed::from over packs, several at a time: the bit patterns of value * scale + shift are added as
-// integers, which may wrap around, and the shifts taken off at the end. A term within its range leaves sign and
-// exponent of the shift as they are; any other shows in what they differ by.
+// Sums of LatticeFixed::from over packs, several at a time: the bit patterns of value + shift are added as integers,
+// which may wrap around, and the shifts taken off at the end. A term within its range leaves sign and exponent of the
+// shift as they are; any other shows in what they differ by.
 template <int count>
 class FixedSums {
 public:
@@ -22,7 +22,7 @@ public:
 
   [[gnu::always_inline]] void add(const std::array<Wide, count>& terms) {
     for (int s = 0; s < count; ++s) {
-      const Bits bits = (Bits) static_cast<Doubles>(terms[s] * LatticeFixed::scale + LatticeFixed::rounding_shift);
+      const Bits bits = (Bits) static_cast<Doubles>(terms[s] + LatticeFixed::rounding_shift);
       bits_[s] += bits;
       differences_[s] |= bits ^ shift;
     }

@@ -49,7 +49,7 @@ struct RowExtreme {
 };
 
 [[gnu::always_inline]] inline Pack rounded(const Pack& value) {
-  return (value * CellSum::scale + CellSum::rounding_shift) - CellSum::rounding_shift;
+  return ((value + CellSum::rounding_shift) - CellSum::rounding_shift) * CellSum::scale;
 }
 
 [[gnu::always_inline]] inline Pack where_else(const Mask& mask, const Pack& value, double otherwise) {

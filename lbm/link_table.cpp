@@ -70,6 +70,7 @@ void LinkTable::drop_chunk(Tile& tile, std::uint32_t chunk) {
   sums_[static_cast<std::size_t>(tile.chunks[chunk].body)] -= tile.chunks[chunk].sums;
   tile.chunks[chunk].sums = {};
   tile.live -= tile.chunks[chunk].count;
+  tile.filled -= padded(tile.chunks[chunk].count);
   tile.chunks[chunk].body = -1;
   tile.chunks[chunk].count = 0;
   tile.free_chunks.push_back(chunk);
@@ -134,12 +135,14 @@ void LinkTable::put(Tile& tile, Chunk& chunk, std::span<const Link> links, std::
   tile.runs_current = false;
   tile.live += links.size();
   tile.live -= chunk.count;
-  if (links.size() > chunk.capacity) {
+  tile.filled += padded(links.size());
+  tile.filled -= padded(chunk.count);
+  if (padded(links.size()) > chunk.capacity) {
     chunk.count = 0;
     chunk.first = static_cast<std::uint32_t>(tile.end);
-    chunk.capacity = static_cast<std::uint32_t>(links.size() + links.size() / 4);
+    chunk.capacity = padded(static_cast<std::uint32_t>(links.size() + links.size() / 4));
     tile.end += chunk.capacity;
-    resize(tile.links, tile.end + links_at_a_time);
+    resize(tile.links, tile.end);
   }
   LinkSums& sums = sums_[static_cast<std::size_t>(chunk.body)];
   sums -= chunk.sums;
@@ -152,24 +155,33 @@ void LinkTable::put(Tile& tile, Chunk& chunk, std::span<const Link> links, std::
   sums += chunk.sums;
   std::copy(crossings.begin(), crossings.end(), tile.links.crossing.begin() + (stores_crossings_ ? chunk.first : 0));
   chunk.count = static_cast<std::uint32_t>(links.size());
-  if (tile.end > 3 * tile.live + 4096) compact(tile);
+  fill_up(tile.links, chunk);
+  if (tile.end > 3 * tile.filled + 4096) compact(tile);
+}
+
+void LinkTable::fill_up(LinkStream& links, const Chunk& chunk) const {
+  for (std::uint32_t k = chunk.first + chunk.count; k < chunk.first + padded(chunk.count); ++k) {
+    links.place[k] = links.place[chunk.first];
+    links.tag[k] = links.tag[chunk.first];
+    if (stores_crossings_) links.crossing[k] = links.crossing[chunk.first];
+  }
 }
 
 void LinkTable::compact(Tile& tile) const {
   LinkStream packed;
-  resize(packed, tile.live + links_at_a_time);
+  resize(packed, tile.filled);
   std::size_t end = 0;
   for (Chunk& chunk : tile.chunks) {
     const auto move = [&](const auto& from, auto& to) {
       if (from.empty()) return;
-      std::copy_n(from.begin() + chunk.first, chunk.count, to.begin() + static_cast<std::ptrdiff_t>(end));
+      std::copy_n(from.begin() + chunk.first, padded(chunk.count), to.begin() + static_cast<std::ptrdiff_t>(end));
     };
     move(tile.links.place, packed.place);
     move(tile.links.tag, packed.tag);
     move(tile.links.crossing, packed.crossing);
     chunk.first = static_cast<std::uint32_t>(end);
-    chunk.capacity = chunk.count;
-    end += chunk.count;
+    chunk.capacity = padded(chunk.count);
+    end += chunk.capacity;
   }
   tile.end = end;
   tile.links = std::move(packed);

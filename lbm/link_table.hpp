@@ -12,6 +12,7 @@
 #include "lbm/d3q19.hpp"
 
 #include <array>
+#include <concepts>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -53,10 +54,13 @@ struct LinkTag {
   }
 };
 
-// Vector code takes so many links at a time, whole vectors of any machine. What it computes beyond the last link is of
-// no use and no harm, and streams are longer than their links by as much, so that it may read on beyond their end.
+// Vector code takes so many links at a time, whole vectors of any machine. What a chunk lacks to that are copies of its
+// first link, which compute and write what that link does, and count nowhere.
 inline constexpr int links_at_a_time = 16;
-constexpr int padded(int links) { return (links + links_at_a_time - 1) / links_at_a_time * links_at_a_time; }
+template <std::integral Count>
+constexpr Count padded(Count links) {
+  return static_cast<Count>((links + links_at_a_time - 1) / links_at_a_time * links_at_a_time);
+}
 
 struct Link {
   std::uint32_t place = 0, tag = 0;
@@ -93,6 +97,12 @@ struct LinkBody {
   bool turns = true;          // false: nobody asks for the torque, which is left out
   std::int64_t mass = 0;      // LatticeFixed: given to the fluid, sum f_i' - f_i^c and what the caller adds
   std::int64_t pressure = 0;  // LatticeFixed: sum w_i (rho - rho_rest)(x_f), rho_rest that of the fluid at rest
+
+  // Asks the cache for it.
+  void prefetch() const {
+    for (std::size_t byte = 0; byte < sizeof(LinkBody); byte += 64)
+      __builtin_prefetch(reinterpret_cast<const char*>(this) + byte);
+  }
 };
 
 // What the links of a body add up to whatever flows: integers, in 36ths, so that they can be kept up to date.
@@ -115,10 +125,10 @@ class LinkTable {
 public:
   struct Chunk {
     std::int32_t body = -1;  // slot of the body; -1: the chunk is free
-    std::uint32_t first = 0, count = 0, capacity = 0;
+    std::uint32_t first = 0, count = 0, capacity = 0;  // capacity: with room for the copies
     LinkSums sums;
   };
-  // What the pass over the links needs of a chunk.
+  // What the pass over the links needs of a chunk: padded(count) links are there.
   struct Run {
     std::int32_t body;
     std::uint32_t first, count;
@@ -130,7 +140,8 @@ public:
     std::vector<std::uint32_t> order;  // of the chunks in use, by their first cell
     std::vector<Run> runs;             // the same chunks; see runs_in_order()
     bool in_order = true, runs_current = true;
-    std::size_t live = 0, end = 0;  // links in use; first entry of the stream that no chunk has
+    std::size_t live = 0, filled = 0;  // links in use; the same with their copies
+    std::size_t end = 0;               // first entry of the stream that no chunk has
   };
 
   explicit LinkTable(int tiles, bool stores_crossings = false) : stores_crossings_(stores_crossings), tiles_(tiles) {}
@@ -156,6 +167,7 @@ private:
   std::uint32_t new_chunk(Tile& tile, int body);
   void drop_chunk(Tile& tile, std::uint32_t chunk);
   void put(Tile& tile, Chunk& chunk, std::span<const Link> links, std::span<const LinkCrossing> crossings);
+  void fill_up(LinkStream& links, const Chunk& chunk) const;
   void resize(LinkStream& links, std::size_t size) const;
   void compact(Tile& tile) const;
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <experimental/simd>
 
 namespace thalweg::lbm {
 
@@ -11,19 +10,6 @@ GapFlow gap_flow(const CollisionParameters& collision) {
   const double k = rate / (24.0 * viscosity) + (1.0 - 0.5 * rate) / 3.0;
   if (k > 1.0) return {0.0, 1.0 - 8.0 * viscosity * (2.0 + 0.5 * rate) / rate};
   return {std::min(1.0, (1.0 - k) / (k - 1.0 + rate)), 0.0};
-}
-
-void UpstreamBodies::take_other(int first, int end, const LinkBody& other, const Vec3& apart) {
-  using Wide = std::experimental::native_simd<double>;
-  static_assert(Wide::size() <= length - capacity);
-  const auto fill = [first, end](const Vec3& value, double(&to)[3][length]) {
-    for (int a = 0; a < 3; ++a)
-      for (int k = first; k < end; k += static_cast<int>(Wide::size()))
-        Wide(value[a]).copy_to(to[a] + k, std::experimental::element_aligned);
-  };
-  fill(apart, apart_);
-  fill(other.velocity, velocity_);
-  fill(other.angular_velocity, spin_);
 }
 
 template <typename Real>
@@ -56,9 +42,7 @@ void UpstreamBodies::set_radial_normals() {
     }
 }
 
-void UpstreamBodies::let_flow(const double (&force)[3], const GapFlow& flow, const LinkBody& own) {
-  const double v0x = own.velocity.x(), v0y = own.velocity.y(), v0z = own.velocity.z();
-  const double w0x = own.angular_velocity.x(), w0y = own.angular_velocity.y(), w0z = own.angular_velocity.z();
+void UpstreamBodies::let_flow(const double (&force)[3], const GapFlow& flow) {
   const double fx = 0.5 * force[0], fy = 0.5 * force[1], fz = 0.5 * force[2];
   const double slip = flow.slip, changed = 1.0 - flow.kept;
   const int n = padded(count_);
@@ -74,8 +58,9 @@ void UpstreamBodies::let_flow(const double (&force)[3], const GapFlow& flow, con
       const double to_1 = 1.0 / std::sqrt(n1x * n1x + n1y * n1y + n1z * n1z);
       const double to_2 = 1.0 / std::sqrt(n2x * n2x + n2y * n2y + n2z * n2z);
       const double mx = to_1 * n1x - to_2 * n2x, my = to_1 * n1y - to_2 * n2y, mz = to_1 * n1z - to_2 * n2z;
-      const double u1x = v0x + (w0y * z1 - w0z * y1), u1y = v0y + (w0z * x1 - w0x * z1),
-                   u1z = v0z + (w0x * y1 - w0y * x1);
+      const double u1x = own_velocity_[0][k] + (own_spin_[1][k] * z1 - own_spin_[2][k] * y1),
+                   u1y = own_velocity_[1][k] + (own_spin_[2][k] * x1 - own_spin_[0][k] * z1),
+                   u1z = own_velocity_[2][k] + (own_spin_[0][k] * y1 - own_spin_[1][k] * x1);
       const double u2x = velocity_[0][k] + (spin_[1][k] * z2 - spin_[2][k] * y2),
                    u2y = velocity_[1][k] + (spin_[2][k] * x2 - spin_[0][k] * z2),
                    u2z = velocity_[2][k] + (spin_[0][k] * y2 - spin_[1][k] * x2);

@@ -40,23 +40,32 @@ GapFlow gap_flow(const CollisionParameters& collision);
 // With gaps that flow a link also has what the fluid does at x_f, and the normals of both bodies.
 class UpstreamBodies {
 public:
-  static constexpr int capacity = 128;
+  static constexpr int capacity = 128;  // whole vectors of links, links_at_a_time each
 
   int count() const { return count_; }
 
-  // What covers x_ff of the links [first, end). apart: from the centre of `other` to that of the own body. In rising
-  // order, before take_links().
-  void take_other(int first, int end, const LinkBody& other, const Vec3& apart);
+  // What covers x_ff of a link. apart: from the centre of `other` to that of the own body. Before take_links().
+  void take_other(int link, const LinkBody& other, const Vec3& apart) {
+    for (int a = 0; a < 3; ++a) {
+      apart_[a][link] = apart[a];
+      velocity_[a][link] = other.velocity[a];
+      spin_[a][link] = other.angular_velocity[a];
+    }
+  }
 
-  // Of a batch of links to one own body, those whose numbers are in `chosen`: delta, the arm from the own body's
-  // centre, and rho - 1 at x_f.
+  // Of a batch of links, those whose numbers are in `chosen`: delta, the arm from the own body's centre, and rho - 1 at
+  // x_f.
   template <typename Real>
   void take_links(const int* chosen, int count, const std::uint32_t* tag, const Real* deviation, const Real* distance,
                   const Real (&arm)[3][capacity]);
 
-  // momentum: sum c_i f_i^c at x_f; odd: o there.
-  void set_flow(int link, const Vec3& momentum, double odd) {
-    for (int a = 0; a < 3; ++a) momentum_[a][link] = momentum[a];
+  // own: the body that the link runs into; momentum: sum c_i f_i^c at x_f; odd: o there.
+  void set_flow(int link, const LinkBody& own, const Vec3& momentum, double odd) {
+    for (int a = 0; a < 3; ++a) {
+      own_velocity_[a][link] = own.velocity[a];
+      own_spin_[a][link] = own.angular_velocity[a];
+      momentum_[a][link] = momentum[a];
+    }
     odd_[link] = odd;
   }
 
@@ -67,9 +76,8 @@ public:
   void set_normals(int link, const Vec3& own, const Vec3& other);
   void set_radial_normals();  // of all links, between spheres
 
-  // Lets the fluid flow between `own`, to which all links belong, and the bodies behind. force: on the fluid, of which
-  // f^c has half too much.
-  void let_flow(const double (&force)[3], const GapFlow& flow, const LinkBody& own);
+  // Lets the fluid flow between the own bodies and those behind. force: on the fluid, of which f^c has half too much.
+  void let_flow(const double (&force)[3], const GapFlow& flow);
 
   // The equilibrium at x_ff: density as at x_f, velocity that of the covering body, and the slip. With a hydrostatic
   // gradient c_i.gradient = 3 c_i.F: the density a cell further out, and 3/2 w_i c_i.F.
@@ -80,7 +88,7 @@ public:
   double odd_change(int link) const { return odd_change_[link]; }  // of o
 
 private:
-  static constexpr int length = capacity + 8;  // whole vectors are written, beyond the last link too
+  static constexpr int length = capacity;
 
   Vec3 before_arm(const double (&arm)[3][length], int link) const {
     Vec3 from;
@@ -91,9 +99,10 @@ private:
 
   int count_ = 0;
   std::uint32_t tag_[length] = {};
-  // The crossing from both centres, and the other's place and motion.
+  // The crossing from both centres, the other's place and motion, and where the fluid flows the own body's motion.
   alignas(64) double distance_[length] = {}, own_arm_[3][length] = {}, arm_[3][length] = {};
   alignas(64) double apart_[3][length] = {}, velocity_[3][length] = {}, spin_[3][length] = {};
+  alignas(64) double own_velocity_[3][length] = {}, own_spin_[3][length] = {};
   alignas(64) double deviation_[length] = {}, momentum_[3][length] = {}, odd_[length] = {};
   alignas(64) double own_normal_[3][length] = {}, normal_[3][length] = {};
   alignas(64) double slip_[3][length] = {}, slip_along_[length] = {}, odd_change_[length] = {},

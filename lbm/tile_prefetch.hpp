@@ -1,0 +1,51 @@
+// Asks the second-level cache for the populations of a tile, a share at a time, while the processor has other work.
+#pragma once
+
+#include "lbm/populations.hpp"
+#include "lbm/row_tiles.hpp"
+
+#include <cstddef>
+
+namespace thalweg::lbm {
+
+template <typename Real>
+class TilePrefetch {
+public:
+  // Of one step, in which the arrangement stays. Both must outlive this.
+  TilePrefetch(Populations<Real>& populations, const RowTiles& tiles)
+      : indexing_(populations.indexing()), tiles_(tiles) {
+    for (int i = 0; i < D3Q19::directions; ++i) sent_[i] = &populations.post_collision(i, 0);
+  }
+
+  void begin(int tile) {
+    const int block = tiles_.block_of(tile);
+    first_row_ = tiles_.first_row(block);
+    plane_ = tiles_.plane_of(tile);
+    lines_ = lines_per_row() * (tiles_.end_row(block) - first_row_);
+    asked_ = 0;
+  }
+  void begin_nothing() { lines_ = asked_ = 0; }
+
+  // Asks for what is missing to this share of the tile, in [0, 1].
+  void advance(double share) {
+    const int end = static_cast<int>(share * lines_);
+    for (; asked_ < end; ++asked_) {
+      const int row = first_row_ + asked_ / lines_per_row(), x = asked_ % lines_per_row() * cells_per_line;
+      const std::ptrdiff_t cell = indexing_.index(x, row, plane_);
+      constexpr int to_read = 0, second_level = 2;
+      for (int i = 0; i < D3Q19::directions; ++i) __builtin_prefetch(sent_[i] + cell, to_read, second_level);
+    }
+  }
+
+private:
+  static constexpr int cells_per_line = 64 / sizeof(Real);
+  // One more, as a row begins anywhere in a line.
+  int lines_per_row() const { return indexing_.size()[0] / cells_per_line + 1; }
+
+  const CellIndexing& indexing_;
+  const RowTiles& tiles_;
+  const Real* sent_[D3Q19::directions];  // f_i^c of the cell with index 0
+  int first_row_ = 0, plane_ = 0, lines_ = 0, asked_ = 0;
+};
+
+}  // namespace thalweg::lbm
