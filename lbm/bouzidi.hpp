@@ -84,10 +84,11 @@ public:
 
 private:
   static constexpr int capacity = UpstreamBodies::capacity;
-  // Links of one body in a batch: [first, first + count), and copies of the first up to padded(count).
+  // Links of one body in a batch: [first, first + count), and copies of the last up to padded(count). The first
+  // `covered` of all these have a body at x_ff.
   struct Piece {
     std::int32_t body;
-    int first, count;
+    int first, count, covered;
   };
   struct Batch {
     int size = 0, plane = 0;  // size: with the copies
@@ -163,7 +164,7 @@ private:
   }
   const Real* excess() const { return has_rest_ ? values_.excess : values_.deviation; }
 
-  void append(Batch& batch, const LinkTable::Tile& tile, std::int32_t body, std::uint32_t first, int count) const;
+  void append(Batch& batch, const LinkTable::Tile& tile, const LinkTable::Run& run, int from, int count) const;
   template <typename Rule>
   void prepare(Batch& batch) const;
   template <typename Rule>

@@ -99,12 +99,12 @@ void LinkPass<Real, S>::apply_links(int tile) {
   for (std::size_t r = 0; r < runs.size(); ++r) {
     ask_for(r + ahead);
     const LinkTable::Run& run = runs[r];
-    for (std::uint32_t first = 0; first < run.count;) {
+    for (int from = 0; from < static_cast<int>(run.count);) {
       Batch& batch = batches_[turn];
-      const int count = std::min<int>(capacity - batch.size, run.count - first);
-      append(batch, t, run.body, run.first + first, count);
-      first += count;
-      done += count;
+      const int count = std::min(capacity - batch.size, static_cast<int>(run.count) - from);
+      append(batch, t, run, from, count);
+      from += count;
+      done += static_cast<std::size_t>(count);
       if (batch.size == capacity) pass_on();
     }
   }
@@ -148,12 +148,15 @@ void LinkPass<Real, S>::measure_rows(int tile) {
   }
 }
 
-// Links [first, first + count) of the tile's stream, where there is room for them.
+// Links [from, from + count) of a run, where there is room for them.
 template <typename Real, LinkShape S>
-void LinkPass<Real, S>::append(Batch& b, const LinkTable::Tile& tile, std::int32_t body, std::uint32_t first,
+void LinkPass<Real, S>::append(Batch& b, const LinkTable::Tile& tile, const LinkTable::Run& run, int from,
                                int count) const {
   const int start = b.size, n = padded(count);
-  b.piece[b.pieces++] = {body, start, count};
+  const std::int32_t body = run.body;
+  const std::uint32_t first = run.first + static_cast<std::uint32_t>(from);
+  const int covered = std::clamp(static_cast<int>(run.covered) - from, 0, count);
+  b.piece[b.pieces++] = {body, start, count, covered == count ? n : covered};
   for (int k = 0; k < n; k += links_at_a_time) {
     std::copy_n(tile.links.place.data() + first + k, links_at_a_time, b.place + start + k);
     std::copy_n(tile.links.tag.data() + first + k, links_at_a_time, b.tag + start + k);
@@ -191,16 +194,13 @@ void LinkPass<Real, S>::prepare(Batch& b) const {
 template <typename Real, LinkShape S>
 template <typename Rule>
 void LinkPass<Real, S>::find_covered(Batch& b) const {
-  const std::uint32_t at_any_distance = gaps_.kept < 1.0 ? 1 : 0, near_wall = Rule::needs_both ? 0 : 1;
-  alignas(64) std::uint32_t wanted[capacity];
-  for (int k = 0; k < b.size; ++k)
-    wanted[k] = (b.tag[k] >> LinkTag::covered_shift & 1u) &
-                (at_any_distance | (near_wall & static_cast<std::uint32_t>(b.distance[k] < Real(0.5))));
+  const bool at_any_distance = gaps_.kept < 1.0, near_wall = !Rule::needs_both;
   int count = 0;
-  for (int k = 0; k < b.size; ++k) {
-    b.covered[count] = k;
-    count += static_cast<int>(wanted[k]);
-  }
+  for (int p = 0; p < b.pieces; ++p)
+    for (int k = b.piece[p].first; k < b.piece[p].first + b.piece[p].covered; ++k) {
+      b.covered[count] = k;
+      count += static_cast<int>(at_any_distance | (near_wall & (b.distance[k] < Real(0.5))));
+    }
   b.covered_count = count;
   for (int c = 0; c < count; ++c) bodies_[b.tag[b.covered[c]] >> LinkTag::body_shift].prefetch();
 }

@@ -25,17 +25,26 @@ struct BlockPlace {
       half[a] = box.periodic[a] ? period[a] / 2 : std::numeric_limits<int>::max();
     }
   }
+
+  // Whether a solid cell of a body there can be beyond a periodic face, seen from the centre.
+  bool may_wrap(const Vec3& centre, double reach) const {
+    constexpr double margin = 1.0;  // cells are assigned where the body was up to a small tolerance ago
+    bool wraps = false;
+    for (int a = 0; a < 3; ++a)
+      wraps |= period[a] > 0 && (centre[a] < reach + margin || centre[a] > period[a] - reach - margin);
+    return wraps;
+  }
 };
 
-// Of links [0, count) of one body (centre: global) in the plane z (owned local coordinate), count a multiple of
-// links_at_a_time, in the arithmetic of Real, which is the same for every link whatever its place in the arrays. Cells
-// count from whole numbers near the centre, so that nothing is lost far from the origin; the nearest image is that of
-// the solid cell, which is inside.
-template <typename Real, Shape S>
-inline void find_crossings(S shape, const Vec3& centre, const BlockPlace& block, int z,
-                           const std::uint32_t* __restrict places, const std::uint32_t* __restrict tags, int count,
-                           Real* __restrict distance, Real* __restrict arm_x, Real* __restrict arm_y,
-                           Real* __restrict arm_z) {
+namespace detail {
+
+// As find_crossings(). `wraps`: whether a link may be nearer to another image of the centre.
+template <bool wraps, typename Real, Shape S>
+[[gnu::always_inline]] inline void cross_links(S shape, const Vec3& centre, const BlockPlace& block, int z,
+                                               const std::uint32_t* __restrict places,
+                                               const std::uint32_t* __restrict tags, int count,
+                                               Real* __restrict distance, Real* __restrict arm_x,
+                                               Real* __restrict arm_y, Real* __restrict arm_z) {
   int from[3];
   Real rest[3];
   for (int a = 0; a < 3; ++a) {
@@ -47,10 +56,14 @@ inline void find_crossings(S shape, const Vec3& centre, const BlockPlace& block,
   const int half_x = block.half[0], half_y = block.half[1], half_z = block.half[2];
   const int period_x = block.period[0], period_y = block.period[1], period_z = block.period[2];
   const auto nearest = [](int cell, int half, int period) {
-    return cell - (cell > half ? period : 0) + (cell < -half ? period : 0);
+    if constexpr (wraps)
+      return cell - (cell > half ? period : 0) + (cell < -half ? period : 0);
+    else
+      return cell;
   };
-  for (int first = 0; first < count; first += links_at_a_time)
-    for (int k = first; k < first + links_at_a_time; ++k) {
+  for (int first = 0; first < count; first += links_at_a_time) {
+    const int end = first + links_at_a_time;
+    for (int k = first; k < end; ++k) {
       const int tag = static_cast<int>(tags[k]), place = static_cast<int>(places[k]);
       const int cx = LinkTag::velocity(tag, 0), cy = LinkTag::velocity(tag, 1), cz = LinkTag::velocity(tag, 2);
       const int x = static_cast<int>(place & static_cast<int>(LinkPlace::x_mask)),
@@ -59,12 +72,37 @@ inline void find_crossings(S shape, const Vec3& centre, const BlockPlace& block,
       const Real dy = Real(nearest(y + from_y + cy, half_y, period_y) - cy) + rest[1];
       const Real dz = Real(nearest(from_z + cz, half_z, period_z) - cz) + rest[2];
       const Real delta = shape.link_crossing(dx, dy, dz, Real(cx), Real(cy), Real(cz));
-      const Real inside = delta > Real(0) ? (delta < Real(1) ? delta : Real(1)) : Real(0);
-      distance[k] = inside;
-      arm_x[k] = dx + inside * Real(cx);
-      arm_y[k] = dy + inside * Real(cy);
-      arm_z[k] = dz + inside * Real(cz);
+      distance[k] = delta > Real(0) ? delta : Real(0);
+      arm_x[k] = dx;
+      arm_y[k] = dy;
+      arm_z[k] = dz;
     }
+    // On its own: in one loop the compiler would make three cases of everything that depends on the distance.
+    for (int k = first; k < end; ++k) {
+      const int tag = static_cast<int>(tags[k]);
+      const Real inside = distance[k] < Real(1) ? distance[k] : Real(1);
+      distance[k] = inside;
+      arm_x[k] += inside * Real(LinkTag::velocity(tag, 0));
+      arm_y[k] += inside * Real(LinkTag::velocity(tag, 1));
+      arm_z[k] += inside * Real(LinkTag::velocity(tag, 2));
+    }
+  }
+}
+
+}  // namespace detail
+
+// Of links [0, count) of one body (centre: global) in the plane z (owned local coordinate), count a multiple of
+// links_at_a_time, in the arithmetic of Real, which is the same for every link whatever its place in the arrays. Cells
+// count from whole numbers near the centre, so that nothing is lost far from the origin; the nearest image is that of
+// the solid cell, which is inside.
+template <typename Real, Shape S>
+inline void find_crossings(const S& shape, const Vec3& centre, const BlockPlace& block, int z,
+                           const std::uint32_t* places, const std::uint32_t* tags, int count, Real* distance,
+                           Real* arm_x, Real* arm_y, Real* arm_z) {
+  if (block.may_wrap(centre, shape.reach()))
+    detail::cross_links<true>(shape, centre, block, z, places, tags, count, distance, arm_x, arm_y, arm_z);
+  else
+    detail::cross_links<false>(shape, centre, block, z, places, tags, count, distance, arm_x, arm_y, arm_z);
 }
 
 }  // namespace thalweg::lbm

@@ -119,7 +119,10 @@ const std::vector<LinkTable::Run>& LinkTable::runs_in_order(int tile) const {
   }
   if (!t.runs_current) {
     t.runs.clear();
-    for (const std::uint32_t c : t.order) t.runs.push_back({t.chunks[c].body, t.chunks[c].first, t.chunks[c].count});
+    for (const std::uint32_t c : t.order) {
+      const Chunk& chunk = t.chunks[c];
+      t.runs.push_back({chunk.body, chunk.first, chunk.count, chunk.covered});
+    }
     t.runs_current = true;
   }
   return t.runs;
@@ -147,23 +150,30 @@ void LinkTable::put(Tile& tile, Chunk& chunk, std::span<const Link> links, std::
   LinkSums& sums = sums_[static_cast<std::size_t>(chunk.body)];
   sums -= chunk.sums;
   chunk.sums = {};
-  for (std::size_t k = 0; k < links.size(); ++k) {
-    tile.links.place[chunk.first + k] = links[k].place;
-    tile.links.tag[chunk.first + k] = links[k].tag;
-    chunk.sums.add(static_cast<int>(links[k].tag & LinkTag::direction_mask));
+  std::uint32_t next = chunk.first;
+  for (const std::uint32_t covered : {1u, 0u}) {
+    for (std::size_t k = 0; k < links.size(); ++k) {
+      if ((links[k].tag >> LinkTag::covered_shift & 1u) != covered) continue;
+      tile.links.place[next] = links[k].place;
+      tile.links.tag[next] = links[k].tag;
+      if (stores_crossings_) tile.links.crossing[next] = crossings[k];
+      chunk.sums.add(static_cast<int>(links[k].tag & LinkTag::direction_mask));
+      ++next;
+    }
+    if (covered == 1u) chunk.covered = next - chunk.first;
   }
   sums += chunk.sums;
-  std::copy(crossings.begin(), crossings.end(), tile.links.crossing.begin() + (stores_crossings_ ? chunk.first : 0));
   chunk.count = static_cast<std::uint32_t>(links.size());
   fill_up(tile.links, chunk);
   if (tile.end > 3 * tile.filled + 4096) compact(tile);
 }
 
 void LinkTable::fill_up(LinkStream& links, const Chunk& chunk) const {
-  for (std::uint32_t k = chunk.first + chunk.count; k < chunk.first + padded(chunk.count); ++k) {
-    links.place[k] = links.place[chunk.first];
-    links.tag[k] = links.tag[chunk.first];
-    if (stores_crossings_) links.crossing[k] = links.crossing[chunk.first];
+  const std::uint32_t end = chunk.first + chunk.count;
+  for (std::uint32_t k = end; k < chunk.first + padded(chunk.count); ++k) {
+    links.place[k] = links.place[end - 1];
+    links.tag[k] = links.tag[end - 1];
+    if (stores_crossings_) links.crossing[k] = links.crossing[end - 1];
   }
 }
 

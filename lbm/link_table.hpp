@@ -55,7 +55,7 @@ struct LinkTag {
 };
 
 // Vector code takes so many links at a time, whole vectors of any machine. What a chunk lacks to that are copies of its
-// first link, which compute and write what that link does, and count nowhere.
+// last link, which compute and write what that link does, and count nowhere.
 inline constexpr int links_at_a_time = 16;
 template <std::integral Count>
 constexpr Count padded(Count links) {
@@ -126,12 +126,13 @@ public:
   struct Chunk {
     std::int32_t body = -1;  // slot of the body; -1: the chunk is free
     std::uint32_t first = 0, count = 0, capacity = 0;  // capacity: with room for the copies
+    std::uint32_t covered = 0;                         // the first so many have a body at x_f - c_i
     LinkSums sums;
   };
   // What the pass over the links needs of a chunk: padded(count) links are there.
   struct Run {
     std::int32_t body;
-    std::uint32_t first, count;
+    std::uint32_t first, count, covered;
   };
   struct Tile {
     LinkStream links;
