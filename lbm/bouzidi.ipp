@@ -255,12 +255,13 @@ void LinkPass<Real, S>::subtract_rest(const Batch& b) {
 
 template <typename Real, LinkShape S>
 void LinkPass<Real, S>::look_at_covered(const Batch& b) {
+  upstream_.begin(b.covered_count);
   for (int c = 0; c < b.covered_count; ++c) {
     const int k = b.covered[c];
     const LinkBody& other = bodies_[b.tag[k] >> LinkTag::body_shift];
-    upstream_.take_other(c, other, box_.difference(body_of(b, k).centre, other.centre));
+    upstream_.take(c, b.tag[k], b.distance[k], Vec3(b.arm[0][k], b.arm[1][k], b.arm[2][k]), values_.deviation[k], other,
+                   box_.difference(body_of(b, k).centre, other.centre));
   }
-  upstream_.take_links(b.covered, b.covered_count, b.tag, values_.deviation, b.distance, b.arm);
   if (slips_) let_gaps_flow(b);
   upstream_.find_populations(options_.rest_gradient);
   for (int c = 0; c < b.covered_count; ++c) {

@@ -12,20 +12,6 @@ GapFlow gap_flow(const CollisionParameters& collision) {
   return {std::min(1.0, (1.0 - k) / (k - 1.0 + rate)), 0.0};
 }
 
-template <typename Real>
-void UpstreamBodies::take_links(const int* chosen, int count, const std::uint32_t* tag, const Real* deviation,
-                                const Real* distance, const Real (&arm)[3][capacity]) {
-  count_ = count;
-  for (int k = 0; k < count; ++k) tag_[k] = tag[chosen[k]];
-  for (int k = 0; k < count; ++k) deviation_[k] = static_cast<double>(deviation[chosen[k]]);
-  for (int k = 0; k < count; ++k) distance_[k] = static_cast<double>(distance[chosen[k]]);
-  for (int a = 0; a < 3; ++a)
-    for (int k = 0; k < count; ++k) {
-      own_arm_[a][k] = static_cast<double>(arm[a][chosen[k]]);
-      arm_[a][k] = apart_[a][k] + own_arm_[a][k];
-    }
-}
-
 void UpstreamBodies::set_normals(int link, const Vec3& own, const Vec3& other) {
   for (int a = 0; a < 3; ++a) {
     own_normal_[a][link] = own[a];
@@ -99,10 +85,5 @@ void UpstreamBodies::find_populations(const Vec3& rest_gradient) {
       population_[k] = weight * (d + (1.0 + d) * (3.0 * cu + 4.5 * cu * cu - 1.5 * uu) + 0.5 * along);
     }
 }
-
-template void UpstreamBodies::take_links(const int*, int, const std::uint32_t*, const float*, const float*,
-                                         const float (&)[3][capacity]);
-template void UpstreamBodies::take_links(const int*, int, const std::uint32_t*, const double*, const double*,
-                                         const double (&)[3][capacity]);
 
 }  // namespace thalweg::lbm

@@ -44,20 +44,22 @@ public:
 
   int count() const { return count_; }
 
-  // What covers x_ff of a link. apart: from the centre of `other` to that of the own body. Before take_links().
-  void take_other(int link, const LinkBody& other, const Vec3& apart) {
+  void begin(int count) { count_ = count; }
+
+  // A link: delta, its crossing from the own body's centre, and rho - 1 at x_f; the body that covers x_ff, and the way
+  // from its centre to that of the own body.
+  void take(int link, std::uint32_t tag, double distance, const Vec3& arm, double deviation, const LinkBody& other,
+            const Vec3& apart) {
+    tag_[link] = tag;
+    distance_[link] = distance;
+    deviation_[link] = deviation;
     for (int a = 0; a < 3; ++a) {
-      apart_[a][link] = apart[a];
+      own_arm_[a][link] = arm[a];
+      arm_[a][link] = apart[a] + arm[a];
       velocity_[a][link] = other.velocity[a];
       spin_[a][link] = other.angular_velocity[a];
     }
   }
-
-  // Of a batch of links, those whose numbers are in `chosen`: delta, the arm from the own body's centre, and rho - 1 at
-  // x_f.
-  template <typename Real>
-  void take_links(const int* chosen, int count, const std::uint32_t* tag, const Real* deviation, const Real* distance,
-                  const Real (&arm)[3][capacity]);
 
   // own: the body that the link runs into; momentum: sum c_i f_i^c at x_f; odd: o there.
   void set_flow(int link, const LinkBody& own, const Vec3& momentum, double odd) {
@@ -101,7 +103,7 @@ private:
   std::uint32_t tag_[length] = {};
   // The crossing from both centres, the other's place and motion, and where the fluid flows the own body's motion.
   alignas(64) double distance_[length] = {}, own_arm_[3][length] = {}, arm_[3][length] = {};
-  alignas(64) double apart_[3][length] = {}, velocity_[3][length] = {}, spin_[3][length] = {};
+  alignas(64) double velocity_[3][length] = {}, spin_[3][length] = {};
   alignas(64) double own_velocity_[3][length] = {}, own_spin_[3][length] = {};
   alignas(64) double deviation_[length] = {}, momentum_[3][length] = {}, odd_[length] = {};
   alignas(64) double own_normal_[3][length] = {}, normal_[3][length] = {};
