@@ -85,7 +85,7 @@ void LinkBuilder::look_for_enclosed(const CellChange& change) {
               z = change.cell[2] + D3Q19::c[i][2];
     if (!indexing.owned(x, y, z)) continue;
     const std::ptrdiff_t cell = indexing.index(x, y, z);
-    const bool is_enclosed = cells_.is_enclosed(cell), was_enclosed = enclosed_.count(cell) > 0;
+    const bool is_enclosed = cells_.is_enclosed(cell), was_enclosed = !enclosed_.empty() && enclosed_.count(cell) > 0;
     if (is_enclosed == was_enclosed) continue;
     if (is_enclosed)
       enclosed_.insert(cell);
@@ -118,29 +118,41 @@ void LinkBuilder::rebuild(int slot, const MappedGrain& grain, lbm::LinkTable& ta
   }
 }
 
-// The map alone determines where links are: all neighbours of the cells of a row are compared with the grain at once.
+// The map alone determines where links are: all neighbours of as many cells as a vector holds are compared with the
+// grain at once.
 void LinkBuilder::find_in_row(int slot, int y, int z) {
-  const lbm::CellIndexing& indexing = cells_.indexing();
+  constexpr int width = static_cast<int>(Cells::size());
   for (std::size_t begin = 0; begin < xs_.size();) {
     std::size_t end = begin + 1;  // of a run of neighbouring cells
     while (end < xs_.size() && xs_[end].local == xs_[end - 1].local + 1) ++end;
-    const int count = static_cast<int>(end - begin), first = xs_[begin].local;
+    const int last = xs_[end - 1].local;
+    for (int x = xs_[begin].local; x <= last; x += width) find_in_cells(slot, x, std::min(width, last + 1 - x), y, z);
     begin = end;
-    const std::int32_t* row = cells_.bodies() + indexing.index(first, y, z);
-    hits_.assign(count, 0);
-    std::uint32_t* hits = hits_.data();
-    for (int i = 1; i < D3Q19::directions; ++i) {
-      const std::int32_t* there = row + indexing.offset(i);
-      for (int k = 0; k < count; ++k) hits[k] |= static_cast<std::uint32_t>(there[k] == slot) << i;
-    }
-    for (int k = 0; k < count; ++k) {
-      if (hits[k] == 0 || row[k] != CellMap::fluid) continue;
-      const std::uint32_t place = lbm::LinkPlace::of(first + k, y);
-      const bool is_enclosed = cells_.is_enclosed(indexing.index(first + k, y, z));
-      for (std::uint32_t left = hits[k]; left != 0; left &= left - 1) {
-        const int i = std::countr_zero(left);
-        links_.push_back({place, lbm::LinkTag::of(i, row[k - indexing.offset(i)], is_enclosed)});
-      }
+  }
+}
+
+// Of `count` cells from x on, at most one vector.
+void LinkBuilder::find_in_cells(int slot, int x, int count, int y, int z) {
+  constexpr auto unaligned = std::experimental::element_aligned;
+  static_assert(Cells::size() <= CellMap::read_beyond);
+  const lbm::CellIndexing& indexing = cells_.indexing();
+  const std::int32_t* row = cells_.bodies() + indexing.index(x, y, z);
+  Cells hits = 0, open = 0;  // the directions that end in the grain, as bits; whether any ends in the fluid
+  for (int i = 1; i < D3Q19::directions; ++i) {
+    const Cells there(row + indexing.offset(i), unaligned);
+    where(there == slot, hits) = hits | (1 << i);
+    where(there == CellMap::fluid, open) = 1;
+  }
+  where(Cells(row, unaligned) != CellMap::fluid, hits) = 0;
+  if (none_of(hits != 0)) return;
+  std::int32_t hit[Cells::size()], is_open[Cells::size()];
+  hits.copy_to(hit, unaligned);
+  open.copy_to(is_open, unaligned);
+  for (int k = 0; k < count; ++k) {
+    const std::uint32_t place = lbm::LinkPlace::of(x + k, y);
+    for (auto left = static_cast<std::uint32_t>(hit[k]); left != 0; left &= left - 1) {
+      const int i = std::countr_zero(left);
+      links_.push_back({place, lbm::LinkTag::of(i, row[k - indexing.offset(i)], is_open[k] == 0)});
     }
   }
 }

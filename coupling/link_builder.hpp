@@ -10,6 +10,8 @@
 #include "lbm/row_tiles.hpp"
 
 #include <cstddef>
+#include <cstdint>
+#include <experimental/simd>
 #include <unordered_set>
 #include <vector>
 
@@ -25,11 +27,14 @@ public:
   void update(const CellClaims& map, lbm::LinkTable& table);
 
 private:
+  using Cells = std::experimental::native_simd<std::int32_t>;
+
   void mark_around(const CellChange& change);
   void look_for_enclosed(const CellChange& change);
   void mark(std::int32_t slot, int tile);
   void rebuild(int slot, const MappedGrain& grain, lbm::LinkTable& table);
   void find_in_row(int slot, int y, int z);
+  void find_in_cells(int slot, int x, int count, int y, int z);
 
   LocalCells local_cells_;
   const lbm::CellMap& cells_;
@@ -38,7 +43,6 @@ private:
   std::vector<int> stale_;                       // slots that have any
   std::unordered_set<std::ptrdiff_t> enclosed_;  // cells (CellMap::is_enclosed)
   std::vector<LocalCell> xs_, ys_;               // scratch from here on
-  std::vector<std::uint32_t> hits_;              // of the cells of a row, the directions that end in the grain
   std::vector<lbm::Link> links_;
 };
 

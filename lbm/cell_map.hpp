@@ -12,9 +12,12 @@ class CellMap {
 public:
   static constexpr std::int32_t fluid = -1;  // any other value: the id of the covering body
 
+  // So many entries of bodies() beyond the last cell can be read, by vectors that begin at a cell.
+  static constexpr std::size_t read_beyond = 16;
+
   explicit CellMap(const CellIndexing& indexing)
       : indexing_(indexing),
-        body_(indexing.count(), fluid),
+        body_(indexing.count() + read_beyond, fluid),
         fluid_in_pack_(static_cast<std::size_t>(indexing.packs_per_row()) * indexing.size()[1] * indexing.size()[2]) {
     const int width = indexing.pack(), nx = indexing.size()[0];
     for (std::size_t p = 0; p < fluid_in_pack_.size(); ++p) {

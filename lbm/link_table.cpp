@@ -8,12 +8,16 @@
 
 namespace thalweg::lbm {
 
-void LinkSums::add(int direction) {
-  const auto& c = D3Q19::c[direction];
-  const int weight = 3 - D3Q19::length_squared(direction);
-  const int terms[size] = {1,           c[0],        c[1],        c[2],        c[0] * c[0],
-                           c[1] * c[1], c[2] * c[2], c[0] * c[1], c[0] * c[2], c[1] * c[2]};
-  for (std::size_t k = 0; k < size; ++k) sums[k] += weight * terms[k];
+LinkSums LinkSums::of(const std::array<int, D3Q19::directions>& links) {
+  LinkSums all;
+  for (int i = 1; i < D3Q19::directions; ++i) {
+    const auto& c = D3Q19::c[i];
+    const int weight = links[static_cast<std::size_t>(i)] * (3 - D3Q19::length_squared(i));
+    const int terms[size] = {1,           c[0],        c[1],        c[2],        c[0] * c[0],
+                             c[1] * c[1], c[2] * c[2], c[0] * c[1], c[0] * c[2], c[1] * c[2]};
+    for (std::size_t k = 0; k < size; ++k) all.sums[k] += weight * terms[k];
+  }
+  return all;
 }
 
 LinkSums& LinkSums::operator+=(const LinkSums& other) {
@@ -149,19 +153,18 @@ void LinkTable::put(Tile& tile, Chunk& chunk, std::span<const Link> links, std::
   }
   LinkSums& sums = sums_[static_cast<std::size_t>(chunk.body)];
   sums -= chunk.sums;
-  chunk.sums = {};
-  std::uint32_t next = chunk.first;
-  for (const std::uint32_t covered : {1u, 0u}) {
-    for (std::size_t k = 0; k < links.size(); ++k) {
-      if ((links[k].tag >> LinkTag::covered_shift & 1u) != covered) continue;
-      tile.links.place[next] = links[k].place;
-      tile.links.tag[next] = links[k].tag;
-      if (stores_crossings_) tile.links.crossing[next] = crossings[k];
-      chunk.sums.add(static_cast<int>(links[k].tag & LinkTag::direction_mask));
-      ++next;
-    }
-    if (covered == 1u) chunk.covered = next - chunk.first;
+  const auto is_covered = [](const Link& link) { return (link.tag >> LinkTag::covered_shift & 1u) != 0; };
+  chunk.covered = static_cast<std::uint32_t>(std::count_if(links.begin(), links.end(), is_covered));
+  std::uint32_t next[2] = {chunk.first + chunk.covered, chunk.first};  // of those not covered, of those covered
+  std::array<int, D3Q19::directions> by_direction{};
+  for (std::size_t k = 0; k < links.size(); ++k) {
+    const std::uint32_t at = next[is_covered(links[k])]++;
+    tile.links.place[at] = links[k].place;
+    tile.links.tag[at] = links[k].tag;
+    if (stores_crossings_) tile.links.crossing[at] = crossings[k];
+    ++by_direction[links[k].tag & LinkTag::direction_mask];
   }
+  chunk.sums = LinkSums::of(by_direction);
   sums += chunk.sums;
   chunk.count = static_cast<std::uint32_t>(links.size());
   fill_up(tile.links, chunk);

@@ -110,7 +110,8 @@ struct LinkSums {
   static constexpr int size = 10;
   std::array<std::int64_t, size> sums{};  // w_i;  w_i c_i: x, y, z;  w_i c_ia c_ib: xx, yy, zz, xy, xz, yz
 
-  void add(int direction);
+  // Of as many links of each direction.
+  static LinkSums of(const std::array<int, D3Q19::directions>& links);
   LinkSums& operator+=(const LinkSums& other);
   LinkSums& operator-=(const LinkSums& other);
 
