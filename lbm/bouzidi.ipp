@@ -249,7 +249,8 @@ void LinkPass<Real, S>::subtract_rest(const Batch& b) {
     const double at_centre = gradient.dot(body_of(b, k).centre - options_.rest_middle);
     const Vec3 c(component(b.tag[k], 0), component(b.tag[k], 1), component(b.tag[k], 2));
     const Vec3 arm(b.arm[0][k], b.arm[1][k], b.arm[2][k]);
-    values_.excess[k] = values_.deviation[k] - static_cast<Real>(at_centre + gradient.dot(arm - static_cast<double>(b.distance[k]) * c));
+    values_.excess[k] = values_.deviation[k] -
+                        static_cast<Real>(at_centre + gradient.dot(arm - static_cast<double>(b.distance[k]) * c));
   }
 }
 

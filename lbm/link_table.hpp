@@ -125,7 +125,7 @@ struct LinkSums {
 class LinkTable {
 public:
   struct Chunk {
-    std::int32_t body = -1;  // slot of the body; -1: the chunk is free
+    std::int32_t body = -1;                            // slot of the body; -1: the chunk is free
     std::uint32_t first = 0, count = 0, capacity = 0;  // capacity: with room for the copies
     std::uint32_t covered = 0;                         // the first so many have a body at x_f - c_i
     LinkSums sums;
