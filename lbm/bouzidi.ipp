@@ -74,6 +74,7 @@ void LinkPass<Real, S>::apply_links(int tile) {
   parity_ = z % 2;
 
   const LinkTable::Tile& t = links_.tiles()[tile];
+  if (t.live == 0) return;
   if (z + 2 < tiles_.planes() && links_.tiles()[tile + 2].live > 0)
     next_.begin(tile + 2);
   else

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -29,9 +30,9 @@ Given given_by(const MassReturn& r, const std::vector<int>& links) {
 }
 
 lbm::LinkSums sums_of(const std::vector<int>& links) {
-  lbm::LinkSums sums;
-  for (const int i : links) sums.add(i);
-  return sums;
+  std::array<int, lbm::D3Q19::directions> by_direction{};
+  for (const int i : links) ++by_direction[static_cast<std::size_t>(i)];
+  return lbm::LinkSums::of(by_direction);
 }
 
 TEST(MassReturn, GivesTheMassAndNoMomentumWhateverIsHidden) {
