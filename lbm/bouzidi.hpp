@@ -31,6 +31,7 @@
 #include "lbm/tile_prefetch.hpp"
 #include "lbm/upstream_bodies.hpp"
 
+#include <array>
 #include <concepts>
 #include <cstddef>
 #include <experimental/simd>
@@ -89,6 +90,10 @@ private:
   struct Piece {
     std::int32_t body;
     int first, count, covered;
+
+    int end() const { return first + count; }
+    int filled_end() const { return first + padded(count); }
+    int covered_end() const { return first + covered; }
   };
   struct Batch {
     int size = 0, plane = 0;  // size: with the copies
@@ -113,7 +118,6 @@ private:
     alignas(64) Real deviation[capacity];                   // rho - 1 at x_f
     alignas(64) Real excess[capacity];                      // rho - rho_rest at x_f, where it is not the same
     alignas(64) Real incident[capacity], second[capacity];  // f_i^c(x_f); the rule's other value
-    alignas(64) Real covered[capacity];                     // of a rule that needs both: 1 where a body covers x_ff
     alignas(64) Real leak[capacity];                        // rho - rho_rest where x_f is enclosed, else 0
     alignas(64) Real reflected[capacity];                   // f_i'(x_f, t+1)
     alignas(64) Real slip[capacity], odd_change[capacity];  // c_i.v, change of o (upstream_bodies.hpp)
@@ -162,6 +166,9 @@ private:
   LinkBody& body_of(const Batch& batch, int link) const {
     return bodies_[static_cast<std::size_t>(batch.body[link / links_at_a_time])];
   }
+  bool gaps_flow() const { return gaps_.kept < 1.0; }
+  // Whether values_.slip and odd_change count.
+  bool slips(const Batch& batch) const { return gaps_flow() && batch.covered_count > 0; }
   const Real* excess() const { return has_rest_ ? values_.excess : values_.deviation; }
 
   void append(Batch& batch, const LinkTable::Tile& tile, const LinkTable::Run& run, int from, int count) const;
@@ -200,7 +207,7 @@ private:
 
   LinkSlots slots_;
   Real* base_ = nullptr;
-  const Real* sent_[D3Q19::directions];  // f_i^c of the cell with index 0
+  std::array<const Real*, D3Q19::directions> sent_;  // Populations::sent()
 
   // rho - 1 of the cells of two neighbouring planes, even z and odd z, and where gaps flow sum c_i f_i^c.
   std::vector<Real> deviations_[2], momenta_[2][3];
@@ -211,9 +218,8 @@ private:
   Values values_;
   UpstreamBodies upstream_;
   GapFlow gaps_;
-  double force_[3];     // on the fluid
-  bool has_rest_;       // the fluid at rest is not the same everywhere
-  bool slips_ = false;  // of the batch: values_.slip and odd_change count
+  double force_[3];  // on the fluid
+  bool has_rest_;    // the fluid at rest is not the same everywhere
 };
 
 }  // namespace thalweg::lbm

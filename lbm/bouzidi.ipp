@@ -8,7 +8,6 @@
 #include "lbm/cli_link.hpp"
 #include "lbm/equilibrium.hpp"
 #include "lbm/fixed_sums.hpp"
-#include "lbm/sweep.hpp"
 
 #include <algorithm>
 #include <array>
@@ -40,9 +39,9 @@ LinkPass<Real, S>::LinkPass(Fluid<Real>& fluid, const LinkTable& links, const Pe
   const auto plane = static_cast<std::size_t>(populations.indexing().plane_stride());
   for (const int parity : {0, 1}) {
     deviations_[parity].resize(plane);
-    for (std::vector<Real>& component : momenta_[parity]) component.resize(gaps_.kept < 1.0 ? plane : 0);
+    for (std::vector<Real>& component : momenta_[parity]) component.resize(gaps_flow() ? plane : 0);
   }
-  for (int i = 0; i < D3Q19::directions; ++i) sent_[i] = &populations.post_collision(i, 0);
+  sent_ = populations.sent();
   slots_ = LinkSlots(populations);
   base_ = populations.plane(LinkSlots::middle);
 }
@@ -118,7 +117,7 @@ void LinkPass<Real, S>::apply_links(int tile) {
 template <typename Real, LinkShape S>
 void LinkPass<Real, S>::measure_cells(int tile) {
   if (links_.tiles()[tile].live == 0) return;
-  gaps_.kept < 1.0 ? measure_rows<true>(tile) : measure_rows<false>(tile);
+  gaps_flow() ? measure_rows<true>(tile) : measure_rows<false>(tile);
 }
 
 template <typename Real, LinkShape S>
@@ -195,15 +194,15 @@ void LinkPass<Real, S>::prepare(Batch& b) const {
 template <typename Real, LinkShape S>
 template <typename Rule>
 void LinkPass<Real, S>::find_covered(Batch& b) const {
-  const bool at_any_distance = gaps_.kept < 1.0, near_wall = !Rule::needs_both;
+  const bool at_any_distance = gaps_flow(), near_wall = !Rule::needs_both;
   int count = 0;
   for (int p = 0; p < b.pieces; ++p)
-    for (int k = b.piece[p].first; k < b.piece[p].first + b.piece[p].covered; ++k) {
+    for (int k = b.piece[p].first; k < b.piece[p].covered_end(); ++k) {
       b.covered[count] = k;
       count += static_cast<int>(at_any_distance | (near_wall & (b.distance[k] < Real(0.5))));
     }
   b.covered_count = count;
-  for (int c = 0; c < count; ++c) bodies_[b.tag[b.covered[c]] >> LinkTag::body_shift].prefetch();
+  for (int c = 0; c < count; ++c) bodies_[LinkTag::upstream_body(b.tag[b.covered[c]])].prefetch();
 }
 
 template <typename Real, LinkShape S>
@@ -230,7 +229,6 @@ void LinkPass<Real, S>::gather(const Batch& b) {
     values_.incident[k] = base_[b.incident_at[k]];
     values_.second[k] = base_[b.second_at[k]];
   }
-  slips_ = gaps_.kept < 1.0 && b.covered_count > 0;
   if (b.covered_count > 0) look_at_covered(b);
   if constexpr (Rule::needs_both) look_upstream(b);
   if (has_rest_) subtract_rest(b);
@@ -246,12 +244,15 @@ void LinkPass<Real, S>::find_leaks(const Batch& b) {
 template <typename Real, LinkShape S>
 void LinkPass<Real, S>::subtract_rest(const Batch& b) {
   const Vec3& gradient = options_.rest_gradient;
-  for (int k = 0; k < b.size; ++k) {
-    const double at_centre = gradient.dot(body_of(b, k).centre - options_.rest_middle);
-    const Vec3 c(component(b.tag[k], 0), component(b.tag[k], 1), component(b.tag[k], 2));
-    const Vec3 arm(b.arm[0][k], b.arm[1][k], b.arm[2][k]);
-    values_.excess[k] = values_.deviation[k] -
-                        static_cast<Real>(at_centre + gradient.dot(arm - static_cast<double>(b.distance[k]) * c));
+  for (int p = 0; p < b.pieces; ++p) {
+    const Piece& piece = b.piece[p];
+    const double at_centre = gradient.dot(bodies_[static_cast<std::size_t>(piece.body)].centre - options_.rest_middle);
+    for (int k = piece.first; k < piece.filled_end(); ++k) {
+      const Vec3 c(component(b.tag[k], 0), component(b.tag[k], 1), component(b.tag[k], 2));
+      const Vec3 arm(b.arm[0][k], b.arm[1][k], b.arm[2][k]);
+      values_.excess[k] = values_.deviation[k] -
+                          static_cast<Real>(at_centre + gradient.dot(arm - static_cast<double>(b.distance[k]) * c));
+    }
   }
 }
 
@@ -260,11 +261,11 @@ void LinkPass<Real, S>::look_at_covered(const Batch& b) {
   upstream_.begin(b.covered_count);
   for (int c = 0; c < b.covered_count; ++c) {
     const int k = b.covered[c];
-    const LinkBody& other = bodies_[b.tag[k] >> LinkTag::body_shift];
+    const LinkBody& other = bodies_[LinkTag::upstream_body(b.tag[k])];
     upstream_.take(c, b.tag[k], b.distance[k], Vec3(b.arm[0][k], b.arm[1][k], b.arm[2][k]), values_.deviation[k], other,
                    box_.difference(body_of(b, k).centre, other.centre));
   }
-  if (slips_) let_gaps_flow(b);
+  if (slips(b)) let_gaps_flow(b);
   upstream_.find_populations(options_.rest_gradient);
   for (int c = 0; c < b.covered_count; ++c) {
     const int k = b.covered[c];
@@ -282,7 +283,7 @@ void LinkPass<Real, S>::let_gaps_flow(const Batch& b) {
     for (int c = 0; c < b.covered_count; ++c) {
       const int k = b.covered[c];
       const S &own = shapes_[static_cast<std::size_t>(b.body[k / links_at_a_time])],
-              &other = shapes_[b.tag[k] >> LinkTag::body_shift];
+              &other = shapes_[LinkTag::upstream_body(b.tag[k])];
       upstream_.set_normals(c, own.outward(upstream_.from_own(c)), other.outward(upstream_.from_other(c)));
     }
   }
@@ -307,13 +308,10 @@ void LinkPass<Real, S>::let_gaps_flow(const Batch& b) {
 // For a rule that needs both. Without x_ff the second value has no weight.
 template <typename Real, LinkShape S>
 void LinkPass<Real, S>::look_upstream(const Batch& b) {
-  for (int k = 0; k < b.size; ++k) {
-    const bool covered = (b.tag[k] >> LinkTag::covered_shift & 1) != 0;
-    values_.covered[k] = covered ? Real(1) : Real(0);
-    if (!covered)
+  for (int p = 0; p < b.pieces; ++p)
+    for (int k = b.piece[p].covered_end(); k < b.piece[p].filled_end(); ++k)
       values_.second[k] =
           base_[slots_.one_back(b.incident_at[k], b.tag[k])] - base_[slots_.one_back(b.reflected_at[k], b.tag[k])];
-  }
 }
 
 template <typename Real, LinkShape S>
@@ -324,9 +322,8 @@ void LinkPass<Real, S>::reflect(const Batch& b, const Piece& piece) {
   const Pack zero = Real(0), lane([](auto j) { return Real(static_cast<int>(j)); });
   const Pack galilean = options_.momentum_exchange == MomentumExchange::galilean_invariant ? Real(1) : Real(0);
   const Pack reference = Real(2.0 * options_.reference_density);
-  const bool local = options_.wall_density == WallDensity::local;
-  const int end = piece.first + padded(piece.count);
-  for (int k = piece.first; k < end; k += width) {
+  const bool local = options_.wall_density == WallDensity::local, with_slip = slips(b);
+  for (int k = piece.first; k < piece.filled_end(); k += width) {
     const auto at = [k](const Real* values) { return Pack(values + k, stdx::element_aligned); };
     const auto put = [k](const Pack& pack, Real* values) { pack.copy_to(values + k, stdx::element_aligned); };
     const Ints tag(b.tag + k, stdx::element_aligned);
@@ -336,17 +333,17 @@ void LinkPass<Real, S>::reflect(const Batch& b, const Piece& piece) {
     const Pack ux = body.vx + (body.wy * az - body.wz * ay), uy = body.vy + (body.wz * ax - body.wx * az),
                uz = body.vz + (body.wx * ay - body.wy * ax);
     Pack towards_wall = cx * ux + cy * uy + cz * uz;
-    if (slips_) towards_wall += at(values_.slip);
+    if (with_slip) towards_wall += at(values_.slip);
     LinkWeights<Pack> rule = Rule::weights(at(b.distance));
     if constexpr (Rule::needs_both) {
-      const typename Pack::mask_type covered = at(values_.covered) != Pack(Real(0));
+      const typename Pack::mask_type covered = lane < Pack(Real(piece.covered_end() - k));
       rule.second = chosen<Pack>(covered, Pack(Real(0)), rule.second);
       rule.wall = chosen<Pack>(covered, Pack(Real(6)), rule.wall);
     }
     const Pack deviation = at(values_.deviation), incident = at(values_.incident);
     const Pack density = local ? Pack(Real(1)) + deviation : Pack(Real(1));
     Pack interpolated = rule.incident * incident + rule.second * at(values_.second);
-    if (slips_) {
+    if (with_slip) {
       // From a half on the second is f_i'^c(x_f), which changes by as much the other way.
       const Pack opposite = chosen<Pack>(at(b.distance) < Pack(Real(0.5)), Pack(Real(0)), rule.second);
       interpolated += at(values_.odd_change) * (rule.incident - opposite);
@@ -357,7 +354,7 @@ void LinkPass<Real, S>::reflect(const Batch& b, const Piece& piece) {
     const Pack reflected = interpolated - moving_wall + weight * returned;
     put(reflected, values_.reflected);
     // Copies count nowhere.
-    const typename Pack::mask_type counts = lane < Pack(Real(piece.first + piece.count - k));
+    const typename Pack::mask_type counts = lane < Pack(Real(piece.end() - k));
     const Pack taken = chosen<Pack>(counts, incident, zero), given = chosen<Pack>(counts, reflected, zero),
                counted = chosen<Pack>(counts, weight, zero);
     put(taken, values_.taken);
@@ -387,8 +384,7 @@ template <typename Real, LinkShape S>
 void LinkPass<Real, S>::add_momentum(const Piece& piece) const {
   const Values& v = values_;
   FixedSums<8> sums;
-  const int end = piece.first + padded(piece.count);
-  for (int k = piece.first; k < end; k += FixedSums<8>::width)
+  for (int k = piece.first; k < piece.filled_end(); k += FixedSums<8>::width)
     sums.add({wide(v.momentum[0] + k), wide(v.momentum[1] + k), wide(v.momentum[2] + k), wide(v.torque[0] + k),
               wide(v.torque[1] + k), wide(v.torque[2] + k), wide(v.pressure + k),
               // The difference is exact in double: single storage loses nothing here.
@@ -405,8 +401,7 @@ template <typename Real, LinkShape S>
 void LinkPass<Real, S>::add_moments(const Piece& piece) const {
   const Values& v = values_;
   FixedSums<9> sums;
-  const int end = piece.first + padded(piece.count);
-  for (int k = piece.first; k < end; k += FixedSums<9>::width)
+  for (int k = piece.first; k < piece.filled_end(); k += FixedSums<9>::width)
     sums.add({wide(v.moment[0] + k), wide(v.moment[1] + k), wide(v.moment[2] + k), wide(v.moment[3] + k),
               wide(v.moment[4] + k), wide(v.moment[5] + k), wide(v.moment[6] + k), wide(v.moment[7] + k),
               wide(v.moment[8] + k)});
@@ -416,7 +411,7 @@ void LinkPass<Real, S>::add_moments(const Piece& piece) const {
 
 template <typename Real, LinkShape S>
 void LinkPass<Real, S>::add_by_height(const Batch& b, const Piece& piece) const {
-  for (int k = piece.first; k < piece.first + piece.count; ++k) {
+  for (int k = piece.first; k < piece.end(); ++k) {
     const auto at = [&](int axis) { return LatticeFixed::from(static_cast<double>(values_.momentum[axis][k])); };
     (*by_height_)[static_cast<std::size_t>(2 * b.plane + 1 + component(b.tag[k], 2))] += {at(0), at(1), at(2)};
   }
@@ -425,8 +420,8 @@ void LinkPass<Real, S>::add_by_height(const Batch& b, const Piece& piece) const 
 template <typename Real, LinkShape S>
 template <typename Rule>
 void LinkPass<Real, S>::add_balance(const Batch& b, const Piece& piece) const {
-  for (int k = piece.first; k < piece.first + piece.count; ++k) {
-    const bool near_wall = b.distance[k] < Real(0.5), has_covered = (b.tag[k] >> LinkTag::covered_shift & 1) != 0;
+  for (int k = piece.first; k < piece.end(); ++k) {
+    const bool near_wall = b.distance[k] < Real(0.5), has_covered = LinkTag::is_covered(b.tag[k]);
     const bool reads_upstream = Rule::needs_both ? !has_covered : near_wall;
     std::int64_t& part = !reads_upstream ? balance_->same_cell : has_covered ? balance_->covered : balance_->upstream;
     part = exact_sum(part, LatticeFixed::from(static_cast<double>(values_.interpolated[k])));

@@ -64,11 +64,10 @@ template <typename Real>
 class Survey {
 public:
   explicit Survey(const Fluid<Real>& fluid)
-      : fluid_(fluid), indexing_(fluid.indexing()), lane_([](int lane) { return static_cast<double>(lane); }) {
-    const Populations<Real>& populations = fluid.populations();
-    for (int i = 0; i < D3Q19::directions; ++i)
-      slots_[i] = populations.arrangement() == Arrangement::swapped ? populations.plane(D3Q19::opposite(i))
-                                                                    : populations.plane(i) + indexing_.offset(i);
+      : fluid_(fluid),
+        indexing_(fluid.indexing()),
+        slots_(fluid.populations().sent()),
+        lane_([](int lane) { return static_cast<double>(lane); }) {
     for (int a = 0; a < 3; ++a) half_force_[a] = 0.5 * fluid.parameters().force[a];
   }
 
@@ -235,8 +234,8 @@ private:
 
   const Fluid<Real>& fluid_;
   const CellIndexing& indexing_;
+  std::array<const Real*, D3Q19::directions> slots_;  // Populations::sent()
   Pack lane_;
-  const Real* slots_[D3Q19::directions];
   double half_force_[3];
   std::array<WideSum, 4> sums_{};  // mass, momentum
   std::array<std::int64_t, counts> counts_{};

@@ -153,7 +153,7 @@ void LinkTable::put(Tile& tile, Chunk& chunk, std::span<const Link> links, std::
   }
   LinkSums& sums = sums_[static_cast<std::size_t>(chunk.body)];
   sums -= chunk.sums;
-  const auto is_covered = [](const Link& link) { return (link.tag >> LinkTag::covered_shift & 1u) != 0; };
+  const auto is_covered = [](const Link& link) { return LinkTag::is_covered(link.tag); };
   chunk.covered = static_cast<std::uint32_t>(std::count_if(links.begin(), links.end(), is_covered));
   std::uint32_t next[2] = {chunk.first + chunk.covered, chunk.first};  // of those not covered, of those covered
   std::array<int, D3Q19::directions> by_direction{};

@@ -45,6 +45,9 @@ struct LinkTag {
     return (tag >> velocity_shift(axis) & 3) - 1;
   }
 
+  static constexpr bool is_covered(std::uint32_t tag) { return (tag >> covered_shift & 1u) != 0; }
+  static constexpr std::uint32_t upstream_body(std::uint32_t tag) { return tag >> body_shift; }  // of a covered link
+
   // upstream_body: which covers x_f - c_i; -1: none.
   static constexpr std::uint32_t of(int direction, std::int32_t upstream_body, bool is_enclosed = false) {
     std::uint32_t tag = static_cast<std::uint32_t>(direction) | (is_enclosed ? enclosed : 0u);

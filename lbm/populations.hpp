@@ -13,6 +13,7 @@
 #include "core/types.hpp"
 #include "lbm/d3q19.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -67,6 +68,15 @@ public:
   // The slot that holds f_i^c of a cell, in the present arrangement. The cell's neighbours must be in memory.
   Real& post_collision(int i, std::ptrdiff_t cell) { return *slot_of(i, cell); }
   Real post_collision(int i, std::ptrdiff_t cell) const { return *const_cast<Populations*>(this)->slot_of(i, cell); }
+
+  // For passes over many cells: the slots of f_i^c of the cell with index 0, by direction, to which the index of a cell
+  // is added. As long as the arrangement stays.
+  std::array<const Real*, D3Q19::directions> sent() const {
+    std::array<const Real*, D3Q19::directions> slots;
+    for (int i = 0; i < D3Q19::directions; ++i)
+      slots[static_cast<std::size_t>(i)] = const_cast<Populations*>(this)->slot_of(i, 0);
+    return slots;
+  }
 
   // The slot from which the next sweep will take f_i of a cell.
   Real& incoming(int i, std::ptrdiff_t cell) {

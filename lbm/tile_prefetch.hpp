@@ -4,6 +4,7 @@
 #include "lbm/populations.hpp"
 #include "lbm/row_tiles.hpp"
 
+#include <array>
 #include <cstddef>
 
 namespace thalweg::lbm {
@@ -12,10 +13,8 @@ template <typename Real>
 class TilePrefetch {
 public:
   // Of one step, in which the arrangement stays. Both must outlive this.
-  TilePrefetch(Populations<Real>& populations, const RowTiles& tiles)
-      : indexing_(populations.indexing()), tiles_(tiles) {
-    for (int i = 0; i < D3Q19::directions; ++i) sent_[i] = &populations.post_collision(i, 0);
-  }
+  TilePrefetch(const Populations<Real>& populations, const RowTiles& tiles)
+      : indexing_(populations.indexing()), tiles_(tiles), sent_(populations.sent()) {}
 
   void begin(int tile) {
     const int block = tiles_.block_of(tile);
@@ -33,7 +32,7 @@ public:
       const int row = first_row_ + asked_ / lines_per_row(), x = asked_ % lines_per_row() * cells_per_line;
       const std::ptrdiff_t cell = indexing_.index(x, row, plane_);
       constexpr int to_read = 0, second_level = 2;
-      for (int i = 0; i < D3Q19::directions; ++i) __builtin_prefetch(sent_[i] + cell, to_read, second_level);
+      for (const Real* slots : sent_) __builtin_prefetch(slots + cell, to_read, second_level);
     }
   }
 
@@ -44,7 +43,7 @@ private:
 
   const CellIndexing& indexing_;
   const RowTiles& tiles_;
-  const Real* sent_[D3Q19::directions];  // f_i^c of the cell with index 0
+  std::array<const Real*, D3Q19::directions> sent_;  // Populations::sent()
   int first_row_ = 0, plane_ = 0, lines_ = 0, asked_ = 0;
 };
 

@@ -90,9 +90,7 @@ public:
   double odd_change(int link) const { return odd_change_[link]; }  // of o
 
 private:
-  static constexpr int length = capacity;
-
-  Vec3 before_arm(const double (&arm)[3][length], int link) const {
+  Vec3 before_arm(const double (&arm)[3][capacity], int link) const {
     Vec3 from;
     for (int a = 0; a < 3; ++a)
       from[a] = arm[a][link] - distance_[link] * LinkTag::velocity(static_cast<int>(tag_[link]), a);
@@ -100,15 +98,15 @@ private:
   }
 
   int count_ = 0;
-  std::uint32_t tag_[length] = {};
+  std::uint32_t tag_[capacity] = {};
   // The crossing from both centres, the other's place and motion, and where the fluid flows the own body's motion.
-  alignas(64) double distance_[length] = {}, own_arm_[3][length] = {}, arm_[3][length] = {};
-  alignas(64) double velocity_[3][length] = {}, spin_[3][length] = {};
-  alignas(64) double own_velocity_[3][length] = {}, own_spin_[3][length] = {};
-  alignas(64) double deviation_[length] = {}, momentum_[3][length] = {}, odd_[length] = {};
-  alignas(64) double own_normal_[3][length] = {}, normal_[3][length] = {};
-  alignas(64) double slip_[3][length] = {}, slip_along_[length] = {}, odd_change_[length] = {},
-                     population_[length] = {};
+  alignas(64) double distance_[capacity] = {}, own_arm_[3][capacity] = {}, arm_[3][capacity] = {};
+  alignas(64) double velocity_[3][capacity] = {}, spin_[3][capacity] = {};
+  alignas(64) double own_velocity_[3][capacity] = {}, own_spin_[3][capacity] = {};
+  alignas(64) double deviation_[capacity] = {}, momentum_[3][capacity] = {}, odd_[capacity] = {};
+  alignas(64) double own_normal_[3][capacity] = {}, normal_[3][capacity] = {};
+  alignas(64) double slip_[3][capacity] = {}, slip_along_[capacity] = {}, odd_change_[capacity] = {},
+                     population_[capacity] = {};
 };
 
 }  // namespace thalweg::lbm

@@ -168,7 +168,7 @@ void measure(const Box& box, const Decomposition& decomposition, const std::vect
   const auto system = flowing_bed<Real>(box, decomposition, seeds, gaps);
   for (int k = 0; k < flow; ++k) system->advance();
   double best = 1e9;
-  std::vector<std::pair<std::string, double>> phases;  // of the best pair, s a step on this rank
+  std::vector<std::pair<std::string, double>> phases;  // of the best pair, s on this rank
   for (int k = 0; k < steps; k += 2) {                 // pairs: the two kinds of lattice step differ
     system->timer().reset();
     MPI_Barrier(MPI_COMM_WORLD);
@@ -178,8 +178,7 @@ void measure(const Box& box, const Decomposition& decomposition, const std::vect
     const double taken = max_over_ranks(MPI_COMM_WORLD, 0.5 * seconds_since(start));
     if (taken >= best) continue;
     best = taken;
-    phases.clear();
-    for (const auto& [phase, seconds] : system->timer().seconds()) phases.emplace_back(phase, 0.5 * seconds);
+    phases = system->timer().seconds();
   }
   const double cells = static_cast<double>(system->cells());
   const auto links =
@@ -192,7 +191,7 @@ void measure(const Box& box, const Decomposition& decomposition, const std::vect
                storage, 1e3 * best, mlups, best / pure, cells / pure / 1e6);
   double link_seconds = 0.0;
   for (const auto& [phase, seconds] : phases) {
-    const double mean = sum_over_ranks(MPI_COMM_WORLD, seconds) / size_of(MPI_COMM_WORLD);
+    const double mean = 0.5 * sum_over_ranks(MPI_COMM_WORLD, seconds) / size_of(MPI_COMM_WORLD);  // of a step
     if (phase == "links") link_seconds = mean;
     if (first_rank) fmt::print("  {:<10} {:8.3f} ms\n", phase, 1e3 * mean);
     std::string key = phase;

@@ -12,7 +12,7 @@ namespace {
 // What LinkTable says of the links of a run: those with a covered cell come first, copies of the last fill it up.
 void expect_whole_vectors(const LinkStream& links, const LinkTable::Run& run) {
   for (std::uint32_t k = 0; k < run.count; ++k)
-    ASSERT_EQ(links.tag[run.first + k] >> LinkTag::covered_shift & 1u, k < run.covered ? 1u : 0u);
+    ASSERT_EQ(LinkTag::is_covered(links.tag[run.first + k]), k < run.covered);
   const std::uint32_t last = run.first + run.count - 1;
   for (std::uint32_t k = last + 1; k < run.first + padded(run.count); ++k) {
     ASSERT_EQ(links.place[k], links.place[last]);
