@@ -200,7 +200,7 @@ public:
 
   // Takes the grains of another run as a start: with their velocities, held or not, and contact springs (those with
   // walls only where there are as many walls), but not its time. Attached columns are taken where there are as many,
-  // else zero. Throws InputError where there are not as many grains as here, or where this run has rigid assemblies.
+  // else zero. Throws InputError where there are grains here, but not as many, or where this run has rigid assemblies.
   // Collective.
   void take(ArchiveReader& archive, const std::string& group = "grains");
 

@@ -233,9 +233,8 @@ void GrainDynamics::load(ArchiveReader& archive, const std::string& group) { res
 
 void GrainDynamics::take(ArchiveReader& archive, const std::string& group) {
   const auto saved = static_cast<std::int64_t>(archive.shape(group + "/radius").at(0));
-  if (saved != global_count_)
-    throw InputError(
-        fmt::format("There are {} grains, but this case has {}; give populations with as many.", saved, global_count_));
+  if (global_count_ > 0 && saved != global_count_)
+    throw InputError(fmt::format("There are {} grains, but this system has {}.", saved, global_count_));
   if (assemblies_.any())
     throw InputError("A case with rigid populations (motion) cannot take over grains; give their placements instead.");
   restore(archive, group, true);

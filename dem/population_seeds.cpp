@@ -31,10 +31,7 @@ GrainSeed common_seed(std::span<const Population> populations, std::size_t numbe
   seed.thickness = population.thickness;
   seed.material = material_of(populations, number);
   seed.assembly = assembly_of(populations, number);
-  if (population.prescribed_velocity) seed.motion = Motion::held_translation;
-  if (population.prescribed_angular_velocity)
-    seed.motion = population.prescribed_velocity ? Motion::fixed : Motion::held_rotation;
-  if (population.fixed || population.motion) seed.motion = Motion::fixed;
+  seed.motion = motion_of(population);
   return seed;
 }
 
@@ -188,6 +185,13 @@ GrainSeeds grain_seeds(std::span<const Population> populations, const PeriodicBo
   for (std::size_t p = 0; p < populations.size(); ++p)
     adder.add(populations[p], common_seed(populations, p), positions[p]);
   return seeds;
+}
+
+Motion motion_of(const Population& population) {
+  if (population.fixed || population.motion) return Motion::fixed;
+  if (population.prescribed_velocity && population.prescribed_angular_velocity) return Motion::fixed;
+  if (population.prescribed_velocity) return Motion::held_translation;
+  return population.prescribed_angular_velocity ? Motion::held_rotation : Motion::free;
 }
 
 std::vector<PrescribedMotion> assemblies_of(std::span<const Population> populations) {

@@ -24,6 +24,9 @@ struct GrainSeeds {
 // where they do not fit. The same on every rank, without communication.
 GrainSeeds grain_seeds(std::span<const Population> populations, const PeriodicBox& box);
 
+// What of its motion is prescribed, of all its grains.
+Motion motion_of(const Population& population);
+
 // Of the populations that move as one body, in their order.
 std::vector<PrescribedMotion> assemblies_of(std::span<const Population> populations);
 

@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "dem/grain_seed.hpp"
 #include "dem/material.hpp"
+#include "dem/population_rows.hpp"
 #include "driver/build_system.hpp"
 #include "driver/case_warnings.hpp"
 #include "driver/contact_estimate.hpp"
@@ -203,24 +204,39 @@ void add_cost(const Case& c, double bandwidth, Lines& lines) {
                   loop::clock_text(cost.core_seconds), bandwidth * 1e-9));
 }
 
+using LightestGrains = std::vector<dem::LightestGrain>;  // by material
+
+// Of grains that the case puts somewhere. Throws InputError where they do not fit.
+LightestGrains check_placed_grains(const Case& c, const PeriodicBox& box, const dem::GrainParameters& parameters) {
+  LightestGrains lightest(1 + parameters.other_materials.size());
+  const dem::GrainSeeds start = grain_seeds(c);
+  dem::check(start.clumps, box);
+  const std::vector<dem::GrainSeed> seeds = dem::with_members(start.grains, start.clumps, box);
+  for (const dem::GrainSeed& seed : seeds)
+    lightest[static_cast<std::size_t>(seed.material)].include(seed.contact_mass(), seed.radius);
+  dem::check(seeds, box, parameters.walls, parameters.initial_overlap);
+  return lightest;
+}
+
+// Of grains that another run has put somewhere.
+LightestGrains lightest_taken_grains(const Case& c, const dem::GrainParameters& parameters) {
+  LightestGrains lightest(1 + parameters.other_materials.size());
+  for (std::size_t population = 0; population < c.grains.size(); ++population)
+    for (const dem::PopulationRow& row : dem::rows_of(c.grains, population))
+      lightest[static_cast<std::size_t>(row.material)].include(row.contact_mass, row.radius);
+  return lightest;
+}
+
 // What dem would refuse when the run starts.
 void refuse_impossible_grains(const Case& c) {
   if (c.grains.empty()) return;
   const PeriodicBox box{c.domain.size, periodic_axes(c.domain)};
   const dem::GrainParameters parameters = grain_parameters(c, box);
   dem::check(parameters.contact);
-  std::vector<dem::LightestGrain> lightest(1 + parameters.other_materials.size());
-  const dem::GrainSeeds start = grain_seeds(c);
-  dem::check(start.clumps, box);
-  const std::vector<dem::GrainSeed> seeds = dem::with_members(start.grains, start.clumps, box);
-  double largest_radius = 0.0;
-  for (const dem::GrainSeed& seed : seeds) {
-    lightest[static_cast<std::size_t>(seed.material)].include(seed.contact_mass(), seed.radius);
-    largest_radius = std::max(largest_radius, seed.radius);
-  }
+  const LightestGrains lightest = c.initial.takes(InitialField::grains) ? lightest_taken_grains(c, parameters)
+                                                                        : check_placed_grains(c, box, parameters);
   dem::check_time_step(parameters, lightest, grain_count(c));
-  dem::check(seeds, box, parameters.walls, parameters.initial_overlap);
-  dem::check_lubrication(parameters, lightest, largest_radius, box);
+  dem::check_lubrication(parameters, lightest, 0.5 * largest_diameter(c), box);
 }
 
 }  // namespace

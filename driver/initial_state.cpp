@@ -1,10 +1,15 @@
 #include "driver/initial_state.hpp"
 
 #include "core/error.hpp"
+#include "core/row_range.hpp"
+#include "dem/population_rows.hpp"
 #include "io/hdf5_archive.hpp"
 #include "io/run_folder.hpp"
 
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 
 namespace thalweg::driver {
 
@@ -29,17 +34,71 @@ void refuse_state_without(InitialField field, const io::Hdf5Reader& archive, con
     throw InputError(fmt::format("{} holds no fluid; give a run with system: resolved or fluid.", path.string()));
 }
 
+// Rounding of a density or diameter on its way through files.
+constexpr double same_grain = 1e-9;
+
+bool differ(double one, double other) { return std::abs(one - other) > same_grain * std::abs(other); }
+
+// What the state has of its grains, one row each.
+struct SavedGrains {
+  std::vector<double> radius, mass;
+  std::vector<std::int64_t> motion, material;
+};
+
+SavedGrains saved_grains(io::Hdf5Reader& archive) {
+  const auto rows = archive.shape("grains/radius").at(0);
+  const auto box = RowRange(static_cast<std::int64_t>(rows), 1, 0).box();
+  SavedGrains saved{std::vector<double>(rows), std::vector<double>(rows), std::vector<std::int64_t>(rows),
+                    std::vector<std::int64_t>(rows)};
+  archive.read("grains/radius", saved.radius, box);
+  archive.read("grains/mass", saved.mass, box);
+  archive.read("grains/motion", saved.motion, box);
+  archive.read("grains/material", saved.material, box);
+  return saved;
+}
+
+// How a grain of the state differs from the row that the case has for it; empty: it does not.
+std::string difference(const SavedGrains& saved, std::size_t n, const dem::PopulationRow& here) {
+  if (differ(saved.radius[n], here.radius))
+    return fmt::format("a diameter of {:.6g} m and here of {:.6g} m", 2.0 * saved.radius[n], 2.0 * here.radius);
+  if (here.mass > 0.0 && differ(saved.mass[n], here.mass))
+    return fmt::format("a mass of {:.6g} kg and here of {:.6g} kg", saved.mass[n], here.mass);
+  if (saved.motion[n] != static_cast<std::int64_t>(here.motion))
+    return "another motion (free, fixed or prescribed) than here";
+  if (saved.material[n] != here.material) return "another material (contact) than here";
+  return {};
+}
+
+// Grains stay what they were, whatever the case says of them: then q* and the Shields number of the run, and all that
+// `thalweg check` says, would be those of other grains.
+void refuse_other_grains(const Case& c, io::Hdf5Reader& archive) {
+  if (std::any_of(c.grains.begin(), c.grains.end(), [](const dem::Population& grains) { return grains.motion; }))
+    throw InputError("A case with rigid populations (motion) cannot take over grains; give their placements instead.");
+  const SavedGrains saved = saved_grains(archive);
+  if (const auto rows = static_cast<std::int64_t>(saved.radius.size()); rows != grain_rows(c))
+    throw InputError(
+        fmt::format("There are {} grains, but this case has {}; give populations with as many.", rows, grain_rows(c)));
+  std::size_t n = 0;
+  for (std::size_t population = 0; population < c.grains.size(); ++population)
+    for (const dem::PopulationRow& row : dem::rows_of(c.grains, population)) {
+      if (const std::string what = difference(saved, n, row); !what.empty())
+        throw InputError(
+            fmt::format("Grain {} has {} (grains.{}). Grains that are taken over stay as they are: give "
+                        "the populations of that run (its case.yaml has them), or take the bed.h5 in its "
+                        "folder as placement.file.",
+                        n, what, population));
+      ++n;
+    }
+}
+
 }  // namespace
 
 void check_initial_sources(const Case& c) {
   for (const InitialField field : {InitialField::grains, InitialField::fluid})
     about_source(c, field, [&](const std::filesystem::path& path) {
-      const io::Hdf5Reader archive(path);
+      io::Hdf5Reader archive(path);
       refuse_state_without(field, archive, path);
-      if (field != InitialField::grains) return;
-      if (const auto saved = static_cast<std::int64_t>(archive.shape("grains/radius").at(0)); saved != grain_rows(c))
-        throw InputError(fmt::format("There are {} grains, but this case has {}; give populations with as many.", saved,
-                                     grain_rows(c)));
+      if (field == InitialField::grains) refuse_other_grains(c, archive);
     });
 }
 

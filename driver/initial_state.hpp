@@ -9,7 +9,7 @@
 namespace thalweg::driver {
 
 // Throws InputError where a run that the case begins from is missing, or lacks what is to be taken from it: a fluid, or
-// as many grains as the case has. Any process may ask alone.
+// the grains that the case describes, of the same size, mass, motion and material. Any process may ask alone.
 void check_initial_sources(const Case& c);
 
 // Grains and fluid of the system from where the case says. Throws InputError where they do not fit. Collective.

@@ -216,12 +216,14 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   Beginning beginning;
   beginning.changes = changes_since(places.origin, c);
   const Index3 layout = choose_layout(c, size_of(communicator), command.layout);
-  const Start start = places.checkpoints.empty() ? Start::as_placed : Start::from_checkpoint;
+  const bool restarts = !places.checkpoints.empty();
+  if (!restarts) on_first_rank(communicator, [&] { about_case(command.path, [&] { check_initial_sources(c); }); });
+  const Start start = restarts || c.initial.takes(InitialField::grains) ? Start::from_checkpoint : Start::as_placed;
   const std::unique_ptr<System> system =
       about_case(command.path, [&] { return build_system(c, communicator, layout, start); });
   Observers observers = make_observers(c.analysis.observers, run_facts(c),
                                        {communicator, *system->snapshot().decomposition, system->time_step()});
-  if (places.checkpoints.empty())
+  if (!restarts)
     about_case(command.path, [&] { take_initial_fields(communicator, c, *system); });
   else
     beginning.checkpoint = read_first_whole_checkpoint(communicator, places.checkpoints, c, *system, observers,

@@ -177,6 +177,27 @@ run: {until: 0.01}
         self.assertGreater(abs(before).max(), 0.01)
         numpy.testing.assert_allclose(after.mean(axis=(0, 1, 2)), before.mean(axis=(0, 1, 2)), atol=0.05 * abs(before).mean())
 
+    def test_grains_that_are_taken_must_be_those_of_the_case(self):
+        """Else the run would divide the transport of its own grains by the diameter of others."""
+        self.case.write_text(self.DRY)
+        self.run_well("run", self.case, "--until", "0.001", "--out", "first")
+        for key, value, words in (("diameter", "4e-3", ["Grain 0", "0.005 m", "0.004 m", "grains.0", "bed.h5"]),
+                                  ("density", "2000", ["mass"]), ("fixed", "true", ["motion"]),
+                                  ("contact", "{friction: 0.1}", ["material"])):
+            for command in ("check", "run"):
+                self.assert_refused(command, self.case, "--set", "initial.from=first", "--set", f"grains.0.{key}={value}",
+                                    words=["initial.from", *words])
+        # The bed file describes them; a placement that would not fit is not used.
+        for placement in ("{file: first/bed.h5}", "{pattern: uniform, region: {lower: [0, 0, 0], upper: [0.0128, 0.0128, 0.007]}}"):
+            case = self.DRY.replace("placement: {pattern: uniform, region: {lower: [0, 0, 0], upper: [0.0128, 0.0128, 0.012]}}",
+                                    f"placement: {placement}")
+            if "file" in placement:
+                case = case.replace("count: 6, diameter: 5.0e-3, density: 2550, ", "")
+            self.case.write_text(case)
+            self.run_well("run", self.case, "--set", "initial.from=first", "--until", "0.001", "--out", "then",
+                          "--overwrite")
+            self.assertEqual(self.summary("then")["reference_diameter"], 5e-3)
+
     def test_what_does_not_fit_is_refused(self):
         self.case.write_text(self.DRY)
         self.run_well("run", self.case, "--until", "0.001", "--out", "first")

@@ -1,0 +1,25 @@
+// The grains of populations as rows of a saved state, in order of id, without a place: what grains taken over from
+// another run must be.
+#pragma once
+
+#include "dem/grain_store.hpp"
+#include "dem/population.hpp"
+
+#include <span>
+#include <vector>
+
+namespace thalweg::dem {
+
+// A grain, or a member of a clump.
+struct PopulationRow {
+  double radius = 0.0;        // m
+  double mass = 0.0;          // kg, of a member that of its clump; 0: of a clump from a file
+  double contact_mass = 0.0;  // kg, no contact feels less
+  Motion motion = Motion::free;
+  int material = 0;
+};
+
+// Of one of the populations, complete (population_bed.hpp).
+std::vector<PopulationRow> rows_of(std::span<const Population> populations, std::size_t number);
+
+}  // namespace thalweg::dem
