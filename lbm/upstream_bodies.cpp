@@ -56,7 +56,9 @@ void UpstreamBodies::let_flow(const double (&force)[3], const GapFlow& flow) {
                    vz = (momentum_[2][k] - fz) / density - wz;
       // The link enters one body and leaves the other, so m is not zero.
       const double across = (vx * mx + vy * my + vz * mz) / (mx * mx + my * my + mz * mz);
-      const double sx = slip * (vx - across * mx), sy = slip * (vy - across * my), sz = slip * (vz - across * mz);
+      const double along_gap = slip * static_cast<double>(1 - (tag >> LinkTag::confined_shift & 1));
+      const double sx = along_gap * (vx - across * mx), sy = along_gap * (vy - across * my),
+                   sz = along_gap * (vz - across * mz);
       slip_[0][k] = sx;
       slip_[1][k] = sy;
       slip_[2][k] = sz;
