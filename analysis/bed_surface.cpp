@@ -81,14 +81,14 @@ std::vector<Figure> BedSurface::figures() const {
 }
 
 std::vector<Figure> BedSurface::results() const {
-  const double count = static_cast<double>(std::max<std::int64_t>(1, measurements_));
+  const double count = static_cast<double>(measurements_);  // means of nothing are not a number
   std::vector<Figure> results;
   std::size_t n = 0;
   for (const Figure& figure : figures())
     if (figure.name != static_height) results.push_back({figure.name + "_mean", figure.unit, sums_[n++] / count});
   results.push_back({"bulk_solid_fraction_mean", "1", sums_[n] / count});
   const double pictures = static_cast<double>(pictures_);
-  results.push_back({static_height + "_mean", "m", mean_of(surface_sums_) / pictures});  // not a number without any
+  results.push_back({static_height + "_mean", "m", mean_of(surface_sums_) / pictures});
   results.push_back({"mean_from", "s", keys_.from});
   results.push_back({"measurements", "1", static_cast<double>(measurements_)});
   results.push_back({"static_pictures", "1", pictures});

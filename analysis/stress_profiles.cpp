@@ -183,14 +183,16 @@ std::vector<Figure> StressBalance::results() const {
   const Difference total = largest_difference(layers, &LayerMeans::total, bed_stress);
   const Difference sum = largest_difference(layers, &LayerMeans::sum, bed_stress);
   const auto height = [this](const Difference& d) { return layers_.middle(d.layer); };
-  return {{"mean_from", "s", keys_.from},
-          {"measurements", "1", static_cast<double>(measurements_)},
-          {"bed_height", "m", bed >= 0 ? layers_.bottom(bed) + layers_.height(bed) : 0.0},
-          {"bed_stress", "Pa", bed_stress},
-          {"largest_difference", "1", total.share},
-          {"largest_difference_at", "m", height(total)},
-          {"largest_difference_of_sum", "1", sum.share},
-          {"largest_difference_of_sum_at", "m", height(sum)}};
+  std::vector<Figure> results{{"bed_height", "m", bed >= 0 ? layers_.bottom(bed) + layers_.height(bed) : 0.0},
+                              {"bed_stress", "Pa", bed_stress},
+                              {"largest_difference", "1", total.share},
+                              {"largest_difference_at", "m", height(total)},
+                              {"largest_difference_of_sum", "1", sum.share},
+                              {"largest_difference_of_sum_at", "m", height(sum)}};
+  if (measurements_ == 0) forget_values(results);
+  results.push_back({"mean_from", "s", keys_.from});
+  results.push_back({"measurements", "1", static_cast<double>(measurements_)});
+  return results;
 }
 
 std::vector<std::string> StressBalance::remarks() const {

@@ -145,6 +145,7 @@ std::vector<Figure> TransportRate::results() const {
   results.push_back({"moving_share_mean", "1", sum_of_shares_ / count});
   results.push_back({"activity_mean", "m", sum_of_activity_ / count});
   for (const Figure& of_hops : hops_.results()) results.push_back(of_hops);
+  if (q_s_.count() == 0) forget_values(results);
   results.push_back({"reference_diameter", "m", scales_.grain_diameter});
   results.push_back({"reference_density", "kg/m^3", scales_.grain_density});
   results.push_back({"moving_speed", "m/s", scales_.moving_speed()});

@@ -10,8 +10,8 @@ void require_same_time_step(ArchiveReader& archive, double time_step) {
   const double saved = archive.real_attribute("system/time_step");
   if (saved != time_step)
     throw InputError(
-        fmt::format("The checkpoint was made with {:.6g} s a step and this case has {:.6g} s: a state can only "
-                    "be taken over with the same time step.",
+        fmt::format("The checkpoint was made with {:.6g} s a step and this case has {:.6g} s: a restart keeps "
+                    "its time step; to change it, begin a new run from that state with initial.from.",
                     saved, time_step));
 }
 

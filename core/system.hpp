@@ -9,6 +9,7 @@
 #include "core/snapshot.hpp"
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -22,6 +23,11 @@ struct Figure {
   std::string unit;  // e.g. "m/s", "1" for none
   double value;
 };
+
+// What means are before anything has been measured: not a number, which is null in JSON.
+inline void forget_values(std::vector<Figure>& figures) {
+  for (Figure& figure : figures) figure.value = std::numeric_limits<double>::quiet_NaN();
+}
 
 // The figure of that name, if there is one.
 inline std::optional<double> find_figure(const std::vector<Figure>& figures, const std::string& name) {

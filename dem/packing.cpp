@@ -199,7 +199,7 @@ std::vector<Vec3> random_packing(const PeriodicBox& box, const Region& region, s
     if (!found)
       throw InputError(
           fmt::format("{} grains do not fit at random in {:g} x {:g} x {:g} m: {} did; use fewer or smaller "
-                      "grains, a larger region, or a uniform placement.",
+                      "grains, a larger region, or another placement.pattern: uniform, or dense.",
                       radii.size(), region.upper[0] - region.lower[0], region.upper[1] - region.lower[1],
                       region.upper[2] - region.lower[2], n));
   }

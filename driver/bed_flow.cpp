@@ -23,7 +23,7 @@ FlowNumbers flow_numbers(const Case& c) {
   flow.density_ratio = grain.density / c.fluid.density;
   const double excess = flow.density_ratio - 1.0;
   flow.galileo = std::sqrt(std::abs(excess) * g * d * d * d) / c.fluid.kinematic_viscosity;
-  if (gravity.z() >= 0.0 || excess <= 0.0 || periodic_axes(c.domain)[2]) return flow;
+  if (gravity.z() >= 0.0 || excess <= neutral_density || periodic_axes(c.domain)[2]) return flow;
 
   flow.slope = gravity.x() / -gravity.z();
   flow.bed_height = settled_height(c);

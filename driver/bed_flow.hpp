@@ -6,6 +6,9 @@
 
 namespace thalweg::driver {
 
+// Grains that are heavier than the fluid by a smaller share of it make no bed: rounding.
+inline constexpr double neutral_density = 1e-6;
+
 // Shields number and depth follow Zhang et al. 2022: tau_b = rho_f g_x H far from side walls, rho_f g_x H W/(2 H + W)
 // between two of them, and tau* = tau_b / ((rho_s - rho_f) g d). g_x is the part of gravity along the bed, g times the
 // sine of its angle. Not a number where a case lacks what a number needs.

@@ -58,6 +58,11 @@ double grain_time_step(const Case& c) {
   return fluid_time_step(c) / static_cast<double>(c.coupling.grain_steps_per_fluid_step);
 }
 
+double step_time(const Case& c) {
+  if (has_fluid(c)) return fluid_time_step(c);
+  return grain_time_step(c) * static_cast<double>(c.coupling.grain_steps_per_fluid_step);
+}
+
 Vec3 gravity_vector(const GravityCase& gravity) {
   if (gravity.vector) return *gravity.vector;
   const double angle = std::atan(gravity.slope.value_or(0.0));

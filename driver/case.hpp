@@ -171,6 +171,7 @@ Index3 cells_of(const DomainCase& domain);  // size over spacing
 std::array<bool, 3> periodic_axes(const DomainCase& domain);
 double fluid_time_step(const Case& c);            // s; given, or from the lattice velocity
 double grain_time_step(const Case& c);            // s: a sub-step, or the step of dry grains
+double step_time(const Case& c);                  // s: of the fluid, or as many steps of dry grains as make one
 Vec3 gravity_vector(const GravityCase& gravity);  // m/s^2: (g sin, 0, -g cos) of atan(slope)
 Units units_of(const Case& c);                    // of a resolved run
 double relaxation_time(const Case& c);            // BGK, without the subgrid model

@@ -82,10 +82,10 @@ std::vector<CaseChange> case_changes(const std::string& before, const std::strin
 void refuse_changes_of_state(const std::vector<CaseChange>& changes) {
   for (const CaseChange& change : changes)
     if (is_in_the_checkpoint(change.key))
-      throw InputError(
-          fmt::format("{} = {}: the run that is to go on has {}, which is in its checkpoint and stays as it is; set it "
-                      "back, or begin a new run from that one with initial.from.",
-                      change.key, change.now, change.before));
+      throw InputError(fmt::format(
+          "{} = {}: the run that is to go on {}. Its checkpoint decides; set the key back, or begin a new run "
+          "from that one with initial.from.",
+          change.key, change.now, change.before == "none" ? "does not have this key" : "has " + change.before));
 }
 
 }  // namespace thalweg::driver

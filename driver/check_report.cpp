@@ -21,6 +21,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <limits>
 #include <numbers>
 
 namespace thalweg::driver {
@@ -40,11 +42,6 @@ constexpr double flag_bytes = 8.0, link_bytes = 32.0, grain_bytes = 2000.0;
 constexpr double links_per_square_cell = 15.8;  // links of a sphere over its diameter in cells squared
 
 double bytes_per_value(const Case& c) { return c.fluid.precision == coupling::Precision::single ? 4.0 : 8.0; }
-
-double step_time(const Case& c) {
-  return has_fluid(c) ? fluid_time_step(c)
-                      : grain_time_step(c) * static_cast<double>(c.coupling.grain_steps_per_fluid_step);
-}
 
 double link_count(const Case& c) {
   double links = 0.0;
@@ -190,6 +187,13 @@ double memory_of_this_machine() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
 }
 
+// Bytes.
+double free_in_this_folder() {
+  std::error_code unknown;
+  const std::filesystem::space_info space = std::filesystem::space(std::filesystem::current_path(), unknown);
+  return unknown ? std::numeric_limits<double>::infinity() : static_cast<double>(space.available);
+}
+
 void add_cost(const Case& c, double bandwidth, Lines& lines) {
   const Cost cost = cost_of(c, bandwidth);
   std::string work = fmt::format("work       {:.0f} steps to {:g} s", cost.steps, c.run.until);
@@ -197,7 +201,7 @@ void add_cost(const Case& c, double bandwidth, Lines& lines) {
   if (cost.grain_steps > 0.0) work += fmt::format(", {:.3g} grain-steps", cost.grain_steps);
   lines.push_back(work);
   lines.push_back(memory_line(cost.memory, memory_of_this_machine()));
-  lines.push_back(disk_line(disk_space(c)));
+  lines.push_back(disk_line(disk_space(c), free_in_this_folder()));
   lines.push_back(
       fmt::format("time       about {} on one core like this one ({:.3g} GB/s); divide by the number of cores until "
                   "memory bandwidth saturates",

@@ -6,7 +6,11 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <cctype>
+#include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <sstream>
 
 namespace thalweg::driver {
@@ -72,6 +76,14 @@ void add_others(CLI::App& app, Command& command) {
   app.add_subcommand("sweep", "Run a case with many values of its keys, on all cores (sweep --help)");
 }
 
+// What an option cannot mean, where CLI11 takes it.
+void refuse_nonsense(const CLI::App& app, const Command& command) {
+  if (command.until && !(*command.until > 0.0 && std::isfinite(*command.until)))
+    throw InputError(fmt::format("--until {:g}: give a simulated time in s, above 0.", *command.until));
+  if (command.kind == Command::Kind::run && command.out.empty() && app.get_subcommand("run")->count("--out") > 0)
+    throw InputError("--out is empty: give a folder, or leave it out for the folder run beside the case file.");
+}
+
 void take_info_paths(Command& command) {
   command.path = command.runs.front();
   if (command.runs.size() > 1 && !command.csv)
@@ -97,6 +109,14 @@ std::string as_sentence(std::string message) {
 }
 
 }  // namespace
+
+std::string shell_word(const std::string& text) {
+  const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || std::strchr("_./:=+,@%-", c) != nullptr; };
+  if (!text.empty() && std::all_of(text.begin(), text.end(), plain)) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
 
 double parse_walltime(const std::string& text) {
   int days = 0, hours = 0, minutes = 0, seconds = 0, end = 0;
@@ -137,6 +157,7 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   try {
     refuse_unknown_command(app, argc, argv);
     app.parse(argc, argv);
+    refuse_nonsense(app, command);
     if (!texts.walltime.empty()) command.walltime = parse_walltime(texts.walltime);
     if (command.kind == Command::Kind::info) take_info_paths(command);
     if (!texts.layout.empty()) command.layout = parse_layout(texts.layout);
@@ -151,7 +172,7 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   } catch (const InputError& error) {
     return {std::nullopt, error.what(), 2};
   }
-  for (int a = 0; a < argc; ++a) command.line += (a == 0 ? "" : " ") + std::string(argv[a]);
+  for (int a = 0; a < argc; ++a) command.line += (a == 0 ? "" : " ") + shell_word(argv[a]);
   return {command, "", 0};
 }
 

@@ -68,7 +68,7 @@ double stress_ratio_at_base(const Case& c) {
   if (height < 2.0 * grain.diameter || depth < 0.0 || c.disks) return 0.0;
   const double water = has_fluid(c) ? c.fluid.density : 0.0;
   const double excess = settled_fraction(c) * (grain.density - water);
-  if (excess <= 0.0) return 0.0;
+  if (excess <= neutral_density * water) return 0.0;
   return (water * depth + (water + excess) * height) * gravity.x() / (excess * height * -gravity.z());
 }
 

@@ -14,9 +14,9 @@ namespace thalweg::driver {
 
 namespace {
 
-// Times 0, every, 2 every, ... of a run that starts at 0; 0 for never.
-double times_in(double until, double every) {
-  return every > 0.0 ? std::floor(until / every * (1.0 + 1e-9)) + 1.0 : 0.0;
+// Times 0, every, 2 every, ... of a run that starts at 0, no more than it has steps; 0 for never.
+double times_in(const Case& c, double every) {
+  return every > 0.0 ? std::floor(c.run.until / std::max(every, step_time(c)) * (1.0 + 1e-9)) + 1.0 : 0.0;
 }
 
 double fluid_frames(const Case& c, const io::FluidOutputKeys& keys) {
@@ -25,7 +25,7 @@ double fluid_frames(const Case& c, const io::FluidOutputKeys& keys) {
   for (const FluidField field : keys.fields)
     bytes += components_of(field) * (field == FluidField::grain_id ? 4.0 : real);
   const io::ShownCells cells = shown_cells(keys, cells_of(c.domain), c.domain.spacing);
-  return times_in(c.run.until, keys.every) * static_cast<double>(cells.coarse.volume()) * bytes;
+  return times_in(c, keys.every) * static_cast<double>(cells.coarse.volume()) * bytes;
 }
 
 double fluid_frames(const Case& c) {
@@ -61,9 +61,9 @@ double shown_grains(const Case& c, const io::GrainSelectionKeys& keys) {
 
 double grain_frames(const Case& c) {
   const io::GrainOutputKeys& all = c.output.grains;
-  double bytes = times_in(c.run.until, all.every) * shown_grains(c, {}) * bytes_of_a_grain(c, all.fields);
+  double bytes = times_in(c, all.every) * shown_grains(c, {}) * bytes_of_a_grain(c, all.fields);
   for (const io::NamedGrainOutputKeys& part : c.output.grain_parts)
-    bytes += times_in(c.run.until, part.every) * shown_grains(c, part) * bytes_of_a_grain(c, part.fields);
+    bytes += times_in(c, part.every) * shown_grains(c, part) * bytes_of_a_grain(c, part.fields);
   return bytes;
 }
 
@@ -87,12 +87,12 @@ double records(const Case& c) {
     const double grains = tracks->grains.empty()
                               ? std::ceil(static_cast<double>(grain_count(c)) / static_cast<double>(tracks->one_in))
                               : static_cast<double>(tracks->grains.size());
-    bytes += times_in(c.run.until, tracks->every) * grains * 144.0;
+    bytes += times_in(c, tracks->every) * grains * 144.0;
   }
   if (const auto& probes = c.analysis.observers.of<analysis::ProbesKeys>()) {
     double points = static_cast<double>(probes->points.size());
     for (const analysis::ProbeLine& line : probes->lines) points += static_cast<double>(line.points);
-    bytes += times_in(c.run.until, probes->every) * points * 4.0 * 8.0;
+    bytes += times_in(c, probes->every) * points * 4.0 * 8.0;
   }
   return bytes;
 }
@@ -105,8 +105,10 @@ std::string bytes_text(double bytes) {
 
 DiskSpace disk_space(const Case& c) { return {fluid_frames(c), grain_frames(c), checkpoints(c), records(c)}; }
 
-std::string disk_line(const DiskSpace& space) {
-  std::string line = "disk       at most about " + bytes_text(space.total()) + ":";
+std::string disk_line(const DiskSpace& space, double free) {
+  std::string line = "disk       at most about " + bytes_text(space.total());
+  if (space.total() > free) line += fmt::format(", more than the {} that are free in this folder", bytes_text(free));
+  line += ":";
   const std::pair<const char*, double> parts[] = {{"fluid", space.fluid},
                                                   {"grains", space.grains},
                                                   {"checkpoints", space.checkpoints},

@@ -16,8 +16,8 @@ struct DiskSpace {
 };
 DiskSpace disk_space(const Case& c);
 
-// What the report says of it.
-std::string disk_line(const DiskSpace& space);
+// What the report says of it where so many bytes are free.
+std::string disk_line(const DiskSpace& space, double free);
 
 // "175 MB".
 std::string bytes_text(double bytes);

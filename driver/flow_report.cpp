@@ -61,7 +61,8 @@ void add_slope(const FlowNumbers& flow, Lines& lines) {
 void add_other_drive(const Case& c, const FlowEstimate& flow, Lines& lines) {
   const ReferenceGrain grain = reference_grain(c);
   const double g = gravity_vector(c.gravity).norm(), excess = grain.density / c.fluid.density - 1.0;
-  if (!(g > 0.0) || excess <= 0.0 || flow.drive == FlowCause::none || flow.drive == FlowCause::slope) return;
+  if (!(g > 0.0) || excess <= neutral_density || flow.drive == FlowCause::none || flow.drive == FlowCause::slope)
+    return;
   const double stress = flow.friction_velocity * flow.friction_velocity;
   lines.push_back(fmt::format("Shields    about {:.4g} by {}, {} flow; the run measures it (analysis.bed_surface)",
                               stress / (excess * g * grain.diameter), words_of(flow.drive),
@@ -69,6 +70,16 @@ void add_other_drive(const Case& c, const FlowEstimate& flow, Lines& lines) {
   lines.push_back(fmt::format("Reynolds   {:.4g} of a grain at the friction velocity {:.3g} m/s",
                               flow.friction_velocity * grain.diameter / c.fluid.kinematic_viscosity,
                               flow.friction_velocity));
+}
+
+// Empty where the grains make no bed of at least their diameter.
+std::string bed_text(const Case& c) {
+  if (c.grains.empty() || c.disks || periodic_axes(c.domain)[2] || gravity_vector(c.gravity).z() >= 0.0) return {};
+  if (has_fluid(c) && !std::isfinite(flow_numbers(c).depth)) return {};
+  const double height = settled_height(c), diameter = reference_grain(c).diameter;
+  if (height < diameter) return {};
+  return fmt::format("bed        settles at about {:.3g} m ({:.3g} diameters, solid fraction {:g})", height,
+                     height / diameter, settled_fraction(c));
 }
 
 void add_stress_at_base(const Case& c, Lines& lines) {
@@ -111,12 +122,10 @@ Lines bed_lines(const Case& c) {
       lines.push_back(fmt::format("fall       of a single grain through the fluid at rest: {:.3g} m/s", falling));
     if (const std::string drag = drag_text(c); !drag.empty()) lines.push_back("drag       " + drag);
   }
-  if (std::isfinite(numbers.depth))
-    lines.push_back(fmt::format(
-        "bed        settles at about {:.3g} m ({:.3g} diameters, solid fraction {:g}), {:.3g} m of flow above, "
-        "slope {:g}",
-        numbers.bed_height, numbers.bed_height / reference_grain(c).diameter, settled_fraction(c), numbers.depth,
-        numbers.slope));
+  if (const std::string bed = bed_text(c); !bed.empty())
+    lines.push_back(bed + (std::isfinite(numbers.depth)
+                               ? fmt::format(", {:.3g} m of flow above, slope {:g}", numbers.depth, numbers.slope)
+                               : std::string()));
   if (std::isfinite(numbers.shields_depth))
     add_slope(numbers, lines);
   else if (std::isfinite(numbers.depth))

@@ -38,10 +38,14 @@ std::string value(const YAML::Node& summary, const std::string& name) {
   return node && node.IsScalar() ? node.Scalar() : "";
 }
 
-void add_group(const YAML::Node& group, const std::string& title, Lines& lines) {
-  for (const auto& entry : group)
-    lines.push_back(fmt::format("  {:<36} {}", title + "." + entry.first.as<std::string>(),
-                                entry.second.IsScalar() ? entry.second.Scalar() : "-"));
+void add_group(const YAML::Node& group, const std::string& title, const YAML::Node& units, Lines& lines) {
+  for (const auto& entry : group) {
+    const auto name = entry.first.as<std::string>();
+    const std::string unit = units.IsMap() ? value(units, name) : "";
+    lines.push_back(fmt::format("  {:<36} {}{}", title + "." + name,
+                                entry.second.IsScalar() ? entry.second.Scalar() : "-",
+                                unit.empty() || unit == "1" ? "" : " " + unit));
+  }
 }
 
 void add_summary(const YAML::Node& summary, Lines& lines) {
@@ -57,8 +61,9 @@ void add_summary(const YAML::Node& summary, Lines& lines) {
       fmt::format("speed       {} steps/s, {} MLUPS", value(summary, "steps_per_second"), value(summary, "mlups")));
   lines.push_back("results");
   for (const auto& entry : summary)
-    if (entry.second.IsMap() && entry.first.Scalar() != "phases" && entry.first.Scalar() != "largest")
-      add_group(entry.second, entry.first.Scalar(), lines);
+    if (const std::string& name = entry.first.Scalar();
+        entry.second.IsMap() && name != "phases" && name != "largest" && name != "units")
+      add_group(entry.second, name, summary["units"], lines);
 }
 
 std::string last_line(const fs::path& file) {

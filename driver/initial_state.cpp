@@ -23,7 +23,9 @@ void about_source(const Case& c, InitialField field, Work&& work) {
   try {
     work(io::checkpoint_at(source.path));
   } catch (const InputError& error) {
-    throw InputError(fmt::format("{} = {}: {}", source.key, source.path, error.what()));
+    std::string reason = error.what();
+    if (const std::string again = source.path + ": "; reason.starts_with(again)) reason.erase(0, again.size());
+    throw InputError(fmt::format("{} = {}: {}", source.key, source.path, reason));
   }
 }
 

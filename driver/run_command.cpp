@@ -157,7 +157,17 @@ void print_outcome(const RunIdentity& identity, const loop::LoopRecord& record, 
                          system.time(), folder.summary().string()));
   else
     log.line(fmt::format("not finished, {}: at {:.6g} s; to go on: --restart {}", record.reason, system.time(),
-                         folder.path().string()));
+                         shell_word(folder.path().string())));
+}
+
+// Of a run that was to end when its grains are at rest, and ended at its time; empty: they are, or nobody asked.
+std::string rest_remark(const Case& c, const loop::LoopRecord& record, const System& system) {
+  if (!c.run.until_at_rest || !record.finished || !record.early.empty()) return {};
+  const double speed = find_figure(system.figures(), dem::DryGrains::largest_speed_figure).value_or(0.0);
+  return fmt::format(
+      "not at rest: the fastest grain moves at {:.2g} m/s (run.until_at_rest asks for {:g} m/s and {:g} "
+      "m/s^2); a later --until goes on with --restart",
+      speed, c.run.until_at_rest->largest_speed, c.run.until_at_rest->largest_acceleration);
 }
 
 // How many free grains need not be at rest.
@@ -270,6 +280,7 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   const std::vector<loop::PhaseShare> phases = loop::collect_phases(communicator, *system, time_loop);
   const std::vector<Figure> bed = final_bed(communicator, c, *system);
   print_outcome(identity, time_loop.record(), *system, observers, bed, phases, places.folder, log);
+  if (const std::string remark = rest_remark(c, time_loop.record(), *system); !remark.empty()) log.line(remark);
   const io::JsonObject summary =
       summary_of(identity, *system, time_loop.record(), observers, beginning.accounts, bed, phases);
   on_first_rank(communicator, [&] { summary.write(places.folder.summary()); });

@@ -113,7 +113,7 @@ def pictures_of(run, time):
     pictures = [("bed.png", lambda path: draw_bed(run, time, path))]
     if "transport_rate" in analysis:
         pictures.append(("transport_rate.png", lambda path: draw_transport_rate(run, path)))
-    if height_profiles.has_grains(run):
+    if height_profiles.has_grains(run) and height_profiles.measured(run):
         pictures.append(("profiles.png", lambda path: save(height_profiles.figure_of(run), path)))
     return pictures
 

@@ -19,6 +19,11 @@ def has_grains(run):
     return "grain_profiles" in run.profiles or "stress_balance" in run.profiles
 
 
+def measured(run):
+    """Whether those means are of anything: they begin at a time of their own (`from`)."""
+    return bool(np.nansum(grain_means(run)[1]) > 0.0)
+
+
 def grain_means(run):
     """Height (m), solid fraction and velocity (m/s) of the grains along x."""
     if "grain_profiles" in run.profiles:

@@ -114,6 +114,14 @@ class Run:
         path = self.folder / "summary.json"
         return json.loads(path.read_text()) if path.exists() else None
 
+    def result(self, observer, name):
+        """A mean of summary.json: `name` of the group `observer`. Raises RunFolderError where there is none, because the run is
+        still going, or ended before it had measured anything."""
+        value = ((self.summary or {}).get(observer) or {}).get(name)
+        if value is None:
+            raise RunFolderError(f"{self.folder}: there is no {observer}.{name}; nothing has been measured, or the run has not ended.")
+        return value
+
     @cached_property
     def latest_checkpoint(self):
         """Path of the newest checkpoint, an HDF5 file; None before the first."""

@@ -1,15 +1,22 @@
 #include "driver/check_report.hpp"
 
+#include "driver/case_warnings.hpp"
 #include "driver/disk_space.hpp"
 #include "tests/driver/water_over_glass.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace thalweg::driver {
 namespace {
+
+bool any_contains(const std::vector<std::string>& texts, const std::string& part) {
+  return std::any_of(texts.begin(), texts.end(),
+                     [&](const std::string& t) { return t.find(part) != std::string::npos; });
+}
 
 TEST(CheckReport, SaysHowManyNodesTheMemoryTakes) {
   EXPECT_EQ(memory_line(10e9, 24e9), "memory     about 10 GB");
@@ -63,7 +70,14 @@ TEST(DiskSpace, IsThatOfFramesCheckpointsAndRecords) {
   const double state = 240.0 * 80.0 * 212.0 * 19.0 * 4.0;
   EXPECT_GT(space.checkpoints, 3.0 * state);
   EXPECT_LT(space.checkpoints, 3.0 * (state + 1000.0 * 1000.0));
-  EXPECT_NE(disk_line(space).find("fluid 306 MB, grains 15.6 MB, checkpoints"), std::string::npos) << disk_line(space);
+  EXPECT_NE(disk_line(space, 1e12).find(": fluid 306 MB, grains 15.6 MB, checkpoints"), std::string::npos)
+      << disk_line(space, 1e12);
+  EXPECT_NE(disk_line(space, 79e6).find("more than the 79 MB that are free in this folder"), std::string::npos);
+  Case every_step = c;
+  every_step.output.fluid.every = 1e-9;
+  EXPECT_NEAR(disk_space(every_step).fluid, (1.5e6 + 1.0) * 240.0 * 212.0 * 5.0 * 4.0, 1e6);
+  EXPECT_TRUE(any_contains(warnings_of_plan(every_step), "output.fluid.every = 1e-09 s is less than a step"));
+  EXPECT_FALSE(any_contains(warnings_of_plan(c), "less than a step"));
   c.output.checkpoint.every = 0.0;
   EXPECT_NEAR(disk_space(c).checkpoints, space.checkpoints / 3.0, 1.0);
 }

@@ -29,6 +29,27 @@ TEST(CommandLine, RunTakesEveryOptionInAnyOrder) {
   EXPECT_TRUE(command.overwrite);
 }
 
+TEST(CommandLine, RefusesWhatOptionsCannotMean) {
+  for (const char* until : {"-1", "0", "nan"}) {
+    const CommandLine line = parse({"run", "case.yaml", "--until", until});
+    EXPECT_EQ(line.exit_code, 2);
+    EXPECT_NE(line.text.find("--until"), std::string::npos) << line.text;
+  }
+  const CommandLine line = parse({"run", "case.yaml", "--out", ""});
+  EXPECT_EQ(line.exit_code, 2);
+  EXPECT_NE(line.text.find("--out is empty"), std::string::npos) << line.text;
+}
+
+// The line that a run is known by can be given to a shell again.
+TEST(CommandLine, QuotesWordsAsAShellDoes) {
+  EXPECT_EQ(shell_word("run/a-1.yaml"), "run/a-1.yaml");
+  EXPECT_EQ(shell_word(""), "''");
+  EXPECT_EQ(shell_word("mein lauf"), "'mein lauf'");
+  EXPECT_EQ(shell_word("it's"), "'it'\\''s'");
+  EXPECT_EQ(parse({"run", "my case.yaml", "--set", "a={b: 1}"}).command->line,
+            "thalweg run 'my case.yaml' --set 'a={b: 1}'");
+}
+
 TEST(CommandLine, KnowsItsFourCommands) {
   EXPECT_EQ(parse({"check", "case.yaml"}).command->kind, Command::Kind::check);
   EXPECT_EQ(parse({"defaults"}).command->kind, Command::Kind::defaults);

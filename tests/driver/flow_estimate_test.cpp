@@ -73,7 +73,7 @@ TEST(FlowEstimate, OfASlopeIsNoMoreThanTheRunHasTimeFor) {
   EXPECT_EQ(flow_estimate(c).speed, developed.speed);
 }
 
-// A slow start of a short run is meant to be slow; that of a long run is a mistake to warn of.
+// A very slow start of a short run is meant to be slow; that of a long run is a mistake to warn of.
 TEST(FlowEstimate, WarnsOfAnInitialShearVelocityThatDoesNotLast) {
   Case c = wide_bed();
   c.initial.fluid.log_profile.emplace();
@@ -82,6 +82,9 @@ TEST(FlowEstimate, WarnsOfAnInitialShearVelocityThatDoesNotLast) {
   c.initial.fluid.log_profile->roughness = 3e-4;
   c.run.until = 2.0;
   EXPECT_FALSE(any_contains(warnings_of_plan(c), "shear velocity"));
+  c.initial.fluid.log_profile->shear_velocity = 0.04;  // half of it
+  EXPECT_TRUE(any_contains(warnings_of_plan(c), "shear velocity of 0.04"));
+  c.initial.fluid.log_profile->shear_velocity = 0.008;
   c.run.until = 30.0;
   EXPECT_TRUE(any_contains(warnings_of_plan(c), "shear velocity of 0.008"));
 }

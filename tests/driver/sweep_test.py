@@ -120,6 +120,13 @@ class Sweep(ProgramTest):
         self.assertEqual((failed["state"], done["state"]), ("failed", "done"))
         self.assertIn("contact.wall_friction", failed["failure"])
 
+    def test_a_misspelt_key_is_refused_before_anything_is_run(self):
+        sweep = self.write("vary: {contact.wal_friction: [0.2, 0.3]}\nset: {run.until: 0.01}\n")
+        result = self.thalweg("sweep", sweep)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("did you mean contact.wall_friction", result.stderr)
+        self.assertFalse((self.folder / "sweep/runs").exists())
+
     def test_tasks_of_an_array_job_and_their_tables(self):
         sweep = self.write("set: {run.until: 0.01}\nvary: {contact.wall_friction: [0.2, 0.3]}\n")
         self.assertIn("--array=0-1", self.run_well("sweep", sweep, "--slurm").stdout)

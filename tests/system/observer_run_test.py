@@ -4,6 +4,7 @@ a run that does not notice them.
 
 Called by ctest: observer_run_test.py THALWEG MPIEXEC [unittest arguments]
 """
+import csv
 import sys
 from pathlib import Path
 
@@ -11,8 +12,10 @@ import h5py
 import numpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 import program
 from program import ProgramTest
+from thalweg import Run, RunFolderError
 
 
 class ObserverRun(ProgramTest):
@@ -62,6 +65,22 @@ analysis:
         self.assertGreater(self.summary("again")["bed_surface"]["static_pictures"], 2)
         rows = (self.folder / "straight/series.csv").read_text().splitlines()
         self.assertEqual((self.folder / "again/series.csv").read_text().splitlines()[1:], rows[-len(rows) // 2:])
+
+    def test_a_run_that_ends_before_its_means_begin_has_none(self):
+        """Zero would look like a result."""
+        self.run_well("run", self.case, "--until", "0.002", "--set", "analysis.bed_surface.from=0.01", "--set",
+                      "analysis.stress_balance={from: 0.01, every: 1.0e-3}")
+        summary = self.summary("run")
+        for observer, name in (("transport_rate", "q_star_mean"), ("transport_rate", "moving_grains_mean"),
+                               ("bed_surface", "bed_height_mean"), ("bed_surface", "shields_number_mean"),
+                               ("stress_balance", "largest_difference")):
+            self.assertIsNone(summary[observer][name], name)
+            self.assertEqual(summary[observer]["measurements"], 0)
+        self.assertGreater(summary["transport_rate"]["reference_diameter"], 0.0)
+        header, row = csv.reader(self.run_well("info", "--csv", "run").stdout.splitlines())
+        self.assertEqual(row[header.index("transport_rate.q_star_mean")], "")
+        with self.assertRaisesRegex(RunFolderError, "nothing has been measured"):
+            Run(self.folder / "run").result("transport_rate", "q_star_mean")
 
     def test_the_run_does_not_notice(self):
         self.run_well("run", self.case, "--out", "watched", "--until", "0.02")

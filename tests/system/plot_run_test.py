@@ -78,6 +78,15 @@ class PlotRun(unittest.TestCase):
         # The surface of six diameters of bed in layers of half a diameter.
         np.testing.assert_allclose(line.get_ydata()[0], -6.0, atol=0.01)
 
+    def test_profiles_that_have_not_begun_are_left_out(self):
+        made_up_profiles.write_grain_profiles(self.folder / "profiles.h5", made_up_run.DIAMETER)
+        with h5py.File(self.folder / "profiles.h5", "a") as file:
+            file["grain_profiles/solid_fraction"][...] = 0.0
+        done = self.plot("--movie", self.folder / "film.gif")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stdout.split()[-1], str(self.folder / "film.gif"))
+        self.assertFalse((self.folder / "profiles.png").exists())
+
     def test_a_film_has_every_frame(self):
         film = self.folder / "films" / "film.gif"
         done = self.plot("--movie", film)

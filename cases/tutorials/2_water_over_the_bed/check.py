@@ -13,13 +13,13 @@ LONGER_FLUME = 0.172   # q* at a Shields number of 0.0465, benchmarks/validation
 def check(checks, folder):
     run = Run(folder)
     checks.finished(run)
-    transport, balance = run.summary["transport_rate"], run.summary["stress_balance"]
-    checks.expect("Shields number", run.summary["bed_surface"]["shields_number_mean"], 0.044, 0.051)
-    checks.expect("q*", transport["q_star_mean"], 0.08, 0.32)
-    print(f"  its standard error: {transport['q_star_error']:.2g}")
-    checks.compare("q*", transport["q_star_mean"], LONGER_FLUME, "the same cells in a flume twice as long")
+    rate = run.result("transport_rate", "q_star_mean")
+    checks.expect("Shields number", run.result("bed_surface", "shields_number_mean"), 0.044, 0.051)
+    checks.expect("q*", rate, 0.08, 0.32)
+    print(f"  its standard error: {run.result('transport_rate', 'q_star_error'):.2g}")
+    checks.compare("q*", rate, LONGER_FLUME, "the same cells in a flume twice as long")
     checks.expect("largest difference of the total stress from the driving stress less the side walls'",
-                  abs(balance["largest_difference"]), 0.0, 0.15, "bed stresses")
+                  abs(run.result("stress_balance", "largest_difference")), 0.0, 0.15, "bed stresses")
 
 
 if __name__ == "__main__":

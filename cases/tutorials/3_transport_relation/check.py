@@ -22,10 +22,10 @@ def between(shields, points):
 def check(checks, folder):
     runs = sorted(runs_of_sweep(folder), key=lambda run: run.slope)
     checks.expect("runs", len(runs), 4, 4)
-    shields = [run.summary["bed_surface"]["shields_number_mean"] for run in runs]
-    rates = [run.summary["transport_rate"]["q_star_mean"] for run in runs]
+    shields = [run.result("bed_surface", "shields_number_mean") for run in runs]
+    rates = [run.result("transport_rate", "q_star_mean") for run in runs]
     for run, tau, rate in zip(runs, shields, rates):
-        error = run.summary["transport_rate"]["q_star_error"]
+        error = run.result("transport_rate", "q_star_error")
         print(f"slope {run.slope:g}, Shields number {tau:.4f}: q* = {rate:.4f} +- {error:.4f}")
         checks.compare("  q*", rate, between(tau, WHOLE_FLUME), "the whole flume on such cells")
         checks.expect("  over that", rate / between(tau, WHOLE_FLUME), 0.5, 2.0)

@@ -29,8 +29,8 @@ def draw(shields, rate, error, threshold, slope, path):
 
 
 def check(checks, folder, figure):
-    runs = sorted(runs_of_sweep(folder), key=lambda run: run.summary["bed_surface"]["shields_number_mean"])
-    shields, rate, error, moving = (np.array([run.summary[observer][name] for run in runs]) for observer, name in (
+    runs = sorted(runs_of_sweep(folder), key=lambda run: run.result("bed_surface", "shields_number_mean"))
+    shields, rate, error, moving = (np.array([run.result(observer, name) for run in runs]) for observer, name in (
         ("bed_surface", "shields_number_mean"), ("transport_rate", "q_star_mean"), ("transport_rate", "q_star_error"),
         ("transport_rate", "moving_grains_mean")))
     for row in zip(shields, rate, error, moving):

@@ -45,6 +45,15 @@ def units_of(plan):
     return units_of_keys(said.stdout) if said.returncode == 0 else {}
 
 
+def refuse_impossible(tasks):
+    """Before anything is run: a misspelt key would only make every run fail. A value that a run cannot have is that run's."""
+    known = [run for task in tasks for run in task.runs]   # a bisection chooses its own as it goes
+    ends = known[:1] + known[1:][-1:]
+    said = [subprocess.run(run.check_command(program()), capture_output=True, text=True) for run in ends]
+    if said and all(check.returncode == 2 for check in said):
+        raise SweepError(f"the first run cannot be made, nor can the last. {said[0].stderr.strip().removeprefix('thalweg: ')}")
+
+
 def describe(task, keys):
     return ", ".join(f"{key} = {task.settings[key]}" for key in keys if key in task.settings) or "the case as it is"
 
@@ -87,6 +96,7 @@ def sweep(wanted):
         return written(plan, tasks, units_of(plan), folder)
     jobs = wanted.jobs or max(1, available_cores() // plan.ranks)
     units = units_of(plan)
+    refuse_impossible(tasks)
     runner = Runner(plan, tasks, units, program(), folder, jobs, wanted.retry)
     finished = runner.work()
     if wanted.task is None:

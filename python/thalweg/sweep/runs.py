@@ -52,10 +52,15 @@ class SweepRun:
     def command(self, program):
         arguments = ["run", str(self.case), "--out", str(self.folder)]
         arguments += ["--restart", str(self.folder)] if self.has_checkpoint() else ["--overwrite"]
-        for key, value in self.settings.items():
-            arguments += ["--set", f"{key}={json.dumps(value)}"]
+        arguments += self.set_options()
         launcher = ["mpirun", "-n", str(self.ranks)] if self.ranks > 1 else []
         return launcher + [program] + arguments
+
+    def check_command(self, program):
+        return [program, "check", str(self.case)] + self.set_options()
+
+    def set_options(self):
+        return [word for key, value in self.settings.items() for word in ("--set", f"{key}={json.dumps(value)}")]
 
     def has_checkpoint(self):
         return (self.folder / "checkpoints" / "latest").exists()
