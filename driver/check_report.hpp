@@ -8,18 +8,6 @@
 
 namespace thalweg::driver {
 
-// What a run needs.
-struct Cost {
-  double cells;
-  double steps;
-  double cell_updates;
-  double grain_steps;   // grains times sub-steps
-  double memory;        // bytes, all ranks together
-  double core_seconds;  // one core, see check_report
-};
-// bandwidth: bytes/s of one core's memory (machine.hpp).
-Cost cost_of(const Case& c, double bandwidth);
-
 // What the report says of memory: needed, in bytes, on machines that have `there` each.
 std::string memory_line(double needed, double there);
 

@@ -20,6 +20,7 @@ namespace {
 constexpr const char* examples = R"(Examples:
   thalweg check cases/quickstart/case.yaml             what the case means and what it costs
   thalweg run cases/quickstart/case.yaml --out run/a   run it on one core
+  thalweg check case.yaml --ranks 1,16,64,256          how long it takes on so many ranks (docs/scaling.md)
   mpirun -n 8 thalweg run case.yaml --walltime 23:50:00 --set fluid.time_step=1e-5
   mpirun -n 4 thalweg run case.yaml --out run/a --restart run/a --until 60
   thalweg info run/a                                   how far it has come
@@ -57,6 +58,18 @@ void add_others(CLI::App& app, Command& command) {
   CLI::App* check = app.add_subcommand("check", "Say what a case means and costs, without running it");
   check->add_option("CASE.yaml", command.path, "The case")->required();
   check->add_option("--set", command.settings, set_help)->allow_extra_args(false)->type_name("KEY.SUB=VALUE");
+  check
+      ->add_option("--ranks", command.ranks,
+                   "Plan the run on so many ranks; several numbers, one row each (docs/scaling.md)")
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber)
+      ->type_name("N,N,...");
+  check->add_option("--latency", command.network.latency, "Of the network, s until a message has arrived")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  check->add_option("--bandwidth", command.network.bandwidth, "Of the network, bytes/s of one rank")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   check->final_callback([&] { command.kind = Command::Kind::check; });
   CLI::App* defaults = app.add_subcommand("defaults", "Print every key with its default, unit and meaning");
   defaults->add_option("SYSTEM.SECTION", command.system,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/types.hpp"
+#include "driver/rank_cost.hpp"
 
 #include <optional>
 #include <string>
@@ -21,8 +22,10 @@ struct Command {
   double walltime = 0.0;              // s; 0: none
   std::optional<Index3> layout;       // ranks along x, y, z
   bool overwrite = false;
-  bool csv = false;  // of info
-  std::string line;  // the command as given
+  std::vector<int> ranks;  // of check: numbers of ranks to plan for
+  Network network;         // the same: between them
+  bool csv = false;        // of info
+  std::string line;        // the command as given
 };
 
 struct CommandLine {

@@ -5,12 +5,14 @@
 #include "driver/case_reader.hpp"
 #include "driver/check_report.hpp"
 #include "driver/command_line.hpp"
+#include "driver/core_speed.hpp"
 #include "driver/error_message.hpp"
 #include "driver/info_report.hpp"
 #include "driver/info_table.hpp"
 #include "driver/machine.hpp"
 #include "driver/python_command.hpp"
 #include "driver/run_command.hpp"
+#include "driver/scaling_table.hpp"
 #include "driver/stop_command.hpp"
 
 #include <fmt/format.h>
@@ -82,6 +84,24 @@ std::vector<std::string> check_of(const Command& command) {
   return about_case(command.path, [&] { return check_report(c, measure_bandwidth()); });
 }
 
+// With --ranks: every rank times a piece of the case, as many ranks as a node has cores at once.
+int plan(const Command& command, int argc, char** argv) {
+  MpiSession session(argc, argv);
+  const bool prints = rank_of(MPI_COMM_WORLD) == 0;
+  FailureBarrier failures(MPI_COMM_WORLD);
+  try {
+    const std::vector<std::string> report = check_of(command);
+    const Case c = read_case(command.path, command.settings);
+    if (c.system == SystemKind::continuum) throw InputError("--ranks: every rank has the whole column; remove it.");
+    const CoreSpeed speed = measure_core_speed(c, MPI_COMM_WORLD);
+    const std::vector<std::string> table = scaling_table(c, command.ranks, speed, command.network);
+    if (prints) std::fputs((joined(report) + joined(table)).c_str(), stdout);
+    return done;
+  } catch (...) {
+    return end_with(failure(), failures, prints);
+  }
+}
+
 // What a command other than run prints.
 std::string answer(const Command& command) {
   switch (command.kind) {
@@ -118,5 +138,7 @@ int main(int argc, char** argv) {
   if (is_python_command(argc, argv)) return run_python_command(argc, argv);
   const CommandLine line = parse_command_line(argc, argv);
   if (line.command && line.command->kind == Command::Kind::run) return run(*line.command, argc, argv, started);
+  if (line.command && line.command->kind == Command::Kind::check && !line.command->ranks.empty())
+    return plan(*line.command, argc, argv);
   return all_failed_without_mpi(line);
 }

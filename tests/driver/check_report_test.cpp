@@ -2,6 +2,7 @@
 
 #include "driver/case_warnings.hpp"
 #include "driver/disk_space.hpp"
+#include "driver/run_cost.hpp"
 #include "tests/driver/water_over_glass.hpp"
 
 #include <gtest/gtest.h>

@@ -121,6 +121,23 @@ class CommandLine(DryGrains):
         self.assertIn("\ncontact: ", section)
         self.assertNotIn("\nrun:", section)
 
+    def test_check_plans_other_numbers_of_ranks(self):
+        """The rows of the table; what is in them is the business of rank_cost_test."""
+        for ranks in (0, 2):
+            report = self.run_well("check", self.case, "--ranks", "1,2,4", ranks=ranks).stdout
+            self.assertEqual(report.count("tumbling grains"), 1)
+            self.assertIn(f"measured on {max(1, ranks)} core", report)
+            rows = [line.split() for line in report.splitlines()[-3:]]
+            # ranks; layout x, y and z between signs; cells; grains; ghosts; memory; messages; bytes sent; ms a step
+            for row, number in zip(rows, (1, 2, 4)):
+                self.assertEqual(int(row[0]), number)
+                self.assertEqual(int(row[1]) * int(row[3]) * int(row[5]), number)
+                self.assertEqual(int(row[7]), 40 // number)
+                self.assertGreater(float(row[14]), 0.0)
+            self.assertEqual((rows[0][8], rows[0][11]), ("0", "0"))
+        self.assert_refused("check", self.case, "--ranks", "0", words=["--ranks"])
+        self.assert_refused("check", self.case, "--ranks", "1000000", words=["ranks"])
+
     def test_check_says_what_a_case_means(self):
         report = self.run_well("check", self.case).stdout
         self.assertEqual(files_below(self.folder), ["case.yaml"])

@@ -1,0 +1,57 @@
+#include "driver/run_cost.hpp"
+
+#include "driver/machine.hpp"
+
+#include <cmath>
+
+namespace thalweg::driver {
+
+namespace {
+
+// For the estimate of time, on one core: what sweep, halo, walls and output take, in times the memory traffic of the
+// sweep alone; what a link takes, in bytes of memory traffic; and grain-steps. Measured on the flume, the wide bed and
+// the quickstart, which run within 30 % of the estimate.
+constexpr double cell_cost = 2.5, link_cost = 1000.0;
+constexpr double grain_steps_per_second = 8e6;
+constexpr double model_fluid_steps_per_second = 4e6;  // all grains moving; three times that where few do
+
+// Bytes: per cell 19 populations, streamed in place, and flags; per link a record; per grain its columns, neighbours
+// and history.
+constexpr double flag_bytes = 8.0, link_bytes = 32.0, grain_bytes = 2000.0;
+constexpr double links_per_square_cell = 15.8;  // links of a sphere over its diameter in cells squared
+
+double bytes_per_value(const Case& c) { return c.fluid.precision == coupling::Precision::single ? 4.0 : 8.0; }
+
+double link_count(const Case& c) {
+  double links = 0.0;
+  for (const dem::Population& population : c.grains) {
+    const double cells_across = population.diameter / c.domain.spacing;
+    links += static_cast<double>(population.count) * links_per_square_cell * cells_across * cells_across;
+  }
+  return has_fluid(c) ? links : 0.0;
+}
+
+}  // namespace
+
+double bytes_of_cell(const Case& c) { return 19.0 * bytes_per_value(c) + flag_bytes; }
+double bytes_of_grain() { return grain_bytes; }
+double bytes_of_links(const Case& c) { return link_count(c) * link_bytes; }
+
+Cost cost_of(const Case& c, double bandwidth) {
+  const Index3 n = cells_of(c.domain);
+  Cost cost{};
+  cost.cells = has_fluid(c) ? static_cast<double>(n[0]) * n[1] * n[2] : 0.0;
+  cost.steps = std::ceil(c.run.until / step_time(c) * (1.0 - 1e-12));
+  cost.cell_updates = cost.cells * cost.steps;
+  cost.grain_steps = static_cast<double>(grain_count(c) * c.coupling.grain_steps_per_fluid_step) * cost.steps;
+  cost.memory = cost.cells * bytes_of_cell(c) + static_cast<double>(grain_count(c)) * bytes_of_grain();
+  cost.memory += bytes_of_links(c);
+  const double traffic = cost.cell_updates * cell_cost * bytes_per_cell_update(static_cast<int>(bytes_per_value(c))) +
+                         cost.steps * link_count(c) * link_cost;
+  cost.core_seconds =
+      traffic / bandwidth +
+      cost.grain_steps / (c.system == SystemKind::model_fluid ? model_fluid_steps_per_second : grain_steps_per_second);
+  return cost;
+}
+
+}  // namespace thalweg::driver

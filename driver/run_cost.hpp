@@ -1,0 +1,24 @@
+// What a run needs, estimated from its case: work, memory, time on one core.
+#pragma once
+
+#include "driver/case.hpp"
+
+namespace thalweg::driver {
+
+struct Cost {
+  double cells;
+  double steps;
+  double cell_updates;
+  double grain_steps;   // grains times sub-steps
+  double memory;        // bytes, all ranks together
+  double core_seconds;  // one core
+};
+// bandwidth: bytes/s of one core's memory (machine.hpp).
+Cost cost_of(const Case& c, double bandwidth);
+
+// Memory, bytes: of a cell of fluid, of a grain, and of the links of all grains.
+double bytes_of_cell(const Case& c);
+double bytes_of_grain();
+double bytes_of_links(const Case& c);
+
+}  // namespace thalweg::driver

@@ -1,0 +1,102 @@
+#include "driver/sample_case.hpp"
+
+#include "core/bed.hpp"
+#include "driver/bed_flow.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace thalweg::driver {
+
+namespace {
+
+// Large enough not to fit into caches, which the whole does not either; and to hold some grains beside each other.
+constexpr double most_cells = 1.5e6, most_grains = 4000.0, least_diameters = 8.0;
+// Of a diameter, between the grains of the bed: each touches six others, as many as in a bed that has settled.
+constexpr double between_centres = 0.999;
+
+// Of the whole along x; m.
+double length_of(const Case& c) {
+  const Index3 n = cells_of(c.domain);
+  double share = 1.0;
+  if (has_fluid(c)) share = std::min(share, most_cells / (static_cast<double>(n[0]) * n[1] * n[2]));
+  if (!c.grains.empty()) share = std::min(share, most_grains / static_cast<double>(grain_count(c)));
+  const double least = std::max(least_diameters * largest_diameter(c), 4.0 * c.domain.spacing);
+  const double length = std::max(share * c.domain.size.x(), least);
+  return std::min(c.domain.size.x(), std::round(length / c.domain.spacing) * c.domain.spacing);
+}
+
+// Diameters of all grains (m), one in `stride`.
+std::vector<double> some_diameters(const Case& c, double stride) {
+  std::vector<double> diameters;
+  double next = 0.5 * stride, number = 0.0;
+  for (const dem::Population& population : c.grains)
+    for (std::int64_t grain = 0; grain < population.count; ++grain, ++number)
+      if (number >= next) {
+        diameters.push_back(population.shape ? population.diameter
+                                             : population.body_diameter_of(static_cast<std::size_t>(grain)));
+        next += stride;
+      }
+  if (diameters.empty()) diameters.push_back(c.grains.front().diameter);
+  return diameters;
+}
+
+// On a cubic lattice from the floor up, as far as there is room.
+std::vector<BedGrain> bed_of(const std::vector<double>& diameters, double density, bool disks, const Vec3& size) {
+  const double spacing = between_centres * *std::max_element(diameters.begin(), diameters.end());
+  const auto across = [&](int axis) { return std::max(1, static_cast<int>(size[axis] / spacing)); };
+  const int nx = across(0), ny = disks ? 1 : across(1), nz = across(2);
+  std::vector<BedGrain> bed;
+  for (int k = 0; k < nz; ++k)
+    for (int j = 0; j < ny; ++j)
+      for (int i = 0; i < nx && bed.size() < diameters.size(); ++i) {
+        BedGrain grain;
+        grain.id = static_cast<GlobalId>(bed.size());
+        grain.radius = 0.5 * diameters[bed.size()];
+        grain.density = density;
+        grain.position = spacing * Vec3(i + 0.5, j + 0.5, k + 0.5);
+        if (disks) grain.position.y() = 0.5 * size.y();
+        bed.push_back(grain);
+      }
+  return bed;
+}
+
+dem::Population grains_of(const Case& c, const Vec3& size, double share) {
+  const dem::MeanGrain mean = mean_grain(c);
+  dem::Population grains;
+  grains.diameters = some_diameters(c, 1.0 / share);
+  grains.density = mean.mass / mean.volume;
+  grains.fixed = std::all_of(c.grains.begin(), c.grains.end(), [](const auto& g) { return g.held(); });
+  grains.thickness = c.disks ? c.disks->thickness : 0.0;
+  if (settled_height(c) > 0.0) {
+    grains.placement.file = "a sample";
+    grains.file = bed_of(grains.diameters, grains.density, c.disks.has_value(), size);
+    grains.diameters.resize(grains.file.size());
+    grains.body_diameters = grains.diameters;
+  } else {
+    grains.placement.pattern = dem::PlacementPattern::dense;
+  }
+  grains.count = static_cast<std::int64_t>(grains.diameters.size());
+  grains.diameter = dem::median_by_volume(grains.diameters);
+  return grains;
+}
+
+}  // namespace
+
+Sample sample_of(const Case& c) {
+  Sample sample{c, 1.0};
+  Case& s = sample.c;
+  s.domain.size.x() = length_of(c);
+  sample.share = s.domain.size.x() / c.domain.size.x();
+  for (const int face : {x_low, x_high})
+    s.domain.faces[static_cast<std::size_t>(face)] = {.type = lbm::FaceType::periodic};
+  s.grains.clear();
+  s.walls.clear();
+  s.solids.clear();
+  s.initial = {};
+  s.run.until_at_rest.reset();
+  if (!c.grains.empty()) s.grains.push_back(grains_of(c, s.domain.size, sample.share));
+  return sample;
+}
+
+}  // namespace thalweg::driver
