@@ -83,8 +83,8 @@ void refuse_changes_of_state(const std::vector<CaseChange>& changes) {
   for (const CaseChange& change : changes)
     if (is_in_the_checkpoint(change.key))
       throw InputError(fmt::format(
-          "{} = {}: the run that is to go on {}. Its checkpoint decides; set the key back, or begin a new run "
-          "from that one with initial.from.",
+          "{} = {}: the run that is to go on {}. Grains and lattice are in its checkpoint; set the key back, or begin "
+          "a new run from that one with initial.from.",
           change.key, change.now, change.before == "none" ? "does not have this key" : "has " + change.before));
 }
 

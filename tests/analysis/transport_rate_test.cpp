@@ -72,7 +72,7 @@ TEST(TransportRate, TakesTheMeanFromAGivenTimeAndCarriesItOverARestart) {
   };
   TransportRate rate(world, scales, {2.0});
   rate.observe(grains(100.0).snapshot(1.9));
-  EXPECT_EQ(value_of(rate.results(), "q_star_mean"), 0.0);
+  EXPECT_TRUE(std::isnan(value_of(rate.results(), "q_star_mean"))) << "a mean of nothing";
   rate.observe(grains(1.0).snapshot(2.0));
   test::MemoryArchive checkpoint;
   test::MemoryWriter writer(checkpoint, world);
