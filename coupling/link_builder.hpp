@@ -39,10 +39,10 @@ private:
   LocalCells local_cells_;
   const lbm::CellMap& cells_;
   const lbm::RowTiles& tiles_;
-  std::vector<std::vector<int>> stale_tiles_;    // of each slot
-  std::vector<int> stale_;                       // slots that have any
+  std::vector<std::vector<int>> stale_tiles_;                      // of each slot
+  std::vector<int> stale_;                                         // slots that have any
   std::unordered_map<std::ptrdiff_t, lbm::Confinement> confined_;  // cells that are not open
-  std::vector<LocalCell> xs_, ys_;               // scratch from here on
+  std::vector<LocalCell> xs_, ys_;                                 // scratch from here on
   std::vector<lbm::Link> links_;
 };
 
