@@ -2,6 +2,7 @@
 
 #include "analysis/probes.hpp"
 #include "analysis/tracks.hpp"
+#include "driver/run_cost.hpp"
 #include "driver/run_facts.hpp"
 
 #include <fmt/format.h>
@@ -69,8 +70,7 @@ double grain_frames(const Case& c) {
 
 double checkpoints(const Case& c) {
   const Index3 n = cells_of(c.domain);
-  const double bytes = c.fluid.precision == coupling::Precision::single ? 4.0 : 8.0;
-  const double lattice = has_fluid(c) ? static_cast<double>(n[0]) * n[1] * n[2] * 19.0 * bytes : 0.0;
+  const double lattice = has_fluid(c) ? static_cast<double>(n[0]) * n[1] * n[2] * 19.0 * bytes_per_value(c) : 0.0;
   // State and loads of a grain, and three contacts with their springs.
   constexpr double grain_bytes = 900.0;
   const double one = lattice + static_cast<double>(grain_count(c)) * grain_bytes;

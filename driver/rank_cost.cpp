@@ -27,8 +27,6 @@ constexpr double reductions = 2.0;
 // chance.
 double unevenness(const RankWork& work) { return work.grains > 1.0 ? 1.0 / std::sqrt(work.grains) : 0.0; }
 
-double bytes_per_value(const Case& c) { return c.fluid.precision == coupling::Precision::single ? 4.0 : 8.0; }
-
 // Other ranks beside a block, in any of the directions that are wanted, each once.
 template <typename Wanted>
 double neighbours(const Decomposition& decomposition, int rank, const Wanted& wanted) {

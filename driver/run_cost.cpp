@@ -20,8 +20,6 @@ constexpr double model_fluid_steps_per_second = 4e6;  // all grains moving; thre
 constexpr double flag_bytes = 8.0, link_bytes = 32.0, grain_bytes = 2000.0;
 constexpr double links_per_square_cell = 15.8;  // links of a sphere over its diameter in cells squared
 
-double bytes_per_value(const Case& c) { return c.fluid.precision == coupling::Precision::single ? 4.0 : 8.0; }
-
 double link_count(const Case& c) {
   double links = 0.0;
   for (const dem::Population& population : c.grains) {
@@ -33,6 +31,7 @@ double link_count(const Case& c) {
 
 }  // namespace
 
+double bytes_per_value(const Case& c) { return c.fluid.precision == coupling::Precision::single ? 4.0 : 8.0; }
 double bytes_of_cell(const Case& c) { return 19.0 * bytes_per_value(c) + flag_bytes; }
 double bytes_of_grain() { return grain_bytes; }
 double bytes_of_links(const Case& c) { return link_count(c) * link_bytes; }

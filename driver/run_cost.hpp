@@ -16,7 +16,8 @@ struct Cost {
 // bandwidth: bytes/s of one core's memory (machine.hpp).
 Cost cost_of(const Case& c, double bandwidth);
 
-// Memory, bytes: of a cell of fluid, of a grain, and of the links of all grains.
+// Memory, bytes: of a number in the lattice, of a cell of fluid, of a grain, and of the links of all grains.
+double bytes_per_value(const Case& c);
 double bytes_of_cell(const Case& c);
 double bytes_of_grain();
 double bytes_of_links(const Case& c);
