@@ -42,7 +42,7 @@ void add_group(const YAML::Node& group, const std::string& title, const YAML::No
   for (const auto& entry : group) {
     const auto name = entry.first.as<std::string>();
     const std::string unit = units.IsMap() ? value(units, name) : "";
-    lines.push_back(fmt::format("  {:<36} {}{}", title + "." + name,
+    lines.push_back(fmt::format("  {:<36} {}{}", fmt::format("{}.{}", title, name),
                                 entry.second.IsScalar() ? entry.second.Scalar() : "-",
                                 unit.empty() || unit == "1" ? "" : " " + unit));
   }
