@@ -11,13 +11,12 @@
 #include "driver/flow_report.hpp"
 #include "driver/grain_setup.hpp"
 #include "driver/initial_state.hpp"
+#include "driver/memory.hpp"
 #include "driver/run_cost.hpp"
 #include "driver/solid_setup.hpp"
 #include "loop/progress.hpp"
 
 #include <fmt/format.h>
-
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -160,11 +159,6 @@ Lines column_report(const Case& c) {
 }
 
 // Bytes.
-double memory_of_this_machine() {
-  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
-}
-
-// Bytes.
 double free_in_this_folder() {
   std::error_code unknown;
   const std::filesystem::space_info space = std::filesystem::space(std::filesystem::current_path(), unknown);
@@ -177,7 +171,7 @@ void add_cost(const Case& c, double bandwidth, Lines& lines) {
   if (cost.cell_updates > 0.0) work += fmt::format(": {:.3g} cell updates", cost.cell_updates);
   if (cost.grain_steps > 0.0) work += fmt::format(", {:.3g} grain-steps", cost.grain_steps);
   lines.push_back(work);
-  lines.push_back(memory_line(cost.memory, memory_of_this_machine()));
+  lines.push_back(memory_line(memory_on_one_rank(c), memory_of_this_node()));
   lines.push_back(disk_line(disk_space(c), free_in_this_folder()));
   lines.push_back(
       fmt::format("time       about {} on one core like this one ({:.3g} GB/s); divide by the number of cores until "
@@ -221,15 +215,6 @@ void refuse_impossible_grains(const Case& c) {
 }
 
 }  // namespace
-
-std::string memory_line(double needed, double there) {
-  constexpr double usable = 0.9;  // the rest is the system's
-  std::string line = "memory     about " + bytes_text(needed);
-  if (needed > usable * there)
-    line += fmt::format(": more than the {} of this machine; take at least {:.0f} such nodes", bytes_text(there),
-                        std::ceil(needed / (usable * there)));
-  return line;
-}
 
 std::vector<std::string> check_report(const Case& c, double bandwidth) {
   if (c.system == SystemKind::continuum) return column_report(c);

@@ -8,9 +8,6 @@
 
 namespace thalweg::driver {
 
-// What the report says of memory: needed, in bytes, on machines that have `there` each.
-std::string memory_line(double needed, double there);
-
 // Whole report, one text a line. Throws InputError where the case cannot be run (grains that do not fit, a grain step
 // too long for the contacts).
 std::vector<std::string> check_report(const Case& c, double bandwidth);

@@ -10,6 +10,7 @@
 #include "driver/info_report.hpp"
 #include "driver/info_table.hpp"
 #include "driver/machine.hpp"
+#include "driver/memory.hpp"
 #include "driver/python_command.hpp"
 #include "driver/run_command.hpp"
 #include "driver/scaling_table.hpp"
@@ -79,9 +80,16 @@ int run(const Command& command, int argc, char** argv, loop::WallClock::time_poi
 
 std::string joined(const std::vector<std::string>& lines) { return fmt::format("{}\n", fmt::join(lines, "\n")); }
 
-std::vector<std::string> check_of(const Command& command) {
-  const Case c = read_case(command.path, command.settings);
+std::vector<std::string> check_of(const Command& command, const Case& c) {
   return about_case(command.path, [&] { return check_report(c, measure_bandwidth()); });
+}
+
+// The report, and the refusal of what this machine has not the memory for: it is said last, with the report to go by.
+void check(const Command& command) {
+  const Case c = read_case(command.path, command.settings);
+  std::fputs(joined(check_of(command, c)).c_str(), stdout);
+  std::fflush(stdout);
+  about_case(command.path, [&] { refuse_without_memory(c); });
 }
 
 // With --ranks: every rank times a piece of the case, as many ranks as a node has cores at once.
@@ -90,8 +98,8 @@ int plan(const Command& command, int argc, char** argv) {
   const bool prints = rank_of(MPI_COMM_WORLD) == 0;
   FailureBarrier failures(MPI_COMM_WORLD);
   try {
-    const std::vector<std::string> report = check_of(command);
     const Case c = read_case(command.path, command.settings);
+    const std::vector<std::string> report = check_of(command, c);
     if (c.system == SystemKind::continuum) throw InputError("--ranks: every rank has the whole column; remove it.");
     const CoreSpeed speed = measure_core_speed(c, MPI_COMM_WORLD);
     const std::vector<std::string> table = scaling_table(c, command.ranks, speed, command.network);
@@ -106,7 +114,8 @@ int plan(const Command& command, int argc, char** argv) {
 std::string answer(const Command& command) {
   switch (command.kind) {
     case Command::Kind::check:
-      return joined(check_of(command));
+      check(command);
+      return {};
     case Command::Kind::info:
       return joined(command.csv ? info_table(command.runs) : info_report(command.path));
     case Command::Kind::stop:

@@ -65,6 +65,32 @@ double reach_of_ghosts(const Case& c) {
   return std::max(contacts, 0.5 * largest_diameter(c) + 2.5 * c.domain.spacing + 0.5 * grains.skin);
 }
 
+// Bytes that a frame of the fluid takes while it is written: numbers as they are sampled and as they are stored.
+double bytes_of_frame(const Case& c, const io::FluidOutputKeys& keys, const Block& block) {
+  if (!(keys.every > 0.0)) return 0.0;
+  const double stored = keys.precision == io::FieldPrecision::double_ ? 8.0 : 4.0;
+  const io::ShownCells shown = shown_cells(keys, cells_of(c.domain), c.domain.spacing);
+  double bytes = 0.0;
+  for (const FluidField field : keys.fields)
+    bytes += components_of(field) * (8.0 * static_cast<double>(intersection(block, shown.region).volume()) +
+                                     stored * static_cast<double>(shown.part_in(block).volume()));
+  const bool gradients = std::any_of(keys.fields.begin(), keys.fields.end(), [](FluidField field) {
+    return field == FluidField::vorticity || field == FluidField::q_criterion;
+  });
+  return gradients ? bytes + 24.0 * static_cast<double>(block.volume()) : bytes;  // velocities of the whole block
+}
+
+// Bytes that writing takes at most, beside the system itself: a frame, or what MPI-IO collects of a checkpoint where
+// several ranks write one.
+double bytes_of_writing(const Case& c, const Decomposition& decomposition, int rank, double lattice) {
+  const Block block = decomposition.block_of(rank);
+  double bytes = bytes_of_frame(c, c.output.fluid, block);
+  for (const io::NamedFluidOutputKeys& part : c.output.fluid_parts)
+    bytes = std::max(bytes, bytes_of_frame(c, part, block));
+  constexpr double collected = 16e6;  // measured with Open MPI 4.1: what there is to write, up to this
+  return decomposition.ranks() > 1 ? std::max(bytes, std::min(collected, lattice)) : bytes;
+}
+
 struct Span {
   double lower, upper;
   double length() const { return std::max(0.0, upper - lower); }
@@ -115,13 +141,15 @@ RankWork work_of(const Case& c, const GrainsOfCase& grains, const Decomposition&
   RankWork work;
   const Index3 n = decomposition.cells(), own = decomposition.block_of(rank).size();
   const double all_cells = static_cast<double>(n[0]) * n[1] * n[2];
+  work.memory = bytes_of_program();
   work.share_of_cells = static_cast<double>(decomposition.block_of(rank).volume()) / all_cells;
   if (has_fluid(c)) {
     work.cells = work.share_of_cells * all_cells;
     work.messages += neighbours(decomposition, rank, [](int axes) { return axes == 1 || axes == 2; });
     work.bytes += halo_bytes(c, decomposition, rank);
     work.rounds += 1.0;
-    work.memory += (own[0] + 2.0) * (own[1] + 2.0) * (own[2] + 2.0) * bytes_of_cell(c);
+    const double lattice = (own[0] + 2.0) * (own[1] + 2.0) * (own[2] + 2.0) * bytes_of_cell(c);
+    work.memory += lattice + bytes_of_writing(c, decomposition, rank, lattice);
   }
   if (c.grains.empty()) return work;
   const double count = grains.count;
@@ -130,6 +158,7 @@ RankWork work_of(const Case& c, const GrainsOfCase& grains, const Decomposition&
   work.grains = work.share_of_grains * count;
   work.ghosts = share_of_grains(c, grains, decomposition, rank, grains.reach) * count - work.grains;
   work.memory += (work.grains + work.ghosts) * bytes_of_grain() + work.grains / count * grains.links;
+  work.memory = std::max(work.memory, bytes_of_program() + count * bytes_of_placing());
   if (decomposition.ranks() == 1) return work;
   const double beside = neighbours(decomposition, rank, [](int axes) { return axes > 0; });
   const double attached = measures_grain_stress(c) ? coupling::GrainExchange<double>::width_with_stress

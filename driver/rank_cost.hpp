@@ -18,7 +18,7 @@ struct Network {
 // Of one rank; messages and bytes are those that it sends in a step.
 struct RankWork {
   double cells = 0.0, grains = 0.0, ghosts = 0.0;
-  double memory = 0.0;  // bytes, without the program itself
+  double memory = 0.0;  // bytes, at its largest
   double messages = 0.0, bytes = 0.0;
   double rounds = 0.0;  // of messages, each of which waits for the one before
   double share_of_cells = 0.0, share_of_grains = 0.0;

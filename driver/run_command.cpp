@@ -12,10 +12,12 @@
 #include "driver/case_reader.hpp"
 #include "driver/case_warnings.hpp"
 #include "driver/cores.hpp"
+#include "driver/disk_space.hpp"
 #include "driver/error_message.hpp"
 #include "driver/final_bed.hpp"
 #include "driver/initial_state.hpp"
 #include "driver/machine.hpp"
+#include "driver/memory.hpp"
 #include "driver/reference_grain.hpp"
 #include "driver/run_facts.hpp"
 #include "driver/run_output.hpp"
@@ -84,9 +86,9 @@ std::vector<CaseChange> changes_since(const fs::path& origin, const Case& c) {
   return changes;
 }
 
-// Says what is about to run, and measures what the memory of the machine allows.
+// Says what is about to run. bandwidth: of the memory, bytes/s; 0: there is no lattice.
 void print_header(const Case& c, RunIdentity& identity, const System& system, const Places& places,
-                  const Beginning& beginning, MPI_Comm communicator, loop::Log& log) {
+                  const Beginning& beginning, double bandwidth, MPI_Comm communicator, loop::Log& log) {
   log.line(fmt::format("Thalweg {}: {}", version_text(), c.name));
   log.line(
       fmt::format("{} on {} rank{}, layout {} x {} x {}; {} grains, {} cells; {:.6g} s a step, {:.0f} steps to {:g} s",
@@ -105,8 +107,7 @@ void print_header(const Case& c, RunIdentity& identity, const System& system, co
     log.line(fmt::format("to stop early: thalweg stop {} (after Ctrl-C or SIGTERM mpirun leaves only {:.2g} s to save)",
                          places.folder.path().string(), 2.0 * strokes));
   if (!c.grains.empty()) log.line("reference grain: " + reference_text(c));
-  if (system.cells() > 0) {
-    const double bandwidth = measure_bandwidth(communicator);
+  if (bandwidth > 0.0) {
     const double bytes = bytes_per_cell_update(c.fluid.precision == coupling::Precision::single ? 4 : 8);
     identity.memory_bound_mlups = bandwidth / bytes * 1e-6;
     log.line(fmt::format("memory bandwidth {:.1f} GB/s; {:.0f} bytes a cell update: at most {:.0f} MLUPS",
@@ -152,6 +153,8 @@ void print_outcome(const RunIdentity& identity, const loop::LoopRecord& record, 
     speed += fmt::format(", {:.3g} million grain-steps/s", speeds.grain_steps_per_second * 1e-6);
   log.line(fmt::format("{} steps in {}: {}", record.last_step - record.first_step,
                        loop::clock_text(record.wall_seconds), speed));
+  log.line(fmt::format("memory: {} on all ranks, at most {} on one", bytes_text(identity.memory->all_ranks),
+                       bytes_text(identity.memory->largest_rank)));
   if (record.finished)
     log.line(fmt::format("finished{} at {:.6g} s: {}", record.early.empty() ? "" : ", " + record.early + ",",
                          system.time(), folder.summary().string()));
@@ -229,6 +232,9 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   const bool restarts = !places.checkpoints.empty();
   if (!restarts) on_first_rank(communicator, [&] { about_case(command.path, [&] { check_initial_sources(c); }); });
   const Start start = restarts || c.initial.takes(InitialField::grains) ? Start::from_checkpoint : Start::as_placed;
+  about_case(command.path, [&] { refuse_without_memory(c, communicator, layout); });
+  const double bandwidth = has_fluid(c) ? measure_bandwidth(communicator) : 0.0;  // while there is room for its array
+  forget_largest_memory();
   const std::unique_ptr<System> system =
       about_case(command.path, [&] { return build_system(c, communicator, layout, start); });
   Observers observers = make_observers(c.analysis.observers, run_facts(c),
@@ -245,7 +251,7 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   prepare_folder(places, c, command, system->step(), communicator, log);
   RunIdentity identity{c.name, name_of(c.system), command.line, c.run.until, layout, size_of(communicator)};
   if (!c.grains.empty()) identity.reference = reference_grain(c);
-  print_header(c, identity, *system, places, beginning, communicator, log);
+  print_header(c, identity, *system, places, beginning, bandwidth, communicator, log);
   RunOutput output(communicator, c, places.folder, *system, observers, beginning.accounts.since,
                    places.same_folder ? std::optional<double>(system->time()) : std::nullopt);
   loop::LoopPlan plan;
@@ -279,6 +285,7 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   }
   const std::vector<loop::PhaseShare> phases = loop::collect_phases(communicator, *system, time_loop);
   const std::vector<Figure> bed = final_bed(communicator, c, *system);
+  identity.memory = memory_use(communicator);
   print_outcome(identity, time_loop.record(), *system, observers, bed, phases, places.folder, log);
   if (const std::string remark = rest_remark(c, time_loop.record(), *system); !remark.empty()) log.line(remark);
   const io::JsonObject summary =

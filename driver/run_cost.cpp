@@ -15,9 +15,10 @@ constexpr double cell_cost = 2.5, link_cost = 1000.0;
 constexpr double grain_steps_per_second = 8e6;
 constexpr double model_fluid_steps_per_second = 4e6;  // all grains moving; three times that where few do
 
-// Bytes: per cell 19 populations, streamed in place, and flags; per link a record; per grain its columns, neighbours
-// and history.
-constexpr double flag_bytes = 8.0, link_bytes = 32.0, grain_bytes = 2000.0;
+// Bytes: of a process with the libraries it has loaded, MPI's above all; per cell 19 populations, streamed in place,
+// and flags; per link a record; per grain its columns, neighbours and history.
+constexpr double program_bytes = 49e6;
+constexpr double flag_bytes = 8.0, link_bytes = 32.0, grain_bytes = 1750.0, placing_bytes = 550.0;
 constexpr double links_per_square_cell = 15.8;  // links of a sphere over its diameter in cells squared
 
 double link_count(const Case& c) {
@@ -33,7 +34,9 @@ double link_count(const Case& c) {
 
 double bytes_per_value(const Case& c) { return c.fluid.precision == coupling::Precision::single ? 4.0 : 8.0; }
 double bytes_of_cell(const Case& c) { return 19.0 * bytes_per_value(c) + flag_bytes; }
+double bytes_of_program() { return program_bytes; }
 double bytes_of_grain() { return grain_bytes; }
+double bytes_of_placing() { return placing_bytes; }
 double bytes_of_links(const Case& c) { return link_count(c) * link_bytes; }
 
 Cost cost_of(const Case& c, double bandwidth) {
@@ -43,8 +46,6 @@ Cost cost_of(const Case& c, double bandwidth) {
   cost.steps = std::ceil(c.run.until / step_time(c) * (1.0 - 1e-12));
   cost.cell_updates = cost.cells * cost.steps;
   cost.grain_steps = static_cast<double>(grain_count(c) * c.coupling.grain_steps_per_fluid_step) * cost.steps;
-  cost.memory = cost.cells * bytes_of_cell(c) + static_cast<double>(grain_count(c)) * bytes_of_grain();
-  cost.memory += bytes_of_links(c);
   const double traffic = cost.cell_updates * cell_cost * bytes_per_cell_update(static_cast<int>(bytes_per_value(c))) +
                          cost.steps * link_count(c) * link_cost;
   cost.core_seconds =

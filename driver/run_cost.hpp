@@ -10,16 +10,18 @@ struct Cost {
   double steps;
   double cell_updates;
   double grain_steps;   // grains times sub-steps
-  double memory;        // bytes, all ranks together
   double core_seconds;  // one core
 };
 // bandwidth: bytes/s of one core's memory (machine.hpp).
 Cost cost_of(const Case& c, double bandwidth);
 
-// Memory, bytes: of a number in the lattice, of a cell of fluid, of a grain, and of the links of all grains.
+// Memory, bytes: of a number in the lattice, of a process before it has a system, of a cell of fluid, of a grain, of one
+// while every rank places them all, and of the links of all grains.
 double bytes_per_value(const Case& c);
+double bytes_of_program();
 double bytes_of_cell(const Case& c);
 double bytes_of_grain();
+double bytes_of_placing();
 double bytes_of_links(const Case& c);
 
 }  // namespace thalweg::driver

@@ -42,6 +42,9 @@ io::JsonObject summary_of(const RunIdentity& identity, const System& system, con
     summary.set("memory_bound_mlups", identity.memory_bound_mlups)
         .set("share_of_memory_bound", speeds.mlups_advancing / identity.memory_bound_mlups);
   summary.set("grain_steps_per_second", speeds.grain_steps_per_second);
+  if (identity.memory)
+    summary.set("memory_bytes", identity.memory->all_ranks)
+        .set("memory_bytes_of_largest_rank", identity.memory->largest_rank);
   io::JsonObject table;
   for (const loop::PhaseShare& phase : phases)
     table.set(phase.name, io::JsonObject()

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "driver/accounts.hpp"
+#include "driver/memory.hpp"
 #include "driver/reference_grain.hpp"
 #include "io/json_object.hpp"
 #include "loop/phase_shares.hpp"
@@ -14,7 +15,7 @@
 
 namespace thalweg::driver {
 
-// What is known of a run before it starts.
+// What is known of a run beside its state.
 struct RunIdentity {
   std::string name, system, command;
   double until;  // s
@@ -22,6 +23,7 @@ struct RunIdentity {
   int ranks;
   std::optional<ReferenceGrain> reference = {};  // none without grains
   double memory_bound_mlups = 0.0;               // what the measured memory bandwidth allows; 0 without a lattice
+  std::optional<MemoryUse> memory = {};          // once it has ended in good order
 };
 
 // summary.json of a run that has ended in whatever way. `bed` (final_bed.hpp) and `phases` may be empty.
