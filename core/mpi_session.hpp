@@ -38,6 +38,9 @@ bool any_rank(MPI_Comm communicator, bool value);
 template <typename Row>
 std::vector<Row> exchange_rows(MPI_Comm communicator, const std::vector<Row>& rows,
                                const std::vector<int>& destination);
+// The same, where the rows are not needed any more: they are gone before others arrive.
+template <typename Row>
+std::vector<Row> exchange_rows(MPI_Comm communicator, std::vector<Row>&& rows, const std::vector<int>& destination);
 
 namespace detail {
 

@@ -5,6 +5,7 @@
 #include "core/row_range.hpp"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace thalweg {
@@ -38,11 +39,11 @@ private:
 // Rows have a member `id`, and all ranks together have each id from 0 to share.rows() - 1 at most once. Returns the
 // rows with the ids of share.rows_of(this rank), in their order. Collective.
 template <typename Row>
-std::vector<Row> rows_by_id(MPI_Comm communicator, const std::vector<Row>& rows, const BlockShare& share) {
+std::vector<Row> rows_by_id(MPI_Comm communicator, std::vector<Row> rows, const BlockShare& share) {
   std::vector<int> home;
   home.reserve(rows.size());
   for (const Row& row : rows) home.push_back(share.rank_of(row.id));
-  std::vector<Row> here = exchange_rows(communicator, rows, home);
+  std::vector<Row> here = exchange_rows(communicator, std::move(rows), home);
   std::sort(here.begin(), here.end(), [](const Row& a, const Row& b) { return a.id < b.id; });
   return here;
 }

@@ -86,9 +86,8 @@ ClumpShape clump_shape(std::span<const Sphere> members, double thickness) {
   return shape;
 }
 
-std::vector<GrainSeed> with_members(const std::vector<GrainSeed>& grains, std::span<const ClumpSeed> clumps,
+std::vector<GrainSeed> with_members(std::vector<GrainSeed> grains, std::span<const ClumpSeed> clumps,
                                     const PeriodicBox& box) {
-  std::vector<GrainSeed> all = grains;
   for (const ClumpSeed& clump : clumps) {
     const Eigen::Matrix3d turn = rotation_matrix(clump.principal_orientation());
     const double least_mass = clump.shape->least_contact_mass(clump.density);
@@ -109,10 +108,10 @@ std::vector<GrainSeed> with_members(const std::vector<GrainSeed>& grains, std::s
       seed.clump_mass = clump.mass();
       seed.clump_least_mass = least_mass;
       seed.offset = member.position;
-      all.push_back(seed);
+      grains.push_back(seed);
     }
   }
-  return all;
+  return grains;
 }
 
 void check(std::span<const ClumpSeed> clumps, const PeriodicBox& box) {

@@ -53,8 +53,17 @@ struct ClumpSeed {
   Quaternion principal_orientation() const { return normalised(product(orientation, shape->principal)); }
 };
 
+// What a run begins with.
+struct GrainSeeds {
+  std::vector<GrainSeed> grains;
+  std::vector<ClumpSeed> clumps;  // whose members have ids of their own
+  // Whether these are all there are, the same on every rank; else those whose centres a rank owns, all that may touch
+  // them, and all members of rigid assemblies.
+  bool whole = true;
+};
+
 // The grains, and after them the members of the clumps as grains.
-std::vector<GrainSeed> with_members(const std::vector<GrainSeed>& grains, std::span<const ClumpSeed> clumps,
+std::vector<GrainSeed> with_members(std::vector<GrainSeed> grains, std::span<const ClumpSeed> clumps,
                                     const PeriodicBox& box);
 
 // Throws InputError naming the first clump whose centre is outside the box or that could touch itself through a

@@ -30,13 +30,13 @@ GrainParameters dry_parameters(const DryParameters& dry) {
 }  // namespace
 
 DryGrains::DryGrains(const Decomposition& decomposition, MPI_Comm communicator, const DryParameters& parameters,
-                     const GrainSeeds& seeds)
+                     GrainSeeds seeds)
     : field_(parameters.field),
       sub_steps_(parameters.grains.sub_steps),
       time_step_(parameters.grains.time_step * sub_steps_),
       wall_names_(parameters.measured_walls),
       rest_(parameters.rest),
-      grains_(decomposition, communicator, dry_parameters(parameters), seeds.grains, seeds.clumps),
+      grains_(decomposition, communicator, dry_parameters(parameters), std::move(seeds)),
       lists_(timer_.phase("grain lists")),
       motion_(timer_.phase("grain motion")) {}
 

@@ -37,7 +37,7 @@ class DryGrains final : public System, private ContactSource {
 public:
   // Throws InputError where the grains do not fit or the time step is too long. Collective.
   DryGrains(const Decomposition& decomposition, MPI_Comm communicator, const DryParameters& parameters,
-            const GrainSeeds& seeds);
+            GrainSeeds seeds);
 
   void advance() override;
   std::int64_t step() const override { return step_; }

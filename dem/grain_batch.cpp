@@ -64,15 +64,15 @@ void replace_owned(GrainStore& store, const GrainBatch& batch) {
   store.owned = batch.rows.size();
 }
 
-GrainBatch exchange_grains(MPI_Comm communicator, const GrainBatch& batch, const std::vector<int>& destination,
+GrainBatch exchange_grains(MPI_Comm communicator, GrainBatch batch, const std::vector<int>& destination,
                            int attached_width) {
   GrainBatch arrived;
-  arrived.rows = exchange_rows(communicator, batch.rows, destination);
+  arrived.rows = exchange_rows(communicator, std::move(batch.rows), destination);
   if (attached_width > 0) {
     std::vector<int> each;
     each.reserve(batch.attached.size());
     for (const int to : destination) each.insert(each.end(), attached_width, to);
-    arrived.attached = exchange_rows(communicator, batch.attached, each);
+    arrived.attached = exchange_rows(communicator, std::move(batch.attached), each);
   }
   sort_by_id(arrived, attached_width);
   return arrived;

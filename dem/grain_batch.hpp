@@ -39,7 +39,7 @@ GrainBatch owned_grains(const GrainStore& store);
 void replace_owned(GrainStore& store, const GrainBatch& batch);
 
 // Sends row i to rank destination[i]; returns what arrived here, sorted by id. Collective.
-GrainBatch exchange_grains(MPI_Comm communicator, const GrainBatch& batch, const std::vector<int>& destination,
+GrainBatch exchange_grains(MPI_Comm communicator, GrainBatch batch, const std::vector<int>& destination,
                            int attached_width);
 
 }  // namespace thalweg::dem

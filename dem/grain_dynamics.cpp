@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
+#include "core/on_all_ranks.hpp"
 #include "dem/contact_forces.hpp"
 #include "dem/grain_balance.hpp"
 #include "dem/grain_start.hpp"
@@ -62,21 +63,17 @@ void check_lubrication(const GrainParameters& parameters, std::span<const Lighte
 }
 
 GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm communicator,
-                             const GrainParameters& parameters, const std::vector<GrainSeed>& grains,
-                             const std::vector<ClumpSeed>& clumps)
+                             const GrainParameters& parameters, GrainSeeds seeds)
     : decomposition_(decomposition),
       box_(decomposition.box()),
       communicator_(communicator),
       parameters_(checked(parameters)),
       materials_(table_of(parameters)),
-      largest_radius_(largest_radius_of(grains, clumps)),
-      largest_offset_(largest_offset_of(clumps)),
-      global_count_(static_cast<std::int64_t>(grains.size()) + member_count_of(clumps)),
-      clump_count_(static_cast<std::int64_t>(clumps.size())),
-      member_count_(member_count_of(clumps)),
+      largest_radius_(max_over_ranks(communicator, largest_radius_of(seeds.grains, seeds.clumps))),
+      largest_offset_(max_over_ranks(communicator, largest_offset_of(seeds.clumps))),
       walls_change_(std::any_of(parameters.walls.begin(), parameters.walls.end(),
                                 [](const Plane& wall) { return wall.changes(); })),
-      assemblies_(parameters.assemblies, grains),
+      assemblies_(parameters.assemblies, seeds.grains),
       store_(columns_of(parameters), parameters.disk_thickness > 0.0 ? GrainStore::of_disk : GrainStore::of_sphere),
       ghosts_(decomposition, communicator, ghost_reach(), largest_offset_),
       lists_phase_(timer_.phase("contact lists")),
@@ -84,38 +81,59 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
       motion_phase_(timer_.phase("motion")),
       messages_phase_(timer_.phase("messages")) {
   assert(decomposition.ranks() == size_of(communicator));
-  const std::vector<GrainSeed> seeds = with_members(grains, clumps, box_);
-  check(clumps, box_);
-  check(seeds, box_, parameters_.walls, parameters_.initial_overlap);
+  take_seeds(std::move(seeds));
   check_integrator();
-  std::vector<LightestGrain> lightest(static_cast<std::size_t>(materials_.count()));
-  for (const GrainSeed& seed : seeds) {
-    if (seed.material < 0 || seed.material >= materials_.count())
-      throw InputError(
-          fmt::format("Grain {} is of material {}, but there are {}.", seed.id, seed.material, materials_.count()));
-    if (seed.thickness != parameters_.disk_thickness)
-      throw InputError(fmt::format("Grain {} is {:g} m thick, and the grains of the run {:g} m (0: spheres).", seed.id,
-                                   seed.thickness, parameters_.disk_thickness));
-    if (holds_translation(seed.motion)) continue;
-    lightest[static_cast<std::size_t>(seed.material)].include(seed.contact_mass(), seed.radius);
-  }
-  check_time_step(parameters_, lightest, body_count());
   check_prescribed_speed();
   planes_ = parameters_.walls;
   if (walls_change_) place_walls(0.0, 0.0);
-  check_lubrication(parameters_, lightest, largest_radius_, box_);
   check_range();
-
-  const int me = rank_of(communicator_);
-  const std::vector<Clump> mine = clumps_of(clumps, decomposition_, me);
-  replace_owned(store_, batch_of(seeds, mine, decomposition_, me, store_.attached_width));
-  clumps_.replace(mine);
   build_dependents({});
   moving_.load(store_, body_force_);
   assemblies_.place(moving_, box_, 0.0, 0.0);
   ghosts_.refresh(moving_);
   evaluate_forces(0.0);
   moving_.unload(store_);
+}
+
+void GrainDynamics::take_seeds(GrainSeeds seeds) {
+  const std::vector<GrainSeed> grains = with_members(std::move(seeds.grains), seeds.clumps, box_);
+  on_all_ranks(communicator_, [&] {
+    check(seeds.clumps, box_);
+    if (seeds.whole)
+      check(grains, box_, parameters_.walls, parameters_.initial_overlap);
+    else
+      check_part(grains, box_, parameters_.walls, parameters_.initial_overlap, largest_radius_);
+    check_kinds(grains);
+  });
+  std::vector<LightestGrain> lightest(static_cast<std::size_t>(materials_.count()));
+  for (const GrainSeed& grain : grains)
+    if (!holds_translation(grain.motion))
+      lightest[static_cast<std::size_t>(grain.material)].include(grain.contact_mass(), grain.radius);
+  share_over_ranks(communicator_, lightest);
+
+  const int me = rank_of(communicator_);
+  const std::vector<Clump> mine = clumps_of(seeds.clumps, decomposition_, me);
+  const GrainBatch batch = batch_of(grains, mine, decomposition_, me, store_.attached_width);
+  std::int64_t members = 0;
+  for (const GrainRow& row : batch.rows) members += row.clump >= 0;
+  global_count_ = sum_over_ranks(communicator_, static_cast<std::int64_t>(batch.rows.size()));
+  clump_count_ = sum_over_ranks(communicator_, static_cast<std::int64_t>(mine.size()));
+  member_count_ = sum_over_ranks(communicator_, members);
+  check_time_step(parameters_, lightest, body_count());
+  check_lubrication(parameters_, lightest, largest_radius_, box_);
+  replace_owned(store_, batch);
+  clumps_.replace(mine);
+}
+
+void GrainDynamics::check_kinds(std::span<const GrainSeed> grains) const {
+  for (const GrainSeed& grain : grains) {
+    if (grain.material < 0 || grain.material >= materials_.count())
+      throw InputError(
+          fmt::format("Grain {} is of material {}, but there are {}.", grain.id, grain.material, materials_.count()));
+    if (grain.thickness != parameters_.disk_thickness)
+      throw InputError(fmt::format("Grain {} is {:g} m thick, and the grains of the run {:g} m (0: spheres).", grain.id,
+                                   grain.thickness, parameters_.disk_thickness));
+  }
 }
 
 void GrainDynamics::check_integrator() const {

@@ -26,6 +26,7 @@
 #include "dem/grain_seed.hpp"
 #include "dem/grain_store.hpp"
 #include "dem/integrator.hpp"
+#include "dem/lightest_grain.hpp"
 #include "dem/lubrication.hpp"
 #include "dem/material.hpp"
 #include "dem/moving_grains.hpp"
@@ -65,21 +66,6 @@ struct GrainParameters {
   double initial_overlap = allowed_initial_overlap;  // diameters the seeds may overlap by: a settled bed's do
 };
 
-// The least mass (kg) and radius (m) of the grains of a material that are free to move: their contacts are shortest;
-// and the largest radius over mass (m/kg), by which a viscous fluid slows them.
-// (Of two materials' contact, m*/k lies between those within each, since springs add in series as masses do.)
-struct LightestGrain {
-  double mass = std::numeric_limits<double>::infinity();
-  double radius = std::numeric_limits<double>::infinity();
-  double radius_per_mass = 0.0;
-
-  void include(double other_mass, double other_radius) {
-    mass = std::min(mass, other_mass);
-    radius = std::min(radius, other_radius);
-    radius_per_mass = std::max(radius_per_mass, other_radius / other_mass);
-  }
-};
-
 // Throws InputError if the time step is too long for contacts among `count` grains, the lightest of each material of
 // which are given.
 void check_time_step(const GrainParameters& parameters, std::span<const LightestGrain> lightest, std::int64_t count);
@@ -99,12 +85,16 @@ struct Contact {
 
 class GrainDynamics {
 public:
-  // seeds and clumps: the same full lists on every rank; each rank keeps the grains it owns. The ids of grains and of
-  // members together are 0 .. their number - 1. Throws InputError, on every rank, for impossible parameters, a time
-  // step too long, or impossible seeds (grain_seed.hpp, clump_seed.hpp). Contact forces are evaluated (without moving
-  // any spring), so that the first half kick has its forces. No seeds: load() is to follow. Collective.
+  // Each rank keeps the grains it owns. The ids of grains and of members together are 0 .. their number - 1. Throws
+  // InputError, on every rank, for impossible parameters, a time step too long, or impossible seeds (grain_seed.hpp,
+  // clump_seed.hpp). Contact forces are evaluated (without moving any spring), so that the first half kick has its
+  // forces. No seeds: load() is to follow. Collective.
   GrainDynamics(const Decomposition& decomposition, MPI_Comm communicator, const GrainParameters& parameters,
-                const std::vector<GrainSeed>& seeds, const std::vector<ClumpSeed>& clumps = {});
+                GrainSeeds seeds);
+  // The same with full lists.
+  GrainDynamics(const Decomposition& decomposition, MPI_Comm communicator, const GrainParameters& parameters,
+                const std::vector<GrainSeed>& grains, const std::vector<ClumpSeed>& clumps = {})
+      : GrainDynamics(decomposition, communicator, parameters, GrainSeeds{grains, clumps}) {}
   GrainDynamics(const GrainDynamics&) = delete;
   GrainDynamics& operator=(const GrainDynamics&) = delete;
 
@@ -215,6 +205,8 @@ private:
   double ghost_reach() const;
   template <typename Visitor>
   void for_each_body(Visitor&& visit) const;
+  void take_seeds(GrainSeeds seeds);
+  void check_kinds(std::span<const GrainSeed> grains) const;
   void check_integrator() const;
   double list_range() const;
   void wrap_positions();

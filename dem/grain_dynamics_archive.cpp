@@ -184,9 +184,7 @@ std::vector<LightestGrain> lightest_of(const GrainStore& store, const std::vecto
     for (std::size_t m = first; m < first + offsets.size(); ++m)
       lightest[store.material[m]].include(mass, store.radius[m]);
   }
-  for (LightestGrain& grain : lightest)
-    grain = {-max_over_ranks(communicator, -grain.mass), -max_over_ranks(communicator, -grain.radius),
-             max_over_ranks(communicator, grain.radius_per_mass)};
+  share_over_ranks(communicator, lightest);
   return lightest;
 }
 
@@ -288,7 +286,7 @@ void GrainDynamics::restore(ArchiveReader& archive, const std::string& group, bo
   const std::vector<Clump> clumps = load_clumps(archive, group, batch, owner);
   const ContactHistories histories = load_histories(archive, group, owner, same_walls);
 
-  replace_owned(store_, exchange_grains(communicator_, batch, owner, store_.attached_width));
+  replace_owned(store_, exchange_grains(communicator_, std::move(batch), owner, store_.attached_width));
   const std::vector<LightestGrain> lightest = lightest_of(store_, clumps, materials_.count(), communicator_);
   check_time_step(parameters_, lightest, body_count());
   check_lubrication(parameters_, lightest, largest_radius_, box_);

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace thalweg::dem {
 
@@ -63,28 +64,31 @@ void check_pair(const GrainSeed& a, const GrainSeed& b, const PeriodicBox& box, 
                     a.id, place(a.position), b.id, place(b.position), overlap, allowed_overlap));
 }
 
-}  // namespace
-
-namespace {
-
 // Nothing pushes a disk out of its plane as long as all are in it, to the last bit, and gravity is along it.
-void check_disks(std::span<const GrainSeed> seeds) {
-  for (const GrainSeed& seed : seeds) {
-    if (seed.thickness != seeds.front().thickness)
+void check_disk(const GrainSeed& seed, const GrainSeed& first) {
+  if (seed.thickness != first.thickness)
+    throw InputError(
+        fmt::format("Grain {} is {:g} m thick and grain {} {:g} m; all must be spheres (0) or disks of "
+                    "one thickness.",
+                    seed.id, seed.thickness, first.id, first.thickness));
+  if (seed.thickness == 0.0) return;
+  if (seed.position[1] != first.position[1])
+    throw InputError(fmt::format("Disk {} at {} is not in the plane y = {:g} m of disk {}; put all in one plane.",
+                                 seed.id, place(seed.position), first.position[1], first.id));
+  if (seed.velocity[1] != 0.0 || seed.angular_velocity[0] != 0.0 || seed.angular_velocity[2] != 0.0)
+    throw InputError(
+        fmt::format("Disk {} moves or turns out of the x-z plane; its velocity along y and its angular "
+                    "velocity along x and z must be zero.",
+                    seed.id));
+}
+
+void check_periodic_axes(const PeriodicBox& box, double largest_radius, bool disks) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (box.periodic[axis] && box.size[axis] < 4.0 * largest_radius && !(disks && axis == 1))
       throw InputError(
-          fmt::format("Grain {} is {:g} m thick and grain {} {:g} m; all must be spheres (0) or disks of "
-                      "one thickness.",
-                      seed.id, seed.thickness, seeds.front().id, seeds.front().thickness));
-    if (seed.thickness == 0.0) continue;
-    if (seed.position[1] != seeds.front().position[1])
-      throw InputError(fmt::format("Disk {} at {} is not in the plane y = {:g} m of disk {}; put all in one plane.",
-                                   seed.id, place(seed.position), seeds.front().position[1], seeds.front().id));
-    if (seed.velocity[1] != 0.0 || seed.angular_velocity[0] != 0.0 || seed.angular_velocity[2] != 0.0)
-      throw InputError(
-          fmt::format("Disk {} moves or turns out of the x-z plane; its velocity along y and its angular "
-                      "velocity along x and z must be zero.",
-                      seed.id));
-  }
+          fmt::format("The box is {:g} m along its periodic axis {}; it must be at least two of the "
+                      "largest grain diameters, {:g} m, so that grains meet only once.",
+                      box.size[axis], "xyz"[axis], 4.0 * largest_radius));
 }
 
 }  // namespace
@@ -100,35 +104,34 @@ double GrainSeed::contact_mass() const { return clump >= 0 ? clump_least_mass : 
 void check(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<const Plane> walls,
            double allowed_overlap) {
   check_ids(seeds);
-  std::vector<GrainSeed> sorted(seeds.begin(), seeds.end());
-  std::sort(sorted.begin(), sorted.end(), [](const GrainSeed& a, const GrainSeed& b) { return a.id < b.id; });
   double largest = 0.0;
-  for (const GrainSeed& seed : sorted) {
-    check_alone(seed, box, walls, allowed_overlap);
-    largest = std::max(largest, seed.radius);
-  }
-  for (const Plane& wall : walls) check_images(wall, box, largest);
-  check_disks(sorted);
-  const bool in_plane = !sorted.empty() && sorted.front().thickness > 0.0;
-  for (int axis = 0; axis < 3; ++axis)
-    if (box.periodic[axis] && box.size[axis] < 4.0 * largest && !(in_plane && axis == 1))
-      throw InputError(
-          fmt::format("The box is {:g} m along its periodic axis {}; it must be at least two of the "
-                      "largest grain diameters, {:g} m, so that grains meet only once.",
-                      box.size[axis], "xyz"[axis], 4.0 * largest));
-  if (sorted.empty()) return;
+  for (const GrainSeed& seed : seeds) largest = std::max(largest, seed.radius);
+  check_part(seeds, box, walls, allowed_overlap, largest);
+}
+
+void check_part(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<const Plane> walls,
+                double allowed_overlap, double largest_radius) {
+  std::vector<std::uint32_t> by_id(seeds.size());
+  std::iota(by_id.begin(), by_id.end(), 0u);
+  std::sort(by_id.begin(), by_id.end(), [&](std::uint32_t a, std::uint32_t b) { return seeds[a].id < seeds[b].id; });
+  for (const std::uint32_t n : by_id) check_alone(seeds[n], box, walls, allowed_overlap);
+  for (const Plane& wall : walls) check_images(wall, box, largest_radius);
+  if (seeds.empty()) return;
+  const GrainSeed& first = seeds[by_id.front()];
+  for (const std::uint32_t n : by_id) check_disk(seeds[n], first);
+  check_periodic_axes(box, largest_radius, first.thickness > 0.0);
 
   std::vector<Vec3> points;
-  for (const GrainSeed& seed : sorted) points.push_back(box.wrapped(seed.position));
-  const CellGrid grid(box, 2.0 * largest, points);
+  for (const std::uint32_t n : by_id) points.push_back(box.wrapped(seeds[n].position));
+  const CellGrid grid(box, 2.0 * largest_radius, points);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> touching;
   grid.for_each_near_pair([&](std::uint32_t m, std::uint32_t n) {
     const std::uint32_t a = grid.order()[m], b = grid.order()[n];
-    const double reach = sorted[a].radius + sorted[b].radius;
+    const double reach = seeds[by_id[a]].radius + seeds[by_id[b]].radius;
     if (box.difference(points[a], points[b]).squaredNorm() <= reach * reach) touching.push_back(std::minmax(a, b));
   });
   std::sort(touching.begin(), touching.end());  // so that every rank tells of the same pair
-  for (const auto& [a, b] : touching) check_pair(sorted[a], sorted[b], box, allowed_overlap);
+  for (const auto& [a, b] : touching) check_pair(seeds[by_id[a]], seeds[by_id[b]], box, allowed_overlap);
 }
 
 }  // namespace thalweg::dem

@@ -45,4 +45,8 @@ inline constexpr double allowed_initial_overlap = 1e-6;
 void check(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<const Plane> walls,
            double allowed_overlap = allowed_initial_overlap);
 
+// The same of a part of the grains, with any ids. largest_radius: m, of all grains.
+void check_part(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<const Plane> walls,
+                double allowed_overlap, double largest_radius);
+
 }  // namespace thalweg::dem

@@ -28,12 +28,6 @@ double largest_offset_of(const std::vector<ClumpSeed>& clumps) {
   return largest;
 }
 
-std::int64_t member_count_of(const std::vector<ClumpSeed>& clumps) {
-  std::int64_t count = 0;
-  for (const ClumpSeed& clump : clumps) count += static_cast<std::int64_t>(clump.shape->members.size());
-  return count;
-}
-
 GrainBatch batch_of(const std::vector<GrainSeed>& seeds, const std::vector<Clump>& clumps,
                     const Decomposition& decomposition, int rank, int width) {
   const PeriodicBox box = decomposition.box();

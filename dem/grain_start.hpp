@@ -1,4 +1,4 @@
-// What a rank makes of the full lists of seeds that a run begins with.
+// What a rank makes of the lists of seeds that it begins with.
 #pragma once
 
 #include "core/decomposition.hpp"
@@ -7,7 +7,6 @@
 #include "dem/grain_batch.hpp"
 #include "dem/grain_seed.hpp"
 
-#include <cstdint>
 #include <vector>
 
 namespace thalweg::dem {
@@ -16,7 +15,6 @@ namespace thalweg::dem {
 double largest_radius_of(const std::vector<GrainSeed>& seeds, const std::vector<ClumpSeed>& clumps);
 // Of a member from its clump's centre, m.
 double largest_offset_of(const std::vector<ClumpSeed>& clumps);
-std::int64_t member_count_of(const std::vector<ClumpSeed>& clumps);
 
 // The clumps whose centre a rank owns, sorted by id.
 std::vector<Clump> clumps_of(const std::vector<ClumpSeed>& seeds, const Decomposition& decomposition, int rank);

@@ -51,11 +51,16 @@ Lattice widest_lattice(const Vec3& extent, std::int64_t count, const std::array<
 
 }  // namespace
 
-std::vector<Vec3> uniform_packing(const PeriodicBox& box, const Region& region, std::int64_t count, double radius,
-                                  double clearance, std::uint64_t seed) {
+UniformSites::UniformSites(const PeriodicBox& box, const Region& region, std::int64_t count, double radius,
+                           double clearance, std::uint64_t seed)
+    : box_(box),
+      region_(region),
+      count_(count),
+      seed_(seed),
+      lower_(region.lower),
+      extent_(region.upper - region.lower) {
   check_region(box, region);
   const double diameter = 2.0 * radius;
-  Vec3 lower = region.lower, extent = region.upper - region.lower;
   std::array<std::int64_t, 3> most{};
   for (int axis = 0; axis < 3; ++axis) {
     if (region.plane && axis == 1) {
@@ -63,42 +68,47 @@ std::vector<Vec3> uniform_packing(const PeriodicBox& box, const Region& region, 
       continue;
     }
     if (!wraps(box, region, axis)) {
-      lower[axis] += clearance;
-      extent[axis] -= 2.0 * clearance;
+      lower_[axis] += clearance;
+      extent_[axis] -= 2.0 * clearance;
     }
     // A box made for n grains must take n in spite of rounding; the overlap this allows is far below a millionth.
-    most[axis] = std::max<std::int64_t>(0, static_cast<std::int64_t>(std::floor(extent[axis] / diameter + 1e-9)));
+    most[axis] = std::max<std::int64_t>(0, static_cast<std::int64_t>(std::floor(extent_[axis] / diameter + 1e-9)));
   }
   if (count > most[0] * most[1] * most[2])
     throw InputError(
         fmt::format("{} grains of {:g} m do not fit on a lattice in {:g} x {:g} x {:g} m: {} would; use fewer "
                     "or smaller grains or a larger region.",
-                    count, diameter, extent[0], extent[1], extent[2], most[0] * most[1] * most[2]));
-  if (count == 0) return {};
-
-  Vec3 between = extent;
+                    count, diameter, extent_[0], extent_[1], extent_[2], most[0] * most[1] * most[2]));
+  if (count == 0) return;
+  Vec3 between = extent_;
   if (region.plane) between[1] = std::numeric_limits<double>::infinity();
   const Lattice lattice = widest_lattice(between, count, most);
   const double room = std::max(0.0, 0.5 * (lattice.spacing - diameter));
-  const double jitter = std::min(0.01 * diameter, 0.999 * room);
-  const std::int64_t sites = lattice.count[0] * lattice.count[1] * lattice.count[2];
-  std::vector<Vec3> centres;
-  for (std::int64_t i = 0; i < count; ++i) {
-    const std::int64_t site = i * sites / count;
-    const std::int64_t along[3] = {site % lattice.count[0], site / lattice.count[0] % lattice.count[1],
-                                   site / (lattice.count[0] * lattice.count[1])};
-    Vec3 centre;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (region.plane && axis == 1) {
-        centre[1] = 0.5 * (region.lower[1] + region.upper[1]);
-        continue;
-      }
-      const double step = extent[axis] / static_cast<double>(lattice.count[axis]);
-      const double draw = uniform_random(seed, static_cast<std::uint64_t>(i), axis);
-      centre[axis] = lower[axis] + (static_cast<double>(along[axis]) + 0.5) * step + jitter * (2.0 * draw - 1.0);
+  along_ = lattice.count;
+  jitter_ = std::min(0.01 * diameter, 0.999 * room);
+}
+
+Vec3 UniformSites::centre(std::int64_t grain) const {
+  const std::int64_t sites = along_[0] * along_[1] * along_[2], site = grain * sites / count_;
+  const std::int64_t at[3] = {site % along_[0], site / along_[0] % along_[1], site / (along_[0] * along_[1])};
+  Vec3 centre;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (region_.plane && axis == 1) {
+      centre[1] = 0.5 * (region_.lower[1] + region_.upper[1]);
+      continue;
     }
-    centres.push_back(box.wrapped(centre));
+    const double step = extent_[axis] / static_cast<double>(along_[axis]);
+    const double draw = uniform_random(seed_, static_cast<std::uint64_t>(grain), axis);
+    centre[axis] = lower_[axis] + (static_cast<double>(at[axis]) + 0.5) * step + jitter_ * (2.0 * draw - 1.0);
   }
+  return box_.wrapped(centre);
+}
+
+std::vector<Vec3> uniform_packing(const PeriodicBox& box, const Region& region, std::int64_t count, double radius,
+                                  double clearance, std::uint64_t seed) {
+  const UniformSites sites(box, region, count, radius, clearance, seed);
+  std::vector<Vec3> centres;
+  for (std::int64_t grain = 0; grain < count; ++grain) centres.push_back(sites.centre(grain));
   return centres;
 }
 

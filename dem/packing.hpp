@@ -4,6 +4,7 @@
 #include "core/periodic_box.hpp"
 #include "core/types.hpp"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -36,10 +37,28 @@ inline constexpr double densest_bed = 0.64, densest_disks = 0.84;
 // 0.77 to 0.84 of disks.
 inline constexpr double settled_bed = 0.6, settled_disks = 0.8;
 
-// Centres of `count` equal grains spread over the region as evenly as a cubic lattice allows: the lattice with the
+// Places of `count` equal grains spread over the region as evenly as a cubic lattice allows: the lattice with the
 // widest spacing that has enough sites, sites left over spread evenly, each centre moved at random by up to 1 % of a
 // diameter (less where there is no room) so that grains do not stack perfectly. clearance: m, surface to the region's
-// faces that are not periodic. Throws InputError saying how many would fit.
+// faces that are not periodic. The constructor throws InputError saying how many would fit.
+class UniformSites {
+public:
+  UniformSites(const PeriodicBox& box, const Region& region, std::int64_t count, double radius, double clearance,
+               std::uint64_t seed);
+
+  Vec3 centre(std::int64_t grain) const;  // m, wrapped; grain: 0 .. count - 1
+
+private:
+  PeriodicBox box_;
+  Region region_;
+  std::int64_t count_;
+  std::uint64_t seed_;
+  Vec3 lower_, extent_;
+  std::array<std::int64_t, 3> along_{1, 1, 1};  // sites along each axis
+  double jitter_ = 0.0;                         // m
+};
+
+// All of them.
 std::vector<Vec3> uniform_packing(const PeriodicBox& box, const Region& region, std::int64_t count, double radius,
                                   double clearance, std::uint64_t seed);
 

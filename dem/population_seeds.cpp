@@ -84,51 +84,73 @@ PlacementOrder order_of(const PlacementKeys& placement) {
   return PlacementOrder::random;
 }
 
-std::vector<Vec3> place(const Population& population, const PeriodicBox& box, const std::vector<Sphere>& placed) {
+// Where the grains of a population are put, one by one.
+struct Places {
+  std::size_t count;
+  std::function<Vec3(std::size_t)> of;  // m
+};
+
+Places places_in(std::vector<Vec3> positions) {
+  const std::size_t count = positions.size();
+  return {count, [kept = std::move(positions)](std::size_t grain) { return kept[grain]; }};
+}
+
+Places place(const Population& population, const PeriodicBox& box, const std::vector<Sphere>& placed) {
   const PlacementKeys& placement = population.placement;
   const auto seed = static_cast<std::uint64_t>(placement.seed);
-  std::vector<Vec3> positions;
+  const auto count = static_cast<std::size_t>(population.count);
   Region region = region_of(placement, box);
   region.plane = population.thickness > 0.0;
   if (region.plane) region.lower[1] = 0.0, region.upper[1] = box.size[1];
   switch (order_of(placement)) {
     case PlacementOrder::given:
-      for (const BedGrain& grain : population.file) positions.push_back(grain.position);
-      return placement.file ? positions : placement.positions;
-    case PlacementOrder::uniform:
-      return uniform_packing(box, region, population.count, 0.5 * population.room_of_all(), 0.0, seed);
+      if (!placement.file) return places_in(placement.positions);
+      return {population.file.size(), [&population](std::size_t grain) { return population.file[grain].position; }};
+    case PlacementOrder::uniform: {
+      const UniformSites sites(box, region, population.count, 0.5 * population.room_of_all(), 0.0, seed);
+      return {count, [sites](std::size_t grain) { return sites.centre(static_cast<std::int64_t>(grain)); }};
+    }
     case PlacementOrder::dense:
     case PlacementOrder::random:
       break;
   }
   std::vector<double> radii;
-  for (std::size_t n = 0; n < static_cast<std::size_t>(population.count); ++n)
-    radii.push_back(0.5 * population.room_of(n));
+  for (std::size_t n = 0; n < count; ++n) radii.push_back(0.5 * population.room_of(n));
   const auto pack = placement.pattern == PlacementPattern::dense ? dense_packing : random_packing;
-  return pack(box, region, radii, 0.0, seed, placed);
+  return places_in(pack(box, region, radii, 0.0, seed, placed));
 }
 
-// Adds the grains of a population one after the other, with ids that count up.
+// Adds the grains of a population that are wanted, one after the other, with ids that count up through all.
 class SeedAdder {
 public:
-  SeedAdder(const PeriodicBox& box, GrainSeeds& seeds) : box_(box), seeds_(seeds) {}
+  SeedAdder(const PeriodicBox& box, const WantedPlaces& wanted, GrainSeeds& seeds)
+      : box_(box), wanted_(wanted), seeds_(seeds) {}
 
-  void add(const Population& population, const GrainSeed& common, const std::vector<Vec3>& positions) {
+  void add(const Population& population, const GrainSeed& common, const Places& places) {
     const auto seed_of = [&](std::size_t grain) {
       GrainSeed seed = common;
       seed.id = next_;
       seed.radius = 0.5 * population.diameter_of(grain);
       seed.density = population.density_of(grain);
-      seed.position = in_plane(positions[grain], population, box_);
+      seed.position = in_plane(places.of(grain), population, box_);
       set_motion(seed, population, grain);
       return seed;
     };
     if (!population.file.empty()) return add_from_file(population, seed_of);
-    if (population.shape) return add_clumps(population, positions.size(), seed_of);
-    for (std::size_t n = 0; n < positions.size(); ++n, ++next_) seeds_.grains.push_back(seed_of(n));
+    if (population.shape) return add_clumps(population, places.count, seed_of);
+    for (std::size_t n = 0; n < places.count; ++n, ++next_) add(seed_of(n));
   }
 
 private:
+  bool wants(const Vec3& centre) const { return !wanted_ || wanted_(box_.wrapped(centre)); }
+
+  void add(const GrainSeed& grain) {
+    if (grain.assembly >= 0 || wants(grain.position)) seeds_.grains.push_back(grain);
+  }
+  void add(const ClumpSeed& clump) {
+    if (wants(clump.position)) seeds_.clumps.push_back(clump);
+  }
+
   void add_clumps(const Population& population, std::size_t count, const auto& seed_of) {
     ClumpSeed clump;
     clump.shape = clump_shape_of(population);
@@ -136,7 +158,7 @@ private:
       const GrainSeed as_grain = seed_of(n);
       clump.position = as_grain.position;
       clump.orientation = orientation_of(population, n);
-      seeds_.clumps.push_back(clump_seed_of(as_grain, clump));
+      add(clump_seed_of(as_grain, clump));
       next_ += static_cast<GlobalId>(clump.shape->members.size());
     }
   }
@@ -146,12 +168,12 @@ private:
     for (const std::span<const BedGrain> body : bodies_of(population.file)) {
       GrainSeed seed = seed_of(row);
       if (body.front().clump < 0) {
-        seeds_.grains.push_back(seed);
+        add(seed);
       } else {
         const ClumpSeed clump = clump_from(body, box_, population.thickness);
         if (keeps_velocities(population) && !holds_translation(seed.motion))
           seed.velocity = clump.velocity;  // of the centre
-        seeds_.clumps.push_back(clump_seed_of(seed, clump));
+        add(clump_seed_of(seed, clump));
       }
       next_ += static_cast<GlobalId>(body.size());
       row += body.size();
@@ -159,32 +181,46 @@ private:
   }
 
   const PeriodicBox& box_;
+  const WantedPlaces& wanted_;
   GrainSeeds& seeds_;
   GlobalId next_ = 0;
 };
 
+// Whether another population is to keep clear of those that are placed before it.
+bool anyone_keeps_clear(std::span<const Population> populations) {
+  return std::any_of(populations.begin(), populations.end(), [](const Population& population) {
+    return order_of(population.placement) >= PlacementOrder::dense;
+  });
+}
+
 }  // namespace
 
-GrainSeeds grain_seeds(std::span<const Population> populations, const PeriodicBox& box) {
-  std::vector<std::vector<Vec3>> positions(populations.size());
+GrainSeeds grain_seeds(std::span<const Population> populations, const PeriodicBox& box, const WantedPlaces& wanted) {
+  std::vector<Places> places(populations.size());
   std::vector<Sphere> placed;
+  const bool kept_clear_of = populations.size() > 1 && anyone_keeps_clear(populations);
   for (const PlacementOrder order :
        {PlacementOrder::given, PlacementOrder::uniform, PlacementOrder::dense, PlacementOrder::random})
     for (std::size_t p = 0; p < populations.size(); ++p) {
       if (order_of(populations[p].placement) != order) continue;
       try {
-        positions[p] = place(populations[p], box, placed);
+        places[p] = place(populations[p], box, placed);
       } catch (const InputError& error) {
         throw InputError(fmt::format("grains.{}: {}", p, error.what()));
       }
-      for (std::size_t n = 0; n < positions[p].size(); ++n)
-        placed.push_back({in_plane(positions[p][n], populations[p], box), 0.5 * populations[p].room_of(n)});
+      for (std::size_t n = 0; kept_clear_of && n < places[p].count; ++n)
+        placed.push_back({in_plane(places[p].of(n), populations[p], box), 0.5 * populations[p].room_of(n)});
     }
   GrainSeeds seeds;
-  SeedAdder adder(box, seeds);
+  seeds.whole = !wanted;
+  SeedAdder adder(box, wanted, seeds);
   for (std::size_t p = 0; p < populations.size(); ++p)
-    adder.add(populations[p], common_seed(populations, p), positions[p]);
+    adder.add(populations[p], common_seed(populations, p), places[p]);
   return seeds;
+}
+
+GrainSeeds grain_seeds(std::span<const Population> populations, const PeriodicBox& box) {
+  return grain_seeds(populations, box, {});
 }
 
 Motion motion_of(const Population& population) {

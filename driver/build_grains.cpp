@@ -1,4 +1,5 @@
 // From a case to grains without a fluid, or with a force in its place.
+#include "core/mpi_session.hpp"
 #include "dem/dry_grains.hpp"
 #include "driver/build_system.hpp"
 #include "driver/grain_setup.hpp"
@@ -33,8 +34,9 @@ std::unique_ptr<System> build_grains_system(const Case& c, MPI_Comm communicator
     parameters.fluid_density = c.model_fluid.fluid_density;
     parameters.field = std::make_shared<dem::ModelFluidField>(decomposition.box(), model_fluid_of(c));
   }
-  return std::make_unique<dem::DryGrains>(decomposition, communicator, parameters,
-                                          start == Start::as_placed ? grain_seeds(c) : dem::GrainSeeds{});
+  return std::make_unique<dem::DryGrains>(
+      decomposition, communicator, parameters,
+      start == Start::as_placed ? grain_seeds(c, decomposition, rank_of(communicator)) : dem::GrainSeeds{});
 }
 
 }  // namespace thalweg::driver

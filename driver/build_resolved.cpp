@@ -1,4 +1,5 @@
 // From a case to grains in a resolved flow.
+#include "core/mpi_session.hpp"
 #include "coupling/resolved_system.hpp"
 #include "driver/build_system.hpp"
 #include "driver/fluid_setup.hpp"
@@ -32,9 +33,9 @@ std::unique_ptr<System> build_resolved(const Case& c, MPI_Comm communicator, con
   grains.body_force = body_force(c);
   grains.ghost_width = System::ghost_reach(0.5 * largest_diameter(c), c.domain.spacing);
   grains.attached_width = System::attached_width(parameters);
-  const dem::GrainSeeds seeds = start == Start::as_placed ? grain_seeds(c) : dem::GrainSeeds{};
-  auto dynamics =
-      std::make_unique<dem::GrainDynamics>(*decomposition, communicator, grains, seeds.grains, seeds.clumps);
+  dem::GrainSeeds seeds;
+  if (start == Start::as_placed) seeds = grain_seeds(c, *decomposition, rank_of(communicator));
+  auto dynamics = std::make_unique<dem::GrainDynamics>(*decomposition, communicator, grains, std::move(seeds));
   return std::make_unique<System>(std::move(decomposition), communicator, parameters, std::move(dynamics));
 }
 

@@ -184,9 +184,9 @@ using LightestGrains = std::vector<dem::LightestGrain>;  // by material
 // Of grains that the case puts somewhere. Throws InputError where they do not fit.
 LightestGrains check_placed_grains(const Case& c, const PeriodicBox& box, const dem::GrainParameters& parameters) {
   LightestGrains lightest(1 + parameters.other_materials.size());
-  const dem::GrainSeeds start = grain_seeds(c);
+  dem::GrainSeeds start = grain_seeds(c);
   dem::check(start.clumps, box);
-  const std::vector<dem::GrainSeed> seeds = dem::with_members(start.grains, start.clumps, box);
+  const std::vector<dem::GrainSeed> seeds = dem::with_members(std::move(start.grains), start.clumps, box);
   for (const dem::GrainSeed& seed : seeds)
     lightest[static_cast<std::size_t>(seed.material)].include(seed.contact_mass(), seed.radius);
   dem::check(seeds, box, parameters.walls, parameters.initial_overlap);

@@ -67,4 +67,13 @@ dem::GrainSeeds grain_seeds(const Case& c) {
   return dem::grain_seeds(c.grains, {c.domain.size, periodic_axes(c.domain)});
 }
 
+dem::GrainSeeds grain_seeds(const Case& c, const Decomposition& decomposition, int rank) {
+  if (decomposition.ranks() == 1) return grain_seeds(c);
+  double extent = 0.0;
+  for (const dem::Population& population : c.grains) extent = std::max(extent, population.largest_extent());
+  const double reach = (1.0 + dem::allowed_initial_overlap) * extent;  // of two centres that touch
+  return dem::grain_seeds(c.grains, decomposition.box(),
+                          [&](const Vec3& centre) { return decomposition.reaches(rank, centre, reach); });
+}
+
 }  // namespace thalweg::driver

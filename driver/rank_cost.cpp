@@ -87,8 +87,10 @@ double bytes_of_writing(const Case& c, const Decomposition& decomposition, int r
   double bytes = bytes_of_frame(c, c.output.fluid, block);
   for (const io::NamedFluidOutputKeys& part : c.output.fluid_parts)
     bytes = std::max(bytes, bytes_of_frame(c, part, block));
-  constexpr double collected = 16e6;  // measured with Open MPI 4.1: what there is to write, up to this
-  return decomposition.ranks() > 1 ? std::max(bytes, std::min(collected, lattice)) : bytes;
+  // Measured with Open MPI 4.1: what the others have there, up to a buffer; one rank of several has a second one.
+  constexpr double buffer = 16e6;
+  const double ranks = decomposition.ranks(), collected = std::min(buffer, lattice) * (1.0 - 1.0 / ranks);
+  return std::max(bytes, rank == 0 && ranks > 2.0 ? 2.0 * collected : collected);
 }
 
 struct Span {
@@ -157,8 +159,9 @@ RankWork work_of(const Case& c, const GrainsOfCase& grains, const Decomposition&
   work.share_of_grains = share_of_grains(c, grains, decomposition, rank, 0.0);
   work.grains = work.share_of_grains * count;
   work.ghosts = share_of_grains(c, grains, decomposition, rank, grains.reach) * count - work.grains;
-  work.memory += (work.grains + work.ghosts) * bytes_of_grain() + work.grains / count * grains.links;
-  work.memory = std::max(work.memory, bytes_of_program() + count * bytes_of_placing());
+  work.memory +=
+      (work.grains + work.ghosts) * bytes_of_grain(decomposition.ranks()) + work.grains / count * grains.links;
+  work.memory = std::max(work.memory, bytes_of_program() + bytes_of_placing(c));
   if (decomposition.ranks() == 1) return work;
   const double beside = neighbours(decomposition, rank, [](int axes) { return axes > 0; });
   const double attached = measures_grain_stress(c) ? coupling::GrainExchange<double>::width_with_stress
@@ -193,11 +196,14 @@ SlowestRank slowest_rank(const Case& c, const Decomposition& decomposition, cons
                          const Network& network) {
   const GrainsOfCase grains(c);
   SlowestRank slowest;
+  double memory = 0.0;
   for (int rank = 0; rank < decomposition.ranks(); ++rank) {
     const RankWork work = work_of(c, grains, decomposition, rank);
     const StepTimes times = step_times(work, decomposition.ranks(), speed, network);
+    memory = std::max(memory, work.memory);
     if (rank == 0 || times.sum() > slowest.times.sum()) slowest = {work, times};
   }
+  slowest.work.memory = memory;
   return slowest;
 }
 

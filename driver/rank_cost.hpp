@@ -36,7 +36,7 @@ struct StepTimes {
 RankWork rank_work(const Case& c, const Decomposition& decomposition, int rank);
 StepTimes step_times(const RankWork& work, int ranks, const CoreSpeed& speed, const Network& network);
 
-// The rank for which all others wait.
+// The rank for which all others wait, with the memory of the rank that takes most.
 struct SlowestRank {
   RankWork work;
   StepTimes times;

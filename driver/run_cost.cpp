@@ -16,9 +16,10 @@ constexpr double grain_steps_per_second = 8e6;
 constexpr double model_fluid_steps_per_second = 4e6;  // all grains moving; three times that where few do
 
 // Bytes: of a process with the libraries it has loaded, MPI's above all; per cell 19 populations, streamed in place,
-// and flags; per link a record; per grain its columns, neighbours and history.
+// and flags; per link a record; per grain its columns, neighbours, history and its row of a frame, which several ranks
+// have twice while they sort them.
 constexpr double program_bytes = 49e6;
-constexpr double flag_bytes = 8.0, link_bytes = 32.0, grain_bytes = 1750.0, placing_bytes = 550.0;
+constexpr double flag_bytes = 16.0, link_bytes = 32.0, grain_bytes = 1150.0, row_bytes = 350.0;
 constexpr double links_per_square_cell = 15.8;  // links of a sphere over its diameter in cells squared
 
 double link_count(const Case& c) {
@@ -35,8 +36,19 @@ double link_count(const Case& c) {
 double bytes_per_value(const Case& c) { return c.fluid.precision == coupling::Precision::single ? 4.0 : 8.0; }
 double bytes_of_cell(const Case& c) { return 19.0 * bytes_per_value(c) + flag_bytes; }
 double bytes_of_program() { return program_bytes; }
-double bytes_of_grain() { return grain_bytes; }
-double bytes_of_placing() { return placing_bytes; }
+double bytes_of_grain(int ranks) { return ranks > 1 ? grain_bytes + row_bytes : grain_bytes; }
+double bytes_of_placing(const Case& c) {
+  constexpr double sphere = 24.0, random_sphere = 120.0, row_of_file = 150.0;
+  double bytes = 0.0;
+  for (const dem::Population& population : c.grains) {
+    const bool uniform = population.placement.pattern == dem::PlacementPattern::uniform;
+    double each = uniform && population.placement.positions.empty() ? 0.0 : random_sphere;
+    if (!population.placement.positions.empty()) each = sphere;
+    if (!population.file.empty()) each = row_of_file;
+    bytes += each * static_cast<double>(population.row_count());
+  }
+  return bytes;
+}
 double bytes_of_links(const Case& c) { return link_count(c) * link_bytes; }
 
 Cost cost_of(const Case& c, double bandwidth) {

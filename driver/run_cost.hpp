@@ -15,13 +15,13 @@ struct Cost {
 // bandwidth: bytes/s of one core's memory (machine.hpp).
 Cost cost_of(const Case& c, double bandwidth);
 
-// Memory, bytes: of a number in the lattice, of a process before it has a system, of a cell of fluid, of a grain, of one
-// while every rank places them all, and of the links of all grains.
+// Memory, bytes: of a number in the lattice, of a process before it has a system, of a cell of fluid, of a grain on one
+// or several ranks, of what every rank knows of all grains while they are placed, and of the links of all grains.
 double bytes_per_value(const Case& c);
 double bytes_of_program();
 double bytes_of_cell(const Case& c);
-double bytes_of_grain();
-double bytes_of_placing();
+double bytes_of_grain(int ranks);
+double bytes_of_placing(const Case& c);
 double bytes_of_links(const Case& c);
 
 }  // namespace thalweg::driver

@@ -37,6 +37,8 @@ public:
   // Whether a grain is shown that has its centre there (m).
   bool has(GlobalId id, const Vec3& position) const;
 
+  bool takes_all() const { return keys_ == GrainSelectionKeys{}; }
+
 private:
   GrainSelectionKeys keys_;  // ids in their order
   PopulationEnds ends_;

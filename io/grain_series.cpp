@@ -62,6 +62,7 @@ std::vector<Row> selected_rows(const Snapshot& snapshot, const GrainSelection& s
   const GrainView& grains = snapshot.grains;
   const std::vector<Mat3> stress = with_contact_stress ? contact_stresses(snapshot) : std::vector<Mat3>{};
   std::vector<Row> rows;
+  if (selection.takes_all()) rows.reserve(grains.id.size());
   for (std::size_t n = 0; n < grains.id.size(); ++n) {
     if (!selection.has(grains.id[n], grains.position[n])) continue;
     rows.push_back(row_of(grains, n, ends));
@@ -72,12 +73,12 @@ std::vector<Row> selected_rows(const Snapshot& snapshot, const GrainSelection& s
 
 // Of rows that lie on the ranks in their order, the first of this rank at place `first`, those of the share, in the
 // same order.
-std::vector<Row> rows_by_place(MPI_Comm communicator, const std::vector<Row>& rows, std::int64_t first,
+std::vector<Row> rows_by_place(MPI_Comm communicator, std::vector<Row> rows, std::int64_t first,
                                const BlockShare& share) {
   std::vector<int> home;
   home.reserve(rows.size());
   for (std::size_t n = 0; n < rows.size(); ++n) home.push_back(share.rank_of(first + static_cast<std::int64_t>(n)));
-  return exchange_rows(communicator, rows, home);
+  return exchange_rows(communicator, std::move(rows), home);
 }
 
 // The columns of the rows that this rank writes.
@@ -181,12 +182,12 @@ void GrainSeries::write(const Snapshot& snapshot) {
     return field.value == GrainField::contact_stress;
   });
   // By id, of which some may be missing, and then by their place in the file.
-  const std::vector<Row> selected =
+  std::vector<Row> selected =
       rows_by_id(communicator_, selected_rows(snapshot, selection_, population_ends_, with_contact_stress),
                  BlockShare(snapshot.grains.global_count, 1, size_of(communicator_)));
   const RowRange places = RowRange::of_rows(static_cast<std::int64_t>(selected.size()), communicator_);
   VtkXmlFile picture(communicator_, places.count);
-  const std::vector<Row> rows = rows_by_place(communicator_, selected, places.first, picture.share());
+  const std::vector<Row> rows = rows_by_place(communicator_, std::move(selected), places.first, picture.share());
   const Columns columns(rows, picture);
   for (const NamedChoice<GrainField>& field : fields) add_field(field.value, field.name, columns);
   columns.add("Points", &Row::position, "Points");

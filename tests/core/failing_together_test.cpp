@@ -1,11 +1,13 @@
 #include "core/error.hpp"
 #include "core/failure_barrier.hpp"
 #include "core/mpi_session.hpp"
+#include "core/on_all_ranks.hpp"
 #include "core/on_first_rank.hpp"
 
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <string>
 #include <thread>
 
 namespace thalweg {
@@ -30,6 +32,24 @@ TEST(OnFirstRank, WorksOnceAndTellsEveryRankOfItsErrors) {
       message = std::string("run: ") + error.what();
     }
     EXPECT_EQ(message, input ? "input: no such folder" : "run: disk full");
+  }
+}
+
+TEST(OnAllRanks, TellsEveryRankOfTheFirstError) {
+  int calls = 0;
+  on_all_ranks(world, [&] { ++calls; });
+  EXPECT_EQ(calls, 1);
+  const int last = size_of(world) - 1;
+  for (const int first : {0, last}) {
+    std::string message;
+    try {
+      on_all_ranks(world, [&] {
+        if (rank_of(world) >= first) throw InputError("grain of rank " + std::to_string(rank_of(world)));
+      });
+    } catch (const InputError& error) {
+      message = error.what();
+    }
+    EXPECT_EQ(message, "grain of rank " + std::to_string(first));
   }
 }
 

@@ -262,7 +262,7 @@ void compare(const Case& c, int steps) {
     EXPECT_EQ(grains.rebuilds(), alone.rebuilds()) << name;
 
     // What one rank saved half way, loaded on all of them, ends alike.
-    GrainDynamics restarted(decomposition, MPI_COMM_WORLD, p, {});
+    GrainDynamics restarted(decomposition, MPI_COMM_WORLD, p, GrainSeeds{});
     thalweg::test::MemoryReader reader(half);
     restarted.load(reader);
     EXPECT_EQ(thalweg::test::first_difference(saved(restarted, MPI_COMM_WORLD), half), "") << name;
@@ -389,7 +389,7 @@ TEST(Ranks, StateSavedByAllIsLoadedByOne) {
   run(together, 120);
   const thalweg::test::MemoryArchive half = saved(together, MPI_COMM_WORLD);
   run(together, 120);
-  GrainDynamics alone(one, MPI_COMM_SELF, p, {});
+  GrainDynamics alone(one, MPI_COMM_SELF, p, GrainSeeds{});
   thalweg::test::MemoryReader reader(half);
   alone.load(reader);
   run(alone, 120);

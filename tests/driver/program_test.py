@@ -138,6 +138,27 @@ class CommandLine(DryGrains):
         self.assert_refused("check", self.case, "--ranks", "0", words=["--ranks"])
         self.assert_refused("check", self.case, "--ranks", "1000000", words=["ranks"])
 
+    def test_what_the_machine_has_no_memory_for_is_refused(self):
+        """Of 1.6e10 cells, 1.2 TB in their populations alone: check says so below its report, and run before it starts."""
+        channel = str(Path(__file__).resolve().parents[2] / "cases/clear_channel/case.yaml")
+        huge = ("--set", "domain.size=[2, 1, 1]", "--set", "domain.spacing=0.5e-3", "--set", "fluid.time_step=2e-5")
+        checked = self.thalweg("check", channel, *huge)
+        self.assertEqual(checked.returncode, 2)
+        self.assertRegex(checked.stdout, r"memory +about .* more than the .* of this machine")
+        self.assertRegex(checked.stderr, r"the run takes about .* of memory.*: take at least \d+ such nodes")
+        for ranks in (0, 2):
+            ran = self.thalweg("run", channel, *huge, "--out", "run", ranks=ranks)
+            self.assertEqual(ran.returncode, 2)
+            self.assertRegex(ran.stderr, r"take at least \d+ such nodes")
+        self.assertEqual(files_below(self.folder), ["case.yaml"])
+
+    def test_a_run_says_what_memory_it_held(self):
+        self.run_well("run", self.case)
+        summary = self.summary("run")
+        self.assertGreater(summary["memory_bytes"], 1e7)
+        self.assertLessEqual(summary["memory_bytes_of_largest_rank"], summary["memory_bytes"])
+        self.assertRegex((self.folder / "run/run.log").read_text(), r"\nmemory: \d.* on all ranks, at most \d")
+
     def test_check_says_what_a_case_means(self):
         report = self.run_well("check", self.case).stdout
         self.assertEqual(files_below(self.folder), ["case.yaml"])

@@ -1,0 +1,34 @@
+// The grains whose contacts are shortest, which the time step of a run must resolve.
+#pragma once
+
+#include "core/mpi_session.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+namespace thalweg::dem {
+
+// The least mass (kg) and radius (m) of the grains of a material that are free to move: their contacts are shortest;
+// and the largest radius over mass (m/kg), by which a viscous fluid slows them.
+// (Of two materials' contact, m*/k lies between those within each, since springs add in series as masses do.)
+struct LightestGrain {
+  double mass = std::numeric_limits<double>::infinity();
+  double radius = std::numeric_limits<double>::infinity();
+  double radius_per_mass = 0.0;
+
+  void include(double other_mass, double other_radius) {
+    mass = std::min(mass, other_mass);
+    radius = std::min(radius, other_radius);
+    radius_per_mass = std::max(radius_per_mass, other_radius / other_mass);
+  }
+};
+
+// Of all ranks, by material. Collective.
+inline void share_over_ranks(MPI_Comm communicator, std::vector<LightestGrain>& lightest) {
+  for (LightestGrain& grain : lightest)
+    grain = {-max_over_ranks(communicator, -grain.mass), -max_over_ranks(communicator, -grain.radius),
+             max_over_ranks(communicator, grain.radius_per_mass)};
+}
+
+}  // namespace thalweg::dem

@@ -1,0 +1,122 @@
+// Grains that are placed by ranks, each knowing its own and what may touch them.
+#include "core/error.hpp"
+#include "core/mpi_session.hpp"
+#include "dem/population_bed.hpp"
+#include "dem/population_seeds.hpp"
+#include "tests/dem/grain_cases.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+namespace thalweg::dem {
+namespace {
+
+Decomposition shared_box() {
+  const Index3 cells{24, 16, 24};
+  return Decomposition(cells, 2.5e-3, {true, true, false}, Decomposition::best_layout(cells, size_of(MPI_COMM_WORLD)));
+}
+
+constexpr double reach = 5e-3 * (1.0 + allowed_initial_overlap);  // of two centres that touch
+
+Population glass(std::int64_t count, PlacementPattern pattern, double lower, double upper) {
+  Population grains;
+  grains.count = count;
+  grains.diameter = 5e-3;
+  grains.density = 2550.0;
+  grains.placement.pattern = pattern;
+  grains.placement.region = RegionKeys{Vec3(0.0, 0.0, lower), Vec3(0.06, 0.04, upper)};
+  return grains;
+}
+
+// A lattice, grains at random that keep clear of it, two at given places, and a body of four that moves as one.
+std::vector<Population> four_kinds() {
+  Population given = glass(2, PlacementPattern::uniform, 0.0, 0.06),
+             body = glass(4, PlacementPattern::uniform, 0.05, 0.06);
+  given.placement.region.reset();
+  given.placement.positions = {Vec3(0.001, 0.02, 0.045), Vec3(0.0585, 0.0245, 0.045)};
+  given.velocity = Vec3(0.1, 0.0, 0.0);
+  body.motion = MotionKeys{};
+  return {glass(90, PlacementPattern::uniform, 0.0, 0.02), glass(60, PlacementPattern::random, 0.0, 0.045), given,
+          body};
+}
+
+GrainSeeds of_rank(const std::vector<Population>& populations, int rank) {
+  const Decomposition decomposition = shared_box();
+  return grain_seeds(populations, decomposition.box(),
+                     [&](const Vec3& centre) { return decomposition.reaches(rank, centre, reach); });
+}
+
+bool same(const GrainSeed& a, const GrainSeed& b) {
+  return a.id == b.id && a.position == b.position && a.velocity == b.velocity && a.radius == b.radius &&
+         a.density == b.density && a.motion == b.motion && a.assembly == b.assembly && a.material == b.material;
+}
+
+TEST(SeedsOfRank, AreItsShareOfAllSeeds) {
+  const std::vector<Population> populations = four_kinds();
+  const Decomposition decomposition = shared_box();
+  const PeriodicBox box = decomposition.box();
+  const GrainSeeds all = grain_seeds(populations, box);
+  ASSERT_TRUE(all.whole);
+  ASSERT_EQ(all.grains.size(), 156u);
+  for (int rank = 0; rank < decomposition.ranks(); ++rank) {
+    const GrainSeeds mine = of_rank(populations, rank);
+    EXPECT_FALSE(mine.whole);
+    std::map<GlobalId, GrainSeed> known;
+    for (const GrainSeed& grain : mine.grains) known[grain.id] = grain;
+    for (const GrainSeed& grain : all.grains) {
+      const bool wanted = decomposition.reaches(rank, box.wrapped(grain.position), reach) || grain.assembly >= 0;
+      ASSERT_EQ(known.count(grain.id), wanted ? 1u : 0u);
+      if (wanted) EXPECT_TRUE(same(known[grain.id], grain)) << grain.id;
+    }
+  }
+}
+
+GrainParameters usual() {
+  GrainParameters p;
+  p.contact = test::glass(0.9);
+  p.assemblies = assemblies_of(four_kinds());
+  p.time_step = 5e-6;
+  p.sub_steps = 20;
+  p.skin = 1e-3;
+  return p;
+}
+
+// The lists of a rank make the same grains as the whole lists, and know what there is of the whole.
+TEST(SeedsOfRank, BeginTheSameRun) {
+  const std::vector<Population> populations = four_kinds();
+  const Decomposition decomposition = shared_box();
+  const int me = rank_of(MPI_COMM_WORLD);
+  GrainDynamics whole(decomposition, MPI_COMM_WORLD, usual(), grain_seeds(populations, decomposition.box()));
+  GrainDynamics parts(decomposition, MPI_COMM_WORLD, usual(), of_rank(populations, me));
+  EXPECT_EQ(parts.global_count(), 156);
+  EXPECT_EQ(parts.body_count(), whole.body_count());
+  for (int step = 0; step < 20; ++step)
+    for (GrainDynamics* grains : {&whole, &parts}) {
+      grains->prepare();
+      grains->advance(20);
+      grains->refresh_ghosts();
+    }
+  ASSERT_EQ(parts.store().id, whole.store().id);
+  EXPECT_EQ(parts.store().position, whole.store().position);
+  EXPECT_EQ(parts.store().velocity, whole.store().velocity);
+}
+
+// Two grains overlap where one rank or two see it; all ranks say so.
+TEST(SeedsOfRank, AreRefusedOnAllRanks) {
+  std::vector<Population> populations{glass(2, PlacementPattern::uniform, 0.0, 0.06)};
+  populations[0].placement.region.reset();
+  populations[0].placement.positions = {Vec3(0.0599, 0.02, 0.03), Vec3(0.003, 0.02, 0.03)};
+  std::string message;
+  try {
+    const GrainDynamics grains(shared_box(), MPI_COMM_WORLD, usual(), of_rank(populations, rank_of(MPI_COMM_WORLD)));
+  } catch (const InputError& error) {
+    message = error.what();
+  }
+  EXPECT_NE(message.find("grain 1 at"), std::string::npos) << message;
+  EXPECT_NE(message.find("overlap by 0.0019 m"), std::string::npos) << message;
+}
+
+}  // namespace
+}  // namespace thalweg::dem
