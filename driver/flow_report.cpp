@@ -45,14 +45,19 @@ void add_times(const Case& c, const FlowEstimate& flow, Lines& lines) {
       flow.spin_up, c.run.until / own, name));
 }
 
+// "no slope" where even a vertical one would not give it.
+std::string slope_text(const FlowNumbers& flow, double shields) {
+  const double slope = slope_for(flow, shields);
+  return fmt::format("{} for {:g}", std::isfinite(slope) ? fmt::format("{:.3g}", slope) : "no slope", shields);
+}
+
 void add_slope(const FlowNumbers& flow, Lines& lines) {
   lines.push_back(fmt::format("Shields    {:.4g} from depth and slope", flow.shields_depth) +
                   (flow.side_walls ? fmt::format("; {:.4g} from the hydraulic radius between the side walls",
                                                  flow.shields_hydraulic)
                                    : ""));
-  lines.push_back(
-      fmt::format("slope      is {:.4g} times the Shields number at this depth: {:.3g} for 0.03, {:.3g} for 0.1",
-                  flow.slope / flow.shields_hydraulic, slope_for(flow, 0.03), slope_for(flow, 0.1)));
+  lines.push_back(fmt::format("slope      is {:.4g} times the Shields number at this depth: {}, {}",
+                              flow.slope / flow.shields_hydraulic, slope_text(flow, 0.03), slope_text(flow, 0.1)));
   lines.push_back(fmt::format("Reynolds   {:.4g} of a grain at the friction velocity {:.3g} m/s",
                               flow.particle_reynolds, flow.friction_velocity));
 }
