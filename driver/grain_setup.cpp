@@ -43,6 +43,9 @@ std::vector<dem::Plane> planes_of(const Case& c, const PeriodicBox& box, const d
   return planes;
 }
 
+// As the case gives it, on any number of ranks: cells times spacing may differ from it in the last bit.
+PeriodicBox box_of(const Case& c) { return {c.domain.size, periodic_axes(c.domain)}; }
+
 }  // namespace
 
 dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box) {
@@ -63,16 +66,14 @@ dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box) {
   return parameters;
 }
 
-dem::GrainSeeds grain_seeds(const Case& c) {
-  return dem::grain_seeds(c.grains, {c.domain.size, periodic_axes(c.domain)});
-}
+dem::GrainSeeds grain_seeds(const Case& c) { return dem::grain_seeds(c.grains, box_of(c)); }
 
 dem::GrainSeeds grain_seeds(const Case& c, const Decomposition& decomposition, int rank) {
   if (decomposition.ranks() == 1) return grain_seeds(c);
   double extent = 0.0;
   for (const dem::Population& population : c.grains) extent = std::max(extent, population.largest_extent());
   const double reach = (1.0 + dem::allowed_initial_overlap) * extent;  // of two centres that touch
-  return dem::grain_seeds(c.grains, decomposition.box(),
+  return dem::grain_seeds(c.grains, box_of(c),
                           [&](const Vec3& centre) { return decomposition.reaches(rank, centre, reach); });
 }
 

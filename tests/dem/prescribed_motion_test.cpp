@@ -116,7 +116,7 @@ TEST(MovingPlane, GrainsMayFollowItOutOfTheBoxButNotBeyondIt) {
   thalweg::test::MemoryArchive archive;
   thalweg::test::MemoryWriter writer(archive, MPI_COMM_SELF);
   lowered.save(writer);
-  GrainDynamics loaded(test::cube(), MPI_COMM_SELF, p, {});
+  GrainDynamics loaded(test::cube(), MPI_COMM_SELF, p, GrainSeeds{});
   thalweg::test::MemoryReader reader(archive);
   loaded.load(reader);
   EXPECT_EQ(loaded.walls()[0].point, lowered.walls()[0].point);
