@@ -11,7 +11,7 @@ namespace thalweg::dem {
 
 namespace {
 
-constexpr int motion_tag = 4101, attached_tag = 4102, values_tag = 4103;
+constexpr int motion_tag = 4101, attached_tag = 4102, values_tag = 4103, followed_tag = 4104;
 
 struct GhostRow {
   GlobalId id;
@@ -60,7 +60,7 @@ void GhostExchange::build(GrainStore& store) {
   std::vector<double> columns;
   std::vector<int> row_to, column_to;
   for (const int rank : candidates_) {
-    Neighbour neighbour{rank, {}};
+    Neighbour neighbour{rank, {}, {}};
     for (std::size_t s = 0; s < store.owned; ++s) {
       if (!decomposition_.reaches(rank, store.position[s], reach_)) continue;
       neighbour.send.push_back(static_cast<std::uint32_t>(s));
@@ -84,48 +84,79 @@ void GhostExchange::build(GrainStore& store) {
   auto neighbour = neighbours_.begin();
   for (const GhostRow& g : ghosts) {
     while (neighbour->rank != g.owner) ++neighbour;
-    if (neighbour->count++ == 0) neighbour->first = store.total();
+    neighbour->ghosts.push_back(static_cast<std::uint32_t>(store.total()));
     store.append(g.id, g.radius, g.mass, static_cast<Motion>(g.motion), Vec3(g.value[0].data()),
                  static_cast<int>(g.material));
     store.clump.back() = g.clump;
     store.velocity.back() = Vec3(g.value[1].data());
     store.angular_velocity.back() = Vec3(g.value[2].data());
   }
-  std::erase_if(neighbours_, [](const Neighbour& n) { return n.send.empty() && n.count == 0; });
-  motion_ = PackedExchange(communicator_, messages(motion_tag, sizeof(MotionRow)));
+  std::erase_if(neighbours_, [](const Neighbour& n) { return n.send.empty() && n.ghosts.empty(); });
+  motion_ = PackedExchange(communicator_, messages(neighbours_, motion_tag, sizeof(MotionRow)));
+  followed_ = neighbours_;
+  followed_motion_ = PackedExchange(communicator_, messages(followed_, followed_tag, sizeof(MotionRow)));
   if (store.attached_width > 0) {
     const std::vector<double> ghost_columns = exchange_rows(communicator_, columns, column_to);
     std::copy(ghost_columns.begin(), ghost_columns.end(),
               store.attached.begin() + static_cast<std::ptrdiff_t>(store.owned * store.attached_width));
-    attached_ = PackedExchange(communicator_, messages(attached_tag, sizeof(double) * store.attached_width));
+    attached_ = PackedExchange(communicator_, messages(neighbours_, attached_tag, sizeof(double) * store.attached_width));
   }
 }
 
-std::vector<PackedExchange::Neighbour> GhostExchange::messages(int tag, std::size_t bytes_per_grain) const {
+std::vector<PackedExchange::Neighbour> GhostExchange::messages(const std::vector<Neighbour>& neighbours, int tag,
+                                                               std::size_t bytes_per_grain) {
   std::vector<PackedExchange::Neighbour> list;
-  for (const Neighbour& n : neighbours_)
-    list.push_back({n.rank, tag, tag, n.send.size() * bytes_per_grain, n.count * bytes_per_grain});
+  for (const Neighbour& n : neighbours)
+    list.push_back({n.rank, tag, tag, n.send.size() * bytes_per_grain, n.ghosts.size() * bytes_per_grain});
   return list;
+}
+
+void GhostExchange::follow(std::span<const PairContact> pairs, const GrainStore& store) {
+  std::vector<std::uint32_t> neighbour_of(store.total());  // of a ghost: the number of the one that owns it
+  followed_.clear();
+  for (const Neighbour& n : neighbours_) {
+    for (const std::uint32_t ghost : n.ghosts) neighbour_of[ghost] = static_cast<std::uint32_t>(followed_.size());
+    followed_.push_back({n.rank, {}, {}});
+  }
+  for (const PairContact& pair : pairs) {
+    if (!store.is_ghost(pair.first) && !store.is_ghost(pair.second)) continue;
+    const auto [own, ghost] = std::minmax(pair.first, pair.second);  // ghosts come behind
+    Neighbour& neighbour = followed_[neighbour_of[ghost]];
+    neighbour.send.push_back(own);
+    neighbour.ghosts.push_back(ghost);
+  }
+  // In the order of slots, which is that of ids on both sides.
+  const auto each_once = [](std::vector<std::uint32_t>& slots) {
+    std::sort(slots.begin(), slots.end());
+    slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
+  };
+  for (Neighbour& n : followed_) {
+    each_once(n.send);
+    each_once(n.ghosts);
+  }
+  std::erase_if(followed_, [](const Neighbour& n) { return n.send.empty(); });
+  followed_motion_ = PackedExchange(communicator_, messages(followed_, followed_tag, sizeof(MotionRow)));
 }
 
 // read(slot) gives what is sent of a grain, write(slot, row) takes it.
 template <typename Read, typename Write>
-void GhostExchange::exchange_motion(Read&& read, Write&& write) {
-  for (std::size_t n = 0; n < neighbours_.size(); ++n) {
-    auto* row = motion_.send_buffer<MotionRow>(n);
-    for (const std::uint32_t s : neighbours_[n].send) *row++ = read(s);
+void GhostExchange::exchange_motion(const std::vector<Neighbour>& neighbours, PackedExchange& exchange, Read&& read,
+                                    Write&& write) {
+  for (std::size_t n = 0; n < neighbours.size(); ++n) {
+    auto* row = exchange.send_buffer<MotionRow>(n);
+    for (const std::uint32_t s : neighbours[n].send) *row++ = read(s);
   }
-  motion_.start();
-  motion_.finish();
-  for (std::size_t n = 0; n < neighbours_.size(); ++n) {
-    const auto* row = motion_.receive_buffer<MotionRow>(n);
-    const std::size_t end = neighbours_[n].first + neighbours_[n].count;
-    for (std::size_t s = neighbours_[n].first; s < end; ++s) write(s, *row++);
+  exchange.start();
+  exchange.finish();
+  for (std::size_t n = 0; n < neighbours.size(); ++n) {
+    const auto* row = exchange.receive_buffer<MotionRow>(n);
+    for (const std::uint32_t s : neighbours[n].ghosts) write(s, *row++);
   }
 }
 
 void GhostExchange::refresh(GrainStore& store) {
   exchange_motion(
+      neighbours_, motion_,
       [&](std::size_t s) -> MotionRow {
         const Vec3 &x = store.position[s], &v = store.velocity[s], &w = store.angular_velocity[s];
         return {{x[0], x[1], x[2], v[0], v[1], v[2], w[0], w[1], w[2]}};
@@ -139,6 +170,7 @@ void GhostExchange::refresh(GrainStore& store) {
 
 void GhostExchange::refresh(MovingGrains& grains) {
   exchange_motion(
+      followed_, followed_motion_,
       [&](std::size_t s) -> MotionRow {
         const Row &x = grains[s].position, &v = grains[s].velocity, &w = grains[s].spin;
         return {{x[0], x[1], x[2], v[0], v[1], v[2], w[0], w[1], w[2]}};
@@ -161,9 +193,9 @@ void GhostExchange::refresh_attached(GrainStore& store) {
   attached_.start();
   attached_.finish();
   for (std::size_t n = 0; n < neighbours_.size(); ++n) {
-    const std::size_t count = neighbours_[n].count * store.attached_width;
-    std::copy_n(attached_.receive_buffer<double>(n), count,
-                store.attached.begin() + static_cast<std::ptrdiff_t>(neighbours_[n].first * store.attached_width));
+    const auto* value = attached_.receive_buffer<double>(n);
+    for (const std::uint32_t s : neighbours_[n].ghosts)
+      for (double& column : store.attached_of(s)) column = *value++;
   }
 }
 
@@ -173,13 +205,15 @@ void GhostExchange::add_to_owners(std::vector<std::int64_t>& values, int width) 
   if (!values_ready_) {
     std::vector<PackedExchange::Neighbour> list;
     for (const Neighbour& n : neighbours_)
-      list.push_back({n.rank, values_tag, values_tag, n.count * grain_bytes, n.send.size() * grain_bytes});
+      list.push_back({n.rank, values_tag, values_tag, n.ghosts.size() * grain_bytes, n.send.size() * grain_bytes});
     values_ = PackedExchange(communicator_, list);
     values_ready_ = true;
   }
-  for (std::size_t n = 0; n < neighbours_.size(); ++n)
-    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(neighbours_[n].first * width),
-                neighbours_[n].count * width, values_.send_buffer<std::int64_t>(n));
+  for (std::size_t n = 0; n < neighbours_.size(); ++n) {
+    auto* value = values_.send_buffer<std::int64_t>(n);
+    for (const std::uint32_t s : neighbours_[n].ghosts)
+      value = std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(s) * width, width, value);
+  }
   values_.start();
   values_.finish();
   for (std::size_t n = 0; n < neighbours_.size(); ++n) {

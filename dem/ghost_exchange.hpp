@@ -1,14 +1,17 @@
-// Which of a rank's grains are ghosts elsewhere, and the one packed message a neighbour that keeps them up to date.
+// Which of a rank's grains are ghosts elsewhere, and the one packed message a neighbour that keeps them up to date. In
+// sub-steps only those that may touch a grain of the other rank are sent.
 #pragma once
 
 #include "core/decomposition.hpp"
 #include "core/packed_exchange.hpp"
+#include "dem/contact_list.hpp"
 #include "dem/grain_store.hpp"
 #include "dem/moving_grains.hpp"
 
 #include <mpi.h>
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace thalweg::dem {
@@ -24,6 +27,11 @@ public:
   // Positions must be wrapped. Collective.
   void build(GrainStore& store);
 
+  // From now on until the next build() refresh(MovingGrains&) leaves out ghosts that are in none of these pairs. They are
+  // all pairs of an owned grain with another one up to some gap, on every rank up to the same: then both ranks of a pair
+  // know of it, and what one sends is what the other expects.
+  void follow(std::span<const PairContact> pairs, const GrainStore& store);
+
   // Brings the ghosts' position, velocity and angular velocity up to date.
   void refresh(GrainStore& store);
   void refresh(MovingGrains& grains);
@@ -38,20 +46,23 @@ public:
 private:
   struct Neighbour {
     int rank;
-    std::vector<std::uint32_t> send;   // owned slots that are its ghosts
-    std::size_t first = 0, count = 0;  // slots of the ghosts it owns
+    std::vector<std::uint32_t> send;    // owned slots that are its ghosts
+    std::vector<std::uint32_t> ghosts;  // slots of those it owns
   };
 
+  static std::vector<PackedExchange::Neighbour> messages(const std::vector<Neighbour>& neighbours, int tag,
+                                                         std::size_t bytes_per_grain);
   template <typename Read, typename Write>
-  void exchange_motion(Read&& read, Write&& write);
-  std::vector<PackedExchange::Neighbour> messages(int tag, std::size_t bytes_per_grain) const;
+  static void exchange_motion(const std::vector<Neighbour>& neighbours, PackedExchange& exchange, Read&& read,
+                              Write&& write);
 
   Decomposition decomposition_;
   MPI_Comm communicator_;
   double reach_;
   std::vector<int> candidates_;        // ranks whose block is within reach of this rank's
-  std::vector<Neighbour> neighbours_;  // ranks grains are sent to or received from
-  PackedExchange motion_, attached_, values_;
+  std::vector<Neighbour> neighbours_;  // ranks grains are sent to or received from; ghosts side by side
+  std::vector<Neighbour> followed_;    // the same without what refresh(MovingGrains&) leaves out
+  PackedExchange motion_, followed_motion_, attached_, values_;
   bool values_ready_ = false;  // values_ fits the present ghosts
 };
 

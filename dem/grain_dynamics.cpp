@@ -93,6 +93,7 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
   ghosts_.refresh(moving_);
   evaluate_forces(0.0);
   moving_.unload(store_);
+  ghosts_.refresh(store_);  // those that touch nothing have the velocities of their assemblies, too
 }
 
 void GrainDynamics::take_seeds(GrainSeeds seeds) {
@@ -163,7 +164,8 @@ double GrainDynamics::largest_prescribed_speed() const {
 double GrainDynamics::ghost_reach() const {
   // A grain may come half a skin nearer before the ghosts are made anew.
   const double known = std::max(parameters_.ghost_width, parameters_.field ? parameters_.field->reach() : 0.0);
-  return std::max(known + 0.5 * parameters_.skin, 2.0 * largest_radius_ + list_range());
+  // A little further than pairs are listed, so that rounding cannot hide one from the rank of one of its grains.
+  return std::max(known + 0.5 * parameters_.skin, 1.001 * (2.0 * largest_radius_ + list_range()));
 }
 
 // The gap up to which pairs are listed: what acts across a gap must be known there until the list is made anew.
@@ -280,6 +282,7 @@ void GrainDynamics::build_dependents(const ContactHistories& histories) {
   assemblies_.find(store_);
   listed_planes_ = planes_;
   list_ = find_contacts(store_, box_, planes_, materials_, list_range(), largest_radius_);
+  if (!parameters_.field) ghosts_.follow(list_.pairs, store_);  // a field may look further than contacts
   restore_histories(list_, store_, histories);
   if (parameters_.field) parameters_.field->find_neighbours(store_, parameters_.skin, clumps_);
   const auto owned_end = static_cast<std::ptrdiff_t>(store_.owned);
