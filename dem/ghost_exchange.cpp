@@ -99,7 +99,8 @@ void GhostExchange::build(GrainStore& store) {
     const std::vector<double> ghost_columns = exchange_rows(communicator_, columns, column_to);
     std::copy(ghost_columns.begin(), ghost_columns.end(),
               store.attached.begin() + static_cast<std::ptrdiff_t>(store.owned * store.attached_width));
-    attached_ = PackedExchange(communicator_, messages(neighbours_, attached_tag, sizeof(double) * store.attached_width));
+    attached_ =
+        PackedExchange(communicator_, messages(neighbours_, attached_tag, sizeof(double) * store.attached_width));
   }
 }
 

@@ -27,9 +27,9 @@ public:
   // Positions must be wrapped. Collective.
   void build(GrainStore& store);
 
-  // From now on until the next build() refresh(MovingGrains&) leaves out ghosts that are in none of these pairs. They are
-  // all pairs of an owned grain with another one up to some gap, on every rank up to the same: then both ranks of a pair
-  // know of it, and what one sends is what the other expects.
+  // From now on until the next build() refresh(MovingGrains&) leaves out ghosts that are in none of these pairs. They
+  // are all pairs of an owned grain with another one up to some gap, on every rank up to the same: then both ranks of a
+  // pair know of it, and what one sends is what the other expects.
   void follow(std::span<const PairContact> pairs, const GrainStore& store);
 
   // Brings the ghosts' position, velocity and angular velocity up to date.
