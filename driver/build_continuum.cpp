@@ -4,7 +4,7 @@
 
 namespace thalweg::driver {
 
-std::unique_ptr<System> build_continuum_system(const Case& c, MPI_Comm communicator, const Index3&, Start) {
+std::unique_ptr<System> build_continuum_system(const Case& c, MPI_Comm communicator, const Decomposition&, Start) {
   return std::make_unique<continuum::ContinuumSystem>(communicator, column_of(c));
 }
 

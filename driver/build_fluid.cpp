@@ -9,16 +9,16 @@ namespace thalweg::driver {
 namespace {
 
 template <typename Real>
-std::unique_ptr<System> build_fluid(const Case& c, MPI_Comm communicator, const Index3& layout) {
-  return std::make_unique<coupling::FluidSystem<Real>>(std::make_unique<Decomposition>(decomposition_of(c, layout)),
-                                                       communicator, fluid_parameters(c), solid_shapes(c));
+std::unique_ptr<System> build_fluid(const Case& c, MPI_Comm communicator, const Decomposition& cuts) {
+  return std::make_unique<coupling::FluidSystem<Real>>(std::make_unique<Decomposition>(cuts), communicator,
+                                                       fluid_parameters(c), solid_shapes(c));
 }
 
 }  // namespace
 
-std::unique_ptr<System> build_fluid_system(const Case& c, MPI_Comm communicator, const Index3& layout, Start) {
-  return c.fluid.precision == coupling::Precision::single ? build_fluid<float>(c, communicator, layout)
-                                                          : build_fluid<double>(c, communicator, layout);
+std::unique_ptr<System> build_fluid_system(const Case& c, MPI_Comm communicator, const Decomposition& cuts, Start) {
+  return c.fluid.precision == coupling::Precision::single ? build_fluid<float>(c, communicator, cuts)
+                                                          : build_fluid<double>(c, communicator, cuts);
 }
 
 }  // namespace thalweg::driver

@@ -22,8 +22,8 @@ std::vector<std::string> measured_walls(const Case& c) {
 
 }  // namespace
 
-std::unique_ptr<System> build_grains_system(const Case& c, MPI_Comm communicator, const Index3& layout, Start start) {
-  const Decomposition decomposition = decomposition_of(c, layout);
+std::unique_ptr<System> build_grains_system(const Case& c, MPI_Comm communicator, const Decomposition& decomposition,
+                                            Start start) {
   dem::DryParameters parameters;
   parameters.grains = grain_parameters(c, decomposition.box());
   parameters.gravity = gravity_vector(c.gravity);

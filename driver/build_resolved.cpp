@@ -11,8 +11,8 @@ namespace thalweg::driver {
 namespace {
 
 template <typename Real>
-std::unique_ptr<System> build_resolved(const Case& c, MPI_Comm communicator, const Index3& layout, Start start) {
-  auto decomposition = std::make_unique<Decomposition>(decomposition_of(c, layout));
+std::unique_ptr<System> build_resolved(const Case& c, MPI_Comm communicator, const Decomposition& cuts, Start start) {
+  auto decomposition = std::make_unique<Decomposition>(cuts);
   coupling::ResolvedParameters parameters;
   static_cast<coupling::FluidParameters&>(parameters) = fluid_parameters(c);
   parameters.link_tolerance = c.coupling.link_tolerance;
@@ -41,9 +41,10 @@ std::unique_ptr<System> build_resolved(const Case& c, MPI_Comm communicator, con
 
 }  // namespace
 
-std::unique_ptr<System> build_resolved_system(const Case& c, MPI_Comm communicator, const Index3& layout, Start start) {
-  return c.fluid.precision == coupling::Precision::single ? build_resolved<float>(c, communicator, layout, start)
-                                                          : build_resolved<double>(c, communicator, layout, start);
+std::unique_ptr<System> build_resolved_system(const Case& c, MPI_Comm communicator, const Decomposition& cuts,
+                                              Start start) {
+  return c.fluid.precision == coupling::Precision::single ? build_resolved<float>(c, communicator, cuts, start)
+                                                          : build_resolved<double>(c, communicator, cuts, start);
 }
 
 }  // namespace thalweg::driver

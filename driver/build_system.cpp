@@ -11,7 +11,7 @@ namespace thalweg::driver {
 
 namespace {
 
-using Builder = std::unique_ptr<System> (*)(const Case&, MPI_Comm, const Index3&, Start);
+using Builder = std::unique_ptr<System> (*)(const Case&, MPI_Comm, const Decomposition&, Start);
 
 struct Entry {
   SystemKind kind;
@@ -59,12 +59,12 @@ Decomposition decomposition_of(const Case& c, const Index3& layout) {
   return {cells_of(c.domain), c.domain.spacing, periodic_axes(c.domain), layout};
 }
 
-std::unique_ptr<System> build_system(const Case& c, MPI_Comm communicator, const Index3& layout, Start start) {
+std::unique_ptr<System> build_system(const Case& c, MPI_Comm communicator, const Decomposition& cuts, Start start) {
   const auto entry = std::find_if(std::begin(builders), std::end(builders),
                                   [&](const Entry& candidate) { return candidate.kind == c.system; });
   if (entry == std::end(builders))
     throw InputError(fmt::format("system: {} cannot be run by this build of the program.", name_of(c.system)));
-  return entry->build(c, communicator, layout, start);
+  return entry->build(c, communicator, cuts, start);
 }
 
 }  // namespace thalweg::driver

@@ -16,21 +16,25 @@ namespace thalweg::driver {
 // every rank, or blocks would get too small.
 Index3 choose_layout(const Case& c, int ranks, const std::optional<Index3>& requested);
 
-// Cells, axes and blocks of the case's domain.
+// Cells, axes and blocks of the case's domain, cut evenly.
 Decomposition decomposition_of(const Case& c, const Index3& layout);
 
 // What a system is built with: the grains of the case where it puts them, or none, because a checkpoint brings them.
 enum class Start { as_placed, from_checkpoint };
 
 // The system the case names, at its initial state, or to be loaded. Throws InputError. Collective.
-std::unique_ptr<System> build_system(const Case& c, MPI_Comm communicator, const Index3& layout,
+std::unique_ptr<System> build_system(const Case& c, MPI_Comm communicator, const Decomposition& cuts,
                                      Start start = Start::as_placed);
 
 // One builder a system; build_system() chooses.
-std::unique_ptr<System> build_resolved_system(const Case& c, MPI_Comm communicator, const Index3& layout, Start start);
-std::unique_ptr<System> build_fluid_system(const Case& c, MPI_Comm communicator, const Index3& layout, Start start);
-std::unique_ptr<System> build_grains_system(const Case& c, MPI_Comm communicator, const Index3& layout, Start start);
-std::unique_ptr<System> build_continuum_system(const Case& c, MPI_Comm communicator, const Index3& layout, Start start);
+std::unique_ptr<System> build_resolved_system(const Case& c, MPI_Comm communicator, const Decomposition& cuts,
+                                              Start start);
+std::unique_ptr<System> build_fluid_system(const Case& c, MPI_Comm communicator, const Decomposition& cuts,
+                                           Start start);
+std::unique_ptr<System> build_grains_system(const Case& c, MPI_Comm communicator, const Decomposition& cuts,
+                                            Start start);
+std::unique_ptr<System> build_continuum_system(const Case& c, MPI_Comm communicator, const Decomposition& cuts,
+                                               Start start);
 
 // The name of a kind of system in a case file: "resolved", "fluid", "grains".
 const char* name_of(SystemKind kind);

@@ -47,7 +47,7 @@ CoreSpeed time_steps(System& system) {
 
 CoreSpeed measure_core_speed(const Case& c, MPI_Comm communicator) {
   const Sample sample = sample_of(c);
-  const std::unique_ptr<System> system = build_system(sample.c, MPI_COMM_SELF, {1, 1, 1});
+  const std::unique_ptr<System> system = build_system(sample.c, MPI_COMM_SELF, decomposition_of(sample.c, {1, 1, 1}));
   MPI_Barrier(communicator);
   const CoreSpeed own = time_steps(*system);
   const double shares = size_of(communicator) * sample.share;

@@ -104,6 +104,12 @@ void check_initial_sources(const Case& c) {
     });
 }
 
+std::filesystem::path initial_grains(const Case& c) {
+  std::filesystem::path state;
+  about_source(c, InitialField::grains, [&](const std::filesystem::path& path) { state = path; });
+  return state;
+}
+
 void take_initial_fields(MPI_Comm communicator, const Case& c, System& system) {
   // The fluid last: what it is taken for depends on where the grains are.
   for (const InitialField field : {InitialField::grains, InitialField::fluid})

@@ -6,11 +6,16 @@
 
 #include <mpi.h>
 
+#include <filesystem>
+
 namespace thalweg::driver {
 
 // Throws InputError where a run that the case begins from is missing, or lacks what is to be taken from it: a fluid, or
 // the grains that the case describes, of the same size, mass, motion and material. Any process may ask alone.
 void check_initial_sources(const Case& c);
+
+// The state that the grains of a run come from; empty: the case places them. Any process may ask alone.
+std::filesystem::path initial_grains(const Case& c);
 
 // Grains and fluid of the system from where the case says. Throws InputError where they do not fit. Collective.
 void take_initial_fields(MPI_Comm communicator, const Case& c, System& system);

@@ -24,6 +24,7 @@
 #include "driver/summary.hpp"
 #include "driver/version.hpp"
 #include "driver/watch_rules.hpp"
+#include "driver/work_cuts.hpp"
 #include "io/atomic_file.hpp"
 #include "io/bed_file.hpp"
 #include "loop/progress.hpp"
@@ -95,6 +96,7 @@ void print_header(const Case& c, RunIdentity& identity, const System& system, co
                   identity.system, identity.ranks, identity.ranks == 1 ? "" : "s", identity.layout[0],
                   identity.layout[1], identity.layout[2], system.snapshot().grains.body_count(), system.cells(),
                   system.time_step(), c.run.until / system.time_step(), c.run.until));
+  if (const std::string cuts = cuts_text(c, *system.snapshot().decomposition); !cuts.empty()) log.line(cuts);
   for (const std::string& damage : beginning.damage) log.line("warning: " + damage);
   if (!beginning.checkpoint.empty())
     log.line(fmt::format("going on from {} at {:.6g} s", beginning.checkpoint.string(), system.time()));
@@ -235,8 +237,10 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   about_case(command.path, [&] { refuse_without_memory(c, communicator, layout); });
   const double bandwidth = has_fluid(c) ? measure_bandwidth(communicator) : 0.0;  // while there is room for its array
   forget_largest_memory();
+  const fs::path state = restarts ? places.checkpoints.front() : initial_grains(c);
+  const Decomposition cuts = about_case(command.path, [&] { return cuts_of_run(c, communicator, layout, state); });
   const std::unique_ptr<System> system =
-      about_case(command.path, [&] { return build_system(c, communicator, layout, start); });
+      about_case(command.path, [&] { return build_system(c, communicator, cuts, start); });
   Observers observers = make_observers(c.analysis.observers, run_facts(c),
                                        {communicator, *system->snapshot().decomposition, system->time_step()});
   if (!restarts)

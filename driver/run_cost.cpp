@@ -20,18 +20,18 @@ constexpr double model_fluid_steps_per_second = 4e6;  // all grains moving; thre
 // have twice while they sort them.
 constexpr double program_bytes = 49e6;
 constexpr double flag_bytes = 16.0, link_bytes = 32.0, grain_bytes = 1150.0, row_bytes = 350.0;
-constexpr double links_per_square_cell = 15.8;  // links of a sphere over its diameter in cells squared
 
 double link_count(const Case& c) {
   double links = 0.0;
   for (const dem::Population& population : c.grains) {
-    const double cells_across = population.diameter / c.domain.spacing;
-    links += static_cast<double>(population.count) * links_per_square_cell * cells_across * cells_across;
+    links += static_cast<double>(population.count) * links_of_sphere(population.diameter / c.domain.spacing);
   }
   return has_fluid(c) ? links : 0.0;
 }
 
 }  // namespace
+
+double links_of_sphere(double cells_across) { return 15.8 * cells_across * cells_across; }
 
 double bytes_per_value(const Case& c) { return c.fluid.precision == coupling::Precision::single ? 4.0 : 8.0; }
 double bytes_of_cell(const Case& c) { return 19.0 * bytes_per_value(c) + flag_bytes; }

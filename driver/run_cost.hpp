@@ -24,4 +24,7 @@ double bytes_of_grain(int ranks);
 double bytes_of_placing(const Case& c);
 double bytes_of_links(const Case& c);
 
+// Links of a sphere so many cells wide.
+double links_of_sphere(double cells_across);
+
 }  // namespace thalweg::driver

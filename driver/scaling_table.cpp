@@ -2,6 +2,7 @@
 
 #include "driver/build_system.hpp"
 #include "driver/disk_space.hpp"
+#include "driver/work_cuts.hpp"
 #include "loop/progress.hpp"
 
 #include <fmt/format.h>
@@ -14,7 +15,7 @@ namespace {
 
 std::string row(const Case& c, int ranks, const CoreSpeed& speed, const Network& network) {
   const Index3 layout = choose_layout(c, ranks, std::nullopt);
-  const SlowestRank slowest = slowest_rank(c, decomposition_of(c, layout), speed, network);
+  const SlowestRank slowest = slowest_rank(c, planned_cuts(c, layout), speed, network);
   const RankWork& work = slowest.work;
   const double step = slowest.times.sum(), seconds = step * std::ceil(c.run.until / step_time(c) * (1.0 - 1e-12));
   return fmt::format(

@@ -57,11 +57,14 @@ analysis:
             self.assertEqual(self.last_checkpoint(out).read_bytes(), reference, out)
             self.assertEqual((self.folder / out / "series.csv").read_bytes(),
                              (self.folder / "one" / "series.csv").read_bytes(), out)
+        # Most of the work is in the lower half, where the bed will be.
+        self.assertIn("blocks share the work, not the cells: they end along z at cells",
+                      (self.folder / "on_1x1x2/run.log").read_text())
 
     def test_a_restart_on_other_ranks_changes_nothing(self):
         self.run_well("run", self.case, "--out", "straight")
         half_way = self.folder / "straight/checkpoints/step_300.h5"
-        self.run_well("run", self.case, "--out", "again", "--restart", half_way, ranks=2)
+        self.run_well("run", self.case, "--out", "again", "--restart", half_way, "--layout", "1,1,2", ranks=2)
         self.assertEqual(self.last_checkpoint("again").read_bytes(), self.last_checkpoint("straight").read_bytes())
 
     def test_looking_at_every_field_changes_nothing(self):
