@@ -120,6 +120,7 @@ private:
   double mass_owed() const;
   void set_gravity_of(std::int64_t step);
   void write_momentum_book();
+  void update_links_behind_halo();
   void sweep_behind_links();
   void collect_loads();
   void apply_loads();

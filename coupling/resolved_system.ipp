@@ -155,6 +155,22 @@ void ResolvedSystem<Real, S>::sweep_behind_links() {
                               moments);
 }
 
+// Links follow from the map of the cells alone, so they are rebuilt while the halo is on its way.
+template <typename Real, GrainShape S>
+void ResolvedSystem<Real, S>::update_links_behind_halo() {
+  {
+    const auto scope = timer_.measure(phases_.halo);
+    fluid_.start_halo_exchange();
+  }
+  {
+    const auto scope = timer_.measure(phases_.map);
+    link_builder_.update(map_, links_);
+    hidden_links_.update(map_);
+  }
+  const auto scope = timer_.measure(phases_.halo);
+  fluid_.finish_halo_exchange();
+}
+
 template <typename Real, GrainShape S>
 void ResolvedSystem<Real, S>::advance() {
   step_totals_ = {};
@@ -175,8 +191,6 @@ void ResolvedSystem<Real, S>::advance() {
     update_map();
     map_.settle();
     account_for_covered_cells();
-    link_builder_.update(map_, links_);
-    hidden_links_.update(map_);
   }
   {
     const auto scope = timer_.measure(phases_.refill);
@@ -187,10 +201,7 @@ void ResolvedSystem<Real, S>::advance() {
     step_totals_.refilled_angular_momentum = totals.angular_momentum;
   }
   set_gravity_of(step_ + 1);
-  {
-    const auto scope = timer_.measure(phases_.halo);
-    fluid_.exchange_halo();
-  }
+  update_links_behind_halo();
   {
     const auto scope = timer_.measure(phases_.walls);
     fluid_.apply_walls();
