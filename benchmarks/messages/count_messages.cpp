@@ -1,5 +1,6 @@
-// Counts what a program sends to other ranks: preloaded, it stands in front of the MPI library (its profiling interface)
-// and prints a line for each rank at the end. Persistent and plain sends count, collective operations do not.
+// Counts what a program sends to other ranks: preloaded, it stands in front of the MPI library (its profiling
+// interface) and prints a line for each rank at the end. Persistent and plain sends count, collective operations do
+// not.
 #include <mpi.h>
 
 #include <cstdint>
