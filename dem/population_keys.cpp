@@ -134,7 +134,8 @@ void describe(SectionVisitor& visit, PopulationKeys& grains) {
   visit.require(!grains.fixed || (!grains.prescribed_velocity && !grains.prescribed_angular_velocity), "fixed",
                 "a fixed grain cannot have a prescribed velocity; give one or the other");
   visit.require(!grains.fixed || (grains.velocity.isZero(0.0) && grains.angular_velocity.isZero(0.0)), "fixed",
-                "a fixed grain cannot start with a velocity; remove fixed or the velocity");
+                "a fixed grain cannot start with a velocity; remove fixed or the velocity, or in place of both give "
+                "prescribed_velocity or prescribed_angular_velocity, which hold it");
   visit.require(!grains.prescribed_velocity || grains.velocity.isZero(0.0), "velocity",
                 "prescribed_velocity already says how the grains move; remove one of the two");
   visit.require(!grains.prescribed_angular_velocity || grains.angular_velocity.isZero(0.0), "angular_velocity",

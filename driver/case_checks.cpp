@@ -73,7 +73,7 @@ void check_lattice_velocity(const Case& c, const io::YamlDocument& document, con
   const double lattice_velocity = velocity / units_of(c).velocity();
   if (lattice_velocity <= largest_lattice_velocity * (1.0 + whole_number_tolerance)) return;
   throw document.error(key,
-                       fmt::format("{:.4g} m/s would be {:.3g} cells a step, more than {}; give a step of the fluid of "
+                       fmt::format("{:.4g} m/s would be {:.3g} cells a step, more than {}; give a fluid.time_step of "
                                    "at most {:.3g} s",
                                    velocity, lattice_velocity, largest_lattice_velocity,
                                    largest_lattice_velocity * c.domain.spacing / velocity));
@@ -88,10 +88,16 @@ void check_initial_fluid(const Case& c, const io::YamlDocument& document) {
   if (!c.initial.fluid.log_profile) return;
   const coupling::LogProfileKeys& profile = *c.initial.fluid.log_profile;
   const double depth = c.domain.size[2] - profile.bed_height;
-  if (depth <= profile.roughness)
-    throw document.error("initial.fluid.log_profile.bed_height",
-                         fmt::format("no fluid is left above the bed; give a height in m below {:.6g}",
-                                     c.domain.size[2] - profile.roughness));
+  if (depth > 0.0 && depth <= profile.roughness)
+    throw document.error(
+        "initial.fluid.log_profile.roughness",
+        fmt::format("the profile begins above the water, which is {:.6g} m deep; give a thirtieth of the "
+                    "height of what makes the bed rough, in m",
+                    depth));
+  if (depth <= 0.0)
+    throw document.error(
+        "initial.fluid.log_profile.bed_height",
+        fmt::format("no fluid is left above the bed; give a height in m below {:.6g}", c.domain.size[2]));
   check_lattice_velocity(
       c, document, "initial.fluid.log_profile.shear_velocity",
       profile.shear_velocity * (std::log(depth / profile.roughness) / 0.41 +

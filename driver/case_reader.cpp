@@ -87,6 +87,9 @@ constexpr double steps_per_contact = 50.0;  // dry grains, where the user gives 
 
 Case read_case(const std::filesystem::path& path, const std::vector<std::string>& overrides, const KnownBeds& known) {
   const io::YamlDocument document(path, overrides);
+  if (document.find("case") && !document.find("system"))
+    throw InputError(
+        fmt::format("{}: this is a sweep, not a case: thalweg sweep {} makes its runs.", path.string(), path.string()));
   Case c;
   io::read_document(document, c);
   if (c.system == SystemKind::continuum) {

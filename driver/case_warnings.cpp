@@ -93,10 +93,11 @@ constexpr double least_mapped_excess = 1e-4;
 void warn_of_unmapped_relaxation(const Case& c, Warnings& found) {
   const double excess = relaxation_time(c) - 0.5;
   if (c.fluid.smagorinsky_constant > 0.0 && excess < least_mapped_excess * (1.0 - 1e-9))
-    found.push_back(fmt::format(
-        "The relaxation time is only {:.2g} above 1/2, and nothing is known below {:g} (docs/stability.md): "
-        "consider finer cells, or a fluid.time_step of {:.2g} s if the flow allows it.",
-        excess, least_mapped_excess, fluid_time_step(c) * least_mapped_excess / excess));
+    found.push_back(
+        fmt::format("The relaxation time is only {:.2g} above 1/2, and stability has not been tested below {:g} "
+                    "(docs/stability.md): "
+                    "consider finer cells, or a fluid.time_step of {:.2g} s if the flow allows it.",
+                    excess, least_mapped_excess, fluid_time_step(c) * least_mapped_excess / excess));
 }
 
 void warn_of_laminar_flow(const Case& c, Warnings& found) {
@@ -113,22 +114,32 @@ void warn_of_laminar_flow(const Case& c, Warnings& found) {
 void warn_of_sliding_bed(const Case& c, Warnings& found) {
   const double ratio = stress_ratio_at_base(c), held = bulk_friction(c.contact.friction);
   if (ratio > held)
-    found.push_back(
-        fmt::format("The slope asks for {:.2g} of the normal stress at the base of the bed, and grains of "
-                    "this friction hold about {:.2g}, so that the bed slides as a whole: consider a "
-                    "gravity.slope of at most {:.2g}.",
-                    ratio, held, gravity_vector(c.gravity).x() / -gravity_vector(c.gravity).z() * held / ratio));
+    found.push_back(fmt::format(
+        "The slope requires a shear stress of {:.2g} times the normal stress at the base of the bed, and grains of "
+        "this friction sustain about {:.2g}, so that the bed slides as a whole: consider a "
+        "gravity.slope of at most {:.2g}.",
+        ratio, held, gravity_vector(c.gravity).x() / -gravity_vector(c.gravity).z() * held / ratio));
 }
 
 constexpr double deep_under_weight = 0.01, deep_in_impact = 0.05;
+
+// Under weight a linear contact overlaps by the inverse of its stiffness, in an impact by the inverse of its root; one
+// of Hertz by the powers 2/3 and 2/5 of the inverse modulus.
+std::string stiffer_contact(const Case& c, const Overlaps& overlaps) {
+  const bool linear = c.contact.law == dem::Law::linear;
+  const double factor = std::max(std::pow(overlaps.under_weight / deep_under_weight, linear ? 1.0 : 1.5),
+                                 std::pow(overlaps.in_impact / deep_in_impact, linear ? 2.0 : 2.5));
+  return linear ? fmt::format("contact.normal_stiffness: {:.2g}", 1.05 * factor * c.contact.normal_stiffness)
+                : fmt::format("contact.youngs_modulus: {:.2g}", 1.05 * factor * c.contact.youngs_modulus);
+}
 
 void warn_of_overlap(const Case& c, Warnings& found) {
   const Overlaps overlaps = expected_overlaps(c);
   if (overlaps.under_weight <= deep_under_weight && overlaps.in_impact <= deep_in_impact) return;
   found.push_back(fmt::format(
       "Grains would overlap by {:.2g} % of a diameter under the weight of the bed and {:.2g} % in an impact at {:.2g} "
-      "m/s: consider a stiffer contact.",
-      100.0 * overlaps.under_weight, 100.0 * overlaps.in_impact, overlaps.speed));
+      "m/s: consider a stiffer contact, for example {}.",
+      100.0 * overlaps.under_weight, 100.0 * overlaps.in_impact, overlaps.speed, stiffer_contact(c, overlaps)));
 }
 
 // Fewer cells than this across a grain do not resolve the flow around it.
@@ -241,7 +252,7 @@ std::vector<std::string> warnings_of_plan(const Case& c) {
   const double needed = developed ? turnover : flow.spin_up;
   if (c.run.until < needed)
     found.push_back(
-        fmt::format("The run of {:g} s ends before the flow is what it will be: {}; consider a later "
+        fmt::format("The run ({:g} s) is too short for the flow to develop: {}; consider a later "
                     "run.until or a developed start (initial).",
                     c.run.until,
                     developed ? fmt::format("one turnover H/u* takes {:.2g} s", turnover)

@@ -58,7 +58,7 @@ void add_rebound(const Case& c, Lines& lines) {
   const double around = 0.5 * std::numbers::pi * std::sqrt(3.0) * smallest_diameter(c) / c.domain.spacing;  // steps
   if (contact >= around) return;
   const std::string advice = c.contact.law == dem::Law::linear
-                                 ? fmt::format("; contact.normal_stiffness: {:.4g} would make them equal",
+                                 ? fmt::format("; contact.normal_stiffness: {:.4g} would make the two times equal",
                                                c.contact.normal_stiffness * contact * contact / (around * around))
                                  : std::string("; softer grains have longer contacts");
   lines.push_back(
@@ -173,10 +173,10 @@ void add_cost(const Case& c, double bandwidth, Lines& lines) {
   lines.push_back(work);
   lines.push_back(memory_line(memory_on_one_rank(c), memory_of_this_node()));
   lines.push_back(disk_line(disk_space(c), free_in_this_folder()));
-  lines.push_back(
-      fmt::format("time       about {} on one core like this one ({:.3g} GB/s); divide by the number of cores until "
-                  "memory bandwidth saturates",
-                  loop::clock_text(cost.core_seconds), bandwidth * 1e-9));
+  lines.push_back(fmt::format(
+      "time       about {} on one core like this one ({:.3g} GB/s), within a third; --ranks N,N,... measures, and "
+      "plans the run on more",
+      loop::clock_text(cost.core_seconds), bandwidth * 1e-9));
 }
 
 using LightestGrains = std::vector<dem::LightestGrain>;  // by material

@@ -34,7 +34,18 @@ constexpr const char* examples = R"(Examples:
 Exit codes: 0 done; 1 the run failed; 2 the input cannot be run (nothing was written); 3 stopped in good order by a signal,
 --walltime or thalweg stop (summary.json says which; --restart goes on from there).)";
 
-constexpr const char* set_help = "Replace one value of the case, e.g. fluid.time_step=1e-5 (repeatable)";
+// CLI11's own says "not in range 0.000000 to 179769313486231570..." of what is not one.
+CLI::Validator positive_number() {
+  return {[](const std::string& text) {
+            double value = 0.0;
+            return CLI::detail::lexical_cast(text, value) && value > 0.0 ? std::string()
+                                                                         : fmt::format("{} is no number above 0", text);
+          },
+          ""};
+}
+
+constexpr const char* set_help =
+    "Replace one value of the case, e.g. fluid.time_step=1e-5; null takes a key out (repeatable)";
 
 struct Texts {
   std::string walltime, layout;
@@ -55,20 +66,20 @@ void add_run(CLI::App& app, Command& command, Texts& texts) {
 }
 
 void add_others(CLI::App& app, Command& command) {
-  CLI::App* check = app.add_subcommand("check", "Say what a case means and costs, without running it");
+  CLI::App* check = app.add_subcommand("check", "Report what a case implies and what it costs, without running it");
   check->add_option("CASE.yaml", command.path, "The case")->required();
   check->add_option("--set", command.settings, set_help)->allow_extra_args(false)->type_name("KEY.SUB=VALUE");
   check
       ->add_option("--ranks", command.ranks,
                    "Plan the run on so many ranks; several numbers, one row each (docs/scaling.md)")
       ->delimiter(',')
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->type_name("N,N,...");
   check->add_option("--latency", command.network.latency, "Of the network, s until a message has arrived")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->capture_default_str();
   check->add_option("--bandwidth", command.network.bandwidth, "Of the network, bytes/s of one rank")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->capture_default_str();
   check->final_callback([&] { command.kind = Command::Kind::check; });
   CLI::App* defaults = app.add_subcommand("defaults", "Print every key with its default, unit and meaning");
@@ -76,7 +87,7 @@ void add_others(CLI::App& app, Command& command) {
                        "resolved (default), fluid, grains, model_fluid or continuum; a section, e.g. contact; or both, "
                        "e.g. grains.contact");
   defaults->final_callback([&] { command.kind = Command::Kind::defaults; });
-  CLI::App* info = app.add_subcommand("info", "Say what a run folder or a checkpoint holds");
+  CLI::App* info = app.add_subcommand("info", "Show the contents of a run folder or a checkpoint");
   info->add_option("PATH", command.runs, "Run folder or checkpoint file; with --csv any number of run folders")
       ->required();
   info->add_flag("--csv", command.csv, "A table with one row a run: every figure of the summaries, with its unit");
@@ -85,7 +96,7 @@ void add_others(CLI::App& app, Command& command) {
   stop->add_option("RUN_FOLDER", command.path, "The folder it writes")->required();
   stop->final_callback([&] { command.kind = Command::Kind::stop; });
   // For the help alone: python_command.hpp.
-  app.add_subcommand("analyze", "Say what a run's sediment does between two times (analyze --help)");
+  app.add_subcommand("analyze", "Summarise a run's sediment transport between two times (analyze --help)");
   app.add_subcommand("sweep", "Run a case with many values of its keys, on all cores (sweep --help)");
 }
 

@@ -89,10 +89,10 @@ std::string bed_text(const Case& c) {
 
 void add_stress_at_base(const Case& c, Lines& lines) {
   if (const double ratio = stress_ratio_at_base(c); ratio > 0.0)
-    lines.push_back(
-        fmt::format("base       of the bed: the slope asks for {:.3g} of the normal stress, grains of this friction "
-                    "hold about {:.3g}",
-                    ratio, bulk_friction(c.contact.friction)));
+    lines.push_back(fmt::format(
+        "base       of the bed: the slope requires a shear stress of {:.3g} times the normal stress; grains of this "
+        "friction sustain about {:.3g}",
+        ratio, bulk_friction(c.contact.friction)));
 }
 
 }  // namespace

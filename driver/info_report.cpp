@@ -48,17 +48,25 @@ void add_group(const YAML::Node& group, const std::string& title, const YAML::No
   }
 }
 
+// A number of the summary as a person reads it.
+std::string rounded(const YAML::Node& summary, const std::string& name) {
+  const YAML::Node node = summary[name];
+  double number = 0.0;
+  return node && YAML::convert<double>::decode(node, number) ? fmt::format("{:.6g}", number) : value(summary, name);
+}
+
 void add_summary(const YAML::Node& summary, Lines& lines) {
   const bool finished = value(summary, "finished") == "true";
   lines.push_back(fmt::format("run         {} (system: {}), version {}", value(summary, "name"),
                               value(summary, "system"), value(summary, "version")));
   lines.push_back(fmt::format("state       {}", finished ? "finished" : "not finished: " + value(summary, "reason")));
-  lines.push_back(fmt::format("time        {} of {} s, {} steps", value(summary, "simulated_time"),
+  lines.push_back(fmt::format("time        {} of {} s, {} steps", rounded(summary, "simulated_time"),
                               value(summary, "until"), value(summary, "steps")));
-  lines.push_back(fmt::format("size        {} cells, {} grains; {} ranks ({})", value(summary, "cells"),
-                              value(summary, "grains"), value(summary, "ranks"), value(summary, "layout")));
+  lines.push_back(fmt::format("size        {} cells, {} grains; {} rank{} ({})", value(summary, "cells"),
+                              value(summary, "grains"), value(summary, "ranks"),
+                              value(summary, "ranks") == "1" ? "" : "s", value(summary, "layout")));
   lines.push_back(
-      fmt::format("speed       {} steps/s, {} MLUPS", value(summary, "steps_per_second"), value(summary, "mlups")));
+      fmt::format("speed       {} steps/s, {} MLUPS", rounded(summary, "steps_per_second"), rounded(summary, "mlups")));
   lines.push_back("results");
   for (const auto& entry : summary)
     if (const std::string& name = entry.first.Scalar();

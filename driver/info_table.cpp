@@ -8,6 +8,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 
 namespace thalweg::driver {
@@ -58,6 +59,9 @@ std::vector<std::string> info_table(const std::vector<std::string>& runs) {
   Table table;
   for (const std::string& run : runs) {
     const io::RunFolder folder(run);
+    std::error_code ignored;
+    if (runs.size() > 1 && std::filesystem::is_regular_file(run, ignored))
+      continue;  // of a sweep, say, beside its runs
     require_run_folder(folder);
     table.rows.emplace_back();
     table.set("run", run);

@@ -56,7 +56,7 @@ std::string reference_text(const Case& c) {
   const ReferenceGrain grain = reference_grain(c);
   return fmt::format(
       "diameter {:.6g} m, density {:.6g} kg/m^3 ({})", grain.diameter, grain.density,
-      c.analysis.reference_diameter ? "analysis.reference_diameter" : "half of the volume of all free grains is finer");
+      c.analysis.reference_diameter ? "analysis.reference_diameter" : "volume median of all free grains");
 }
 
 }  // namespace thalweg::driver

@@ -80,9 +80,10 @@ struct Beginning {
 };
 
 // Throws InputError where the case is not one with which that run can go on.
-std::vector<CaseChange> changes_since(const fs::path& origin, const Case& c) {
-  if (origin.empty()) return {};
-  std::vector<CaseChange> changes = case_changes(io::read_text(io::RunFolder(origin).case_file()), resolved_yaml(c));
+std::vector<CaseChange> changes_since(const Places& places, const Case& c) {
+  if (places.origin.empty()) return {};
+  const fs::path before = io::RunFolder(places.origin).case_of(places.checkpoints.front());
+  std::vector<CaseChange> changes = case_changes(io::read_text(before), resolved_yaml(c));
   refuse_changes_of_state(changes);
   return changes;
 }
@@ -115,8 +116,11 @@ void print_header(const Case& c, RunIdentity& identity, const System& system, co
     log.line(fmt::format("memory bandwidth {:.1f} GB/s; {:.0f} bytes a cell update: at most {:.0f} MLUPS",
                          bandwidth * 1e-9, bytes, identity.memory_bound_mlups));
   }
-  for (const std::string& warning : warnings(c)) log.line("warning: " + warning);
-  if (const std::string warning = crowding_warning(communicator); !warning.empty()) log.line("warning: " + warning);
+  std::vector<std::string> all = warnings(c);
+  for (const std::string& warning : warnings_of_plan(c)) all.push_back(warning);
+  if (const std::string warning = crowding_warning(communicator); !warning.empty()) all.push_back(warning);
+  for (const std::string& warning : all) log.line("warning: " + warning);
+  identity.warnings = static_cast<std::int64_t>(all.size());
 }
 
 // step: of the state the run begins with.
@@ -165,16 +169,6 @@ void print_outcome(const RunIdentity& identity, const loop::LoopRecord& record, 
                          shell_word(folder.path().string())));
 }
 
-// Of a run that was to end when its grains are at rest, and ended at its time; empty: they are, or nobody asked.
-std::string rest_remark(const Case& c, const loop::LoopRecord& record, const System& system) {
-  if (!c.run.until_at_rest || !record.finished || !record.early.empty()) return {};
-  const double speed = find_figure(system.figures(), dem::DryGrains::largest_speed_figure).value_or(0.0);
-  return fmt::format(
-      "not at rest: the fastest grain moves at {:.2g} m/s (run.until_at_rest asks for {:g} m/s and {:g} "
-      "m/s^2); a later --until goes on with --restart",
-      speed, c.run.until_at_rest->largest_speed, c.run.until_at_rest->largest_acceleration);
-}
-
 // How many free grains need not be at rest.
 std::int64_t allowed_restless(const Case& c) {
   std::int64_t free = 0;
@@ -182,6 +176,23 @@ std::int64_t allowed_restless(const Case& c) {
     if (!population.held()) free += population.count;
   constexpr double rounding = 1e-9;
   return static_cast<std::int64_t>((1.0 - c.run.until_at_rest->quantile) * static_cast<double>(free) + rounding);
+}
+
+// Of a run that was to end when its grains are at rest, and ended at its time; empty: they are, or nobody asked.
+std::string rest_remark(const Case& c, const loop::LoopRecord& record, const System& system) {
+  if (!c.run.until_at_rest || !record.finished || !record.early.empty()) return {};
+  if (c.run.until_at_rest->quantile < 1.0)
+    return fmt::format(
+        "not at rest when last looked at, every {} steps: {:.0f} grains move, and a share of {:g} at rest leaves {}; a "
+        "later --until goes on with --restart",
+        loop::LoopPlan{}.steps_between_looks_for_enough,
+        find_figure(system.figures(), dem::DryGrains::restless_figure).value_or(0.0), c.run.until_at_rest->quantile,
+        allowed_restless(c));
+  const double speed = find_figure(system.figures(), dem::DryGrains::largest_speed_figure).value_or(0.0);
+  return fmt::format(
+      "not at rest: the fastest grain moves at {:.2g} m/s (run.until_at_rest asks for {:g} m/s and {:g} "
+      "m/s^2); a later --until goes on with --restart",
+      speed, c.run.until_at_rest->largest_speed, c.run.until_at_rest->largest_acceleration);
 }
 
 // What may finish the run before its time.
@@ -229,7 +240,7 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
     places.folder.check_writable();
   });
   Beginning beginning;
-  beginning.changes = changes_since(places.origin, c);
+  beginning.changes = changes_since(places, c);
   const Index3 layout = choose_layout(c, size_of(communicator), command.layout);
   const bool restarts = !places.checkpoints.empty();
   if (!restarts) on_first_rank(communicator, [&] { about_case(command.path, [&] { check_initial_sources(c); }); });

@@ -9,10 +9,11 @@ namespace thalweg::driver {
 namespace {
 
 // For the estimate of time, on one core: what sweep, halo, walls and output take, in times the memory traffic of the
-// sweep alone; what a link takes, in bytes of memory traffic; and grain-steps. Measured on the flume, the wide bed and
-// the quickstart, which run within 30 % of the estimate.
-constexpr double cell_cost = 2.5, link_cost = 1000.0;
-constexpr double grain_steps_per_second = 8e6;
+// sweep alone; a link, which computes (s: 8e-9 on AMD Zen 5, 13e-9 on Zen 4, 19e-9 on Intel Sapphire Rapids); and
+// grain-steps (20e6 to 39e6). The flume, the wide bed and the quickstart run within a third of the estimate on either
+// AMD.
+constexpr double cell_cost = 1.8, link_seconds = 12e-9;
+constexpr double grain_steps_per_second = 22e6;
 constexpr double model_fluid_steps_per_second = 4e6;  // all grains moving; three times that where few do
 
 // Bytes: of a process with the libraries it has loaded, MPI's above all; per cell 19 populations, streamed in place,
@@ -58,10 +59,9 @@ Cost cost_of(const Case& c, double bandwidth) {
   cost.steps = std::ceil(c.run.until / step_time(c) * (1.0 - 1e-12));
   cost.cell_updates = cost.cells * cost.steps;
   cost.grain_steps = static_cast<double>(grain_count(c) * c.coupling.grain_steps_per_fluid_step) * cost.steps;
-  const double traffic = cost.cell_updates * cell_cost * bytes_per_cell_update(static_cast<int>(bytes_per_value(c))) +
-                         cost.steps * link_count(c) * link_cost;
+  const double traffic = cost.cell_updates * cell_cost * bytes_per_cell_update(static_cast<int>(bytes_per_value(c)));
   cost.core_seconds =
-      traffic / bandwidth +
+      traffic / bandwidth + cost.steps * link_count(c) * link_seconds +
       cost.grain_steps / (c.system == SystemKind::model_fluid ? model_fluid_steps_per_second : grain_steps_per_second);
   return cost;
 }

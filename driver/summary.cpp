@@ -52,7 +52,7 @@ io::JsonObject summary_of(const RunIdentity& identity, const System& system, con
                               .set("largest_seconds", phase.largest_seconds)
                               .set("share", phase.share));
   summary.set("phases", table);
-  summary.set("warnings", record.warnings);
+  summary.set("warnings_at_start", identity.warnings).set("warnings", record.warnings);
   io::JsonObject units;  // of figures and results, by name
   summary.set("figures", figures_as_json(record.figures, units)).set("largest", figures_as_json(record.largest, units));
   summary.set("largest_from", record.largest_from);

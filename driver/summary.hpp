@@ -24,6 +24,7 @@ struct RunIdentity {
   std::optional<ReferenceGrain> reference = {};  // none without grains
   double memory_bound_mlups = 0.0;               // what the measured memory bandwidth allows; 0 without a lattice
   std::optional<MemoryUse> memory = {};          // once it has ended in good order
+  std::int64_t warnings = 0;                     // about the case, printed when the run begins
 };
 
 // summary.json of a run that has ended in whatever way. `bed` (final_bed.hpp) and `phases` may be empty.

@@ -14,6 +14,7 @@
 #include <charconv>
 #include <cstring>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 namespace thalweg::io {
@@ -32,8 +33,8 @@ constexpr const char* latest_name = "latest";
 constexpr const char* unfinished_case = "case.yaml.partial";
 constexpr const char* kept_case = "case_until_step_";
 
-std::optional<std::int64_t> step_of_checkpoint(const std::string& name) {
-  constexpr std::string_view before = "step_", after = ".h5";
+// The number in the name of a file; none: it is another file.
+std::optional<std::int64_t> step_between(const std::string& name, std::string_view before, std::string_view after) {
   if (!name.starts_with(before) || !name.ends_with(after)) return std::nullopt;
   std::int64_t step = 0;
   const char* end = name.data() + name.size() - after.size();
@@ -41,6 +42,8 @@ std::optional<std::int64_t> step_of_checkpoint(const std::string& name) {
   if (parsed.ec != std::errc() || parsed.ptr != end) return std::nullopt;
   return step;
 }
+
+std::optional<std::int64_t> step_of_checkpoint(const std::string& name) { return step_between(name, "step_", ".h5"); }
 
 // Empty if this process may change the file, or add to the folder.
 std::string why_not_writable(const fs::path& path) {
@@ -125,6 +128,17 @@ void RunFolder::keep_case(std::int64_t step) const {
   std::error_code ignored;
   if (fs::is_regular_file(case_file(), ignored) && !fs::exists(kept, ignored))
     write_text_atomically(kept, read_text(case_file()));
+}
+
+fs::path RunFolder::case_of(const fs::path& checkpoint) const {
+  const std::optional<std::int64_t> step = step_of_checkpoint(checkpoint.filename().string());
+  std::error_code ignored;
+  std::optional<std::int64_t> first;  // of the later steps until which a case was kept
+  for (const auto& entry : fs::directory_iterator(path_, ignored))
+    if (const auto until = step_between(entry.path().filename().string(), kept_case, ".yaml");
+        step && until && *until >= *step && (!first || *until < *first))
+      first = until;
+  return first ? path_ / fmt::format("{}{}.yaml", kept_case, *first) : case_file();
 }
 
 fs::path RunFolder::checkpoint(std::int64_t step) const { return checkpoints() / fmt::format("step_{}.h5", step); }

@@ -35,6 +35,9 @@ public:
   // unless it is there already. Throws RunError.
   void keep_case(std::int64_t step) const;
 
+  // The case with which the state of one of the folder's checkpoints was computed: a kept one, or the present one.
+  std::filesystem::path case_of(const std::filesystem::path& checkpoint) const;
+
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path case_file() const { return path_ / "case.yaml"; }
   std::filesystem::path log() const { return path_ / "run.log"; }

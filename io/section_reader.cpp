@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <numeric>
@@ -107,6 +108,9 @@ const YamlNode* SectionReader::look_up(const std::string& key, bool required, co
 void SectionReader::finish() const {
   for (const auto& [key, node] : section_.entries) {
     if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
+    if (node.kind == YamlNode::Kind::scalar && node.text.empty() &&
+        std::all_of(key.begin(), key.end(), [](unsigned char c) { return std::isdigit(c) != 0; }))
+      fail(node, key, "a comma begins a new key here; write numbers with a point, as 9.81");
     const std::string meant = nearest(key, known_);
     if (!meant.empty()) fail(node, key, fmt::format("unknown key; did you mean {}?", joined_key(key_path_, meant)));
     fail(node, key,

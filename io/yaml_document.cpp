@@ -133,9 +133,11 @@ void YamlDocument::apply(const std::string& override_text) {
     throw InputError(fmt::format("{}: expected KEY=VALUE, for example --set run.until=10.", place));
   const std::string key_path = override_text.substr(0, equals);
   const std::string value_text = override_text.substr(equals + 1);
+  if (value_text.find_first_not_of(" \t") == std::string::npos)
+    throw InputError(fmt::format("{}: the value is missing; give one, or null to take the key out.", place));
   YamlNode value = parsed(
       value_text, [&](const YAML::Mark&) { return place; }, place, key_path);
-  const bool remove = value.kind == YamlNode::Kind::scalar && value.text.empty();
+  const bool remove = value.kind == YamlNode::Kind::scalar && value.text.empty();  // null
 
   YamlNode* node = &root_;
   std::string done;

@@ -26,6 +26,9 @@ void listen_for_stop_signals() {
   sigemptyset(&action.sa_mask);
   action.sa_flags = SA_RESTART;  // file writes and MPI's own calls go on undisturbed
   for (int signal : {SIGTERM, SIGINT, SIGUSR1, SIGUSR2}) sigaction(signal, &action, nullptr);
+  struct sigaction hang_up {};
+  sigaction(SIGHUP, nullptr, &hang_up);
+  if (hang_up.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
   continued = 0;
   action.sa_handler = note_continuation;
   if (seconds_between_strokes() > 0.0) sigaction(SIGCONT, &action, nullptr);
@@ -54,6 +57,8 @@ std::string signal_name(int signal) {
       return "SIGINT";
     case SIGUSR1:
       return "SIGUSR1";
+    case SIGHUP:
+      return "SIGHUP";
     case SIGUSR2:
       return "SIGUSR2";
     default:

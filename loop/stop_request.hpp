@@ -1,5 +1,6 @@
 // Signals as requests to stop in good order: SIGTERM and SIGINT (mpirun and batch systems send them before they kill),
-// SIGUSR1 (which mpirun passes on to every rank at once) and SIGUSR2.
+// SIGUSR1 (which mpirun passes on to every rank at once), SIGUSR2, and SIGHUP, when a terminal closes, unless it is
+// ignored (nohup).
 #pragma once
 
 #include <string>

@@ -32,6 +32,9 @@ double seconds_since(WallClock::time_point start) {
 // SIGUSR1 and SIGUSR2 are passed on by mpirun, and nothing follows.
 bool is_followed_by_a_kill(int signal) { return signal == SIGTERM || signal == SIGINT; }
 
+// Of such a figure the smallest is kept among the largest.
+bool is_smallest(const Figure& figure) { return figure.name.starts_with("smallest_"); }
+
 // Takes the request away, so that the run can go on later.
 bool was_asked_to_stop(const std::filesystem::path& file) {
   std::error_code ignored;
@@ -107,13 +110,18 @@ void TimeLoop::look_at_health(bool is_regular) {
 
 void TimeLoop::begin_largest() {
   record_.largest = record_.figures;
-  for (Figure& figure : record_.largest)
-    figure.value = find_figure(plan_.largest, figure.name).value_or(-std::numeric_limits<double>::infinity());
+  for (Figure& figure : record_.largest) {
+    const double none = std::numeric_limits<double>::infinity();
+    figure.value = find_figure(plan_.largest, figure.name).value_or(is_smallest(figure) ? none : -none);
+  }
 }
 
 void TimeLoop::count_among_largest() {
-  for (std::size_t f = 0; f < record_.figures.size(); ++f)
-    record_.largest[f].value = std::max(record_.largest[f].value, record_.figures[f].value);
+  for (std::size_t f = 0; f < record_.figures.size(); ++f) {
+    const double now = record_.figures[f].value;
+    double& extreme = record_.largest[f].value;
+    extreme = is_smallest(record_.figures[f]) ? std::min(extreme, now) : std::max(extreme, now);
+  }
 }
 
 bool TimeLoop::needs_momentum_at(std::int64_t step) const {

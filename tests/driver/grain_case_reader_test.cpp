@@ -31,7 +31,7 @@ TEST(GrainCaseReader, ElasticSpheresHaveModuliInPlaceOfStiffnesses) {
   const std::string elastic =
       "contact={law: hertz_mindlin, youngs_modulus: 1e8, poisson_ratio: 0.25, restitution: 0.9, "
       "tangential_damping: 0.5}";
-  const Case c = read(defaults_yaml("grains"), {elastic, "run.time_step="});
+  const Case c = read(defaults_yaml("grains"), {elastic, "run.time_step=null"});
   EXPECT_EQ(c.contact.law, dem::Law::hertz_mindlin);
   EXPECT_EQ(c.contact.youngs_modulus, 1e8);
   EXPECT_EQ(c.contact.poisson_ratio, 0.25);
@@ -41,9 +41,9 @@ TEST(GrainCaseReader, ElasticSpheresHaveModuliInPlaceOfStiffnesses) {
   const double mass = 0.5 * c.grains[0].lightest_mass(), radius = 0.25 * c.grains[0].diameter,
                modulus = 1e8 / (2.0 * 0.9375);
   EXPECT_NEAR(shortest_contact(c), 2.868 * std::pow(mass * mass / (radius * modulus * modulus), 0.2), 1e-15);
-  EXPECT_THROW(read(defaults_yaml("grains"), {elastic, "run.time_step=", "contact.normal_stiffness=20000"}),
+  EXPECT_THROW(read(defaults_yaml("grains"), {elastic, "run.time_step=null", "contact.normal_stiffness=20000"}),
                InputError);
-  EXPECT_THROW(read(defaults_yaml("grains"), {elastic, "run.time_step=", "contact.damping=0.1"}), InputError);
+  EXPECT_THROW(read(defaults_yaml("grains"), {elastic, "run.time_step=null", "contact.damping=0.1"}), InputError);
   EXPECT_THROW(read(defaults_yaml("grains"), {"contact.youngs_modulus=1e8"}), InputError);
 }
 

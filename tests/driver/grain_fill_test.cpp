@@ -17,7 +17,7 @@ using testing::message_of;
 
 // The first population of the flume, without its number.
 Case read(std::vector<std::string> overrides) {
-  overrides.insert(overrides.begin(), "grains.0.count=");
+  overrides.insert(overrides.begin(), "grains.0.count=null");
   return testing::read_text(flume, overrides);
 }
 
@@ -85,7 +85,7 @@ TEST(GrainFill, Refusals) {
   const auto refused = [](const std::vector<std::string>& overrides) {
     return message_of<InputError>([&] { testing::read_text(flume, overrides); });
   };
-  const std::string no_count = "grains.0.count=";
+  const std::string no_count = "grains.0.count=null";
   EXPECT_NE(refused({"grains.0.fill={depth: 0.02}"}).find("count or solid_fraction gives the number"),
             std::string::npos);
   EXPECT_NE(refused({no_count}).find("give a whole number, for example 100, solid_fraction, fill or"),

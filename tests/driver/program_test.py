@@ -104,6 +104,10 @@ class CommandLine(DryGrains):
                                 words=["grains.0.density", "heavy"])
             self.assert_refused(command, self.case, "--set", "grains.0.count=4000", words=["grains.0"])
             self.assert_refused(command, self.case, "--set", "run.time_step=1e-3", words=["time"])
+            self.assert_refused(command, self.case, "--set", "gravity.slope=", words=["gravity.slope=", "null to take"])
+            (self.folder / "slopes.yaml").write_text("case: case.yaml\nvary: {gravity.slope: [0.1, 0.2]}\n")
+            self.assert_refused(command, "slopes.yaml", words=["this is a sweep", "thalweg sweep slopes.yaml"])
+        self.assert_refused("check", self.case, "--ranks", "0", words=["--ranks: 0 is no number above 0"])
         self.assert_refused("run", self.case, "--layout", "2,1,1", words=["--layout", "2 rank"])
         self.assert_refused("run", self.case, "--restart", "nowhere", words=["nowhere"])
 
@@ -250,6 +254,8 @@ class Running(DryGrains):
         self.assertEqual(float(b["reference_diameter [m]"]), summary["reference_diameter"])
         self.assertEqual(float(b["bed.porosity"]), summary["bed"]["porosity"])
         self.assertFalse(any(name.startswith(("phases", "units")) for name in header))
+        (self.folder / "notes.txt").write_text("not a run\n")
+        self.assertEqual(self.run_well("info", "--csv", "a", "notes.txt").stdout.count("\n"), 2)
         self.assert_refused("info", "a", "b", words=["--csv"])
         self.assert_refused("info", "--csv", "a", "nowhere", words=["nowhere"])
 
@@ -339,6 +345,13 @@ class Stopping(DryGrains):
         self.assertIn("SIGTERM", self.run_well("info", "run").stdout)
         self.assert_can_go_on(1)
 
+    def test_sighup_as_when_a_terminal_closes(self):
+        process = self.start()
+        process.send_signal(signal.SIGHUP)
+        self.assertEqual(process.wait(timeout=30), 3)
+        self.assertEqual(self.summary("run")["reason"], "stopped by SIGHUP")
+        self.assert_can_go_on(1)
+
     def test_sigusr1_through_mpirun(self):
         process = self.start(ranks=2)
         process.send_signal(signal.SIGUSR1)
@@ -376,7 +389,7 @@ class Stopping(DryGrains):
         self.assertEqual(process.wait(timeout=30), 3)
         self.assertEqual(self.summary("run")["reason"], "stopped by a file named stop")
         self.assertFalse((self.folder / "run/stop").exists())
-        self.run_well("stop", "run")   # nothing is running, and the next run is not meant
+        self.assertIn("run has ended", self.run_well("stop", "run").stdout)   # the next run is not meant
         self.assert_can_go_on(ranks)
 
     def test_thalweg_stop(self):

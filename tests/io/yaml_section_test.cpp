@@ -169,8 +169,8 @@ TEST(YamlSection, DocumentationShowsTheKeysOfOtherChoicesAsComments) {
 
 TEST(YamlSection, OverridesReplaceAddReachIntoListsAndRemove) {
   const std::string yaml = minimal + "seats: 3\nwheels:\n  - radius: 0.1\n  - {radius: 0.2}\n";
-  const Cart cart = read(yaml, {"length=7", "wheels.1.radius=0.9", "cargo.mass=3", "position=[1, 2, 3]",
-                                "seats=", "length=8", "lining={colour: green, gloss: 0.25}"});
+  const Cart cart = read(yaml, {"length=7", "wheels.1.radius=0.9", "cargo.mass=3", "position=[1, 2, 3]", "seats=null",
+                                "length=8", "lining={colour: green, gloss: 0.25}"});
   EXPECT_EQ(cart.length, 8.0);  // the last one counts
   EXPECT_EQ(cart.wheels[0].radius, 0.1);
   EXPECT_EQ(cart.wheels[1].radius, 0.9);

@@ -151,7 +151,7 @@ output: {series: {every: 0.005}, checkpoint: {every: 0.01, keep: 3}}
     def test_the_start_is_a_log_profile_with_eddies_on_top(self):
         calm = "initial.fluid={log_profile: {bed_height: 0.0, shear_velocity: 0.03, roughness: 1.0e-5}}"
         pictures = ("--until", "1e-4", "--set", "output.fluid={every: 1e-4, fields: [velocity, pressure]}", "--set",
-                    "fluid.mean_velocity=")
+                    "fluid.mean_velocity=null")
         self.run_well("run", self.case, "--out", "calm", *pictures, "--set", calm)
         self.run_well("run", self.case, "--out", "lively", *pictures)
         before, after = (cell_data(self.folder / out / "fluid/fluid_000000000.vti")["velocity"].astype(float)
@@ -167,13 +167,13 @@ output: {series: {every: 0.005}, checkpoint: {every: 0.01, keep: 3}}
                                       atol=2e-6)
 
     def test_begins_from_the_field_of_another_run(self):
-        free = ("--set", "fluid.mean_velocity=", "--set", "output.fluid={every: 0.01, fields: [velocity, pressure]}")
+        free = ("--set", "fluid.mean_velocity=null", "--set", "output.fluid={every: 0.01, fields: [velocity, pressure]}")
         self.run_well("run", self.case, "--out", "first", *free)
         last = cell_data(self.folder / "first/fluid/fluid_000000400.vti")
         begin = ("--set", "initial={from: first}", "--set", "gravity.slope=0.1")
         for out, ranks in (("one", 0), ("four", 4)):
             self.run_well("run", self.case, "--out", out, *free[2:], "--set", "output.fluid.region=slice_y", *begin,
-                          "--set", "fluid.mean_velocity=", "--until", "0.001", ranks=ranks)
+                          "--set", "fluid.mean_velocity=null", "--until", "0.001", ranks=ranks)
         self.assertEqual(self.last_checkpoint("one").read_bytes(), self.last_checkpoint("four").read_bytes())
         start = cell_data(self.folder / "one/fluid/fluid_000000000.vti")
         numpy.testing.assert_array_equal(start["pressure"][:, 0], last["pressure"][:, 10])

@@ -40,6 +40,9 @@ output: {series: {every: 0.01}}
         self.assertIn("changed since then: contact.friction: 0.3 -> 0.4", said)
         log = (self.folder / "run/run.log").read_text()
         self.assertIn("contact.friction: 0.3 -> 0.4", log)
+        # A checkpoint is told from the case that made it, not from the folder's present one.
+        said = self.run_well("run", self.case, "--restart", "run/checkpoints/step_100.h5", "--out", "other", "--until", "0.06")
+        self.assertNotIn("contact.friction", said.stdout)
         # A setting that is not repeated is told as well.
         said = self.run_well("run", self.case, "--restart", "run", "--until", "0.15").stdout
         self.assertIn("changed since then: contact.friction: 0.4 -> 0.3", said)

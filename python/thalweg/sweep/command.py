@@ -51,7 +51,7 @@ def refuse_impossible(tasks):
     ends = known[:1] + known[1:][-1:]
     said = [subprocess.run(run.check_command(program()), capture_output=True, text=True) for run in ends]
     if said and all(check.returncode == 2 for check in said):
-        raise SweepError(f"the first run cannot be made, nor can the last. {said[0].stderr.strip().removeprefix('thalweg: ')}")
+        raise SweepError(f"neither the first nor the last run can be set up: {said[0].stderr.strip().removeprefix('thalweg: ')}")
 
 
 def describe(task, keys):
