@@ -119,7 +119,6 @@ analysis:
         log = (self.folder / "run/run.log").read_text()
         self.assertIn("reference grain: diameter 0.00495 m", log)
         self.assertIn("transport: q* = ", log)
-        self.assertIn("bed: ", log)
         with h5py.File(self.folder / "run/profiles.h5") as profiles:
             outline = profiles["bed_surface/static_surface"][()]
             self.assertEqual(len(outline), round(0.0264 / (4.95e-3 / 25)))
