@@ -104,22 +104,34 @@ def report(rows):
     return passed
 
 
+def kind_of(row):
+    """How a run is drawn: as the sweep's, with the lubrication correction, or as one that differs in something else."""
+    if row["lubrication"] == "on":
+        return "with lubrication"
+    return "resolved" if row["run"].startswith("solid_fraction") else "finer, wider or faster"
+
+
 def draw(rows, name):
     of = lambda column: np.array([float(row[column]) for row in rows])
     phi, mixed, mu = of("solid_fraction [1]"), of("mixed_number [1]"), of("shear_stress [Pa]") / of("pressure [Pa]")
-    order = np.argsort(mixed)
+    relative, error = of("total_stress [Pa]") / (of("fluid_viscosity [Pa s]") * of("shear_rate [1/s]")), of("error [1]")
+    kinds = np.array([kind_of(row) for row in rows])
     figure, axes = plt.subplots(1, 3, figsize=(13, 4.2), layout="constrained")
-    curve = np.logspace(np.log10(np.nanmin(mixed)) - 0.1, np.log10(np.nanmax(mixed)) + 0.1, 100)
-    axes[0].errorbar(mixed, mu, mu * of("error [1]"), fmt="o", capsize=3, label="resolved")
+    for kind, marker in (("resolved", "o"), ("finer, wider or faster", "s"), ("with lubrication", "^")):
+        chosen = kinds == kind
+        style = {"fmt": marker, "capsize": 3, "label": kind}
+        axes[0].errorbar(mixed[chosen], mu[chosen], (mu * error)[chosen], **style)
+        axes[1].plot(mixed[chosen], phi[chosen], marker, label=kind)
+        axes[2].errorbar(phi[chosen], relative[chosen], (relative * error)[chosen], **style)
+    order = np.argsort(mixed)
+    order = order[kinds[order] == "resolved"]
     rule = mixed_friction(phi, of("viscous_number [1]"), mixed)
     axes[0].plot(mixed[order], rule[order], "k-", lw=1, label="Zhang et al. 2022, eq. 20")
     axes[0].set(xscale="log", yscale="log", xlabel="mixed inertial number $I_m$", ylabel="stress ratio μ")
-    axes[1].plot(mixed, phi, "o", label="resolved")
+    curve = np.logspace(np.log10(np.nanmin(mixed)) - 0.1, np.log10(np.nanmax(mixed)) + 0.1, 100)
     axes[1].plot(curve, mixed_fraction(curve), "k-", lw=1, label="eq. 21")
     axes[1].set(xscale="log", xlabel="mixed inertial number $I_m$", ylabel="solid fraction φ")
-    relative = of("total_stress [Pa]") / (of("fluid_viscosity [Pa s]") * of("shear_rate [1/s]"))
     fractions = np.linspace(0.0, 0.575, 100)
-    axes[2].errorbar(phi, relative, relative * of("error [1]"), fmt="o", capsize=3, label="resolved")
     axes[2].plot(fractions, boyer(fractions), "k-", lw=1, label="Boyer et al. 2011")
     axes[2].plot(fractions[:40], batchelor(fractions[:40]), "k--", lw=1, label="Batchelor and Green 1972")
     axes[2].set(yscale="log", xlabel="solid fraction φ", ylabel="viscosity over the fluid's")
