@@ -43,6 +43,15 @@ Index3 cells_of(const DomainCase& domain) {
   return cells;
 }
 
+double spacing_below(const DomainCase& domain, double most) {
+  const double longest = domain.size.maxCoeff();
+  for (double cells = std::ceil(longest / most); cells < 1.25 * longest / most + 1.0; cells += 1.0) {
+    const Vec3 along = domain.size * cells / longest;
+    if (((along.array() - along.array().round()).abs() <= 1e-6 * along.array()).all()) return longest / cells;
+  }
+  return most;
+}
+
 std::array<bool, 3> periodic_axes(const DomainCase& domain) {
   const auto periodic = [&](FaceIndex face) { return domain.faces[face].type == lbm::FaceType::periodic; };
   return {periodic(x_low), periodic(y_low), periodic(bottom)};

@@ -168,6 +168,10 @@ bool has_grains(SystemKind system);                    // that a case gives one 
 continuum::SystemParameters column_of(const Case& c);  // of system: continuum
 
 Index3 cells_of(const DomainCase& domain);  // size over spacing
+
+// The largest spacing (m) of at most `most` of which every side of the domain is a whole number; `most` where there is
+// none within a fifth of it.
+double spacing_below(const DomainCase& domain, double most);
 std::array<bool, 3> periodic_axes(const DomainCase& domain);
 double fluid_time_step(const Case& c);            // s; given, or from the lattice velocity
 double grain_time_step(const Case& c);            // s: a sub-step, or the step of dry grains

@@ -52,7 +52,8 @@ void check_resolution(const Case& c, const io::YamlDocument& document) {
         "domain.spacing",
         fmt::format("the spacing is too coarse for grains of {:.6g} m, which would lie between the "
                     "centres of cells and not be seen; give at most {:.4g} m, better {:.4g} m",
-                    smallest_diameter(c), largest, smallest_diameter(c) / c.coupling.fewest_cells_per_diameter));
+                    smallest_diameter(c), largest,
+                    spacing_below(c.domain, smallest_diameter(c) / c.coupling.fewest_cells_per_diameter)));
 }
 
 void check_solids(const Case& c, const io::YamlDocument& document) {

@@ -150,9 +150,9 @@ void warn_of_coarse_cells(const Case& c, Warnings& found) {
   if (c.grains.empty() || cells >= fewest * (1.0 - whole_number_tolerance)) return;
   found.push_back(
       fmt::format("The smallest grain is only {:.2g} cells across{}; its drag is {} (docs/accuracy.md): consider a "
-                  "domain.spacing of {:.3g} m, or accept it with coupling.fewest_cells_per_diameter: {:g}.",
+                  "domain.spacing of {:.6g} m, or accept it with coupling.fewest_cells_per_diameter: {:g}.",
                   cells, cells < barely_resolved ? ", which does not resolve the flow around it" : "", drag_text(c),
-                  smallest_diameter(c) / fewest, std::floor(10.0 * cells) / 10.0));
+                  spacing_below(c.domain, smallest_diameter(c) / fewest), std::floor(10.0 * cells) / 10.0));
 }
 
 // The fluid resists a sudden motion of a sphere with 3.8 dx/d of the displaced mass, and the load, extrapolated in

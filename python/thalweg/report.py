@@ -15,6 +15,7 @@ from thalweg.means import is_steady, mean_with_error
 from thalweg.visible_profiles import visible_profiles
 
 VISIBLE_FRAMES = 20   # the most that are looked at pixel by pixel
+FEWEST_INDEPENDENT = 8   # values, below which nothing is said of steadiness, as in the run itself (analysis/trend_test.hpp)
 
 
 class Report:
@@ -79,7 +80,9 @@ def describe_transport(report):
     report.numbers["q_star"] = mean._asdict()
     text = (f"q* {mean.mean:.4g} +- {mean.error:.2g}, deviation {mean.deviation:.2g}, {mean.independent:.3g} independent "
             f"values")
-    if len(rate) >= 6:
+    if mean.independent < FEWEST_INDEPENDENT:
+        text += "; too short a time to tell whether it is steady"
+    elif len(rate) >= 6:
         verdict = is_steady(rate)
         report.numbers["q_star"]["steady"] = verdict.steady
         text += (f"; {'steady' if verdict.steady else 'NOT steady'}: first third {verdict.first.mean:.4g}, last "
