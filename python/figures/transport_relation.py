@@ -41,9 +41,11 @@ def draw_literature(axes):
     for curve, label, style in ((literature.meyer_peter_mueller, "Meyer-Peter and Müller", "-"),
                                 (literature.wong_parker, "Wong and Parker", "--"),
                                 (literature.fernandez_luque_van_beek, "Fernandez Luque and van Beek", "-."),
-                                (literature.zhang_wide_bed, "Zhang et al., fig. 6, prefactor as printed", ":")):
+                                (literature.zhang_wide_bed, "Zhang et al., fig. 6, prefactor as printed", ":"),
+                                (lambda tau: literature.zhang_wide_bed(tau, literature.CONTINUUM_PREFACTOR),
+                                 "the same, 6.8 times: their continuum", (0, (1, 3)))):
         values = curve(shields)
-        axes.semilogy(shields[values > 0], values[values > 0], style, color="0.55", lw=1, label=label)
+        axes.semilogy(shields[values > 0], values[values > 0], linestyle=style, color="0.55", lw=1, label=label)
 
 
 def draw_paper(axes):
