@@ -39,7 +39,7 @@ def main():
     parser.add_argument("--table")
     arguments = parser.parse_args()
 
-    plt.figure(figsize=(7, 4))
+    plt.figure(figsize=(9, 4))
     rows = []
     for run in arguments.runs:
         folder = thalweg.Run(run)
@@ -54,7 +54,7 @@ def main():
     plt.xlabel("time [s]")
     plt.ylabel("q*")
     plt.ylim(0.0, None)
-    plt.legend(fontsize=8)
+    plt.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.01, 1.0))
     plt.tight_layout()
     plt.savefig(arguments.figure, dpi=100)
 
