@@ -93,8 +93,7 @@ void GhostExchange::build(GrainStore& store) {
   }
   std::erase_if(neighbours_, [](const Neighbour& n) { return n.send.empty() && n.ghosts.empty(); });
   motion_ = PackedExchange(communicator_, messages(neighbours_, motion_tag, sizeof(MotionRow)));
-  followed_ = neighbours_;
-  followed_motion_ = PackedExchange(communicator_, messages(followed_, followed_tag, sizeof(MotionRow)));
+  follows_ = false;
   if (store.attached_width > 0) {
     const std::vector<double> ghost_columns = exchange_rows(communicator_, columns, column_to);
     std::copy(ghost_columns.begin(), ghost_columns.end(),
@@ -114,6 +113,7 @@ std::vector<PackedExchange::Neighbour> GhostExchange::messages(const std::vector
 
 void GhostExchange::follow(std::span<const PairContact> pairs, const GrainStore& store) {
   std::vector<std::uint32_t> neighbour_of(store.total());  // of a ghost: the number of the one that owns it
+  follows_ = true;
   followed_.clear();
   for (const Neighbour& n : neighbours_) {
     for (const std::uint32_t ghost : n.ghosts) neighbour_of[ghost] = static_cast<std::uint32_t>(followed_.size());
@@ -171,7 +171,7 @@ void GhostExchange::refresh(GrainStore& store) {
 
 void GhostExchange::refresh(MovingGrains& grains) {
   exchange_motion(
-      followed_, followed_motion_,
+      follows_ ? followed_ : neighbours_, follows_ ? followed_motion_ : motion_,
       [&](std::size_t s) -> MotionRow {
         const Row &x = grains[s].position, &v = grains[s].velocity, &w = grains[s].spin;
         return {{x[0], x[1], x[2], v[0], v[1], v[2], w[0], w[1], w[2]}};

@@ -61,8 +61,9 @@ private:
   double reach_;
   std::vector<int> candidates_;        // ranks whose block is within reach of this rank's
   std::vector<Neighbour> neighbours_;  // ranks grains are sent to or received from; ghosts side by side
-  std::vector<Neighbour> followed_;    // the same without what refresh(MovingGrains&) leaves out
+  std::vector<Neighbour> followed_;    // the same without what refresh(MovingGrains&) leaves out, where it does
   PackedExchange motion_, followed_motion_, attached_, values_;
+  bool follows_ = false;       // whether follow() has been called for the present ghosts
   bool values_ready_ = false;  // values_ fits the present ghosts
 };
 

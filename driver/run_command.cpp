@@ -179,13 +179,14 @@ std::int64_t allowed_restless(const Case& c) {
 }
 
 // Of a run that was to end when its grains are at rest, and ended at its time; empty: they are, or nobody asked.
-std::string rest_remark(const Case& c, const loop::LoopRecord& record, const System& system) {
+std::string rest_remark(const Case& c, const loop::LoopPlan& plan, const loop::LoopRecord& record,
+                        const System& system) {
   if (!c.run.until_at_rest || !record.finished || !record.early.empty()) return {};
   if (c.run.until_at_rest->quantile < 1.0)
     return fmt::format(
         "not at rest when last looked at, every {} steps: {:.0f} grains move, and a share of {:g} at rest leaves {}; a "
         "later --until goes on with --restart",
-        loop::LoopPlan{}.steps_between_looks_for_enough,
+        plan.steps_between_looks_for_enough,
         find_figure(system.figures(), dem::DryGrains::restless_figure).value_or(0.0), c.run.until_at_rest->quantile,
         allowed_restless(c));
   const double speed = find_figure(system.figures(), dem::DryGrains::largest_speed_figure).value_or(0.0);
@@ -302,7 +303,7 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   const std::vector<Figure> bed = final_bed(communicator, c, *system);
   identity.memory = memory_use(communicator);
   print_outcome(identity, time_loop.record(), *system, observers, bed, phases, places.folder, log);
-  if (const std::string remark = rest_remark(c, time_loop.record(), *system); !remark.empty()) log.line(remark);
+  if (const std::string remark = rest_remark(c, plan, time_loop.record(), *system); !remark.empty()) log.line(remark);
   const io::JsonObject summary =
       summary_of(identity, *system, time_loop.record(), observers, beginning.accounts, bed, phases);
   on_first_rank(communicator, [&] { summary.write(places.folder.summary()); });

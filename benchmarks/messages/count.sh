@@ -14,7 +14,7 @@ work=$(mktemp -d)
 trap 'rm -r "$work"' EXIT
 quiet=(--set output.grains.every=0 --set output.fluid.every=0 --set output.checkpoint.every=0)
 
-run() {  # RANKS OPTIONS...: prints messages, bytes and steps
+run() {  # RANKS OPTIONS...: prints the messages and bytes of the rank that sends most
   mpirun --quiet -n "$1" -x LD_PRELOAD="$PWD/build/release/lib/count_messages.so" "$thalweg" run "$case" "${quiet[@]}" \
     "${@:2}" >"$work/log" 2>&1 </dev/null || { tail -n 3 "$work/log" >&2; return 1; }
   awk '/^sent by rank/ {if ($5 > messages) messages = $5; if ($7 > bytes) bytes = $7} END {print messages + 0, bytes + 0}' "$work/log"

@@ -43,7 +43,7 @@ def draw_literature(axes):
                                 (literature.fernandez_luque_van_beek, "Fernandez Luque and van Beek", "-."),
                                 (literature.zhang_wide_bed, "Zhang et al., fig. 6, prefactor as printed", ":"),
                                 (lambda tau: literature.zhang_wide_bed(tau, literature.CONTINUUM_PREFACTOR),
-                                 "the same, 6.8 times: their continuum", (0, (1, 3)))):
+                                 f"the same, {literature.CONTINUUM_PREFACTOR} times: their continuum", (0, (1, 3)))):
         values = curve(shields)
         axes.semilogy(shields[values > 0], values[values > 0], linestyle=style, color="0.55", lw=1, label=label)
 

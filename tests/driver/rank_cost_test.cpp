@@ -12,14 +12,6 @@
 namespace thalweg::driver {
 namespace {
 
-// 240 x 80 x 212 cells, 1000 grains of ten cells, periodic along x and y.
-Case wide_bed() {
-  Case c = water_over_glass(5e-3, 0.016, 0.0412, 0.040, lbm::FaceType::periodic);
-  c.domain.size = Vec3(0.120, 0.040, 0.106);
-  c.coupling.grain_steps_per_fluid_step = 50;
-  return c;
-}
-
 RankWork total(const Case& c, const Index3& layout) {
   const Decomposition decomposition = decomposition_of(c, layout);
   RankWork sum;

@@ -34,4 +34,12 @@ inline Case water_over_glass(double d, double slope, double depth, double width,
   return c;
 }
 
+// 240 x 80 x 212 cells, 1000 grains of ten cells, periodic along x and y.
+inline Case wide_bed() {
+  Case c = water_over_glass(5e-3, 0.016, 0.0412, 0.040, lbm::FaceType::periodic);
+  c.domain.size = Vec3(0.120, 0.040, 0.106);
+  c.coupling.grain_steps_per_fluid_step = 50;
+  return c;
+}
+
 }  // namespace thalweg::driver

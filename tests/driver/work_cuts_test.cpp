@@ -11,9 +11,8 @@ namespace {
 
 // 24 x 8 x 100 cells of 0.5 mm.
 Case column() {
-  Case c = water_over_glass(5e-3, 0.016, 0.0412, 0.040, lbm::FaceType::periodic);
+  Case c = wide_bed();
   c.domain.size = Vec3(0.012, 0.004, 0.05);
-  c.coupling.grain_steps_per_fluid_step = 50;
   return c;
 }
 
@@ -38,9 +37,7 @@ TEST(WorkCuts, HalveTheWorkOfABed) {
 
 // Where gravity holds the grains on the floor a plan has most of the work there; along x nothing changes.
 TEST(WorkCuts, OfAPlanFollowTheSettledBed) {
-  Case c = water_over_glass(5e-3, 0.016, 0.0412, 0.040, lbm::FaceType::periodic);
-  c.domain.size = Vec3(0.120, 0.040, 0.106);
-  c.coupling.grain_steps_per_fluid_step = 50;
+  Case c = wide_bed();
   const Decomposition even = decomposition_of(c, {2, 1, 2}), planned = planned_cuts(c, {2, 1, 2});
   EXPECT_EQ(planned.block_of(0).upper[0], even.block_of(0).upper[0]);
   EXPECT_LT(cut_along_z(planned), cut_along_z(even));

@@ -55,6 +55,20 @@ analysis:
             for observer in ("transport_rate", "bed_surface"):
                 self.assertEqual(self.summary(out)[observer], self.summary("one")[observer])
 
+    def test_the_bed_at_the_end(self):
+        # Two layers of a cubic lattice that has hardly begun to fall: a solid fraction of 0.45.
+        places = [[(i + 0.5) * 5.28e-3, (j + 0.5) * 5.3625e-3, 2.476e-3 + k * 4.952e-3]
+                  for k in range(2) for j in range(2) for i in range(5)]
+        self.run_well("run", self.case, "--until", "0.002", "--set", "analysis={}", "--set",
+                      f"grains=[{{diameter: 4.95e-3, density: 2550, placement: {{positions: {places}}}}}]")
+        bed = self.summary("run")["bed"]
+        self.assertLess(bed["porosity"], 0.6)   # above, it would be no bed
+        depth = 0.0264 - bed["bed_height"]
+        along = 9.8 * 0.1 / (1 + 0.1 ** 2) ** 0.5   # the sine of the slope
+        self.assertAlmostEqual(bed["bed_stress"], 1000 * along * depth * 0.010725 / (2 * depth + 0.010725), delta=1e-9)
+        self.assertAlmostEqual(bed["shields_number"], bed["bed_stress"] / (1550 * 9.8 * 4.95e-3), delta=1e-9)
+        self.assertIn("bed: ", (self.folder / "run/run.log").read_text())
+
     def test_a_restart_half_way_has_the_same_means(self):
         self.run_well("run", self.case, "--out", "straight")
         half_way = self.folder / "straight/checkpoints/step_400.h5"
