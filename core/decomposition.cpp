@@ -130,20 +130,34 @@ int Decomposition::owner_of(const Vec3& position) const {
   return rank_at(c);
 }
 
+bool Decomposition::slab_reaches(int axis, int slab, double x, double distance) const {
+  const int first = cuts_[axis][slab], end = cuts_[axis][slab + 1];
+  const double lower = first * spacing_ - distance, upper = end * spacing_ + distance;
+  const double length = cells_[axis] * spacing_;
+  if (x >= lower && x <= upper) return true;
+  if (periodic_[axis])
+    return (x - length >= lower && x - length <= upper) || (x + length >= lower && x + length <= upper);
+  // Beyond an outer wall the outermost block still answers for the position.
+  return (x < lower && first == 0) || (x > upper && end == cells_[axis]);
+}
+
 bool Decomposition::reaches(int rank, const Vec3& position, double distance) const {
-  const Block block = block_of(rank);
-  for (int a = 0; a < 3; ++a) {
-    const double lower = block.lower[a] * spacing_ - distance, upper = block.upper[a] * spacing_ + distance;
-    const double length = cells_[a] * spacing_, x = position[a];
-    bool inside = x >= lower && x <= upper;
-    if (periodic_[a] && !inside)
-      inside = (x - length >= lower && x - length <= upper) || (x + length >= lower && x + length <= upper);
-    // Beyond an outer wall the outermost block still answers for the position.
-    if (!periodic_[a] && !inside)
-      inside = (x < lower && block.lower[a] == 0) || (x > upper && block.upper[a] == cells_[a]);
-    if (!inside) return false;
-  }
+  const Index3 c = coordinates_of(rank);
+  for (int a = 0; a < 3; ++a)
+    if (!slab_reaches(a, c[a], position[a], distance)) return false;
   return true;
+}
+
+std::vector<int> Decomposition::ranks_reached(const Vec3& position, double distance) const {
+  std::array<std::vector<int>, 3> slabs;
+  for (int a = 0; a < 3; ++a)
+    for (int slab = 0; slab < layout_[a]; ++slab)
+      if (slab_reaches(a, slab, position[a], distance)) slabs[a].push_back(slab);
+  std::vector<int> ranks;
+  for (const int k : slabs[2])
+    for (const int j : slabs[1])
+      for (const int i : slabs[0]) ranks.push_back(rank_at({i, j, k}));
+  return ranks;
 }
 
 }  // namespace thalweg

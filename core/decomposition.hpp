@@ -78,7 +78,12 @@ public:
   // True if the closed box of a rank, widened by `distance` (m) on every side, holds the position or a periodic image.
   bool reaches(int rank, const Vec3& position, double distance) const;
 
+  // All ranks for which that is so, the owner among them, in ascending order.
+  std::vector<int> ranks_reached(const Vec3& position, double distance) const;
+
 private:
+  bool slab_reaches(int axis, int slab, double coordinate, double distance) const;
+
   Index3 cells_;
   double spacing_;
   std::array<bool, 3> periodic_;
