@@ -1,8 +1,9 @@
-// The dense packing of packing.hpp: grains that start anywhere push each other apart until none overlap.
+// The dense packing of random_packing.hpp: grains that start anywhere push each other apart until none overlap. A rank
+// moves the grains that were in its block when the list of pairs was made, and has copies of those near them.
 #include "core/counter_random.hpp"
 #include "core/error.hpp"
 #include "dem/cell_grid.hpp"
-#include "dem/packing.hpp"
+#include "dem/random_packing.hpp"
 
 #include <fmt/format.h>
 
@@ -20,38 +21,62 @@ constexpr double step = 0.2;      // of the way that would separate a pair; more
 constexpr double momentum = 0.9;  // of the last move that is made again
 constexpr int most_iterations = 20000;
 
+// A grain, or what it keeps clear of.
+struct Body {
+  std::int64_t number;  // of obstacles those after the grains'
+  double radius;        // m, grown
+  double margin;        // m, of its centre to the region's faces that are not periodic
+  double position[3];   // m
+  double move[3];       // m, the last one
+};
+
+Eigen::Map<Vec3> place_of(Body& body) { return Vec3::Map(body.position); }
+
+bool before(const Body& a, const Body& b) { return a.number < b.number; }
+
 class Relaxation {
 public:
-  Relaxation(const PeriodicBox& box, const Region& region, std::span<const double> radii, double clearance,
-             std::span<const Sphere> obstacles)
-      : box_(box), count_(radii.size()) {
-    for (int axis = 0; axis < 3; ++axis) wraps_[axis] = wraps(box, region, axis) && !(region.plane && axis == 1);
-    for (const double radius : radii) {
-      radius_.push_back(growth * radius);
-      lower_.push_back(room(region, radius + clearance, region.lower, 1.0));
-      upper_.push_back(room(region, radius + clearance, region.upper, -1.0));
+  Relaxation(const PlacingRanks& ranks, const GrainsToPlace& grains, std::span<const Obstacle> obstacles)
+      : ranks_(ranks),
+        box_(ranks.box()),
+        grains_(grains),
+        largest_(grains.largest_radius),
+        lower_(grains.region.lower),
+        upper_(grains.region.upper) {
+    for (int axis = 0; axis < 3; ++axis) wraps_[axis] = wraps(box_, grains.region, axis);
+    if (grains.region.plane) {
+      wraps_[1] = false;
+      lower_[1] = upper_[1] = 0.5 * (grains.region.lower[1] + grains.region.upper[1]);
     }
-    position_.resize(count_);
-    for (const Sphere& obstacle : obstacles) {
-      position_.push_back(box.wrapped(obstacle.position));
-      radius_.push_back(growth * obstacle.radius);
+    for (int axis = 0; axis < 3; ++axis) keeps_away_[axis] = !wraps_[axis] && !(grains.region.plane && axis == 1);
+    for (const Obstacle& obstacle : obstacles) {
+      const Vec3 place = box_.wrapped(obstacle.sphere.position);
+      const double radius = growth * obstacle.sphere.radius;
+      obstacles_.push_back({grains.count + obstacle.number, radius, 0.0, {place.x(), place.y(), place.z()}, {}});
+      largest_ = std::max(largest_, obstacle.sphere.radius);
     }
-    largest_ = *std::max_element(radius_.begin(), radius_.end());
-    move_.assign(count_, Vec3::Zero());
+    largest_ = growth * ranks.largest(largest_);
   }
 
   bool has_room() const {
-    for (std::size_t n = 0; n < count_; ++n)
-      if ((upper_[n].array() < lower_[n].array()).any()) return false;
-    return true;
+    const Vec3 margin = (grains_.largest_radius + grains_.clearance) * keeps_away_;
+    return ((upper_ - margin).array() >= (lower_ + margin).array()).all();
   }
 
-  void scatter(std::uint64_t seed) {
-    for (std::size_t n = 0; n < count_; ++n)
+  void scatter() {
+    const RowRange share = ranks_.share_of(grains_.count);
+    for (std::int64_t number = share.first; number < share.last; ++number) {
+      const double radius = grains_.radius(number);
+      Body body{number, growth * radius, radius + grains_.clearance, {}, {}};
+      const Vec3 lower = lower_of(body), upper = upper_of(body);
       for (unsigned axis = 0; axis < 3; ++axis) {
-        const double free = upper_[n][axis] - lower_[n][axis];
-        position_[n][axis] = lower_[n][axis] + free * uniform_random(seed, n, axis);
+        const double free = upper[axis] - lower[axis];
+        body.position[axis] =
+            lower[axis] + free * uniform_random(grains_.seed, static_cast<std::uint64_t>(number), axis);
       }
+      bodies_.push_back(body);
+    }
+    own_ = bodies_.size();
   }
 
   // Whether none overlap after so many iterations.
@@ -63,56 +88,73 @@ public:
         find_pairs(2.0 * (largest_ + skin));
         moved = 0.0;
       }
-      if (push_apart() < 1.0 - 1.0 / growth) return true;
-      moved += advance();
+      if (ranks_.largest(push_apart()) < 1.0 - 1.0 / growth) return true;
+      moved += ranks_.largest(advance());
+      copies_.update(bodies_, own_);
     }
     return false;
   }
 
-  std::vector<Vec3> centres() const {
-    return {position_.begin(), position_.begin() + static_cast<std::ptrdiff_t>(count_)};
+  std::vector<PlacedGrain> placed() {
+    bodies_.resize(own_);
+    for (Body& body : bodies_) place_of(body) = box_.wrapped(place_of(body));
+    std::vector<Body> known = ranks_.to_knowing(bodies_);
+    std::sort(known.begin(), known.end(), before);
+    std::vector<PlacedGrain> placed;
+    for (Body& body : known) placed.push_back({body.number, place_of(body)});
+    return placed;
   }
 
 private:
-  // Where the centre of a grain may be: up to a face of the region, or anywhere along an axis that the region wraps.
-  Vec3 room(const Region& region, double margin, const Vec3& face, double inwards) const {
-    Vec3 limit = face;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (region.plane && axis == 1)
-        limit[1] = 0.5 * (region.lower[1] + region.upper[1]);
-      else if (!wraps_[axis])
-        limit[axis] += inwards * margin;
-    }
-    return limit;
-  }
+  // Where its centre may be: up to a face of the region, or anywhere along an axis that the region wraps.
+  Vec3 lower_of(const Body& body) const { return lower_ + body.margin * keeps_away_; }
+  Vec3 upper_of(const Body& body) const { return upper_ - body.margin * keeps_away_; }
 
+  // Pairs of bodies up to this far apart (m), of which one is a grain of this rank; each pair has the lower number
+  // first, and pairs come in the order of their numbers, which depends neither on the grid nor on the ranks.
   void find_pairs(double distance) {
-    for (std::size_t n = 0; n < count_; ++n) position_[n] = box_.wrapped(position_[n]);
+    bodies_.resize(own_);
+    for (Body& body : bodies_) place_of(body) = box_.wrapped(place_of(body));
+    bodies_ = ranks_.to_owners(std::move(bodies_));
+    std::sort(bodies_.begin(), bodies_.end(), before);
+    own_ = bodies_.size();
+    copies_ = Copies(ranks_, bodies_, distance);
+    copies_.append(bodies_);
+    first_obstacle_ = bodies_.size();
+    bodies_.insert(bodies_.end(), obstacles_.begin(), obstacles_.end());
+
+    std::vector<Vec3> places;
+    for (Body& body : bodies_) places.push_back(place_of(body));
     pairs_.clear();
-    const CellGrid grid(box_, distance, position_);
+    const CellGrid grid(box_, distance, places);
     grid.for_each_near_pair([&](std::uint32_t m, std::uint32_t n) {
-      const std::uint32_t a = std::min(grid.order()[m], grid.order()[n]),
-                          b = std::max(grid.order()[m], grid.order()[n]);
-      if (a < count_ && box_.difference(position_[a], position_[b]).squaredNorm() < distance * distance)
-        pairs_.emplace_back(a, b);
+      std::uint32_t a = grid.order()[m], b = grid.order()[n];
+      if (std::min(a, b) >= own_) return;
+      if (before(bodies_[b], bodies_[a])) std::swap(a, b);
+      if (box_.difference(places[a], places[b]).squaredNorm() < distance * distance) pairs_.emplace_back(a, b);
     });
-    std::sort(pairs_.begin(), pairs_.end());  // an order that does not depend on the grid
+    std::sort(pairs_.begin(), pairs_.end(), [&](const auto& p, const auto& q) {
+      const auto first = [&](const auto& pair) { return bodies_[pair.first].number; };
+      const auto second = [&](const auto& pair) { return bodies_[pair.second].number; };
+      return first(p) != first(q) ? first(p) < first(q) : second(p) < second(q);
+    });
   }
 
   // Adds half of every overlap to the moves of both grains, all of it where one is an obstacle. Returns the largest
   // overlap over the distance of the centres of grains that touch.
   double push_apart() {
     double largest = 0.0;
-    for (Vec3& move : move_) move *= momentum;
+    for (std::size_t n = 0; n < own_; ++n) Vec3::Map(bodies_[n].move) *= momentum;
     for (const auto& [a, b] : pairs_) {
-      const Vec3 apart = box_.difference(position_[a], position_[b]);
-      const double distance = apart.norm(), touching = radius_[a] + radius_[b];
+      Body &one = bodies_[a], &other = bodies_[b];
+      const Vec3 apart = box_.difference(place_of(one), place_of(other));
+      const double distance = apart.norm(), touching = one.radius + other.radius;
       if (distance >= touching) continue;
       largest = std::max(largest, 1.0 - distance / touching);
       const Vec3 normal = distance > 0.0 ? Vec3(apart / distance) : Vec3::UnitX();
       const Vec3 way = step * (touching - distance) * normal;
-      move_[a] += (b < count_ ? 0.5 : 1.0) * way;
-      if (b < count_) move_[b] -= 0.5 * way;
+      Vec3::Map(one.move) += (b < first_obstacle_ ? 0.5 : 1.0) * way;
+      if (b < first_obstacle_) Vec3::Map(other.move) -= 0.5 * way;
     }
     return largest;
   }
@@ -120,48 +162,89 @@ private:
   // Returns the longest move, m.
   double advance() {
     double longest = 0.0;
-    for (std::size_t n = 0; n < count_; ++n) {
-      const Vec3 before = position_[n];
+    for (std::size_t n = 0; n < own_; ++n) {
+      Body& body = bodies_[n];
+      const Vec3 from = place_of(body), lower = lower_of(body), upper = upper_of(body);
       for (int axis = 0; axis < 3; ++axis) {
-        const double wanted = before[axis] + move_[n][axis];
-        position_[n][axis] = wraps_[axis] ? wanted : std::clamp(wanted, lower_[n][axis], upper_[n][axis]);
+        const double wanted = from[axis] + body.move[axis];
+        body.position[axis] = wraps_[axis] ? wanted : std::clamp(wanted, lower[axis], upper[axis]);
       }
-      move_[n] = position_[n] - before;
-      longest = std::max(longest, move_[n].norm());
+      Vec3::Map(body.move) = place_of(body) - from;
+      longest = std::max(longest, Vec3::Map(body.move).norm());
     }
     return longest;
   }
 
+  // Grains of other ranks near those of this one, brought up to date where they are.
+  class Copies {
+  public:
+    Copies() = default;
+    // Of grains within this distance (m) of a block. Collective.
+    Copies(const PlacingRanks& ranks, const std::vector<Body>& own, double distance) : ranks_(&ranks) {
+      if (ranks.alone()) return;
+      const int me = rank_of(ranks.communicator());
+      for (std::size_t n = 0; n < own.size(); ++n)
+        for (const int rank : ranks.decomposition().ranks_reached(Vec3(own[n].position), distance))
+          if (rank != me) {
+            sent_.push_back(n);
+            homes_.push_back(rank);
+          }
+      received_ = exchanged(own);
+    }
+
+    // Those of this rank, behind its own. They are sorted by sender, and stay in this order.
+    void append(std::vector<Body>& bodies) const { bodies.insert(bodies.end(), received_.begin(), received_.end()); }
+
+    // Collective.
+    void update(std::vector<Body>& bodies, std::size_t own) {
+      if (ranks_->alone()) return;
+      const std::vector<Body> now = exchanged(bodies);
+      std::copy(now.begin(), now.end(), bodies.begin() + static_cast<std::ptrdiff_t>(own));
+    }
+
+  private:
+    std::vector<Body> exchanged(const std::vector<Body>& bodies) const {
+      std::vector<Body> rows;
+      for (const std::size_t n : sent_) rows.push_back(bodies[n]);
+      return exchange_rows(ranks_->communicator(), std::move(rows), homes_);
+    }
+
+    const PlacingRanks* ranks_ = nullptr;
+    std::vector<std::size_t> sent_;  // numbers in the list of own grains
+    std::vector<int> homes_;         // where to
+    std::vector<Body> received_;
+  };
+
+  const PlacingRanks& ranks_;
   PeriodicBox box_;
-  std::size_t count_;                  // of grains; obstacles follow
-  std::vector<Vec3> position_, move_;  // m
-  std::vector<double> radius_;         // m, grown
-  std::vector<Vec3> lower_, upper_;    // m, of the centres of grains
+  const GrainsToPlace& grains_;
+  double largest_;      // m, radius, grown
+  Vec3 lower_, upper_;  // m, of the region; of disks their plane
   std::array<bool, 3> wraps_{};
-  double largest_ = 0.0;  // m, radius
+  Vec3 keeps_away_;           // 1 along axes with faces to keep away from, else 0
+  std::vector<Body> bodies_;  // grains of this rank, copies of others, obstacles
+  std::size_t own_ = 0, first_obstacle_ = 0;
+  std::vector<Body> obstacles_;
+  Copies copies_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;
 };
 
 }  // namespace
 
-std::vector<Vec3> dense_packing(const PeriodicBox& box, const Region& region, std::span<const double> radii,
-                                double clearance, std::uint64_t seed, std::span<const Sphere> obstacles) {
-  check_region(box, region);
-  if (radii.empty()) return {};
-  Relaxation relaxation(box, region, radii, clearance, obstacles);
+std::vector<PlacedGrain> dense_packing(const PlacingRanks& ranks, const GrainsToPlace& grains,
+                                       std::span<const Obstacle> obstacles) {
+  check_region(ranks.box(), grains.region);
+  if (grains.count == 0) return {};
+  Relaxation relaxation(ranks, grains, obstacles);
   if (relaxation.has_room()) {
-    relaxation.scatter(seed);
-    if (relaxation.relax()) {
-      std::vector<Vec3> centres = relaxation.centres();
-      for (Vec3& centre : centres) centre = box.wrapped(centre);
-      return centres;
-    }
+    relaxation.scatter();
+    if (relaxation.relax()) return relaxation.placed();
   }
+  const Vec3 extent = grains.region.upper - grains.region.lower;
   throw InputError(
       fmt::format("{} grains do not fit at random in {:g} x {:g} x {:g} m, though they were pushed apart; use fewer or "
                   "smaller grains or a larger region.",
-                  radii.size(), region.upper[0] - region.lower[0], region.upper[1] - region.lower[1],
-                  region.upper[2] - region.lower[2]));
+                  grains.count, extent.x(), extent.y(), extent.z()));
 }
 
 }  // namespace thalweg::dem

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace thalweg::dem {
 
@@ -109,110 +108,6 @@ std::vector<Vec3> uniform_packing(const PeriodicBox& box, const Region& region, 
   const UniformSites sites(box, region, count, radius, clearance, seed);
   std::vector<Vec3> centres;
   for (std::int64_t grain = 0; grain < count; ++grain) centres.push_back(sites.centre(grain));
-  return centres;
-}
-
-namespace {
-
-// Spheres placed so far, in cells one largest diameter wide, found by distance.
-class Placed {
-public:
-  Placed(const PeriodicBox& box, double largest_diameter, std::size_t expected) : box_(box) {
-    double width = largest_diameter;
-    const double most = 8.0 * static_cast<double>(expected) + 64.0;
-    while (box.size.prod() / (width * width * width) > most) width *= 1.25;
-    for (int axis = 0; axis < 3; ++axis) count_[axis] = std::max(1, static_cast<int>(box.size[axis] / width));
-    cells_.resize(static_cast<std::size_t>(count_[0]) * count_[1] * count_[2]);
-  }
-
-  void add(const Sphere& sphere) { cell(cell_of(sphere.position)).push_back(sphere); }
-
-  bool clear_of(const Sphere& sphere) {
-    const Index3 home = cell_of(sphere.position);
-    Index3 c;
-    for (int k = -1; k <= 1; ++k)
-      for (int j = -1; j <= 1; ++j)
-        for (int i = -1; i <= 1; ++i) {
-          c = {home[0] + i, home[1] + j, home[2] + k};
-          if (!bring_inside(c)) continue;
-          for (const Sphere& other : cell(c)) {
-            const double reach = sphere.radius + other.radius;
-            if (box_.difference(sphere.position, other.position).squaredNorm() < reach * reach) return false;
-          }
-        }
-    return true;
-  }
-
-private:
-  Index3 cell_of(const Vec3& p) const {
-    Index3 c;
-    for (int axis = 0; axis < 3; ++axis)
-      c[axis] = std::clamp(static_cast<int>(p[axis] / box_.size[axis] * count_[axis]), 0, count_[axis] - 1);
-    return c;
-  }
-  bool bring_inside(Index3& c) const {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (box_.periodic[axis]) c[axis] = (c[axis] + count_[axis]) % count_[axis];
-      if (c[axis] < 0 || c[axis] >= count_[axis]) return false;
-    }
-    return true;
-  }
-  std::vector<Sphere>& cell(const Index3& c) {
-    return cells_[(static_cast<std::size_t>(c[2]) * count_[1] + c[1]) * count_[0] + c[0]];
-  }
-
-  PeriodicBox box_;
-  Index3 count_{};
-  std::vector<std::vector<Sphere>> cells_;
-};
-
-}  // namespace
-
-std::vector<Vec3> random_packing(const PeriodicBox& box, const Region& region, std::span<const double> radii,
-                                 double clearance, std::uint64_t seed, std::span<const Sphere> obstacles) {
-  check_region(box, region);
-  std::vector<std::size_t> order(radii.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return radii[a] > radii[b]; });
-  double largest = radii.empty() ? 0.0 : radii[order.front()];
-  for (const Sphere& obstacle : obstacles) largest = std::max(largest, obstacle.radius);
-  if (radii.empty()) return {};
-
-  Placed placed(box, 2.0 * largest, radii.size() + obstacles.size());
-  for (const Sphere& obstacle : obstacles) placed.add({box.wrapped(obstacle.position), obstacle.radius});
-  constexpr int attempts = 5000;
-  std::vector<Vec3> centres(radii.size());
-  for (std::size_t n = 0; n < order.size(); ++n) {
-    const std::size_t grain = order[n];
-    bool found = false;
-    for (int attempt = 0; attempt < attempts && !found; ++attempt) {
-      Sphere trial{Vec3::Zero(), radii[grain]};
-      bool room = true;
-      for (int axis = 0; axis < 3; ++axis) {
-        if (region.plane && axis == 1) {
-          trial.position[1] = 0.5 * (region.lower[1] + region.upper[1]);
-          continue;
-        }
-        const double margin = wraps(box, region, axis) ? 0.0 : radii[grain] + clearance;
-        const double free = region.upper[axis] - region.lower[axis] - 2.0 * margin;
-        room = room && free >= 0.0;
-        trial.position[axis] = region.lower[axis] + margin +
-                               free * uniform_random(seed, grain, 3u * static_cast<unsigned>(attempt) + axis);
-      }
-      if (!room) break;
-      trial.position = box.wrapped(trial.position);
-      found = placed.clear_of(trial);
-      if (!found) continue;
-      placed.add(trial);
-      centres[grain] = trial.position;
-    }
-    if (!found)
-      throw InputError(
-          fmt::format("{} grains do not fit at random in {:g} x {:g} x {:g} m: {} did; use fewer or smaller "
-                      "grains, a larger region, or another placement.pattern: uniform, or dense.",
-                      radii.size(), region.upper[0] - region.lower[0], region.upper[1] - region.lower[1],
-                      region.upper[2] - region.lower[2], n));
-  }
   return centres;
 }
 

@@ -1,4 +1,4 @@
-// Where grains are put at the start. The same on every rank: no communication, random numbers from the seed alone.
+// Regions of the box, and lattices on which grains are put at the start: the same on every rank, without communication.
 #pragma once
 
 #include "core/periodic_box.hpp"
@@ -6,7 +6,6 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace thalweg::dem {
@@ -61,16 +60,5 @@ private:
 // All of them.
 std::vector<Vec3> uniform_packing(const PeriodicBox& box, const Region& region, std::int64_t count, double radius,
                                   double clearance, std::uint64_t seed);
-
-// Centres at random, one for each radius (m), clear of each other and of the obstacles. Large grains are placed first;
-// beyond about a third of the volume that gets hard. Throws InputError saying how many would fit.
-std::vector<Vec3> random_packing(const PeriodicBox& box, const Region& region, std::span<const double> radii,
-                                 double clearance, std::uint64_t seed, std::span<const Sphere> obstacles = {});
-
-// The same for beds and suspensions that fill up to 0.6 of the volume: grains begin anywhere and push each other apart,
-// by overlapping shares of the way, until none overlap (after W. S. Jodrey and E. M. Tory, Phys. Rev. A 32 (1985)
-// 2347). Nearest neighbours are then at a distance of at least a diameter, most of them little more.
-std::vector<Vec3> dense_packing(const PeriodicBox& box, const Region& region, std::span<const double> radii,
-                                double clearance, std::uint64_t seed, std::span<const Sphere> obstacles = {});
 
 }  // namespace thalweg::dem

@@ -3,10 +3,13 @@
 #include "core/error.hpp"
 #include "dem/packing.hpp"
 #include "dem/population_clumps.hpp"
+#include "dem/random_packing.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
+#include <utility>
 
 namespace thalweg::dem {
 namespace {
@@ -84,106 +87,148 @@ PlacementOrder order_of(const PlacementKeys& placement) {
   return PlacementOrder::random;
 }
 
-// Where the grains of a population are put, one by one.
-struct Places {
-  std::size_t count;
-  std::function<Vec3(std::size_t)> of;  // m
-};
+using PlaceVisitor = std::function<void(std::size_t grain, const Vec3& centre)>;  // m
 
-Places places_in(std::vector<Vec3> positions) {
-  const std::size_t count = positions.size();
-  return {count, [kept = std::move(positions)](std::size_t grain) { return kept[grain]; }};
+// Calls the visitor for the grains of a population in their order: for all, or for those of a packing that this rank
+// knows.
+using Places = std::function<void(const PlaceVisitor&)>;
+
+Places places_in(std::vector<Vec3> centres) {
+  return [kept = std::move(centres)](const PlaceVisitor& visit) {
+    for (std::size_t grain = 0; grain < kept.size(); ++grain) visit(grain, kept[grain]);
+  };
 }
 
-Places place(const Population& population, const PeriodicBox& box, const std::vector<Sphere>& placed) {
+Places places_of_file(const std::vector<BedGrain>& rows) {
+  return [&rows](const PlaceVisitor& visit) {
+    for (std::size_t row = 0; row < rows.size(); ++row) visit(row, rows[row].position);
+  };
+}
+
+Places places_on(UniformSites sites, std::int64_t count) {
+  return [sites = std::move(sites), count](const PlaceVisitor& visit) {
+    for (std::int64_t grain = 0; grain < count; ++grain) visit(static_cast<std::size_t>(grain), sites.centre(grain));
+  };
+}
+
+// A rigid assembly is known to all ranks.
+std::vector<PlacedGrain> known_to_all(const PlacingRanks& ranks, std::vector<PlacedGrain> known) {
+  struct Row {
+    std::int64_t number;
+    double position[3];
+  };
+  std::vector<Row> own;
+  for (const PlacedGrain& grain : known)
+    if (ranks.owns(grain.centre)) own.push_back({grain.number, {grain.centre.x(), grain.centre.y(), grain.centre.z()}});
+  known.clear();
+  for (const Row& row : ranks.to_all(own)) known.push_back({row.number, Vec3(row.position)});
+  std::sort(known.begin(), known.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
+  return known;
+}
+
+Places pack(const Population& population, const Region& region, const PlacingRanks& ranks,
+            std::span<const Obstacle> obstacles) {
   const PlacementKeys& placement = population.placement;
-  const auto seed = static_cast<std::uint64_t>(placement.seed);
-  const auto count = static_cast<std::size_t>(population.count);
-  Region region = region_of(placement, box);
+  const GrainsToPlace grains{
+      region,
+      population.count,
+      [&population](std::int64_t grain) { return 0.5 * population.room_of(static_cast<std::size_t>(grain)); },
+      0.5 * population.room_of_all(),
+      0.0,
+      static_cast<std::uint64_t>(placement.seed)};
+  const bool dense = placement.pattern == PlacementPattern::dense;
+  std::vector<PlacedGrain> placed =
+      dense ? dense_packing(ranks, grains, obstacles) : random_packing(ranks, grains, obstacles);
+  if (population.motion) placed = known_to_all(ranks, std::move(placed));
+  return [kept = std::move(placed)](const PlaceVisitor& visit) {
+    for (const PlacedGrain& grain : kept) visit(static_cast<std::size_t>(grain.number), grain.centre);
+  };
+}
+
+Places place(const Population& population, const PlacingRanks& ranks, std::span<const Obstacle> obstacles) {
+  const PlacementKeys& placement = population.placement;
+  Region region = region_of(placement, ranks.box());
   region.plane = population.thickness > 0.0;
-  if (region.plane) region.lower[1] = 0.0, region.upper[1] = box.size[1];
+  if (region.plane) region.lower[1] = 0.0, region.upper[1] = ranks.box().size[1];
   switch (order_of(placement)) {
     case PlacementOrder::given:
-      if (!placement.file) return places_in(placement.positions);
-      return {population.file.size(), [&population](std::size_t grain) { return population.file[grain].position; }};
-    case PlacementOrder::uniform: {
-      const UniformSites sites(box, region, population.count, 0.5 * population.room_of_all(), 0.0, seed);
-      return {count, [sites](std::size_t grain) { return sites.centre(static_cast<std::int64_t>(grain)); }};
-    }
+      return placement.file ? places_of_file(population.file) : places_in(placement.positions);
+    case PlacementOrder::uniform:
+      return places_on(UniformSites(ranks.box(), region, population.count, 0.5 * population.room_of_all(), 0.0,
+                                    static_cast<std::uint64_t>(placement.seed)),
+                       population.count);
     case PlacementOrder::dense:
     case PlacementOrder::random:
       break;
   }
-  std::vector<double> radii;
-  for (std::size_t n = 0; n < count; ++n) radii.push_back(0.5 * population.room_of(n));
-  const auto pack = placement.pattern == PlacementPattern::dense ? dense_packing : random_packing;
-  return places_in(pack(box, region, radii, 0.0, seed, placed));
+  return pack(population, region, ranks, obstacles);
 }
 
-// Adds the grains of a population that are wanted, one after the other, with ids that count up through all.
+// Adds the grains of a population that this rank knows, one after the other, with ids that count up through all.
 class SeedAdder {
 public:
-  SeedAdder(const PeriodicBox& box, const WantedPlaces& wanted, GrainSeeds& seeds)
-      : box_(box), wanted_(wanted), seeds_(seeds) {}
+  SeedAdder(const PlacingRanks& ranks, GrainSeeds& seeds) : ranks_(ranks), box_(ranks.box()), seeds_(seeds) {}
 
   void add(const Population& population, const GrainSeed& common, const Places& places) {
-    const auto seed_of = [&](std::size_t grain) {
+    const auto seed_of = [&](std::size_t grain, const Vec3& centre) {
       GrainSeed seed = common;
-      seed.id = next_;
       seed.radius = 0.5 * population.diameter_of(grain);
       seed.density = population.density_of(grain);
-      seed.position = in_plane(places.of(grain), population, box_);
+      seed.position = in_plane(centre, population, box_);
       set_motion(seed, population, grain);
       return seed;
     };
-    if (!population.file.empty()) return add_from_file(population, seed_of);
-    if (population.shape) return add_clumps(population, places.count, seed_of);
-    for (std::size_t n = 0; n < places.count; ++n, ++next_) add(seed_of(n));
+    if (!population.file.empty())
+      add_from_file(population, seed_of);
+    else if (population.shape)
+      add_clumps(population, places, seed_of);
+    else
+      places([&](std::size_t grain, const Vec3& centre) {
+        if (!wants(in_plane(centre, population, box_), common.assembly)) return;
+        seeds_.grains.push_back(seed_of(grain, centre));
+        seeds_.grains.back().id = first_ + static_cast<GlobalId>(grain);
+      });
+    first_ += population.row_count();
   }
 
 private:
-  bool wants(const Vec3& centre) const { return !wanted_ || wanted_(box_.wrapped(centre)); }
+  bool wants(const Vec3& centre, int assembly) const { return assembly >= 0 || ranks_.knows(box_.wrapped(centre)); }
 
-  void add(const GrainSeed& grain) {
-    if (grain.assembly >= 0 || wants(grain.position)) seeds_.grains.push_back(grain);
-  }
-  void add(const ClumpSeed& clump) {
-    if (wants(clump.position)) seeds_.clumps.push_back(clump);
-  }
-
-  void add_clumps(const Population& population, std::size_t count, const auto& seed_of) {
+  void add_clumps(const Population& population, const Places& places, const auto& seed_of) {
     ClumpSeed clump;
     clump.shape = clump_shape_of(population);
-    for (std::size_t n = 0; n < count; ++n) {
-      const GrainSeed as_grain = seed_of(n);
+    const auto members = static_cast<GlobalId>(clump.shape->members.size());
+    places([&](std::size_t grain, const Vec3& centre) {
+      if (!wants(in_plane(centre, population, box_), -1)) return;
+      GrainSeed as_grain = seed_of(grain, centre);
+      as_grain.id = first_ + static_cast<GlobalId>(grain) * members;
       clump.position = as_grain.position;
-      clump.orientation = orientation_of(population, n);
-      add(clump_seed_of(as_grain, clump));
-      next_ += static_cast<GlobalId>(clump.shape->members.size());
-    }
+      clump.orientation = orientation_of(population, grain);
+      seeds_.clumps.push_back(clump_seed_of(as_grain, clump));
+    });
   }
 
   void add_from_file(const Population& population, const auto& seed_of) {
     std::size_t row = 0;
     for (const std::span<const BedGrain> body : bodies_of(population.file)) {
-      GrainSeed seed = seed_of(row);
-      if (body.front().clump < 0) {
-        add(seed);
-      } else {
-        const ClumpSeed clump = clump_from(body, box_, population.thickness);
-        if (keeps_velocities(population) && !holds_translation(seed.motion))
-          seed.velocity = clump.velocity;  // of the centre
-        add(clump_seed_of(seed, clump));
-      }
-      next_ += static_cast<GlobalId>(body.size());
+      GrainSeed seed = seed_of(row, population.file[row].position);
+      seed.id = first_ + static_cast<GlobalId>(row);
       row += body.size();
+      if (body.front().clump < 0) {
+        if (wants(seed.position, seed.assembly)) seeds_.grains.push_back(seed);
+        continue;
+      }
+      const ClumpSeed clump = clump_from(body, box_, population.thickness);
+      if (keeps_velocities(population) && !holds_translation(seed.motion))
+        seed.velocity = clump.velocity;  // of the centre
+      if (wants(clump.position, -1)) seeds_.clumps.push_back(clump_seed_of(seed, clump));
     }
   }
 
-  const PeriodicBox& box_;
-  const WantedPlaces& wanted_;
+  const PlacingRanks& ranks_;
+  PeriodicBox box_;
   GrainSeeds& seeds_;
-  GlobalId next_ = 0;
+  GlobalId first_ = 0;  // id of the population's first grain
 };
 
 // Whether another population is to keep clear of those that are placed before it.
@@ -195,32 +240,39 @@ bool anyone_keeps_clear(std::span<const Population> populations) {
 
 }  // namespace
 
-GrainSeeds grain_seeds(std::span<const Population> populations, const PeriodicBox& box, const WantedPlaces& wanted) {
+GrainSeeds grain_seeds(std::span<const Population> populations, const PlacingRanks& ranks) {
   std::vector<Places> places(populations.size());
-  std::vector<Sphere> placed;
+  std::vector<Obstacle> obstacles;
+  std::int64_t first = 0;  // number of a population's first grain among the obstacles
   const bool kept_clear_of = populations.size() > 1 && anyone_keeps_clear(populations);
   for (const PlacementOrder order :
        {PlacementOrder::given, PlacementOrder::uniform, PlacementOrder::dense, PlacementOrder::random})
     for (std::size_t p = 0; p < populations.size(); ++p) {
-      if (order_of(populations[p].placement) != order) continue;
+      const Population& population = populations[p];
+      if (order_of(population.placement) != order) continue;
       try {
-        places[p] = place(populations[p], box, placed);
+        places[p] = place(population, ranks, obstacles);
       } catch (const InputError& error) {
         throw InputError(fmt::format("grains.{}: {}", p, error.what()));
       }
-      for (std::size_t n = 0; kept_clear_of && n < places[p].count; ++n)
-        placed.push_back({in_plane(places[p].of(n), populations[p], box), 0.5 * populations[p].room_of(n)});
+      if (!kept_clear_of) continue;
+      places[p]([&](std::size_t grain, const Vec3& centre) {
+        const Vec3 in_box = ranks.box().wrapped(in_plane(centre, population, ranks.box()));
+        if (ranks.knows(in_box))
+          obstacles.push_back({{in_box, 0.5 * population.room_of(grain)}, first + static_cast<std::int64_t>(grain)});
+      });
+      first += population.row_count();
     }
   GrainSeeds seeds;
-  seeds.whole = !wanted;
-  SeedAdder adder(box, wanted, seeds);
+  seeds.whole = ranks.alone();
+  SeedAdder adder(ranks, seeds);
   for (std::size_t p = 0; p < populations.size(); ++p)
     adder.add(populations[p], common_seed(populations, p), places[p]);
   return seeds;
 }
 
 GrainSeeds grain_seeds(std::span<const Population> populations, const PeriodicBox& box) {
-  return grain_seeds(populations, box, {});
+  return grain_seeds(populations, PlacingRanks(box));
 }
 
 Motion motion_of(const Population& population) {

@@ -36,7 +36,7 @@ std::unique_ptr<System> build_grains_system(const Case& c, MPI_Comm communicator
   }
   return std::make_unique<dem::DryGrains>(
       decomposition, communicator, parameters,
-      start == Start::as_placed ? grain_seeds(c, decomposition, rank_of(communicator)) : dem::GrainSeeds{});
+      start == Start::as_placed ? grain_seeds(c, communicator, decomposition) : dem::GrainSeeds{});
 }
 
 }  // namespace thalweg::driver

@@ -5,6 +5,8 @@
 #include "dem/population_seeds.hpp"
 #include "driver/case.hpp"
 
+#include <mpi.h>
+
 namespace thalweg::driver {
 
 // Contact law, time step, sub-steps, skin, rigid assemblies, and the walls: a plane with the walls' friction at every
@@ -12,9 +14,9 @@ namespace thalweg::driver {
 // attached columns are left to the caller.
 dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box);
 
-// All grains at the start (dem/population_seeds.hpp).
+// All grains at the start (dem/population_seeds.hpp), for one process.
 dem::GrainSeeds grain_seeds(const Case& c);
-// Those that a rank begins with: its own and all that may touch them.
-dem::GrainSeeds grain_seeds(const Case& c, const Decomposition& decomposition, int rank);
+// Those that this rank begins with: its own and all that may touch them. Collective.
+dem::GrainSeeds grain_seeds(const Case& c, MPI_Comm communicator, const Decomposition& decomposition);
 
 }  // namespace thalweg::driver

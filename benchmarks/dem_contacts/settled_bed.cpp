@@ -2,6 +2,7 @@
 
 #include "core/mpi_session.hpp"
 #include "dem/packing.hpp"
+#include "dem/random_packing.hpp"
 
 #include <algorithm>
 

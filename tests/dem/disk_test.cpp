@@ -1,6 +1,7 @@
 // Disks in the x-z plane: mass, inertia, and motion that stays in the plane.
 #include "core/error.hpp"
 #include "dem/packing.hpp"
+#include "dem/random_packing.hpp"
 #include "tests/dem/grain_cases.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,7 @@
 #include "dem/packing.hpp"
 
 #include "core/error.hpp"
+#include "dem/random_packing.hpp"
 #include "tests/dem/grain_cases.hpp"
 
 #include <gtest/gtest.h>

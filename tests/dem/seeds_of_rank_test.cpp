@@ -42,10 +42,9 @@ std::vector<Population> four_kinds() {
           body};
 }
 
-GrainSeeds of_rank(const std::vector<Population>& populations, int rank) {
+GrainSeeds of_this_rank(const std::vector<Population>& populations) {
   const Decomposition decomposition = shared_box();
-  return grain_seeds(populations, decomposition.box(),
-                     [&](const Vec3& centre) { return decomposition.reaches(rank, centre, reach); });
+  return grain_seeds(populations, PlacingRanks(decomposition.box(), MPI_COMM_WORLD, decomposition, reach));
 }
 
 bool same(const GrainSeed& a, const GrainSeed& b) {
@@ -53,24 +52,54 @@ bool same(const GrainSeed& a, const GrainSeed& b) {
          a.density == b.density && a.motion == b.motion && a.assembly == b.assembly && a.material == b.material;
 }
 
-TEST(SeedsOfRank, AreItsShareOfAllSeeds) {
-  const std::vector<Population> populations = four_kinds();
+// Every grain that this rank is to know, as among all, and no other.
+void expect_share_of_all(const std::vector<Population>& populations, std::size_t count) {
   const Decomposition decomposition = shared_box();
   const PeriodicBox box = decomposition.box();
   const GrainSeeds all = grain_seeds(populations, box);
   ASSERT_TRUE(all.whole);
-  ASSERT_EQ(all.grains.size(), 156u);
-  for (int rank = 0; rank < decomposition.ranks(); ++rank) {
-    const GrainSeeds mine = of_rank(populations, rank);
-    EXPECT_FALSE(mine.whole);
-    std::map<GlobalId, GrainSeed> known;
-    for (const GrainSeed& grain : mine.grains) known[grain.id] = grain;
-    for (const GrainSeed& grain : all.grains) {
-      const bool wanted = decomposition.reaches(rank, box.wrapped(grain.position), reach) || grain.assembly >= 0;
-      ASSERT_EQ(known.count(grain.id), wanted ? 1u : 0u);
-      if (wanted) EXPECT_TRUE(same(known[grain.id], grain)) << grain.id;
-    }
+  ASSERT_EQ(all.grains.size(), count);
+  const GrainSeeds mine = of_this_rank(populations);
+  EXPECT_EQ(mine.whole, decomposition.ranks() == 1);
+  std::map<GlobalId, GrainSeed> known;
+  for (const GrainSeed& grain : mine.grains) known[grain.id] = grain;
+  EXPECT_EQ(known.size(), mine.grains.size());
+  for (const GrainSeed& grain : all.grains) {
+    const bool wanted = decomposition.reaches(rank_of(MPI_COMM_WORLD), box.wrapped(grain.position), reach) ||
+                        grain.assembly >= 0 || decomposition.ranks() == 1;
+    ASSERT_EQ(known.count(grain.id), wanted ? 1u : 0u);
+    EXPECT_TRUE(!wanted || same(known[grain.id], grain)) << grain.id;
   }
+}
+
+TEST(SeedsOfRank, AreItsShareOfAllSeeds) { expect_share_of_all(four_kinds(), 156); }
+
+// Three sizes at random among grains on a lattice, nearly a third of the volume, and a body placed at random.
+TEST(SeedsOfRank, AtRandomAreItsShareOfAllSeeds) {
+  Population mixed = glass(240, PlacementPattern::random, 0.0, 0.06),
+             body = glass(5, PlacementPattern::random, 0.03, 0.06);
+  for (int grain = 0; grain < 240; ++grain)
+    mixed.diameters.push_back(grain % 3 == 0 ? 5e-3 : grain % 3 == 1 ? 4e-3 : 2e-3);
+  body.motion = MotionKeys{};
+  expect_share_of_all({mixed, glass(60, PlacementPattern::uniform, 0.0, 0.02), body}, 305);
+}
+
+// Half of the volume below, and grains at random that keep clear of it.
+TEST(SeedsOfRank, DenselyPackedAreItsShareOfAllSeeds) {
+  Population dense = glass(550, PlacementPattern::dense, 0.0, 0.04);
+  for (int grain = 0; grain < 550; ++grain) dense.diameters.push_back(grain % 2 == 0 ? 5e-3 : 4.5e-3);
+  expect_share_of_all({glass(40, PlacementPattern::random, 0.03, 0.06), dense}, 590);
+}
+
+// All ranks say how many did.
+TEST(SeedsOfRank, ThatDoNotFitAreRefusedOnAllRanks) {
+  std::string message;
+  try {
+    of_this_rank({glass(1100, PlacementPattern::random, 0.0, 0.06)});
+  } catch (const InputError& error) {
+    message = error.what();
+  }
+  EXPECT_NE(message.find("grains.0: 1100 grains do not fit at random"), std::string::npos) << message;
 }
 
 GrainParameters usual() {
@@ -87,9 +116,8 @@ GrainParameters usual() {
 TEST(SeedsOfRank, BeginTheSameRun) {
   const std::vector<Population> populations = four_kinds();
   const Decomposition decomposition = shared_box();
-  const int me = rank_of(MPI_COMM_WORLD);
   GrainDynamics whole(decomposition, MPI_COMM_WORLD, usual(), grain_seeds(populations, decomposition.box()));
-  GrainDynamics parts(decomposition, MPI_COMM_WORLD, usual(), of_rank(populations, me));
+  GrainDynamics parts(decomposition, MPI_COMM_WORLD, usual(), of_this_rank(populations));
   EXPECT_EQ(parts.global_count(), 156);
   EXPECT_EQ(parts.body_count(), whole.body_count());
   for (int step = 0; step < 20; ++step)
@@ -110,7 +138,7 @@ TEST(SeedsOfRank, AreRefusedOnAllRanks) {
   populations[0].placement.positions = {Vec3(0.0599, 0.02, 0.03), Vec3(0.003, 0.02, 0.03)};
   std::string message;
   try {
-    const GrainDynamics grains(shared_box(), MPI_COMM_WORLD, usual(), of_rank(populations, rank_of(MPI_COMM_WORLD)));
+    const GrainDynamics grains(shared_box(), MPI_COMM_WORLD, usual(), of_this_rank(populations));
   } catch (const InputError& error) {
     message = error.what();
   }

@@ -1,0 +1,209 @@
+#include "dem/random_packing.hpp"
+
+#include "core/counter_random.hpp"
+#include "core/error.hpp"
+#include "dem/sphere_cells.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace thalweg::dem {
+namespace {
+
+// A place that a grain tries, or has been given.
+struct Trial {
+  std::int64_t number;
+  double radius, position[3];  // m, wrapped
+  bool fits;                   // it has been given the place
+
+  Sphere sphere() const { return {Vec3(position), radius}; }
+};
+
+constexpr int most_attempts = 5000;  // of one grain
+
+// Trials after which it is looked at whether grains still find places.
+constexpr std::int64_t trials_between_looks = 100'000;
+
+class RandomPlacing {
+public:
+  RandomPlacing(const PlacingRanks& ranks, const GrainsToPlace& grains, std::span<const Obstacle> obstacles,
+                double largest_radius)
+      : ranks_(ranks), grains_(grains), largest_(largest_radius), placed_cells_(ranks.box(), largest_radius) {
+    for (const Obstacle& obstacle : obstacles)
+      placed_cells_.add({ranks.box().wrapped(obstacle.sphere.position), obstacle.sphere.radius});
+  }
+
+  // Of the grains from this radius (m) up to another; whether all found a place.
+  bool place(double from, double below) {
+    std::vector<Trial> trials = first_trials(from, below);
+    tried_ = fitted_ = 0;
+    auto waiting = ranks_.sum(static_cast<std::int64_t>(trials.size()));
+    if (waiting == 0) return true;
+    for (unsigned attempt = 0; waiting > 0; ++attempt) {
+      if (attempt == most_attempts || hopeless()) return false;
+      trials = round(ranks_.to_knowing(trials), attempt);
+      const std::int64_t fitted = ranks_.sum(std::count_if(trials.begin(), trials.end(), &has_place));
+      tried_ += waiting;
+      fitted_ += fitted;
+      placed_by_all_ += fitted;
+      waiting -= fitted;
+    }
+    for (const Trial& trial : ranks_.to_knowing(trials)) take(trial);
+    return true;
+  }
+
+  // Those that this rank knows, in order.
+  std::vector<PlacedGrain> placed() {
+    std::sort(placed_.begin(), placed_.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
+    return std::move(placed_);
+  }
+
+  std::int64_t placed_by_all() const { return placed_by_all_; }
+
+private:
+  std::vector<Trial> first_trials(double from, double below) const {
+    std::vector<Trial> trials;
+    const RowRange share = ranks_.share_of(grains_.count);
+    for (std::int64_t number = share.first; number < share.last; ++number)
+      if (const double radius = grains_.radius(number); radius >= from && radius < below)
+        trials.push_back(trial(number, radius, 0));
+    return trials;
+  }
+
+  static bool has_place(const Trial& trial) { return trial.fits; }
+
+  Trial trial(std::int64_t number, double radius, unsigned attempt) const {
+    const Region& region = grains_.region;
+    Vec3 place;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (region.plane && axis == 1) {
+        place[1] = 0.5 * (region.lower[1] + region.upper[1]);
+        continue;
+      }
+      const double margin = wraps(ranks_.box(), region, axis) ? 0.0 : radius + grains_.clearance;
+      const double free = region.upper[axis] - region.lower[axis] - 2.0 * margin;
+      place[axis] = region.lower[axis] + margin +
+                    free * uniform_random(grains_.seed, static_cast<std::uint64_t>(number),
+                                          3u * attempt + static_cast<unsigned>(axis));
+    }
+    Trial made{number, radius, {}, false};
+    Vec3::Map(made.position) = ranks_.box().wrapped(place);
+    return made;
+  }
+
+  // Takes note of the places that were given, and decides about the trials in this rank's block. Returns what came of
+  // these: given places, and the trials that come next.
+  std::vector<Trial> round(const std::vector<Trial>& known, unsigned attempt) {
+    SphereCells trying(ranks_.box(), largest_);
+    for (const Trial& trial : known) {
+      if (trial.fits)
+        take(trial);
+      else
+        trying.add(trial.sphere(), trial.number);
+    }
+    std::vector<Trial> next;
+    for (const Trial& tried : known) {
+      if (tried.fits || !ranks_.owns(Vec3(tried.position))) continue;
+      const auto goes_first = [&](std::int64_t other) { return other < tried.number; };
+      const bool fits = !placed_cells_.overlaps(tried.sphere()) && !trying.overlaps(tried.sphere(), goes_first);
+      next.push_back(fits ? tried : trial(tried.number, tried.radius, attempt + 1));
+      next.back().fits = fits;
+    }
+    return next;
+  }
+
+  void take(const Trial& trial) {
+    placed_cells_.add(trial.sphere());
+    placed_.push_back({trial.number, Vec3(trial.position)});
+  }
+
+  // Whether so few of the last trials fitted that a grain has no fair chance of a place.
+  bool hopeless() {
+    if (tried_ < trials_between_looks) return false;
+    const bool too_few = fitted_ * most_attempts < tried_;
+    tried_ = fitted_ = 0;
+    return too_few;
+  }
+
+  const PlacingRanks& ranks_;
+  const GrainsToPlace& grains_;
+  double largest_;  // m, radius
+  SphereCells placed_cells_;
+  std::vector<PlacedGrain> placed_;
+  std::int64_t placed_by_all_ = 0;
+  std::int64_t tried_ = 0, fitted_ = 0;  // by all ranks, since the last look
+};
+
+bool has_room(const GrainsToPlace& grains, const PeriodicBox& box) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (wraps(box, grains.region, axis) || (grains.region.plane && axis == 1)) continue;
+    const double extent = grains.region.upper[axis] - grains.region.lower[axis];
+    if (extent < 2.0 * (grains.largest_radius + grains.clearance)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::vector<PlacedGrain> random_packing(const PlacingRanks& ranks, const GrainsToPlace& grains,
+                                        std::span<const Obstacle> obstacles) {
+  check_region(ranks.box(), grains.region);
+  if (grains.count == 0) return {};
+  double largest = grains.largest_radius;
+  for (const Obstacle& obstacle : obstacles) largest = std::max(largest, obstacle.sphere.radius);
+  RandomPlacing placing(ranks, grains, obstacles, ranks.largest(largest));
+  bool all = has_room(grains, ranks.box());
+  double smallest = grains.largest_radius;
+  for (std::int64_t number = 0; number < grains.count; ++number) smallest = std::min(smallest, grains.radius(number));
+  constexpr double next_size = 0.95;
+  for (double below = std::numeric_limits<double>::infinity(), from = next_size * grains.largest_radius; all;
+       below = std::exchange(from, next_size * from)) {
+    all = placing.place(from, below);
+    if (from <= smallest) break;
+  }
+  if (all) return placing.placed();
+  const Vec3 extent = grains.region.upper - grains.region.lower;
+  throw InputError(
+      fmt::format("{} grains do not fit at random in {:g} x {:g} x {:g} m: {} did; use fewer or smaller "
+                  "grains, a larger region, or another placement.pattern: uniform, or dense.",
+                  grains.count, extent.x(), extent.y(), extent.z(), placing.placed_by_all()));
+}
+
+namespace {
+
+// What a packing of several ranks makes for one process.
+std::vector<Vec3> packed_alone(const auto& packing, const PeriodicBox& box, const Region& region,
+                               std::span<const double> radii, double clearance, std::uint64_t seed,
+                               std::span<const Sphere> obstacles) {
+  if (radii.empty()) return {};
+  std::vector<Obstacle> numbered;
+  for (const Sphere& sphere : obstacles) numbered.push_back({sphere, static_cast<std::int64_t>(numbered.size())});
+  const GrainsToPlace grains{region,
+                             static_cast<std::int64_t>(radii.size()),
+                             [radii](std::int64_t number) { return radii[static_cast<std::size_t>(number)]; },
+                             *std::max_element(radii.begin(), radii.end()),
+                             clearance,
+                             seed};
+  std::vector<Vec3> centres;
+  for (const PlacedGrain& grain : packing(PlacingRanks(box), grains, numbered)) centres.push_back(grain.centre);
+  return centres;
+}
+
+}  // namespace
+
+std::vector<Vec3> random_packing(const PeriodicBox& box, const Region& region, std::span<const double> radii,
+                                 double clearance, std::uint64_t seed, std::span<const Sphere> obstacles) {
+  const auto packing = [](const auto&... of) { return random_packing(of...); };
+  return packed_alone(packing, box, region, radii, clearance, seed, obstacles);
+}
+
+std::vector<Vec3> dense_packing(const PeriodicBox& box, const Region& region, std::span<const double> radii,
+                                double clearance, std::uint64_t seed, std::span<const Sphere> obstacles) {
+  const auto packing = [](const auto&... of) { return dense_packing(of...); };
+  return packed_alone(packing, box, region, radii, clearance, seed, obstacles);
+}
+
+}  // namespace thalweg::dem

@@ -1,0 +1,58 @@
+// Grains at random: where each one is put depends on the others, so the ranks that need to know work together. The same
+// places on any number of ranks; no rank has more than the grains around its block.
+#pragma once
+
+#include "core/types.hpp"
+#include "dem/packing.hpp"
+#include "dem/placing_ranks.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace thalweg::dem {
+
+struct GrainsToPlace {
+  Region region;
+  std::int64_t count;                          // numbered from 0 on
+  std::function<double(std::int64_t)> radius;  // m, of a number
+  double largest_radius;                       // m
+  double clearance;                            // m, surface to the region's faces that are not periodic
+  std::uint64_t seed;
+};
+
+// What grains keep clear of. Numbers differ, and are the same on all ranks.
+struct Obstacle {
+  Sphere sphere;
+  std::int64_t number;
+};
+
+struct PlacedGrain {
+  std::int64_t number;
+  Vec3 centre;  // m, wrapped
+};
+
+// The grains that this rank knows (placing_ranks.hpp), in order of their numbers. obstacles: those that it knows.
+// Collective. Throws InputError on every rank where the grains do not fit.
+//
+// Each grain is put anywhere, again and again until it is clear of all others and of the obstacles (random sequential
+// addition). All try at once, and of two that are in each other's way the one with the lower number goes first. Large
+// grains are placed before those of less than 0.95 of their diameter. Beyond about a third of the volume that gets
+// hard.
+std::vector<PlacedGrain> random_packing(const PlacingRanks& ranks, const GrainsToPlace& grains,
+                                        std::span<const Obstacle> obstacles);
+
+// The same for beds and suspensions that fill up to 0.6 of the volume: grains begin anywhere and push each other apart,
+// by overlapping shares of the way, until none overlap (after W. S. Jodrey and E. M. Tory, Phys. Rev. A 32 (1985)
+// 2347). Nearest neighbours are then at a distance of at least a diameter, most of them little more.
+std::vector<PlacedGrain> dense_packing(const PlacingRanks& ranks, const GrainsToPlace& grains,
+                                       std::span<const Obstacle> obstacles);
+
+// For one process: centres (m), one for each radius (m).
+std::vector<Vec3> random_packing(const PeriodicBox& box, const Region& region, std::span<const double> radii,
+                                 double clearance, std::uint64_t seed, std::span<const Sphere> obstacles = {});
+std::vector<Vec3> dense_packing(const PeriodicBox& box, const Region& region, std::span<const double> radii,
+                                double clearance, std::uint64_t seed, std::span<const Sphere> obstacles = {});
+
+}  // namespace thalweg::dem
