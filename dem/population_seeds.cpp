@@ -1,12 +1,14 @@
 #include "dem/population_seeds.hpp"
 
 #include "core/error.hpp"
+#include "dem/file_seeds.hpp"
 #include "dem/packing.hpp"
 #include "dem/population_clumps.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 
 namespace thalweg::dem {
 namespace {
@@ -45,13 +47,8 @@ Vec3 in_plane(Vec3 position, const Population& population, const PeriodicBox& bo
   return position;
 }
 
-void set_motion(GrainSeed& seed, const Population& population, std::size_t grain) {
-  Vec3 velocity = population.velocity, spin = population.angular_velocity;
-  if (!population.file.empty()) {
-    const bool kept = keeps_velocities(population);
-    velocity = kept ? population.file[grain].velocity : Vec3::Zero();
-    spin = kept ? population.file[grain].angular_velocity : Vec3::Zero();
-  }
+// velocity, spin: where nothing is prescribed, m/s and rad/s.
+void set_motion(GrainSeed& seed, const Population& population, const Vec3& velocity, const Vec3& spin) {
   seed.velocity = population.prescribed_velocity.value_or(velocity);
   seed.angular_velocity = population.prescribed_angular_velocity.value_or(spin);
   if (population.fixed || population.motion) seed.velocity = seed.angular_velocity = Vec3::Zero();
@@ -86,7 +83,7 @@ PlacementOrder order_of(const PlacementKeys& placement) {
 
 // Where the grains of a population are put, one by one.
 struct Places {
-  std::size_t count;
+  std::size_t count = 0;                // 0 of a file, whose rows tell
   std::function<Vec3(std::size_t)> of;  // m
 };
 
@@ -96,6 +93,7 @@ Places places_in(std::vector<Vec3> positions) {
 }
 
 Places place(const Population& population, const PeriodicBox& box, const std::vector<Sphere>& placed) {
+  if (population.from_file()) return {};
   const PlacementKeys& placement = population.placement;
   const auto seed = static_cast<std::uint64_t>(placement.seed);
   const auto count = static_cast<std::size_t>(population.count);
@@ -104,8 +102,7 @@ Places place(const Population& population, const PeriodicBox& box, const std::ve
   if (region.plane) region.lower[1] = 0.0, region.upper[1] = box.size[1];
   switch (order_of(placement)) {
     case PlacementOrder::given:
-      if (!placement.file) return places_in(placement.positions);
-      return {population.file.size(), [&population](std::size_t grain) { return population.file[grain].position; }};
+      return places_in(placement.positions);
     case PlacementOrder::uniform: {
       const UniformSites sites(box, region, population.count, 0.5 * population.room_of_all(), 0.0, seed);
       return {count, [sites](std::size_t grain) { return sites.centre(static_cast<std::int64_t>(grain)); }};
@@ -123,32 +120,31 @@ Places place(const Population& population, const PeriodicBox& box, const std::ve
 // Adds the grains of a population that are wanted, one after the other, with ids that count up through all.
 class SeedAdder {
 public:
-  SeedAdder(const PeriodicBox& box, const WantedPlaces& wanted, GrainSeeds& seeds)
-      : box_(box), wanted_(wanted), seeds_(seeds) {}
+  SeedAdder(const PlacingRanks& ranks, GrainSeeds& seeds) : ranks_(ranks), seeds_(seeds) {}
 
   void add(const Population& population, const GrainSeed& common, const Places& places) {
+    if (population.from_file()) return add_from_file(population, common);
     const auto seed_of = [&](std::size_t grain) {
       GrainSeed seed = common;
       seed.id = next_;
       seed.radius = 0.5 * population.diameter_of(grain);
-      seed.density = population.density_of(grain);
-      seed.position = in_plane(places.of(grain), population, box_);
-      set_motion(seed, population, grain);
+      seed.density = population.density;
+      seed.position = in_plane(places.of(grain), population, ranks_.box());
+      set_motion(seed, population, population.velocity, population.angular_velocity);
       return seed;
     };
-    if (!population.file.empty()) return add_from_file(population, seed_of);
     if (population.shape) return add_clumps(population, places.count, seed_of);
     for (std::size_t n = 0; n < places.count; ++n, ++next_) add(seed_of(n));
   }
 
 private:
-  bool wants(const Vec3& centre) const { return !wanted_ || wanted_(box_.wrapped(centre)); }
+  bool knows(const Vec3& centre) const { return ranks_.knows(ranks_.box().wrapped(centre)); }
 
   void add(const GrainSeed& grain) {
-    if (grain.assembly >= 0 || wants(grain.position)) seeds_.grains.push_back(grain);
+    if (grain.assembly >= 0 || knows(grain.position)) seeds_.grains.push_back(grain);
   }
   void add(const ClumpSeed& clump) {
-    if (wants(clump.position)) seeds_.clumps.push_back(clump);
+    if (knows(clump.position)) seeds_.clumps.push_back(clump);
   }
 
   void add_clumps(const Population& population, std::size_t count, const auto& seed_of) {
@@ -163,25 +159,39 @@ private:
     }
   }
 
-  void add_from_file(const Population& population, const auto& seed_of) {
-    std::size_t row = 0;
-    for (const std::span<const BedGrain> body : bodies_of(population.file)) {
-      GrainSeed seed = seed_of(row);
-      if (body.front().clump < 0) {
-        add(seed);
-      } else {
-        const ClumpSeed clump = clump_from(body, box_, population.thickness);
-        if (keeps_velocities(population) && !holds_translation(seed.motion))
-          seed.velocity = clump.velocity;  // of the centre
-        add(clump_seed_of(seed, clump));
-      }
-      next_ += static_cast<GlobalId>(body.size());
-      row += body.size();
+  void add_from_file(const Population& population, const GrainSeed& common) {
+    if (ranks_.alone()) {
+      for (const std::span<const BedGrain> body : bodies_of(population.file)) add_body(population, common, body);
+    } else {
+      const std::vector<BedGrain> rows =
+          rows_known(population, ranks_, [&](std::span<const BedGrain> body) { return centre_of(population, body); });
+      for (const std::span<const BedGrain> body : bodies_of(rows)) add_body(population, common, body);
     }
+    next_ += population.row_count();
   }
 
-  const PeriodicBox& box_;
-  const WantedPlaces& wanted_;
+  Vec3 centre_of(const Population& population, std::span<const BedGrain> body) const {
+    if (body.front().clump < 0) return in_plane(body.front().position, population, ranks_.box());
+    return clump_from(body, ranks_.box(), population.thickness).position;
+  }
+
+  // The grain or clump that some rows of a file make.
+  void add_body(const Population& population, const GrainSeed& common, std::span<const BedGrain> body) {
+    const BedGrain& first = body.front();
+    const bool kept = keeps_velocities(population);
+    GrainSeed seed = common;
+    seed.id = next_ + first.id;
+    seed.radius = first.radius;
+    seed.density = first.density;
+    seed.position = in_plane(first.position, population, ranks_.box());
+    set_motion(seed, population, kept ? first.velocity : Vec3::Zero(), kept ? first.angular_velocity : Vec3::Zero());
+    if (first.clump < 0) return add(seed);
+    const ClumpSeed clump = clump_from(body, ranks_.box(), population.thickness);
+    if (kept && !holds_translation(seed.motion)) seed.velocity = clump.velocity;  // of the centre
+    add(clump_seed_of(seed, clump));
+  }
+
+  const PlacingRanks& ranks_;
   GrainSeeds& seeds_;
   GlobalId next_ = 0;
 };
@@ -195,7 +205,8 @@ bool anyone_keeps_clear(std::span<const Population> populations) {
 
 }  // namespace
 
-GrainSeeds grain_seeds(std::span<const Population> populations, const PeriodicBox& box, const WantedPlaces& wanted) {
+GrainSeeds grain_seeds(std::span<const Population> populations, const PlacingRanks& ranks) {
+  const PeriodicBox& box = ranks.box();
   std::vector<Places> places(populations.size());
   std::vector<Sphere> placed;
   const bool kept_clear_of = populations.size() > 1 && anyone_keeps_clear(populations);
@@ -208,19 +219,19 @@ GrainSeeds grain_seeds(std::span<const Population> populations, const PeriodicBo
       } catch (const InputError& error) {
         throw InputError(fmt::format("grains.{}: {}", p, error.what()));
       }
-      for (std::size_t n = 0; kept_clear_of && n < places[p].count; ++n)
+      if (!kept_clear_of) continue;
+      for (std::size_t n = 0; n < places[p].count; ++n)
         placed.push_back({in_plane(places[p].of(n), populations[p], box), 0.5 * populations[p].room_of(n)});
+      if (!populations[p].from_file()) continue;
+      for (const Sphere& sphere : spheres_of_file(populations[p], ranks))
+        placed.push_back({in_plane(sphere.position, populations[p], box), sphere.radius});
     }
   GrainSeeds seeds;
-  seeds.whole = !wanted;
-  SeedAdder adder(box, wanted, seeds);
+  seeds.whole = ranks.alone();
+  SeedAdder adder(ranks, seeds);
   for (std::size_t p = 0; p < populations.size(); ++p)
     adder.add(populations[p], common_seed(populations, p), places[p]);
   return seeds;
-}
-
-GrainSeeds grain_seeds(std::span<const Population> populations, const PeriodicBox& box) {
-  return grain_seeds(populations, box, {});
 }
 
 Motion motion_of(const Population& population) {

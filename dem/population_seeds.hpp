@@ -1,31 +1,25 @@
 // From populations to single grains at the start, to rigid assemblies and to materials.
 #pragma once
 
-#include "core/periodic_box.hpp"
 #include "dem/clump_seed.hpp"
 #include "dem/grain_seed.hpp"
 #include "dem/material_keys.hpp"
+#include "dem/placing_ranks.hpp"
 #include "dem/population.hpp"
 
 #include <cstddef>
-#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
 
 namespace thalweg::dem {
 
-// Whether a rank takes a grain or clump with its centre there (m, wrapped).
-using WantedPlaces = std::function<bool(const Vec3& centre)>;
-
 // All grains at the start, a clump with its centre at its place. Ids run through the populations in their order. Given
 // positions are taken first, then uniform patterns, then dense and random ones, which keep clear of all others. Throws
-// InputError where they do not fit. The same on every rank, without communication.
-GrainSeeds grain_seeds(std::span<const Population> populations, const PeriodicBox& box);
-
-// Those of them that are wanted, and the members of rigid assemblies, with the ids that they have among all; of the
-// others of a uniform pattern nothing is kept.
-GrainSeeds grain_seeds(std::span<const Population> populations, const PeriodicBox& box, const WantedPlaces& wanted);
+// InputError where they do not fit. A rank gets those with their centre where it knows the box, and the members of
+// rigid assemblies, with the ids that they have among all; of the others of a uniform pattern nothing is kept, and
+// those of a file come from the ranks in whose share they are. Collective.
+GrainSeeds grain_seeds(std::span<const Population> populations, const PlacingRanks& ranks);
 
 // What of its motion is prescribed, of all its grains.
 Motion motion_of(const Population& population);

@@ -1,5 +1,4 @@
 // From a case to grains without a fluid, or with a force in its place.
-#include "core/mpi_session.hpp"
 #include "dem/dry_grains.hpp"
 #include "driver/build_system.hpp"
 #include "driver/grain_setup.hpp"
@@ -36,7 +35,7 @@ std::unique_ptr<System> build_grains_system(const Case& c, MPI_Comm communicator
   }
   return std::make_unique<dem::DryGrains>(
       decomposition, communicator, parameters,
-      start == Start::as_placed ? grain_seeds(c, decomposition, rank_of(communicator)) : dem::GrainSeeds{});
+      start == Start::as_placed ? grain_seeds(c, communicator, decomposition) : dem::GrainSeeds{});
 }
 
 }  // namespace thalweg::driver

@@ -1,5 +1,4 @@
 // From a case to grains in a resolved flow.
-#include "core/mpi_session.hpp"
 #include "coupling/resolved_system.hpp"
 #include "driver/build_system.hpp"
 #include "driver/fluid_setup.hpp"
@@ -34,7 +33,7 @@ std::unique_ptr<System> build_resolved(const Case& c, MPI_Comm communicator, con
   grains.ghost_width = System::ghost_reach(0.5 * largest_diameter(c), c.domain.spacing);
   grains.attached_width = System::attached_width(parameters);
   dem::GrainSeeds seeds;
-  if (start == Start::as_placed) seeds = grain_seeds(c, *decomposition, rank_of(communicator));
+  if (start == Start::as_placed) seeds = grain_seeds(c, communicator, *decomposition);
   auto dynamics = std::make_unique<dem::GrainDynamics>(*decomposition, communicator, grains, std::move(seeds));
   return std::make_unique<System>(std::move(decomposition), communicator, parameters, std::move(dynamics));
 }

@@ -66,15 +66,11 @@ dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box) {
   return parameters;
 }
 
-dem::GrainSeeds grain_seeds(const Case& c) { return dem::grain_seeds(c.grains, box_of(c)); }
+dem::GrainSeeds grain_seeds(const Case& c) { return dem::grain_seeds(c.grains, dem::PlacingRanks(box_of(c))); }
 
-dem::GrainSeeds grain_seeds(const Case& c, const Decomposition& decomposition, int rank) {
-  if (decomposition.ranks() == 1) return grain_seeds(c);
-  double extent = 0.0;
-  for (const dem::Population& population : c.grains) extent = std::max(extent, population.largest_extent());
-  const double reach = (1.0 + dem::allowed_initial_overlap) * extent;  // of two centres that touch
-  return dem::grain_seeds(c.grains, box_of(c),
-                          [&](const Vec3& centre) { return decomposition.reaches(rank, centre, reach); });
+dem::GrainSeeds grain_seeds(const Case& c, MPI_Comm communicator, const Decomposition& decomposition) {
+  const double reach = (1.0 + dem::allowed_initial_overlap) * largest_extent(c);  // of two centres that touch
+  return dem::grain_seeds(c.grains, dem::PlacingRanks(box_of(c), communicator, decomposition, reach));
 }
 
 }  // namespace thalweg::driver

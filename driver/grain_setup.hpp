@@ -14,7 +14,7 @@ dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box);
 
 // All grains at the start (dem/population_seeds.hpp).
 dem::GrainSeeds grain_seeds(const Case& c);
-// Those that a rank begins with: its own and all that may touch them.
-dem::GrainSeeds grain_seeds(const Case& c, const Decomposition& decomposition, int rank);
+// Those that a rank begins with: its own and all that may touch them. Collective.
+dem::GrainSeeds grain_seeds(const Case& c, MPI_Comm communicator, const Decomposition& decomposition);
 
 }  // namespace thalweg::driver

@@ -42,10 +42,13 @@ std::vector<Population> four_kinds() {
           body};
 }
 
-GrainSeeds of_rank(const std::vector<Population>& populations, int rank) {
+GrainSeeds of_this_rank(const std::vector<Population>& populations) {
   const Decomposition decomposition = shared_box();
-  return grain_seeds(populations, decomposition.box(),
-                     [&](const Vec3& centre) { return decomposition.reaches(rank, centre, reach); });
+  return grain_seeds(populations, PlacingRanks(decomposition.box(), MPI_COMM_WORLD, decomposition, reach));
+}
+
+GrainSeeds of_one_process(const std::vector<Population>& populations) {
+  return grain_seeds(populations, PlacingRanks(shared_box().box()));
 }
 
 bool same(const GrainSeed& a, const GrainSeed& b) {
@@ -57,18 +60,19 @@ TEST(SeedsOfRank, AreItsShareOfAllSeeds) {
   const std::vector<Population> populations = four_kinds();
   const Decomposition decomposition = shared_box();
   const PeriodicBox box = decomposition.box();
-  const GrainSeeds all = grain_seeds(populations, box);
+  const GrainSeeds all = of_one_process(populations);
   ASSERT_TRUE(all.whole);
   ASSERT_EQ(all.grains.size(), 156u);
-  for (int rank = 0; rank < decomposition.ranks(); ++rank) {
-    const GrainSeeds mine = of_rank(populations, rank);
-    EXPECT_FALSE(mine.whole);
-    std::map<GlobalId, GrainSeed> known;
-    for (const GrainSeed& grain : mine.grains) known[grain.id] = grain;
-    for (const GrainSeed& grain : all.grains) {
-      const bool wanted = decomposition.reaches(rank, box.wrapped(grain.position), reach) || grain.assembly >= 0;
-      ASSERT_EQ(known.count(grain.id), wanted ? 1u : 0u);
-      if (wanted) EXPECT_TRUE(same(known[grain.id], grain)) << grain.id;
+  const GrainSeeds mine = of_this_rank(populations);
+  EXPECT_EQ(mine.whole, decomposition.ranks() == 1);
+  std::map<GlobalId, GrainSeed> known;
+  for (const GrainSeed& grain : mine.grains) known[grain.id] = grain;
+  for (const GrainSeed& grain : all.grains) {
+    const bool wanted =
+        decomposition.reaches(rank_of(MPI_COMM_WORLD), box.wrapped(grain.position), reach) || grain.assembly >= 0;
+    ASSERT_EQ(known.count(grain.id), wanted ? 1u : 0u);
+    if (wanted) {
+      EXPECT_TRUE(same(known[grain.id], grain)) << grain.id;
     }
   }
 }
@@ -87,9 +91,8 @@ GrainParameters usual() {
 TEST(SeedsOfRank, BeginTheSameRun) {
   const std::vector<Population> populations = four_kinds();
   const Decomposition decomposition = shared_box();
-  const int me = rank_of(MPI_COMM_WORLD);
-  GrainDynamics whole(decomposition, MPI_COMM_WORLD, usual(), grain_seeds(populations, decomposition.box()));
-  GrainDynamics parts(decomposition, MPI_COMM_WORLD, usual(), of_rank(populations, me));
+  GrainDynamics whole(decomposition, MPI_COMM_WORLD, usual(), of_one_process(populations));
+  GrainDynamics parts(decomposition, MPI_COMM_WORLD, usual(), of_this_rank(populations));
   EXPECT_EQ(parts.global_count(), 156);
   EXPECT_EQ(parts.body_count(), whole.body_count());
   for (int step = 0; step < 20; ++step)
@@ -110,7 +113,7 @@ TEST(SeedsOfRank, AreRefusedOnAllRanks) {
   populations[0].placement.positions = {Vec3(0.0599, 0.02, 0.03), Vec3(0.003, 0.02, 0.03)};
   std::string message;
   try {
-    const GrainDynamics grains(shared_box(), MPI_COMM_WORLD, usual(), of_rank(populations, rank_of(MPI_COMM_WORLD)));
+    const GrainDynamics grains(shared_box(), MPI_COMM_WORLD, usual(), of_this_rank(populations));
   } catch (const InputError& error) {
     message = error.what();
   }
