@@ -94,10 +94,10 @@ BodySums sums_of(const std::vector<Body>& bodies, const ReadingRanks& ranks) {
   });
 }
 
-// What the means need, once the density of the population is known.
-void take_means(const Population& population, const std::vector<Body>& bodies, const ReadingRanks& ranks,
-                FileFigures& figures) {
-  figures.means = ranks.passed_on<FileFigures::Means>({}, [&](FileFigures::Means& sums) {
+// The sums that need the density of the population.
+void take_sums(const Population& population, const std::vector<Body>& bodies, const ReadingRanks& ranks,
+               FileFigures& figures) {
+  figures.sums = ranks.passed_on<FileFigures::Sums>({}, [&](FileFigures::Sums& sums) {
     for (const Body& body : bodies) {
       const double volume = grain_volume(0.5 * body.diameter, population.thickness);
       sums.diameter += body.diameter;
@@ -127,7 +127,7 @@ void take_rows(Population& population, std::vector<BedGrain> rows, const Periodi
   population.count = sums.count;
   population.density = sums.mass / sums.volume;
   population.diameter = median_by_volume(figures.sizes);
-  take_means(population, bodies, ranks, figures);
+  take_sums(population, bodies, ranks, figures);
 }
 
 }  // namespace thalweg::dem

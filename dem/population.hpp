@@ -76,16 +76,16 @@ struct ClumpFigures {
   double largest_extent = 0.0;      // m, diameter of the sphere about its centre that holds the largest
   bool operator==(const ClumpFigures&) const = default;
 
-  void add(const ClumpFigures& more);  // of at least one
+  void add(const ClumpFigures& more);  // those of at least one more
 };
 
 // What there is to know of all rows of a bed file, of which a rank has only its share: the same bits on every rank, and
 // on any number of ranks.
 struct FileFigures {
   // Sums over the grains, a clump counting with the sphere (disk) of its volume.
-  struct Means {
+  struct Sums {
     double diameter = 0.0, volume = 0.0, mass = 0.0;  // m, m^3, kg; the mass at the density of the population
-    bool operator==(const Means&) const = default;
+    bool operator==(const Sums&) const = default;
   };
 
   std::int64_t rows = 0;           // 0: not from a file
@@ -94,8 +94,8 @@ struct FileFigures {
   double lightest_grain = 0.0;     // kg, of those that are no member
   double volume = 0.0;             // m^3, of all grains
   double fastest = 0.0;            // m/s
-  std::vector<SizeCount> sizes;    // of the grains, as for the means
-  Means means;
+  std::vector<SizeCount> sizes;    // of the grains, as for the sums
+  Sums sums;
   bool operator==(const FileFigures&) const = default;
 };
 

@@ -137,9 +137,9 @@ namespace {
 void add_grains(const dem::Population& population, dem::MeanGrain& mean) {
   if (population.from_file()) {
     const dem::FileFigures& figures = population.figures;
-    mean.diameter += figures.means.diameter;
-    mean.volume += figures.means.volume;
-    mean.mass += figures.means.mass;
+    mean.diameter += figures.sums.diameter;
+    mean.volume += figures.sums.volume;
+    mean.mass += figures.sums.mass;
     mean.largest_diameter = std::max(mean.largest_diameter, figures.sizes.back().diameter);
     return;
   }

@@ -39,16 +39,21 @@ double bytes_of_cell(const Case& c) { return 19.0 * bytes_per_value(c) + flag_by
 double bytes_of_program() { return program_bytes; }
 double bytes_of_grain(int ranks) { return ranks > 1 ? grain_bytes + row_bytes : grain_bytes; }
 double bytes_of_placing(const Case& c) {
-  constexpr double sphere = 24.0, random_sphere = 120.0, row_of_file = 150.0;
+  constexpr double sphere = 24.0, random_sphere = 120.0;
   double bytes = 0.0;
   for (const dem::Population& population : c.grains) {
+    if (population.from_file()) continue;
     const bool uniform = population.placement.pattern == dem::PlacementPattern::uniform;
     double each = uniform && population.placement.positions.empty() ? 0.0 : random_sphere;
     if (!population.placement.positions.empty()) each = sphere;
-    if (!population.file.empty()) each = row_of_file;
     bytes += each * static_cast<double>(population.row_count());
   }
   return bytes;
+}
+double bytes_of_bed_rows(const Case& c, int ranks) {
+  double rows = 0.0;
+  for (const dem::Population& population : c.grains) rows += static_cast<double>(population.figures.rows);
+  return rows / ranks * sizeof(BedGrain);
 }
 double bytes_of_links(const Case& c) { return link_count(c) * link_bytes; }
 
