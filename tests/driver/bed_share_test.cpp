@@ -1,6 +1,7 @@
 // Bed files that ranks read together, each its share: what follows from all rows, grains and refusals are those of one
 // process that reads the whole.
 #include "core/error.hpp"
+#include "driver/bed_archive.hpp"
 #include "driver/case_reader.hpp"
 #include "driver/grain_setup.hpp"
 #include "io/hdf5_archive.hpp"
@@ -9,7 +10,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <map>
+#include <filesystem>
+#include <string>
+#include <vector>
 
 namespace thalweg::driver {
 namespace {
@@ -122,7 +125,6 @@ protected:
     for (const std::string& word : words) EXPECT_NE(together.find(word), std::string::npos) << word << ": " << together;
   }
 
-private:
   ScratchFolder folder_;
 };
 
@@ -190,6 +192,24 @@ TEST_F(BedShare, BeginsWithTheSameGrains) {
     ASSERT_EQ(found.shape->members.size(), 3u);
   }
   EXPECT_EQ(next, mine.clumps.size());
+}
+
+TEST_F(BedShare, IsTheSameFromACheckpoint) {
+  write(rows_of_bed());
+  const Case begun = read_together();
+  const std::filesystem::path state = folder_ / "state.h5";
+  io::Hdf5Writer archive(MPI_COMM_WORLD, state);
+  save_beds(archive, MPI_COMM_WORLD, begun);
+  archive.close();
+  if (rank_of(MPI_COMM_WORLD) == 0) std::filesystem::remove(folder_ / "bed.h5");
+  MPI_Barrier(MPI_COMM_WORLD);
+  const Case again = read_case(folder_ / "case.yaml", {}, beds_of({state}), MPI_COMM_WORLD);
+  const Case whole = read_case(folder_ / "case.yaml", {}, beds_of({state}));
+  EXPECT_EQ(again.grains[1].figures, whole.grains[1].figures);
+  EXPECT_EQ(whole.grains[1].file.size(), 636u);
+  std::vector<BedGrain> rows = begun.grains[1].file;
+  for (BedGrain& row : rows) row.velocity.setZero();
+  EXPECT_EQ(again.grains[1].file, rows);
 }
 
 TEST_F(BedShare, IsRefusedForAnOverlapOfTwoShares) {
