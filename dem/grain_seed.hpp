@@ -51,7 +51,8 @@ void check(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<c
 void check_part(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<const Plane> walls,
                 double allowed_overlap, double largest_radius);
 
-// What of that concerns one grain; it and the first of all as disks; and the box. disks: of a thickness.
+// Throw InputError for what of that concerns one grain; a grain and the first of all, as disks; and the box. disks:
+// they are no spheres.
 void check_alone(const GrainSeed& seed, const PeriodicBox& box, std::span<const Plane> walls, double allowed_overlap);
 void check_disk(const GrainSeed& seed, const GrainSeed& first);
 void check_periodic_axes(const PeriodicBox& box, double largest_radius, bool disks);
