@@ -27,6 +27,40 @@ void check_ids(std::span<const GrainSeed> seeds) {
   }
 }
 
+// By how much two grains overlap where that is too much, m; else 0.
+double overlap_of(const GrainSeed& a, const GrainSeed& b, const PeriodicBox& box, double allowed_overlap) {
+  if (is_fixed(a.motion) && is_fixed(b.motion)) return 0.0;
+  if (a.clump >= 0 && a.clump == b.clump) return 0.0;
+  const double overlap = a.radius + b.radius - box.difference(a.position, b.position).norm();
+  return overlap > allowed_overlap * 2.0 * std::min(a.radius, b.radius) ? overlap : 0.0;
+}
+
+// Places in the list, in the order of ids.
+std::vector<std::uint32_t> order_by_id(std::span<const GrainSeed> seeds) {
+  std::vector<std::uint32_t> by_id(seeds.size());
+  std::iota(by_id.begin(), by_id.end(), 0u);
+  std::sort(by_id.begin(), by_id.end(), [&](std::uint32_t a, std::uint32_t b) { return seeds[a].id < seeds[b].id; });
+  return by_id;
+}
+
+}  // namespace
+
+double GrainSeed::mass() const {
+  if (clump >= 0) return clump_mass;
+  if (thickness > 0.0) return density * std::numbers::pi * radius * radius * thickness;
+  return density * (4.0 / 3.0) * std::numbers::pi * radius * radius * radius;
+}
+
+double GrainSeed::contact_mass() const { return clump >= 0 ? clump_least_mass : mass(); }
+
+void check(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<const Plane> walls,
+           double allowed_overlap) {
+  check_ids(seeds);
+  double largest = 0.0;
+  for (const GrainSeed& seed : seeds) largest = std::max(largest, seed.radius);
+  check_part(seeds, box, walls, allowed_overlap, largest);
+}
+
 void check_alone(const GrainSeed& seed, const PeriodicBox& box, std::span<const Plane> walls, double allowed_overlap) {
   if (!(std::isfinite(seed.radius) && seed.radius > 0.0))
     throw InputError(fmt::format("Grain {} at {} has radius {:g} m; it must be positive.", seed.id,
@@ -51,17 +85,6 @@ void check_alone(const GrainSeed& seed, const PeriodicBox& box, std::span<const 
           "{:g}, {:g}); move it away by that much.",
           seed.id, place(seed.position), seed.radius, overlap, view.normal[0], view.normal[1], view.normal[2]));
   }
-}
-
-void check_pair(const GrainSeed& a, const GrainSeed& b, const PeriodicBox& box, double allowed_overlap) {
-  if (is_fixed(a.motion) && is_fixed(b.motion)) return;
-  if (a.clump >= 0 && a.clump == b.clump) return;
-  const double overlap = a.radius + b.radius - box.difference(a.position, b.position).norm();
-  if (overlap > allowed_overlap * 2.0 * std::min(a.radius, b.radius))
-    throw InputError(
-        fmt::format("Grain {} at {} and grain {} at {} overlap by {:g} m at the start; they must not touch "
-                    "by more than {:g} diameters.",
-                    a.id, place(a.position), b.id, place(b.position), overlap, allowed_overlap));
 }
 
 // Nothing pushes a disk out of its plane as long as all are in it, to the last bit, and gravity is along it.
@@ -91,47 +114,42 @@ void check_periodic_axes(const PeriodicBox& box, double largest_radius, bool dis
                       box.size[axis], "xyz"[axis], 4.0 * largest_radius));
 }
 
-}  // namespace
-
-double GrainSeed::mass() const {
-  if (clump >= 0) return clump_mass;
-  if (thickness > 0.0) return density * std::numbers::pi * radius * radius * thickness;
-  return density * (4.0 / 3.0) * std::numbers::pi * radius * radius * radius;
-}
-
-double GrainSeed::contact_mass() const { return clump >= 0 ? clump_least_mass : mass(); }
-
-void check(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<const Plane> walls,
-           double allowed_overlap) {
-  check_ids(seeds);
-  double largest = 0.0;
-  for (const GrainSeed& seed : seeds) largest = std::max(largest, seed.radius);
-  check_part(seeds, box, walls, allowed_overlap, largest);
+std::optional<Overlap> first_overlap(std::span<const GrainSeed> seeds, const PeriodicBox& box, double allowed_overlap,
+                                     double largest_radius) {
+  const std::vector<std::uint32_t> by_id = order_by_id(seeds);
+  std::vector<Vec3> points;
+  for (const std::uint32_t n : by_id) points.push_back(box.wrapped(seeds[n].position));
+  const CellGrid grid(box, 2.0 * largest_radius, points);
+  const auto count = static_cast<std::uint32_t>(seeds.size());
+  const std::pair<std::uint32_t, std::uint32_t> none{count, count};
+  std::pair<std::uint32_t, std::uint32_t> lowest = none;
+  grid.for_each_near_pair([&](std::uint32_t m, std::uint32_t n) {
+    const std::uint32_t a = grid.order()[m], b = grid.order()[n];
+    const double reach = seeds[by_id[a]].radius + seeds[by_id[b]].radius;
+    if (box.difference(points[a], points[b]).squaredNorm() > reach * reach) return;
+    const std::pair<std::uint32_t, std::uint32_t> pair = std::minmax(a, b);
+    if (pair < lowest && overlap_of(seeds[by_id[a]], seeds[by_id[b]], box, allowed_overlap) > 0.0) lowest = pair;
+  });
+  if (lowest == none) return std::nullopt;
+  const GrainSeed &a = seeds[by_id[lowest.first]], &b = seeds[by_id[lowest.second]];
+  return Overlap{a.id, b.id,
+                 fmt::format("Grain {} at {} and grain {} at {} overlap by {:g} m at the start; they must not touch "
+                             "by more than {:g} diameters.",
+                             a.id, place(a.position), b.id, place(b.position), overlap_of(a, b, box, allowed_overlap),
+                             allowed_overlap)};
 }
 
 void check_part(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<const Plane> walls,
                 double allowed_overlap, double largest_radius) {
-  std::vector<std::uint32_t> by_id(seeds.size());
-  std::iota(by_id.begin(), by_id.end(), 0u);
-  std::sort(by_id.begin(), by_id.end(), [&](std::uint32_t a, std::uint32_t b) { return seeds[a].id < seeds[b].id; });
+  const std::vector<std::uint32_t> by_id = order_by_id(seeds);
   for (const std::uint32_t n : by_id) check_alone(seeds[n], box, walls, allowed_overlap);
   for (const Plane& wall : walls) check_images(wall, box, largest_radius);
   if (seeds.empty()) return;
   const GrainSeed& first = seeds[by_id.front()];
   for (const std::uint32_t n : by_id) check_disk(seeds[n], first);
   check_periodic_axes(box, largest_radius, first.thickness > 0.0);
-
-  std::vector<Vec3> points;
-  for (const std::uint32_t n : by_id) points.push_back(box.wrapped(seeds[n].position));
-  const CellGrid grid(box, 2.0 * largest_radius, points);
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> touching;
-  grid.for_each_near_pair([&](std::uint32_t m, std::uint32_t n) {
-    const std::uint32_t a = grid.order()[m], b = grid.order()[n];
-    const double reach = seeds[by_id[a]].radius + seeds[by_id[b]].radius;
-    if (box.difference(points[a], points[b]).squaredNorm() <= reach * reach) touching.push_back(std::minmax(a, b));
-  });
-  std::sort(touching.begin(), touching.end());  // so that every rank tells of the same pair
-  for (const auto& [a, b] : touching) check_pair(seeds[by_id[a]], seeds[by_id[b]], box, allowed_overlap);
+  if (const std::optional<Overlap> overlap = first_overlap(seeds, box, allowed_overlap, largest_radius))
+    throw InputError(overlap->text);
 }
 
 }  // namespace thalweg::dem

@@ -6,7 +6,9 @@
 #include "dem/grain_store.hpp"
 #include "dem/walls.hpp"
 
+#include <optional>
 #include <span>
+#include <string>
 
 namespace thalweg::dem {
 
@@ -48,5 +50,21 @@ void check(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<c
 // The same of a part of the grains, with any ids. largest_radius: m, of all grains.
 void check_part(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<const Plane> walls,
                 double allowed_overlap, double largest_radius);
+
+// Throw InputError for what of that concerns one grain; a grain and the first of all, as disks; and the box. disks:
+// they are no spheres.
+void check_alone(const GrainSeed& seed, const PeriodicBox& box, std::span<const Plane> walls, double allowed_overlap);
+void check_disk(const GrainSeed& seed, const GrainSeed& first);
+void check_periodic_axes(const PeriodicBox& box, double largest_radius, bool disks);
+
+// Two grains that overlap too much, and what there is to say about it.
+struct Overlap {
+  GlobalId first, second;
+  std::string text;
+};
+
+// The pair of lowest ids that check_part() refuses, of grains that pass its other checks; none: there is none.
+std::optional<Overlap> first_overlap(std::span<const GrainSeed> seeds, const PeriodicBox& box, double allowed_overlap,
+                                     double largest_radius);
 
 }  // namespace thalweg::dem

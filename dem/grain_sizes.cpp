@@ -173,15 +173,41 @@ MassCurve mass_curve(const SizesKeys& sizes) {
 
 }  // namespace
 
-double median_by_volume(std::vector<double> diameters) {
+std::vector<SizeCount> counted(std::vector<double> diameters) {
   std::sort(diameters.begin(), diameters.end());
-  double whole = 0.0, below = 0.0;
-  for (const double d : diameters) whole += sphere_volume(d);
-  for (const double d : diameters) {
-    below += sphere_volume(d);
-    if (below >= 0.5 * whole) return d;
+  std::vector<SizeCount> sizes;
+  for (const double diameter : diameters) {
+    if (sizes.empty() || sizes.back().diameter != diameter) sizes.push_back({diameter, 0});
+    ++sizes.back().count;
   }
-  return diameters.empty() ? 0.0 : diameters.back();
+  return sizes;
+}
+
+std::vector<SizeCount> merged(std::vector<SizeCount> sizes) {
+  std::sort(sizes.begin(), sizes.end(), [](const SizeCount& a, const SizeCount& b) { return a.diameter < b.diameter; });
+  std::size_t last = 0;
+  for (std::size_t n = 1; n < sizes.size(); ++n) {
+    if (sizes[n].diameter == sizes[last].diameter)
+      sizes[last].count += sizes[n].count;
+    else
+      sizes[++last] = sizes[n];
+  }
+  if (!sizes.empty()) sizes.resize(last + 1);
+  return sizes;
+}
+
+// Grain by grain: the sums, and so the grain that they end with where two share the middle, are those of a list with
+// one entry a grain.
+double median_by_volume(std::span<const SizeCount> sizes) {
+  double whole = 0.0, below = 0.0;
+  for (const SizeCount& size : sizes)
+    for (std::int64_t n = 0; n < size.count; ++n) whole += sphere_volume(size.diameter);
+  for (const SizeCount& size : sizes)
+    for (std::int64_t n = 0; n < size.count; ++n) {
+      below += sphere_volume(size.diameter);
+      if (below >= 0.5 * whole) return size.diameter;
+    }
+  return sizes.empty() ? 0.0 : sizes.back().diameter;
 }
 
 std::vector<double> sampled_diameters(const SizesKeys& sizes, std::int64_t count, std::int64_t seed, bool disks) {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace thalweg::dem {
@@ -38,8 +39,19 @@ void describe(SectionVisitor& visit, SizesKeys& sizes, double& diameter);
 
 double sphere_volume(double diameter);  // m^3
 
-// The diameter that half of the mass of these grains is finer than; m.
-double median_by_volume(std::vector<double> diameters);
+// How many grains have a diameter (m).
+struct SizeCount {
+  double diameter;
+  std::int64_t count;
+  bool operator==(const SizeCount&) const = default;
+};
+
+// Diameters (m) in any order as sizes that rise, each once; and several such lists as one.
+std::vector<SizeCount> counted(std::vector<double> diameters);
+std::vector<SizeCount> merged(std::vector<SizeCount> sizes);
+
+// The diameter that half of the mass of these grains is finer than; m. sizes: rising.
+double median_by_volume(std::span<const SizeCount> sizes);
 
 // One diameter (m) a grain. Every grain takes the place in the distribution that its random number has among those of
 // the population, so that the population follows the distribution as closely as its number allows, and the seed only

@@ -5,20 +5,31 @@
 #include <numbers>
 
 namespace thalweg::dem {
-namespace {
-
-double volume_of(double diameter, double thickness) {
-  return thickness > 0.0 ? std::numbers::pi / 4.0 * diameter * diameter * thickness : sphere_volume(diameter);
+void ClumpFigures::add(const ClumpFigures& more) {
+  least_contact_mass = count == 0 ? more.least_contact_mass : std::min(least_contact_mass, more.least_contact_mass);
+  count += more.count;
+  volume += more.volume;
+  largest_extent = std::max(largest_extent, more.largest_extent);
 }
 
-}  // namespace
+double Population::volume_of(double grain_diameter) const {
+  return thickness > 0.0 ? std::numbers::pi / 4.0 * grain_diameter * grain_diameter * thickness
+                         : sphere_volume(grain_diameter);
+}
+
+std::vector<SizeCount> Population::sizes_of_grains() const {
+  if (from_file()) return figures.sizes;
+  if (diameters.empty()) return {{diameter, count}};
+  return counted(diameters);
+}
 
 std::int64_t Population::row_count() const {
-  if (!file.empty()) return static_cast<std::int64_t>(file.size());
+  if (from_file()) return figures.rows;
   return shape ? count * static_cast<std::int64_t>(shape->clump.size()) : count;
 }
 
 double Population::smallest_diameter() const {
+  if (from_file()) return figures.smallest_diameter;
   if (!shape) return diameters.empty() ? diameter : *std::min_element(diameters.begin(), diameters.end());
   double smallest = std::numeric_limits<double>::infinity();
   for (const MemberKeys& member : shape->clump) smallest = std::min(smallest, member.diameter);
@@ -26,6 +37,7 @@ double Population::smallest_diameter() const {
 }
 
 double Population::largest_diameter() const {
+  if (from_file()) return figures.largest_diameter;
   if (!shape) return diameters.empty() ? diameter : *std::max_element(diameters.begin(), diameters.end());
   double largest = 0.0;
   for (const MemberKeys& member : shape->clump) largest = std::max(largest, member.diameter);
@@ -36,19 +48,17 @@ double Population::largest_extent() const { return std::max(largest_diameter(), 
 
 double Population::lightest_mass() const {
   if (shape) return clumps.least_contact_mass;
-  if (file.empty()) return density * volume_of(smallest_diameter(), thickness);
-  double lightest = clumps.count > 0 ? clumps.least_contact_mass : std::numeric_limits<double>::max();
-  for (const BedGrain& grain : file)
-    if (grain.clump < 0) lightest = std::min(lightest, grain.density * volume_of(2.0 * grain.radius, thickness));
-  return lightest;
+  if (from_file())
+    return clumps.count > 0 ? std::min(clumps.least_contact_mass, figures.lightest_grain) : figures.lightest_grain;
+  return density * volume_of(smallest_diameter());
 }
 
 double Population::volume() const {
   if (shape) return clumps.volume;
-  if (diameters.empty()) return static_cast<double>(count) * volume_of(diameter, thickness);
-  double sum = clumps.volume;
-  for (std::size_t n = 0; n < diameters.size(); ++n)
-    if (file.empty() || file[n].clump < 0) sum += volume_of(diameters[n], thickness);
+  if (from_file()) return figures.volume;
+  if (diameters.empty()) return static_cast<double>(count) * volume_of(diameter);
+  double sum = 0.0;
+  for (const double d : diameters) sum += volume_of(d);
   return sum;
 }
 

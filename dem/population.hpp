@@ -75,31 +75,56 @@ struct ClumpFigures {
   double least_contact_mass = 0.0;  // kg, the least that a contact of any of them feels
   double largest_extent = 0.0;      // m, diameter of the sphere about its centre that holds the largest
   bool operator==(const ClumpFigures&) const = default;
+
+  void add(const ClumpFigures& more);  // those of at least one more
+};
+
+// What there is to know of all rows of a bed file, of which a rank has only its share: the same bits on every rank, and
+// on any number of ranks.
+struct FileFigures {
+  // Sums over the grains, a clump counting with the sphere (disk) of its volume.
+  struct Sums {
+    double diameter = 0.0, volume = 0.0, mass = 0.0;  // m, m^3, kg; the mass at the density of the population
+    bool operator==(const Sums&) const = default;
+  };
+
+  std::int64_t rows = 0;           // 0: not from a file
+  double smallest_diameter = 0.0;  // m, of grains and members
+  double largest_diameter = 0.0;   // m
+  double lightest_grain = 0.0;     // kg, of those that are no member
+  double volume = 0.0;             // m^3, of all grains
+  double fastest = 0.0;            // m/s
+  std::vector<SizeCount> sizes;    // of the grains, as for the sums
+  Sums sums;
+  bool operator==(const FileFigures&) const = default;
 };
 
 // With what follows from sizes, shape and file (population_bed.hpp).
 struct Population : PopulationKeys {
-  double thickness = 0.0;              // m, of disks; 0: spheres
-  std::vector<double> diameters;       // m, one a grain or row of the file; empty: all `diameter`
-  std::vector<BedGrain> file;          // rows of placement.file: grains, and members of clumps one after the other
-  std::vector<double> body_diameters;  // m, of a file: one a grain, of a clump that of the sphere (disk) of its volume
-  ClumpFigures clumps;                 // of shape or file
+  double thickness = 0.0;         // m, of disks; 0: spheres
+  std::vector<double> diameters;  // m, one a grain; empty: all `diameter`, or from a file
+  // This rank's share of the rows of placement.file: grains, and members of clumps one after the other. Their ids count
+  // from 0 on through the shares of all ranks.
+  std::vector<BedGrain> file;
+  FileFigures figures;  // of the whole file
+  ClumpFigures clumps;  // of shape or file
 
   bool operator==(const Population&) const = default;
 
+  bool from_file() const { return figures.rows > 0; }
   std::int64_t row_count() const;  // ids that its grains take, one each, but one each member of a clump
-  // m; of a clump that of the sphere (disk) of its volume
-  double body_diameter_of(std::size_t body) const { return file.empty() ? diameter_of(body) : body_diameters[body]; }
+  // Of grains of its own, not from a file, in m: of a clump that of the sphere (disk) of its volume; of the sphere that
+  // one needs where it is put; the same of the largest.
   double diameter_of(std::size_t grain) const { return diameters.empty() ? diameter : diameters[grain]; }
-  // m, of the sphere that a grain of its own, not from a file, needs where it is put
   double room_of(std::size_t grain) const { return shape ? clumps.largest_extent : diameter_of(grain); }
-  double room_of_all() const { return shape ? clumps.largest_extent : largest_diameter(); }  // the same of the largest
-  double density_of(std::size_t grain) const { return file.empty() ? density : file[grain].density; }
-  double smallest_diameter() const;  // m, of spheres and members
-  double largest_diameter() const;   // m
-  double largest_extent() const;     // m, of spheres and clumps
-  double lightest_mass() const;      // kg, the least that a contact feels
-  double volume() const;             // m^3, of all its grains
+  double room_of_all() const { return shape ? clumps.largest_extent : largest_diameter(); }
+  std::vector<SizeCount> sizes_of_grains() const;  // a clump with the sphere (disk) of its volume; rising
+  double volume_of(double grain_diameter) const;   // m^3, of a sphere, or a disk as thick as they are; m
+  double smallest_diameter() const;                // m, of spheres and members
+  double largest_diameter() const;                 // m
+  double largest_extent() const;                   // m, of spheres and clumps
+  double lightest_mass() const;                    // kg, the least that a contact feels
+  double volume() const;                           // m^3, of all its grains
 };
 
 // Throw KeyError: whether it stays in a box of this size (m) where its placement puts it, and whether disks stay in the

@@ -2,16 +2,17 @@
 
 #include "core/error.hpp"
 #include "core/key_error.hpp"
+#include "dem/bed_rows.hpp"
 #include "dem/grain_seed.hpp"
-#include "dem/grain_volume.hpp"
 #include "dem/packing.hpp"
 #include "dem/population_clumps.hpp"
+#include "dem/row_overlaps.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace thalweg::dem {
@@ -50,89 +51,76 @@ void check_box(const Bed& bed, const PeriodicBox& box) {
   }
 }
 
-void check_grains(const std::vector<BedGrain>& grains, const Bed& bed, const PeriodicBox& box, double largest_overlap) {
-  std::vector<GrainSeed> seeds;
-  for (const BedGrain& grain : grains) {
-    GrainSeed seed;
-    seed.id = static_cast<GlobalId>(seeds.size());
-    seed.radius = grain.radius;
-    seed.density = grain.density;
-    seed.position = grain.position;
-    seed.thickness = bed.disk_thickness;
-    seed.clump = grain.clump;
-    seeds.push_back(seed);
-    if ((grain.position.array() < 0.0).any() || (grain.position.array() > box.size.array()).any())
-      throw KeyError(file_key,
-                     fmt::format("grain {} of the file, at [{:g}, {:g}, {:g}] m, is outside this case's box; give a "
-                                 "domain.size in m that holds the bed, or a placement.region to leave it out",
-                                 grain.id, grain.position[0], grain.position[1], grain.position[2]));
-  }
+// Calls what may find that the rows of the file will not do, which then is a matter of its key.
+template <typename Work>
+void about_file(Work&& work) {
   try {
-    check(seeds, box, {}, largest_overlap);
+    work();
   } catch (const InputError& error) {
-    throw KeyError(file_key, fmt::format("{}; up to placement.largest_overlap: {:g} diameters are allowed",
-                                         without_period(error.what()), largest_overlap));
+    throw KeyError(file_key, without_period(error.what()));
   }
 }
 
-bool inside(const Vec3& point, const RegionKeys& region) {
-  return (point.array() >= region.lower.array()).all() && (point.array() <= region.upper.array()).all();
+// first: of the rows of all ranks. Throws InputError for a row that cannot be a grain of the box.
+void check_row(const BedGrain& row, const GrainSeed& first, const PeriodicBox& box) {
+  if ((row.position.array() < 0.0).any() || (row.position.array() > box.size.array()).any())
+    throw InputError(
+        fmt::format("grain {} of the file, at [{:g}, {:g}, {:g}] m, is outside this case's box; give a "
+                    "domain.size in m that holds the bed, or a placement.region to leave it out",
+                    row.id, row.position[0], row.position[1], row.position[2]));
+  GrainSeed seed;
+  seed.id = row.id;
+  seed.radius = row.radius;
+  seed.density = row.density;
+  seed.position = row.position;
+  seed.thickness = first.thickness;
+  check_alone(seed, box, {}, 0.0);
+  check_disk(seed, first);
 }
 
-// Of the grains of a bed file, a clump being one.
-struct BedSizes {
-  std::vector<double> diameters;  // m, of a clump that of the sphere (disk) of its volume
-  double mass = 0.0, volume = 0.0;
-};
+// The first row of all, as far as disks have to be like it.
+GrainSeed first_row(const Population& population, const ReadingRanks& ranks) {
+  std::vector<double> heights;
+  if (!population.file.empty()) heights.push_back(population.file.front().position.y());
+  GrainSeed first;
+  first.thickness = population.thickness;
+  first.position.y() = ranks.gathered(std::move(heights)).front();
+  return first;
+}
 
-// Takes over the grains with their centre in the region.
-BedSizes take_bodies(Population& population, const Bed& bed) {
-  const PeriodicBox box{bed.box, bed.periodic};
-  const std::optional<RegionKeys>& region = population.placement.region;
-  BedSizes sizes;
-  for (const std::span<const BedGrain> body : bodies_of(bed.grains)) {
-    const BedGrain& first = body.front();
-    double volume = 0.0, radius = first.radius;
-    if (first.clump < 0) {
-      if (region && !inside(first.position, *region)) continue;
-      volume = grain_volume(radius, bed.disk_thickness);
-    } else {
-      const ClumpSeed clump = clump_from(body, box, bed.disk_thickness);
-      if (region && !inside(clump.position, *region)) continue;
-      add_clumps(population.clumps, *clump.shape, clump.density, 1);
-      volume = clump.shape->volume;
-      radius = clump.shape->equivalent_radius();
-    }
-    sizes.diameters.push_back(2.0 * radius);
-    sizes.volume += volume;
-    sizes.mass += first.density * volume;
-    for (const BedGrain& grain : body) {
-      population.file.push_back(grain);
-      population.diameters.push_back(2.0 * grain.radius);
-    }
+// Numbers the rows as well.
+void check_rows(Population& population, const PeriodicBox& box, const ReadingRanks& ranks) {
+  const GrainSeed first = first_row(population, ranks);
+  ranks.on_all([&] {
+    for (const BedGrain& row : population.file) check_row(row, first, box);
+  });
+  GlobalId number = ranks.range_of(static_cast<std::int64_t>(population.file.size())).first;
+  for (BedGrain& row : population.file) row.id = number++;
+  const double largest_radius = 0.5 * population.figures.largest_diameter;
+  const double allowed = population.placement.largest_overlap.value_or(PlacementKeys::bed_overlap);
+  check_periodic_axes(box, largest_radius, population.thickness > 0.0);
+  try {
+    refuse_overlaps(population.file, box, allowed, largest_radius, ranks);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}; up to placement.largest_overlap: {:g} diameters are allowed",
+                                 without_period(error.what()), allowed));
   }
-  return sizes;
 }
 
-void take_bed(Population& population, const Bed& bed, const PeriodicBox& box) {
-  const BedSizes sizes = take_bodies(population, bed);
-  if (population.file.empty())
+void take_bed(Population& population, Bed bed, const PeriodicBox& box, const ReadingRanks& ranks) {
+  about_file([&] { take_rows(population, std::move(bed.grains), {bed.box, bed.periodic}, ranks); });
+  if (!population.from_file())
     throw KeyError(file_key, "the file has no grain in the region; give a placement.region in m that holds some");
   check_thickness(bed, population.thickness);
   check_box(bed, box);
-  check_grains(population.file, bed, box, population.placement.largest_overlap.value_or(PlacementKeys::bed_overlap));
-  population.count = static_cast<std::int64_t>(sizes.diameters.size());
-  population.diameter = median_by_volume(sizes.diameters);
-  population.density = sizes.mass / sizes.volume;
-  population.body_diameters = sizes.diameters;
+  about_file([&] { check_rows(population, box, ranks); });
 }
 
 // Grains that are clumps, where the case gives their shape.
 void take_shape(Population& population) {
   try {
     const auto shape = clump_shape_of(population);
-    population.clumps = {};
-    add_clumps(population.clumps, *shape, population.density, population.count);
+    population.clumps = figures_of(*shape, population.density, population.count);
     population.diameter = 2.0 * shape->equivalent_radius();
   } catch (const InputError& error) {
     throw KeyError("shape.clump", without_period(error.what()));
@@ -145,7 +133,7 @@ void take_sizes(Population& population) {
   if (!population.sizes.given()) return;
   population.diameters =
       sampled_diameters(population.sizes, population.count, population.placement.seed, population.thickness > 0.0);
-  population.diameter = median_by_volume(population.diameters);
+  population.diameter = median_by_volume(counted(population.diameters));
 }
 
 // Of the placement's region, or of the box; of disks as wide as they are thick. m
@@ -180,8 +168,8 @@ double wanted_volume(const Population& population, const Vec3& room, double laye
 // of their mean.
 void take_wanted_volume(Population& population, const PeriodicBox& box, std::optional<double> reference_diameter) {
   const Vec3 room = room_for(population, box);
-  constexpr double most = 1e9;  // every rank places them all
-  population.count = 1000;      // a sample, and then nearly all
+  constexpr double most = 1e9;
+  population.count = 1000;  // a sample, and then nearly all
   for (int pass = 0; pass < 2; ++pass) {
     take_sizes(population);
     const double wanted = wanted_volume(population, room, reference_diameter.value_or(population.diameter));
@@ -197,10 +185,10 @@ void take_wanted_volume(Population& population, const PeriodicBox& box, std::opt
 
 }  // namespace
 
-void complete(Population& population, double disk_thickness, const std::optional<Bed>& bed, const PeriodicBox& box,
-              std::optional<double> reference_diameter) {
+void complete(Population& population, double disk_thickness, std::optional<Bed> bed, const PeriodicBox& box,
+              std::optional<double> reference_diameter, const ReadingRanks& ranks) {
   population.thickness = disk_thickness;
-  if (bed) take_bed(population, *bed, box);
+  if (bed) take_bed(population, std::move(*bed), box, ranks);
   if (population.solid_fraction || population.fill) take_wanted_volume(population, box, reference_diameter);
   take_sizes(population);
 }

@@ -4,17 +4,19 @@
 
 #include "core/bed.hpp"
 #include "core/periodic_box.hpp"
+#include "core/reading_ranks.hpp"
 #include "dem/population.hpp"
 
 #include <optional>
 
 namespace thalweg::dem {
 
-// disk_thickness: m; 0: spheres. bed: of placement.file, where there is one. reference_diameter: m, of the layers of a
-// fill; none: the median by volume of the population itself. Throws KeyError where no clump can be made of a shape,
-// where more grains are asked for than can be counted or a fill is deeper than its room, or where the bed was made in a
-// periodic box of another size or of disks of another thickness, or has grains outside the box or overlapping too much.
-void complete(Population& population, double disk_thickness, const std::optional<Bed>& bed, const PeriodicBox& box,
-              std::optional<double> reference_diameter);
+// disk_thickness: m; 0: spheres. bed: of placement.file, where there is one, with this rank's share of its rows.
+// reference_diameter: m, of the layers of a fill; none: the median by volume of the population itself. Throws KeyError,
+// on every rank, where no clump can be made of a shape or of rows, where more grains are asked for than can be counted
+// or a fill is deeper than its room, or where the bed was made in a periodic box of another size or of disks of another
+// thickness, or has grains outside the box or overlapping too much. Collective.
+void complete(Population& population, double disk_thickness, std::optional<Bed> bed, const PeriodicBox& box,
+              std::optional<double> reference_diameter, const ReadingRanks& ranks = {});
 
 }  // namespace thalweg::dem

@@ -65,12 +65,9 @@ ClumpSeed clump_from(std::span<const BedGrain> rows, const PeriodicBox& box, dou
   return clump;
 }
 
-void add_clumps(ClumpFigures& figures, const ClumpShape& shape, double density, std::int64_t count) {
-  const double mass = shape.least_contact_mass(density);
-  figures.least_contact_mass = figures.count == 0 ? mass : std::min(figures.least_contact_mass, mass);
-  figures.count += count;
-  figures.volume += static_cast<double>(count) * shape.volume;
-  figures.largest_extent = std::max(figures.largest_extent, 2.0 * shape.bounding_radius);
+ClumpFigures figures_of(const ClumpShape& shape, double density, std::int64_t count) {
+  return {count, static_cast<double>(count) * shape.volume, shape.least_contact_mass(density),
+          2.0 * shape.bounding_radius};
 }
 
 }  // namespace thalweg::dem

@@ -25,7 +25,7 @@ std::vector<std::span<const BedGrain>> bodies_of(std::span<const BedGrain> rows)
 // The clump that its members make, as it lies and moves; its id stays 0. box: of the bed. thickness: m, of disks.
 ClumpSeed clump_from(std::span<const BedGrain> members, const PeriodicBox& box, double thickness);
 
-// Adds what a population's figures need of `count` clumps of this shape.
-void add_clumps(ClumpFigures& figures, const ClumpShape& shape, double density, std::int64_t count);
+// Of `count` clumps of this shape and density (kg/m^3).
+ClumpFigures figures_of(const ClumpShape& shape, double density, std::int64_t count);
 
 }  // namespace thalweg::dem

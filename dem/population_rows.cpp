@@ -8,36 +8,57 @@ namespace thalweg::dem {
 namespace {
 
 // A clump's members, one clump after the other.
-void add_clumps(const Population& population, PopulationRow row, std::vector<PopulationRow>& rows) {
+void add_clumps(const Population& population, PopulationRow row, const RowRange& share,
+                std::vector<PopulationRow>& rows) {
   const auto shape = clump_shape_of(population);
   row.mass = population.density * shape->volume;
   row.contact_mass = population.clumps.least_contact_mass;
-  for (std::int64_t clump = 0; clump < population.count; ++clump)
-    for (const Sphere& member : shape->members) {
-      row.radius = member.radius;
-      rows.push_back(row);
-    }
+  for (std::int64_t n = share.first; n < share.last; ++n) {
+    row.radius = shape->members[static_cast<std::size_t>(n) % shape->members.size()].radius;
+    rows.push_back(row);
+  }
+}
+
+void add_from_file(const Population& population, PopulationRow row, std::vector<PopulationRow>& rows) {
+  for (const BedGrain& grain : population.file) {
+    row.radius = grain.radius;
+    row.mass = grain.clump >= 0 ? 0.0 : grain.density * grain_volume(row.radius, population.thickness);
+    row.contact_mass = grain.clump >= 0 ? population.clumps.least_contact_mass : row.mass;
+    rows.push_back(row);
+  }
+}
+
+void add_spheres(const Population& population, PopulationRow row, const RowRange& share,
+                 std::vector<PopulationRow>& rows) {
+  for (std::int64_t n = share.first; n < share.last; ++n) {
+    row.radius = 0.5 * population.diameter_of(static_cast<std::size_t>(n));
+    row.mass = row.contact_mass = population.density * grain_volume(row.radius, population.thickness);
+    rows.push_back(row);
+  }
 }
 
 }  // namespace
 
-std::vector<PopulationRow> rows_of(std::span<const Population> populations, std::size_t number) {
+RowRange share_of_rows(const Population& population, const ReadingRanks& ranks) {
+  if (!population.from_file()) return ranks.share_of(population.row_count());
+  RowRange share(population.row_count(), 1, 0);
+  share.first = population.file.empty() ? 0 : population.file.front().id;
+  share.last = share.first + static_cast<std::int64_t>(population.file.size());
+  return share;
+}
+
+std::vector<PopulationRow> rows_of(std::span<const Population> populations, std::size_t number, const RowRange& share) {
   const Population& population = populations[number];
   PopulationRow row;
   row.motion = motion_of(population);
   row.material = material_of(populations, number);
   std::vector<PopulationRow> rows;
-  if (population.shape) {
-    add_clumps(population, row, rows);
-    return rows;
-  }
-  for (std::size_t n = 0; n < static_cast<std::size_t>(population.row_count()); ++n) {
-    row.radius = 0.5 * population.diameter_of(n);
-    const bool member = !population.file.empty() && population.file[n].clump >= 0;
-    row.mass = member ? 0.0 : population.density_of(n) * grain_volume(row.radius, population.thickness);
-    row.contact_mass = member ? population.clumps.least_contact_mass : row.mass;
-    rows.push_back(row);
-  }
+  if (population.shape)
+    add_clumps(population, row, share, rows);
+  else if (population.from_file())
+    add_from_file(population, row, rows);
+  else
+    add_spheres(population, row, share, rows);
   return rows;
 }
 

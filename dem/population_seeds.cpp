@@ -1,6 +1,7 @@
 #include "dem/population_seeds.hpp"
 
 #include "core/error.hpp"
+#include "dem/file_seeds.hpp"
 #include "dem/packing.hpp"
 #include "dem/population_clumps.hpp"
 #include "dem/random_packing.hpp"
@@ -48,13 +49,8 @@ Vec3 in_plane(Vec3 position, const Population& population, const PeriodicBox& bo
   return position;
 }
 
-void set_motion(GrainSeed& seed, const Population& population, std::size_t grain) {
-  Vec3 velocity = population.velocity, spin = population.angular_velocity;
-  if (!population.file.empty()) {
-    const bool kept = keeps_velocities(population);
-    velocity = kept ? population.file[grain].velocity : Vec3::Zero();
-    spin = kept ? population.file[grain].angular_velocity : Vec3::Zero();
-  }
+// velocity, spin: where nothing is prescribed, m/s and rad/s.
+void set_motion(GrainSeed& seed, const Population& population, const Vec3& velocity, const Vec3& spin) {
   seed.velocity = population.prescribed_velocity.value_or(velocity);
   seed.angular_velocity = population.prescribed_angular_velocity.value_or(spin);
   if (population.fixed || population.motion) seed.velocity = seed.angular_velocity = Vec3::Zero();
@@ -89,19 +85,13 @@ PlacementOrder order_of(const PlacementKeys& placement) {
 
 using PlaceVisitor = std::function<void(std::size_t grain, const Vec3& centre)>;  // m
 
-// Calls the visitor for the grains of a population in their order: for all, or for those of a packing that this rank
-// knows.
+// Calls the visitor for the grains of a population, not from a file, in their order: for all, or for those of a packing
+// that this rank knows.
 using Places = std::function<void(const PlaceVisitor&)>;
 
 Places places_in(std::vector<Vec3> centres) {
   return [kept = std::move(centres)](const PlaceVisitor& visit) {
     for (std::size_t grain = 0; grain < kept.size(); ++grain) visit(grain, kept[grain]);
-  };
-}
-
-Places places_of_file(const std::vector<BedGrain>& rows) {
-  return [&rows](const PlaceVisitor& visit) {
-    for (std::size_t row = 0; row < rows.size(); ++row) visit(row, rows[row].position);
   };
 }
 
@@ -152,7 +142,7 @@ Places place(const Population& population, const PlacingRanks& ranks, std::span<
   if (region.plane) region.lower[1] = 0.0, region.upper[1] = ranks.box().size[1];
   switch (order_of(placement)) {
     case PlacementOrder::given:
-      return placement.file ? places_of_file(population.file) : places_in(placement.positions);
+      return places_in(placement.positions);
     case PlacementOrder::uniform:
       return places_on(UniformSites(ranks.box(), region, population.count, 0.5 * population.room_of_all(), 0.0,
                                     static_cast<std::uint64_t>(placement.seed)),
@@ -167,24 +157,24 @@ Places place(const Population& population, const PlacingRanks& ranks, std::span<
 // Adds the grains of a population that this rank knows, one after the other, with ids that count up through all.
 class SeedAdder {
 public:
-  SeedAdder(const PlacingRanks& ranks, GrainSeeds& seeds) : ranks_(ranks), box_(ranks.box()), seeds_(seeds) {}
+  SeedAdder(const PlacingRanks& ranks, GrainSeeds& seeds) : ranks_(ranks), seeds_(seeds) {}
 
   void add(const Population& population, const GrainSeed& common, const Places& places) {
     const auto seed_of = [&](std::size_t grain, const Vec3& centre) {
       GrainSeed seed = common;
       seed.radius = 0.5 * population.diameter_of(grain);
-      seed.density = population.density_of(grain);
-      seed.position = in_plane(centre, population, box_);
-      set_motion(seed, population, grain);
+      seed.density = population.density;
+      seed.position = in_plane(centre, population, ranks_.box());
+      set_motion(seed, population, population.velocity, population.angular_velocity);
       return seed;
     };
-    if (!population.file.empty())
-      add_from_file(population, seed_of);
+    if (population.from_file())
+      add_from_file(population, common);
     else if (population.shape)
       add_clumps(population, places, seed_of);
     else
       places([&](std::size_t grain, const Vec3& centre) {
-        if (!wants(in_plane(centre, population, box_), common.assembly)) return;
+        if (!wants(in_plane(centre, population, ranks_.box()), common.assembly)) return;
         seeds_.grains.push_back(seed_of(grain, centre));
         seeds_.grains.back().id = first_ + static_cast<GlobalId>(grain);
       });
@@ -192,14 +182,16 @@ public:
   }
 
 private:
-  bool wants(const Vec3& centre, int assembly) const { return assembly >= 0 || ranks_.knows(box_.wrapped(centre)); }
+  bool wants(const Vec3& centre, int assembly) const {
+    return assembly >= 0 || ranks_.knows(ranks_.box().wrapped(centre));
+  }
 
   void add_clumps(const Population& population, const Places& places, const auto& seed_of) {
     ClumpSeed clump;
     clump.shape = clump_shape_of(population);
     const auto members = static_cast<GlobalId>(clump.shape->members.size());
     places([&](std::size_t grain, const Vec3& centre) {
-      if (!wants(in_plane(centre, population, box_), -1)) return;
+      if (!wants(in_plane(centre, population, ranks_.box()), -1)) return;
       GrainSeed as_grain = seed_of(grain, centre);
       as_grain.id = first_ + static_cast<GlobalId>(grain) * members;
       clump.position = as_grain.position;
@@ -208,25 +200,41 @@ private:
     });
   }
 
-  void add_from_file(const Population& population, const auto& seed_of) {
-    std::size_t row = 0;
-    for (const std::span<const BedGrain> body : bodies_of(population.file)) {
-      GrainSeed seed = seed_of(row, population.file[row].position);
-      seed.id = first_ + static_cast<GlobalId>(row);
-      row += body.size();
-      if (body.front().clump < 0) {
-        if (wants(seed.position, seed.assembly)) seeds_.grains.push_back(seed);
-        continue;
-      }
-      const ClumpSeed clump = clump_from(body, box_, population.thickness);
-      if (keeps_velocities(population) && !holds_translation(seed.motion))
-        seed.velocity = clump.velocity;  // of the centre
-      if (wants(clump.position, -1)) seeds_.clumps.push_back(clump_seed_of(seed, clump));
+  void add_from_file(const Population& population, const GrainSeed& common) {
+    if (ranks_.alone()) {
+      for (const std::span<const BedGrain> body : bodies_of(population.file)) add_body(population, common, body);
+      return;
     }
+    const std::vector<BedGrain> rows =
+        rows_known(population, ranks_, [&](std::span<const BedGrain> body) { return centre_of(population, body); });
+    for (const std::span<const BedGrain> body : bodies_of(rows)) add_body(population, common, body);
+  }
+
+  Vec3 centre_of(const Population& population, std::span<const BedGrain> body) const {
+    if (body.front().clump < 0) return in_plane(body.front().position, population, ranks_.box());
+    return clump_from(body, ranks_.box(), population.thickness).position;
+  }
+
+  // The grain or clump that some rows of a file make.
+  void add_body(const Population& population, const GrainSeed& common, std::span<const BedGrain> body) {
+    const BedGrain& first = body.front();
+    const bool kept = keeps_velocities(population);
+    GrainSeed seed = common;
+    seed.id = first_ + first.id;
+    seed.radius = first.radius;
+    seed.density = first.density;
+    seed.position = in_plane(first.position, population, ranks_.box());
+    set_motion(seed, population, kept ? first.velocity : Vec3::Zero(), kept ? first.angular_velocity : Vec3::Zero());
+    if (first.clump < 0) {
+      if (wants(seed.position, seed.assembly)) seeds_.grains.push_back(seed);
+      return;
+    }
+    const ClumpSeed clump = clump_from(body, ranks_.box(), population.thickness);
+    if (kept && !holds_translation(seed.motion)) seed.velocity = clump.velocity;  // of the centre
+    if (wants(clump.position, -1)) seeds_.clumps.push_back(clump_seed_of(seed, clump));
   }
 
   const PlacingRanks& ranks_;
-  PeriodicBox box_;
   GrainSeeds& seeds_;
   GlobalId first_ = 0;  // id of the population's first grain
 };
@@ -236,6 +244,24 @@ bool anyone_keeps_clear(std::span<const Population> populations) {
   return std::any_of(populations.begin(), populations.end(), [](const Population& population) {
     return order_of(population.placement) >= PlacementOrder::dense;
   });
+}
+
+// The room of its grains that this rank knows, for others to keep clear of; numbered within the population.
+std::vector<Obstacle> spheres_of(const Population& population, const PlacingRanks& ranks, const Places& places) {
+  std::vector<Obstacle> spheres;
+  const auto add = [&](std::int64_t number, const Vec3& centre, double radius) {
+    const Vec3 in_box = ranks.box().wrapped(in_plane(centre, population, ranks.box()));
+    if (ranks.knows(in_box)) spheres.push_back({{in_box, radius}, number});
+  };
+  if (population.from_file()) {
+    for (const Obstacle& row : spheres_of_file(population, ranks))
+      add(row.number, row.sphere.position, row.sphere.radius);
+  } else {
+    places([&](std::size_t grain, const Vec3& centre) {
+      add(static_cast<std::int64_t>(grain), centre, 0.5 * population.room_of(grain));
+    });
+  }
+  return spheres;
 }
 
 }  // namespace
@@ -251,16 +277,15 @@ GrainSeeds grain_seeds(std::span<const Population> populations, const PlacingRan
       const Population& population = populations[p];
       if (order_of(population.placement) != order) continue;
       try {
-        places[p] = place(population, ranks, obstacles);
+        if (!population.from_file()) places[p] = place(population, ranks, obstacles);
       } catch (const InputError& error) {
         throw InputError(fmt::format("grains.{}: {}", p, error.what()));
       }
       if (!kept_clear_of) continue;
-      places[p]([&](std::size_t grain, const Vec3& centre) {
-        const Vec3 in_box = ranks.box().wrapped(in_plane(centre, population, ranks.box()));
-        if (ranks.knows(in_box))
-          obstacles.push_back({{in_box, 0.5 * population.room_of(grain)}, first + static_cast<std::int64_t>(grain)});
-      });
+      for (Obstacle obstacle : spheres_of(population, ranks, places[p])) {
+        obstacle.number += first;
+        obstacles.push_back(obstacle);
+      }
       first += population.row_count();
     }
   GrainSeeds seeds;
@@ -269,10 +294,6 @@ GrainSeeds grain_seeds(std::span<const Population> populations, const PlacingRan
   for (std::size_t p = 0; p < populations.size(); ++p)
     adder.add(populations[p], common_seed(populations, p), places[p]);
   return seeds;
-}
-
-GrainSeeds grain_seeds(std::span<const Population> populations, const PeriodicBox& box) {
-  return grain_seeds(populations, PlacingRanks(box));
 }
 
 Motion motion_of(const Population& population) {

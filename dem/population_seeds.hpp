@@ -15,13 +15,10 @@
 
 namespace thalweg::dem {
 
-// All grains at the start, a clump with its centre at its place. Ids run through the populations in their order. Given
-// positions are taken first, then uniform patterns, then dense and random ones, which keep clear of all others. Throws
-// InputError where they do not fit. For one process.
-GrainSeeds grain_seeds(std::span<const Population> populations, const PeriodicBox& box);
-
-// Those of them that this rank knows, and the members of rigid assemblies, with the ids that they have among all: the
-// same grains on any number of ranks. Collective; throws on every rank.
+// The grains at the start that this rank knows (placing_ranks.hpp), a clump with its centre at its place, and the
+// members of rigid assemblies: the same grains on any number of ranks. Ids run through the populations in their order.
+// Given positions are taken first, then uniform patterns, then dense and random ones, which keep clear of all others.
+// Collective. Throws InputError, on every rank, where they do not fit.
 GrainSeeds grain_seeds(std::span<const Population> populations, const PlacingRanks& ranks);
 
 // What of its motion is prescribed, of all its grains.

@@ -16,8 +16,7 @@ namespace thalweg::driver {
 // velocities), in datasets below bed_<number of the population>. Collective.
 void save_beds(ArchiveWriter& archive, MPI_Comm communicator, const Case& c);
 
-// Those of the first of these checkpoints that is not damaged; none of one that was written without. Any process may
-// ask alone.
+// Those of the first of these checkpoints that is not damaged; none of one that was written without.
 KnownBeds beds_of(std::vector<std::filesystem::path> checkpoints);
 
 }  // namespace thalweg::driver

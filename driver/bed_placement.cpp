@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <utility>
 
 namespace thalweg::driver {
 namespace {
@@ -16,13 +17,16 @@ std::filesystem::path absolute_path(const std::string& file, const io::YamlDocum
   return std::filesystem::absolute(document.path().parent_path() / file).lexically_normal();
 }
 
-Bed read_bed(const std::filesystem::path& path, const io::YamlDocument& document, const std::string& key) {
-  if (!std::filesystem::is_regular_file(path))
+Bed read_bed(const std::filesystem::path& path, const io::YamlDocument& document, const std::string& key,
+             const ReadingRanks& ranks) {
+  ranks.on_all([&] {
+    if (std::filesystem::is_regular_file(path)) return;
     throw document.error(key, fmt::format("there is no file {}; give the path of a bed file relative to the case file, "
                                           "for example run/bed.h5 as thalweg run leaves it",
                                           path.string()));
+  });
   try {
-    return io::read_bed_file(path);
+    return io::read_bed_file(path, ranks);
   } catch (const InputError& error) {
     std::string reason = error.what();
     if (reason.ends_with('.')) reason.pop_back();
@@ -32,7 +36,7 @@ Bed read_bed(const std::filesystem::path& path, const io::YamlDocument& document
 
 }  // namespace
 
-void fill_in_grains(Case& c, const io::YamlDocument& document, const KnownBeds& known) {
+void fill_in_grains(Case& c, const io::YamlDocument& document, const KnownBeds& known, const ReadingRanks& ranks) {
   const PeriodicBox box{c.domain.size, periodic_axes(c.domain)};
   for (std::size_t n = 0; n < c.grains.size(); ++n) {
     const std::string key = fmt::format("grains.{}", n);
@@ -40,11 +44,12 @@ void fill_in_grains(Case& c, const io::YamlDocument& document, const KnownBeds& 
     if (std::optional<std::string>& file = c.grains[n].placement.file) {
       const std::filesystem::path path = absolute_path(*file, document);
       file = path.string();
-      if (known) bed = known(c, n);
-      if (!bed) bed = read_bed(path, document, key + ".placement.file");
+      if (known) bed = known(c, n, ranks);
+      if (!bed) bed = read_bed(path, document, key + ".placement.file", ranks);
     }
     at_place(document, key, [&] {
-      complete(c.grains[n], c.disks ? c.disks->thickness : 0.0, bed, box, c.analysis.reference_diameter);
+      complete(c.grains[n], c.disks ? c.disks->thickness : 0.0, std::move(bed), box, c.analysis.reference_diameter,
+               ranks);
     });
   }
 }

@@ -1,5 +1,4 @@
 // From a case to grains without a fluid, or with a force in its place.
-#include "core/mpi_session.hpp"
 #include "dem/dry_grains.hpp"
 #include "driver/build_system.hpp"
 #include "driver/grain_setup.hpp"

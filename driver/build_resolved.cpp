@@ -1,5 +1,4 @@
 // From a case to grains in a resolved flow.
-#include "core/mpi_session.hpp"
 #include "coupling/resolved_system.hpp"
 #include "driver/build_system.hpp"
 #include "driver/fluid_setup.hpp"

@@ -131,22 +131,38 @@ double grain_volume(const Case& c) {
   return volume;
 }
 
+namespace {
+
+// Adds the grains of a population, a clump with the sphere (disk) of its volume. mean: of sums.
+void add_grains(const dem::Population& population, dem::MeanGrain& mean) {
+  if (population.from_file()) {
+    const dem::FileFigures& figures = population.figures;
+    mean.diameter += figures.sums.diameter;
+    mean.volume += figures.sums.volume;
+    mean.mass += figures.sums.mass;
+    mean.largest_diameter = std::max(mean.largest_diameter, figures.sizes.back().diameter);
+    return;
+  }
+  for (std::size_t n = 0; n < static_cast<std::size_t>(population.count); ++n) {
+    const double d = population.diameter_of(n), volume = dem::grain_volume(0.5 * d, population.thickness);
+    mean.diameter += d;
+    mean.volume += volume;
+    mean.mass += population.density * volume;
+    mean.largest_diameter = std::max(mean.largest_diameter, d);
+  }
+}
+
+}  // namespace
+
 dem::MeanGrain mean_grain(const Case& c) {
-  double count = 0.0;
   dem::MeanGrain mean{0.0, 0.0, 0.0, 0.0};
   for (const dem::Population& population : c.grains) {
-    for (std::size_t n = 0; n < static_cast<std::size_t>(population.count); ++n) {
-      const double d = population.body_diameter_of(n), volume = dem::grain_volume(0.5 * d, population.thickness);
-      count += 1.0;
-      mean.diameter += d;
-      mean.volume += volume;
-      mean.mass += population.density * volume;
-      mean.largest_diameter = std::max(mean.largest_diameter, d);
-    }
+    add_grains(population, mean);
     if (population.clumps.count == 0) continue;
     mean.largest_member = std::max(mean.largest_member, population.largest_diameter());
     mean.longest = std::max(mean.longest, population.clumps.largest_extent);
   }
+  const auto count = static_cast<double>(grain_count(c));
   mean.diameter /= count;
   mean.volume /= count;
   mean.mass /= count;

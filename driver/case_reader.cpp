@@ -85,7 +85,8 @@ constexpr double steps_per_contact = 50.0;  // dry grains, where the user gives 
 
 }  // namespace
 
-Case read_case(const std::filesystem::path& path, const std::vector<std::string>& overrides, const KnownBeds& known) {
+Case read_case(const std::filesystem::path& path, const std::vector<std::string>& overrides, const KnownBeds& known,
+               MPI_Comm communicator) {
   const io::YamlDocument document(path, overrides);
   if (document.find("case") && !document.find("system"))
     throw InputError(
@@ -96,7 +97,7 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
     check_column(c, document);
     fill_in_column(c);
   }
-  fill_in_grains(c, document, known);
+  fill_in_grains(c, document, known, ReadingRanks(communicator));
   if (has_fluid(c) && !c.fluid.bulk_relaxation_time) c.fluid.bulk_relaxation_time = bulk_relaxation_time_for(c);
   if (c.coupling.grain_steps_per_fluid_step == coupling::CouplingKeys::as_many_as_needed) {
     if (!has_fluid(c))

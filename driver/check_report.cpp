@@ -197,7 +197,7 @@ LightestGrains check_placed_grains(const Case& c, const PeriodicBox& box, const 
 LightestGrains lightest_taken_grains(const Case& c, const dem::GrainParameters& parameters) {
   LightestGrains lightest(1 + parameters.other_materials.size());
   for (std::size_t population = 0; population < c.grains.size(); ++population)
-    for (const dem::PopulationRow& row : dem::rows_of(c.grains, population))
+    for (const dem::PopulationRow& row : dem::rows_of(c.grains, population, dem::share_of_rows(c.grains[population])))
       lightest[static_cast<std::size_t>(row.material)].include(row.contact_mass, row.radius);
   return lightest;
 }

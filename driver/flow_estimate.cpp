@@ -162,7 +162,7 @@ double settling_velocity_of(const Case& c, const dem::Population& grains) {
 }
 
 bool starts_from_a_bed(const Case& c, const dem::Population& grains) {
-  return c.initial.takes(InitialField::grains) || !grains.file.empty();
+  return c.initial.takes(InitialField::grains) || grains.from_file();
 }
 
 }  // namespace

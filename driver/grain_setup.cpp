@@ -66,12 +66,10 @@ dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box) {
   return parameters;
 }
 
-dem::GrainSeeds grain_seeds(const Case& c) { return dem::grain_seeds(c.grains, box_of(c)); }
+dem::GrainSeeds grain_seeds(const Case& c) { return dem::grain_seeds(c.grains, dem::PlacingRanks(box_of(c))); }
 
 dem::GrainSeeds grain_seeds(const Case& c, MPI_Comm communicator, const Decomposition& decomposition) {
-  double extent = 0.0;
-  for (const dem::Population& population : c.grains) extent = std::max(extent, population.largest_extent());
-  const double reach = (1.0 + dem::allowed_initial_overlap) * extent;  // of two centres that touch
+  const double reach = (1.0 + dem::allowed_initial_overlap) * largest_extent(c);  // of two centres that touch
   return dem::grain_seeds(c.grains, dem::PlacingRanks(box_of(c), communicator, decomposition, reach));
 }
 

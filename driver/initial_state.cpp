@@ -41,21 +41,20 @@ constexpr double same_grain = 1e-9;
 
 bool differ(double one, double other) { return std::abs(one - other) > same_grain * std::abs(other); }
 
-// What the state has of its grains, one row each.
+// What the state has of some of its grains, one row each.
 struct SavedGrains {
   std::vector<double> radius, mass;
   std::vector<std::int64_t> motion, material;
 };
 
-SavedGrains saved_grains(io::Hdf5Reader& archive) {
-  const auto rows = archive.shape("grains/radius").at(0);
-  const auto box = RowRange(static_cast<std::int64_t>(rows), 1, 0).box();
+SavedGrains saved_grains(io::Hdf5Reader& archive, const RowRange& share) {
+  const auto rows = static_cast<std::size_t>(share.size());
   SavedGrains saved{std::vector<double>(rows), std::vector<double>(rows), std::vector<std::int64_t>(rows),
                     std::vector<std::int64_t>(rows)};
-  archive.read("grains/radius", saved.radius, box);
-  archive.read("grains/mass", saved.mass, box);
-  archive.read("grains/motion", saved.motion, box);
-  archive.read("grains/material", saved.material, box);
+  archive.read("grains/radius", saved.radius, share.box());
+  archive.read("grains/mass", saved.mass, share.box());
+  archive.read("grains/motion", saved.motion, share.box());
+  archive.read("grains/material", saved.material, share.box());
   return saved;
 }
 
@@ -71,36 +70,52 @@ std::string difference(const SavedGrains& saved, std::size_t n, const dem::Popul
   return {};
 }
 
+// share: of the rows of a population, the first of which is row `first` of the state.
+void refuse_other_rows(const Case& c, std::size_t population, RowRange share, std::int64_t first,
+                       io::Hdf5Reader& archive) {
+  const std::vector<dem::PopulationRow> rows = dem::rows_of(c.grains, population, share);
+  share.count = grain_rows(c);
+  share.first += first;
+  share.last += first;
+  const SavedGrains saved = saved_grains(archive, share);
+  for (std::size_t n = 0; n < rows.size(); ++n)
+    if (const std::string what = difference(saved, n, rows[n]); !what.empty())
+      throw InputError(
+          fmt::format("Grain {} has {} (grains.{}). Grains that are taken over stay as they are: give "
+                      "the populations of that run (its case.yaml has them), or take the bed.h5 in its "
+                      "folder as placement.file.",
+                      share.first + static_cast<std::int64_t>(n), what, population));
+}
+
 // Grains stay what they were, whatever the case says of them: then q* and the Shields number of the run, and all that
-// `thalweg check` says, would be those of other grains.
-void refuse_other_grains(const Case& c, io::Hdf5Reader& archive) {
+// `thalweg check` says, would be those of other grains. Each rank compares its share of the rows.
+void refuse_other_grains(const Case& c, const std::filesystem::path& path, const ReadingRanks& ranks) {
   if (std::any_of(c.grains.begin(), c.grains.end(), [](const dem::Population& grains) { return grains.motion; }))
     throw InputError("A case with rigid populations (motion) cannot take over grains; give their placements instead.");
-  const SavedGrains saved = saved_grains(archive);
-  if (const auto rows = static_cast<std::int64_t>(saved.radius.size()); rows != grain_rows(c))
-    throw InputError(
-        fmt::format("There are {} grains, but this case has {}; give populations with as many.", rows, grain_rows(c)));
-  std::size_t n = 0;
-  for (std::size_t population = 0; population < c.grains.size(); ++population)
-    for (const dem::PopulationRow& row : dem::rows_of(c.grains, population)) {
-      if (const std::string what = difference(saved, n, row); !what.empty())
-        throw InputError(
-            fmt::format("Grain {} has {} (grains.{}). Grains that are taken over stay as they are: give "
-                        "the populations of that run (its case.yaml has them), or take the bed.h5 in its "
-                        "folder as placement.file.",
-                        n, what, population));
-      ++n;
-    }
+  ranks.on_all([&] {
+    const auto rows = static_cast<std::int64_t>(io::Hdf5Reader(path).shape("grains/radius").at(0));
+    if (rows != grain_rows(c))
+      throw InputError(fmt::format("There are {} grains, but this case has {}; give populations with as many.", rows,
+                                   grain_rows(c)));
+  });
+  std::int64_t first = 0;
+  for (std::size_t population = 0; population < c.grains.size(); ++population) {
+    const RowRange share = dem::share_of_rows(c.grains[population], ranks);
+    ranks.on_all([&] {
+      io::Hdf5Reader archive(path);
+      refuse_other_rows(c, population, share, first, archive);
+    });
+    first += c.grains[population].row_count();
+  }
 }
 
 }  // namespace
 
-void check_initial_sources(const Case& c) {
+void check_initial_sources(const Case& c, const ReadingRanks& ranks) {
   for (const InitialField field : {InitialField::grains, InitialField::fluid})
     about_source(c, field, [&](const std::filesystem::path& path) {
-      io::Hdf5Reader archive(path);
-      refuse_state_without(field, archive, path);
-      if (field == InitialField::grains) refuse_other_grains(c, archive);
+      ranks.on_all([&] { refuse_state_without(field, io::Hdf5Reader(path), path); });
+      if (field == InitialField::grains) refuse_other_grains(c, path, ranks);
     });
 }
 

@@ -164,7 +164,8 @@ RankWork work_of(const Case& c, const GrainsOfCase& grains, const Decomposition&
   work.ghosts = share_of_grains(c, grains, decomposition, rank, grains.reach) * count - work.grains;
   work.memory +=
       (work.grains + work.ghosts) * bytes_of_grain(decomposition.ranks()) + work.grains / count * grains.links;
-  work.memory = std::max(work.memory, bytes_of_program() + bytes_of_placing(c));
+  work.memory += bytes_of_bed_rows(c, decomposition.ranks());
+  work.memory = std::max(work.memory, bytes_of_program() + bytes_of_placing(c, decomposition.ranks()));
   if (decomposition.ranks() == 1) return work;
   const double beside = neighbours(decomposition, rank, [](int axes) { return axes > 0; });
   const double attached = measures_grain_stress(c) ? coupling::GrainExchange<double>::width_with_stress

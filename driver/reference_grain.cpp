@@ -19,13 +19,6 @@ std::vector<const dem::Population*> populations_that_count(const Case& c) {
   return chosen;
 }
 
-// One a grain; a clump counts with the sphere (disk) of its volume.
-std::vector<double> diameters_of(const dem::Population& population) {
-  if (!population.file.empty()) return population.body_diameters;
-  if (!population.diameters.empty()) return population.diameters;
-  return std::vector<double>(static_cast<std::size_t>(population.count), population.diameter);
-}
-
 double mean_density(const std::vector<const dem::Population*>& populations) {
   const double first = populations.front()->density;
   double mass = 0.0, volume = 0.0;
@@ -44,12 +37,12 @@ ReferenceGrain reference_grain(const Case& c) {
   const std::vector<const dem::Population*> populations = populations_that_count(c);
   const double density = mean_density(populations);
   if (c.analysis.reference_diameter) return {*c.analysis.reference_diameter, density};
-  std::vector<double> diameters;
+  std::vector<dem::SizeCount> sizes;
   for (const dem::Population* population : populations) {
-    const std::vector<double> more = diameters_of(*population);
-    diameters.insert(diameters.end(), more.begin(), more.end());
+    const std::vector<dem::SizeCount> more = population->sizes_of_grains();
+    sizes.insert(sizes.end(), more.begin(), more.end());
   }
-  return {dem::median_by_volume(std::move(diameters)), density};
+  return {dem::median_by_volume(dem::merged(std::move(sizes))), density};
 }
 
 std::string reference_text(const Case& c) {

@@ -235,7 +235,7 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   std::vector<std::string> settings = command.settings;
   if (command.until) settings.push_back(fmt::format("run.until={}", *command.until));
   const Places places = places_of(command);
-  const Case c = read_case(command.path, settings, beds_of(places.checkpoints));
+  const Case c = read_case(command.path, settings, beds_of(places.checkpoints), communicator);
   on_first_rank(communicator, [&] {
     if (!places.same_folder) places.folder.check_new(command.overwrite);
     places.folder.check_writable();
@@ -244,7 +244,7 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   beginning.changes = changes_since(places, c);
   const Index3 layout = choose_layout(c, size_of(communicator), command.layout);
   const bool restarts = !places.checkpoints.empty();
-  if (!restarts) on_first_rank(communicator, [&] { about_case(command.path, [&] { check_initial_sources(c); }); });
+  if (!restarts) about_case(command.path, [&] { check_initial_sources(c, ReadingRanks(communicator)); });
   const Start start = restarts || c.initial.takes(InitialField::grains) ? Start::from_checkpoint : Start::as_placed;
   about_case(command.path, [&] { refuse_without_memory(c, communicator, layout); });
   const double bandwidth = has_fluid(c) ? measure_bandwidth(communicator) : 0.0;  // while there is room for its array

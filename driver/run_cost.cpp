@@ -38,17 +38,23 @@ double bytes_per_value(const Case& c) { return c.fluid.precision == coupling::Pr
 double bytes_of_cell(const Case& c) { return 19.0 * bytes_per_value(c) + flag_bytes; }
 double bytes_of_program() { return program_bytes; }
 double bytes_of_grain(int ranks) { return ranks > 1 ? grain_bytes + row_bytes : grain_bytes; }
-double bytes_of_placing(const Case& c) {
-  constexpr double sphere = 24.0, random_sphere = 120.0, row_of_file = 150.0;
+double bytes_of_placing(const Case& c, int ranks) {
+  constexpr double position = 24.0, random_sphere = 130.0;  // in the case, on every rank; around a rank's block
   double bytes = 0.0;
   for (const dem::Population& population : c.grains) {
-    const bool uniform = population.placement.pattern == dem::PlacementPattern::uniform;
-    double each = uniform && population.placement.positions.empty() ? 0.0 : random_sphere;
-    if (!population.placement.positions.empty()) each = sphere;
-    if (!population.file.empty()) each = row_of_file;
-    bytes += each * static_cast<double>(population.row_count());
+    if (population.from_file()) continue;
+    const auto rows = static_cast<double>(population.row_count());
+    if (!population.placement.positions.empty())
+      bytes += position * rows;
+    else if (population.placement.pattern != dem::PlacementPattern::uniform)
+      bytes += random_sphere * rows / ranks;
   }
   return bytes;
+}
+double bytes_of_bed_rows(const Case& c, int ranks) {
+  double rows = 0.0;
+  for (const dem::Population& population : c.grains) rows += static_cast<double>(population.figures.rows);
+  return rows / ranks * sizeof(BedGrain);
 }
 double bytes_of_links(const Case& c) { return link_count(c) * link_bytes; }
 

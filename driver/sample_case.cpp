@@ -1,10 +1,12 @@
 #include "driver/sample_case.hpp"
 
 #include "core/bed.hpp"
+#include "dem/bed_rows.hpp"
 #include "driver/bed_flow.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace thalweg::driver {
 
@@ -26,17 +28,23 @@ double length_of(const Case& c) {
   return std::min(c.domain.size.x(), std::round(length / c.domain.spacing) * c.domain.spacing);
 }
 
-// Diameters of all grains (m), one in `stride`.
+// Diameters of all grains (m), one in `stride`; those of a bed file from small to large.
 std::vector<double> some_diameters(const Case& c, double stride) {
   std::vector<double> diameters;
   double next = 0.5 * stride, number = 0.0;
-  for (const dem::Population& population : c.grains)
-    for (std::int64_t grain = 0; grain < population.count; ++grain, ++number)
+  const auto add = [&](std::int64_t count, const auto& diameter_of) {
+    for (std::int64_t grain = 0; grain < count; ++grain, ++number)
       if (number >= next) {
-        diameters.push_back(population.shape ? population.diameter
-                                             : population.body_diameter_of(static_cast<std::size_t>(grain)));
+        diameters.push_back(diameter_of(static_cast<std::size_t>(grain)));
         next += stride;
       }
+  };
+  for (const dem::Population& population : c.grains) {
+    if (!population.from_file())
+      add(population.count, [&](std::size_t grain) { return population.diameter_of(grain); });
+    for (const dem::SizeCount& size : population.figures.sizes)
+      add(size.count, [&](std::size_t) { return size.diameter; });
+  }
   if (diameters.empty()) diameters.push_back(c.grains.front().diameter);
   return diameters;
 }
@@ -63,21 +71,21 @@ std::vector<BedGrain> bed_of(const std::vector<double>& diameters, double densit
 
 dem::Population grains_of(const Case& c, const Vec3& size, double share) {
   const dem::MeanGrain mean = mean_grain(c);
+  std::vector<double> diameters = some_diameters(c, 1.0 / share);
   dem::Population grains;
-  grains.diameters = some_diameters(c, 1.0 / share);
   grains.density = mean.mass / mean.volume;
   grains.fixed = std::all_of(c.grains.begin(), c.grains.end(), [](const auto& g) { return g.held(); });
   grains.thickness = c.disks ? c.disks->thickness : 0.0;
   if (settled_height(c) > 0.0) {
     grains.placement.file = "a sample";
-    grains.file = bed_of(grains.diameters, grains.density, c.disks.has_value(), size);
-    grains.diameters.resize(grains.file.size());
-    grains.body_diameters = grains.diameters;
-  } else {
-    grains.placement.pattern = dem::PlacementPattern::dense;
+    take_rows(grains, bed_of(diameters, grains.density, c.disks.has_value(), size), {size, periodic_axes(c.domain)},
+              {});
+    return grains;
   }
-  grains.count = static_cast<std::int64_t>(grains.diameters.size());
-  grains.diameter = dem::median_by_volume(grains.diameters);
+  grains.placement.pattern = dem::PlacementPattern::dense;
+  grains.count = static_cast<std::int64_t>(diameters.size());
+  grains.diameter = dem::median_by_volume(dem::counted(diameters));
+  grains.diameters = std::move(diameters);
   return grains;
 }
 

@@ -94,7 +94,7 @@ double prescribed_speed(const Case& c) {
       speed = std::max(
           speed, grains.motion->velocity.norm() + oscillation_speed(grains.motion->oscillation) +
                      (grains.motion->rotation ? std::abs(grains.motion->rotation->angular_velocity) * across : 0.0));
-    for (const BedGrain& grain : grains.file) speed = std::max(speed, grain.velocity.norm());
+    speed = std::max(speed, grains.figures.fastest);
     largest = std::max(largest, speed);
   }
   for (const coupling::FaceKeys& face : c.domain.faces)
@@ -108,7 +108,7 @@ double prescribed_speed(const Case& c) {
 double speed_of_overlaps(const Case& c) {
   double speed = 0.0;
   for (const dem::Population& grains : c.grains)
-    if (!grains.file.empty())
+    if (grains.from_file())
       speed = std::max(speed, grains.placement.largest_overlap.value_or(dem::PlacementKeys::bed_overlap) *
                                   grains.largest_diameter() * std::numbers::pi / shortest_contact(c));
   return speed;
@@ -197,7 +197,7 @@ void add_grain_rules(const Case& c, std::vector<WatchRule>& rules) {
                    has_fluid(c) ? "fluid.time_step" : "run.time_step")});
   double allowed = 0.0;
   for (const dem::Population& grains : c.grains)
-    if (!grains.file.empty())
+    if (grains.from_file())
       allowed = std::max(allowed, grains.placement.largest_overlap.value_or(dem::PlacementKeys::bed_overlap));
   rules.push_back({"largest_overlap", Side::above,
                    always(std::max(suspicious_overlap, 2.0 * allowed), std::max(impossible_overlap, 2.0 * allowed)),

@@ -75,11 +75,21 @@ private:
   RowRange share_;
 };
 
+// Of a few numbers, on every rank.
 template <typename Number>
-std::vector<Number> column(Hdf5Reader& file, const std::string& path, std::uint64_t rows, std::uint64_t width = 1) {
-  std::vector<Number> values(rows * width);
-  file.read(path, values, box_of(RowRange(static_cast<std::int64_t>(rows), 1, 0), width));
-  return values;
+std::vector<Number> read_all(Hdf5Reader& file, const std::string& path, std::int64_t count) {
+  return read_column<Number>(file, path, RowRange(count, 1, 0));
+}
+
+void read_header(Hdf5Reader& file, Bed& bed) {
+  bed.time = file.real_attribute("bed/time");
+  bed.disk_thickness = file.real_attribute("bed/disk_thickness");
+  const std::vector<double> box = read_all<double>(file, "bed/box", 3);
+  const std::vector<std::int64_t> periodic = read_all<std::int64_t>(file, "bed/periodic", 3);
+  for (int axis = 0; axis < 3; ++axis) {
+    bed.box[axis] = box[static_cast<std::size_t>(axis)];
+    bed.periodic[static_cast<std::size_t>(axis)] = periodic[static_cast<std::size_t>(axis)] != 0;
+  }
 }
 
 }  // namespace
@@ -109,29 +119,49 @@ void write_bed_file(MPI_Comm communicator, const std::filesystem::path& path, co
   writer.archive().close();
 }
 
-Bed read_bed_file(const std::filesystem::path& path) {
-  Hdf5Reader file(path);
+RowRange share_of_bed(Hdf5Reader& file, const std::string& clumps, std::int64_t rows, const ReadingRanks& ranks) {
+  RowRange share = ranks.share_of(rows);
+  if (ranks.alone() || !file.has(clumps)) return share;
+  RowRange before = share;  // the last row of the rank before
+  before.first = std::max<std::int64_t>(0, share.first - 1);
+  before.last = share.first;
+  std::vector<std::int64_t> clump = read_column<std::int64_t>(file, clumps, before);
+  const std::vector<std::int64_t> own = read_column<std::int64_t>(file, clumps, share);
+  if (clump.empty()) clump.push_back(-1);
+  clump.insert(clump.end(), own.begin(), own.end());
+  const auto goes_on = [&clump, start = share.first](std::int64_t row) {
+    const auto n = static_cast<std::size_t>(row - start);
+    return clump[n + 1] >= 0 && clump[n + 1] == clump[n];
+  };
+  while (share.first < share.last && goes_on(share.first)) ++share.first;
+  // The rows up to the next rank's first; of a rank without a beginning, none.
+  std::vector<std::int64_t> begins(1, share.size() > 0 ? share.first : rows);
+  begins = ranks.gathered(std::move(begins));
+  begins.push_back(rows);
+  const auto mine = begins.begin() + ranks.number();
+  share.first = *mine;
+  share.last = share.first == rows ? rows : *std::min_element(mine + 1, begins.end());
+  return share;
+}
+
+Bed read_bed_file(const std::filesystem::path& path, const ReadingRanks& ranks) {
+  Hdf5Reader file(ranks.communicator(), path);
   if (!file.has("bed/format") || file.text_attribute("bed/format") != format)
     throw InputError(fmt::format("{} is an HDF5 file but not a bed file of this program.", path.string()));
   Bed bed;
-  bed.time = file.real_attribute("bed/time");
-  bed.disk_thickness = file.real_attribute("bed/disk_thickness");
-  const std::vector<double> box = column<double>(file, "bed/box", 3);
-  const std::vector<std::int64_t> periodic = column<std::int64_t>(file, "bed/periodic", 3);
-  for (int axis = 0; axis < 3; ++axis) {
-    bed.box[axis] = box[static_cast<std::size_t>(axis)];
-    bed.periodic[static_cast<std::size_t>(axis)] = periodic[static_cast<std::size_t>(axis)] != 0;
-  }
-  const std::uint64_t count = file.shape("grains/id").at(0);
-  const auto id = column<std::int64_t>(file, "grains/id", count);
-  const auto radius = column<double>(file, "grains/radius", count);
-  const auto density = column<double>(file, "grains/density", count);
-  const auto position = column<double>(file, "grains/position", count, 3);
-  const auto velocity = column<double>(file, "grains/velocity", count, 3);
-  const auto spin = column<double>(file, "grains/angular_velocity", count, 3);
-  const auto clump = file.has("grains/clump") ? column<std::int64_t>(file, "grains/clump", count)
-                                              : std::vector<std::int64_t>(count, -1);
-  for (std::size_t n = 0; n < count; ++n)
+  read_header(file, bed);
+  const auto rows = static_cast<std::int64_t>(file.shape("grains/id").at(0));
+  const RowRange share = share_of_bed(file, "grains/clump", rows, ranks);
+  const auto id = read_column<std::int64_t>(file, "grains/id", share);
+  const auto radius = read_column<double>(file, "grains/radius", share);
+  const auto density = read_column<double>(file, "grains/density", share);
+  const auto position = read_column<double>(file, "grains/position", share, 3);
+  const auto velocity = read_column<double>(file, "grains/velocity", share, 3);
+  const auto spin = read_column<double>(file, "grains/angular_velocity", share, 3);
+  const auto clump = file.has("grains/clump") ? read_column<std::int64_t>(file, "grains/clump", share)
+                                              : std::vector<std::int64_t>(id.size(), -1);
+  bed.grains.reserve(id.size());
+  for (std::size_t n = 0; n < id.size(); ++n)
     bed.grains.push_back(
         {id[n], radius[n], density[n], Vec3(&position[3 * n]), Vec3(&velocity[3 * n]), Vec3(&spin[3 * n]), clump[n]});
   return bed;

@@ -8,11 +8,17 @@
 #pragma once
 
 #include "core/bed.hpp"
+#include "core/reading_ranks.hpp"
+#include "core/row_range.hpp"
 #include "core/snapshot.hpp"
+#include "io/hdf5_archive.hpp"
 
 #include <mpi.h>
 
+#include <cstdint>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace thalweg::io {
 
@@ -20,7 +26,21 @@ namespace thalweg::io {
 // rank.
 void write_bed_file(MPI_Comm communicator, const std::filesystem::path& path, const Snapshot& snapshot);
 
-// The whole bed, read by every rank that asks. Throws InputError where the file is missing or not a bed file.
-Bed read_bed_file(const std::filesystem::path& path);
+// The bed, with this rank's share of its grains: the ranks read it together. Throws InputError, on every rank, where
+// the file is missing, damaged or not a bed file. Collective.
+Bed read_bed_file(const std::filesystem::path& path, const ReadingRanks& ranks = {});
+
+// An even share of the rows of a bed, moved so that one rank has all members of a clump. clumps: the dataset with the
+// clump of every row; where there is none, nothing is moved. file: opened by the ranks together. Collective.
+RowRange share_of_bed(Hdf5Reader& file, const std::string& clumps, std::int64_t rows, const ReadingRanks& ranks);
+
+// What a share has of a dataset. Collective.
+template <typename Number>
+std::vector<Number> read_column(Hdf5Reader& file, const std::string& path, const RowRange& share,
+                                std::uint64_t width = 1) {
+  std::vector<Number> values(static_cast<std::size_t>(share.size()) * width);
+  file.read(path, values, width == 1 ? share.box() : share.box(width));
+  return values;
+}
 
 }  // namespace thalweg::io

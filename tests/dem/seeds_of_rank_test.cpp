@@ -47,6 +47,10 @@ GrainSeeds of_this_rank(const std::vector<Population>& populations) {
   return grain_seeds(populations, PlacingRanks(decomposition.box(), MPI_COMM_WORLD, decomposition, reach));
 }
 
+GrainSeeds of_one_process(const std::vector<Population>& populations) {
+  return grain_seeds(populations, PlacingRanks(shared_box().box()));
+}
+
 bool same(const GrainSeed& a, const GrainSeed& b) {
   return a.id == b.id && a.position == b.position && a.velocity == b.velocity && a.radius == b.radius &&
          a.density == b.density && a.motion == b.motion && a.assembly == b.assembly && a.material == b.material;
@@ -56,7 +60,7 @@ bool same(const GrainSeed& a, const GrainSeed& b) {
 void expect_share_of_all(const std::vector<Population>& populations, std::size_t count) {
   const Decomposition decomposition = shared_box();
   const PeriodicBox box = decomposition.box();
-  const GrainSeeds all = grain_seeds(populations, box);
+  const GrainSeeds all = of_one_process(populations);
   ASSERT_TRUE(all.whole);
   ASSERT_EQ(all.grains.size(), count);
   const GrainSeeds mine = of_this_rank(populations);
@@ -116,7 +120,7 @@ GrainParameters usual() {
 TEST(SeedsOfRank, BeginTheSameRun) {
   const std::vector<Population> populations = four_kinds();
   const Decomposition decomposition = shared_box();
-  GrainDynamics whole(decomposition, MPI_COMM_WORLD, usual(), grain_seeds(populations, decomposition.box()));
+  GrainDynamics whole(decomposition, MPI_COMM_WORLD, usual(), of_one_process(populations));
   GrainDynamics parts(decomposition, MPI_COMM_WORLD, usual(), of_this_rank(populations));
   EXPECT_EQ(parts.global_count(), 156);
   EXPECT_EQ(parts.body_count(), whole.body_count());

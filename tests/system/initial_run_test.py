@@ -184,9 +184,9 @@ run: {until: 0.01}
         for key, value, words in (("diameter", "4e-3", ["Grain 0", "0.005 m", "0.004 m", "grains.0", "bed.h5"]),
                                   ("density", "2000", ["mass"]), ("fixed", "true", ["motion"]),
                                   ("contact", "{friction: 0.1}", ["material"])):
-            for command in ("check", "run"):
+            for command, ranks in (("check", 0), ("run", 0), ("run", 2)):
                 self.assert_refused(command, self.case, "--set", "initial.from=first", "--set", f"grains.0.{key}={value}",
-                                    words=["initial.from", *words])
+                                    words=["initial.from", *words], ranks=ranks)
         # The bed file describes them; a placement that would not fit is not used.
         for placement in ("{file: first/bed.h5}", "{pattern: uniform, region: {lower: [0, 0, 0], upper: [0.0128, 0.0128, 0.007]}}"):
             case = self.DRY.replace("placement: {pattern: uniform, region: {lower: [0, 0, 0], upper: [0.0128, 0.0128, 0.012]}}",
@@ -195,7 +195,7 @@ run: {until: 0.01}
                 case = case.replace("count: 6, diameter: 5.0e-3, density: 2550, ", "")
             self.case.write_text(case)
             self.run_well("run", self.case, "--set", "initial.from=first", "--until", "0.001", "--out", "then",
-                          "--overwrite")
+                          "--overwrite", ranks=2)
             self.assertEqual(self.summary("then")["reference_diameter"], 5e-3)
 
     def test_what_does_not_fit_is_refused(self):

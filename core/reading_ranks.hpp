@@ -1,0 +1,89 @@
+// The processes that read and check the rows of a file together, each its share of them: the ranks of a communicator,
+// or one alone, perhaps without MPI.
+#pragma once
+
+#include "core/mpi_session.hpp"
+#include "core/on_all_ranks.hpp"
+#include "core/row_range.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace thalweg {
+
+// Everything but alone(), count() and number() is collective.
+class ReadingRanks {
+public:
+  ReadingRanks() = default;                                                      // this process alone
+  explicit ReadingRanks(MPI_Comm communicator) : communicator_(communicator) {}  // MPI_COMM_NULL: the same
+
+  bool alone() const { return communicator_ == MPI_COMM_NULL; }
+  int count() const { return alone() ? 1 : size_of(communicator_); }
+  int number() const { return alone() ? 0 : rank_of(communicator_); }
+  MPI_Comm communicator() const { return communicator_; }
+
+  // Of rows numbered from 0 on, an even share; and those that this rank holds after those of lower ranks.
+  RowRange share_of(std::int64_t rows) const { return {rows, count(), number()}; }
+  RowRange range_of(std::int64_t held) const {
+    return alone() ? RowRange(held, 1, 0) : RowRange::of_rows(held, communicator_);
+  }
+
+  double largest(double value) const { return alone() ? value : max_over_ranks(communicator_, value); }
+  double smallest(double value) const { return -largest(-value); }
+  bool any(bool value) const { return alone() ? value : any_rank(communicator_, value); }
+
+  // As on_all_ranks(); of a process alone the error stays what it is.
+  void on_all(const std::function<void()>& work) const { alone() ? work() : on_all_ranks(communicator_, work); }
+
+  // The rows of all ranks, one rank's after the other's, on every rank. Rows are trivially copyable.
+  template <typename Row>
+  std::vector<Row> gathered(std::vector<Row> mine) const;
+
+  // rows[i] to rank home[i] (mpi_session.hpp).
+  template <typename Row>
+  std::vector<Row> exchanged(std::vector<Row> rows, const std::vector<int>& home) const {
+    return alone() ? std::move(rows) : exchange_rows(communicator_, std::move(rows), home);
+  }
+
+  // What add(state) makes of it on one rank after the other, from rank 0 on; the last, on every rank. For sums in the
+  // order of the rows, with the bits that one process alone would find: it takes as long as that one would.
+  template <typename State>
+  State passed_on(State state, const std::function<void(State&)>& add) const;
+
+private:
+  MPI_Comm communicator_ = MPI_COMM_NULL;
+};
+
+template <typename Row>
+std::vector<Row> ReadingRanks::gathered(std::vector<Row> mine) const {
+  static_assert(std::is_trivially_copyable_v<Row>);
+  if (alone()) return mine;
+  std::vector<int> counts(static_cast<std::size_t>(count())), starts(counts.size(), 0);
+  const auto held = static_cast<int>(mine.size());
+  MPI_Allgather(&held, 1, MPI_INT, counts.data(), 1, MPI_INT, communicator_);
+  for (std::size_t rank = 1; rank < counts.size(); ++rank) starts[rank] = starts[rank - 1] + counts[rank - 1];
+  std::vector<Row> all(static_cast<std::size_t>(starts.back() + counts.back()));
+  MPI_Datatype row = MPI_DATATYPE_NULL;
+  MPI_Type_contiguous(sizeof(Row), MPI_BYTE, &row);
+  MPI_Type_commit(&row);
+  MPI_Allgatherv(mine.data(), held, row, all.data(), counts.data(), starts.data(), row, communicator_);
+  MPI_Type_free(&row);
+  return all;
+}
+
+template <typename State>
+State ReadingRanks::passed_on(State state, const std::function<void(State&)>& add) const {
+  static_assert(std::is_trivially_copyable_v<State>);
+  constexpr int tag = 0;
+  const int me = number(), last = count() - 1;
+  if (me > 0) MPI_Recv(&state, sizeof(State), MPI_BYTE, me - 1, tag, communicator_, MPI_STATUS_IGNORE);
+  add(state);
+  if (me < last) MPI_Send(&state, sizeof(State), MPI_BYTE, me + 1, tag, communicator_);
+  if (!alone()) MPI_Bcast(&state, sizeof(State), MPI_BYTE, last, communicator_);
+  return state;
+}
+
+}  // namespace thalweg

@@ -1,0 +1,19 @@
+// Overlaps between rows of a bed file, each of which one of several ranks has.
+#pragma once
+
+#include "core/bed.hpp"
+#include "core/periodic_box.hpp"
+#include "core/reading_ranks.hpp"
+
+#include <span>
+
+namespace thalweg::dem {
+
+// rows: this rank's, with their numbers as id; inside the box. Throws InputError, on every rank, for the pair of lowest
+// numbers that overlaps by more than so many diameters of the smaller; members of one clump may. largest_radius: m, of
+// the rows of all ranks. A rank compares the rows in a slab of the bed, at least as wide as a grain, with those within
+// reach of it. Collective.
+void refuse_overlaps(std::span<const BedGrain> rows, const PeriodicBox& box, double allowed_overlap,
+                     double largest_radius, const ReadingRanks& ranks);
+
+}  // namespace thalweg::dem
