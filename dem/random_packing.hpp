@@ -37,11 +37,19 @@ struct PlacedGrain {
 // Collective. Throws InputError on every rank where the grains do not fit.
 //
 // Each grain is put anywhere, again and again until it is clear of all others and of the obstacles (random sequential
-// addition). All try at once, and of two that are in each other's way the one with the lower number goes first. Large
-// grains are placed before those of less than 0.95 of their diameter. Beyond about a third of the volume that gets
-// hard.
+// addition). Beyond about a third of the volume that gets hard. Up to 100,000 spheres are placed one by one, more
+// together.
 std::vector<PlacedGrain> random_packing(const PlacingRanks& ranks, const GrainsToPlace& grains,
                                         std::span<const Obstacle> obstacles);
+
+// Every rank places all grains, large ones first, among all obstacles.
+std::vector<PlacedGrain> placed_one_by_one(const PlacingRanks& ranks, const GrainsToPlace& grains,
+                                           std::span<const Obstacle> obstacles);
+
+// Each rank decides about the places in its block. All grains try at once, those of less than 0.95 of a diameter after
+// the larger ones; of two that are in each other's way the one with the lower number goes first.
+std::vector<PlacedGrain> placed_together(const PlacingRanks& ranks, const GrainsToPlace& grains,
+                                         std::span<const Obstacle> obstacles);
 
 // The same for beds and suspensions that fill up to 0.6 of the volume: grains begin anywhere and push each other apart,
 // by overlapping shares of the way, until none overlap (after W. S. Jodrey and E. M. Tory, Phys. Rev. A 32 (1985)

@@ -49,7 +49,7 @@ Cloud cloud(const Case& c) {
   std::vector<double> radii;
   for (int i = 0; i < c.grains; ++i)
     radii.push_back(is_clump(i) ? shape_for(i)->bounding_radius : 1.6e-3 + 0.9e-3 * uniform_random(1, i, 0));
-  const std::vector<Vec3> places = random_packing(box, whole(box), radii, 1e-5, 32);
+  const std::vector<Vec3> places = random_packing(box, whole(box), radii, 1e-5, 3);
   Cloud all;
   GlobalId id = 0;
   for (int i = 0; i < c.grains; ++i) {

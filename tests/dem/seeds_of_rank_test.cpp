@@ -3,6 +3,7 @@
 #include "core/mpi_session.hpp"
 #include "dem/population_bed.hpp"
 #include "dem/population_seeds.hpp"
+#include "dem/random_packing.hpp"
 #include "tests/dem/grain_cases.hpp"
 
 #include <gtest/gtest.h>
@@ -93,6 +94,44 @@ TEST(SeedsOfRank, DenselyPackedAreItsShareOfAllSeeds) {
   Population dense = glass(550, PlacementPattern::dense, 0.0, 0.04);
   for (int grain = 0; grain < 550; ++grain) dense.diameters.push_back(grain % 2 == 0 ? 5e-3 : 4.5e-3);
   expect_share_of_all({glass(40, PlacementPattern::random, 0.03, 0.06), dense}, 590);
+}
+
+// Grains too many to be placed by every rank alone, here few: two sizes among obstacles, a quarter of the volume.
+TEST(SeedsOfRank, PlacedTogetherAreThoseOfOneRank) {
+  const Decomposition decomposition = shared_box();
+  const PeriodicBox box = decomposition.box();
+  const auto radius = [](std::int64_t number) { return number % 3 == 0 ? 2.5e-3 : 1.8e-3; };
+  const GrainsToPlace grains{whole(box), 720, radius, 2.5e-3, 0.0, 7};
+  const std::vector<Obstacle> obstacles{{{Vec3(0.03, 0.02, 0.03), 2.4e-3}, 1}, {{Vec3(0.0, 0.0, 0.05), 1e-3}, 2}};
+  const PlacingRanks together(box, MPI_COMM_WORLD, decomposition, reach);
+  std::vector<Obstacle> known;
+  for (const Obstacle& obstacle : obstacles)
+    if (together.knows(obstacle.sphere.position)) known.push_back(obstacle);
+  const std::vector<PlacedGrain> all = placed_together(PlacingRanks(box), grains, obstacles),
+                                 mine = placed_together(together, grains, known);
+  ASSERT_EQ(all.size(), 720u);
+  auto here = mine.begin();
+  for (const PlacedGrain& grain : all) {
+    for (const Obstacle& obstacle : obstacles)
+      EXPECT_GE(box.difference(grain.centre, obstacle.sphere.position).norm(),
+                radius(grain.number) + obstacle.sphere.radius);
+    for (std::int64_t other = 0; other < grain.number; ++other)
+      EXPECT_GE(box.difference(grain.centre, all[static_cast<std::size_t>(other)].centre).norm(),
+                radius(grain.number) + radius(other));
+    EXPECT_TRUE(grain.centre.z() >= radius(grain.number) && grain.centre.z() <= 0.06 - radius(grain.number));
+    if (!together.knows(grain.centre)) continue;
+    ASSERT_TRUE(here != mine.end());
+    EXPECT_TRUE(here->number == grain.number && here->centre == grain.centre) << grain.number;
+    ++here;
+  }
+  EXPECT_TRUE(here == mine.end());
+}
+
+TEST(SeedsOfRank, TooManyPlacedTogetherAreRefusedOnAllRanks) {
+  const Decomposition decomposition = shared_box();
+  const GrainsToPlace grains{whole(decomposition.box()), 1100, [](std::int64_t) { return 2.5e-3; }, 2.5e-3, 0.0, 7};
+  const PlacingRanks ranks(decomposition.box(), MPI_COMM_WORLD, decomposition, reach);
+  EXPECT_THROW(placed_together(ranks, grains, {}), InputError);
 }
 
 // All ranks say how many did.

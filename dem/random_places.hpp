@@ -1,0 +1,22 @@
+// The places that grains of a random packing try, one after the other, and what is said where they do not fit.
+#pragma once
+
+#include "core/error.hpp"
+#include "dem/random_packing.hpp"
+
+#include <cstdint>
+
+namespace thalweg::dem {
+
+inline constexpr unsigned most_attempts_at_random = 5000;  // of one grain
+
+// m, wrapped; numbered from 0 on. The region must have room for the grain.
+Vec3 random_place(const PeriodicBox& box, const GrainsToPlace& grains, std::int64_t number, unsigned attempt);
+
+// Whether the largest grain fits between the faces of the region.
+bool has_room_at_random(const PeriodicBox& box, const GrainsToPlace& grains);
+
+// placed: grains that fitted.
+InputError too_many_at_random(const GrainsToPlace& grains, std::int64_t placed);
+
+}  // namespace thalweg::dem
