@@ -13,6 +13,7 @@ void add_clumps(const Population& population, PopulationRow row, const RowRange&
   const auto shape = clump_shape_of(population);
   row.mass = population.density * shape->volume;
   row.contact_mass = population.clumps.least_contact_mass;
+  row.motion = member_of(row.motion);
   for (std::int64_t n = share.first; n < share.last; ++n) {
     row.radius = shape->members[static_cast<std::size_t>(n) % shape->members.size()].radius;
     rows.push_back(row);
@@ -20,10 +21,13 @@ void add_clumps(const Population& population, PopulationRow row, const RowRange&
 }
 
 void add_from_file(const Population& population, PopulationRow row, std::vector<PopulationRow>& rows) {
+  const Motion of_grains = row.motion, of_members = member_of(row.motion);
   for (const BedGrain& grain : population.file) {
+    const bool member = grain.clump >= 0;
     row.radius = grain.radius;
-    row.mass = grain.clump >= 0 ? 0.0 : grain.density * grain_volume(row.radius, population.thickness);
-    row.contact_mass = grain.clump >= 0 ? population.clumps.least_contact_mass : row.mass;
+    row.mass = member ? 0.0 : grain.density * grain_volume(row.radius, population.thickness);
+    row.contact_mass = member ? population.clumps.least_contact_mass : row.mass;
+    row.motion = member ? of_members : of_grains;
     rows.push_back(row);
   }
 }

@@ -97,6 +97,17 @@ analysis: {transport_rate: {}}
         first, second = self.last_checkpoint("run"), self.last_checkpoint("two")
         self.assertEqual(first.read_bytes(), second.read_bytes())
 
+    def test_clumps_of_another_run_go_on(self):
+        """From a shape and from a bed file."""
+        for name, given in (("shape", ()), ("file", ("--set", self.FILE.replace("run/", "shape_more/")))):
+            first, more, begun = (f"{name}_{what}" for what in ("first", "more", "begun"))
+            self.run_well("run", self.case, *given, "--until", "0.05", "--out", first)
+            self.run_well("run", self.case, *given, "--restart", first, "--until", "0.06", "--out", more)
+            self.run_well("run", self.case, *given, "--set", f"initial={{from: {first}, fields: [grains]}}", "--until", "0.01",
+                          "--out", begun, ranks=2)
+            for column in ("position", "velocity", "angular_velocity"):
+                numpy.testing.assert_array_equal(self.bed(begun)[column], self.bed(more)[column], f"{name}: {column}")
+
     def test_an_orientation_is_a_turn_about_an_axis(self):
         self.run_well("run", self.case, "--set", "run.until=1.0e-9", "--set", "run.time_step=1.0e-9", "--set",
                       "gravity={magnitude: 0.0}", "--set", "grains.0.orientation={axis: [0, 0, 2], angle: 0.5}")
