@@ -65,7 +65,7 @@ def row_of(folder, shields, rate, steady, height):
 def draw_runs(axes, rows):
     for n, row in enumerate(rows):
         shields, rate, error = (float(row[name]) for name in ("Shields number [1]", "q_star [1]", "error [1]"))
-        axes.errorbar(shields, max(rate, SMALLEST), error, fmt="o", color=f"C{n % 10}", ms=7, capsize=3,
+        axes.errorbar(shields, max(rate, SMALLEST), error, fmt="osD^v"[n // 10 % 5], color=f"C{n % 10}", ms=7, capsize=3,
                       mfc=f"C{n % 10}" if row["steady"] == "yes" else "none", label=row["run"])
 
 
@@ -90,12 +90,12 @@ def main():
     for folder, (shields, rate, steady, height) in zip(arguments.runs, found):
         print(f"| {folder.name} | {shields:.4f} | {height:.2f} | {rate.mean:.4f} | {rate.error:.4f} | {rate.deviation:.4f} | "
               f"{rate.independent:.0f} | {'yes' if steady else 'no'} |")
-    figure, axes = plt.subplots(figsize=(7, 4.8), layout="constrained")
+    figure, axes = plt.subplots(figsize=(9, 4.8), layout="constrained")
     draw_literature(axes)
     draw_paper(axes)
     draw_runs(axes, merged_rows(arguments.table, [row_of(folder, *one) for folder, one in zip(arguments.runs, found)]))
     axes.set(xlabel="Shields number", ylabel="q*", xlim=(0.015, 0.15), ylim=(SMALLEST, 1.0))
-    axes.legend(fontsize=7, loc="lower right")
+    axes.legend(fontsize=7, loc="upper left", bbox_to_anchor=(1.01, 1.0))
     axes.grid(color="#e5e8ea", linewidth=0.8)
     figure.savefig(arguments.out, dpi=130)
     print(arguments.out)
