@@ -53,7 +53,7 @@ std::vector<Body> take_bodies(Population& population, std::vector<BedGrain> rows
   return bodies;
 }
 
-std::vector<SizeCount> sizes_of(const std::vector<Body>& bodies, const ReadingRanks& ranks) {
+std::vector<SizeCount> sizes_of(const std::vector<Body>& bodies, const Ranks& ranks) {
   std::vector<double> diameters;
   diameters.reserve(bodies.size());
   for (const Body& body : bodies) diameters.push_back(body.diameter);
@@ -61,7 +61,7 @@ std::vector<SizeCount> sizes_of(const std::vector<Body>& bodies, const ReadingRa
 }
 
 // Extremes of all rows.
-void take_extremes(const Population& population, const ReadingRanks& ranks, FileFigures& figures) {
+void take_extremes(const Population& population, const Ranks& ranks, FileFigures& figures) {
   double smallest = std::numeric_limits<double>::infinity(), largest = 0.0, fastest = 0.0;
   double lightest = std::numeric_limits<double>::max();
   for (const BedGrain& row : population.file) {
@@ -83,7 +83,7 @@ struct BodySums {
   ClumpFigures clumps;
 };
 
-BodySums sums_of(const std::vector<Body>& bodies, const ReadingRanks& ranks) {
+BodySums sums_of(const std::vector<Body>& bodies, const Ranks& ranks) {
   return ranks.passed_on<BodySums>({}, [&](BodySums& sums) {
     for (const Body& body : bodies) {
       ++sums.count;
@@ -95,7 +95,7 @@ BodySums sums_of(const std::vector<Body>& bodies, const ReadingRanks& ranks) {
 }
 
 // The sums that need the density of the population.
-void take_sums(const Population& population, const std::vector<Body>& bodies, const ReadingRanks& ranks,
+void take_sums(const Population& population, const std::vector<Body>& bodies, const Ranks& ranks,
                FileFigures& figures) {
   figures.sums = ranks.passed_on<FileFigures::Sums>({}, [&](FileFigures::Sums& sums) {
     for (const Body& body : bodies) {
@@ -113,7 +113,7 @@ void take_sums(const Population& population, const std::vector<Body>& bodies, co
 
 }  // namespace
 
-void take_rows(Population& population, std::vector<BedGrain> rows, const PeriodicBox& box, const ReadingRanks& ranks) {
+void take_rows(Population& population, std::vector<BedGrain> rows, const PeriodicBox& box, const Ranks& ranks) {
   std::vector<Body> bodies;
   ranks.on_all([&] { bodies = take_bodies(population, std::move(rows), box); });
   FileFigures& figures = population.figures;

@@ -182,7 +182,7 @@ private:
     // Of grains within this distance (m) of a block. Collective.
     Copies(const PlacingRanks& ranks, const std::vector<Body>& own, double distance) : ranks_(&ranks) {
       if (ranks.alone()) return;
-      const int me = rank_of(ranks.communicator());
+      const int me = ranks.number();
       for (std::size_t n = 0; n < own.size(); ++n)
         for (const int rank : ranks.decomposition().ranks_reached(Vec3(own[n].position), distance))
           if (rank != me) {
@@ -206,7 +206,7 @@ private:
     std::vector<Body> exchanged(const std::vector<Body>& bodies) const {
       std::vector<Body> rows;
       for (const std::size_t n : sent_) rows.push_back(bodies[n]);
-      return exchange_rows(ranks_->communicator(), std::move(rows), homes_);
+      return ranks_->exchanged(std::move(rows), homes_);
     }
 
     const PlacingRanks* ranks_ = nullptr;

@@ -43,7 +43,7 @@ std::vector<BedGrain> rows_known(const Population& population, const PlacingRank
     for (const BedGrain& row : body) sent.push_back(packed(row, centre));
   }
   std::vector<BedGrain> rows;
-  for (const FileRow& row : population.motion ? ranks.to_all(sent) : ranks.to_knowing(sent))
+  for (const FileRow& row : population.motion ? ranks.gathered(sent) : ranks.to_knowing(sent))
     rows.push_back(unpacked(row));
   return rows;
 }

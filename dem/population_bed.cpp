@@ -79,7 +79,7 @@ void check_row(const BedGrain& row, const GrainSeed& first, const PeriodicBox& b
 }
 
 // The first row of all, as far as disks have to be like it.
-GrainSeed first_row(const Population& population, const ReadingRanks& ranks) {
+GrainSeed first_row(const Population& population, const Ranks& ranks) {
   std::vector<double> heights;
   if (!population.file.empty()) heights.push_back(population.file.front().position.y());
   GrainSeed first;
@@ -89,7 +89,7 @@ GrainSeed first_row(const Population& population, const ReadingRanks& ranks) {
 }
 
 // Numbers the rows as well.
-void check_rows(Population& population, const PeriodicBox& box, const ReadingRanks& ranks) {
+void check_rows(Population& population, const PeriodicBox& box, const Ranks& ranks) {
   const GrainSeed first = first_row(population, ranks);
   ranks.on_all([&] {
     for (const BedGrain& row : population.file) check_row(row, first, box);
@@ -107,7 +107,7 @@ void check_rows(Population& population, const PeriodicBox& box, const ReadingRan
   }
 }
 
-void take_bed(Population& population, Bed bed, const PeriodicBox& box, const ReadingRanks& ranks) {
+void take_bed(Population& population, Bed bed, const PeriodicBox& box, const Ranks& ranks) {
   about_file([&] { take_rows(population, std::move(bed.grains), {bed.box, bed.periodic}, ranks); });
   if (!population.from_file())
     throw KeyError(file_key, "the file has no grain in the region; give a placement.region in m that holds some");
@@ -186,7 +186,7 @@ void take_wanted_volume(Population& population, const PeriodicBox& box, std::opt
 }  // namespace
 
 void complete(Population& population, double disk_thickness, std::optional<Bed> bed, const PeriodicBox& box,
-              std::optional<double> reference_diameter, const ReadingRanks& ranks) {
+              std::optional<double> reference_diameter, const Ranks& ranks) {
   population.thickness = disk_thickness;
   if (bed) take_bed(population, std::move(*bed), box, ranks);
   if (population.solid_fraction || population.fill) take_wanted_volume(population, box, reference_diameter);

@@ -4,7 +4,7 @@
 
 #include "core/bed.hpp"
 #include "core/periodic_box.hpp"
-#include "core/reading_ranks.hpp"
+#include "core/ranks.hpp"
 #include "dem/population.hpp"
 
 #include <optional>
@@ -17,6 +17,6 @@ namespace thalweg::dem {
 // or a fill is deeper than its room, or where the bed was made in a periodic box of another size or of disks of another
 // thickness, or has grains outside the box or overlapping too much. Collective.
 void complete(Population& population, double disk_thickness, std::optional<Bed> bed, const PeriodicBox& box,
-              std::optional<double> reference_diameter, const ReadingRanks& ranks = {});
+              std::optional<double> reference_diameter, const Ranks& ranks = {});
 
 }  // namespace thalweg::dem

@@ -43,7 +43,7 @@ void add_spheres(const Population& population, PopulationRow row, const RowRange
 
 }  // namespace
 
-RowRange share_of_rows(const Population& population, const ReadingRanks& ranks) {
+RowRange share_of_rows(const Population& population, const Ranks& ranks) {
   if (!population.from_file()) return ranks.share_of(population.row_count());
   RowRange share(population.row_count(), 1, 0);
   share.first = population.file.empty() ? 0 : population.file.front().id;

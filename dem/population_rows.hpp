@@ -2,7 +2,7 @@
 // another run must be.
 #pragma once
 
-#include "core/reading_ranks.hpp"
+#include "core/ranks.hpp"
 #include "core/row_range.hpp"
 #include "dem/grain_store.hpp"
 #include "dem/population.hpp"
@@ -23,7 +23,7 @@ struct PopulationRow {
 
 // The rows of a complete population (population_bed.hpp) that a rank compares with those of a state: of a file its
 // share, of others an even one.
-RowRange share_of_rows(const Population& population, const ReadingRanks& ranks = {});
+RowRange share_of_rows(const Population& population, const Ranks& ranks = {});
 
 // Those rows of one of the populations.
 std::vector<PopulationRow> rows_of(std::span<const Population> populations, std::size_t number, const RowRange& share);

@@ -111,7 +111,7 @@ std::vector<PlacedGrain> known_to_all(const PlacingRanks& ranks, std::vector<Pla
   for (const PlacedGrain& grain : known)
     if (ranks.owns(grain.centre)) own.push_back({grain.number, {grain.centre.x(), grain.centre.y(), grain.centre.z()}});
   known.clear();
-  for (const Row& row : ranks.to_all(own)) known.push_back({row.number, Vec3(row.position)});
+  for (const Row& row : ranks.gathered(own)) known.push_back({row.number, Vec3(row.position)});
   std::sort(known.begin(), known.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
   return known;
 }

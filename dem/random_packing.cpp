@@ -58,7 +58,7 @@ std::vector<Obstacle> gathered(const PlacingRanks& ranks, std::span<const Obstac
     if (ranks.owns(at)) own.push_back({obstacle.number, {at.x(), at.y(), at.z()}, obstacle.sphere.radius});
   }
   std::vector<Obstacle> all;
-  for (const Row& row : ranks.to_all(own)) all.push_back({{Vec3(row.position), row.radius}, row.number});
+  for (const Row& row : ranks.gathered(own)) all.push_back({{Vec3(row.position), row.radius}, row.number});
   return all;
 }
 

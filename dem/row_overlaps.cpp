@@ -21,7 +21,7 @@ struct PlacedRow {
 class Slabs {
 public:
   // reach: m, of two centres that touch. Collective.
-  Slabs(std::span<const BedGrain> rows, const PeriodicBox& box, double reach, const ReadingRanks& ranks)
+  Slabs(std::span<const BedGrain> rows, const PeriodicBox& box, double reach, const Ranks& ranks)
       : box_(box), reach_(reach) {
     double longest = -1.0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -78,7 +78,7 @@ GrainSeed seed_of(const PlacedRow& row) {
 
 // Those that may overlap a row in the slab of this rank, and these.
 std::vector<GrainSeed> rows_by_place(std::span<const BedGrain> rows, const PeriodicBox& box, double reach,
-                                     const ReadingRanks& ranks) {
+                                     const Ranks& ranks) {
   const Slabs slabs(rows, box, reach, ranks);
   std::vector<PlacedRow> sent;
   std::vector<int> home;
@@ -97,7 +97,7 @@ std::vector<GrainSeed> rows_by_place(std::span<const BedGrain> rows, const Perio
 }  // namespace
 
 void refuse_overlaps(std::span<const BedGrain> rows, const PeriodicBox& box, double allowed_overlap,
-                     double largest_radius, const ReadingRanks& ranks) {
+                     double largest_radius, const Ranks& ranks) {
   constexpr double rounding = 1e-9;
   using Pair = std::pair<GlobalId, GlobalId>;
   const std::vector<GrainSeed> seeds = rows_by_place(rows, box, (1.0 + rounding) * 2.0 * largest_radius, ranks);

@@ -3,7 +3,7 @@
 
 #include "core/bed.hpp"
 #include "core/periodic_box.hpp"
-#include "core/reading_ranks.hpp"
+#include "core/ranks.hpp"
 
 #include <span>
 
@@ -14,6 +14,6 @@ namespace thalweg::dem {
 // the rows of all ranks. A rank compares the rows in a slab of the bed, at least as wide as a grain, with those within
 // reach of it. Collective.
 void refuse_overlaps(std::span<const BedGrain> rows, const PeriodicBox& box, double allowed_overlap,
-                     double largest_radius, const ReadingRanks& ranks);
+                     double largest_radius, const Ranks& ranks);
 
 }  // namespace thalweg::dem

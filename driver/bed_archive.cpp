@@ -34,7 +34,7 @@ void save_bed(ArchiveWriter& archive, MPI_Comm communicator, const std::string& 
   archive.write(group + "/clump", clump, share.box());
 }
 
-std::optional<Bed> load_bed(io::Hdf5Reader& file, const std::string& group, const ReadingRanks& ranks) {
+std::optional<Bed> load_bed(io::Hdf5Reader& file, const std::string& group, const Ranks& ranks) {
   if (!file.has(group + "/radius")) return std::nullopt;
   const auto rows = static_cast<std::int64_t>(file.shape(group + "/radius").at(0));
   const RowRange share = io::share_of_bed(file, group + "/clump", rows, ranks);
@@ -59,7 +59,7 @@ void save_beds(ArchiveWriter& archive, MPI_Comm communicator, const Case& c) {
 
 KnownBeds beds_of(std::vector<std::filesystem::path> checkpoints) {
   return [paths = std::move(checkpoints)](const Case& c, std::size_t population,
-                                          const ReadingRanks& ranks) -> std::optional<Bed> {
+                                          const Ranks& ranks) -> std::optional<Bed> {
     for (const std::filesystem::path& path : paths) {
       try {
         io::Hdf5Reader file(ranks.communicator(), path);

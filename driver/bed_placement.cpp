@@ -18,7 +18,7 @@ std::filesystem::path absolute_path(const std::string& file, const io::YamlDocum
 }
 
 Bed read_bed(const std::filesystem::path& path, const io::YamlDocument& document, const std::string& key,
-             const ReadingRanks& ranks) {
+             const Ranks& ranks) {
   ranks.on_all([&] {
     if (std::filesystem::is_regular_file(path)) return;
     throw document.error(key, fmt::format("there is no file {}; give the path of a bed file relative to the case file, "
@@ -36,7 +36,7 @@ Bed read_bed(const std::filesystem::path& path, const io::YamlDocument& document
 
 }  // namespace
 
-void fill_in_grains(Case& c, const io::YamlDocument& document, const KnownBeds& known, const ReadingRanks& ranks) {
+void fill_in_grains(Case& c, const io::YamlDocument& document, const KnownBeds& known, const Ranks& ranks) {
   const PeriodicBox box{c.domain.size, periodic_axes(c.domain)};
   for (std::size_t n = 0; n < c.grains.size(); ++n) {
     const std::string key = fmt::format("grains.{}", n);

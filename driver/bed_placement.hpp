@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/bed.hpp"
-#include "core/reading_ranks.hpp"
+#include "core/ranks.hpp"
 #include "driver/case.hpp"
 #include "io/yaml_document.hpp"
 
@@ -14,12 +14,12 @@ namespace thalweg::driver {
 
 // The bed that the population of this number began with, with this rank's share of its rows, where that is known from
 // elsewhere than its file; else none. Collective.
-using KnownBeds = std::function<std::optional<Bed>(const Case&, std::size_t population, const ReadingRanks&)>;
+using KnownBeds = std::function<std::optional<Bed>(const Case&, std::size_t population, const Ranks&)>;
 
 // Takes the bed of every population placed by a file, known already or from this file, and makes its path absolute;
 // draws the sizes of every population with a distribution. Throws InputError, on every rank, with the place in the case
 // file where a bed file is missing or no bed file, was made in a periodic box of another size, or holds grains outside
 // the box or overlapping too much. Collective.
-void fill_in_grains(Case& c, const io::YamlDocument& document, const KnownBeds& known, const ReadingRanks& ranks);
+void fill_in_grains(Case& c, const io::YamlDocument& document, const KnownBeds& known, const Ranks& ranks);
 
 }  // namespace thalweg::driver

@@ -97,7 +97,7 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
     check_column(c, document);
     fill_in_column(c);
   }
-  fill_in_grains(c, document, known, ReadingRanks(communicator));
+  fill_in_grains(c, document, known, Ranks(communicator));
   if (has_fluid(c) && !c.fluid.bulk_relaxation_time) c.fluid.bulk_relaxation_time = bulk_relaxation_time_for(c);
   if (c.coupling.grain_steps_per_fluid_step == coupling::CouplingKeys::as_many_as_needed) {
     if (!has_fluid(c))

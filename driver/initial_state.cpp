@@ -89,7 +89,7 @@ void refuse_other_rows(const Case& c, std::size_t population, RowRange share, st
 
 // Grains stay what they were, whatever the case says of them: then q* and the Shields number of the run, and all that
 // `thalweg check` says, would be those of other grains. Each rank compares its share of the rows.
-void refuse_other_grains(const Case& c, const std::filesystem::path& path, const ReadingRanks& ranks) {
+void refuse_other_grains(const Case& c, const std::filesystem::path& path, const Ranks& ranks) {
   if (std::any_of(c.grains.begin(), c.grains.end(), [](const dem::Population& grains) { return grains.motion; }))
     throw InputError("A case with rigid populations (motion) cannot take over grains; give their placements instead.");
   ranks.on_all([&] {
@@ -111,7 +111,7 @@ void refuse_other_grains(const Case& c, const std::filesystem::path& path, const
 
 }  // namespace
 
-void check_initial_sources(const Case& c, const ReadingRanks& ranks) {
+void check_initial_sources(const Case& c, const Ranks& ranks) {
   for (const InitialField field : {InitialField::grains, InitialField::fluid})
     about_source(c, field, [&](const std::filesystem::path& path) {
       ranks.on_all([&] { refuse_state_without(field, io::Hdf5Reader(path), path); });

@@ -1,7 +1,7 @@
 // The start of a run from the states of other runs (`initial.from`).
 #pragma once
 
-#include "core/reading_ranks.hpp"
+#include "core/ranks.hpp"
 #include "core/system.hpp"
 #include "driver/case.hpp"
 
@@ -14,7 +14,7 @@ namespace thalweg::driver {
 // Throws InputError where a run that the case begins from is missing, or lacks what is to be taken from it: a fluid, or
 // the grains that the case describes, of the same size, mass, motion and material. ranks: those that have read the
 // case together, which all throw. Collective.
-void check_initial_sources(const Case& c, const ReadingRanks& ranks = {});
+void check_initial_sources(const Case& c, const Ranks& ranks = {});
 
 // The state that the grains of a run come from; empty: the case places them. Any process may ask alone.
 std::filesystem::path initial_grains(const Case& c);

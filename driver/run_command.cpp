@@ -244,7 +244,7 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   beginning.changes = changes_since(places, c);
   const Index3 layout = choose_layout(c, size_of(communicator), command.layout);
   const bool restarts = !places.checkpoints.empty();
-  if (!restarts) about_case(command.path, [&] { check_initial_sources(c, ReadingRanks(communicator)); });
+  if (!restarts) about_case(command.path, [&] { check_initial_sources(c, Ranks(communicator)); });
   const Start start = restarts || c.initial.takes(InitialField::grains) ? Start::from_checkpoint : Start::as_placed;
   about_case(command.path, [&] { refuse_without_memory(c, communicator, layout); });
   const double bandwidth = has_fluid(c) ? measure_bandwidth(communicator) : 0.0;  // while there is room for its array

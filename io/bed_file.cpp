@@ -119,7 +119,7 @@ void write_bed_file(MPI_Comm communicator, const std::filesystem::path& path, co
   writer.archive().close();
 }
 
-RowRange share_of_bed(Hdf5Reader& file, const std::string& clumps, std::int64_t rows, const ReadingRanks& ranks) {
+RowRange share_of_bed(Hdf5Reader& file, const std::string& clumps, std::int64_t rows, const Ranks& ranks) {
   RowRange share = ranks.share_of(rows);
   if (ranks.alone() || !file.has(clumps)) return share;
   RowRange before = share;  // the last row of the rank before
@@ -144,7 +144,7 @@ RowRange share_of_bed(Hdf5Reader& file, const std::string& clumps, std::int64_t 
   return share;
 }
 
-Bed read_bed_file(const std::filesystem::path& path, const ReadingRanks& ranks) {
+Bed read_bed_file(const std::filesystem::path& path, const Ranks& ranks) {
   Hdf5Reader file(ranks.communicator(), path);
   if (!file.has("bed/format") || file.text_attribute("bed/format") != format)
     throw InputError(fmt::format("{} is an HDF5 file but not a bed file of this program.", path.string()));

@@ -8,7 +8,7 @@
 #pragma once
 
 #include "core/bed.hpp"
-#include "core/reading_ranks.hpp"
+#include "core/ranks.hpp"
 #include "core/row_range.hpp"
 #include "core/snapshot.hpp"
 #include "io/hdf5_archive.hpp"
@@ -28,11 +28,11 @@ void write_bed_file(MPI_Comm communicator, const std::filesystem::path& path, co
 
 // The bed, with this rank's share of its grains: the ranks read it together. Throws InputError, on every rank, where
 // the file is missing, damaged or not a bed file. Collective.
-Bed read_bed_file(const std::filesystem::path& path, const ReadingRanks& ranks = {});
+Bed read_bed_file(const std::filesystem::path& path, const Ranks& ranks = {});
 
 // An even share of the rows of a bed, moved so that one rank has all members of a clump. clumps: the dataset with the
 // clump of every row; where there is none, nothing is moved. file: opened by the ranks together. Collective.
-RowRange share_of_bed(Hdf5Reader& file, const std::string& clumps, std::int64_t rows, const ReadingRanks& ranks);
+RowRange share_of_bed(Hdf5Reader& file, const std::string& clumps, std::int64_t rows, const Ranks& ranks);
 
 // What a share has of a dataset. Collective.
 template <typename Number>

@@ -1,5 +1,4 @@
-// The processes that read and check the rows of a file together, each its share of them: the ranks of a communicator,
-// or one alone, perhaps without MPI.
+// Processes that do something together: the ranks of a communicator, or one process alone, perhaps without MPI.
 #pragma once
 
 #include "core/mpi_session.hpp"
@@ -14,11 +13,11 @@
 
 namespace thalweg {
 
-// Everything but alone(), count() and number() is collective.
-class ReadingRanks {
+// Collective: everything but alone(), count(), number() and share_of().
+class Ranks {
 public:
-  ReadingRanks() = default;                                                      // this process alone
-  explicit ReadingRanks(MPI_Comm communicator) : communicator_(communicator) {}  // MPI_COMM_NULL: the same
+  Ranks() = default;                                                      // this process alone
+  explicit Ranks(MPI_Comm communicator) : communicator_(communicator) {}  // MPI_COMM_NULL: the same
 
   bool alone() const { return communicator_ == MPI_COMM_NULL; }
   int count() const { return alone() ? 1 : size_of(communicator_); }
@@ -31,6 +30,7 @@ public:
     return alone() ? RowRange(held, 1, 0) : RowRange::of_rows(held, communicator_);
   }
 
+  std::int64_t sum(std::int64_t value) const { return alone() ? value : sum_over_ranks(communicator_, value); }
   double largest(double value) const { return alone() ? value : max_over_ranks(communicator_, value); }
   double smallest(double value) const { return -largest(-value); }
   bool any(bool value) const { return alone() ? value : any_rank(communicator_, value); }
@@ -58,7 +58,7 @@ private:
 };
 
 template <typename Row>
-std::vector<Row> ReadingRanks::gathered(std::vector<Row> mine) const {
+std::vector<Row> Ranks::gathered(std::vector<Row> mine) const {
   static_assert(std::is_trivially_copyable_v<Row>);
   if (alone()) return mine;
   std::vector<int> counts(static_cast<std::size_t>(count())), starts(counts.size(), 0);
@@ -75,7 +75,7 @@ std::vector<Row> ReadingRanks::gathered(std::vector<Row> mine) const {
 }
 
 template <typename State>
-State ReadingRanks::passed_on(State state, const std::function<void(State&)>& add) const {
+State Ranks::passed_on(State state, const std::function<void(State&)>& add) const {
   static_assert(std::is_trivially_copyable_v<State>);
   constexpr int tag = 0;
   const int me = number(), last = count() - 1;
