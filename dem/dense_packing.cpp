@@ -22,7 +22,7 @@ constexpr double momentum = 0.9;  // of the last move that is made again
 constexpr int most_iterations = 20000;
 
 // A grain, or what it keeps clear of.
-struct Body {
+struct PackedBody {
   std::int64_t number;  // of obstacles those after the grains'
   double radius;        // m, grown
   double margin;        // m, of its centre to the region's faces that are not periodic
@@ -30,9 +30,9 @@ struct Body {
   double move[3];       // m, the last one
 };
 
-Eigen::Map<Vec3> place_of(Body& body) { return Vec3::Map(body.position); }
+Eigen::Map<Vec3> place_of(PackedBody& body) { return Vec3::Map(body.position); }
 
-bool before(const Body& a, const Body& b) { return a.number < b.number; }
+bool has_lower_number(const PackedBody& a, const PackedBody& b) { return a.number < b.number; }
 
 class Relaxation {
 public:
@@ -67,7 +67,7 @@ public:
     const RowRange share = ranks_.share_of(grains_.count);
     for (std::int64_t number = share.first; number < share.last; ++number) {
       const double radius = grains_.radius(number);
-      Body body{number, growth * radius, radius + grains_.clearance, {}, {}};
+      PackedBody body{number, growth * radius, radius + grains_.clearance, {}, {}};
       const Vec3 lower = lower_of(body), upper = upper_of(body);
       for (unsigned axis = 0; axis < 3; ++axis) {
         const double free = upper[axis] - lower[axis];
@@ -97,26 +97,26 @@ public:
 
   std::vector<PlacedGrain> placed() {
     bodies_.resize(own_);
-    for (Body& body : bodies_) place_of(body) = box_.wrapped(place_of(body));
-    std::vector<Body> known = ranks_.to_knowing(bodies_);
-    std::sort(known.begin(), known.end(), before);
+    for (PackedBody& body : bodies_) place_of(body) = box_.wrapped(place_of(body));
+    std::vector<PackedBody> known = ranks_.to_knowing(bodies_);
+    std::sort(known.begin(), known.end(), has_lower_number);
     std::vector<PlacedGrain> placed;
-    for (Body& body : known) placed.push_back({body.number, place_of(body)});
+    for (PackedBody& body : known) placed.push_back({body.number, place_of(body)});
     return placed;
   }
 
 private:
   // Where its centre may be: up to a face of the region, or anywhere along an axis that the region wraps.
-  Vec3 lower_of(const Body& body) const { return lower_ + body.margin * keeps_away_; }
-  Vec3 upper_of(const Body& body) const { return upper_ - body.margin * keeps_away_; }
+  Vec3 lower_of(const PackedBody& body) const { return lower_ + body.margin * keeps_away_; }
+  Vec3 upper_of(const PackedBody& body) const { return upper_ - body.margin * keeps_away_; }
 
   // Pairs of bodies up to this far apart (m), of which one is a grain of this rank; each pair has the lower number
   // first, and pairs come in the order of their numbers, which depends neither on the grid nor on the ranks.
   void find_pairs(double distance) {
     bodies_.resize(own_);
-    for (Body& body : bodies_) place_of(body) = box_.wrapped(place_of(body));
+    for (PackedBody& body : bodies_) place_of(body) = box_.wrapped(place_of(body));
     bodies_ = ranks_.to_owners(std::move(bodies_));
-    std::sort(bodies_.begin(), bodies_.end(), before);
+    std::sort(bodies_.begin(), bodies_.end(), has_lower_number);
     own_ = bodies_.size();
     copies_ = Copies(ranks_, bodies_, distance);
     copies_.append(bodies_);
@@ -124,13 +124,13 @@ private:
     bodies_.insert(bodies_.end(), obstacles_.begin(), obstacles_.end());
 
     std::vector<Vec3> places;
-    for (Body& body : bodies_) places.push_back(place_of(body));
+    for (PackedBody& body : bodies_) places.push_back(place_of(body));
     pairs_.clear();
     const CellGrid grid(box_, distance, places);
     grid.for_each_near_pair([&](std::uint32_t m, std::uint32_t n) {
       std::uint32_t a = grid.order()[m], b = grid.order()[n];
       if (std::min(a, b) >= own_) return;
-      if (before(bodies_[b], bodies_[a])) std::swap(a, b);
+      if (has_lower_number(bodies_[b], bodies_[a])) std::swap(a, b);
       if (box_.difference(places[a], places[b]).squaredNorm() < distance * distance) pairs_.emplace_back(a, b);
     });
     std::sort(pairs_.begin(), pairs_.end(), [&](const auto& p, const auto& q) {
@@ -146,7 +146,7 @@ private:
     double largest = 0.0;
     for (std::size_t n = 0; n < own_; ++n) Vec3::Map(bodies_[n].move) *= momentum;
     for (const auto& [a, b] : pairs_) {
-      Body &one = bodies_[a], &other = bodies_[b];
+      PackedBody &one = bodies_[a], &other = bodies_[b];
       const Vec3 apart = box_.difference(place_of(one), place_of(other));
       const double distance = apart.norm(), touching = one.radius + other.radius;
       if (distance >= touching) continue;
@@ -163,7 +163,7 @@ private:
   double advance() {
     double longest = 0.0;
     for (std::size_t n = 0; n < own_; ++n) {
-      Body& body = bodies_[n];
+      PackedBody& body = bodies_[n];
       const Vec3 from = place_of(body), lower = lower_of(body), upper = upper_of(body);
       for (int axis = 0; axis < 3; ++axis) {
         const double wanted = from[axis] + body.move[axis];
@@ -180,7 +180,7 @@ private:
   public:
     Copies() = default;
     // Of grains within this distance (m) of a block. Collective.
-    Copies(const PlacingRanks& ranks, const std::vector<Body>& own, double distance) : ranks_(&ranks) {
+    Copies(const PlacingRanks& ranks, const std::vector<PackedBody>& own, double distance) : ranks_(&ranks) {
       if (ranks.alone()) return;
       const int me = ranks.number();
       for (std::size_t n = 0; n < own.size(); ++n)
@@ -193,18 +193,20 @@ private:
     }
 
     // Those of this rank, behind its own. They are sorted by sender, and stay in this order.
-    void append(std::vector<Body>& bodies) const { bodies.insert(bodies.end(), received_.begin(), received_.end()); }
+    void append(std::vector<PackedBody>& bodies) const {
+      bodies.insert(bodies.end(), received_.begin(), received_.end());
+    }
 
     // Collective.
-    void update(std::vector<Body>& bodies, std::size_t own) {
+    void update(std::vector<PackedBody>& bodies, std::size_t own) {
       if (ranks_->alone()) return;
-      const std::vector<Body> now = exchanged(bodies);
+      const std::vector<PackedBody> now = exchanged(bodies);
       std::copy(now.begin(), now.end(), bodies.begin() + static_cast<std::ptrdiff_t>(own));
     }
 
   private:
-    std::vector<Body> exchanged(const std::vector<Body>& bodies) const {
-      std::vector<Body> rows;
+    std::vector<PackedBody> exchanged(const std::vector<PackedBody>& bodies) const {
+      std::vector<PackedBody> rows;
       for (const std::size_t n : sent_) rows.push_back(bodies[n]);
       return ranks_->exchanged(std::move(rows), homes_);
     }
@@ -212,7 +214,7 @@ private:
     const PlacingRanks* ranks_ = nullptr;
     std::vector<std::size_t> sent_;  // numbers in the list of own grains
     std::vector<int> homes_;         // where to
-    std::vector<Body> received_;
+    std::vector<PackedBody> received_;
   };
 
   const PlacingRanks& ranks_;
@@ -221,10 +223,10 @@ private:
   double largest_;      // m, radius, grown
   Vec3 lower_, upper_;  // m, of the region; of disks their plane
   std::array<bool, 3> wraps_{};
-  Vec3 keeps_away_;           // 1 along axes with faces to keep away from, else 0
-  std::vector<Body> bodies_;  // grains of this rank, copies of others, obstacles
+  Vec3 keeps_away_;                 // 1 along axes with faces to keep away from, else 0
+  std::vector<PackedBody> bodies_;  // grains of this rank, copies of others, obstacles
   std::size_t own_ = 0, first_obstacle_ = 0;
-  std::vector<Body> obstacles_;
+  std::vector<PackedBody> obstacles_;
   Copies copies_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;
 };
