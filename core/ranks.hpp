@@ -33,7 +33,6 @@ public:
   std::int64_t sum(std::int64_t value) const { return alone() ? value : sum_over_ranks(communicator_, value); }
   double largest(double value) const { return alone() ? value : max_over_ranks(communicator_, value); }
   double smallest(double value) const { return -largest(-value); }
-  bool any(bool value) const { return alone() ? value : any_rank(communicator_, value); }
 
   // As on_all_ranks(); of a process alone the error stays what it is.
   void on_all(const std::function<void()>& work) const { alone() ? work() : on_all_ranks(communicator_, work); }

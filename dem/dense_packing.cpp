@@ -90,7 +90,8 @@ public:
       }
       if (ranks_.largest(push_apart()) < 1.0 - 1.0 / growth) return true;
       moved += ranks_.largest(advance());
-      copies_.update(bodies_, own_);
+      const std::vector<PackedBody> near = copies_.exchanged(bodies_);
+      std::copy(near.begin(), near.end(), bodies_.begin() + static_cast<std::ptrdiff_t>(own_));
     }
     return false;
   }
@@ -119,7 +120,8 @@ private:
     std::sort(bodies_.begin(), bodies_.end(), has_lower_number);
     own_ = bodies_.size();
     copies_ = Copies(ranks_, bodies_, distance);
-    copies_.append(bodies_);
+    const std::vector<PackedBody> near = copies_.exchanged(bodies_);
+    bodies_.insert(bodies_.end(), near.begin(), near.end());
     first_obstacle_ = bodies_.size();
     bodies_.insert(bodies_.end(), obstacles_.begin(), obstacles_.end());
 
@@ -175,46 +177,32 @@ private:
     return longest;
   }
 
-  // Grains of other ranks near those of this one, brought up to date where they are.
+  // Which grains of this rank the others have copies of, because they are near theirs.
   class Copies {
   public:
     Copies() = default;
-    // Of grains within this distance (m) of a block. Collective.
+    // Of grains within this distance (m) of a block.
     Copies(const PlacingRanks& ranks, const std::vector<PackedBody>& own, double distance) : ranks_(&ranks) {
       if (ranks.alone()) return;
-      const int me = ranks.number();
       for (std::size_t n = 0; n < own.size(); ++n)
         for (const int rank : ranks.decomposition().ranks_reached(Vec3(own[n].position), distance))
-          if (rank != me) {
+          if (rank != ranks.number()) {
             sent_.push_back(n);
             homes_.push_back(rank);
           }
-      received_ = exchanged(own);
     }
 
-    // Those of this rank, behind its own. They are sorted by sender, and stay in this order.
-    void append(std::vector<PackedBody>& bodies) const {
-      bodies.insert(bodies.end(), received_.begin(), received_.end());
-    }
-
-    // Collective.
-    void update(std::vector<PackedBody>& bodies, std::size_t own) {
-      if (ranks_->alone()) return;
-      const std::vector<PackedBody> now = exchanged(bodies);
-      std::copy(now.begin(), now.end(), bodies.begin() + static_cast<std::ptrdiff_t>(own));
-    }
-
-  private:
-    std::vector<PackedBody> exchanged(const std::vector<PackedBody>& bodies) const {
+    // Sends them as they are now; returns the copies for this rank, in the same order every time. Collective.
+    std::vector<PackedBody> exchanged(const std::vector<PackedBody>& own) const {
       std::vector<PackedBody> rows;
-      for (const std::size_t n : sent_) rows.push_back(bodies[n]);
+      for (const std::size_t n : sent_) rows.push_back(own[n]);
       return ranks_->exchanged(std::move(rows), homes_);
     }
 
+  private:
     const PlacingRanks* ranks_ = nullptr;
     std::vector<std::size_t> sent_;  // numbers in the list of own grains
     std::vector<int> homes_;         // where to
-    std::vector<PackedBody> received_;
   };
 
   const PlacingRanks& ranks_;

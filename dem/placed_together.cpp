@@ -51,7 +51,7 @@ public:
 
   // Those that this rank knows, in order.
   std::vector<PlacedGrain> placed() {
-    std::sort(placed_.begin(), placed_.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
+    std::sort(placed_.begin(), placed_.end());
     return std::move(placed_);
   }
 
@@ -124,7 +124,9 @@ std::vector<PlacedGrain> placed_together(const PlacingRanks& ranks, const Grains
                                          std::span<const Obstacle> obstacles) {
   double largest = grains.largest_radius, smallest = grains.largest_radius;
   for (const Obstacle& obstacle : obstacles) largest = std::max(largest, obstacle.sphere.radius);
-  for (std::int64_t number = 0; number < grains.count; ++number) smallest = std::min(smallest, grains.radius(number));
+  const RowRange share = ranks.share_of(grains.count);
+  for (auto number = share.first; number < share.last; ++number) smallest = std::min(smallest, grains.radius(number));
+  smallest = ranks.smallest(smallest);
   PlacingTogether placing(ranks, grains, obstacles, ranks.largest(largest));
   bool all = has_room_at_random(ranks.box(), grains);
   constexpr double next_size = 0.95;

@@ -54,6 +54,13 @@ public:
     return exchanged(std::move(copies), homes);
   }
 
+  // Rows that several ranks know, each once, on every rank.
+  template <typename Row>
+  std::vector<Row> to_all(std::vector<Row> known) const {
+    std::erase_if(known, [&](const Row& row) { return !owns(Vec3(row.position)); });
+    return gathered(std::move(known));
+  }
+
   // Of ranks that are not alone.
   const Decomposition& decomposition() const { return *decomposition_; }
 

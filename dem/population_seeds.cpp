@@ -107,12 +107,12 @@ std::vector<PlacedGrain> known_to_all(const PlacingRanks& ranks, std::vector<Pla
     std::int64_t number;
     double position[3];
   };
-  std::vector<Row> own;
+  std::vector<Row> rows;
   for (const PlacedGrain& grain : known)
-    if (ranks.owns(grain.centre)) own.push_back({grain.number, {grain.centre.x(), grain.centre.y(), grain.centre.z()}});
+    rows.push_back({grain.number, {grain.centre.x(), grain.centre.y(), grain.centre.z()}});
   known.clear();
-  for (const Row& row : ranks.gathered(own)) known.push_back({row.number, Vec3(row.position)});
-  std::sort(known.begin(), known.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
+  for (const Row& row : ranks.to_all(std::move(rows))) known.push_back({row.number, Vec3(row.position)});
+  std::sort(known.begin(), known.end());
   return known;
 }
 

@@ -1,64 +1,29 @@
 #include "dem/random_packing.hpp"
 
-#include "core/counter_random.hpp"
 #include "dem/random_places.hpp"
 #include "dem/sphere_cells.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace thalweg::dem {
 
-Vec3 random_place(const PeriodicBox& box, const GrainsToPlace& grains, std::int64_t number, unsigned attempt) {
-  const Region& region = grains.region;
-  Vec3 place;
-  for (unsigned axis = 0; axis < 3; ++axis) {
-    if (region.plane && axis == 1) {
-      place[1] = 0.5 * (region.lower[1] + region.upper[1]);
-      continue;
-    }
-    const double margin = wraps(box, region, static_cast<int>(axis)) ? 0.0 : grains.radius(number) + grains.clearance;
-    const double free = region.upper[axis] - region.lower[axis] - 2.0 * margin;
-    place[axis] = region.lower[axis] + margin +
-                  free * uniform_random(grains.seed, static_cast<std::uint64_t>(number), 3u * attempt + axis);
-  }
-  return box.wrapped(place);
-}
-
-bool has_room_at_random(const PeriodicBox& box, const GrainsToPlace& grains) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (wraps(box, grains.region, axis) || (grains.region.plane && axis == 1)) continue;
-    const double extent = grains.region.upper[axis] - grains.region.lower[axis];
-    if (extent - 2.0 * (grains.largest_radius + grains.clearance) < 0.0) return false;
-  }
-  return true;
-}
-
-InputError too_many_at_random(const GrainsToPlace& grains, std::int64_t placed) {
-  const Vec3 extent = grains.region.upper - grains.region.lower;
-  return InputError(
-      fmt::format("{} grains do not fit at random in {:g} x {:g} x {:g} m: {} did; use fewer or smaller "
-                  "grains, a larger region, or another placement.pattern: uniform, or dense.",
-                  grains.count, extent.x(), extent.y(), extent.z(), placed));
-}
-
 namespace {
 
-// Of all ranks, in order of their numbers, on every rank.
-std::vector<Obstacle> gathered(const PlacingRanks& ranks, std::span<const Obstacle> known) {
+// Those of all ranks, on every rank.
+std::vector<Obstacle> known_to_all(const PlacingRanks& ranks, std::span<const Obstacle> known) {
   struct Row {
     std::int64_t number;
     double position[3], radius;
   };
-  std::vector<Row> own;
+  std::vector<Row> rows;
   for (const Obstacle& obstacle : known) {
     const Vec3 at = ranks.box().wrapped(obstacle.sphere.position);
-    if (ranks.owns(at)) own.push_back({obstacle.number, {at.x(), at.y(), at.z()}, obstacle.sphere.radius});
+    rows.push_back({obstacle.number, {at.x(), at.y(), at.z()}, obstacle.sphere.radius});
   }
   std::vector<Obstacle> all;
-  for (const Row& row : ranks.gathered(own)) all.push_back({{Vec3(row.position), row.radius}, row.number});
+  for (const Row& row : ranks.to_all(std::move(rows))) all.push_back({{Vec3(row.position), row.radius}, row.number});
   return all;
 }
 
@@ -66,7 +31,7 @@ std::vector<Obstacle> gathered(const PlacingRanks& ranks, std::span<const Obstac
 
 std::vector<PlacedGrain> placed_one_by_one(const PlacingRanks& ranks, const GrainsToPlace& grains,
                                            std::span<const Obstacle> obstacles) {
-  const std::vector<Obstacle> all = gathered(ranks, obstacles);
+  const std::vector<Obstacle> all = known_to_all(ranks, obstacles);
   if (!has_room_at_random(ranks.box(), grains)) throw too_many_at_random(grains, 0);
   double largest = grains.largest_radius;
   for (const Obstacle& obstacle : all) largest = std::max(largest, obstacle.sphere.radius);
@@ -87,7 +52,7 @@ std::vector<PlacedGrain> placed_one_by_one(const PlacingRanks& ranks, const Grai
     cells.add(sphere);
     if (ranks.knows(sphere.position)) placed.push_back({order[n], sphere.position});
   }
-  std::sort(placed.begin(), placed.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
+  std::sort(placed.begin(), placed.end());
   return placed;
 }
 

@@ -31,6 +31,7 @@ struct Obstacle {
 struct PlacedGrain {
   std::int64_t number;
   Vec3 centre;  // m, wrapped
+  bool operator<(const PlacedGrain& other) const { return number < other.number; }
 };
 
 // The grains that this rank knows (placing_ranks.hpp), in order of their numbers. obstacles: those that it knows.

@@ -1,11 +1,11 @@
 #include "loop/whereabouts.hpp"
 
-#include "core/mpi_session.hpp"
+#include "core/ranks.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
+#include <utility>
 #include <vector>
 
 namespace thalweg::loop {
@@ -23,12 +23,7 @@ std::vector<GlobalId> grains_near(MPI_Comm communicator, const Vec3& position, c
   for (std::size_t g = 0; g < snapshot.grains.id.size(); ++g)
     if (box.difference(snapshot.grains.position[g], position).norm() < snapshot.grains.radius[g] + reach)
       mine.push_back(snapshot.grains.id[g]);
-  std::vector<int> counts(static_cast<std::size_t>(size_of(communicator))), starts(counts.size(), 0);
-  const int count = static_cast<int>(mine.size());
-  MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, communicator);
-  std::partial_sum(counts.begin(), counts.end() - 1, starts.begin() + 1);
-  std::vector<GlobalId> all(static_cast<std::size_t>(starts.back() + counts.back()));
-  MPI_Allgatherv(mine.data(), count, MPI_INT64_T, all.data(), counts.data(), starts.data(), MPI_INT64_T, communicator);
+  std::vector<GlobalId> all = Ranks(communicator).gathered(std::move(mine));
   std::sort(all.begin(), all.end());
   return all;
 }
