@@ -31,12 +31,17 @@ void check_room(const Case& c, const io::YamlDocument& document) {
   }
   const double box = c.disks ? c.domain.size[0] * c.disks->thickness * c.domain.size[2] : c.domain.size.prod();
   const double fraction = grain_volume(c) / box, densest = c.disks ? dem::densest_disks : dem::densest_bed;
-  if (fraction > densest)
+  if (fraction > densest) {
+    const double share = densest / fraction;
+    const std::string at_most =
+        c.grains.size() == 1 ? fmt::format("{:.0f} grains", std::floor(share * static_cast<double>(grain_count(c))))
+                             : fmt::format("{:.2g} % of them", 100.0 * share);
     throw document.error(
         c.grains.size() == 1 ? "grains.0.count" : "grains",
         fmt::format("{} grains do not fit: they would fill {:.0f} % of the box, and at most {:.0f} % is "
-                    "possible; give at most {:.0f}% of them or a larger domain.size in m",
-                    grain_count(c), 100.0 * fraction, 100.0 * densest, std::floor(100.0 * densest / fraction)));
+                    "possible; give at most {} or a larger domain.size in m",
+                    grain_count(c), 100.0 * fraction, 100.0 * densest, at_most));
+  }
 }
 
 void check_contact_steps(const Case& c, const io::YamlDocument& document) {

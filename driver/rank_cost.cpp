@@ -163,7 +163,7 @@ RankWork work_of(const Case& c, const GrainsOfCase& grains, const Decomposition&
   work.grains = work.share_of_grains * count;
   work.ghosts = share_of_grains(c, grains, decomposition, rank, grains.reach) * count - work.grains;
   work.memory +=
-      (work.grains + work.ghosts) * bytes_of_grain(decomposition.ranks()) + work.grains / count * grains.links;
+      (work.grains + work.ghosts) * bytes_of_grain(c, decomposition.ranks()) + work.grains / count * grains.links;
   work.memory += bytes_of_bed_rows(c, decomposition.ranks());
   work.memory = std::max(work.memory, bytes_of_program() + bytes_of_placing(c, decomposition.ranks()));
   if (decomposition.ranks() == 1) return work;

@@ -17,10 +17,11 @@ constexpr double grain_steps_per_second = 22e6;
 constexpr double model_fluid_steps_per_second = 4e6;  // all grains moving; three times that where few do
 
 // Bytes: of a process with the libraries it has loaded, MPI's above all; per cell 19 populations, streamed in place,
-// and flags; per link a record; per grain its columns, neighbours, history and its row of a frame, which several ranks
-// have twice while they sort them.
+// and flags; per link a record; per grain its columns, neighbours, history and its row of a frame. Several ranks have
+// rows twice while they sort them, those of a checkpoint or those of a frame, which have more columns.
 constexpr double program_bytes = 49e6;
-constexpr double flag_bytes = 16.0, link_bytes = 32.0, grain_bytes = 1150.0, row_bytes = 350.0;
+constexpr double flag_bytes = 16.0, link_bytes = 32.0, grain_bytes = 1150.0;
+constexpr double checkpoint_row_bytes = 100.0, frame_row_bytes = 350.0;
 
 double link_count(const Case& c) {
   double links = 0.0;
@@ -37,7 +38,10 @@ double links_of_sphere(double cells_across) { return 15.8 * cells_across * cells
 double bytes_per_value(const Case& c) { return c.fluid.precision == coupling::Precision::single ? 4.0 : 8.0; }
 double bytes_of_cell(const Case& c) { return 19.0 * bytes_per_value(c) + flag_bytes; }
 double bytes_of_program() { return program_bytes; }
-double bytes_of_grain(int ranks) { return ranks > 1 ? grain_bytes + row_bytes : grain_bytes; }
+double bytes_of_grain(const Case& c, int ranks) {
+  if (ranks == 1) return grain_bytes;
+  return grain_bytes + (c.output.grains.every > 0.0 ? frame_row_bytes : checkpoint_row_bytes);
+}
 double bytes_of_placing(const Case& c, int ranks) {
   constexpr double position = 24.0, random_sphere = 130.0;  // in the case, on every rank; around a rank's block
   double bytes = 0.0;

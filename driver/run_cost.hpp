@@ -21,7 +21,7 @@ Cost cost_of(const Case& c, double bandwidth);
 double bytes_per_value(const Case& c);
 double bytes_of_program();
 double bytes_of_cell(const Case& c);
-double bytes_of_grain(int ranks);
+double bytes_of_grain(const Case& c, int ranks);
 double bytes_of_placing(const Case& c, int ranks);
 double bytes_of_bed_rows(const Case& c, int ranks);
 double bytes_of_links(const Case& c);

@@ -1,0 +1,233 @@
+// Case files with a mistake: a table of bad input with what the user reads about it.
+#include "core/error.hpp"
+#include "driver/case_reader.hpp"
+#include "tests/driver/case_texts.hpp"
+
+#include <gtest/gtest.h>
+
+namespace thalweg::driver {
+namespace {
+
+using testing::flume;
+using testing::message_of;
+
+struct Bad {
+  std::string name;
+  std::vector<std::string> overrides;
+  std::vector<std::string> parts;  // of the message, in order
+};
+void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.name; }
+
+class BadCase : public ::testing::TestWithParam<Bad> {};
+
+TEST_P(BadCase, IsRefusedInOneSentence) {
+  const std::string message = message_of<InputError>([&] { testing::read_text(flume, GetParam().overrides); });
+  std::size_t at = 0;
+  for (const std::string& part : GetParam().parts) {
+    const std::size_t found = message.find(part, at);
+    ASSERT_NE(found, std::string::npos) << "\"" << part << "\" in: " << message;
+    at = found + part.size();
+  }
+  EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  EXPECT_TRUE(message.ends_with('.') || message.ends_with('?')) << message;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BadCase,
+    ::testing::Values(
+        Bad{"system_not_built",
+            {"system=shallow_water"},
+            {"system = \"shallow_water\": expected one of resolved, fluid, grains, model_fluid, continuum."}},
+        Bad{"collision_not_built",
+            {"fluid.collision=mrt"},
+            {"fluid.collision = \"mrt\": expected one of bgk, trt, regularised."}},
+        Bad{"face_not_built",
+            {"domain.boundaries.top=porous"},
+            {"top.type = \"porous\": expected one of periodic, no_slip, free_slip, moving, navier_slip, "
+             "law_of_the_wall, "
+             "law_of_the_wall_as_printed, velocity_inlet, pressure_outlet."}},
+        Bad{"bulk_without_damping",
+            {"fluid.bulk_relaxation_time=0.5"},
+            {"fluid.bulk_relaxation_time = 0.5", "give more than 0.5 steps"}},
+        Bad{"bulk_below_zero", {"fluid.bulk_relaxation_time=-1"}, {"fluid.bulk_relaxation_time = -1", "at least 0"}},
+        Bad{"ramp_in_full_gravity",
+            {"gravity.mode=full", "run.ramp=0.1"},
+            {"run.ramp = 0.1", "at rest under its whole weight"}},
+        Bad{"ramp_below_zero", {"run.ramp=-0.1"}, {"run.ramp = -0.1", "at least 0"}},
+        Bad{"magic_without_trt", {"fluid.magic_parameter=0.25"}, {"fluid.magic_parameter", "only collision trt"}},
+        Bad{"slip_length_missing", {"domain.boundaries.top=navier_slip"}, {"slip_length"}},
+        Bad{"wall_lifts_off",
+            {"domain.boundaries.top={type: moving, velocity: [0.1, 0, 0.1]}"},
+            {"top", "a moving wall moves in its own plane"}},
+        Bad{"wall_too_fast",
+            {"domain.boundaries.top={type: moving, velocity: [90, 0, 0]}"},
+            {"domain.boundaries", "cells a step"}},
+        Bad{"control_too_quick",
+            {"fluid.mean_velocity={velocity: 0.3, response_time: 1e-5}"},
+            {"fluid.mean_velocity.response_time", "give at least"}},
+        Bad{"full_gravity_without_a_floor",
+            {"gravity.mode=full", "domain.boundaries.bottom=periodic", "domain.boundaries.top=periodic"},
+            {"gravity.mode", "periodic along z has no hydrostatic pressure"}},
+        Bad{"full_gravity_with_an_outlet",
+            {"gravity.mode=full",
+             "domain.boundaries={x_low: {type: velocity_inlet, velocity: [0.2, 0, 0]}, x_high: pressure_outlet, "
+             "y: no_slip, bottom: no_slip, top: free_slip}"},
+            {"gravity.mode", "an outlet of one pressure"}},
+        Bad{"full_gravity_from_another_run",
+            {"gravity.mode=full", "initial.from=other"},
+            {"gravity.mode", "its own hydrostatic pressure"}},
+        Bad{"mass_correction_is_gone", {"coupling.mass_correction=100"}, {"coupling.mass_correction", "always kept"}},
+        Bad{"unknown_key", {"fluid.densty=1000"}, {"fluid.densty = 1000: unknown key; did you mean fluid.density?"}},
+        Bad{"text_for_number",
+            {"fluid.density=water"},
+            {"fluid.density = \"water\": expected a number in kg/m^3 above 0, for example 1000."}},
+        Bad{"negative_diameter",
+            {"grains.0.diameter=-0.005"},
+            {"grains.0.diameter = -0.005: expected a number in m above 0, for example 0.005."}},
+        Bad{"not_whole_cells",
+            {"domain.size=[0.0602, 0.0105, 0.075]"},
+            {"domain.size = [0.0602, 0.0105, 0.075]: the 0.0602 m along x are 120.4 cells of 0.0005 m",
+             "0.06 or 0.0605 m"}},
+        Bad{"smaller_than_a_cell", {"domain.size=[0.06, 0.0001, 0.075]"}, {"along y", "at least 0.0005 m"}},
+        Bad{"too_coarse",
+            {"domain.size=[0.06, 0.012, 0.075]", "domain.spacing=3e-3"},
+            {"domain.spacing = 3e-3: the spacing is too coarse for grains of 0.004 m", "give at most 0.002299 m"}},
+        Bad{"too_many_cells", {"domain.spacing=1e-9"}, {"domain.spacing = 1e-9", "6e+07 cells", "larger spacing in m"}},
+        Bad{"narrow_periodic_axis",
+            {"domain.size=[0.009, 0.0105, 0.075]", "grains.0.placement.region=null"},
+            {"domain.size", "along x are too narrow for grains of 0.00495 m; give at least 0.0099 m (two diameters"}},
+        Bad{"narrow_walls",
+            {"domain.size=[0.06, 0.0045, 0.075]"},
+            {"along y are too narrow", "0.00495 m (one diameter)"}},
+        Bad{"too_many_grains",
+            {"grains.0.count=800", "grains.0.placement.region=null"},
+            {"grains = [", "802 grains do not fit: they would fill 108 % of the box, and at most 64 %",
+             "at most 59 % of them"}},
+        Bad{"too_many_in_region",
+            {"grains.0.placement.region.upper=[0.06, 0.0105, 0.01]"},
+            {"grains.0.count = 150: 150 grains do not fit in their region: they would fill 151 % of it"}},
+        Bad{"region_upside_down",
+            {"grains.0.placement.region.lower=[0, 0, 0.06]"},
+            {"grains.0.placement.region.upper", "lower below upper"}},
+        Bad{"position_outside",
+            {"grains.1.placement.positions.1=[0.02, 0.005, 0.6]"},
+            {"grains.1.placement.positions.1 = [0.02, 0.005, 0.6]: the grain is outside the box",
+             "[0.06, 0.0105, 0.075]"}},
+        Bad{"positions_and_pattern",
+            {"grains.1.placement.seed=3"},
+            {"grains.1.placement.seed = 3: the positions are given one by one"}},
+        Bad{"count_and_positions", {"grains.1.count=3"}, {"grains.1.count = 3: there are 2 positions"}},
+        Bad{"no_count", {"grains.0.count=null"}, {"grains.0.count: the number of grains is missing"}},
+        Bad{"fixed_and_moving",
+            {"grains.1.velocity=[0, 0, 1]"},
+            {"grains.1.fixed = \"true\": a fixed grain cannot start"}},
+        Bad{"lattice_too_fast",
+            {"fluid.expected_velocity=5"},
+            {"fluid.expected_velocity = 5: 5 m/s would be 0.2 cells a step, more than 0.173; give a fluid.time_step of "
+             "at most 1.73e-05 s"}},
+        Bad{"lattice_limit",
+            {"fluid.time_step=null", "fluid.maximum_lattice_velocity=0.2", "fluid.expected_velocity=1"},
+            {"fluid.maximum_lattice_velocity = 0.2: expected a number in cells/step above 0 and at most 0.173"}},
+        Bad{"grain_too_fast",
+            {"grains.0.velocity=[6, 0, 0]"},
+            {"grains.0.velocity = [6, 0, 0]: 6 m/s would be 0.24 cells"}},
+        Bad{"start_too_fast",
+            {"initial.fluid={uniform: [6, 0, 0]}"},
+            {"initial.fluid.uniform = [6, 0, 0]", "0.24 cells"}},
+        Bad{"both_steps",
+            {"fluid.maximum_lattice_velocity=0.05", "fluid.expected_velocity=1"},
+            {"fluid.time_step = 2.0e-5: the step is given twice"}},
+        Bad{"no_step", {"fluid.time_step=null"}, {"fluid.time_step: the step is missing; give time_step in s"}},
+        Bad{"no_expected_velocity",
+            {"fluid.time_step=null", "fluid.maximum_lattice_velocity=0.05"},
+            {"fluid.expected_velocity: maximum_lattice_velocity needs it"}},
+        Bad{"sub_step_too_long",
+            {"coupling.grain_steps_per_fluid_step=1"},
+            {"coupling.grain_steps_per_fluid_step = 1: a step of the grains of 2e-05 s is longer than 1/20 of their "
+             "shortest "
+             "contact (0.000145",
+             "give at least 3 sub-steps"}},
+        Bad{"sub_steps_zero",
+            {"coupling.grain_steps_per_fluid_step=0"},
+            {"expected a whole number, at least 1, for example 50, or auto"}},
+        Bad{"auto_without_step",
+            {"coupling.grain_steps_per_fluid_step=auto", "fluid.time_step=null"},
+            {"fluid.time_step: the step is missing"}},
+        Bad{"no_loss", {"contact.restitution=null"}, {"contact.restitution: the loss in a collision is missing"}},
+        Bad{"both_losses",
+            {"contact.damping=0.09"},
+            {"contact.restitution = 0.93: the loss in a collision is given twice"}},
+        Bad{"restitution_above_one", {"contact.restitution=1.2"}, {"a number above 0 and at most 1, for example 0.93"}},
+        Bad{"negative_stiffness", {"contact.normal_stiffness=-2e4"}, {"a number in N/m above 0, for example 20000"}},
+        Bad{"half_periodic",
+            {"domain.boundaries.bottom=periodic"},
+            {"domain.boundaries.bottom = \"periodic\": an axis is periodic on both faces or on neither"}},
+        Bad{"axis_twice",
+            {"domain.boundaries.x_low=no_slip"},
+            {"boundaries.x_low = \"no_slip\": the axis is given twice"}},
+        Bad{"face_missing",
+            {"domain.boundaries.top=null"},
+            {"domain.boundaries.top: this face is missing; give one of"}},
+        Bad{"axis_missing", {"domain.boundaries.y=null"}, {"domain.boundaries.y: these two faces are missing"}},
+        Bad{"coefficient_of_no_slip",
+            {"domain.boundaries.top={type: no_slip, coefficient: 2}"},
+            {"top.coefficient = 2: only a law_of_the_wall has a coefficient"}},
+        Bad{"gravity_twice", {"gravity.vector=[0, 0, -9.8]"}, {"gravity.vector", "gravity is given twice"}},
+        Bad{"gravity_missing", {"gravity={}"}, {"gravity.magnitude: gravity is missing"}},
+        Bad{"dry_with_fluid",
+            {"system=grains"},
+            {"case.yaml:7: fluid = a section with 4 keys: system: grains has no fluid"}},
+        Bad{"step_of_wet_grains",
+            {"run.time_step=1e-6"},
+            {"run.time_step = 1e-6: with a fluid the step is fluid.time_step"}},
+        Bad{"measuring_nothing",
+            {"grains=[]"},
+            {"case.yaml:27: analysis.transport_rate = a section with 1 key: there are no grains to measure"}},
+        Bad{"log_profile_above_the_top",
+            {"initial.fluid={log_profile: {bed_height: 0.08, shear_velocity: 0.06, roughness: 2e-4}}"},
+            {"initial.fluid.log_profile.bed_height = 0.08: no fluid is left above the bed", "below 0.075"}},
+        Bad{"two_starts",
+            {"initial.fluid={uniform: [0.1, 0, 0], linear_profile: {upper: 0.05, velocity: [0.1, 0, 0]}}"},
+            {"initial.fluid.uniform",
+             "the start is given twice; give only one of uniform, linear_profile and log_profile"}},
+        Bad{"linear_profile_upside_down",
+            {"initial.fluid={linear_profile: {lower: 0.05, upper: 0.04, velocity: [0.1, 0, 0]}}"},
+            {"initial.fluid.linear_profile.upper = 0.04: give a height above lower"}},
+        Bad{"no_diameter", {"grains.0.diameter=null"}, {"grains.0.diameter is missing: give a number in m above 0"}},
+        Bad{"diameter_with_unit",
+            {"grains.0.diameter=5 mm"},
+            {"grains.0.diameter = \"5 mm\": expected a number in m above 0, for example 0.005"}},
+        Bad{"two_kinds_of_sizes",
+            {"grains.0.diameter={value: 0.005, sizes: [0.004], fractions: [1]}"},
+            {"grains.0.diameter.value = 0.005: give exactly one of value in m, distribution, sizes"}},
+        Bad{"half_a_distribution",
+            {"grains.0.diameter={distribution: lognormal, median: 0.005, minimum: 0.004, maximum: 0.006}"},
+            {"grains.0.diameter.distribution = \"lognormal\"", "needs median, minimum and maximum", "deviation"}},
+        Bad{"median_outside",
+            {"grains.0.diameter={distribution: lognormal, median: 0.007, geometric_deviation: 1.2, minimum: 0.004, "
+             "maximum: 0.006}"},
+            {"grains.0.diameter.median = 0.007: minimum, median and maximum must rise"}},
+        Bad{"cut_of_no_distribution",
+            {"grains.0.diameter={value: 0.005, maximum: 0.006}"},
+            {"grains.0.diameter.maximum = 0.006: only a distribution has it"}},
+        Bad{"sizes_without_fractions",
+            {"grains.0.diameter={sizes: [0.004, 0.005], fractions: [1]}"},
+            {"grains.0.diameter.sizes = [0.004, 0.005]", "as many fractions as sizes"}},
+        Bad{"fractions_of_what",
+            {"grains.0.diameter={sizes: [0.004, 0.005], fractions: [0.6, 0.6]}"},
+            {"grains.0.diameter.fractions = [0.6, 0.6]: the fractions add up to 1.2"}},
+        Bad{"modulus_of_springs",
+            {"grains.0.contact={youngs_modulus: 1e9}"},
+            {"grains.0.contact.youngs_modulus = 1e9: contact.law is linear"}},
+        Bad{"other_kind_of_loss",
+            {"contact.walls={damping: 0.1}"},
+            {"contact.walls.damping = 0.1: the section contact gives a restitution"}},
+        Bad{"friction_of_walls",
+            {"contact.walls={friction: 0.1}"},
+            {"contact.walls.friction = 0.1: the friction of walls is contact.wall_friction"}},
+        Bad{"wet_rest", {"run.until_at_rest={}"}, {"run.until_at_rest", "grains in a fluid are never at rest"}},
+        Bad{"no_run", {"run=null"}, {"case.yaml:1: run is missing: give a section"}}),
+    [](const auto& bad) { return bad.param.name; });
+
+}  // namespace
+}  // namespace thalweg::driver
