@@ -3,7 +3,7 @@
 
 Draws their printed points (bars: standard deviation of q* over the last 10 s), relations of the literature and the given
 runs, whose bars are the standard errors of the means. The Shields number of a run is that of its slope and its measured
-surface. Open symbols: not steady (first against last third). Prints the table.
+surface. Open symbols: not steady, or too short to tell. Prints the table.
 """
 import argparse
 import sys
@@ -20,6 +20,7 @@ from thalweg import bed, literature
 from thalweg.tables import merged_rows
 
 SMALLEST = 1e-3   # q* that is drawn; what is below stands on the axis
+VERDICTS = {True: "yes", False: "no", None: "too short"}
 
 
 def measure(folder, start, stop, surface):
@@ -33,7 +34,7 @@ def measure(folder, start, stop, surface):
     else:
         height = bed.bed_height(run, time[0], time[-1])
     return (bed.shields_number(run, height), thalweg.mean_with_error(rate),
-            len(rate) >= 6 and thalweg.is_steady(rate).steady, height / run.diameter)
+            thalweg.steadiness(rate).steady, height / run.diameter)
 
 
 def draw_literature(axes):
@@ -59,7 +60,7 @@ def draw_paper(axes):
 def row_of(folder, shields, rate, steady, height):
     return {"run": folder.name, "Shields number [1]": f"{shields:.4f}", "bed [d]": f"{height:.2f}",
             "q_star [1]": f"{rate.mean:.4f}", "error [1]": f"{rate.error:.4f}", "deviation [1]": f"{rate.deviation:.4f}",
-            "steady": "yes" if steady else "no"}
+            "steady": VERDICTS[steady]}
 
 
 def draw_runs(axes, rows):
@@ -89,7 +90,7 @@ def main():
         print("|---|---|---|---|---|---|---|---|")
     for folder, (shields, rate, steady, height) in zip(arguments.runs, found):
         print(f"| {folder.name} | {shields:.4f} | {height:.2f} | {rate.mean:.4f} | {rate.error:.4f} | {rate.deviation:.4f} | "
-              f"{rate.independent:.0f} | {'yes' if steady else 'no'} |")
+              f"{rate.independent:.0f} | {VERDICTS[steady]} |")
     figure, axes = plt.subplots(figsize=(9, 4.8), layout="constrained")
     draw_literature(axes)
     draw_paper(axes)

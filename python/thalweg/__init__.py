@@ -9,7 +9,7 @@
 A run that is still going can be read like a finished one.
 """
 from thalweg.errors import RunFolderError
-from thalweg.means import is_steady, mean_with_error
+from thalweg.means import mean_with_error, steadiness
 from thalweg.run import Run
 
-__all__ = ["Run", "RunFolderError", "is_steady", "mean_with_error"]
+__all__ = ["Run", "RunFolderError", "mean_with_error", "steadiness"]

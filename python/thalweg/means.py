@@ -1,7 +1,10 @@
 """Means of correlated series, their error, and whether they are steady."""
-from typing import NamedTuple
+from typing import NamedTuple, Optional
 
 import numpy as np
+
+FEWEST_BATCHES, MOST_BATCHES = 8, 64   # of steadiness()
+ROUND_OFF = 1e-12                      # of the largest value, below which there is no drift
 
 
 class Mean(NamedTuple):
@@ -13,11 +16,10 @@ class Mean(NamedTuple):
 
 
 class Steadiness(NamedTuple):
-    """Verdict of is_steady()."""
-    steady: bool
-    first: Mean          # of the first third
-    last: Mean           # of the last third
-    errors_apart: float  # their difference over its standard error, 1
+    """Verdict of steadiness()."""
+    steady: Optional[bool]   # None: too short a series to tell
+    drift: float             # by which a straight line rises over the series, in the unit of the values
+    error: float             # standard error of the drift; not a number where the series is too short
 
 
 def autocovariance(values):
@@ -51,20 +53,47 @@ def mean_with_error(values):
     return Mean(mean, float(np.sqrt(total / count)), float(np.sqrt(variance)), float(count * variance / total))
 
 
-def is_steady(values, errors=2.0):
-    """Whether the means of the first and the last third differ by less than `errors` standard errors of their difference.
+def steadiness(values):
+    """Whether a straight line through a series at equal intervals rises or falls by no more than chance.
 
-    The comparison is Geweke's (1992, in Bayesian Statistics 4) with thirds for his first tenth and last half. A steady
-    series fails one time in twenty at two errors; a drift slower than the scatter of the means is not seen.
+    The test is that of the run itself (analysis/trend_test.hpp, docs/theory.md section 5): a line is fitted to 32 to 63
+    batches of equal length, and the lag-one autocorrelation of what is left over says how many independent ones they are
+    worth (Santer et al., J. Geophys. Res. 105 (2000) 7337). A steady series fails one time in twenty; a drift slower than
+    the scatter is not seen.
     """
-    thirds = np.array_split(np.asarray(values, float), 3)
-    if len(thirds[2]) < 2:
-        raise ValueError("fewer than six values: nothing can be said of their steadiness")
-    first, last = mean_with_error(thirds[0]), mean_with_error(thirds[2])
-    error = float(np.hypot(first.error, last.error))
-    difference = abs(last.mean - first.mean)
-    apart = difference / error if error > 0.0 else (0.0 if difference == 0.0 else float("inf"))
-    return Steadiness(apart < errors, first, last, apart)
+    batches = in_batches(np.asarray(values, float))
+    count = len(batches)
+    if count < FEWEST_BATCHES:
+        return Steadiness(None, float("nan"), float("nan"))
+    time = np.arange(count) - 0.5 * (count - 1.0)
+    spread = float(time @ time)
+    slope = float(time @ (batches - batches.mean())) / spread
+    rest = batches - batches.mean() - slope * time
+    least = count * (ROUND_OFF * np.max(np.abs(batches)))**2
+    squares = float(rest @ rest)
+    correlation = float(rest[:-1] @ rest[1:]) / squares if squares > least else 0.0
+    worth = min(count, count * (1.0 - correlation) / (1.0 + correlation))
+    if worth < 4.0:
+        return Steadiness(None, slope * count, float("nan"))
+    error = float(np.sqrt(max(squares, least) / ((worth - 2.0) * spread)))
+    return Steadiness(bool(abs(slope) <= student_t_of_5_percent(worth - 2.0) * error), slope * count, error * count)
+
+
+def in_batches(values):
+    """Means of batches of 1, 2, 4, ... values, the shortest that make fewer than 64; values of an incomplete one are left out."""
+    length = 1
+    while len(values) // length >= MOST_BATCHES:
+        length *= 2
+    return values[:len(values) // length * length].reshape(-1, length).mean(axis=1)
+
+
+def student_t_of_5_percent(degrees_of_freedom):
+    """Student's t that is exceeded on either side with 5 % (Abramowitz and Stegun 26.7.5, within 1 % from two degrees on)."""
+    z, v = 1.959963984540054, 1.0 / degrees_of_freedom
+    first, second = (z**2 + 1.0) / 4.0, ((5.0 * z**2 + 16.0) * z**2 + 3.0) / 96.0
+    third = (((3.0 * z**2 + 19.0) * z**2 + 17.0) * z**2 - 15.0) / 384.0
+    fourth = ((((79.0 * z**2 + 776.0) * z**2 + 1482.0) * z**2 - 1920.0) * z**2 - 945.0) / 92160.0
+    return z * (1.0 + v * (first + v * (second + v * (third + v * fourth))))
 
 
 def running_mean(time, value, window):

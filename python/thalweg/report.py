@@ -11,11 +11,10 @@ import numpy as np
 from thalweg import bed, water
 from thalweg.errors import RunFolderError
 from thalweg.layers import layer_profiles
-from thalweg.means import is_steady, mean_with_error
+from thalweg.means import mean_with_error, steadiness
 from thalweg.visible_profiles import visible_profiles
 
 VISIBLE_FRAMES = 20   # the most that are looked at pixel by pixel
-FEWEST_INDEPENDENT = 8   # values, below which nothing is said of steadiness, as in the run itself (analysis/trend_test.hpp)
 
 
 class Report:
@@ -80,13 +79,14 @@ def describe_transport(report):
     report.numbers["q_star"] = mean._asdict()
     text = (f"q* {mean.mean:.4g} +- {mean.error:.2g}, deviation {mean.deviation:.2g}, {mean.independent:.3g} independent "
             f"values")
-    if mean.independent < FEWEST_INDEPENDENT:
+    verdict = steadiness(rate)
+    report.numbers["q_star"]["steady"] = verdict.steady
+    if verdict.steady is None:
         text += "; too short a time to tell whether it is steady"
-    elif len(rate) >= 6:
-        verdict = is_steady(rate)
-        report.numbers["q_star"]["steady"] = verdict.steady
-        text += (f"; {'steady' if verdict.steady else 'NOT steady'}: first third {verdict.first.mean:.4g}, last "
-                 f"{verdict.last.mean:.4g}, {verdict.errors_apart:.2g} errors apart")
+    else:
+        report.numbers["q_star"] |= {"drift": verdict.drift, "drift_error": verdict.error}
+        text += (f"; {'steady' if verdict.steady else 'NOT steady'}: a straight line through it changes by "
+                 f"{verdict.drift:+.2g} +- {verdict.error:.2g}")
     report.say("transport", text)
     if "moving_grains" in run.series:
         time = run.series["time"]

@@ -13,7 +13,9 @@ import unittest.mock
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 import program
+import thalweg
 from program import ProgramTest, files_below
 
 # 40 grains tumbling down a bumpy slope: contacts, walls, periodic sides and, on several ranks, migration.
@@ -59,6 +61,16 @@ class CommandLine(DryGrains):
         self.assertTrue((self.folder / "run/analysis/layers.csv").exists())
         self.assertIn("--until SECONDS", self.run_well("analyze", "--help").stdout)
         self.assert_refused("analyze", "nowhere", words=["nowhere", "case.yaml"])
+
+    def test_the_run_and_its_reader_agree_on_what_is_steady(self):
+        self.run_well("run", self.case, "--out", "run")
+        of_run = self.summary("run")["transport_rate"]
+        series = thalweg.Run(self.folder / "run").series
+        verdict = thalweg.steadiness(series["q_s"][series["time"] > 0.05 - 1e-9])
+        self.assertEqual(of_run["steady"], {True: 1, False: 0, None: -1}[verdict.steady])
+        # The series has nine digits or more.
+        self.assertAlmostEqual(verdict.drift / of_run["q_s_drift"], 1.0, 6)
+        self.assertAlmostEqual(verdict.error / of_run["q_s_drift_error"], 1.0, 6)
 
     def test_on_several_ranks_only_one_speaks(self):
         self.assertEqual(self.run_well("--version", ranks=2).stdout.count("thalweg"), 1)

@@ -5,7 +5,7 @@ import numpy as np
 
 import made_up_folder  # noqa: F401 (where the package is)
 import thalweg
-from thalweg.means import autocovariance, running_mean
+from thalweg.means import autocovariance, in_batches, running_mean, student_t_of_5_percent
 
 SERIES, LENGTH = 200, 4000
 
@@ -59,24 +59,40 @@ class MeanWithError(unittest.TestCase):
 
 class Steadiness(unittest.TestCase):
     def test_steady_series_are_called_so(self):
-        # Wrong one time in 22 by a normal distribution; of 200 that are 9 +- 3.
+        # Wrong one time in twenty by the definition of the test; of 200 that are 10, give or take three times
+        # sqrt(200 0.05 0.95) = 3.1.
         generator = np.random.default_rng(7)
-        wrong = sum(not thalweg.is_steady(autoregressive(generator, 0.8, LENGTH)).steady for _ in range(SERIES))
-        self.assertLess(wrong, 9 + 3 * 3 + 9)
+        for memory in (0.0, 0.8):
+            wrong = sum(not thalweg.steadiness(autoregressive(generator, memory, LENGTH)).steady for _ in range(SERIES))
+            self.assertLess(abs(wrong - 10), 10, memory)
 
     def test_a_drift_is_seen(self):
-        # From the first to the last third the mean changes by 2/3, which is 8 errors: sqrt(2 9/(4000/3)) = 0.08.
+        # The slope of such a series over the length 1 has the error sqrt(12 (1 + memory)/(1 - memory)/count) = 0.16; a test
+        # at two errors misses a rise of five times one time in a thousand.
         generator = np.random.default_rng(8)
-        for _ in range(20):
-            verdict = thalweg.is_steady(autoregressive(generator, 0.8, LENGTH) + np.linspace(0.0, 1.0, LENGTH))
-            self.assertFalse(verdict.steady)
-            self.assertGreater(verdict.last.mean, verdict.first.mean)
+        error = np.sqrt(12.0 * 9.0 / LENGTH)
+        seen = 0
+        for _ in range(100):
+            verdict = thalweg.steadiness(autoregressive(generator, 0.8, LENGTH) + np.linspace(0.0, 5.0 * error, LENGTH))
+            seen += verdict.steady is False and verdict.drift > 0.0
+        self.assertGreaterEqual(seen, 97)
 
-    def test_constants(self):
-        self.assertTrue(thalweg.is_steady(np.full(9, 4.0)).steady)
-        self.assertFalse(thalweg.is_steady(np.repeat([1.0, 2.0, 3.0], 3)).steady)
-        with self.assertRaises(ValueError):
-            thalweg.is_steady(np.zeros(5))
+    def test_a_straight_line(self):
+        verdict = thalweg.steadiness(3.0 - 2.0 * np.arange(640) / 640 + np.tile([1e-3, -1e-3], 320))
+        self.assertIs(verdict.steady, False)
+        self.assertAlmostEqual(verdict.drift, -2.0, 6)
+
+    def test_what_it_cannot_know(self):
+        self.assertIsNone(thalweg.steadiness(np.ones(7)).steady)
+        self.assertEqual(thalweg.steadiness(np.ones(8))[:2], (True, 0.0))
+
+    def test_batches(self):
+        np.testing.assert_array_equal(in_batches(np.arange(63.0)), np.arange(63.0))
+        np.testing.assert_array_equal(in_batches(np.arange(65.0)), np.arange(32.0) * 2 + 0.5)
+
+    def test_students_numbers(self):
+        for degrees, tabled, within in ((2, 4.3027, 0.05), (10, 2.2281, 1e-3), (60, 2.0003, 1e-4)):   # of tables
+            self.assertAlmostEqual(student_t_of_5_percent(degrees), tabled, delta=within)
 
 
 class RunningMean(unittest.TestCase):
