@@ -72,14 +72,17 @@ def shields_number(run, surface):
                       run.size[1] if run.side_walls else None)
 
 
-def transport_rate(run, start=None, stop=np.inf):
-    """Times (s) and q* of a run between two times; from `analysis.transport_rate.from` on if no start is given."""
-    if "q_star" not in run.series:
-        raise RunFolderError(f"{run.folder / 'series.csv'}: it has no column q_star (analysis.transport_rate in the case).")
+def transport_rate(run, start=None, stop=np.inf, column="q_star"):
+    """Times (s) and q* of a run between two times; from `analysis.transport_rate.from` on if no start is given.
+
+    column: q_s for the flux in m^2/s, which grains without a fluid have as well.
+    """
+    if column not in run.series:
+        raise RunFolderError(f"{run.folder / 'series.csv'}: it has no column {column} (analysis.transport_rate in the case).")
     if start is None:
         start = run.averaged_from("transport_rate")
     time = run.series["time"]
     counted = (time >= start - 1e-9) & (time <= stop + 1e-9)
     if not counted.any():
         raise RunFolderError(f"{run.folder / 'series.csv'}: there is no measurement from {start:g} s on yet.")
-    return time[counted], run.series["q_star"][counted]
+    return time[counted], run.series[column][counted]

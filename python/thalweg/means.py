@@ -80,7 +80,7 @@ def steadiness(values):
 
 
 def in_batches(values):
-    """Means of batches of 1, 2, 4, ... values, the shortest that make fewer than 64; values of an incomplete one are left out."""
+    """Means of batches of 1, 2, 4, ... values, the shortest that make fewer than 64; those of an incomplete one are left out."""
     length = 1
     while len(values) // length >= MOST_BATCHES:
         length *= 2

@@ -74,17 +74,16 @@ def window(run, start=None, stop=None):
 
 def describe_transport(report):
     run = report.run
-    _, rate = bed.transport_rate(run, report.start, report.stop)
-    mean = mean_with_error(rate)
-    report.numbers["q_star"] = mean._asdict()
-    text = (f"q* {mean.mean:.4g} +- {mean.error:.2g}, deviation {mean.deviation:.2g}, {mean.independent:.3g} independent "
-            f"values")
-    verdict = steadiness(rate)
-    report.numbers["q_star"]["steady"] = verdict.steady
+    column, symbol, unit = ("q_star", "q*", "") if "q_star" in run.series else ("q_s", "q_s", " m^2/s")
+    _, rate = bed.transport_rate(run, report.start, report.stop, column)
+    mean, verdict = mean_with_error(rate), steadiness(rate)
+    report.numbers[column] = mean._asdict() | {"steady": verdict.steady}
+    text = (f"{symbol} {mean.mean:.4g} +- {mean.error:.2g}{unit}, deviation {mean.deviation:.2g}, {mean.independent:.3g} "
+            f"independent values")
     if verdict.steady is None:
         text += "; too short a time to tell whether it is steady"
     else:
-        report.numbers["q_star"] |= {"drift": verdict.drift, "drift_error": verdict.error}
+        report.numbers[column] |= {"drift": verdict.drift, "drift_error": verdict.error}
         text += (f"; {'steady' if verdict.steady else 'NOT steady'}: a straight line through it changes by "
                  f"{verdict.drift:+.2g} +- {verdict.error:.2g}")
     report.say("transport", text)
