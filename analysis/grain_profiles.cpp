@@ -54,9 +54,10 @@ std::vector<WeightedBody> weighted_bodies(const Snapshot& snapshot) {
 }  // namespace
 
 GrainProfiles::GrainProfiles(MPI_Comm communicator, const Decomposition& decomposition, double layer,
-                             const GrainProfilesKeys& keys)
+                             const GrainProfilesKeys& keys, double disk_thickness)
     : communicator_(communicator),
       box_(decomposition.box()),
+      width_(disk_thickness > 0.0 ? disk_thickness : box_.size[1]),
       layers_(std::max(1, static_cast<int>(std::lround(box_.size[2] / keys.layer.value_or(layer))))),
       thickness_(box_.size[2] / layers_),
       keys_(keys),
@@ -109,7 +110,7 @@ std::vector<Profile> GrainProfiles::profiles() const {
   Profile kinetic_stress{"kinetic_stress", "Pa", symmetric_names, {n, 6}, {}};
   // Of all measurements together.
   const double room =
-      box_.size[0] * box_.size[1] * thickness_ * static_cast<double>(std::max<std::int64_t>(1, measurements_));
+      box_.size[0] * width_ * thickness_ * static_cast<double>(std::max<std::int64_t>(1, measurements_));
   for (int layer = 0; layer < layers_; ++layer) {
     const double* sum = sums_.data() + static_cast<std::size_t>(layer) * quantities;
     z.values.push_back((layer + 0.5) * thickness_);
@@ -167,7 +168,7 @@ void describe(SectionVisitor& visit, GrainProfilesKeys& keys) {
 std::unique_ptr<Observer> make_observer(const GrainProfilesKeys& keys, const RunFacts& run,
                                         const RunningSystem& system) {
   return std::make_unique<GrainProfiles>(system.communicator, system.decomposition, 0.5 * run.grains->largest_diameter,
-                                         keys);
+                                         keys, run.grains->disk_thickness);
 }
 
 }  // namespace thalweg::analysis

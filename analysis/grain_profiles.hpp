@@ -46,8 +46,10 @@ std::unique_ptr<Observer> make_observer(const GrainProfilesKeys& keys, const Run
 
 class GrainProfiles : public Observer {
 public:
-  // layer: m, where the keys have none; changed so that a whole number of layers fills the box.
-  GrainProfiles(MPI_Comm communicator, const Decomposition& decomposition, double layer, const GrainProfilesKeys& keys);
+  // layer: m, where the keys have none; changed so that a whole number of layers fills the box. disk_thickness: m, by
+  // which layers of disks are wide instead of the box; 0: spheres.
+  GrainProfiles(MPI_Comm communicator, const Decomposition& decomposition, double layer, const GrainProfilesKeys& keys,
+                double disk_thickness = 0.0);
 
   std::string name() const override { return "grain_profiles"; }
   double every() const override { return keys_.every; }
@@ -69,6 +71,7 @@ private:
 
   MPI_Comm communicator_;
   PeriodicBox box_;
+  double width_;  // m, of a layer across
   int layers_;
   double thickness_;  // m, of a layer
   GrainProfilesKeys keys_;

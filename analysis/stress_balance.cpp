@@ -28,6 +28,7 @@ StressBalance::StressBalance(MPI_Comm communicator, const Decomposition& decompo
       given_(static_cast<std::size_t>(2 * n_[2] + 1), 0.0),
       sides_(given_.size(), 0.0),
       held_up_(static_cast<std::size_t>(2 * layers_.count()), 0.0),
+      top_on_grains_(1, 0.0),
       driving_(static_cast<std::size_t>(n_[2] + 1), 0.0) {
   if (decomposition.periodic()[2]) throw std::logic_error("a stress balance needs a top and a bottom");
 }
@@ -39,7 +40,7 @@ void StressBalance::observe(const Snapshot& snapshot) {
   ++measurements_;
   add_fluid(*snapshot.momentum);
   add_grains(snapshot);
-  if (side_walls_) add_grains_at_sides(snapshot);
+  add_grains_at_walls(snapshot);
 }
 
 void StressBalance::add_fluid(const MomentumBook& book) {
@@ -96,23 +97,24 @@ void StressBalance::add_grains(const Snapshot& snapshot) {
   for (std::size_t s = 0; s < sums.size(); ++s) grains_[s] += sums[s];
 }
 
-// Contacts with walls that stand: their nearest point is not above or below the grain.
-void StressBalance::add_grains_at_sides(const Snapshot& snapshot) {
+// Walls by the height at which they act, of which the floor's is 0; the top has a row of its own after the layers.
+void StressBalance::add_grains_at_walls(const Snapshot& snapshot) {
   const GrainView& grains = snapshot.grains;
   if (grains.global_count == 0) return;
+  const double top = n_[2] * spacing_;
   std::vector<int> layer_of_row;
   std::vector<double> terms;
-  const std::vector<char> all(grains.id.size(), 1);
-  snapshot.contacts->for_each_contact_of(all, [&](std::size_t grain, const ContactEnd& contact) {
-    const Vec3& towards = contact.to_partner;
-    if (contact.partner >= 0 || std::abs(towards.z()) > std::hypot(towards.x(), towards.y())) return;
-    const double height = std::clamp(grains.position[grain].z() + contact.arm.z(), 0.0, n_[2] * spacing_);
+  snapshot.contacts->for_each_wall_force([&](std::size_t grain, const ContactEnd& end) {
+    const Vec3& towards = end.to_partner;
+    const double height = std::clamp(grains.position[grain].z() + end.arm.z(), 0.0, top);
+    const bool of_top = towards.z() > std::hypot(towards.x(), towards.y()) && height > top - 1e-6 * spacing_;
     const int layer = layers_.at(height);
-    layer_of_row.push_back(layer);
-    terms.insert(terms.end(), {contact.force.x(), contact.force.x() * (height - layers_.bottom(layer))});
+    layer_of_row.push_back(of_top ? layers_.count() : layer);
+    terms.insert(terms.end(), {end.force.x(), end.force.x() * (height - layers_.bottom(layer))});
   });
-  const std::vector<double> sums = order_free_sums_by_bin(communicator_, layer_of_row, layers_.count(), terms, 2);
-  for (std::size_t s = 0; s < sums.size(); ++s) held_up_[s] += sums[s];
+  const std::vector<double> sums = order_free_sums_by_bin(communicator_, layer_of_row, layers_.count() + 1, terms, 2);
+  for (std::size_t s = 0; s < held_up_.size(); ++s) held_up_[s] += sums[s];
+  top_on_grains_.front() += sums[held_up_.size()];
 }
 
 std::size_t StressBalance::stored_size() const {

@@ -19,8 +19,8 @@
 //   sum of stresses   all of the above added up: grains count with their mean stress wherever they are cut
 //   total stress      the same with grains cut where the layer is: what acts on the parts above a plane
 //   side wall stress  what side walls take of fluid and grains above the plane
-//   driving stress    top + integral from z to the top of rho_f g_x (1 - phi) + rho_s g_x phi, and of what holds held
-//                     grains
+//   driving stress    top, on fluid and on grains + integral from z to the top of rho_f g_x (1 - phi) + rho_s g_x phi,
+//                     and of what holds held grains
 // In steady state total stress and side wall stress together are the driving stress.
 #pragma once
 
@@ -122,7 +122,7 @@ private:
 
   void add_fluid(const MomentumBook& book);
   void add_grains(const Snapshot& snapshot);
-  void add_grains_at_sides(const Snapshot& snapshot);
+  void add_grains_at_walls(const Snapshot& snapshot);
   std::array<double, fluid_columns> fluid_of(int layer) const;
   LayerMeans means_of(int layer) const;
   void set_fluid_means(int layer, LayerMeans& means) const;
@@ -153,14 +153,16 @@ private:
   std::vector<double> grains_;   // grain_columns of each layer
   std::vector<double> given_;    // N, along x, on grains by half planes
   std::vector<double> sides_;    // N, along x, of the fluid on side walls by half planes
-  std::vector<double> held_up_;  // of each layer: N, along x, of side walls on grains, and times the contact's height
-                                 // over the layer's bottom
-  std::vector<double> driving_;  // N/m^3 times fluid cells, along x, of each plane; last: N on the top
+  std::vector<double> held_up_;  // of each layer: N, along x, of walls but the top on grains, and times the height at
+                                 // which they act over the layer's bottom
+  std::vector<double> top_on_grains_;  // one number: N, along x, of the top on grains
+  std::vector<double> driving_;        // N/m^3 times fluid cells, along x, of each plane; last: N on the top
   std::int64_t measurements_ = 0, counted_step_ = -1;
 
   // What a checkpoint holds, in its order.
-  static constexpr std::array stored{&StressBalance::fluid_, &StressBalance::grains_,  &StressBalance::given_,
-                                     &StressBalance::sides_, &StressBalance::held_up_, &StressBalance::driving_};
+  static constexpr std::array stored{&StressBalance::fluid_,        &StressBalance::grains_,  &StressBalance::given_,
+                                     &StressBalance::sides_,        &StressBalance::held_up_, &StressBalance::driving_,
+                                     &StressBalance::top_on_grains_};
 };
 
 }  // namespace thalweg::analysis

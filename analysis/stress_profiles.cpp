@@ -130,12 +130,13 @@ void StressBalance::set_totals(int layer, LayerMeans& means) const {
   const double carried =
       means.kinetic[xz] + means.viscous[xz] + means.subgrid[xz] + means.reynolds[xz] + means.mean_flow[xz];
   means.sum = carried + means.contact[row_xz] + means.grain_fluid[row_xz] + means.lubrication[row_xz];
-  const double walls_on_grains = above(layer, held_up_, 2, 0, 1);
+  const double walls_on_grains = above(layer, held_up_, 2, 0, 1), top_on_grains = top_on_grains_.front();
   means.total = carried + (by_height_above(given_, layer) - above(layer, fluid_force, fluid_lever) -
-                           above(layer, contact_force_x, contact_lever) + walls_on_grains) /
+                           above(layer, contact_force_x, contact_lever) + walls_on_grains + top_on_grains) /
                               area;
   means.sides = (by_height_above(sides_, layer) - walls_on_grains) / area;
-  means.driving = (driven_above(layer) + above(layer, outer_force_x, outer_lever) - driving_.back()) / area;
+  means.driving =
+      (driven_above(layer) + above(layer, outer_force_x, outer_lever) - driving_.back() + top_on_grains) / area;
 }
 
 StressBalance::LayerMeans StressBalance::means_of(int layer) const {

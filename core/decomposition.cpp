@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace thalweg {
@@ -81,10 +83,15 @@ Decomposition Decomposition::balanced(const std::array<std::vector<std::int64_t>
     std::vector<int>& cuts = result.cuts_[a];
     std::int64_t total = 0, sum = 0;
     for (const std::int64_t weight : weights[a]) total += weight;
+    // In fewer bits where products with the number of slabs would not fit.
+    const int spare = std::max(0, static_cast<int>(std::bit_width(static_cast<std::uint64_t>(total))) - 40);
+    std::vector<std::int64_t> of_plane = weights[a];
+    total = 0;
+    for (std::int64_t& weight : of_plane) total += weight >>= spare;
     for (int slab = 1, k = 0; slab < slabs; ++slab) {
       // Before the cell that reaches the share, or behind it, whichever is nearer.
-      while (k < cells_[a] && (sum + weights[a][k]) * slabs <= total * slab) sum += weights[a][k++];
-      const bool behind = k < cells_[a] && (2 * sum + weights[a][k]) * slabs < 2 * total * slab;
+      while (k < cells_[a] && (sum + of_plane[k]) * slabs <= total * slab) sum += of_plane[k++];
+      const bool behind = k < cells_[a] && (2 * sum + of_plane[k]) * slabs < 2 * total * slab;
       cuts[slab] = behind ? k + 1 : k;
     }
     for (int slab = 1; slab < slabs; ++slab) cuts[slab] = std::max(cuts[slab], cuts[slab - 1] + min_cells_per_rank);

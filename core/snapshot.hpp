@@ -150,6 +150,9 @@ public:
   // their own centre; of the other grains' contacts nothing is calculated.
   using ContactEndVisitor = std::function<void(std::size_t, const ContactEnd&)>;
   virtual void for_each_contact_of(std::span<const char> chosen, const ContactEndVisitor& visit) const = 0;
+
+  // The forces of walls on all grains of the view: of contacts, and between near surfaces.
+  virtual void for_each_wall_force(const ContactEndVisitor& /*visit*/) const {}
 };
 
 struct Snapshot {

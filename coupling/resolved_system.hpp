@@ -101,6 +101,7 @@ private:
   void for_each_contact_of(std::span<const char> chosen, const ContactEndVisitor& visit) const override {
     grains_->for_each_contact_of(chosen, visit);
   }
+  void for_each_wall_force(const ContactEndVisitor& visit) const override { grains_->for_each_wall_force(visit); }
 
   void add_wall_forces(std::vector<Figure>& figures) const;
   void forget_map();

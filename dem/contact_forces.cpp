@@ -170,10 +170,18 @@ void for_each_contact_end(const GrainStore& store, const ContactList& list, cons
                 if (wanted(second))
                   visit(second, {(store.radius[second] - half) * n, -force, store.id[first], separation});
               });
+  for_each_wall_contact(store, list, box, walls, materials, [&](std::size_t slot, const ContactEnd& end) {
+    if (wanted(slot)) visit(slot, end);
+  });
+}
+
+void for_each_wall_contact(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
+                           std::span<const Plane> walls, const MaterialTable& materials,
+                           const ContactEndVisitor& visit) {
   visit_walls(store, list, box, walls, materials,
               [&](std::size_t number, const ContactMotion& motion, const Vec3& force) {
                 const auto [grain, wall] = list.walls[number];
-                if (!wanted(grain)) return;
+                if (store.is_ghost(grain)) return;
                 const Vec3 arm = (motion.overlap - store.radius[grain]) * normal_of(motion);
                 visit(grain, {arm, force, -1 - static_cast<GlobalId>(wall), arm});
               });

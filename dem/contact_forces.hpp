@@ -32,4 +32,9 @@ void for_each_contact_end(const GrainStore& store, const ContactList& list, cons
                           std::span<const Plane> walls, const MaterialTable& materials, std::span<const char> chosen,
                           const ContactEndVisitor& visit);
 
+// The same of the contacts with walls only.
+void for_each_wall_contact(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
+                           std::span<const Plane> walls, const MaterialTable& materials,
+                           const ContactEndVisitor& visit);
+
 }  // namespace thalweg::dem

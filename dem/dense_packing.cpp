@@ -52,10 +52,12 @@ public:
     for (const Obstacle& obstacle : obstacles) {
       const Vec3 place = box_.wrapped(obstacle.sphere.position);
       const double radius = growth * obstacle.sphere.radius;
-      obstacles_.push_back({grains.count + obstacle.number, radius, 0.0, {place.x(), place.y(), place.z()}, {}});
       largest_ = std::max(largest_, obstacle.sphere.radius);
+      if (ranks.owns(place))
+        obstacles_.push_back({grains.count + obstacle.number, radius, 0.0, {place.x(), place.y(), place.z()}, {}});
     }
     largest_ = growth * ranks.largest(largest_);
+    spread_obstacles();
   }
 
   bool has_room() const {
@@ -81,11 +83,10 @@ public:
 
   // Whether none overlap after so many iterations.
   bool relax() {
-    const double skin = 0.2 * largest_;
-    double moved = skin;
+    double moved = skin();
     for (int iteration = 0; iteration < most_iterations; ++iteration) {
-      if (moved >= skin) {
-        find_pairs(2.0 * (largest_ + skin));
+      if (moved >= skin()) {
+        find_pairs(reach());
         moved = 0.0;
       }
       if (ranks_.largest(push_apart()) < 1.0 - 1.0 / growth) return true;
@@ -110,6 +111,16 @@ private:
   // Where its centre may be: up to a face of the region, or anywhere along an axis that the region wraps.
   Vec3 lower_of(const PackedBody& body) const { return lower_ + body.margin * keeps_away_; }
   Vec3 upper_of(const PackedBody& body) const { return upper_ - body.margin * keeps_away_; }
+
+  // m, that grains may move before pairs are found again, and the distance of the pairs that may touch until then.
+  double skin() const { return 0.2 * largest_; }
+  double reach() const { return 2.0 * (largest_ + skin()); }
+
+  // To all ranks whose grains may come to touch them.
+  void spread_obstacles() {
+    const std::vector<PackedBody> near = Copies(ranks_, obstacles_, reach()).exchanged(obstacles_);
+    obstacles_.insert(obstacles_.end(), near.begin(), near.end());
+  }
 
   // Pairs of bodies up to this far apart (m), of which one is a grain of this rank; each pair has the lower number
   // first, and pairs come in the order of their numbers, which depends neither on the grid nor on the ranks.
@@ -177,7 +188,7 @@ private:
     return longest;
   }
 
-  // Which grains of this rank the others have copies of, because they are near theirs.
+  // Which bodies of this rank the others have copies of, because they are near their grains.
   class Copies {
   public:
     Copies() = default;

@@ -63,6 +63,7 @@ private:
   void for_each_contact_of(std::span<const char> chosen, const ContactEndVisitor& visit) const override {
     grains_.for_each_contact_of(chosen, visit);
   }
+  void for_each_wall_force(const ContactEndVisitor& visit) const override { grains_.for_each_wall_force(visit); }
 
   std::shared_ptr<ForceField> field_;  // if there is one
   int sub_steps_;

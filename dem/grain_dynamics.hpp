@@ -161,6 +161,8 @@ public:
   // Contacts of some owned grains (chosen[slot] != 0), of a clump's member with the arm from its own centre.
   void for_each_contact_of(std::span<const char> chosen,
                            const std::function<void(std::size_t slot, const ContactEnd& end)>& visit) const;
+  // Of walls on all owned grains: contacts, then lubrication.
+  void for_each_wall_force(const std::function<void(std::size_t slot, const ContactEnd& end)>& visit) const;
 
   // Figures over all ranks, the same bits in any layout; a clump is one grain, with the velocity of its centre, but
   // overlap and contacts are those of its members. Collective.

@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <span>
 #include <utility>
@@ -194,6 +195,7 @@ void GrainDynamics::save(ArchiveWriter& archive, const std::string& group) const
   const int ranks = size_of(communicator_), me = rank_of(communicator_);
   archive.attribute(group + "/walls", static_cast<std::int64_t>(parameters_.walls.size()));
   archive.attribute(group + "/sub_steps", steps_done_);
+  archive.attribute(group + "/time", time());
   assemblies_.save(archive, group, communicator_);
   std::vector<int> home;
   for (std::size_t s = 0; s < store_.owned; ++s) home.push_back(rank_of_row(store_.id[s], global_count_, ranks));
@@ -256,6 +258,8 @@ void GrainDynamics::restore(ArchiveReader& archive, const std::string& group, bo
   // A state saved before walls could move has no count, and no need of one.
   const bool timed = !as_start && archive.has(group + "/sub_steps");
   steps_done_ = timed ? archive.integer_attribute(group + "/sub_steps") : 0;
+  if (timed && archive.has(group + "/time"))  // the sub-steps may be others now, the time is not
+    steps_done_ = std::llround(archive.real_attribute(group + "/time") / parameters_.time_step);
   if (!as_start) assemblies_.load(archive, group);
   check_prescribed_speed();
   if (walls_change_) place_walls(time(), time());

@@ -83,6 +83,12 @@ void GrainDynamics::for_each_contact_of(
   for_each_contact_end(store_, list_, box_, planes_, materials_, chosen, visit);
 }
 
+void GrainDynamics::for_each_wall_force(
+    const std::function<void(std::size_t slot, const ContactEnd& end)>& visit) const {
+  for_each_wall_contact(store_, list_, box_, planes_, materials_, visit);
+  if (parameters_.lubrication) for_each_wall_lubrication(store_, list_, box_, planes_, *parameters_.lubrication, visit);
+}
+
 std::vector<Vec3> GrainDynamics::wall_forces() const {
   const std::size_t walls = planes_.size();
   const std::vector<Vec3> on_grains = wall_contact_forces(store_, list_, box_, planes_, materials_);

@@ -164,12 +164,21 @@ void for_each_lubrication_end(const GrainStore& store, const ContactList& list, 
     if (!store.is_ghost(c.first)) visit(c.first, -near->first_arm * near->normal, near->load.force);
     if (!store.is_ghost(c.second)) visit(c.second, near->second_arm * near->normal, -near->load.force);
   }
+  for_each_wall_lubrication(store, list, box, walls, parameters,
+                            [&visit](std::size_t slot, const ContactEnd& end) { visit(slot, end.arm, end.force); });
+}
+
+void for_each_wall_lubrication(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
+                               std::span<const Plane> walls, const LubricationParameters& parameters,
+                               const std::function<void(std::size_t slot, const ContactEnd& end)>& visit) {
   for (const WallContact& c : list.walls) {
     if (!parameters.walls[c.wall] || store.is_ghost(c.grain)) continue;
     const Plane& wall = walls[c.wall];
-    if (const auto near = between(moving_sphere_of(store, c.grain), wall.seen_from(store.position[c.grain], box),
-                                  wall.velocity, parameters))
-      visit(c.grain, -near->first_arm * near->normal, near->load.force);
+    const auto near = between(moving_sphere_of(store, c.grain), wall.seen_from(store.position[c.grain], box),
+                              wall.velocity, parameters);
+    if (!near) continue;
+    const Vec3 arm = -near->first_arm * near->normal;
+    visit(c.grain, {arm, near->load.force, -1 - static_cast<GlobalId>(c.wall), arm});
   }
 }
 

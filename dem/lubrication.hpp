@@ -18,6 +18,7 @@
 #pragma once
 
 #include "core/periodic_box.hpp"
+#include "core/snapshot.hpp"
 #include "dem/contact_list.hpp"
 #include "dem/moving_grains.hpp"
 #include "dem/walls.hpp"
@@ -67,5 +68,10 @@ using LubricationVisitor = std::function<void(std::size_t slot, const Vec3& arm,
 void for_each_lubrication_end(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
                               std::span<const Plane> walls, const LubricationParameters& parameters,
                               const LubricationVisitor& visit);
+
+// The same of walls only, with the wall.
+void for_each_wall_lubrication(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
+                               std::span<const Plane> walls, const LubricationParameters& parameters,
+                               const std::function<void(std::size_t slot, const ContactEnd& end)>& visit);
 
 }  // namespace thalweg::dem

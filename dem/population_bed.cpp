@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -88,14 +89,17 @@ GrainSeed first_row(const Population& population, const Ranks& ranks) {
   return first;
 }
 
-// Numbers the rows as well.
+// Numbers the rows, and puts disks into the plane of this box.
 void check_rows(Population& population, const PeriodicBox& box, const Ranks& ranks) {
   const GrainSeed first = first_row(population, ranks);
   ranks.on_all([&] {
     for (const BedGrain& row : population.file) check_row(row, first, box);
   });
   GlobalId number = ranks.range_of(static_cast<std::int64_t>(population.file.size())).first;
-  for (BedGrain& row : population.file) row.id = number++;
+  for (BedGrain& row : population.file) {
+    row.id = number++;
+    if (population.thickness > 0.0) row.position.y() = 0.5 * box.size.y();
+  }
   const double largest_radius = 0.5 * population.figures.largest_diameter;
   const double allowed = population.placement.largest_overlap.value_or(PlacementKeys::bed_overlap);
   check_periodic_axes(box, largest_radius, population.thickness > 0.0);
@@ -111,6 +115,7 @@ void take_bed(Population& population, Bed bed, const PeriodicBox& box, const Ran
   about_file([&] { take_rows(population, std::move(bed.grains), {bed.box, bed.periodic}, ranks); });
   if (!population.from_file())
     throw KeyError(file_key, "the file has no grain in the region; give a placement.region in m that holds some");
+  population.figures.fastest = std::max(population.figures.fastest, bed.fastest);
   check_thickness(bed, population.thickness);
   check_box(bed, box);
   about_file([&] { check_rows(population, box, ranks); });

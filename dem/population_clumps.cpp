@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace thalweg::dem {
@@ -52,10 +53,40 @@ std::vector<std::span<const BedGrain>> bodies_of(std::span<const BedGrain> rows)
   return bodies;
 }
 
+namespace {
+
+// From the first member to each (m). A clump may be longer than half a periodic axis, so that the nearest image of the
+// first is not the right one: the way goes from member to near member, each time to the pair that is nearest.
+std::vector<Vec3> places_from_first(std::span<const BedGrain> rows, const PeriodicBox& box) {
+  std::vector<Vec3> places(rows.size(), Vec3::Zero());
+  std::vector<std::size_t> found{0}, left;
+  for (std::size_t n = 1; n < rows.size(); ++n) left.push_back(n);
+  while (!left.empty()) {
+    std::size_t from = 0, next = 0;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const std::size_t known : found)
+      for (std::size_t n = 0; n < left.size(); ++n) {
+        const double distance = box.difference(rows[left[n]].position, rows[known].position).norm();
+        if (distance < nearest) nearest = distance, from = known, next = n;
+      }
+    const std::size_t member = left[next];
+    const Vec3 by_way = places[from] + box.difference(rows[member].position, rows[from].position);
+    places[member] = box.difference(rows[member].position, rows.front().position);  // the same but for whole boxes
+    for (int axis = 0; axis < 3; ++axis)
+      if (box.periodic[static_cast<std::size_t>(axis)])
+        places[member][axis] += box.size[axis] * std::round((by_way[axis] - places[member][axis]) / box.size[axis]);
+    found.push_back(member);
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(next));
+  }
+  return places;
+}
+
+}  // namespace
+
 ClumpSeed clump_from(std::span<const BedGrain> rows, const PeriodicBox& box, double thickness) {
   const BedGrain& first = rows.front();
   std::vector<Sphere> members;
-  for (const BedGrain& row : rows) members.push_back({box.difference(row.position, first.position), row.radius});
+  for (const Vec3& place : places_from_first(rows, box)) members.push_back({place, rows[members.size()].radius});
   ClumpSeed clump;
   clump.shape = std::make_shared<const ClumpShape>(clump_shape(members, thickness));
   clump.density = first.density;

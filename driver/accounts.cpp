@@ -10,7 +10,21 @@ namespace {
 std::string largest_path(const std::string& figure) { return "largest/" + figure; }
 std::string since_path(const std::string& observer) { return "run/since_" + observer; }
 
+// Whether the archive has means of measurements at another interval, which this run's could not be counted with: all
+// would weigh the same.
+bool has_other_weights(ArchiveReader& archive, const analysis::Observer& observer, double series_every) {
+  const std::string path = interval_path(observer.name());
+  return archive.has(observer.name() + "/mean_from") && archive.has(path) &&
+         archive.real_attribute(path) != interval_of(observer, series_every);
+}
+
 }  // namespace
+
+double interval_of(const analysis::Observer& observer, double series_every) {
+  return observer.every() > 0.0 ? observer.every() : series_every;
+}
+
+std::string interval_path(const std::string& observer) { return "run/interval_" + observer; }
 
 void Accounts::save(ArchiveWriter& archive) const {
   archive.attribute("largest/from", largest_from);
@@ -19,7 +33,7 @@ void Accounts::save(ArchiveWriter& archive) const {
   for (const auto& [observer, time] : since) archive.attribute(since_path(observer), time);
 }
 
-Accounts Accounts::load(ArchiveReader& archive, const System& system, Observers& observers) {
+Accounts Accounts::load(ArchiveReader& archive, const System& system, Observers& observers, double series_every) {
   Accounts accounts;
   accounts.largest_from = archive.has("largest/from") ? archive.real_attribute("largest/from") : system.time();
   for (Figure figure : system.figures())
@@ -29,7 +43,7 @@ Accounts Accounts::load(ArchiveReader& archive, const System& system, Observers&
     }
   for (const auto& observer : observers) {
     const std::string name = observer->name(), path = since_path(name);
-    if (!observer->load(archive))
+    if (has_other_weights(archive, *observer, series_every) || !observer->load(archive))
       accounts.since[name] = system.time();
     else if (archive.has(path))
       accounts.since[name] = archive.real_attribute(path);

@@ -14,6 +14,11 @@ namespace thalweg::driver {
 
 using Observers = std::vector<std::unique_ptr<analysis::Observer>>;
 
+// s, between the measurements of an observer, which go with the rows of the series where it has no interval of its own;
+// and the attribute of a checkpoint that keeps it.
+double interval_of(const analysis::Observer& observer, double series_every);
+std::string interval_path(const std::string& observer);
+
 struct Accounts {
   std::vector<Figure> largest;  // of the system, since largest_from
   double largest_from = 0.0;    // s, simulated
@@ -24,8 +29,8 @@ struct Accounts {
   void save(ArchiveWriter& archive) const;
 
   // Loads the observers as well. What the archive does not have begins at its time. `system` is loaded already.
-  // Collective.
-  static Accounts load(ArchiveReader& archive, const System& system, Observers& observers);
+  // Means of measurements at another interval are not taken over either. Collective.
+  static Accounts load(ArchiveReader& archive, const System& system, Observers& observers, double series_every);
 
   // The results of an observer with the time from which they really count: mean_from, or since where it has none.
   std::vector<Figure> results_of(const analysis::Observer& observer) const;

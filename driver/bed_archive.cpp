@@ -16,9 +16,11 @@ namespace {
 
 std::string group_of(std::size_t population) { return fmt::format("bed_{}", population); }
 
-// grains: of this rank, after those of lower ranks.
+// The rows of this rank come after those of lower ranks. Velocities are not kept, but how fast the fastest was, by
+// which the watchdog goes.
 void save_bed(ArchiveWriter& archive, MPI_Comm communicator, const std::string& group,
-              const std::vector<BedGrain>& grains) {
+              const dem::Population& population) {
+  const std::vector<BedGrain>& grains = population.file;
   std::vector<std::int64_t> clump;
   std::vector<double> radius, density, position;
   for (const BedGrain& grain : grains) {
@@ -32,6 +34,7 @@ void save_bed(ArchiveWriter& archive, MPI_Comm communicator, const std::string& 
   archive.write(group + "/density", density, share.box());
   archive.write(group + "/position", position, share.box(3));
   archive.write(group + "/clump", clump, share.box());
+  archive.attribute(group + "/fastest", population.figures.fastest);
 }
 
 std::optional<Bed> load_bed(io::Hdf5Reader& file, const std::string& group, const Ranks& ranks) {
@@ -47,6 +50,7 @@ std::optional<Bed> load_bed(io::Hdf5Reader& file, const std::string& group, cons
   for (std::size_t n = 0; n < radius.size(); ++n)
     bed.grains.push_back({share.first + static_cast<GlobalId>(n), radius[n], density[n], Vec3(&position[3 * n]),
                           Vec3::Zero(), Vec3::Zero(), clump[n]});
+  if (file.has(group + "/fastest")) bed.fastest = file.real_attribute(group + "/fastest");
   return bed;
 }
 
@@ -54,7 +58,7 @@ std::optional<Bed> load_bed(io::Hdf5Reader& file, const std::string& group, cons
 
 void save_beds(ArchiveWriter& archive, MPI_Comm communicator, const Case& c) {
   for (std::size_t n = 0; n < c.grains.size(); ++n)
-    if (c.grains[n].from_file()) save_bed(archive, communicator, group_of(n), c.grains[n].file);
+    if (c.grains[n].from_file()) save_bed(archive, communicator, group_of(n), c.grains[n]);
 }
 
 KnownBeds beds_of(std::vector<std::filesystem::path> checkpoints) {

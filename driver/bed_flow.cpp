@@ -15,7 +15,7 @@ constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 }  // namespace
 
 FlowNumbers flow_numbers(const Case& c) {
-  FlowNumbers flow{nothing, nothing, nothing, nothing, false, nothing, nothing, nothing, nothing, nothing, nothing};
+  FlowNumbers flow{nothing, nothing, nothing, nothing, 0, nothing, nothing, nothing, nothing, nothing, nothing};
   if (!has_fluid(c) || c.grains.empty()) return flow;
   const Vec3 gravity = gravity_vector(c.gravity);
   const ReferenceGrain grain = reference_grain(c);
@@ -29,7 +29,7 @@ FlowNumbers flow_numbers(const Case& c) {
   flow.bed_height = settled_height(c);
   flow.depth = c.domain.size.z() - flow.bed_height;
   if (flow.depth <= 0.0 || gravity.x() <= 0.0 || c.fluid.mean_velocity) return flow;
-  flow.side_walls = between_side_walls(c);
+  flow.side_walls = side_walls(c);
   flow.hydraulic_radius = hydraulic_radius(c, flow.depth);
   flow.shields_depth = gravity.x() * flow.depth / (excess * g * d);
   flow.shields_hydraulic = gravity.x() * flow.hydraulic_radius / (excess * g * d);
@@ -48,11 +48,12 @@ double settled_height(const Case& c) {
   return grain_volume(c) / (settled_fraction(c) * c.domain.size.x() * c.domain.size.y());
 }
 
-bool between_side_walls(const Case& c) { return c.domain.faces[y_low].drags() && c.domain.faces[y_high].drags(); }
+int side_walls(const Case& c) { return c.domain.faces[y_low].drags() + c.domain.faces[y_high].drags(); }
 
 double hydraulic_radius(const Case& c, double depth) {
   const double width = c.domain.size.y();
-  return between_side_walls(c) ? depth * width / (2.0 * depth + width) : depth;
+  const int walls = side_walls(c);
+  return walls == 0 ? depth : depth * width / (walls * depth + width);
 }
 
 double settled_fraction(const Case& c) {

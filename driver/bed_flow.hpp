@@ -10,14 +10,14 @@ namespace thalweg::driver {
 inline constexpr double neutral_density = 1e-6;
 
 // Shields number and depth follow Zhang et al. 2022: tau_b = rho_f g_x H far from side walls, rho_f g_x H W/(2 H + W)
-// between two of them, and tau* = tau_b / ((rho_s - rho_f) g d). g_x is the part of gravity along the bed, g times the
-// sine of its angle. Not a number where a case lacks what a number needs.
+// between two of them, rho_f g_x H W/(H + W) beside one, and tau* = tau_b / ((rho_s - rho_f) g d). g_x is the part of
+// gravity along the bed, g times the sine of its angle. Not a number where a case lacks what a number needs.
 struct FlowNumbers {
-  double slope;             // tangent of the bed's angle
-  double bed_height;        // m: the grains settled at settled_fraction()
-  double depth;             // m: from there to the top
-  double hydraulic_radius;  // m: H W/(2 H + W) between side walls, H without
-  bool side_walls;
+  double slope;              // tangent of the bed's angle
+  double bed_height;         // m: the grains settled at settled_fraction()
+  double depth;              // m: from there to the top
+  double hydraulic_radius;   // m: H W/(n H + W) beside n side walls
+  int side_walls;            // n, 0 to 2
   double shields_depth;      // tau* of the depth-slope product
   double shields_hydraulic;  // tau* of the hydraulic radius
   double friction_velocity;  // m/s, of shields_hydraulic
@@ -34,10 +34,10 @@ double slope_for(const FlowNumbers& flow, double shields);
 // m, of the grains settled at settled_fraction(); 0 without gravity across the bed.
 double settled_height(const Case& c);
 
-// Whether the faces on both sides of y hold the flow back.
-bool between_side_walls(const Case& c);
+// How many of the faces across y hold the flow back, 0 to 2.
+int side_walls(const Case& c);
 
-// m, of a flow of this depth (m): H W/(2 H + W) between such side walls, else H.
+// m, of a flow of this depth (m): H W/(n H + W) beside n such side walls.
 double hydraulic_radius(const Case& c, double depth);
 
 // What part of a settled bed's volume is grain, 1: 0.6 (random loose to close packing is 0.55 to 0.64); 0.554 between

@@ -3,10 +3,12 @@
 #include "core/error.hpp"
 #include "dem/population_bed.hpp"
 #include "driver/case_checks.hpp"
+#include "driver/grain_setup.hpp"
 #include "io/bed_file.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -37,9 +39,13 @@ Bed read_bed(const std::filesystem::path& path, const io::YamlDocument& document
 }  // namespace
 
 void fill_in_grains(Case& c, const io::YamlDocument& document, const KnownBeds& known, const Ranks& ranks) {
-  const PeriodicBox box{c.domain.size, periodic_axes(c.domain)};
+  const PeriodicBox box = grain_box(c);
   for (std::size_t n = 0; n < c.grains.size(); ++n) {
     const std::string key = fmt::format("grains.{}", n);
+    if (std::optional<dem::RegionKeys>& region = c.grains[n].placement.region)
+      for (int axis = 0; axis < 3; ++axis)
+        if (region->upper[axis] <= c.domain.size[axis])
+          region->upper[axis] = std::min(region->upper[axis], box.size[axis]);
     std::optional<Bed> bed;
     if (std::optional<std::string>& file = c.grains[n].placement.file) {
       const std::filesystem::path path = absolute_path(*file, document);

@@ -63,8 +63,15 @@ bool is_in_the_checkpoint(std::string_view key) {
     return key.starts_with(section) && (key.size() == section.size() || key[section.size()] == '.');
   };
   if (std::any_of(state.begin(), state.end(), is_or_is_below)) return true;
-  return is_or_is_below("grains") && key.find(".contact") == std::string_view::npos &&
-         key.find(".motion") == std::string_view::npos;
+  return is_or_is_below("grains") && key.find(".contact") == std::string_view::npos;
+}
+
+// Where a wall is follows from its motion since the start of the run, so that another one would move it at once. A
+// fluid's walls move in their own plane.
+bool places_a_wall(std::string_view key, bool dry) {
+  const bool of_motion =
+      key.find(".velocity") != std::string_view::npos || key.find(".oscillation") != std::string_view::npos;
+  return of_motion && (key.starts_with("walls.") || (dry && key.starts_with("domain.boundaries.")));
 }
 
 }  // namespace
@@ -79,13 +86,20 @@ std::vector<CaseChange> case_changes(const std::string& before, const std::strin
   return changes;
 }
 
-void refuse_changes_of_state(const std::vector<CaseChange>& changes) {
-  for (const CaseChange& change : changes)
+void refuse_changes_of_state(const std::vector<CaseChange>& changes, bool dry) {
+  for (const CaseChange& change : changes) {
+    if (places_a_wall(change.key, dry))
+      throw InputError(fmt::format(
+          "{} = {}: the run that is to go on {}. A wall is where its motion since the start has brought it, and "
+          "would jump; set the key back, or begin a new run from that one with initial.from, with the wall "
+          "where it is now.",
+          change.key, change.now, change.before == "none" ? "does not have this key" : "has " + change.before));
     if (is_in_the_checkpoint(change.key))
       throw InputError(fmt::format(
           "{} = {}: the run that is to go on {}. Grains and lattice are in its checkpoint; set the key back, or begin "
           "a new run from that one with initial.from.",
           change.key, change.now, change.before == "none" ? "does not have this key" : "has " + change.before));
+  }
 }
 
 }  // namespace thalweg::driver

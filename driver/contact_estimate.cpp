@@ -59,8 +59,7 @@ Overlaps expected_overlaps(const Case& c) {
 
 double stress_ratio_at_base(const Case& c) {
   const Vec3 gravity = gravity_vector(c.gravity);
-  if (c.grains.empty() || between_side_walls(c) || periodic_axes(c.domain)[2] || gravity.x() <= 0.0 ||
-      gravity.z() >= 0.0)
+  if (c.grains.empty() || side_walls(c) > 0 || periodic_axes(c.domain)[2] || gravity.x() <= 0.0 || gravity.z() >= 0.0)
     return 0.0;
   if (c.system == SystemKind::model_fluid || (has_fluid(c) && c.fluid.mean_velocity)) return 0.0;
   const ReferenceGrain grain = reference_grain(c);

@@ -53,9 +53,9 @@ std::string slope_text(const FlowNumbers& flow, double shields) {
 
 void add_slope(const FlowNumbers& flow, Lines& lines) {
   lines.push_back(fmt::format("Shields    {:.4g} from depth and slope", flow.shields_depth) +
-                  (flow.side_walls ? fmt::format("; {:.4g} from the hydraulic radius between the side walls",
-                                                 flow.shields_hydraulic)
-                                   : ""));
+                  (flow.side_walls > 0 ? fmt::format("; {:.4g} from the hydraulic radius between the side walls",
+                                                     flow.shields_hydraulic)
+                                       : ""));
   lines.push_back(fmt::format("slope      is {:.4g} times the Shields number at this depth: {}, {}",
                               flow.slope / flow.shields_hydraulic, slope_text(flow, 0.03), slope_text(flow, 0.1)));
   lines.push_back(fmt::format("Reynolds   {:.4g} of a grain at the friction velocity {:.3g} m/s",

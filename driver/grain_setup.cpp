@@ -1,8 +1,10 @@
 #include "driver/grain_setup.hpp"
 
 #include "dem/population_seeds.hpp"
+#include "driver/case_checks.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace thalweg::driver {
 
@@ -43,10 +45,19 @@ std::vector<dem::Plane> planes_of(const Case& c, const PeriodicBox& box, const d
   return planes;
 }
 
-// As the case gives it, on any number of ranks: cells times spacing may differ from it in the last bit.
-PeriodicBox box_of(const Case& c) { return {c.domain.size, periodic_axes(c.domain)}; }
-
 }  // namespace
+
+PeriodicBox grain_box(const Case& c) {
+  constexpr double rounding = 1e-12;
+  PeriodicBox box{c.domain.size, periodic_axes(c.domain)};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double given = box.size[axis];
+    const double whole = cells_of(c.domain)[static_cast<std::size_t>(axis)] * c.domain.spacing;
+    const double apart = std::abs(whole - given);
+    if (apart > rounding * given && apart <= whole_number_tolerance * given) box.size[axis] = whole;
+  }
+  return box;
+}
 
 dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box) {
   dem::GrainParameters parameters;
@@ -66,11 +77,11 @@ dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box) {
   return parameters;
 }
 
-dem::GrainSeeds grain_seeds(const Case& c) { return dem::grain_seeds(c.grains, dem::PlacingRanks(box_of(c))); }
+dem::GrainSeeds grain_seeds(const Case& c) { return dem::grain_seeds(c.grains, dem::PlacingRanks(grain_box(c))); }
 
 dem::GrainSeeds grain_seeds(const Case& c, MPI_Comm communicator, const Decomposition& decomposition) {
   const double reach = (1.0 + dem::allowed_initial_overlap) * largest_extent(c);  // of two centres that touch
-  return dem::grain_seeds(c.grains, dem::PlacingRanks(box_of(c), communicator, decomposition, reach));
+  return dem::grain_seeds(c.grains, dem::PlacingRanks(grain_box(c), communicator, decomposition, reach));
 }
 
 }  // namespace thalweg::driver

@@ -9,6 +9,10 @@
 
 namespace thalweg::driver {
 
+// Where the grains are: the domain, as the case gives its size, or where that is not quite a whole number of cells, as
+// the cells make it. The same on any number of ranks.
+PeriodicBox grain_box(const Case& c);
+
 // Contact law, time step, sub-steps, skin, rigid assemblies, and the walls: a plane with the walls' friction at every
 // non-periodic face, in the order of the case's faces, then those of the section walls. The body force, ghost width and
 // attached columns are left to the caller.

@@ -137,7 +137,7 @@ double share_of_grains(const Case& c, const GrainsOfCase& grains, const Decompos
     // Beyond a periodic face there are grains as well.
     const bool around = decomposition.periodic()[a] && there.length() >= c.domain.size[a];
     const Span both = around ? mine : Span{std::max(mine.lower, there.lower), std::min(mine.upper, there.upper)};
-    share *= both.length() / there.length();
+    share *= std::min(1.0, both.length() / there.length());
   }
   return share;
 }
@@ -164,7 +164,7 @@ RankWork work_of(const Case& c, const GrainsOfCase& grains, const Decomposition&
   work.ghosts = share_of_grains(c, grains, decomposition, rank, grains.reach) * count - work.grains;
   work.memory +=
       (work.grains + work.ghosts) * bytes_of_grain(c, decomposition.ranks()) + work.grains / count * grains.links;
-  work.memory += bytes_of_bed_rows(c, decomposition.ranks());
+  work.memory += bytes_of_bed_rows(c, decomposition.ranks()) + bytes_of_sizes(c);
   work.memory = std::max(work.memory, bytes_of_program() + bytes_of_placing(c, decomposition.ranks()));
   if (decomposition.ranks() == 1) return work;
   const double beside = neighbours(decomposition, rank, [](int axes) { return axes > 0; });

@@ -27,6 +27,7 @@
 #include "driver/work_cuts.hpp"
 #include "io/atomic_file.hpp"
 #include "io/bed_file.hpp"
+#include "io/folder_lock.hpp"
 #include "loop/progress.hpp"
 #include "loop/stop_request.hpp"
 
@@ -84,7 +85,7 @@ std::vector<CaseChange> changes_since(const Places& places, const Case& c) {
   if (places.origin.empty()) return {};
   const fs::path before = io::RunFolder(places.origin).case_of(places.checkpoints.front());
   std::vector<CaseChange> changes = case_changes(io::read_text(before), resolved_yaml(c));
-  refuse_changes_of_state(changes);
+  refuse_changes_of_state(changes, !has_fluid(c));
   return changes;
 }
 
@@ -123,14 +124,18 @@ void print_header(const Case& c, RunIdentity& identity, const System& system, co
   identity.warnings = static_cast<std::int64_t>(all.size());
 }
 
-// step: of the state the run begins with.
-void prepare_folder(const Places& places, const Case& c, const Command& command, std::int64_t step,
-                    MPI_Comm communicator, loop::Log& log) {
+// step: of the state the run begins with. Returns what keeps others out of the folder, on the first rank.
+io::FolderLock prepare_folder(const Places& places, const Case& c, const Command& command, std::int64_t step,
+                              MPI_Comm communicator, loop::Log& log) {
+  io::FolderLock lock;
   on_first_rank(communicator, [&] {
-    if (places.same_folder)
+    lock = io::FolderLock(places.folder.path());
+    if (places.same_folder) {
       places.folder.keep_case(step);
-    else
+      places.folder.go_on_from(step);
+    } else {
       places.folder.create(command.overwrite);
+    }
     std::error_code ignored;
     fs::remove(places.folder.stop(), ignored);     // meant an earlier run
     fs::remove(places.folder.summary(), ignored);  // told of one
@@ -139,6 +144,7 @@ void prepare_folder(const Places& places, const Case& c, const Command& command,
     io::make_folder(places.folder.checkpoints());
     log.copy_to(places.folder.log().string());
   });
+  return lock;
 }
 
 void print_outcome(const RunIdentity& identity, const loop::LoopRecord& record, const System& system,
@@ -208,7 +214,7 @@ void set_end(const Case& c, loop::LoopPlan& plan) {
   } else if (c.run.until_steady) {
     plan.enough = {{continuum::ContinuumSystem::unsteadiness_figure, c.run.until_steady->unsteadiness}};
     plan.enough_means = "steady";
-    plan.steps_between_looks_for_enough = 1;
+    plan.steps_between_looks_for_enough = 1;  // its steps are long
   } else if (c.system == SystemKind::model_fluid && c.model_fluid.ramp) {
     plan.enough = {{dem::ModelFluidField::hold_left_figure, 0.0}};
     plan.enough_means = "motion without end";
@@ -264,7 +270,7 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
     throw InputError(fmt::format("{} is at {:.6g} s already and the run ends at {:.6g} s: give a later --until.",
                                  beginning.checkpoint.string(), system->time(), c.run.until));
 
-  prepare_folder(places, c, command, system->step(), communicator, log);
+  const io::FolderLock lock = prepare_folder(places, c, command, system->step(), communicator, log);
   RunIdentity identity{c.name, name_of(c.system), command.line, c.run.until, layout, size_of(communicator)};
   if (!c.grains.empty()) identity.reference = reference_grain(c);
   print_header(c, identity, *system, places, beginning, bandwidth, communicator, log);
@@ -284,6 +290,7 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   plan.write_at_start = !places.same_folder;
   output.add_to(plan);
   loop::TimeLoop time_loop(communicator, *system, observers, plan, log);
+  output.begin_series(time_loop.row());
   try {
     time_loop.run();
     if (!c.grains.empty()) io::write_bed_file(communicator, places.folder.bed(), system->snapshot());

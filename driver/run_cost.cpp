@@ -43,11 +43,14 @@ double bytes_of_grain(const Case& c, int ranks) {
   return grain_bytes + (c.output.grains.every > 0.0 ? frame_row_bytes : checkpoint_row_bytes);
 }
 double bytes_of_placing(const Case& c, int ranks) {
-  constexpr double position = 24.0, random_sphere = 130.0;  // in the case, on every rank; around a rank's block
+  // In the case, on every rank: a position, and what a diameter takes while the median of all is found; around a rank's
+  // block.
+  constexpr double position = 24.0, diameter = 50.0, random_sphere = 130.0;
   double bytes = 0.0;
   for (const dem::Population& population : c.grains) {
     if (population.from_file()) continue;
     const auto rows = static_cast<double>(population.row_count());
+    bytes += diameter * static_cast<double>(population.diameters.size());
     if (!population.placement.positions.empty())
       bytes += position * rows;
     else if (population.placement.pattern != dem::PlacementPattern::uniform)
@@ -59,6 +62,13 @@ double bytes_of_bed_rows(const Case& c, int ranks) {
   double rows = 0.0;
   for (const dem::Population& population : c.grains) rows += static_cast<double>(population.figures.rows);
   return rows / ranks * sizeof(BedGrain);
+}
+double bytes_of_sizes(const Case& c) {
+  double bytes = 0.0;
+  for (const dem::Population& population : c.grains)
+    bytes += static_cast<double>(population.diameters.size()) * sizeof(double) +
+             static_cast<double>(population.figures.sizes.size()) * sizeof(dem::SizeCount);
+  return bytes;
 }
 double bytes_of_links(const Case& c) { return link_count(c) * link_bytes; }
 

@@ -80,16 +80,18 @@ void RunOutput::add_to(loop::LoopPlan& plan) {
                             [this](const Snapshot&) { write_records(); }});
 }
 
+void RunOutput::begin_series(const std::vector<Figure>& row) {
+  if (case_.output.series.every <= 0.0) return;
+  std::vector<io::SeriesTable::Column> columns;
+  for (const std::vector<Figure>& figures : {row, constants_})
+    for (const Figure& figure : figures) columns.push_back({figure.name, figure.unit});
+  series_ = std::make_unique<io::SeriesTable>(communicator_, folder_.series(), columns, continue_from_);
+}
+
 void RunOutput::write_row(double time, const std::vector<Figure>& measured) {
-  std::vector<Figure> row = measured;
-  row.insert(row.end(), constants_.begin(), constants_.end());
-  if (!series_) {
-    std::vector<io::SeriesTable::Column> columns;
-    for (const Figure& figure : row) columns.push_back({figure.name, figure.unit});
-    series_ = std::make_unique<io::SeriesTable>(communicator_, folder_.series(), columns, continue_from_);
-  }
   std::vector<double> values;
-  for (const Figure& figure : row) values.push_back(figure.value);
+  for (const std::vector<Figure>& figures : {measured, constants_})
+    for (const Figure& figure : figures) values.push_back(figure.value);
   series_->append(time, values);
 }
 
@@ -111,6 +113,9 @@ void RunOutput::write_records() {
 
 std::uint64_t RunOutput::write_checkpoint(const loop::LoopRecord& record) {
   write_records();
+  // A restart counts on what lies beside the checkpoint.
+  for (auto& [observer, file] : records_) file.put_on_disk();
+  if (series_) series_->put_on_disk();
   const std::filesystem::path path = folder_.checkpoint(system_.step());
   write_checkpoint_file(communicator_, path, case_, system_, observers_, {record.largest, record.largest_from, since_});
   std::uint64_t bytes = 0;
@@ -140,7 +145,10 @@ void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& p
   accounts.save(archive);
   save_beds(archive, communicator, c);
   system.save(archive);
-  for (const auto& observer : observers) observer->save(archive);
+  for (const auto& observer : observers) {
+    observer->save(archive);
+    archive.attribute(interval_path(observer->name()), interval_of(*observer, c.output.series.every));
+  }
   archive.close();
 }
 
@@ -160,7 +168,7 @@ Accounts read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path
     throw InputError(fmt::format("{} holds a run with system: {}, but this case has system: {}.", path.string(), saved,
                                  name_of(c.system)));
   system.load(archive);
-  return Accounts::load(archive, system, observers);
+  return Accounts::load(archive, system, observers, c.output.series.every);
 }
 
 std::filesystem::path read_first_whole_checkpoint(MPI_Comm communicator,

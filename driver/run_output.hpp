@@ -35,6 +35,9 @@ public:
   // Schedules and actions for the time loop; they refer to this object.
   void add_to(loop::LoopPlan& plan);
 
+  // The table that rows with these figures go to. Throws InputError where the folder's has other columns. Collective.
+  void begin_series(const std::vector<Figure>& row);
+
 private:
   void add_grains(const std::filesystem::path& folder, const std::string& name, const io::GrainOutputKeys& keys,
                   const io::GrainSelectionKeys& selection);
@@ -52,7 +55,7 @@ private:
   std::map<std::string, double> since_;
   std::optional<double> continue_from_;
   std::vector<Figure> constants_;                           // of the run, in every row of the series
-  std::unique_ptr<io::SeriesTable> series_;                 // from the first row on: only then the columns are known
+  std::unique_ptr<io::SeriesTable> series_;                 // from begin_series() on, if there is to be one
   std::vector<std::pair<double, io::GrainSeries>> grains_;  // each with the time between its frames, s
   std::vector<std::pair<double, io::FluidSeries>> fluid_;   // likewise
   std::vector<std::pair<analysis::Observer*, io::RecordFile>> records_;

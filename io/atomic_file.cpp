@@ -7,11 +7,13 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <sstream>
+#include <vector>
 
 namespace thalweg::io {
 
@@ -51,6 +53,8 @@ void write_text_durably(const std::filesystem::path& path, const std::string& te
     throw RunError(fmt::format("{}: cannot write the file: {}.", path.string(), std::strerror(errno)));
 }
 
+bool put_on_disk(const std::filesystem::path& path) { return sync(path); }
+
 bool put_on_disk(const std::filesystem::path& from, const std::filesystem::path& to) {
   return sync(from) && std::rename(from.c_str(), to.c_str()) == 0 && sync(std::filesystem::absolute(to).parent_path());
 }
@@ -70,12 +74,30 @@ bool create_file(const std::filesystem::path& path) {
 
 bool can_create(const std::filesystem::path& path) { return create_file(path) && std::remove(path.c_str()) == 0; }
 
-bool reserve_on_disk(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t bytes) {
+bool reserve_on_disk(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t bytes,
+                     std::uint64_t written_to) {
   const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
   if (file < 0) return false;
   const int error = ::fallocate(file, 0, static_cast<off_t>(offset), static_cast<off_t>(bytes)) == 0 ? 0 : errno;
   ::close(file);
-  return error == 0 || error == EOPNOTSUPP || error == ENOSYS;  // a file system that cannot promise
+  if (error != EOPNOTSUPP && error != ENOSYS) return error == 0;
+  const std::uint64_t from = std::max(offset, written_to), to = offset + bytes;
+  return from >= to || fill_with_zeros(path, from, to - from);
+}
+
+bool fill_with_zeros(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t bytes) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  if (file < 0) return false;
+  const std::vector<char> zeros(static_cast<std::size_t>(std::min<std::uint64_t>(bytes, std::uint64_t{1} << 22)), 0);
+  bool good = true;
+  while (good && bytes > 0) {
+    const ssize_t done =
+        ::pwrite(file, zeros.data(), std::min<std::uint64_t>(bytes, zeros.size()), static_cast<off_t>(offset));
+    good = done > 0;
+    if (good) offset += static_cast<std::uint64_t>(done), bytes -= static_cast<std::uint64_t>(done);
+  }
+  good = good && ::fdatasync(file) == 0;
+  return ::close(file) == 0 && good;
 }
 
 void make_folder(const std::filesystem::path& path) {

@@ -13,6 +13,9 @@ void write_text_atomically(const std::filesystem::path& path, const std::string&
 // The same, and it outlasts a loss of power once this returns.
 void write_text_durably(const std::filesystem::path& path, const std::string& text);
 
+// Waits until the data of a file are on the disk. False if that fails.
+bool put_on_disk(const std::filesystem::path& path);
+
 // Waits until the data of `from` are on the disk, then renames it to `to` and waits for the folder. False if that
 // fails.
 bool put_on_disk(const std::filesystem::path& from, const std::filesystem::path& to);
@@ -27,8 +30,13 @@ bool create_file(const std::filesystem::path& path);
 bool can_create(const std::filesystem::path& path);
 
 // Takes the room for `bytes` bytes from `offset` on the disk, false if there is none. A collective write through MPI-IO
-// does not always report that the disk is full (Open MPI's does not), so the room is taken beforehand.
-bool reserve_on_disk(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t bytes);
+// does not always report that the disk is full (Open MPI's does not), so the room is taken beforehand. Where the file
+// system cannot promise it (NFS before 4.2, Lustre before 2.14), zeros are written there, but not before `written_to`.
+bool reserve_on_disk(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t bytes,
+                     std::uint64_t written_to = 0);
+
+// Writes zeros and waits until they are on the disk; false if that fails.
+bool fill_with_zeros(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t bytes);
 
 // Creates a folder and its parents if they are missing. Throws RunError.
 void make_folder(const std::filesystem::path& path);

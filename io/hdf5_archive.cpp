@@ -244,7 +244,7 @@ void Hdf5Writer::close() {
   // The tables that are still to be written need room first: where writing them fails on one rank only, the ranks can
   // no longer close the file together. HDF5 gives back what is too much.
   file_->agree(rank_of(file_->communicator) != 0 ||
-               reserve_on_disk(file_->partial, 0, file_->data_end + file_->tables));
+               reserve_on_disk(file_->partial, 0, file_->data_end + file_->tables, file_->data_end));
   file_->agree(H5Fflush(file_->file, H5F_SCOPE_GLOBAL) >= 0);
   file_->agree(H5Fclose(file_->file.release()) >= 0);
   bool renamed = true;

@@ -2,12 +2,14 @@
 
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
+#include "io/atomic_file.hpp"
 #include "io/hdf5_handle.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <string>
 
 namespace thalweg::io {
 namespace {
@@ -46,6 +48,9 @@ void write_number(hid_t object, const std::string& name, double value) {
   write_attribute(object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value);
 }
 
+// What was written goes to the file now, where it shows whether there is room: closing would not say.
+void flush(hid_t dataset) { must(H5Dflush(dataset)); }
+
 void describe(hid_t dataset, const Profile& array) {
   write_text(dataset, "unit", array.unit);
   if (!array.components.empty()) write_text(dataset, "components", fmt::format("{}", fmt::join(array.components, " ")));
@@ -59,6 +64,7 @@ void write_numbers(hid_t parent, const WholeNumbers& numbers) {
       H5Dclose);
   if (count > 0) must(H5Dwrite(dataset, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.values.data()));
   write_text(dataset, "unit", "1");
+  flush(dataset);
 }
 
 void write_array(hid_t parent, const Profile& array) {
@@ -71,11 +77,23 @@ void write_array(hid_t parent, const Profile& array) {
   if (!array.values.empty())
     must(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values.data()));
   describe(dataset, array);
+  flush(dataset);
 }
 
+// The name with the next number at its end: event_000009, event_000010.
+std::string next_name(const std::string& name) {
+  const std::size_t digits = name.find_last_not_of("0123456789") + 1;
+  const long long number = digits < name.size() ? std::stoll(name.substr(digits)) : 0;
+  return fmt::format("{}{:0{}}", name.substr(0, digits), number + 1, name.size() - digits);
+}
+
+// Under the name of the event, or the next that is free: the file may have events of an earlier part of the run, which
+// was watched otherwise.
 void write_event(hid_t file, const Event& event) {
   const Handle creation = plain(H5P_GROUP_CREATE);
-  const Handle group(must(H5Gcreate2(file, event.name.c_str(), H5P_DEFAULT, creation, H5P_DEFAULT)), H5Gclose);
+  std::string name = event.name;
+  while (H5Lexists(file, name.c_str(), H5P_DEFAULT) > 0) name = next_name(name);
+  const Handle group(must(H5Gcreate2(file, name.c_str(), H5P_DEFAULT, creation, H5P_DEFAULT)), H5Gclose);
   write_number(group, "time", event.time);
   write_text(group, "time_unit", "s");
   for (const Figure& figure : event.figures) {
@@ -120,6 +138,7 @@ void add_rows(hid_t file, const Profile& array) {
   must(H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr));
   const Handle memory(must(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr)), H5Sclose);
   must(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, array.values.data()));
+  flush(dataset);
 }
 
 void check_fixed(hid_t file, const WholeNumbers& numbers) {
@@ -130,24 +149,29 @@ void check_fixed(hid_t file, const WholeNumbers& numbers) {
   if (found != numbers.values) throw CannotGoOn{fmt::format("its {} is not that of this run", numbers.name)};
 }
 
-// The number of rows up to a time.
+// The number of rows up to a time, as far as times rise: after a crash there may be rows that were never written.
 hsize_t rows_until(hid_t file, double time) {
   const Handle dataset = open_array(file, "time");
   std::vector<double> times(extents_of(dataset).at(0));
   if (!times.empty()) must(H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, times.data()));
-  return static_cast<hsize_t>(std::upper_bound(times.begin(), times.end(), time) - times.begin());
+  std::size_t rows = 0;
+  while (rows < times.size() && times[rows] <= time && (rows == 0 || times[rows] > times[rows - 1])) ++rows;
+  return rows;
 }
 
 void drop_rows_after(hid_t file, const std::vector<Profile>& rows, double time) {
   if (rows.empty()) return;
-  const hsize_t kept = rows_until(file, time);
+  hsize_t kept = rows_until(file, time);
+  for (const Profile& array : rows)  // all have as many, unless the last addition was cut off
+    if (const std::vector<hsize_t> extents = extents_of(open_array(file, array.name)); !extents.empty())
+      kept = std::min(kept, extents[0]);
   for (const Profile& array : rows) {
     const Handle dataset = open_array(file, array.name);
     std::vector<hsize_t> extents = extents_of(dataset);
     const std::vector<hsize_t> wanted(array.shape.begin(), array.shape.end());
     if (extents.size() != wanted.size() || !std::equal(extents.begin() + 1, extents.end(), wanted.begin() + 1))
       throw CannotGoOn{fmt::format("its array {} has another shape", array.name)};
-    extents[0] = std::min(extents[0], kept);
+    extents[0] = kept;
     must(H5Dset_extent(dataset, extents.data()));
   }
 }
@@ -179,8 +203,13 @@ std::string from_first_rank(MPI_Comm communicator, std::string text) {
   return text;
 }
 
+// Also while somebody reads it.
 Handle open_file(const std::filesystem::path& path) {
-  return Handle(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+  return Handle(H5Fopen(path.c_str(), H5F_ACC_RDWR, lone_access()), H5Fclose);
+}
+
+std::string cannot_write_text(const std::filesystem::path& path) {
+  return fmt::format("{}: cannot write the file; is the disk full or the folder write-protected?", path.string());
 }
 
 }  // namespace
@@ -196,9 +225,13 @@ void RecordFile::open_or_create(const Records& records) {
   if (continue_from_ && std::filesystem::exists(path_, ignored)) {
     const Handle file = open_file(path_);
     if (!file.good()) throw CannotGoOn{"it is damaged, or another program has it open"};
-    for (const WholeNumbers& numbers : records.fixed) check_fixed(file, numbers);
-    drop_rows_after(file, records.rows, *continue_from_);
-    drop_events_after(file, *continue_from_);
+    try {
+      for (const WholeNumbers& numbers : records.fixed) check_fixed(file, numbers);
+      drop_rows_after(file, records.rows, *continue_from_);
+      drop_events_after(file, *continue_from_);
+    } catch (const CannotWrite&) {
+      throw CannotGoOn{"it is damaged"};
+    }
     return;
   }
   const Handle file(must(H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)), H5Fclose);
@@ -214,7 +247,13 @@ void RecordFile::write(const Records& records) {
   must(file);
   for (const Profile& array : records.rows) add_rows(file, array);
   for (const Event& event : records.events) write_event(file, event);
+  must(H5Fflush(file, H5F_SCOPE_LOCAL));
   must(H5Fclose(file.release()));
+}
+
+void RecordFile::put_on_disk() {
+  const bool failed = rank_of(communicator_) == 0 && opened_ && !io::put_on_disk(path_);
+  if (any_rank(communicator_, failed)) throw RunError(cannot_write_text(path_));
 }
 
 void RecordFile::add(const Records& records) {
@@ -237,9 +276,7 @@ void RecordFile::add(const Records& records) {
         fmt::format("{}: the file cannot be continued, {}; move it away or restart into another folder with "
                     "--out.",
                     path_.string(), from_first_rank(communicator_, why)));
-  if (outcome == cannot_write)
-    throw RunError(
-        fmt::format("{}: cannot write the file; is the disk full or the folder write-protected?", path_.string()));
+  if (outcome == cannot_write) throw RunError(cannot_write_text(path_));
 }
 
 }  // namespace thalweg::io

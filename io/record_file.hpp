@@ -25,6 +25,9 @@ public:
 
   void add(const Records& records);  // only rank 0's are used
 
+  // What has been added outlasts a loss of power once this returns: before a checkpoint that counts on it.
+  void put_on_disk();
+
 private:
   void open_or_create(const Records& records);
   void write(const Records& records);  // on rank 0

@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "io/atomic_file.hpp"
+#include "io/folder_lock.hpp"
 
 #include <fmt/format.h>
 
@@ -66,7 +67,8 @@ void RunFolder::check_new(bool overwrite) const {
         fmt::format("{}: there is a file of this name; choose another folder with --out.", path_.string()));
   const bool has_something =
       std::any_of(fs::directory_iterator(path_), fs::directory_iterator(), [](const auto& entry) {
-        return entry.path().filename() != unfinished_case;  // of a run that was killed at once
+        // Of a run that was killed at once.
+        return entry.path().filename() != unfinished_case && entry.path().filename() != FolderLock::file_name;
       });
   if (!has_something) return;
   if (!is_run_folder())
@@ -123,6 +125,11 @@ void RunFolder::write_case(const std::string& comment_lines, const std::string& 
   write_text_atomically(case_file(), text + yaml);
 }
 
+void RunFolder::go_on_from(std::int64_t step) const {
+  if (fs::exists(checkpoint(step)))
+    write_text_durably(checkpoints() / latest_name, checkpoint(step).filename().string() + "\n");
+}
+
 void RunFolder::keep_case(std::int64_t step) const {
   const fs::path kept = path_ / fmt::format("{}{}.yaml", kept_case, step);
   std::error_code ignored;
@@ -160,6 +167,9 @@ void RunFolder::rotate_checkpoints(std::int64_t step, int keep) const {
     if (found > step || kept++ >= std::max(keep, 1)) superfluous.push_back(checkpoint(found));
   for (const auto& entry : fs::directory_iterator(checkpoints()))
     if (entry.path().extension() == ".partial") superfluous.push_back(entry.path());
+  for (const auto& entry : fs::directory_iterator(path_))
+    if (step_between(entry.path().filename().string(), kept_case, ".yaml").value_or(step) > step)
+      superfluous.push_back(entry.path());
   for (const fs::path& file : superfluous) {
     std::error_code error;
     fs::remove(file, error);
@@ -179,8 +189,9 @@ std::vector<fs::path> RunFolder::checkpoints_to_try() const {
   if (!fs::is_regular_file(latest, ignored)) return found;
   std::string name = read_text(latest);
   while (!name.empty() && (name.back() == '\n' || name.back() == ' ')) name.pop_back();
+  // Later ones than the latest are of a course that a restart has left.
   const auto named = std::find(found.begin(), found.end(), checkpoints() / name);
-  if (named != found.end()) std::rotate(found.begin(), named, named + 1);
+  if (named != found.end()) std::rotate(found.begin(), named, found.end());
   return found;
 }
 

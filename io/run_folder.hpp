@@ -31,6 +31,10 @@ public:
   void write_case(const std::string& comment_lines, const std::string& yaml) const;
   static constexpr const char* case_marker = "# Thalweg run:";
 
+  // Makes the checkpoint of `step`, if the folder has it, the latest: a restart has gone back to it, and later ones are
+  // of a course that is left. Throws RunError.
+  void go_on_from(std::int64_t step) const;
+
   // Keeps the case of the run so far, which goes on from `step` with another one perhaps: case_until_step_<step>.yaml,
   // unless it is there already. Throws RunError.
   void keep_case(std::int64_t step) const;
@@ -54,13 +58,13 @@ public:
 
   // After the checkpoint of `step` has been closed: makes it the latest (checkpoints/latest holds its file name) and
   // removes all but the newest `keep` of those up to `step`, and any after it, which a restart from an earlier time has
-  // made wrong; also what killed runs have left half written. Throws RunError.
+  // made wrong, with the cases kept for them; also what killed runs have left half written. Throws RunError.
   void rotate_checkpoints(std::int64_t step, int keep) const;
 
   bool has_checkpoint() const { return !steps_of_checkpoints().empty(); }
 
-  // The checkpoints to go on from, the best first: the latest, as far as that is known, then the others from new to
-  // old. InputError if there is none.
+  // The checkpoints to go on from, the best first: the latest, as far as that is known, then those before it from new
+  // to old, then those after it. InputError if there is none.
   std::vector<std::filesystem::path> checkpoints_to_try() const;
   std::filesystem::path latest_checkpoint() const { return checkpoints_to_try().front(); }
 

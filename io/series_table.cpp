@@ -79,6 +79,8 @@ void SeriesTable::append(double time, std::span<const double> values) {
   throw_if_failed(rank_of(communicator_) == 0 && !file_);
 }
 
+void SeriesTable::put_on_disk() { throw_if_failed(rank_of(communicator_) == 0 && !io::put_on_disk(path_)); }
+
 void SeriesTable::throw_if_failed(bool failed) const {
   if (any_rank(communicator_, failed))
     throw RunError(

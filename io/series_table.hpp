@@ -26,8 +26,11 @@ public:
   SeriesTable(MPI_Comm communicator, std::filesystem::path path, std::vector<Column> columns,
               std::optional<double> continue_from = std::nullopt);
 
-  // Appends a row, on the disk before this returns. values: one per column; only rank 0's are used.
+  // Appends a row, in the file before this returns. values: one per column; only rank 0's are used.
   void append(double time, std::span<const double> values);
+
+  // The rows so far outlast a loss of power once this returns.
+  void put_on_disk();
 
 private:
   void throw_if_failed(bool failed) const;

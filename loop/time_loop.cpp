@@ -144,12 +144,23 @@ void TimeLoop::measure() {
     if (due(schedules_[o])) observers_[o]->observe(snapshot);
 }
 
-bool TimeLoop::has_enough() const {
+bool TimeLoop::has_enough() {
+  if (plan_.enough.empty()) return false;
+  look_at_health();
   const auto below = [this](const FigureLimit& limit) {
     const std::optional<double> value = find_figure(record_.figures, limit.figure);
     return value && *value < limit.limit;
   };
-  return !plan_.enough.empty() && std::all_of(plan_.enough.begin(), plan_.enough.end(), below);
+  return std::all_of(plan_.enough.begin(), plan_.enough.end(), below);
+}
+
+// The system's figures and the observers', a column a name.
+std::vector<Figure> TimeLoop::row_of(const std::vector<Figure>& of_system) const {
+  std::vector<Figure> row = of_system;
+  for (const auto& observer : observers_)
+    for (const Figure& figure : observer->figures())
+      if (!find_figure(of_system, figure.name)) row.push_back(figure);
+  return row;
 }
 
 void TimeLoop::write_what_is_due() {
@@ -162,10 +173,7 @@ void TimeLoop::write_what_is_due() {
       for (const Figure& figure : observer->figures()) measured_.push_back(figure);
     if (plan_.write_row) {
       const auto scope = timer_.measure(timer_.phase("series"));
-      std::vector<Figure> row = record_.figures;
-      for (const Figure& figure : measured_)
-        if (!find_figure(record_.figures, figure.name)) row.push_back(figure);  // a column a name
-      plan_.write_row(system_.time(), step, row);
+      plan_.write_row(system_.time(), step, row_of(record_.figures));
     }
   }
   for (const OutputTask& output : plan_.outputs) {

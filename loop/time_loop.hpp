@@ -92,6 +92,9 @@ public:
   // Throws RunError when the watchdog does; nothing of such a state is written. The record is valid then, too.
   void run();
 
+  // What a row of the series has, with the values of now. Collective.
+  std::vector<Figure> row() const { return row_of(system_.figures()); }
+
   const LoopRecord& record() const { return record_; }
   PhaseTimer& timer() { return timer_; }  // phases outside System::advance()
 
@@ -108,7 +111,8 @@ private:
   void count_among_largest();
   bool needs_momentum_at(std::int64_t step) const;
   void measure();
-  bool has_enough() const;
+  bool has_enough();
+  std::vector<Figure> row_of(const std::vector<Figure>& of_system) const;
   void write_what_is_due();
   void checkpoint();
   std::int64_t own_decision();

@@ -29,11 +29,15 @@ def measure(folder, start, stop, surface):
     time, rate = bed.transport_rate(run, start, stop)
     if surface == "static":
         height = bed.static_bed_height(run, time[0], time[-1])
-    elif start is None and "grain_profiles" in run.profiles:
+    elif bed.has_profiles_of(run, time[0], time[-1]):
         height = bed.bed_height(run)
+    elif "grain_profiles" in run.profiles and not len(run.grains.between(time[0], time[-1])):
+        height = bed.bed_height(run)
+        print(f"transport_relation: {folder} has no frames: the height of its bed is the mean from "
+              f"{run.averaged_from('grain_profiles'):g} s to its end, not of the time of q*.", file=sys.stderr)
     else:
         height = bed.bed_height(run, time[0], time[-1])
-    return (bed.shields_number(run, height), thalweg.mean_with_error(rate),
+    return (bed.shields_number(run, height, time[0], time[-1]), thalweg.mean_with_error(rate),
             thalweg.steadiness(rate).steady, height / run.diameter)
 
 

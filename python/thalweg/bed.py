@@ -21,6 +21,13 @@ def surface_by_solid_fraction(z, fraction):
     return float(z[last] + share * (z[last + 1] - z[last]))
 
 
+def has_profiles_of(run, start, stop):
+    """Whether the profiles that the run gathered are means over the time from `start` to `stop` (s)."""
+    interval = 2.0 * float(np.max(np.diff(run.series["time"]), initial=0.0))
+    return ("grain_profiles" in run.profiles and abs(run.averaged_from("grain_profiles") - start) <= interval and
+            stop >= run.series["time"][-1] - interval)
+
+
 def bed_height(run, start=-np.inf, stop=np.inf):
     """Height (m) of the surface by solid fraction, from profiles.h5 or, if it has none or times (s) are given, from the
     frames between them, in layers of a quarter of a diameter."""
@@ -40,14 +47,14 @@ def static_bed_height(run, start=-np.inf, stop=np.inf, frames=10):
     return float(np.mean([static_surface(run, times[k]).mean for k in chosen]))
 
 
-def hydraulic_radius(depth, width=None):
-    """m: H W/(2 H + W) between side walls that far apart, H without (Zhang et al. 2022, sec. 2.2 and 2.3)."""
-    return depth if width is None else depth * width / (2.0 * depth + width)
+def hydraulic_radius(depth, width=None, side_walls=2):
+    """m: H W/(n H + W) in a channel that wide beside n side walls, H without (Zhang et al. 2022, sec. 2.2 and 2.3)."""
+    return depth if width is None else depth * width / (side_walls * depth + width)
 
 
-def shields_of(slope, depth, diameter, density_ratio, width=None):
+def shields_of(slope, depth, diameter, density_ratio, width=None, side_walls=2):
     """Shields number R sin(atan(slope))/((s - 1) d), with R the hydraulic radius; lengths in m."""
-    return np.sin(np.arctan(slope)) * hydraulic_radius(depth, width) / ((density_ratio - 1.0) * diameter)
+    return np.sin(np.arctan(slope)) * hydraulic_radius(depth, width, side_walls) / ((density_ratio - 1.0) * diameter)
 
 
 def slope_of(shields, depth, diameter, density_ratio, width=None):
@@ -65,11 +72,13 @@ def measured_shields_number(run, start, stop):
     return float(np.mean(run.series["shields_number"][counted]))
 
 
-def shields_number(run, surface):
-    """Shields number of a run that a slope drives and whose bed ends at the height `surface` (m), by depth and slope, or by
-    hydraulic radius between side walls."""
+def shields_number(run, surface, start=-np.inf, stop=np.inf):
+    """Shields number of a run whose bed ends at the height `surface` (m): where a slope drives the flow by depth and slope,
+    or by hydraulic radius beside side walls; else the mean between two times (s) of what the run measured."""
+    if not run.driven_by_slope:
+        return measured_shields_number(run, start, stop)
     return shields_of(run.slope, run.size[2] - surface, run.diameter, run.density_ratio,
-                      run.size[1] if run.side_walls else None)
+                      run.size[1] if run.side_walls else None, run.side_walls)
 
 
 def transport_rate(run, start=None, stop=np.inf, column="q_star"):

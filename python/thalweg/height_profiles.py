@@ -46,7 +46,7 @@ def fluid_velocity(run):
 
 def driving_stress(run, z, fraction):
     """Pa at the middles z (m) of the layers: g_x times the mass of water and grains above."""
-    density = run.case["fluid"]["density"] * (1.0 - fraction) + run.case["grains"][0]["density"] * fraction
+    density = run.case["fluid"]["density"] * (1.0 - fraction + run.density_ratio * fraction)
     weight = density * run.gravity[0] * (z[1] - z[0])
     return np.cumsum(weight[::-1])[::-1] - 0.5 * weight
 
@@ -77,7 +77,7 @@ def stresses(run):
     z, fraction = grains["z"], grains["solid_fraction"]
     solid = component(grains, "contact_stress", "xz") + component(grains, "kinetic_stress", "xz")
     found = [("solid: contacts and motion", z, solid)]
-    if not run.side_walls:   # which would take a share
+    if run.driven_by_slope and not run.side_walls:   # which would take a share
         driving = driving_stress(run, z, fraction)
         found += [("driving", z, driving), ("fluid: what is left of the driving", z, driving - solid)]
     if "fluid_statistics" in run.profiles:

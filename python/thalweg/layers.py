@@ -36,17 +36,29 @@ def layer_edges(bottom, top, thickness):
 
 
 class LayerSums:
-    """Sums over frames of what the grains bring into layers; profiles() makes means of them. Lengths in m."""
+    """Sums over frames of what the grains bring into layers; profiles() makes means of them. Lengths in m; height: of a
+    period, where z is periodic; thickness: of disks."""
 
-    def __init__(self, edges, area):
+    def __init__(self, edges, area, height=None, thickness=None):
         self.edges, self.layer_volumes = np.asarray(edges, float), area * np.diff(edges)
+        self.height, self.thickness = height, thickness
         layers = len(edges) - 1
         self.frames, self.volume = 0, np.zeros(layers)
         self.momentum, self.square = np.zeros((layers, 3)), np.zeros(layers)
         self.stresses = {}
 
+    def parts(self, z, radius):
+        """Volumes [layer, grain], with those of images beyond a periodic face."""
+        images = (0.0,) if self.height is None else (-self.height, 0.0, self.height)
+        if self.thickness is None:
+            return sum(parts_in_layers(self.edges, z + shift, radius) for shift in images)
+        return self.thickness * sum(parts_in_layers(self.edges, z + shift, radius, disk_below) for shift in images)
+
     def add(self, frame):
-        part = parts_in_layers(self.edges, frame.position[:, 2], frame.radius)
+        if np.any(frame.arrays.get("clump", -1) >= 0):
+            raise RunFolderError("frames have the members of clumps, whose volumes overlap; add analysis.grain_profiles to the "
+                                 "case, which counts clumps.")
+        part = self.parts(frame.position[:, 2], frame.radius)
         self.frames += 1
         self.volume += part.sum(axis=1)
         self.momentum += part @ frame.velocity
@@ -79,7 +91,9 @@ def layer_profiles(run, start=-np.inf, stop=np.inf, thickness=None):
     """Profiles over the height of the box from the frames between two times (s); layers of half a diameter if no
     thickness (m) is given."""
     edges = layer_edges(0.0, run.size[2], thickness or 0.5 * run.diameter)
-    sums = LayerSums(edges, run.size[0] * run.size[1])
+    disks = run.case.get("disks")
+    thickness = float(disks["thickness"]) if disks else None
+    sums = LayerSums(edges, run.size[0] * (thickness or run.size[1]), run.size[2] if run.periodic[2] else None, thickness)
     for frame in run.grains.between(start, stop):
         sums.add(frame)
     return sums.profiles()

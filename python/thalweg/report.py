@@ -100,15 +100,14 @@ def describe_surface(report, name, title, surface):
     depth = float(run.size[2] - surface)
     report.numbers[name] = {"bed_height": surface, "depth": depth}
     place = f"at {surface:.4g} m ({surface / run.diameter:.3g} d), {depth:.4g} m of water above"
+    how = "by the forces on the water, as measured"
     if run.driven_by_slope:
-        shields, by = float(bed.shields_number(run, surface)), "hydraulic radius" if run.side_walls else "depth"
-        how = f"by {by} at slope {run.slope:.4g}"
-    else:
-        try:
-            shields, how = bed.measured_shields_number(run, report.start, report.stop), "by the forces on the water, as measured"
-        except RunFolderError as error:
-            report.say(title, f"{place}; Shields number left out: {error}")
-            return
+        how = f"by {'hydraulic radius' if run.side_walls else 'depth'} at slope {run.slope:.4g}"
+    try:
+        shields = float(bed.shields_number(run, surface, report.start, report.stop))
+    except RunFolderError as error:
+        report.say(title, f"{place}; Shields number left out: {error}")
+        return
     report.numbers[name]["shields"] = shields
     report.say(title, f"{place}: Shields number {shields:.4g} {how}")
 
@@ -138,7 +137,7 @@ def describe_water(report, surface):
 
 def describe_camera(report):
     run = report.run
-    if not run.side_walls:
+    if run.side_walls < 2:
         return
     static = bed.static_bed_height(run, report.start, report.stop)
     describe_surface(report, "surface_by_static_pixels", "static", static)

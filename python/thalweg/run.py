@@ -32,6 +32,10 @@ def face_type(boundary):
     return boundary.get("type") if isinstance(boundary, dict) else boundary
 
 
+# Faces that exchange shear with the fluid.
+DRAGGING = ("no_slip", "moving", "navier_slip", "law_of_the_wall", "law_of_the_wall_as_printed")
+
+
 class Run:
     """A run folder, finished or still going. What has been read stays as it was; make another Run to look again."""
 
@@ -155,8 +159,8 @@ class Run:
 
     @property
     def side_walls(self):
-        """Whether both faces across y hold the water back, so that the hydraulic radius counts."""
-        return all(face not in ("periodic", "free_slip", None) for face in self.faces("y"))
+        """How many of the faces across y hold the water back, 0 to 2, so that the hydraulic radius counts."""
+        return sum(face in DRAGGING for face in self.faces("y"))
 
     @property
     def free_populations(self):
@@ -219,9 +223,12 @@ class Run:
 
     @property
     def driven_by_slope(self):
-        """Whether gravity along the bed is all that drives the fluid: no mean velocity is held, and no top moves or drags."""
+        """Whether gravity along the bed, and it alone, drives the fluid: no mean velocity is held, no top moves or drags, and
+        no face is open."""
         steered = bool((self.case.get("fluid") or {}).get("mean_velocity"))
-        return not steered and self.faces("z")[1] in ("free_slip", "periodic", None)
+        open_faces = any(face in ("velocity_inlet", "pressure_outlet") for axis in "xyz" for face in self.faces(axis))
+        top_is_free = self.faces("z")[1] in ("free_slip", "periodic", None)
+        return bool(self.gravity[0] > 0.0 and not steered and not open_faces and top_is_free)
 
 
 def runs_of_sweep(folder):

@@ -54,8 +54,8 @@ class Surface(NamedTuple):
     def mean(self):
         return float(self.height.mean())
 
-    def at(self, x, length):
-        """Height (m) at places along a periodic box of that length (m)."""
+    def at(self, x, length=None):
+        """Height (m) at places along the box, which is periodic with that length (m) if one is given."""
         return np.interp(x, self.x, self.height, period=length)
 
 

@@ -45,7 +45,8 @@ def resolved_bed(run):
     stress, fluid = solid_stress(layers), run.case["fluid"]
     velocity = layers["grain_velocity"][:, 0]
     viscosity = float(fluid["density"]) * float(fluid["kinematic_viscosity"])
-    state = flow_state(phi, stress, np.gradient(velocity, z), diameter, float(run.free_populations[0]["density"]), viscosity)
+    state = flow_state(phi, stress, np.gradient(velocity, z), diameter, run.density_ratio * float(fluid["density"]),
+                       viscosity)
     of_fluid = sum(component(layers, name, "xz") for name in ("viscous_stress", "subgrid_stress", "reynolds_stress"))
     return Bed((z - surface_by_solid_fraction(z, phi)) / diameter, phi, velocity, layers["fluid_velocity"][:, 0],
                layers["granular_temperature"], stress[:, 0, 2], of_fluid, state, layers["drag_function"],

@@ -17,16 +17,16 @@ class VisibleSums:
     velocities in the frame's plane about the mean of the layer in the same frame.
     """
 
-    def __init__(self, edges, length):
-        self.edges, self.length = np.asarray(edges, float), length
+    def __init__(self, edges, length, periodic=True):
+        self.edges, self.length, self.period = np.asarray(edges, float), length, length if periodic else None
         layers = len(edges) - 1
         self.frames, self.area = 0, np.zeros(layers)
         self.momentum, self.deviation = np.zeros((layers, 2)), np.zeros(layers)
 
     def add(self, frame, surface):
-        seen = visible_grains(frame.position, frame.radius, self.length)
+        seen = visible_grains(frame.position, frame.radius, self.period)
         position, radius, velocity = frame.position[seen], frame.radius[seen], frame.velocity[seen][:, [0, 2]]
-        height = position[:, 2] - surface.at(position[:, 0], self.length)
+        height = position[:, 2] - surface.at(position[:, 0], self.period)
         part = parts_in_layers(self.edges, height, radius, disk_below)
         area, momentum = part.sum(axis=1), part @ velocity
         self.frames += 1
@@ -53,7 +53,7 @@ def visible_profiles(run, start=-np.inf, stop=np.inf, thickness=None, most_frame
         np.linspace(0, len(frames) - 1, most_frames).astype(int))
     step = thickness or 0.5 * run.diameter
     below, above = (round(n * run.diameter / step) for n in (12.0, 6.0))
-    sums = VisibleSums(step * np.arange(-below, above + 1), run.size[0])
+    sums = VisibleSums(step * np.arange(-below, above + 1), run.size[0], run.periodic[0])
     for k in chosen:
         sums.add(frames[int(k)], static_surface(run, frames.times[k]))
     return sums.profiles()

@@ -31,7 +31,7 @@ def expected_speeds(run):
     """Speeds between side walls that carry all of the water's weight along the slope, far above the bed (Zhang et al. 2022,
     app. A): friction velocity sqrt(g_x W/2). None without such walls, or where that flow would not be turbulent."""
     along = run.gravity[0]
-    if not run.side_walls or not along > 0.0:
+    if run.side_walls < 2 or not along > 0.0:
         return None
     half, viscosity = 0.5 * run.size[1], run.case["fluid"]["kinematic_viscosity"]
     friction_velocity = np.sqrt(along * half)

@@ -109,6 +109,29 @@ TEST(GrainProfiles, AClumpIsItsUnionOnce) {
   EXPECT_NEAR(stress / (-weight * (1.5 * r - overlap)), 1.0, 1e-6);
 }
 
+// A disk in a box five times as wide as it is thick: layers are as wide as the disk.
+TEST(GrainProfiles, OfDisksAreAsWideAsTheyAreThick) {
+  const Decomposition decomposition = box_of({16, 16, 16}, 1.5e-3, false);
+  GrainParameters p = plain();
+  p.disk_thickness = 0.024 / 5.0;
+  dem::GrainSeed disk = dem::test::glass_sphere(0, Vec3(0.011, 0.012, 0.0123), Vec3(0.2, 0.0, 0.0));
+  disk.thickness = p.disk_thickness;
+  const GrainDynamics grains(decomposition, MPI_COMM_WORLD, p, {disk});
+  GrainProfiles profiles(MPI_COMM_WORLD, decomposition, 1e-3, {}, p.disk_thickness);
+  Snapshot snapshot = Shown(grains).snapshot();
+  snapshot.grains.disk_thickness = p.disk_thickness;
+  profiles.observe(snapshot);
+  const auto values = by_name(profiles);
+  double area = 0.0, flux = 0.0;  // per length of the box: pi R^2 and u pi R^2
+  for (std::size_t n = 0; n < values.at("z").size(); ++n) {
+    area += values.at("solid_fraction")[n] * 1e-3 * 0.024;
+    flux += values.at("flux")[3 * n] * 1e-3 * 0.024;
+  }
+  const double exact = std::numbers::pi * dem::test::glass_radius * dem::test::glass_radius;
+  EXPECT_NEAR(area / exact, 1.0, 1e-12);
+  EXPECT_NEAR(flux / (0.2 * exact), 1.0, 1e-12);
+}
+
 TEST(SphereInLayer, PartsAddUpAndHalfIsHalf) {
   EXPECT_NEAR(sphere_volume_below(2.0, 2.0), 0.5 * volume_of(2.0, 0.0), 1e-14);
   EXPECT_NEAR(volume_of(2.0, 0.0), 4.0 / 3.0 * std::numbers::pi * 8.0, 1e-13);

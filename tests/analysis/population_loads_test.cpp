@@ -52,6 +52,13 @@ TEST(PopulationLoads, AddsForcesAndTurnsThemAboutThePivot) {
   EXPECT_EQ(value_of(figures, "bed_fluid_force_x"), 2.0);
   EXPECT_EQ(value_of(figures, "bed_fluid_torque_y"), 6.0);  // 3 m up, 2 N along x
   EXPECT_EQ(value_of(figures, "bed_fluid_torque_z"), -4.0);
+
+  // A pivot that has gone around the box three times is at x = 1 as well.
+  PopulationLoads travelling(MPI_COMM_WORLD, decomposition.box(),
+                             {{"roller", 0, 2, [](double) { return Vec3(61.0, 5.0, 2.0); }}}, true);
+  travelling.observe(snapshot);
+  EXPECT_EQ(value_of(travelling.figures(), "roller_contact_torque_y"), 6.0);
+
   PopulationLoads dry(MPI_COMM_WORLD, decomposition.box(), {{"wall", 0, 2, [](double) { return Vec3::Zero(); }}},
                       false);
   EXPECT_EQ(dry.figures().size(), 6u);

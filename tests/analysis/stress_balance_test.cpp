@@ -275,5 +275,31 @@ TEST(StressBalance, BetweenSideWallsCountsWhatTheyTakeOfTheGrains) {
   }
 }
 
+// A held sphere that scrapes along the top, pressed against it: what takes the friction is the sphere, so that below it
+// there is nothing, and in it, as far as it is above, the friction. A stress from the top is driving, not a side
+// wall's.
+TEST(StressBalance, TheTopDragsGrainsAsWell) {
+  WaterBox box = viscous_box({18, 20, 24}, 9.0, 1.5);
+  box.closed = true;
+  const double top = 24.0 * box.spacing;
+  box.seeds = {glass_sphere(0, Vec3(5e-3, 5e-3, top - 2.495e-3), Vec3(1e-3, 0.0, 0.0))};
+  box.seeds[0].motion = dem::Motion::fixed;
+  const auto system = system_of(box);
+  for (int step = 0; step < 1000; ++step) system->advance();
+  StressBalance balance = balance_of(box, *system, 1.2e-3, {{0, 1}});
+  measure(balance, *system);
+  const Values values = by_name(balance);
+  const double friction = 0.45 * 20000.0 * 5e-6 / (18.0 * 20.0 * box.spacing * box.spacing);
+  for (std::size_t l = 0; l < values.at("z").size(); ++l) {
+    EXPECT_NEAR(values.at("total_stress")[l], values.at("driving_stress")[l], 1e-3 * friction);
+    EXPECT_EQ(values.at("side_wall_stress")[l], 0.0);
+    if (values.at("z")[l] + 0.5 * values.at("thickness")[l] < top - 5e-3) {
+      EXPECT_NEAR(values.at("total_stress")[l], 0.0, 0.05 * friction);
+    }
+  }
+  // The friction points against the velocity; at the top none of the sphere is above to take it.
+  EXPECT_LT(values.at("total_stress").back(), -0.5 * friction);
+}
+
 }  // namespace
 }  // namespace thalweg::analysis

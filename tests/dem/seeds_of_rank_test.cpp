@@ -96,6 +96,15 @@ TEST(SeedsOfRank, DenselyPackedAreItsShareOfAllSeeds) {
   expect_share_of_all({glass(40, PlacementPattern::random, 0.03, 0.06), dense}, 590);
 }
 
+// A lattice and grains packed into what is left between, who are pushed across the borders of the blocks on the way.
+TEST(SeedsOfRank, DenselyPackedAmongOthersAreTheirShareOfAllSeeds) {
+  Population given = glass(3, PlacementPattern::uniform, 0.0, 0.06);
+  given.placement.region.reset();
+  given.placement.positions = {Vec3(0.0352, 0.02, 0.045), Vec3(0.0248, 0.0245, 0.05), Vec3(0.004, 0.0245, 0.048)};
+  expect_share_of_all(
+      {glass(60, PlacementPattern::uniform, 0.0, 0.02), glass(620, PlacementPattern::dense, 0.0, 0.06), given}, 683);
+}
+
 // Grains too many to be placed by every rank alone, here few: two sizes among obstacles, a quarter of the volume.
 TEST(SeedsOfRank, PlacedTogetherAreThoseOfOneRank) {
   const Decomposition decomposition = shared_box();

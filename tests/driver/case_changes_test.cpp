@@ -52,7 +52,7 @@ TEST(CaseChanges, WhereGrainsWerePlacedDoesNotCount) {
 TEST(CaseChanges, WhatTheCheckpointContainsCannotBeChanged) {
   const auto refused = [](const std::string& now) {
     try {
-      refuse_changes_of_state(case_changes(before, now));
+      refuse_changes_of_state(case_changes(before, now), false);
     } catch (const InputError& error) {
       return std::string(error.what());
     }
@@ -71,6 +71,15 @@ TEST(CaseChanges, WhatTheCheckpointContainsCannotBeChanged) {
   for (const auto& [old_text, new_text] : std::vector<std::pair<std::string, std::string>>{
            {"a run", "the same run"}, {"1e-06", "2e-06"}, {"friction: 0.3", "friction: 0.4"}})
     EXPECT_TRUE(refused(with(old_text, new_text)).empty()) << new_text;
+}
+
+TEST(CaseChanges, AWallIsWhereItsMotionSinceTheStartHasBroughtIt) {
+  const std::vector<CaseChange> plate{{"walls.0.velocity.2", "0.1", "0"}},
+      top{{"domain.boundaries.top.velocity.0", "0.1", "0"}}, held{{"grains.1.motion.velocity.0", "0.1", "0"}};
+  EXPECT_THROW(refuse_changes_of_state(plate, false), InputError);
+  EXPECT_THROW(refuse_changes_of_state(held, false), InputError);
+  EXPECT_THROW(refuse_changes_of_state(top, true), InputError);
+  EXPECT_NO_THROW(refuse_changes_of_state(top, false));  // of a fluid, in its own plane
 }
 
 }  // namespace

@@ -120,6 +120,29 @@ class Sweep(ProgramTest):
         self.assertEqual((failed["state"], done["state"]), ("failed", "done"))
         self.assertIn("contact.wall_friction", failed["failure"])
 
+    def test_a_case_that_is_edited_meanwhile_is_not_mixed_in(self):
+        sweep = self.write("vary: {contact.wall_friction: {from: 0.2, to: 0.3, count: 8}}\n")
+        process = subprocess.Popen([THALWEG, "sweep", sweep, "--jobs", "1"], cwd=self.folder, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.stderr.close)
+        while process.poll() is None and not list(self.folder.glob("sweep/runs/*/summary.json")):
+            time.sleep(0.02)
+        self.case.write_text(self.CASE.replace("restitution: 0.5", "restitution: 0.6"))
+        self.assertEqual(process.wait(60), 2)
+        self.assertIn("has been changed since this sweep began", process.stderr.read())
+        self.case.write_text(self.CASE)
+        self.run_well("sweep", sweep)
+        self.assertEqual({row["state"] for row in self.table("sweep/runs.csv")}, {"done"})
+
+    def test_a_run_without_the_figure_of_a_bisection_has_failed(self):
+        sweep = self.write("set: {analysis.transport_rate: {from: 1}}\n"
+                           "bisect: {key: gravity.slope, from: 0.1, to: 0.5, width: 0.2, holds: transport_rate.q_s_mean > 0}\n")
+        said = self.thalweg("sweep", sweep)
+        self.assertEqual(said.returncode, 1, said.stderr)
+        self.assertIn("of the runs have failed", said.stderr)
+        self.assertIn("have no number transport_rate.q_s_mean", self.table("sweep/runs.csv")[0]["failure"])
+        self.assertEqual([row["state"] for row in self.table("sweep/thresholds.csv")], ["failed"])
+
     def test_a_misspelt_key_is_refused_before_anything_is_run(self):
         sweep = self.write("vary: {contact.wal_friction: [0.2, 0.3]}\nset: {run.until: 0.01}\n")
         result = self.thalweg("sweep", sweep)

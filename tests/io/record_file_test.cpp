@@ -84,6 +84,58 @@ TEST(RecordFile, GrowsAndDropsWhatIsLaterThanARestart) {
   expect_seconds(path, 2);
 }
 
+// Of events under a name that the file has, from a part of the run that was watched otherwise, the number goes on.
+TEST(RecordFile, EventsGetTheNextFreeNumber) {
+  const ScratchFolder folder;
+  const auto path = folder / "entrainment.h5";
+  const auto event = [](const char* name, double share) {
+    Records records;
+    if (rank_of(MPI_COMM_WORLD) == 0) records.events = {{name, 1.0, {{"share", "1", share}}, {}, {}}};
+    return records;
+  };
+  RecordFile first(MPI_COMM_WORLD, path, std::nullopt);
+  for (const char* name : {"event_000008", "event_000009"}) first.add(event(name, 0.25));
+  RecordFile again(MPI_COMM_WORLD, path, 4.0);
+  again.add(event("event_000008", 0.5));
+  Hdf5Reader file(MPI_COMM_WORLD, path);
+  EXPECT_EQ(file.real_attribute("event_000008/share"), 0.25);
+  EXPECT_EQ(file.real_attribute("event_000010/share"), 0.5);
+}
+
+// A reader, as the Python package is one, does not keep the run from writing.
+TEST(RecordFile, IsWrittenWhileSomebodyReadsIt) {
+  const ScratchFolder folder;
+  const auto path = folder / "tracks.h5";
+  RecordFile file(MPI_COMM_WORLD, path, std::nullopt);
+  file.add(seconds(0, 3));
+  {
+    Hdf5Reader reader(MPI_COMM_SELF, path);
+    EXPECT_EQ(numbers(reader, "time").size(), 3u);
+    MPI_Barrier(MPI_COMM_WORLD);
+    file.add(seconds(3, 6));
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  expect_seconds(path, 6);
+}
+
+// Rows of which a crash has left some arrays shorter than others, or times that were never written.
+TEST(RecordFile, GoesOnBehindTheLastWholeRow) {
+  const ScratchFolder folder;
+  const auto path = folder / "tracks.h5";
+  RecordFile(MPI_COMM_WORLD, path, std::nullopt).add(seconds(0, 5));
+  Records hole = seconds(5, 8);
+  if (rank_of(MPI_COMM_WORLD) == 0) {
+    hole.rows[0].values = {5.0, 0.0, 0.0};
+    hole.events.resize(1);
+  }
+  RecordFile(MPI_COMM_WORLD, path, 5.0).add(hole);
+  RecordFile again(MPI_COMM_WORLD, path, 7.0);
+  again.add(seconds(6, 6));
+  expect_seconds(path, 6);
+  again.add(seconds(6, 9));
+  expect_seconds(path, 9);
+}
+
 TEST(RecordFile, RefusesWhatItCannotContinue) {
   const ScratchFolder folder;
   const auto path = folder / "tracks.h5", damaged = folder / "damaged.h5";

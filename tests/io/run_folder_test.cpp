@@ -1,6 +1,8 @@
 // What a run may and may not do to a folder.
 #include "io/run_folder.hpp"
 #include "core/error.hpp"
+#include "io/atomic_file.hpp"
+#include "io/folder_lock.hpp"
 #include "tests/io/scratch_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -144,6 +146,58 @@ TEST_F(RunFolderTest, RotationKeepsTheNewestAndNamesTheLatest) {
             std::string::npos);
   EXPECT_NE(message_of<InputError>([&] { checkpoint_at(path.parent_path()); }).find("has no checkpoint"),
             std::string::npos);
+}
+
+// A run that came to step 1100 and is taken up again at 1000: until it has a checkpoint of its own, that is its latest,
+// and those of the course that is left come last.
+TEST_F(RunFolderTest, ARestartFromAnEarlierCheckpointIsKnownAtOnce) {
+  const RunFolder folder(scratch("branch"));
+  folder.create(false);
+  folder.write_case("", "system: grains\n");
+  for (const std::int64_t step : {900, 1000, 1100}) {
+    put(folder.checkpoint(step), "state");
+    folder.rotate_checkpoints(step, 3);
+  }
+  folder.keep_case(1100);  // of an earlier restart there
+  folder.keep_case(1000);
+  folder.go_on_from(1000);
+  folder.write_case("", "system: fluid\n");
+  EXPECT_EQ(folder.checkpoints_to_try(),
+            (std::vector<fs::path>{folder.checkpoint(1000), folder.checkpoint(900), folder.checkpoint(1100)}));
+  EXPECT_EQ(folder.case_of(folder.checkpoint(1000)).filename(), "case_until_step_1000.yaml");
+  // With the first checkpoint of the new course the other one is gone.
+  put(folder.checkpoint(1050), "state");
+  folder.rotate_checkpoints(1050, 3);
+  EXPECT_FALSE(fs::exists(folder.checkpoint(1100)) || fs::exists(folder.path() / "case_until_step_1100.yaml"));
+  EXPECT_TRUE(fs::exists(folder.path() / "case_until_step_1000.yaml"));
+  EXPECT_EQ(folder.case_of(folder.checkpoint(1050)), folder.case_file());
+  folder.go_on_from(1070);  // from another folder's checkpoint
+  EXPECT_EQ(folder.latest_checkpoint(), folder.checkpoint(1050));
+}
+
+TEST_F(RunFolderTest, RoomIsTakenByWritingWhereItCannotBePromised) {
+  const fs::path path = scratch("room");
+  put(path, "kept");
+  EXPECT_TRUE(fill_with_zeros(path, 4, 5'000'000));
+  EXPECT_EQ(fs::file_size(path), 5'000'004u);
+  EXPECT_TRUE(contents(path).starts_with(std::string("kept\0\0", 6)));
+  EXPECT_FALSE(fill_with_zeros("/dev/full", 0, 10));
+  EXPECT_FALSE(fill_with_zeros(path / "missing", 0, 10));
+}
+
+TEST_F(RunFolderTest, ASecondRunIsKeptOut) {
+  const fs::path path = scratch("locked");
+  {
+    const FolderLock mine(path);
+    const std::string message = message_of<InputError>([&] { FolderLock second(path); });
+    EXPECT_NE(message.find("a run is writing there now (process "), std::string::npos) << message;
+    FolderLock moved;
+    moved = FolderLock(path.parent_path());
+    EXPECT_THROW(FolderLock(path.parent_path()), InputError);
+  }
+  EXPECT_NO_THROW(FolderLock{path});
+  fs::remove(path.parent_path() / FolderLock::file_name);
+  RunFolder(path).create(false);  // the lock makes it no folder that holds something
 }
 
 }  // namespace

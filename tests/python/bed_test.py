@@ -1,6 +1,7 @@
 """Layers, surface and Shields number of beds whose answers are known."""
 import unittest
 
+import h5py
 import numpy as np
 
 import made_up_folder as made_up
@@ -49,6 +50,30 @@ class Layers(made_up.MadeUpFolder):
         np.testing.assert_allclose(found["granular_temperature"][:2], 1 / 3, rtol=1e-12)
         np.testing.assert_allclose(found["rotation_stress"], np.array([3.0, 3.0, 0.0]) * fraction, rtol=1e-12)
 
+    def test_disks_in_layers_as_wide_as_they_are_thick(self):
+        # pi/4 of a square array, whatever the width of the box.
+        case = self.folder / "case.yaml"
+        case.write_text(case.read_text().replace("system: resolved", "system: resolved\ndisks: {thickness: 4.0e-3}"))
+        x, z = np.meshgrid((np.arange(24) + 0.5) * SIZE[0] / 24, (np.arange(30) + 0.5) * D)
+        places = np.column_stack([x.ravel(), np.full(x.size, 0.5 * SIZE[1]), z.ravel()])
+        self.write_frames((0.0,), [places], radius=[np.full(x.size, 0.5 * D)])
+        found = layer_profiles(thalweg.Run(self.folder), thickness=D)
+        np.testing.assert_allclose(found["solid_fraction"][:29], 0.25 * np.pi * D / (SIZE[0] / 24), rtol=1e-2)
+
+    def test_grains_across_a_periodic_top(self):
+        case = self.folder / "case.yaml"
+        case.write_text(case.read_text().replace("bottom: no_slip, top: free_slip", "z: periodic"))
+        self.write_frames((0.0,), [np.array([[0.05, 0.005, 0.0]])])
+        found = layer_profiles(thalweg.Run(self.folder), thickness=SIZE[2] / 30)
+        volume = found["solid_fraction"] * SIZE[0] * SIZE[1] * SIZE[2] / 30
+        self.assertAlmostEqual(volume[0] / volume[-1], 1.0, 9)
+        self.assertAlmostEqual(volume.sum() / (np.pi / 6 * D**3), 1.0, 9)
+
+    def test_members_of_clumps_are_refused(self):
+        self.write_frames((0.0,), [np.array([[0.05, 0.005, 0.01], [0.053, 0.005, 0.01]])], clump=[np.array([0, 0])])
+        with self.assertRaisesRegex(thalweg.RunFolderError, "grain_profiles"):
+            layer_profiles(thalweg.Run(self.folder))
+
     def bed_of_layers(self, layers):
         """24 x 2 grains a layer, layers one diameter apart, and one grain that flies."""
         x, y, z = np.meshgrid((np.arange(24) + 0.5) * SIZE[0] / 24, (0.3 * SIZE[1], 0.7 * SIZE[1]),
@@ -72,6 +97,26 @@ class Layers(made_up.MadeUpFolder):
         depth = SIZE[2] - height
         exact = np.sin(np.arctan(0.0748)) * depth * SIZE[1] / (2 * depth + SIZE[1]) / (1.55 * D)
         self.assertAlmostEqual(bed.shields_number(run, height), exact, 12)
+        # Beside one wall, and where something else drives the flow.
+        case = self.folder / "case.yaml"
+        case.write_text(case.read_text().replace("y: {type: law_of_the_wall}", "y_low: no_slip, y_high: free_slip"))
+        exact = np.sin(np.arctan(0.0748)) * depth * SIZE[1] / (depth + SIZE[1]) / (1.55 * D)
+        self.assertAlmostEqual(bed.shields_number(thalweg.Run(self.folder), height), exact, 12)
+        case.write_text(case.read_text().replace("slope: 0.0748", "slope: 0"))
+        (self.folder / "series.csv").write_text("time [s],shields_number [1]\n0,0.07\n1,0.09\n2,0.2\n")
+        self.assertAlmostEqual(bed.shields_number(thalweg.Run(self.folder), height, 0.0, 1.0), 0.08, 12)
+
+    def test_profiles_of_the_run_count_for_its_own_time_only(self):
+        (self.folder / "series.csv").write_text("time [s],q_star [1]\n" + "".join(f"{t / 10},0.1\n" for t in range(101)))
+        with h5py.File(self.folder / "profiles.h5", "w") as file:
+            file.create_group("grain_profiles")["z"] = np.arange(3.0)
+        case = self.folder / "case.yaml"
+        case.write_text(case.read_text().replace("{transport_rate: {from: 1.0}}",
+                                                 "{transport_rate: {from: 1.0}, grain_profiles: {from: 1.0}}"))
+        run = thalweg.Run(self.folder)
+        self.assertTrue(bed.has_profiles_of(run, 1.0, 10.0))
+        self.assertFalse(bed.has_profiles_of(run, 1.0, 5.0))
+        self.assertFalse(bed.has_profiles_of(run, 4.0, 10.0))
 
     def test_the_surface_by_static_pixels(self):
         # Layers at rest end 8 d high; on them a layer that slides by a diameter between frames, and one grain that flies.

@@ -80,7 +80,7 @@ class RunFolder(made_up.MadeUpFolder):
         self.assertEqual(run.periodic, (True, False, False))
         self.assertEqual(run.faces("y"), ("law_of_the_wall", "law_of_the_wall"))
         self.assertEqual(run.faces("z"), ("no_slip", "free_slip"))
-        self.assertTrue(run.side_walls)
+        self.assertEqual(run.side_walls, 2)
         self.assertEqual(run.diameter, 4.95e-3)
         self.assertAlmostEqual(run.density_ratio, 2.55, 12)
         self.assertAlmostEqual(run.slope, 0.0748, 12)
@@ -112,6 +112,19 @@ class RunFolder(made_up.MadeUpFolder):
         self.assertTrue(thalweg.Run(self.folder).driven_by_slope)
         self.assertFalse(self.with_case("top: free_slip", "top: {type: moving, velocity: [0.1, 0, 0]}").driven_by_slope)
         self.assertFalse(self.with_case("fluid: {density", "fluid: {mean_velocity: {velocity: 0.1}, density").driven_by_slope)
+
+    def test_a_flow_through_open_faces_or_without_a_slope_is_not_driven_by_it(self):
+        inlet = "x_low: {type: velocity_inlet, velocity: [0.1, 0, 0]}, x_high: pressure_outlet"
+        self.assertFalse(self.with_case("x: periodic", inlet).driven_by_slope)
+        self.assertTrue(self.with_case(inlet, "x: periodic").driven_by_slope)
+        self.assertFalse(self.with_case("slope: 0.0748", "slope: 0").driven_by_slope)
+
+    def test_side_walls_are_counted(self):
+        for faces, count in (("y_low: no_slip, y_high: free_slip", 1), ("y: free_slip", 0), ("y: periodic", 0),
+                             ("y_low: {type: navier_slip, slip_length: 1e-3}, y_high: {type: moving, velocity: [1, 0, 0]}", 2)):
+            case = self.folder / "case.yaml"
+            case.write_text(made_up.CASE.replace("y: {type: law_of_the_wall}", faces))
+            self.assertEqual(thalweg.Run(self.folder).side_walls, count, faces)
 
     def test_the_series_with_its_units(self):
         (self.folder / "series.csv").write_text("time [s],fast_cell_fraction [1],q_s [m^2/s],nothing\n"

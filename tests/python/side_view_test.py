@@ -68,6 +68,19 @@ class VisibleGrains(unittest.TestCase):
 
 
 class VisibleProfiles(unittest.TestCase):
+    def test_between_walls_the_ends_of_the_box_do_not_meet(self):
+        # A front grain at one end hides that at the other only where x is periodic.
+        frame = SimpleNamespace(position=np.array([[9.95, 1.0, 3.0], [0.05, 4.0, 3.0]]), radius=np.full(2, 0.5),
+                                velocity=np.zeros((2, 3)))
+        surface = Surface(np.arange(10.0), np.zeros(10))
+        areas = []
+        for periodic in (True, False):
+            sums = VisibleSums(np.array([0.0, 6.0]), 10.0, periodic)
+            sums.add(frame, surface)
+            areas.append(float(sums.area.sum()))
+        self.assertAlmostEqual(areas[1], 2.0 * np.pi / 4.0, 9)
+        self.assertLess(areas[0], areas[1])
+
     def test_of_two_grains_above_a_slope(self):
         # The surface rises from 3 to 4; both grains are 1 above it, one layer holds both whole. A third is hidden.
         surface = Surface(np.array([2.0, 8.0]), np.array([3.0, 4.0]))

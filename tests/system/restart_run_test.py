@@ -3,7 +3,9 @@
 
 Called by ctest: restart_run_test.py THALWEG MPIEXEC [unittest arguments]
 """
+import subprocess
 import sys
+import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
@@ -72,6 +74,55 @@ output: {series: {every: 0.01}}
                             words=["grains.0.density = 2650", "2550"])
         said = self.run_well("run", self.case, "--restart", checkpoint, "--out", "other", "--until", "0.1").stdout
         self.assertIn("changed since then: run.until: 0.05 -> 0.1", said)
+
+
+    def begin(self, *arguments):
+        """A run that goes on beside the test, which ends it."""
+        process = subprocess.Popen(self.command(("run", self.case, *arguments, "--until", "1000"), 0), cwd=self.folder,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        return process
+
+    def wait_until(self, happened):
+        deadline = time.monotonic() + 60.0
+        while not happened():
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.02)
+
+    def test_a_second_run_is_kept_out_of_the_folder(self):
+        process = self.begin("--restart", "run", "--set", "gravity.slope=0")   # or they would get too fast
+        self.wait_until(lambda: len((self.folder / "run/series.csv").read_text().splitlines()) > 8)
+        for way in (("--restart", "run"), ("--overwrite",)):
+            refused = self.thalweg("run", self.case, *way, "--until", "2000")
+            self.assertEqual(refused.returncode, 2, refused.stdout + refused.stderr)
+            self.assertIn("a run is writing there now (process ", refused.stderr)
+        self.assertIsNone(process.poll())
+        process.kill()   # the lock goes with the process, however that ends
+        process.wait()
+        self.run_well("run", self.case, "--restart", "run", "--until", "0.06")
+
+    def test_a_course_that_was_left_is_not_taken_up_again(self):
+        self.run_well("run", self.case, "--restart", "run", "--until", "0.1")
+        other = ("--set", "contact.friction=0.9", "--set", "output.checkpoint.every_wall=0")
+        process = self.begin("--restart", "run/checkpoints/step_100.h5", *other)
+        latest = self.folder / "run/checkpoints/latest"
+        self.wait_until(lambda: latest.read_text() == "step_100.h5\n")
+        process.kill()   # before it has a checkpoint of its own
+        process.wait()
+        said = self.run_well("run", self.case, "--restart", "run", "--until", "0.12", *other).stdout
+        self.assertIn("step_100.h5 at 0.05 s", said)
+        self.assertIn("changed since then: contact.friction: 0.3 -> 0.9", said)
+        self.run_well("run", self.case, "--out", "first", "--until", "0.05")
+        self.run_well("run", self.case, "--restart", "first", "--until", "0.12", *other)
+        self.assert_same_bed("run", "first")
+
+    def test_a_table_that_cannot_be_continued_is_refused_before_the_first_step(self):
+        refused = self.thalweg("run", self.case, "--restart", "run", "--until", "0.1", "--set", "analysis.transport_rate={}")
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("series.csv: the file has other columns than this run writes", refused.stderr)
+        self.assertFalse((self.folder / "run/checkpoints/step_101.h5").exists())
+        self.assertEqual(self.last_checkpoint("run").name, "step_100.h5")
 
 
 class RestartOfSums(ProgramTest):

@@ -97,7 +97,7 @@ def sweep(wanted):
     jobs = wanted.jobs or max(1, available_cores() // plan.ranks)
     units = units_of(plan)
     refuse_impossible(tasks)
-    runner = Runner(plan, tasks, units, program(), folder, jobs, wanted.retry)
+    runner = Runner(plan, tasks, units, program(), folder, jobs, wanted.retry, wanted.task is None)
     finished = runner.work()
     if wanted.task is None:
         code = written(plan, tasks, units, folder)

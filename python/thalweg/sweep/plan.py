@@ -128,16 +128,21 @@ def plan_of(content, folder):
     if "case" not in content:
         raise SweepError("case is missing; give the case file that is run, relative to this file.")
     case = (folder / content["case"]).resolve()
-    try:
-        digest = digest_of(yaml.load(case.read_text(), CaseLoader))
-    except OSError:
-        raise SweepError(f"case: {case} cannot be read.") from None
+    digest = digest_of_case(case)
     points = points_of(content)
     bisections = bisections_of(content, points)
     ranks = content.get("ranks", 1)
     if not isinstance(ranks, int) or ranks < 1:
         raise SweepError(f"ranks: {ranks} is not a number of MPI ranks; give a whole number from 1 on.")
     return Plan(case, points, bisections, ranks, list(content.get("columns") or []), digest, followers_in(content))
+
+
+def digest_of_case(path):
+    """Of what the case file says now."""
+    try:
+        return digest_of(yaml.load(path.read_text(), CaseLoader))
+    except OSError:
+        raise SweepError(f"case: {path} cannot be read.") from None
 
 
 def points_of(content):

@@ -12,10 +12,11 @@ SECONDS_BETWEEN_LINES = 5.0
 
 
 class Runner:
-    """plan, tasks: of the sweep; units: of the case's keys; jobs: runs at a time."""
+    """plan, tasks: of the sweep; units: of the case's keys; jobs: runs at a time; tables: whether to write them, which is not
+    for one of several sweeps that share a folder."""
 
-    def __init__(self, plan, tasks, units, program, folder, jobs, retry=False):
-        self.plan, self.tasks, self.units, self.program, self.folder = plan, tasks, units, program, folder
+    def __init__(self, plan, tasks, units, program, folder, jobs, retry=False, tables=True):
+        self.plan, self.tasks, self.units, self.program, self.folder, self.tables = plan, tasks, units, program, folder, tables
         self.jobs = jobs
         self.going = {}   # by run: (process, when it was started)
         self.dropped = set()   # going, asked to stop because the others have settled what they were to show
@@ -73,6 +74,8 @@ class Runner:
             process = run.start(self.program) if run.state not in (DONE, FAILED) else None
             if process:
                 self.going[run] = (process, time.monotonic())
+                if self.stopping:   # a signal came while it was being started
+                    process.send_signal(signal.SIGUSR1)
 
     def collect(self):
         ended = [run for run, (process, _) in self.going.items() if process.poll() is not None]
@@ -87,7 +90,7 @@ class Runner:
                 self.say(f"{run.name} failed: {run.failure}")
             elif run.state != DONE:
                 run.remember("the run was stopped from outside before its end")
-        if ended:
+        if ended and self.tables:
             write_tables(self.plan, self.tasks, self.units, self.folder)
 
     def progress(self):

@@ -9,10 +9,11 @@ import fcntl
 import json
 import os
 import signal
+import socket
 import subprocess
 from pathlib import Path
 
-from thalweg.sweep.plan import SweepError
+from thalweg.sweep.plan import SweepError, digest_of_case
 
 WAITING, DONE, FAILED, BEGUN = "waiting", "done", "failed", "begun"
 STOPPED = 3   # exit code of thalweg run
@@ -32,17 +33,17 @@ class SweepRun:
         known = json.loads(self.note.read_text()) if self.note.exists() else None
         if known and {key: known.get(key) for key in self.identity} != self.identity:
             raise SweepError(f"{self.folder} was run with other settings, or the case has changed since; give another --out, "
-                             "or remove that folder.")
+                             f"or remove that folder and {self.note.name} beside it.")
         self.failure = (known or {}).get("failure")
         path = self.folder / "summary.json"
         self.summary = json.loads(path.read_text()) if path.exists() else None
 
     @property
     def state(self):
-        if self.summary and self.summary.get("finished"):
-            return DONE
         if self.failure:
             return FAILED
+        if self.summary and self.summary.get("finished"):
+            return DONE
         return BEGUN if self.folder.exists() else WAITING
 
     @property
@@ -67,7 +68,10 @@ class SweepRun:
 
     def start(self, program):
         """The process of the run, which saves its state and stops at SIGUSR1 and when the sweep is killed; None while
-        another sweep has it."""
+        another sweep has it. SweepError if the case has been changed since the sweep began."""
+        if digest_of_case(self.case) != self.identity["case"]:
+            raise SweepError(f"{self.case} has been changed since this sweep began; its results are those of the old one. Change "
+                             "it back and start the same command again, or give another --out.")
         self.folder.parent.mkdir(parents=True, exist_ok=True)
         # Several runs beside each other must not all be bound to the first core.
         environment = os.environ | {"OMPI_MCA_hwloc_base_binding_policy": "none"}
@@ -94,7 +98,7 @@ class SweepRun:
 
 def replace_text(path, text):
     """Writes a file at once: whoever reads it meanwhile sees the old one or the new one."""
-    temporary = path.with_suffix(".partial")
+    temporary = path.with_name(f"{path.stem}.{socket.gethostname()}.{os.getpid()}.partial")
     temporary.write_text(text)
     temporary.replace(path)
 

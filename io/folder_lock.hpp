@@ -1,0 +1,28 @@
+// Keeps a second run out of a run folder.
+#pragma once
+
+#include <filesystem>
+
+namespace thalweg::io {
+
+// Holds a lock on the file .lock of the folder from its construction on. The system releases it with the process,
+// however that ends, so that the file may stay.
+class FolderLock {
+public:
+  FolderLock() = default;  // holds nothing
+
+  // Makes the folder where it is missing. Throws InputError where another process holds its lock for three seconds and
+  // more, and RunError where the folder cannot be made. File systems without locks lock nothing.
+  explicit FolderLock(const std::filesystem::path& folder);
+
+  FolderLock(FolderLock&& other) noexcept;
+  FolderLock& operator=(FolderLock&& other) noexcept;
+  ~FolderLock();
+
+  static constexpr const char* file_name = ".lock";
+
+private:
+  int file_ = -1;
+};
+
+}  // namespace thalweg::io
