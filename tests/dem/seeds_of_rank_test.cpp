@@ -14,10 +14,10 @@
 namespace thalweg::dem {
 namespace {
 
-Decomposition shared_box() {
-  const Index3 cells{24, 16, 24};
-  return Decomposition(cells, 2.5e-3, {true, true, false}, Decomposition::best_layout(cells, size_of(MPI_COMM_WORLD)));
-}
+constexpr Index3 cells{24, 16, 24};
+
+Decomposition box_cut_into(const Index3& layout) { return Decomposition(cells, 2.5e-3, {true, true, false}, layout); }
+Decomposition shared_box() { return box_cut_into(Decomposition::best_layout(cells, size_of(MPI_COMM_WORLD))); }
 
 constexpr double reach = 5e-3 * (1.0 + allowed_initial_overlap);  // of two centres that touch
 
@@ -43,8 +43,7 @@ std::vector<Population> four_kinds() {
           body};
 }
 
-GrainSeeds of_this_rank(const std::vector<Population>& populations) {
-  const Decomposition decomposition = shared_box();
+GrainSeeds of_this_rank(const std::vector<Population>& populations, const Decomposition& decomposition = shared_box()) {
   return grain_seeds(populations, PlacingRanks(decomposition.box(), MPI_COMM_WORLD, decomposition, reach));
 }
 
@@ -58,13 +57,13 @@ bool same(const GrainSeed& a, const GrainSeed& b) {
 }
 
 // Every grain that this rank is to know, as among all, and no other.
-void expect_share_of_all(const std::vector<Population>& populations, std::size_t count) {
-  const Decomposition decomposition = shared_box();
+void expect_share_of_all(const std::vector<Population>& populations, std::size_t count,
+                         const Decomposition& decomposition = shared_box()) {
   const PeriodicBox box = decomposition.box();
   const GrainSeeds all = of_one_process(populations);
   ASSERT_TRUE(all.whole);
   ASSERT_EQ(all.grains.size(), count);
-  const GrainSeeds mine = of_this_rank(populations);
+  const GrainSeeds mine = of_this_rank(populations, decomposition);
   EXPECT_EQ(mine.whole, decomposition.ranks() == 1);
   std::map<GlobalId, GrainSeed> known;
   for (const GrainSeed& grain : mine.grains) known[grain.id] = grain;
@@ -96,13 +95,19 @@ TEST(SeedsOfRank, DenselyPackedAreItsShareOfAllSeeds) {
   expect_share_of_all({glass(40, PlacementPattern::random, 0.03, 0.06), dense}, 590);
 }
 
-// A lattice and grains packed into what is left between, who are pushed across the borders of the blocks on the way.
+// One grain that starts just before the middle of the box, where two and more ranks meet, and is pushed across it, by
+// 0.3 mm and a third more before it stops, by a grain behind it. That is too far for another one in front, which a rank
+// would not know by the distance from its block alone.
 TEST(SeedsOfRank, DenselyPackedAmongOthersAreTheirShareOfAllSeeds) {
-  Population given = glass(3, PlacementPattern::uniform, 0.0, 0.06);
+  Population given = glass(2, PlacementPattern::uniform, 0.0, 0.06),
+             dense = glass(1, PlacementPattern::dense, 0.0, 0.06);
   given.placement.region.reset();
-  given.placement.positions = {Vec3(0.0352, 0.02, 0.045), Vec3(0.0248, 0.0245, 0.05), Vec3(0.004, 0.0245, 0.048)};
-  expect_share_of_all(
-      {glass(60, PlacementPattern::uniform, 0.0, 0.02), glass(620, PlacementPattern::dense, 0.0, 0.06), given}, 683);
+  given.placement.positions = {Vec3(0.02525, 0.02, 0.03), Vec3(0.0353, 0.02, 0.03)};
+  dense.placement.region = RegionKeys{Vec3(0.02745, 0.0174, 0.0274), Vec3(0.033, 0.0226, 0.0326)};
+  const int ranks = size_of(MPI_COMM_WORLD);
+  const Decomposition decomposition = box_cut_into(ranks > 1 ? Index3{2, ranks / 2, 1} : Index3{1, 1, 1});
+  for (dense.placement.seed = 1; dense.placement.seed < 40; ++dense.placement.seed)
+    expect_share_of_all({given, dense}, 3, decomposition);
 }
 
 // Grains too many to be placed by every rank alone, here few: two sizes among obstacles, a quarter of the volume.
