@@ -1,5 +1,6 @@
 // Clumps: free rotation, impact, contact with a floor, many in a cloud, and what a clump of one sphere must be.
 #include "core/error.hpp"
+#include "dem/population_clumps.hpp"
 #include "tests/dem/clump_cases.hpp"
 
 #include <gtest/gtest.h>
@@ -308,6 +309,27 @@ TEST(Clump, OfDisksTurnsInItsPlane) {
     EXPECT_EQ(grains.store().angular_velocity[s].x(), 0.0);
     EXPECT_EQ(grains.store().angular_velocity[s].z(), 0.0);
   }
+}
+
+// A rod of five spheres, 12 mm long across a periodic box of 12.5 mm: its last members are nearer to the first one's
+// image.
+TEST(Clump, LongerThanHalfAPeriodicBoxIsReadAsItWas) {
+  std::vector<BedGrain> open, wrapped;
+  const PeriodicBox box{Vec3(0.03, 0.0125, 0.03), {true, true, false}}, room{box.size, {false, false, false}};
+  for (int member = 0; member < 5; ++member) {
+    BedGrain row;
+    row.radius = 2e-3;
+    row.density = glass_density;
+    row.clump = 0;
+    row.position = Vec3(0.01, 0.004 + 2e-3 * member, 0.02);
+    open.push_back(row);
+    row.position = box.wrapped(row.position);
+    wrapped.push_back(row);
+  }
+  const ClumpSeed exact = clump_from(open, room, 0.0), read = clump_from(wrapped, box, 0.0);
+  EXPECT_NEAR(read.mass() / exact.mass(), 1.0, 1e-12);
+  EXPECT_NEAR(read.shape->bounding_radius, 6e-3, 1e-12);
+  EXPECT_LT((read.position - exact.position).norm(), 1e-12);
 }
 
 TEST(Clump, ThatCannotBeIsRefused) {

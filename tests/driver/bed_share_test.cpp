@@ -206,6 +206,8 @@ TEST_F(BedShare, IsTheSameFromACheckpoint) {
   const Case again = read_case(folder_ / "case.yaml", {}, beds_of({state}), MPI_COMM_WORLD);
   const Case whole = read_case(folder_ / "case.yaml", {}, beds_of({state}));
   EXPECT_EQ(again.grains[1].figures, whole.grains[1].figures);
+  EXPECT_GT(begun.grains[1].figures.fastest, 0.0);  // which goes on without the velocities
+  EXPECT_EQ(again.grains[1].figures.fastest, begun.grains[1].figures.fastest);
   EXPECT_EQ(whole.grains[1].file.size(), 636u);
   std::vector<BedGrain> rows = begun.grains[1].file;
   for (BedGrain& row : rows) row.velocity.setZero();

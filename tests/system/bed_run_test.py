@@ -42,6 +42,14 @@ output: {series: {every: 0.02}}
             self.run_well("run", self.case, "--out", out, "--layout", layout, "--set", "run={until: 0.02}", ranks=ranks)
             self.assertEqual((self.folder / out / "bed.h5").read_bytes(), (self.folder / "one/bed.h5").read_bytes())
 
+    def test_a_box_of_cells_to_seven_digits_takes_its_own_bed(self):
+        cells = ("--set", "domain.spacing=8.333333e-4", "--set", "domain.size=[0.02, 0.015, 0.06]")   # 24 x 18 x 72, and 4e-8
+        self.run_well("run", self.case, *cells, "--out", "rounded", "--set", "run={until: 0.3}")
+        for ranks in (0, 2):
+            self.run_well("run", self.case, *cells, "--out", f"again_{ranks}", "--set", "grains=[{placement: {file: rounded/bed.h5}}]",
+                          "--set", "run={until: 0.02}", ranks=ranks)
+        self.assert_same_bed("again_0", "again_2")
+
     def test_the_grains_are_at_rest_on_each_other(self):
         summary = self.summary("run")
         self.assertTrue(summary["finished"])
