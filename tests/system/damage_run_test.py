@@ -28,10 +28,11 @@ def cut(length):
 
 
 def lost_block(start):
-    """Zeros in place of a kilobyte, as a file system leaves them after a crash."""
+    """Zeros in place of a kilobyte, as a file system leaves them after a crash; of the first from there on that is not all
+    zeros, as room is that HDF5 has not used."""
     def damage(path):
         text = bytearray(path.read_bytes())
-        begin = int(start * len(text))
+        begin = next(n for n in range(int(start * len(text)), len(text)) if any(text[n:n + 64]))
         text[begin:begin + 1024] = bytes(len(text[begin:begin + 1024]))
         path.write_bytes(text)
     return damage
