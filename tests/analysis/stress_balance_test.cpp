@@ -249,20 +249,30 @@ TEST(StressBalance, BetweenSideWallsCountsWhatTheyTakeOfTheFluid) {
   EXPECT_GT(values.at("side_wall_stress").front(), 0.5 * bed_stress);
 }
 
-// A sphere that scrapes slowly along a side wall, pressed against it: the wall takes the friction, 0.45 of 20000 N/m
-// times the overlap of 5e-6 m, at the height of the sphere's middle, and what moves the sphere gives it.
-TEST(StressBalance, BetweenSideWallsCountsWhatTheyTakeOfTheGrains) {
-  WaterBox box = viscous_box({18, 12, 24}, 9.0, 1.5);
-  box.periodic = {true, false, false};
+// What a held sphere at a place leaves in the balance that scrapes along a wall at 1 mm/s.
+Values of_scraping_sphere(WaterBox box, const Vec3& place) {
   box.closed = true;
-  box.seeds = {glass_sphere(0, Vec3(5e-3, 2.495e-3, 6.1e-3), Vec3(1e-3, 0.0, 0.0))};
+  box.seeds = {glass_sphere(0, place, Vec3(1e-3, 0.0, 0.0))};
   box.seeds[0].motion = dem::Motion::fixed;
   const auto system = system_of(box);
   for (int step = 0; step < 1000; ++step) system->advance();
   StressBalance balance = balance_of(box, *system, 1.2e-3, {{0, 1}});
   measure(balance, *system);
-  const Values values = by_name(balance);
-  const double friction = 0.45 * 20000.0 * 5e-6 / (18.0 * 12.0 * box.spacing * box.spacing);
+  return by_name(balance);
+}
+
+// Pa: 0.45 of 20000 N/m times the overlap of 5e-6 m.
+double friction_stress(const WaterBox& box) {
+  return 0.45 * 20000.0 * 5e-6 / (box.cells[0] * box.cells[1] * box.spacing * box.spacing);
+}
+
+// A sphere that scrapes slowly along a side wall, pressed against it: the wall takes the friction at the height of the
+// sphere's middle, and what moves the sphere gives it.
+TEST(StressBalance, BetweenSideWallsCountsWhatTheyTakeOfTheGrains) {
+  WaterBox box = viscous_box({18, 12, 24}, 9.0, 1.5);
+  box.periodic = {true, false, false};
+  const Values values = of_scraping_sphere(box, Vec3(5e-3, 2.495e-3, 6.1e-3));
+  const double friction = friction_stress(box);
   for (std::size_t l = 0; l < values.at("z").size(); ++l) {
     EXPECT_NEAR(values.at("total_stress")[l] + values.at("side_wall_stress")[l], values.at("driving_stress")[l],
                 1e-3 * friction);
@@ -279,17 +289,9 @@ TEST(StressBalance, BetweenSideWallsCountsWhatTheyTakeOfTheGrains) {
 // there is nothing, and in it, as far as it is above, the friction. A stress from the top is driving, not a side
 // wall's.
 TEST(StressBalance, TheTopDragsGrainsAsWell) {
-  WaterBox box = viscous_box({18, 20, 24}, 9.0, 1.5);
-  box.closed = true;
-  const double top = 24.0 * box.spacing;
-  box.seeds = {glass_sphere(0, Vec3(5e-3, 5e-3, top - 2.495e-3), Vec3(1e-3, 0.0, 0.0))};
-  box.seeds[0].motion = dem::Motion::fixed;
-  const auto system = system_of(box);
-  for (int step = 0; step < 1000; ++step) system->advance();
-  StressBalance balance = balance_of(box, *system, 1.2e-3, {{0, 1}});
-  measure(balance, *system);
-  const Values values = by_name(balance);
-  const double friction = 0.45 * 20000.0 * 5e-6 / (18.0 * 20.0 * box.spacing * box.spacing);
+  const WaterBox box = viscous_box({18, 20, 24}, 9.0, 1.5);
+  const double top = 24.0 * box.spacing, friction = friction_stress(box);
+  const Values values = of_scraping_sphere(box, Vec3(5e-3, 5e-3, top - 2.495e-3));
   for (std::size_t l = 0; l < values.at("z").size(); ++l) {
     EXPECT_NEAR(values.at("total_stress")[l], values.at("driving_stress")[l], 1e-3 * friction);
     EXPECT_EQ(values.at("side_wall_stress")[l], 0.0);
