@@ -5,6 +5,14 @@
 
 namespace thalweg::analysis {
 
+namespace {
+
+// The scatter of fewer says too little: it is off by a quarter with eight, and by half with three, which then may seem
+// to be enough by chance.
+constexpr double fewest_blocks = 8.0;
+
+}  // namespace
+
 void CorrelatedMean::add(double value) {
   for (std::size_t k = 0;; ++k) {
     if (k == levels_.size()) levels_.emplace_back();
@@ -39,7 +47,7 @@ CorrelatedMean::Error CorrelatedMean::error() const {
   const double values = levels_.front().blocks, plain = levels_.front().squared_error();
   if (plain == 0.0) return {0.0, 0.5, true};  // all alike
   double largest = 0.0;
-  for (std::size_t k = 0; k < levels_.size() && levels_[k].blocks >= 2.0; ++k) {
+  for (std::size_t k = 0; k < levels_.size() && (k == 0 || levels_[k].blocks >= fewest_blocks); ++k) {
     const double squared = levels_[k].squared_error(), ratio = squared / plain;
     largest = std::max(largest, squared);
     if (std::exp2(3.0 * static_cast<double>(k)) > 2.0 * values * ratio * ratio)

@@ -7,9 +7,9 @@
 //
 // grows with k until blocks are longer than the memory of the series, and is then the square of the error of the mean.
 // The shortest blocks with B^3 > 2 n (sigma_k / sigma_0)^4, B = 2^k, n the number of values, are taken (Wolff, Comput.
-// Phys. Commun. 156 (2004) 143; Lee et al., Phys. Rev. E 83 (2011) 066706). The integrated autocorrelation time is then
-// sigma_k^2 / (2 sigma_0^2) times the interval between values: half an interval where values do not depend on each
-// other.
+// Phys. Commun. 156 (2004) 143; Lee et al., Phys. Rev. E 83 (2011) 066706), if there are at least eight. The integrated
+// autocorrelation time is then sigma_k^2 / (2 sigma_0^2) times the interval between values: half an interval where
+// values do not depend on each other.
 //
 // What is kept grows with the logarithm of the number of values, so that it goes into a checkpoint.
 #pragma once

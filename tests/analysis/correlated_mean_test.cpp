@@ -54,6 +54,24 @@ TEST(CorrelatedMean, SaysWhenItIsTooShort) {
   EXPECT_FALSE(mean.error().blocks_long_enough);
 }
 
+// A series worth twenty values: three blocks that are long enough agree by chance one time in five to half of their
+// error. The scatter of eight is off by a quarter at one standard deviation, so that half is two of them: 2.3 % of 200
+// series, give or take three times the root of that.
+TEST(CorrelatedMean, IsNotSureByChance) {
+  constexpr double a = 0.95, worth = (1.0 + a) / (1.0 - a);
+  constexpr int series = 200, values = 800;
+  const double expected = std::sqrt(worth / (1.0 - a * a) / values);
+  int too_sure = 0;
+  for (int seed = 1; seed <= series; ++seed) {
+    CorrelatedMean mean;
+    MadeUpChain chain(a, static_cast<std::uint64_t>(seed));
+    for (int n = 0; n < values; ++n) mean.add(chain.next());
+    const CorrelatedMean::Error error = mean.error();
+    if (error.blocks_long_enough && error.of_mean < 0.5 * expected) ++too_sure;
+  }
+  EXPECT_LE(too_sure, 11);
+}
+
 TEST(CorrelatedMean, GoesOnFromItsState) {
   CorrelatedMean whole, first, second;
   MadeUpChain chain(0.5, 1);
