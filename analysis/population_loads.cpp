@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
-#include <cmath>
 #include <utility>
 
 namespace thalweg::analysis {
@@ -22,20 +21,6 @@ PopulationLoads::PopulationLoads(MPI_Comm communicator, const PeriodicBox& box, 
     }
 }
 
-namespace {
-
-// From the pivot to the nearest image of a grain. The pivot of a body that travels goes on beyond a periodic face,
-// where grains come back.
-Vec3 arm_from(const Vec3& pivot, const Vec3& position, const PeriodicBox& box) {
-  Vec3 arm = position - pivot;
-  for (int axis = 0; axis < 3; ++axis)
-    if (box.periodic[static_cast<std::size_t>(axis)])
-      arm[axis] -= box.size[axis] * std::round(arm[axis] / box.size[axis]);
-  return arm;
-}
-
-}  // namespace
-
 void PopulationLoads::observe(const Snapshot& snapshot) {
   const GrainView& grains = snapshot.grains;
   const std::size_t columns = with_fluid_ ? 12 : 6;
@@ -43,11 +28,11 @@ void PopulationLoads::observe(const Snapshot& snapshot) {
   std::vector<double> terms;
   const auto add = [&terms](const Vec3& v) { terms.insert(terms.end(), v.data(), v.data() + 3); };
   for (const Population& population : populations_) {
-    const Vec3 pivot = population.pivot(snapshot.time);
+    const Vec3 pivot = box_.wrapped_from_afar(population.pivot(snapshot.time));  // it goes on where grains come back
     terms.clear();
     for (std::size_t i = 0; i < grains.id.size(); ++i) {
       if (grains.id[i] < population.first || grains.id[i] >= population.end) continue;
-      const Vec3 arm = arm_from(pivot, grains.position[i], box_);
+      const Vec3 arm = box_.difference(grains.position[i], pivot);
       add(grains.contact_force[i]);
       add(arm.cross(grains.contact_force[i]) + grains.contact_torque[i]);
       if (!with_fluid_) continue;

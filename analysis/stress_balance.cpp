@@ -27,8 +27,7 @@ StressBalance::StressBalance(MPI_Comm communicator, const Decomposition& decompo
       grains_(static_cast<std::size_t>(layers_.count()) * grain_columns, 0.0),
       given_(static_cast<std::size_t>(2 * n_[2] + 1), 0.0),
       sides_(given_.size(), 0.0),
-      held_up_(static_cast<std::size_t>(2 * layers_.count()), 0.0),
-      top_on_grains_(1, 0.0),
+      held_up_(static_cast<std::size_t>(2 * layers_.count() + 2), 0.0),
       driving_(static_cast<std::size_t>(n_[2] + 1), 0.0) {
   if (decomposition.periodic()[2]) throw std::logic_error("a stress balance needs a top and a bottom");
 }
@@ -113,8 +112,7 @@ void StressBalance::add_grains_at_walls(const Snapshot& snapshot) {
     terms.insert(terms.end(), {end.force.x(), end.force.x() * (height - layers_.bottom(layer))});
   });
   const std::vector<double> sums = order_free_sums_by_bin(communicator_, layer_of_row, layers_.count() + 1, terms, 2);
-  for (std::size_t s = 0; s < held_up_.size(); ++s) held_up_[s] += sums[s];
-  top_on_grains_.front() += sums[held_up_.size()];
+  for (std::size_t s = 0; s < sums.size(); ++s) held_up_[s] += sums[s];
 }
 
 std::size_t StressBalance::stored_size() const {

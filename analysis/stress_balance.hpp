@@ -154,15 +154,13 @@ private:
   std::vector<double> given_;    // N, along x, on grains by half planes
   std::vector<double> sides_;    // N, along x, of the fluid on side walls by half planes
   std::vector<double> held_up_;  // of each layer: N, along x, of walls but the top on grains, and times the height at
-                                 // which they act over the layer's bottom
-  std::vector<double> top_on_grains_;  // one number: N, along x, of the top on grains
-  std::vector<double> driving_;        // N/m^3 times fluid cells, along x, of each plane; last: N on the top
+                                 // which they act over the layer's bottom; last the same of the top
+  std::vector<double> driving_;  // N/m^3 times fluid cells, along x, of each plane; last: N on the top
   std::int64_t measurements_ = 0, counted_step_ = -1;
 
   // What a checkpoint holds, in its order.
-  static constexpr std::array stored{&StressBalance::fluid_,        &StressBalance::grains_,  &StressBalance::given_,
-                                     &StressBalance::sides_,        &StressBalance::held_up_, &StressBalance::driving_,
-                                     &StressBalance::top_on_grains_};
+  static constexpr std::array stored{&StressBalance::fluid_, &StressBalance::grains_,  &StressBalance::given_,
+                                     &StressBalance::sides_, &StressBalance::held_up_, &StressBalance::driving_};
 };
 
 }  // namespace thalweg::analysis

@@ -130,7 +130,8 @@ void StressBalance::set_totals(int layer, LayerMeans& means) const {
   const double carried =
       means.kinetic[xz] + means.viscous[xz] + means.subgrid[xz] + means.reynolds[xz] + means.mean_flow[xz];
   means.sum = carried + means.contact[row_xz] + means.grain_fluid[row_xz] + means.lubrication[row_xz];
-  const double walls_on_grains = above(layer, held_up_, 2, 0, 1), top_on_grains = top_on_grains_.front();
+  const double walls_on_grains = above(layer, held_up_, 2, 0, 1);
+  const double top_on_grains = held_up_[static_cast<std::size_t>(2 * layers_.count())];
   means.total = carried + (by_height_above(given_, layer) - above(layer, fluid_force, fluid_lever) -
                            above(layer, contact_force_x, contact_lever) + walls_on_grains + top_on_grains) /
                               area;

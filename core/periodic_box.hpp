@@ -4,6 +4,8 @@
 
 #include "core/types.hpp"
 
+#include <cmath>
+
 namespace thalweg {
 
 struct PeriodicBox {
@@ -34,6 +36,13 @@ struct PeriodicBox {
       if (p[axis] >= size[axis]) p[axis] = 0.0;  // -1e-20 + size rounds to size
     }
     return p;
+  }
+
+  // The same from however far away.
+  Vec3 wrapped_from_afar(Vec3 p) const {
+    for (int axis = 0; axis < 3; ++axis)
+      if (periodic[axis]) p[axis] -= size[axis] * std::floor(p[axis] / size[axis]);
+    return wrapped(p);
   }
 };
 

@@ -11,17 +11,6 @@
 
 namespace thalweg::dem {
 
-namespace {
-
-// Inside the box on the periodic axes, from however far away.
-Vec3 wrapped(const PeriodicBox& box, Vec3 p) {
-  for (int axis = 0; axis < 3; ++axis)
-    if (box.periodic[axis]) p[axis] -= box.size[axis] * std::floor(p[axis] / box.size[axis]);
-  return box.wrapped(p);
-}
-
-}  // namespace
-
 Assemblies::Assemblies(const std::vector<PrescribedMotion>& motions, std::span<const GrainSeed> seeds)
     : motions_(motions) {
   for (const PrescribedMotion& motion : motions_) check(motion);
@@ -62,7 +51,7 @@ void Assemblies::place(MovingGrains& grains, const PeriodicBox& box, double time
     const Member& member = members_[owned.member];
     const PrescribedMotion& motion = motions_[static_cast<std::size_t>(member.assembly)];
     MovingGrain& grain = grains[owned.slot];
-    grain.position = row_of(wrapped(box, motion.place(member.at_start, time)), grain.position[3]);
+    grain.position = row_of(box.wrapped_from_afar(motion.place(member.at_start, time)), grain.position[3]);
     grain.velocity = row_of(motion.velocity_of(member.at_start, time_of_velocity));
     grain.spin = row_of(motion.spin());
   }

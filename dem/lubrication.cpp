@@ -170,7 +170,7 @@ void for_each_lubrication_end(const GrainStore& store, const ContactList& list, 
 
 void for_each_wall_lubrication(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
                                std::span<const Plane> walls, const LubricationParameters& parameters,
-                               const std::function<void(std::size_t slot, const ContactEnd& end)>& visit) {
+                               const ContactSource::ContactEndVisitor& visit) {
   for (const WallContact& c : list.walls) {
     if (!parameters.walls[c.wall] || store.is_ghost(c.grain)) continue;
     const Plane& wall = walls[c.wall];

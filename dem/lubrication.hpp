@@ -72,6 +72,6 @@ void for_each_lubrication_end(const GrainStore& store, const ContactList& list, 
 // The same of walls only, with the wall.
 void for_each_wall_lubrication(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
                                std::span<const Plane> walls, const LubricationParameters& parameters,
-                               const std::function<void(std::size_t slot, const ContactEnd& end)>& visit);
+                               const ContactSource::ContactEndVisitor& visit);
 
 }  // namespace thalweg::dem

@@ -10,6 +10,13 @@ namespace {
 std::string largest_path(const std::string& figure) { return "largest/" + figure; }
 std::string since_path(const std::string& observer) { return "run/since_" + observer; }
 
+std::string interval_path(const std::string& observer) { return "run/interval_" + observer; }
+
+// s, between its measurements, which go with the rows of the series where it has no interval of its own.
+double interval_of(const analysis::Observer& observer, double series_every) {
+  return observer.every() > 0.0 ? observer.every() : series_every;
+}
+
 // Whether the archive has means of measurements at another interval, which this run's could not be counted with: all
 // would weigh the same.
 bool has_other_weights(ArchiveReader& archive, const analysis::Observer& observer, double series_every) {
@@ -20,17 +27,15 @@ bool has_other_weights(ArchiveReader& archive, const analysis::Observer& observe
 
 }  // namespace
 
-double interval_of(const analysis::Observer& observer, double series_every) {
-  return observer.every() > 0.0 ? observer.every() : series_every;
-}
-
-std::string interval_path(const std::string& observer) { return "run/interval_" + observer; }
-
-void Accounts::save(ArchiveWriter& archive) const {
+void Accounts::save(ArchiveWriter& archive, const Observers& observers, double series_every) const {
   archive.attribute("largest/from", largest_from);
   for (const Figure& figure : largest)
     if (std::isfinite(figure.value)) archive.attribute(largest_path(figure.name), figure.value);
   for (const auto& [observer, time] : since) archive.attribute(since_path(observer), time);
+  for (const auto& observer : observers) {
+    observer->save(archive);
+    archive.attribute(interval_path(observer->name()), interval_of(*observer, series_every));
+  }
 }
 
 Accounts Accounts::load(ArchiveReader& archive, const System& system, Observers& observers, double series_every) {

@@ -14,19 +14,15 @@ namespace thalweg::driver {
 
 using Observers = std::vector<std::unique_ptr<analysis::Observer>>;
 
-// s, between the measurements of an observer, which go with the rows of the series where it has no interval of its own;
-// and the attribute of a checkpoint that keeps it.
-double interval_of(const analysis::Observer& observer, double series_every);
-std::string interval_path(const std::string& observer);
-
 struct Accounts {
   std::vector<Figure> largest;  // of the system, since largest_from
   double largest_from = 0.0;    // s, simulated
   // s, by the name of an observer: from when its sums count, where that is later than the start of the run.
   std::map<std::string, double> since;
 
-  // Attributes largest/<figure>, largest/from and run/since_<observer>. Collective.
-  void save(ArchiveWriter& archive) const;
+  // Saves the observers as well, and attributes largest/<figure>, largest/from, run/since_<observer> and
+  // run/interval_<observer>. series_every: s, the interval of observers that have none of their own. Collective.
+  void save(ArchiveWriter& archive, const Observers& observers, double series_every) const;
 
   // Loads the observers as well. What the archive does not have begins at its time. `system` is loaded already.
   // Means of measurements at another interval are not taken over either. Collective.

@@ -74,6 +74,12 @@ bool places_a_wall(std::string_view key, bool dry) {
   return of_motion && (key.starts_with("walls.") || (dry && key.starts_with("domain.boundaries.")));
 }
 
+// e.g. "grains.0.density = 2650: the run that is to go on has 2550"
+std::string told(const CaseChange& change) {
+  return fmt::format("{} = {}: the run that is to go on {}", change.key, change.now,
+                     change.before == "none" ? "does not have this key" : "has " + change.before);
+}
+
 }  // namespace
 
 std::vector<CaseChange> case_changes(const std::string& before, const std::string& now) {
@@ -89,16 +95,15 @@ std::vector<CaseChange> case_changes(const std::string& before, const std::strin
 void refuse_changes_of_state(const std::vector<CaseChange>& changes, bool dry) {
   for (const CaseChange& change : changes) {
     if (places_a_wall(change.key, dry))
-      throw InputError(fmt::format(
-          "{} = {}: the run that is to go on {}. A wall is where its motion since the start has brought it, and "
-          "would jump; set the key back, or begin a new run from that one with initial.from, with the wall "
-          "where it is now.",
-          change.key, change.now, change.before == "none" ? "does not have this key" : "has " + change.before));
+      throw InputError(
+          told(change) +
+          ". A wall is where its motion since the start has brought it, and would jump; set the key back, or "
+          "begin a new run from that one with initial.from, with the wall where it is now.");
     if (is_in_the_checkpoint(change.key))
-      throw InputError(fmt::format(
-          "{} = {}: the run that is to go on {}. Grains and lattice are in its checkpoint; set the key back, or begin "
-          "a new run from that one with initial.from.",
-          change.key, change.now, change.before == "none" ? "does not have this key" : "has " + change.before));
+      throw InputError(
+          told(change) +
+          ". Grains and lattice are in its checkpoint; set the key back, or begin a new run from that one with "
+          "initial.from.");
   }
 }
 

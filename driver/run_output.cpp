@@ -83,15 +83,15 @@ void RunOutput::add_to(loop::LoopPlan& plan) {
 void RunOutput::begin_series(const std::vector<Figure>& row) {
   if (case_.output.series.every <= 0.0) return;
   std::vector<io::SeriesTable::Column> columns;
-  for (const std::vector<Figure>& figures : {row, constants_})
-    for (const Figure& figure : figures) columns.push_back({figure.name, figure.unit});
+  for (const auto* figures : {&row, &std::as_const(constants_)})
+    for (const Figure& figure : *figures) columns.push_back({figure.name, figure.unit});
   series_ = std::make_unique<io::SeriesTable>(communicator_, folder_.series(), columns, continue_from_);
 }
 
 void RunOutput::write_row(double time, const std::vector<Figure>& measured) {
   std::vector<double> values;
-  for (const std::vector<Figure>& figures : {measured, constants_})
-    for (const Figure& figure : figures) values.push_back(figure.value);
+  for (const auto* figures : {&measured, &std::as_const(constants_)})
+    for (const Figure& figure : *figures) values.push_back(figure.value);
   series_->append(time, values);
 }
 
@@ -142,13 +142,9 @@ void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& p
   archive.attribute("run/time", system.time());
   archive.attribute("run/time_step", system.time_step());
   archive.attribute("run/spacing", c.domain.spacing);
-  accounts.save(archive);
   save_beds(archive, communicator, c);
   system.save(archive);
-  for (const auto& observer : observers) {
-    observer->save(archive);
-    archive.attribute(interval_path(observer->name()), interval_of(*observer, c.output.series.every));
-  }
+  accounts.save(archive, observers, c.output.series.every);
   archive.close();
 }
 

@@ -155,12 +155,18 @@ bool TimeLoop::has_enough() {
 }
 
 // The system's figures and the observers', a column a name.
-std::vector<Figure> TimeLoop::row_of(const std::vector<Figure>& of_system) const {
+std::vector<Figure> TimeLoop::row_of(const std::vector<Figure>& of_system, const std::vector<Figure>& measured) {
   std::vector<Figure> row = of_system;
-  for (const auto& observer : observers_)
-    for (const Figure& figure : observer->figures())
-      if (!find_figure(of_system, figure.name)) row.push_back(figure);
+  for (const Figure& figure : measured)
+    if (!find_figure(of_system, figure.name)) row.push_back(figure);
   return row;
+}
+
+std::vector<Figure> TimeLoop::figures_of_observers() const {
+  std::vector<Figure> figures;
+  for (const auto& observer : observers_)
+    for (const Figure& figure : observer->figures()) figures.push_back(figure);
+  return figures;
 }
 
 void TimeLoop::write_what_is_due() {
@@ -168,12 +174,10 @@ void TimeLoop::write_what_is_due() {
   measure();
   if (plan_.series.due(step)) {
     look_at_health();
-    measured_.clear();
-    for (const auto& observer : observers_)
-      for (const Figure& figure : observer->figures()) measured_.push_back(figure);
+    measured_ = figures_of_observers();
     if (plan_.write_row) {
       const auto scope = timer_.measure(timer_.phase("series"));
-      plan_.write_row(system_.time(), step, row_of(record_.figures));
+      plan_.write_row(system_.time(), step, row_of(record_.figures, measured_));
     }
   }
   for (const OutputTask& output : plan_.outputs) {

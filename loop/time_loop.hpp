@@ -93,7 +93,7 @@ public:
   void run();
 
   // What a row of the series has, with the values of now. Collective.
-  std::vector<Figure> row() const { return row_of(system_.figures()); }
+  std::vector<Figure> row() const { return row_of(system_.figures(), figures_of_observers()); }
 
   const LoopRecord& record() const { return record_; }
   PhaseTimer& timer() { return timer_; }  // phases outside System::advance()
@@ -112,7 +112,8 @@ private:
   bool needs_momentum_at(std::int64_t step) const;
   void measure();
   bool has_enough();
-  std::vector<Figure> row_of(const std::vector<Figure>& of_system) const;
+  static std::vector<Figure> row_of(const std::vector<Figure>& of_system, const std::vector<Figure>& measured);
+  std::vector<Figure> figures_of_observers() const;
   void write_what_is_due();
   void checkpoint();
   std::int64_t own_decision();

@@ -57,9 +57,9 @@ def shields_of(slope, depth, diameter, density_ratio, width=None, side_walls=2):
     return np.sin(np.arctan(slope)) * hydraulic_radius(depth, width, side_walls) / ((density_ratio - 1.0) * diameter)
 
 
-def slope_of(shields, depth, diameter, density_ratio, width=None):
+def slope_of(shields, depth, diameter, density_ratio, width=None, side_walls=2):
     """Slope that gives a Shields number: the reverse of shields_of()."""
-    return np.tan(np.arcsin(shields * (density_ratio - 1.0) * diameter / hydraulic_radius(depth, width)))
+    return np.tan(np.arcsin(shields * (density_ratio - 1.0) * diameter / hydraulic_radius(depth, width, side_walls)))
 
 
 def measured_shields_number(run, start, stop):
@@ -77,8 +77,7 @@ def shields_number(run, surface, start=-np.inf, stop=np.inf):
     or by hydraulic radius beside side walls; else the mean between two times (s) of what the run measured."""
     if not run.driven_by_slope:
         return measured_shields_number(run, start, stop)
-    return shields_of(run.slope, run.size[2] - surface, run.diameter, run.density_ratio,
-                      run.size[1] if run.side_walls else None, run.side_walls)
+    return shields_of(run.slope, run.size[2] - surface, run.diameter, run.density_ratio, run.size[1], run.side_walls)
 
 
 def transport_rate(run, start=None, stop=np.inf, column="q_star"):

@@ -50,9 +50,8 @@ class LayerSums:
     def parts(self, z, radius):
         """Volumes [layer, grain], with those of images beyond a periodic face."""
         images = (0.0,) if self.height is None else (-self.height, 0.0, self.height)
-        if self.thickness is None:
-            return sum(parts_in_layers(self.edges, z + shift, radius) for shift in images)
-        return self.thickness * sum(parts_in_layers(self.edges, z + shift, radius, disk_below) for shift in images)
+        below, width = (volume_below, 1.0) if self.thickness is None else (disk_below, self.thickness)
+        return width * sum(parts_in_layers(self.edges, z + shift, radius, below) for shift in images)
 
     def add(self, frame):
         if np.any(frame.arrays.get("clump", -1) >= 0):
@@ -92,8 +91,8 @@ def layer_profiles(run, start=-np.inf, stop=np.inf, thickness=None):
     thickness (m) is given."""
     edges = layer_edges(0.0, run.size[2], thickness or 0.5 * run.diameter)
     disks = run.case.get("disks")
-    thickness = float(disks["thickness"]) if disks else None
-    sums = LayerSums(edges, run.size[0] * (thickness or run.size[1]), run.size[2] if run.periodic[2] else None, thickness)
+    width = float(disks["thickness"]) if disks else None
+    sums = LayerSums(edges, run.size[0] * (width or run.size[1]), run.size[2] if run.periodic[2] else None, width)
     for frame in run.grains.between(start, stop):
         sums.add(frame)
     return sums.profiles()

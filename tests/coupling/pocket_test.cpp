@@ -50,7 +50,7 @@ TEST_P(Pocket, DoesNotKeepAVelocityAlongTheGap) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Gaps, Pocket, ::testing::Values(lbm::GapRule::no_slip, lbm::GapRule::slip),
-                         [](const auto& pocket) { return pocket.param == lbm::GapRule::slip ? "slip" : "no_slip"; });
+                         [](const auto& gap) { return gap.param == lbm::GapRule::slip ? "slip" : "no_slip"; });
 
 }  // namespace
 }  // namespace thalweg::coupling

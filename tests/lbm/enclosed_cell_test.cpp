@@ -79,7 +79,7 @@ TEST_P(EnclosedCell, KeepsTheDensityOfRestWhateverItsBodiesReturn) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Links, EnclosedCell, ::testing::Values(LinkRule::bouzidi, LinkRule::cli),
-                         [](const auto& info) { return info.param == LinkRule::cli ? "cli" : "bouzidi"; });
+                         [](const auto& links) { return links.param == LinkRule::cli ? "cli" : "bouzidi"; });
 
 }  // namespace
 }  // namespace thalweg::lbm

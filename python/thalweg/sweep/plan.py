@@ -96,6 +96,15 @@ class Plan:
         names = dict.fromkeys(key for point in self.points for key in point)
         return [key for key in names if len({json.dumps(point.get(key)) for point in self.points}) > 1]
 
+    def lacks(self, summary):
+        """What a bisection looks for and the summary of a finished run does not have, in a sentence; None if it is there."""
+        try:
+            for search in self.bisections[:1]:   # the condition is that of all
+                search.condition.holds(summary)
+        except SweepError as error:
+            return str(error)
+        return None
+
     def naming_keys(self):
         """Those that tell the runs apart."""
         return [key for key in self.keys() if key not in self.followers]

@@ -26,6 +26,7 @@ class Runner:
             for run in known_runs(tasks):
                 if run.state == FAILED:
                     run.remember(None)
+                    run.look()
 
     def work(self):
         """Until all tasks are done or a signal asks to stop. Returns whether all are done."""

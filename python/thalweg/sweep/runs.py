@@ -22,14 +22,15 @@ STOPPED = 3   # exit code of thalweg run
 class SweepRun:
     def __init__(self, folder, name, plan, settings):
         self.folder, self.name, self.settings = folder / name, name, settings
-        self.case, self.ranks = plan.case, plan.ranks
+        self.plan, self.case, self.ranks = plan, plan.case, plan.ranks
         self.identity = {"case": plan.case_digest, "settings": settings}
         self.note, self.output = folder / f"{name}.json", folder / f"{name}.txt"
         self.summary, self.failure = None, None
         self.look()
 
     def look(self):
-        """Reads what the folder knows; a run of other settings or of a case that was changed is not taken for this one."""
+        """Reads what the folder knows; a run of other settings or of a case that was changed is not taken for this one, and one
+        that has ended without the figure of a bisection has failed."""
         known = json.loads(self.note.read_text()) if self.note.exists() else None
         if known and {key: known.get(key) for key in self.identity} != self.identity:
             raise SweepError(f"{self.folder} was run with other settings, or the case has changed since; give another --out, "
@@ -37,12 +38,18 @@ class SweepRun:
         self.failure = (known or {}).get("failure")
         path = self.folder / "summary.json"
         self.summary = json.loads(path.read_text()) if path.exists() else None
+        if self.finished and not self.failure:
+            self.failure = self.plan.lacks(self.summary)
+
+    @property
+    def finished(self):
+        return bool(self.summary and self.summary.get("finished"))
 
     @property
     def state(self):
         if self.failure:
             return FAILED
-        if self.summary and self.summary.get("finished"):
+        if self.finished:
             return DONE
         return BEGUN if self.folder.exists() else WAITING
 

@@ -2,7 +2,7 @@
 point, and independent of the others."""
 import math
 
-from thalweg.sweep.plan import SweepError, figure_of
+from thalweg.sweep.plan import figure_of
 from thalweg.sweep.runs import DONE, FAILED, SweepRun, name_of
 
 
@@ -49,22 +49,11 @@ class BisectionTask:
     def verdict(self, value):
         """Whether the condition holds at a value; None while that is open."""
         runs = self.runs_at(value)
-        shown = self.shown_by(runs)
+        shown = [self.search.condition.holds(run.summary) for run in runs if run.state == DONE]
         needed = self.search.share * len(runs)
         if sum(shown) > needed:
             return True
         return False if sum(shown) + len(runs) - len(shown) <= needed else None
-
-    def shown_by(self, runs):
-        """Whether the condition holds, of those that are done. A run that ended without the figure has failed."""
-        shown = []
-        for run in runs:
-            if run.state == DONE:
-                try:
-                    shown.append(self.search.condition.holds(run.summary))
-                except SweepError as error:
-                    run.remember(str(error))
-        return shown
 
     def bracket(self):
         """The range in which the threshold is, as far as it is known, and the values that are to be settled next."""
@@ -93,7 +82,7 @@ class BisectionTask:
 
     def least_to_settle(self, value):
         runs = self.runs_at(value)
-        shown = self.shown_by(runs)
+        shown = [self.search.condition.holds(run.summary) for run in runs if run.state == DONE]
         most_shown = math.floor(self.search.share * len(runs))   # with which it does not hold
         failing = len(shown) - sum(shown)
         return max(1, min(most_shown + 1 - sum(shown), len(runs) - most_shown - failing))
