@@ -3,6 +3,7 @@
 Called by ctest: sweep_test.py THALWEG MPIEXEC [unittest arguments]
 """
 import csv
+import json
 import os
 import signal
 import subprocess
@@ -59,6 +60,15 @@ class Sweep(ProgramTest):
         before = {path: path.stat().st_mtime_ns for path in (self.folder / "sweep/runs").rglob("*.h5")}
         self.run_well("sweep", sweep)
         self.assertEqual(before, {path: path.stat().st_mtime_ns for path in (self.folder / "sweep/runs").rglob("*.h5")})
+
+    def test_results_of_several_versions_are_told_apart(self):
+        sweep = self.write("vary: {gravity.slope: [0.1, 0.2]}\nset: {run.until: 0.01}\n")
+        self.assertNotIn("versions", self.run_well("sweep", sweep).stderr)
+        summary = self.folder / "sweep/runs/slope_0.1/summary.json"
+        summary.write_text(json.dumps(json.loads(summary.read_text()) | {"version": "0.0.9"}))
+        self.assertIn("made by several versions of the program (column version of runs.csv): 0.0.9, ",
+                      self.run_well("sweep", sweep).stderr)
+        self.assertEqual(self.table("sweep/runs.csv")[0]["version"], "0.0.9")
 
     def test_bisection_finds_the_angle_of_friction(self):
         sweep = self.write("vary: {contact.wall_friction: [0.2, 0.4]}\n"

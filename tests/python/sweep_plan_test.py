@@ -7,7 +7,8 @@ from pathlib import Path
 
 import made_up_folder   # noqa: F401  finds the package
 from thalweg.sweep import tables
-from thalweg.sweep.plan import SweepError, plan_of
+from thalweg.sweep.inputs import SweepError, inputs_of
+from thalweg.sweep.plan import plan_of
 from thalweg.sweep.runs import name_of, short_keys
 from thalweg.sweep.tasks import BisectionTask
 
@@ -49,8 +50,27 @@ class Points(Folder):
 
     def test_what_changes_together_is_named_by_its_first_key(self):
         plan = self.plan(vary={"a": [1, 2]}, together=[{"b": 1, "c": [1, 2]}, {"b": 2, "c": [3, 4]}])
-        self.assertEqual((plan.keys(), plan.naming_keys()), (["a", "b", "c"], ["a", "b"]))
-        self.assertEqual(self.plan(together=[{"b": 1, "c": 1}, {"b": 1, "c": 2}]).naming_keys(), ["c"])
+        self.assertEqual((plan.keys(), plan.naming_keys), (["a", "b", "c"], ["a", "b"]))
+        self.assertEqual(self.plan(together=[{"b": 1, "c": 1}, {"b": 1, "c": 2}]).naming_keys, ["b", "c"])
+
+    def test_names_stay_when_values_are_added(self):
+        one, two = self.plan(vary={"a": [1]}, together=[{"b": 1}]), self.plan(vary={"a": [1, 2]}, together=[{"b": 1}, {"b": 2}])
+        self.assertEqual(name_of(one.points[0], one.naming_keys), name_of(two.points[0], two.naming_keys))
+        self.assertEqual(name_of(one.points[0], one.naming_keys), "a_1-b_1")
+
+    def test_a_file_that_the_case_names_is_one_of_its_inputs(self):
+        case, bed, begun = self.folder / "case.yaml", self.folder / "bed.h5", self.folder / "begun" / "checkpoints"
+        case.write_text("system: grains\ngrains: [{placement: {file: bed.h5}}]\ninitial: {from: begun}\n")
+        begun.mkdir(parents=True)
+        seen = []
+        for change in (lambda: bed.write_text("some"), lambda: bed.write_text("more"), lambda: (begun / "step_1.h5").write_text("1")):
+            change()
+            seen.append(inputs_of(case, {}))
+        self.assertEqual(len({json.dumps(inputs) for inputs in seen}), 3)
+        self.assertEqual(inputs_of(case, {}), seen[-1])
+        other = self.folder / "other.stl"
+        other.write_text("solid")
+        self.assertEqual(set(inputs_of(case, {"obstacles.0.stl": "other.stl"})["files"]), {"bed.h5", "begun", "other.stl"})
 
     def test_what_cannot_be_meant_is_refused_with_its_key(self):
         for content, words in (({"very": 1}, "very is not a key here"),

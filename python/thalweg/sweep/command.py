@@ -111,6 +111,10 @@ def written(plan, tasks, units, folder):
     runs = known_runs(tasks)
     files = write_tables(plan, tasks, units, folder)
     print(f"written {', '.join(str(file) for file in files)}")
+    versions = sorted({run.version for run in runs if run.state == DONE})
+    if len(versions) > 1:
+        print(f"thalweg: the runs were made by several versions of the program (column version of runs.csv): {', '.join(versions)}.",
+              file=sys.stderr)
     failed = [run for run in runs if run.state == FAILED]
     if failed:
         print(f"thalweg: {len(failed)} of the runs have failed (column failure of runs.csv; --retry runs them again).",

@@ -1,5 +1,4 @@
 """A sweep file: which runs there are, and what each sets. docs/sweep.md explains the keys."""
-import hashlib
 import itertools
 import json
 import math
@@ -10,16 +9,12 @@ from pathlib import Path
 
 import yaml
 
-from thalweg.errors import RunFolderError
 from thalweg.run import CaseLoader
+from thalweg.sweep.inputs import SweepError
 
 KEYS = {"case", "set", "vary", "together", "bisect", "ranks", "columns"}
 BISECT_KEYS = {"key", "from", "to", "width", "spacing", "holds", "repeat", "share"}
 OPERATORS = {">": operator.gt, ">=": operator.ge, "<": operator.lt, "<=": operator.le}
-
-
-class SweepError(RunFolderError):
-    """One sentence about something in a sweep file that the user can put right."""
 
 
 @dataclass(frozen=True)
@@ -88,8 +83,7 @@ class Plan:
     bisections: list = field(default_factory=list)
     ranks: int = 1
     columns: list = field(default_factory=list)
-    case_digest: str = ""
-    followers: set = field(default_factory=set)   # keys of `together` that follow from the first of their entry
+    naming_keys: list = field(default_factory=list)   # those that tell the runs apart
 
     def keys(self):
         """The keys that differ between runs, in the order of the file."""
@@ -104,10 +98,6 @@ class Plan:
         except SweepError as error:
             return str(error)
         return None
-
-    def naming_keys(self):
-        """Those that tell the runs apart."""
-        return [key for key in self.keys() if key not in self.followers]
 
 
 def figure_of(summary, path):
@@ -137,21 +127,14 @@ def plan_of(content, folder):
     if "case" not in content:
         raise SweepError("case is missing; give the case file that is run, relative to this file.")
     case = (folder / content["case"]).resolve()
-    digest = digest_of_case(case)
+    if not case.is_file():
+        raise SweepError(f"case: {case} cannot be read.")
     points = points_of(content)
     bisections = bisections_of(content, points)
     ranks = content.get("ranks", 1)
     if not isinstance(ranks, int) or ranks < 1:
         raise SweepError(f"ranks: {ranks} is not a number of MPI ranks; give a whole number from 1 on.")
-    return Plan(case, points, bisections, ranks, list(content.get("columns") or []), digest, followers_in(content))
-
-
-def digest_of_case(path):
-    """Of what the case file says now."""
-    try:
-        return digest_of(yaml.load(path.read_text(), CaseLoader))
-    except OSError:
-        raise SweepError(f"case: {path} cannot be read.") from None
+    return Plan(case, points, bisections, ranks, list(content.get("columns") or []), naming_keys_in(content))
 
 
 def points_of(content):
@@ -174,13 +157,15 @@ def points_of(content):
     return points
 
 
-def followers_in(content):
-    """The first key of an entry of `together` names it, if it is the same key with another value in each."""
+def naming_keys_in(content):
+    """Those of vary, also with a single value, so that the names stay when values are added, and of together. The first key
+    of an entry of `together` stands for the entry, if it is the same key with another value in each."""
     together = content.get("together") or []
     first = [next(iter(entry.items())) for entry in together]
-    if not together or len({key for key, _ in first}) > 1 or len({json.dumps(value) for _, value in first}) < len(first):
-        return set()
-    return {key for entry in together for key in entry} - {first[0][0]}
+    keys = list(section(content, "vary"))
+    if first and len({key for key, _ in first}) == 1 and len({json.dumps(value) for _, value in first}) == len(first):
+        return keys + [first[0][0]]
+    return keys + [key for key in dict.fromkeys(key for entry in together for key in entry) if not key.startswith("bisect.")]
 
 
 def bisections_of(content, points):
@@ -269,7 +254,3 @@ def refuse_unknown(given, known, prefix):
     for key in given:
         if key not in known:
             raise SweepError(f"{prefix}{key} is not a key here; there are {', '.join(sorted(known))}.")
-
-
-def digest_of(content):
-    return hashlib.sha256(json.dumps(content, sort_keys=True, default=str).encode()).hexdigest()

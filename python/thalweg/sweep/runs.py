@@ -13,7 +13,7 @@ import socket
 import subprocess
 from pathlib import Path
 
-from thalweg.sweep.plan import SweepError, digest_of_case
+from thalweg.sweep.inputs import SweepError, inputs_of
 
 WAITING, DONE, FAILED, BEGUN = "waiting", "done", "failed", "begun"
 STOPPED = 3   # exit code of thalweg run
@@ -23,19 +23,19 @@ class SweepRun:
     def __init__(self, folder, name, plan, settings):
         self.folder, self.name, self.settings = folder / name, name, settings
         self.plan, self.case, self.ranks = plan, plan.case, plan.ranks
-        self.identity = {"case": plan.case_digest, "settings": settings}
+        self.inputs = inputs_of(plan.case, settings)
         self.note, self.output = folder / f"{name}.json", folder / f"{name}.txt"
         self.summary, self.failure = None, None
         self.look()
 
     def look(self):
-        """Reads what the folder knows; a run of other settings or of a case that was changed is not taken for this one, and one
-        that has ended without the figure of a bisection has failed."""
-        known = json.loads(self.note.read_text()) if self.note.exists() else None
-        if known and {key: known.get(key) for key in self.identity} != self.identity:
-            raise SweepError(f"{self.folder} was run with other settings, or the case has changed since; give another --out, "
-                             f"or remove that folder and {self.note.name} beside it.")
-        self.failure = (known or {}).get("failure")
+        """Reads what the folder knows; a run that began from something else is not taken for this one, and one that has ended
+        without the figure of a bisection has failed."""
+        known = json.loads(self.note.read_text()) if self.note.exists() else {}
+        self.failure = known.pop("failure", None)
+        if known and known != self.inputs:
+            raise SweepError(f"{self.folder} was run with other settings, or the case has changed since, or a file that it names; "
+                             f"give another --out, or remove that folder and {self.note.name} beside it.")
         path = self.folder / "summary.json"
         self.summary = json.loads(path.read_text()) if path.exists() else None
         if self.finished and not self.failure:
@@ -57,6 +57,11 @@ class SweepRun:
     def wall_seconds(self):
         return float(self.summary["wall_seconds"]) if self.summary else None
 
+    @property
+    def version(self):
+        """Of the program, as `thalweg --version` says."""
+        return str(self.summary["version"]) if self.summary else ""
+
     def command(self, program):
         arguments = ["run", str(self.case), "--out", str(self.folder)]
         arguments += ["--restart", str(self.folder)] if self.has_checkpoint() else ["--overwrite"]
@@ -75,10 +80,10 @@ class SweepRun:
 
     def start(self, program):
         """The process of the run, which saves its state and stops at SIGUSR1 and when the sweep is killed; None while
-        another sweep has it. SweepError if the case has been changed since the sweep began."""
-        if digest_of_case(self.case) != self.identity["case"]:
-            raise SweepError(f"{self.case} has been changed since this sweep began; its results are those of the old one. Change "
-                             "it back and start the same command again, or give another --out.")
+        another sweep has it. SweepError if the case, or a file it names, has been changed since the sweep began."""
+        if inputs_of(self.case, self.settings) != self.inputs:
+            raise SweepError(f"{self.case}, or a file that it names, has been changed since this sweep began, which has results of "
+                             "the old one. Change it back and start the same command again, or give another --out.")
         self.folder.parent.mkdir(parents=True, exist_ok=True)
         # Several runs beside each other must not all be bound to the first core.
         environment = os.environ | {"OMPI_MCA_hwloc_base_binding_policy": "none"}
@@ -100,7 +105,7 @@ class SweepRun:
 
     def remember(self, failure):
         self.failure = failure
-        replace_text(self.note, json.dumps(self.identity | {"failure": failure}, indent=1) + "\n")
+        replace_text(self.note, json.dumps(self.inputs | {"failure": failure}, indent=1) + "\n")
 
 
 def replace_text(path, text):

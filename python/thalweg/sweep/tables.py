@@ -24,12 +24,12 @@ def runs_table(plan, runs, units):
     measured = {}
     for run in runs:
         measured |= (run.summary or {}).get("units", {})
-    head = (["run"] + [headed(key, units) for key in keys] + ["state", "wall_time [s]"] +
+    head = (["run"] + [headed(key, units) for key in keys] + ["state", "version", "wall_time [s]"] +
             [headed(column, measured, column.rpartition(".")[2]) for column in columns] + ["failure"])
     rows = [head]
     for run in sorted(runs, key=lambda run: [order(run.settings.get(key)) for key in keys]):
         figures = [figure_of(run.summary or {}, column) for column in columns]
-        rows.append([run.name] + [run.settings.get(key, "") for key in keys] + [run.state, text(run.wall_seconds)] +
+        rows.append([run.name] + [run.settings.get(key, "") for key in keys] + [run.state, run.version, text(run.wall_seconds)] +
                     [text(figure) for figure in figures] + [run.failure or ""])
     return rows
 

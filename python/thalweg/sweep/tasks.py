@@ -11,7 +11,7 @@ class PointTask:
 
     def __init__(self, folder, plan, number):
         self.settings = plan.points[number]
-        self.run = SweepRun(folder, name_of(self.settings, plan.naming_keys()), plan, self.settings)
+        self.run = SweepRun(folder, name_of(self.settings, plan.naming_keys), plan, self.settings)
         self.runs = [self.run]
 
     def wanted(self):
@@ -31,7 +31,7 @@ class BisectionTask:
     def __init__(self, folder, plan, number):
         self.folder, self.plan, self.search = folder, plan, plan.bisections[number]
         self.settings = plan.points[number]
-        self.keys = plan.naming_keys() + [self.search.key] + list(self.search.repetitions[0])
+        self.keys = plan.naming_keys + [self.search.key] + list(self.search.repetitions[0])
         self.known = {}   # runs by value
 
     @property
