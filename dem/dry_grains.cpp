@@ -42,12 +42,12 @@ DryGrains::DryGrains(const Decomposition& decomposition, MPI_Comm communicator, 
 
 void DryGrains::advance() {
   for (int done = 0; done < sub_steps_;) {
+    int now = sub_steps_ - done;
     {
       const auto scope = timer_.measure(lists_);
-      grains_.prepare();
+      now = std::min(now, grains_.prepare_part());
     }
     const auto scope = timer_.measure(motion_);
-    const int now = std::min(grains_.allowed_sub_steps(), sub_steps_ - done);
     grains_.advance(now);
     grains_.refresh_ghosts();
     done += now;

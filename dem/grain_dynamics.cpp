@@ -188,6 +188,30 @@ void GrainDynamics::check_range() const {
 
 bool GrainDynamics::prepare() {
   const auto scope = timer_.measure(lists_phase_);
+  return rebuild_for(look_ahead(), parameters_.sub_steps);
+}
+
+int GrainDynamics::prepare_part() {
+  // Of the way from a fresh list to its end at twice the largest speed: as grains are slower, most parts need no list of
+  // their own.
+  constexpr double part = 0.25;
+  const auto scope = timer_.measure(lists_phase_);
+  const Outlook outlook = look_ahead();
+  const double steps = part * 0.5 * parameters_.skin / (outlook.fastest * parameters_.time_step);  // infinite at rest
+  const int allowed = static_cast<int>(std::clamp(steps, 1.0, static_cast<double>(parameters_.sub_steps)));
+  rebuild_for(outlook, allowed);
+  return allowed;
+}
+
+bool GrainDynamics::rebuild_for(const Outlook& outlook, int sub_steps) {
+  const double way = outlook.fastest * sub_steps * parameters_.time_step;
+  if (outlook.farthest + way <= 0.5 * parameters_.skin) return false;
+  rebuild();
+  return true;
+}
+
+// Wraps positions and looks for trouble.
+GrainDynamics::Outlook GrainDynamics::look_ahead() {
   wrap_positions();
   // What may still happen before the next call: a grain at rest can be thrown at no more than about twice the largest
   // speed, and the loads accelerate it.
@@ -209,12 +233,7 @@ bool GrainDynamics::prepare() {
   double all[3];
   MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_MAX, communicator_);
   if (all[2] != 0.0) watch.throw_first(store_, box_, listed_position_, communicator_);
-  const double half_skin = 0.5 * parameters_.skin;
-  const double steps_to_leave = half_skin / (all[1] * parameters_.time_step);  // infinite at rest
-  allowed_sub_steps_ = static_cast<int>(std::clamp(steps_to_leave, 1.0, static_cast<double>(parameters_.sub_steps)));
-  if (all[0] + all[1] * step_time() <= half_skin) return false;
-  rebuild();
-  return true;
+  return {all[0], all[1]};
 }
 
 // A hit off the centre throws the far end of a clump faster than the near one.

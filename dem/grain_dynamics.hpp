@@ -105,12 +105,12 @@ public:
   // is no longer a number. One reduction. Collective.
   bool prepare();
 
-  // How many sub-steps the grains may take from prepare() to the next: fewer than GrainParameters::sub_steps where they
-  // are so fast that one leaves its half skin sooner. Of the state at prepare() alone, whatever the age of the list.
-  int allowed_sub_steps() const { return allowed_sub_steps_; }
+  // The same before a part of the sub-steps, for grains that may be too fast for one list a fluid step. Returns how many
+  // sub-steps may follow, at most GrainParameters::sub_steps: of the state alone, whatever the age of the list.
+  int prepare_part();
 
-  // Moves the grains under the loads in store(). At most GrainParameters::sub_steps since prepare(); after more than
-  // allowed_sub_steps() a grain may have outrun its list, which the next prepare() refuses. Collective.
+  // Moves the grains under the loads in store(). At most GrainParameters::sub_steps since prepare(), or as many as
+  // prepare_part() has allowed; after more, a grain may have outrun its list, which the next of them refuses. Collective.
   void advance(int sub_steps);
 
   // Scales the body forces of the sub-steps to come: 1 at first. Not part of a checkpoint: a caller who changes it must
@@ -212,7 +212,13 @@ private:
   void check_integrator() const;
   double list_range() const;
   void wrap_positions();
+  // Over all ranks: how far grains and walls are from where the list was built, m, and how fast they may become, m/s.
+  struct Outlook {
+    double farthest, fastest;
+  };
+  Outlook look_ahead();
   double fastest_member() const;
+  bool rebuild_for(const Outlook& outlook, int sub_steps);
   void rebuild();
   void move_cuts();
   void migrate(ContactHistories& histories);
@@ -240,7 +246,6 @@ private:
   std::int64_t rebuilds_ = 0;
 
   std::int64_t steps_done_ = 0;  // sub-steps since the start of the run
-  int allowed_sub_steps_ = 1;
   std::vector<Plane> planes_;  // the walls where they are now
   bool walls_change_;
   Assemblies assemblies_;

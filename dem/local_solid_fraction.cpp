@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 namespace thalweg::dem {
@@ -21,6 +22,10 @@ constexpr std::size_t solid_at = 0, solid_known = 3, weight_at = 4, clump_at = 5
 
 // m^3, of disks of a thickness of 1, which is their area (m^2).
 double size_of_grain(double radius, bool disk) { return grain_volume(radius, disk ? 1.0 : 0.0); }
+
+bool same_bits(const std::vector<Row>& a, const std::vector<Row>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Row)) == 0);
+}
 
 using SlotPair = std::pair<std::uint32_t, std::uint32_t>;
 
@@ -99,11 +104,10 @@ void LocalSolidFraction::find_neighbours(const GrainStore& store, double skin, c
     neighbours_[next[b]++] = a;
   }
 
-  owned_ = store.owned;
-  recall(store, clumps);
-  sums_.assign(owned_ * heights_.size(), 0.0);
-  is_changed_.assign(owned_, 0);
+  is_changed_.assign(store.owned, 0);
   changed_.clear();
+  if (!recall(store, clumps)) return;
+  sums_.assign(owned_ * heights_.size(), 0.0);
   for (std::size_t s = 0; s < owned_; ++s) {
     if (bodies()[s][3] == 0.0) continue;
     copy_neighbours(s, solids_);
@@ -111,8 +115,11 @@ void LocalSolidFraction::find_neighbours(const GrainStore& store, double skin, c
   }
 }
 
-// Takes what is remembered from the columns.
-void LocalSolidFraction::recall(const GrainStore& store, const Clumps& clumps) {
+// Takes what is remembered from the columns. False if it is known in these slots already, with all it adds up to.
+bool LocalSolidFraction::recall(const GrainStore& store, const Clumps& clumps) {
+  const std::size_t owned = std::exchange(owned_, store.owned);
+  const std::vector<Row> solids = std::move(solids_), bodies = std::move(bodies_);
+  const std::vector<double> weights = std::move(weights_);
   const auto remembered = [&store](std::size_t slot, std::size_t at, std::size_t known, double radius) {
     const std::span<const double> attached = store.attached_of(slot);
     return Row{attached[at], attached[at + 1], attached[at + 2], attached[known] != 0.0 ? radius : 0.0};
@@ -123,14 +130,16 @@ void LocalSolidFraction::recall(const GrainStore& store, const Clumps& clumps) {
     solids_[s] = remembered(s, solid_at, solid_known, store.radius[s]);
     if (parameters_.clumps) weights_[s] = store.attached_of(s)[weight_at];
   }
-  if (!parameters_.clumps) return;
-  bodies_.assign(store.total(), Row{});
-  for (std::size_t s = 0; s < owned_; ++s)
-    if (store.clump[s] < 0) bodies_[s] = solids_[s];
-  for (std::size_t n = 0; n < clumps.size(); ++n) {
-    const std::size_t first = clumps.first_slot(n);
-    bodies_[first] = remembered(first, clump_at, clump_known, clumps.radius_of(clumps[n]));
+  bodies_.assign(parameters_.clumps ? store.total() : 0, Row{});
+  if (parameters_.clumps) {
+    for (std::size_t s = 0; s < owned_; ++s)
+      if (store.clump[s] < 0) bodies_[s] = solids_[s];
+    for (std::size_t n = 0; n < clumps.size(); ++n) {
+      const std::size_t first = clumps.first_slot(n);
+      bodies_[first] = remembered(first, clump_at, clump_known, clumps.radius_of(clumps[n]));
+    }
   }
+  return owned != owned_ || !same_bits(solids, solids_) || !same_bits(bodies, bodies_) || weights != weights_;
 }
 
 std::span<const std::uint32_t> LocalSolidFraction::update(const MovingGrains& grains, const Clumps& clumps,

@@ -76,7 +76,7 @@ private:
   }
   // The grains that solid fractions are of.
   const std::vector<Row>& bodies() const { return parameters_.clumps ? bodies_ : solids_; }
-  void recall(const GrainStore& store, const Clumps& clumps);
+  bool recall(const GrainStore& store, const Clumps& clumps);
   bool has_moved(const Row& remembered, const Row& now) const;
   void move_solid(std::size_t slot, const Row& position, GrainStore& store);
   void move_clump(std::size_t first_member, const Row& centre, GrainStore& store);
