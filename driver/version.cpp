@@ -1,5 +1,7 @@
 #include "driver/version.hpp"
 
+#include "commit.hpp"  // cmake/commit.cmake writes it
+
 namespace thalweg::driver {
 
 std::string version_text() {
