@@ -105,12 +105,13 @@ public:
   // is no longer a number. One reduction. Collective.
   bool prepare();
 
-  // The same before a part of the sub-steps, for grains that may be too fast for one list a fluid step. Returns how many
-  // sub-steps may follow, at most GrainParameters::sub_steps: of the state alone, whatever the age of the list.
+  // The same before a part of the sub-steps, for grains that may be too fast for one list a fluid step. Returns how
+  // many sub-steps may follow, at most GrainParameters::sub_steps: of the state alone, whatever the age of the list.
   int prepare_part();
 
   // Moves the grains under the loads in store(). At most GrainParameters::sub_steps since prepare(), or as many as
-  // prepare_part() has allowed; after more, a grain may have outrun its list, which the next of them refuses. Collective.
+  // prepare_part() has allowed; after more, a grain may have outrun its list, which the next of them refuses.
+  // Collective.
   void advance(int sub_steps);
 
   // Scales the body forces of the sub-steps to come: 1 at first. Not part of a checkpoint: a caller who changes it must
@@ -246,7 +247,7 @@ private:
   std::int64_t rebuilds_ = 0;
 
   std::int64_t steps_done_ = 0;  // sub-steps since the start of the run
-  std::vector<Plane> planes_;  // the walls where they are now
+  std::vector<Plane> planes_;    // the walls where they are now
   bool walls_change_;
   Assemblies assemblies_;
 

@@ -118,8 +118,8 @@ void LocalSolidFraction::find_neighbours(const GrainStore& store, double skin, c
 // Takes what is remembered from the columns. False if it is known in these slots already, with all it adds up to.
 bool LocalSolidFraction::recall(const GrainStore& store, const Clumps& clumps) {
   const std::size_t owned = std::exchange(owned_, store.owned);
-  const std::vector<Row> solids = std::move(solids_), bodies = std::move(bodies_);
-  const std::vector<double> weights = std::move(weights_);
+  const std::vector<Row> solids = std::exchange(solids_, {}), bodies = std::exchange(bodies_, {});
+  const std::vector<double> weights = std::exchange(weights_, {});
   const auto remembered = [&store](std::size_t slot, std::size_t at, std::size_t known, double radius) {
     const std::span<const double> attached = store.attached_of(slot);
     return Row{attached[at], attached[at + 1], attached[at + 2], attached[known] != 0.0 ? radius : 0.0};

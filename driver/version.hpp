@@ -5,8 +5,8 @@
 
 namespace thalweg::driver {
 
-// e.g. "0.1.0 (a647374)" or "0.1.0 (a647374, modified)": version of the project and the commit it was built from, as far
-// as git knew.
+// e.g. "0.1.0 (a647374)" or "0.1.0 (a647374, modified)": version of the project and the commit it was built from, as
+// far as git knew.
 std::string version_text();
 
 // "0.1.0" alone.

@@ -7,6 +7,8 @@ from thalweg.sweep.plan import figure_of
 from thalweg.sweep.runs import DONE, WAITING, replace_text
 from thalweg.sweep.tasks import result_columns
 
+UNITS = {"m", "kg", "s", "N", "Pa", "Hz", "rad", "cells", "step", "diameters", "radii"}   # that `thalweg defaults` has
+
 
 def write_tables(plan, tasks, units, folder):
     """units: of the keys of the case, by their paths. Returns the files."""
@@ -76,7 +78,7 @@ def units_of_keys(defaults):
         depth = len(match[1]) // 2 + (1 if match[2] else 0)
         path = path[:depth] + [""] * (depth - len(path)) + [match[3]]
         unit = re.match(r"(?:example, )?(?:required, )?(1|[A-Za-z]+(?:/\([A-Za-z^0-9 /]+\)|/[A-Za-z^0-9]+|\^\d)?)[,;]", match[5] or "")
-        if match[4] and unit and unit[1] not in ("text", "required"):
+        if match[4] and unit and set(re.findall("[A-Za-z]+", unit[1])) <= UNITS:
             words = [word for word in path if word]
             units[".".join(words)] = unit[1]
             if words[-1] == "value":   # which may be given without this word
