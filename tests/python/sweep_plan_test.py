@@ -33,7 +33,7 @@ class Points(Folder):
         self.assertEqual(len(plan.points), 12)
         self.assertEqual(plan.points[0], {"contact.friction": 0.3, "a.x": 1, "b": 3, "c": "wide", "d": [1, 2]})
         self.assertEqual(plan.points[-1], {"contact.friction": 0.3, "a.x": 2, "b": 5, "c": "narrow"})
-        self.assertEqual(plan.keys(), ["a.x", "b", "c", "d"])
+        self.assertEqual(plan.keys, ["a.x", "b", "c", "d"])
         self.assertEqual(self.plan().points, [{}])
 
     def test_ranges(self):
@@ -50,13 +50,14 @@ class Points(Folder):
 
     def test_what_changes_together_is_named_by_its_first_key(self):
         plan = self.plan(vary={"a": [1, 2]}, together=[{"b": 1, "c": [1, 2]}, {"b": 2, "c": [3, 4]}])
-        self.assertEqual((plan.keys(), plan.naming_keys), (["a", "b", "c"], ["a", "b"]))
+        self.assertEqual((plan.keys, plan.naming_keys), (["a", "b", "c"], ["a", "b"]))
         self.assertEqual(self.plan(together=[{"b": 1, "c": 1}, {"b": 1, "c": 2}]).naming_keys, ["b", "c"])
 
     def test_names_stay_when_values_are_added(self):
         one, two = self.plan(vary={"a": [1]}, together=[{"b": 1}]), self.plan(vary={"a": [1, 2]}, together=[{"b": 1}, {"b": 2}])
         self.assertEqual(name_of(one.points[0], one.naming_keys), name_of(two.points[0], two.naming_keys))
         self.assertEqual(name_of(one.points[0], one.naming_keys), "a_1-b_1")
+        self.assertEqual(one.keys, two.keys)   # the columns of thresholds.csv
 
     def test_a_file_that_the_case_names_is_one_of_its_inputs(self):
         case, bed, begun = self.folder / "case.yaml", self.folder / "bed.h5", self.folder / "begun" / "checkpoints"

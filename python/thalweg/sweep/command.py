@@ -86,7 +86,7 @@ def sweep(wanted):
         return 0
     if wanted.dry_run:
         for number, task in enumerate(tasks):
-            print(f"{number:<5}{describe(task, plan.keys())}{'' if plan.bisections else f': {task.run.state}'}")
+            print(f"{number:<5}{describe(task, plan.keys)}{'' if plan.bisections else f': {task.run.state}'}")
         return 0
     if wanted.task is not None:
         if not 0 <= wanted.task < len(tasks):

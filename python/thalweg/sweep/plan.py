@@ -83,12 +83,8 @@ class Plan:
     bisections: list = field(default_factory=list)
     ranks: int = 1
     columns: list = field(default_factory=list)
-    naming_keys: list = field(default_factory=list)   # those that tell the runs apart
-
-    def keys(self):
-        """The keys that differ between runs, in the order of the file."""
-        names = dict.fromkeys(key for point in self.points for key in point)
-        return [key for key in names if len({json.dumps(point.get(key)) for point in self.points}) > 1]
+    keys: list = field(default_factory=list)          # of vary and together, in the order of the file
+    naming_keys: list = field(default_factory=list)   # those of them that tell the runs apart
 
     def lacks(self, summary):
         """What a bisection looks for and the summary of a finished run does not have, in a sentence; None if it is there."""
@@ -134,7 +130,7 @@ def plan_of(content, folder):
     ranks = content.get("ranks", 1)
     if not isinstance(ranks, int) or ranks < 1:
         raise SweepError(f"ranks: {ranks} is not a number of MPI ranks; give a whole number from 1 on.")
-    return Plan(case, points, bisections, ranks, list(content.get("columns") or []), naming_keys_in(content))
+    return Plan(case, points, bisections, ranks, list(content.get("columns") or []), keys_in(content), naming_keys_in(content))
 
 
 def points_of(content):
@@ -157,15 +153,19 @@ def points_of(content):
     return points
 
 
+def keys_in(content):
+    """Also those with a single value, so that names and columns stay when values are added."""
+    together = dict.fromkeys(key for entry in content.get("together") or [] for key in entry if not key.startswith("bisect."))
+    return list(section(content, "vary")) + list(together)
+
+
 def naming_keys_in(content):
-    """Those of vary, also with a single value, so that the names stay when values are added, and of together. The first key
-    of an entry of `together` stands for the entry, if it is the same key with another value in each."""
+    """The first key of an entry of `together` stands for the entry, if it is the same key with another value in each."""
     together = content.get("together") or []
     first = [next(iter(entry.items())) for entry in together]
-    keys = list(section(content, "vary"))
     if first and len({key for key, _ in first}) == 1 and len({json.dumps(value) for _, value in first}) == len(first):
-        return keys + [first[0][0]]
-    return keys + [key for key in dict.fromkeys(key for entry in together for key in entry) if not key.startswith("bisect.")]
+        return list(section(content, "vary")) + [first[0][0]]
+    return keys_in(content)
 
 
 def bisections_of(content, points):

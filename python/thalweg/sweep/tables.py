@@ -37,7 +37,7 @@ def runs_table(plan, runs, units):
 
 
 def thresholds_table(plan, tasks, units):
-    search, keys = plan.bisections[0], plan.keys()
+    search, keys = plan.bisections[0], plan.keys
     unit = units.get(without_numbers(search.key), "")
     ending = f" [{unit}]" if unit else ""
     rows = [[headed(key, units) for key in keys] +
