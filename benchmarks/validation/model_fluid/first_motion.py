@@ -2,10 +2,14 @@
 """First motions of settled beds as links of a chain, beside Clark et al. (2017), section III F: first_motion.py [--figure FILE]
 
 Reads the tables runs.csv of the sweeps first_motion.yaml and first_motion_disks.yaml, which are kept here under the names of
-the sweeps, and the thresholds Theta_c from shields_curve.csv and friction.csv. If a bed of length W begins to move where the
-weakest of its parts does, C = 1 - exp[-((Theta - Theta_c)/beta)^alpha] for every length, with the same alpha, and the mean of
-Theta - Theta_c goes with W^(-1/alpha). Prints alpha of all lengths together, by maximum likelihood, and the slope, with
-errors, and pass or fail. Exit code 0 if all pass.
+the sweeps, and the thresholds Theta_c of motion that stops from shields_curve.csv and friction.csv. If a bed of length W begins
+to move where the weakest of its parts does, the share of beds that move at Theta is
+
+  C = 1 - exp[-W ((Theta - Theta_0)/beta)^alpha]
+
+with the same alpha, beta and Theta_0 for every length, and the mean of Theta - Theta_0 goes with W^(-1/alpha). In the paper
+Theta_0 is Theta_c: what begins to move in a large bed cannot stop. Prints alpha and Theta_0 that make all beds together most
+likely, and the slope of the mean, with standard errors from resampled ensembles, and pass or fail. Exit code 0 if all pass.
 """
 import argparse
 import math
@@ -16,6 +20,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+from scipy.optimize import minimize
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[2] / "python"))
@@ -45,39 +50,47 @@ def first_motions(name):
     for row in read_rows(path) if path.exists() else []:
         if row["state"] == "done":
             grains = int(row["grains.0.count"]) + int(row["grains.1.count"])
-            found.setdefault(grains, []).append(float(row["shields_number [1]"]) / (1.0 + 0.5 * RAMP_STEP))
+            found.setdefault(grains, []).append(float(row["figures.shields_number [1]"]) / (1.0 + 0.5 * RAMP_STEP))
     return {grains: np.array(found[grains]) for grains in sorted(found)}
 
 
-def weibull_exponent(x):
-    """alpha of the Weibull distribution that makes positive x most likely."""
-    logs = np.log(x)
-
-    def excess(alpha):   # of the derivative of the likelihood, rising with alpha
-        weights = x**alpha
-        return np.sum(weights * logs) / np.sum(weights) - 1.0 / alpha - np.mean(logs)
-    low, high = 0.1, 50.0
-    for _ in range(60):
-        middle = math.sqrt(low * high)
-        low, high = (low, middle) if excess(middle) > 0.0 else (middle, high)
-    return math.sqrt(low * high)
-
-
-def scaled(excesses):
-    """All lengths over their own means; a bed that moved below Theta_c, within the error of that, is left out."""
-    together = np.concatenate([excess / excess.mean() for excess in excesses])
-    return together[together > 0.0]
+def unlikelihood(parameters, ensembles):
+    """Minus the logarithm of the likelihood; parameters: Theta_0, log beta, log alpha. A bed is known to rest at one level of
+    its ramp and to move at the next."""
+    first, log_beta, log_alpha = parameters
+    total = 0.0
+    for length, middles in ensembles:
+        resting, moving = middles * (1.0 - 0.5 * RAMP_STEP), middles * (1.0 + 0.5 * RAMP_STEP)
+        share_at_rest = [np.exp(-length * (np.maximum(level - first, 0.0) * np.exp(-log_beta))**np.exp(log_alpha))
+                         for level in (resting, moving)]
+        total -= np.sum(np.log(np.maximum(share_at_rest[0] - share_at_rest[1], 1e-300)))
+    return total
 
 
-def with_error(figure, excesses, seed=1):
-    """A figure of the excesses and its standard error from 200 resampled ensembles."""
+def weibull_fit(ensembles):
+    """alpha and Theta_0."""
+    least = min(middles.min() for _, middles in ensembles)
+    start = [0.8 * least, math.log(0.2), math.log(2.0)]
+    found = minimize(unlikelihood, start, (ensembles,), method="Nelder-Mead", options={"maxiter": 2000, "xatol": 1e-4, "fatol": 1e-3})
+    return np.array([math.exp(found.x[2]), found.x[0]])
+
+
+def mean_slope(ensembles, first):
+    """Of the logarithm of the mean of Theta - Theta_0 over that of the length."""
+    lengths, means = zip(*((length, middles.mean() - first) for length, middles in ensembles))
+    return np.polyfit(np.log(lengths), np.log(means), 1)[0]
+
+
+def analysed(ensembles):
+    alpha, first = weibull_fit(ensembles)
+    return np.array([alpha, first, mean_slope(ensembles, first)])
+
+
+def with_errors(ensembles, seed=1):
+    """analysed() of the ensembles and its standard errors from a hundred resampled ones."""
     random = np.random.default_rng(seed)
-    again = [figure([random.choice(excess, len(excess)) for excess in excesses]) for _ in range(200)]
-    return figure(excesses), float(np.std(again))
-
-
-def slope_of(lengths):
-    return lambda excesses: float(np.polyfit(np.log(lengths), np.log([excess.mean() for excess in excesses]), 1)[0])
+    again = [analysed([(length, random.choice(middles, len(middles))) for length, middles in ensembles]) for _ in range(100)]
+    return analysed(ensembles), np.std(again, axis=0)
 
 
 def main():
@@ -88,34 +101,36 @@ def main():
     passed = True
     for (name, title, paper, table, wanted, per_length), (left, right) in zip(SYSTEMS, axes):
         critical, found = threshold(table, wanted), first_motions(name)
-        if critical is None or not found:
+        if not found:
             continue
-        lengths = np.array(list(found)) / per_length
-        excesses = [values - critical[0] for values in found.values()]
-        (alpha, alpha_error), (slope, slope_error) = (
-            with_error(lambda drawn: weibull_exponent(scaled(drawn)), excesses), with_error(slope_of(lengths), excesses))
-        # Theta_c itself is known to half a bracket.
-        shifted = [weibull_exponent(scaled([excess + shift for excess in excesses])) for shift in (critical[1], -critical[1])]
+        ensembles = [(grains / per_length, middles) for grains, middles in found.items()]
+        (alpha, first, slope), (alpha_error, first_error, slope_error) = with_errors(ensembles)
+        for length, middles in ensembles:
+            print(f"{title}, {length:g} D long: {len(middles)} beds, mean {middles.mean():.4f}, deviation {middles.std():.4f}")
         good = abs(alpha - paper) <= ACCEPTED + alpha_error
-        passed = passed and good
-        for length, values in zip(lengths, found.values()):
-            print(f"{title}, {length:g} D long: {len(values)} beds, mean {values.mean():.4f}, deviation {values.std():.4f}")
-        print(f"{title}: Theta_c {critical[0]:.4f} +- {critical[1]:.4f}; alpha {alpha:.2f} +- {alpha_error:.2f} "
-              f"({min(shifted):.2f} to {max(shifted):.2f} over the bracket of Theta_c), paper {paper}: "
-              f"{'pass' if good else 'FAIL'}; slope {slope:.3f} +- {slope_error:.3f}, -1/alpha {-1 / alpha:.3f}")
+        straight = abs(slope + 1.0 / alpha) <= 2.0 * slope_error
+        print(f"{title}: alpha {alpha:.2f} +- {alpha_error:.2f}, paper {paper}: {'pass' if good else 'FAIL'}; "
+              f"slope {slope:.3f} +- {slope_error:.3f}, -1/alpha {-1 / alpha:.3f}: {'pass' if straight else 'FAIL'}")
+        passed = passed and good and straight
+        if critical:
+            same = abs(first - critical[0]) <= critical[1] + 2.0 * first_error
+            print(f"{title}: Theta_0 {first:.4f} +- {first_error:.4f}, Theta_c of motion that stops {critical[0]:.4f} +- "
+                  f"{critical[1]:.4f}: {'pass' if same else 'FAIL'}")
+            passed = passed and same
 
-        for length, excess in zip(lengths, excesses):
-            x = np.sort(excess / excess.mean())
+        for length, middles in ensembles:
+            x = np.sort((middles - first) / (middles.mean() - first))
             left.plot(x, (np.arange(len(x)) + 0.5) / len(x), ".", ms=4, label=f"{length:g} D, {len(x)} beds")
         x = np.linspace(0.0, 2.5, 100)
         left.plot(x, 1.0 - np.exp(-(math.gamma(1.0 + 1.0 / paper) * x)**paper), "k", lw=1, label=f"Weibull, α = {paper}")
-        left.set(xlabel="(Θ$_f$ − Θ$_c$) over its mean", ylabel="beds that move", title=title)
+        left.set(xlabel="(Θ$_f$ − Θ$_0$) over its mean", ylabel="beds that move", title=title)
         left.legend(fontsize=8)
-        means = np.array([excess.mean() for excess in excesses])
-        errors = [excess.std() / math.sqrt(len(excess)) for excess in excesses]
+        lengths = np.array([length for length, _ in ensembles])
+        means = np.array([middles.mean() - first for _, middles in ensembles])
+        errors = [middles.std() / math.sqrt(len(middles)) for _, middles in ensembles]
         right.errorbar(lengths, means, errors, fmt="o", capsize=3)
         right.plot(lengths, means[0] * (lengths / lengths[0])**(-1.0 / paper), "k", lw=1, label=f"W$^{{-1/{paper}}}$")
-        right.set(xscale="log", yscale="log", xlabel="length W [D]", ylabel="mean of Θ$_f$ − Θ$_c$")
+        right.set(xscale="log", yscale="log", xlabel="length W [D]", ylabel="mean of Θ$_f$ − Θ$_0$")
         right.legend(fontsize=8)
     for panel in axes.flat:
         panel.grid(color="#e5e8ea", linewidth=0.8)

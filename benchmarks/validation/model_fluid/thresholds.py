@@ -20,18 +20,20 @@ from thalweg.tables import HEADING, read_rows
 
 LOW, HIGH = 0.28, 0.11                       # section III B: the plateaus at Re_* << 1 and Re_* >> 1
 LOW_ACCEPTED, HIGH_ACCEPTED = 0.03, 0.015
+LITTLE_RESTITUTION = 0.03                    # of which the dashpot with e_n = 0.1 in the paper's equation is
 LIFT_ACCEPTED = 0.1                          # relative
 DISKS_FACTOR = 2.0                           # section III E: "roughly"
 FRICTION_ACCEPTED = 1.5                      # section III E: increases by less than 50 %
 
 
-def thresholds(name):
+def thresholds(name, state="found"):
     """Rows of a table as dictionaries of numbers by the last words of their headings; thresholds that were found."""
     path = HERE / f"{name}.csv"
     if not path.exists():
         return []
     rows = [{HEADING.match(head)[1].rpartition(".")[2]: value for head, value in row.items()} for row in read_rows(path)]
-    return [{head: float(value) for head, value in row.items() if head != "state"} for row in rows if row["state"] == "found"]
+    return [{head: float(value) for head, value in row.items() if head != "state" and value} for row in rows
+            if row["state"] == state]
 
 
 class Report:
@@ -44,6 +46,12 @@ class Report:
         self.passed = self.passed and good
         print(f"{what:<42} {row['shields_number']:.4f} +- {row['half_width']:.4f}   paper {expected:.4f}   "
               f"accepted +- {accepted:.4f}   {'pass' if good else 'FAIL'}")
+
+    def below(self, what, threshold, limit):
+        """threshold: an upper limit of it."""
+        good = threshold < limit
+        self.passed = self.passed and good
+        print(f"{what:<42} below {threshold:.4f}     paper below {limit:.4f}   {'pass' if good else 'FAIL'}")
 
 
 def points(axes, rows, x, **style):
@@ -65,13 +73,15 @@ def shields_curve(axes, report):
             report.line(f"quadratic drag, Re_* {row['reynolds_number']:g}", row, LOW if low else HIGH,
                         LOW_ACCEPTED if low else HIGH_ACCEPTED)
     linear = thresholds("linear_drag")
-    for restitution, colour in ((0.2, "tab:blue"), (0.9, "tab:red")):
+    for restitution, colour in ((LITTLE_RESTITUTION, "tab:blue"), (0.2, "tab:red")):
         of_this = [row for row in linear if row["restitution"] == restitution]
         points(axes, of_this, "reynolds_number", fmt="o--", color=colour, mfc="none",
                label=f"linear drag, restitution {restitution:g}")
     for row in linear:
-        if row["restitution"] == 0.2 and row["reynolds_number"] > 10:
-            report.line(f"linear drag, e_n 0.2, Re_* {row['reynolds_number']:g}", row, HIGH, HIGH_ACCEPTED)
+        if row["restitution"] == LITTLE_RESTITUTION:
+            report.line(f"linear drag, restitution {LITTLE_RESTITUTION:g}, Re_* {row['reynolds_number']:g}", row, HIGH, HIGH_ACCEPTED)
+    for row in thresholds("linear_drag", "holds everywhere"):
+        report.below(f"linear drag, restitution {row['restitution']:g}, Re_* {row['reynolds_number']:g}", row["upper"], HIGH)
     for level in (LOW, HIGH):
         axes.axhline(level, color="0.6", lw=0.8)
     axes.text(0.98, 0.97, "lines: plateaus of the paper", transform=axes.transAxes, ha="right", va="top", fontsize=8, color="0.4")
