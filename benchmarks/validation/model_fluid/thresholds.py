@@ -65,7 +65,7 @@ def with_lift(threshold, ratio):
 
 
 def shields_curve(axes, report):
-    rows = thresholds("shields_curve")
+    rows = sorted(thresholds("shields_curve"), key=lambda row: row["reynolds_number"])
     points(axes, rows, "reynolds_number", fmt="ks-", label="quadratic drag")
     for row in rows:
         if row["reynolds_number"] <= 0.1 or row["reynolds_number"] >= 100:
@@ -135,6 +135,7 @@ def main():
     lift(axes[1], report, without)
     friction(axes[2], report, without)
     for panel in axes:
+        panel.set_visible(panel.has_data())   # a sweep that has not been run
         panel.grid(color="#e5e8ea", linewidth=0.8)
         if panel.get_legend_handles_labels()[0]:
             panel.legend(fontsize=8)
