@@ -1,6 +1,6 @@
 #include "driver/version.hpp"
 
-#include "commit.hpp"  // cmake/commit.cmake writes it
+#include <commit.hpp>  // cmake/commit.cmake writes it
 
 namespace thalweg::driver {
 
