@@ -4,7 +4,7 @@
 cmake_minimum_required(VERSION 3.25)
 
 function(git output)
-  execute_process(COMMAND git -C ${ROOT} ${ARGN} OUTPUT_VARIABLE said RESULT_VARIABLE failed OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+  execute_process(COMMAND git --no-optional-locks -C ${ROOT} ${ARGN} OUTPUT_VARIABLE said RESULT_VARIABLE failed OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
   if(failed)
     set(said "")
   endif()

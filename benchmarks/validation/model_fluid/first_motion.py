@@ -105,11 +105,12 @@ def main():
     parser.add_argument("--figure", default="first_motion.png", metavar="FILE")
     parser.add_argument("--shortest", type=float, default=0.0, metavar="LENGTH", help="Leave out shorter beds, in diameters")
     arguments = parser.parse_args()
-    measured = [system for system in SYSTEMS if first_motions(system[0])]
+    measured = [(first_motions(system[0]), system) for system in SYSTEMS]
+    measured = [(found, system) for found, system in measured if found]
     figure, axes = plt.subplots(len(measured), 2, figsize=(10, 3.7 * len(measured)), layout="constrained", squeeze=False)
     passed = True
-    for (name, title, paper, table, wanted, per_length), (left, right) in zip(measured, axes):
-        critical, found = threshold(table, wanted), first_motions(name)
+    for (found, (_, title, paper, table, wanted, per_length)), (left, right) in zip(measured, axes):
+        critical = threshold(table, wanted)
         ensembles = [(grains / per_length, middles) for grains, middles in found.items()
                      if grains >= arguments.shortest * per_length]
         (alpha, first, slope), (alpha_error, first_error, slope_error) = with_errors(ensembles)

@@ -78,8 +78,8 @@ def shields_curve(axes, report):
         points(axes, of_this, "reynolds_number", fmt="o--", color=colour, mfc="none",
                label=f"linear drag, restitution {restitution:g}")
     for row in linear:
-        if row["restitution"] == LITTLE_RESTITUTION:
-            report.line(f"linear drag, restitution {LITTLE_RESTITUTION:g}, Re_* {row['reynolds_number']:g}", row, HIGH, HIGH_ACCEPTED)
+        if row["restitution"] <= 0.2 and row["reynolds_number"] > 10:
+            report.line(f"linear drag, restitution {row['restitution']:g}, Re_* {row['reynolds_number']:g}", row, HIGH, HIGH_ACCEPTED)
     for row in thresholds("linear_drag", "holds everywhere"):
         report.below(f"linear drag, restitution {row['restitution']:g}, Re_* {row['reynolds_number']:g}", row["upper"], HIGH)
     for level in (LOW, HIGH):
