@@ -230,4 +230,9 @@ std::int64_t GrainDynamics::moving_count(double speed) const {
   return sum_over_ranks(communicator_, count);
 }
 
+double GrainDynamics::moving_share(double speed) const {
+  const std::int64_t moving = moving_count(speed), free = moving_count(-1.0);
+  return free > 0 ? static_cast<double>(moving) / static_cast<double>(free) : 0.0;
+}
+
 }  // namespace thalweg::dem

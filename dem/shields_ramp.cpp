@@ -13,6 +13,11 @@ bool ShieldsRamp::advance(double time, double largest_speed, double largest_acce
   return true;
 }
 
+double ShieldsRamp::hold_left(double time) const {
+  if (mobile_) return 0.0;
+  return parameters_.hold - (steps_ > 0 ? time - last_step_ : 0.0);
+}
+
 double ShieldsRamp::factor() const { return std::pow(1.0 + parameters_.step, static_cast<double>(steps_)); }
 
 void ShieldsRamp::save(ArchiveWriter& archive) const {

@@ -13,8 +13,10 @@ struct ShieldsRampParameters {
   double step = 0.05;                 // relative, of the Shields number
   double every = 0.0;                 // s, at least, between two steps
   double hold = 0.0;                  // s, motion that lasts longer has no end
+  double mobile_share = 1.0;          // of the grains; when more move, their motion has no end. 1: not looked at
   double largest_speed = 0.0;         // m/s: grains that are slower
   double largest_acceleration = 0.0;  // m/s^2, and accelerated by less, are at rest
+  double moving_speed = 0.0;          // m/s: grains that are faster move, for mobile_share
 };
 
 class ShieldsRamp {
@@ -25,10 +27,15 @@ public:
   // returns whether it has.
   bool advance(double time, double largest_speed, double largest_acceleration);
 
+  // To be called after every step when watches_share(), with the share of free grains faster than moving_speed().
+  bool watches_share() const { return parameters_.mobile_share < 1.0; }
+  double moving_speed() const { return parameters_.moving_speed; }
+  void watch(double moving_share) { mobile_ = steps_ > 0 && moving_share > parameters_.mobile_share; }
+
   // Over that at the start.
   double factor() const;
   // s, until the motion since the last step counts as one without end; before the first step the grains settle.
-  double hold_left(double time) const { return parameters_.hold - (steps_ > 0 ? time - last_step_ : 0.0); }
+  double hold_left(double time) const;
 
   void save(ArchiveWriter& archive) const;
   void load(ArchiveReader& archive);
@@ -37,6 +44,7 @@ private:
   ShieldsRampParameters parameters_;
   std::int64_t steps_ = 0;
   double last_step_ = 0.0;  // s
+  bool mobile_ = false;     // at the end of the last time step
 };
 
 }  // namespace thalweg::dem

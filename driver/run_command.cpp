@@ -36,6 +36,7 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
+#include <limits>
 
 namespace thalweg::driver {
 
@@ -216,7 +217,7 @@ void set_end(const Case& c, loop::LoopPlan& plan) {
     plan.enough_means = "steady";
     plan.steps_between_looks_for_enough = 1;  // its steps are long
   } else if (c.system == SystemKind::model_fluid && c.model_fluid.ramp) {
-    plan.enough = {{dem::ModelFluidField::hold_left_figure, 0.0}};
+    plan.enough = {{dem::ModelFluidField::hold_left_figure, std::numeric_limits<double>::min()}};  // none is left
     plan.enough_means = "motion without end";
   }
 }
