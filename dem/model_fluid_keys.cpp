@@ -42,11 +42,12 @@ void describe(SectionVisitor& visit, ShieldsRampKeys& ramp) {
               .above = 0.0,
               .example = 1000.0});
   visit.require(ramp.hold > ramp.every, "hold", "it must be longer than `every`; give for example 100 times as much");
-  visit.real("mobile_share", ramp.mobile_share,
-             {.meaning = "of the grains: if more of them are faster than sqrt(g'D), their motion counts as one without end "
-                         "at once; 1: only `hold` counts",
-              .above = 0.0,
-              .at_most = 1.0});
+  visit.real(
+      "mobile_share", ramp.mobile_share,
+      {.meaning = "of the grains: if more of them are faster than sqrt(g'D), their motion counts as one without end "
+                  "at once; 1: only `hold` counts",
+       .above = 0.0,
+       .at_most = 1.0});
   visit.real("largest_speed", ramp.largest_speed,
              {.unit = "sqrt(g'D)", .meaning = "grains that are slower", .above = 0.0});
   visit.real("largest_acceleration", ramp.largest_acceleration,
