@@ -219,6 +219,7 @@ void set_end(const Case& c, loop::LoopPlan& plan) {
   } else if (c.system == SystemKind::model_fluid && c.model_fluid.ramp) {
     plan.enough = {{dem::ModelFluidField::hold_left_figure, std::numeric_limits<double>::min()}};  // none is left
     plan.enough_means = "motion without end";
+    plan.steps_between_looks_for_enough = 20;  // grains that take off are soon too fast for the time step
   }
 }
 
