@@ -1,19 +1,22 @@
 #!/usr/bin/python3
 """First motions of settled beds as links of a chain, beside Clark et al. (2017), section III F.
 
-Reads the tables runs.csv of the sweeps first_motion.yaml, first_motion_held.yaml and first_motion_disks.yaml, which are kept
-here under the names of the sweeps, and the thresholds Theta_c of motion that stops from shields_curve.csv and friction.csv. If
-a bed of length W begins to move where the weakest of its parts does, the share of beds that move at Theta is
+Reads the tables runs.csv of the sweeps first_motion*.yaml, which are kept here under the names of the sweeps, and the
+thresholds Theta_c of motion that stops from shields_curve.csv and friction.csv. If a bed of length W begins to move where the
+weakest of its parts does, the share of beds that move at Theta is
 
   C = 1 - exp[-W ((Theta - Theta_0)/beta)^alpha]
 
 with the same alpha, beta and Theta_0 for every length, and the mean of Theta - Theta_0 goes with W^(-1/alpha). In the paper
-Theta_0 is Theta_c: what begins to move in a large bed cannot stop. Prints alpha and Theta_0 that make all beds together most
-likely, and the slope of the mean, with standard errors from resampled ensembles, and pass or fail. Exit code 0 if all pass.
+Theta_0 is Theta_c: what begins to move in a large bed cannot stop. Prints alpha that makes all beds together most likely, and the
+slope of the mean, with Theta_0 fitted as well, with the Theta_c found here and with that of the paper; standard errors are from
+resampled ensembles. Beds that begin to move below a given Theta_0 are left out. Pass or fail is that of the fit with the Theta_c
+found here, as in the paper. Exit code 0 if all pass.
 """
 import argparse
 import math
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 
 import matplotlib
@@ -29,55 +32,69 @@ from thalweg.tables import read_rows
 from thresholds import thresholds
 
 ACCEPTED = 0.3   # of alpha
-RAMP_STEP = 0.03
-# Name of the sweep, exponent of the paper, table and row of the threshold, grains per diameter of length.
-SYSTEMS = (("first_motion", "spheres", 2.2, "shields_curve", {"reynolds_number": 100.0}, 20),
-           ("first_motion_disks", "disks with friction", 2.4, "friction",
-            {"reynolds_number": 30.0, "friction": 0.6}, 10))
+
+
+@dataclass(frozen=True)
+class System:
+    name: str                # of the sweep
+    title: str
+    alpha: float             # of the paper
+    theta_c: float | None    # of the paper
+    table: str               # with the threshold found here
+    row: dict
+    grains_per_length: int   # in a diameter of length
+    step: float              # relative, of the ramp
+
+
+SYSTEMS = (System("first_motion", "spheres", 2.2, 0.11, "shields_curve", {"reynolds_number": 100.0}, 20, 0.03),
+           System("first_motion_disks", "disks with friction", 2.4, None, "friction",
+                  {"reynolds_number": 10.0, "friction": 0.6}, 10, 0.05))
 
 
 def threshold(table, wanted):
-    """Theta_c and half its bracket, None if it has not been found."""
+    """Theta_c, None if it has not been found."""
     for row in thresholds(table):
         if all(row[key] == value for key, value in wanted.items()):
-            return row["shields_number"], row["half_width"]
+            return row["shields_number"]
     return None
 
 
-def first_motions(name):
-    """Shields numbers by the number of grains; those that were watched longer (name_held.csv) in place of the others. A bed
-    begins to move somewhere within the last step of its ramp."""
+def first_motions(system):
+    """Middle of the last step of the ramp, within which a bed begins to move, of all beds by their length; those that were
+    watched longer (NAME_held.csv) in place of the others."""
     found = {}
-    for path in (HERE / f"{name}.csv", HERE / f"{name}_held.csv"):
+    for path in (HERE / f"{system.name}{part}.csv" for part in ("", "_held", "_long")):
         for row in read_rows(path) if path.exists() else []:
             if row["state"] == "done":
                 grains = int(row["grains.0.count"]) + int(row["grains.1.count"])
                 moving = float(row["figures.shields_number [1]"])
-                found[grains, row["grains.0.placement.seed"]] = moving / (1.0 + 0.5 * RAMP_STEP)
+                found[grains, row["grains.0.placement.seed"]] = moving / (1.0 + 0.5 * system.step)
     sizes = sorted({grains for grains, _ in found})
-    return {size: np.array([value for (grains, _), value in found.items() if grains == size]) for size in sizes}
+    return [(size / system.grains_per_length, np.array([value for (grains, _), value in found.items() if grains == size]))
+            for size in sizes]
 
 
-def unlikelihood(parameters, ensembles):
-    """Minus the logarithm of the likelihood; parameters: Theta_0, log beta, log alpha. A bed is known to rest at one level of
-    its ramp and to move at the next."""
-    first, log_beta, log_alpha = parameters
+def unlikelihood(first, log_beta, log_alpha, ensembles, step):
+    """Minus the logarithm of the likelihood with Theta_0 = first: a bed rests at one level of its ramp and moves at the next."""
     total = 0.0
     for length, middles in ensembles:
-        resting, moving = middles * (1.0 - 0.5 * RAMP_STEP), middles * (1.0 + 0.5 * RAMP_STEP)
+        resting, moving = middles * (1.0 - 0.5 * step), middles * (1.0 + 0.5 * step)
         share_at_rest = [np.exp(-length * (np.maximum(level - first, 0.0) * np.exp(-log_beta))**np.exp(log_alpha))
                          for level in (resting, moving)]
         total -= np.sum(np.log(np.maximum(share_at_rest[0] - share_at_rest[1], 1e-300)))
     return total
 
 
-def weibull_fit(ensembles):
-    """alpha and Theta_0."""
-    least = min(middles.min() for _, middles in ensembles)
-    start = [0.8 * least, math.log(0.2), math.log(2.0)]
+def weibull_fit(ensembles, step, given=None):
+    """alpha and Theta_0, which may be given."""
     options = {"maxiter": 2000, "xatol": 1e-4, "fatol": 1e-3}
-    found = minimize(unlikelihood, start, (ensembles,), method="Nelder-Mead", options=options)
-    return np.array([math.exp(found.x[2]), found.x[0]])
+    start = [math.log(0.2), math.log(2.0)]
+    if given is not None:
+        found = minimize(lambda p: unlikelihood(given, *p, ensembles, step), start, method="Nelder-Mead", options=options)
+        return math.exp(found.x[1]), given
+    least = min(middles.min() for _, middles in ensembles)
+    found = minimize(lambda p: unlikelihood(*p, ensembles, step), [0.8 * least, *start], method="Nelder-Mead", options=options)
+    return math.exp(found.x[2]), found.x[0]
 
 
 def mean_slope(ensembles, first):
@@ -88,16 +105,68 @@ def mean_slope(ensembles, first):
     return np.polyfit(np.log(lengths), np.log(means), 1)[0]
 
 
-def analysed(ensembles):
-    alpha, first = weibull_fit(ensembles)
-    return np.array([alpha, first, mean_slope(ensembles, first)])
+@dataclass(frozen=True)
+class Fit:
+    ensembles: list     # without the beds that begin to move below Theta_0
+    left_out: int
+    alpha: float
+    first: float        # Theta_0
+    slope: float
+    alpha_error: float
+    first_error: float
+    slope_error: float
+
+    def line(self, title, choice):
+        print(f"{title}, Theta_0 {self.first:.4f} +- {self.first_error:.4f} ({choice}; {self.left_out} beds begin below it): alpha "
+              f"{self.alpha:.2f} +- {self.alpha_error:.2f}, -1/alpha {-1 / self.alpha:.3f}, slope {self.slope:.3f} +- "
+              f"{self.slope_error:.3f}")
 
 
-def with_errors(ensembles, seed=1):
-    """analysed() of the ensembles and its standard errors from a hundred resampled ones."""
+def fitted(ensembles, step, given=None, seed=1):
+    """Weibull fit and slope, with standard errors from a hundred resampled ensembles."""
+    kept = [(length, middles if given is None else middles[middles * (1.0 - 0.5 * step) > given]) for length, middles in ensembles]
+
+    def analysed(beds):
+        alpha, first = weibull_fit(beds, step, given)
+        return np.array([alpha, first, mean_slope(beds, first)])
+
     random = np.random.default_rng(seed)
-    again = [analysed([(length, random.choice(middles, len(middles))) for length, middles in ensembles]) for _ in range(100)]
-    return analysed(ensembles), np.std(again, axis=0)
+    again = [analysed([(length, random.choice(middles, len(middles))) for length, middles in kept]) for _ in range(100)]
+    left_out = sum(len(middles) for _, middles in ensembles) - sum(len(middles) for _, middles in kept)
+    return Fit(kept, left_out, *analysed(kept), *np.std(again, axis=0))
+
+
+def judged(system, fit):
+    """Whether alpha is that of the paper, and the slope of the mean -1/alpha."""
+    good = abs(fit.alpha - system.alpha) <= ACCEPTED + fit.alpha_error
+    print(f"{system.title}: alpha {fit.alpha:.2f} +- {fit.alpha_error:.2f}, paper {system.alpha}: {'pass' if good else 'FAIL'}")
+    if math.isnan(fit.slope):
+        return good
+    straight = abs(fit.slope + 1.0 / fit.alpha) <= 2.0 * fit.slope_error
+    print(f"{system.title}: slope {fit.slope:.3f} +- {fit.slope_error:.3f}, -1/alpha {-1 / fit.alpha:.3f}: "
+          f"{'pass' if straight else 'FAIL'}")
+    return good and straight
+
+
+def draw(system, fit, left, right):
+    for length, middles in fit.ensembles:
+        x = np.sort((middles - fit.first) / (middles.mean() - fit.first))
+        left.plot(x, (np.arange(len(x)) + 0.5) / len(x), ".", ms=4, label=f"{length:g} D, {len(x)} beds")
+    x = np.linspace(0.0, 2.5, 100)
+    left.plot(x, 1.0 - np.exp(-(math.gamma(1.0 + 1.0 / system.alpha) * x)**system.alpha), "k", lw=1,
+              label=f"Weibull, α = {system.alpha}")
+    left.set(xlabel="(Θ$_f$ − Θ$_0$) over its mean", ylabel="beds that move", title=f"{system.title}, Θ$_0$ = {fit.first:.3g}")
+    left.legend(fontsize=8)
+    lengths = np.array([length for length, _ in fit.ensembles])
+    means = np.array([middles.mean() - fit.first for _, middles in fit.ensembles])
+    errors = [middles.std() / math.sqrt(len(middles)) for _, middles in fit.ensembles]
+    right.errorbar(lengths, means, errors, fmt="o", capsize=3)
+    right.plot(lengths, means[0] * (lengths / lengths[0])**(-1.0 / system.alpha), "k", lw=1, label=f"W$^{{-1/{system.alpha}}}$")
+    right.set(xscale="log", yscale="log", xlabel="length W [D]", ylabel="mean of Θ$_f$ − Θ$_0$")
+    for axis in (right.xaxis, right.yaxis):
+        axis.set_major_formatter(ScalarFormatter())
+        axis.set_minor_formatter(ScalarFormatter())
+    right.legend(fontsize=8)
 
 
 def main():
@@ -105,47 +174,24 @@ def main():
     parser.add_argument("--figure", default="first_motion.png", metavar="FILE")
     parser.add_argument("--shortest", type=float, default=0.0, metavar="LENGTH", help="Leave out shorter beds, in diameters")
     arguments = parser.parse_args()
-    measured = [(first_motions(system[0]), system) for system in SYSTEMS]
+    measured = [(first_motions(system), system) for system in SYSTEMS]
     measured = [(found, system) for found, system in measured if found]
     figure, axes = plt.subplots(len(measured), 2, figsize=(10, 3.7 * len(measured)), layout="constrained", squeeze=False)
     passed = True
-    for (found, (_, title, paper, table, wanted, per_length)), (left, right) in zip(measured, axes):
-        critical = threshold(table, wanted)
-        ensembles = [(grains / per_length, middles) for grains, middles in found.items()
-                     if grains >= arguments.shortest * per_length]
-        (alpha, first, slope), (alpha_error, first_error, slope_error) = with_errors(ensembles)
+    for (found, system), panels in zip(measured, axes):
+        ensembles = [(length, middles) for length, middles in found if length >= arguments.shortest]
         for length, middles in ensembles:
-            print(f"{title}, {length:g} D long: {len(middles)} beds, mean {middles.mean():.4f}, deviation {middles.std():.4f}")
-        good = abs(alpha - paper) <= ACCEPTED + alpha_error
-        print(f"{title}: alpha {alpha:.2f} +- {alpha_error:.2f}, paper {paper}: {'pass' if good else 'FAIL'}")
-        passed = passed and good
-        if len(ensembles) > 1:
-            straight = abs(slope + 1.0 / alpha) <= 2.0 * slope_error
-            print(f"{title}: slope {slope:.3f} +- {slope_error:.3f}, -1/alpha {-1 / alpha:.3f}: {'pass' if straight else 'FAIL'}")
-            passed = passed and straight
+            print(f"{system.title}, {length:g} D long: {len(middles)} beds, mean {middles.mean():.4f}, deviation {middles.std():.4f}")
+        fit = fitted(ensembles, system.step)
+        fit.line(system.title, "fitted")
+        if system.theta_c:
+            fitted(ensembles, system.step, system.theta_c).line(system.title, "Theta_c of the paper")
+        critical = threshold(system.table, system.row)
         if critical:
-            same = abs(first - critical[0]) <= critical[1] + 2.0 * first_error
-            print(f"{title}: Theta_0 {first:.4f} +- {first_error:.4f}, Theta_c of motion that stops {critical[0]:.4f} +- "
-                  f"{critical[1]:.4f}: {'pass' if same else 'FAIL'}")
-            passed = passed and same
-
-        for length, middles in ensembles:
-            x = np.sort((middles - first) / (middles.mean() - first))
-            left.plot(x, (np.arange(len(x)) + 0.5) / len(x), ".", ms=4, label=f"{length:g} D, {len(x)} beds")
-        x = np.linspace(0.0, 2.5, 100)
-        left.plot(x, 1.0 - np.exp(-(math.gamma(1.0 + 1.0 / paper) * x)**paper), "k", lw=1, label=f"Weibull, α = {paper}")
-        left.set(xlabel="(Θ$_f$ − Θ$_0$) over its mean", ylabel="beds that move", title=title)
-        left.legend(fontsize=8)
-        lengths = np.array([length for length, _ in ensembles])
-        means = np.array([middles.mean() - first for _, middles in ensembles])
-        errors = [middles.std() / math.sqrt(len(middles)) for _, middles in ensembles]
-        right.errorbar(lengths, means, errors, fmt="o", capsize=3)
-        right.plot(lengths, means[0] * (lengths / lengths[0])**(-1.0 / paper), "k", lw=1, label=f"W$^{{-1/{paper}}}$")
-        right.set(xscale="log", yscale="log", xlabel="length W [D]", ylabel="mean of Θ$_f$ − Θ$_0$")
-        for axis in (right.xaxis, right.yaxis):
-            axis.set_major_formatter(ScalarFormatter())
-            axis.set_minor_formatter(ScalarFormatter())
-        right.legend(fontsize=8)
+            fit = fitted(ensembles, system.step, critical)
+            fit.line(system.title, "Theta_c found here")
+        passed = judged(system, fit) and passed
+        draw(system, fit, *panels)
     for panel in axes.flat:
         panel.grid(color="#e5e8ea", linewidth=0.8)
     figure.savefig(arguments.figure, dpi=110)
