@@ -60,10 +60,10 @@ def threshold(table, wanted):
 
 
 def first_motions(system):
-    """Middle of the last step of the ramp, within which a bed begins to move, of all beds by their length; those that were
-    watched longer (NAME_held.csv) in place of the others."""
+    """Middle of the last step of the ramp, within which a bed begins to move, of all beds by their length; those of the
+    other tables in place of the first."""
     found = {}
-    for path in (HERE / f"{system.name}{part}.csv" for part in ("", "_held", "_long")):
+    for path in (HERE / f"{system.name}{part}.csv" for part in ("", "_held", "_short_step", "_long")):
         for row in read_rows(path) if path.exists() else []:
             if row["state"] == "done":
                 grains = int(row["grains.0.count"]) + int(row["grains.1.count"])
