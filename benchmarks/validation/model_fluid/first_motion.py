@@ -2,16 +2,17 @@
 """First motions of settled beds as links of a chain, beside Clark et al. (2017), section III F.
 
 Reads the tables runs.csv of the sweeps first_motion*.yaml, which are kept here under the names of the sweeps, and the
-thresholds Theta_c of motion that stops from shields_curve.csv and friction.csv. If a bed of length W begins to move where the
-weakest of its parts does, the share of beds that move at Theta is
+threshold Theta_c of motion that stops from shields_curve.csv. If a bed of length W begins to move where the weakest of its parts
+does, the share of beds that move at Theta is
 
   C = 1 - exp[-W ((Theta - Theta_0)/beta)^alpha]
 
-with the same alpha, beta and Theta_0 for every length, and the mean of Theta - Theta_0 goes with W^(-1/alpha). In the paper
-Theta_0 is Theta_c: what begins to move in a large bed cannot stop. Prints alpha that makes all beds together most likely, and the
-slope of the mean, with Theta_0 fitted as well, with the Theta_c found here and with that of the paper; standard errors are from
-resampled ensembles. Beds that begin to move below a given Theta_0 are left out. Pass or fail is that of the fit with the Theta_c
-found here, as in the paper. Exit code 0 if all pass.
+with the same alpha, beta and Theta_0 for every length, and the mean of Theta - Theta_0 goes with W^(-1/alpha). Of spheres with
+quadratic drag Theta_0 is Theta_c in the paper: what begins to move in a large bed cannot stop. Elastic disks with linear drag
+stop at much lower Shields numbers, and Theta_0 is one of its own. Prints alpha that makes all beds together most likely, and the
+slope of the mean, with standard errors from resampled ensembles: with Theta_0 fitted as well, and of spheres with the Theta_c of
+the paper and the one found here, without the beds that begin to move below. The last is judged, of disks the first; exit code 0
+if all pass.
 """
 import argparse
 import math
@@ -23,7 +24,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.ticker import ScalarFormatter
+from matplotlib.ticker import FormatStrFormatter
 from scipy.optimize import minimize
 
 HERE = Path(__file__).resolve().parent
@@ -39,24 +40,20 @@ class System:
     name: str                # of the sweep
     title: str
     alpha: float             # of the paper
-    theta_c: float | None    # of the paper
-    table: str               # with the threshold found here
-    row: dict
+    theta_c: float | None    # of the paper; without one Theta_0 is fitted only
+    row: dict                # of the threshold found here, in shields_curve.csv
     grains_per_length: int   # in a diameter of length
     step: float              # relative, of the ramp
 
 
-SYSTEMS = (System("first_motion", "spheres", 2.2, 0.11, "shields_curve", {"reynolds_number": 100.0}, 20, 0.03),
-           System("first_motion_disks", "disks with friction", 2.4, None, "friction",
-                  {"reynolds_number": 10.0, "friction": 0.6}, 10, 0.05))
+SYSTEMS = (System("first_motion", "spheres", 2.2, 0.11, {"reynolds_number": 100.0}, 20, 0.03),
+           System("first_motion_disks", "disks with friction", 2.4, None, {}, 10, 0.05))
 
 
-def threshold(table, wanted):
-    """Theta_c, None if it has not been found."""
-    for row in thresholds(table):
-        if all(row[key] == value for key, value in wanted.items()):
-            return row["shields_number"]
-    return None
+def threshold(wanted):
+    """Theta_c of the row with these values."""
+    return next(row["shields_number"] for row in thresholds("shields_curve")
+                if all(row[key] == value for key, value in wanted.items()))
 
 
 def first_motions(system):
@@ -161,11 +158,11 @@ def draw(system, fit, left, right):
     means = np.array([middles.mean() - fit.first for _, middles in fit.ensembles])
     errors = [middles.std() / math.sqrt(len(middles)) for _, middles in fit.ensembles]
     right.errorbar(lengths, means, errors, fmt="o", capsize=3)
-    right.plot(lengths, means[0] * (lengths / lengths[0])**(-1.0 / system.alpha), "k", lw=1, label=f"W$^{{-1/{system.alpha}}}$")
+    right.plot(lengths, means[-1] * (lengths / lengths[-1])**(-1.0 / system.alpha), "k", lw=1, label=f"W$^{{-1/{system.alpha}}}$")
     right.set(xscale="log", yscale="log", xlabel="length W [D]", ylabel="mean of Θ$_f$ − Θ$_0$")
     for axis in (right.xaxis, right.yaxis):
-        axis.set_major_formatter(ScalarFormatter())
-        axis.set_minor_formatter(ScalarFormatter())
+        axis.set_major_formatter(FormatStrFormatter("%g"))
+        axis.set_minor_formatter(FormatStrFormatter("%g"))
     right.legend(fontsize=8)
 
 
@@ -186,9 +183,7 @@ def main():
         fit.line(system.title, "fitted")
         if system.theta_c:
             fitted(ensembles, system.step, system.theta_c).line(system.title, "Theta_c of the paper")
-        critical = threshold(system.table, system.row)
-        if critical:
-            fit = fitted(ensembles, system.step, critical)
+            fit = fitted(ensembles, system.step, threshold(system.row))
             fit.line(system.title, "Theta_c found here")
         passed = judged(system, fit) and passed
         draw(system, fit, *panels)
