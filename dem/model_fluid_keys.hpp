@@ -14,8 +14,8 @@ enum class ModelUnits { si, grain };
 
 struct ShieldsRampKeys {
   double step = 0.05;
-  double every = 0.0;                 // s
-  double hold = 0.0;                  // s
+  double every = 0.0;  // s
+  double hold = 0.0;   // s
   double mobile_share = 1.0;
   double largest_speed = 1e-3;        // sqrt(g'D)
   double largest_acceleration = 0.1;  // g'
