@@ -44,16 +44,25 @@ double CorrelatedMean::deviation() const {
 CorrelatedMean::Error CorrelatedMean::error() const {
   Error error;
   if (count() < 2) return error;
-  const double values = levels_.front().blocks, plain = levels_.front().squared_error();
+  const double values = levels_.front().blocks, plain = squared_error(levels_.front(), {});
   if (plain == 0.0) return {0.0, 0.5, true};  // all alike
   double largest = 0.0;
+  Rest rest;
   for (std::size_t k = 0; k < levels_.size() && (k == 0 || levels_[k].blocks >= fewest_blocks); ++k) {
-    const double squared = levels_[k].squared_error(), ratio = squared / plain;
+    const double squared = squared_error(levels_[k], rest), ratio = squared / plain;
     largest = std::max(largest, squared);
     if (std::exp2(3.0 * static_cast<double>(k)) > 2.0 * values * ratio * ratio)
       return {std::sqrt(squared), 0.5 * ratio, true};
+    rest = {0.5 * (rest.length + levels_[k].waits), 0.5 * (rest.sum + levels_[k].waits * levels_[k].waiting)};
   }
   return {std::sqrt(largest), 0.5 * largest / plain, false};
+}
+
+double CorrelatedMean::squared_error(const Level& level, const Rest& rest) {
+  if (rest.length == 0.0) return level.squares / (level.blocks * (level.blocks - 1.0));
+  const double length = level.blocks + rest.length, from_mean = rest.sum / rest.length - level.mean;
+  const double squares = level.squares + level.blocks * rest.length / length * from_mean * from_mean;
+  return squares / (length * level.blocks);
 }
 
 std::vector<double> CorrelatedMean::state() const {

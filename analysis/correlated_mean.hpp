@@ -1,9 +1,10 @@
 // The mean of a series whose values depend on those before, and how far it may be off.
 //
 // The values are averaged in pairs, the averages in pairs again, and so on (Flyvbjerg & Petersen, J. Chem. Phys. 91
-// (1989) 461). With n_k blocks of 2^k values each, whose means vary about their own mean by s_k^2 = sum (b - <b>)^2,
+// (1989) 461). Values at the end that fill no block make one that is shorter. With blocks of 2^k values, their means b,
+// their lengths w in units of a whole one, n_k blocks in all and the mean m of the series,
 //
-//   sigma_k^2 = s_k^2 / (n_k (n_k - 1))
+//   sigma_k^2 = sum w (b - m)^2 / ((n_k - 1) sum w)
 //
 // grows with k until blocks are longer than the memory of the series, and is then the square of the error of the mean.
 // The shortest blocks with B^3 > 2 n (sigma_k / sigma_0)^4, B = 2^k, n the number of values, are taken (Wolff, Comput.
@@ -45,8 +46,13 @@ private:
   struct Level {
     double blocks = 0.0, mean = 0.0, squares = 0.0;  // squares: sum of (block - mean)^2
     double waits = 0.0, waiting = 0.0;               // waits 1: a block, `waiting`, waits for its partner
-    double squared_error() const { return squares / (blocks * (blocks - 1.0)); }
   };
+  // The values at the end that fill no block of a level: their length in blocks, and their mean times that length.
+  struct Rest {
+    double length = 0.0, sum = 0.0;
+  };
+  static double squared_error(const Level& level, const Rest& rest);  // sigma_k^2
+
   std::vector<Level> levels_;
 };
 

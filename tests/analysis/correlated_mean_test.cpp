@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 namespace thalweg::analysis {
 namespace {
@@ -70,6 +73,57 @@ TEST(CorrelatedMean, IsNotSureByChance) {
     if (error.blocks_long_enough && error.of_mean < 0.5 * expected) ++too_sure;
   }
   EXPECT_LE(too_sure, 11);
+}
+
+// The errors of the mean for blocks of 2^k values, k = 0, 1, ..., as the header defines them, as long as there are
+// eight.
+std::vector<double> squared_errors(const std::vector<double>& values) {
+  const auto n = static_cast<double>(values.size());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+  std::vector<double> errors;
+  for (std::size_t size = 1; values.size() / size >= 8; size *= 2) {
+    double squares = 0.0, blocks = 0.0;
+    for (std::size_t first = 0; first < values.size(); first += size, blocks += 1.0) {
+      const std::size_t end = std::min(first + size, values.size());
+      const auto length = static_cast<double>(end - first);
+      const double block = std::accumulate(values.begin() + static_cast<std::ptrdiff_t>(first),
+                                           values.begin() + static_cast<std::ptrdiff_t>(end), 0.0) /
+                           length;
+      squares += length * (block - mean) * (block - mean);
+    }
+    errors.push_back(squares / ((blocks - 1.0) * n));
+  }
+  return errors;
+}
+
+// 183 values are 22 blocks of eight and seven values more: all are in the mean, and none may be missing from its error.
+TEST(CorrelatedMean, CountsValuesThatFillNoBlock) {
+  for (const int count : {15, 16, 17, 183, 255, 1000, 1023}) {
+    for (const double a : {0.0, 0.5, 0.9}) {
+      CorrelatedMean mean;
+      std::vector<double> values;
+      MadeUpChain chain(a, 11);
+      for (int n = 0; n < count; ++n) values.push_back(chain.next());
+      for (const double value : values) mean.add(value);
+      const std::vector<double> errors = squared_errors(values);
+      double expected = *std::max_element(errors.begin(), errors.end());
+      for (std::size_t k = errors.size(); k-- > 0;)
+        if (std::exp2(3.0 * static_cast<double>(k)) > 2.0 * count * std::pow(errors[k] / errors[0], 2))
+          expected = errors[k];
+      EXPECT_NEAR(mean.error().of_mean / std::sqrt(expected), 1.0, 1e-12) << count << " values, a = " << a;
+    }
+  }
+}
+
+// A record that ends as motion sets in: one event, from which no error can be told.
+TEST(CorrelatedMean, IsNotSureOfABurstAtTheEnd) {
+  CorrelatedMean mean;
+  MadeUpChain chain(0.0, 5);
+  for (int n = 0; n < 176; ++n) mean.add(1e-3 * chain.next());
+  for (const double value : {0.02, 0.06, 0.16, 0.46, 0.92, 1.6, 2.7}) mean.add(value);
+  const CorrelatedMean::Error error = mean.error();
+  EXPECT_FALSE(error.blocks_long_enough);
+  EXPECT_GT(error.of_mean, mean.deviation() / std::sqrt(183.0));
 }
 
 TEST(CorrelatedMean, GoesOnFromItsState) {
