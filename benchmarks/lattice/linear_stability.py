@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """Growth rates of small disturbances on the lattice: linear_stability.py
 
-Plane Couette flow between half-link walls eight cells apart, the upper moving at 0.1 cells a step, and a uniform stream
-at the same velocity without walls: the step (collision, streaming, bounce-back) is linearised about the flow, and the
-largest eigenvalue over all wave numbers, less one, is the growth a step. The matrices are written out from the
-definitions of the collisions, independently of the library. Positive is unstable.
+Two flows: plane Couette flow between half-link walls eight cells apart, the upper moving at 0.1 cells per step, and a
+uniform stream at the same velocity without walls. The step (collision, streaming, bounce-back) is linearised about the flow;
+the largest eigenvalue over all wave numbers, minus one, is the growth per step (positive: unstable). The matrices are written
+out from the definitions of the collisions, independently of the library.
 """
 import numpy as np
 
@@ -16,7 +16,7 @@ OPPOSITE = [int(np.where((C == -c).all(1))[0][0]) for c in C]
 MAGIC = 3 / 16
 
 
-BULK = 1.5 * W * ((C * C).sum(1) - 1)  # what a unit of the trace of the second moment, set apart, gives a population
+BULK = 1.5 * W * ((C * C).sum(1) - 1)  # what a unit of the separate trace of the second moment adds to a population
 
 
 def collision(tau, u, model, tau_bulk=None):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Drift of the grains and flow left in a bed at rest: compare.py RUN [--from SECONDS]"""
+"""Drift of the grains and residual flow in a bed at rest: compare.py RUN [--from SECONDS]"""
 import argparse
 import pathlib
 import sys

@@ -1,11 +1,10 @@
 #!/usr/bin/python3
 """Restitution of spheres that rebound in a liquid: compare.py RUN_FOLDER... [--figure FILE]
 
-Every impact of a run counts, up to three, above the Stokes number 8. Its velocity is the largest since the last one; the velocity of the rebound is
-that when sound has gone around the sphere after the end of the contact (pi R/c_s, 27 steps at ten cells a diameter),
-before which the fluid has not answered to the turn. Prints Stokes number, restitution over the dry one, exp(-35/St), their difference, and pass or
-fail (0.1). Exit code 0 if
-all pass.
+Up to three impacts of a run above the Stokes number 8 count. The impact velocity is the largest since the last impact; the
+rebound velocity is that at the time when sound has gone around the sphere after the end of the contact (pi R/c_s, 27 steps at
+ten cells per diameter), before which the fluid has not responded to the reversal. Prints Stokes number, restitution over dry
+restitution, exp(-35/St), their difference, and pass or fail (0.1). Exit code 0 if all pass.
 """
 import argparse
 import math
@@ -22,7 +21,7 @@ from thalweg.frames import trajectory
 from thalweg.rebound import impacts, settling_time
 
 ACCEPTED = 0.1
-SLOWEST = 8.0             # Stokes number below which nothing rebounds and nothing more is counted
+SLOWEST = 8.0             # Stokes number below which nothing rebounds and no impact is counted
 
 
 def main():

@@ -2,8 +2,8 @@
 """Prints the options of `thalweg run case.yaml` for an impact at a Stokes number: restitution.py ST [CELLS_A_DIAMETER [STEPS]]
 
 The sphere falls at its terminal velocity V by Schiller and Naumann's drag; the viscosity is the one for which
-St = rho_s V d/(9 eta). The step of the fluid lets V cover 0.04 cells. A contact lasts STEPS steps of the fluid, about as
-long as sound takes to cross the sphere on the lattice: in a shorter one the fluid around the sphere cannot turn with it.
+St = rho_s V d/(9 eta). In one fluid step the sphere falls 0.04 cells. A contact lasts STEPS fluid steps, about as long as
+sound takes to cross the sphere on the lattice: in a shorter one the fluid around the sphere cannot reverse with it.
 """
 import math
 import sys

@@ -5,7 +5,7 @@
 
 POINTS, GRIDS: folders of `thalweg sweep points.yaml` and `grids.yaml`. RESOLVED: run folders of beds with
 analysis.stress_balance, whose profiles are drawn over those of the column at slope 0.010 and a Shields number of 0.085.
-Writes continuum.csv and continuum.png next to this script; ends with exit code 1 where a column is not steady, or where
+Writes continuum.csv and continuum.png next to this script; ends with exit code 1 if a column is not steady, or if
 one with `drag_speed: streamwise` is more than 2 % from reference.csv.
 """
 import csv
@@ -69,7 +69,7 @@ def draw_relation(axes, rows, resolved):
 
 
 def surface(z, fraction):
-    """Height where the solid fraction falls below 0.31, from above."""
+    """Height of the highest point where the solid fraction reaches 0.31."""
     last = np.flatnonzero(fraction >= 0.31)[-1]
     return np.interp(0.31, fraction[last:last + 2][::-1], z[last:last + 2][::-1])
 

@@ -3,7 +3,7 @@
 
     compare.py POINTS        folder of `thalweg sweep points.yaml`
 
-Writes creep.csv and creep.png next to this script; ends with exit code 1 where a length is more than 2 % from the reference.
+Writes creep.csv and creep.png next to this script; ends with exit code 1 if a length is more than 2 % from the reference.
 """
 import csv
 import sys

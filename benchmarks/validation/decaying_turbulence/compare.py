@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Grid turbulence of Comte-Bellot and Corrsin (1971) as large eddies: compare.py PROGRAM [--figure FILE]
+"""Grid turbulence of Comte-Bellot and Corrsin (1971) by large-eddy simulation: compare.py PROGRAM [--figure FILE]
 
-Makes a random solenoidal field with the spectrum measured at t U_0/M = 42, and its pressure; lets PROGRAM
-(bin/decaying_turbulence) carry it to 98 and 171; compares energy and spectra there. Prints a table and pass or fail:
-the energy that the grid resolves must be within 10 % of the measured spectrum's over the same wave numbers, for
+Makes a random solenoidal field with the spectrum measured at t U_0/M = 42, and its pressure; PROGRAM
+(bin/decaying_turbulence) advances it to 98 and 171, where energy and spectra are compared. Prints a table and pass or fail:
+the resolved energy must be within 10 % of that of the measured spectrum over the same wave numbers, for
 C_s = 0.17, which is Lilly's value for a cut-off in the inertial range. Exit code 0 if it passes.
 """
 import argparse
@@ -73,7 +73,7 @@ def start(n, seed):
 
 
 def pressure(velocity):
-    """Over the density, of the incompressible field, in the units of the velocity squared."""
+    """Pressure over density of the incompressible field, in units of the velocity squared."""
     n = velocity.shape[1]
     k = wave_numbers(n)
     k2 = (k**2).sum(0)

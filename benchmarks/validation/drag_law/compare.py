@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""Drag on random arrays of spheres beside published drag laws: compare.py [RUN...] [--table FILE] [--figure FILE]
+"""Drag on random arrays of spheres compared with published drag laws: compare.py [RUN...] [--table FILE] [--figure FILE]
 
 RUN: folders of runs of drag_law.yaml; each becomes a row of the table (rows of other runs stay). F is the force on a sphere
-without the part of the mean pressure gradient, over 3 pi eta d U with the superficial velocity U: the driving force on the
-fluid, less what accelerates it, by sphere, over the last half of the run. Prints the mean of the arrays of each setting with its
-standard error, Beetstra et al. (2007) and Tenneti et al. (2011), and pass or fail. Exit code 0 if all pass.
+without the part from the mean pressure gradient, over 3 pi eta d U with the superficial velocity U. The force is the driving
+force on the fluid minus the part that accelerates it, per sphere, over the last half of the run. Prints the mean over the arrays
+of each setting with its standard error, Beetstra et al. (2007) and Tenneti et al. (2011), and pass or fail. Exit code 0 if all pass.
 """
 import sys
 from pathlib import Path
@@ -43,7 +43,7 @@ def measured(folder):
 
 
 def means(rows):
-    """By setting: cells, collision, solid fraction, Reynolds number, drag, its standard error."""
+    """For each setting: cells, collision, solid fraction, Reynolds number, drag and its standard error."""
     settings = {}
     for row in rows:
         settings.setdefault((row["setting"], float(row["cells [1]"]), row["collision"]), []).append(

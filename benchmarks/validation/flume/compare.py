@@ -2,7 +2,7 @@
 """q* of the flume against time: compare.py RUN_FOLDER... [--figure FILE] [--table FILE]
 
 Draws means over half a second, and the mean and the deviation that Zhang et al. (2022) print at the Shields number 0.028.
-The table of these means is brought up to date, and all that it has are drawn. python/figures/transport_relation.py draws
+The table of these means is updated, and all its rows are drawn. python/figures/transport_relation.py draws
 the runs against the Shields number.
 """
 import argparse
@@ -24,7 +24,7 @@ WINDOW = 0.5                       # s
 
 
 def window_means(series):
-    """Ends of the windows (s) and the mean of q* in each; the settling of the first second is left out."""
+    """Ends of the windows (s) and the mean of q* in each; the settling in the first second is left out."""
     time, q_star = series["time"], series["q_star"]
     ends = np.arange(WINDOW, time[-1] + 1e-9, WINDOW)
     means = np.array([q_star[(time > end - WINDOW) & (time <= end)].mean() for end in ends])

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """q* of the flume against the speed of its water: water_speed.py RUN_FOLDER... [--figure FILE] [--table FILE]
 
-A point is the mean of a run while its fluid was averaged (analysis.fluid_statistics.from): q* with its standard error, and
-the speed of the water over the width, from two widths above the bed, over that of the law of the wall at the side walls
-(thalweg.water). Open symbols: trt; squares: ten cells a diameter. The table of the points is brought up to date, and all that it
-has are drawn.
+Each point is a mean over the time in which the fluid was averaged (analysis.fluid_statistics.from): q* with its standard error,
+and the mean water speed over the width, from two widths above the bed upwards, divided by that of the law of the wall at the side
+walls (thalweg.water). Open symbols: trt; squares: ten cells per diameter. The table of the points is updated, and all its rows
+are drawn.
 """
 import argparse
 import sys
@@ -25,7 +25,7 @@ HEADINGS = ["run", "collision", "cells per diameter [1]", "mean speed over law o
 
 
 def measure(run):
-    """Mean of q*, and the speeds over those of the law of the wall."""
+    """Mean of q*, and the speeds divided by those of the law of the wall."""
     start = run.averaged_from("fluid_statistics")
     _, rate = bed.transport_rate(run, start)
     above = bed.bed_height(run, start, run.series["time"][-1]) + water.FAR * run.size[1]

@@ -9,15 +9,15 @@ import numpy as np
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "python"))
 from thalweg.run import read_bed
 
-PLATE = (0.006, 0.046)  # m, its ends; half way between is the crest
+PLATE = (0.006, 0.046)  # m: its ends; the crest is half-way between
 TOP = 0.04              # m
 COLUMN, WIDTH = 1e-3, 0.012  # m: columns in which the highest grain is looked for, and the period across
-MEASURED, BOUND = 25.2, 3.0  # degrees: Sunday et al. 2020; how far heaps made alike lie apart, Zhou et al. 2002
-FITTED = (0.15, 0.85)   # of the way from the crest to the edge: the crest is round, and at the edge grains are missing
+MEASURED, BOUND = 25.2, 3.0  # degrees: Sunday et al. 2020; how much like heaps differ, Zhou et al. 2002
+FITTED = (0.15, 0.85)   # of the way from crest to edge: the crest is round, and grains are missing at the edge
 
 
 def surface(run):
-    """Distance from the crest and height of the surface (m), the mean across of the highest grains, and the grains."""
+    """Distance from the crest and height of the surface (m; of the highest grains, mean across), and number of grains."""
     bed = read_bed(run / "bed.h5")
     place, radius = bed["position"], bed["radius"]
     on_plate = place[:, 2] > TOP
@@ -31,7 +31,7 @@ def surface(run):
 
 
 def flanks(x, height):
-    """Straight lines through the left and the right flank: slope outwards and height at the crest."""
+    """Straight lines through the left and the right flank: side, slope outwards and height at the crest."""
     half = 0.5 * (PLATE[1] - PLATE[0])
     for side in (-1.0, 1.0):
         fitted = (side * x > FITTED[0] * half) & (side * x < FITTED[1] * half)
@@ -39,7 +39,7 @@ def flanks(x, height):
 
 
 def draw(file, runs):
-    """The first heap from the side, with the lines of all."""
+    """Side view of the first heap, with the lines fitted to all heaps."""
     import matplotlib
     matplotlib.use("Agg")
     from matplotlib import pyplot

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """The heap of case.yaml in LAMMPS, from the same bed: lammps.py BED FOLDER. The program is lmp, or what LMP names.
 
-LAMMPS's pair_style granular has the same springs; of rolling it has a spring, a dashpot and a limit as well (sds), its
-spring being that of an angle over the square of the effective radius. Damping and rolling dashpots are those of the mean
+LAMMPS's pair_style granular has the same springs. Its rolling model also has a spring, a dashpot and a limit (sds); its
+spring is the angular one divided by the square of the effective radius. Damping and rolling dashpots are those of the mean
 diameter. FOLDER/bed.h5 is what angle.py reads.
 """
 import argparse
@@ -51,7 +51,7 @@ write_dump all custom end.txt id x y z radius modify sort id format float %.17g
 
 
 def law(restitution, friction, rolling, mass_share, radius_share):
-    """One contact of mean grains; shares of mass and radius: 1/2 of two grains, 1 against a wall."""
+    """Contact law of mean grains; share: of mass and radius, 1/2 between two grains, 1 against a wall."""
     mass = DENSITY * 4 / 3 * np.pi * RADIUS ** 3
     effective_mass, arm = mass_share * mass, radius_share * RADIUS
     damping = -2 * np.log(restitution) / (np.pi * np.sqrt(effective_mass / STIFFNESS))  # 1/s, of the effective mass

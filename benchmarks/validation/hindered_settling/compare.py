@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""Settling velocity of suspensions against their solid fraction, beside Richardson and Zaki (1954):
+"""Settling velocity of suspensions against solid fraction, compared with Richardson and Zaki (1954):
 compare.py [RUN...] [--table FILE] [--figure FILE]
 
-RUN: folders of runs of hindered_settling.yaml; their velocities go into the table (a row a run; those of other runs stay). The
+RUN: folders of runs of hindered_settling.yaml; each becomes a row of the table (rows of other runs stay). The
 velocity of the grains relative to that of the whole volume is averaged from a third of the run on and corrected for the size of
-the box (Ladd 1990). Prints it over that of a single sphere (Schiller and Naumann) and, of each Reynolds number, the exponent n of
-(1 - phi)^n with its error, with and without that correction, and the exponent of Richardson and Zaki, what is accepted, and pass or
-fail of the corrected one. Exit code 0 if all pass.
+the box (Ladd 1990). Prints it over that of a single sphere (Schiller and Naumann) and, for each Reynolds number, the exponent n of
+(1 - phi)^n with its error, with and without that correction, the exponent of Richardson and Zaki, the accepted difference, and
+pass or fail of the corrected exponent. Exit code 0 if all pass.
 """
 import sys
 from pathlib import Path
@@ -33,9 +33,9 @@ def exponent_of_richardson_and_zaki(reynolds):
 
 
 def missing_in_a_small_box(fraction, count):
-    """Of the velocity, over that of a single sphere: 1.76 S(0) (eta/eta_s) (phi/N)^(1/3), with the structure factor of hard spheres
-    (Carnahan and Starling) and the viscosity eta_s of the suspension (Krieger and Dougherty); A. J. C. Ladd, J. Chem. Phys. 93
-    (1990) 3484. For slow flow."""
+    """Velocity lost in a periodic box, over that of a single sphere: 1.76 S(0) (eta/eta_s) (phi/N)^(1/3), with the structure factor of
+    hard spheres (Carnahan and Starling) and the viscosity eta_s of the suspension (Krieger and Dougherty); A. J. C. Ladd, J. Chem.
+    Phys. 93 (1990) 3484. For slow flow."""
     structure = (1.0 - fraction)**4 / (1.0 + 4.0 * fraction + 4.0 * fraction**2 - 4.0 * fraction**3 + fraction**4)
     fluidity = (1.0 - fraction / 0.64)**1.6
     return 1.76 * structure * fluidity * (fraction / count)**(1.0 / 3.0)

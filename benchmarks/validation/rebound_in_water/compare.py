@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Rebounds of glass spheres in water: compare.py RUN_FOLDER... [--figure FILE]
 
-Prints for the first impact of every run: how long a contact lasts in steps of the fluid, velocity and Stokes number of the
-impact, restitution over the dry one, exp(-35/St), and pass or fail (0.1). Counts as benchmarks/validation/bounce does. Exit
-code 0 if all pass.
+Prints for the first impact of every run: duration of the contact in fluid steps, velocity and Stokes number of the impact,
+restitution over dry restitution, exp(-35/St), and pass or fail (0.1). Velocities as in benchmarks/validation/bounce. Exit code 0
+if all pass.
 """
 import argparse
 import math
@@ -23,7 +23,7 @@ ACCEPTED = 0.1
 
 
 def contact_steps(case):
-    """Length of the first grain's contact with a body that does not move, in steps of the fluid."""
+    """Duration of the first grain's contact with a body that does not move, in fluid steps."""
     grain, contact = case["grains"][0], case["contact"]
     mass = grain["density"] * math.pi / 6.0 * grain["diameter"] ** 3
     return math.pi * math.sqrt(mass / contact["normal_stiffness"]) / case["fluid"]["time_step"]

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Compares the torque on a turning sphere with Stokes' 8 pi eta R^3 Omega: compare.py RUN_FOLDER... [--figure FILE]
+"""Compares the torque on a rotating sphere with Stokes' 8 pi eta R^3 Omega: compare.py RUN_FOLDER... [--figure FILE]
 
 Takes the torque from the last checkpoint of every run, divides it by Stokes' in the periodic box, prints the difference
 and pass or fail (3 %). Exit code 0 if all pass.

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""Mean velocity over a rough bed beside direct simulations of it: compare.py [RUN...] [--table FILE] [--figure FILE]
+"""Mean velocity over a rough bed compared with direct simulations: compare.py [RUN...] [--table FILE] [--figure FILE]
 
 RUN: folders of runs of the case of tutorial 5; each becomes a row of the table (rows of other runs stay). The mean velocity is that
-of the last third of the run. Prints each beside that of Mazzuoli and Uhlmann (2017), and pass or fail. Exit code 0 if all pass.
+of the last third of the run. Prints it next to that of Mazzuoli and Uhlmann (2017), and pass or fail. Exit code 0 if all pass.
 """
 import sys
 from pathlib import Path
@@ -21,7 +21,7 @@ from thalweg.rough_bed import rough_flow, roughness_of
 
 COLUMNS = ["run", "cells [1]", "subgrid_constant [1]", "grain_reynolds_number [1]", "depth [d]", "mean_velocity [u*]", "error [u*]",
            "roughness [d]"]
-ACCEPTED = 0.05   # of the mean velocity: what the numbers of the simulations, as printed, and two errors of a run leave open
+ACCEPTED = 0.05   # of the mean velocity: rounding of the simulations' printed numbers and two standard errors of a run
 
 
 def measured(folder):

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""Rheology of the shear cell beside the flow rule of Zhang et al. (2022): compare.py [RUN...] [--table FILE] [--figure FILE]
+"""Rheology of the shear cell and the flow rule of Zhang et al. (2022): compare.py [RUN...] [--table FILE] [--figure FILE]
 
 RUN: folders of runs of shear_cell.yaml or others of the same case; each becomes a row of the table (rows of other runs stay). All
-values are means over the heights 1.5 diameters and more from the layers of glued grains. The error is that of the stress on the top
-in time. Prints each run beside eqs. 20 and 21, the viscosity of the suspension beside the laws of Batchelor and Green (1972)
-and Boyer et al. (2011), how much the stress differs over the height, what is accepted, and pass or fail. Exit code 0 if all pass.
+values are means over the heights at least 1.5 diameters from the layers of glued grains. The error is that of the stress on the top
+in time. Prints each run with eqs. 20 and 21, the viscosity of the suspension with the laws of Batchelor and Green (1972)
+and Boyer et al. (2011), how much the stress differs over the height, and pass or fail. Exit code 0 if all pass.
 """
 import sys
 from pathlib import Path
@@ -30,7 +30,7 @@ ACCEPTED_DILUTE = 0.05     # of the viscosity below a solid fraction of 0.06
 
 
 def stress_on_top(run):
-    """Shear stress over time (Pa) on the upper wall, with all that is glued to it."""
+    """Shear stress against time (Pa) on the upper wall and everything glued to it."""
     columns = ["grains_2_contact_force_x", "grains_2_fluid_force_x", "wall_force_top_x", "fluid_wall_force_top_x"]
     force = -sum(np.asarray(run.series[column]) for column in columns)
     return force / (run.size[0] * run.size[1])
@@ -65,12 +65,12 @@ def measured(folder):
 
 def batchelor(phi):
     """Viscosity of a dilute suspension over that of the fluid, in simple shear; G. K. Batchelor and J. T. Green, J. Fluid Mech. 56
-    (1972) 401; to first order Einstein's."""
+    (1972) 401; to first order that of Einstein."""
     return 1.0 + 2.5 * phi + 7.6 * phi**2
 
 
 def boyer(phi):
-    """The same of a dense suspension; F. Boyer, E. Guazzelli, O. Pouliquen, Phys. Rev. Lett. 107 (2011) 188301."""
+    """The same for a dense suspension; F. Boyer, E. Guazzelli, O. Pouliquen, Phys. Rev. Lett. 107 (2011) 188301."""
     densest, mu_1, mu_2, i_0 = 0.585, 0.32, 0.7, 0.005
     ratio = phi / (densest - phi)
     return 1.0 + 2.5 * phi / (1.0 - phi / densest) + (mu_1 + (mu_2 - mu_1) / (1.0 + i_0 * ratio**2)) * ratio**2
@@ -105,7 +105,7 @@ def report(rows):
 
 
 def kind_of(row):
-    """How a run is drawn: as the sweep's, with the lubrication correction, or as one that differs in something else."""
+    """How a run is drawn: as one of the sweep, with the lubrication correction, or with another difference."""
     if row["lubrication"] == "on":
         return "with lubrication"
     return "resolved" if row["run"].startswith("solid_fraction") else "finer, wider or faster"

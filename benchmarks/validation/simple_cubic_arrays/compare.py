@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Compares the drag on simple cubic arrays with Zick and Homsy: compare.py DRAG_CSV... [--figure FILE]
 
-Takes the tables that run.py writes, prints for every kind of links, solid fraction and diameter the mean drag over the
-places between the cells, the reference, the difference, how far the places are apart, and pass or fail (5 % at ten cells a
-diameter and more), and draws the convergence. Exit code 0 if all pass.
+Takes the tables that run.py writes, prints for every link rule, solid fraction and diameter the mean drag over the
+positions relative to the cells, the reference, the difference, the spread over the positions, and pass or fail (5 % at ten or more
+cells per diameter), and draws the convergence. Exit code 0 if all pass.
 """
 import argparse
 import sys

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Drag on dense arrays at ten cells a diameter: dense.py THALWEG OUTPUT_FOLDER [--collision bgk] [--tau 0.6 1 1.5]
+"""Drag on dense arrays at ten cells per diameter: dense.py THALWEG OUTPUT_FOLDER [--collision bgk] [--tau 0.6 1 1.5]
 
-Runs arrays of five solid fractions, up to that of spheres that touch, with both rules of links and several relaxation times,
-each with the spheres at a few places between the cells; appends a line a run to OUTPUT_FOLDER/dense.csv, passes over those
-that are there, and prints the mean difference from Zick and Homsy for each. Exit code 0 if `cli` with trt is within 3 %.
+Runs arrays of five solid fractions, up to that of touching spheres, with both link rules and several relaxation times,
+each with the spheres at a few positions relative to the cells. Appends a line per run to OUTPUT_FOLDER/dense.csv, skips runs
+that are there already, and prints the mean difference from Zick and Homsy for each. Exit code 0 if `cli` with trt is within 3 %.
 """
 import argparse
 import random
@@ -14,7 +14,7 @@ from arrays import overrides, reference_drags, run_array
 
 from thalweg.tables import read_rows
 
-CELLS = {0.125: 32, 0.216: 27, 0.343: 23, 0.45: 21, 0.5236: 20}  # of the box, two spheres wide: 9.9 to 10.05 a diameter
+CELLS = {0.125: 32, 0.216: 27, 0.343: 23, 0.45: 21, 0.5236: 20}  # of the box, two spheres wide: 9.9 to 10.05 per diameter
 PLACES, ACCEPTED = 3, 0.03
 HEADINGS = ["links", "collision", "tau", "solid_fraction [1]", "diameter [cells]", "place", "drag [1]"]
 

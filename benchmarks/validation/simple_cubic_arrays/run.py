@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Runs the arrays of both solid fractions at all resolutions: run.py THALWEG OUTPUT_FOLDER [LINKS...]
 
-LINKS: kinds of coupling.links, bouzidi if none is given. Every array is run with the spheres at a few places between the
-cells. Appends one line a run to OUTPUT_FOLDER/drag.csv, which compare.py reads.
+LINKS: kinds of coupling.links, bouzidi if none is given. Every array is run with the spheres at a few positions relative
+to the cells. Appends one line per run to OUTPUT_FOLDER/drag.csv, which compare.py reads.
 """
 import random
 import sys
@@ -10,7 +10,7 @@ from pathlib import Path
 
 from arrays import overrides, run_array
 
-CELLS = [16, 22, 27, 32, 43, 54]     # of half the box at 0.027, of the whole box of 0.216: diameters of 6 to 20 cells
+CELLS = [16, 22, 27, 32, 43, 54]     # of half the box at 0.027, of the whole box at 0.216: diameters of 6 to 20 cells
 PLACES = 3
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Whether a flume keeps its water and its bed comes to rest: compare.py RUN_FOLDER [--before FILE] [--figure FILE]
+"""Whether a flume conserves its water and its bed comes to rest: compare.py RUN_FOLDER [--before FILE] [--figure FILE]
 
 From 2 s on, prints and judges
   the largest deviation of the mean density from its start, at all times (bound 1e-5),
