@@ -3,10 +3,10 @@
 #
 #   benchmarks/compare.sh COMMIT [RANKS [ROUNDS]]      1 rank and 3 rounds by default
 #
-# The cases are those that people run: the quickstart and the paper's flume at six cells a diameter. Their grains settle
-# once, with this tree's program. Each program then begins from that bed, lets the flow set in for 500 steps, and goes on
-# from its own checkpoint for 500 timed steps, the two in turn, round by round; the fastest round counts. Prints steps a
-# second, the ratio, milliseconds a step by phase, and whether both have left the same bits. Builds the other commit in
+# The cases are typical ones: the quickstart and the paper's flume at six cells a diameter. Their grains settle
+# once, with this tree's program. Each program then starts from that bed, lets the flow develop for 500 steps, and goes on
+# from its own checkpoint for 500 timed steps, the two alternating, round by round; the fastest round counts. Prints steps a
+# second, the ratio, milliseconds a step by phase, and whether both leave the same bits. Builds the other commit in
 # build/compare (a few minutes the first time).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -24,7 +24,7 @@ git -C "$other" checkout --quiet "$commit"
 (cd "$other" && scripts/build thalweg > "$work/build.log" 2>&1) || { tail "$work/build.log"; exit 1; }
 programs=("$other/build/release/bin/thalweg" "$PWD/build/release/bin/thalweg")
 
-thalweg() {  # PROGRAM OPTIONS...: runs it in peace, or says what went wrong
+thalweg() {  # PROGRAM OPTIONS...: runs it quietly, or says what went wrong
   mpirun --quiet -n "$ranks" "$@" > "$work/last.log" 2>&1 || { tail -n 3 "$work/last.log"; return 1; }
 }
 

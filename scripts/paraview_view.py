@@ -1,11 +1,11 @@
 #!/usr/bin/env pvpython
-"""A run in ParaView: grains by radius and speed before a slice of the flow, as a picture and as a state to open.
+"""A run in ParaView: grains by radius and speed in front of a slice of the flow, as a picture and as a state to open.
 
     pvpython scripts/paraview_view.py RUN_FOLDER [--state FILE] [--out FILE] [--time SECONDS] [--size WIDTH HEIGHT]
 
 The state (RUN_FOLDER/view.pvsm) is what File > Load State opens in ParaView, with all times of the run to step through. It is
-made for ParaView 5.11 or later. Where there is no screen: xvfb-run -a -s -noreset pvpython ... Without ParaView scripts/picture.py
-draws much the same.
+made for ParaView 5.11 or later. Where there is no screen: xvfb-run -a -s -noreset pvpython ... Without ParaView, scripts/picture.py
+draws a similar picture.
 """
 import argparse
 import os
@@ -35,7 +35,7 @@ def bounds(source):
 
 
 def colour(shown, view, where, name, title, colours):
-    """Colours by the magnitude of a vector, or by a number, over its range at the time that is shown."""
+    """Colours by the magnitude of a vector, or by a number, over its range at the time shown."""
     simple.ColorBy(shown, (where, name, "Magnitude") if name == "velocity" else (where, name))
     table = simple.GetColorTransferFunction(name if where == "POINTS" else f"fluid {name}")
     shown.LookupTable = table
@@ -51,7 +51,7 @@ def colour(shown, view, where, name, title, colours):
 def show_grains(grains, view):
     spheres = simple.Glyph(registrationName="spheres", Input=grains, GlyphType="Sphere")
     spheres.ScaleArray = ["POINTS", "radius"]
-    spheres.ScaleFactor = 2.0          # the sphere that is copied has a diameter of 1
+    spheres.ScaleFactor = 2.0          # the glyph is a sphere of diameter 1
     spheres.OrientationArray = ["POINTS", "No orientation array"]
     spheres.GlyphMode = "All Points"
     spheres.GlyphType.ThetaResolution = spheres.GlyphType.PhiResolution = RESOLUTION

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""A picture of a run in three dimensions: the grains by radius, coloured by speed, before a slice of the flow.
+"""A picture of a run in three dimensions: the grains by radius, coloured by speed, in front of a slice of the flow.
 
     picture.py RUN_FOLDER [--out FILE] [--time SECONDS] [--from X Y Z] [--size WIDTH HEIGHT]
 
-It takes the frames of grains and fluid that are stored (output.grains and output.fluid in the case), whichever there are. The
+It draws the stored frames of grains and fluid (output.grains and output.fluid in the case), whichever exist. The
 slice is that through the middle of the box, drawn at its far side, where it hides no grain. VTK draws on a display of its own
 (Xvfb), so this also works where there is no screen.
 """
@@ -34,12 +34,12 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
 import thalweg
 from thalweg import drawing
 
-SCENE_WIDTH = 0.80   # share of the picture; the scales of the colours take the rest
+SCENE_WIDTH = 0.80   # share of the picture; the colour scales take the rest
 
 
 @contextlib.contextmanager
 def display():
-    """DISPLAY is that of an Xvfb as long as the context lasts, or stays what it is where there is none."""
+    """Sets DISPLAY to that of an Xvfb while the context lasts; leaves it as it is where there is no Xvfb."""
     if not shutil.which("Xvfb"):
         if not os.environ.get("DISPLAY"):
             raise thalweg.RunFolderError("there is neither Xvfb (package xvfb on Debian) nor a display to draw on.")
@@ -68,7 +68,7 @@ def named(values, name):
 
 
 def lookup_table(colours, largest):
-    """Of a matplotlib map, from zero to the largest value."""
+    """Colour table of a matplotlib map, from zero to the largest value."""
     table = vtkLookupTable()
     table.SetNumberOfTableValues(256)
     table.SetRange(0.0, largest)
@@ -159,7 +159,7 @@ def scale_bar(table, title, place, font):
 
 
 def pictured(run, time):
-    """Frames of grains and fluid, as near to each other and to a time (s) as they are stored."""
+    """The stored frames of grains and fluid that are nearest to a time (s) and to each other."""
     if time is None and run.fluid:
         time = run.fluid.times[-1]
     grains = run.grains.nearest(time)
@@ -170,7 +170,7 @@ def pictured(run, time):
 
 
 def scene(run, grains, fluid, far_side, font):
-    """Two renderers: what there is to see, and the scales of its colours. far_side: y (m) of the slice."""
+    """Two renderers: the scene and its colour scales. far_side: y (m) of the slice."""
     view, margin = vtkRenderer(), vtkRenderer()
     view.SetViewport(0.0, 0.0, SCENE_WIDTH, 1.0)
     margin.SetViewport(SCENE_WIDTH, 0.0, 1.0, 1.0)
@@ -197,7 +197,7 @@ def scene(run, grains, fluid, far_side, font):
 
 
 def look_from(view, size, direction):
-    """Towards the middle of the box from a direction, so that all of it is in sight."""
+    """Points the camera at the middle of the box from a direction, with all of the box in view."""
     camera, middle = view.GetActiveCamera(), 0.5 * np.asarray(size)
     camera.SetFocalPoint(*middle)
     camera.SetPosition(*(middle + np.linalg.norm(size) * np.asarray(direction) / np.linalg.norm(direction)))

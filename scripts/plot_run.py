@@ -1,15 +1,15 @@
 #!/usr/bin/python3
-"""Draws a run: bed.png (the grains from the side before the flow), transport_rate.png (q* against time) and profiles.png.
+"""Draws a run: bed.png (side view of the grains in front of the flow), transport_rate.png (q* against time) and profiles.png.
 
     plot_run.py RUN_FOLDER [--out FOLDER] [--time SECONDS] [--movie FILE]
 
-profiles.png has means over the height, as far as profiles.h5 has them: of a bed the solid fraction, the velocities of grains and
-fluid, and the stresses beside the driving stress (analysis.grain_profiles, stress_balance), of a fluid alone the velocity and the
-Reynolds stresses (analysis.fluid_statistics). Of a fluid alone flow.png is the flow in the middle plane. --movie writes the side
+profiles.png shows means against height, as far as profiles.h5 has them: for a bed the solid fraction, the velocities of grains and
+fluid, and the stresses beside the driving stress (analysis.grain_profiles, stress_balance), for a fluid alone the velocity and the
+Reynolds stresses (analysis.fluid_statistics). For a fluid alone flow.png shows the flow in the middle plane. --movie writes the side
 view of all stored frames as a .gif, as an .mp4 (where ffmpeg is installed) or as numbered images in a folder;
 python/figures/movie.py has more options.
 
-Works on a finished run and on one that is still going. The interpreter is Debian's own, whose packages scripts/setup
+Works on a finished run and on one in progress. The interpreter is Debian's own, whose packages scripts/setup
 installs.
 """
 import argparse
@@ -35,8 +35,8 @@ def save(figure, path):
 
 
 def draw_bed(run, time, path):
-    """The grains, coloured by speed, before the fluid's speed in the middle plane, as near to each other in time as the
-    pictures allow."""
+    """The grains, coloured by speed, in front of the fluid's speed in the middle plane, from the frames nearest to each other
+    in time."""
     if time is None and run.fluid:
         time = run.fluid.times[-1]
     grains = run.grains.nearest(time)
@@ -46,7 +46,7 @@ def draw_bed(run, time, path):
 
 
 def draw_fluid_profiles(run, path):
-    """Mean velocity along x and Reynolds stresses over the height."""
+    """Mean velocity along x and Reynolds stresses against height."""
     means = run.profiles["fluid_statistics"]
     z, velocity, stress = 1e3 * means["z"], means["velocity"][:, 0], means["reynolds_stress"]
     figure, (left, right) = plt.subplots(1, 2, figsize=(7.6, 3.8), sharey=True, constrained_layout=True)
@@ -63,7 +63,7 @@ def draw_fluid_profiles(run, path):
 
 
 def range_of_interest(rate, counted):
-    """Limits that show what counts: grains that settle at the start may carry tens of times as much."""
+    """Axis limits that leave out the start, when settling grains may carry tens of times as much."""
     low, high = min(0.0, 1.05 * float(np.min(rate))), 1.08 * float(np.max(rate))
     if 0.0 < np.max(counted) < 0.25 * np.max(rate):
         high = 1.5 * float(np.max(counted))
@@ -103,7 +103,7 @@ def draw_transport_rate(run, path):
 
 
 def pictures_of(run, time):
-    """Names of the pictures that the system and the case call for, and who draws them."""
+    """Names of the pictures that the system and the case call for, and the functions that draw them."""
     case, analysis = run.case, run.case.get("analysis") or {}
     if case.get("system") == "fluid":
         pictures = [("flow.png", lambda path: save(drawing.flow_figure(run, run.fluid.nearest(time)), path))]

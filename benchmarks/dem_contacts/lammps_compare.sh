@@ -4,7 +4,7 @@
 #   lammps_compare.sh PROGRAM [RANKS]      PROGRAM: the built dem_contacts; LMP: the LAMMPS program, `lmp` by default
 #
 # Each bed: first Thalweg, then LAMMPS with newton on and off and three skins of its neighbour list, its atoms sorted in
-# space before the timing; each the fastest of several stretches. LAMMPS counts with its best settings, which are printed.
+# space before the timing; each the fastest of several intervals. The best settings of LAMMPS count, and are printed.
 # Million grain-steps per second.
 set -eu
 program=${1:?usage: lammps_compare.sh PROGRAM [RANKS]}

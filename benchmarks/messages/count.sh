@@ -2,7 +2,7 @@
 # Counts the messages and bytes that the busiest rank sends in a step of the fluid: count.sh CASE FROM UNTIL RANKS...
 #
 # The case runs to FROM (s) on all cores; from there to UNTIL, and half as far, on each number of ranks. The difference of the
-# two, over the steps between them, leaves out what is sent at the start and at the end. Nothing is timed.
+# two, divided by the steps between them, excludes what is sent at the start and at the end. Nothing is timed.
 set -euo pipefail
 case=$(realpath "${1:?usage: count.sh CASE FROM UNTIL RANKS...}") from=$2 until=$3
 shift 3

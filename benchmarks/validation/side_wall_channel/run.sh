@@ -1,6 +1,6 @@
 #!/bin/sh
-# The flume's five wall stresses: run.sh PROGRAM FOLDER (half an hour on one core). Friction velocities in m/s; cells of
-# 0.5 mm and steps of 5e-5 s make them a tenth in cells a step; half the width is 5.25 mm, the viscosity 1e-6 m^2/s.
+# The flume's five wall stresses: run.sh PROGRAM FOLDER (half an hour on one core). Friction velocities in m/s; with
+# cells of 0.5 mm and steps of 5e-5 s they are a tenth of that in cells per step; half the width is 5.25 mm, the viscosity 1e-6 m^2/s.
 program=$1
 mkdir -p "$2" && cd "$2" || exit 1
 run() {  # name, friction velocity, C_s, A, further options
