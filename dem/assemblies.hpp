@@ -1,4 +1,4 @@
-// Rigid assemblies: grains that move as one by a prescribed motion, whatever pushes them.
+// Rigid assemblies: grains that move together as one body with a prescribed motion, whatever forces act on them.
 #pragma once
 
 #include "core/archive.hpp"
@@ -19,8 +19,8 @@ namespace thalweg::dem {
 
 class Assemblies {
 public:
-  // motions: one an assembly, by the numbers in the seeds. Throws InputError for an impossible motion, or a seed whose
-  // assembly there is not or that is not fixed.
+  // motions: one for each assembly, by the numbers in the seeds. Throws InputError for an impossible motion, or for a
+  // seed whose assembly does not exist or that is not fixed.
   Assemblies(const std::vector<PrescribedMotion>& motions, std::span<const GrainSeed> seeds);
 
   bool any() const { return !members_.empty(); }
@@ -29,10 +29,11 @@ public:
   // Finds the members among the owned grains; to be called when slots have changed.
   void find(const GrainStore& store);
 
-  // Members that are owned: where they are at one time (s), wrapped into the box, and how they move at another.
+  // Places owned members as they are at one time (s), wrapped into the box, with their velocities at another (s).
   void place(MovingGrains& grains, const PeriodicBox& box, double time, double time_of_velocity) const;
 
-  // Their places at the start; every rank knows all. Loading replaces those of the seeds. Collective.
+  // The initial places of all members, which every rank knows; loading replaces those of the seeds, and throws
+  // InputError where the archive has none or more than here. Collective.
   void save(ArchiveWriter& archive, const std::string& group, MPI_Comm communicator) const;
   void load(ArchiveReader& archive, const std::string& group);
 

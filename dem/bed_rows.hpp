@@ -1,4 +1,4 @@
-// Takes the rows of a bed file into a population, and finds what there is to know of all of them.
+// Takes the rows of a bed file into a population, and computes the figures of all that it takes.
 #pragma once
 
 #include "core/bed.hpp"
@@ -10,9 +10,9 @@
 
 namespace thalweg::dem {
 
-// rows: of the file, this rank's share in their order, the members of a clump on one rank. Those of grains and clumps
-// with their centre in the region of the placement become the population's `file`, all of them its figures, count,
-// diameter and density. box: of the bed, m. Throws InputError, on every rank, where rows make no clump. Collective.
+// rows: this rank's share of the file, in its order, with all members of a clump on one rank. Those with their centre
+// in the region of the placement become the population's `file`; of all ranks, they give its figures, count, diameter
+// and density. box: of the bed, m. Throws InputError, on every rank, where rows make no clump. Collective.
 void take_rows(Population& population, std::vector<BedGrain> rows, const PeriodicBox& box, const Ranks& ranks);
 
 }  // namespace thalweg::dem

@@ -14,10 +14,11 @@ namespace thalweg::dem {
 
 class CellGrid {
 public:
-  // Points (m) must lie in the box on periodic axes; beyond a non-periodic face they count to the outermost cells.
+  // distance: m. Points (m) must lie in the box on periodic axes; those beyond a non-periodic face go to the outermost
+  // cells.
   CellGrid(const PeriodicBox& box, double distance, std::span<const Vec3> points);
 
-  // The points cell by cell, so that those of a cell are neighbours in memory too if their data are laid out like this.
+  // Numbers of the points, cell by cell: data laid out in this order has the points of a cell next to each other.
   std::span<const std::uint32_t> order() const { return members_; }
 
   // Calls visit(m, n) for every pair of points order()[m], order()[n] that may be within `distance` of each other.
@@ -36,7 +37,7 @@ private:
     std::array<int, 3> cell{};
   };
 
-  // Of two neighbouring cells, the one with the lower number sees to their pairs.
+  // Of two neighbouring cells, the one with the lower number visits their pairs.
   template <typename Visitor>
   void visit_pairs_of(std::size_t cell, const std::array<Neighbours, 3>& near, Visitor&& visit) const {
     for (int k = 0; k < near[2].count; ++k)
@@ -55,7 +56,7 @@ private:
     int slabs = 1, first = 0, count = 1;
     bool around = false;  // periodic, and every slab is a cell: the last one is next to the first
   };
-  // No more slabs than `most` cells are worth it.
+  // width: m, of a slab at least; most: slabs at most.
   static Axis occupied_part(const PeriodicBox& box, int axis, double width, double most, std::span<const Vec3> points);
 
   int cell_along(int axis, double coordinate) const;

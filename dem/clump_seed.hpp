@@ -57,7 +57,7 @@ struct ClumpSeed {
 struct GrainSeeds {
   std::vector<GrainSeed> grains;
   std::vector<ClumpSeed> clumps;  // whose members have ids of their own
-  // Whether these are all there are, the same on every rank; else those whose centres a rank owns, all that may touch
+  // True: the full lists, the same on every rank. False: the bodies whose centres this rank owns, all that may touch
   // them, and all members of rigid assemblies.
   bool whole = true;
 };

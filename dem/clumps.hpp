@@ -40,7 +40,7 @@ struct Clump {
   }
 };
 
-// A clump on its way between ranks and files.
+// A clump as a row of plain values, for messages between ranks and for files.
 struct ClumpRow {
   GlobalId id;
   std::int64_t members, motion;
@@ -59,15 +59,15 @@ public:
   bool empty() const { return clumps_.empty(); }
   std::size_t size() const { return clumps_.size(); }
   const Clump& operator[](std::size_t n) const { return clumps_[n]; }
-  std::size_t first_slot(std::size_t n) const { return first_slot_[n]; }  // of its members in the store
+  std::size_t first_slot(std::size_t n) const { return first_slot_[n]; }  // of the first member, in the store
 
-  // Replaces all clumps by those whose ids rise; find_members() and compute_body_forces() must follow.
+  // Replaces all clumps; their ids must ascend. find_members() and compute_body_forces() must follow.
   void replace(std::vector<Clump> clumps) { clumps_ = std::move(clumps); }
 
   // Finds the members among the owned grains of the store; compute_body_forces() must follow.
   void find_members(const GrainStore& store);
 
-  // body_force: as in GrainParameters, of a clump's mass and the radius of the sphere (disk) of its volume.
+  // body_force: as in GrainParameters, for a clump's mass and the radius of the sphere (disk) of its volume.
   void compute_body_forces(const std::function<Vec3(double, double)>& body_force);
 
   // Gives every member an equal share of its clump's body force.
@@ -84,19 +84,19 @@ public:
   // Sends every clump to the rank of its centre. Collective.
   void migrate(const Decomposition& decomposition, MPI_Comm communicator);
 
-  // Before the sub-steps: the loads of the store, about the centres as the members are now.
+  // Before the sub-steps: takes over the loads of the store, with torques about the present centres.
   void load(const GrainStore& store);
-  // During the sub-steps: a load (N) that acts at the centre, which the store gets in equal shares of the members.
+  // During the sub-steps: sets a load (N) that acts at the centre; the store gets it in equal shares on the members.
   void set_central_force(std::size_t n, const Vec3& force, GrainStore& store);
-  // The clump stops along x and y, and whatever would move it there is taken up, without a couple.
+  // Stops the clump along x and y and balances the force on it in these directions, without a torque.
   void stop_along_floor(std::size_t n, MovingGrains& grains);
-  // One or two half kicks by the members' present forces.
+  // `count` half kicks (one or two) by the members' present forces. time_step: s.
   void half_kicks(const MovingGrains& grains, double time_step, int count);
-  void drift(double time_step);
+  void drift(double time_step);  // s
   // Writes position, velocity and spin of all members.
   void place(MovingGrains& grains, const PeriodicBox& box) const;
 
-  // Of all contacts, loads and the body force, by the store: N and N m about the centre.
+  // Of all contacts, loads and the body force, from the store: force (N), and torque (N m) about the centre.
   Vec3 force(std::size_t n, const GrainStore& store) const;
   Vec3 torque(std::size_t n, const GrainStore& store) const;
 

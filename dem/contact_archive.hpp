@@ -1,5 +1,5 @@
-// The datasets of the contacts in a saved state: contact_ids (lower id; higher id, or -1 - w for wall w), and for each
-// part of what the law keeps contact_<name of the part>: contact_spring. One row a contact, sorted by ids.
+// The datasets of the contacts in a saved state: contact_ids (lower id; higher id, or -1 - w for wall w), and one for
+// each part of the law's history, named after it: contact_spring. One row per contact, sorted by ids.
 #pragma once
 
 #include "core/archive.hpp"
@@ -13,8 +13,8 @@
 
 namespace thalweg::dem {
 
-// Writes these of every rank one after the other, below `group`. parts: what the doubles of a history are, in their
-// order. Collective.
+// Writes the histories of all ranks, in order of rank, below `group`. parts: names and sizes of the parts of a history,
+// in their order. Collective.
 void write_histories(ArchiveWriter& archive, const std::string& group, const ContactHistories& histories,
                      std::span<const HistoryPart> parts, MPI_Comm communicator);
 

@@ -1,5 +1,5 @@
-// What contacts keep, on its way between ranks and files: for each the ids of its bodies and n doubles, whatever its
-// law means by them.
+// Histories of contacts as plain values, for messages between ranks and for files: for each the ids of its bodies and n
+// doubles, whose meaning only the law knows.
 #pragma once
 
 #include "core/types.hpp"
@@ -29,6 +29,7 @@ public:
   const ContactKey& key(std::size_t n) const { return keys_[n]; }
   std::span<const double> values(std::size_t n) const { return {values_.data() + n * width_, width_}; }
 
+  // values: width() doubles; others: of the same width.
   void add(const ContactKey& key, std::span<const double> values);
   void add(const ContactHistories& others);
 

@@ -61,7 +61,7 @@ inline std::size_t doubles_of(std::span<const HistoryPart> parts) {
 template <typename Doubles>
 inline constexpr std::size_t doubles_in = sizeof(Doubles) / sizeof(double);
 
-// What laws that add to another put together: parts, and the histories themselves.
+// For laws that add to another: joined parts, and the histories themselves.
 template <std::size_t n>
 constexpr std::array<HistoryPart, n + 1> joined(const std::array<HistoryPart, n>& parts, const HistoryPart& last) {
   std::array<HistoryPart, n + 1> all{};
@@ -90,13 +90,13 @@ std::array<double, n> each(const std::array<double, n>& history, const Change& c
   (std::make_index_sequence<n>());
 }
 
-// How the normal spring of a law resists more overlap: stiffness scale (N/m over the unit of scale), and what a spring
-// across it grows by per displacement and keeps in this step.
+// The normal spring of a law at the present overlap, for springs that act across it: in a step such a spring is scaled
+// by `keep` and grows by `growth` times the velocity.
 struct NormalSpring {
-  double stiffness;  // k_n = stiffness * scale
+  double stiffness;  // N/m, of elastic spheres Pa: k_n = stiffness * scale
   double scale;      // 1, or the contact radius, m
   double growth;     // scale times the time step
-  double keep;
+  double keep;       // 1, or a/a_before while the contact opens
 };
 
 struct TangentialSpring {
@@ -111,13 +111,13 @@ struct Friction {
 // Friction across the contact (Cundall & Strack, Geotechnique 29 (1979) 47). The spring is turned into the present
 // tangent plane, keeping its length (to the fourth order of the angle, which is that of one sub-step), shortened by
 // `keep` and grown by growth v_t; F_t = -stiffness xi - damping v_t, both shortened to |F_t| <= mu |F_n| while the
-// contact slides. closing: -v.n.
+// contact slides. closing: -v.n, m/s; normal: F_n, N.
 inline Friction friction_of(const ContactMotion& c, double closing, double normal, double friction, double stiffness,
                             double damping, double keep, double growth, const TangentialSpring& spring) {
   const double off = spring.x * c.nx + spring.y * c.ny + spring.z * c.nz;
   const double px = spring.x - off * c.nx, py = spring.y - off * c.ny, pz = spring.z - off * c.nz;
   const double length2 = spring.x * spring.x + spring.y * spring.y + spring.z * spring.z;
-  // 1/sqrt(1 - q) of the square q of the angle's sine, to first order: never more than 3/2, whatever rounding left.
+  // 1/sqrt(1 - q) to first order, q being the squared sine of the angle: never more than 3/2, whatever the rounding.
   const double stretch = length2 > 0.0 ? keep * (1.0 + 0.5 * (off * off / length2)) : 0.0;
   const double ux = c.vx + closing * c.nx, uy = c.vy + closing * c.ny, uz = c.vz + closing * c.nz;
   const double x = stretch * px + growth * ux, y = stretch * py + growth * uy, z = stretch * pz + growth * uz;

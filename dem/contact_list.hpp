@@ -30,12 +30,12 @@ struct WallContact {
   std::uint32_t wall;
 };
 
-// What the law of all contacts of a kind has in each of them, one row of doubles a contact: its history, then its
-// constants (contact_law.hpp), then zeros up to whole vectors.
+// What the contacts of one kind (pairs, or walls) hold for their law, one row of doubles per contact: its history, then
+// its constants (contact_law.hpp), then zeros up to whole vectors.
 class ContactRows {
 public:
   ContactRows() : ContactRows({}, {}) {}
-  // Of so many new contacts, without history.
+  // Rows of new contacts between these bodies, without history.
   ContactRows(const LawChoice& law, std::span<const ContactBodies> bodies);
 
   const LawChoice& law() const { return law_; }
@@ -68,7 +68,7 @@ struct ContactList {
   ContactRows wall_rows;
 };
 
-// What all contacts of the list together keep: of two kinds of contacts one may have more than the other.
+// The parts of the histories of all contacts of the list: contacts of pairs and of walls may have different ones.
 std::vector<HistoryPart> history_parts_of(const ContactList& list);
 
 // All pairs with at least one owned grain whose surfaces are closer than `range` (m), and all owned grains closer than

@@ -1,5 +1,5 @@
-// Two grains, or a grain and a wall, one at a time: how their surfaces move at the contact. For what looks at single
-// contacts; the loop over all pairs of a sub-step has the same formulas for many at once (pair_batch.hpp).
+// The relative motion of two grains, or of a grain and a wall, at their contact, one contact at a time. The loop over
+// all pairs of a sub-step has the same formulas for many at once (pair_batch.hpp).
 //
 // The lever arm of a grain reaches to the middle of the overlap (to the surface of a wall): l = R - delta/2.
 #pragma once
@@ -38,6 +38,7 @@ inline ContactMotion motion_of(const ContactBody& first, const ContactBody& seco
   return {overlap, n[0], n[1], n[2], v[0], v[1], v[2], first.radius * second.radius / reach, w[0], w[1], w[2]};
 }
 
+// wall_velocity: m/s.
 inline ContactMotion motion_of(const ContactBody& grain, const WallView& wall, const Vec3& wall_velocity) {
   const Vec3& n = wall.normal;
   const Vec3 v = grain.velocity - wall_velocity - wall.distance * grain.spin.cross(n), &w = grain.spin;

@@ -1,4 +1,4 @@
-// What a contact is made of (material.hpp has the equations).
+// The parameters of a contact (material.hpp has the equations).
 #pragma once
 
 #include "core/named_choice.hpp"

@@ -1,7 +1,7 @@
 // Grains alone, under gravity, between the walls of the box: the system `grains`. With a force field in place of a
 // fluid it is the system `model_fluid`.
 //
-// One step is as many sub-steps as its parameters say: the same beat as in a fluid.
+// One step is as many sub-steps as its parameters say, as in a fluid.
 #pragma once
 
 #include "core/system.hpp"
@@ -28,7 +28,7 @@ struct DryParameters {
   Vec3 gravity = Vec3::Zero();              // m/s^2
   std::vector<std::string> measured_walls;  // names of all walls, in their order, or none
   std::optional<RestBounds> rest = {};      // counts the grains that are not at rest
-  // Of a fluid that is no more than a force (model_fluid.hpp): what the load of a grain is, and its attached columns.
+  // In place of a fluid: sets the loads of the grains and has all attached columns (model_fluid.hpp); null: none.
   std::shared_ptr<ForceField> field = {};
   double fluid_density = 0.0;  // kg/m^3, of the buoyancy
 };
@@ -43,9 +43,9 @@ public:
   std::int64_t step() const override { return step_; }
   double time_step() const override { return time_step_; }
   Snapshot snapshot() const override;
-  // contacts, largest_overlap (in diameters), and of the free grains largest_grain_speed, largest_grain_acceleration,
-  // with bounds of rest restless_grains, and of each measured wall three: wall_force_bottom_x ..., wall_force_wall_0_x
-  // ...
+  // contacts (1), largest_overlap (diameters), of the free grains largest_grain_speed (m/s), largest_grain_acceleration
+  // (m/s^2), with RestBounds restless_grains (1), those of the field, and three for each measured wall (N):
+  // wall_force_bottom_x ..., wall_force_wall_0_x ...
   std::vector<Figure> figures() const override;
   std::optional<Place> place_of(const std::string& figure) const override;
   static constexpr const char* largest_speed_figure = "largest_grain_speed";

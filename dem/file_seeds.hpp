@@ -1,4 +1,4 @@
-// Rows of bed files on the ranks that are to know them when a run begins.
+// Brings the rows of bed files to the ranks that need them when a run begins.
 #pragma once
 
 #include "core/bed.hpp"
@@ -15,11 +15,11 @@ namespace thalweg::dem {
 // The centre (m) of the grain or clump that some rows make.
 using CentreOf = std::function<Vec3(std::span<const BedGrain> body)>;
 
-// Of a population from a file, in the order of the file, the rows of the grains and clumps with their centre where this
-// rank knows the box; all rows, where they move as one body. For ranks that are not alone. Collective.
+// Of a population from a file, in the order of the file: the rows of the grains and clumps whose centre is in the part
+// of the box that this rank knows; all rows, where they move as one body. Needs several ranks. Collective.
 std::vector<BedGrain> rows_known(const Population& population, const PlacingRanks& ranks, const CentreOf& centre_of);
 
-// Its grains and members of clumps that this rank knows, numbered by row, for others to keep clear of. Collective.
+// Its grains and members of clumps that this rank knows, numbered by row, as obstacles for others. Collective.
 std::vector<Obstacle> spheres_of_file(const Population& population, const PlacingRanks& ranks);
 
 }  // namespace thalweg::dem

@@ -1,4 +1,4 @@
-// A force on every grain or clump by where it is and how it moves, evaluated with the contacts in every sub-step.
+// A force on every grain or clump, by its position and motion, evaluated with the contacts in every sub-step.
 #pragma once
 
 #include "core/archive.hpp"
@@ -18,15 +18,15 @@ class ForceField {
 public:
   virtual ~ForceField() = default;
 
-  // The columns it keeps with every grain (GrainStore::attached), zero in a new grain. Nobody else may attach any.
+  // Number of columns it keeps with every grain (GrainStore::attached), zero in a new one. Nobody else may attach any.
   virtual int attached_columns() const { return 0; }
-  // m: grains at least this near to a grain's centre, surface or not, must be known to its rank.
+  // m: a rank must know all grains whose centres are within this distance of the centre of a grain it owns.
   virtual double reach() const { return 0.0; }
-  // Before find_neighbours() and before there are ghosts, which get the columns: those that follow from the owned
-  // grains and clumps alone.
+  // Fills the columns that follow from the owned grains and clumps alone. Called before find_neighbours(), and before
+  // ghosts are made, which get copies.
   virtual void fill_columns(GrainStore&, const Clumps&) {}
-  // Slots and neighbours have changed: what is known of them begins anew. skin: m, of the contact list; no grain moves
-  // further than half of it before the next call.
+  // Slots and neighbours have changed: what depends on them must be found anew. skin: m, of the contact list; no grain
+  // moves further than half of it before the next call.
   virtual void find_neighbours(const GrainStore& store, double skin, const Clumps& clumps) = 0;
   // After the contacts: sets the loads of owned grains and clumps, in the store and, with the body forces (N), in what
   // the sub-steps work on. May hold velocities and change the contact forces of what touches what it holds.
@@ -34,7 +34,7 @@ public:
 
   // A step of the system has ended (time: s). Collective, as are the next three.
   virtual void step_ended(const GrainDynamics&, double /*time*/) {}
-  // Of its own state, besides what it keeps with the grains.
+  // Its own state, besides the columns it keeps with the grains.
   virtual std::vector<Figure> figures(double /*time*/) const { return {}; }
   virtual void save(ArchiveWriter&) const {}
   virtual void load(ArchiveReader&) {}

@@ -21,17 +21,17 @@ namespace thalweg::dem {
 
 class GearPredictor {
 public:
-  // Values a grain carries besides its position, velocity, spin and forces: the third to fifth of q, of position and
-  // angle. They are the last columns attached to every grain, zero at first: a grain starts with constant acceleration.
+  // Values a grain carries besides its position, velocity, spin and forces: q_3 to q_5 of position and angle. They are
+  // the last columns attached to every grain, zero at first: a grain starts with constant acceleration.
   static constexpr int columns = 18;
 
-  // Owned grains: their higher derivatives, and their accelerations by the present forces.
+  // Takes the higher derivatives of owned grains, and their accelerations by the present forces (N). time_step: s.
   void load(const GrainStore& store, std::span<const Vec3> body_force, double time_step);
   void unload(GrainStore& store) const;
 
-  // Owned grains to the predicted state; the contact forces of all grains begin anew at zero.
+  // Moves owned grains to the predicted state, and sets the contact forces of all grains to zero.
   void predict(MovingGrains& grains);
-  // Owned grains to the corrected state, by the forces at the predicted one.
+  // Moves owned grains to the corrected state, by the forces at the predicted one.
   void correct(MovingGrains& grains);
 
 private:
@@ -39,7 +39,7 @@ private:
   struct Derivatives {
     Row q[4], angle[4];
   };
-  // What pulls besides contacts; last: dt^2/2 over mass or moment of inertia.
+  // Loads besides contacts; last entry: dt^2/2 over mass or moment of inertia.
   struct Load {
     Row force, torque;
   };

@@ -1,5 +1,5 @@
-// Which of a rank's grains are ghosts elsewhere, and the one packed message a neighbour that keeps them up to date. In
-// sub-steps only those that may touch a grain of the other rank are sent.
+// Which of a rank's grains are ghosts elsewhere, and the one packed message per neighbour that keeps them up to date.
+// In sub-steps only those that may touch a grain of the other rank are sent.
 #pragma once
 
 #include "core/decomposition.hpp"
@@ -27,9 +27,9 @@ public:
   // Positions must be wrapped. Collective.
   void build(GrainStore& store);
 
-  // From now on until the next build() refresh(MovingGrains&) leaves out ghosts that are in none of these pairs. They
-  // are all pairs of an owned grain with another one up to some gap, on every rank up to the same: then both ranks of a
-  // pair know of it, and what one sends is what the other expects.
+  // Until the next build(), refresh(MovingGrains&) leaves out ghosts that are in none of these pairs. pairs: all pairs
+  // of an owned grain with another one up to some gap, the same gap on every rank, so that both ranks of a pair know of
+  // it and one sends what the other expects.
   void follow(std::span<const PairContact> pairs, const GrainStore& store);
 
   // Brings the ghosts' position, velocity and angular velocity up to date.
@@ -39,8 +39,8 @@ public:
   // Brings the ghosts' attached columns up to date.
   void refresh_attached(GrainStore& store);
 
-  // Adds what the ranks have in `values` for their ghosts to the owners' entries: `width` integers a grain of the
-  // store, so that the sums do not depend on any order. Entries of ghosts stay as they are. Always the same width.
+  // Adds the entries that ranks have in `values` for their ghosts to the owners' entries: `width` integers per grain of
+  // the store, so that the sums depend on no order. Entries of ghosts stay as they are. width must always be the same.
   void add_to_owners(std::vector<std::int64_t>& values, int width);
 
 private:

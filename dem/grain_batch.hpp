@@ -1,4 +1,4 @@
-// Grains on their way between ranks and files: rows of plain values.
+// Grains as rows of plain values, for messages between ranks and for files.
 #pragma once
 
 #include "core/types.hpp"

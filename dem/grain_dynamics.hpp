@@ -51,33 +51,33 @@ struct GrainParameters {
   std::optional<ContactParameters> wall_contact;   // of grains with walls, where it differs (but for the friction)
   std::vector<Plane> walls;
   std::vector<PrescribedMotion> assemblies;  // of the rigid assemblies the seeds name
-  // N of a grain (kg, m; of a clump the radius of the sphere or disk of its volume), constant; empty: none
+  // N, of a grain by its mass (kg) and radius (m, of a clump that of its volume), constant; empty: none
   std::function<Vec3(double mass, double radius)> body_force;
   double time_step = 0.0;  // s, of a sub-step: at most a 20th of the shortest contact time
   Integrator integrator = Integrator::velocity_verlet;
   int sub_steps = 1;         // at most that many between two calls of prepare()
   double skin = 0.0;         // m: the neighbour list holds until a grain has moved half of it
   double ghost_width = 0.0;  // m: grains at least this near to a rank's block are its ghosts at all times
-  int attached_width = 0;    // columns attached to every grain, the caller's (Gear's predictor has more after them)
+  int attached_width = 0;    // the caller's columns attached to every grain (Gear's predictor adds its own behind them)
   std::optional<LubricationParameters> lubrication;  // between near surfaces, in every sub-step
   std::shared_ptr<ForceField> field;                 // on every grain, in every sub-step; not with Gear's integrator
   double disk_thickness = 0.0;                       // m, of disks in an x-z plane: I = 1/2 m R^2; 0: spheres
   bool movable_cuts = false;                         // whether the cuts between ranks follow the grains
-  double initial_overlap = allowed_initial_overlap;  // diameters the seeds may overlap by: a settled bed's do
+  double initial_overlap = allowed_initial_overlap;  // diameters, by which seeds may overlap: those of a settled bed do
 };
 
 // Throws InputError if the time step is too long for contacts among `count` grains, the lightest of each material of
 // which are given.
 void check_time_step(const GrainParameters& parameters, std::span<const LightestGrain> lightest, std::int64_t count);
 
-// Throws InputError where the lubrication force, if there is one, suits neither them nor the box (lubrication.hpp).
-// largest_radius: m, of all grains.
+// Throws InputError where the lubrication force, if there is one, does not suit these grains or the box
+// (lubrication.hpp). largest_radius: m, of all grains.
 void check_lubrication(const GrainParameters& parameters, std::span<const LightestGrain> lightest,
                        double largest_radius, const PeriodicBox& box);
 
 // Two grains in contact, or a grain and a wall.
 struct Contact {
-  GlobalId first, second;       // the higher id; -1 - w for wall w
+  GlobalId first, second;       // the lower id; the higher one, or -1 - w for wall w
   double overlap;               // m
   Vec3 normal;                  // unit, from second to first
   std::vector<double> history;  // what its law keeps (contact_law.hpp), at the last evaluation
@@ -105,12 +105,12 @@ public:
   // is no longer a number. One reduction. Collective.
   bool prepare();
 
-  // The same before a part of the sub-steps, for grains that may be too fast for one list a fluid step. Returns how
-  // many sub-steps may follow, at most GrainParameters::sub_steps: of the state alone, whatever the age of the list.
+  // The same before a part of the sub-steps, for grains too fast for one list per fluid step. Returns how many
+  // sub-steps may follow, at most GrainParameters::sub_steps: by the state alone, whatever the age of the list.
   int prepare_part();
 
   // Moves the grains under the loads in store(). At most GrainParameters::sub_steps since prepare(), or as many as
-  // prepare_part() has allowed; after more, a grain may have outrun its list, which the next of them refuses.
+  // prepare_part() has allowed; after more, a grain may have outrun its list, for which the next prepare() throws.
   // Collective.
   void advance(int sub_steps);
 
@@ -126,7 +126,7 @@ public:
   // sums of loads over ranks, exact in any order. Collective.
   void add_ghost_values(std::vector<std::int64_t>& values, int width) { ghosts_.add_to_owners(values, width); }
 
-  // Loads and attached columns are the caller's to write; the rest is to be read.
+  // Loads and attached columns are the caller's to write; the rest is read-only.
   GrainStore& store() { return store_; }
   const GrainStore& store() const { return store_; }
   // N; of a clump's member an equal share of the clump's

@@ -36,7 +36,7 @@ struct GrainSeed {
   double contact_mass() const;  // kg, the least that a contact feels
 };
 
-// Overlap at the start, in diameters of the smaller grain, that is taken for rounding.
+// Overlap at the start, in diameters of the smaller grain, that is put down to rounding.
 inline constexpr double allowed_initial_overlap = 1e-6;
 
 // Throws InputError naming the first grain (by id) with an id out of place, a radius or density that is not positive, a
@@ -51,19 +51,19 @@ void check(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<c
 void check_part(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<const Plane> walls,
                 double allowed_overlap, double largest_radius);
 
-// Throw InputError for what of that concerns one grain; a grain and the first of all, as disks; and the box. disks:
-// they are no spheres.
+// Parts of check(), which throw InputError: what concerns a single grain; a disk against the first of all grains; the
+// box. disks: the grains are disks.
 void check_alone(const GrainSeed& seed, const PeriodicBox& box, std::span<const Plane> walls, double allowed_overlap);
 void check_disk(const GrainSeed& seed, const GrainSeed& first);
 void check_periodic_axes(const PeriodicBox& box, double largest_radius, bool disks);
 
-// Two grains that overlap too much, and what there is to say about it.
+// Two grains that overlap too much, and the message that says so.
 struct Overlap {
   GlobalId first, second;
   std::string text;
 };
 
-// The pair of lowest ids that check_part() refuses, of grains that pass its other checks; none: there is none.
+// The pair of lowest ids whose overlap check_part() refuses, if any. Seeds must pass its other checks.
 std::optional<Overlap> first_overlap(std::span<const GrainSeed> seeds, const PeriodicBox& box, double allowed_overlap,
                                      double largest_radius);
 

@@ -12,14 +12,14 @@ namespace thalweg::dem {
 
 enum class SizeDistribution { lognormal };
 
-// What passes each of a set of sieves; straight over ln d between them.
+// The share of the mass that passes each of a set of sieves; linear in ln d between them.
 struct SieveKeys {
   std::vector<double> sizes;  // m, rising
   std::vector<double> finer;  // 1, of the mass, from 0 to 1; as many
   bool operator==(const SieveKeys&) const = default;
 };
 
-// Nothing given: not at all.
+// How the diameters differ; nothing given: they do not.
 struct SizesKeys {
   std::optional<SizeDistribution> distribution;
   std::optional<double> median;               // m, by number, before the tails are cut
@@ -46,17 +46,16 @@ struct SizeCount {
   bool operator==(const SizeCount&) const = default;
 };
 
-// Diameters (m) in any order as sizes that rise, each once; and several such lists as one.
+// Counts diameters (m) in any order: sizes ascending, each once. merged(): the same of several such lists in a row.
 std::vector<SizeCount> counted(std::vector<double> diameters);
 std::vector<SizeCount> merged(std::vector<SizeCount> sizes);
 
 // The diameter that half of the mass of these grains is finer than; m. sizes: rising.
 double median_by_volume(std::span<const SizeCount> sizes);
 
-// One diameter (m) a grain. Every grain takes the place in the distribution that its random number has among those of
-// the population, so that the population follows the distribution as closely as its number allows, and the seed only
-// shuffles. fractions: each size gets its share of the number, rounded so that the sum is right. disks: whose mass goes
-// as d^2.
+// One diameter (m) for each grain. A grain's quantile is the place of its random number among those of the population,
+// so that the population follows the distribution as closely as its number allows, and the seed only shuffles.
+// fractions: each size gets its share of the number, rounded so that the sum is right. disks: their mass grows as d^2.
 std::vector<double> sampled_diameters(const SizesKeys& sizes, std::int64_t count, std::int64_t seed, bool disks);
 
 }  // namespace thalweg::dem

@@ -30,7 +30,7 @@ public:
   const Vec3& lower() const { return lower_; }  // m
   const Vec3& upper() const { return upper_; }
 
-  // Not beyond an end of the box by more than its radius.
+  // Whether it is nowhere beyond an end of the space by more than its radius (m).
   bool holds(const Vec3& position, double radius) const {
     for (int axis = 0; axis < 3; ++axis)
       if (!box_.periodic[axis] && (position[axis] < lower_[axis] - radius || position[axis] > upper_[axis] + radius))

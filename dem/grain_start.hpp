@@ -1,4 +1,4 @@
-// What a rank makes of the lists of seeds that it begins with.
+// What a rank takes from the lists of seeds that it begins with.
 #pragma once
 
 #include "core/decomposition.hpp"

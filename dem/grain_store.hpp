@@ -11,7 +11,7 @@
 namespace thalweg::dem {
 
 // What the forces may change. A held component keeps the velocity it was given (zero: it does not move). A member of a
-// clump (clumps.hpp) is moved by it; what is held is held of the clump.
+// clump (clumps.hpp) is moved by the clump, and what it holds is what the clump holds.
 enum class Motion : std::uint8_t { free = 0, held_translation = 1, held_rotation = 2, fixed = 3, member = 4 };
 
 inline bool holds_translation(Motion motion) { return (static_cast<unsigned>(motion) & 1u) != 0; }
@@ -47,8 +47,8 @@ struct GrainStore {
   std::vector<Vec3> load_force;        // N, set from outside, constant during the sub-steps; of ghosts not used
   std::vector<Vec3> load_torque;       // N m
 
-  // Columns of the grains' keeper (for example the last fluid load): carried at migration, given to new ghosts, saved
-  // and loaded, never interpreted here. Grain `slot` has attached_width values from slot * attached_width on.
+  // Columns of the caller (for example the last fluid load): carried at migration, given to new ghosts, saved and
+  // loaded, never interpreted here. Grain `slot` has attached_width values from slot * attached_width on.
   int attached_width;
   double shape;  // of all grains: of_sphere or of_disk
   std::vector<double> attached;

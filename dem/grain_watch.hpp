@@ -23,8 +23,8 @@ struct GrainWatch {
   // displacement: m, since the contact list was built.
   GrainTrouble trouble_of(const GrainStore& store, std::size_t owned_slot, double displacement) const;
 
-  // Throws RunError, the same on every rank: of all grains in trouble, about the one with the lowest id. listed: places
-  // of owned grains when the list was built. There must be one. Collective.
+  // Throws RunError, the same on every rank: of all grains in trouble, about the one with the lowest id. There must be
+  // one on some rank. listed: places of owned grains when the list was built. Collective.
   [[noreturn]] void throw_first(const GrainStore& store, const PeriodicBox& box, const std::vector<Vec3>& listed,
                                 MPI_Comm communicator) const;
 };

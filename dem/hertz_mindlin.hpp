@@ -66,12 +66,12 @@ public:
   // Pa, k of the dashpot 2 zeta sqrt(k m*) with the damping ratio zeta of material.hpp.
   static double damping_stiffness(const Coefficients& k) { return 1.25 * k.normal; }
 
-  // s, as if they met at elastic_contact_speed, which the time falls with to the fifth root:
-  // 2.868 (m*^2/(R* E*^2 v))^(1/5) (Hertz, without damping); of m* in kg and R* in m.
+  // s, without damping, of an impact at the speed v = elastic_contact_speed, with whose fifth root it falls:
+  // 2.868 (m*^2/(R* E*^2 v))^(1/5) (Hertz); m* in kg, R* in m.
   static double contact_time(const Coefficients& k, double damping, double effective_mass, double effective_radius);
 
   static void check(const ContactParameters& parameters);  // throws InputError
-  // What a softer contact of a grain and another, or a wall, takes: "lower ..."
+  // What makes a contact of a grain and another, or a wall, softer; completes "a lower ..." in a message.
   static std::string softer(const ContactParameters& grain, const ContactParameters& other);
 
 private:

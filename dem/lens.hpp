@@ -1,5 +1,5 @@
-// What two spheres, or two disks, have in common, and what of one lies above a plane. Exact, any unit of length. No
-// branches, so that loops over many pairs vectorise.
+// The volume (area) that two spheres (disks) have in common, and the part of one that lies above a plane. Exact, any
+// unit of length. No branches, so that loops over many pairs vectorise.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace thalweg::dem {
 
-// The distance d of two centres, brought into the range in which their surfaces meet: [|a - b|, a + b].
+// The distance d of two centres, clamped to the range in which their surfaces meet: [|a - b|, a + b].
 inline double distance_while_they_meet(double a, double b, double d) {
   const double sum = a + b, least = std::max(std::abs(a - b), 1e-12 * sum);
   return std::min(std::max(d, least), sum);
@@ -48,13 +48,13 @@ inline double common_area(double a, double b, double distance) {
   return a * a * unit_segment(from_first) + b * b * unit_segment(from_second);
 }
 
-// Of a sphere of radius a whose centre lies h above a plane: pi/3 (a + h)^2 (2 a - h).
+// Volume above a plane of a sphere of radius a whose centre lies h above it: pi/3 (a + h)^2 (2 a - h).
 inline double volume_above(double a, double h) {
   const double height = std::clamp(h, -a, a);
   return std::numbers::pi / 3.0 * (a + height) * (a + height) * (2.0 * a - height);
 }
 
-// Of a disk upright on the plane.
+// Area above it of a disk upright on the plane.
 inline double area_above(double a, double h) { return a * a * unit_segment(std::clamp(-h / a, -1.0, 1.0)); }
 
 }  // namespace thalweg::dem

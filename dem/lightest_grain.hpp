@@ -10,8 +10,8 @@
 namespace thalweg::dem {
 
 // The least mass (kg) and radius (m) of the grains of a material that are free to move: their contacts are shortest;
-// and the largest radius over mass (m/kg), by which a viscous fluid slows them.
-// (Of two materials' contact, m*/k lies between those within each, since springs add in series as masses do.)
+// and the largest radius over mass (m/kg), of the grain that a viscous fluid slows fastest. (For a contact of two
+// materials, m*/k lies between the values within each, since springs add in series as masses do.)
 struct LightestGrain {
   double mass = std::numeric_limits<double>::infinity();
   double radius = std::numeric_limits<double>::infinity();

@@ -4,11 +4,11 @@
 //   F_n = F_n of the touching surfaces - 2 pi R gamma cos(theta)/(1 + 1.05 s + 2.5 s^2),   s = gap sqrt(R/V)
 //   s_c = (1 + theta/2) V^(1/3)
 //
-// Force: closed form of Willett, Adams, Johnson & Seville, Langmuir 16 (2000) 9396, with R = 2 R1 R2/(R1 + R2), and 2
-// R1 at a wall (Derjaguin); at an overlap it is that of gap zero. Break: Lian, Thornton & Adams, J. Colloid Interface
-// Sci. 161 (1993) 138. Good for V < 0.1 R^3 and drops so small that their weight is no matter; the viscosity of the
-// liquid is left out. Friction and rolling friction go by the force of the touching surfaces, which the bridge presses
-// together. SI units.
+// Force: closed form of Willett, Adams, Johnson & Seville, Langmuir 16 (2000) 9396, with R = 2 R1 R2/(R1 + R2),
+// at a wall 2 R1 (Derjaguin); at an overlap it is that of gap zero. Break: Lian, Thornton & Adams, J. Colloid Interface
+// Sci. 161 (1993) 138. Valid for V < 0.1 R^3 and drops so small that their weight does not matter; the viscosity of the
+// liquid is neglected. Friction and rolling friction depend on the force of the touching surfaces, which the bridge
+// presses together. SI units.
 #pragma once
 
 #include "dem/contact_law.hpp"
@@ -45,7 +45,7 @@ public:
   using Coefficients = typename Inner::Coefficients;
   using Constants = typename Inner::Constants;
   static constexpr std::size_t of_inner = std::tuple_size_v<typename Inner::History>;
-  using History = std::array<double, of_inner + 1>;  // behind that of the law 1 where there is a bridge, else 0
+  using History = std::array<double, of_inner + 1>;  // after the law's: 1 where there is a bridge, else 0
   static constexpr std::array history_parts = joined(Inner::history_parts, HistoryPart{"bridge", 1});
   static constexpr bool rolls = Inner::rolls;
 

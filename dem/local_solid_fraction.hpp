@@ -1,15 +1,15 @@
-// The solid fraction around every grain: of a sphere (disk) of diameter D_i + 2 margin about its centre, and if asked
-// for about its lowest and highest point, with the grain itself, from the exact common volumes (areas) of spheres
-// (disks); what of the sphere lies below the floor at z = 0 does not count.
+// The solid fraction around every grain, the grain included: of a sphere (disk) of diameter D_i + 2 margin about its
+// centre and, if asked for, about its lowest and highest point, from the exact common volumes (areas) of spheres
+// (disks). The part of the sphere below the floor at z = 0 does not count.
 //
 // A clump is one grain: its centre is the centre of mass, D_i is that of the sphere (disk) of its volume, and its
 // members count as solid with a weight, its volume over the sum of theirs, since they overlap.
 //
-// What counts is the position a grain had when last looked at; it is looked at again once it has moved from there by
-// more than a tolerance, and only then are its own solid fractions and those of its neighbours brought up to date. The
+// A grain counts at the position it had when last looked at; it is looked at again once it has moved from there by more
+// than a tolerance, and only then are its own solid fractions and those of its neighbours brought up to date. The
 // remembered positions are columns attached to every grain, so that every rank that knows a grain looks in the same
 // step, and a restart has the same bits. Common volumes are rounded to a multiple of a small power of two: sums of them
-// are exact, and depend neither on their order nor on the way the grains took.
+// are exact, and depend neither on their order nor on the paths of the grains.
 #pragma once
 
 #include "core/periodic_box.hpp"
@@ -50,7 +50,7 @@ public:
 
   void find_neighbours(const GrainStore& store, double skin, const Clumps& clumps);
   // Brings the columns and the solid fractions of owned grains up to date; positions are those of `grains` and
-  // `clumps`. Returns the owned slots whose solid fraction may be another than before, in no order, valid until the
+  // `clumps`. Returns the owned slots whose solid fraction may have changed, in no particular order, valid until the
   // next call.
   std::span<const std::uint32_t> update(const MovingGrains& grains, const Clumps& clumps, GrainStore& store);
 

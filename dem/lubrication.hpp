@@ -9,8 +9,8 @@
 //   N = 6 pi eta r^2/h,
 //   (A, E, G) = pi eta ln(1/h) (8/5 r (2 + q + 2 q^2)/(1 + q)^2, 12/5 r^2 (q - 1)/(q + 1), 24/5 r^3),
 // and the force acts in the middle of the gap: T1 = l1 x F1 + M1. This is Jeffrey and Onishi 1984 (J. Fluid Mech. 139,
-// 261: X11A, Y11A, Y11B, Y11C, Y12C) written in a form that no common motion and no common spin can excite, and that
-// conserves angular momentum whatever h is; for a wall it is Goldman, Cox and Brenner 1967. The twist about n has no
+// 261: X11A, Y11A, Y11B, Y11C, Y12C) written in a form that vanishes in a rigid motion of the pair, and that conserves
+// angular momentum whatever h is; for a wall it is Goldman, Cox and Brenner 1967. The twist about n has no
 // singular term. The lattice resolves these flows down to a gap of about 2/3 cell for N and 1/2 cell for the others
 // (Simeonov and Calantoni 2012, Int. J. Multiphase Flow 46, 38; Rettinger and Ruede 2022, J. Comput. Phys. 453,
 // 110870). What is added here is the rest: 1/h - 1/h_c in place of 1/h, ln(h_c/h) in place of ln(1/h), nothing beyond
@@ -69,7 +69,7 @@ void for_each_lubrication_end(const GrainStore& store, const ContactList& list, 
                               std::span<const Plane> walls, const LubricationParameters& parameters,
                               const LubricationVisitor& visit);
 
-// The same of walls only, with the wall.
+// The same for walls only, with the wall.
 void for_each_wall_lubrication(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
                                std::span<const Plane> walls, const LubricationParameters& parameters,
                                const ContactSource::ContactEndVisitor& visit);

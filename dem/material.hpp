@@ -1,4 +1,4 @@
-// What a contact is made of, and how its damping follows from the restitution coefficient.
+// The materials of a contact, and how its damping follows from the restitution coefficient.
 //
 // Linear spring and dashpot, m* x'' + gamma x' + k x = 0: omega_0^2 = k/m*, zeta = gamma / (2 sqrt(k m*)),
 // beta = zeta omega_0, omega = omega_0 sqrt(1 - zeta^2). The restitution depends on zeta alone and on how the contact
@@ -41,13 +41,13 @@ private:
   double damping_ratio_ = 0.0;  // zeta, where the user gave a restitution
 };
 
-// What two bodies of different materials make of each other. Springs in series: stiffnesses and dashpots by the
-// harmonic mean; frictions and restitution by the geometric mean; moduli are kept apart (hertz_mindlin.hpp). Throws
-// InputError where one has a restitution and the other a damping, or where law, attraction, tangential or rolling
-// damping or liquid bridges differ.
+// The contact of two bodies of different materials. Springs in series: stiffnesses and dashpots by the harmonic mean;
+// frictions and restitution by the geometric mean; moduli are kept apart (hertz_mindlin.hpp). Throws InputError where
+// one has a restitution and the other a damping, or where law, attraction, tangential or rolling damping or liquid
+// bridges differ.
 ContactParameters mixed(const ContactParameters& a, const ContactParameters& b);
 
-double harmonic_mean(double a, double b);
+double harmonic_mean(double a, double b);  // 0 where either is 0
 double geometric_mean(double a, double b);
 
 // All pairs of materials, and each against the walls.

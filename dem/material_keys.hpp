@@ -25,7 +25,7 @@ struct WallMaterialKeys : MaterialKeys {
   bool operator==(const WallMaterialKeys&) const = default;
 };
 
-// The section `contact`: of grains, and of what is not said otherwise.
+// The section `contact`: of grains, and of walls as far as nothing else is said.
 struct ContactKeys : ContactParameters {
   ContactKeys() {
     normal_stiffness = 20000.0;
@@ -43,7 +43,7 @@ void describe(SectionVisitor& visit, ContactKeys& contact);
 void describe(SectionVisitor& visit, MaterialKeys& material);
 void describe(SectionVisitor& visit, WallMaterialKeys& walls);
 
-// Throws KeyError unless it fits the law of the section `contact` and the way that gives the loss.
+// Throws KeyError unless it fits the law of `contact` and gives the loss, restitution or damping, as that does.
 void check(const MaterialKeys& material, const ContactParameters& contact);
 
 // The contact with what the material changes.

@@ -89,7 +89,7 @@ struct VelocityProfile {
   }
 };
 
-// The force on a grain whose diameter is `size` mean diameters.
+// The force on a grain whose diameter is `size` mean diameters. Velocities: m/s; lift: l.
 struct ModelForce {
   double x, y, z;  // N
 };

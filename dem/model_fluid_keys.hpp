@@ -13,10 +13,10 @@ namespace thalweg::dem {
 enum class ModelUnits { si, grain };
 
 struct ShieldsRampKeys {
-  double step = 0.05;
-  double every = 0.0;  // s
-  double hold = 0.0;   // s
-  double mobile_share = 1.0;
+  double step = 0.05;                 // relative, of the Shields number
+  double every = 0.0;                 // s
+  double hold = 0.0;                  // s
+  double mobile_share = 1.0;          // of the grains
   double largest_speed = 1e-3;        // sqrt(g'D)
   double largest_acceleration = 0.1;  // g'
   bool operator==(const ShieldsRampKeys&) const = default;

@@ -36,19 +36,19 @@ public:
 
   // v += dt/2 F/m, w += dt/2 T/I of owned grains (s).
   void half_kick(double time_step);
-  // x += dt v of owned grains; the contact forces of all grains begin anew at zero.
+  // x += dt v of owned grains; sets the contact forces of all grains to zero.
   void drift(double time_step);
   // half_kick(), half_kick(), drift(): from the end of one sub-step to the forces of the next, in one pass.
   void two_half_kicks_and_drift(double time_step);
 
-  // Replaces what pulls at an owned grain besides its contacts (N), until the next load().
+  // Replaces the force (N) on an owned grain besides its contacts, until the next load().
   void set_load(std::size_t slot, const Vec3& force) { loads_[slot].force = row_of(force, loads_[slot].force[3]); }
 
-  // The contact forces of all grains begin anew at zero.
+  // Sets the contact forces of all grains to zero.
   void forget_forces();
 
-  // A bound of the speed (m/s) of every grain now: those of owned grains from the last drift, unless `written` says
-  // that velocities have been written since, and those of ghosts.
+  // An upper bound of the present speeds (m/s): of ghosts, and of owned grains those of the last drift, unless
+  // `written` says that velocities have been written since.
   double speed_bound(bool written) const;
 
   std::size_t size() const { return grains_.size(); }

@@ -1,10 +1,10 @@
 // Which pairs of a contact list are so near that their law may act soon: a list within the list. In a bed at rest
 // nearly all of them do touch, so that a sub-step need not look at the others of the skin.
 //
-// A pair is near if its gap is below that of the law (contact_law.hpp) and a margin. Two grains close a gap by at most
-// the sum of what both move, so while no grain has moved by more than half the margin since the pairs were looked at,
-// the law cannot act in the others. The motion is bounded by the largest speed of every sub-step times its length; a
-// third is kept in reserve for members of rigid bodies, which turn within a step. Leaving out a pair in which the law
+// A pair is near if its gap is below the range of the law (contact_law.hpp) plus a margin. Two grains close a gap by at
+// most the sum of what both move, so while no grain has moved by more than half the margin since the pairs were looked
+// at, the law cannot act in the others. The motion is bounded by the largest speed of every sub-step times its length;
+// a third is kept in reserve for members of rigid bodies, which turn within a step. Leaving out a pair in which the law
 // does not act changes no bit.
 #pragma once
 
@@ -23,9 +23,10 @@ public:
   explicit NearPairs(double margin = 0.0) : margin_(margin) {}
 
   double margin() const { return margin_; }  // m
-  // Whether the list of pairs must be looked through as a whole.
+  // Whether the whole list of pairs must be searched again.
   bool stale() const { return !known_ || 3.0 * moved_ > margin_; }
 
+  // Starts a new search: the list is empty.
   void begin() {
     pairs_.clear();
     moved_ = 0.0;

@@ -29,7 +29,7 @@ struct Sphere {
   double radius;  // m
 };
 
-// Random close packing of equal spheres, and the same of disks in their plane: no bed is denser.
+// Solid fraction of random close packing of equal spheres, and of disks in their plane: no bed is denser.
 inline constexpr double densest_bed = 0.64, densest_disks = 0.84;
 
 // Solid fraction of a bed that has settled, between random loose and random close packing: 0.55 to 0.64 of spheres,
@@ -57,7 +57,7 @@ private:
   double jitter_ = 0.0;                         // m
 };
 
-// All of them.
+// The centres (m) of all `count` grains.
 std::vector<Vec3> uniform_packing(const PeriodicBox& box, const Region& region, std::int64_t count, double radius,
                                   double clearance, std::uint64_t seed);
 

@@ -15,8 +15,8 @@ public:
   // One process that places all grains of the box; no messages.
   explicit PlacingRanks(const PeriodicBox& box) : box_(box) {}
 
-  // The ranks of a decomposition. reach: m, to which each also knows the grains around its block; at least the largest
-  // distance of two centres that touch. The decomposition is to live as long. box: the decomposition's, whose size may
+  // The ranks of a decomposition, which must outlive this object. reach: m, up to which each also knows the grains
+  // around its block; at least the largest distance of two centres that touch. box: the decomposition's, whose size may
   // differ from its cells times spacing by rounding.
   PlacingRanks(const PeriodicBox& box, MPI_Comm communicator, const Decomposition& decomposition, double reach)
       : Ranks(decomposition.ranks() > 1 ? communicator : MPI_COMM_NULL),
@@ -61,7 +61,7 @@ public:
     return gathered(std::move(known));
   }
 
-  // Of ranks that are not alone.
+  // Only where there are several ranks.
   const Decomposition& decomposition() const { return *decomposition_; }
 
 private:

@@ -23,13 +23,13 @@ struct MemberKeys {
   bool operator==(const MemberKeys&) const = default;
 };
 
-// What grains are that are no spheres.
+// The shape of grains that are not spheres.
 struct ShapeKeys {
   std::vector<MemberKeys> clump;
   bool operator==(const ShapeKeys&) const = default;
 };
 
-// Turned about the axis from how the shape is given.
+// A rotation about an axis from the shape as it is given.
 struct OrientationKeys {
   Vec3 axis = Vec3::UnitY();  // of any length
   double angle = 0.0;         // rad
@@ -68,7 +68,7 @@ struct PopulationKeys {
 };
 void describe(SectionVisitor& visit, PopulationKeys& population);
 
-// What there is to know of the clumps of a population.
+// Figures of the clumps of a population.
 struct ClumpFigures {
   std::int64_t count = 0;
   double volume = 0.0;              // m^3, of all
@@ -76,11 +76,11 @@ struct ClumpFigures {
   double largest_extent = 0.0;      // m, diameter of the sphere about its centre that holds the largest
   bool operator==(const ClumpFigures&) const = default;
 
-  void add(const ClumpFigures& more);  // those of at least one more
+  void add(const ClumpFigures& more);  // figures of at least one more clump
 };
 
-// What there is to know of all rows of a bed file, of which a rank has only its share: the same bits on every rank, and
-// on any number of ranks.
+// Figures of all rows taken from a bed file, of which a rank has only its share: the same bits on every rank, and on
+// any number of ranks.
 struct FileFigures {
   // Sums over the grains, a clump counting with the sphere (disk) of its volume.
   struct Sums {
@@ -91,7 +91,7 @@ struct FileFigures {
   std::int64_t rows = 0;           // 0: not from a file
   double smallest_diameter = 0.0;  // m, of grains and members
   double largest_diameter = 0.0;   // m
-  double lightest_grain = 0.0;     // kg, of those that are no member
+  double lightest_grain = 0.0;     // kg, of those that are not members
   double volume = 0.0;             // m^3, of all grains
   double fastest = 0.0;            // m/s
   std::vector<SizeCount> sizes;    // of the grains, as for the sums
@@ -112,9 +112,9 @@ struct Population : PopulationKeys {
   bool operator==(const Population&) const = default;
 
   bool from_file() const { return figures.rows > 0; }
-  std::int64_t row_count() const;  // ids that its grains take, one each, but one each member of a clump
-  // Of grains of its own, not from a file, in m: of a clump that of the sphere (disk) of its volume; of the sphere that
-  // one needs where it is put; the same of the largest.
+  std::int64_t row_count() const;  // number of ids: one for each grain, or for each member of a clump
+  // Of grains that are not from a file, m: the diameter, of a clump that of the sphere (disk) of its volume; the
+  // diameter of the sphere that a grain needs where it is put; the largest of these.
   double diameter_of(std::size_t grain) const { return diameters.empty() ? diameter : diameters[grain]; }
   double room_of(std::size_t grain) const { return shape ? clumps.largest_extent : diameter_of(grain); }
   double room_of_all() const { return shape ? clumps.largest_extent : largest_diameter(); }
@@ -127,8 +127,8 @@ struct Population : PopulationKeys {
   double volume() const;                           // m^3, of all its grains
 };
 
-// Throw KeyError: whether it stays in a box of this size (m) where its placement puts it, and whether disks stay in the
-// plane x-z.
+// Throw KeyError where the placement puts grains outside a box of this size (m), and where disks would leave the plane
+// x-z.
 void check_placement(const Population& population, const Vec3& box_size, bool disks);
 void check_for_disks(const Population& population);
 

@@ -1,4 +1,4 @@
-// From clumps as a case or a bed file has them to clump_seed.hpp.
+// Makes the clumps of clump_seed.hpp from those of a case or a bed file.
 #pragma once
 
 #include "core/bed.hpp"
@@ -15,14 +15,15 @@ namespace thalweg::dem {
 // Of a population with `shape`. Throws InputError where no clump can be made of it.
 std::shared_ptr<const ClumpShape> clump_shape_of(const Population& population);
 
-// Of one clump of such a population: the given one, or one of all that are equally likely (K. Shoemake, Graphics Gems
-// III (1992) 124; of disks, about y). grain: its number in the population.
+// Of one clump of such a population: the given one, or one drawn uniformly from all rotations (K. Shoemake, Graphics
+// Gems III (1992) 124; of disks, from those about y). grain: its number in the population.
 Quaternion orientation_of(const Population& population, std::size_t grain);
 
 // The grains of a bed file one by one, each either one row or the members of one clump, which follow each other.
 std::vector<std::span<const BedGrain>> bodies_of(std::span<const BedGrain> rows);
 
-// The clump that its members make, as it lies and moves; its id stays 0. box: of the bed. thickness: m, of disks.
+// The clump that these members make, as it lies and moves, with id 0. box: of the bed. thickness: m, of disks. Throws
+// InputError where they make none.
 ClumpSeed clump_from(std::span<const BedGrain> members, const PeriodicBox& box, double thickness);
 
 // Of `count` clumps of this shape and density (kg/m^3).

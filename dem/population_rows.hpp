@@ -1,5 +1,5 @@
-// The grains of populations as rows of a saved state, in order of id, without a place: what grains taken over from
-// another run must be.
+// The grains of populations as rows of a saved state, in order of id, without positions: what grains taken over from
+// another run must match.
 #pragma once
 
 #include "core/ranks.hpp"
@@ -21,8 +21,8 @@ struct PopulationRow {
   int material = 0;
 };
 
-// The rows of a complete population (population_bed.hpp) that a rank compares with those of a state: of a file its
-// share, of others an even one.
+// The rows of a complete population (population_bed.hpp) that a rank compares with those of a state: its share of a
+// file, otherwise an even share.
 RowRange share_of_rows(const Population& population, const Ranks& ranks = {});
 
 // Those rows of one of the populations.

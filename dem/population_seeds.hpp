@@ -21,10 +21,10 @@ namespace thalweg::dem {
 // Collective. Throws InputError, on every rank, where they do not fit.
 GrainSeeds grain_seeds(std::span<const Population> populations, const PlacingRanks& ranks);
 
-// What of its motion is prescribed, of all its grains.
+// Which components of the motion of its grains are held.
 Motion motion_of(const Population& population);
 
-// Of the populations that move as one body, in their order.
+// The motions of the populations that move as one body, in their order.
 std::vector<PrescribedMotion> assemblies_of(std::span<const Population> populations);
 
 // Number 0 is `contact` itself; every population with a material of its own has one more, in their order.

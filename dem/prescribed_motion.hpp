@@ -31,7 +31,7 @@ struct PrescribedMotion {
   Vec3 velocity_of(const Vec3& at_start, double time) const;  // m/s
   Vec3 spin() const { return angular_velocity * axis; }       // rad/s
 
-  // No point at this distance (m) from the axis is ever faster (m/s); along a unit vector, of a plane.
+  // Upper bounds of the speed (m/s): of a point at this distance (m) from the axis; of a plane along this unit vector.
   double largest_speed(double distance) const;
   double largest_speed_along(const Vec3& direction) const;
 };

@@ -22,7 +22,7 @@ struct GrainsToPlace {
   std::uint64_t seed;
 };
 
-// What grains keep clear of. Numbers differ, and are the same on all ranks.
+// What grains keep clear of. Each has a number of its own, the same on all ranks.
 struct Obstacle {
   Sphere sphere;
   std::int64_t number;
@@ -47,14 +47,14 @@ std::vector<PlacedGrain> random_packing(const PlacingRanks& ranks, const GrainsT
 std::vector<PlacedGrain> placed_one_by_one(const PlacingRanks& ranks, const GrainsToPlace& grains,
                                            std::span<const Obstacle> obstacles);
 
-// Each rank decides about the places in its block. All grains try at once, those of less than 0.95 of a diameter after
-// the larger ones; of two that are in each other's way the one with the lower number goes first.
+// Each rank decides about the places in its block. All grains of a size class try at once, the largest first, each
+// class down to 0.95 of the one before; of two in each other's way the one with the lower number goes first.
 std::vector<PlacedGrain> placed_together(const PlacingRanks& ranks, const GrainsToPlace& grains,
                                          std::span<const Obstacle> obstacles);
 
-// The same for beds and suspensions that fill up to 0.6 of the volume: grains begin anywhere and push each other apart,
-// by overlapping shares of the way, until none overlap (after W. S. Jodrey and E. M. Tory, Phys. Rev. A 32 (1985)
-// 2347). Nearest neighbours are then at a distance of at least a diameter, most of them little more.
+// The same for beds and suspensions that fill up to 0.6 of the volume: grains start at random and are pushed apart, in
+// proportion to their overlaps, until none overlap (after W. S. Jodrey and E. M. Tory, Phys. Rev. A 32 (1985) 2347).
+// Nearest neighbours are then at least a diameter apart, most of them little more.
 std::vector<PlacedGrain> dense_packing(const PlacingRanks& ranks, const GrainsToPlace& grains,
                                        std::span<const Obstacle> obstacles);
 

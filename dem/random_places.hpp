@@ -1,4 +1,4 @@
-// The places that grains of a random packing try, one after the other, and what is said where they do not fit.
+// The places that grains of a random packing try, one after the other, and the error where they do not fit.
 #pragma once
 
 #include "core/error.hpp"
@@ -10,13 +10,13 @@ namespace thalweg::dem {
 
 inline constexpr unsigned most_attempts_at_random = 5000;  // of one grain
 
-// m, wrapped; numbered from 0 on. The region must have room for the grain.
+// m, wrapped; grains and attempts are numbered from 0 on. The region must have room for the grain.
 Vec3 random_place(const PeriodicBox& box, const GrainsToPlace& grains, std::int64_t number, unsigned attempt);
 
 // Whether the largest grain fits between the faces of the region.
 bool has_room_at_random(const PeriodicBox& box, const GrainsToPlace& grains);
 
-// placed: grains that fitted.
+// placed: how many grains did fit.
 InputError too_many_at_random(const GrainsToPlace& grains, std::int64_t placed);
 
 }  // namespace thalweg::dem

@@ -1,10 +1,10 @@
 // Rotation of a free rigid body in one time step.
 //
 // The state is the orientation Q (a unit quaternion, from the frame of the principal axes to space) and the angular
-// momentum L in space, which no free motion changes. The kinetic energy is split into its three parts L_k^2/(2 I_k),
-// each of which alone turns the body about its principal axis k by the angle dt l_k/I_k, l = Q^-1 L; the symmetric
-// sequence 3, 2, 1, 2, 3 of half, half, whole, half and half steps is symplectic, reversible and of second order: the
-// energy swings about its value by a part of the order of (w dt)^2 and does not drift, and L stays as it is. Dullweber,
+// momentum L in space, which is constant in free motion. The kinetic energy is split into its parts L_k^2/(2 I_k), each
+// of which alone turns the body about its principal axis k by the angle dt l_k/I_k, l = Q^-1 L; the symmetric sequence
+// 3, 2, 1, 2, 3 of half, half, whole, half and half steps is symplectic, reversible and of second order: the energy
+// oscillates about its value by a fraction of order (w dt)^2 and does not drift, and L does not change. Dullweber,
 // Leimkuhler & McLachlan, J. Chem. Phys. 107 (1997) 5840; with quaternions it is NO_SQUISH of Miller et al., J. Chem.
 // Phys. 116 (2002) 8649. SI units.
 #pragma once

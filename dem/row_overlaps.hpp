@@ -1,4 +1,4 @@
-// Overlaps between rows of a bed file, each of which one of several ranks has.
+// Overlaps between the rows of a bed file, which are spread over several ranks.
 #pragma once
 
 #include "core/bed.hpp"

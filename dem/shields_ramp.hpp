@@ -32,9 +32,9 @@ public:
   double moving_speed() const { return parameters_.moving_speed; }
   void watch(double moving_share) { mobile_ = steps_ > 0 && moving_share > parameters_.mobile_share; }
 
-  // Over that at the start.
+  // The Shields number over that at the start.
   double factor() const;
-  // s, until the motion since the last step counts as one without end; before the first step the grains settle.
+  // s, until the motion since the last step counts as one without end; before the first step, all of `hold`.
   double hold_left(double time) const;
 
   void save(ArchiveWriter& archive) const;

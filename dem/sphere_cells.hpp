@@ -1,5 +1,5 @@
-// Spheres in the cells of a grid as they come, and whether one overlaps any of them. Cells without spheres take no
-// memory.
+// Spheres sorted into the cells of a grid as they arrive, to find whether one overlaps any of them. Cells without
+// spheres take no memory.
 #pragma once
 
 #include "core/periodic_box.hpp"
@@ -21,7 +21,7 @@ public:
       count_[axis] = std::max<std::int64_t>(1, static_cast<std::int64_t>(box.size[axis] / (2.0 * largest_radius)));
   }
 
-  // number: to be known by.
+  // number: by which overlaps() identifies the sphere.
   void add(const Sphere& sphere, std::int64_t number = 0) {
     auto [head, empty] = last_.try_emplace(key(cell_of(sphere.position)), -1);
     spheres_.push_back({sphere, number, head->second});

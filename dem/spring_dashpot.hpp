@@ -54,11 +54,11 @@ public:
   // N/m, k of the dashpot 2 zeta sqrt(k m*) with the damping ratio zeta of material.hpp.
   static double damping_stiffness(const Coefficients& k) { return k.stiffness; }
 
-  // s, of m* (kg) with the dashpot.
+  // s, of m* (kg) with the dashpot (kg/s).
   static double contact_time(const Coefficients& k, double damping, double effective_mass, double effective_radius);
 
   static void check(const ContactParameters& parameters);  // throws InputError
-  // What a softer contact of a grain and another, or a wall, takes: "lower ..."
+  // What makes a contact of a grain and another, or a wall, softer; completes "a lower ..." in a message.
   static std::string softer(const ContactParameters& grain, const ContactParameters& other);
 
 private:

@@ -33,7 +33,7 @@ struct WallKeys {
 
 void describe(SectionVisitor& visit, WallKeys& wall);
 
-// Throw KeyError: whether a plate lies in its wall, and whether disks in the plane x-z at this y (m) stay in it.
+// Throw KeyError unless a plate lies in its wall, and unless disks in the plane x-z at this y (m) stay in it.
 void check(const WallKeys& wall);
 void check_for_disks(const WallKeys& wall, double y);
 

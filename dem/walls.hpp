@@ -40,21 +40,21 @@ struct Plane {
     const Vec3 from_point = position - point;
     return plate ? seen_as_plate(from_point, box) : WallView{from_point.dot(normal), normal};
   }
-  // Whether its place or its velocity changes with time: of a plane, a velocity in itself alone changes neither.
+  // Whether its place or its velocity changes with time: of a plane, a constant velocity within itself changes neither.
   bool changes() const;
   // The wall as it is at one time (s), with the velocity of another.
   Plane at(double time, double time_of_velocity) const;
-  double largest_speed() const;                    // m/s, at which it nears grains at any time
+  double largest_speed() const;                    // m/s, upper bound of the speed at which it approaches grains
   double moved_since(const Plane& earlier) const;  // m: no grain is nearer or further by more than this
 
 private:
   WallView seen_as_plate(Vec3 from_point, const PeriodicBox& box) const;
 };
 
-// The faces in the order of all lists of them, as cases and figures name them.
+// Names of the faces in cases and figures, in the order of all lists of faces.
 inline constexpr std::array<const char*, 6> face_names{"x_low", "x_high", "y_low", "y_high", "bottom", "top"};
 
-// The face of the box across `axis` (0, 1, 2) at its lower or upper end.
+// The face of the box across `axis` (0, 1, 2) at its lower or upper end. velocity: m/s.
 Plane face_plane(const PeriodicBox& box, int axis, bool upper, double friction, const Vec3& velocity = Vec3::Zero());
 
 // Every non-periodic face of the box, with the walls' friction: x lower, x upper, y lower, ...
