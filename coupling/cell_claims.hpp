@@ -1,7 +1,7 @@
-// Who has which cell of the lattice: grains claim cells and give them up, and of two that claim one the lower global id
-// has it, whatever the order of events. The cells are this rank's and one ghost layer. Grains live in slots that stay
-// theirs as long as the grain is in reach of this rank; slots index the lattice's LinkBody table as well. Which cells a
-// grain claims, its shape tells (grain_map.hpp).
+// Which grain holds which cell of the lattice: grains claim cells and give them up, and of several that claim one the
+// lowest global id holds it, whatever the order of events. The cells are this rank's and one ghost layer. A grain keeps
+// its slot as long as it is in reach of this rank; slots also index the lattice's LinkBody table. Which cells a grain
+// claims follows from its shape (grain_map.hpp).
 #pragma once
 
 #include "core/decomposition.hpp"
@@ -17,7 +17,7 @@ namespace thalweg::coupling {
 // A cell whose cover changed in the present update; local coordinates, owned or ghost.
 struct CellChange {
   Index3 cell;
-  std::int32_t before, now;  // slots; CellMap::fluid
+  std::int32_t before, now;  // slots, or CellMap::fluid
 };
 
 class CellClaims {

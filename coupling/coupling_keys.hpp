@@ -49,7 +49,7 @@ struct CouplingKeys {
   bool operator==(const CouplingKeys&) const = default;
 };
 
-// with_grains: the keys of grains belong to the case, too.
+// with_grains: whether the case has grains, and so the keys that concern them.
 void describe(SectionVisitor& visit, CouplingKeys& coupling, bool with_grains);
 
 }  // namespace thalweg::coupling

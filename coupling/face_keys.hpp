@@ -23,7 +23,7 @@ struct FaceKeys {
   std::optional<dem::Oscillation> oscillation = {};    // moving; dry grains only
 
   bool slips() const { return type == lbm::FaceType::navier_slip || type == lbm::FaceType::law_of_the_wall; }
-  // Takes a share of the shear of a flow along it.
+  // Whether it exerts shear on a flow along it.
   bool drags() const { return type == lbm::FaceType::no_slip || type == lbm::FaceType::moving || slips(); }
   bool has_velocity() const { return type == lbm::FaceType::moving || type == lbm::FaceType::velocity_inlet; }
   bool operator==(const FaceKeys& other) const;  // what the type does not use does not count

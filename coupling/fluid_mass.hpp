@@ -1,4 +1,4 @@
-// Excess mass of the fluid (mass_account.hpp), from a look at all of it, and how to change it.
+// Excess mass of the fluid (mass_account.hpp), from a survey of all of it, and how to change it. Lattice units.
 #pragma once
 
 #include "coupling/hydrostatic.hpp"

@@ -56,7 +56,7 @@ inline bool closed(const lbm::FaceConditions& faces) {
                       [](const lbm::FaceCondition& face) { return lbm::is_open(face.type); });
 }
 
-// The rest state of the fluid; no density of its own in reduced gravity.
+// The rest state of the fluid: hydrostatic with full gravity, uniform with reduced gravity.
 inline Hydrostatic rest_state(const FluidParameters& parameters, const Decomposition& decomposition) {
   const double(&f)[3] = parameters.collision.force;
   return parameters.full_gravity ? hydrostatic_under(Vec3(f[0], f[1], f[2]), decomposition) : Hydrostatic{};

@@ -10,17 +10,17 @@
 
 namespace thalweg::coupling {
 
-// How a system looks at its fluid. Cells of bodies show zero.
+// What sampling needs of a system. Fields are zero in cells of bodies.
 struct SampleContext {
   Units units;
   std::function<std::int32_t(std::int32_t body)> grain_id;  // of a body of the cell map
   std::function<void()> apply_links;                        // of bodies, where there are any
 };
 
-// The wanted fields of those cells of the region (global coordinates) that this rank owns. Only these cells are looked
-// at, and for gradients their neighbours; but shear rate and eddy viscosity take all that streams in, so for these the
-// slots that are filled from beyond walls and bodies are filled everywhere, as the next step will do again: no
-// post-collision population changes. Collective.
+// The wanted fields of those cells of the region (global coordinates) that this rank owns. Only these cells are read,
+// and for gradients their neighbours; but shear rate and eddy viscosity need all that streams in, so for them the slots
+// that are filled from walls and bodies are filled everywhere, as the next step will do again: no post-collision
+// population changes. Collective.
 template <typename Real>
 FluidFields sample_fields(lbm::Fluid<Real>& fluid, const SampleContext& context, const std::vector<FluidField>& wanted,
                           const Block& region);
@@ -33,8 +33,8 @@ void visit_velocities(const lbm::Fluid<Real>& fluid, const Units& units, const F
 template <typename Real>
 std::optional<FluidSource::State> state_of(const lbm::Fluid<Real>& fluid, const Units& units, const Index3& cell);
 
-// What drives the fluid, and what the upper face takes from it in the step to come; reference: the density (lattice)
-// whose pressure is left out. Fills the slots at walls, as the next step will do again. Collective.
+// What drives the fluid, and the force on the upper face in the step to come; reference: the density (rho - 1) whose
+// pressure is left out. Fills the slots at walls, as the next step will do again. Collective.
 template <typename Real>
 FluidSource::Drive drive_of(lbm::Fluid<Real>& fluid, const Units& units, double reference);
 

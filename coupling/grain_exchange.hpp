@@ -1,5 +1,5 @@
 // What a grain keeps of its exchange with the fluid from one step to the next: named and typed, in the columns of plain
-// numbers that dem carries with the grain (dem/grain_store.hpp). Number: double, or const double for a look.
+// numbers that dem carries with the grain (dem/grain_store.hpp). Number: double, or const double for reading.
 #pragma once
 
 #include "core/types.hpp"

@@ -32,8 +32,8 @@ public:
 private:
   static constexpr double nowhere = -1e8;  // no grain's centre is below this
 
-  // Turns the cells within `half_width` of `middle` that are inside the grain at only one of the two places of its
-  // centre.
+  // Claims or gives up the cells within `half_width` of `middle` that are inside the grain at only one of the two
+  // places of its centre.
   void turn_cells(int slot, const Vec3& middle, double half_width, const Vec3& old, const Vec3& now);
   using Chord = decltype(std::declval<const S&>().chord(0.0, 0.0));
   void turn_row(int slot, int y, int z, const Chord& before, const Chord& after);

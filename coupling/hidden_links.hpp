@@ -2,15 +2,14 @@
 // fluid.
 //
 // A lattice line enters a cell of grain p from a cell x_f that grain q covers, or that is beyond a wall. No population
-// runs there, but in between a fluid would press. Populations count less their weight in the exchange (bouzidi.hpp), so
-// that the reference pressure needs no such links. What is left:
-//   full gravity        the hydrostatic density above the reference, rho_g - 1 on the surface: momentum 2 w_i (rho_g -
-//   1) c_i,
-//                       without which a grain that touches others or the floor would lose part of its buoyancy;
-//   near_contact paper  a link with equilibrium populations at x_f and x_ff, of density rho_g and q's rigid motion
-//   there
-//                       (Zhang et al. 2022), between grains only.
-// Between members of one clump is no surface, and so no such link. Both go through the rule of Bouzidi and the momentum
+// runs there, but a fluid between the two would press. The exchange counts populations less their weight
+// (bouzidi.hpp), so that the reference pressure needs no such links. What is left:
+//   full gravity        the hydrostatic density above the reference, rho_g - 1 on the surface: momentum
+//                       2 w_i (rho_g - 1) c_i, without which a grain that touches others or the floor would lose part
+//                       of its buoyancy;
+//   near_contact paper  a link with equilibrium populations at x_f and x_ff, of density rho_g and with q's rigid motion
+//                       there (Zhang et al. 2022), between grains only.
+// There is no surface between members of one clump, and so no such link. Both use the rule of Bouzidi and the momentum
 // exchange chosen. Lattice units.
 #pragma once
 

@@ -11,7 +11,7 @@
 // touching grains would be drawn together or pushed apart by any pressure but the reference. Between members of one
 // clump is no surface.
 //
-// The same patches tell what of the mass that the links of p give is given in the place of q: grains that touch and
+// The same patches tell how much of the mass given by the links of p is given in the place of q: grains that touch and
 // move together push fluid away in front of the one and draw it in behind the other. With v the mean of the two
 // velocities, that is 6 h.v from p to q; only the rest of what they cost the fluid is each grain's own
 // (mass_return.hpp).
@@ -38,7 +38,7 @@ class HiddenPatches {
 public:
   HiddenPatches(const Decomposition& decomposition, const Block& block, const lbm::CellMap& cells);
 
-  // To be called before the map gives a cell in reach (local coordinates) to `now`, a slot or CellMap::fluid.
+  // To be called before the map gives a cell in memory (local coordinates) to `now`, a slot or CellMap::fluid.
   void cell_changes(const Index3& local, std::int32_t now);
 
   // Adds to the bodies the force of the fluid on what is hidden by this rank's cells and takes from their mass what is

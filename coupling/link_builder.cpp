@@ -52,7 +52,7 @@ void LinkBuilder::mark(std::int32_t slot, int tile) {
 }
 
 // A link is identified by its fluid cell, its solid cell and the cell upstream, and a changed cell may be any of them.
-// The neighbours may have changed in the same update, so it does not count what they are now.
+// The neighbours may have changed in the same update, so what they are now does not matter.
 void LinkBuilder::mark_around(const CellChange& change) {
   const lbm::CellIndexing& indexing = cells_.indexing();
   const Index3 &at = change.cell, &n = indexing.size();

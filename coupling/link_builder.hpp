@@ -1,5 +1,5 @@
 // Keeps the cut links of all grains: every lattice line from an owned fluid cell into a cell that a grain covers. Links
-// follow from the map of the cells alone, so only those around cells that changed hands are found anew: the links of a
+// depend on the map of the cells alone, so only those around cells that changed hands are found anew: the links of a
 // grain in one tile at a time.
 #pragma once
 
@@ -19,7 +19,7 @@ namespace thalweg::coupling {
 
 class LinkBuilder {
 public:
-  // Throws InputError where a block is too long for a link's place.
+  // Throws InputError where a block has more cells along x or y than a link can store (lbm::LinkPlace).
   LinkBuilder(const Decomposition& decomposition, const Block& block, const lbm::CellMap& cells,
               const lbm::RowTiles& tiles);
 

@@ -1,4 +1,4 @@
-// The balance of the water's mass. What counts is the excess E = sum over the fluid cells of rho - rho_rest (rho_rest =
+// The balance of the fluid's mass. What counts is the excess E = sum over the fluid cells of rho - rho_rest (rho_rest =
 // 1, or the hydrostatic density): the volume that grains cover on the lattice is a staircase that gains and loses a
 // tenth of a per cent of the cells from step to step, and the sum of rho follows it; the excess, which is the pressure,
 // must not. From one step to the next
@@ -31,14 +31,14 @@ public:
 
   explicit MassAccount(MPI_Comm communicator) : communicator_(communicator) {}
 
-  // What this rank adds, a LatticeFixed sum. Corrections are the whole run's and are booked by one rank.
+  // mass: what this rank adds, a LatticeFixed sum. Corrections concern the whole run and are booked by one rank.
   void book(Entry entry, std::int64_t mass) { sums_[entry].add(mass); }
   void book(const lbm::LinkBalance& balance);
 
   // Since the start of the run, over all ranks, by Entry; all at once because a reduction is shared. Collective.
   std::array<double, entries> totals() const;
 
-  // Begins anew, with the excess as it is and what grains taken over from another run owe; both over all ranks.
+  // Starts a new account, with the present excess and what grains taken over from another run owe, over all ranks.
   void open(double excess, double owed);
   double kept() const { return kept_; }  // excess and owed mass at the start of the run, which are to stay
 

@@ -22,7 +22,7 @@ struct MassReturn {
 
   double mass(const lbm::LinkSums& links) const { return density * links.weight() + slope.dot(links.normal()); }
 
-  // For `times` the mass; at most a density of 1 %, so that where a body has hardly any links the rest has to wait.
+  // For `times` the mass, limited to a density of 1 %, so that where a body has hardly any links the rest has to wait.
   MassReturn scaled(double times) const;
 };
 

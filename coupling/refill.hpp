@@ -1,12 +1,10 @@
 // Gives cells that a grain has just uncovered their populations. With n the mean over the neighbours that were fluid
-// before, u_w the velocity of the grain's rigid motion at the cell, F the body force:
+// before (rho_n = 1 where there are none), u_w the velocity of the grain's rigid motion at the cell, F the body force:
 //   equilibrium      f_i^c = f_i^eq(rho_n, u_w) + 3/2 w_i c_i.F
 //   non_equilibrium  f_i^c = f_i^eq(rho_n, u_w) + [f_i^c - f_i^eq](donor); the donor is the one of these neighbours
-//   whose
-//                    direction is nearest to the outward normal                                          (Caiazzo 2008)
+//                    whose direction is nearest to the outward normal (Caiazzo 2008)
 //   grad             f_i^c = f_i^eq(rho_n, u_w) + 3/2 w_i c_i.F + 9/2 w_i (c_ia c_ib - delta_ab/3) P_ab, where P_ab is
-//   the
-//                    mean over these neighbours of sum c_ia c_ib (f_i^c - f_i^eq)      (Chikatamarla, Ansumali and
+//                    the mean over these neighbours of sum c_ia c_ib (f_i^c - f_i^eq) (Chikatamarla, Ansumali and
 //                    Karlin 2006, with the neighbours' stress)
 // All populations are post-collision ones, whose momentum is rho u + F/2. Lattice units.
 //

@@ -1,7 +1,7 @@
 // Grains in a resolved flow: the system the project exists for. One step is one lattice step and its DEM sub-steps.
 //
-// S is the shape that the fluid sees of every grain, S::of_grain(its radius), standing in the box as it was made: what
-// dem knows of a grain has no orientation, and touches others as a sphere.
+// S is the shape that the fluid sees of every grain, S::of_grain(its radius), in a fixed orientation: grains of dem
+// have none, and touch each other as spheres.
 #pragma once
 
 #include "core/decomposition.hpp"
@@ -57,7 +57,7 @@ template <typename Real, GrainShape S = Sphere>
 class ResolvedSystem final : public System, private FluidSource, private ContactSource {
 public:
   // The grains (already holding their seeds) must carry attached_width() attached columns and reach ghost_reach()
-  // beyond their block. Takes both over.
+  // beyond their block. Takes both over. Throws InputError where a block is too long (LinkBuilder). Collective.
   ResolvedSystem(std::unique_ptr<Decomposition> decomposition, MPI_Comm communicator,
                  const ResolvedParameters& parameters, std::unique_ptr<dem::GrainDynamics> grains);
 
@@ -76,6 +76,9 @@ public:
   std::int64_t step() const override { return step_; }
   double time_step() const override { return parameters_.units.time_step; }
   Snapshot snapshot() const override;
+  // Those of speed_figures(), mean_density_deviation (1), fluid_cells (1), largest_overlap (diameters), if asked for
+  // wall_force_bottom_x ... and fluid_wall_force_bottom_x ... (N), those of add_extremes(), largest_grain_speed (m/s),
+  // those of MassAccount and of add_momentum() (fluid_figures.hpp). Collective.
   std::vector<Figure> figures() const override;
   std::optional<Place> place_of(const std::string& figure) const override;
   void save(ArchiveWriter& archive) const override;

@@ -19,7 +19,7 @@ struct PlacedShape {
 };
 using SolidSphere = PlacedShape<Sphere>;
 
-// Another shape of the concept is one more alternative. A mesh is closed and wound outwards.
+// A further Shape is one more alternative here. A mesh must be closed and wound outwards.
 using SolidShape = std::variant<SolidSphere, TriangleMesh>;
 
 struct Extent {
@@ -43,9 +43,9 @@ struct Crossing {
 };
 std::optional<Crossing> crossing(const Corners& triangle, double y, double z);
 
-// The fraction t in [0, 1] of the way from a point along a link at which it meets the surface; none: it does not.
-// Links that run along an edge or end on a surface are met all the same, up to round-off; on_link() says so of the
-// fraction at which their line meets it.
+// The fraction t in [0, 1] of the way from a point along a link at which it meets the surface; none: it does not. Links
+// that run along an edge or end on a surface count as meeting it, up to round-off: on_link() decides so from the
+// fraction at which the link's line meets the surface.
 std::optional<double> on_link(std::optional<double> way);
 std::optional<double> meets(const Corners& triangle, const Vec3& from, const Vec3& along);
 template <Shape S>

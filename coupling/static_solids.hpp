@@ -38,6 +38,7 @@ public:
   std::vector<Vec3> forces() const;
 
   void save(ArchiveWriter& archive) const;
+  // Throws InputError where the archive does not hold as many solids.
   void load(ArchiveReader& archive);
 
 private:

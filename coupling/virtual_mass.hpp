@@ -1,8 +1,8 @@
 // Virtual mass of light grains: keeps the exchange with the fluid, which is explicit, stable where a grain weighs
 // little against the fluid that it has to move along.
 //
-// The force of the fluid lags behind and holds the reaction -m_a a to the grain's own acceleration, m_a = 1/2 rho_f V
-// for a sphere. Where m_a/m is large, that alone would blow up. With a virtual mass m_v on both sides of the law,
+// The force of the fluid lags behind and contains the reaction -m_a a to the grain's own acceleration, m_a = 1/2 rho_f
+// V for a sphere. Where m_a/m is large, that alone would be unstable. With a virtual mass m_v on both sides of the law,
 //   (m + m_v) a(n) = L(n) + m_v a(n-1),   L: load of the fluid and body forces,
 // the old acceleration stands in for the reaction (Schwarzmeier, Rettinger and Ruede 2023, J. Comput. Phys. 477,
 // 111958). With A = m a, the load that the grain is given, this is
