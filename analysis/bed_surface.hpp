@@ -5,12 +5,11 @@
 //   flow depth        H   = height of the box - bed height, that of the solid fraction
 //   hydraulic radius  R_h = H W / (W + n H)                n: side walls that hold the flow back, 0 to 2
 //   bed stress        tau_b = f R_h                        Pa, of a flow that is steady (Zhang et al. 2022)
-//                     f     = rho_f g_x                    N/m^3, downstream part of gravity: g times the sine of the
-//                     slope
+//                     f     = rho_f g_x                    N/m^3, g_x: g times the sine of the slope
 //   Shields number    tau*  = tau_b / ((rho_s - rho_f) g d)
 //
-// Where the mean velocity is steered, f is the force that does so, as it is then; where the top of the box drags the
-// flow, or holds it back, it takes part with its stress tau_top as measured (Pa, on the fluid, along x):
+// Where the mean velocity is controlled, f is the body force that does so, as it is then; where the top of the box
+// drives the flow, or holds it back, its measured stress tau_top (Pa, on the fluid, along x) is included:
 //   tau_b = (f H + tau_top) W / (W + n H)
 #pragma once
 

@@ -1,4 +1,4 @@
-// Layers of whole planes of cells, as alike as can be: the lattice has no finer plane on which its momentum balances.
+// Layers of whole planes of cells, as equal as possible: the lattice has no finer plane on which its momentum balances.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@ public:
   double height(int layer) const { return (first_plane(layer + 1) - first_plane(layer)) * spacing_; }
   double middle(int layer) const { return bottom(layer) + 0.5 * height(layer); }
 
-  // The layer a height (m) lies in; the lowest and the highest go on without end.
+  // The layer a height (m) lies in; the lowest and the highest have no outer end.
   int at(double z) const {
     int layer = std::clamp(static_cast<int>(z / (planes_ * spacing_) * count_), 0, count_ - 1);
     while (layer > 0 && z < bottom(layer)) --layer;

@@ -71,7 +71,7 @@ public:
   std::vector<Figure> results() const override;
   std::vector<std::string> remarks() const override;
 
-  // An event a start, event_000001 and so on. Figures: onset_time (s), radius (m), couple_share and
+  // One event for each start, event_000001 and so on. Figures: onset_time (s), radius (m), couple_share and
   // largest_torque_ratio (1, as Entraining has them). Arrays: id, rest_position (m), submerged_weight (N); [sample]:
   // time and those of GrainRecord; with a hinge hinge_partners, hinge_points (m), hinge_axis, and [sample]
   // fluid_torque, couple_torque, critical_torque (N m). Of each contact of each sample: contact_sample,

@@ -1,5 +1,5 @@
-// What Entrainment remembers, in a checkpoint: a row for every id, and behind each other the samples and the touches of
-// all rings in the order of ids.
+// What Entrainment remembers, in a checkpoint: one row for every id, and the samples and touches of all rings, one
+// after the other in the order of ids.
 #include "analysis/entrainment.hpp"
 #include "core/mpi_session.hpp"
 

@@ -3,8 +3,8 @@
 //   U_a = <u_a>,   R_ab = <u_a u_b> - <u_a><u_b>                                        (m/s, m^2/s^2)
 //
 // < > is the mean over the fluid cells of a layer of cells at one height, and over the measurements: profiles over z.
-// Between side walls also over the fluid cells of a line along x: sections over y and z, in which the mean differs from
-// place to place, so that R of a layer holds what the mean flow varies across the layer as well.
+// Between side walls also over the fluid cells of a line along x: sections over y and z. There the mean flow varies
+// along y, and R of a layer contains this variation as well.
 //
 // Every velocity counts as a multiple of 2^-40 of the lattice velocity unit and sums are integers, so that the means
 // have the same bits on any number of ranks and after any restart. |u| must stay below 1 cell a step and a layer below

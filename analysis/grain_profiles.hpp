@@ -1,5 +1,5 @@
-// Grains by layers at one height, gathered while the run goes on: how much of them there is, how they move, and the
-// stresses they carry.
+// Grains layer by layer, gathered while the run goes on: how much there is of them, how they move, and the stresses
+// they carry.
 //
 //   solid fraction   phi   = sum V_il / (A b)                  V_il: volume of grain i within layer l, exact
 //   velocity         U     = sum m_il v_i / sum m_il           m_il = m_i V_il / V_i
@@ -11,8 +11,8 @@
 // A b is the volume of a layer; sums run over grains and, for contacts, over those of each grain, with F the force on
 // it and r the arm from its centre (Love 1927; Weber 1966; Christoffersen, Mehrabadi & Nemat-Nasser, J. Appl. Mech. 48
 // (1981) 339). Stresses are positive in tension: a bed under its weight has s_zz = -(weight above)/A, and
-// rho dU/dt = div(s + k) + rho g. The mean over measurements is that of the sums, so U, T and k count what differs from
-// one time to another as well. Held and free grains count alike.
+// rho dU/dt = div(s + k) + rho g. The mean over measurements is that of the sums, so U, T and k include what varies
+// from one time to another. Held and free grains count alike.
 // A clump's volume, mass and contacts (with arms from its centre) are spread over its members as their volumes are to
 // each other, and it moves as its centre does.
 //
@@ -46,8 +46,8 @@ std::unique_ptr<Observer> make_observer(const GrainProfilesKeys& keys, const Run
 
 class GrainProfiles : public Observer {
 public:
-  // layer: m, where the keys have none; changed so that a whole number of layers fills the box. disk_thickness: m, by
-  // which layers of disks are wide instead of the box; 0: spheres.
+  // layer: m, where the keys have none; changed so that a whole number of layers fills the box. disk_thickness: m, the
+  // width of the layers in place of the box's; 0: spheres.
   GrainProfiles(MPI_Comm communicator, const Decomposition& decomposition, double layer, const GrainProfilesKeys& keys,
                 double disk_thickness = 0.0);
 

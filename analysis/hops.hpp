@@ -1,14 +1,14 @@
 // Hops: how far and how long grains move between two rests.
 //
 // A grain moves where its speed exceeds a threshold. A hop begins with the first measurement that finds a grain moving
-// and ends with the first that finds it at rest again. Its time is that between these two, which errs by less than the
-// interval between measurements either way and by nothing on the average; a hop shorter than the interval may be
-// missed. Its length is the way along x from the last measurement before it to the one that ends it, so that no part of
-// the way is lost but what a grain creeps below the threshold. Hops that were under way when measuring began are not
-// counted, nor those that have not ended.
+// and ends with the first that finds it at rest again. Its time is that between these two, in error by less than the
+// interval between measurements, and by nothing on average; a hop shorter than the interval may be missed. Its length
+// is the way along x from the last measurement before it to the one that ends it, so that all of the way counts except
+// for what a grain creeps below the threshold. Hops that were under way when measuring began are not counted, nor those
+// that have not ended.
 //
-// Where a grain went between two measurements is told from its places by the image of the periodic box that lies
-// nearest to where the mean of its two velocities would have taken it.
+// Between two measurements a grain is taken to have gone to that periodic image of its new place which lies nearest to
+// where the mean of its two velocities would have taken it.
 #pragma once
 
 #include "analysis/histogram.hpp"
@@ -47,7 +47,7 @@ public:
   std::vector<Figure> results() const;
 
   // hop_length_edges (m), hop_time_edges (s), hop_length_count, hop_time_count (1: one more than there are edges, the
-  // first and the last are of what lies outside; also hops against the stream are in the first).
+  // first and the last for what lies outside; hops against the stream are in the first, too).
   std::vector<Profile> profiles() const;
 
   void save(ArchiveWriter& archive, const std::string& group) const;  // collective

@@ -23,7 +23,7 @@ public:
   // Seconds of simulated time between its measurements; 0: with the rows of the series.
   virtual double every() const { return 0.0; }
 
-  // True for one that looks at single grains, as often as every step: the system's health is not looked into for it.
+  // True for one that may measure in every step: its measurements alone do not trigger a check of the system's health.
   virtual bool in_passing() const { return false; }
 
   // Whether it looks at Snapshot::momentum, which a system books when asked before the step.

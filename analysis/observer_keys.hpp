@@ -35,7 +35,7 @@ enum class Needs { grains, fluid, both };
 void describe_from(SectionVisitor& visit, double& from);
 void describe_every(SectionVisitor& visit, double& every);
 
-// Throw KeyError with a remedy. what: "measure".
+// Throw KeyError with a remedy. what: a verb for the message, "measure".
 void require_grains(const RunFacts& run, const std::string& what);
 void require_ids(const RunFacts& run, const std::vector<GlobalId>& ids);  // key grains: each is there, and named once
 void require_full_gravity_from(const RunFacts& run, double from);         // run.ramp is over then

@@ -51,7 +51,7 @@ private:
 // Throws KeyError, with the key from `analysis` on, where one asks for what the run does not have.
 void check(const RequestedObservers& requested, const RunFacts& run);
 
-// Whole sentences.
+// The warnings of all requested observers, whole sentences.
 std::vector<std::string> warnings(const RequestedObservers& requested, const RunFacts& run);
 
 // The requested ones, as far as the run has what they look at, and those that every run has.

@@ -19,7 +19,7 @@ inline double sphere_moment_below(double radius, double height) {
   return std::numbers::pi * h * h * h * (2.0 / 3.0 * radius - 0.25 * h);
 }
 
-// The same of a disk that stands, of this thickness (m).
+// Volume (m^3) of the same part of an upright disk of this thickness (m).
 inline double disk_volume_below(double radius, double thickness, double height) {
   const double h = std::clamp(height, 0.0, 2.0 * radius), off = radius - h;
   const double angle = std::acos(std::clamp(off / radius, -1.0, 1.0));

@@ -85,7 +85,7 @@ public:
   // fluid_pressure (Pa, relative to its mean over the box), granular_temperature (m^2/s^2),
   // drag_density (N/m^3: x, y, z), drag_function, drag_reynolds_number (1; zero without grains), and in Pa:
   // contact_stress, grain_fluid_stress, lubrication_stress (xx, xy, xz, yx, ... zz), kinetic_stress, viscous_stress,
-  // subgrid_stress, reynolds_stress, mean_flow_stress (xx, yy, zz, xy, xz, yz), rotation_stress,
+  // subgrid_stress, reynolds_stress, mean_flow_stress (xx, yy, zz, xy, xz, yz); xz alone: rotation_stress,
   // contact_rotation_stress, sum_of_stresses, total_stress, side_wall_stress, driving_stress.
   std::vector<Profile> profiles() const override;
 

@@ -1,7 +1,7 @@
 // The tracks of chosen grains: where they are, how they move and turn, and what acts on them, at short intervals.
 //
-// Positions go on where a grain leaves a periodic box: from one measurement to the next it has gone to the image that
-// lies nearest to where the mean of its two velocities would have taken it, which is right as long as the grain's speed
+// Positions continue across the faces of a periodic box: from one measurement to the next a grain has gone to the image
+// that lies nearest to where the mean of its two velocities would have taken it, which is right as long as its speed
 // changes by less than a box in an interval. A member of a clump is recorded as the sphere it is.
 #pragma once
 

@@ -7,7 +7,7 @@ namespace thalweg::analysis {
 
 namespace {
 
-// What is left over counts as at least this part of the largest value, so that round-off is no drift.
+// Residuals count as at least this part of the largest value, so that round-off is no drift.
 constexpr double round_off = 1e-12;
 
 // A straight line by least squares through equally spaced values.

@@ -1,8 +1,8 @@
 // Whether a series has settled: a straight line through it that rises or falls by more than chance is a drift.
 //
 // The series is kept as 32 to 63 means of batches of equal length, which grow as it goes on. A line is fitted to them
-// by least squares. What is left over, e, has the lag-one autocorrelation r = sum e_i e_(i+1) / sum e_i^2, so that the
-// n batches are worth n_e = n (1 - r)/(1 + r) independent ones, and the slope b = S_tx / S_tt has the error
+// by least squares. The residuals e have the lag-one autocorrelation r = sum e_i e_(i+1) / sum e_i^2, so that the n
+// batches are worth n_e = n (1 - r)/(1 + r) independent ones, at most n, and the slope b = S_tx / S_tt has the error
 //
 //   s_b^2 = sum e_i^2 / ((n_e - 2) S_tt).
 //
