@@ -60,7 +60,7 @@ public:
   double every() const override { return keys_.every; }
   void observe(const Snapshot& snapshot) override;  // a step seen before does not count again
 
-  // bed_height (m), static_bed_height (m; not a number before the first half second is over); over a bed in a fluid
+  // bed_height (m), static_bed_height (m; not a number before the first static_time is over); over a bed in a fluid
   // flow_depth (m), hydraulic_radius (m), and where a slope, a steering force or a moving top drives the flow
   // bed_stress (Pa), shields_number (1).
   std::vector<Figure> figures() const override;

@@ -1,11 +1,11 @@
 // The surface of what stands still, as a camera at the side of a flume sees it (Zhang et al. 2022, section 4.1): the
 // view along y is divided into pixels, and a pixel is static if one and the same grain has covered its centre at every
-// look for half a second. The surface is the upper edge of the highest static pixel of each column.
+// look for a given time. The surface is the upper edge of the highest static pixel of each column.
 //
 // The looks of one such time make a picture, then the next picture begins. A grain covers a disk with its whole radius,
 // whatever stands in front of it. Pixels that one grain has covered at all looks are kept, with the grain, at the home
-// of its id (home_by_id.hpp): a highest and a lowest pixel for each column, since a column of a common part of disks
-// has no gaps.
+// of its id (home_by_id.hpp): a highest and a lowest pixel for each column, since what disks have in common has no
+// gaps along a column.
 #pragma once
 
 #include "analysis/home_by_id.hpp"

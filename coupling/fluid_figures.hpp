@@ -23,8 +23,8 @@ void add_extremes(const lbm::FluidSurvey& survey, std::vector<Figure>& figures);
 // already, which are those after the collision.
 void add_momentum(const lbm::FluidSurvey& survey, const Vec3& force, const Units& units, std::vector<Figure>& figures);
 
-// Where the survey found the extreme value of one of these figures; where cells are broken, the first of them for any
-// name. Empty for a name that belongs to no place.
+// Where the survey found the extreme value of a figure: largest_lattice_velocity, those of add_extremes(); where cells
+// are broken, the first of them for any name. Empty for other names.
 std::optional<Place> place_in_fluid(const lbm::FluidSurvey& survey, const Units& units, const std::string& figure);
 
 }  // namespace thalweg::coupling

@@ -33,7 +33,7 @@ public:
   int exchanges() const { return static_cast<int>(columns_[15]); }
   void set_exchanges(int count) const { columns_[15] = count; }
 
-  // Lattice units. Of a clump the first two are in its first member's.
+  // Lattice units. Of a clump, owed_mass, mean_loss and wanted_return are in its first member's.
   Number& owed_mass() const { return columns_[16]; }         // to the fluid
   Number& mean_loss() const { return columns_[17]; }         // of mass a step
   Number& returned_density() const { return columns_[18]; }  // what the links return in the coming step:

@@ -54,7 +54,7 @@ public:
     double friction, inertia;  // mu_r; kg m^2, I_r
   };
   static constexpr std::size_t of_inner = std::tuple_size_v<typename Inner::History>;
-  using History = std::array<double, of_inner + 3>;  // theta, rad, behind that of the law
+  using History = std::array<double, of_inner + 3>;  // after the law's: theta, rad; of elastic spheres a theta, m rad
   static constexpr std::array history_parts = joined(Inner::history_parts, HistoryPart{"rolling", 3});
   static constexpr bool rolls = true;
 
