@@ -62,7 +62,7 @@ void TransportRate::observe(const Snapshot& snapshot) {
   measure(snapshot, bodies);
   // from may be a rounded multiple of the time step: a measurement at that very step counts.
   const bool counts = snapshot.time >= keys_.from * (1.0 - 1e-12);
-  // To see a state twice, as a run does that goes on from a checkpoint, changes nothing of the hops.
+  // A state seen twice, as when a run goes on from a checkpoint, does not change the hops.
   hops_.observe(snapshot.time, snapshot.decomposition->box(), snapshot.grains.global_count, bodies, counts);
   if (!counts || snapshot.step <= counted_step_) return;
   counted_step_ = snapshot.step;

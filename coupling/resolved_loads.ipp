@@ -51,7 +51,7 @@ void ResolvedSystem<Real, S>::keep_momentum(lbm::LinkBody& body, int plane, cons
   step_totals_.kept_angular_momentum += body.centre.cross(kept) + torque;
 }
 
-// Before anything is added that the fluid does not feel.
+// To be called before forces are added that the fluid does not feel.
 template <typename Real, GrainShape S>
 void ResolvedSystem<Real, S>::book_links(const lbm::LinkBalance& balance) {
   for (std::size_t g = 0; g < grains_->store().total(); ++g) {

@@ -16,9 +16,9 @@ namespace thalweg::dem {
 
 namespace {
 
-constexpr double growth = 1.001;  // of the radii, so that what is left of overlaps is none in truth
-constexpr double step = 0.2;      // of the way that would separate a pair; more makes crowded grains swing
-constexpr double momentum = 0.9;  // of the last move that is made again
+constexpr double growth = 1.001;  // of the radii, so that the true ones do not overlap in the end
+constexpr double step = 0.2;      // of the way that would separate a pair; more makes crowded grains oscillate
+constexpr double momentum = 0.9;  // share of the last move that is repeated
 constexpr int most_iterations = 20000;
 
 // A grain, or what it keeps clear of.
@@ -81,7 +81,7 @@ public:
     own_ = bodies_.size();
   }
 
-  // Whether none overlap after so many iterations.
+  // Whether none overlap after most_iterations at most.
   bool relax() {
     double moved = skin();
     for (int iteration = 0; iteration < most_iterations; ++iteration) {

@@ -7,7 +7,7 @@
 namespace thalweg::dem {
 namespace {
 
-// A row on its way. position: of the centre of its grain or clump, m, wrapped, by which it finds its way.
+// A row in a message. position: of the centre of its grain or clump, m, wrapped, which decides where it is sent.
 struct FileRow {
   double position[3];
   GlobalId id, clump;

@@ -192,8 +192,8 @@ bool GrainDynamics::prepare() {
 }
 
 int GrainDynamics::prepare_part() {
-  // Of the way from a fresh list to its end at twice the largest speed: as grains are slower, most parts need no list
-  // of their own.
+  // Of the way that a fresh list allows, at twice the largest speed: since grains are slower, most parts need no new
+  // list.
   constexpr double part = 0.25;
   const auto scope = timer_.measure(lists_phase_);
   const Outlook outlook = look_ahead();

@@ -19,7 +19,7 @@ struct Report {
   double x[3] = {}, speed = 0.0;
 };
 
-// Every rank's is that of the lowest id.
+// The report with the lowest id, on every rank.
 Report lowest_of(Report report, MPI_Comm communicator) {
   std::int64_t lowest = 0;
   MPI_Allreduce(&report.id, &lowest, 1, MPI_INT64_T, MPI_MIN, communicator);

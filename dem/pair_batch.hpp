@@ -70,7 +70,7 @@ public:
     for (std::size_t n = 0; n < coefficients; ++n) std::fill_n(coefficient_[n], capacity, only[n]);
   }
 
-  // near: at most `capacity`. fetch: whether to ask for grains and contacts of `ahead` pairs behind these.
+  // near: at most `capacity`. fetch: whether to prefetch grains and rows of as many of `behind`, pairs that come later.
   template <bool fetch>
   void evaluate(std::span<const NearPair> near, std::span<const NearPair> behind) {
     const int count = static_cast<int>(near.size()), rounded = (count + lanes - 1) / lanes * lanes;
@@ -160,7 +160,7 @@ private:
     }
   }
 
-  // Force on the first and turning moment per unit of lever arm on both: n x F_t, with the sign turned. Flattened: with
+  // Force on the first body, and torque per unit of lever arm on both: F_t x n. Flattened: with
   // the law inlined, however many others it is made of, the loop is vectorised.
   [[gnu::flatten]] void evaluate_lanes(int rounded) {
     const ContactLaw law = law_;

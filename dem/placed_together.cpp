@@ -18,7 +18,7 @@ struct Trial {
   Sphere sphere() const { return {Vec3(position), radius}; }
 };
 
-// Trials after which it is looked at whether grains still find places.
+// Trials after which to check whether grains still find places.
 constexpr std::int64_t trials_between_looks = 100'000;
 
 class PlacingTogether {

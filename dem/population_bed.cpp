@@ -52,7 +52,7 @@ void check_box(const Bed& bed, const PeriodicBox& box) {
   }
 }
 
-// Calls what may find that the rows of the file will not do, which then is a matter of its key.
+// Calls work(), and turns its InputError about the rows of the file into a KeyError of the file's key.
 template <typename Work>
 void about_file(Work&& work) {
   try {

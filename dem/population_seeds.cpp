@@ -56,7 +56,7 @@ void set_motion(GrainSeed& seed, const Population& population, const Vec3& veloc
   if (population.fixed || population.motion) seed.velocity = seed.angular_velocity = Vec3::Zero();
 }
 
-// A clump moves and is held as its population says a grain is; of a file it has what its members tell.
+// A clump moves and is held as its population says of a grain; from a file it has the density and motion of its rows.
 ClumpSeed clump_seed_of(const GrainSeed& as_grain, ClumpSeed clump) {
   clump.id = as_grain.id;
   clump.density = as_grain.density;

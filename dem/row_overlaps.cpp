@@ -17,7 +17,7 @@ struct PlacedRow {
   double radius, position[3];
 };
 
-// The bed cut across its longest axis, one slab a rank as long as they are as wide as two grains that touch reach.
+// The bed cut across its longest axis: one slab per rank, or fewer, so that none is narrower than `reach`.
 class Slabs {
 public:
   // reach: m, of two centres that touch. Collective.
