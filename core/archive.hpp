@@ -18,6 +18,8 @@ struct ArrayBox {
   std::vector<std::uint64_t> shape;         // of this rank's box; a zero anywhere: this rank has nothing
 };
 
+// values: those of this rank's box, slowest dimension first. Attributes are the same on every rank. Throws RunError on
+// every rank if writing fails, std::logic_error if box and values do not match.
 class ArchiveWriter {
 public:
   virtual ~ArchiveWriter() = default;

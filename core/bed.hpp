@@ -1,4 +1,4 @@
-// The grains of a run as its end left them, for another run to begin with.
+// The grains at the end of a run, from which another run can start.
 #pragma once
 
 #include "core/types.hpp"
@@ -24,7 +24,7 @@ struct Bed {
   std::array<bool, 3> periodic{};
   double time = 0.0;             // s, of the run that wrote it
   double disk_thickness = 0.0;   // m; 0: spheres
-  double fastest = 0.0;          // m/s, of all grains, where their velocities are not kept
+  double fastest = 0.0;          // m/s, speed of the fastest grain, where velocities are not kept
   std::vector<BedGrain> grains;  // in order of id; a rank has its share of them
 };
 

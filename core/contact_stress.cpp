@@ -8,7 +8,7 @@ namespace thalweg {
 
 namespace {
 
-// Of the forces that one of the source's loops visits.
+// Moments of the forces that one of the source's loops visits.
 std::vector<Mat3> moments_of(const Snapshot& snapshot,
                              void (ContactSource::*for_each)(const ContactSource::ContactVisitor&) const) {
   std::vector<Mat3> moments(snapshot.grains.id.size(), Mat3::Zero());

@@ -10,11 +10,11 @@
 
 namespace thalweg {
 
-// sum_c F_a r_b (N m; rows a, columns b) of every grain of the view, in its order; of a clump's member that of its own
+// sum_c F_a r_b (N m; rows a, columns b) of every grain of the view, in its order; for a member of a clump, of its own
 // contacts, with arms from the clump's centre. Zero without contacts.
 std::vector<Mat3> contact_moments(const Snapshot& snapshot);
 
-// The same of the lubrication forces.
+// The same for the lubrication forces.
 std::vector<Mat3> lubrication_moments(const Snapshot& snapshot);
 
 // The stress (Pa) of every grain of the view; a clump's members all have that of the clump.

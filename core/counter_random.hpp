@@ -1,4 +1,4 @@
-// Random numbers without a state: a hash of what the number is for, so that any rank draws the same one for a grain.
+// Random numbers without a state: a hash of what the number is for, so that every rank draws the same one for a grain.
 // The mixing function is SplitMix64's (Steele, Lea & Flood, OOPSLA 2014).
 #pragma once
 
@@ -6,6 +6,7 @@
 
 namespace thalweg {
 
+// SplitMix64's output for the state x.
 constexpr std::uint64_t mixed_bits(std::uint64_t x) {
   x += 0x9e3779b97f4a7c15u;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;

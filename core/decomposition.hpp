@@ -25,13 +25,13 @@ struct Block {
       if (cell[a] < lower[a] || cell[a] >= upper[a]) return false;
     return true;
   }
-  // Cells; zero where an axis is empty or turned round.
+  // Number of cells; zero where upper is not above lower on some axis.
   std::int64_t volume() const {
     std::int64_t cells = 1;
     for (const int n : size()) cells *= n > 0 ? n : 0;
     return cells;
   }
-  // Number of a cell of the block in arrays of its values: x fastest, z slowest.
+  // Index of a cell of the block in arrays over the block: x fastest, z slowest.
   std::int64_t place_of(const Index3& cell) const {
     const Index3 n = size();
     const std::int64_t row = static_cast<std::int64_t>(cell[2] - lower[2]) * n[1] + (cell[1] - lower[1]);
@@ -51,12 +51,12 @@ public:
 
   static constexpr int min_cells_per_rank = 4;
 
-  // The layout for `ranks` ranks that cuts x and y before z (a bed is alike everywhere in plan, so columns balance)
-  // and then has the smallest surface between blocks. Throws InputError if none fits.
+  // The layout for `ranks` ranks with the smallest surface between blocks, where cuts in z count 32-fold (a bed is
+  // alike everywhere in plan, so columns balance) and cuts in x fourfold. Throws InputError if none fits.
   static Index3 best_layout(const Index3& cells, int ranks);
 
-  // The same layout with cuts that share weights as evenly as whole cells allow: weights[a][k], not negative, of the
-  // cells with coordinate k along axis a. No rank gets fewer than min_cells_per_rank cells along an axis that is cut.
+  // The same layout with cuts that share weights as evenly as whole cells allow: weights[a][k] >= 0 of the cells with
+  // coordinate k along axis a. No rank gets fewer than min_cells_per_rank cells along an axis that is cut.
   Decomposition balanced(const std::array<std::vector<std::int64_t>, 3>& weights) const;
   bool operator==(const Decomposition& other) const = default;
 
@@ -75,10 +75,11 @@ public:
   // block; on a periodic axis they must have been wrapped.
   int owner_of(const Vec3& position) const;
 
-  // True if the closed box of a rank, widened by `distance` (m) on every side, holds the position or a periodic image.
+  // True if the closed box of a rank, widened by `distance` (m) on every side, holds the position or a periodic image;
+  // at a wall the outermost blocks extend without end.
   bool reaches(int rank, const Vec3& position, double distance) const;
 
-  // All ranks for which that is so, the owner among them, in ascending order.
+  // All ranks that reach the position, the owner among them, in ascending order.
   std::vector<int> ranks_reached(const Vec3& position, double distance) const;
 
 private:

@@ -1,4 +1,5 @@
-// The two ways a run can end badly, and nothing else is thrown on purpose.
+// The two ways a run can fail. Besides these, std::logic_error reports misuse by the program itself, and KeyError
+// (core/key_error.hpp) becomes an InputError before it reaches the user.
 //
 // A message is one or more whole sentences: what is wrong, where, and what would be right.
 #pragma once

@@ -2,7 +2,7 @@
 //
 // A floating-point number is turned into a 64-bit integer multiple of 2^-bits; integer addition is associative, so a
 // sum over links, threads or ranks has the same bits whatever the order. The rounding of one term is at most
-// 2^-(bits+1). Terms and sums that are too large leave a note (sum_range.hpp).
+// 2^-(bits+1). Terms and sums that are too large set a flag (sum_range.hpp).
 #pragma once
 
 #include "core/sum_range.hpp"
@@ -24,8 +24,8 @@ struct FixedPoint {
   static constexpr double rounding_shift = 0x3p51 / scale;
 
   // Rounds to the nearest multiple, ties to even. |value| * scale must be below 2^51: with rounding_shift added, the
-  // last bit of the double is worth one multiple, so that its low bits are the integer. What is larger, or no number,
-  // counts as nothing and leaves a note.
+  // last bit of the double is worth one multiple, so that its low bits are the integer. Larger values and NaN count as
+  // zero and set the flag.
   static std::int64_t from(double value) {
     if (!(std::abs(value) < largest_term)) [[unlikely]] {
       SumRange::leave();

@@ -1,5 +1,5 @@
-// Numbers at the cells of a block with layers of ghost cells around it, for looking at neighbours now and then (an
-// observer's gradients); the lattice's own halo is lbm/halo.hpp.
+// Values at the cells of a block and in layers of ghost cells around it, for occasional use (an observer's gradients);
+// the lattice's own halo is lbm/halo.hpp.
 #pragma once
 
 #include "core/decomposition.hpp"
@@ -13,8 +13,8 @@ namespace thalweg {
 
 class GhostedField {
 public:
-  // Everything starts at zero. width: layers of ghosts; at most Decomposition::min_cells_per_rank. The decomposition
-  // must outlive the field.
+  // All values start at zero. components: values a cell; width: layers of ghosts, at most
+  // Decomposition::min_cells_per_rank. The decomposition must outlive the field.
   GhostedField(const Decomposition& decomposition, MPI_Comm communicator, int components, int width);
 
   const Index3& size() const { return size_; }  // owned cells

@@ -1,5 +1,5 @@
-// A value of the user's that cannot be run, named by its key. Whoever read the keys adds file, line and value and
-// throws InputError (core/error.hpp).
+// An unusable value in the user's case, named by its key. The reader of the keys adds file, line and value and throws
+// InputError (core/error.hpp).
 #pragma once
 
 #include <stdexcept>
@@ -9,7 +9,7 @@
 namespace thalweg {
 
 struct KeyError : std::runtime_error {
-  // key: from the section that was checked on, "points.0"; empty: the section itself. remedy: "... ; give ...".
+  // key: relative to the section checked, e.g. "points.0"; empty: the section itself. remedy: "... ; give ...".
   KeyError(std::string key_path, const std::string& remedy) : std::runtime_error(remedy), key(std::move(key_path)) {}
   std::string key;
 };

@@ -12,8 +12,8 @@ struct Tags {
   int counts, rows;
 };
 
-// Two pairs in turn: a rank that has left one exchange may already send for the next while another has yet to see that
-// the first is over, but never two ahead, since that takes everybody's barrier.
+// Two pairs used in turn: a rank that has left one exchange may already send for the next while another has yet to see
+// that the first is over. It cannot be two ahead, since the barrier between needs every rank.
 Tags tags_of_exchange(MPI_Comm communicator) {
   static int keyval = [] {
     int created = MPI_KEYVAL_INVALID;
@@ -42,7 +42,7 @@ MPI_Datatype bytes_of(std::size_t row_size) {
   return row;
 }
 
-// Of parcels in the order of ranks, the first to this rank or a higher one.
+// The first parcel for this rank or a higher one; parcels are in order of rank.
 std::vector<Parcel>::iterator first_from(int rank, std::vector<Parcel>& parcels) {
   return std::lower_bound(parcels.begin(), parcels.end(), rank,
                           [](const Parcel& parcel, int wanted) { return parcel.rank < wanted; });
@@ -54,11 +54,11 @@ std::vector<Parcel> announced(MPI_Comm communicator, int tag, const std::vector<
   std::vector<MPI_Request> sends(parcels.size());
   for (std::size_t n = 0; n < parcels.size(); ++n) {
     counts[n] = parcels[n].count;
-    // Complete only when the receiver has it, which is what the barrier below has to know.
+    // Synchronous: complete only once received, which is what the barrier below relies on.
     MPI_Issend(&counts[n], 1, MPI_UINT64_T, parcels[n].rank, tag, communicator, &sends[n]);
   }
 
-  // A rank whose messages have all been received enters the barrier; when everybody has, nothing is on its way.
+  // A rank whose messages have all been received enters the barrier; once all have, no message is under way.
   std::vector<Parcel> senders;
   MPI_Request barrier = MPI_REQUEST_NULL;
   for (int over = 0; !over;) {

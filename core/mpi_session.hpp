@@ -27,7 +27,7 @@ void flush_denormals_to_zero();
 int rank_of(MPI_Comm communicator);
 int size_of(MPI_Comm communicator);
 
-double sum_over_ranks(MPI_Comm communicator, double value);  // order of ranks: for timings, not for results
+double sum_over_ranks(MPI_Comm communicator, double value);  // rounding depends on the ranks: not for results
 std::int64_t sum_over_ranks(MPI_Comm communicator, std::int64_t value);
 double max_over_ranks(MPI_Comm communicator, double value);
 bool any_rank(MPI_Comm communicator, bool value);
@@ -38,7 +38,7 @@ bool any_rank(MPI_Comm communicator, bool value);
 template <typename Row>
 std::vector<Row> exchange_rows(MPI_Comm communicator, const std::vector<Row>& rows,
                                const std::vector<int>& destination);
-// The same, where the rows are not needed any more: they are gone before others arrive.
+// The same, but frees the rows before those of others arrive.
 template <typename Row>
 std::vector<Row> exchange_rows(MPI_Comm communicator, std::vector<Row>&& rows, const std::vector<int>& destination);
 
@@ -50,16 +50,15 @@ struct Parcel {
   std::size_t first = 0, count = 0;  // in the rows packed by receiver
 };
 
-// The parcels of rows with these destinations, in the order of the ranks, where each begins, and empty as yet.
+// One parcel for each rank among the destinations, in order of rank: where it begins, and a count of zero.
 std::vector<Parcel> parcels_to(const std::vector<int>& destination);
 
-// The one to a rank; there must be one.
+// The parcel for a rank; there must be one.
 Parcel& parcel_to(int rank, std::vector<Parcel>& parcels);
 
 // Sends the parcels of the rows at `packed`; writes all that arrives, in the order of the senders' ranks, to
-// place(count) with the number of rows. row_size: bytes. Collective. Who sends to whom is found out by messages between
-// those that do: T. Hoefler, C. Siebert, A. Lumsdaine, Scalable communication protocols for dynamic sparse data
-// exchange, PPoPP 2010.
+// place(count) with the number of rows. row_size: bytes. Collective. Receivers need not know their senders beforehand:
+// T. Hoefler, C. Siebert, A. Lumsdaine, Scalable communication protocols for dynamic sparse data exchange, PPoPP 2010.
 void exchange_parcels(MPI_Comm communicator, const std::vector<Parcel>& parcels, const void* packed,
                       std::size_t row_size, const std::function<void*(std::size_t)>& place);
 

@@ -14,11 +14,11 @@
 namespace thalweg {
 
 // terms: rows of `columns` values, one row a grain owned here (columns of a row together). Returns one sum a column,
-// the same on every rank; not-a-number for a column that holds a term which is not finite. Collective.
+// the same on every rank; NaN for a column that holds a term which is not finite. Collective.
 std::vector<double> order_free_sums(MPI_Comm communicator, std::span<const double> terms, std::size_t columns);
 
-// The same for rows that each belong to one of `bins` bins, and may lie in any number on any rank: `columns` sums a
-// bin, bin by bin.
+// The same by bins: row r, of any number on any rank, belongs to bin bin_of_row[r] in [0, bins). Returns `columns` sums
+// for each bin, bin by bin.
 std::vector<double> order_free_sums_by_bin(MPI_Comm communicator, std::span<const int> bin_of_row, int bins,
                                            std::span<const double> terms, std::size_t columns);
 

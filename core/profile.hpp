@@ -1,4 +1,4 @@
-// A measured array with its unit: what an observer shows that is more than a number.
+// A measured array with its unit: what an observer reports besides single figures.
 #pragma once
 
 #include <cstdint>

@@ -6,9 +6,9 @@
 namespace thalweg {
 
 // The mean of s over the time from `from` to the later `to`, in the unit of the duration T. With S(x) = x^3 - x^4/2 the
-// integral of s, it is [S(b) - S(a)]/(b - a) written out, so that a step far shorter than T costs no digits. What a
-// force gives in steps that follow each other is so the integral of the ramp, whatever the step. The time zero lies
-// between two steps; a duration of 0 is a jump there.
+// integral of s, it is [S(b) - S(a)]/(b - a) written out, so that a step far shorter than T costs no digits. Over
+// consecutive steps of any length a force thus gives the integral of the ramp. Time zero falls between two steps; a
+// duration of 0 is a jump there.
 inline double ramp_mean(double from, double to, double duration) {
   if (to <= 0.0) return 0.0;
   if (from >= duration) return 1.0;

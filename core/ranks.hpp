@@ -1,4 +1,4 @@
-// Processes that do something together: the ranks of a communicator, or one process alone, perhaps without MPI.
+// Processes that work together: the ranks of a communicator, or one process alone, perhaps without MPI.
 #pragma once
 
 #include "core/mpi_session.hpp"
@@ -13,7 +13,7 @@
 
 namespace thalweg {
 
-// Collective: everything but alone(), count(), number() and share_of().
+// Collective: everything but alone(), count(), number(), communicator() and share_of().
 class Ranks {
 public:
   Ranks() = default;                                                      // this process alone
@@ -24,7 +24,7 @@ public:
   int number() const { return alone() ? 0 : rank_of(communicator_); }
   MPI_Comm communicator() const { return communicator_; }
 
-  // Of rows numbered from 0 on, an even share; and those that this rank holds after those of lower ranks.
+  // This rank's even share of rows numbered from 0; and the range of the rows it holds, numbered in order of rank.
   RowRange share_of(std::int64_t rows) const { return {rows, count(), number()}; }
   RowRange range_of(std::int64_t held) const {
     return alone() ? RowRange(held, 1, 0) : RowRange::of_rows(held, communicator_);
@@ -34,10 +34,10 @@ public:
   double largest(double value) const { return alone() ? value : max_over_ranks(communicator_, value); }
   double smallest(double value) const { return -largest(-value); }
 
-  // As on_all_ranks(); of a process alone the error stays what it is.
+  // As on_all_ranks(); a process alone throws the original error.
   void on_all(const std::function<void()>& work) const { alone() ? work() : on_all_ranks(communicator_, work); }
 
-  // The rows of all ranks, one rank's after the other's, on every rank. Rows are trivially copyable.
+  // The rows of all ranks, in order of rank, on every rank. Rows are trivially copyable.
   template <typename Row>
   std::vector<Row> gathered(std::vector<Row> mine) const;
 
@@ -47,8 +47,8 @@ public:
     return alone() ? std::move(rows) : exchange_rows(communicator_, std::move(rows), home);
   }
 
-  // What add(state) makes of it on one rank after the other, from rank 0 on; the last, on every rank. For sums in the
-  // order of the rows, with the bits that one process alone would find: it takes as long as that one would.
+  // Passes `state` from rank to rank, from rank 0 on, each calling add(state); returns the last one on every rank. For
+  // sums in the order of the rows with the bits that one process alone would give; it takes as long as that one would.
   template <typename State>
   State passed_on(State state, const std::function<void(State&)>& add) const;
 

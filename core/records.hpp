@@ -18,7 +18,7 @@ struct WholeNumbers {
 };
 
 struct Event {
-  std::string name;  // of its group, unlike that of any other
+  std::string name;  // of its group; unique
   double time;       // s
   std::vector<Figure> figures;
   std::vector<WholeNumbers> numbers;

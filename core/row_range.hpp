@@ -13,7 +13,7 @@ struct RowRange {
   RowRange(std::int64_t rows, int ranks, int rank)
       : count(rows), first(rows * rank / ranks), last(rows * (rank + 1) / ranks) {}
 
-  // Rows that this rank holds one after the other of all ranks' rows. Collective.
+  // The range of the rows that this rank holds, all ranks' rows being numbered in order of rank. Collective.
   static RowRange of_rows(std::int64_t rows, MPI_Comm communicator) {
     RowRange share(sum_over_ranks(communicator, rows), 1, 0);
     MPI_Scan(&rows, &share.last, 1, MPI_INT64_T, MPI_SUM, communicator);
@@ -37,7 +37,7 @@ struct RowRange {
   std::int64_t count, first, last;
 };
 
-// The rank in whose share a row falls.
+// The rank in whose even share of `count` rows a row falls.
 inline int rank_of_row(std::int64_t row, std::int64_t count, int ranks) {
   auto rank = static_cast<int>(row * ranks / count);
   while (row >= count * (rank + 1) / ranks) ++rank;

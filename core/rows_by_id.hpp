@@ -1,5 +1,5 @@
-// The rows of all grains in the order of their ids, shared out among the ranks: for files that do not depend on the
-// number of ranks and that no rank holds all of.
+// The rows of all grains in order of id, shared out among the ranks: for files that do not depend on the number of
+// ranks and that no rank holds as a whole.
 #pragma once
 
 #include "core/row_range.hpp"
@@ -10,7 +10,7 @@
 
 namespace thalweg {
 
-// Blocks of so many rows each (the last may be shorter), shared out evenly among the ranks, as a range of rows.
+// Rows in blocks of rows_per_block (the last may be shorter); whole blocks are shared evenly among the ranks.
 class BlockShare {
 public:
   BlockShare(std::int64_t rows, std::int64_t rows_per_block, int ranks)

@@ -96,7 +96,7 @@ public:
     value = choices[index].value;
   }
 
-  // With the words that the enumeration has everywhere.
+  // With the enumeration's own words, choices_of().
   template <typename Choice>
   void choice(const std::string& key, Choice& value, const SectionKey& about) {
     choice(key, value, choices_of(value), about);

@@ -1,10 +1,10 @@
 // The shape of a body, as the coupling of fluid and bodies asks for it: what is inside, where a lattice link enters,
-// how far it reaches. A shape is a value of a few numbers with pure functions of a point, which is given from the
-// body's centre; lengths are in whatever unit the shape was given in. Whoever uses one is a template, so that nothing
-// is decided in the inner loops.
+// how far it reaches. A shape is a value of a few numbers with pure functions of a point, relative to the body's
+// centre; lengths are in whatever unit the shape was given in. Code that uses a shape is a template, so that nothing is
+// dispatched in the inner loops.
 //
 //   S::of_grain(r)               the shape of the grain whose radius is r
-//   reach()                      of the sphere about the centre that holds the body
+//   reach()                      radius of a sphere about the centre that holds the body
 //   volume()
 //   chord(y, z)                  the line along x at (y, z): where missed() it holds nothing of the inside, else
 //                                holds(x) says whether (x, y, z) is strictly inside

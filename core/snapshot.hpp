@@ -25,8 +25,8 @@ struct ClumpState {
 };
 
 // The grains this rank owns, in no particular order. Every span has one entry a grain. Members of clumps are among them
-// as spheres that move with it, but their mass is the whole clump's: what is summed over grains takes is_member() out
-// and `clumps` in.
+// as spheres that move with it, but their mass is the whole clump's: sums over grains leave out members (is_member())
+// and add `clumps`.
 struct GrainView {
   std::int64_t global_count = 0;  // over all ranks
   double disk_thickness = 0.0;    // m; 0: spheres
@@ -47,8 +47,8 @@ struct GrainView {
   std::vector<ClumpState> clumps;                  // owned by this rank as are their members, in order of id
   bool is_member(std::size_t grain) const { return !clump.empty() && clump[grain] >= 0; }
   std::int64_t body_count() const { return global_count - member_count + clump_count; }  // a clump counts once
-  // What of a grain is held, so that no force changes it: the sum of 1 (its velocity) and 2 (its angular velocity), of
-  // a member that of its clump; other bits are without meaning here. Empty: everything is free.
+  // The motion of a grain, or of a member's clump, that is held, so that no force changes it: the sum of 1 (velocity)
+  // and 2 (angular velocity). Higher bits have no meaning here. Empty: everything is free.
   std::span<const std::uint8_t> motion;
   int held(std::size_t grain) const { return motion.empty() ? 0 : motion[grain] & 3; }
   std::span<const Mat3> fluid_stress;  // Pa, of the fluid on the grain: sum F_a x_b over the surface, over the volume
@@ -99,13 +99,13 @@ public:
     Vec3 body_force = Vec3::Zero();  // N/m^3, on every cell
     Vec3 on_top = Vec3::Zero();      // N, of the fluid on the whole face z_high, without the reference pressure
   };
-  // What drives the fluid and what the upper face takes from it, in the step to come. Collective, the same bits on any
-  // ranks.
+  // What drives the fluid, and its force on the upper face, in the next step. Collective; the same bits on any number
+  // of ranks.
   virtual Drive drive() const { return {}; }
 };
 
-// What a plane of cells carries of momentum through itself (docs/theory.md, section 5, "Momentum balance by layers"):
-// sums over its fluid cells.
+// The momentum flux through a plane of cells (docs/theory.md, section 5, "Momentum balance by layers"): sums over its
+// fluid cells.
 struct PlaneMomentum {
   std::int64_t cells = 0;
   double density = 0.0;                        // kg/m^3
@@ -114,8 +114,8 @@ struct PlaneMomentum {
   std::array<double, 6> viscous{}, subgrid{};  // Pa, without the pressure
 };
 
-// The momentum of a fluid among grains in one step: who carries it, who gives it and who takes it, over the whole
-// domain. The same bits on every rank, and on any ranks.
+// The momentum budget of a fluid among grains in one step, over the whole domain: fluxes, sources and sinks. The same
+// bits on every rank, and on any number of ranks.
 struct MomentumBook {
   std::vector<PlaneMomentum> planes;  // of cells, from the floor
   std::vector<Vec3> on_grains;        // N, by height: entry h lies h half cells above the floor, h = 0 .. 2 n_z
@@ -138,20 +138,20 @@ public:
   virtual ~ContactSource() = default;
 
   // Calls visit(grain, arm, force) for every contact of every grain of the GrainView (its number there), in the order
-  // of its neighbours' ids, then of its walls: m from its centre to the contact, N on the grain. A contact of two
-  // grains comes up once for each of them.
+  // of its neighbours' ids, then of its walls: m from its centre (of a clump's member, the clump's) to the contact, N
+  // on the grain. A contact of two grains comes up once for each of them.
   using ContactVisitor = std::function<void(std::size_t, const Vec3&, const Vec3&)>;
   virtual void for_each_contact(const ContactVisitor& visit) const = 0;
 
-  // The same of the forces between near surfaces that the cells of the fluid do not resolve.
+  // The same for lubrication: forces between near surfaces that the fluid's cells do not resolve.
   virtual void for_each_lubrication(const ContactVisitor& /*visit*/) const {}
 
-  // Contacts of some grains (chosen[n] != 0 for number n of the GrainView) and with their partners, arms always from
-  // their own centre; of the other grains' contacts nothing is calculated.
+  // Contacts of the chosen grains (chosen[n] != 0 for number n of the GrainView) with their partners. Arms are from the
+  // grain's own centre, even for a member of a clump. Contacts of other grains are not computed.
   using ContactEndVisitor = std::function<void(std::size_t, const ContactEnd&)>;
   virtual void for_each_contact_of(std::span<const char> chosen, const ContactEndVisitor& visit) const = 0;
 
-  // The forces of walls on all grains of the view: of contacts, and between near surfaces.
+  // The forces of walls on all grains of the view: contacts, then lubrication.
   virtual void for_each_wall_force(const ContactEndVisitor& /*visit*/) const {}
 };
 
@@ -162,7 +162,7 @@ struct Snapshot {
   GrainView grains;                         // global_count 0: no grains
   const FluidSource* fluid = nullptr;       // null: no fluid
   const ContactSource* contacts = nullptr;  // null: no grains
-  const MomentumBook* momentum = nullptr;   // of the last step; null unless it was booked (System::book_momentum)
+  const MomentumBook* momentum = nullptr;   // of the last step; null unless requested (System::book_momentum)
 };
 
 }  // namespace thalweg

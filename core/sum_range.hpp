@@ -1,6 +1,5 @@
-// Whether the exact sums of this process (fixed_point.hpp) have stayed within their range. A term or a sum that has not
-// leaves a note, and the time loop ends the run before anything of such a state is written: no number ever wraps
-// unseen.
+// Whether the exact sums of this process (fixed_point.hpp) have stayed within their range. A term or sum beyond it sets
+// a flag, and the time loop ends the run before anything of such a state is written: no overflow goes unnoticed.
 #pragma once
 
 #include <cstdint>
@@ -17,6 +16,7 @@ private:
   static inline bool left_ = false;
 };
 
+// a + b; on overflow it wraps around and sets the flag.
 inline std::int64_t exact_sum(std::int64_t a, std::int64_t b) {
   std::int64_t sum = 0;
   if (__builtin_add_overflow(a, b, &sum)) [[unlikely]]
@@ -24,6 +24,7 @@ inline std::int64_t exact_sum(std::int64_t a, std::int64_t b) {
   return sum;
 }
 
+// a b, likewise.
 inline std::int64_t exact_product(std::int64_t a, std::int64_t b) {
   std::int64_t product = 0;
   if (__builtin_mul_overflow(a, b, &product)) [[unlikely]]

@@ -24,7 +24,7 @@ struct Figure {
   double value;
 };
 
-// What means are before anything has been measured: not a number, which is null in JSON.
+// Sets all values to NaN (null in JSON), as means are before anything has been measured.
 inline void forget_values(std::vector<Figure>& figures) {
   for (Figure& figure : figures) figure.value = std::numeric_limits<double>::quiet_NaN();
 }
@@ -41,8 +41,8 @@ public:
   virtual ~System() = default;
 
   virtual void advance() = 0;  // one (fluid) step. Throws RunError.
-  // The step to come books its momentum for its snapshot. Collective; changes no bit. A system without a fluid and
-  // grains has none to book.
+  // The next step records its momentum budget for its snapshot. Collective; does not change the state. A system without
+  // fluid and grains has none to record.
   virtual void book_momentum() {}
   virtual std::int64_t step() const = 0;                                     // steps done since the start of the run
   virtual double time_step() const = 0;                                      // s
@@ -51,23 +51,23 @@ public:
   virtual Snapshot snapshot() const = 0;            // valid until the next advance()
   virtual std::vector<Figure> figures() const = 0;  // state of health; collective, the same on every rank
 
-  // The state as arrays, for profiles.h5, where it is one of them; the same on every rank.
+  // The state as arrays for profiles.h5, where it consists of some; the same on every rank.
   virtual std::vector<Profile> profiles() const { return {}; }
 
-  // Where the figure of that name, one of figures(), has its value; empty where it belongs to no place. Collective, the
-  // same on every rank; may cost as much as figures().
+  // Where the figure of that name, one of figures(), takes its value; empty where it belongs to no place. Collective,
+  // the same on every rank; may cost as much as figures().
   virtual std::optional<Place> place_of(const std::string&) const { return std::nullopt; }
 
   virtual void save(ArchiveWriter& archive) const = 0;  // everything the next step depends on; collective
-  virtual void load(ArchiveReader& archive) = 0;        // collective
+  virtual void load(ArchiveReader& archive) = 0;        // throws InputError where it does not fit; collective
   // Takes the fluid alone from the state of another run in the same box, whose cells had the size `spacing` (m), as an
   // initial state. Throws InputError where it does not fit, or there is no fluid; collective.
   virtual void take_fluid(ArchiveReader&, double /*spacing*/) {
     throw InputError("this system has no fluid that could be taken over.");
   }
 
-  // The same of the grains alone, with their contact springs, of a run that has as many; velocities are kept, the time
-  // is not. To be called before take_fluid().
+  // The same for the grains alone, with their contact springs, from a run with as many grains; velocities are kept, the
+  // time is not. To be called before take_fluid().
   virtual void take_grains(ArchiveReader&, double /*spacing*/) {
     throw InputError("this system has no grains that could be taken over.");
   }

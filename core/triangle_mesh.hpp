@@ -10,7 +10,7 @@
 namespace thalweg {
 
 struct TriangleMesh {
-  std::vector<Vec3> points;
+  std::vector<Vec3> points;                   // in the caller's unit of length
   std::vector<std::array<int, 3>> triangles;  // indices of points, anticlockwise seen from outside
 };
 
@@ -18,7 +18,7 @@ struct TriangleMesh {
 // if nothing does: every edge joins two triangles that agree on which side is out.
 std::string what_is_open(const TriangleMesh& mesh);
 
-// Of a closed mesh; negative where the triangles are wound clockwise.
+// Volume of a closed mesh, in its unit of length cubed; negative where the triangles are wound clockwise.
 double signed_volume(const TriangleMesh& mesh);
 
 // Winds all triangles of a closed mesh the other way round.

@@ -9,7 +9,7 @@
 namespace thalweg {
 
 struct WideSum {
-  std::int64_t high = 0;  // value = high 2^64 + low, low taken without sign
+  std::int64_t high = 0;  // value = high 2^64 + low, with low read as unsigned
   std::int64_t low = 0;
 
   void add(std::int64_t value) { add(WideSum{value < 0 ? -1 : 0, value}); }
@@ -31,7 +31,7 @@ struct WideSum {
            std::ldexp(static_cast<double>(static_cast<std::uint64_t>(low)), -fraction_bits);
   }
 
-  // In 64 bits; where they are too few a note is left (sum_range.hpp).
+  // In 64 bits; sets the flag of sum_range.hpp where they are too few.
   std::int64_t narrowed() const {
     if (high != (low < 0 ? -1 : 0)) SumRange::leave();
     return low;
