@@ -8,16 +8,16 @@
 // beyond a wall, the population that the wall returns to x_f stands in.
 //
 // Force on the body per step: the Galilean-invariant exchange of Wen et al. 2014, sum (c_i - u_w) f_i^c - (c_i' - u_w)
-// f_i', or the classical one of Mei et al. 2002, sum c_i (f_i^c + f_i'). Populations count less w_i times a reference
-// density, so that touching bodies feel no false attraction from the cells they hide from each other.
+// f_i', or the classical one of Mei et al. 2002, sum c_i (f_i^c + f_i'). w_i times a reference density is subtracted
+// from populations, so that touching bodies feel no false attraction from the cells they hide from each other.
 //
-// Mass: a link takes f_i^c and gives f_i', which is not the same. What a body's links have taken more than given comes
-// back in the next steps as w_i (a + b.c_i) on top of f_i', with LinkBody's a and b.
+// Mass: a link takes f_i^c and gives f_i', which differ. The surplus that a body's links have taken is returned in the
+// next steps as w_i (a + b.c_i) on top of f_i', with LinkBody's a and b.
 //
-// Enclosed cells: a cell whose neighbours are all covered (near a contact, one in a few hundred grains from ten cells a
-// diameter on) can pass nothing on, and would add up whatever its links give it too much or too little, without bound.
-// The gaps around it are too narrow for the cells, but they would hold its pressure at that outside. Its links
-// therefore take w_i (rho - rho_rest), two thirds of its excess in a step, and owe it like all else that they take.
+// Enclosed cells: a cell whose neighbours are all covered (near a contact; with ten or more cells a diameter, one in a
+// few hundred grains) can pass nothing on, and any surplus or deficit from its links would add up without bound. Actual
+// gaps around it, too narrow for the cells, would keep its pressure at that outside. Its links therefore take w_i (rho
+// - rho_rest), two thirds of its excess in a step, and owe it like all else that they take.
 #pragma once
 
 #include "core/periodic_box.hpp"
@@ -40,8 +40,8 @@
 
 namespace thalweg::lbm {
 
-// Where the mass comes from that links give to the fluid (LatticeFixed sums over a rank's links in one step), by what
-// the rule reads besides f_i^c(x_f). The rest of LinkBody::mass is what is returned and what enclosed cells lose.
+// Sources of the mass that links give to the fluid (LatticeFixed sums over a rank's links in one step), by what the
+// rule reads besides f_i^c(x_f). The rest of LinkBody::mass is what is returned and what enclosed cells lose.
 struct LinkBalance {
   std::int64_t upstream = 0;     // f_i^c(x_ff): Bouzidi's rule below a half, cli
   std::int64_t same_cell = 0;    // f_i'^c(x_f): Bouzidi's rule from a half on
@@ -56,24 +56,22 @@ template <typename S>
 concept LinkShape = Shape<S> || std::same_as<S, StoredCrossings>;
 
 // Applies the links of one step, tile by tile. For every link it writes the population that the sweep will take from
-// the solid side, and adds the momentum to bodies[...].force and torque (which the caller has cleared). Walls and halo
-// must be done. The map of the cells holds slots of bodies. box: the domain in cells, for the minimum image between
-// bodies. shapes: of the bodies, all of one kind; empty where crossings are stored. Whatever is handed over must
-// outlive the pass.
+// the solid side, and adds the momentum to bodies[...].force and torque (which the caller has cleared). Halo and walls
+// must be up to date. The cell map holds indices into `bodies`. box: the domain in cells, for the minimum image between
+// bodies. shapes: of the bodies, all of one kind; empty where crossings are stored. All of these must outlive the pass.
 //
 // The links of a row read what cells of the rows around it sent out, so they must be applied before any of these rows
-// is swept; Fluid::stream_and_collide(before_tile) does so while the tile is still in the cache. Tiles in order.
+// is swept; Fluid::stream_and_collide(before_tile) does so while the tile is still in the cache. Apply tiles in order.
 //
-// Links go through in batches, each of several bodies: prepare() finds what they read and write and asks the cache for
-// it, and finish(), one batch later, does the exchange. Meanwhile the populations of the plane after the next are asked
-// for.
+// Links are processed in batches, each of several bodies: prepare() finds and prefetches what they read and write, and
+// finish(), one batch later, does the exchange. Meanwhile the populations two planes ahead are prefetched.
 //
 // moments: where given, one for each body, to which sum F_a x_b is added, F the momentum of a link and x its arm; the
-// torque is its antisymmetric part. balance: where given (with moments), what the mass is made of is added to it.
+// torque is its antisymmetric part. balance: where given (with moments), the sources of the mass are added to it.
 // by_height: where given, 2 n_z + 1 sums for the n_z planes of this rank, to which the force of every link is added at
 // the height half a link from its fluid cell: entry h lies h half cells above the block's lower face.
 //
-// The bodies of the members are in bouzidi.ipp, which a file includes that instantiates them for a new shape.
+// The members are defined in bouzidi.ipp, to be included where they are instantiated for a new shape.
 template <typename Real, LinkShape S = StoredCrossings>
 class LinkPass {
 public:

@@ -1,4 +1,4 @@
-// Template bodies of bouzidi.hpp. Included where the links of a shape are instantiated: in bouzidi.cpp those with
+// Template definitions of bouzidi.hpp. Included where the links of a shape are instantiated: in bouzidi.cpp those with
 // stored crossings. Name such a file to thalweg_links() (cmake/compiler.cmake).
 #pragma once
 
@@ -269,7 +269,7 @@ void LinkPass<Real, S>::look_at_covered(const Batch& b) {
   upstream_.find_populations(options_.rest_gradient);
   for (int c = 0; c < b.covered_count; ++c) {
     const int k = b.covered[c];
-    // Without a branch: which it is cannot be foreseen.
+    // Without a branch, which would be unpredictable.
     const Real either[2] = {values_.second[k], static_cast<Real>(upstream_.population(c))};
     values_.second[k] = either[static_cast<int>(b.distance[k] < Real(0.5))];
   }

@@ -8,8 +8,7 @@
 
 namespace thalweg::lbm {
 
-// How far bodies shut a cell of fluid off from the rest: on how many of the nine lines along c_i it has fluid beside
-// it.
+// How far bodies shut a fluid cell off from the rest: on how many of the nine lines along c_i it has a fluid neighbour.
 enum class Confinement : std::uint8_t {
   open,     // on two or more
   pocket,   // on one
@@ -24,7 +23,7 @@ class CellMap {
 public:
   static constexpr std::int32_t fluid = -1;  // any other value: the id of the covering body
 
-  // So many entries of bodies() beyond the last cell can be read, by vectors that begin at a cell.
+  // Entries of bodies() that can be read beyond the last cell, by vectors that begin at a cell.
   static constexpr std::size_t read_beyond = 16;
 
   explicit CellMap(const CellIndexing& indexing)

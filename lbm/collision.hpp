@@ -6,25 +6,23 @@
 //   f_i^eq = w_i {d + rho [3 c_i.u + 9/2 (c_i.u)^2 - 3/2 u.u]},  S_i = w_i [3 (c_i - u).F + 9 (c_i.u)(c_i.F)]
 //   tau = [tau_0 + sqrt(tau_0^2 + 18 sqrt(2) C_s^2 Q/rho)]/2,  Q = sqrt(Pi_ab Pi_ab),               (Hou et al. 1994)
 //   Pi_ab = sum c_ia c_ib (f_i - f_i^eq) + (u_a F_b + u_b F_a)/2,   S_ab = -3/(2 rho tau) Pi_ab.
-// The force term in Pi makes S exact to the order of the Chapman-Enskog expansion; C_s counts in cell sizes. Written
-// out,
+// The force term in Pi makes S exact to the order of the Chapman-Enskog expansion; C_s is in cell sizes. Written out,
 //   Pi_ab = sum c_ia c_ib f_i - d/3 delta_ab - (m_a m_b - F_a F_b/4)/rho.
 //
 // With omega = 1/tau:
 //   bgk          f_i^c = f_i - omega (f_i - f_i^eq) + (1 - omega/2) S_i                               (Guo et al. 2002)
 //   trt          the same for the even part (f_i + f_i')/2; the odd part (f_i - f_i')/2 relaxes with omega', where
-//                (1/omega - 1/2)(1/omega' - 1/2) = magic parameter                                  (Ginzburg et al.
-//                2008)
+//                (1/omega - 1/2)(1/omega' - 1/2) = magic parameter                           (Ginzburg et al. 2008)
 //   regularised  bgk after f_i - f_i^eq has been replaced by its projection on Hermite polynomials up to second order,
-//                w_i [-3/2 c_i.F + 9/2 (c_ia c_ib - delta_ab/3) sum_j c_ja c_jb (f_j - f_j^eq)]     (Latt and Chopard
-//                2006; the first-order term is the half force, without which momentum would be lost)
+//                w_i [-3/2 c_i.F + 9/2 (c_ia c_ib - delta_ab/3) sum_j c_ja c_jb (f_j - f_j^eq)]
+//                (Latt and Chopard 2006; the first-order term is the half force, without which momentum would be lost)
 //
 // With a bulk relaxation time tau_b the trace of the second moment relaxes with omega_b = 1/tau_b in place of omega, in
 // all three (d'Humieres et al. 2002 relax it as a moment of its own). The collisions above leave (1 - omega) tr Pi +
 // u.F of it, so that the difference, force term included, is
 //   f_i^c += 3/2 w_i (c_i.c_i - 1) K,  K = (omega - omega_b) tr Pi:   -K/2 at rest, 0 on axes, K/24 on diagonals,
 // which carries neither mass nor momentum. The fluid then has the bulk viscosity zeta = 2/9 (tau_b - 1/2), and the
-// subgrid model takes for Q the norm of the traceless part of Pi, since a trace that lives long says nothing of shear.
+// subgrid model takes for Q the norm of the traceless part of Pi, since a slowly decaying trace is no sign of shear.
 #pragma once
 
 #include "lbm/collision_parameters.hpp"
@@ -46,7 +44,7 @@ struct Symmetric {
     const Number third = pack_constant<Number>(1.0 / 3.0) * trace();
     return {xx - third, yy - third, zz - third, xy, xz, yz};
   }
-  // The sum over all nine components squared.
+  // The sum of the squares of all nine components.
   [[gnu::always_inline]] Number squared() const {
     return (xx * xx + yy * yy + zz * zz) + pack_constant<Number>(2) * (xy * xy + xz * xz + yz * yz);
   }

@@ -22,7 +22,7 @@ struct CollisionParameters {
 
   bool with_bulk() const { return bulk_relaxation_time > 0.0; }
 
-  // Of the odd part, without eddies; 1 in the regularised model, which puts all of it but the momentum into
+  // omega' of the odd part, without eddies; 1 in the regularised model, which puts all of it but the momentum into
   // equilibrium.
   double odd_rate() const {
     if (model == CollisionModel::regularised) return 1.0;

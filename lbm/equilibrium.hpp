@@ -1,4 +1,4 @@
-// Equilibrium populations in deviation form (the whole library stores f_i - w_i):
+// Equilibrium populations (Qian, d'Humieres and Lallemand 1992) in deviation form (the whole library stores f_i - w_i):
 //   f_i^eq - w_i = w_i { d + rho [ 3 c_i.u + (9/2)(c_i.u)^2 - (3/2) u.u ] },   rho = 1 + d.
 #pragma once
 

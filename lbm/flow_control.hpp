@@ -1,6 +1,6 @@
 // A body force that holds a target mean velocity, in place of a given force.
 //
-// With e = target - mean of rho u over the fluid cells, T the response time and k the interval between looks:
+// With e = target - mean of rho u over the fluid cells, T the response time and k the interval between updates:
 //   integral += k e,   F = e/T + integral/(4 T^2).
 // On fluid that answers a force by du/dt = F this is the critically damped oscillator e'' + e'/T + e/(4 T^2) = 0;
 // whatever resists the flow is taken up by the integral, so that e vanishes in a steady state. With a drag F = -l u
@@ -26,7 +26,7 @@ public:
   explicit FlowControl(const FlowTarget& target);
 
   const FlowTarget& target() const { return target_; }
-  double force() const { return force_; }
+  double force() const { return force_; }  // density of the force along the axis, lattice units
 
   // True once in every interval of steps; call it once a step.
   bool due() { return countdown_-- <= 0; }

@@ -18,8 +18,8 @@ namespace thalweg::lbm {
 // Rows a, columns b: du_a/dx_b.
 using Gradient = Eigen::Matrix3d;
 
-// Velocity and whether it is fluid, of the cells of a region (global coordinates) and those up to two cells from it,
-// which one-sided differences need, also across the borders of ranks and periodic ones; zero elsewhere. Collective.
+// Velocity (three components) and a flag, 1 in fluid, of the cells of a region (global coordinates) and up to two cells
+// from it, which one-sided differences need, also across ranks and periodic faces; zero elsewhere. Collective.
 template <typename Real>
 GhostedField velocity_field(const Fluid<Real>& fluid, const Block& region);
 
@@ -34,15 +34,14 @@ struct SubgridState {
   double eddy_viscosity = 0.0;
 };
 
-// What a cell carries of momentum through itself, the mean of before and after the coming collision: with P = sum c_a
-// c_b f_i of either,
+// The momentum flux through a cell, the mean of before and after the coming collision: with P = sum c_a c_b f_i each,
 //   (P + P^c)/2 = rho/3 delta_ab + rho u_a u_b + (1 - omega/2) Pi_ab
-// exactly, whatever the collision model (on the trace omega_b counts). The last term is minus the stress of viscosity
-// and subgrid model, which share it as their relaxation times: omega (tau_0 - 1/2) and omega (tau - tau_0).
+// exactly, whatever the collision model (omega_b on the trace). The last term is minus the stress of viscosity and
+// subgrid model, which share it in proportion to their relaxation times: omega (tau_0 - 1/2) and omega (tau - tau_0).
 struct MomentumFlux {
   double density = 1.0;  // rho
   Vec3 velocity = Vec3::Zero();
-  Symmetric<double> viscous{}, subgrid{};
+  Symmetric<double> viscous{}, subgrid{};  // stresses, positive in tension
 };
 
 // Of an owned fluid cell. What streams in must lie ready: exchange_halo(), apply_walls(), and the links of bodies.

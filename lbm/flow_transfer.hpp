@@ -12,8 +12,8 @@ namespace thalweg::lbm {
 // as they were saved. Populations become their equilibrium with the half of `force` (lattice units of `fluid`); the
 // stress of shear follows within a few steps.
 //
-// velocity_unit: that of the saved lattice, dx/dt, over that of `fluid`; rho - 1 goes with its square, so that the
-// pressure in SI units stays. Throws InputError where the archive holds populations of another precision. Collective.
+// velocity_unit: that of the saved lattice, dx/dt, over that of `fluid`; rho - 1 is multiplied by its square, which
+// keeps the pressure in SI units. Throws InputError where the archive has populations of another precision. Collective.
 template <typename Real>
 void transfer_flow(Fluid<Real>& fluid, ArchiveReader& archive, double velocity_unit, const Vec3& force);
 

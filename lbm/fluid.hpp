@@ -28,7 +28,7 @@ struct FluidState {
   Vec3 velocity = Vec3::Zero();
 };
 
-// Sums over all fluid cells of the domain, however many; exact to 2^-37 a cell, in any order.
+// Sums over all fluid cells of the domain, however many: exact but for 2^-37 of rounding a cell, in any order.
 struct FluidTotals {
   double mass_deviation = 0.0;   // sum of rho - 1
   Vec3 momentum = Vec3::Zero();  // sum of rho u after the collision: sum over c_i f_i^c
@@ -52,17 +52,16 @@ public:
   // Hands the force along one axis to a controller; its state is part of the checkpoint.
   void control_flow(const FlowTarget& target);
 
-  // The halo's message can also be on its way while the caller does something else; between the two calls nobody may
-  // write a population.
+  // exchange_halo() in two halves, so that the caller can work meanwhile; no population may be written in between.
   void start_halo_exchange() { halo_.start(); }
   void finish_halo_exchange() { halo_.finish(); }
   void exchange_halo();
   void apply_walls() { walls_.apply(populations_, cells_); }
-  // Without bodies, row by row. before_tile: called with every tile of tiles() in order, before any row is swept that
-  // touches the tile's rows or a neighbour of them.
+  // Sweep all rows. before_tile: called with every tile of tiles() in order, before any row is swept that touches the
+  // tile's rows or a neighbour of them.
   void stream_and_collide();
   void stream_and_collide(const std::function<void(int)>& before_tile);
-  void advance();
+  void advance();  // a whole step without bodies; collective
 
   const Decomposition& decomposition() const { return decomposition_; }
   MPI_Comm communicator() const { return communicator_; }
@@ -84,7 +83,7 @@ public:
 
   // Post-collision populations of every owned cell, zero in solid ones, and the walls' state. Collective.
   void save(ArchiveWriter& archive) const;
-  void load(ArchiveReader& archive);
+  void load(ArchiveReader& archive);  // as load_populations(), and the walls' state
   // The populations alone, of a fluid in the same box with whatever walls and force. Throws InputError where the box or
   // the precision differs.
   void load_populations(ArchiveReader& archive);

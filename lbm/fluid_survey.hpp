@@ -7,11 +7,11 @@
 // the velocity half-way through the collision, which has added the whole of F to m (Guo et al. 2002).
 //
 // Sums are fixed-point integers of 2^-36, wide enough for any number of cells; extremes that several cells share belong
-// to the cell that comes first along x, then y, then z. So all has the same bits on any ranks. A value that is not a
-// number, or that is larger than any fluid's (broken_value), spoils no sum in silence: the cell counts as broken.
+// to the cell that comes first along x, then y, then z. So the result has the same bits on any number of ranks. A value
+// that is NaN or larger than any fluid's (broken_value) corrupts no sum unnoticed: the cell counts as broken.
 //
 // The pass reads every population once. Measured against the sweep of the same 192 x 96 x 96 cells, interleaved, on one
-// core: 0.83 of its time in either storage. A look every 100 steps costs below 1 % of them, also without bodies.
+// core: 0.83 of its time in either storage. A pass every 100 steps costs less than 1 %, even without bodies.
 #pragma once
 
 #include "lbm/fluid.hpp"

@@ -1,6 +1,6 @@
 // Where links cross the surface of a body of a given shape (core/shape.hpp). With d = x_f - centre and delta in [0, 1]
-// the fraction of the link at which it enters: arm = d + delta c_i. The cells may be those of a place of the body up to
-// a small tolerance away: then a crossing just beyond an end is put at the end.
+// the fraction of the link at which it enters: arm = d + delta c_i (cells). Cells may have been assigned when the body
+// was up to a small tolerance away; a crossing just beyond an end of its link is then put at that end.
 #pragma once
 
 #include "core/periodic_box.hpp"
@@ -26,7 +26,7 @@ struct BlockPlace {
     }
   }
 
-  // Whether a solid cell of a body there can be beyond a periodic face, seen from the centre.
+  // Whether a solid cell of a body at `centre` can lie beyond a periodic face.
   bool may_wrap(const Vec3& centre, double reach) const {
     constexpr double margin = 1.0;  // cells are assigned where the body was up to a small tolerance ago
     bool wraps = false;
@@ -92,9 +92,9 @@ template <bool wraps, typename Real, Shape S>
 }  // namespace detail
 
 // Of links [0, count) of one body (centre: global) in the plane z (owned local coordinate), count a multiple of
-// links_at_a_time, in the arithmetic of Real, which is the same for every link whatever its place in the arrays. Cells
-// count from whole numbers near the centre, so that nothing is lost far from the origin; the nearest image is that of
-// the solid cell, which is inside.
+// links_at_a_time, in the arithmetic of Real, which is the same for every link whatever its place in the arrays.
+// Coordinates are relative to a whole number near the centre, so that no digits are lost far from the origin; the
+// nearest image is that of the solid cell, which is inside.
 template <typename Real, Shape S>
 inline void find_crossings(const S& shape, const Vec3& centre, const BlockPlace& block, int z,
                            const std::uint32_t* places, const std::uint32_t* tags, int count, Real* distance,

@@ -1,4 +1,4 @@
-// What the links between fluid and bodies may do one way or another (bouzidi.hpp).
+// Options of the links between fluid and bodies (bouzidi.hpp).
 #pragma once
 
 #include "core/named_choice.hpp"
@@ -11,8 +11,8 @@ namespace thalweg::lbm {
 enum class MomentumExchange { galilean_invariant, classical };
 enum class WallDensity { local, reference };  // rho in the moving-wall term: of x_f, or 1
 enum class LinkRule { bouzidi, cli };
-// Gaps of one cell between two bodies: the fluid in them sticks to both, or slips so much that it flows at the speed
-// that its viscosity says (upstream_bodies.hpp; not of bodies with stored crossings).
+// Gaps of one cell between two bodies: the fluid in them sticks to both, or slips just enough to flow as its viscosity
+// requires (upstream_bodies.hpp; not for bodies with stored crossings).
 enum class GapRule { no_slip, slip };
 
 // Their words in a case file (core/section_visitor.hpp).
@@ -26,10 +26,10 @@ struct LinkOptions {
   WallDensity wall_density = WallDensity::local;
   LinkRule rule = LinkRule::bouzidi;
   GapRule gaps = GapRule::no_slip;
-  // In a fluid at rest rho = 1 + rest_gradient.(x - rest_middle): the hydrostatic one, or 1.
+  // Density of the fluid at rest, 1 + rest_gradient.(x - rest_middle): hydrostatic, or 1 everywhere.
   Vec3 rest_gradient = Vec3::Zero();  // of rho a cell
   Vec3 rest_middle = Vec3::Zero();    // cells
-  double reference_density = 0.0;     // rho - 1 that presses on nothing: force and torque count what is beyond it
+  double reference_density = 0.0;     // rho - 1; force and torque count only what exceeds it
 };
 
 }  // namespace thalweg::lbm

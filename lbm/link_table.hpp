@@ -38,6 +38,7 @@ struct LinkTag {
   static constexpr int covered_shift = 12;             // 1: a body covers x_f - c_i
   static constexpr int confined_shift = 13;            // 1: x_f is a pocket or enclosed
   static constexpr int body_shift = 14;                // the body that covers x_f - c_i
+  // As many bodies as a tag can tell apart.
   static constexpr std::int32_t bodies = 1 << (32 - body_shift);
   // c_i + 1 of an axis, so that vector code needs no table.
   static constexpr int velocity_shift(int axis) { return 6 + 2 * axis; }
@@ -61,8 +62,8 @@ struct LinkTag {
   }
 };
 
-// Vector code takes so many links at a time, whole vectors of any machine. What a chunk lacks to that are copies of its
-// last link, which compute and write what that link does, and count nowhere.
+// Links that vector code takes at a time: whole vectors on any machine. A chunk is filled up to a multiple of this with
+// copies of its last link, which compute and write what that link does, and count nowhere.
 inline constexpr int links_at_a_time = 16;
 template <std::integral Count>
 constexpr Count padded(Count links) {
@@ -84,7 +85,7 @@ struct LinkStream {
   std::vector<std::uint32_t> place, tag;
   std::vector<LinkCrossing> crossing;
 
-  // Asks the memory for these links. To the compiler this does nothing, so it must not look inside from the caller.
+  // Prefetches these links. Not inlined, because the compiler would drop it as having no effect.
   [[gnu::noinline]] void prefetch(std::size_t first, std::size_t count) const;
 };
 
@@ -94,30 +95,30 @@ struct LinkBody {
   Vec3 velocity = Vec3::Zero();
   Vec3 angular_velocity = Vec3::Zero();
 
-  // What the links add to the populations that come back, w_i (returned + returned_slope.c_i), to give the fluid mass
-  // that it lost at this body.
+  // What the links add to the populations that come back, w_i (returned + returned_slope.c_i), to return the mass that
+  // the fluid lost at this body.
   double returned = 0.0;
   Vec3 returned_slope = Vec3::Zero();
 
   // Sums over this rank's links in the present step.
   FixedVec3 force, torque;
-  bool turns = true;          // false: nobody asks for the torque, which is left out
+  bool turns = true;          // false: the torque is not needed and not summed
   std::int64_t mass = 0;      // LatticeFixed: given to the fluid, sum f_i' - f_i^c and what the caller adds
   std::int64_t pressure = 0;  // LatticeFixed: sum w_i (rho - rho_rest)(x_f), rho_rest that of the fluid at rest
 
-  // Asks the cache for it.
+  // Prefetches it.
   void prefetch() const {
     for (std::size_t byte = 0; byte < sizeof(LinkBody); byte += 64)
       __builtin_prefetch(reinterpret_cast<const char*>(this) + byte);
   }
 };
 
-// What the links of a body add up to whatever flows: integers, in 36ths, so that they can be kept up to date.
+// Sums over a body's links that do not depend on the flow: integers, in 36ths, so that they can be updated exactly.
 struct LinkSums {
   static constexpr int size = 10;
   std::array<std::int64_t, size> sums{};  // w_i;  w_i c_i: x, y, z;  w_i c_ia c_ib: xx, yy, zz, xy, xz, yz
 
-  // Of as many links of each direction.
+  // Of links[i] links of each direction i.
   static LinkSums of(const std::array<int, D3Q19::directions>& links);
   LinkSums& operator+=(const LinkSums& other);
   LinkSums& operator-=(const LinkSums& other);
@@ -181,7 +182,7 @@ private:
   void compact(Tile& tile) const;
 
   bool stores_crossings_;
-  mutable std::vector<Tile> tiles_;         // their order is made when it is asked for
+  mutable std::vector<Tile> tiles_;         // sorted on demand
   std::vector<std::vector<Place>> places_;  // of each body
   std::vector<LinkSums> sums_;              // of each body
 };

@@ -31,12 +31,12 @@ Populations<Real>::Populations(const CellIndexing& indexing) : indexing_(indexin
   const std::size_t per_line = line / sizeof(Real);
   stride_ = (indexing.count() + per_line - 1) / per_line * per_line + stagger;
   const std::size_t bytes = stride_ * D3Q19::directions * sizeof(Real);
-  // 38 streams over as many distant pages: huge pages keep them all in the translation cache.
+  // 38 streams over as many distant pages: huge pages keep them all in the TLB.
   constexpr std::size_t huge_page = std::size_t{2} << 20;
   void* memory = std::aligned_alloc(huge_page, (bytes + huge_page - 1) / huge_page * huge_page);
   if (!memory) throw std::bad_alloc();
 #if defined(__linux__)
-  madvise(memory, bytes, MADV_HUGEPAGE);  // a wish, not a need: its failure changes nothing
+  madvise(memory, bytes, MADV_HUGEPAGE);  // only a hint: its failure changes nothing
 #endif
   memory_.reset(static_cast<Real*>(memory));
   std::fill_n(memory_.get(), stride_ * D3Q19::directions, Real(0));

@@ -70,7 +70,7 @@ public:
   Real post_collision(int i, std::ptrdiff_t cell) const { return *const_cast<Populations*>(this)->slot_of(i, cell); }
 
   // For passes over many cells: the slots of f_i^c of the cell with index 0, by direction, to which the index of a cell
-  // is added. As long as the arrangement stays.
+  // is added. Valid until the arrangement changes.
   std::array<const Real*, D3Q19::directions> sent() const {
     std::array<const Real*, D3Q19::directions> slots;
     for (int i = 0; i < D3Q19::directions; ++i)

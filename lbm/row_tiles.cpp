@@ -8,7 +8,7 @@ namespace thalweg::lbm {
 
 namespace {
 
-// Bytes of the second-level cache; one mebibyte where the system does not tell.
+// Bytes of the second-level cache; one mebibyte where the system does not say.
 std::size_t second_level_cache() {
   long bytes = 0;
 #ifdef _SC_LEVEL2_CACHE_SIZE

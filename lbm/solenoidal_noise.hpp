@@ -1,15 +1,15 @@
-// A random velocity field without divergence, to wake up turbulence. Lattice units.
+// A random velocity field without divergence, to trigger turbulence. Lattice units.
 //
 //   u' = curl A,  A = e sum over modes of a_m cos(2 pi n_m.x/L + phi_m)
 //
-// with central differences for the curl, so that the divergence by central differences vanishes to round-off. e goes
-// to zero with the square of the distance at both ends of every axis that is not periodic, and there neither A nor its
-// slope nor u' is left. Every mode varies along the first periodic axis in whole periods, so that the mean of u' along
-// every line of that axis is zero to round-off: a mean profile stays what it is. Modes are drawn from counter-based
-// random numbers of their own index: the same field on any ranks.
+// with central differences for the curl, so that the divergence by central differences vanishes to round-off. e goes to
+// zero with the square of the distance to both ends of every axis that is not periodic, so that A, its slope and u'
+// vanish there. Every mode varies along the first periodic axis in whole periods, so that the mean of u' along every
+// line of that axis is zero to round-off, and a mean profile is left as it is. Modes are drawn from counter-based
+// random numbers of their own index: the same field on any number of ranks.
 //
 // Wavelengths run from the length of the axis down to a quarter of it, and not below 8 cells; all modes have the same
-// expected energy and directions at random.
+// expected energy and random directions.
 #pragma once
 
 #include "core/types.hpp"
@@ -24,7 +24,7 @@ namespace thalweg::lbm {
 struct NoiseBox {
   Index3 cells{0, 0, 0};
   std::array<bool, 3> periodic{false, false, false};
-  double floor = 0.0;  // height (cells) below which there is nothing: of a bed, if z is not periodic
+  double floor = 0.0;  // height (cells) below which e is zero, as of a bed, if z is not periodic
 };
 
 class SolenoidalNoise {

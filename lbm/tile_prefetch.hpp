@@ -1,4 +1,4 @@
-// Asks the second-level cache for the populations of a tile, a share at a time, while the processor has other work.
+// Prefetches the populations of a tile into the second-level cache, a share at a time, between other work.
 #pragma once
 
 #include "lbm/populations.hpp"
@@ -12,7 +12,7 @@ namespace thalweg::lbm {
 template <typename Real>
 class TilePrefetch {
 public:
-  // Of one step, in which the arrangement stays. Both must outlive this.
+  // For one step, during which the arrangement stays. Both must outlive this.
   TilePrefetch(const Populations<Real>& populations, const RowTiles& tiles)
       : indexing_(populations.indexing()), tiles_(tiles), sent_(populations.sent()) {}
 
@@ -25,7 +25,7 @@ public:
   }
   void begin_nothing() { lines_ = asked_ = 0; }
 
-  // Asks for what is missing to this share of the tile, in [0, 1].
+  // Prefetches on, up to this share of the tile, in [0, 1].
   void advance(double share) {
     const int end = static_cast<int>(share * lines_);
     for (; asked_ < end; ++asked_) {

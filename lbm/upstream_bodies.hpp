@@ -3,21 +3,20 @@
 // bouzidi.hpp.
 //
 // Slip: between half-link walls one cell apart, bounce-back lets a force F drive u = 2/3 Lambda F/nu, Lambda = (tau+ -
-// 1/2)(tau- - 1/2) (Ginzburg and d'Humieres 2003). Right would be F/(8 nu); in water under bgk Lambda is 1e-7 to 1e-5,
-// so that such gaps are plugged: what a grain should press out of the way before it touches another stays and is
-// pressed together. The cause is the odd part o = (f_i^c - f_i'^c)/2 of links with a wall at both ends, which turns
-// over in every step and takes the momentum of the other directions with it. Instead, before the link's rule is
-// applied, it becomes
+// 1/2)(tau- - 1/2) (Ginzburg and d'Humieres 2003). The true velocity is F/(8 nu); in water under bgk Lambda is 1e-7 to
+// 1e-5, so that such gaps are plugged: fluid that a grain should squeeze out before it touches another stays and is
+// compressed. The cause is the odd part o = (f_i^c - f_i'^c)/2 of links with a wall at both ends, which changes sign in
+// every step and carries off the momentum of the other directions. Before the link's rule is applied, it becomes
 //   o -> theta o + (1 - theta) 3 w_i rho c_i.(u_m + v),   u_m = (u_1 + u_2)/2,
-// and walls and covered cells move by v more, where
+// and v is added to the velocity of walls and covered cells, where
 //   v = s (1 - m m)(u - u_m),   m = (n_1 - n_2)/|n_1 - n_2|
-// is a share of the velocity along the gap relative to its walls, u_1, u_2 the velocities and n_1, n_2 the normals of
-// both bodies at x_f. Between flat walls the balance of momentum, F = loss to the walls, gives u = F/(8 nu) for
+// is a share of the velocity along the gap relative to its walls, with u_1, u_2 the velocities and n_1, n_2 the normals
+// of both bodies at x_f. Between flat walls the balance of momentum, F = loss to the walls, gives u = F/(8 nu) for
 //   theta = 0, s = 1 - 8 nu (2 + omega'/2)/omega'             where K = omega'/(24 nu) + (1 - omega'/2)/3 is above 1,
 //   theta = (1 - K)/(K - 1 + omega'), s = 0                   below,
-// omega' the rate of the odd part; theta reaches 1, plain bounce-back, at Lambda = 3/16. A push along the gap then
-// stays in the fluid until viscosity takes it. Both ends of a link get the same, so that no mass comes of it; momentum
-// goes to the bodies as in any link.
+// omega' the rate of the odd part; theta reaches 1, plain bounce-back, at Lambda = 3/16. Momentum along the gap then
+// stays in the fluid until viscosity removes it. Both ends of a link get the same change, so that no mass is made;
+// momentum goes to the bodies as in any link.
 //
 // In a cell that is a pocket, or enclosed (Confinement), s = 0. Nothing can flow through it along the gap, and no fluid
 // beside it takes momentum along v from it: with v only viscosity would slow it down, over hundreds of steps, while the
@@ -37,6 +36,7 @@ struct GapFlow {
   double kept = 1.0;  // theta
   double slip = 0.0;  // s
 };
+// nu and omega' are those without eddies.
 GapFlow gap_flow(const CollisionParameters& collision);
 
 // Arrays of doubles, whatever the precision of the populations: the arithmetic is the same for every link whatever its
@@ -51,8 +51,8 @@ public:
 
   void begin(int count) { count_ = count; }
 
-  // A link: delta, its crossing from the own body's centre, and rho - 1 at x_f; the body that covers x_ff, and the way
-  // from its centre to that of the own body.
+  // A link: delta, its crossing from the own body's centre, and rho - 1 at x_f; the body that covers x_ff, and the
+  // vector from its centre to that of the own body. Cells.
   void take(int link, std::uint32_t tag, double distance, const Vec3& arm, double deviation, const LinkBody& other,
             const Vec3& apart) {
     tag_[link] = tag;
@@ -83,11 +83,11 @@ public:
   void set_normals(int link, const Vec3& own, const Vec3& other);
   void set_radial_normals();  // of all links, between spheres
 
-  // Lets the fluid flow between the own bodies and those behind. force: on the fluid, of which f^c has half too much.
+  // Lets the fluid flow between the own bodies and those behind. force: its density; f^c contains half of it too much.
   void let_flow(const double (&force)[3], const GapFlow& flow);
 
-  // The equilibrium at x_ff: density as at x_f, velocity that of the covering body, and the slip. With a hydrostatic
-  // gradient c_i.gradient = 3 c_i.F: the density a cell further out, and 3/2 w_i c_i.F.
+  // The equilibrium at x_ff: density as at x_f, velocity that of the covering body, and the slip. With the hydrostatic
+  // gradient 3 F of a force F the density is that one cell further on, and 3/2 w_i c_i.F, its half force, is added.
   void find_populations(const Vec3& rest_gradient);
 
   double population(int link) const { return population_[link]; }  // in place of f_i^c(x_ff)

@@ -56,19 +56,19 @@ struct FaceField {
 template <typename Real>
 class Walls {
 public:
-  // Throws InputError where a moving wall would move out of its plane, or a slip length or coefficient is negative.
+  // Throws InputError where a moving wall would move out of its plane, a slip length is negative, or a slip coefficient
+  // is not positive.
   Walls(const Decomposition& decomposition, int rank, const CellIndexing& indexing, const FaceConditions& faces,
         const CollisionParameters& parameters);
 
   // True if this rank's block has a wall at that face.
   bool present(int axis, bool high) const { return present_[face_of(axis, high)]; }
 
-  // Fills the incoming populations of all cells at walls, owned and tangential to ghosts as needed. The halo must be up
-  // to date.
+  // Fills the incoming populations of all owned cells at walls. The halo, which it reads, must be up to date.
   void apply(Populations<Real>& populations, const CellMap& cells) const;
 
-  // The momentum that each face takes from this rank's fluid in the step to come, after apply(): with what leaves and
-  // what comes in as f - w (1 + reference): a fluid at rest with rho = 1 + reference presses on nothing.
+  // The momentum that each face takes from this rank's fluid in the next step, once apply() is done. Populations count
+  // as f - w (1 + reference), so that a fluid at rest with rho = 1 + reference exerts no force.
   // sides_by_height: where given, 2 n_z + 1 sums for the n_z planes of this rank, to which what the faces across x and
   // y take is added at the height half a link from its cell: entry h lies h half cells above the block's lower face.
   std::array<FixedVec3, 6> forces(const Populations<Real>& populations, const CellMap& cells, double reference,
