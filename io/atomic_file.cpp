@@ -33,7 +33,7 @@ std::filesystem::path write_partial(const std::filesystem::path& path, const std
   throw RunError(fmt::format("{}: cannot write the file: {}.", path.string(), why));
 }
 
-// Of a file or a folder; some file systems cannot wait for a folder.
+// fsync() of a file or a folder; some file systems refuse it for a folder.
 bool sync(const std::filesystem::path& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) return false;

@@ -29,13 +29,13 @@ bool create_file(const std::filesystem::path& path);
 // True if an empty file could be created under this name; leaves nothing behind.
 bool can_create(const std::filesystem::path& path);
 
-// Takes the room for `bytes` bytes from `offset` on the disk, false if there is none. A collective write through MPI-IO
+// Reserves `bytes` bytes of the file from `offset` on; false if the disk has no room. A collective write through MPI-IO
 // does not always report that the disk is full (Open MPI's does not), so the room is taken beforehand. Where the file
-// system cannot promise it (NFS before 4.2, Lustre before 2.14), zeros are written there, but not before `written_to`.
+// system cannot reserve it (NFS before 4.2, Lustre before 2.14), zeros are written, but only from `written_to` on.
 bool reserve_on_disk(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t bytes,
                      std::uint64_t written_to = 0);
 
-// Writes zeros and waits until they are on the disk; false if that fails.
+// Writes `bytes` zeros from `offset` on and waits until they are on the disk; false if that fails.
 bool fill_with_zeros(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t bytes);
 
 // Creates a folder and its parents if they are missing. Throws RunError.

@@ -1,4 +1,4 @@
-// Bed files: the grains of a run as its end left them, for another run to begin with.
+// Bed files: the grains at the end of a run, from which another run can start.
 //
 // HDF5. Group `bed`: attributes format, time (s) and disk_thickness (m; 0: spheres), datasets box (m) and periodic (0
 // or 1 along x, y, z). Group `grains`, one row a grain in order of id: id, radius, density, position, velocity,
@@ -34,7 +34,7 @@ Bed read_bed_file(const std::filesystem::path& path, const Ranks& ranks = {});
 // clump of every row; where there is none, nothing is moved. file: opened by the ranks together. Collective.
 RowRange share_of_bed(Hdf5Reader& file, const std::string& clumps, std::int64_t rows, const Ranks& ranks);
 
-// What a share has of a dataset. Collective.
+// A share of the rows of a dataset, `width` values each. Throws as Hdf5Reader::read(). Collective.
 template <typename Number>
 std::vector<Number> read_column(Hdf5Reader& file, const std::string& path, const RowRange& share,
                                 std::uint64_t width = 1) {

@@ -41,8 +41,8 @@ std::uint64_t checksum(std::span<const Number> values, const ArrayBox& box) {
   return sum;
 }
 
-// A number of a box that adds up, modulo 2^64, to that of the dataset if boxes cover it once: of boxes that overlap or
-// leave gaps it does not, unless by an improbable chance. The product over the axes of sum (i^3 + i^2 + 1).
+// A number of a box: those of boxes that cover a dataset exactly once add up, modulo 2^64, to that of the dataset; with
+// overlaps or gaps they do not, save by an improbable chance. The product over the axes of sum (i^3 + i^2 + 1).
 inline std::uint64_t coverage(const std::vector<std::uint64_t>& offset, const std::vector<std::uint64_t>& shape) {
   __extension__ using Wide = unsigned __int128;
   const auto below = [](std::uint64_t n) {

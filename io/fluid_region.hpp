@@ -32,7 +32,7 @@ struct FluidRegionKeys {
 };
 void describe_region(SectionVisitor& visit, FluidRegionKeys& keys);
 
-// Throws KeyError where no cell of a box of this size (m) is shown.
+// Throws KeyError where a plane or box lies outside a domain of this size (m), or shows no cell. spacing: m.
 void check(const FluidRegionKeys& keys, const Vec3& box_size, double spacing);
 
 // The cells shown, in a coarser lattice of which a cell is stride cells wide and has the first of them in its middle.
@@ -43,9 +43,10 @@ struct ShownCells {
   Vec3 origin;          // m, of the coarser lattice
   Vec3 coarse_spacing;  // m
 
-  // Those in a block of cells.
+  // The coarse cells that stand for cells of this block.
   Block part_in(const Block& block) const;
 };
+// cells: of the domain; spacing: m.
 ShownCells shown_cells(const FluidRegionKeys& keys, const Index3& cells, double spacing);
 
 }  // namespace thalweg::io

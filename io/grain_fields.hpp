@@ -39,6 +39,7 @@ struct GrainFieldFacts {
   bool fluid_force = false;   // the fluid, or what stands for it, acts on the grains
   bool fluid_stress = false;  // and its stress on them is measured
 };
+// Whether grains with these facts have the field.
 bool there_is(GrainField field, const GrainFieldFacts& facts);
 
 // kg/m^3, of grain number n of the view; of a clump's member the density of the clump.

@@ -11,7 +11,7 @@
 
 namespace thalweg::io {
 
-// Grains for which all hold that are given. Members of clumps count one by one.
+// Grains that meet every condition given. Members of clumps count one by one.
 struct GrainSelectionKeys {
   std::vector<std::int64_t> ids;           // empty: any
   std::optional<std::int64_t> population;  // none: any
@@ -34,7 +34,7 @@ class GrainSelection {
 public:
   GrainSelection(GrainSelectionKeys keys, PopulationEnds ends);
 
-  // Whether a grain is shown that has its centre there (m).
+  // Whether the grain with this id and centre (m) is shown.
   bool has(GlobalId id, const Vec3& position) const;
 
   bool takes_all() const { return keys_ == GrainSelectionKeys{}; }

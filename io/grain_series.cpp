@@ -71,8 +71,7 @@ std::vector<Row> selected_rows(const Snapshot& snapshot, const GrainSelection& s
   return rows;
 }
 
-// Of rows that lie on the ranks in their order, the first of this rank at place `first`, those of the share, in the
-// same order.
+// Redistributes rows, numbered in order of rank and this rank's from `first` on, by the share; keeps their order.
 std::vector<Row> rows_by_place(MPI_Comm communicator, std::vector<Row> rows, std::int64_t first,
                                const BlockShare& share) {
   std::vector<int> home;

@@ -36,7 +36,7 @@ public:
   void attribute(const std::string& path, std::int64_t value) override;
   void attribute(const std::string& path, const std::string& value) override;
 
-  void close();
+  void close();  // writes what is left and gives the file its name
 
 private:
   struct File;
@@ -53,8 +53,8 @@ public:
 // DamagedFile if it cannot be opened as HDF5. Reading throws InputError (naming file and path) where the path is
 // missing or of another shape or type, and DamagedFile where the ranks have read a whole dataset, shared out or each
 // all of it, and its checksum is another one; parts of a dataset are not checked. The constructor and read() are
-// collective; the questions may be asked by any rank alone. Without a communicator the file is read by this process
-// alone, also where there is no MPI.
+// collective; any rank alone may call the rest. Without a communicator the file is read by this process alone, also
+// where there is no MPI.
 class Hdf5Reader final : public ArchiveReader {
 public:
   explicit Hdf5Reader(const std::filesystem::path& path);

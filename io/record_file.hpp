@@ -19,8 +19,8 @@ namespace thalweg::io {
 // written.
 class RecordFile {
 public:
-  // continue_from: take up an existing file and drop rows and events after that time (s); a file whose `fixed` numbers
-  // are others, or that is damaged, is an InputError at the first add(), which may have no rows yet. Empty: a new file.
+  // continue_from: take up an existing file and drop rows and events after that time (s); where its `fixed` numbers
+  // differ or it is damaged, the first add(), which may have no rows yet, throws InputError. Empty: a new file.
   RecordFile(MPI_Comm communicator, std::filesystem::path path, std::optional<double> continue_from);
 
   void add(const Records& records);  // only rank 0's are used

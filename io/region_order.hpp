@@ -1,5 +1,5 @@
-// The cells of a region in the order of a file (x fastest, z slowest), from the ranks whose blocks they lie in to the
-// ranks that write them. No rank sees more than its own part of either.
+// Sends the cells of a region from the ranks that own them to the ranks that write them, in the order of the file (x
+// fastest, z slowest). No rank holds more than its own part of either.
 #pragma once
 
 #include "core/decomposition.hpp"

@@ -1,4 +1,4 @@
-// The folder of one run: what lies where in it, and the care that nothing of the user's is lost.
+// The folder of one run: what lies where in it, and checks that nothing of the user's is lost.
 #pragma once
 
 #include <cstdint>
@@ -31,12 +31,12 @@ public:
   void write_case(const std::string& comment_lines, const std::string& yaml) const;
   static constexpr const char* case_marker = "# Thalweg run:";
 
-  // Makes the checkpoint of `step`, if the folder has it, the latest: a restart has gone back to it, and later ones are
-  // of a course that is left. Throws RunError.
+  // Makes the checkpoint of `step`, if the folder has it, the latest: a restart has gone back to it, and later ones
+  // belong to an abandoned course. Throws RunError.
   void go_on_from(std::int64_t step) const;
 
-  // Keeps the case of the run so far, which goes on from `step` with another one perhaps: case_until_step_<step>.yaml,
-  // unless it is there already. Throws RunError.
+  // Keeps the present case, as the run may go on from `step` with another one: case_until_step_<step>.yaml, unless it
+  // is there already. Throws RunError.
   void keep_case(std::int64_t step) const;
 
   // The case with which the state of one of the folder's checkpoints was computed: a kept one, or the present one.
@@ -58,7 +58,7 @@ public:
 
   // After the checkpoint of `step` has been closed: makes it the latest (checkpoints/latest holds its file name) and
   // removes all but the newest `keep` of those up to `step`, and any after it, which a restart from an earlier time has
-  // made wrong, with the cases kept for them; also what killed runs have left half written. Throws RunError.
+  // made obsolete, with the cases kept for them; also what killed runs have left half written. Throws RunError.
   void rotate_checkpoints(std::int64_t step, int keep) const;
 
   bool has_checkpoint() const { return !steps_of_checkpoints().empty(); }

@@ -71,7 +71,7 @@ std::size_t edits_between(const std::string& a, const std::string& b) {
   return row[b.size()];
 }
 
-// The word most like this one, empty if none is near enough to be meant.
+// The word most like this one; empty if none is close enough.
 std::string nearest(const std::string& word, const std::vector<std::string>& words) {
   std::string best;
   std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;

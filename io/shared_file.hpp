@@ -13,8 +13,8 @@ namespace thalweg::io {
 
 // Writes to `path` + ".partial" and gives the file its name in close(), so that a reader never opens half a file. All
 // calls are collective, and so are the errors: the constructor and close() throw RunError on every rank if anything has
-// failed on one of them, and no file is left. A file that is given up without close(), because a rank has failed
-// elsewhere, is left to the end of the program: closing it is collective.
+// failed on one of them, and no file is left. A file abandoned without close(), because a rank has failed elsewhere,
+// stays open to the end of the program: closing it is collective.
 class SharedFile {
 public:
   // bytes: size of the whole file, the same on every rank. The room is taken at once.

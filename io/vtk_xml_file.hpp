@@ -1,7 +1,7 @@
-// A picture for ParaView as one VTK XML file (.vtp, .vti; VTK User's Guide, "VTK XML formats"), which all ranks write
+// A frame for ParaView as one VTK XML file (.vtp, .vti; VTK User's Guide, "VTK XML formats"), which all ranks write
 // together: no rank holds all of it, and its bytes do not depend on the number of ranks.
 //
-// An array is cut into blocks of the same number of rows, which the ranks compress (zlib) and write each by itself.
+// An array is cut into blocks of the same number of rows; each rank compresses (zlib) and writes its own.
 #pragma once
 
 #include "core/rows_by_id.hpp"

@@ -1,4 +1,4 @@
-// A YAML file as a tree in which every value knows where it stands, so that every complaint can say it.
+// A YAML file as a tree in which every value knows its place in the file, so that every error message can give it.
 #pragma once
 
 #include "core/error.hpp"
@@ -51,7 +51,7 @@ private:
   YamlNode root_;
 };
 
-// The value as a complaint shows it: "water" in quotes, a number bare, [0, 1] or "a section with 3 keys".
+// The value as an error message shows it: "water" in quotes, a number bare, [0, 1] or "a section with 3 keys".
 std::string shown(const YamlNode& node);
 
 // "fluid" and "density" -> "fluid.density"; "" and "fluid" -> "fluid".

@@ -11,7 +11,7 @@ public:
   // prints: true on rank 0; the log of all other ranks does nothing.
   explicit Log(bool prints) : prints_(prints) {}
 
-  // From now on every line goes to this file as well (appended), also the earlier ones.
+  // Appends all lines, earlier ones included, to this file as well from now on. Throws RunError.
   void copy_to(const std::string& path);
 
   void line(const std::string& text);

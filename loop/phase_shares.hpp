@@ -22,7 +22,7 @@ struct PhaseShare {
 // complete on rank 0 only. Phases need not be the same on every rank.
 std::vector<PhaseShare> collect_phases(MPI_Comm communicator, System& system, TimeLoop& loop);
 
-// A table, one line a phase, widest column first.
+// A table with a heading and one line a phase: name, mean and largest seconds, share.
 std::vector<std::string> phase_table(const std::vector<PhaseShare>& phases);
 
 // Speeds over the whole loop, output included.

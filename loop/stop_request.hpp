@@ -7,8 +7,7 @@
 
 namespace thalweg::loop {
 
-// From now on these signals only leave a note; earlier ones are forgotten. Under Open MPI's mpirun SIGCONT leaves one
-// as well.
+// From now on these signals only set a flag; earlier ones are forgotten. Under Open MPI's mpirun SIGCONT sets one too.
 void listen_for_stop_signals();
 
 // Number of the last stop signal this process has received since then; 0: none.
@@ -19,7 +18,7 @@ int received_stop_signal();
 // started by it.
 double seconds_between_strokes();
 
-// Whether a first stroke has come since the last call. (It may be a run that was suspended and goes on.)
+// Whether a first stroke has come since the last call. (A suspended run that is resumed gets the same signal.)
 bool take_first_stroke();
 
 // "SIGTERM" for SIGTERM, and so on.

@@ -35,7 +35,7 @@ struct OutputTask {
 
 using SeriesRow = std::function<void(double time, std::int64_t step, const std::vector<Figure>&)>;  // collective
 
-// What has become of a run so far.
+// The outcome of a run so far.
 struct LoopRecord {
   bool finished = false;
   std::string early;   // LoopPlan::enough_means, where that has finished the run
@@ -44,8 +44,8 @@ struct LoopRecord {
   double wall_seconds = 0.0;     // in run(), this time
   double advance_seconds = 0.0;  // of which in System::advance()
   std::vector<Figure> figures;   // of the system, at the latest look
-  // Of the system: the largest value of each figure since largest_from (s, simulated), at the regular looks and at the
-  // end; minus infinity as long as there was none.
+  // Of the system: the largest value of each figure (the smallest of those named smallest_...) since largest_from (s,
+  // simulated), at the regular looks and at the end; minus (plus) infinity as long as there was none.
   std::vector<Figure> largest;
   double largest_from = 0.0;
   std::int64_t warnings = 0;  // of the watchdog
@@ -70,7 +70,7 @@ struct LoopPlan {
   double walltime = 0.0;                             // s of wall time from `started` on; 0: as long as it takes
   WallClock::time_point started = WallClock::now();  // of the program
   std::filesystem::path stop_file;                   // if it appears, the run stops and removes it; empty: none
-  double between_strokes = 0.0;                      // s, stop_request.hpp: of who kills after a signal; 0: nobody
+  double between_strokes = 0.0;                      // s, stop_request.hpp; 0: no kill follows a signal
   std::vector<Figure> largest;                       // before the loop, since largest_from
   double largest_from = 0.0;                         // s, simulated
   bool write_at_start = true;                        // false where a run goes on: its first frame exists already
@@ -98,7 +98,7 @@ public:
   const LoopRecord& record() const { return record_; }
   PhaseTimer& timer() { return timer_; }  // phases outside System::advance()
 
-  // A look costs less than a step (lbm/fluid_survey.hpp), so that these cost below 1 %.
+  // A look costs less than a step (lbm/fluid_survey.hpp), so that these take less than 1 % of the time.
   static constexpr std::int64_t steps_between_health_checks = 100;
 
 private:
