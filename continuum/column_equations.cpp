@@ -7,9 +7,9 @@ namespace thalweg::continuum {
 
 namespace {
 
-// Solid fractions are rounded off to positive ones within this of zero, since closures have corners there.
+// Solid fractions within this of zero are smoothly made positive, since closures have kinks there.
 constexpr double no_grains = 1e-5;
-// Of the mean over a cell and its neighbours; where phi changes little, grains are heavier by half of its square.
+// Weight of the mean over a cell and its neighbours; where phi changes little, it adds half its square to the inertia.
 constexpr double share_of_neighbours = 0.02;
 // m/s, below which the drag function no longer changes with the velocity along the bed alone.
 constexpr double slowest = 1e-2;
@@ -84,7 +84,7 @@ const std::vector<double>& ColumnEquations::pressures_of(std::span<const double>
   return pressure_;
 }
 
-// Of the shear rate in the middle of the cell, the mean of its faces'.
+// At the shear rate in the middle of the cell, the mean of those on its faces.
 void ColumnEquations::find_pressures() const {
   const Rheology& rheology = parameters_.closures.rheology;
   const double dz = parameters_.spacing;
@@ -101,7 +101,7 @@ void ColumnEquations::find_pressures() const {
   }
 }
 
-// Grains settle, so that it comes from above.
+// Grains settle, so the upwind cell is the upper one.
 double ColumnEquations::upwinded_fraction(int lower) const {
   const auto upper = static_cast<std::size_t>(lower) + 1;
   const std::vector<double>& phi = state_.fraction;
@@ -149,8 +149,8 @@ double ColumnEquations::drag_speed(double along, double drift) const {
   return std::hypot(along, parameters_.closures.speed == DragSpeed::total ? drift : slowest);
 }
 
-// What the stress on the faces moves: in a cell with hardly any grains beside one with many, some of the neighbours'
-// too.
+// The solid fraction that the stress on the faces accelerates: in a cell with hardly any grains beside one with many,
+// some of the neighbours' too.
 double ColumnEquations::fraction_around(std::size_t i) const {
   const std::vector<double>& phi = state_.fraction;
   const std::size_t below = i > 0 ? i - 1 : 0, above = std::min(i + 1, phi.size() - 1);

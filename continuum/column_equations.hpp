@@ -1,5 +1,5 @@
 // The two-phase column in one dimension (Zhang et al. 2022, section 3; docs/theory.md): z from a floor upwards, x
-// downhill, everything uniform in x and y, grains and fluid carrying no volume between them: w_f = -phi w_s/(1 - phi).
+// downhill, everything uniform in x and y, no net flux of volume along z: w_f = -phi w_s/(1 - phi).
 //
 //   d phi/dt                   = -dJ/dz
 //   phi rho_s dU_s/dt          = phi rho_s g_x - K (U_s - U_f) + d tau_s/dz
@@ -41,9 +41,9 @@ struct ColumnFluxes {
 class ColumnEquations {
 public:
   static constexpr int unknowns_per_cell = 3;
-  static constexpr int half_bandwidth = 2 * unknowns_per_cell + 2;  // a cell's rates know two cells on either side
+  static constexpr int half_bandwidth = 2 * unknowns_per_cell + 2;  // rates depend on two cells on either side
 
-  // The drift velocity, a ratio of slope and solid fraction, is -D grad phi/(phi + dilute): it would be noise without.
+  // The drift velocity, a ratio of slope and solid fraction, is -D grad phi/(phi + dilute), or it would be noise.
   static constexpr double dilute = 1e-3;
 
   explicit ColumnEquations(const ColumnParameters& parameters);

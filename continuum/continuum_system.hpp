@@ -59,7 +59,7 @@ public:
   // Over z (m, cell middles), named and shaped as those of analysis::StressBalance where they are the same: thickness,
   // solid_fraction, grain_velocity, fluid_velocity, drag_density (x, y, z), drag_function, drag_reynolds_number,
   // grain_pressure, grain_shear_stress, fluid_shear_stress, total_stress, driving_stress (Pa), eddy_viscosity (Pa s),
-  // drift_velocity, and with creep creep_depth, creep_fluidity, creep_velocity.
+  // drift_velocity, and over a depth of its own creep_depth, creep_stress_ratio, creep_fluidity, creep_velocity.
   std::vector<Profile> profiles() const override;
 
   void save(ArchiveWriter& archive) const override;

@@ -36,7 +36,7 @@ Creep creep_of(const Rheology& rheology, const Mixture& mixture, double nonlocal
 double decay_length(const Creep& creep, double spacing, std::size_t first);
 
 // Of a bed at rest under a flow: p = phi_m (rho_s - rho_f) g_z depth, tau = tau_b + (phi_m rho_s + (1 - phi_m) rho_f)
-// g_x depth. `points` of them from the depth `lower` up to the depth `upper` (m).
+// g_x depth, at `points` depths from `lower` up to `upper` (m). gravity: m/s^2; bed_stress: tau_b, Pa.
 BedStress resting_bed(const Rheology& rheology, const Mixture& mixture, double gravity_x, double gravity_z,
                       double bed_stress, double lower, double upper, int points);
 

@@ -1,11 +1,13 @@
 // Flow rule of the grains (Zhang et al. 2022, section 3.1.1, after Baumgarten and Kamrin 2019):
 //
-//   I_v = eta g / p,   I = g d sqrt(rho_s / p),   I_m = sqrt(2 I_v + I^2)            g: shear rate, p: pressure of
-//   grains mu  = mu_1 + (mu_2 - mu_1)/(1 + b/I_m) + 5/2 phi I_v/(a I_m) + 5/2 phi I_v       eq. 20 phi = phi_m/(1 + a
-//   I_m)                                                          eq. 21
+//   I_v = eta g/p,   I = g d sqrt(rho_s/p),   I_m = sqrt(2 I_v + I^2)
+//   mu  = mu_1 + (mu_2 - mu_1)/(1 + b/I_m) + 5/2 phi I_v/(a I_m) + 5/2 phi I_v      eq. 20
+//   phi = phi_m/(1 + a I_m)                                                         eq. 21
 //
-// Solved for the pressure, eq. 21 is p = a^2 phi^2 (2 eta g + rho_s d^2 g^2)/(phi_m - phi)^2. Grains denser than phi_m
-// touch at rest: they carry an elastic pressure, which stands for their contacts and is no part of the paper.
+// with the shear rate g and the pressure p of the grains. Solved for the pressure, eq. 21 is
+//   p = a^2 phi^2 (2 eta g + rho_s d^2 g^2)/(phi_m - phi)^2.
+// Grains denser than phi_m touch at rest: they carry an elastic pressure, which stands for their contacts and is not
+// part of the paper.
 #pragma once
 
 #include "continuum/mixture.hpp"
@@ -24,7 +26,7 @@ struct Rheology {
   bool operator==(const Rheology&) const = default;
 };
 
-// Pressures are above zero, shear rates not negative.
+// Pressures (Pa) must be above zero, shear rates (1/s) not negative.
 double viscous_number(const Mixture& mixture, double shear_rate, double pressure);         // I_v
 double inertial_number(const Mixture& mixture, double shear_rate, double pressure);        // I
 double mixed_number(double viscous_number, double inertial_number);                        // I_m

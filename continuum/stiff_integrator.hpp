@@ -1,5 +1,5 @@
-// Stiff systems of ordinary differential equations over one interval of time: backward differentiation of variable
-// order and step with a banded Jacobian, by CVODE of SUNDIALS (Hindmarsh et al. 2005).
+// Stiff systems of ordinary differential equations over one interval of time: backward differentiation of variable step
+// and order (at most 2) with a banded Jacobian, by CVODE of SUNDIALS (Hindmarsh et al. 2005).
 //
 // Every interval begins anew, without a memory of the one before: the result depends on the unknowns at its beginning
 // alone, so that a restart gives the same bits.

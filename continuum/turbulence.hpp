@@ -26,13 +26,13 @@ struct Turbulence {
   bool operator==(const Turbulence&) const = default;
 };
 
-// m. densest: phi_m.
+// l_m, m. diameter: m; densest: phi_m; fraction: phi.
 double mixing_length(const Turbulence& turbulence, double diameter, double densest, double fraction);
 
 // |D| of simple shear; rate: dU/dz of either sign, 1/s.
 double strain_norm(StrainNorm norm, double rate);
 
-// eta_t, Pa s.
+// eta_t, Pa s; arguments as above.
 double eddy_viscosity(const Turbulence& turbulence, const Mixture& mixture, double densest, double fraction,
                       double rate);
 

@@ -24,7 +24,7 @@ struct Accounts {
   // run/interval_<observer>. series_every: s, the interval of observers that have none of their own. Collective.
   void save(ArchiveWriter& archive, const Observers& observers, double series_every) const;
 
-  // Loads the observers as well. What the archive does not have begins at its time. `system` is loaded already.
+  // Loads the observers as well. What the archive lacks begins at its time. `system` must be loaded already.
   // Means of measurements at another interval are not taken over either. Collective.
   static Accounts load(ArchiveReader& archive, const System& system, Observers& observers, double series_every);
 

@@ -6,7 +6,7 @@
 
 namespace thalweg::driver {
 
-// Grains that are heavier than the fluid by a smaller share of it make no bed: rounding.
+// Grains heavier than the fluid by less than this fraction of its density make no bed: that is rounding.
 inline constexpr double neutral_density = 1e-6;
 
 // Shields number and depth follow Zhang et al. 2022: tau_b = rho_f g_x H far from side walls, rho_f g_x H W/(2 H + W)

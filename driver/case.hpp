@@ -177,9 +177,9 @@ double fluid_time_step(const Case& c);            // s; given, or from the latti
 double grain_time_step(const Case& c);            // s: a sub-step, or the step of dry grains
 double step_time(const Case& c);                  // s: of the fluid, or as many steps of dry grains as make one
 Vec3 gravity_vector(const GravityCase& gravity);  // m/s^2: (g sin, 0, -g cos) of atan(slope)
-Units units_of(const Case& c);                    // of a resolved run
+Units units_of(const Case& c);                    // of a run with a fluid
 double relaxation_time(const Case& c);            // BGK, without the subgrid model
-double bulk_relaxation_time_for(const Case& c);   // where the case does not give it
+double bulk_relaxation_time_for(const Case& c);   // tau_b where the case does not give it; 0: that of the shear
 double bulk_viscosity(const Case& c);             // m^2/s: 2/9 (tau_b - 1/2), without the subgrid model
 
 std::int64_t grain_count(const Case& c);    // of all populations
@@ -206,9 +206,9 @@ inline constexpr double karman = 0.41;  // von Karman's constant of the logarith
 // dem::fewest_steps_per_contact of them; at least 1.
 std::int64_t sub_steps_needed(const Case& c);
 
-// The speed (m/s) a flow driven by gravity along the bed can reach: that of a laminar film over the bed, or of the log
-// law above it where that is less. An upper estimate (no side walls), for warnings and `thalweg check`. 0 without
-// slope.
+// The speed (m/s) a flow driven by gravity along the bed can reach: that of a laminar film over the bed or of the log
+// law above it or, between two side walls that hold it back, at theirs, whichever is least. An upper estimate, for
+// warnings and `thalweg check`. 0 without slope.
 double estimated_velocity(const Case& c);
 
 }  // namespace thalweg::driver

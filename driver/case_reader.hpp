@@ -24,7 +24,7 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
 // The case with every default filled in, as YAML that read_case() reads back as the same case.
 std::string resolved_yaml(const Case& c);
 
-// Does what may find that a case cannot be run after all, so that an InputError names the file of the case.
+// Calls `work`, whose InputError, where it throws one, is preceded by the path of the case.
 template <typename Work>
 auto about_case(const std::filesystem::path& path, Work&& work) {
   try {

@@ -8,8 +8,8 @@
 
 namespace thalweg::driver {
 
-// Whole report, one text a line. Throws InputError where the case cannot be run (grains that do not fit, a grain step
-// too long for the contacts).
+// The whole report, one text a line. bandwidth: of one core's memory, bytes/s. Throws InputError where the case cannot
+// be run (grains that do not fit, a grain step too long for the contacts).
 std::vector<std::string> check_report(const Case& c, double bandwidth);
 
 }  // namespace thalweg::driver

@@ -1,4 +1,4 @@
-// What a step of a case takes on a core of this machine, measured on a piece of it.
+// How long a step of a case takes on a core of this machine, measured on a piece of the case.
 #pragma once
 
 #include "driver/case.hpp"

@@ -16,7 +16,7 @@ struct DiskSpace {
 };
 DiskSpace disk_space(const Case& c);
 
-// What the report says of it where so many bytes are free.
+// The line of the report; free: bytes free on the disk.
 std::string disk_line(const DiskSpace& space, double free);
 
 // "175 MB".

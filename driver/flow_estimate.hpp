@@ -14,8 +14,8 @@
 //
 // z_0: d/15 over grains (equivalent roughness of two diameters), nu/(9 u_tau) over a bare floor.
 //
-// Time from rest to 95 %: 2 U H/u_tau^2 where a force or a top has to set the water in motion (twice its momentum over
-// the force, from dU/dt = g_x (1 - U^2/U_end^2)); laminar, by the slowest mode, 1.2 h^2/nu, and 0.3 H^2/nu under a
+// Time from rest to 95 %: twice the water's momentum over the force, 2 U/g_x under a slope (from dU/dt = g_x (1 -
+// U^2/U_end^2)) and 2 U H/u_tau^2 under a moving top; laminar, by the slowest mode, 1.2 h^2/nu, and 0.3 H^2/nu under a
 // moving top; a held mean velocity 9.5 response times, then ten H/u_tau until the profile has followed.
 #pragma once
 

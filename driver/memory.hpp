@@ -31,8 +31,8 @@ void refuse_without_memory(const Case& c);
 // The same of a run that is about to start on these ranks, before it takes any memory. Collective; all ranks throw.
 void refuse_without_memory(const Case& c, MPI_Comm communicator, const Index3& layout);
 
-// What the processes of a run have held at most, as the system counts it, bytes; since the last call of
-// forget_largest_memory, where the system can forget.
+// Peak memory of the processes of a run, as the system counts it, bytes; since the last call of
+// forget_largest_memory(), where the system can reset it.
 struct MemoryUse {
   double all_ranks, largest_rank;
 };

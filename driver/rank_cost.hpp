@@ -33,6 +33,7 @@ struct StepTimes {
   double sum() const { return computing + waiting + sending + reducing; }
 };
 
+// Of one rank; and its times on `ranks` of them.
 RankWork rank_work(const Case& c, const Decomposition& decomposition, int rank);
 StepTimes step_times(const RankWork& work, int ranks, const CoreSpeed& speed, const Network& network);
 

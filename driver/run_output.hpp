@@ -61,8 +61,9 @@ private:
   std::vector<std::pair<analysis::Observer*, io::RecordFile>> records_;
 };
 
-// A checkpoint: what it is (group "run": format, system, name, version, step, time in s, time_step in s), the system,
-// the observers, and the accounts. Nothing in it tells how many ranks wrote it. Collective; RunError on every rank.
+// A checkpoint: what it is (group "run": format, system, name, version, step, time and time_step in s, spacing in m),
+// the beds it began with, the system, the observers and the accounts. Its bytes do not depend on the number of ranks.
+// Collective; RunError on every rank.
 void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c,
                            const System& system, const Observers& observers, const Accounts& accounts);
 

@@ -1,4 +1,4 @@
-// Cuts between the ranks of a resolved run that give each of them as much to do. Results do not depend on cuts.
+// Cuts between the ranks of a resolved run that balance their work. Results do not depend on cuts.
 #pragma once
 
 #include "core/decomposition.hpp"
@@ -23,8 +23,8 @@ Decomposition cuts_by_work(const Case& c, const Decomposition& even, std::span<c
 // that are not resolved have even cuts.
 Decomposition planned_cuts(const Case& c, const Index3& layout);
 
-// Those of a run that begins from this state; where that is empty, the planned ones. A state that cannot be read has
-// even cuts: whoever loads it says why. Collective.
+// Those of a run that begins from this state; where that is empty, the planned ones. For a state that cannot be read
+// they are even: loading it will report why. Collective.
 Decomposition cuts_of_run(const Case& c, MPI_Comm communicator, const Index3& layout,
                           const std::filesystem::path& state);
 
