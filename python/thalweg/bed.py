@@ -58,7 +58,7 @@ def shields_of(slope, depth, diameter, density_ratio, width=None, side_walls=2):
 
 
 def slope_of(shields, depth, diameter, density_ratio, width=None, side_walls=2):
-    """Slope that gives a Shields number: the reverse of shields_of()."""
+    """Slope (a tangent) that gives a Shields number: the inverse of shields_of(); lengths in m."""
     return np.tan(np.arcsin(shields * (density_ratio - 1.0) * diameter / hydraulic_radius(depth, width, side_walls)))
 
 
@@ -81,9 +81,9 @@ def shields_number(run, surface, start=-np.inf, stop=np.inf):
 
 
 def transport_rate(run, start=None, stop=np.inf, column="q_star"):
-    """Times (s) and q* of a run between two times; from `analysis.transport_rate.from` on if no start is given.
+    """Times (s) and q* of a run between two times (s); from `analysis.transport_rate.from` on if no start is given.
 
-    column: q_s for the flux in m^2/s, which grains without a fluid have as well.
+    column: q_s for the flux in m^2/s, which grains without a fluid have as well. RunFolderError where there is none.
     """
     if column not in run.series:
         raise RunFolderError(f"{run.folder / 'series.csv'}: it has no column {column} (analysis.transport_rate in the case).")

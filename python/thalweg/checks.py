@@ -19,7 +19,7 @@ class Checks:
         print(f"{name}: {value:.4g} {unit}, expected {low:.4g} to {high:.4g}: {'pass' if good else 'FAIL'}")
 
     def compare(self, name, value, reference, source):
-        """A number beside that of the literature; what the difference is, is for the reader to judge."""
+        """A number beside that of the literature; the difference is left to the reader's judgement."""
         print(f"{name}: {value:.4g}, {source}: {reference:.4g}, difference {100.0 * (value / reference - 1.0):+.1f} %")
 
     def finished(self, run):

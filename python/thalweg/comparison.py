@@ -1,4 +1,4 @@
-"""What the scripts share that compare runs with the literature: their table outlives the folders of the runs."""
+"""Shared by scripts that compare runs with the literature: their table outlives the folders of the runs."""
 import argparse
 
 from thalweg.tables import merged_rows, read_rows
@@ -7,8 +7,8 @@ from thalweg.tables import merged_rows, read_rows
 def compared_rows(description, table, figure, rows_of):
     """Rows of the table and the name of the figure of a comparison, from the command line [RUN...] [--table FILE] [--figure FILE].
 
-    rows_of: of a run's folder, a list of rows (dictionaries by heading). Those of the runs that are given take the place of their
-    earlier ones in the table; without runs it is read as it is. table, figure: the defaults.
+    rows_of: from a run's folder to its list of rows (dictionaries by heading). Rows of the runs given replace their earlier
+    ones in the table; without runs it is read as it is. table, figure: the defaults.
     """
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("runs", nargs="*", metavar="RUN")

@@ -1,4 +1,4 @@
-"""The side view: lit grains before the water, as plot_run.py and its film draw it."""
+"""The side view: lit grains in front of the water, as plot_run.py and its film draw it."""
 import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
@@ -12,7 +12,7 @@ PIXELS_PER_DIAMETER = 48
 
 
 def colour_of(number):
-    """Of one of up to twenty curves: ten colours, then the same paler."""
+    """Colour of one of up to twenty curves: ten colours, then the same paler."""
     return matplotlib.colormaps["tab20"]((2 * number) % 20 + number // 10 % 2)
 
 
@@ -105,14 +105,14 @@ def side_view_axes(size):
 
 
 def flow_direction(run):
-    """Words after the label of the x axis: where the flow goes, if it is driven along x."""
+    """Text after the label of the x axis: where the flow goes, if it is driven along x."""
     faces = {face for axis in "xyz" for face in run.faces(axis)}
     driven = "gravity" not in run.case or run.gravity[0] > 0.0 or faces & {"moving", "velocity_inlet"}
     return ", flow to the right" if driven or (run.case.get("fluid") or {}).get("mean_velocity") else ""
 
 
 def largest_speed_of(speed, diameter):
-    """End of the scale of grain speeds (m/s): of the grains faster than a diameter (m) a second, nine tenths are slower."""
+    """End of the scale of grain speeds (m/s): the 90 % quantile of those above one diameter (m) a second."""
     moving = speed[speed > diameter]
     return float(np.quantile(moving, 0.9) if len(moving) else diameter)
 

@@ -11,7 +11,7 @@ from thalweg.errors import RunFolderError
 
 
 def chosen_frames(run, start=-np.inf, stop=np.inf, every=0.0):
-    """The frames between two times (s), one in every so many seconds: of the grains, or of the fluid where there are none."""
+    """The frames between two times (s), at least `every` seconds apart: of the grains, or of the fluid where there are none."""
     shown, kind = (run.grains, "grains") if len(run.grains) else (run.fluid, "fluid")
     frames, found, due = shown.between(start, stop), [], -np.inf
     for k, time in enumerate(frames.times):

@@ -36,8 +36,8 @@ def layer_edges(bottom, top, thickness):
 
 
 class LayerSums:
-    """Sums over frames of what the grains bring into layers; profiles() makes means of them. Lengths in m; height: of a
-    period, where z is periodic; thickness: of disks."""
+    """Sums over frames of what the grains contribute to layers; profiles() makes means of them. area: of a layer, m^2;
+    lengths in m; height: of a period, where z is periodic; thickness: of disks."""
 
     def __init__(self, edges, area, height=None, thickness=None):
         self.edges, self.layer_volumes = np.asarray(edges, float), area * np.diff(edges)

@@ -56,9 +56,9 @@ def mean_with_error(values):
 def steadiness(values):
     """Whether a straight line through a series at equal intervals rises or falls by no more than chance.
 
-    The test is that of the run itself (analysis/trend_test.hpp, docs/theory.md section 5): a line is fitted to 32 to 63
-    batches of equal length, and the lag-one autocorrelation of what is left over says how many independent ones they are
-    worth (Santer et al., J. Geophys. Res. 105 (2000) 7337). A steady series fails one time in twenty; a drift slower than
+    The test is that of the run itself (analysis/trend_test.hpp, docs/theory.md section 5): a line is fitted to at most 63
+    batches of equal length, and the lag-one autocorrelation of the residuals says how many independent ones they are
+    worth (Santer et al., J. Geophys. Res. 105 (2000) 7337). A steady series fails one time in twenty; a drift smaller than
     the scatter is not seen.
     """
     batches = in_batches(np.asarray(values, float))
@@ -88,7 +88,7 @@ def in_batches(values):
 
 
 def student_t_of_5_percent(degrees_of_freedom):
-    """Student's t that is exceeded on either side with 5 % (Abramowitz and Stegun 26.7.5, within 1 % from two degrees on)."""
+    """Student's t for a two-sided test at 5 % (Abramowitz and Stegun 26.7.5, within 1 % from two degrees on)."""
     z, v = 1.959963984540054, 1.0 / degrees_of_freedom
     first, second = (z**2 + 1.0) / 4.0, ((5.0 * z**2 + 16.0) * z**2 + 3.0) / 96.0
     third = (((3.0 * z**2 + 19.0) * z**2 + 17.0) * z**2 - 15.0) / 384.0

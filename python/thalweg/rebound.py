@@ -6,7 +6,7 @@ IMPACTS = 3
 
 
 def settling_time(case):
-    """s: in which sound goes around the first grain of a case, pi R/c_s. Before, the fluid has not answered to a rebound."""
+    """Time (s) that sound takes around the first grain of a case, pi R/c_s; before it the fluid cannot respond to a rebound."""
     radius, spacing = 0.5 * case["grains"][0]["diameter"], case["domain"]["spacing"]
     return math.pi * radius * math.sqrt(3.0) * case["fluid"]["time_step"] / spacing
 

@@ -57,8 +57,8 @@ class FlowState:
 
 
 def flow_state(solid_fraction, stress, shear_rate, diameter, density, viscosity):
-    """stress: of the solid (Pa) [..., 3, 3]; density: of the grains; viscosity: dynamic, Pa s. Not a number where the solid is not
-    under pressure."""
+    """stress: of the solid (Pa) [..., 3, 3]; shear_rate: 1/s; diameter: m; density: of the grains, kg/m^3; viscosity: dynamic,
+    Pa s. NaN where the solid is not under pressure."""
     pressure = -np.trace(stress, axis1=-2, axis2=-1) / 3.0
     pressure = np.where(pressure > 0.0, pressure, np.nan)
     deviator = 0.5 * (stress + np.swapaxes(stress, -1, -2)) + pressure[..., None, None] * np.eye(3)

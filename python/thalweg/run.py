@@ -142,7 +142,7 @@ class Run:
 
     @property
     def size(self):
-        """Of the box along x, y, z in m."""
+        """Size (m) of the box along x, y, z."""
         return np.array(self.case["domain"]["size"], float)
 
     def faces(self, axis):
@@ -181,7 +181,7 @@ class Run:
 
     @cached_property
     def diameter(self):
-        """m: the reference diameter, `analysis.reference_diameter` or the one that half of the mass of all free grains is finer
+        """m: the reference diameter, `analysis.reference_diameter` or the one that half of the volume of all free grains is finer
         than."""
         given = self.reference("diameter") or (self.case.get("analysis") or {}).get("reference_diameter")
         if given:
@@ -197,7 +197,7 @@ class Run:
 
     @property
     def density_ratio(self):
-        """Of the free grains, mass over volume, to the fluid, 1."""
+        """Density of the free grains, mass over volume, over that of the fluid, 1."""
         density = self.reference("density")
         if density is None:
             populations = [grains for grains in self.free_populations if isinstance(grains.get("diameter"), (int, float))]

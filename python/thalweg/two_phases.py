@@ -54,8 +54,8 @@ def resolved_bed(run):
 
 
 def decay_length(height, velocity):
-    """Diameters over which the velocity of the grains falls by e below the surface: of the straight line through its logarithm
-    from 2 to 7 diameters deep, or as deep as the grains still move downhill. NaN with fewer than three layers."""
+    """Diameters in which the velocity of the grains falls by a factor e below the surface: from a straight line through its
+    logarithm from 2 to 7 diameters deep, or as deep as the grains still move downhill. NaN with fewer than three layers."""
     deep = np.flatnonzero((height < -CREEP_FIT[0]) & (height > -CREEP_FIT[1]))[::-1]      # from the top down
     stopped = np.flatnonzero(~(velocity[deep] > 0.0))
     deep = deep[:stopped[0]] if len(stopped) else deep
