@@ -8,7 +8,7 @@ namespace thalweg {
 FailureBarrier::FailureBarrier(MPI_Comm communicator) { MPI_Comm_dup(communicator, &communicator_); }
 
 FailureBarrier::~FailureBarrier() {
-  // A barrier the others never came to is still under way on it.
+  // A barrier that the others never reached is still pending on it.
   if (all_failed_.value_or(true)) MPI_Comm_free(&communicator_);
 }
 

@@ -17,7 +17,7 @@ double interval_of(const analysis::Observer& observer, double series_every) {
   return observer.every() > 0.0 ? observer.every() : series_every;
 }
 
-// Whether the archive has means of measurements at another interval, which this run's could not be counted with: all
+// Whether the archive has means of measurements at another interval; this run's cannot be added to them, since all
 // would weigh the same.
 bool has_other_weights(ArchiveReader& archive, const analysis::Observer& observer, double series_every) {
   const std::string path = interval_path(observer.name());

@@ -16,8 +16,8 @@ namespace {
 
 std::string group_of(std::size_t population) { return fmt::format("bed_{}", population); }
 
-// The rows of this rank come after those of lower ranks. Velocities are not kept, but how fast the fastest was, by
-// which the watchdog goes.
+// The rows of this rank come after those of lower ranks. Velocities are not kept, only the largest speed, for the
+// watchdog.
 void save_bed(ArchiveWriter& archive, MPI_Comm communicator, const std::string& group,
               const dem::Population& population) {
   const std::vector<BedGrain>& grains = population.file;

@@ -105,7 +105,7 @@ void check_initial_fluid(const Case& c, const io::YamlDocument& document) {
                                 (profile.perturbation ? strongest_gust * profile.perturbation->amplitude : 0.0)));
 }
 
-// That any grain of a rigid population may have, wherever in its region or the box it is; m/s.
+// The largest speed (m/s) that a grain of a rigid population can have anywhere in its region or the box.
 double largest_speed(const Case& c, const dem::Population& grains) {
   const dem::MotionKeys& motion = *grains.motion;
   double speed = motion.velocity.norm();

@@ -18,7 +18,7 @@ namespace {
 
 using Warnings = std::vector<std::string>;
 
-// Cells a step, the largest.
+// The largest velocity expected, cells a step.
 double expected_lattice_velocity(const Case& c) {
   return c.fluid.expected_velocity.value_or(flow_estimate(c).speed) / units_of(c).velocity();
 }
@@ -156,8 +156,8 @@ void warn_of_coarse_cells(const Case& c, Warnings& found) {
 }
 
 // The fluid resists a sudden motion of a sphere with 3.8 dx/d of the displaced mass, and the load, extrapolated in
-// time, stands up to 1.15 times the mass of the grain (coupling/load_rule.hpp); the mean was stable down to half the
-// fluid's.
+// time, is stable up to 1.15 times the mass of the grain (coupling/load_rule.hpp); the mean load was stable down to
+// half the fluid's density.
 void warn_of_grains(const Case& c, Warnings& found) {
   for (const dem::Population& population : c.grains) {
     const double least = c.coupling.load == coupling::LoadRule::mean
@@ -172,7 +172,7 @@ void warn_of_grains(const Case& c, Warnings& found) {
   }
 }
 
-// What makes a bed sinks.
+// Only grains that sink make a bed.
 void warn_of_floating_grains(const Case& c, Warnings& found) {
   if (gravity_vector(c.gravity).z() >= 0.0 || c.gravity.mode == GravityMode::balanced) return;
   for (std::size_t n = 0; n < c.grains.size(); ++n)

@@ -51,8 +51,8 @@ std::string damping_text(const Case& c) {
   return text + (c.contact.law == dem::Law::linear ? " kg/s" : " kg/(s m^1/2)");
 }
 
-// A contact that ends before sound has gone around the grain turns the grain alone, which then pays for the water that
-// moved with it (benchmarks/validation/rebound_in_water).
+// A contact that ends before sound has gone around the grain reverses the grain alone, which then loses momentum to the
+// water that moved with it (benchmarks/validation/rebound_in_water).
 void add_rebound(const Case& c, Lines& lines) {
   const double contact = shortest_contact(c) / fluid_time_step(c);
   const double around = 0.5 * std::numbers::pi * std::sqrt(3.0) * smallest_diameter(c) / c.domain.spacing;  // steps

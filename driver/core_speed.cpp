@@ -17,7 +17,7 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-// What there is to do where grains are; the rest is done for all cells.
+// Phases that work only where grains are; the others cover all cells.
 constexpr std::array<const char*, 7> grain_phases = {"grain map", "refill",      "links",       "loads",
                                                      "grains",    "grain lists", "grain motion"};
 

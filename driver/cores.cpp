@@ -18,7 +18,7 @@ namespace thalweg::driver {
 
 namespace {
 
-// That any rank of the node may use: each may have been given its own.
+// Cores that any rank of the node may use: each rank may have been given its own.
 int cores_of(MPI_Comm node) {
   cpu_set_t mine;
   CPU_ZERO(&mine);
@@ -34,7 +34,7 @@ int cores_of(MPI_Comm node) {
   return cores;
 }
 
-// As Open MPI is told by the user, or tells its ranks where it has noticed by itself.
+// As the user tells Open MPI, or as it tells its ranks where it has noticed too many of them itself.
 bool waiting_ranks_yield() {
   for (const char* name : {"OMPI_MCA_mpi_yield_when_idle", "OMPI_MCA_mpi_oversubscribe"})
     if (const char* value = std::getenv(name)) return std::strcmp(value, "0") != 0;

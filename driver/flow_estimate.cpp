@@ -38,7 +38,7 @@ double log_of(double distance, double friction_velocity, const Channel& channel)
   return std::max(1.0, std::log(distance / zero));
 }
 
-// The friction velocity at which law(u_tau) kappa is u_tau, by iteration from a twentieth of the velocity.
+// The friction velocity u_tau = kappa velocity/logarithms(u_tau), by iteration from a twentieth of the velocity.
 template <typename Law>
 double friction_velocity_of(double velocity, const Law& logarithms) {
   double friction_velocity = velocity / 20.0;
@@ -46,7 +46,7 @@ double friction_velocity_of(double velocity, const Law& logarithms) {
   return friction_velocity;
 }
 
-// What a face that is not the top, or the start, or grains that move as prescribed do to the fluid next to them; m/s.
+// Raises the estimate to `speed` (m/s): of a face, the start, or grains, and so of the fluid next to them.
 void consider(FlowEstimate& flow, double speed, FlowCause cause) {
   if (!(speed > flow.speed)) return;
   flow.speed = speed;

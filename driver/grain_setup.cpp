@@ -10,8 +10,8 @@ namespace thalweg::driver {
 
 namespace {
 
-// A wide skin costs nothing where grains are alone, and falling grains wear out a narrow one; with every new list the
-// links of a fluid have to be looked at again, and its grains are slower.
+// A wide skin costs nothing without a fluid, and falling grains soon use up a narrow one. In a fluid every new
+// neighbour list means a new look at the links, and grains are slower.
 constexpr double skin_in_diameters = 0.1, dry_skin_in_diameters = 0.5;
 
 // Faces the fluid sticks to; the other walls of the case are not the fluid's.

@@ -14,7 +14,7 @@ namespace {
 
 // Large enough not to fit into caches, which the whole does not either; and to hold some grains beside each other.
 constexpr double most_cells = 1.5e6, most_grains = 4000.0, least_diameters = 8.0;
-// Of a diameter, between the grains of the bed: each touches six others, as many as in a bed that has settled.
+// Diameters between the centres of neighbours in the bed: each grain touches six others, as many as in a settled bed.
 constexpr double between_centres = 0.999;
 
 // Of the whole along x; m.

@@ -21,7 +21,7 @@ namespace {
 
 constexpr double seconds_between_decisions = 0.2;  // mpirun kills one second after its SIGTERM
 constexpr double seconds_a_stroke_may_be_late = 0.5;
-constexpr double most_of_the_time = 0.7;  // that a signal leaves: what a checkpoint may take
+constexpr double most_of_the_time = 0.7;  // share of the time after a signal that a checkpoint may take
 constexpr double seconds_between_lines = 1.0;
 constexpr std::int64_t most_steps_between_decisions = 100000;
 
@@ -32,7 +32,7 @@ double seconds_since(WallClock::time_point start) {
 // SIGUSR1 and SIGUSR2 are passed on by mpirun, and nothing follows.
 bool is_followed_by_a_kill(int signal) { return signal == SIGTERM || signal == SIGINT; }
 
-// Of such a figure the smallest is kept among the largest.
+// Of such a figure the smallest value is kept, not the largest.
 bool is_smallest(const Figure& figure) { return figure.name.starts_with("smallest_"); }
 
 // Takes the request away, so that the run can go on later.
