@@ -51,8 +51,8 @@ public:
   // fastest grain at or below it), largest_grain_speed, largest_fluid_speed (m/s), solid_volume (m), integrator_steps
   // (1), unsteadiness (1), and with creep creep_decay_length, creep_decade_length (m).
   //
-  // unsteadiness: the larger of two changes over the latest step, of momentum, over the bed stress times the step, and
-  // of q_s, relative (to 1e-4 sqrt((s - 1) g d^3) where it is less). 1 before the first step.
+  // unsteadiness: the larger of two changes over the latest step, of momentum, over the driving stress on the floor
+  // times the step, and of q_s, relative (to 1e-4 sqrt((s - 1) g d^3) where it is less). 1 before the first step.
   std::vector<Figure> figures() const override;
   static constexpr const char* unsteadiness_figure = "unsteadiness";
 
