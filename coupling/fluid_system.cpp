@@ -30,6 +30,7 @@ FluidSystem<Real>::FluidSystem(std::unique_ptr<Decomposition> decomposition, MPI
   if (!solids.empty())
     solids_ = std::make_unique<StaticSolids>(*decomposition_, communicator, fluid_.cells(), fluid_.tiles(), solids);
   parameters_.links.rest_gradient = rest_.gradient;
+  parameters_.links.rest_middle = rest_.middle;
   if (parameters_.flow_target) fluid_.control_flow(*parameters_.flow_target);
   initialise(fluid_, parameters_, rest_);
   set_gravity(fluid_, parameters_, step_);

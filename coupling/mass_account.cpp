@@ -1,6 +1,5 @@
 #include "coupling/mass_account.hpp"
 
-#include "core/fixed_point.hpp"
 #include "core/mpi_session.hpp"
 
 #include <fmt/format.h>
@@ -29,7 +28,7 @@ void MassAccount::book(const lbm::LinkBalance& balance) {
 void MassAccount::open(double excess, double owed) {
   sums_ = {};
   kept_ = excess + owed;
-  if (rank_of(communicator_) == 0) book(links, -LatticeFixed::from(owed));
+  if (rank_of(communicator_) == 0) book(links, -owed);
 }
 
 std::array<WideSum, MassAccount::entries> MassAccount::totals_exact() const {

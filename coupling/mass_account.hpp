@@ -11,6 +11,7 @@
 #pragma once
 
 #include "core/archive.hpp"
+#include "core/fixed_point.hpp"
 #include "core/system.hpp"
 #include "core/units.hpp"
 #include "core/wide_sum.hpp"
@@ -31,8 +32,10 @@ public:
 
   explicit MassAccount(MPI_Comm communicator) : communicator_(communicator) {}
 
-  // mass: what this rank adds, a LatticeFixed sum. Corrections concern the whole run and are booked by one rank.
+  // mass: what this rank adds, a LatticeFixed sum. Corrections concern the whole run and are booked by one rank; they
+  // may be larger than a LatticeFixed term.
   void book(Entry entry, std::int64_t mass) { sums_[entry].add(mass); }
+  void book(Entry entry, double mass) { sums_[entry].add(WideSum::from(mass, LatticeFixed::bits)); }
   void book(const lbm::LinkBalance& balance);
 
   // Since the start of the run, over all ranks, by Entry; all at once because a reduction is shared. Collective.

@@ -227,7 +227,7 @@ void ResolvedSystem<Real, S>::correct_mass() {
   parameters_.links.reference_density = excess.mean();
   if (!closed_) return;
   const double added = restore_excess(fluid_, excess, mass_.kept() - mass_owed());
-  if (rank_of(communicator_) == 0) mass_.book(MassAccount::corrections, LatticeFixed::from(added));
+  if (rank_of(communicator_) == 0) mass_.book(MassAccount::corrections, added);
 }
 
 }  // namespace thalweg::coupling

@@ -126,7 +126,7 @@ void take_rows(Population& population, std::vector<BedGrain> rows, const Periodi
   population.clumps = sums.clumps;
   population.count = sums.count;
   population.density = sums.mass / sums.volume;
-  population.diameter = median_by_volume(figures.sizes);
+  population.diameter = median_by_mass(figures.sizes, population.thickness > 0.0);
   take_sums(population, bodies, ranks, figures);
 }
 

@@ -148,14 +148,6 @@ void evaluate_contacts(MovingGrains& grains, ContactList& list, const PeriodicBo
   });
 }
 
-std::vector<Vec3> wall_contact_forces(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
-                                      std::span<const Plane> walls, const MaterialTable& materials) {
-  std::vector<Vec3> forces(list.walls.size(), Vec3::Zero());
-  visit_walls(store, list, box, walls, materials,
-              [&](std::size_t number, const ContactMotion&, const Vec3& force) { forces[number] = force; });
-  return forces;
-}
-
 void for_each_contact_end(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
                           std::span<const Plane> walls, const MaterialTable& materials, std::span<const char> chosen,
                           const ContactEndVisitor& visit) {

@@ -19,11 +19,6 @@ namespace thalweg::dem {
 void evaluate_contacts(MovingGrains& grains, ContactList& list, const PeriodicBox& box, std::span<const Plane> walls,
                        const MaterialTable& materials, std::span<const std::uint8_t> material, double time_step);
 
-// The force (N) on each wall contact's grain, by the present positions, velocities and histories, which stay as they
-// are.
-std::vector<Vec3> wall_contact_forces(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
-                                      std::span<const Plane> walls, const MaterialTable& materials);
-
 // Calls visit(slot, end) for every contact, touching or acting across a gap, of every owned grain, in the order of the
 // list, pairs first. By the present positions, velocities and histories, which stay as they are. chosen: one entry a
 // slot of an owned grain, 0 for those left out; empty: all.

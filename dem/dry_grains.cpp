@@ -123,11 +123,10 @@ void DryGrains::load(ArchiveReader& archive) {
 
 // Whatever a fluid did to them is over.
 void DryGrains::take_grains(ArchiveReader& archive, double /*spacing*/) {
-  grains_.take(archive);
+  grains_.take(archive, "grains", false);
   GrainStore& store = grains_.store();
   std::fill(store.load_force.begin(), store.load_force.end(), Vec3::Zero());
   std::fill(store.load_torque.begin(), store.load_torque.end(), Vec3::Zero());
-  std::fill(store.attached.begin(), store.attached.end(), 0.0);
 }
 
 }  // namespace thalweg::dem

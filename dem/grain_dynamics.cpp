@@ -49,8 +49,9 @@ void check_time_step(const GrainParameters& p, std::span<const LightestGrain> li
     const ContactParameters& material = m == 0 ? p.contact : p.other_materials[m - 1];
     const LightestGrain& grain = lightest[m];
     if (!std::isfinite(grain.mass)) continue;
-    check_time_step(material, share * grain.mass, share * grain.radius, p.time_step);
-    if (p.wall_contact) check_wall_time_step(material, *p.wall_contact, grain.mass, grain.radius, p.time_step);
+    check_time_step(material, share * grain.mass, share * grain.hertzian_radius(), p.time_step);
+    if (p.wall_contact)
+      check_wall_time_step(material, *p.wall_contact, grain.mass, grain.hertzian_radius(), p.time_step);
   }
 }
 

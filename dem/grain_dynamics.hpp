@@ -167,7 +167,8 @@ public:
 
   // Figures over all ranks, the same bits in any layout; a clump is one grain, with the velocity of its centre, but
   // overlap and contacts are those of its members. Collective.
-  std::vector<Vec3> wall_forces() const;          // N, of all grains on each of the walls, in their order
+  std::vector<Vec3> wall_forces()
+      const;  // N, of all grains on each of the walls, in their order: contacts and lubrication
   std::int64_t contact_count() const;             // touching pairs of grains
   double largest_overlap() const;                 // of two grains, not both held, in diameters of the smaller
   double kinetic_energy() const;                  // J, with rotation
@@ -193,13 +194,14 @@ public:
   void load(ArchiveReader& archive, const std::string& group = "grains");
 
   // Takes the grains of another run as a start: with their velocities, held or not, and contact springs (those with
-  // walls only where there are as many walls), but not its time. Attached columns are taken where there are as many,
-  // else zero. Throws InputError where there are grains here, but not as many, or where this run has rigid assemblies.
-  // Collective.
-  void take(ArchiveReader& archive, const std::string& group = "grains");
+  // walls only where there are as many walls), but not its time. with_columns: and with the attached columns, where the
+  // other run had the same; else these are zero. Throws InputError where there are grains here, but not as many, or
+  // where this run has rigid assemblies. Collective.
+  void take(ArchiveReader& archive, const std::string& group = "grains", bool with_columns = true);
 
 private:
-  void restore(ArchiveReader& archive, const std::string& group, bool as_start);
+  enum class Restored { whole, start, start_without_columns };
+  void restore(ArchiveReader& archive, const std::string& group, Restored what);
   void check_range() const;
   void place_walls(double time, double time_of_velocity);
   void place_prescribed(double time, double time_of_velocity);

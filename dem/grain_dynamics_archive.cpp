@@ -144,6 +144,13 @@ int saved_width(const ArchiveReader& archive, const std::string& group) {
   return archive.has(name) ? static_cast<int>(archive.shape(name).at(1)) : 0;
 }
 
+// Whether the saved columns are those of a run like this one: as many of the system, and with those of the integrator
+// as many in all. (States saved before the system's were counted have only the sum.)
+bool has_columns(const ArchiveReader& archive, const std::string& group, int of_system, int in_all) {
+  const std::string name = group + "/system_columns";
+  return saved_width(archive, group) == in_all && (!archive.has(name) || archive.integer_attribute(name) == of_system);
+}
+
 // Throws on every rank, naming the same grain, the one with the lowest id.
 void check_loaded(const GrainBatch& batch, const GrainSpace& space, MPI_Comm communicator) {
   struct Outlier {
@@ -196,6 +203,7 @@ void GrainDynamics::save(ArchiveWriter& archive, const std::string& group) const
   archive.attribute(group + "/walls", static_cast<std::int64_t>(parameters_.walls.size()));
   archive.attribute(group + "/sub_steps", steps_done_);
   archive.attribute(group + "/time", time());
+  archive.attribute(group + "/system_columns", static_cast<std::int64_t>(parameters_.attached_width));
   assemblies_.save(archive, group, communicator_);
   std::vector<int> home;
   for (std::size_t s = 0; s < store_.owned; ++s) home.push_back(rank_of_row(store_.id[s], global_count_, ranks));
@@ -229,18 +237,19 @@ void GrainDynamics::save(ArchiveWriter& archive, const std::string& group) const
   write_histories(archive, group, rows, history_parts_of(list_), communicator_);
 }
 
-void GrainDynamics::load(ArchiveReader& archive, const std::string& group) { restore(archive, group, false); }
+void GrainDynamics::load(ArchiveReader& archive, const std::string& group) { restore(archive, group, Restored::whole); }
 
-void GrainDynamics::take(ArchiveReader& archive, const std::string& group) {
+void GrainDynamics::take(ArchiveReader& archive, const std::string& group, bool with_columns) {
   const auto saved = static_cast<std::int64_t>(archive.shape(group + "/radius").at(0));
   if (global_count_ > 0 && saved != global_count_)
     throw InputError(fmt::format("There are {} grains, but this system has {}.", saved, global_count_));
   if (assemblies_.any())
     throw InputError("A case with rigid populations (motion) cannot take over grains; give their placements instead.");
-  restore(archive, group, true);
+  restore(archive, group, with_columns ? Restored::start : Restored::start_without_columns);
 }
 
-void GrainDynamics::restore(ArchiveReader& archive, const std::string& group, bool as_start) {
+void GrainDynamics::restore(ArchiveReader& archive, const std::string& group, Restored what) {
+  const bool as_start = what != Restored::whole;
   const int ranks = size_of(communicator_), me = rank_of(communicator_);
   const std::int64_t walls = archive.integer_attribute(group + "/walls");
   const bool same_walls = walls == static_cast<std::int64_t>(parameters_.walls.size());
@@ -250,7 +259,9 @@ void GrainDynamics::restore(ArchiveReader& archive, const std::string& group, bo
                     parameters_.walls.size()));
   global_count_ = static_cast<std::int64_t>(archive.shape(group + "/radius").at(0));
   // A start may be that of another kind of run, whose columns mean something else.
-  const bool same_columns = !as_start || saved_width(archive, group) == store_.attached_width;
+  const bool same_columns =
+      what == Restored::whole ||
+      (what == Restored::start && has_columns(archive, group, parameters_.attached_width, store_.attached_width));
   GrainBatch batch =
       read_grains(archive, group, RowRange(global_count_, ranks, me), same_columns ? store_.attached_width : 0);
   if (!same_columns) batch.attached.assign(batch.rows.size() * store_.attached_width, 0.0);

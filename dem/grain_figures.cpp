@@ -91,11 +91,14 @@ void GrainDynamics::for_each_wall_force(
 
 std::vector<Vec3> GrainDynamics::wall_forces() const {
   const std::size_t walls = planes_.size();
-  const std::vector<Vec3> on_grains = wall_contact_forces(store_, list_, box_, planes_, materials_);
-  std::vector<double> terms(3 * walls * on_grains.size(), 0.0);
-  for (std::size_t n = 0; n < on_grains.size(); ++n)
+  std::vector<double> terms;  // 3 * walls of each force
+  for_each_wall_force([&](std::size_t /*slot*/, const ContactEnd& end) {
+    const auto wall = static_cast<std::size_t>(-1 - end.partner);
+    const std::size_t first = terms.size();
+    terms.resize(first + 3 * walls, 0.0);
     for (std::size_t axis = 0; axis < 3; ++axis)
-      terms[3 * walls * n + 3 * list_.walls[n].wall + axis] = -on_grains[n][static_cast<Eigen::Index>(axis)];
+      terms[first + 3 * wall + axis] = -end.force[static_cast<Eigen::Index>(axis)];
+  });
   const std::vector<double> sums = order_free_sums(communicator_, terms, 3 * walls);
   std::vector<Vec3> forces;
   for (std::size_t w = 0; w < walls; ++w) forces.emplace_back(sums[3 * w], sums[3 * w + 1], sums[3 * w + 2]);

@@ -198,13 +198,14 @@ std::vector<SizeCount> merged(std::vector<SizeCount> sizes) {
 
 // Grain by grain: the sums, and so the grain that they end with where two share the middle, are those of a list with
 // one entry a grain.
-double median_by_volume(std::span<const SizeCount> sizes) {
+double median_by_mass(std::span<const SizeCount> sizes, bool disks) {
+  const auto mass = [disks](double d) { return disks ? d * d : sphere_volume(d); };
   double whole = 0.0, below = 0.0;
   for (const SizeCount& size : sizes)
-    for (std::int64_t n = 0; n < size.count; ++n) whole += sphere_volume(size.diameter);
+    for (std::int64_t n = 0; n < size.count; ++n) whole += mass(size.diameter);
   for (const SizeCount& size : sizes)
     for (std::int64_t n = 0; n < size.count; ++n) {
-      below += sphere_volume(size.diameter);
+      below += mass(size.diameter);
       if (below >= 0.5 * whole) return size.diameter;
     }
   return sizes.empty() ? 0.0 : sizes.back().diameter;

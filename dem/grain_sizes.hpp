@@ -50,8 +50,8 @@ struct SizeCount {
 std::vector<SizeCount> counted(std::vector<double> diameters);
 std::vector<SizeCount> merged(std::vector<SizeCount> sizes);
 
-// The diameter that half of the mass of these grains is finer than; m. sizes: rising.
-double median_by_volume(std::span<const SizeCount> sizes);
+// The diameter that half of the mass of these grains is finer than; m. sizes: rising. disks: their mass grows as d^2.
+double median_by_mass(std::span<const SizeCount> sizes, bool disks);
 
 // One diameter (m) for each grain. A grain's quantile is the place of its random number among those of the population,
 // so that the population follows the distribution as closely as its number allows, and the seed only shuffles.

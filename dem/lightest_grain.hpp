@@ -15,12 +15,20 @@ namespace thalweg::dem {
 struct LightestGrain {
   double mass = std::numeric_limits<double>::infinity();
   double radius = std::numeric_limits<double>::infinity();
+  double squared_mass_per_radius = std::numeric_limits<double>::infinity();  // kg^2/m: least
   double radius_per_mass = 0.0;
 
   void include(double other_mass, double other_radius) {
     mass = std::min(mass, other_mass);
     radius = std::min(radius, other_radius);
+    squared_mass_per_radius = std::min(squared_mass_per_radius, other_mass * other_mass / other_radius);
     radius_per_mass = std::max(radius_per_mass, other_radius / other_mass);
+  }
+
+  // Of a grain of the least mass whose Hertzian contacts are as short as the shortest: their time goes with the fifth
+  // root of m^2/R, which a heavier but larger grain may have the least of. m
+  double hertzian_radius() const {
+    return mass * mass / radius > squared_mass_per_radius ? mass * mass / squared_mass_per_radius : radius;
   }
 };
 
@@ -28,6 +36,7 @@ struct LightestGrain {
 inline void share_over_ranks(MPI_Comm communicator, std::vector<LightestGrain>& lightest) {
   for (LightestGrain& grain : lightest)
     grain = {-max_over_ranks(communicator, -grain.mass), -max_over_ranks(communicator, -grain.radius),
+             -max_over_ranks(communicator, -grain.squared_mass_per_radius),
              max_over_ranks(communicator, grain.radius_per_mass)};
 }
 

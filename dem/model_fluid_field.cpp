@@ -39,7 +39,7 @@ void ModelFluidField::act(MovingGrains& grains, GrainStore& store, Clumps& clump
     if (store.clump[s] >= 0) continue;
     MovingGrain& grain = grains[s];
     const double radius = grain.position[3];
-    const bool held = parameters_.rough_floor && grain.position[2] < radius;
+    const bool held = parameters_.rough_floor && store.inverse_mass[s] > 0.0 && grain.position[2] < radius;
     if (held) grain.velocity[0] = grain.velocity[1] = 0.0;
     const ModelForce f = force_on(s, radius, vector_of(grain.velocity));
     store.load_force[s] = Vec3(f.x, f.y, f.z);
@@ -57,7 +57,8 @@ void ModelFluidField::act_on_clump(std::size_t n, MovingGrains& grains, GrainSto
   const std::size_t first = clumps.first_slot(n), end = first + clumps.member_count(n);
   const auto touches_floor = [&grains](std::size_t s) { return grains[s].position[2] < grains[s].position[3]; };
   bool held = false;
-  for (std::size_t s = first; s < end; ++s) held = held || (parameters_.rough_floor && touches_floor(s));
+  if (parameters_.rough_floor && !holds_translation(clumps[n].motion))
+    for (std::size_t s = first; s < end; ++s) held = held || touches_floor(s);
   Vec3 velocity = clumps[n].velocity;
   if (held) velocity.x() = velocity.y() = 0.0;
   const ModelForce f = force_on(first, clumps.radius_of(clumps[n]), velocity);

@@ -136,9 +136,9 @@ void take_shape(Population& population) {
 void take_sizes(Population& population) {
   if (population.shape) take_shape(population);
   if (!population.sizes.given()) return;
-  population.diameters =
-      sampled_diameters(population.sizes, population.count, population.placement.seed, population.thickness > 0.0);
-  population.diameter = median_by_volume(counted(population.diameters));
+  const bool disks = population.thickness > 0.0;
+  population.diameters = sampled_diameters(population.sizes, population.count, population.placement.seed, disks);
+  population.diameter = median_by_mass(counted(population.diameters), disks);
 }
 
 // Of the placement's region, or of the box; of disks as wide as they are thick. m

@@ -42,7 +42,7 @@ ReferenceGrain reference_grain(const Case& c) {
     const std::vector<dem::SizeCount> more = population->sizes_of_grains();
     sizes.insert(sizes.end(), more.begin(), more.end());
   }
-  return {dem::median_by_volume(dem::merged(std::move(sizes))), density};
+  return {dem::median_by_mass(dem::merged(std::move(sizes)), c.disks.has_value()), density};
 }
 
 std::string reference_text(const Case& c) {

@@ -14,7 +14,7 @@ struct ReferenceGrain {
 };
 
 // Of all grains that are free to move, taken together (of all, where none is): the diameter that half of their volume
-// is finer than, as for a single population (dem::median_by_volume()), unless analysis.reference_diameter gives
+// is finer than, as for a single population (dem::median_by_mass()), unless analysis.reference_diameter gives
 // another; and their mass over their volume. The case must have grains.
 ReferenceGrain reference_grain(const Case& c);
 

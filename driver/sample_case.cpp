@@ -84,7 +84,7 @@ dem::Population grains_of(const Case& c, const Vec3& size, double share) {
   }
   grains.placement.pattern = dem::PlacementPattern::dense;
   grains.count = static_cast<std::int64_t>(diameters.size());
-  grains.diameter = dem::median_by_volume(dem::counted(diameters));
+  grains.diameter = dem::median_by_mass(dem::counted(diameters), c.disks.has_value());
   grains.diameters = std::move(diameters);
   return grains;
 }

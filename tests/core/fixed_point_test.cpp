@@ -91,6 +91,20 @@ TEST(WideSum, BecomesNarrowOnlyWhereItFits) {
   EXPECT_TRUE(leaves_range([&] { sum.narrowed(); }));
 }
 
+// The round-off of all cells of a large run, summed, is more than a term of a link may be.
+TEST(WideSum, TakesNumbersOfAnySize) {
+  for (const double value : {0.0, 0.25, -0.25, -5.0, 127.0, 128.0, -1e6, 1e15, -1e15, 0x1p80}) {
+    const WideSum sum = WideSum::from(value, LatticeFixed::bits);
+    EXPECT_EQ(sum.to_double(LatticeFixed::bits), value);
+    if (std::abs(value) >= LatticeFixed::largest_term) continue;
+    WideSum same;
+    same.add(LatticeFixed::from(value));
+    EXPECT_EQ(sum, same) << value;
+  }
+  EXPECT_TRUE(leaves_range([] { EXPECT_EQ(WideSum::from(0x1p82, LatticeFixed::bits), WideSum{}); }));
+  EXPECT_TRUE(leaves_range([] { WideSum::from(std::numeric_limits<double>::quiet_NaN(), LatticeFixed::bits); }));
+}
+
 TEST(WideSum, GrowsBeyondSixtyFourBitsAndBack) {
   constexpr std::int64_t large = std::int64_t{1} << 62;
   WideSum sum;

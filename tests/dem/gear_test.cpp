@@ -1,10 +1,14 @@
 // Gear's predictor-corrector beside velocity Verlet: free flight, a smooth motion with an exact solution, an impact.
+#include "dem/gear_predictor.hpp"
 #include "tests/dem/grain_cases.hpp"
+#include "tests/support/memory_archive.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 namespace thalweg::dem {
 namespace {
@@ -113,6 +117,32 @@ TEST(Gear, HasNoAdvantageInAnImpact) {
     EXPECT_GT(gear, 0.5 * bound);
     EXPECT_NEAR(gear, verlet, 0.02 * verlet);
   }
+}
+
+// The columns of another kind of run are not those of the predictor, though there are as many of both.
+TEST(Gear, DoesNotTakeOtherColumnsForItsOwn) {
+  GrainParameters p;
+  p.contact = test::glass(0.9);
+  p.time_step = 2e-6;
+  p.sub_steps = 10;
+  p.skin = 1e-3;
+  const GrainSeed seed = test::glass_sphere(0, Vec3(0.025, 0.025, 0.025), Vec3(0.1, 0.0, 0.0));
+  p.attached_width = 24 + GearPredictor::columns;
+  GrainDynamics other(test::cube(), MPI_COMM_SELF, p, {seed});
+  std::fill(other.store().attached.begin(), other.store().attached.end(), 7.0);
+  thalweg::test::MemoryArchive archive;
+  thalweg::test::MemoryWriter writer(archive, MPI_COMM_SELF);
+  other.save(writer);
+  const auto taken = [&archive, &p] {
+    GrainDynamics grains(test::cube(), MPI_COMM_SELF, p, GrainSeeds{});
+    thalweg::test::MemoryReader reader(archive);
+    grains.take(reader);
+    return grains.store().attached;
+  };
+  EXPECT_EQ(taken(), std::vector<double>(42, 7.0));  // of a run like the other
+  p.attached_width = 24;
+  p.integrator = Integrator::gear;
+  EXPECT_EQ(taken(), std::vector<double>(42, 0.0));
 }
 
 }  // namespace

@@ -198,6 +198,11 @@ TEST(Lubrication, SlowsASphereOnItsWayToAWallAsThePathSays) {
     // The force changes over a sub-step by dt v/h of itself, 4 % in the end; half of that is the error of the sum.
     ASSERT_NEAR(-grains.store().velocity[0].z(), expected, 2e-3 * speed) << "gap " << h;
     ASSERT_GT(expected, 0.3 * speed);
+    const double slope =
+        h > cut_off ? 0.0 : 6.0 * pi * lubrication.viscosity * radius * radius * (1.0 / h - 1.0 / cut_off);
+    double on_walls = 0.0;  // the floor is pushed by what holds the sphere back
+    for (const Vec3& force : grains.wall_forces()) on_walls += force.z();
+    ASSERT_NEAR(on_walls, slope * grains.store().velocity[0].z(), 1e-9 * slope * speed) << "gap " << h;
   }
 }
 

@@ -163,5 +163,25 @@ TEST(ModelFluidClump, ThatTouchesTheFloorDoesNotMoveAlongIt) {
   EXPECT_GT(grains.clumps()[1].velocity.x(), 0.01);
 }
 
+// What is held regardless of forces is so by the floor as well: a plate of grains that is drawn along it moves on.
+TEST(ModelFluidClump, ThatIsHeldKeepsItsVelocityOnTheFloor) {
+  const Decomposition plane({20, 2, 20}, 2.5e-3, {true, true, false}, {1, 1, 1});
+  const auto shape = ring();
+  ModelFluidParameters parameters = fluid(shape->equivalent_radius(), true, 0.0);
+  allow_clumps(parameters, *shape);
+  const Vec3 velocity(0.1, 0.0, 0.0);
+  ClumpSeed drawn = glass_clump(1, shape, Vec3(0.035, 0.0025, 0.6 * 2.4e-3 + 1.2e-3 - 1e-6));
+  drawn.orientation = {std::cos(0.25 * std::numbers::pi), 0.0, std::sin(0.25 * std::numbers::pi), 0.0};
+  drawn.velocity = velocity;
+  drawn.motion = Motion::fixed;
+  GrainSeed alone = glass_sphere(0, Vec3(0.015, 0.0025, glass_radius - 1e-6), velocity);
+  alone.thickness = thickness;
+  alone.motion = Motion::fixed;
+  GrainDynamics grains(plane, MPI_COMM_SELF, grains_in(parameters, plane), {alone}, {drawn});
+  for (int n = 0; n < 10; ++n) test::step(grains);
+  EXPECT_EQ(grains.store().velocity[0], velocity);
+  EXPECT_EQ(grains.clumps()[0].velocity, velocity);
+}
+
 }  // namespace
 }  // namespace thalweg::dem

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 namespace thalweg::dem {
@@ -75,6 +76,24 @@ TEST(Start, RefusesImpossibleParameters) {
   expect_names(start(seeds, p), {"restitution and damping"});
   const GrainSeed boulder = test::glass_sphere(0, Vec3(0.02, 0.02, 0.02), Vec3::Zero(), 0.0105);
   expect_names(start({boulder}), {"periodic axis x", "0.042"});
+}
+
+// The time of a Hertzian contact goes with (m^2/R)^(1/5), which need not be least of the lightest or the smallest
+// grain.
+TEST(Start, TheShortestHertzianContactIsThatOfOneGrain) {
+  ContactParameters contact;
+  contact.law = Law::hertz_mindlin;
+  contact.youngs_modulus = 5e7;
+  contact.poisson_ratio = 0.25;
+  contact.restitution = 1.0;
+  LightestGrain lightest;
+  double shortest = std::numeric_limits<double>::infinity();
+  const double kinds[][2] = {{1.0e-4, 2e-3}, {0.8e-4, 4e-3}, {0.85e-4, 5e-3}};  // kg, m
+  for (const auto& [mass, radius] : kinds) {
+    lightest.include(mass, radius);
+    shortest = std::min(shortest, contact_time(contact, mass, radius));
+    EXPECT_NEAR(contact_time(contact, lightest.mass, lightest.hertzian_radius()) / shortest, 1.0, 1e-12);
+  }
 }
 
 TEST(Run, StopsWhereAGrainLeavesTheBox) {

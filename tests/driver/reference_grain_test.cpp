@@ -36,6 +36,15 @@ TEST(ReferenceGrain, DoesNotDependOnTheOrderOfPopulations) {
   } while (std::next_permutation(order.begin(), order.end()));
 }
 
+// Five grains to two whose diameter is 1.4 times as large: 5 : 5.5 by the volume of spheres, 5 : 3.9 by that of disks.
+TEST(ReferenceGrain, OfDisksIsByTheirArea) {
+  Case c;
+  c.grains = {population(5, 1e-3, 2000.0), population(2, 1.4e-3, 2000.0)};
+  EXPECT_EQ(reference_grain(c).diameter, 1.4e-3);
+  c.disks.emplace();
+  EXPECT_EQ(reference_grain(c).diameter, 1e-3);
+}
+
 TEST(ReferenceGrain, LeavesOutWhatIsHeldAndMovedWhileThereIsAnythingFree) {
   Case c;
   c.grains = {population(1000, 8e-3, 7000.0), population(5, 2e-3, 2500.0), population(1000, 9e-3, 7000.0)};
