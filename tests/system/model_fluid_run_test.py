@@ -59,6 +59,16 @@ output: {series: {every: 0.1}, checkpoint: {every: 2, keep: 3}}
         for other in ("on_2", "on_4", "half"):
             self.assert_same_bed("one", other)
 
+    def test_a_bed_of_another_run_and_a_restart_soon_after(self):
+        # Nearly at rest, grains are within the tolerance of where their solid fractions were taken, but not there. The start
+        # takes them anew, and a checkpoint before the first new list of neighbours has them as they are.
+        self.run_well("run", self.case, "--out", "source", "--set", "model_fluid.shields_number=0.03", "--until", "12")
+        start = ("--set", "initial={from: source, fields: [grains]}")
+        self.run_well("run", self.case, *start, "--out", "one", "--until", "1")
+        self.run_well("run", self.case, *start, "--out", "half", "--until", "0.04", ranks=2)
+        self.run_well("run", self.case, "--out", "half", "--restart", "half", "--until", "1")
+        self.assert_same_bed("one", "half")
+
     def test_grain_units_and_si_are_the_same_motion(self):
         diameter, density, fluid, gravity = 5e-3, 2550.0, 1000.0, 9.81
         reduced = gravity * (1.0 - fluid / density)
