@@ -131,10 +131,9 @@ void RunFolder::go_on_from(std::int64_t step) const {
 }
 
 void RunFolder::keep_case(std::int64_t step) const {
-  const fs::path kept = path_ / fmt::format("{}{}.yaml", kept_case, step);
+  const fs::path kept = path_ / fmt::format("{}{}.yaml", kept_case, step), own = case_of(checkpoint(step));
   std::error_code ignored;
-  if (fs::is_regular_file(case_file(), ignored) && !fs::exists(kept, ignored))
-    write_text_atomically(kept, read_text(case_file()));
+  if (own != kept && fs::is_regular_file(own, ignored)) write_text_atomically(kept, read_text(own));
 }
 
 fs::path RunFolder::case_of(const fs::path& checkpoint) const {

@@ -35,8 +35,8 @@ public:
   // belong to an abandoned course. Throws RunError.
   void go_on_from(std::int64_t step) const;
 
-  // Keeps the present case, as the run may go on from `step` with another one: case_until_step_<step>.yaml, unless it
-  // is there already. Throws RunError.
+  // Keeps the case of the checkpoint of `step` (case_of), as the run may go on from there with another one:
+  // case_until_step_<step>.yaml, unless it is there already. Throws RunError.
   void keep_case(std::int64_t step) const;
 
   // The case with which the state of one of the folder's checkpoints was computed: a kept one, or the present one.

@@ -175,6 +175,27 @@ TEST_F(RunFolderTest, ARestartFromAnEarlierCheckpointIsKnownAtOnce) {
   EXPECT_EQ(folder.latest_checkpoint(), folder.checkpoint(1050));
 }
 
+// A run that came to step 1100 is taken up again there with another case, is killed before its next checkpoint, and is
+// then taken up again at 1000, which was computed with the first case.
+TEST_F(RunFolderTest, TheCaseThatIsKeptIsTheOneThatComputedTheCheckpoint) {
+  const RunFolder folder(scratch("two_restarts"));
+  folder.create(false);
+  folder.write_case("", "system: grains\n");
+  const std::string first = contents(folder.case_file());
+  for (const std::int64_t step : {1000, 1100}) {
+    put(folder.checkpoint(step), "state");
+    folder.rotate_checkpoints(step, 3);
+  }
+  folder.keep_case(1100);
+  folder.write_case("", "system: fluid\n");
+  folder.keep_case(1000);
+  folder.write_case("", "system: resolved\n");
+  for (const std::int64_t step : {1000, 1100}) {
+    EXPECT_EQ(folder.case_of(folder.checkpoint(step)).filename(), "case_until_step_" + std::to_string(step) + ".yaml");
+    EXPECT_EQ(contents(folder.case_of(folder.checkpoint(step))), first) << step;
+  }
+}
+
 TEST_F(RunFolderTest, RoomIsTakenByWritingWhereItCannotBePromised) {
   const fs::path path = scratch("room");
   put(path, "kept");
