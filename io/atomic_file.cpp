@@ -1,6 +1,7 @@
 #include "io/atomic_file.hpp"
 
 #include "core/error.hpp"
+#include "io/interrupted_call.hpp"
 
 #include <fmt/format.h>
 
@@ -19,6 +20,11 @@ namespace thalweg::io {
 
 namespace {
 
+// -1 if that fails.
+int opened(const std::filesystem::path& path, int flags) {
+  return repeated_if_interrupted([&] { return ::open(path.c_str(), flags | O_CLOEXEC, 0666); });
+}
+
 // Returns the name under which the text stands until it is renamed.
 std::filesystem::path write_partial(const std::filesystem::path& path, const std::string& text) {
   std::filesystem::path partial = path;
@@ -35,9 +41,10 @@ std::filesystem::path write_partial(const std::filesystem::path& path, const std
 
 // fsync() of a file or a folder; some file systems refuse it for a folder.
 bool sync(const std::filesystem::path& path) {
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const int file = opened(path, O_RDONLY);
   if (file < 0) return false;
-  const bool synced = ::fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP;
+  const bool synced =
+      repeated_if_interrupted([&] { return ::fsync(file); }) == 0 || errno == EINVAL || errno == ENOTSUP;
   ::close(file);
   return synced;
 }
@@ -66,7 +73,7 @@ void rename_into_place(const std::filesystem::path& from, const std::filesystem:
 }
 
 bool create_file(const std::filesystem::path& path) {
-  const int file = ::open(path.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0666);
+  const int file = opened(path, O_CREAT | O_TRUNC | O_WRONLY);
   if (file < 0) return false;
   ::close(file);
   return true;
@@ -76,9 +83,11 @@ bool can_create(const std::filesystem::path& path) { return create_file(path) &&
 
 bool reserve_on_disk(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t bytes,
                      std::uint64_t written_to) {
-  const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  const int file = opened(path, O_RDWR);
   if (file < 0) return false;
-  const int error = ::fallocate(file, 0, static_cast<off_t>(offset), static_cast<off_t>(bytes)) == 0 ? 0 : errno;
+  const int reserved = repeated_if_interrupted(
+      [&] { return ::fallocate(file, 0, static_cast<off_t>(offset), static_cast<off_t>(bytes)); });
+  const int error = reserved == 0 ? 0 : errno;
   ::close(file);
   if (error != EOPNOTSUPP && error != ENOSYS) return error == 0;
   const std::uint64_t from = std::max(offset, written_to), to = offset + bytes;
@@ -86,18 +95,19 @@ bool reserve_on_disk(const std::filesystem::path& path, std::uint64_t offset, st
 }
 
 bool fill_with_zeros(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t bytes) {
-  const int file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  const int file = opened(path, O_WRONLY);
   if (file < 0) return false;
   const std::vector<char> zeros(static_cast<std::size_t>(std::min<std::uint64_t>(bytes, std::uint64_t{1} << 22)), 0);
   bool good = true;
   while (good && bytes > 0) {
-    const ssize_t done =
-        ::pwrite(file, zeros.data(), std::min<std::uint64_t>(bytes, zeros.size()), static_cast<off_t>(offset));
+    const ssize_t done = repeated_if_interrupted([&] {
+      return ::pwrite(file, zeros.data(), std::min<std::uint64_t>(bytes, zeros.size()), static_cast<off_t>(offset));
+    });
     good = done > 0;
     if (good) offset += static_cast<std::uint64_t>(done), bytes -= static_cast<std::uint64_t>(done);
   }
-  good = good && ::fdatasync(file) == 0;
-  return ::close(file) == 0 && good;
+  good = good && repeated_if_interrupted([&] { return ::fdatasync(file); }) == 0;
+  return (::close(file) == 0 || errno == EINTR) && good;
 }
 
 void make_folder(const std::filesystem::path& path) {

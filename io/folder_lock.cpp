@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "io/atomic_file.hpp"
+#include "io/interrupted_call.hpp"
 
 #include <fmt/format.h>
 
@@ -26,7 +27,7 @@ constexpr std::chrono::milliseconds between_attempts(100);
 
 bool takes_lock(int file) {
   for (int attempt = 1;; ++attempt) {
-    if (::flock(file, LOCK_EX | LOCK_NB) == 0) return true;
+    if (repeated_if_interrupted([&] { return ::flock(file, LOCK_EX | LOCK_NB); }) == 0) return true;
     if (errno != EWOULDBLOCK || attempt == most_attempts) return false;
     std::this_thread::sleep_for(between_attempts);
   }
@@ -50,7 +51,8 @@ std::string first_line_of(int file) {
 
 FolderLock::FolderLock(const std::filesystem::path& folder) {
   make_folder(folder);
-  file_ = ::open((folder / file_name).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  const std::filesystem::path path = folder / file_name;
+  file_ = repeated_if_interrupted([&] { return ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666); });
   if (file_ < 0) return;  // whoever cannot write there is told so when the run begins to
   if (takes_lock(file_)) {
     const std::string name = name_of_this_process();
