@@ -2,6 +2,7 @@
 
 #include "core/key_error.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace thalweg::continuum {
@@ -83,22 +84,63 @@ void describe(SectionVisitor& visit, CreepParameters& creep) {
              {.unit = "1/s", .meaning = "fluidity at `upper`: shear rate over the ratio of stresses", .above = 0.0});
 }
 
+namespace {
+
+constexpr double most_cells = 1e5, fewest_in_water = 4.0;
+
+Mixture mixture_of(const ContinuumKeys& keys) {
+  return {keys.fluid.density, keys.fluid.density * keys.fluid.kinematic_viscosity, keys.grains.density,
+          keys.grains.diameter};
+}
+
+double depth_of(const ContinuumKeys& keys, double gravity_x, double gravity_z) {
+  if (keys.column.depth) return *keys.column.depth;
+  const double d = keys.grains.diameter, weight = mixture_of(keys).excess_density() * std::hypot(gravity_x, gravity_z);
+  return *keys.column.shields_number * weight * d / (keys.fluid.density * gravity_x);
+}
+
+// Whole numbers, but perhaps more than an int holds.
+struct CellCounts {
+  double water, bed;
+};
+
+CellCounts cell_counts(const ContinuumKeys& keys, double depth) {
+  const double d = keys.grains.diameter, wanted = d / static_cast<double>(keys.column.cells_per_diameter);
+  const double water = std::max(fewest_in_water, std::round(depth / wanted));
+  return {water, std::round(keys.column.bed * d / (depth / water))};
+}
+
+// Names the key by which the column gets smaller.
+void refuse_too_many_cells(const ContinuumKeys& keys, double depth) {
+  const CellCounts cells = cell_counts(keys, depth);
+  if (cells.water + cells.bed <= most_cells) return;
+  constexpr double fewest_per_diameter = 2.0;
+  const char* depth_key = keys.column.depth ? "column.depth" : "column.shields_number";
+  if (fewest_per_diameter * keys.column.bed > most_cells)
+    throw KeyError("column.bed", "the column would have more than 100000 cells; give a thinner bed, in diameters");
+  if (fewest_per_diameter * depth > most_cells * keys.grains.diameter)
+    throw KeyError(depth_key, "the column would have more than 100000 cells; give less, for shallower water");
+  if (cells.water == fewest_in_water)
+    throw KeyError(depth_key,
+                   "four cells fill the water, and the bed would have more than 100000 of that height; give "
+                   "more, for deeper water");
+  throw KeyError("column.cells_per_diameter", "the column would have more than 100000 cells; give fewer");
+}
+
+}  // namespace
+
 SystemParameters system_parameters(const ContinuumKeys& keys, double gravity_x, double gravity_z) {
   SystemParameters parameters;
   ColumnParameters& column = parameters.column;
-  column.mixture = {keys.fluid.density, keys.fluid.density * keys.fluid.kinematic_viscosity, keys.grains.density,
-                    keys.grains.diameter};
+  column.mixture = mixture_of(keys);
   column.closures = keys.closures;
   column.gravity_x = gravity_x;
   column.gravity_z = gravity_z;
-  const double d = keys.grains.diameter, weight = column.mixture.excess_density() * std::hypot(gravity_x, gravity_z);
-  parameters.depth = keys.column.depth ? *keys.column.depth
-                                       : *keys.column.shields_number * weight * d / (keys.fluid.density * gravity_x);
-  const double wanted = d / static_cast<double>(keys.column.cells_per_diameter);
-  const int water = std::max(4, static_cast<int>(std::lround(parameters.depth / wanted)));
-  column.spacing = parameters.depth / water;
-  parameters.bed_cells = static_cast<int>(std::lround(keys.column.bed * d / column.spacing));
-  column.cells = parameters.bed_cells + water;
+  parameters.depth = depth_of(keys, gravity_x, gravity_z);
+  const CellCounts cells = cell_counts(keys, parameters.depth);
+  column.spacing = parameters.depth / cells.water;
+  parameters.bed_cells = static_cast<int>(cells.bed);
+  column.cells = parameters.bed_cells + static_cast<int>(cells.water);
   parameters.start = keys.column.start;
   parameters.creep = keys.creep;
   return parameters;
@@ -109,10 +151,7 @@ void check(const ContinuumKeys& keys, double gravity_x, double gravity_z) {
     throw KeyError("gravity", "the column flows downhill along x; give magnitude and a slope above 0");
   if (!(keys.grains.density > keys.fluid.density))
     throw KeyError("grains.density", "the grains float; give a density above that of the fluid in kg/m^3");
-  constexpr double most_cells = 1e5;
-  const SystemParameters parameters = system_parameters(keys, gravity_x, gravity_z);
-  if (parameters.depth / parameters.column.spacing + parameters.bed_cells > most_cells)
-    throw KeyError("column.cells_per_diameter", "the column would have more than 100000 cells; give fewer");
+  refuse_too_many_cells(keys, depth_of(keys, gravity_x, gravity_z));
 }
 
 }  // namespace thalweg::continuum

@@ -46,9 +46,9 @@ struct ContinuumKeys {
   bool operator==(const ContinuumKeys&) const = default;
 };
 
-// What the keys mean under a gravity (m/s^2: along the bed, downwards into it). A whole number of cells fills the
-// water, so that they are about as high as wanted. tau* = rho_f g_x h/((rho_s - rho_f) g d), g the magnitude of
-// gravity.
+// What keys that pass check() mean under a gravity (m/s^2: along the bed, downwards into it). A whole number of cells
+// fills the water, so that they are about as high as wanted. tau* = rho_f g_x h/((rho_s - rho_f) g d), g the magnitude
+// of gravity.
 SystemParameters system_parameters(const ContinuumKeys& keys, double gravity_x, double gravity_z);
 
 // Throws KeyError where the keys do not fit together.

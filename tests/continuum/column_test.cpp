@@ -1,5 +1,6 @@
 // The column as a system: what it conserves, the balance of its steady state, saving.
 #include "continuum/column_keys.hpp"
+#include "core/key_error.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,13 +11,18 @@ namespace {
 
 constexpr double slope = 0.016, gravity = 9.8;
 
-SystemParameters coarse_column() {
+ContinuumKeys coarse_keys() {
   ContinuumKeys keys;
   keys.fluid = {1000.0, 1e-6};
   keys.grains = {5e-3, 2550.0};
   keys.column.shields_number = 0.085;
   keys.column.bed = 3.0;
   keys.column.cells_per_diameter = 5;
+  return keys;
+}
+
+SystemParameters coarse_column() {
+  const ContinuumKeys keys = coarse_keys();
   const double angle = std::atan(slope);
   SystemParameters parameters = system_parameters(keys, gravity * std::sin(angle), gravity * std::cos(angle));
   parameters.time_step = 5.0;
@@ -35,6 +41,36 @@ std::vector<double> profile(const ContinuumSystem& column, const std::string& na
 TEST(Column, DepthFollowsFromTheShieldsNumber) {
   // tau* (s - 1) d/sin(atan S): 0.085 * 1.55 * 5 mm/0.0159980
   EXPECT_NEAR(coarse_column().depth, 0.0411777, 1e-6);
+}
+
+// The key by which a case is refused; empty: it is not.
+std::string refused_key(const ContinuumKeys& keys) {
+  try {
+    check(keys, slope * gravity, gravity);
+  } catch (const KeyError& error) {
+    return error.key;
+  }
+  return {};
+}
+
+TEST(Column, MoreCellsThanAnIntHoldsAreRefused) {
+  EXPECT_EQ(refused_key(coarse_keys()), "");
+  ContinuumKeys keys = coarse_keys();
+  keys.column.bed = 6e8;  // 3e9 cells, which are -1.3e9 in 32 bits
+  EXPECT_EQ(refused_key(keys), "column.bed");
+  keys.column.bed = 2e4;  // would do with fewer cells per diameter
+  keys.column.cells_per_diameter = 6;
+  EXPECT_EQ(refused_key(keys), "column.cells_per_diameter");
+  keys.column.cells_per_diameter = std::int64_t{1} << 60;
+  EXPECT_EQ(refused_key(keys), "column.cells_per_diameter");
+  keys = coarse_keys();
+  keys.column.shields_number = 1e300;
+  EXPECT_EQ(refused_key(keys), "column.shields_number");
+  keys.column.shields_number.reset();
+  keys.column.depth = 3e6;  // m, 3e9 cells
+  EXPECT_EQ(refused_key(keys), "column.depth");
+  keys.column.depth = 2e-11;  // four cells of 5e-12 m, and 3e9 in the bed
+  EXPECT_EQ(refused_key(keys), "column.depth");
 }
 
 TEST(Column, ConservesSolidsAndComesToTheBalanceOfStresses) {

@@ -65,6 +65,7 @@ output: {series: {every: 5}, checkpoint: {every: 5, keep: 30}}
                 ("grains.density=900", ["grains.density", "the grains float"]),
                 ("column.depth=0.04", ["column.depth", "given twice"]),
                 ("column.cells_per_diameter=1", ["cells_per_diameter"]),
+                ("column.bed=6e8", ["column.bed", "more than 100000 cells", "thinner bed"]),
                 ("closures.drag=stokes", ["closures.drag", "mobile"]),
                 ("creep.lower=1", ["creep.lower", "deeper than upper"]),
                 ("domain.spacing=1e-3", ["domain", "has no box"]),
