@@ -1,7 +1,10 @@
 #include "continuum/continuum_system.hpp"
 
+#include "core/error.hpp"
 #include "core/mpi_session.hpp"
 #include "core/same_time_step.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -79,6 +82,17 @@ std::vector<double> at_middles(const std::vector<double>& faces) {
   std::vector<double> middles;
   for (std::size_t i = 0; i + 1 < faces.size(); ++i) middles.push_back(0.5 * (faces[i] + faces[i + 1]));
   return middles;
+}
+
+// Of as many cells: how high they are follows from the depth of the water, which may follow from gravity.
+void require_same_spacing(const ArchiveReader& archive, const SystemParameters& parameters) {
+  constexpr double rounding = 1e-9;
+  const double saved = archive.real_attribute("column/spacing"), here = parameters.column.spacing;
+  if (std::abs(saved - here) <= rounding * here) return;
+  throw InputError(fmt::format(
+      "its cells are {:.10g} m high and those of this case {:.10g} m; a restart keeps them: set column, fluid "
+      "and gravity back, or give a column.depth of {:.10g} m.",
+      saved, here, saved * (parameters.column.cells - parameters.bed_cells)));
 }
 
 }  // namespace
@@ -287,6 +301,7 @@ void ContinuumSystem::load(ArchiveReader& archive) {
   require_same_time_step(archive, parameters_.time_step);
   const std::vector<std::uint64_t> shape{unknowns_.size()};
   archive.read("column/unknowns", std::span<double>(unknowns_), {shape, {0}, shape});
+  require_same_spacing(archive, parameters_);
   step_ = archive.integer_attribute("system/step");
   transport_change_ = archive.real_attribute("column/transport_change");
   momentum_change_ = archive.real_attribute("column/momentum_change");

@@ -63,6 +63,7 @@ public:
   std::vector<Profile> profiles() const override;
 
   void save(ArchiveWriter& archive) const override;
+  // Throws InputError where the state has another step, or cells of another number or height.
   void load(ArchiveReader& archive) override;
   PhaseTimer& timer() override { return timer_; }
   std::int64_t cells() const override { return 0; }

@@ -148,6 +148,19 @@ void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& p
   archive.close();
 }
 
+// What does not fit names the file.
+static void load_system(System& system, ArchiveReader& archive, const std::filesystem::path& path) {
+  try {
+    system.load(archive);
+  } catch (const io::DamagedFile&) {
+    throw;
+  } catch (const InputError& error) {
+    const std::string reason = error.what();
+    if (reason.starts_with(path.string())) throw;
+    throw InputError(fmt::format("{}: {}", path.string(), reason));
+  }
+}
+
 Accounts read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c, System& system,
                               Observers& observers) {
   io::Hdf5Reader archive(communicator, path);
@@ -163,7 +176,7 @@ Accounts read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path
   if (saved != name_of(c.system))
     throw InputError(fmt::format("{} holds a run with system: {}, but this case has system: {}.", path.string(), saved,
                                  name_of(c.system)));
-  system.load(archive);
+  load_system(system, archive, path);
   return Accounts::load(archive, system, observers, c.output.series.every);
 }
 

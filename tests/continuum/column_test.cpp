@@ -1,6 +1,8 @@
 // The column as a system: what it conserves, the balance of its steady state, saving.
 #include "continuum/column_keys.hpp"
+#include "core/error.hpp"
 #include "core/key_error.hpp"
+#include "tests/support/memory_archive.hpp"
 
 #include <gtest/gtest.h>
 
@@ -71,6 +73,23 @@ TEST(Column, MoreCellsThanAnIntHoldsAreRefused) {
   EXPECT_EQ(refused_key(keys), "column.depth");
   keys.column.depth = 2e-11;  // four cells of 5e-12 m, and 3e9 in the bed
   EXPECT_EQ(refused_key(keys), "column.depth");
+}
+
+TEST(Column, AStateGoesOnInCellsOfItsOwnHeightOnly) {
+  const ContinuumSystem column(MPI_COMM_SELF, coarse_column());
+  test::MemoryArchive archive;
+  test::MemoryWriter writer(archive, MPI_COMM_SELF);
+  column.save(writer);
+  const auto load_with_height = [&archive](double factor) {
+    SystemParameters parameters = coarse_column();
+    parameters.column.spacing *= factor;
+    ContinuumSystem other(MPI_COMM_SELF, parameters);
+    test::MemoryReader reader(archive);
+    other.load(reader);
+  };
+  EXPECT_NO_THROW(load_with_height(1.0 + 1e-12));
+  // As for a slope of 0.0161 in place of 0.016, with as many cells.
+  for (const double factor : {0.9938, 1.0 / 0.9938, 1.0 + 1e-6}) EXPECT_THROW(load_with_height(factor), InputError);
 }
 
 TEST(Column, ConservesSolidsAndComesToTheBalanceOfStresses) {

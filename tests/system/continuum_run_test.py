@@ -4,6 +4,7 @@
 Called by ctest: continuum_run_test.py THALWEG MPIEXEC [unittest arguments]
 """
 import json
+import re
 import sys
 from pathlib import Path
 
@@ -44,6 +45,14 @@ output: {series: {every: 5}, checkpoint: {every: 5, keep: 30}}
             self.assertTrue(numpy.array_equal(self.unknowns(other), self.unknowns("one")), other)
             self.assertEqual((self.folder / other / "series.csv").read_text(),
                              (self.folder / "one" / "series.csv").read_text())
+
+    def test_a_restart_keeps_the_height_of_its_cells(self):
+        self.run_well("run", self.case, "--out", "run", "--until", "10")
+        # The water is shallower by 0.62 %, in as many cells.
+        steeper = ("--restart", "run", "--set", "gravity.slope=0.0161", "--until", "15")
+        self.assert_refused("run", self.case, *steeper, words=["step_2.h5", "its cells are 0.001004", "0.000998", "gravity"])
+        depth = re.search("column.depth of ([0-9.e-]+) m", self.thalweg("run", self.case, *steeper).stderr).group(1)
+        self.run_well("run", self.case, *steeper, "--set", "column.shields_number=null", "--set", f"column.depth={depth}")
 
     def test_it_ends_when_it_is_steady_and_shows_its_profiles(self):
         self.run_well("run", self.case, "--out", "run")
