@@ -67,8 +67,8 @@ private:
 void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c,
                            const System& system, const Observers& observers, const Accounts& accounts);
 
-// The state of a checkpoint into a system and observers built from a case. Throws InputError where they do not fit, and
-// io::DamagedFile.
+// The state of a checkpoint into a system and observers built from a case. Throws InputError where they do not fit (in
+// system, cells or time step), and io::DamagedFile.
 Accounts read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c, System& system,
                               Observers& observers);
 

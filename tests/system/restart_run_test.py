@@ -3,6 +3,7 @@
 
 Called by ctest: restart_run_test.py THALWEG MPIEXEC [unittest arguments]
 """
+import shutil
 import subprocess
 import sys
 import time
@@ -150,6 +151,43 @@ class RestartOfSums(ProgramTest):
         # And still after another restart.
         self.run_well("run", self.case, "--restart", "second", *with_rate, "0.12")
         self.assertEqual(self.summary("second")["transport_rate"]["mean_from"], 0.05)
+
+
+class RestartOfACopy(ProgramTest):
+    """A checkpoint that lies in no run folder, so that there is no case to compare with."""
+    CASE = """
+system: fluid
+name: a flow
+domain:
+  size: [0.0128, 0.0128, 0.0192]
+  spacing: 0.8e-3
+  boundaries: {x: periodic, y: periodic, bottom: no_slip, top: free_slip}
+fluid: {density: 1000, kinematic_viscosity: 1.0e-4, time_step: 1.0e-4, precision: double}
+gravity: {magnitude: 9.8, slope: 0.1}
+run: {until: 0.001}
+output: {series: {every: 0.001}}
+"""
+
+    def setUp(self):
+        super().setUp()
+        self.run_well("run", self.case)
+        shutil.copy(self.last_checkpoint("run"), self.folder / "copy.h5")
+
+    def test_as_many_cells_of_another_size_are_refused(self):
+        wider = ("--set", "domain.size=[0.0256, 0.0256, 0.0384]", "--set", "domain.spacing=1.6e-3", "--until", "0.002")
+        for ranks in (0, 2):
+            self.assert_refused("run", self.case, "--restart", "copy.h5", "--out", "wider", *wider, ranks=ranks,
+                                words=["copy.h5: ", "domain.spacing is 0.0008 m", "0.0016 m", "initial.from"])
+        self.run_well("run", self.case, *wider, "--out", "wider")   # the case itself can be run
+
+    def test_cells_of_the_same_size_go_on(self):
+        for number, spacing in enumerate(("0.8e-3", "0.00080000000000001")):   # but for rounding
+            self.run_well("run", self.case, "--restart", "copy.h5", "--set", f"domain.spacing={spacing}", "--until", "0.002",
+                          "--out", f"on_{number}")
+
+    def test_as_a_start_of_a_new_run_its_cells_may_differ(self):
+        finer = ("--set", "domain.spacing=0.4e-3", "--set", "fluid.time_step=0.5e-4")
+        self.run_well("run", self.case, "--set", "initial={from: copy.h5, fields: [fluid]}", *finer, "--out", "finer")
 
 
 class RestartWithoutBedFile(ProgramTest):
