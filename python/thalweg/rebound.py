@@ -14,12 +14,13 @@ def settling_time(case):
 def impacts(times, gaps, velocities, answer):
     """Velocities before and after each of the first impacts, positive: the largest since the last impact, and that at the
     time `answer` (s) after the contact. gaps: diameters; velocities: m/s, away from the other body. The fall from the start
-    counts from two diameters on."""
+    counts from two diameters on; a body that begins at the other one and leaves it has not met it."""
     begin, found = next(k for k, gap in enumerate(gaps) if gap < 2.0), []
+    begin = next((k for k in range(begin, len(gaps)) if velocities[k] < 0.0), len(gaps))
     while len(found) < IMPACTS:
-        near = next((k for k in range(begin, len(gaps)) if gaps[k] < CONTACT_GAP), None)
-        left = near and next((k for k in range(near + 1, len(gaps)) if velocities[k] > 0.0), None)
-        later = left and next((k for k in range(left, len(gaps)) if times[k] >= times[left] + answer), None)
+        near = next((k for k in range(begin, len(gaps)) if gaps[k] < CONTACT_GAP), len(gaps))
+        left = next((k for k in range(near + 1, len(gaps)) if velocities[k] > 0.0), len(gaps))
+        later = next((k for k in range(left, len(gaps)) if times[k] >= times[left] + answer), None)
         if later is None:
             break
         share = (times[left] + answer - times[later - 1]) / (times[later] - times[later - 1])
