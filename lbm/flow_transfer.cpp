@@ -56,7 +56,7 @@ private:
   int first_ = 0, count_ = 0;
 };
 
-// Density and velocity of the saved cells of this rank's part.
+// Density and velocity (with the whole force) of the saved cells of this rank's part.
 class SavedFlow {
 public:
   template <typename Real>

@@ -12,6 +12,10 @@ namespace thalweg::lbm {
 // as they were saved. Populations become their equilibrium with the half of `force` (lattice units of `fluid`); the
 // stress of shear follows within a few steps.
 //
+// The velocity is the saved momentum, which is that after a collision, over the density: it has the whole force F of
+// the saved flow, of which state_at() has half, because the archive does not say what F was. The flow therefore begins
+// F/(2 rho) too fast, which is half of what the force does in a step of the saved flow (gravity: g dt/2, m/s).
+//
 // velocity_unit: that of the saved lattice, dx/dt, over that of `fluid`; rho - 1 is multiplied by its square, which
 // keeps the pressure in SI units. Throws InputError where the archive has populations of another precision. Collective.
 template <typename Real>

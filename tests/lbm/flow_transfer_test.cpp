@@ -110,6 +110,20 @@ TEST(FlowTransfer, MeetsShearExactlyAndStaysLevelNextToWalls) {
   }
 }
 
+// What the force of the saved flow was is not known, so that all of it counts, not half.
+TEST(FlowTransfer, BeginsHalfAForceTooFast) {
+  const FluidState uniform{0.25, Vec3(0.03, 0.0, 0.01)};
+  const Vec3 force(2e-3, 0.0, 0.0);
+  Lattice source({8, 6, 20}), target({12, 9, 40});
+  source.fluid().initialise([&](const Vec3&) { return uniform; }, force);
+  const test::MemoryArchive archive = source.saved();
+  test::MemoryReader reader(archive);
+  transfer_flow(target.fluid(), reader, 1.0, Vec3::Zero());
+  const auto [velocity, density] = target.differences([](const Vec3&) { return FluidState{0.25, {0.03, 0.0, 0.01}}; });
+  EXPECT_NEAR(velocity, 2e-3 / (2.0 * 1.25), 1e-14);
+  EXPECT_LT(density, 1e-14);
+}
+
 TEST(FlowTransfer, IsTheSameOnEveryNumberOfRanks) {
   Lattice source({24, 16, 20}), target({30, 26, 35});
   source.set(waves);
