@@ -159,7 +159,12 @@ std::vector<std::int64_t> RunFolder::steps_of_checkpoints() const {
 }
 
 void RunFolder::rotate_checkpoints(std::int64_t step, int keep) const {
-  write_text_durably(checkpoints() / latest_name, checkpoint(step).filename().string() + "\n");
+  const fs::path latest = checkpoints() / latest_name;
+  const std::string name = checkpoint(step).filename().string() + "\n";
+  std::error_code ignored;
+  // Where the run goes on from `step` and has not moved since, the case kept for it is still that of its state.
+  const bool anew = !fs::is_regular_file(latest, ignored) || read_text(latest) != name;
+  write_text_durably(latest, name);
   std::vector<fs::path> superfluous;
   int kept = 0;
   for (const std::int64_t found : steps_of_checkpoints())
@@ -167,7 +172,8 @@ void RunFolder::rotate_checkpoints(std::int64_t step, int keep) const {
   for (const auto& entry : fs::directory_iterator(checkpoints()))
     if (entry.path().extension() == ".partial") superfluous.push_back(entry.path());
   for (const auto& entry : fs::directory_iterator(path_))
-    if (step_between(entry.path().filename().string(), kept_case, ".yaml").value_or(step) > step)
+    if (const auto until = step_between(entry.path().filename().string(), kept_case, ".yaml");
+        until && (*until > step || (*until == step && anew)))
       superfluous.push_back(entry.path());
   for (const fs::path& file : superfluous) {
     std::error_code error;

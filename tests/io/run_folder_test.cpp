@@ -196,6 +196,28 @@ TEST_F(RunFolderTest, TheCaseThatIsKeptIsTheOneThatComputedTheCheckpoint) {
   }
 }
 
+// A checkpoint computed anew is of the present case, also where one of the same step was the end of another case.
+TEST_F(RunFolderTest, ACheckpointComputedAnewIsOfThePresentCase) {
+  const RunFolder folder(scratch("anew"));
+  folder.create(false);
+  folder.write_case("", "system: grains\n");
+  for (const std::int64_t step : {1000, 1100}) {
+    put(folder.checkpoint(step), "state");
+    folder.rotate_checkpoints(step, 3);
+  }
+  folder.keep_case(1100);
+  folder.go_on_from(1100);
+  folder.write_case("", "system: fluid\n");
+  folder.rotate_checkpoints(1100, 3);  // stopped before the first step
+  EXPECT_EQ(folder.case_of(folder.checkpoint(1100)).filename(), "case_until_step_1100.yaml");
+  folder.keep_case(1000);
+  folder.go_on_from(1000);
+  folder.write_case("", "system: resolved\n");
+  folder.rotate_checkpoints(1100, 3);
+  EXPECT_EQ(folder.case_of(folder.checkpoint(1100)), folder.case_file());
+  EXPECT_EQ(folder.case_of(folder.checkpoint(1000)).filename(), "case_until_step_1000.yaml");
+}
+
 TEST_F(RunFolderTest, RoomIsTakenByWritingWhereItCannotBePromised) {
   const fs::path path = scratch("room");
   put(path, "kept");
