@@ -4,8 +4,8 @@
 #include "core/ramp.hpp"
 #include "core/units.hpp"
 #include "coupling/hydrostatic.hpp"
-#include "lbm/bouzidi.hpp"
 #include "lbm/fluid.hpp"
+#include "lbm/link_pass.hpp"
 
 #include <algorithm>
 #include <functional>

@@ -3,7 +3,7 @@
 //
 // A lattice line enters a cell of grain p from a cell x_f that grain q covers, or that is beyond a wall. No population
 // runs there, but a fluid between the two would press. The exchange counts populations less their weight
-// (bouzidi.hpp), so that the reference pressure needs no such links. What is left:
+// (link_pass.hpp), so that the reference pressure needs no such links. What is left:
 //   full gravity        the hydrostatic density above the reference, rho_g - 1 on the surface: momentum
 //                       2 w_i (rho_g - 1) c_i, without which a grain that touches others or the floor would lose part
 //                       of its buoyancy;
@@ -19,7 +19,7 @@
 #include "coupling/hydrostatic.hpp"
 #include "coupling/lattice_vectors.hpp"
 #include "coupling/local_cells.hpp"
-#include "lbm/bouzidi.hpp"
+#include "lbm/link_pass.hpp"
 
 #include <algorithm>
 #include <span>

@@ -43,7 +43,7 @@ public:
 
   // Adds to the bodies the force of the fluid on what is hidden by this rank's cells and takes from their mass what is
   // given in another's place; the symmetric part of sum F_a x_b is added to moments, where given. shapes, surrounding:
-  // by slot, the latter rho - rho_rest around the grain; reference: that presses on nothing (lbm/bouzidi.hpp).
+  // by slot, the latter rho - rho_rest around the grain; reference: that presses on nothing (lbm/link_pass.hpp).
   template <Shape S>
   void apply(const std::vector<MappedGrain>& grains, std::span<const S> shapes, const std::vector<double>& surrounding,
              double reference, std::vector<lbm::LinkBody>& bodies, std::vector<FixedTensor>* moments) const;

@@ -15,7 +15,7 @@
 #include "core/system.hpp"
 #include "core/units.hpp"
 #include "core/wide_sum.hpp"
-#include "lbm/bouzidi.hpp"
+#include "lbm/link_pass.hpp"
 
 #include <mpi.h>
 

@@ -1,6 +1,6 @@
 // The links of spheres.
 #include "core/sphere.hpp"
-#include "lbm/bouzidi.ipp"
+#include "lbm/link_pass.ipp"
 
 namespace thalweg::lbm {
 

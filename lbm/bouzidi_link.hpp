@@ -1,5 +1,5 @@
 // Interpolated bounce-back, linear, in two branches (Bouzidi, Firdaouss and Lallemand 2001), on a moving wall. Lattice
-// units; symbols as in bouzidi.hpp.
+// units; symbols as in link_pass.hpp.
 //   delta < 1/2:  f_i'(x_f, t+1) = 2 delta f_i^c(x_f) + (1 - 2 delta) f_i^c(x_ff)               - 6 w_i rho c_i.u_w
 //   else:         f_i'(x_f, t+1) = f_i^c(x_f)/(2 delta) + [1 - 1/(2 delta)] f_i'^c(x_f)  - (3/delta) w_i rho c_i.u_w
 // Both are exact in a fluid that moves with the wall, and equal at delta = 1/2.

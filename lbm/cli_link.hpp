@@ -1,5 +1,5 @@
 // Interpolated bounce-back in one formula for all distances, the central linear interpolation (CLI) of Ginzburg,
-// Verhaeghe and d'Humieres (2008), on a moving wall. Lattice units; symbols as in bouzidi.hpp.
+// Verhaeghe and d'Humieres (2008), on a moving wall. Lattice units; symbols as in link_pass.hpp.
 //   f_i'(x_f, t+1) = f_i^c(x_f) + k [f_i^c(x_ff) - f_i'^c(x_f)] - 12/(1 + 2 delta) w_i rho c_i.u_w,
 //   k = (1 - 2 delta)/(1 + 2 delta).
 // Exact in a fluid that moves with the wall. In plane flow it sets u + delta u' + 2/3 (tau+ - 1/2)(tau- - 1/2) u'' =

@@ -1,4 +1,4 @@
-// Options of the links between fluid and bodies (bouzidi.hpp).
+// Options of the links between fluid and bodies (link_pass.hpp).
 #pragma once
 
 #include "core/named_choice.hpp"

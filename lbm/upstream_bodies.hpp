@@ -1,6 +1,6 @@
 // Links whose upstream cell x_ff = x_f - c_i a body covers: x_f is a gap of one cell between that body and the one the
 // link runs into. A batch of them, with what stands in for f_i^c(x_ff), and the slip of such gaps. Symbols as in
-// bouzidi.hpp.
+// link_pass.hpp.
 //
 // Slip: between half-link walls one cell apart, bounce-back lets a force F drive u = 2/3 Lambda F/nu, Lambda = (tau+ -
 // 1/2)(tau- - 1/2) (Ginzburg and d'Humieres 2003). The true velocity is F/(8 nu); in water under bgk Lambda is 1e-7 to

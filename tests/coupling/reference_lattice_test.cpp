@@ -1,9 +1,9 @@
 // The in-place lattice with its packed links against a plain one: two copies, one loop over cells, links found anew.
 #include "coupling/grain_map.hpp"
 #include "coupling/link_builder.hpp"
-#include "lbm/bouzidi.hpp"
 #include "lbm/equilibrium.hpp"
 #include "lbm/fluid.hpp"
+#include "lbm/link_pass.hpp"
 
 #include <gtest/gtest.h>
 

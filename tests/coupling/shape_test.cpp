@@ -6,7 +6,7 @@
 #include "coupling/resolved_loads.ipp"
 #include "coupling/resolved_sample.ipp"
 #include "coupling/resolved_system.ipp"
-#include "lbm/bouzidi.ipp"
+#include "lbm/link_pass.ipp"
 
 #include <gtest/gtest.h>
 

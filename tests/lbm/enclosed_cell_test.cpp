@@ -1,6 +1,6 @@
 // A single cell of fluid whose neighbours are all covered: what its links do to its density.
-#include "lbm/bouzidi.hpp"
 #include "lbm/fluid.hpp"
+#include "lbm/link_pass.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // A gap of one cell between two bodies, so large that they are flat: what flows along it under a force.
 #include "core/sphere.hpp"
-#include "lbm/bouzidi.ipp"
 #include "lbm/fluid.hpp"
+#include "lbm/link_pass.ipp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,10 @@
 #!/usr/bin/python3
 """Thresholds of motion beside Clark et al. (2017): thresholds.py [--figure FILE]
 
-Reads the tables thresholds.csv of the sweeps shields_curve.yaml, linear_drag.yaml, lift.yaml and friction.yaml, which are
-kept here under the names of the sweeps; those that are missing are left out. Prints every threshold with half the width of
-its bracket, the value of the paper, what is accepted, and pass or fail. Exit code 0 if all pass.
+Reads the tables thresholds.csv of the sweeps shields_curve.yaml, linear_drag.yaml, lift.yaml, inertia.yaml, friction.yaml and
+asperities.yaml, and runs.csv of long_watch.yaml and hysteresis.yaml, which are kept here under the names of the sweeps; those that
+are missing are left out. Prints every threshold with half the width of its bracket, the value of the paper, what is accepted, and
+pass or fail. Exit code 0 if all pass.
 """
 import argparse
 import sys
@@ -36,6 +37,12 @@ def thresholds(name, state="found"):
             if row["state"] == state]
 
 
+def runs(name):
+    """Rows of a table of runs that are done, as dictionaries of text by heading."""
+    path = HERE / f"{name}.csv"
+    return [row for row in read_rows(path) if row["state"] == "done"] if path.exists() else []
+
+
 class Report:
     def __init__(self):
         self.passed = True
@@ -64,6 +71,22 @@ def with_lift(threshold, ratio):
     return threshold / (1.0 + 1.5 * threshold * ratio)   # equation 12
 
 
+def watched_as_in_the_paper(report):
+    """Ten beds at one Shields number, near the threshold at Re_* = 0.1, for a million collision times. Section III B: q = 0, which
+    is below the threshold, where more than half of them have stopped."""
+    beds = runs("long_watch")
+    if not beds:
+        return
+    shields = float(beds[0]["model_fluid.shields_number [1]"])
+    stopped = [float(bed["simulated_time"]) for bed in beds if float(bed["simulated_time"]) < float(bed["run.until [s]"])]
+    print(f"Re_* 0.1, Theta {shields:g}: {len(stopped)} of {len(beds)} beds stop, on average after {np.mean(stopped):.0f} sqrt(D/g')")
+    if 2 * len(stopped) == len(beds):
+        report.line("Re_* 0.1, half of the beds stop", {"shields_number": shields, "half_width": 0.0}, LOW, LOW_ACCEPTED)
+    else:
+        side = "above" if 2 * len(stopped) > len(beds) else "below"
+        print(f"Re_* 0.1: Theta_c is {side} {shields:g}, paper {LOW:g} +- {LOW_ACCEPTED:g}")
+
+
 def shields_curve(axes, report):
     rows = sorted(thresholds("shields_curve"), key=lambda row: row["reynolds_number"])
     points(axes, rows, "reynolds_number", fmt="ks-", label="quadratic drag")
@@ -72,6 +95,9 @@ def shields_curve(axes, report):
             low = row["reynolds_number"] < 1
             report.line(f"quadratic drag, Re_* {row['reynolds_number']:g}", row, LOW if low else HIGH,
                         LOW_ACCEPTED if low else HIGH_ACCEPTED)
+    watched_as_in_the_paper(report)
+    for row in thresholds("inertia"):
+        report.line(f"Re_* 100, B_2 D/m {row['inertial_coefficient']:g}, restitution {row['restitution']:g}", row, HIGH, HIGH_ACCEPTED)
     linear = thresholds("linear_drag")
     for restitution, colour in ((LITTLE_RESTITUTION, "tab:blue"), (0.2, "tab:red")):
         of_this = [row for row in linear if row["restitution"] == restitution]

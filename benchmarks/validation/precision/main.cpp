@@ -11,8 +11,8 @@
 #include "core/mpi_session.hpp"
 #include "coupling/grain_map.hpp"
 #include "coupling/link_builder.hpp"
-#include "lbm/bouzidi.hpp"
 #include "lbm/fluid.hpp"
+#include "lbm/link_pass.hpp"
 
 #include <fmt/format.h>
 

@@ -71,7 +71,7 @@ concept LinkShape = Shape<S> || std::same_as<S, StoredCrossings>;
 // by_height: where given, 2 n_z + 1 sums for the n_z planes of this rank, to which the force of every link is added at
 // the height half a link from its fluid cell: entry h lies h half cells above the block's lower face.
 //
-// The members are defined in bouzidi.ipp, to be included where they are instantiated for a new shape.
+// The members are defined in link_pass.ipp, to be included where they are instantiated for a new shape.
 template <typename Real, LinkShape S = StoredCrossings>
 class LinkPass {
 public:

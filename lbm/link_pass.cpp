@@ -1,4 +1,4 @@
-#include "lbm/bouzidi.ipp"
+#include "lbm/link_pass.ipp"
 
 namespace thalweg::lbm {
 

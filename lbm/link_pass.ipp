@@ -1,8 +1,8 @@
-// Template definitions of bouzidi.hpp. Included where the links of a shape are instantiated: in bouzidi.cpp those with
-// stored crossings. Name such a file to thalweg_links() (cmake/compiler.cmake).
+// Template definitions of link_pass.hpp. Included where the links of a shape are instantiated: in link_pass.cpp those
+// with stored crossings. Name such a file to thalweg_links() (cmake/compiler.cmake).
 #pragma once
 
-#include "lbm/bouzidi.hpp"
+#include "lbm/link_pass.hpp"
 
 #include "lbm/bouzidi_link.hpp"
 #include "lbm/cli_link.hpp"
