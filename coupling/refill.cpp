@@ -170,11 +170,12 @@ void Refill::exchange(std::vector<Uncovered>& uncovered) const {
     for (std::size_t k = 0; k < cells.size(); ++k) uncovered[cells[k]].neighbours.add(incoming[from][k]);
 }
 
-std::array<double, 19> Refill::populations_of(const Neighbours& n, const Vec3& velocity, const Vec3& force) const {
+std::array<double, 19> Refill::populations_of(const Neighbours& n, double at_rest, const Vec3& velocity,
+                                              const Vec3& force) const {
   const auto mean = [&n](std::int64_t sum) {
     return n.count > 0 ? LatticeFixed::to_double(sum) / static_cast<double>(n.count) : 0.0;
   };
-  const double density = mean(n.density);
+  const double density = n.count > 0 ? mean(n.density) : at_rest;
   std::array<double, 6> stress;
   for (std::size_t k = 0; k < stress.size(); ++k) stress[k] = mean(n.stress[k]);
   const double trace = (stress[0] + stress[1] + stress[2]) / 3.0;
@@ -212,7 +213,7 @@ RefillTotals Refill::fill(lbm::Fluid<Real>& fluid, const std::vector<CellChange>
     lbm::LinkBody& body = bodies[cell.before];
     const Vec3 position = centre_of(cell.global);
     const Vec3 velocity = body.velocity + body.angular_velocity.cross(box_.difference(position, body.centre));
-    const std::array<double, 19> values = populations_of(cell.neighbours, velocity, force);
+    const std::array<double, 19> values = populations_of(cell.neighbours, rest.deviation(position), velocity, force);
     const std::ptrdiff_t at = index_of(fluid.indexing(), cell.global);
     Vec3 momentum = Vec3::Zero();
     for (int i = 0; i < D3Q19::directions; ++i) {

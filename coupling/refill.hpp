@@ -1,5 +1,6 @@
 // Gives cells that a grain has just uncovered their populations. With n the mean over the neighbours that were fluid
-// before (rho_n = 1 where there are none), u_w the velocity of the grain's rigid motion at the cell, F the body force:
+// before (rho_n that at rest where there are none), u_w the velocity of the grain's rigid motion at the cell, F the
+// body force:
 //   equilibrium      f_i^c = f_i^eq(rho_n, u_w) + 3/2 w_i c_i.F
 //   non_equilibrium  f_i^c = f_i^eq(rho_n, u_w) + [f_i^c - f_i^eq](donor); the donor is the one of these neighbours
 //                    whose direction is nearest to the outward normal (Caiazzo 2008)
@@ -78,7 +79,9 @@ private:
   template <typename Real>
   Neighbours look_at(const lbm::Fluid<Real>& fluid, std::ptrdiff_t cell, int direction, const Vec3& normal) const;
   void exchange(std::vector<Uncovered>& uncovered) const;
-  std::array<double, 19> populations_of(const Neighbours& neighbours, const Vec3& velocity, const Vec3& force) const;
+  // at_rest: rho_rest - 1 in the cell.
+  std::array<double, 19> populations_of(const Neighbours& neighbours, double at_rest, const Vec3& velocity,
+                                        const Vec3& force) const;
 
   const Decomposition& decomposition_;
   MPI_Comm communicator_;

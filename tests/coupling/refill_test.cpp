@@ -121,6 +121,32 @@ TEST_P(UncoveredCells, KeepWhatTheRuleSays) {
   EXPECT_GT(sum_over_ranks(MPI_COMM_WORLD, filled), 20);
 }
 
+// A sphere that is taken away leaves cells whose neighbours it had covered as well. Nothing around them tells their
+// density, which is that at rest.
+TEST_P(UncoveredCells, WithoutFluidBesideThemHaveTheDensityAtRest) {
+  const Decomposition decomposition({16, 16, 16}, 1.0, {true, true, false}, {1, 1, 1});
+  lbm::FaceConditions faces;
+  faces[4].type = faces[5].type = lbm::FaceType::no_slip;
+  lbm::Fluid<double> fluid(decomposition, MPI_COMM_SELF, {}, faces);
+  GrainMap map(decomposition, fluid.block(), fluid.cells());
+  map.begin_update();
+  const int slot = map.add(0, {3.0});
+  map.place(slot, Vec3(4.5, 8.5, 4.5));
+  map.settle();
+  map.begin_update();
+  map.place(slot, Vec3(11.5, 8.5, 11.5));
+  std::vector<lbm::LinkBody> bodies(1);
+  bodies[0].centre = Vec3(11.5, 8.5, 11.5);
+  const std::vector<CellChange> changes = map.settle();
+  const Hydrostatic rest{Vec3(0.0, 0.0, -3e-4), Vec3(8.0, 8.0, 8.0)};
+  Refill refill(decomposition, MPI_COMM_SELF, GetParam());
+  refill.fill(
+      fluid, changes, rest, [&](int, const Vec3& point) { return map.shapes()[0].outward(point); }, bodies);
+  double density = 0.0;
+  for (int i = 0; i < 19; ++i) density += fluid.populations().post_collision(i, fluid.indexing().index(4, 8, 4));
+  EXPECT_NEAR(density, 3e-4 * 3.5, 1e-15);
+}
+
 INSTANTIATE_TEST_SUITE_P(AllRules, UncoveredCells,
                          ::testing::Values(RefillRule::equilibrium, RefillRule::non_equilibrium, RefillRule::grad));
 
