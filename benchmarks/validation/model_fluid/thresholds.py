@@ -93,7 +93,11 @@ def watched_as_in_the_paper(axes, report, shorter):
     print(f"Re_* 0.1, Theta {shields:g}: {len(stops)} of {len(beds)} beds stop, on average after {np.mean(stops):.0f} sqrt(D/g')")
     lower, upper = (shields, LARGEST) if 2 * len(stops) > len(beds) else (shorter["lower"], shields)
     row = {"reynolds_number": 0.1, "shields_number": 0.5 * (lower + upper), "half_width": 0.5 * (upper - lower)}
-    report.line("the same, ten beds as long as in the paper", row, LOW, LOW_ACCEPTED)
+    within = abs(lower - LOW) <= LOW_ACCEPTED and abs(upper - LOW) <= LOW_ACCEPTED
+    apart = upper < LOW - LOW_ACCEPTED or lower > LOW + LOW_ACCEPTED
+    report.passed = report.passed and within
+    print(f"the same, ten beds as long as in the paper: Theta_c between {lower:.4f} and {upper:.4f}   paper {LOW:.4f}   accepted +- "
+          f"{LOW_ACCEPTED:.4f}   {'pass' if within else 'FAIL' if apart else 'UNDECIDED'}")
     points(axes, [row], "reynolds_number", fmt="D", color="tab:purple", mfc="none", label="as long as in the paper")
 
 
