@@ -179,9 +179,14 @@ class Run:
         column = self.series.get(f"reference_{name}", ())
         return float(column[-1]) if len(column) else None
 
+    @property
+    def size_exponent(self):
+        """The power of the diameter that the mass of a grain grows with: 3, of disks 2."""
+        return 2 if self.case.get("disks") else 3
+
     @cached_property
     def diameter(self):
-        """m: the reference diameter, `analysis.reference_diameter` or the one that half of the volume of all free grains is finer
+        """m: the reference diameter, `analysis.reference_diameter` or the one that half of the mass of all free grains is finer
         than."""
         given = self.reference("diameter") or (self.case.get("analysis") or {}).get("reference_diameter")
         if given:
@@ -193,7 +198,8 @@ class Run:
             sizes = np.sort(self.grains[0].diameter)
         else:
             raise RunFolderError(f"{self.folder}: the case has no single diameter and there is no frame of the grains.")
-        return float(sizes[np.searchsorted(np.cumsum(sizes**3), 0.5 * np.sum(sizes**3))])
+        masses = sizes**self.size_exponent
+        return float(sizes[np.searchsorted(np.cumsum(masses), 0.5 * np.sum(masses))])
 
     @property
     def density_ratio(self):
@@ -201,7 +207,7 @@ class Run:
         density = self.reference("density")
         if density is None:
             populations = [grains for grains in self.free_populations if isinstance(grains.get("diameter"), (int, float))]
-            volumes = [grains.get("count", 1) * grains["diameter"] ** 3 for grains in populations] or [1.0]
+            volumes = [grains.get("count", 1) * grains["diameter"] ** self.size_exponent for grains in populations] or [1.0]
             densities = [grains["density"] for grains in populations] or [self.free_populations[0]["density"]]
             density = float(np.average(densities, weights=volumes))
         return density / self.case["fluid"]["density"]

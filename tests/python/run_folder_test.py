@@ -102,6 +102,16 @@ class RunFolder(made_up.MadeUpFolder):
             self.assertEqual(run.diameter, 2e-3)
             self.assertAlmostEqual(run.density_ratio, 312.0 / 124.0, 12)
 
+    def test_the_reference_grain_of_disks_is_by_their_area(self):
+        two_sizes = "[{count: 5, diameter: 1e-3, density: 2000}, {count: 2, diameter: 1.4e-3, density: 3000}]"
+        run = self.with_case("[{count: 969, diameter: 4.95e-3, density: 2550}]", two_sizes)
+        # Volumes are as 5 to 5.488, areas as 5 to 3.92.
+        self.assertEqual(run.diameter, 1.4e-3)
+        self.assertAlmostEqual(run.density_ratio, (5 * 2.0 + 5.488 * 3.0) / 10.488, 12)
+        run = self.with_case("grains:", "disks: {thickness: 1e-3}\ngrains:")
+        self.assertEqual(run.diameter, 1e-3)
+        self.assertAlmostEqual(run.density_ratio, (5 * 2.0 + 3.92 * 3.0) / 8.92, 12)
+
     def test_the_reference_grain_is_the_one_in_the_series(self):
         (self.folder / "series.csv").write_text("time [s],reference_diameter [m],reference_density [kg/m^3]\n0,3e-3,2650\n")
         run = thalweg.Run(self.folder)
