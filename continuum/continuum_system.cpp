@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
+#include "core/round_off.hpp"
 #include "core/same_time_step.hpp"
 
 #include <fmt/format.h>
@@ -86,9 +87,8 @@ std::vector<double> at_middles(const std::vector<double>& faces) {
 
 // Of as many cells: how high they are follows from the depth of the water, which may follow from gravity.
 void require_same_spacing(const ArchiveReader& archive, const SystemParameters& parameters) {
-  constexpr double rounding = 1e-9;
   const double saved = archive.real_attribute("column/spacing"), here = parameters.column.spacing;
-  if (std::abs(saved - here) <= rounding * here) return;
+  if (same_but_for_rounding(saved, here)) return;
   throw InputError(fmt::format(
       "its cells are {:.10g} m high and those of this case {:.10g} m; a restart keeps them: set column, fluid "
       "and gravity back, or give a column.depth of {:.10g} m.",

@@ -29,8 +29,7 @@ FluidSystem<Real>::FluidSystem(std::unique_ptr<Decomposition> decomposition, MPI
     phases_ = {0, timer_.phase("halo"), timer_.phase("walls"), timer_.phase("links"), timer_.phase("sweep")};
   if (!solids.empty())
     solids_ = std::make_unique<StaticSolids>(*decomposition_, communicator, fluid_.cells(), fluid_.tiles(), solids);
-  parameters_.links.rest_gradient = rest_.gradient;
-  parameters_.links.rest_middle = rest_.middle;
+  set_rest(parameters_.links, rest_);
   if (parameters_.flow_target) fluid_.control_flow(*parameters_.flow_target);
   initialise(fluid_, parameters_, rest_);
   set_gravity(fluid_, parameters_, step_);

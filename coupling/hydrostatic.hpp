@@ -6,6 +6,7 @@
 
 #include "core/decomposition.hpp"
 #include "core/types.hpp"
+#include "lbm/link_options.hpp"
 
 namespace thalweg::coupling {
 
@@ -27,6 +28,12 @@ inline Hydrostatic hydrostatic_under(const Vec3& force, const Decomposition& dec
     h.middle[a] = 0.5 * decomposition.cells()[a];
   }
   return h;
+}
+
+// Tells the links.
+inline void set_rest(lbm::LinkOptions& links, const Hydrostatic& rest) {
+  links.rest_gradient = rest.gradient;
+  links.rest_middle = rest.middle;
 }
 
 }  // namespace thalweg::coupling

@@ -213,7 +213,8 @@ RefillTotals Refill::fill(lbm::Fluid<Real>& fluid, const std::vector<CellChange>
     lbm::LinkBody& body = bodies[cell.before];
     const Vec3 position = centre_of(cell.global);
     const Vec3 velocity = body.velocity + body.angular_velocity.cross(box_.difference(position, body.centre));
-    const std::array<double, 19> values = populations_of(cell.neighbours, rest.deviation(position), velocity, force);
+    const double at_rest = rest.deviation(position);
+    const std::array<double, 19> values = populations_of(cell.neighbours, at_rest, velocity, force);
     const std::ptrdiff_t at = index_of(fluid.indexing(), cell.global);
     Vec3 momentum = Vec3::Zero();
     for (int i = 0; i < D3Q19::directions; ++i) {
@@ -221,8 +222,7 @@ RefillTotals Refill::fill(lbm::Fluid<Real>& fluid, const std::vector<CellChange>
       fluid.populations().post_collision(i, at) = value;
       momentum += static_cast<double>(value) * velocity_of(i);
     }
-    const std::int64_t brought =
-        LatticeFixed::from(fluid.populations().density_deviation(at) - rest.deviation(position));
+    const std::int64_t brought = LatticeFixed::from(fluid.populations().density_deviation(at) - at_rest);
     body.mass += brought;
     totals.mass += brought;
     totals.momentum += momentum;

@@ -43,8 +43,7 @@ ResolvedSystem<Real, S>::ResolvedSystem(std::unique_ptr<Decomposition> decomposi
              timer_.phase("links"),     timer_.phase("sweep"),  timer_.phase("loads"), timer_.phase("grains")};
   // The filter of the virtual mass, which makes up for the lag, is made for the mean.
   if (parameters_.virtual_mass) parameters_.load = LoadRule::mean;
-  parameters_.links.rest_gradient = rest_.gradient;
-  parameters_.links.rest_middle = rest_.middle;
+  set_rest(parameters_.links, rest_);
   if (parameters_.flow_target) fluid_.control_flow(*parameters_.flow_target);
   initialise(fluid_, parameters_, rest_);
   dem::GrainStore& store = grains_->store();

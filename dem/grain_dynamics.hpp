@@ -167,8 +167,7 @@ public:
 
   // Figures over all ranks, the same bits in any layout; a clump is one grain, with the velocity of its centre, but
   // overlap and contacts are those of its members. Collective.
-  std::vector<Vec3> wall_forces()
-      const;  // N, of all grains on each of the walls, in their order: contacts and lubrication
+  std::vector<Vec3> wall_forces() const;          // N, of all grains on each wall, by contacts and lubrication
   std::int64_t contact_count() const;             // touching pairs of grains
   double largest_overlap() const;                 // of two grains, not both held, in diameters of the smaller
   double kinetic_energy() const;                  // J, with rotation

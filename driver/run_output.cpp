@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/on_first_rank.hpp"
+#include "core/round_off.hpp"
 #include "driver/bed_archive.hpp"
 #include "driver/build_system.hpp"
 #include "driver/reference_grain.hpp"
@@ -12,7 +13,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <utility>
 
 namespace thalweg::driver {
@@ -151,20 +151,20 @@ void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& p
 
 // A lattice of as many cells of another size would be taken for this one, at other speeds. A column, which has no
 // domain.spacing, looks at its cells itself.
-static void refuse_other_spacing(const ArchiveReader& archive, const std::filesystem::path& path, const Case& c) {
+static void refuse_other_spacing(const ArchiveReader& archive, const Case& c) {
   if (c.system == SystemKind::continuum || !archive.has("run/spacing")) return;
-  constexpr double rounding = 1e-9;
   const double saved = archive.real_attribute("run/spacing"), here = c.domain.spacing;
-  if (std::abs(saved - here) <= rounding * here) return;
-  throw InputError(fmt::format(
-      "{}: its domain.spacing is {:.10g} m and that of this case {:.10g} m; a restart keeps it: set it back, "
-      "or begin a new run from that state with initial.from.",
-      path.string(), saved, here));
+  if (same_but_for_rounding(saved, here)) return;
+  throw InputError(
+      fmt::format("its domain.spacing is {:.10g} m and that of this case {:.10g} m; a restart keeps it: set it back, "
+                  "or begin a new run from that state with initial.from.",
+                  saved, here));
 }
 
 // What does not fit names the file.
-static void load_system(System& system, ArchiveReader& archive, const std::filesystem::path& path) {
+static void load_system(System& system, ArchiveReader& archive, const std::filesystem::path& path, const Case& c) {
   try {
+    refuse_other_spacing(archive, c);
     system.load(archive);
   } catch (const io::DamagedFile&) {
     throw;
@@ -190,8 +190,7 @@ Accounts read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path
   if (saved != name_of(c.system))
     throw InputError(fmt::format("{} holds a run with system: {}, but this case has system: {}.", path.string(), saved,
                                  name_of(c.system)));
-  refuse_other_spacing(archive, path, c);
-  load_system(system, archive, path);
+  load_system(system, archive, path, c);
   return Accounts::load(archive, system, observers, c.output.series.every);
 }
 

@@ -20,11 +20,6 @@ namespace thalweg::io {
 
 namespace {
 
-// -1 if that fails.
-int opened(const std::filesystem::path& path, int flags) {
-  return repeated_if_interrupted([&] { return ::open(path.c_str(), flags | O_CLOEXEC, 0666); });
-}
-
 // Returns the name under which the text stands until it is renamed.
 std::filesystem::path write_partial(const std::filesystem::path& path, const std::string& text) {
   std::filesystem::path partial = path;

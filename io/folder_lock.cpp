@@ -51,8 +51,7 @@ std::string first_line_of(int file) {
 
 FolderLock::FolderLock(const std::filesystem::path& folder) {
   make_folder(folder);
-  const std::filesystem::path path = folder / file_name;
-  file_ = repeated_if_interrupted([&] { return ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666); });
+  file_ = opened(folder / file_name, O_RDWR | O_CREAT);
   if (file_ < 0) return;  // whoever cannot write there is told so when the run begins to
   if (takes_lock(file_)) {
     const std::string name = name_of_this_process();

@@ -4,7 +4,10 @@
 // so may others on a file system over the network.
 #pragma once
 
+#include <fcntl.h>
+
 #include <cerrno>
+#include <filesystem>
 
 namespace thalweg::io {
 
@@ -15,6 +18,11 @@ auto repeated_if_interrupted(Call&& call) {
   auto result = call();
   while (result == -1 && errno == EINTR) result = call();
   return result;
+}
+
+// A file opened with these flags, and closed in processes that are started; -1 if that fails.
+inline int opened(const std::filesystem::path& path, int flags) {
+  return repeated_if_interrupted([&] { return ::open(path.c_str(), flags | O_CLOEXEC, 0666); });
 }
 
 }  // namespace thalweg::io

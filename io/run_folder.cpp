@@ -126,8 +126,20 @@ void RunFolder::write_case(const std::string& comment_lines, const std::string& 
 }
 
 void RunFolder::go_on_from(std::int64_t step) const {
-  if (fs::exists(checkpoint(step)))
-    write_text_durably(checkpoints() / latest_name, checkpoint(step).filename().string() + "\n");
+  if (fs::exists(checkpoint(step))) make_latest(step);
+}
+
+void RunFolder::make_latest(std::int64_t step) const {
+  write_text_durably(checkpoints() / latest_name, checkpoint(step).filename().string() + "\n");
+}
+
+fs::path RunFolder::named_latest() const {
+  const fs::path latest = checkpoints() / latest_name;
+  std::error_code ignored;
+  if (!fs::is_regular_file(latest, ignored)) return {};
+  std::string name = read_text(latest);
+  while (!name.empty() && (name.back() == '\n' || name.back() == ' ')) name.pop_back();
+  return checkpoints() / name;
 }
 
 void RunFolder::keep_case(std::int64_t step) const {
@@ -159,12 +171,9 @@ std::vector<std::int64_t> RunFolder::steps_of_checkpoints() const {
 }
 
 void RunFolder::rotate_checkpoints(std::int64_t step, int keep) const {
-  const fs::path latest = checkpoints() / latest_name;
-  const std::string name = checkpoint(step).filename().string() + "\n";
-  std::error_code ignored;
   // Where the run goes on from `step` and has not moved since, the case kept for it is still that of its state.
-  const bool anew = !fs::is_regular_file(latest, ignored) || read_text(latest) != name;
-  write_text_durably(latest, name);
+  const bool anew = named_latest() != checkpoint(step);
+  make_latest(step);
   std::vector<fs::path> superfluous;
   int kept = 0;
   for (const std::int64_t found : steps_of_checkpoints())
@@ -189,13 +198,8 @@ std::vector<fs::path> RunFolder::checkpoints_to_try() const {
     throw InputError(
         fmt::format("{}: the folder has no checkpoint ({}); give the path of a checkpoint or of a run that wrote one.",
                     path_.string(), (checkpoints() / "step_*.h5").string()));
-  std::error_code ignored;
-  const fs::path latest = checkpoints() / latest_name;
-  if (!fs::is_regular_file(latest, ignored)) return found;
-  std::string name = read_text(latest);
-  while (!name.empty() && (name.back() == '\n' || name.back() == ' ')) name.pop_back();
   // Later ones than the latest are of a course that a restart has left.
-  const auto named = std::find(found.begin(), found.end(), checkpoints() / name);
+  const auto named = std::find(found.begin(), found.end(), named_latest());
   if (named != found.end()) std::rotate(found.begin(), named, found.end());
   return found;
 }

@@ -58,7 +58,8 @@ public:
 
   // After the checkpoint of `step` has been closed: makes it the latest (checkpoints/latest holds its file name) and
   // removes all but the newest `keep` of those up to `step`, and any after it, which a restart from an earlier time has
-  // made obsolete, with the cases kept for them; also what killed runs have left half written. Throws RunError.
+  // made obsolete, with the cases kept for them and, where `step` was computed anew, for an earlier state of it; also
+  // what killed runs have left half written. Throws RunError.
   void rotate_checkpoints(std::int64_t step, int keep) const;
 
   bool has_checkpoint() const { return !steps_of_checkpoints().empty(); }
@@ -70,6 +71,8 @@ public:
 
 private:
   std::vector<std::int64_t> steps_of_checkpoints() const;  // from new to old
+  void make_latest(std::int64_t step) const;               // writes checkpoints/latest
+  std::filesystem::path named_latest() const;              // the checkpoint it names; empty where there is no such file
 
   std::filesystem::path path_;
 };

@@ -121,11 +121,7 @@ TEST(Gear, HasNoAdvantageInAnImpact) {
 
 // The columns of another kind of run are not those of the predictor, though there are as many of both.
 TEST(Gear, DoesNotTakeOtherColumnsForItsOwn) {
-  GrainParameters p;
-  p.contact = test::glass(0.9);
-  p.time_step = 2e-6;
-  p.sub_steps = 10;
-  p.skin = 1e-3;
+  GrainParameters p = parameters_of(Integrator::velocity_verlet, 0.9, 2e-6, 0.0);
   const GrainSeed seed = test::glass_sphere(0, Vec3(0.025, 0.025, 0.025), Vec3(0.1, 0.0, 0.0));
   p.attached_width = 24 + GearPredictor::columns;
   GrainDynamics other(test::cube(), MPI_COMM_SELF, p, {seed});

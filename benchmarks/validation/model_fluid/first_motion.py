@@ -29,8 +29,7 @@ from scipy.optimize import minimize
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[2] / "python"))
-from thalweg.tables import read_rows
-from thresholds import thresholds
+from thresholds import runs, thresholds
 
 ACCEPTED = 0.3   # of alpha
 
@@ -60,12 +59,11 @@ def first_motions(system):
     """Middle of the last step of the ramp, within which a bed begins to move, of all beds by their length; those of the
     other tables in place of the first."""
     found = {}
-    for path in (HERE / f"{system.name}{part}.csv" for part in ("", "_held", "_short_step", "_long")):
-        for row in read_rows(path) if path.exists() else []:
-            if row["state"] == "done":
-                grains = int(row["grains.0.count"]) + int(row["grains.1.count"])
-                moving = float(row["figures.shields_number [1]"])
-                found[grains, row["grains.0.placement.seed"]] = moving / (1.0 + 0.5 * system.step)
+    for part in ("", "_held", "_short_step", "_long"):
+        for row in runs(f"{system.name}{part}"):
+            grains = int(row["grains.0.count"]) + int(row["grains.1.count"])
+            moving = float(row["figures.shields_number [1]"])
+            found[grains, row["grains.0.placement.seed"]] = moving / (1.0 + 0.5 * system.step)
     sizes = sorted({grains for grains, _ in found})
     return [(size / system.grains_per_length, np.array([value for (grains, _), value in found.items() if grains == size]))
             for size in sizes]

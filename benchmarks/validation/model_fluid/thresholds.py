@@ -48,28 +48,40 @@ class Report:
     def __init__(self):
         self.passed = True
 
+    def verdict(self, good):
+        self.passed = self.passed and good
+        return "pass" if good else "FAIL"
+
     def line(self, what, row, expected, accepted):
         """accepted: the distance from the expected value beyond half the bracket."""
         good = abs(row["shields_number"] - expected) <= accepted + row["half_width"]
-        self.passed = self.passed and good
         print(f"{what:<42} {row['shields_number']:.4f} +- {row['half_width']:.4f}   paper {expected:.4f}   "
-              f"accepted +- {accepted:.4f}   {'pass' if good else 'FAIL'}")
+              f"accepted +- {accepted:.4f}   {self.verdict(good)}")
+
+    def bracket(self, what, lower, upper, expected, accepted):
+        """A bracket too wide to be judged by its middle: all of it has to be accepted."""
+        within = max(abs(lower - expected), abs(upper - expected)) <= accepted
+        apart = upper < expected - accepted or lower > expected + accepted
+        verdict = self.verdict(within)
+        print(f"{what:<42} {lower:.4f} to {upper:.4f}    paper {expected:.4f}   accepted +- {accepted:.4f}   "
+              f"{verdict if within or apart else 'UNDECIDED'}")
 
     def alike(self, what, groups):
-        """The mean of each group within 2.6 standard errors of the mean of all: one group in a hundred is not, by chance."""
+        """The mean of each group within 2.6 of its standard errors of the mean of all: 1 % of a normal distribution."""
         if not groups:
             return
         mean = np.mean(np.concatenate(groups))
-        off = max(abs(np.mean(group) - mean) / (np.std(group, ddof=1) / np.sqrt(len(group))) for group in groups)
-        self.passed = self.passed and off <= 2.6
+        off = max(abs(np.mean(group) - mean) / standard_error(group) for group in groups)
         print(f"{what}: means of {len(groups)} kinds within {off:.1f} standard errors of all, accepted 2.6   "
-              f"{'pass' if off <= 2.6 else 'FAIL'}")
+              f"{self.verdict(off <= 2.6)}")
 
     def below(self, what, threshold, limit):
         """threshold: an upper limit of it."""
-        good = threshold < limit
-        self.passed = self.passed and good
-        print(f"{what:<42} below {threshold:.4f}     paper below {limit:.4f}   {'pass' if good else 'FAIL'}")
+        print(f"{what:<42} below {threshold:.4f}     paper below {limit:.4f}   {self.verdict(threshold < limit)}")
+
+
+def standard_error(values):
+    return np.std(values, ddof=1) / np.sqrt(len(values))
 
 
 def points(axes, rows, x, **style):
@@ -90,14 +102,10 @@ def watched_as_in_the_paper(axes, report, shorter):
         return
     shields = float(beds[0]["model_fluid.shields_number [1]"])
     stops = [float(bed["simulated_time"]) for bed in beds if float(bed["simulated_time"]) < float(bed["run.until [s]"])]
-    print(f"Re_* 0.1, Theta {shields:g}: {len(stops)} of {len(beds)} beds stop, on average after {np.mean(stops):.0f} sqrt(D/g')")
+    print(f"Re_* 0.1, Theta {shields:g}: {len(stops)} of {len(beds)} beds stop, after {sorted(stops)} sqrt(D/g')")
     lower, upper = (shields, LARGEST) if 2 * len(stops) > len(beds) else (shorter["lower"], shields)
+    report.bracket("the same, ten beds as long as in the paper", lower, upper, LOW, LOW_ACCEPTED)
     row = {"reynolds_number": 0.1, "shields_number": 0.5 * (lower + upper), "half_width": 0.5 * (upper - lower)}
-    within = abs(lower - LOW) <= LOW_ACCEPTED and abs(upper - LOW) <= LOW_ACCEPTED
-    apart = upper < LOW - LOW_ACCEPTED or lower > LOW + LOW_ACCEPTED
-    report.passed = report.passed and within
-    print(f"the same, ten beds as long as in the paper: Theta_c between {lower:.4f} and {upper:.4f}   paper {LOW:.4f}   accepted +- "
-          f"{LOW_ACCEPTED:.4f}   {'pass' if within else 'FAIL' if apart else 'UNDECIDED'}")
     points(axes, [row], "reynolds_number", fmt="D", color="tab:purple", mfc="none", label="as long as in the paper")
 
 
@@ -130,15 +138,14 @@ def shields_curve(axes, report):
     return rows
 
 
-def first_motions(report):
-    """Where beds at rest, 20 D long, begin to move, for each kind of drag and restitution. Section III C: whatever these are."""
+def hysteresis(report):
+    """Where beds at rest, 20 D long, begin to move. Section III C: the same for all drag laws and restitution coefficients."""
     kinds = {}
     for bed in runs("hysteresis"):
         kind = f"{bed['model_fluid.drag']} drag, restitution {float(bed['contact.restitution [1]']):g}"
         kinds.setdefault(kind, []).append(float(bed["figures.shields_number [1]"]))
     for kind, found in kinds.items():
-        print(f"beds at rest, {kind}: {len(found)} begin to move at {np.mean(found):.4f} +- "
-              f"{np.std(found, ddof=1) / np.sqrt(len(found)):.4f}")
+        print(f"beds at rest, {kind}: {len(found)} begin to move at {np.mean(found):.4f} +- {standard_error(found):.4f}")
     report.alike("beds at rest begin to move", list(kinds.values()))
 
 
@@ -171,10 +178,9 @@ def friction(axes, report, without):
         least = min(row["shields_number"] for row in of_this)
         most = max(row["shields_number"] for row in of_this)
         good = most <= FRICTION_ACCEPTED * least
-        report.passed = report.passed and good
         print(f"disks, Re_* {reynolds:g}: {least:.3f} to {most:.3f} with friction, {100 * (most / least - 1):.0f} % "
               f"(paper: less than 50 %; twice the value of spheres: {DISKS_FACTOR * plateau:.2f})   "
-              f"{'pass' if good else 'FAIL'}")
+              f"{report.verdict(good)}")
     axes.set(xscale="log", xlabel="friction coefficient", ylim=(0.0, None), title="disks (dotted: twice the plateaus)")
 
 
@@ -185,7 +191,7 @@ def main():
     figure, axes = plt.subplots(1, 3, figsize=(12, 4), layout="constrained")
     report = Report()
     without = shields_curve(axes[0], report)
-    first_motions(report)
+    hysteresis(report)
     lift(axes[1], report, without)
     friction(axes[2], report, without)
     for panel in axes:
