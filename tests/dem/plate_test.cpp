@@ -59,12 +59,14 @@ TEST(Plate, ShowsItsNearestPoint) {
 // Over its middle a plate is a plane, to the last bit; from below it is one turned over.
 TEST(Plate, IsAPlaneAwayFromItsEdges) {
   const Vec3 start(0.02, 0.03, 0.025 + 1.2 * radius), velocity(0.2, -0.1, -0.3);
-  Plane plane = plate(Vec3(0.0, 0.0, 0.025), 1.0, 1.0);
-  plane.friction = 0.3, plane.rolling_friction = 0.05;
   const auto flight = [&](bool finite, bool from_below) {
-    Plane wall = plane;
-    const double side = from_below ? -1.0 : 1.0;
-    if (!finite) wall.plate.reset(), wall.normal = Vec3(0.0, 0.0, side);
+    Plane wall;
+    wall.point = Vec3(0.0, 0.0, 0.025);
+    wall.friction = 0.3, wall.rolling_friction = 0.05;
+    if (finite)
+      wall.plate = {Vec3::UnitX(), 1.0, 1.0};
+    else if (from_below)
+      wall.normal = -Vec3::UnitZ();
     Vec3 at = start, v = velocity;
     if (from_below) at.z() = 2.0 * 0.025 - at.z(), v.z() = -v.z();
     auto grains = std::make_unique<GrainDynamics>(test::cube(), MPI_COMM_SELF, with({wall}, 0.8),

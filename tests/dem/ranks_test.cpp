@@ -221,7 +221,16 @@ int bridges_across_borders(const Case& c, const thalweg::test::MemoryArchive& ar
   return count;
 }
 
-void compare(const Case& c, int steps) {
+// Layouts matter to what crosses borders, not to the law of a contact: cases that add only a law take two.
+enum class Layouts { all, two };
+
+std::vector<Index3> layouts(const Case& c, int ranks, Layouts wanted) {
+  const std::vector<Index3> possible = layouts(c.cells, ranks);
+  if (wanted == Layouts::all || possible.size() <= 2) return possible;
+  return {possible.front(), Decomposition::best_layout(c.cells, ranks)};
+}
+
+void compare(const Case& c, int steps, Layouts wanted = Layouts::all) {
   const Cloud seeds = cloud(c);
   const GrainParameters p = parameters_of(c);
   const int ranks = size_of(MPI_COMM_WORLD);
@@ -247,7 +256,7 @@ void compare(const Case& c, int steps) {
     EXPECT_LT(alone.wall_forces().back()[2], 0.0);
   }
 
-  for (const Index3& layout : layouts(c.cells, ranks)) {
+  for (const Index3& layout : layouts(c, ranks, wanted)) {
     const std::string name = fmt::format("layout {},{},{}", layout[0], layout[1], layout[2]);
     const Decomposition decomposition(c.cells, c.spacing, c.periodic, layout);
     GrainDynamics grains(decomposition, MPI_COMM_WORLD, p, seeds.grains, seeds.clumps);
@@ -285,13 +294,14 @@ TEST(Ranks, HeapThatSlidesAcrossBorders) {
 }
 
 TEST(Ranks, ElasticHeapOfTwoMaterials) {
-  compare({{16, 16, 16}, 1.5e-3, {true, true, false}, 60, Vec3(4.0, 2.0, -15.0), Vec3(0.4, 0.3, 0.0), true}, 240);
+  compare({{16, 16, 16}, 1.5e-3, {true, true, false}, 60, Vec3(4.0, 2.0, -15.0), Vec3(0.4, 0.3, 0.0), true}, 240,
+          Layouts::two);
 }
 
 TEST(Ranks, HeapMovedByGearsPredictor) {
   Case c{{16, 16, 16}, 1.5e-3, {true, true, false}, 60, Vec3(4.0, 2.0, -15.0), Vec3(0.4, 0.3, 0.0)};
   c.integrator = Integrator::gear;
-  compare(c, 240);
+  compare(c, 240, Layouts::two);
 }
 
 TEST(Ranks, CloudOfClumpsInAPeriodicBox) {
@@ -309,27 +319,27 @@ TEST(Ranks, HeapOfClumpsThatSlidesAcrossBorders) {
 TEST(Ranks, HeapWithRollingFriction) {
   Case c{{16, 16, 16}, 1.5e-3, {true, true, false}, 60, Vec3(4.0, 2.0, -15.0), Vec3(0.4, 0.3, 0.0)};
   c.rolling = 0.1;
-  compare(c, 240);
+  compare(c, 240, Layouts::two);
   c.elastic = true;
-  compare(c, 240);
+  compare(c, 240, Layouts::two);
 }
 
 TEST(Ranks, HeapOnAMovingFloorWithARigidAssembly) {
   Case c{{16, 16, 16}, 1.5e-3, {true, true, false}, 80, Vec3(4.0, 2.0, -25.0), Vec3(0.4, 0.3, 0.0)};
   c.moving = true;
-  compare(c, 240);
+  compare(c, 240, Layouts::two);
   c.integrator = Integrator::gear;
-  compare(c, 240);
+  compare(c, 240, Layouts::two);
 }
 
 TEST(Ranks, HeapLiftedByAPlate) {
   Case c{{16, 16, 16}, 1.5e-3, {true, true, false}, 80, Vec3(4.0, 2.0, -25.0), Vec3(0.4, 0.3, 0.0)};
   c.plate = true;
-  compare(c, 240);
+  compare(c, 240, Layouts::two);
   c.clumps = true;
   c.gravity = Vec3(4.0, 2.0, -30.0);
   c.grains = 30;
-  compare(c, 320);
+  compare(c, 320, Layouts::two);
 }
 
 // Everything falls into one corner of a closed box, so that even cuts leave some ranks nearly without grains.
@@ -354,24 +364,24 @@ TEST(Ranks, CutsFollowTheGrainsAndChangeNothing) {
 TEST(Ranks, HeapWithLubrication) {
   Case c{{16, 16, 16}, 1.5e-3, {true, true, false}, 60, Vec3(4.0, 2.0, -15.0), Vec3(0.4, 0.3, 0.0)};
   c.lubricated = true;
-  compare(c, 240);
+  compare(c, 240, Layouts::two);
 }
 
 TEST(Ranks, HeapWithLiquidBridges) {
   Case c{{16, 16, 16}, 1.5e-3, {true, true, false}, 60, Vec3(4.0, 2.0, -15.0), Vec3(0.4, 0.3, 0.0)};
   c.moist = true;
-  compare(c, 240);
+  compare(c, 240, Layouts::two);
   c.elastic = true;
   c.rolling = 0.1;
-  compare(c, 240);
+  compare(c, 240, Layouts::two);
   c.integrator = Integrator::gear;
-  compare(c, 240);
+  compare(c, 240, Layouts::two);
 }
 
 TEST(Ranks, MoistHeapOfClumpsWithMovingCuts) {
   Case c{{16, 16, 16}, 1.5e-3, {true, true, false}, 30, Vec3(4.0, 2.0, -30.0), Vec3(0.4, 0.3, 0.0)};
   c.moist = c.clumps = c.movable_cuts = c.lubricated = true;
-  compare(c, 320);
+  compare(c, 320, Layouts::two);
 }
 
 TEST(Ranks, ChannelTwoDiametersWide) {
