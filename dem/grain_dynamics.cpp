@@ -163,10 +163,11 @@ double GrainDynamics::largest_prescribed_speed() const {
 }
 
 double GrainDynamics::ghost_reach() const {
-  // A grain may come half a skin nearer before the ghosts are made anew.
-  const double known = std::max(parameters_.ghost_width, parameters_.field ? parameters_.field->reach() : 0.0);
-  // A little further than pairs are listed, so that rounding cannot hide one from the rank of one of its grains.
-  return std::max(known + 0.5 * parameters_.skin, 1.001 * (2.0 * largest_radius_ + list_range()));
+  // Until the ghosts are made anew a grain may come half a skin nearer, and an owned one leave its block by as much.
+  const double field = parameters_.field ? parameters_.field->reach() + parameters_.skin : 0.0;
+  const double pairs = std::max(field, 2.0 * largest_radius_ + list_range());
+  // A little further, so that rounding cannot hide a pair from the rank of one of its grains.
+  return std::max(parameters_.ghost_width + 0.5 * parameters_.skin, 1.001 * pairs);
 }
 
 // The gap up to which pairs are listed: what acts across a gap must be known there until the list is made anew.

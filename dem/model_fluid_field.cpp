@@ -2,6 +2,8 @@
 
 #include "dem/grain_dynamics.hpp"
 
+#include <cmath>
+
 namespace thalweg::dem {
 
 ModelFluidField::ModelFluidField(const PeriodicBox& box, const ModelFluidParameters& parameters)
@@ -76,7 +78,9 @@ void ModelFluidField::step_ended(const GrainDynamics& grains, double time) {
 
 std::vector<Figure> ModelFluidField::figures(double time) const {
   if (!ramp_) return {};
-  return {{"shields_number", "1", shields_number()}, {hold_left_figure, "s", ramp_->hold_left(time)}};
+  return {{"shields_number", "1", shields_number()},
+          {"reynolds_number", "1", parameters_.numbers.reynolds * std::sqrt(ramp_->factor())},
+          {hold_left_figure, "s", ramp_->hold_left(time)}};
 }
 
 void ModelFluidField::save(ArchiveWriter& archive) const {

@@ -31,8 +31,8 @@ public:
   void find_neighbours(const GrainStore& store, double skin, const Clumps& clumps) override;
   void act(MovingGrains& grains, GrainStore& store, Clumps& clumps, std::span<const Vec3> body_force) override;
   void step_ended(const GrainDynamics& grains, double time) override;
-  // With a ramp: shields_number, and hold_left (s): the motion since the last step up counts as one without end when
-  // none is left.
+  // With a ramp: shields_number; reynolds_number, Re_* as printed, which grows with its root; and hold_left (s): the
+  // motion since the last step up counts as one without end when none is left.
   std::vector<Figure> figures(double time) const override;
   static constexpr const char* hold_left_figure = "hold_left";
   void save(ArchiveWriter& archive) const override;

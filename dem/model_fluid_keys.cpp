@@ -66,7 +66,8 @@ void describe(SectionVisitor& visit, ModelFluidKeys& fluid, bool disks) {
               .above = 0.0,
               .example = 0.1});
   visit.real("reynolds_number", fluid.reynolds_number,
-             {.meaning = "Re_* as printed by Clark et al. (2017): sqrt(3) (m/B_1) sqrt(shields_number g'/D)",
+             {.meaning = "Re_* as printed by Clark et al. (2017): sqrt(3) (m/B_1) sqrt(shields_number g'/D); with a "
+                         "ramp that of the first Shields number",
               .above = 0.0,
               .example = 1.0});
   visit.real("shear_reynolds_number", fluid.shear_reynolds_number,

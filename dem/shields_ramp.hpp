@@ -5,8 +5,6 @@
 
 #include "core/archive.hpp"
 
-#include <cstdint>
-
 namespace thalweg::dem {
 
 struct ShieldsRampParameters {
@@ -30,10 +28,10 @@ public:
   // To be called after every step when watches_share(), with the share of free grains faster than moving_speed().
   bool watches_share() const { return parameters_.mobile_share < 1.0; }
   double moving_speed() const { return parameters_.moving_speed; }
-  void watch(double moving_share) { mobile_ = steps_ > 0 && moving_share > parameters_.mobile_share; }
+  void watch(double moving_share) { mobile_ = has_risen() && moving_share > parameters_.mobile_share; }
 
   // The Shields number over that at the start.
-  double factor() const;
+  double factor() const { return factor_; }
   // s, until the motion since the last step counts as one without end; before the first step, all of `hold`.
   double hold_left(double time) const;
 
@@ -41,8 +39,10 @@ public:
   void load(ArchiveReader& archive);
 
 private:
+  bool has_risen() const { return factor_ > 1.0; }
+
   ShieldsRampParameters parameters_;
-  std::int64_t steps_ = 0;
+  double factor_ = 1.0;
   double last_step_ = 0.0;  // s
   bool mobile_ = false;     // at the end of the last time step
 };

@@ -210,6 +210,12 @@ void check_model_fluid(const Case& c, const io::YamlDocument& document) {
                          "the model fluid drives the grains, and gravity is downwards; give a magnitude alone");
   if (c.domain.faces[bottom].type == lbm::FaceType::periodic)
     throw document.error("domain.boundaries", "the bed needs a floor; give a bottom and a top that are not periodic");
+  const std::array<bool, 3> periodic = periodic_axes(c.domain);
+  if (!periodic[0] || !(c.disks || periodic[1]))
+    throw document.error("domain.boundaries",
+                         "beside a side wall the fluid would flow as where grains are missing; make x and y periodic");
+  if (!c.walls.empty())
+    throw document.error("walls", "beside them the fluid would flow as where grains are missing; remove the section");
   if (c.run.grain_integrator != dem::Integrator::velocity_verlet)
     throw document.error("run.grain_integrator",
                          "with a model fluid grains are moved by velocity_verlet; remove the key");

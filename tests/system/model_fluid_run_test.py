@@ -42,6 +42,19 @@ output: {series: {every: 0.1}, checkpoint: {every: 2, keep: 3}}
         for other in ("on_2", "on_4", "half"):
             self.assert_same_bed("one", other)
 
+    def test_a_grain_that_leaves_its_block_knows_one_that_comes_nearer(self):
+        # They meet across the cut at x = 8 without a new list: a spacing of 2 + 0.276 at first, 1.84 at the end; a grain counts
+        # for another, whose solid fraction is that of 1.5 around it, from 2 on.
+        grain = "{count: 1, diameter: 1, density: 1.909859317102744, "
+        (self.folder / "two.yaml").write_text(self.CASE[:self.CASE.index("grains:")].replace("[6, 4, 16]", "[16, 4, 16]").replace(
+            "shields_number: 0.5", "shields_number: 0.002").replace("lift_ratio: 1", "lift_ratio: 0") + f"""grains:
+  - {grain}velocity: [1, 0, 0], placement: {{positions: [[7.999, 2, 9]]}}}}
+  - {grain}velocity: [-1, 0, 0], placement: {{positions: [[10.275, 2, 9]]}}}}
+""" + self.CASE[self.CASE.index("contact:"):].replace("until: 4", "until: 0.234"))
+        self.run_well("run", "two.yaml", "--out", "one")
+        self.run_well("run", "two.yaml", "--out", "on_2", ranks=2)
+        self.assert_same_bed("one", "on_2")
+
     def test_clumps_on_any_ranks_and_after_a_restart(self):
         members = [{"position": [0.33 * numpy.cos(a), 0, 0.33 * numpy.sin(a)], "diameter": 0.55}
                    for a in 2 * numpy.pi * numpy.arange(5) / 5]
@@ -152,6 +165,19 @@ output: {series: {every: 0.1}, checkpoint: {every: 2, keep: 3}}
         self.run_well("run", self.case, *self.RAMP, "--out", "half", "--restart", "half", "--until", "40")
         self.assert_same_bed("one", "half")
 
+    def test_a_restart_with_larger_steps_goes_on_from_the_shields_number_reached(self):
+        self.run_well("run", self.case, *self.RAMP, "--out", "run", "--until", "40")
+        reached = self.summary("run")["figures"]["shields_number"]
+        self.assertGreater(reached, 0.055)
+        self.run_well("run", self.case, *self.RAMP, "--set", "model_fluid.ramp.step=0.5", "--out", "run", "--restart", "run",
+                      "--until", "60")
+        figures = self.summary("run")["figures"]
+        steps = numpy.log(figures["shields_number"] / reached) / numpy.log(1.5)
+        self.assertGreater(steps, 0.9)
+        self.assertAlmostEqual(steps, round(steps), 9)
+        # B_1 is that of the fluid: Re_* grows with the root.
+        self.assertAlmostEqual(figures["reynolds_number"] / (100 * (figures["shields_number"] / 0.05) ** 0.5), 1.0, 12)
+
     def test_what_check_says(self):
         said = self.run_well("check", self.case).stdout
         self.assertIn("Shields number 0.5; Re_* 100 as printed, u_* D/nu 600", said)
@@ -167,6 +193,8 @@ output: {series: {every: 0.1}, checkpoint: {every: 2, keep: 3}}
                 (["model_fluid.ramp={every: 5, hold: 9}", "run.until_at_rest={}"], ["until_at_rest", "model_fluid.ramp"]),
                 (["gravity.slope=0.1"], ["gravity", "downwards"]),
                 (["model_fluid.fluid_density=3"], ["float"]),
+                (["domain.boundaries.y=no_slip"], ["domain.boundaries", "x and y periodic"]),
+                (["walls=[{point: [1, 1, 1], normal: [1, 0, 0]}]"], ["walls", "remove the section"]),
                 (["system=grains"], ["model_fluid", "only system: model_fluid has it"])):
             with self.subTest(settings=settings):
                 self.assert_refused("run", self.case, *[word for s in settings for word in ("--set", s)], words=words)
