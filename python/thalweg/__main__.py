@@ -44,6 +44,11 @@ def main(arguments=None):
     except RunFolderError as error:
         print(f"thalweg: {error}", file=sys.stderr)
         return 2
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        print(f"thalweg: {error.filename or 'output'}: {error.strerror}.", file=sys.stderr)
+        return 2
 
 
 if __name__ == "__main__":

@@ -47,9 +47,12 @@ class Sweep(ProgramTest):
 
     def test_one_table_of_all_runs_and_none_is_repeated(self):
         sweep = self.write("vary: {gravity.slope: [0.1, 0.6], contact.wall_friction: {from: 0.2, to: 0.4, count: 2}}\n"
-                           "columns: [grain_energy.grain_momentum_x, figures.largest_grain_speed]\n")
-        self.assertIn("4 of 4 runs done", self.run_well("sweep", sweep).stdout)
+                           "columns: [grain_energy.grain_momentum_x, figures.largest_grain_speed, simulated_time, gone.bye]\n")
+        result = self.run_well("sweep", sweep)
+        self.assertIn("4 of 4 runs done", result.stdout)
+        self.assertIn("no run has the number gone.bye", result.stderr)
         rows = self.table("sweep/runs.csv")
+        self.assertAlmostEqual(float(rows[0]["simulated_time [s]"]), 0.2, delta=3e-4)
         self.assertEqual([(row["gravity.slope [1]"], row["contact.wall_friction [1]"], row["state"]) for row in rows],
                          [("0.1", "0.2", "done"), ("0.1", "0.4", "done"), ("0.6", "0.2", "done"), ("0.6", "0.4", "done")])
         speeds = [float(row["figures.largest_grain_speed [m/s]"]) for row in rows]
@@ -168,7 +171,21 @@ class Sweep(ProgramTest):
         self.run_well("sweep", sweep, "--tables")
         self.assertEqual([row["state"] for row in self.table("sweep/runs.csv")], ["waiting", "done"])
 
+    def test_tables_in_grain_units_do_not_name_those_of_si(self):
+        model_fluid = Path(__file__).resolve().parents[2] / "cases/model_fluid/case.yaml"
+        (self.folder / "grain.yaml").write_text(f"case: {model_fluid}\nset: {{run.until: 0.1, run.until_at_rest: null}}\n"
+                                                "vary: {model_fluid.shields_number: [0.1]}\n"
+                                                "columns: [simulated_time, figures.largest_grain_speed]\n")
+        self.run_well("sweep", "grain.yaml")
+        self.assertEqual(list(self.table("grain/runs.csv")[0]),
+                         ["run", "run.until", "run.until_at_rest", "model_fluid.shields_number [1]", "state", "version",
+                          "wall_time [s]", "simulated_time", "figures.largest_grain_speed", "failure"])
+
     def test_refusals(self):
+        self.assert_refused("sweep", self.write("", "small.yaml"), "--jobs", "0", words=["--jobs 0"])
+        (self.folder / "dated.yaml").write_bytes(b"case: \xff\n")
+        self.assert_refused("sweep", "dated.yaml", words=["dated.yaml", "UTF-8"])
+
         self.assert_refused("sweep", "gone.yaml", words=["gone.yaml", "No such file"])
         self.assert_refused("sweep", self.write("vary: {contact.wall_friction: 1}\n"), words=["sweep.yaml", "contact.wall_friction",
                                                                                           "list of values"])

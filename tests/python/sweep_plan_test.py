@@ -1,16 +1,19 @@
 """What a sweep file means, and what is said of one that means nothing."""
+import argparse
+import datetime
 import json
 import math
+import os
 import tempfile
 import unittest
 from pathlib import Path
 
 import made_up_folder   # noqa: F401  finds the package
-from thalweg.sweep import tables
-from thalweg.sweep.inputs import SweepError, inputs_of
+from thalweg.sweep import command, tables
+from thalweg.sweep.inputs import SweepError, inputs_of, named_files
 from thalweg.sweep.plan import plan_of
-from thalweg.sweep.runs import name_of, short_keys
-from thalweg.sweep.tasks import BisectionTask
+from thalweg.sweep.runs import BEGUN, FAILED, name_of, short_keys
+from thalweg.sweep.tasks import BisectionTask, tasks_of
 
 BISECT = {"key": "gravity.slope", "from": 0.0, "to": 1.0, "width": 0.2, "holds": "transport_rate.q_star_mean > 0.1"}
 
@@ -41,6 +44,8 @@ class Points(Folder):
         self.assertEqual([point["a"] for point in points], [0.01, 0.1, 1.0])
         points = self.plan(vary={"a": {"from": 0, "to": 0.3, "step": 0.1}}).points
         self.assertEqual([point["a"] for point in points], [0.0, 0.1, 0.2, 0.3])
+        counts = [point["a"] for point in self.plan(vary={"a": {"from": 100, "to": 300, "count": 3}}).points]
+        self.assertEqual(json.dumps(counts), "[100, 200, 300]")   # a key for whole numbers takes no 100.0
 
     def test_names_tell_the_runs_apart(self):
         self.assertEqual(short_keys(["grains.0.count", "grains.1.count", "gravity.slope"]),
@@ -52,6 +57,16 @@ class Points(Folder):
         plan = self.plan(vary={"a": [1, 2]}, together=[{"b": 1, "c": [1, 2]}, {"b": 2, "c": [3, 4]}])
         self.assertEqual((plan.keys, plan.naming_keys), (["a", "b", "c"], ["a", "b"]))
         self.assertEqual(self.plan(together=[{"b": 1, "c": 1}, {"b": 1, "c": 2}]).naming_keys, ["b", "c"])
+        self.assertEqual(self.plan(bisect=BISECT, together=[{"bisect.from": 0.1, "b": 1}, {"bisect.from": 0.2, "b": 2}]).naming_keys,
+                         ["b"])
+
+    def test_a_run_keeps_its_name_when_an_entry_is_added_that_needs_other_names(self):
+        entries = [{"b": 1, "c": 1}, {"b": 2, "c": 1}]
+        for task in tasks_of(self.plan(together=entries), self.folder):
+            task.run.folder.mkdir(parents=True)
+            task.run.remember(None)
+        names = [task.run.name for task in tasks_of(self.plan(together=entries + [{"b": 2, "c": 2}]), self.folder)]
+        self.assertEqual(names, ["b_1", "b_2", "b_2-c_2"])
 
     def test_names_stay_when_values_are_added(self):
         one, two = self.plan(vary={"a": [1]}, together=[{"b": 1}]), self.plan(vary={"a": [1, 2]}, together=[{"b": 1}, {"b": 2}])
@@ -69,6 +84,12 @@ class Points(Folder):
             seen.append(inputs_of(case, {}))
         self.assertEqual(len({json.dumps(inputs) for inputs in seen}), 3)
         self.assertEqual(inputs_of(case, {}), seen[-1])
+        (begun / "step_1.h5").write_text("2")   # as long as before
+        self.assertNotEqual(inputs_of(case, {}), seen[-1])
+        for source in ("grains", "fluid"):
+            self.assertEqual(named_files({"initial": {"from": {source: "../bed"}}}), {"../bed"})
+            self.assertEqual(named_files({f"initial.from.{source}": "../bed"}), {"../bed"})
+        self.assertEqual(named_files({"grains": "../bed", "fluid": {"density": "x"}}), set())
         other = self.folder / "other.stl"
         other.write_text("solid")
         self.assertEqual(set(inputs_of(case, {"obstacles.0.stl": "other.stl"})["files"]), {"bed.h5", "begun", "other.stl"})
@@ -87,7 +108,20 @@ class Points(Folder):
                                ({"bisect": BISECT | {"width": 0}}, "width above 0"),
                                ({"bisect": BISECT | {"spacing": "log"}}, "above 0"),
                                ({"bisect": BISECT | {"holds": "q_star"}}, "compared with"),
-                               ({"bisect": BISECT, "vary": {"gravity.slope": [1, 2]}}, "bisect.key: gravity.slope is also")):
+                               ({"bisect": BISECT, "vary": {"gravity.slope": [1, 2]}}, "bisect.key: gravity.slope is also"),
+                               ({"bisect": BISECT | {"repeat": {"a": [1]}}, "vary": {"a": [1, 2]}}, "bisect.repeat: a is also"),
+                               ({"bisect": BISECT | {"repeat": {"gravity.slope": [1]}}}, "is what is searched"),
+                               ({"bisect": BISECT | {"holds": "q > 1e"}}, "1e is not a number"),
+                               ({"bisect": "slope"}, "bisect: give keys"),
+                               ({"together": 5}, "together: give a list"),
+                               ({"columns": "simulated_time"}, "columns: give a list"),
+                               ({"case": 5}, "case is missing"),
+                               ({"vary": {"a": {"from": 0.1, "to": 0.5}}}, "takes a count or a step"),
+                               ({"vary": {"a": {"from": 1, "to": 6, "spacing": "log"}}}, "takes a count"),
+                               ({"vary": {"a": {"from": 1, "to": 6, "step": 1, "count": 2}}}, "a count or a step; remove one"),
+                               ({"vary": {"a": {"from": 1, "to": math.inf}}}, "inf is not a number"),
+                               ({"vary": {1: [2]}}, "1 is not a key of the case"),
+                               ({"set": {"a": datetime.date(2026, 1, 1)}}, "neither a number nor text")):
             with self.subTest(content=content), self.assertRaisesRegex(SweepError, words.replace("(", r"\(")):
                 self.plan(**content)
 
@@ -107,6 +141,7 @@ class Bisection(Folder):
 
     def answer(self, run, rate):
         run.folder.mkdir()
+        run.remember(None)
         (run.folder / "summary.json").write_text(
             json.dumps({"finished": True, "wall_seconds": 1.0, "transport_rate": {"q_star_mean": rate}}))
         run.look()
@@ -138,8 +173,26 @@ class Bisection(Folder):
         condition = self.plan(bisect=BISECT | {"holds": "simulated_time >= until"}).bisections[0].condition
         self.assertTrue(condition.holds({"simulated_time": 2.1, "until": 2.0}))
         self.assertFalse(condition.holds({"simulated_time": 1.9, "until": 2.0}))
+        # 1050 steps of 7e-4 s are one unit in the last place short of 0.735 s.
+        self.assertTrue(condition.holds({"simulated_time": 0.7349999999999999, "until": 0.735}))
+        below = self.plan(bisect=BISECT | {"holds": "simulated_time < until"}).bisections[0].condition
+        self.assertFalse(below.holds({"simulated_time": 0.7349999999999999, "until": 0.735}))
         with self.assertRaisesRegex(SweepError, "no number until"):
             condition.holds({"simulated_time": 1.9})
+
+    def test_what_a_crash_of_the_machine_may_have_left(self):
+        task = BisectionTask(self.folder, self.plan(bisect=BISECT), 0)
+        run = task.wanted()[0]
+        self.answer(run, 1.0)
+        (run.folder / "summary.json").write_text("")
+        run.look()
+        self.assertEqual(run.state, BEGUN)
+        run.note.write_text("")
+        with self.assertRaisesRegex(SweepError, "is damaged"):
+            run.look()
+        run.note.unlink()
+        with self.assertRaisesRegex(SweepError, "is missing"):
+            run.look()
 
     def test_geometric_steps(self):
         task, _ = self.search(lambda settings: 0.03, **{"from": 0.01, "spacing": "log", "width": 0.5})
@@ -174,6 +227,35 @@ class Bisection(Folder):
         task = BisectionTask(self.folder, self.plan(bisect=BISECT), 0)
         self.assertEqual(task.search.most_levels(), 4)
         self.assertEqual(task.most_runs_left(), 4)
+
+
+class TwoSweepsOfAFolder(Folder):
+    def test_a_run_is_not_taken_before_its_sweep_has_seen_how_it_ended(self):
+        program = self.folder / "program"
+        program.write_text("#!/bin/sh\nexit 1\n")
+        program.chmod(0o755)
+        plan = self.plan()
+        here, there = (tasks_of(plan, self.folder)[0].run for _ in range(2))
+        process = here.start(str(program))
+        self.assertIsNone(there.start(str(program)))   # going
+        process.wait()
+        self.assertIsNone(there.start(str(program)))   # ended, and nobody has looked
+        here.ended(process.returncode)
+        here.release()
+        self.assertIsNone(there.start(str(program)))
+        self.assertEqual(there.state, FAILED)
+
+
+class Slurm(Folder):
+    def test_a_task_has_room_for_the_ranks_of_its_runs(self):
+        wanted = argparse.Namespace(sweep=self.folder / "my sweep.yaml", jobs=2)
+        os.environ["THALWEG_PROGRAM"] = "/opt/thalweg"
+        self.addCleanup(os.environ.pop, "THALWEG_PROGRAM")
+        job = command.slurm_job(wanted, 10, 4, self.folder / "out")
+        self.assertIn("--ntasks=8\n", job)
+        self.assertIn("--array=0-9\n", job)
+        self.assertIn("/my sweep.yaml' --out", job)
+        self.assertIn("--jobs 2\n", job)
 
 
 class Units(unittest.TestCase):

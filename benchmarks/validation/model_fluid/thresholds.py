@@ -102,7 +102,7 @@ def watched_as_in_the_paper(axes, report, shorter):
         return
     lower, upper = shorter["lower"], LARGEST
     for shields in sorted({bed["model_fluid.shields_number [1]"] for bed in beds}, key=float):
-        ends = [(float(bed["simulated_time"]), float(bed["run.until [s]"])) for bed in beds
+        ends = [(float(bed["simulated_time"]), float(bed["run.until"])) for bed in beds
                 if bed["model_fluid.shields_number [1]"] == shields]
         stops = sorted(end for end, until in ends if end < until)
         print(f"Re_* 0.1, Theta {shields}: {len(stops)} of {len(ends)} beds stop, after {stops} sqrt(D/g')")

@@ -1,15 +1,16 @@
 """The command `thalweg sweep`."""
 import os
+import shlex
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 from thalweg.run import read_case
-from thalweg.sweep.plan import SweepError, read_plan
+from thalweg.sweep.plan import SweepError, figure_of, read_plan
 from thalweg.sweep.runner import Runner
-from thalweg.sweep.runs import DONE, FAILED
-from thalweg.sweep.tables import units_of_keys, write_tables
+from thalweg.sweep.runs import DONE, FAILED, name_of
+from thalweg.sweep.tables import those_without_dimension, units_of_keys, write_tables
 from thalweg.sweep.tasks import known_runs, tasks_of
 
 
@@ -40,9 +41,11 @@ def program():
 
 
 def units_of(plan):
+    """Of the keys of the case."""
     system = str(read_case(plan.case).get("system", "resolved"))
     said = subprocess.run([program(), "defaults", system], capture_output=True, text=True)
-    return units_of_keys(said.stdout) if said.returncode == 0 else {}
+    units = units_of_keys(said.stdout) if said.returncode == 0 else {}
+    return those_without_dimension(units) if plan.in_grain_units else units
 
 
 def refuse_impossible(tasks):
@@ -58,18 +61,21 @@ def describe(task, keys):
     return ", ".join(f"{key} = {task.settings[key]}" for key in keys if key in task.settings) or "the case as it is"
 
 
-def slurm_job(wanted, tasks, folder):
+def slurm_job(wanted, count, ranks, folder):
+    """An array of `count` tasks, each with as many runs at a time as --jobs says, of `ranks` ranks."""
+    jobs = wanted.jobs or 1
+    file, out, command = (shlex.quote(str(path)) for path in (wanted.sweep.resolve(), folder.resolve(), program()))
     return f"""#!/usr/bin/env bash
-#SBATCH --job-name={wanted.sweep.stem}
-#SBATCH --array=0-{len(tasks) - 1}
-#SBATCH --ntasks=1
-#SBATCH --cpus-per-task={max(1, wanted.jobs or 1)}
+#SBATCH --job-name={shlex.quote(wanted.sweep.stem)}
+#SBATCH --array=0-{count - 1}
+#SBATCH --ntasks={jobs * ranks}
+#SBATCH --cpus-per-task=1
+#SBATCH --nodes=1
 #SBATCH --time=24:00:00
 #SBATCH --signal=B:TERM@300
 #SBATCH --requeue
-# Made by thalweg sweep --slurm. Afterwards, for the tables: thalweg sweep {wanted.sweep} --out {folder} --tables
-exec {program()} sweep {wanted.sweep.resolve()} --out {folder.resolve()} --task "$SLURM_ARRAY_TASK_ID" \\
-     --jobs "$SLURM_CPUS_PER_TASK"
+# Made by thalweg sweep --slurm. Afterwards, for the tables: thalweg sweep {file} --out {out} --tables
+exec {command} sweep {file} --out {out} --task "$SLURM_ARRAY_TASK_ID" --jobs {jobs}
 """
 
 
@@ -77,12 +83,14 @@ def sweep(wanted):
     """Exit code 0: all done, or stopped in good order; 1: some runs have failed; 2 comes with a SweepError."""
     plan = read_plan(wanted.sweep)
     folder = wanted.out or wanted.sweep.with_suffix("")
-    tasks = tasks_of(plan, folder)
-    names = [task.runs[0].name for task in tasks] if not plan.bisections else []
+    if wanted.jobs is not None and wanted.jobs < 1:
+        raise SweepError(f"--jobs {wanted.jobs}: give at least one run at a time.")
+    names = [name_of(point, plan.naming_keys) for point in plan.points]
     if len(set(names)) < len(names):
         raise SweepError(f"{wanted.sweep}: two runs have the same values; there is {max(names, key=names.count)} twice.")
+    tasks = tasks_of(plan, folder)
     if wanted.slurm:
-        print(slurm_job(wanted, tasks, folder), end="")
+        print(slurm_job(wanted, len(tasks), plan.ranks, folder), end="")
         return 0
     if wanted.dry_run:
         for number, task in enumerate(tasks):
@@ -115,8 +123,13 @@ def written(plan, tasks, units, folder):
     if len(versions) > 1:
         print(f"thalweg: the runs were made by several versions of the program (column version of runs.csv): {', '.join(versions)}.",
               file=sys.stderr)
+    done = [run.summary for run in runs if run.state == DONE]
+    for column in plan.columns:
+        if done and all(figure_of(summary, column) is None for summary in done):
+            print(f"thalweg: columns: no run has the number {column} in its summary.json.", file=sys.stderr)
     failed = [run for run in runs if run.state == FAILED]
     if failed:
-        print(f"thalweg: {len(failed)} of the runs have failed (column failure of runs.csv; --retry runs them again).",
+        print(f"thalweg: {len(failed)} of the runs have failed (column failure of runs.csv; --retry runs those again that have "
+              "not ended).",
               file=sys.stderr)
     return 1 if failed else 0

@@ -9,7 +9,8 @@ import yaml
 from thalweg.errors import RunFolderError
 from thalweg.run import CaseLoader
 
-FILE_KEYS = {"file", "stl", "from", "run"}   # of a case: bed files, surfaces, run folders and checkpoints
+# Of a case, the last word, or two, of a key that names a bed file, a surface, a run folder or a checkpoint.
+FILE_KEYS = {"file", "stl", "from", "run", "from.grains", "from.fluid"}
 
 
 class SweepError(RunFolderError):
@@ -24,13 +25,16 @@ def inputs_of(case, settings):
     return {"case": digest_of(content), "settings": settings} | ({"files": files} if files else {})
 
 
-def named_files(content, key=None):
-    """All texts that stand at a key for a file or folder, or in a list of them. Keys of settings are paths."""
+def named_files(content, key=""):
+    """All texts that stand at a key for a file or folder, or in a list of them. key: with the keys around it, joined by dots, as
+    those of settings are."""
     if isinstance(content, dict):
-        return {name for key, value in content.items() for name in named_files(value, str(key).rpartition(".")[2])}
+        return {name for inner, value in content.items() for name in named_files(value, f"{key}.{inner}")}
     if isinstance(content, list):
         return {name for value in content for name in named_files(value, key)}
-    return {content} if key in FILE_KEYS and isinstance(content, str) and content else set()
+    words = key.split(".")
+    is_file = words[-1] in FILE_KEYS or ".".join(words[-2:]) in FILE_KEYS
+    return {content} if is_file and isinstance(content, str) and content else set()
 
 
 def state_of(path):
@@ -41,7 +45,10 @@ def state_of(path):
 
 @functools.lru_cache(maxsize=None)
 def content_of(case, _state):
-    return yaml.load(case.read_text(), CaseLoader)
+    try:
+        return yaml.load(case.read_text(), CaseLoader)
+    except yaml.YAMLError as error:
+        raise SweepError(f"{case} is not YAML: {' '.join(str(error).split())}.") from None
 
 
 def digest_of(content):
@@ -49,9 +56,10 @@ def digest_of(content):
 
 
 def digest_of_file(path):
-    """Of the bytes of a file; of a run folder: of the names and sizes of its checkpoints."""
+    """Of the bytes of a file; of a run folder: of its checkpoints."""
     if path.is_dir():
-        return digest_of(sorted((file.name, file.stat().st_size) for file in path.glob("checkpoints/*")))
+        return digest_of(sorted((file.name, digest_of_bytes(file, state_of(file))) for file in path.glob("checkpoints/*")
+                                if file.is_file()))
     return digest_of_bytes(path, state_of(path))
 
 

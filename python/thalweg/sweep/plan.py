@@ -1,4 +1,5 @@
 """A sweep file: which runs there are, and what each sets. docs/sweep.md explains the keys."""
+import functools
 import itertools
 import json
 import math
@@ -10,11 +11,12 @@ from pathlib import Path
 import yaml
 
 from thalweg.run import CaseLoader
-from thalweg.sweep.inputs import SweepError
+from thalweg.sweep.inputs import SweepError, content_of, state_of
 
 KEYS = {"case", "set", "vary", "together", "bisect", "ranks", "columns"}
 BISECT_KEYS = {"key", "from", "to", "width", "spacing", "holds", "repeat", "share"}
 OPERATORS = {">": operator.gt, ">=": operator.ge, "<": operator.lt, "<=": operator.le}
+ROUNDING = 1e-9   # relative: a time is a number of steps, and 1050 steps of 7e-4 s are not 0.735 s to the last bit
 
 
 @dataclass(frozen=True)
@@ -30,11 +32,14 @@ class Condition:
         if not match:
             raise SweepError(f"bisect.holds: {text}: write a figure of summary.json and what it is compared with, e.g. "
                              "transport_rate.q_star_mean > 1e-3.")
-        return Condition(match[1], match[2], float(match[3]) if match[3] else match[4])
+        return Condition(match[1], match[2], number_in("bisect.holds", match[3]) if match[3] else match[4])
 
     def holds(self, summary):
         limit = found(summary, self.limit) if isinstance(self.limit, str) else self.limit
-        return OPERATORS[self.sign](found(summary, self.figure), limit)
+        value = found(summary, self.figure)
+        if math.isclose(value, limit, rel_tol=ROUNDING):
+            return "=" in self.sign
+        return OPERATORS[self.sign](value, limit)
 
 
 def found(summary, path):
@@ -86,6 +91,12 @@ class Plan:
     keys: list = field(default_factory=list)          # of vary and together, in the order of the file
     naming_keys: list = field(default_factory=list)   # those of them that tell the runs apart
 
+    @functools.cached_property
+    def in_grain_units(self):
+        """Whether any of the runs is, of system: model_fluid; the results of others are in SI units."""
+        given = [section(content_of(self.case, state_of(self.case)) or {}, "model_fluid").get("units")]
+        return "grain" in given + [point.get("model_fluid.units") for point in self.points]
+
     def lacks(self, summary):
         """What a bisection looks for and the summary of a finished run does not have, in a sentence; None if it is there."""
         try:
@@ -110,6 +121,8 @@ def read_plan(path):
         content = yaml.load(path.read_text(), CaseLoader)
     except OSError as error:
         raise SweepError(f"{path}: {error.strerror}.") from None
+    except UnicodeDecodeError:
+        raise SweepError(f"{path} is not a text in UTF-8.") from None
     except yaml.YAMLError as error:
         raise SweepError(f"{path} is not YAML: {' '.join(str(error).split())}.") from None
     try:
@@ -120,7 +133,7 @@ def read_plan(path):
 
 def plan_of(content, folder):
     refuse_unknown(content, KEYS, "")
-    if "case" not in content:
+    if not isinstance(content.get("case"), str):
         raise SweepError("case is missing; give the case file that is run, relative to this file.")
     case = (folder / content["case"]).resolve()
     if not case.is_file():
@@ -130,15 +143,20 @@ def plan_of(content, folder):
     ranks = content.get("ranks", 1)
     if not isinstance(ranks, int) or ranks < 1:
         raise SweepError(f"ranks: {ranks} is not a number of MPI ranks; give a whole number from 1 on.")
-    return Plan(case, points, bisections, ranks, list(content.get("columns") or []), keys_in(content), naming_keys_in(content))
+    columns = content.get("columns") or []
+    if not isinstance(columns, list) or not all(isinstance(column, str) for column in columns):
+        raise SweepError("columns: give a list of paths in summary.json, e.g. [transport_rate.q_star_mean].")
+    return Plan(case, points, bisections, ranks, columns, keys_in(content), naming_keys_in(content))
 
 
 def points_of(content):
     fixed = section(content, "set")
     varied = [[{key: value} for value in values_of(key, given)] for key, given in section(content, "vary").items()]
     together = content.get("together") or []
-    if not all(isinstance(entry, dict) and entry for entry in together):
+    if not isinstance(together, list) or not all(isinstance(entry, dict) and entry for entry in together):
         raise SweepError("together: give a list of sections, each with the keys of one run.")
+    for entry in together:
+        refuse_other_than_values(entry, "together")
     if together:
         varied.append(together)
     points = []
@@ -161,9 +179,10 @@ def keys_in(content):
 
 def naming_keys_in(content):
     """The first key of an entry of `together` stands for the entry, if it is the same key with another value in each."""
-    together = content.get("together") or []
-    first = [next(iter(entry.items())) for entry in together]
-    if first and len({key for key, _ in first}) == 1 and len({json.dumps(value) for _, value in first}) == len(first):
+    entries = [{key: value for key, value in entry.items() if not key.startswith("bisect.")}
+               for entry in content.get("together") or []]
+    first = [item for entry in entries for item in list(entry.items())[:1]]
+    if first and len({key for key, _ in first}) == 1 and len({json.dumps(value) for _, value in first}) == len(entries):
         return list(section(content, "vary")) + [first[0][0]]
     return keys_in(content)
 
@@ -175,10 +194,14 @@ def bisections_of(content, points):
         if any(ranges):
             raise SweepError("bisect.from and bisect.to of a run take a section bisect, which says what is searched.")
         return []
-    bisections = [bisection_of(content["bisect"] | own) for own in ranges]
+    bisections = [bisection_of(section(content, "bisect") | own) for own in ranges]
     taken = bisections[0].key
-    if any(taken in point for point in points):
-        raise SweepError(f"bisect.key: {taken} is also in set, vary or together; give it in one place.")
+    repeated = set(bisections[0].repetitions[0])
+    for key, name in [(taken, "key")] + [(key, "repeat") for key in sorted(repeated)]:
+        if any(key in point for point in points):
+            raise SweepError(f"bisect.{name}: {key} is also in set, vary or together; give it in one place.")
+    if taken in repeated:
+        raise SweepError(f"bisect.repeat: {taken} is what is searched; repeat runs with other values of another key.")
     return bisections
 
 
@@ -210,22 +233,39 @@ def values_of(key, given):
                          "{from: 0.01, to: 1, count: 5, spacing: log}.")
     refuse_unknown(given, {"from", "to", "count", "step", "spacing"}, f"{key}.")
     start, stop = number(f"{key}.from", given["from"]), number(f"{key}.to", given["to"])
+    log = spacing_is_log(f"{key}.spacing", given.get("spacing", "linear"))
     if "count" in given:
-        count = int(number(f"{key}.count", given["count"]))
-        if count < 2:
-            raise SweepError(f"{key}.count: {count}: a range has at least 2 values.")
-        shares = [n / (count - 1) for n in range(count)]
-        if spacing_is_log(f"{key}.spacing", given.get("spacing", "linear")):
-            if min(start, stop) <= 0.0:
-                raise SweepError(f"{key}: a range with spacing: log begins and ends above 0.")
-            return [float(f"{start * (stop / start) ** share:.12g}") for share in shares]
-        return [float(f"{start + share * (stop - start):.12g}") for share in shares]
+        if "step" in given:
+            raise SweepError(f"{key}: a range has a count or a step; remove one of them.")
+        values = counted(key, start, stop, given["count"], log)
+    elif log:
+        raise SweepError(f"{key}: a range with spacing: log takes a count.")
+    else:
+        values = stepped(key, start, stop, given)
+    whole = all(isinstance(given.get(name, 1), int) for name in ("from", "to", "step")) and all(v.is_integer() for v in values)
+    return [int(value) if whole else value for value in values]
+
+
+def counted(key, start, stop, count, log):
+    if not isinstance(count, int) or count < 2:
+        raise SweepError(f"{key}.count: {count}: a range has a whole number of values, at least 2.")
+    if log and min(start, stop) <= 0.0:
+        raise SweepError(f"{key}: a range with spacing: log begins and ends above 0.")
+    shares = [n / (count - 1) for n in range(count)]
+    return [rounded(start * (stop / start) ** share if log else start + share * (stop - start)) for share in shares]
+
+
+def stepped(key, start, stop, given):
+    if "step" not in given and not (start.is_integer() and stop.is_integer()):
+        raise SweepError(f"{key}: a range that is not of whole numbers takes a count or a step.")
     step = number(f"{key}.step", given.get("step", 1))
     if step <= 0.0 or stop < start:
         raise SweepError(f"{key}: a range goes from a smaller to a larger value in steps above 0.")
-    values = [start + n * step for n in range(int((stop - start) / step * (1.0 + 1e-12)) + 1)]
-    whole = all(isinstance(given.get(name, 1), int) for name in ("from", "to", "step"))
-    return [int(value) if whole else float(f"{value:.12g}") for value in values]
+    return [rounded(start + n * step) for n in range(int((stop - start) / step * (1.0 + 1e-12)) + 1)]
+
+
+def rounded(value):
+    return float(f"{value:.12g}")
 
 
 def spacing_is_log(key, given):
@@ -235,16 +275,35 @@ def spacing_is_log(key, given):
 
 
 def number(key, value):
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
         raise SweepError(f"{key}: {value} is not a number.")
     return float(value)
+
+
+def number_in(key, text):
+    try:
+        return float(text)
+    except ValueError:
+        raise SweepError(f"{key}: {text} is not a number.") from None
 
 
 def section(content, key):
     given = content.get(key) or {}
     if not isinstance(given, dict):
         raise SweepError(f"{key}: give keys of the case and their values, e.g. gravity.slope.")
+    refuse_other_than_values(given, key)
     return given
+
+
+def refuse_other_than_values(given, place):
+    """What YAML takes for something else than text, numbers, lists and sections, e.g. a date, is not in any case."""
+    for key, value in given.items():
+        try:
+            json.dumps(value)
+        except TypeError:
+            raise SweepError(f"{place}: {key}: {value} is neither a number nor text; put text in quotes.") from None
+        if not isinstance(key, str):
+            raise SweepError(f"{place}: {key} is not a key of the case; there are keys like gravity.slope.")
 
 
 def refuse_unknown(given, known, prefix):

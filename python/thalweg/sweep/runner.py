@@ -82,17 +82,21 @@ class Runner:
         ended = [run for run, (process, _) in self.going.items() if process.poll() is not None]
         for run in ended:
             process, _ = self.going.pop(run)
-            if self.stopping or run in self.dropped:
-                self.dropped.discard(run)
-                run.look()
-                continue
-            run.ended(process.returncode)
-            if run.state == FAILED:
-                self.say(f"{run.name} failed: {run.failure}")
-            elif run.state != DONE:
-                run.remember("the run was stopped from outside before its end")
+            self.take_note_of(run, process.returncode)
+            run.release()
         if ended and self.tables:
             write_tables(self.plan, self.tasks, self.units, self.folder)
+
+    def take_note_of(self, run, exit_code):
+        if self.stopping or run in self.dropped:
+            self.dropped.discard(run)
+            run.look()
+            return
+        run.ended(exit_code)
+        if run.state == FAILED:
+            self.say(f"{run.name} failed: {run.failure}")
+        elif run.state != DONE:
+            run.remember("the run was stopped from outside before its end")
 
     def progress(self):
         """e.g. "12 of 90 runs done, 1 failed, 2 going, left about 3:20"."""
@@ -106,7 +110,8 @@ class Runner:
         if times and left:
             mean, now = sum(times) / len(times), time.monotonic()
             going = sum(min(mean, now - begun) for _, begun in self.going.values())
-            text += f", left {at_most or 'about '}{clock_text((left * mean - going) / self.jobs)}"
+            beside = min(self.jobs, max(1, len(self.wanted())))   # a bisection needs the result of a run to choose the next
+            text += f", left {at_most or 'about '}{clock_text((left * mean - going) / beside)}"
         return text
 
     def report(self, last=False):

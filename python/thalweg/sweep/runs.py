@@ -2,7 +2,7 @@
 
 runs/NAME        the run folder
 runs/NAME.json   what the run sets, and why it failed
-runs/NAME.txt    what the program said; locked while the run is going
+runs/NAME.txt    what the program said; locked while the run is going and until its sweep has seen how it ended
 """
 import ctypes
 import fcntl
@@ -20,26 +20,47 @@ STOPPED = 3   # exit code of thalweg run
 
 
 class SweepRun:
-    def __init__(self, folder, name, plan, settings):
-        self.folder, self.name, self.settings = folder / name, name, settings
-        self.plan, self.case, self.ranks = plan, plan.case, plan.ranks
+    """kept: names of the runs that the folder has, by their inputs (names_in); a run with the same goes by that name."""
+
+    def __init__(self, folder, name, plan, settings, kept=None):
+        self.settings, self.plan, self.case, self.ranks = settings, plan, plan.case, plan.ranks
         self.inputs = inputs_of(plan.case, settings)
-        self.note, self.output = folder / f"{name}.json", folder / f"{name}.txt"
-        self.summary, self.failure = None, None
+        self.name = name = (kept or {}).get(text_of(self.inputs), name)
+        self.folder, self.note, self.output = folder / name, folder / f"{name}.json", folder / f"{name}.txt"
+        self.summary, self.failure, self.lock = None, None, None
         self.look()
 
     def look(self):
         """Reads what the folder knows; a run that began from something else is not taken for this one, and one that has ended
         without the figure of a bisection has failed."""
-        known = json.loads(self.note.read_text()) if self.note.exists() else {}
+        known = self.read_note()
         self.failure = known.pop("failure", None)
         if known and known != self.inputs:
             raise SweepError(f"{self.folder} was run with other settings, or the case has changed since, or a file that it names; "
                              f"give another --out, or remove that folder and {self.note.name} beside it.")
-        path = self.folder / "summary.json"
-        self.summary = json.loads(path.read_text()) if path.exists() else None
+        self.summary = self.read_summary()
         if self.finished and not self.failure:
             self.failure = self.plan.lacks(self.summary)
+
+    def read_note(self):
+        try:
+            note = json.loads(self.note.read_text())
+        except FileNotFoundError:
+            if self.folder.exists():
+                raise SweepError(f"{self.note}, which says what {self.folder} was run with, is missing; give another --out, or "
+                                 "remove that folder.") from None
+            return {}
+        except ValueError:
+            raise SweepError(f"{self.note}, which says what {self.folder} was run with, is damaged; give another --out, or remove "
+                             "both.") from None
+        return note
+
+    def read_summary(self):
+        """None also where a crash of the machine has left half of it: the run then goes on from its checkpoint."""
+        try:
+            return json.loads((self.folder / "summary.json").read_text())
+        except (FileNotFoundError, ValueError):
+            return None
 
     @property
     def finished(self):
@@ -79,23 +100,34 @@ class SweepRun:
         return (self.folder / "checkpoints" / "latest").exists()
 
     def start(self, program):
-        """The process of the run, which saves its state and stops at SIGUSR1 and when the sweep is killed; None while
-        another sweep has it. SweepError if the case, or a file it names, has been changed since the sweep began."""
+        """The process of the run, which saves its state and stops at SIGUSR1 and when the sweep is killed; None while another
+        sweep has it, or if one has ended it. SweepError if the case, or a file it names, has been changed since the sweep began.
+        Once the process has ended, to be followed by release()."""
         if inputs_of(self.case, self.settings) != self.inputs:
             raise SweepError(f"{self.case}, or a file that it names, has been changed since this sweep began, which has results of "
                              "the old one. Change it back and start the same command again, or give another --out.")
         self.folder.parent.mkdir(parents=True, exist_ok=True)
         # Several runs beside each other must not all be bound to the first core.
         environment = os.environ | {"OMPI_MCA_hwloc_base_binding_policy": "none"}
-        with open(self.output, "a") as output:
-            try:
-                fcntl.flock(output, fcntl.LOCK_EX | fcntl.LOCK_NB)   # kept by the process, which inherits the file
-            except BlockingIOError:
-                return None
-            output.truncate(0)
-            self.remember(None)
-            return subprocess.Popen(self.command(program), stdout=output, stderr=subprocess.STDOUT, env=environment,
-                                    stdin=subprocess.DEVNULL, start_new_session=True, preexec_fn=die_with_parent)
+        self.lock = open(self.output, "a")   # kept by the process as well, which inherits the file
+        if not locked(self.lock) or not self.is_open():
+            self.release()
+            return None
+        self.lock.truncate(0)
+        self.remember(None)
+        return subprocess.Popen(self.command(program), stdout=self.lock, stderr=subprocess.STDOUT, env=environment,
+                                stdin=subprocess.DEVNULL, start_new_session=True, preexec_fn=die_with_parent)
+
+    def is_open(self):
+        """Looks again."""
+        self.look()
+        return self.state not in (DONE, FAILED)
+
+    def release(self):
+        """Lets other sweeps have the run."""
+        if self.lock:
+            self.lock.close()
+            self.lock = None
 
     def ended(self, exit_code):
         """To be called when the process has ended."""
@@ -108,10 +140,41 @@ class SweepRun:
         replace_text(self.note, json.dumps(self.inputs | {"failure": failure}, indent=1) + "\n")
 
 
+def names_in(folder):
+    """The names of the runs that a folder has, by their inputs as text."""
+    names = {}
+    for note in sorted(folder.glob("*.json")):
+        try:
+            inputs = json.loads(note.read_text())
+            inputs.pop("failure", None)
+        except (OSError, ValueError, AttributeError):
+            continue   # its own run says what is wrong with it
+        names[text_of(inputs)] = note.stem
+    return names
+
+
+def text_of(inputs):
+    return json.dumps(inputs, sort_keys=True)
+
+
+def locked(file):
+    """False if another process has the lock; True also on file systems that know none, where the run folder has its own."""
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:
+        pass
+    return True
+
+
 def replace_text(path, text):
-    """Writes a file at once: whoever reads it meanwhile sees the old one or the new one."""
+    """Writes a file at once: whoever reads it meanwhile, or after a crash, sees the old one or the new one."""
     temporary = path.with_name(f"{path.stem}.{socket.gethostname()}.{os.getpid()}.partial")
-    temporary.write_text(text)
+    with open(temporary, "w", encoding="utf-8") as file:
+        file.write(text)
+        file.flush()
+        os.fsync(file.fileno())
     temporary.replace(path)
 
 

@@ -23,9 +23,11 @@ def write_tables(plan, tasks, units, folder):
 def runs_table(plan, runs, units):
     keys = list(dict.fromkeys(key for run in runs for key in run.settings))
     columns = result_columns(plan, runs)
-    measured = {}
+    measured = {"simulated_time": "s", "until": "s"}
     for run in runs:
         measured |= (run.summary or {}).get("units", {})
+    if plan.in_grain_units:
+        measured = those_without_dimension(measured)
     head = (["run"] + [headed(key, units) for key in keys] + ["state", "version", "wall_time [s]"] +
             [headed(column, measured, column.rpartition(".")[2]) for column in columns] + ["failure"])
     rows = [head]
@@ -49,6 +51,11 @@ def thresholds_table(plan, tasks, units):
                     [text(threshold), text(half), text(lower), text(upper), state,
                      sum(run.state == DONE for run in task.runs)])
     return rows
+
+
+def those_without_dimension(units):
+    """In grain units a length is in mean diameters and so on, which the names of the SI units would hide."""
+    return {name: unit for name, unit in units.items() if unit == "1"}
 
 
 def order(value):

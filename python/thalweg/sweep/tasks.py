@@ -3,15 +3,15 @@ point, and independent of the others."""
 import math
 
 from thalweg.sweep.plan import figure_of
-from thalweg.sweep.runs import DONE, FAILED, SweepRun, name_of
+from thalweg.sweep.runs import DONE, FAILED, SweepRun, name_of, names_in
 
 
 class PointTask:
     """One run."""
 
-    def __init__(self, folder, plan, number):
+    def __init__(self, folder, plan, number, kept=None):
         self.settings = plan.points[number]
-        self.run = SweepRun(folder, name_of(self.settings, plan.naming_keys), plan, self.settings)
+        self.run = SweepRun(folder, name_of(self.settings, plan.naming_keys), plan, self.settings, kept)
         self.runs = [self.run]
 
     def wanted(self):
@@ -28,8 +28,8 @@ class BisectionTask:
     """Looks at the middle of what is left of the range until that is narrow, and at an end of the range only if it is left
     at last. A value is settled as soon as enough repetitions agree."""
 
-    def __init__(self, folder, plan, number):
-        self.folder, self.plan, self.search = folder, plan, plan.bisections[number]
+    def __init__(self, folder, plan, number, kept=None):
+        self.folder, self.plan, self.search, self.kept = folder, plan, plan.bisections[number], kept
         self.settings = plan.points[number]
         self.keys = plan.naming_keys + [self.search.key] + list(self.search.repetitions[0])
         self.known = {}   # runs by value
@@ -43,7 +43,7 @@ class BisectionTask:
             self.known[value] = []
             for repetition in self.search.repetitions:
                 settings = self.settings | {self.search.key: float(f"{value:.12g}")} | repetition
-                self.known[value].append(SweepRun(self.folder, name_of(settings, self.keys), self.plan, settings))
+                self.known[value].append(SweepRun(self.folder, name_of(settings, self.keys), self.plan, settings, self.kept))
         return self.known[value]
 
     def verdict(self, value):
@@ -110,7 +110,8 @@ class BisectionTask:
 
 def tasks_of(plan, folder):
     kind = BisectionTask if plan.bisections else PointTask
-    return [kind(folder / "runs", plan, number) for number in range(len(plan.points))]
+    kept = names_in(folder / "runs")
+    return [kind(folder / "runs", plan, number, kept) for number in range(len(plan.points))]
 
 
 def known_runs(tasks):
