@@ -1,5 +1,6 @@
 #include "analysis/bed_surface.hpp"
 
+#include "analysis/saved_setting.hpp"
 #include "core/mpi_session.hpp"
 
 #include <algorithm>
@@ -26,6 +27,7 @@ BedSurface::BedSurface(MPI_Comm communicator, const PeriodicBox& box, const BedS
       box_(box),
       keys_(keys),
       flow_(flow),
+      diameter_(diameter),
       layers_(communicator, box, keys.layer.value_or(diameter), disk_thickness),
       pixels_(communicator, box, keys.pixel.value_or(diameter / 25.0), keys.static_time),
       surface_sums_(static_cast<std::size_t>(pixels_.columns()), 0.0) {
@@ -60,7 +62,8 @@ void BedSurface::measure(const Snapshot& snapshot) {
   if (!flow_->measured || snapshot.fluid == nullptr) return;
   const FluidSource::Drive drive = snapshot.fluid->drive();
   const double on_top = -drive.on_top.x() / (box_.size.x() * box_.size.y());
-  bed_stress_ = (drive.body_force.x() + on_top / flow_depth()) * hydraulic_radius();
+  const double width = layers_.width();
+  bed_stress_ = (drive.body_force.x() * flow_depth() + on_top) * width / (width + flow_->side_walls * flow_depth());
 }
 
 double BedSurface::flow_depth() const { return box_.size.z() - bed_height_; }
@@ -107,8 +110,15 @@ std::vector<Profile> BedSurface::profiles() const {
   return {x, mean, latest};
 }
 
+std::vector<std::pair<std::string, double>> BedSurface::settings() const {
+  return {{"layer", keys_.layer.value_or(diameter_)},
+          {"static_time", keys_.static_time},
+          {"shields_stress", flow_ ? flow_->shields_stress : 0.0}};
+}
+
 void BedSurface::save(ArchiveWriter& archive) const {
   archive.attribute("bed_surface/mean_from", keys_.from);
+  for (const auto& [name, value] : settings()) archive.attribute("bed_surface/" + name, value);
   archive.attribute("bed_surface/seen_step", seen_step_);
   archive.attribute("bed_surface/measurements", measurements_);
   archive.attribute("bed_surface/pictures", pictures_);
@@ -130,6 +140,8 @@ bool BedSurface::load(ArchiveReader& archive) {
       archive.shape("bed_surface/sums") != std::vector<std::uint64_t>{sums_.size()} ||
       archive.shape("bed_surface/surface_sums") != std::vector<std::uint64_t>{surface_sums_.size()})
     return false;
+  for (const auto& [name, value] : settings())
+    if (!was_saved_with(archive, "bed_surface/" + name, value)) return false;
   seen_step_ = archive.integer_attribute("bed_surface/seen_step");
   measurements_ = archive.integer_attribute("bed_surface/measurements");
   pictures_ = archive.integer_attribute("bed_surface/pictures");

@@ -21,6 +21,9 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace thalweg::analysis {
 
@@ -72,17 +75,20 @@ public:
   std::vector<Profile> profiles() const override;
 
   void save(ArchiveWriter& archive) const override;
-  bool load(ArchiveReader& archive) override;  // takes the sums over only if they were begun at the same `from`
+  bool load(
+      ArchiveReader& archive) override;  // takes the sums over only if begun at the same `from`, of the same settings
 
 private:
   void measure(const Snapshot& snapshot);
   double flow_depth() const;        // m
   double hydraulic_radius() const;  // m
+  std::vector<std::pair<std::string, double>> settings() const;
 
   MPI_Comm communicator_;
   PeriodicBox box_;
   BedSurfaceKeys keys_;
   std::optional<BedFlow> flow_;
+  double diameter_;  // m
   BedLayers layers_;
   double bed_height_ = 0.0, bulk_ = 0.0, bed_stress_ = 0.0;  // m, 1, Pa: latest
   StaticPixels pixels_;

@@ -81,9 +81,11 @@ std::vector<Figure> FluidStatistics::results() const {
     const std::vector<WideSum> sums = layer(z);
     for (int q = 0; q < quantities; ++q) all[q].add(sums[q]);
   }
-  return {{"mean_velocity_x", "m/s", means_of(all.data(), 1.0).velocity[0]},
-          {"mean_from", "s", keys_.from},
-          {"measurements", "1", static_cast<double>(measurements_)}};
+  std::vector<Figure> results{{"mean_velocity_x", "m/s", means_of(all.data(), 1.0).velocity[0]}};
+  if (measurements_ == 0) forget_values(results);
+  results.push_back({"mean_from", "s", keys_.from});
+  results.push_back({"measurements", "1", static_cast<double>(measurements_)});
+  return results;
 }
 
 std::vector<Profile> FluidStatistics::profiles() const {

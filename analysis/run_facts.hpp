@@ -47,8 +47,9 @@ struct GrainFacts {
   double disk_thickness = 0.0;      // m; 0: spheres
 
   using Force = std::function<Vec3(double mass, double radius)>;  // N, on a sphere (kg, m)
-  Force submerged_weight = {};                                    // in a fluid only
-  Force buoyancy = {};                                            // that part of it which is in the fluid's load
+  Force body_force = {};                                          // in a fluid only, as the next two
+  Force submerged_weight = {};
+  Force buoyancy = {};  // that part of it which is in the fluid's load
 
   GlobalId count() const { return populations.empty() ? 0 : populations.back().end; }  // of ids
   std::vector<HeldGrains> held() const;

@@ -75,8 +75,8 @@ void StressBalance::add_grains(const Snapshot& snapshot) {
     const double radius = grains.radius[i], lowest = grains.position[i][2] - radius, whole = volume_of(radius, 0.0);
     const Vec3 &v = grains.velocity[i], &by_fluid = grains.fluid_force[i], &by_contacts = grains.contact_force[i];
     const Mat3 of_fluid = grains.fluid_stress.empty() ? Mat3(Mat3::Zero()) : Mat3(whole * grains.fluid_stress[i]);
-    const double outer =
-        is_held(held_, grains.id[i]) ? -(by_fluid.x() + by_contacts.x()) : grains.mass[i] * scales_.gravity_x;
+    const double outer = is_held(held_, grains.id[i]) ? -(by_fluid.x() + by_contacts.x())
+                                                      : scales_.body_force(grains.mass[i], radius).x();
     for (int layer = layers_.at(lowest); layer <= layers_.at(lowest + 2.0 * radius); ++layer) {
       const double from = layers_.bottom(layer) - lowest, to = from + layers_.height(layer);
       const double part = volume_between(radius, 0.0, from, to), share = part / whole, m = share * grains.mass[i];
@@ -178,7 +178,7 @@ void check(const StressBalanceKeys& keys, const RunFacts& run) {
 std::unique_ptr<Observer> make_observer(const StressBalanceKeys& keys, const RunFacts& run,
                                         const RunningSystem& system) {
   const BalanceScales scales{run.fluid->density, run.fluid->density * run.fluid->kinematic_viscosity,
-                             run.grains->reference_diameter, run.gravity.x(),
+                             run.grains->reference_diameter, run.grains->body_force,
                              run.fluid->velocity_unit / std::sqrt(3.0)};
   return std::make_unique<StressBalance>(system.communicator, system.decomposition,
                                          0.25 * run.grains->smallest_diameter, keys, scales, run.grains->held());

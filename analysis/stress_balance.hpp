@@ -55,11 +55,11 @@ std::unique_ptr<Observer> make_observer(const StressBalanceKeys& keys, const Run
                                         const RunningSystem& system);
 
 struct BalanceScales {
-  double fluid_density = 0.0;  // kg/m^3
-  double viscosity = 0.0;      // Pa s
-  double diameter = 0.0;       // m, that stands for all grains
-  double gravity_x = 0.0;      // m/s^2, on grains that are free
-  double sound_speed = 0.0;    // m/s, of the lattice: gives the pressure
+  double fluid_density = 0.0;         // kg/m^3
+  double viscosity = 0.0;             // Pa s
+  double diameter = 0.0;              // m, that stands for all grains
+  GrainFacts::Force body_force = {};  // on grains that are free
+  double sound_speed = 0.0;           // m/s, of the lattice: gives the pressure
 };
 
 class StressBalance : public Observer {

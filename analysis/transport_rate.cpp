@@ -1,5 +1,6 @@
 #include "analysis/transport_rate.hpp"
 
+#include "analysis/saved_setting.hpp"
 #include "core/mpi_session.hpp"
 #include "core/order_free_sum.hpp"
 
@@ -208,6 +209,8 @@ std::vector<double> TransportRate::sums() const {
 
 void TransportRate::save(ArchiveWriter& archive) const {
   archive.attribute("transport_rate/mean_from", keys_.from);
+  archive.attribute("transport_rate/moving_speed", scales_.moving_speed());
+  archive.attribute("transport_rate/grain_diameter", scales_.grain_diameter);
   archive.attribute("transport_rate/counted_step", counted_step_);
   write_once(archive, communicator_, "transport_rate/sums", sums());
   write_once(archive, communicator_, "transport_rate/trend", trend_.state());
@@ -223,6 +226,8 @@ bool TransportRate::load(ArchiveReader& archive) {
   const std::size_t cells = velocities_[0].counts().size();
   const std::vector<std::uint64_t> shape{3 * cells};
   if (!archive.has("transport_rate/mean_from") || archive.real_attribute("transport_rate/mean_from") != keys_.from ||
+      !was_saved_with(archive, "transport_rate/moving_speed", scales_.moving_speed()) ||
+      !was_saved_with(archive, "transport_rate/grain_diameter", scales_.grain_diameter) ||
       !archive.has("transport_rate/velocity_counts") || archive.shape("transport_rate/velocity_counts") != shape)
     return false;
   counted_step_ = archive.integer_attribute("transport_rate/counted_step");

@@ -44,6 +44,7 @@ analysis::GrainFacts grain_facts(const Case& c) {
   analysis::GrainFacts facts{populations_of(c),    reference.diameter,  reference.density,
                              smallest_diameter(c), largest_diameter(c), c.disks ? c.disks->thickness : 0.0};
   if (!has_fluid(c)) return facts;
+  facts.body_force = body_force(c);
   facts.submerged_weight = submerged_weight(c);
   facts.buoyancy = buoyancy_in_load(c);
   return facts;

@@ -37,7 +37,7 @@ def measure(folder, start, stop, surface):
               f"{run.averaged_from('grain_profiles'):g} s to its end, not of the time of q*.", file=sys.stderr)
     else:
         height = bed.bed_height(run, time[0], time[-1])
-    return (bed.shields_number(run, height, time[0], time[-1]), thalweg.mean_with_error(rate),
+    return (bed.shields_number(run, height, time[0], time[-1], surface != "static"), thalweg.mean_with_error(rate),
             thalweg.steadiness(rate).steady, height / run.diameter)
 
 

@@ -3,6 +3,8 @@ import numpy as np
 
 from thalweg.errors import RunFolderError
 from thalweg.layers import layer_profiles
+from thalweg.means import at_equal_intervals
+from thalweg.run import DRAGGING
 from thalweg.side_view import static_surface
 
 
@@ -67,21 +69,35 @@ def measured_shields_number(run, start, stop):
     if "shields_number" not in run.series:
         raise RunFolderError(f"{run.folder}: no slope alone drives this flow, so its Shields number needs the stress at the top: "
                              "add analysis.bed_surface to the case.")
+    return float(np.mean(run.series["shields_number"][rows_between(run, start, stop)]))
+
+
+def rows_between(run, start, stop):
+    """Rows of series.csv between two times (s), at equal intervals."""
     time = run.series["time"]
-    counted = (time >= start - 1e-9) & (time <= stop + 1e-9)
-    return float(np.mean(run.series["shields_number"][counted]))
+    rows = np.flatnonzero((time >= start - 1e-9) & (time <= stop + 1e-9))
+    return rows[at_equal_intervals(time[rows])]
 
 
-def shields_number(run, surface, start=-np.inf, stop=np.inf):
+def shields_number(run, surface, start=-np.inf, stop=np.inf, by_solid_fraction=True):
     """Shields number of a run whose bed ends at the height `surface` (m): where a slope drives the flow by depth and slope,
-    or by hydraulic radius beside side walls; else the mean between two times (s) of what the run measured."""
-    if not run.driven_by_slope:
-        return measured_shields_number(run, start, stop)
-    return shields_of(run.slope, run.size[2] - surface, run.diameter, run.density_ratio, run.size[1], run.side_walls)
+    or by hydraulic radius beside side walls; else the mean between two times (s) of what the run measured for the surface by
+    solid fraction, and for another one as much more as its hydraulic radius is larger. RunFolderError where that cannot be
+    said, because the top drags on the flow as well."""
+    if run.driven_by_slope:
+        return shields_of(run.slope, run.size[2] - surface, run.diameter, run.density_ratio, run.size[1], run.side_walls)
+    measured = measured_shields_number(run, start, stop)
+    if by_solid_fraction:
+        return measured
+    if run.faces("z")[1] in DRAGGING:
+        raise RunFolderError(f"{run.folder}: the top of the box drags on the flow, and the stress was measured for the surface by "
+                             "solid fraction.")
+    radius = np.mean(run.series["hydraulic_radius"][rows_between(run, start, stop)])
+    return measured * hydraulic_radius(run.size[2] - surface, run.size[1], run.side_walls) / radius
 
 
 def transport_rate(run, start=None, stop=np.inf, column="q_star"):
-    """Times (s) and q* of a run between two times (s); from `analysis.transport_rate.from` on if no start is given.
+    """Times (s), at equal intervals, and q* of a run between two times (s); from the begin of its means on if no start is given.
 
     column: q_s for the flux in m^2/s, which grains without a fluid have as well. RunFolderError where there is none.
     """
@@ -89,8 +105,7 @@ def transport_rate(run, start=None, stop=np.inf, column="q_star"):
         raise RunFolderError(f"{run.folder / 'series.csv'}: it has no column {column} (analysis.transport_rate in the case).")
     if start is None:
         start = run.averaged_from("transport_rate")
-    time = run.series["time"]
-    counted = (time >= start - 1e-9) & (time <= stop + 1e-9)
-    if not counted.any():
+    rows = rows_between(run, start, stop)
+    if not len(rows):
         raise RunFolderError(f"{run.folder / 'series.csv'}: there is no measurement from {start:g} s on yet.")
-    return time[counted], run.series[column][counted]
+    return run.series["time"][rows], run.series[column][rows]

@@ -4,6 +4,8 @@ from typing import NamedTuple, Optional
 import numpy as np
 
 FEWEST_BATCHES, MOST_BATCHES = 8, 64   # of steadiness()
+FEWEST_INDEPENDENT = 20                # values, below which an error is an underestimate
+LEAST_SHARE = 0.05                     # of the time, with intervals that count in at_equal_intervals()
 ROUND_OFF = 1e-12                      # of the largest value, below which there is no drift
 
 
@@ -14,12 +16,38 @@ class Mean(NamedTuple):
     deviation: float     # standard deviation of the values
     independent: float   # how many independent values the series is worth, 1
 
+    @property
+    def error_holds(self):
+        """False where the time is too short to tell how long the values are correlated: the error is larger."""
+        return self.independent >= FEWEST_INDEPENDENT
+
 
 class Steadiness(NamedTuple):
     """Verdict of steadiness()."""
     steady: Optional[bool]   # None: too short a series to tell
     drift: float             # by which a straight line rises over the series, in the unit of the values
     error: float             # standard error of the drift; not a number where the series is too short
+
+
+def at_equal_intervals(time):
+    """Which of the times of a series (s, rising) to take so that means, errors and trends, which weigh all values alike, are not
+    those of the part with the shortest intervals: all, or, where the interval was changed at a restart, those at the longest."""
+    time = np.asarray(time, float)
+    steps = np.diff(time)
+    if len(steps) < 2:
+        return np.ones(len(time), bool)
+    # The longest that more than a small share of the time goes in: a single gap does not count.
+    of_time = np.sort(steps)[::-1]
+    longest = of_time[np.searchsorted(np.cumsum(of_time), LEAST_SHARE * of_time.sum())]
+    shorter = steps < 0.75 * longest
+    if steps[shorter].sum() <= longest:   # the last row of a run comes when it ends
+        return np.ones(len(time), bool)
+    wanted = time[0] + longest * np.arange(int((time[-1] - time[0]) / longest + 1e-6) + 1)
+    after = np.clip(np.searchsorted(time, wanted), 1, len(time) - 1)
+    nearest = np.where(wanted - time[after - 1] < time[after] - wanted, after - 1, after)
+    chosen = np.zeros(len(time), bool)
+    chosen[nearest] = True
+    return chosen
 
 
 def autocovariance(values):
@@ -34,7 +62,8 @@ def mean_with_error(values):
     """Mean of a stationary series at equal intervals, with its standard error.
 
     The variance of the mean is that of Geyer's initial positive sequence (Stat. Sci. 7 (1992) 473, sec. 3.3): the
-    autocovariances are added in pairs of neighbouring lags as long as a pair is positive.
+    autocovariances are added in pairs of neighbouring lags as long as a pair is positive. Of a series that is worth fewer than
+    20 independent values the error is an underestimate: see Mean.error_holds.
     """
     values = np.asarray(values, float)
     count = len(values)

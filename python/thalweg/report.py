@@ -61,15 +61,16 @@ def write_columns(path, columns):
 
 
 def window(run, start=None, stop=None):
-    """Times (s) to average over: from `analysis.transport_rate.from`, or the middle of the run, to its end."""
+    """Times (s) to average over, within those of series.csv: from the begin of the run's means of transport, or the middle of the
+    run, to its end."""
     times = run.series["time"]
     stop = float(times[-1]) if stop is None else stop
     if start is None:
         start = run.averaged_from("transport_rate") or 0.5 * stop
-    if not start < stop or start >= times[-1]:
-        raise RunFolderError(f"{run.folder}: there is nothing to average from {start:g} to {stop:g} s: the run has come to "
-                             f"{times[-1]:g} s. Give other times.")
-    return start, stop
+    if not start < stop or start >= times[-1] or stop <= times[0]:
+        raise RunFolderError(f"{run.folder}: there is nothing to average from {start:g} to {stop:g} s: the run has rows from "
+                             f"{times[0]:g} to {times[-1]:g} s. Give other times.")
+    return max(start, float(times[0])), min(stop, float(times[-1]))
 
 
 def describe_transport(report):
@@ -77,9 +78,9 @@ def describe_transport(report):
     column, symbol, unit = ("q_star", "q*", "") if "q_star" in run.series else ("q_s", "q_s", " m^2/s")
     _, rate = bed.transport_rate(run, report.start, report.stop, column)
     mean, verdict = mean_with_error(rate), steadiness(rate)
-    report.numbers[column] = mean._asdict() | {"steady": verdict.steady}
+    report.numbers[column] = mean._asdict() | {"error_holds": mean.error_holds, "steady": verdict.steady}
     text = (f"{symbol} {mean.mean:.4g} +- {mean.error:.2g}{unit}, deviation {mean.deviation:.2g}, {mean.independent:.3g} "
-            f"independent values")
+            f"independent values{'' if mean.error_holds else ': too few, the error is larger'}")
     if verdict.steady is None:
         text += "; too short a time to tell whether it is steady"
     else:
@@ -88,9 +89,7 @@ def describe_transport(report):
                  f"{verdict.drift:+.2g} +- {verdict.error:.2g}")
     report.say("transport", text)
     if "moving_grains" in run.series:
-        time = run.series["time"]
-        chosen = (time >= report.start - 1e-9) & (time <= report.stop + 1e-9)
-        moving = mean_with_error(run.series["moving_grains"][chosen])
+        moving = mean_with_error(run.series["moving_grains"][bed.rows_between(run, report.start, report.stop)])
         report.numbers["moving_grains"] = moving._asdict()
         report.say("moving", f"{moving.mean:.4g} +- {moving.error:.2g} grains faster than the threshold")
 
@@ -104,7 +103,7 @@ def describe_surface(report, name, title, surface):
     if run.driven_by_slope:
         how = f"by {'hydraulic radius' if run.side_walls else 'depth'} at slope {run.slope:.4g}"
     try:
-        shields = float(bed.shields_number(run, surface, report.start, report.stop))
+        shields = float(bed.shields_number(run, surface, report.start, report.stop, name == "surface_by_solid_fraction"))
     except RunFolderError as error:
         report.say(title, f"{place}; Shields number left out: {error}")
         return
@@ -148,6 +147,8 @@ def report_of(run, start=None, stop=None):
     """Report of a run between two times (s); see window() for what counts where none are given."""
     report = Report(run, *window(run, start, stop))
     report.say("run", f"{run.name}: {report.start:g} to {report.stop:g} s of {run.series['time'][-1]:g} s")
+    if (start is not None and start < report.start) or (stop is not None and stop > report.stop):
+        report.say("window", "shorter than wanted: series.csv has no rows of the rest")
     report.attempt("transport", lambda: describe_transport(report))
     report.attempt("surface", lambda: describe_profiles(report))
     if run.case.get("fluid"):

@@ -133,8 +133,10 @@ class Run:
         return latest.parent / latest.read_text().strip() if latest.exists() else None
 
     def averaged_from(self, observer):
-        """Time (s) at which the means of an observer begin, by its key in the case's `analysis`."""
-        return float(((self.case.get("analysis") or {}).get(observer) or {}).get("from", 0.0))
+        """Time (s) at which the means of an observer begin: as the run said at its end, which is later than the key in the case
+        where a restart has added or changed the observer; while it is going, by the key."""
+        said = ((self.summary or {}).get(observer) or {}).get("mean_from")
+        return float(((self.case.get("analysis") or {}).get(observer) or {}).get("from", 0.0) if said is None else said)
 
     @property
     def name(self):

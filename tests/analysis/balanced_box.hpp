@@ -31,7 +31,8 @@ inline std::unique_ptr<ResolvedSystem<double>> system_of(const WaterBox& box) {
 
 inline StressBalance balance_of(const WaterBox& box, const ResolvedSystem<double>& system, double layer,
                                 std::vector<HeldGrains> held, MPI_Comm communicator = MPI_COMM_WORLD) {
-  const BalanceScales scales{1000.0, 1000.0 * box.viscosity, 5e-3, box.gravity.x(),
+  const BalanceScales scales{1000.0, 1000.0 * box.viscosity, 5e-3,
+                             [g = box.gravity](double mass, double) { return Vec3(mass * g); },
                              box.spacing / box.time_step / std::sqrt(3.0)};
   return StressBalance(communicator, *system.snapshot().decomposition, layer, {0.0, 1e-4}, scales, std::move(held));
 }

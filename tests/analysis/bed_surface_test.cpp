@@ -68,6 +68,13 @@ BedSurfaceKeys keys() { return {0.0, 0.125, d, d / 25.0, 0.5}; }
 // Slope and walls of a flume: rho_f g S = 500 Pa/m, (rho_s - rho_f) g d = 80 Pa.
 const BedFlow flume{2, 500.0, 80.0};
 
+test::MemoryArchive saved(const BedSurface& surface, MPI_Comm communicator) {
+  test::MemoryArchive archive;
+  test::MemoryWriter writer(archive, communicator);
+  surface.save(writer);
+  return archive;
+}
+
 TEST(BedHeight, OfAUniformBlockIsItsTop) {
   std::vector<double> below;
   for (int k = 0; k <= 100; ++k) below.push_back(0.6 * 2.0 * 0.1 * std::min(k, 43));  // 0.6 of 2 m^2 up to 4.3 m
@@ -140,6 +147,36 @@ TEST(BedSurface, TakesTheStressFromTheForcesOnTheWater) {
     EXPECT_NEAR(value_of(surface.figures(), "bed_stress"), stress, 1e-9);
     EXPECT_NEAR(value_of(surface.results(), "shields_number_mean"), stress / 80.0, 1e-11);
   }
+}
+
+// Grains that are still falling may fill the box; the means must outlive that.
+TEST(BedSurface, HasAStressUnderTheLid) {
+  Spheres spheres(world);
+  const DrivenFluid fluid({Vec3(300.0, 0.0, 0.0), Vec3(-2.5 * 16.0 * d * 8.0 * d, 0.0, 0.0)});
+  BedSurface surface(world, spheres.box(), keys(), d, BedFlow{0, 1e9, 80.0, true}, 0.0);
+  Snapshot snapshot = spheres.at(0, cubic_lattice(32));
+  snapshot.fluid = &fluid;
+  surface.observe(snapshot);
+  EXPECT_EQ(value_of(surface.figures(), "flow_depth"), 0.0);
+  EXPECT_NEAR(value_of(surface.results(), "bed_stress_mean"), 2.5, 1e-12);
+}
+
+// Sums of heights over layers of another thickness, or of Shields numbers of another grain, are not gone on with.
+TEST(BedSurface, BeginsAnewWithOtherSettings) {
+  Spheres spheres(world);
+  BedSurface surface(world, spheres.box(), keys(), d, flume, 0.0);
+  surface.observe(spheres.at(0, cubic_lattice(10)));
+  const test::MemoryArchive archive = saved(surface, world);
+  BedSurfaceKeys thick = keys(), patient = keys();
+  thick.layer = 2.0 * d, patient.static_time = 0.75;
+  const auto takes = [&](const BedSurfaceKeys& with, const BedFlow& flow) {
+    test::MemoryReader reader(archive);
+    return BedSurface(world, spheres.box(), with, d, flow, 0.0).load(reader);
+  };
+  EXPECT_TRUE(takes(keys(), flume));
+  EXPECT_FALSE(takes(thick, flume));
+  EXPECT_FALSE(takes(patient, flume));
+  EXPECT_FALSE(takes(keys(), {2, 500.0, 81.0}));
 }
 
 // Which runs have a stress at all, and where it comes from. The grains: 1 mm, 2000 kg/m^3 heavier than the water.
@@ -218,13 +255,6 @@ TEST(StaticPixels, AreThoseThatOneGrainCoversAllTheTime) {
     EXPECT_GT(std::set<double>(expected.begin(), expected.end()).size(), 20u);  // there is something to see
   }
   EXPECT_EQ(pictures, 2);
-}
-
-test::MemoryArchive saved(const BedSurface& surface, MPI_Comm communicator) {
-  test::MemoryArchive archive;
-  test::MemoryWriter writer(archive, communicator);
-  surface.save(writer);
-  return archive;
 }
 
 TEST(BedSurface, HasTheSameBitsOnAnyNumberOfRanksAndAfterARestart) {

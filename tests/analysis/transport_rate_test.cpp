@@ -91,6 +91,13 @@ TEST(TransportRate, TakesTheMeanFromAGivenTimeAndCarriesItOverARestart) {
   EXPECT_NEAR(value_of(restarted.results(), "q_star_deviation"), one, 1e-12 * one);
   EXPECT_EQ(value_of(restarted.results(), "measurements"), 2.0);
   EXPECT_NEAR(value_of(other_window.results(), "q_star_mean"), 3.0 * one, 1e-12 * one);
+
+  // Distributions are by the grain's diameter, and the moving grains by its speed of fall.
+  TransportScales larger = scales;
+  larger.grain_diameter *= 2.0;
+  TransportRate of_larger(world, larger, {2.0});
+  test::MemoryReader reader(checkpoint);
+  EXPECT_FALSE(of_larger.load(reader));
 }
 
 TEST(TransportRate, OfDryGrainsHasNoQStar) {

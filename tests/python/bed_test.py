@@ -115,6 +115,10 @@ class Layers(made_up.MadeUpFolder):
                                                  "{transport_rate: {from: 1.0}, grain_profiles: {from: 1.0}}"))
         run = thalweg.Run(self.folder)
         self.assertTrue(bed.has_profiles_of(run, 1.0, 10.0))
+        # Added at a restart at 5 s: the case does not say so, the run does.
+        (self.folder / "summary.json").write_text('{"grain_profiles": {"mean_from": 5.0}}')
+        self.assertFalse(bed.has_profiles_of(thalweg.Run(self.folder), 1.0, 10.0))
+        self.assertTrue(bed.has_profiles_of(thalweg.Run(self.folder), 5.0, 10.0))
         self.assertFalse(bed.has_profiles_of(run, 1.0, 5.0))
         self.assertFalse(bed.has_profiles_of(run, 4.0, 10.0))
 

@@ -5,7 +5,7 @@ import numpy as np
 
 import made_up_folder  # noqa: F401 (where the package is)
 import thalweg
-from thalweg.means import autocovariance, in_batches, running_mean, student_t_of_5_percent
+from thalweg.means import at_equal_intervals, autocovariance, in_batches, running_mean, student_t_of_5_percent
 
 SERIES, LENGTH = 200, 4000
 
@@ -20,6 +20,26 @@ def autoregressive(generator, memory, count):
     return x
 
 
+class EqualIntervals(unittest.TestCase):
+    def test_rows_after_a_change_of_the_interval_do_not_weigh_more(self):
+        for coarse_first in (True, False):
+            time = np.concatenate([np.arange(30) * 0.01, 0.3 + np.arange(301) * 0.001])
+            if not coarse_first:
+                time = 0.6 - time[::-1]
+            chosen = at_equal_intervals(time)
+            np.testing.assert_allclose(np.diff(time[chosen]), 0.01, rtol=1e-9)
+            self.assertEqual(chosen.sum(), 61)
+            # The mean of t itself over 0 to 0.6 s.
+            self.assertAlmostEqual(time[chosen].mean(), 0.3, 12)
+
+    def test_a_last_row_out_of_step_or_a_gap_changes_nothing(self):
+        time = np.append(np.arange(100) * 0.01, 0.993)
+        self.assertTrue(at_equal_intervals(time).all())
+        self.assertTrue(at_equal_intervals(np.delete(np.arange(1000) * 0.01, slice(400, 420))).all())
+        for short in ([], [1.0], [1.0, 2.0]):
+            self.assertEqual(at_equal_intervals(short).sum(), len(short))
+
+
 class MeanWithError(unittest.TestCase):
     def test_the_error_of_correlated_values(self):
         # The variance of the mean of such a series is (1 + memory)/(1 - memory)/count (Priestley 1981, sec. 5.3). The mean
@@ -29,6 +49,13 @@ class MeanWithError(unittest.TestCase):
             errors = [thalweg.mean_with_error(autoregressive(generator, memory, LENGTH)).error for _ in range(SERIES)]
             exact = np.sqrt((1.0 + memory) / (1.0 - memory) / LENGTH)
             self.assertLess(abs(np.mean(errors) / exact - 1.0), 0.1, memory)
+
+    def test_an_error_from_few_independent_values_is_marked(self):
+        # 40 values that forget themselves within 20: worth two of them or so. 4000 are worth 200.
+        generator = np.random.default_rng(5)
+        few, many = (thalweg.mean_with_error(autoregressive(generator, 0.9, count)) for count in (40, 4000))
+        self.assertFalse(few.error_holds)
+        self.assertTrue(many.error_holds)
 
     def test_how_often_the_truth_lies_within_two_errors(self):
         # 95.4 % for a normal mean with the exact error; the binomial scatter of 200 is 1.5 %, three of which are allowed,

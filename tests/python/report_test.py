@@ -1,6 +1,7 @@
 """`thalweg analyze` on a folder whose answers are known."""
 import json
 import unittest
+import unittest.mock
 
 import h5py
 import numpy as np
@@ -17,6 +18,9 @@ D, SIZE = 4.95e-3, np.array([0.12, 0.0105, 0.1485])
 class Report(made_up.MadeUpFolder):
     def setUp(self):
         super().setUp()
+        few = unittest.mock.patch("thalweg.report.VISIBLE_FRAMES", 2)   # each is looked at pixel by pixel
+        few.start()
+        self.addCleanup(few.stop)
         time = np.arange(0.0, 4.005, 0.01)
         self.rate = 0.1 + 0.02 * np.sin(20 * np.pi * time)
         rows = [f"{t:.6g},{q:.9g},5" for t, q in zip(time, self.rate)]
@@ -70,8 +74,20 @@ class Report(made_up.MadeUpFolder):
         self.assertNotIn("shields", numbers["surface_by_static_pixels"])
         (self.folder / "series.csv").write_text("time [s],shields_number [1]\n0.5,9\n1.0,0.1\n2.0,0.2\n4.0,0.6\n")
         report = report_of(thalweg.Run(self.folder))
-        self.assertAlmostEqual(report.numbers["surface_by_static_pixels"]["shields"], 0.3, 12)
+        self.assertAlmostEqual(report.numbers["surface_by_solid_fraction"]["shields"], 0.3, 12)
         self.assertTrue(any("as measured" in line for line in report.lines))
+        self.assertNotIn("shields", report.numbers["surface_by_static_pixels"])   # the top's share of the stress is not known
+
+    def test_the_shields_number_of_a_held_flow_by_static_pixels_goes_with_the_hydraulic_radius(self):
+        self.write_bed()
+        case = self.folder / "case.yaml"
+        case.write_text(case.read_text().replace("fluid: {", "fluid: {mean_velocity: [0.5, 0, 0], ", 1))
+        (self.folder / "series.csv").write_text("time [s],shields_number [1],hydraulic_radius [m]\n1.0,0.1,4e-3\n4.0,0.3,6e-3\n")
+        numbers = report_of(thalweg.Run(self.folder)).numbers
+        self.assertAlmostEqual(numbers["surface_by_solid_fraction"]["shields"], 0.2, 12)
+        depth = numbers["surface_by_static_pixels"]["depth"]
+        radius = depth * SIZE[1] / (2 * depth + SIZE[1])
+        self.assertAlmostEqual(numbers["surface_by_static_pixels"]["shields"], 0.2 * radius / 5e-3, 12)
 
     def write_water(self, shape):
         """profiles.h5 with the fluid at shape (fractions of one, across the width) from 0.06 m up and at rest below."""
@@ -109,7 +125,11 @@ class Report(made_up.MadeUpFolder):
         run = thalweg.Run(self.folder)
         self.assertEqual(window(run), (1.0, 4.0))
         self.assertEqual(window(run, 0.0), (0.0, 4.0))
-        for start, stop in ((5.0, None), (2.0, 1.0)):
+        self.assertEqual(window(run, -1.0, 50.0), (0.0, 4.0))   # what series.csv has
+        report = report_of(run, 2.0, 50.0)
+        self.assertEqual(report.numbers["until"], 4.0)
+        self.assertTrue(any(line.startswith("window") and "shorter than wanted" in line for line in report.lines))
+        for start, stop in ((5.0, None), (2.0, 1.0), (-2.0, -1.0)):
             with self.assertRaisesRegex(thalweg.RunFolderError, "nothing to average"):
                 window(run, start, stop)
 

@@ -55,6 +55,17 @@ output: {series: {every: 0.01}, grains: {every: 0.01}, fluid: {every: 0.01, fiel
         # the fluid's volume by a per cent of the grains' or so, for a fifth of the weight.
         self.assertLess(numpy.linalg.norm(fluid + grains), 0.01 * 0.2 * numpy.linalg.norm(weight) * time)
 
+    def test_what_drives_a_suspension_between_plates_adds_up_to_nothing(self):
+        self.run_well("run", self.case, "--out", "run", "--until", "0.01", *[word for setting in (
+            "domain.boundaries.bottom=no_slip", "domain.boundaries.top=no_slip", "gravity.vector=[9, 0, 0]",
+            "analysis.stress_balance={from: 0.005}") for word in ("--set", setting)])
+        driving = Run(self.folder / "run").profiles["stress_balance"]["driving_stress"]
+        # Between the middles of the lowest and the highest layer the weight of the grains, per area, and the force of the pressure
+        # gradient cancel but for what is beyond these: of either a sixteenth.
+        weight = 500.0 * 9.0 * 0.2 * 0.008
+        self.assertLess(abs(driving[0] - driving[-1]), weight / 10)
+        self.assertGreater(numpy.ptp(driving), weight / 50)
+
     def test_the_same_bits_on_any_ranks_and_after_a_restart(self):
         self.run_well("run", self.case, "--out", "one", "--until", "0.01")
         self.run_well("run", self.case, "--out", "two", "--until", "0.01", ranks=2)
