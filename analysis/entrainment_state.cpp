@@ -66,7 +66,8 @@ void Entrainment::save(ArchiveWriter& archive) const {
 }
 
 bool Entrainment::load(ArchiveReader& archive) {
-  if (!archive.has("entrainment/grains")) return false;
+  if (!archive.has("entrainment/seen_step")) return false;
+  if (!archive.has("entrainment/grains")) return true;  // before the first measurement
   homes_.emplace(communicator_, static_cast<GlobalId>(archive.shape("entrainment/grains")[0]));
   memory_.assign(homes_->size(), {});
   std::vector<double> rows(memory_.size() * memory_columns);

@@ -11,8 +11,12 @@
 namespace thalweg::dem {
 namespace {
 
-bool inside(const Vec3& point, const RegionKeys& region) {
-  return (point.array() >= region.lower.array()).all() && (point.array() <= region.upper.array()).all();
+// Disks are in the middle of the box along y, wherever the file has them.
+bool inside(const Vec3& point, const RegionKeys& region, bool disks) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (!(disks && axis == 1) && !(point[axis] >= region.lower[axis] && point[axis] <= region.upper[axis]))
+      return false;
+  return true;
 }
 
 // A grain of the file, or a clump.
@@ -26,13 +30,14 @@ struct Body {
 // The one that these rows make; none: its centre is outside the region of the placement.
 std::optional<Body> body_of(std::span<const BedGrain> rows, const Population& population, const PeriodicBox& box) {
   const std::optional<RegionKeys>& region = population.placement.region;
+  const bool disks = population.thickness > 0.0;
   const BedGrain& first = rows.front();
   if (first.clump < 0) {
-    if (region && !inside(first.position, *region)) return std::nullopt;
+    if (region && !inside(first.position, *region, disks)) return std::nullopt;
     return Body{2.0 * first.radius, grain_volume(first.radius, population.thickness), first.density, {}};
   }
   const ClumpSeed clump = clump_from(rows, box, population.thickness);
-  if (region && !inside(clump.position, *region)) return std::nullopt;
+  if (region && !inside(clump.position, *region, disks)) return std::nullopt;
   return Body{2.0 * clump.shape->equivalent_radius(), clump.shape->volume, first.density,
               figures_of(*clump.shape, clump.density, 1)};
 }

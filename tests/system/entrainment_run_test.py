@@ -142,6 +142,14 @@ analysis:
         self.run_well("run", self.case, "--out", "alone", "--until", "0.02", "--set", "analysis={}")
         self.assert_same_state("watched", "alone")
 
+    def test_a_restart_before_the_first_look_leaves_no_trace(self):
+        later = ["--set", "analysis.entrainment.from=0.008", "--set", "output.checkpoint.every=0.01"]
+        self.run_well("run", self.case, *later, "--out", "straight", "--until", "0.01")
+        self.run_well("run", self.case, *later, "--out", "half", "--until", "0.005")
+        self.run_well("run", self.case, *later, "--out", "half", "--restart", "half", "--until", "0.01")
+        self.assertNotIn("since", self.summary("half")["entrainment"])
+        self.assertEqual(self.last_checkpoint("half").read_bytes(), self.last_checkpoint("straight").read_bytes())
+
     def test_what_cannot_be_watched_is_refused(self):
         self.assert_refused("run", self.case, "--set", "analysis.entrainment.grains=[26]",
                             words=["analysis.entrainment.grains.0", "ids from 0 to 25"])

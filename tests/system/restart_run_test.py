@@ -248,6 +248,29 @@ analysis: {transport_rate: {}, bed_surface: {}}
         self.assert_same_bed("run", "straight")
 
 
+class RestartOfDisksFromAFile(ProgramTest):
+    """Disks that a region takes out of a file are moved into the middle of a wider box, where the region's y does not reach."""
+    CASE = """
+system: grains
+name: disks
+disks: {thickness: 1.0e-3}
+domain: {size: [0.04, 0.001, 0.03], spacing: 1.0e-3, boundaries: {x: periodic, y: periodic, bottom: no_slip, top: free_slip}}
+gravity: {magnitude: 9.8, slope: 0.3}
+grains: [{count: 30, diameter: 3.0e-3, density: 2550, placement: {pattern: random, seed: 1}}]
+contact: {normal_stiffness: 200, tangential_stiffness: 57, restitution: 0.7, friction: 0.3, wall_friction: 0.3}
+run: {until: 0.01, time_step: 1.0e-5}
+"""
+
+    def test_goes_on(self):
+        self.run_well("run", self.case, "--out", "made")
+        wider = ["--set", "domain.size=[0.04, 0.004, 0.03]", "--set",
+                 "grains=[{placement: {file: made/bed.h5, region: {lower: [0, 0, 0], upper: [0.04, 0.001, 0.03]}}}]"]
+        self.run_well("run", self.case, *wider, "--out", "straight")
+        self.run_well("run", self.case, *wider, "--out", "half", "--until", "0.005")
+        self.run_well("run", self.case, *wider, "--out", "half", "--restart", "half")
+        self.assert_same_bed("half", "straight")
+
+
 class RestartInWater(ProgramTest):
     """A resolved run, whose system is built without grains before the checkpoint brings them."""
     CASE = """
