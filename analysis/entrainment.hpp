@@ -83,6 +83,9 @@ public:
   bool load(ArchiveReader& archive) override;  // begins anew where other grains were chosen
 
 private:
+  // Of a start, by name: what is counted under one is not added to under another.
+  std::vector<std::pair<std::string, double>> definitions() const;
+
   enum Phase { unsettled, at_rest, moving };
   // Of a grain, at its home.
   struct Memory {

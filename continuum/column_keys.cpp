@@ -77,7 +77,10 @@ void describe(SectionVisitor& visit, Closures& closures) {
 void describe(SectionVisitor& visit, CreepParameters& creep) {
   visit.real("nonlocal_amplitude", creep.nonlocal_amplitude, {.meaning = "A", .above = 0.0});
   visit.real("upper", creep.upper,
-             {.unit = "diameters", .meaning = "depth below the surface where the fluidity is given", .above = 0.0});
+             {.unit = "diameters",
+              .meaning = "depth below the surface where the fluidity is given",
+              .above = 0.0,
+              .below = creep_decay_depth});
   visit.real("lower", creep.lower, {.unit = "diameters", .meaning = "depth where it is zero", .above = 0.0});
   visit.require(creep.lower > creep.upper, "lower", "it must be deeper than upper; give for example 10");
   visit.real("surface_fluidity", creep.surface_fluidity,

@@ -22,7 +22,6 @@ constexpr double relative_error = 1e-4, fraction_error = 1e-6, grain_error = 1e-
 
 constexpr double least_transport = 1e-4;  // q*, to which changes are compared where there is less
 constexpr int creep_points = 801;
-constexpr double decay_depth = 7.0;  // diameters: the decay length is fitted from here up
 
 std::vector<Tolerance> tolerances_of(const ColumnParameters& column) {
   std::vector<Tolerance> tolerances;
@@ -102,6 +101,19 @@ std::vector<NamedChoice<ColumnStart>> choices_of(ColumnStart) {
           {ColumnStart::rest, "rest", "water and grains at rest"}};
 }
 
+static BedStress stress_below(const SystemParameters& parameters) {
+  const ColumnParameters& column = parameters.column;
+  const double d = column.mixture.diameter;
+  return resting_bed(column.closures.rheology, column.mixture, column.gravity_x, column.gravity_z,
+                     column.mixture.fluid_density * column.gravity_x * parameters.depth, parameters.creep->lower * d,
+                     parameters.creep->upper * d, creep_points);
+}
+
+Creep creep_below(const SystemParameters& parameters) {
+  return creep_of(parameters.column.closures.rheology, parameters.column.mixture, parameters.creep->nonlocal_amplitude,
+                  stress_below(parameters), parameters.creep->surface_fluidity);
+}
+
 ContinuumSystem::ContinuumSystem(MPI_Comm communicator, const SystemParameters& parameters)
     : communicator_(communicator),
       parameters_(parameters),
@@ -112,13 +124,8 @@ ContinuumSystem::ContinuumSystem(MPI_Comm communicator, const SystemParameters& 
       unknowns_(equations_.unknowns_of(initial_state(parameters))),
       phase_(timer_.phase("column")) {
   if (!parameters.creep) return;
-  const ColumnParameters& column = parameters.column;
-  const double d = column.mixture.diameter;
-  creep_stress_ = resting_bed(column.closures.rheology, column.mixture, column.gravity_x, column.gravity_z,
-                              column.mixture.fluid_density * column.gravity_x * parameters.depth,
-                              parameters.creep->lower * d, parameters.creep->upper * d, creep_points);
-  creep_ = creep_of(column.closures.rheology, column.mixture, parameters.creep->nonlocal_amplitude, *creep_stress_,
-                    parameters.creep->surface_fluidity);
+  creep_stress_ = stress_below(parameters);
+  creep_ = creep_below(parameters);
 }
 
 void ContinuumSystem::advance() {
@@ -227,7 +234,7 @@ std::vector<Figure> ContinuumSystem::figures() const {
       {"integrator_steps", "1", static_cast<double>(integrator_steps_)},
       {unsteadiness_figure, "1", std::max(transport_change_, momentum_change_)}};
   if (!creep_) return figures;
-  const double above = (parameters_.creep->lower - decay_depth) * d / creep_stress_->spacing;
+  const double above = (parameters_.creep->lower - creep_decay_depth) * d / creep_stress_->spacing;
   const double length =
       decay_length(*creep_, creep_stress_->spacing, static_cast<std::size_t>(std::max(0.0, std::round(above))));
   figures.push_back({"creep_decay_length", "m", length});

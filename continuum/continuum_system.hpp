@@ -20,9 +20,11 @@ namespace thalweg::continuum {
 enum class ColumnStart { flow, rest };
 std::vector<NamedChoice<ColumnStart>> choices_of(ColumnStart);
 
+inline constexpr double creep_decay_depth = 7.0;  // diameters: the decay length is fitted from here up
+
 struct CreepParameters {
   double nonlocal_amplitude = 0.43;  // A
-  double upper = 2.0, lower = 10.0;  // diameters below the surface: the ends
+  double upper = 2.0, lower = 10.0;  // diameters below the surface: the ends; upper is above creep_decay_depth
   double surface_fluidity = 1e-2;    // 1/s, at the upper end
   bool operator==(const CreepParameters&) const = default;
 };
@@ -35,6 +37,9 @@ struct SystemParameters {
   ColumnStart start = ColumnStart::flow;
   std::optional<CreepParameters> creep;
 };
+
+// The creep of a bed at rest under the flow; parameters.creep must be there. Throws as creep_of().
+Creep creep_below(const SystemParameters& parameters);
 
 class ContinuumSystem final : public System {
 public:

@@ -74,6 +74,10 @@ Creep creep_of(const Rheology& rheology, const Mixture& mixture, double nonlocal
     correction = correct(creep.fluidity, reaction, length * length);
   if (!(correction <= smallest_correction * surface_fluidity))
     throw RunError("The fluidity of the bed was not found: Newton's method did not converge.");
+  if (*std::min_element(creep.fluidity.begin(), creep.fluidity.end()) < 0.0)
+    throw InputError(
+        "Creep has no steady state here with the fluidity that is given at the upper end; begin deeper below "
+        "the surface, or give a larger creep.surface_fluidity.");
   creep.grain_velocity.assign(points, 0.0);
   for (std::size_t i = 1; i < points; ++i)
     creep.grain_velocity[i] =

@@ -26,8 +26,8 @@ struct Creep {
   std::vector<double> grain_velocity;  // U_s, m/s
 };
 
-// surface_fluidity: 1/s, at the upper end. Throws InputError where mu is not below mu_2 or there are fewer than three
-// points, RunError where Newton's method fails.
+// surface_fluidity: 1/s, at the upper end. Throws InputError where mu is not below mu_2, where the fluidity found is
+// negative somewhere, or there are fewer than three points, RunError where Newton's method fails.
 Creep creep_of(const Rheology& rheology, const Mixture& mixture, double nonlocal_amplitude, const BedStress& stress,
                double surface_fluidity);
 

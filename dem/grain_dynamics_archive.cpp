@@ -1,9 +1,9 @@
 // Saving and loading of GrainDynamics. Datasets, one row a grain in order of id: radius, mass, motion, material,
 // position, velocity, angular_velocity, contact_force, contact_torque, load_force, load_torque, attached. One row a
 // contact, sorted by ids: contact_ids (lower id; higher id, or -1 - w for wall w), and what its law keeps, by the names
-// that the law gives to the parts: contact_spring; with rolling friction contact_rolling; and so on. Where there are
-// clumps also, of each grain, clump (its clump's id, or -1) and offset, and one row a clump, sorted by id: clump_id,
-// clump_members, clump_motion, clump_mass and so on with the names of struct ClumpRow.
+// that the law gives to the parts: contact_spring or contact_mindlin_spring; with rolling friction contact_rolling; and
+// so on. Where there are clumps also, of each grain, clump (its clump's id, or -1) and offset, and one row a clump,
+// sorted by id: clump_id, clump_members, clump_motion, clump_mass and so on with the names of struct ClumpRow.
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
 #include "core/row_range.hpp"

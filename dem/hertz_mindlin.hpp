@@ -27,8 +27,8 @@ public:
   struct Constants {
     double damping;  // kg/(s m^1/2), d
   };
-  using History = std::array<double, 3>;  // m^2, F_t/(-8 G*)
-  static constexpr std::array history_parts{HistoryPart{"spring", 3}};
+  using History = std::array<double, 3>;                                        // m^2, F_t/(-8 G*)
+  static constexpr std::array history_parts{HistoryPart{"mindlin_spring", 3}};  // no spring for the linear law
   static constexpr bool rolls = false;
 
   // common: of any material; time_step: s, with 0 the springs do not grow: a force without history.

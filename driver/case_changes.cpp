@@ -22,9 +22,13 @@ bool is_of_scalars(const YAML::Node& list) {
   return std::all_of(list.begin(), list.end(), [](const YAML::Node& item) { return item.IsScalar(); });
 }
 
+// Grains know their material by its number, which counts the populations that have a section of their own.
+bool is_material(std::string_view key) { return key.starts_with("grains.") && key.ends_with(".contact"); }
+
 void add_values(const YAML::Node& node, const std::string& key, Values& values) {
   const auto below = [&key](const std::string& name) { return key.empty() ? name : key + "." + name; };
   if (node.IsMap()) {
+    if (is_material(key)) values.emplace_back(key, "a section");
     for (const auto& entry : node) add_values(entry.second, below(entry.first.as<std::string>()), values);
   } else if (node.IsSequence() && !is_of_scalars(node)) {
     for (std::size_t n = 0; n < node.size(); ++n) add_values(node[n], below(std::to_string(n)), values);
@@ -63,7 +67,7 @@ bool is_in_the_checkpoint(std::string_view key) {
     return key.starts_with(section) && (key.size() == section.size() || key[section.size()] == '.');
   };
   if (std::any_of(state.begin(), state.end(), is_or_is_below)) return true;
-  return is_or_is_below("grains") && key.find(".contact") == std::string_view::npos;
+  return is_or_is_below("grains") && (key.find(".contact") == std::string_view::npos || is_material(key));
 }
 
 // Where a wall is follows from its motion since the start of the run, so that another one would move it at once. A

@@ -16,8 +16,9 @@ struct CaseChange {
 std::vector<CaseChange> case_changes(const std::string& before, const std::string& now);
 
 // Throws InputError, naming the first, if a change is of something that the checkpoint contains and the case cannot
-// alter: the system, the box, the cells, their precision, the grains themselves, how walls and held grains move. dry:
-// whether it is a case without a fluid, whose outer walls may move out of their plane.
+// alter: the system, the box, the cells, their precision, the grains themselves, which populations have a contact
+// section, how walls and held grains move. dry: whether it is a case without a fluid, whose outer walls may move out of
+// their plane.
 void refuse_changes_of_state(const std::vector<CaseChange>& changes, bool dry);
 
 }  // namespace thalweg::driver

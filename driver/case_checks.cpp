@@ -2,6 +2,7 @@
 
 #include "driver/grain_checks.hpp"
 #include "driver/grain_weight.hpp"
+#include "driver/limit_text.hpp"
 #include "driver/run_facts.hpp"
 
 #include <fmt/format.h>
@@ -75,9 +76,9 @@ void check_lattice_velocity(const Case& c, const io::YamlDocument& document, con
   if (lattice_velocity <= largest_lattice_velocity * (1.0 + whole_number_tolerance)) return;
   throw document.error(key,
                        fmt::format("{:.4g} m/s would be {:.3g} cells a step, more than {}; give a fluid.time_step of "
-                                   "at most {:.3g} s",
+                                   "at most {} s",
                                    velocity, lattice_velocity, largest_lattice_velocity,
-                                   largest_lattice_velocity * c.domain.spacing / velocity));
+                                   at_most_text(largest_lattice_velocity * c.domain.spacing / velocity, 3)));
 }
 
 void check_initial_fluid(const Case& c, const io::YamlDocument& document) {
@@ -143,8 +144,8 @@ void check_fluid(const Case& c, const io::YamlDocument& document) {
     throw document.error(
         "fluid.mean_velocity.response_time",
         fmt::format("the force is steered every 10 steps and needs ten times as long to answer; give at "
-                    "least {:.3g} s",
-                    100.0 * fluid_time_step(c)));
+                    "least {} s",
+                    at_least_text(100.0 * fluid_time_step(c), 3)));
   for (const coupling::FaceKeys& face : c.domain.faces)
     if (face.has_velocity()) check_lattice_velocity(c, document, "domain.boundaries", face.velocity.norm());
   check_initial_fluid(c, document);

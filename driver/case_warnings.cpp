@@ -5,6 +5,7 @@
 #include "driver/contact_estimate.hpp"
 #include "driver/drag_accuracy.hpp"
 #include "driver/flow_estimate.hpp"
+#include "driver/limit_text.hpp"
 #include "driver/run_facts.hpp"
 #include "driver/stability.hpp"
 
@@ -29,9 +30,9 @@ void warn_of_fast_flow(const Case& c, Warnings& found) {
   // The estimate is an upper one: it has to contradict what the user expects, by a quarter.
   const double expected = c.fluid.expected_velocity.value_or(0.0);
   if (!(lattice_velocity > 0.1) || flow.speed < 1.25 * expected) return;
-  const std::string remedy =
-      c.fluid.time_step ? fmt::format("a fluid.time_step of at most {:.2g} s", 0.1 * c.domain.spacing / flow.speed)
-                        : fmt::format("a fluid.expected_velocity of {:.2g} m/s", flow.speed);
+  const std::string remedy = c.fluid.time_step ? fmt::format("a fluid.time_step of at most {} s",
+                                                             at_most_text(0.1 * c.domain.spacing / flow.speed, 2))
+                                               : fmt::format("a fluid.expected_velocity of {:.2g} m/s", flow.speed);
   found.push_back(fmt::format(
       "The flow may reach about {:.2g} m/s ({}), which is {:.2g} cells a step{}; results are "
       "accurate below 0.1 and the limit is 0.173: consider {}.",
@@ -46,8 +47,8 @@ void warn_of_compression(const Case& c, Warnings& found) {
   if (c.gravity.mode != GravityMode::full || !(compression > 0.05)) return;
   found.push_back(
       fmt::format("The weight of the fluid compresses it by {:.2g} % from top to bottom: consider a fluid.time_step "
-                  "of at most {:.2g} s or gravity.mode: reduced.",
-                  100.0 * compression, fluid_time_step(c) * std::sqrt(0.05 / compression)));
+                  "of at most {} s or gravity.mode: reduced.",
+                  100.0 * compression, at_most_text(fluid_time_step(c) * std::sqrt(0.05 / compression), 2)));
 }
 
 void warn_of_collision(const Case& c, Warnings& found) {
@@ -117,8 +118,8 @@ void warn_of_sliding_bed(const Case& c, Warnings& found) {
     found.push_back(fmt::format(
         "The slope requires a shear stress of {:.2g} times the normal stress at the base of the bed, and grains of "
         "this friction sustain about {:.2g}, so that the bed slides as a whole: consider a "
-        "gravity.slope of at most {:.2g}.",
-        ratio, held, gravity_vector(c.gravity).x() / -gravity_vector(c.gravity).z() * held / ratio));
+        "gravity.slope of at most {}.",
+        ratio, held, at_most_text(gravity_vector(c.gravity).x() / -gravity_vector(c.gravity).z() * held / ratio, 2)));
 }
 
 constexpr double deep_under_weight = 0.01, deep_in_impact = 0.05;
@@ -204,8 +205,8 @@ void warn_of_model_fluid(const Case& c, Warnings& found) {
   if (*c.run.time_step > longest)
     found.push_back(
         fmt::format("The fluid around a single grain moves at {:.3g} m/s, which is more than a twentieth of a "
-                    "diameter a step: consider a run.time_step of at most {:.2g} s.",
-                    fastest, longest));
+                    "diameter a step: consider a run.time_step of at most {} s.",
+                    fastest, at_most_text(longest, 2)));
 }
 
 // Nothing is written more often than once a step.

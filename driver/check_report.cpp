@@ -140,6 +140,7 @@ void add_model_fluid(const Case& c, Lines& lines) {
 // Of a column. Wall time: measured, for the columns of cases/continuum.
 Lines column_report(const Case& c) {
   const continuum::SystemParameters parameters = column_of(c);
+  if (parameters.creep) continuum::creep_below(parameters);  // refuses what the run would
   const continuum::ColumnParameters& column = parameters.column;
   const continuum::Mixture& mixture = column.mixture;
   const double d = mixture.diameter, gravity = gravity_vector(c.gravity).norm();

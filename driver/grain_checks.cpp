@@ -3,6 +3,7 @@
 #include "dem/material.hpp"
 #include "dem/packing.hpp"
 #include "driver/case_checks.hpp"
+#include "driver/limit_text.hpp"
 
 #include <fmt/format.h>
 
@@ -53,7 +54,8 @@ void check_contact_steps(const Case& c, const io::YamlDocument& document) {
       "a step of the grains of {:.4g} s is longer than 1/20 of their shortest contact "
       "({:.4g} s)",
       step, shortest_contact(c));
-  if (!has_fluid(c)) throw document.error("run.time_step", fmt::format("{}; give at most {:.3g} s", reason, longest));
+  if (!has_fluid(c))
+    throw document.error("run.time_step", fmt::format("{}; give at most {} s", reason, at_most_text(longest, 3)));
   throw document.error("coupling.grain_steps_per_fluid_step",
                        fmt::format("{}; give at least {} sub-steps, or a lower contact.normal_stiffness in N/m", reason,
                                    sub_steps_needed(c)));

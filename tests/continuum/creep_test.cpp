@@ -48,6 +48,14 @@ TEST(Creep, LengthsOfThePapersBeds) {
   }
 }
 
+// Where much of the bed is between mu_1 and mu_2, Newton's method ends at fluidities below zero, which are no solution.
+TEST(Creep, RefusesANegativeFluidity) {
+  const double d = 5e-3, angle = std::atan(0.18), gravity = 9.8;
+  const BedStress stress = resting_bed(paper, glass_in_water, gravity * std::sin(angle), gravity * std::cos(angle),
+                                       0.1 * 1550.0 * gravity * d, 10.0 * d, 2.0 * d, 801);
+  EXPECT_THROW(creep_of(paper, glass_in_water, amplitude, stress, 1e-2), InputError);
+}
+
 TEST(Creep, StressRatiosOfABedAtRest) {
   // At 2 d: 0.62 * 1550 * 9.8 * 0.01 = 94.178 Pa; tau_b + (0.62 * 2550 + 0.38 * 1000) 9.8 * 0.016 * 0.01 = 6.45575
   // + 3.0748 Pa

@@ -1,12 +1,14 @@
 // Oblique impacts with friction: the exact rebound for k_t/k_n = 2/7, where normal and tangential half periods are
 // equal.
 #include "tests/dem/grain_cases.hpp"
+#include "tests/support/memory_archive.hpp"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 namespace thalweg::dem {
@@ -143,6 +145,39 @@ TEST(ObliqueImpact, AngularMomentumIsConserved) {
   for (int k = 0; k < 200; ++k) test::step(grains);
   EXPECT_GT((grains.store().velocity[0] + v).norm(), 0.1);                      // they did collide
   EXPECT_NEAR((angular_momentum() - start).norm() / start.norm(), 0.0, 1e-11);  // round-off of 10^4 steps
+}
+
+// Springs of the linear law are lengths, those of Hertz and Mindlin areas: one law does not take over the other's.
+TEST(ObliqueImpact, SpringsOfAnotherLawAreNotGoneOnWith) {
+  GrainParameters p = parameters_of(test::glass(0.9));
+  GrainDynamics linear(test::cube(), MPI_COMM_SELF, p,
+                       {test::glass_sphere(0, Vec3(0.025, 0.025, test::glass_radius - 1e-7), Vec3(1e-4, 0.0, 0.0))});
+  for (int n = 0; n < 5; ++n) test::step(linear);
+  const auto saved = [](const GrainDynamics& grains) {
+    thalweg::test::MemoryArchive archive;
+    thalweg::test::MemoryWriter writer(archive, MPI_COMM_SELF);
+    grains.save(writer);
+    return archive;
+  };
+  const auto largest = [](const thalweg::test::MemoryArchive& archive, const char* name) {
+    double value = -1.0;
+    for (const double x : std::get<std::vector<double>>(archive.datasets.at(name).values))
+      value = std::max(value, std::abs(x));
+    return value;
+  };
+  const thalweg::test::MemoryArchive archive = saved(linear);
+  EXPECT_GT(largest(archive, "grains/contact_spring"), 0.0);
+  const auto restarted = [&archive](const GrainParameters& with) {
+    auto grains = std::make_unique<GrainDynamics>(test::cube(), MPI_COMM_SELF, with, GrainSeeds{});
+    thalweg::test::MemoryReader reader(archive);
+    grains->load(reader);
+    return grains;
+  };
+  EXPECT_EQ(thalweg::test::first_difference(saved(*restarted(p)), archive), "");
+  p.contact.law = Law::hertz_mindlin;
+  p.contact.youngs_modulus = 1e7;
+  p.contact.poisson_ratio = 0.3;
+  EXPECT_EQ(largest(saved(*restarted(p)), "grains/contact_mindlin_spring"), 0.0);
 }
 
 }  // namespace

@@ -150,6 +150,16 @@ analysis:
         self.assertNotIn("since", self.summary("half")["entrainment"])
         self.assertEqual(self.last_checkpoint("half").read_bytes(), self.last_checkpoint("straight").read_bytes())
 
+    def test_starts_of_another_definition_are_counted_anew(self):
+        self.run_well("run", self.case, "--out", "run", "--until", "0.005")
+        self.run_well("run", self.case, "--out", "same", "--restart", "run", "--until", "0.01")
+        self.assertNotIn("since", self.summary("same")["entrainment"])
+        for setting in ("entrainment.displacement=0.2", "reference_diameter=4.0e-3"):
+            said = self.run_well("run", self.case, "--set", "analysis." + setting, "--out", "other", "--restart", "run", "--until",
+                                 "0.01", "--overwrite").stdout
+            self.assertIn("analysis.entrainment: its sums count from 0.005 s on", said)
+            self.assertEqual(self.summary("other")["entrainment"]["since"], 0.005)
+
     def test_what_cannot_be_watched_is_refused(self):
         self.assert_refused("run", self.case, "--set", "analysis.entrainment.grains=[26]",
                             words=["analysis.entrainment.grains.0", "ids from 0 to 25"])
