@@ -41,7 +41,7 @@ Case example_case(SystemKind system) {
   // Of the kind that has most keys.
   const coupling::FaceKeys side{has_fluid(c)                   ? lbm::FaceType::law_of_the_wall
                                 : system == SystemKind::grains ? lbm::FaceType::moving
-                                                               : lbm::FaceType::no_slip};
+                                                               : lbm::FaceType::periodic};
   c.domain.faces = {periodic, periodic, side, side, floor, lid};
   c.gravity.magnitude = 9.8;
   c.gravity.slope = 0.07;

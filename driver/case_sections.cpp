@@ -234,9 +234,11 @@ void describe(SectionVisitor& visit, Case& c) {
   visit.section("disks", c.disks,
                 {.meaning = "two dimensions: the grains are disks that move in the x-z plane",
                  .only_if = {!with_fluid, "only dry grains can be disks; remove the section or set system: grains"}});
-  visit.list("walls", c.walls,
-             {.meaning = "solid planes, in addition to the faces of the box",
-              .only_if = {!with_fluid, "with a fluid there are only the faces of the box; remove the section"}});
+  const OnlyIf of_walls =
+      c.system == SystemKind::model_fluid
+          ? OnlyIf{false, "beside them the model fluid would flow as where grains are missing; remove the section"}
+          : OnlyIf{!with_fluid, "with a fluid there are only the faces of the box; remove the section"};
+  visit.list("walls", c.walls, {.meaning = "solid planes, in addition to the faces of the box", .only_if = of_walls});
   visit.list("grains", c.grains, {.meaning = "populations of grains", .required = !with_fluid, .only_if = of_grains});
   visit.require(with_fluid || !c.grains.empty(), "grains", "a run of dry grains needs at least one population of them");
   visit.section("contact", {.meaning = "force between grains that touch, with friction", .only_if = of_grains},

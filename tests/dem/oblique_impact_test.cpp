@@ -150,8 +150,9 @@ TEST(ObliqueImpact, AngularMomentumIsConserved) {
 // Springs of the linear law are lengths, those of Hertz and Mindlin areas: one law does not take over the other's.
 TEST(ObliqueImpact, SpringsOfAnotherLawAreNotGoneOnWith) {
   GrainParameters p = parameters_of(test::glass(0.9));
-  GrainDynamics linear(test::cube(), MPI_COMM_SELF, p,
-                       {test::glass_sphere(0, Vec3(0.025, 0.025, test::glass_radius - 1e-7), Vec3(1e-4, 0.0, 0.0))});
+  GrainDynamics linear(
+      test::cube(), MPI_COMM_SELF, p,
+      {test::glass_sphere(0, Vec3(0.025, 0.025, test::glass_radius + 1e-9), Vec3(1e-4, 0.0, -normal_speed))});
   for (int n = 0; n < 5; ++n) test::step(linear);
   const auto saved = [](const GrainDynamics& grains) {
     thalweg::test::MemoryArchive archive;
@@ -177,7 +178,7 @@ TEST(ObliqueImpact, SpringsOfAnotherLawAreNotGoneOnWith) {
   p.contact.law = Law::hertz_mindlin;
   p.contact.youngs_modulus = 1e7;
   p.contact.poisson_ratio = 0.3;
-  EXPECT_EQ(largest(saved(*restarted(p)), "grains/contact_mindlin_spring"), 0.0);
+  EXPECT_LE(largest(saved(*restarted(p)), "grains/contact_mindlin_spring"), 0.0);  // rows of zeros are not saved
 }
 
 }  // namespace
