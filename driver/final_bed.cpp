@@ -37,8 +37,8 @@ std::string final_bed_text(const std::vector<Figure>& bed) {
   std::string text = fmt::format("bed: {:.4g} m high, porosity {:.3g}", *value("bed_height"), *value("porosity"));
   if (const auto depth = value("flow_depth")) text += fmt::format("; {:.4g} m of flow above it", *depth);
   if (const auto stress = value("bed_stress"))
-    text += fmt::format("; bed stress {:.4g} Pa, Shields number {:.4g}", *stress,
-                        value("shields_number").value_or(0.0));
+    text +=
+        fmt::format("; bed stress {:.4g} Pa, Shields number {:.4g}", *stress, value("shields_number").value_or(0.0));
   return text + " (at the end)";
 }
 
