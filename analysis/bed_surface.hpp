@@ -75,8 +75,8 @@ public:
   std::vector<Profile> profiles() const override;
 
   void save(ArchiveWriter& archive) const override;
-  bool load(
-      ArchiveReader& archive) override;  // takes the sums over only if begun at the same `from`, of the same settings
+  // Takes the sums over only if they were begun at the same `from`, with the same settings.
+  bool load(ArchiveReader& archive) override;
 
 private:
   void measure(const Snapshot& snapshot);

@@ -80,7 +80,7 @@ public:
   Records take_records() override;
 
   void save(ArchiveWriter& archive) const override;
-  bool load(ArchiveReader& archive) override;  // begins anew where other grains were chosen
+  bool load(ArchiveReader& archive) override;  // begins anew where other grains were chosen, or with other definitions
 
 private:
   // Of a start, by name: what is counted under one is not added to under another.

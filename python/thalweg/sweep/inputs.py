@@ -7,7 +7,7 @@ import json
 import yaml
 
 from thalweg.errors import RunFolderError
-from thalweg.run import CaseLoader
+from thalweg.run import read_case
 
 # Of a case, the last word, or two, of a key that names a bed file, a surface, a run folder or a checkpoint.
 FILE_KEYS = {"file", "stl", "from", "run", "from.grains", "from.fluid"}
@@ -46,7 +46,7 @@ def state_of(path):
 @functools.lru_cache(maxsize=None)
 def content_of(case, _state):
     try:
-        return yaml.load(case.read_text(), CaseLoader)
+        return read_case(case)
     except yaml.YAMLError as error:
         raise SweepError(f"{case} is not YAML: {' '.join(str(error).split())}.") from None
 

@@ -71,8 +71,7 @@ class Runner:
         for run in waiting:
             if self.stopping or len(self.going) >= self.jobs:
                 return
-            run.look()   # another sweep may have finished it
-            process = run.start(self.program) if run.state not in (DONE, FAILED) else None
+            process = run.start(self.program)
             if process:
                 self.going[run] = (process, time.monotonic())
                 if self.stopping:   # a signal came while it was being started

@@ -44,7 +44,7 @@ class SweepRun:
 
     def read_note(self):
         try:
-            note = json.loads(self.note.read_text())
+            return json.loads(self.note.read_text())
         except FileNotFoundError:
             if self.folder.exists():
                 raise SweepError(f"{self.note}, which says what {self.folder} was run with, is missing; give another --out, or "
@@ -53,7 +53,6 @@ class SweepRun:
         except ValueError:
             raise SweepError(f"{self.note}, which says what {self.folder} was run with, is damaged; give another --out, or remove "
                              "both.") from None
-        return note
 
     def read_summary(self):
         """None also where a crash of the machine has left half of it: the run then goes on from its checkpoint."""
@@ -73,6 +72,10 @@ class SweepRun:
         if self.finished:
             return DONE
         return BEGUN if self.folder.exists() else WAITING
+
+    @property
+    def is_open(self):
+        return self.state not in (DONE, FAILED)
 
     @property
     def wall_seconds(self):
@@ -110,18 +113,15 @@ class SweepRun:
         # Several runs beside each other must not all be bound to the first core.
         environment = os.environ | {"OMPI_MCA_hwloc_base_binding_policy": "none"}
         self.lock = open(self.output, "a")   # kept by the process as well, which inherits the file
-        if not locked(self.lock) or not self.is_open():
+        free = locked(self.lock)
+        self.look()   # another sweep may have finished it
+        if not free or not self.is_open:
             self.release()
             return None
         self.lock.truncate(0)
         self.remember(None)
         return subprocess.Popen(self.command(program), stdout=self.lock, stderr=subprocess.STDOUT, env=environment,
                                 stdin=subprocess.DEVNULL, start_new_session=True, preexec_fn=die_with_parent)
-
-    def is_open(self):
-        """Looks again."""
-        self.look()
-        return self.state not in (DONE, FAILED)
 
     def release(self):
         """Lets other sweeps have the run."""

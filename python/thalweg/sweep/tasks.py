@@ -3,7 +3,7 @@ point, and independent of the others."""
 import math
 
 from thalweg.sweep.plan import figure_of
-from thalweg.sweep.runs import DONE, FAILED, SweepRun, name_of, names_in
+from thalweg.sweep.runs import DONE, SweepRun, name_of, names_in
 
 
 class PointTask:
@@ -15,7 +15,7 @@ class PointTask:
         self.runs = [self.run]
 
     def wanted(self):
-        return [] if self.run.state in (DONE, FAILED) else [self.run]
+        return [self.run] if self.run.is_open else []
 
     def spare(self):
         return []
@@ -70,7 +70,7 @@ class BisectionTask:
         return value in (self.search.lower, self.search.upper)
 
     def open_at(self, value):
-        return [run for run in self.runs_at(value) if run.state not in (DONE, FAILED)]
+        return [run for run in self.runs_at(value) if run.is_open]
 
     def wanted(self):
         """As many repetitions as settle the next value if they agree."""
