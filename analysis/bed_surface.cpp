@@ -1,6 +1,5 @@
 #include "analysis/bed_surface.hpp"
 
-#include "analysis/saved_setting.hpp"
 #include "core/mpi_session.hpp"
 
 #include <algorithm>
@@ -110,7 +109,7 @@ std::vector<Profile> BedSurface::profiles() const {
   return {x, mean, latest};
 }
 
-std::vector<std::pair<std::string, double>> BedSurface::settings() const {
+SavedSettings BedSurface::settings() const {
   return {{"layer", keys_.layer.value_or(diameter_)},
           {"static_time", keys_.static_time},
           {"shields_stress", flow_ ? flow_->shields_stress : 0.0}};
@@ -118,7 +117,7 @@ std::vector<std::pair<std::string, double>> BedSurface::settings() const {
 
 void BedSurface::save(ArchiveWriter& archive) const {
   archive.attribute("bed_surface/mean_from", keys_.from);
-  for (const auto& [name, value] : settings()) archive.attribute("bed_surface/" + name, value);
+  save_settings(archive, "bed_surface", settings());
   archive.attribute("bed_surface/seen_step", seen_step_);
   archive.attribute("bed_surface/measurements", measurements_);
   archive.attribute("bed_surface/pictures", pictures_);
@@ -140,8 +139,7 @@ bool BedSurface::load(ArchiveReader& archive) {
       archive.shape("bed_surface/sums") != std::vector<std::uint64_t>{sums_.size()} ||
       archive.shape("bed_surface/surface_sums") != std::vector<std::uint64_t>{surface_sums_.size()})
     return false;
-  for (const auto& [name, value] : settings())
-    if (!was_saved_with(archive, "bed_surface/" + name, value)) return false;
+  if (!were_saved_with(archive, "bed_surface", settings())) return false;
   seen_step_ = archive.integer_attribute("bed_surface/seen_step");
   measurements_ = archive.integer_attribute("bed_surface/measurements");
   pictures_ = archive.integer_attribute("bed_surface/pictures");

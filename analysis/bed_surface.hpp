@@ -15,6 +15,7 @@
 
 #include "analysis/bed_layers.hpp"
 #include "analysis/observer_keys.hpp"
+#include "analysis/saved_settings.hpp"
 #include "analysis/static_pixels.hpp"
 
 #include <mpi.h>
@@ -22,7 +23,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace thalweg::analysis {
@@ -82,7 +82,7 @@ private:
   void measure(const Snapshot& snapshot);
   double flow_depth() const;        // m
   double hydraulic_radius() const;  // m
-  std::vector<std::pair<std::string, double>> settings() const;
+  SavedSettings settings() const;
 
   MPI_Comm communicator_;
   PeriodicBox box_;

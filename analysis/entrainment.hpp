@@ -18,6 +18,7 @@
 #include "analysis/grain_ring.hpp"
 #include "analysis/home_by_id.hpp"
 #include "analysis/observer_keys.hpp"
+#include "analysis/saved_settings.hpp"
 
 #include <optional>
 #include <span>
@@ -84,7 +85,7 @@ public:
 
 private:
   // Of a start, by name: what is counted under one is not added to under another.
-  std::vector<std::pair<std::string, double>> definitions() const;
+  SavedSettings definitions() const;
 
   enum Phase { unsettled, at_rest, moving };
   // Of a grain, at its home.

@@ -1,7 +1,6 @@
 // What Entrainment remembers, in a checkpoint: one row for every id, and the samples and touches of all rings, one
 // after the other in the order of ids.
 #include "analysis/entrainment.hpp"
-#include "analysis/saved_setting.hpp"
 #include "core/mpi_session.hpp"
 
 #include <algorithm>
@@ -37,14 +36,14 @@ std::vector<double> Entrainment::rows_of_memory() const {
   return rows;
 }
 
-std::vector<std::pair<std::string, double>> Entrainment::definitions() const {
+SavedSettings Entrainment::definitions() const {
   return {
       {"from", settings_.from},           {"interval", settings_.interval}, {"displacement", settings_.displacement},
       {"rest_time", settings_.rest_time}, {"diameter", settings_.diameter}, {"moving_speed", settings_.moving_speed}};
 }
 
 void Entrainment::save(ArchiveWriter& archive) const {
-  for (const auto& [name, value] : definitions()) archive.attribute("entrainment/" + name, value);
+  save_settings(archive, "entrainment", definitions());
   archive.attribute("entrainment/seen_step", seen_step_);
   archive.attribute("entrainment/chosen_step", chosen_step_);
   archive.attribute("entrainment/events", events_);
@@ -76,8 +75,7 @@ void Entrainment::save(ArchiveWriter& archive) const {
 bool Entrainment::load(ArchiveReader& archive) {
   if (!archive.has("entrainment/seen_step")) return false;
   if (!archive.has("entrainment/grains")) return true;  // before the first measurement
-  for (const auto& [name, value] : definitions())
-    if (!was_saved_with(archive, "entrainment/" + name, value)) return false;
+  if (!were_saved_with(archive, "entrainment", definitions())) return false;
   homes_.emplace(communicator_, static_cast<GlobalId>(archive.shape("entrainment/grains")[0]));
   memory_.assign(homes_->size(), {});
   std::vector<double> rows(memory_.size() * memory_columns);

@@ -1,6 +1,5 @@
 #include "analysis/transport_rate.hpp"
 
-#include "analysis/saved_setting.hpp"
 #include "core/mpi_session.hpp"
 #include "core/order_free_sum.hpp"
 
@@ -207,10 +206,13 @@ std::vector<double> TransportRate::sums() const {
           latest_.largest_speed};
 }
 
+SavedSettings TransportRate::settings() const {
+  return {{"moving_speed", scales_.moving_speed()}, {"grain_diameter", scales_.grain_diameter}};
+}
+
 void TransportRate::save(ArchiveWriter& archive) const {
   archive.attribute("transport_rate/mean_from", keys_.from);
-  archive.attribute("transport_rate/moving_speed", scales_.moving_speed());
-  archive.attribute("transport_rate/grain_diameter", scales_.grain_diameter);
+  save_settings(archive, "transport_rate", settings());
   archive.attribute("transport_rate/counted_step", counted_step_);
   write_once(archive, communicator_, "transport_rate/sums", sums());
   write_once(archive, communicator_, "transport_rate/trend", trend_.state());
@@ -226,9 +228,8 @@ bool TransportRate::load(ArchiveReader& archive) {
   const std::size_t cells = velocities_[0].counts().size();
   const std::vector<std::uint64_t> shape{3 * cells};
   if (!archive.has("transport_rate/mean_from") || archive.real_attribute("transport_rate/mean_from") != keys_.from ||
-      !was_saved_with(archive, "transport_rate/moving_speed", scales_.moving_speed()) ||
-      !was_saved_with(archive, "transport_rate/grain_diameter", scales_.grain_diameter) ||
-      !archive.has("transport_rate/velocity_counts") || archive.shape("transport_rate/velocity_counts") != shape)
+      !were_saved_with(archive, "transport_rate", settings()) || !archive.has("transport_rate/velocity_counts") ||
+      archive.shape("transport_rate/velocity_counts") != shape)
     return false;
   counted_step_ = archive.integer_attribute("transport_rate/counted_step");
   const auto sums = read_all<double>(archive, "transport_rate/sums");

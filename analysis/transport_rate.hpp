@@ -15,6 +15,7 @@
 #include "analysis/histogram.hpp"
 #include "analysis/hops.hpp"
 #include "analysis/observer_keys.hpp"
+#include "analysis/saved_settings.hpp"
 #include "analysis/trend_test.hpp"
 
 #include <mpi.h>
@@ -90,6 +91,7 @@ private:
   };
   void measure(const Snapshot& snapshot, const std::vector<Body>& bodies);
   void count_velocities(const std::vector<Body>& bodies);
+  SavedSettings settings() const;
   std::vector<double> sums() const;  // for a checkpoint: what is not elsewhere
   double interval() const;           // s, between measurements that count
 

@@ -109,10 +109,12 @@ static BedStress stress_below(const SystemParameters& parameters) {
                      parameters.creep->upper * d, creep_points);
 }
 
-Creep creep_below(const SystemParameters& parameters) {
+static Creep creep_under(const SystemParameters& parameters, const BedStress& stress) {
   return creep_of(parameters.column.closures.rheology, parameters.column.mixture, parameters.creep->nonlocal_amplitude,
-                  stress_below(parameters), parameters.creep->surface_fluidity);
+                  stress, parameters.creep->surface_fluidity);
 }
+
+Creep creep_below(const SystemParameters& parameters) { return creep_under(parameters, stress_below(parameters)); }
 
 ContinuumSystem::ContinuumSystem(MPI_Comm communicator, const SystemParameters& parameters)
     : communicator_(communicator),
@@ -125,7 +127,7 @@ ContinuumSystem::ContinuumSystem(MPI_Comm communicator, const SystemParameters& 
       phase_(timer_.phase("column")) {
   if (!parameters.creep) return;
   creep_stress_ = stress_below(parameters);
-  creep_ = creep_below(parameters);
+  creep_ = creep_under(parameters, *creep_stress_);
 }
 
 void ContinuumSystem::advance() {

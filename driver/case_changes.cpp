@@ -1,6 +1,7 @@
 #include "driver/case_changes.hpp"
 
 #include "core/error.hpp"
+#include "core/round_off.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -39,6 +40,9 @@ void add_values(const YAML::Node& node, const std::string& key, Values& values) 
   }
 }
 
+// e.g. "grains.0.density: 2550"; no key contains the separator.
+constexpr std::string_view separator = ": ";
+
 Values values_of(const std::string& yaml) {
   Values values;
   add_values(YAML::Load(yaml), "", values);
@@ -58,7 +62,8 @@ bool same(const std::string& one, const std::string& other) {
   if (one == other) return true;
   char *end_of_one = nullptr, *end_of_other = nullptr;
   const double a = std::strtod(one.c_str(), &end_of_one), b = std::strtod(other.c_str(), &end_of_other);
-  return *end_of_one == '\0' && *end_of_other == '\0' && !one.empty() && !other.empty() && a == b;
+  return *end_of_one == '\0' && *end_of_other == '\0' && !one.empty() && !other.empty() &&
+         (a == b || same_but_for_rounding(a, b));
 }
 
 bool is_in_the_checkpoint(std::string_view key) {
@@ -78,6 +83,23 @@ bool places_a_wall(std::string_view key, bool dry) {
   return of_motion && (key.starts_with("walls.") || (dry && key.starts_with("domain.boundaries.")));
 }
 
+Values state_values(const std::string& yaml, bool dry) {
+  Values values = values_of(yaml);
+  std::erase_if(values, [dry](const auto& value) {
+    return !is_in_the_checkpoint(value.first) && !places_a_wall(value.first, dry);
+  });
+  return values;
+}
+
+std::vector<CaseChange> changes_of(const Values& before, const Values& now) {
+  std::vector<CaseChange> changes;
+  for (const auto& [key, value] : before)
+    if (const std::string other = find(now, key); !same(value, other)) changes.push_back({key, value, other});
+  for (const auto& [key, value] : now)
+    if (find(before, key) == "none" && value != "none") changes.push_back({key, "none", value});
+  return changes;
+}
+
 // e.g. "grains.0.density = 2650: the run that is to go on has 2550"
 std::string told(const CaseChange& change) {
   return fmt::format("{} = {}: the run that is to go on {}", change.key, change.now,
@@ -87,13 +109,23 @@ std::string told(const CaseChange& change) {
 }  // namespace
 
 std::vector<CaseChange> case_changes(const std::string& before, const std::string& now) {
-  const Values old_values = values_of(before), new_values = values_of(now);
-  std::vector<CaseChange> changes;
-  for (const auto& [key, value] : old_values)
-    if (const std::string other = find(new_values, key); !same(value, other)) changes.push_back({key, value, other});
-  for (const auto& [key, value] : new_values)
-    if (find(old_values, key) == "none" && value != "none") changes.push_back({key, "none", value});
-  return changes;
+  return changes_of(values_of(before), values_of(now));
+}
+
+std::vector<std::string> state_of_case(const std::string& yaml, bool dry) {
+  std::vector<std::string> lines;
+  for (const auto& [key, value] : state_values(yaml, dry))
+    lines.push_back(fmt::format("{}{}{}", key, separator, value));
+  return lines;
+}
+
+std::vector<CaseChange> state_changes(const std::vector<std::string>& before, const std::string& now, bool dry) {
+  Values values;
+  for (const std::string& line : before) {
+    const std::size_t end = line.find(separator);
+    if (end != std::string::npos) values.emplace_back(line.substr(0, end), line.substr(end + separator.size()));
+  }
+  return changes_of(values, state_values(now, dry));
 }
 
 void refuse_changes_of_state(const std::vector<CaseChange>& changes, bool dry) {

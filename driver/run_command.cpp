@@ -11,6 +11,7 @@
 #include "driver/case_changes.hpp"
 #include "driver/case_reader.hpp"
 #include "driver/case_warnings.hpp"
+#include "driver/checkpoint_file.hpp"
 #include "driver/cores.hpp"
 #include "driver/disk_space.hpp"
 #include "driver/error_message.hpp"
@@ -272,6 +273,9 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
     throw InputError(fmt::format("{} is at {:.6g} s already and the run ends at {:.6g} s: give a later --until.",
                                  beginning.checkpoint.string(), system->time(), c.run.until));
 
+  const std::vector<Figure> row = loop::series_row(*system, observers);
+  if (places.same_folder) RunOutput::check_series(communicator, c, places.folder, row);
+
   const io::FolderLock lock = prepare_folder(places, c, command, system->step(), communicator, log);
   RunIdentity identity{c.name, name_of(c.system), command.line, c.run.until, layout, size_of(communicator)};
   if (!c.grains.empty()) identity.reference = reference_grain(c);
@@ -292,7 +296,7 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   plan.write_at_start = !places.same_folder;
   output.add_to(plan);
   loop::TimeLoop time_loop(communicator, *system, observers, plan, log);
-  output.begin_series(time_loop.row());
+  output.begin_series(row);
   try {
     time_loop.run();
     if (!c.grains.empty()) io::write_bed_file(communicator, places.folder.bed(), system->snapshot());

@@ -1,21 +1,36 @@
 #include "driver/run_output.hpp"
 
-#include "core/error.hpp"
 #include "core/on_first_rank.hpp"
-#include "core/round_off.hpp"
-#include "driver/bed_archive.hpp"
 #include "driver/build_system.hpp"
+#include "driver/checkpoint_file.hpp"
 #include "driver/reference_grain.hpp"
 #include "driver/run_facts.hpp"
-#include "driver/version.hpp"
-#include "io/hdf5_archive.hpp"
 #include "io/profile_file.hpp"
-
-#include <fmt/format.h>
 
 #include <utility>
 
 namespace thalweg::driver {
+
+// What is in every row of the series.
+static std::vector<Figure> constants_of(const Case& c) {
+  if (c.grains.empty()) return {};
+  const ReferenceGrain reference = reference_grain(c);
+  return {{"reference_diameter", "m", reference.diameter}, {"reference_density", "kg/m^3", reference.density}};
+}
+
+static std::vector<io::SeriesTable::Column> series_columns(const std::vector<Figure>& row,
+                                                           const std::vector<Figure>& constants) {
+  std::vector<io::SeriesTable::Column> columns;
+  for (const auto* figures : {&row, &constants})
+    for (const Figure& figure : *figures) columns.push_back({figure.name, figure.unit});
+  return columns;
+}
+
+void RunOutput::check_series(MPI_Comm communicator, const Case& c, const io::RunFolder& folder,
+                             const std::vector<Figure>& row) {
+  if (c.output.series.every > 0.0)
+    io::SeriesTable::check_columns(communicator, folder.series(), series_columns(row, constants_of(c)));
+}
 
 RunOutput::RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& folder, const System& system,
                      const Observers& observers, std::map<std::string, double> since,
@@ -26,7 +41,8 @@ RunOutput::RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& 
       system_(system),
       observers_(observers),
       since_(std::move(since)),
-      continue_from_(continue_from) {
+      continue_from_(continue_from),
+      constants_(constants_of(c)) {
   const Snapshot snapshot = system.snapshot();
   if (snapshot.grains.global_count > 0) {
     add_grains(folder.path(), "grains", c.output.grains, {});
@@ -41,10 +57,6 @@ RunOutput::RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& 
     if (observer->has_records())
       records_.emplace_back(observer.get(),
                             io::RecordFile(communicator, folder.records(observer->name()), continue_from));
-  if (!c.grains.empty()) {
-    const ReferenceGrain reference = reference_grain(c);
-    constants_ = {{"reference_diameter", "m", reference.diameter}, {"reference_density", "kg/m^3", reference.density}};
-  }
   write_records();  // whether they can be written, or continued, is known before the run begins
 }
 
@@ -83,10 +95,8 @@ void RunOutput::add_to(loop::LoopPlan& plan) {
 
 void RunOutput::begin_series(const std::vector<Figure>& row) {
   if (case_.output.series.every <= 0.0) return;
-  std::vector<io::SeriesTable::Column> columns;
-  for (const auto* figures : {&row, &std::as_const(constants_)})
-    for (const Figure& figure : *figures) columns.push_back({figure.name, figure.unit});
-  series_ = std::make_unique<io::SeriesTable>(communicator_, folder_.series(), columns, continue_from_);
+  series_ = std::make_unique<io::SeriesTable>(communicator_, folder_.series(), series_columns(row, constants_),
+                                              continue_from_);
 }
 
 void RunOutput::write_row(double time, const std::vector<Figure>& measured) {
@@ -127,87 +137,6 @@ std::uint64_t RunOutput::write_checkpoint(const loop::LoopRecord& record) {
   });
   write_profiles();
   return bytes;
-}
-
-// Of what a checkpoint contains and how; those without a number were written before 2.
-static constexpr std::int64_t checkpoint_format = 2;
-
-void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c,
-                           const System& system, const Observers& observers, const Accounts& accounts) {
-  io::Hdf5Writer archive(communicator, path);
-  archive.attribute("run/format", checkpoint_format);
-  archive.attribute("run/system", std::string(name_of(c.system)));
-  archive.attribute("run/name", c.name);
-  archive.attribute("run/version", version_number());  // the commit would make equal states differ
-  archive.attribute("run/step", system.step());
-  archive.attribute("run/time", system.time());
-  archive.attribute("run/time_step", system.time_step());
-  archive.attribute("run/spacing", c.domain.spacing);
-  save_beds(archive, communicator, c);
-  system.save(archive);
-  accounts.save(archive, observers, c.output.series.every);
-  archive.close();
-}
-
-// A lattice of as many cells of another size would be taken for this one, at other speeds. A column, which has no
-// domain.spacing, looks at its cells itself.
-static void refuse_other_spacing(const ArchiveReader& archive, const Case& c) {
-  if (c.system == SystemKind::continuum || !archive.has("run/spacing")) return;
-  const double saved = archive.real_attribute("run/spacing"), here = c.domain.spacing;
-  if (same_but_for_rounding(saved, here)) return;
-  throw InputError(
-      fmt::format("its domain.spacing is {:.10g} m and that of this case {:.10g} m; a restart keeps it: set it back, "
-                  "or begin a new run from that state with initial.from.",
-                  saved, here));
-}
-
-// What does not fit names the file.
-static void load_system(System& system, ArchiveReader& archive, const std::filesystem::path& path, const Case& c) {
-  try {
-    refuse_other_spacing(archive, c);
-    system.load(archive);
-  } catch (const io::DamagedFile&) {
-    throw;
-  } catch (const InputError& error) {
-    const std::string reason = error.what();
-    if (reason.starts_with(path.string())) throw;
-    throw InputError(fmt::format("{}: {}", path.string(), reason));
-  }
-}
-
-Accounts read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c, System& system,
-                              Observers& observers) {
-  io::Hdf5Reader archive(communicator, path);
-  if (!archive.has("run/system"))
-    throw InputError(fmt::format("{} is an HDF5 file but not a checkpoint of this program.", path.string()));
-  if (const std::int64_t format = archive.has("run/format") ? archive.integer_attribute("run/format") : 1;
-      format > checkpoint_format)
-    throw InputError(fmt::format(
-        "{} was written by version {} in format {}, and this is version {}, which reads formats up to {}; go "
-        "on with that version.",
-        path.string(), archive.text_attribute("run/version"), format, version_number(), checkpoint_format));
-  const std::string saved = archive.text_attribute("run/system");
-  if (saved != name_of(c.system))
-    throw InputError(fmt::format("{} holds a run with system: {}, but this case has system: {}.", path.string(), saved,
-                                 name_of(c.system)));
-  load_system(system, archive, path, c);
-  return Accounts::load(archive, system, observers, c.output.series.every);
-}
-
-std::filesystem::path read_first_whole_checkpoint(MPI_Comm communicator,
-                                                  const std::vector<std::filesystem::path>& checkpoints, const Case& c,
-                                                  System& system, Observers& observers,
-                                                  std::vector<std::string>& damage, Accounts& accounts) {
-  for (const std::filesystem::path& path : checkpoints) {
-    try {
-      accounts = read_checkpoint_file(communicator, path, c, system, observers);
-      return path;
-    } catch (const io::DamagedFile& error) {
-      if (path == checkpoints.back()) throw;
-      damage.emplace_back(error.what());
-    }
-  }
-  throw InputError("There is no checkpoint to go on from.");
 }
 
 }  // namespace thalweg::driver

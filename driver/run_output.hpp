@@ -14,7 +14,6 @@
 
 #include <mpi.h>
 
-#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -35,7 +34,12 @@ public:
   // Schedules and actions for the time loop; they refer to this object.
   void add_to(loop::LoopPlan& plan);
 
-  // The table that rows with these figures go to. Throws InputError where the folder's has other columns. Collective.
+  // Throws InputError where the folder has a table of other figures than the row and the constants of the run.
+  // Collective.
+  static void check_series(MPI_Comm communicator, const Case& c, const io::RunFolder& folder,
+                           const std::vector<Figure>& row);
+
+  // The table that rows with these figures go to; throws as check_series() does. Collective.
   void begin_series(const std::vector<Figure>& row);
 
 private:
@@ -60,22 +64,5 @@ private:
   std::vector<std::pair<double, io::FluidSeries>> fluid_;   // likewise
   std::vector<std::pair<analysis::Observer*, io::RecordFile>> records_;
 };
-
-// A checkpoint: what it is (group "run": format, system, name, version, step, time and time_step in s, spacing in m),
-// the beds it began with, the system, the observers and the accounts. Its bytes do not depend on the number of ranks.
-// Collective; RunError on every rank.
-void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c,
-                           const System& system, const Observers& observers, const Accounts& accounts);
-
-// The state of a checkpoint into a system and observers built from a case. Throws InputError where they do not fit (in
-// system, cells or time step), and io::DamagedFile.
-Accounts read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c, System& system,
-                              Observers& observers);
-
-// That of the first one which is not damaged; `damage`, a sentence about each before it, is added to. Returns its path.
-std::filesystem::path read_first_whole_checkpoint(MPI_Comm communicator,
-                                                  const std::vector<std::filesystem::path>& checkpoints, const Case& c,
-                                                  System& system, Observers& observers,
-                                                  std::vector<std::string>& damage, Accounts& accounts);
 
 }  // namespace thalweg::driver

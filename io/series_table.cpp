@@ -33,7 +33,33 @@ std::string kept_rows(const std::string& text, std::size_t start, double continu
   return rows;
 }
 
+// Whether the file can be continued with rows under this header; one without any text can.
+bool has_other_columns(const std::string& text, const std::string& header) {
+  return !text.empty() && !text.starts_with(header);
+}
+
+void refuse_other_columns(const std::filesystem::path& path, std::string header) {
+  header.pop_back();  // the end of the line
+  throw InputError(
+      fmt::format("{}: the file has other columns than this run writes ({}); restart into another folder "
+                  "with --out.",
+                  path.string(), header));
+}
+
 }  // namespace
+
+void SeriesTable::check_columns(MPI_Comm communicator, const std::filesystem::path& path,
+                                const std::vector<Column>& columns) {
+  bool other = false;
+  std::error_code ignored;
+  if (rank_of(communicator) == 0 && std::filesystem::exists(path, ignored)) {
+    try {
+      other = has_other_columns(read_text(path), header_of(columns));
+    } catch (const std::runtime_error&) {  // the constructor will say that it cannot be used
+    }
+  }
+  if (any_rank(communicator, other)) refuse_other_columns(path, header_of(columns));
+}
 
 SeriesTable::SeriesTable(MPI_Comm communicator, std::filesystem::path path, std::vector<Column> columns,
                          std::optional<double> continue_from)
@@ -46,10 +72,10 @@ SeriesTable::SeriesTable(MPI_Comm communicator, std::filesystem::path path, std:
       std::string rows;
       if (continue_from && std::filesystem::exists(path_)) {
         const std::string text = read_text(path_);
-        if (text.starts_with(header))
-          rows = kept_rows(text, header.size(), *continue_from);
-        else if (!text.empty())
+        if (has_other_columns(text, header))
           outcome = other_columns;
+        else if (!text.empty())
+          rows = kept_rows(text, header.size(), *continue_from);
       }
       if (outcome == good) {
         write_text_atomically(path_, header + rows);
@@ -61,11 +87,7 @@ SeriesTable::SeriesTable(MPI_Comm communicator, std::filesystem::path path, std:
     }
   }
   MPI_Bcast(&outcome, 1, MPI_INT, 0, communicator_);
-  if (outcome == other_columns)
-    throw InputError(
-        fmt::format("{}: the file has other columns than this run writes ({}); restart into another folder "
-                    "with --out.",
-                    path_.string(), header_of(columns_).substr(0, header_of(columns_).size() - 1)));
+  if (outcome == other_columns) refuse_other_columns(path_, header_of(columns_));
   throw_if_failed(outcome == cannot_write);
 }
 

@@ -26,6 +26,10 @@ public:
   SeriesTable(MPI_Comm communicator, std::filesystem::path path, std::vector<Column> columns,
               std::optional<double> continue_from = std::nullopt);
 
+  // Throws the InputError of the constructor, on every rank, before anything is written. Collective.
+  static void check_columns(MPI_Comm communicator, const std::filesystem::path& path,
+                            const std::vector<Column>& columns);
+
   // Appends a row, in the file before this returns. values: one per column; only rank 0's are used.
   void append(double time, std::span<const double> values);
 

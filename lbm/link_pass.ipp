@@ -266,7 +266,7 @@ void LinkPass<Real, S>::look_at_covered(const Batch& b) {
                    box_.difference(body_of(b, k).centre, other.centre));
   }
   if (slips(b)) let_gaps_flow(b);
-  upstream_.find_populations(options_.rest_gradient);
+  upstream_.find_populations(gaps_flow() ? Vec3(Vec3::Zero()) : options_.rest_gradient);
   for (int c = 0; c < b.covered_count; ++c) {
     const int k = b.covered[c];
     // Without a branch, which would be unpredictable.
@@ -299,9 +299,11 @@ void LinkPass<Real, S>::let_gaps_flow(const Batch& b) {
   upstream_.let_flow(force_, gaps_);
   std::fill_n(values_.slip, b.size, Real(0));
   std::fill_n(values_.odd_change, b.size, Real(0));
+  std::fill_n(values_.half_force, b.size, Real(0));
   for (int c = 0; c < b.covered_count; ++c) {
     values_.slip[b.covered[c]] = static_cast<Real>(upstream_.slip_along(c));
     values_.odd_change[b.covered[c]] = static_cast<Real>(upstream_.odd_change(c));
+    values_.half_force[b.covered[c]] = static_cast<Real>(upstream_.half_force(c));
   }
 }
 
@@ -346,7 +348,7 @@ void LinkPass<Real, S>::reflect(const Batch& b, const Piece& piece) {
     if (with_slip) {
       // From a half on the second is f_i'^c(x_f), which changes by as much the other way.
       const Pack opposite = chosen<Pack>(at(b.distance) < Pack(Real(0.5)), Pack(Real(0)), rule.second);
-      interpolated += at(values_.odd_change) * (rule.incident - opposite);
+      interpolated += at(values_.odd_change) * (rule.incident - opposite) + at(values_.half_force);
     }
     const Pack moving_wall = rule.wall * weight * density * towards_wall;
     Pack returned = body.returned + (cx * body.sx + cy * body.sy + cz * body.sz);

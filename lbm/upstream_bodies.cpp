@@ -7,8 +7,8 @@ namespace thalweg::lbm {
 
 GapFlow gap_flow(const CollisionParameters& collision) {
   const double viscosity = (collision.relaxation_time - 0.5) / 3.0, rate = collision.odd_rate();
-  const double k = rate / (24.0 * viscosity) + (1.0 - 0.5 * rate) / 3.0;
-  if (k > 1.0) return {0.0, 1.0 - 8.0 * viscosity * (2.0 + 0.5 * rate) / rate};
+  const double k = rate / (16.0 * viscosity);
+  if (k > 1.0) return {0.0, 1.0 - 1.0 / k};
   return {std::min(1.0, (1.0 - k) / (k - 1.0 + rate)), 0.0};
 }
 
@@ -66,6 +66,7 @@ void UpstreamBodies::let_flow(const double (&force)[3], const GapFlow& flow) {
       slip_along_[k] = along;
       const double weight = (3.0 - (cx * cx + cy * cy + cz * cz)) * (1.0 / 36.0);
       odd_change_[k] = changed * (3.0 * weight * density * (cx * wx + cy * wy + cz * wz + along) - odd_[k]);
+      half_force_[k] = changed * 3.0 * weight * (cx * fx + cy * fy + cz * fz);
     }
 }
 

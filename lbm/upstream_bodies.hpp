@@ -11,9 +11,13 @@
 // and v is added to the velocity of walls and covered cells, where
 //   v = s (1 - m m)(u - u_m),   m = (n_1 - n_2)/|n_1 - n_2|
 // is a share of the velocity along the gap relative to its walls, with u_1, u_2 the velocities and n_1, n_2 the normals
-// of both bodies at x_f. Between flat walls the balance of momentum, F = loss to the walls, gives u = F/(8 nu) for
-//   theta = 0, s = 1 - 8 nu (2 + omega'/2)/omega'             where K = omega'/(24 nu) + (1 - omega'/2)/3 is above 1,
-//   theta = (1 - K)/(K - 1 + omega'), s = 0                   below,
+// of both bodies at x_f. To the result of the rule
+//   (1 - theta) 3/2 w_i c_i.F
+// is added: the half force that f^c contains, which plain bounce-back returns. With it a gap that is closed at its ends
+// is at rest with the pressure gradient F; without it the gradient would be F (1 + omega'/4), and a pressure would
+// drive that much less. Between flat walls the balance of momentum, F = loss to the walls, gives u = F/(8 nu) for
+//   theta = 0, s = 1 - 1/K                    where K = omega'/(16 nu) is above 1,
+//   theta = (1 - K)/(K - 1 + omega'), s = 0   below,
 // omega' the rate of the odd part; theta reaches 1, plain bounce-back, at Lambda = 3/16. Momentum along the gap then
 // stays in the fluid until viscosity removes it. Both ends of a link get the same change, so that no mass is made;
 // momentum goes to the bodies as in any link.
@@ -88,11 +92,13 @@ public:
 
   // The equilibrium at x_ff: density as at x_f, velocity that of the covering body, and the slip. With the hydrostatic
   // gradient 3 F of a force F the density is that one cell further on, and 3/2 w_i c_i.F, its half force, is added.
+  // Where gaps flow, half_force() is all that water at rest needs, and the gradient is zero.
   void find_populations(const Vec3& rest_gradient);
 
   double population(int link) const { return population_[link]; }  // in place of f_i^c(x_ff)
   double slip_along(int link) const { return slip_along_[link]; }  // c_i . v
   double odd_change(int link) const { return odd_change_[link]; }  // of o
+  double half_force(int link) const { return half_force_[link]; }  // (1 - theta) 3/2 w_i c_i.F
 
 private:
   Vec3 before_arm(const double (&arm)[3][capacity], int link) const {
@@ -111,7 +117,7 @@ private:
   alignas(64) double deviation_[capacity] = {}, momentum_[3][capacity] = {}, odd_[capacity] = {};
   alignas(64) double own_normal_[3][capacity] = {}, normal_[3][capacity] = {};
   alignas(64) double slip_[3][capacity] = {}, slip_along_[capacity] = {}, odd_change_[capacity] = {},
-                     population_[capacity] = {};
+                     half_force_[capacity] = {}, population_[capacity] = {};
 };
 
 }  // namespace thalweg::lbm

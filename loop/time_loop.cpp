@@ -41,7 +41,26 @@ bool was_asked_to_stop(const std::filesystem::path& file) {
   return !file.empty() && std::filesystem::remove(file, ignored);
 }
 
+std::vector<Figure> figures_of(const std::vector<std::unique_ptr<analysis::Observer>>& observers) {
+  std::vector<Figure> figures;
+  for (const auto& observer : observers)
+    for (const Figure& figure : observer->figures()) figures.push_back(figure);
+  return figures;
+}
+
+std::vector<Figure> row_of(const std::vector<Figure>& of_system, const std::vector<Figure>& measured) {
+  std::vector<Figure> row = of_system;
+  for (const Figure& figure : measured)
+    if (!find_figure(of_system, figure.name)) row.push_back(figure);
+  return row;
+}
+
 }  // namespace
+
+std::vector<Figure> series_row(const System& system,
+                               const std::vector<std::unique_ptr<analysis::Observer>>& observers) {
+  return row_of(system.figures(), figures_of(observers));
+}
 
 TimeLoop::TimeLoop(MPI_Comm communicator, System& system, std::vector<std::unique_ptr<analysis::Observer>>& observers,
                    const LoopPlan& plan, Log& log)
@@ -154,27 +173,12 @@ bool TimeLoop::has_enough() {
   return std::all_of(plan_.enough.begin(), plan_.enough.end(), below);
 }
 
-// The system's figures and the observers', a column a name.
-std::vector<Figure> TimeLoop::row_of(const std::vector<Figure>& of_system, const std::vector<Figure>& measured) {
-  std::vector<Figure> row = of_system;
-  for (const Figure& figure : measured)
-    if (!find_figure(of_system, figure.name)) row.push_back(figure);
-  return row;
-}
-
-std::vector<Figure> TimeLoop::figures_of_observers() const {
-  std::vector<Figure> figures;
-  for (const auto& observer : observers_)
-    for (const Figure& figure : observer->figures()) figures.push_back(figure);
-  return figures;
-}
-
 void TimeLoop::write_what_is_due() {
   const std::int64_t step = system_.step();
   measure();
   if (plan_.series.due(step)) {
     look_at_health();
-    measured_ = figures_of_observers();
+    measured_ = figures_of(observers_);
     if (plan_.write_row) {
       const auto scope = timer_.measure(timer_.phase("series"));
       plan_.write_row(system_.time(), step, row_of(record_.figures, measured_));

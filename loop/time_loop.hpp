@@ -82,6 +82,10 @@ struct LoopPlan {
   std::vector<OutputTask> outputs;
 };
 
+// A row of the series with the values of now: the figures of the system and those of the observers, a column a name.
+// Collective.
+std::vector<Figure> series_row(const System& system, const std::vector<std::unique_ptr<analysis::Observer>>& observers);
+
 class TimeLoop {
 public:
   // Everything referred to must outlive the loop.
@@ -91,9 +95,6 @@ public:
   // Runs to plan.until, or until a stop signal or the end of the wall time (record().finished is false then).
   // Throws RunError when the watchdog does; nothing of such a state is written. The record is valid then, too.
   void run();
-
-  // What a row of the series has, with the values of now. Collective.
-  std::vector<Figure> row() const { return row_of(system_.figures(), figures_of_observers()); }
 
   const LoopRecord& record() const { return record_; }
   PhaseTimer& timer() { return timer_; }  // phases outside System::advance()
@@ -112,8 +113,6 @@ private:
   bool needs_momentum_at(std::int64_t step) const;
   void measure();
   bool has_enough();
-  static std::vector<Figure> row_of(const std::vector<Figure>& of_system, const std::vector<Figure>& measured);
-  std::vector<Figure> figures_of_observers() const;
   void write_what_is_due();
   void checkpoint();
   std::int64_t own_decision();

@@ -90,7 +90,7 @@ private:
     const bool wall_behind = beyond_wall(at, back);
     Vec3 slip = Vec3::Zero();
     double incident = f_[at][i], opposite = f_[at][back];
-    double upstream = wall_behind ? from_wall(at, i) : f_[behind][i];
+    double upstream = wall_behind ? from_wall(at, i) : f_[behind][i], half_force = 0.0;
     if (const int q = owner_[behind]; q >= 0 && !wall_behind) {
       const Vec3 velocity = spheres_[q].velocity + spheres_[q].spin.cross(from(position(behind), q));
       if (options.gaps == lbm::GapRule::slip) {
@@ -99,6 +99,7 @@ private:
         const double even = 0.5 * (incident + opposite), odd = 3 * weight * (1 + density) * c.dot(walls.mean + slip);
         incident = even + odd;
         opposite = even - odd;
+        half_force = 1.5 * weight * c.dot(Vec3(parameters_.force[0], parameters_.force[1], parameters_.force[2]));
       }
       upstream = lbm::equilibrium_deviation(i, density, velocity + slip);
     }
@@ -116,6 +117,7 @@ private:
       result = incident / (2 * delta) + (2 * delta - 1) / (2 * delta) * opposite -
                3 / delta * weight * (1 + density) * towards_wall;
     }
+    result += half_force;
     Vec3 momentum = c * (f_[at][i] + result);
     if (options.momentum_exchange == lbm::MomentumExchange::galilean_invariant) momentum -= wall * (f_[at][i] - result);
     loads[s].force += momentum;
@@ -137,7 +139,7 @@ private:
     const Vec3 relative = momentum / (1 + density) - mean;
     // K of upstream_bodies.hpp is above 1 here: theta = 0.
     const double rate = 1 / parameters_.relaxation_time, viscosity = (parameters_.relaxation_time - 0.5) / 3;
-    const double share = 1 - 8 * viscosity * (2 + rate / 2) / rate;
+    const double share = 1 - 16 * viscosity / rate;
     return {mean, share * (relative - relative.dot(across) * across)};
   }
 

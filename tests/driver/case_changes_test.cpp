@@ -76,6 +76,23 @@ TEST(CaseChanges, WhatTheCheckpointContainsCannotBeChanged) {
     EXPECT_TRUE(refused(with(old_text, new_text)).empty()) << new_text;
 }
 
+TEST(CaseChanges, ACheckpointKeepsTheKeysThatCannotBeChanged) {
+  const std::vector<std::string> kept = state_of_case(before, false);
+  EXPECT_EQ(kept,
+            (std::vector<std::string>{"system: resolved", "domain.size: [0.1, 0.02, 0.1]", "domain.spacing: 0.001",
+                                      "grains.0.diameter: 0.005", "grains.0.density: 2550", "grains.1.diameter: 0.004",
+                                      "grains.1.density: 2550", "grains.1.contact: a section"}));
+  EXPECT_TRUE(state_changes(kept, before, false).empty());
+  EXPECT_TRUE(state_changes(kept, with("collision: bgk", "collision: trt"), false).empty());
+  const auto denser = state_changes(kept, with("density: 2550, placement", "density: 2650, placement"), false);
+  ASSERT_EQ(denser.size(), 1u);
+  EXPECT_EQ(denser[0].key + ": " + denser[0].before + " -> " + denser[0].now, "grains.0.density: 2550 -> 2650");
+  EXPECT_EQ(
+      state_changes(kept, with("density: 2550, placement", "density: 2550, contact: {friction: 1}, placement"), false)
+          .size(),
+      1u);
+}
+
 TEST(CaseChanges, AWallIsWhereItsMotionSinceTheStartHasBroughtIt) {
   const std::vector<CaseChange> plate{{"walls.0.velocity.2", "0.1", "0"}},
       top{{"domain.boundaries.top.velocity.0", "0.1", "0"}}, held{{"grains.1.motion.velocity.0", "0.1", "0"}};

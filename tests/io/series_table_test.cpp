@@ -60,6 +60,8 @@ TEST(SeriesTable, AFileWithOtherColumnsIsLeftAlone) {
   MPI_Barrier(MPI_COMM_WORLD);
   const std::string message =
       message_of<InputError>([&] { SeriesTable(MPI_COMM_WORLD, folder / "series.csv", columns, 1.0); });
+  EXPECT_EQ(message_of<InputError>([&] { SeriesTable::check_columns(MPI_COMM_WORLD, folder / "series.csv", columns); }),
+            message);
   EXPECT_NE(message.find("the file has other columns than this run writes (time [s],q_star [1],speed [m/s])"),
             std::string::npos)
       << message;

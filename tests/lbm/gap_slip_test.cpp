@@ -1,4 +1,5 @@
-// A gap of one cell between two bodies, so large that they are flat: what flows along it under a force.
+// A gap of one cell between two bodies, so large that they are flat: what flows along it under a force, and the
+// pressure in it where it is closed.
 #include "core/sphere.hpp"
 #include "lbm/fluid.hpp"
 #include "lbm/link_pass.ipp"
@@ -16,18 +17,28 @@ constexpr double force = 1e-7;
 // Of radius 1e8 cells: 4.5e-8 cells are missing at three cells from the middle, which counts against 1 - s = 12 nu.
 constexpr double radius = 1e8, curvature = 1e-3;
 
+enum class Ends { periodic, closed };
+
 class Gap {
 public:
   Gap(const CollisionParameters& collision, GapRule rule, const Vec3& velocity_below, const Vec3& velocity_above)
-      : fluid_(decomposition_, MPI_COMM_SELF, collision, {}), links_(fluid_.tiles().count()), bodies_(2) {
+      : Gap(collision, rule, Ends::periodic, 0.0) {
+    bodies_[0].velocity = velocity_below;
+    bodies_[1].velocity = velocity_above;
+  }
+
+  // Bodies at rest; both are moved up by `shift`, so that links cross at 1/2 + shift below and 1/2 - shift above.
+  Gap(const CollisionParameters& collision, GapRule rule, Ends ends, double shift)
+      : decomposition_({cells[0], cells[1], cells[2]}, 1.0, {ends == Ends::periodic, true, true}, {1, 1, 1}),
+        fluid_(decomposition_, MPI_COMM_SELF, collision, faces(ends)),
+        links_(fluid_.tiles().count()),
+        bodies_(2) {
     options_.gaps = rule;
     for (int z = 0; z < 3; z += 2)
       for (int y = -1; y <= cells[1]; ++y)
         for (int x = -1; x <= cells[0]; ++x) fluid_.cells().assign(x, y, z, z / 2);
-    bodies_[0].centre = Vec3(3.0, 2.0, 1.0 - radius);
-    bodies_[1].centre = Vec3(3.0, 2.0, 2.0 + radius);
-    bodies_[0].velocity = velocity_below;
-    bodies_[1].velocity = velocity_above;
+    bodies_[0].centre = Vec3(3.0, 2.0, 1.0 - radius + shift);
+    bodies_[1].centre = Vec3(3.0, 2.0, 2.0 + radius + shift);
     for (int body = 0; body < 2; ++body)
       for (int y = 0; y < cells[1]; ++y) add_links(body, y);
   }
@@ -48,12 +59,30 @@ public:
       for (int x = 0; x < cells[0]; ++x) sum += fluid_.state_at(fluid_.indexing().index(x, y, 1)).velocity.x();
     return sum / (cells[0] * cells[1]);
   }
+  // Of the density along the gap, at its middle; and the largest velocity in it.
+  double density_gradient() const {
+    const auto density = [&](int x) { return fluid_.state_at(fluid_.indexing().index(x, 1, 1)).density_deviation; };
+    return density(cells[0] / 2) - density(cells[0] / 2 - 1);
+  }
+  double largest_velocity() const {
+    double largest = 0.0;
+    for (int x = 0; x < cells[0]; ++x)
+      largest = std::max(largest, fluid_.state_at(fluid_.indexing().index(x, 1, 1)).velocity.norm());
+    return largest;
+  }
+  void set_rest_gradient(const Vec3& gradient) { options_.rest_gradient = gradient; }
   const LinkBody& body(int b) const { return bodies_[static_cast<std::size_t>(b)]; }
 
   static constexpr int fluid_cells() { return cells[0] * cells[1]; }
 
 private:
   static constexpr std::array<int, 3> cells{6, 4, 3};
+
+  static FaceConditions faces(Ends ends) {
+    FaceConditions faces;
+    if (ends == Ends::closed) faces[0].type = faces[1].type = FaceType::no_slip;
+    return faces;
+  }
 
   // All links of a row: there is one tile a row, or more rows in one tile.
   void add_links(int body, int row) {
@@ -67,7 +96,7 @@ private:
     links_.replace(body, tile, links);
   }
 
-  const Decomposition decomposition_{{cells[0], cells[1], cells[2]}, 1.0, {true, true, true}, {1, 1, 1}};
+  const Decomposition decomposition_;
   const PeriodicBox box_{Vec3(cells[0], cells[1], cells[2]), {true, true, false}};
   Fluid<double> fluid_;
   LinkTable links_;
@@ -125,6 +154,27 @@ TEST(NarrowGaps, SlipIsRelativeToTheMeanOfBothBodiesAndKeepsTheMass) {
   // To the rounding of its links, each to 2^-45.
   const double mass = LatticeFixed::to_double(gap.body(0).mass + gap.body(1).mass);
   EXPECT_NEAR(mass, 0.0, Gap::fluid_cells() * 10 * 0x1p-44);
+}
+
+TEST(NarrowGaps, ClosedAtTheirEndsAreAtRestWithThePressureGradientOfTheForce) {
+  // grad p = F, p = rho/3: what flows under a force then flows under a pressure as well.
+  for (const double viscosity : {0.002, 0.01, 0.03, 0.08}) {
+    for (const CollisionModel model : {CollisionModel::bgk, CollisionModel::regularised}) {
+      const CollisionParameters p = parameters(model, viscosity);
+      for (const double shift : {0.0, -0.3, 0.2}) {
+        // What is kept of plain bounce-back has the error of Bouzidi's rule: under a force it is exact half-way only.
+        if (shift != 0.0 && gap_flow(p).kept > 0.0) continue;
+        for (const bool with_rest : {false, true}) {
+          Gap gap(p, GapRule::slip, Ends::closed, shift);
+          if (with_rest) gap.set_rest_gradient(Vec3(3.0 * force, 0.0, 0.0));
+          gap.run(4 * settling_steps(viscosity));  // sound decays more slowly than the flow
+          EXPECT_NEAR(gap.density_gradient(), 3.0 * force, curvature * 3.0 * force)
+              << "viscosity " << viscosity << ", shift " << shift;
+          EXPECT_LT(gap.largest_velocity(), curvature * force / (8.0 * viscosity)) << "viscosity " << viscosity;
+        }
+      }
+    }
+  }
 }
 
 }  // namespace

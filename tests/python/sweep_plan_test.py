@@ -1,6 +1,8 @@
 """What a sweep file means, and what is said of one that means nothing."""
 import argparse
+import contextlib
 import datetime
+import io
 import json
 import math
 import os
@@ -12,6 +14,7 @@ import made_up_folder   # noqa: F401  finds the package
 from thalweg.sweep import command, tables
 from thalweg.sweep.inputs import SweepError, inputs_of, named_files
 from thalweg.sweep.plan import plan_of
+from thalweg.sweep.runner import Runner
 from thalweg.sweep.runs import BEGUN, FAILED, name_of, short_keys
 from thalweg.sweep.tasks import BisectionTask, tasks_of
 
@@ -227,6 +230,14 @@ class Bisection(Folder):
         task = BisectionTask(self.folder, self.plan(bisect=BISECT), 0)
         self.assertEqual(task.search.most_levels(), 4)
         self.assertEqual(task.most_runs_left(), 4)
+
+    def test_a_file_gets_a_line_of_progress_where_the_counts_have_changed(self):
+        runner = Runner(self.plan(), [], {}, "thalweg", self.folder, 1)
+        with contextlib.redirect_stdout(io.StringIO()) as printed:
+            runner.say("1 of 3 runs done", ", left about 9 s", passing=True)
+            runner.say("1 of 3 runs done", ", left about 4 s", passing=True)
+            runner.say("2 of 3 runs done", ", left about 5 s", passing=True)
+        self.assertEqual(printed.getvalue(), "1 of 3 runs done, left about 9 s\n2 of 3 runs done, left about 5 s\n")
 
 
 class TwoSweepsOfAFolder(Folder):

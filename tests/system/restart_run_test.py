@@ -118,12 +118,23 @@ output: {series: {every: 0.01}}
         self.run_well("run", self.case, "--restart", "first", "--until", "0.12", *other)
         self.assert_same_bed("run", "first")
 
-    def test_a_table_that_cannot_be_continued_is_refused_before_the_first_step(self):
+    def test_a_table_that_cannot_be_continued_is_refused_and_nothing_is_touched(self):
+        kept = self.files_of("run")
         refused = self.thalweg("run", self.case, "--restart", "run", "--until", "0.1", "--set", "analysis.transport_rate={}")
         self.assertEqual(refused.returncode, 2)
         self.assertIn("series.csv: the file has other columns than this run writes", refused.stderr)
-        self.assertFalse((self.folder / "run/checkpoints/step_101.h5").exists())
-        self.assertEqual(self.last_checkpoint("run").name, "step_100.h5")
+        self.assertEqual(self.files_of("run"), kept)
+
+    def test_a_checkpoint_that_has_left_its_folder_is_compared_too(self):
+        shutil.copy(self.last_checkpoint("run"), self.folder / "copy.h5")
+        on = ("run", self.case, "--restart", "copy.h5", "--out", "on", "--until", "0.06")
+        for key, value in (("grains.0.density", "2650"), ("domain.boundaries.bottom", "{type: moving, velocity: [0.1, 0, 0]}")):
+            self.assert_refused(*on, "--set", f"{key}={value}", words=["copy.h5: ", key, "set the key back", "initial.from"])
+        self.run_well(*on)
+
+    def files_of(self, run):
+        """The contents of all files of a run, by name, but for the lock."""
+        return {path: path.read_bytes() for path in (self.folder / run).rglob("*") if path.is_file() and path.suffix != ".lock"}
 
 
 class RestartOfSums(ProgramTest):
@@ -184,6 +195,10 @@ output: {series: {every: 0.001}}
         for number, spacing in enumerate(("0.8e-3", "0.00080000000000001")):   # but for rounding
             self.run_well("run", self.case, "--restart", "copy.h5", "--set", f"domain.spacing={spacing}", "--until", "0.002",
                           "--out", f"on_{number}")
+
+    def test_another_number_of_cells_is_refused(self):
+        self.assert_refused("run", self.case, "--restart", "copy.h5", "--out", "longer", "--set", "domain.size=[0.0256, 0.0128, 0.0192]",
+                            "--until", "0.002", words=["copy.h5: ", "domain.size = [0.0256", "set the key back"])
 
     def test_as_a_start_of_a_new_run_its_cells_may_differ(self):
         finer = ("--set", "domain.spacing=0.4e-3", "--set", "fluid.time_step=0.5e-4")

@@ -98,34 +98,36 @@ class Runner:
             run.remember("the run was stopped from outside before its end")
 
     def progress(self):
-        """e.g. "12 of 90 runs done, 1 failed, 2 going, left about 3:20"."""
+        """e.g. "12 of 90 runs done, 1 failed, 2 going" and ", left about 3:20"."""
         runs = [run for task in self.tasks for run in task.runs]
         done, failed = (sum(run.state == state for run in runs) for state in (DONE, FAILED))
         left = sum(task.most_runs_left() for task in self.tasks)
         at_most = "at most " if self.plan.bisections and left else ""
         text = f"{done} of {at_most}{done + failed + left} runs done"
         text += (f", {failed} failed" if failed else "") + (f", {len(self.going)} going" if self.going else "")
+        estimate = ""
         times = [run.wall_seconds for run in runs if run.state == DONE]
         if times and left:
             mean, now = sum(times) / len(times), time.monotonic()
             going = sum(min(mean, now - begun) for _, begun in self.going.values())
             beside = min(self.jobs, max(1, len(self.wanted())))   # a bisection needs the result of a run to choose the next
-            text += f", left {at_most or 'about '}{clock_text((left * mean - going) / beside)}"
-        return text
+            estimate = f", left {at_most or 'about '}{clock_text((left * mean - going) / beside)}"
+        return text, estimate
 
     def report(self, last=False):
         now = time.monotonic()
         if last or now - self.printed >= SECONDS_BETWEEN_LINES:
             self.printed = now
-            self.say(self.progress(), passing=not last)
+            counts, estimate = self.progress()
+            self.say(counts, estimate, passing=not last)
 
-    def say(self, text, passing=False):
-        """passing: on a terminal the next line takes its place; a file gets it only where it has changed."""
+    def say(self, text, estimate="", passing=False):
+        """passing: on a terminal the next line takes its place; a file gets it only where the text has changed, whatever the estimate."""
         if sys.stdout.isatty():
-            print(f"\r{text:<100}", end="" if passing else "\n", flush=True)
+            print(f"\r{text + estimate:<100}", end="" if passing else "\n", flush=True)
         elif text != self.said:
             self.said = text
-            print(text, flush=True)
+            print(text + estimate, flush=True)
 
 
 def clock_text(seconds):

@@ -1,0 +1,29 @@
+// Settings that the sums of an observer depend on, saved with them.
+#pragma once
+
+#include "core/archive.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace thalweg::analysis {
+
+using SavedSettings = std::vector<std::pair<std::string, double>>;  // by name
+
+// Into the group of the observer.
+inline void save_settings(ArchiveWriter& archive, const std::string& group, const SavedSettings& settings) {
+  for (const auto& [name, value] : settings) archive.attribute(group + "/" + name, value);
+}
+
+// Whether the sums of that group were made with these settings. Archives from before one was saved do not say, and are
+// taken.
+inline bool were_saved_with(const ArchiveReader& archive, const std::string& group, const SavedSettings& settings) {
+  return std::all_of(settings.begin(), settings.end(), [&](const auto& setting) {
+    const std::string path = group + "/" + setting.first;
+    return !archive.has(path) || archive.real_attribute(path) == setting.second;
+  });
+}
+
+}  // namespace thalweg::analysis

@@ -1,0 +1,119 @@
+#include "driver/checkpoint_file.hpp"
+
+#include "core/error.hpp"
+#include "core/round_off.hpp"
+#include "driver/bed_archive.hpp"
+#include "driver/build_system.hpp"
+#include "driver/case_changes.hpp"
+#include "driver/case_reader.hpp"
+#include "driver/version.hpp"
+#include "io/hdf5_archive.hpp"
+
+#include <fmt/format.h>
+
+namespace thalweg::driver {
+
+namespace {
+
+// Of what a checkpoint contains and how; those without a number were written before 2.
+constexpr std::int64_t checkpoint_format = 2;
+
+std::string kept_line(std::size_t n) { return fmt::format("kept_case/line_{:04}", n); }
+
+void save_kept_case(ArchiveWriter& archive, const Case& c) {
+  const std::vector<std::string> lines = state_of_case(resolved_yaml(c), !has_fluid(c));
+  archive.attribute("kept_case/lines", static_cast<std::int64_t>(lines.size()));
+  for (std::size_t n = 0; n < lines.size(); ++n) archive.attribute(kept_line(n), lines[n]);
+}
+
+// A lattice of as many cells of another size would be taken for this one, at other speeds. A column, which has no
+// domain.spacing, looks at its cells itself.
+void refuse_other_spacing(const ArchiveReader& archive, const Case& c) {
+  if (c.system == SystemKind::continuum || !archive.has("run/spacing")) return;
+  const double saved = archive.real_attribute("run/spacing"), here = c.domain.spacing;
+  if (same_but_for_rounding(saved, here)) return;
+  throw InputError(
+      fmt::format("its domain.spacing is {:.10g} m and that of this case {:.10g} m; a restart keeps it: set it back, "
+                  "or begin a new run from that state with initial.from.",
+                  saved, here));
+}
+
+// A checkpoint that has left its run folder has no case beside it to compare with.
+void refuse_other_case(const ArchiveReader& archive, const Case& c) {
+  if (!archive.has("kept_case/lines")) return;  // of an earlier version
+  std::vector<std::string> lines(static_cast<std::size_t>(archive.integer_attribute("kept_case/lines")));
+  for (std::size_t n = 0; n < lines.size(); ++n) lines[n] = archive.text_attribute(kept_line(n));
+  refuse_changes_of_state(state_changes(lines, resolved_yaml(c), !has_fluid(c)), !has_fluid(c));
+}
+
+// What does not fit names the file.
+void load_system(System& system, ArchiveReader& archive, const std::filesystem::path& path, const Case& c) {
+  try {
+    refuse_other_spacing(archive, c);
+    refuse_other_case(archive, c);
+    system.load(archive);
+  } catch (const io::DamagedFile&) {
+    throw;
+  } catch (const InputError& error) {
+    const std::string reason = error.what();
+    if (reason.starts_with(path.string())) throw;
+    throw InputError(fmt::format("{}: {}", path.string(), reason));
+  }
+}
+
+}  // namespace
+
+void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c,
+                           const System& system, const Observers& observers, const Accounts& accounts) {
+  io::Hdf5Writer archive(communicator, path);
+  archive.attribute("run/format", checkpoint_format);
+  archive.attribute("run/system", std::string(name_of(c.system)));
+  archive.attribute("run/name", c.name);
+  archive.attribute("run/version", version_number());  // the commit would make equal states differ
+  archive.attribute("run/step", system.step());
+  archive.attribute("run/time", system.time());
+  archive.attribute("run/time_step", system.time_step());
+  archive.attribute("run/spacing", c.domain.spacing);
+  save_kept_case(archive, c);
+  save_beds(archive, communicator, c);
+  system.save(archive);
+  accounts.save(archive, observers, c.output.series.every);
+  archive.close();
+}
+
+Accounts read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c, System& system,
+                              Observers& observers) {
+  io::Hdf5Reader archive(communicator, path);
+  if (!archive.has("run/system"))
+    throw InputError(fmt::format("{} is an HDF5 file but not a checkpoint of this program.", path.string()));
+  if (const std::int64_t format = archive.has("run/format") ? archive.integer_attribute("run/format") : 1;
+      format > checkpoint_format)
+    throw InputError(fmt::format(
+        "{} was written by version {} in format {}, and this is version {}, which reads formats up to {}; go "
+        "on with that version.",
+        path.string(), archive.text_attribute("run/version"), format, version_number(), checkpoint_format));
+  const std::string saved = archive.text_attribute("run/system");
+  if (saved != name_of(c.system))
+    throw InputError(fmt::format("{} holds a run with system: {}, but this case has system: {}.", path.string(), saved,
+                                 name_of(c.system)));
+  load_system(system, archive, path, c);
+  return Accounts::load(archive, system, observers, c.output.series.every);
+}
+
+std::filesystem::path read_first_whole_checkpoint(MPI_Comm communicator,
+                                                  const std::vector<std::filesystem::path>& checkpoints, const Case& c,
+                                                  System& system, Observers& observers,
+                                                  std::vector<std::string>& damage, Accounts& accounts) {
+  for (const std::filesystem::path& path : checkpoints) {
+    try {
+      accounts = read_checkpoint_file(communicator, path, c, system, observers);
+      return path;
+    } catch (const io::DamagedFile& error) {
+      if (path == checkpoints.back()) throw;
+      damage.emplace_back(error.what());
+    }
+  }
+  throw InputError("There is no checkpoint to go on from.");
+}
+
+}  // namespace thalweg::driver
