@@ -36,7 +36,7 @@ Refill::Refill(const Decomposition& decomposition, MPI_Comm communicator, Refill
 // Of two donors the better one; the lower direction where both are as good.
 void Refill::Neighbours::add(const Neighbours& others) {
   count += others.count;
-  density += others.density;
+  excess += others.excess;
   for (std::size_t k = 0; k < stress.size(); ++k) stress[k] += others.stress[k];
   if (others.donor == 0) return;
   const bool better =
@@ -97,11 +97,11 @@ std::vector<Refill::Uncovered> Refill::uncovered_cells(const std::vector<CellCha
 }
 
 template <typename Real>
-Refill::Neighbours Refill::look_at(const lbm::Fluid<Real>& fluid, std::ptrdiff_t cell, int direction,
+Refill::Neighbours Refill::look_at(const lbm::Fluid<Real>& fluid, std::ptrdiff_t cell, double at_rest, int direction,
                                    const Vec3& normal) const {
   Neighbours one;
   one.count = 1;
-  one.density = LatticeFixed::from(fluid.populations().density_deviation(cell));
+  one.excess = LatticeFixed::from(fluid.populations().density_deviation(cell) - at_rest);
   if (rule_ == RefillRule::equilibrium) return one;
   const lbm::FluidState state = fluid.state_at(cell);
   for (int i = 0; i < D3Q19::directions; ++i)
@@ -120,7 +120,8 @@ Refill::Neighbours Refill::look_at(const lbm::Fluid<Real>& fluid, std::ptrdiff_t
 
 template <typename Real>
 void Refill::add_own_neighbours(const lbm::Fluid<Real>& fluid, const std::vector<lbm::LinkBody>& bodies,
-                                const Outward& outward, std::vector<Uncovered>& uncovered) const {
+                                const Hydrostatic& rest, const Outward& outward,
+                                std::vector<Uncovered>& uncovered) const {
   const auto fresh = [&](const Index3& global) {
     const auto found = std::lower_bound(uncovered.begin(), uncovered.end(), key(global),
                                         [](const Uncovered& u, const auto& k) { return key(u.global) < k; });
@@ -132,7 +133,8 @@ void Refill::add_own_neighbours(const lbm::Fluid<Real>& fluid, const std::vector
       const Index3 neighbour = wrapped(step_from(cell.global, i));
       if (!block_.contains(neighbour)) continue;
       const std::ptrdiff_t at = index_of(fluid.indexing(), neighbour);
-      if (fluid.cells().is_fluid(at) && !fresh(neighbour)) cell.neighbours.add(look_at(fluid, at, i, normal));
+      if (fluid.cells().is_fluid(at) && !fresh(neighbour))
+        cell.neighbours.add(look_at(fluid, at, rest.deviation(centre_of(neighbour)), i, normal));
     }
   }
 }
@@ -175,7 +177,7 @@ std::array<double, 19> Refill::populations_of(const Neighbours& n, double at_res
   const auto mean = [&n](std::int64_t sum) {
     return n.count > 0 ? LatticeFixed::to_double(sum) / static_cast<double>(n.count) : 0.0;
   };
-  const double density = n.count > 0 ? mean(n.density) : at_rest;
+  const double density = at_rest + mean(n.excess);
   std::array<double, 6> stress;
   for (std::size_t k = 0; k < stress.size(); ++k) stress[k] = mean(n.stress[k]);
   const double trace = (stress[0] + stress[1] + stress[2]) / 3.0;
@@ -203,7 +205,7 @@ RefillTotals Refill::fill(lbm::Fluid<Real>& fluid, const std::vector<CellChange>
   RefillTotals totals;
   std::vector<Uncovered> uncovered = uncovered_cells(changes);
   if (uncovered.empty()) return totals;
-  add_own_neighbours(fluid, bodies, outward, uncovered);
+  add_own_neighbours(fluid, bodies, rest, outward, uncovered);
   exchange(uncovered);
 
   const double(&f)[3] = fluid.parameters().force;

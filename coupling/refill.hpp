@@ -1,6 +1,6 @@
 // Gives cells that a grain has just uncovered their populations. With n the mean over the neighbours that were fluid
-// before (rho_n that at rest where there are none), u_w the velocity of the grain's rigid motion at the cell, F the
-// body force:
+// before (rho_n - rho_rest is that of their excess over the density at rest, 0 where there are none), u_w the velocity
+// of the grain's rigid motion at the cell, F the body force:
 //   equilibrium      f_i^c = f_i^eq(rho_n, u_w) + 3/2 w_i c_i.F
 //   non_equilibrium  f_i^c = f_i^eq(rho_n, u_w) + [f_i^c - f_i^eq](donor); the donor is the one of these neighbours
 //                    whose direction is nearest to the outward normal (Caiazzo 2008)
@@ -53,7 +53,7 @@ public:
 private:
   // What the fluid neighbours of one uncovered cell tell; a message between ranks as it stands.
   struct Neighbours {
-    std::int64_t count = 0, density = 0;       // LatticeFixed sum of rho - 1
+    std::int64_t count = 0, excess = 0;        // LatticeFixed sum of rho - rho_rest
     std::array<std::int64_t, 6> stress{};      // LatticeFixed sums of P: xx, yy, zz, xy, xz, yz
     std::int64_t donor = 0;                    // its direction from the cell; 0: none
     double alignment = 0.0;                    // cosine of that direction to the normal, times the normal's length
@@ -75,9 +75,11 @@ private:
   std::vector<Uncovered> uncovered_cells(const std::vector<CellChange>& changes) const;
   template <typename Real>
   void add_own_neighbours(const lbm::Fluid<Real>& fluid, const std::vector<lbm::LinkBody>& bodies,
-                          const Outward& outward, std::vector<Uncovered>& uncovered) const;
+                          const Hydrostatic& rest, const Outward& outward, std::vector<Uncovered>& uncovered) const;
   template <typename Real>
-  Neighbours look_at(const lbm::Fluid<Real>& fluid, std::ptrdiff_t cell, int direction, const Vec3& normal) const;
+  // at_rest: rho_rest - 1 in the cell.
+  Neighbours look_at(const lbm::Fluid<Real>& fluid, std::ptrdiff_t cell, double at_rest, int direction,
+                     const Vec3& normal) const;
   void exchange(std::vector<Uncovered>& uncovered) const;
   // at_rest: rho_rest - 1 in the cell.
   std::array<double, 19> populations_of(const Neighbours& neighbours, double at_rest, const Vec3& velocity,

@@ -147,6 +147,35 @@ TEST_P(UncoveredCells, WithoutFluidBesideThemHaveTheDensityAtRest) {
   EXPECT_NEAR(density, 3e-4 * 3.5, 1e-15);
 }
 
+// Under its full weight water at rest has another density at every height. A cell with more fluid below than above it
+// still gets that of its own, and no mass is brought.
+TEST_P(UncoveredCells, HaveTheDensityOfTheirHeightInWaterAtRest) {
+  const Decomposition decomposition({16, 16, 16}, 1.0, {true, true, false}, {1, 1, 1});
+  lbm::FaceConditions faces;
+  faces[4].type = faces[5].type = lbm::FaceType::no_slip;
+  lbm::CollisionParameters parameters;
+  parameters.force[2] = -1e-4;
+  lbm::Fluid<double> fluid(decomposition, MPI_COMM_SELF, parameters, faces);
+  const Hydrostatic rest = hydrostatic_under(Vec3(0.0, 0.0, -1e-4), decomposition);
+  fluid.initialise([&](const Vec3& position) { return lbm::FluidState{rest.deviation(position), Vec3::Zero()}; });
+  GrainMap map(decomposition, fluid.block(), fluid.cells());
+  map.begin_update();
+  const int slot = map.add(0, {3.0});
+  map.place(slot, Vec3(8.3, 8.5, 7.6));
+  map.settle();
+  map.begin_update();
+  map.place(slot, Vec3(8.1, 8.6, 8.5));
+  std::vector<lbm::LinkBody> bodies(1);
+  bodies[0].centre = Vec3(8.1, 8.6, 8.5);
+  const std::vector<CellChange> changes = map.settle();
+  Refill refill(decomposition, MPI_COMM_SELF, GetParam());
+  const RefillTotals totals = refill.fill(
+      fluid, changes, rest, [&](int, const Vec3& point) { return map.shapes()[0].outward(point); }, bodies);
+  ASSERT_GT(totals.cells, 10);
+  // To the rounding of the mean over at most 18 neighbours and of 19 populations.
+  EXPECT_NEAR(LatticeFixed::to_double(totals.mass), 0.0, static_cast<double>(totals.cells) * 0x1p-44);
+}
+
 INSTANTIATE_TEST_SUITE_P(AllRules, UncoveredCells,
                          ::testing::Values(RefillRule::equilibrium, RefillRule::non_equilibrium, RefillRule::grad));
 
