@@ -17,8 +17,8 @@ inline void save_settings(ArchiveWriter& archive, const std::string& group, cons
   for (const auto& [name, value] : settings) archive.attribute(group + "/" + name, value);
 }
 
-// Whether the sums of that group were made with these settings. Archives from before one was saved do not say, and are
-// taken.
+// Whether the sums of that group were made with these settings. An archive that lacks one is older than it, and is
+// accepted.
 inline bool were_saved_with(const ArchiveReader& archive, const std::string& group, const SavedSettings& settings) {
   return std::all_of(settings.begin(), settings.end(), [&](const auto& setting) {
     const std::string path = group + "/" + setting.first;

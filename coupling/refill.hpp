@@ -1,6 +1,6 @@
 // Gives cells that a grain has just uncovered their populations. With n the mean over the neighbours that were fluid
-// before (rho_n - rho_rest is that of their excess over the density at rest, 0 where there are none), u_w the velocity
-// of the grain's rigid motion at the cell, F the body force:
+// before, rho_n the density at rest plus their mean excess over it (none: 0), u_w the velocity of the grain's rigid
+// motion at the cell, F the body force:
 //   equilibrium      f_i^c = f_i^eq(rho_n, u_w) + 3/2 w_i c_i.F
 //   non_equilibrium  f_i^c = f_i^eq(rho_n, u_w) + [f_i^c - f_i^eq](donor); the donor is the one of these neighbours
 //                    whose direction is nearest to the outward normal (Caiazzo 2008)
@@ -76,8 +76,8 @@ private:
   template <typename Real>
   void add_own_neighbours(const lbm::Fluid<Real>& fluid, const std::vector<lbm::LinkBody>& bodies,
                           const Hydrostatic& rest, const Outward& outward, std::vector<Uncovered>& uncovered) const;
-  template <typename Real>
   // at_rest: rho_rest - 1 in the cell.
+  template <typename Real>
   Neighbours look_at(const lbm::Fluid<Real>& fluid, std::ptrdiff_t cell, double at_rest, int direction,
                      const Vec3& normal) const;
   void exchange(std::vector<Uncovered>& uncovered) const;

@@ -52,18 +52,37 @@ Values values_of(const std::string& yaml) {
   return values;
 }
 
+// The first item, taken off the list without its brackets.
+std::string_view take_item(std::string_view& list) {
+  constexpr std::string_view comma = ", ";
+  const std::size_t end = list.find(comma);
+  const std::string_view item = list.substr(0, end);
+  list.remove_prefix(end == std::string_view::npos ? list.size() : end + comma.size());
+  return item;
+}
+
 std::string find(const Values& values, const std::string& key) {
   const auto found =
       std::find_if(values.begin(), values.end(), [&key](const auto& value) { return value.first == key; });
   return found == values.end() ? "none" : found->second;
 }
 
+bool is_list(const std::string& text) { return text.starts_with('[') && text.ends_with(']'); }
+
+// Lists are as add_values() writes them.
 bool same(const std::string& one, const std::string& other) {
   if (one == other) return true;
+  if (is_list(one) && is_list(other)) {
+    const auto rest_of = [](std::string_view list) { return list.substr(1, list.size() - 2); };
+    std::string_view left = rest_of(one), right = rest_of(other);
+    while (!left.empty() && !right.empty()) {
+      if (!same(std::string(take_item(left)), std::string(take_item(right)))) return false;
+    }
+    return left.empty() && right.empty();
+  }
   char *end_of_one = nullptr, *end_of_other = nullptr;
   const double a = std::strtod(one.c_str(), &end_of_one), b = std::strtod(other.c_str(), &end_of_other);
-  return *end_of_one == '\0' && *end_of_other == '\0' && !one.empty() && !other.empty() &&
-         (a == b || same_but_for_rounding(a, b));
+  return *end_of_one == '\0' && *end_of_other == '\0' && !one.empty() && !other.empty() && same_but_for_rounding(a, b);
 }
 
 bool is_in_the_checkpoint(std::string_view key) {

@@ -20,8 +20,7 @@ constexpr std::int64_t checkpoint_format = 2;
 
 std::string kept_line(std::size_t n) { return fmt::format("kept_case/line_{:04}", n); }
 
-void save_kept_case(ArchiveWriter& archive, const Case& c) {
-  const std::vector<std::string> lines = state_of_case(resolved_yaml(c), !has_fluid(c));
+void save_kept_case(ArchiveWriter& archive, const std::vector<std::string>& lines) {
   archive.attribute("kept_case/lines", static_cast<std::int64_t>(lines.size()));
   for (std::size_t n = 0; n < lines.size(); ++n) archive.attribute(kept_line(n), lines[n]);
 }
@@ -63,8 +62,11 @@ void load_system(System& system, ArchiveReader& archive, const std::filesystem::
 
 }  // namespace
 
+std::vector<std::string> kept_case_of(const Case& c) { return state_of_case(resolved_yaml(c), !has_fluid(c)); }
+
 void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c,
-                           const System& system, const Observers& observers, const Accounts& accounts) {
+                           const std::vector<std::string>& kept_case, const System& system, const Observers& observers,
+                           const Accounts& accounts) {
   io::Hdf5Writer archive(communicator, path);
   archive.attribute("run/format", checkpoint_format);
   archive.attribute("run/system", std::string(name_of(c.system)));
@@ -74,7 +76,7 @@ void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& p
   archive.attribute("run/time", system.time());
   archive.attribute("run/time_step", system.time_step());
   archive.attribute("run/spacing", c.domain.spacing);
-  save_kept_case(archive, c);
+  save_kept_case(archive, kept_case);
   save_beds(archive, communicator, c);
   system.save(archive);
   accounts.save(archive, observers, c.output.series.every);

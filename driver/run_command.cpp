@@ -126,27 +126,31 @@ void print_header(const Case& c, RunIdentity& identity, const System& system, co
   identity.warnings = static_cast<std::int64_t>(all.size());
 }
 
-// step: of the state the run begins with. Returns what keeps others out of the folder, on the first rank.
-io::FolderLock prepare_folder(const Places& places, const Case& c, const Command& command, std::int64_t step,
-                              MPI_Comm communicator, loop::Log& log) {
+// Keeps others out of the folder as long as the lock lives, on the first rank.
+io::FolderLock lock_folder(const Places& places, MPI_Comm communicator) {
   io::FolderLock lock;
+  on_first_rank(communicator, [&] { lock = io::FolderLock(places.folder.path()); });
+  return lock;
+}
+
+// step: of the state the run begins with.
+void prepare_folder(const Places& places, const Case& c, const Command& command, std::int64_t step,
+                    MPI_Comm communicator, loop::Log& log) {
   on_first_rank(communicator, [&] {
-    lock = io::FolderLock(places.folder.path());
     if (places.same_folder) {
       places.folder.keep_case(step);
       places.folder.go_on_from(step);
     } else {
       places.folder.create(command.overwrite);
     }
+    // First of all, because the folder is known by it.
+    places.folder.write_case(fmt::format("version {}\ncommand {}", version_text(), command.line), resolved_yaml(c));
     std::error_code ignored;
     fs::remove(places.folder.stop(), ignored);     // meant an earlier run
     fs::remove(places.folder.summary(), ignored);  // told of one
-    // First of all, because the folder is known by it.
-    places.folder.write_case(fmt::format("version {}\ncommand {}", version_text(), command.line), resolved_yaml(c));
     io::make_folder(places.folder.checkpoints());
     log.copy_to(places.folder.log().string());
   });
-  return lock;
 }
 
 void print_outcome(const RunIdentity& identity, const loop::LoopRecord& record, const System& system,
@@ -273,15 +277,14 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
     throw InputError(fmt::format("{} is at {:.6g} s already and the run ends at {:.6g} s: give a later --until.",
                                  beginning.checkpoint.string(), system->time(), c.run.until));
 
-  const std::vector<Figure> row = loop::series_row(*system, observers);
-  if (places.same_folder) RunOutput::check_series(communicator, c, places.folder, row);
-
-  const io::FolderLock lock = prepare_folder(places, c, command, system->step(), communicator, log);
+  const io::FolderLock lock = lock_folder(places, communicator);
+  RunOutput output(communicator, c, places.folder, *system, observers, loop::series_row(*system, observers),
+                   beginning.accounts.since, places.same_folder ? std::optional<double>(system->time()) : std::nullopt);
+  prepare_folder(places, c, command, system->step(), communicator, log);
   RunIdentity identity{c.name, name_of(c.system), command.line, c.run.until, layout, size_of(communicator)};
   if (!c.grains.empty()) identity.reference = reference_grain(c);
   print_header(c, identity, *system, places, beginning, bandwidth, communicator, log);
-  RunOutput output(communicator, c, places.folder, *system, observers, beginning.accounts.since,
-                   places.same_folder ? std::optional<double>(system->time()) : std::nullopt);
+  output.begin();
   loop::LoopPlan plan;
   plan.until = c.run.until;
   set_end(c, plan);
@@ -296,7 +299,6 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   plan.write_at_start = !places.same_folder;
   output.add_to(plan);
   loop::TimeLoop time_loop(communicator, *system, observers, plan, log);
-  output.begin_series(row);
   try {
     time_loop.run();
     if (!c.grains.empty()) io::write_bed_file(communicator, places.folder.bed(), system->snapshot());

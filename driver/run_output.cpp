@@ -26,14 +26,8 @@ static std::vector<io::SeriesTable::Column> series_columns(const std::vector<Fig
   return columns;
 }
 
-void RunOutput::check_series(MPI_Comm communicator, const Case& c, const io::RunFolder& folder,
-                             const std::vector<Figure>& row) {
-  if (c.output.series.every > 0.0)
-    io::SeriesTable::check_columns(communicator, folder.series(), series_columns(row, constants_of(c)));
-}
-
 RunOutput::RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& folder, const System& system,
-                     const Observers& observers, std::map<std::string, double> since,
+                     const Observers& observers, const std::vector<Figure>& row, std::map<std::string, double> since,
                      std::optional<double> continue_from)
     : communicator_(communicator),
       case_(c),
@@ -42,22 +36,34 @@ RunOutput::RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& 
       observers_(observers),
       since_(std::move(since)),
       continue_from_(continue_from),
-      constants_(constants_of(c)) {
-  const Snapshot snapshot = system.snapshot();
+      kept_case_(kept_case_of(c)),
+      constants_(constants_of(c)),
+      columns_(series_columns(row, constants_)) {
+  if (continue_from && c.output.series.every > 0.0)
+    io::SeriesTable::check_columns(communicator, folder.series(), columns_);
+  for (const auto& observer : observers) {
+    if (!observer->has_records()) continue;
+    records_.push_back({observer.get(), io::RecordFile(communicator, folder.records(observer->name()), continue_from),
+                        observer->take_records()});
+    records_.back().file.check(records_.back().first);
+  }
+}
+
+void RunOutput::begin() {
+  const Snapshot snapshot = system_.snapshot();
   if (snapshot.grains.global_count > 0) {
-    add_grains(folder.path(), "grains", c.output.grains, {});
-    for (const io::NamedGrainOutputKeys& part : c.output.grain_parts)
-      add_grains(folder.grain_parts(), part.name, part, part);
+    add_grains(folder_.path(), "grains", case_.output.grains, {});
+    for (const io::NamedGrainOutputKeys& part : case_.output.grain_parts)
+      add_grains(folder_.grain_parts(), part.name, part, part);
   }
   if (snapshot.fluid != nullptr) {
-    add_fluid(folder.path(), "fluid", c.output.fluid);
-    for (const io::NamedFluidOutputKeys& part : c.output.fluid_parts) add_fluid(folder.fluid_parts(), part.name, part);
+    add_fluid(folder_.path(), "fluid", case_.output.fluid);
+    for (const io::NamedFluidOutputKeys& part : case_.output.fluid_parts)
+      add_fluid(folder_.fluid_parts(), part.name, part);
   }
-  for (const auto& observer : observers)
-    if (observer->has_records())
-      records_.emplace_back(observer.get(),
-                            io::RecordFile(communicator, folder.records(observer->name()), continue_from));
-  write_records();  // whether they can be written, or continued, is known before the run begins
+  for (ObserverRecords& records : records_) records.file.add(std::exchange(records.first, {}));
+  if (case_.output.series.every > 0.0)
+    series_ = std::make_unique<io::SeriesTable>(communicator_, folder_.series(), columns_, continue_from_);
 }
 
 void RunOutput::add_grains(const std::filesystem::path& folder, const std::string& name,
@@ -93,12 +99,6 @@ void RunOutput::add_to(loop::LoopPlan& plan) {
                             [this](const Snapshot&) { write_records(); }});
 }
 
-void RunOutput::begin_series(const std::vector<Figure>& row) {
-  if (case_.output.series.every <= 0.0) return;
-  series_ = std::make_unique<io::SeriesTable>(communicator_, folder_.series(), series_columns(row, constants_),
-                                              continue_from_);
-}
-
 void RunOutput::write_row(double time, const std::vector<Figure>& measured) {
   std::vector<double> values;
   for (const auto* figures : {&measured, &std::as_const(constants_)})
@@ -119,16 +119,17 @@ void RunOutput::write_profiles() {
 }
 
 void RunOutput::write_records() {
-  for (auto& [observer, file] : records_) file.add(observer->take_records());
+  for (ObserverRecords& records : records_) records.file.add(records.observer->take_records());
 }
 
 std::uint64_t RunOutput::write_checkpoint(const loop::LoopRecord& record) {
   write_records();
   // A restart counts on what lies beside the checkpoint.
-  for (auto& [observer, file] : records_) file.put_on_disk();
+  for (ObserverRecords& records : records_) records.file.put_on_disk();
   if (series_) series_->put_on_disk();
   const std::filesystem::path path = folder_.checkpoint(system_.step());
-  write_checkpoint_file(communicator_, path, case_, system_, observers_, {record.largest, record.largest_from, since_});
+  write_checkpoint_file(communicator_, path, case_, kept_case_, system_, observers_,
+                        {record.largest, record.largest_from, since_});
   std::uint64_t bytes = 0;
   on_first_rank(communicator_, [&] {
     folder_.rotate_checkpoints(system_.step(), static_cast<int>(case_.output.checkpoint.keep));

@@ -26,21 +26,18 @@ namespace thalweg::driver {
 
 class RunOutput {
 public:
-  // folder exists. continue_from: the simulated time (s) at which a restarted run takes up the folder's own series;
-  // empty: new series. Everything referred to must outlive this.
+  // row: what a row of the series has. continue_from: the simulated time (s) at which a restarted run takes up the
+  // folder's own series; empty: new series. Throws InputError where the folder has series or records of another kind,
+  // and changes nothing. Everything referred to must outlive this.
   RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& folder, const System& system,
-            const Observers& observers, std::map<std::string, double> since, std::optional<double> continue_from);
+            const Observers& observers, const std::vector<Figure>& row, std::map<std::string, double> since,
+            std::optional<double> continue_from);
+
+  // Begins the files, or takes them up. Collective; the first of all calls.
+  void begin();
 
   // Schedules and actions for the time loop; they refer to this object.
   void add_to(loop::LoopPlan& plan);
-
-  // Throws InputError where the folder has a table of other figures than the row and the constants of the run.
-  // Collective.
-  static void check_series(MPI_Comm communicator, const Case& c, const io::RunFolder& folder,
-                           const std::vector<Figure>& row);
-
-  // The table that rows with these figures go to; throws as check_series() does. Collective.
-  void begin_series(const std::vector<Figure>& row);
 
 private:
   void add_grains(const std::filesystem::path& folder, const std::string& name, const io::GrainOutputKeys& keys,
@@ -58,11 +55,18 @@ private:
   const Observers& observers_;
   std::map<std::string, double> since_;
   std::optional<double> continue_from_;
+  std::vector<std::string> kept_case_;                      // for checkpoints
   std::vector<Figure> constants_;                           // of the run, in every row of the series
-  std::unique_ptr<io::SeriesTable> series_;                 // from begin_series() on, if there is to be one
+  std::vector<io::SeriesTable::Column> columns_;            // of the series
+  std::unique_ptr<io::SeriesTable> series_;                 // from begin() on, if there is to be one
   std::vector<std::pair<double, io::GrainSeries>> grains_;  // each with the time between its frames, s
   std::vector<std::pair<double, io::FluidSeries>> fluid_;   // likewise
-  std::vector<std::pair<analysis::Observer*, io::RecordFile>> records_;
+  struct ObserverRecords {
+    analysis::Observer* observer;
+    io::RecordFile file;
+    Records first;  // until begin() writes them
+  };
+  std::vector<ObserverRecords> records_;
 };
 
 }  // namespace thalweg::driver

@@ -159,18 +159,21 @@ hsize_t rows_until(hid_t file, double time) {
   return rows;
 }
 
+void check_shape(hid_t file, const Profile& array) {
+  const std::vector<hsize_t> extents = extents_of(open_array(file, array.name)),
+                             wanted(array.shape.begin(), array.shape.end());
+  if (extents.size() != wanted.size() || !std::equal(extents.begin() + 1, extents.end(), wanted.begin() + 1))
+    throw CannotGoOn{fmt::format("its array {} has another shape", array.name)};
+}
+
 void drop_rows_after(hid_t file, const std::vector<Profile>& rows, double time) {
   if (rows.empty()) return;
   hsize_t kept = rows_until(file, time);
   for (const Profile& array : rows)  // all have as many, unless the last addition was cut off
-    if (const std::vector<hsize_t> extents = extents_of(open_array(file, array.name)); !extents.empty())
-      kept = std::min(kept, extents[0]);
+    kept = std::min(kept, extents_of(open_array(file, array.name)).at(0));
   for (const Profile& array : rows) {
     const Handle dataset = open_array(file, array.name);
     std::vector<hsize_t> extents = extents_of(dataset);
-    const std::vector<hsize_t> wanted(array.shape.begin(), array.shape.end());
-    if (extents.size() != wanted.size() || !std::equal(extents.begin() + 1, extents.end(), wanted.begin() + 1))
-      throw CannotGoOn{fmt::format("its array {} has another shape", array.name)};
     extents[0] = kept;
     must(H5Dset_extent(dataset, extents.data()));
   }
@@ -204,8 +207,19 @@ std::string from_first_rank(MPI_Comm communicator, std::string text) {
 }
 
 // Also while somebody reads it.
-Handle open_file(const std::filesystem::path& path) {
-  return Handle(H5Fopen(path.c_str(), H5F_ACC_RDWR, lone_access()), H5Fclose);
+Handle open_file(const std::filesystem::path& path, unsigned access = H5F_ACC_RDWR) {
+  return Handle(H5Fopen(path.c_str(), access, lone_access()), H5Fclose);
+}
+
+void check_file(const std::filesystem::path& path, const Records& records) {
+  const Handle file = open_file(path, H5F_ACC_RDONLY);
+  if (!file.good()) throw CannotGoOn{"it is damaged, or another program has it open"};
+  try {
+    for (const WholeNumbers& numbers : records.fixed) check_fixed(file, numbers);
+    for (const Profile& array : records.rows) check_shape(file, array);
+  } catch (const CannotWrite&) {
+    throw CannotGoOn{"it is damaged"};
+  }
 }
 
 std::string cannot_write_text(const std::filesystem::path& path) {
@@ -223,10 +237,10 @@ void RecordFile::open_or_create(const Records& records) {
   opened_ = true;
   std::error_code ignored;
   if (continue_from_ && std::filesystem::exists(path_, ignored)) {
+    check_file(path_, records);
     const Handle file = open_file(path_);
     if (!file.good()) throw CannotGoOn{"it is damaged, or another program has it open"};
     try {
-      for (const WholeNumbers& numbers : records.fixed) check_fixed(file, numbers);
       drop_rows_after(file, records.rows, *continue_from_);
       drop_events_after(file, *continue_from_);
     } catch (const CannotWrite&) {
@@ -256,13 +270,25 @@ void RecordFile::put_on_disk() {
   if (any_rank(communicator_, failed)) throw RunError(cannot_write_text(path_));
 }
 
+void RecordFile::check(const Records& records) const {
+  std::error_code ignored;
+  on_first_rank_or_refused([&] {
+    if (continue_from_ && std::filesystem::exists(path_, ignored)) check_file(path_, records);
+  });
+}
+
 void RecordFile::add(const Records& records) {
+  on_first_rank_or_refused([&] { write(records); });
+}
+
+template <typename Act>
+void RecordFile::on_first_rank_or_refused(const Act& act) const {
   enum Outcome { good, cannot_write, cannot_go_on };
   int outcome = good;
   std::string why;
   if (rank_of(communicator_) == 0) {
     try {
-      write(records);
+      act();
     } catch (const CannotWrite&) {
       outcome = cannot_write;
     } catch (const CannotGoOn& reason) {

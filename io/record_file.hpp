@@ -19,9 +19,12 @@ namespace thalweg::io {
 // written.
 class RecordFile {
 public:
-  // continue_from: take up an existing file and drop rows and events after that time (s); where its `fixed` numbers
-  // differ or it is damaged, the first add(), which may have no rows yet, throws InputError. Empty: a new file.
+  // continue_from: take up an existing file and drop rows and events after that time (s); where its `fixed` numbers or
+  // the shapes of its rows differ, or it is damaged, the first add() throws InputError. Empty: a new file.
   RecordFile(MPI_Comm communicator, std::filesystem::path path, std::optional<double> continue_from);
+
+  // Throws what add() would, and changes nothing. records: they may have no rows yet.
+  void check(const Records& records) const;
 
   void add(const Records& records);  // only rank 0's are used
 
@@ -31,6 +34,8 @@ public:
 private:
   void open_or_create(const Records& records);
   void write(const Records& records);  // on rank 0
+  template <typename Act>
+  void on_first_rank_or_refused(const Act& act) const;  // throws on all
 
   MPI_Comm communicator_;
   std::filesystem::path path_;

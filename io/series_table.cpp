@@ -33,7 +33,7 @@ std::string kept_rows(const std::string& text, std::size_t start, double continu
   return rows;
 }
 
-// Whether the file can be continued with rows under this header; one without any text can.
+// Whether the file can be continued with rows under this header; an empty file can.
 bool has_other_columns(const std::string& text, const std::string& header) {
   return !text.empty() && !text.starts_with(header);
 }

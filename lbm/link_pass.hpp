@@ -119,7 +119,6 @@ private:
     alignas(64) Real leak[capacity];                        // rho - rho_rest where x_f is enclosed, else 0
     alignas(64) Real reflected[capacity];                   // f_i'(x_f, t+1)
     alignas(64) Real slip[capacity], odd_change[capacity];  // c_i.v, change of o (upstream_bodies.hpp)
-    alignas(64) Real half_force[capacity];                  // what else is added there
     // What is summed, zero for copies. taken, given: f_i^c(x_f), f_i'(x_f, t+1); pressure: w_i (rho - rho_rest)(x_f).
     alignas(64) Real taken[capacity], given[capacity], pressure[capacity];
     alignas(64) Real momentum[3][capacity], torque[3][capacity];
@@ -166,7 +165,7 @@ private:
     return bodies_[static_cast<std::size_t>(batch.body[link / links_at_a_time])];
   }
   bool gaps_flow() const { return gaps_.kept < 1.0; }
-  // Whether values_.slip, odd_change and half_force count.
+  // Whether values_.slip and odd_change count.
   bool slips(const Batch& batch) const { return gaps_flow() && batch.covered_count > 0; }
   const Real* excess() const { return has_rest_ ? values_.excess : values_.deviation; }
 

@@ -265,8 +265,11 @@ void LinkPass<Real, S>::look_at_covered(const Batch& b) {
     upstream_.take(c, b.tag[k], b.distance[k], Vec3(b.arm[0][k], b.arm[1][k], b.arm[2][k]), values_.deviation[k], other,
                    box_.difference(body_of(b, k).centre, other.centre));
   }
-  if (slips(b)) let_gaps_flow(b);
-  upstream_.find_populations(gaps_flow() ? Vec3(Vec3::Zero()) : options_.rest_gradient);
+  if (gaps_flow()) {
+    let_gaps_flow(b);
+    return;
+  }
+  upstream_.find_populations(options_.rest_gradient);
   for (int c = 0; c < b.covered_count; ++c) {
     const int k = b.covered[c];
     // Without a branch, which would be unpredictable.
@@ -299,11 +302,9 @@ void LinkPass<Real, S>::let_gaps_flow(const Batch& b) {
   upstream_.let_flow(force_, gaps_);
   std::fill_n(values_.slip, b.size, Real(0));
   std::fill_n(values_.odd_change, b.size, Real(0));
-  std::fill_n(values_.half_force, b.size, Real(0));
   for (int c = 0; c < b.covered_count; ++c) {
     values_.slip[b.covered[c]] = static_cast<Real>(upstream_.slip_along(c));
     values_.odd_change[b.covered[c]] = static_cast<Real>(upstream_.odd_change(c));
-    values_.half_force[b.covered[c]] = static_cast<Real>(upstream_.half_force(c));
   }
 }
 
@@ -337,19 +338,16 @@ void LinkPass<Real, S>::reflect(const Batch& b, const Piece& piece) {
     Pack towards_wall = cx * ux + cy * uy + cz * uz;
     if (with_slip) towards_wall += at(values_.slip);
     LinkWeights<Pack> rule = Rule::weights(at(b.distance));
-    if constexpr (Rule::needs_both) {
+    if (Rule::needs_both || with_slip) {  // half-way bounce-back in a gap of one cell
       const typename Pack::mask_type covered = lane < Pack(Real(piece.covered_end() - k));
+      rule.incident = chosen<Pack>(covered, Pack(Real(1)), rule.incident);
       rule.second = chosen<Pack>(covered, Pack(Real(0)), rule.second);
       rule.wall = chosen<Pack>(covered, Pack(Real(6)), rule.wall);
     }
     const Pack deviation = at(values_.deviation), incident = at(values_.incident);
     const Pack density = local ? Pack(Real(1)) + deviation : Pack(Real(1));
     Pack interpolated = rule.incident * incident + rule.second * at(values_.second);
-    if (with_slip) {
-      // From a half on the second is f_i'^c(x_f), which changes by as much the other way.
-      const Pack opposite = chosen<Pack>(at(b.distance) < Pack(Real(0.5)), Pack(Real(0)), rule.second);
-      interpolated += at(values_.odd_change) * (rule.incident - opposite) + at(values_.half_force);
-    }
+    if (with_slip) interpolated += at(values_.odd_change);
     const Pack moving_wall = rule.wall * weight * density * towards_wall;
     Pack returned = body.returned + (cx * body.sx + cy * body.sy + cz * body.sz);
     if (b.leaks) returned -= at(values_.leak);

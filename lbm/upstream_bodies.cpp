@@ -1,6 +1,5 @@
 #include "lbm/upstream_bodies.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace thalweg::lbm {
@@ -9,7 +8,9 @@ GapFlow gap_flow(const CollisionParameters& collision) {
   const double viscosity = (collision.relaxation_time - 0.5) / 3.0, rate = collision.odd_rate();
   const double k = rate / (16.0 * viscosity);
   if (k > 1.0) return {0.0, 1.0 - 1.0 / k};
-  return {std::min(1.0, (1.0 - k) / (k - 1.0 + rate)), 0.0};
+  constexpr double rounding = 1e-9;
+  if (k <= (1.0 - 0.5 * rate) * (1.0 + rounding)) return {};  // Lambda at or above 3/16
+  return {(1.0 - k) / (k - 1.0 + rate), 0.0};
 }
 
 void UpstreamBodies::set_normals(int link, const Vec3& own, const Vec3& other) {
@@ -59,14 +60,11 @@ void UpstreamBodies::let_flow(const double (&force)[3], const GapFlow& flow) {
       const double along_gap = slip * static_cast<double>(1 - (tag >> LinkTag::confined_shift & 1));
       const double sx = along_gap * (vx - across * mx), sy = along_gap * (vy - across * my),
                    sz = along_gap * (vz - across * mz);
-      slip_[0][k] = sx;
-      slip_[1][k] = sy;
-      slip_[2][k] = sz;
       const double along = cx * sx + cy * sy + cz * sz;
       slip_along_[k] = along;
       const double weight = (3.0 - (cx * cx + cy * cy + cz * cz)) * (1.0 / 36.0);
-      odd_change_[k] = changed * (3.0 * weight * density * (cx * wx + cy * wy + cz * wz + along) - odd_[k]);
-      half_force_[k] = changed * 3.0 * weight * (cx * fx + cy * fy + cz * fz);
+      const double target = density * (cx * wx + cy * wy + cz * wz + along) + (cx * fx + cy * fy + cz * fz);
+      odd_change_[k] = changed * (3.0 * weight * target - odd_[k]);
     }
 }
 
@@ -79,9 +77,9 @@ void UpstreamBodies::find_populations(const Vec3& rest_gradient) {
       const double cx = LinkTag::velocity(tag, 0), cy = LinkTag::velocity(tag, 1), cz = LinkTag::velocity(tag, 2);
       const double back = distance_[k] + 1.0;
       const double x = arm_[0][k] - back * cx, y = arm_[1][k] - back * cy, z = arm_[2][k] - back * cz;
-      const double ux = velocity_[0][k] + (spin_[1][k] * z - spin_[2][k] * y) + slip_[0][k],
-                   uy = velocity_[1][k] + (spin_[2][k] * x - spin_[0][k] * z) + slip_[1][k],
-                   uz = velocity_[2][k] + (spin_[0][k] * y - spin_[1][k] * x) + slip_[2][k];
+      const double ux = velocity_[0][k] + (spin_[1][k] * z - spin_[2][k] * y),
+                   uy = velocity_[1][k] + (spin_[2][k] * x - spin_[0][k] * z),
+                   uz = velocity_[2][k] + (spin_[0][k] * y - spin_[1][k] * x);
       const double cu = cx * ux + cy * uy + cz * uz, uu = ux * ux + uy * uy + uz * uz;
       const double weight = (3.0 - (cx * cx + cy * cy + cz * cz)) * (1.0 / 36.0);
       const double along = cx * gx + cy * gy + cz * gz, d = deviation_[k] - along;

@@ -82,7 +82,7 @@ struct LoopPlan {
   std::vector<OutputTask> outputs;
 };
 
-// A row of the series with the values of now: the figures of the system and those of the observers, a column a name.
+// A row of the series with the current values: the figures of the system and those of the observers, a column a name.
 // Collective.
 std::vector<Figure> series_row(const System& system, const std::vector<std::unique_ptr<analysis::Observer>>& observers);
 

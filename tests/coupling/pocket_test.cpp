@@ -10,7 +10,7 @@ namespace {
 constexpr Index3 pocket{12, 12, 12};
 constexpr double radius = 4.95, spacing = 5e-4;  // cells, m
 
-// Steps after which v would still be exp(-100 12 nu) = 0.87 of what it was, by viscosity alone.
+// Steps after which v would still be exp(-100 8 nu) = 0.91 of what it was, by viscosity alone.
 constexpr int steps = 100;
 
 dem::GrainSeed fixed_grain(int id, const Vec3& from_pocket) {

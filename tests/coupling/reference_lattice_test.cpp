@@ -90,22 +90,24 @@ private:
     const bool wall_behind = beyond_wall(at, back);
     Vec3 slip = Vec3::Zero();
     double incident = f_[at][i], opposite = f_[at][back];
-    double upstream = wall_behind ? from_wall(at, i) : f_[behind][i], half_force = 0.0;
+    double upstream = wall_behind ? from_wall(at, i) : f_[behind][i];
+    bool flows = false;  // a gap of one cell
     if (const int q = owner_[behind]; q >= 0 && !wall_behind) {
       const Vec3 velocity = spheres_[q].velocity + spheres_[q].spin.cross(from(position(behind), q));
       if (options.gaps == lbm::GapRule::slip) {
         const Walls walls = gap(at, density, s, q);
         slip = walls.slip;
-        const double even = 0.5 * (incident + opposite), odd = 3 * weight * (1 + density) * c.dot(walls.mean + slip);
-        incident = even + odd;
-        opposite = even - odd;
-        half_force = 1.5 * weight * c.dot(Vec3(parameters_.force[0], parameters_.force[1], parameters_.force[2]));
+        const Vec3 force(parameters_.force[0], parameters_.force[1], parameters_.force[2]);
+        incident = 0.5 * (incident + opposite) + weight * c.dot(3 * (1 + density) * (walls.mean + slip) + 1.5 * force);
+        flows = true;
       }
-      upstream = lbm::equilibrium_deviation(i, density, velocity + slip);
+      upstream = lbm::equilibrium_deviation(i, density, velocity);
     }
     const double towards_wall = c.dot(wall + slip);
     double result;
-    if (options.rule == lbm::LinkRule::cli && (wall_behind || owner_[behind] < 0)) {
+    if (flows) {
+      result = incident - 6 * weight * (1 + density) * towards_wall;
+    } else if (options.rule == lbm::LinkRule::cli && (wall_behind || owner_[behind] < 0)) {
       const double k = (1 - 2 * delta) / (1 + 2 * delta);
       result =
           f_[at][i] + k * upstream - k * f_[at][back] - 12 / (1 + 2 * delta) * weight * (1 + density) * towards_wall;
@@ -117,7 +119,6 @@ private:
       result = incident / (2 * delta) + (2 * delta - 1) / (2 * delta) * opposite -
                3 / delta * weight * (1 + density) * towards_wall;
     }
-    result += half_force;
     Vec3 momentum = c * (f_[at][i] + result);
     if (options.momentum_exchange == lbm::MomentumExchange::galilean_invariant) momentum -= wall * (f_[at][i] - result);
     loads[s].force += momentum;

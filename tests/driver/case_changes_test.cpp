@@ -43,6 +43,9 @@ TEST(CaseChanges, SaysWhichKeysDiffer) {
 TEST(CaseChanges, ANumberMayBeWrittenInAnotherWay) {
   EXPECT_TRUE(case_changes(before, with("1e-06", "0.000001")).empty());
   EXPECT_EQ(case_changes(before, with("1e-06", "0.000002")).size(), 1u);
+  EXPECT_TRUE(case_changes(before, with("[0.1, 0.02, 0.1]", "[0.1, 0.020000000000000004, 1e-1]")).empty());
+  for (const char* other : {"[0.1, 0.02]", "[0.1, 0.02, 0.1, 0.1]", "[0.1, 0.02, -0.1]", "[0.1, 0.02, .inf]"})
+    EXPECT_EQ(case_changes(before, with("[0.1, 0.02, 0.1]", other)).size(), 1u) << other;
 }
 
 TEST(CaseChanges, WhereGrainsWerePlacedDoesNotCount) {

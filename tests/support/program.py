@@ -104,6 +104,10 @@ class ProgramTest(unittest.TestCase):
             for name in names:
                 self.assertEqual(a[name][()].tobytes(), b[name][()].tobytes(), name)
 
+    def files_of(self, run):
+        """The contents of all files of a run, by name, but for the lock."""
+        return {path: path.read_bytes() for path in (self.folder / run).rglob("*") if path.is_file() and path.name != ".lock"}
+
     def assert_refused(self, *arguments, words, ranks=0):
         """Exit code 2, one sentence with the words on standard error, nothing written anywhere."""
         before = files_below(self.folder)

@@ -132,10 +132,6 @@ output: {series: {every: 0.01}}
             self.assert_refused(*on, "--set", f"{key}={value}", words=["copy.h5: ", key, "set the key back", "initial.from"])
         self.run_well(*on)
 
-    def files_of(self, run):
-        """The contents of all files of a run, by name, but for the lock."""
-        return {path: path.read_bytes() for path in (self.folder / run).rglob("*") if path.is_file() and path.suffix != ".lock"}
-
 
 class RestartOfSums(ProgramTest):
     """What is summed up over a run goes on with it, or says from when it counts."""
@@ -165,7 +161,7 @@ class RestartOfSums(ProgramTest):
 
 
 class RestartOfACopy(ProgramTest):
-    """A checkpoint that lies in no run folder, so that there is no case to compare with."""
+    """A checkpoint that lies in no run folder."""
     CASE = """
 system: fluid
 name: a flow

@@ -122,7 +122,7 @@ class Runner:
             self.say(counts, estimate, passing=not last)
 
     def say(self, text, estimate="", passing=False):
-        """passing: on a terminal the next line takes its place; a file gets it only where the text has changed, whatever the estimate."""
+        """passing: on a terminal the next line takes its place; a file gets it only when the text has changed; a new estimate alone does not count."""
         if sys.stdout.isatty():
             print(f"\r{text + estimate:<100}", end="" if passing else "\n", flush=True)
         elif text != self.said:
