@@ -4,6 +4,7 @@
 #include "core/mpi_session.hpp"
 #include "io/atomic_file.hpp"
 #include "io/checksum.hpp"
+#include "io/diverted_file.hpp"
 #include "io/hdf5_handle.hpp"
 
 #include <fmt/format.h>
@@ -210,9 +211,11 @@ Hdf5Writer::~Hdf5Writer() {
     file_->file.release();
     return;
   }
-  // HDF5 cannot recover from a close that fails, and on a full disk it would: give the room back first.
+  // HDF5 cannot recover from a close that fails, and on a full disk it would, even where the room is given back: its
+  // tables need more pages than the file had.
   std::error_code ignored;
   if (rank_of(file_->communicator) == 0) std::filesystem::resize_file(file_->partial, 0, ignored);
+  divert_to_memory(file_->partial);
   MPI_Barrier(file_->communicator);
   file_->file.reset();
   if (rank_of(file_->communicator) == 0) std::filesystem::remove(file_->partial, ignored);
