@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -131,16 +132,16 @@ std::vector<CaseChange> case_changes(const std::string& before, const std::strin
   return changes_of(values_of(before), values_of(now));
 }
 
-std::vector<std::string> state_of_case(const std::string& yaml, bool dry) {
-  std::vector<std::string> lines;
-  for (const auto& [key, value] : state_values(yaml, dry))
-    lines.push_back(fmt::format("{}{}{}", key, separator, value));
-  return lines;
+std::string state_of_case(const std::string& yaml, bool dry) {
+  std::string text;
+  for (const auto& [key, value] : state_values(yaml, dry)) text += fmt::format("{}{}{}\n", key, separator, value);
+  return text;
 }
 
-std::vector<CaseChange> state_changes(const std::vector<std::string>& before, const std::string& now, bool dry) {
+std::vector<CaseChange> state_changes(const std::string& before, const std::string& now, bool dry) {
   Values values;
-  for (const std::string& line : before) {
+  std::istringstream lines(before);
+  for (std::string line; std::getline(lines, line);) {
     const std::size_t end = line.find(separator);
     if (end != std::string::npos) values.emplace_back(line.substr(0, end), line.substr(end + separator.size()));
   }

@@ -17,9 +17,9 @@ std::vector<CaseChange> case_changes(const std::string& before, const std::strin
 
 // The keys of such a case that a checkpoint fixes (see below), a line "key: value" each. A checkpoint keeps them, so
 // that it can be compared with a case wherever it lies.
-std::vector<std::string> state_of_case(const std::string& yaml, bool dry);
-// The changes from lines of state_of_case() to the case now, of those keys alone.
-std::vector<CaseChange> state_changes(const std::vector<std::string>& before, const std::string& now, bool dry);
+std::string state_of_case(const std::string& yaml, bool dry);
+// The changes from the text of state_of_case() to the case now, of those keys alone.
+std::vector<CaseChange> state_changes(const std::string& before, const std::string& now, bool dry);
 
 // Throws InputError, naming the first, if a change is of something that the checkpoint contains and the case cannot
 // alter: the system, the box, the cells, their precision, the grains themselves, which populations have a contact

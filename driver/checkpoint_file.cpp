@@ -10,9 +10,6 @@
 #include "io/hdf5_archive.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include <sstream>
 
 namespace thalweg::driver {
 
@@ -21,27 +18,23 @@ namespace {
 // Of what a checkpoint contains and how; those without a number were written before 2.
 constexpr std::int64_t checkpoint_format = 2;
 
-// The lines of the kept case are one text, in parts that an attribute has room for: it holds less than 64 kB, and more
-// than eight attributes of a group would need tables of their own.
+// The kept case is a text in parts that an attribute has room for: it holds less than 64 kB, and more than eight
+// attributes of a group would need tables of their own.
 constexpr std::size_t part_size = 32000;  // bytes
 
 std::string kept_part(std::size_t n) { return fmt::format("kept_case/part_{}", n); }
 
-void save_kept_case(ArchiveWriter& archive, const std::vector<std::string>& lines) {
-  const std::string text = fmt::format("{}", fmt::join(lines, "\n"));
+void save_kept_case(ArchiveWriter& archive, const std::string& text) {
   const std::size_t parts = (text.size() + part_size - 1) / part_size;
   archive.attribute("kept_case/parts", static_cast<std::int64_t>(parts));
   for (std::size_t n = 0; n < parts; ++n) archive.attribute(kept_part(n), text.substr(n * part_size, part_size));
 }
 
-std::vector<std::string> load_kept_case(const ArchiveReader& archive) {
+std::string load_kept_case(const ArchiveReader& archive) {
   std::string text;
   const auto parts = static_cast<std::size_t>(archive.integer_attribute("kept_case/parts"));
   for (std::size_t n = 0; n < parts; ++n) text += archive.text_attribute(kept_part(n));
-  std::vector<std::string> lines;
-  std::istringstream all(text);
-  for (std::string line; std::getline(all, line);) lines.push_back(line);
-  return lines;
+  return text;
 }
 
 // A lattice of as many cells of another size would be taken for this one, at other speeds. A column, which has no
@@ -59,8 +52,8 @@ void refuse_other_spacing(const ArchiveReader& archive, const Case& c) {
 // A checkpoint that has left its run folder has no case beside it to compare with.
 void refuse_other_case(const ArchiveReader& archive, const Case& c) {
   if (!archive.has("kept_case/parts")) return;  // of an earlier version
-  const std::vector<std::string> lines = load_kept_case(archive);
-  refuse_changes_of_state(state_changes(lines, resolved_yaml(c), !has_fluid(c)), !has_fluid(c));
+  const bool dry = !has_fluid(c);
+  refuse_changes_of_state(state_changes(load_kept_case(archive), resolved_yaml(c), dry), dry);
 }
 
 // What does not fit names the file.
@@ -80,10 +73,10 @@ void load_system(System& system, ArchiveReader& archive, const std::filesystem::
 
 }  // namespace
 
-std::vector<std::string> kept_case_of(const Case& c) { return state_of_case(resolved_yaml(c), !has_fluid(c)); }
+std::string kept_case_of(const Case& c) { return state_of_case(resolved_yaml(c), !has_fluid(c)); }
 
 void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c,
-                           const std::vector<std::string>& kept_case, const System& system, const Observers& observers,
+                           const std::string& kept_case, const System& system, const Observers& observers,
                            const Accounts& accounts) {
   io::Hdf5Writer archive(communicator, path);
   archive.attribute("run/format", checkpoint_format);

@@ -19,11 +19,11 @@ namespace thalweg::driver {
 // system, the observers and the accounts. Its bytes do not depend on the number of ranks. kept_case: kept_case_of(c).
 // Collective; RunError on every rank.
 void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c,
-                           const std::vector<std::string>& kept_case, const System& system, const Observers& observers,
+                           const std::string& kept_case, const System& system, const Observers& observers,
                            const Accounts& accounts);
 
 // Those keys and their values. Takes as long as writing the case.
-std::vector<std::string> kept_case_of(const Case& c);
+std::string kept_case_of(const Case& c);
 
 // The state of a checkpoint into a system and observers built from a case. Throws InputError where they do not fit (in
 // system, cells, time step or one of the kept keys), and io::DamagedFile.

@@ -55,7 +55,7 @@ private:
   const Observers& observers_;
   std::map<std::string, double> since_;
   std::optional<double> continue_from_;
-  std::vector<std::string> kept_case_;                      // for checkpoints
+  std::string kept_case_;                                   // for checkpoints
   std::vector<Figure> constants_;                           // of the run, in every row of the series
   std::vector<io::SeriesTable::Column> columns_;            // of the series
   std::unique_ptr<io::SeriesTable> series_;                 // from begin() on, if there is to be one

@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
+#include "core/on_first_rank.hpp"
 #include "io/atomic_file.hpp"
 #include "io/hdf5_handle.hpp"
 
@@ -198,14 +199,6 @@ void drop_events_after(hid_t file, double time) {
   }
 }
 
-std::string from_first_rank(MPI_Comm communicator, std::string text) {
-  auto length = static_cast<int>(text.size());
-  MPI_Bcast(&length, 1, MPI_INT, 0, communicator);
-  text.resize(static_cast<std::size_t>(length));
-  MPI_Bcast(text.data(), length, MPI_CHAR, 0, communicator);
-  return text;
-}
-
 // Also while somebody reads it.
 Handle open_file(const std::filesystem::path& path, unsigned access = H5F_ACC_RDWR) {
   return Handle(H5Fopen(path.c_str(), access, lone_access()), H5Fclose);
@@ -271,38 +264,29 @@ void RecordFile::put_on_disk() {
 }
 
 void RecordFile::check(const Records& records) const {
-  std::error_code ignored;
-  on_first_rank_or_refused([&] {
+  act([&] {
+    std::error_code ignored;
     if (continue_from_ && std::filesystem::exists(path_, ignored)) check_file(path_, records);
   });
 }
 
 void RecordFile::add(const Records& records) {
-  on_first_rank_or_refused([&] { write(records); });
+  act([&] { write(records); });
 }
 
-template <typename Act>
-void RecordFile::on_first_rank_or_refused(const Act& act) const {
-  enum Outcome { good, cannot_write, cannot_go_on };
-  int outcome = good;
-  std::string why;
-  if (rank_of(communicator_) == 0) {
+void RecordFile::act(const std::function<void()>& work) const {
+  on_first_rank(communicator_, [&] {
     try {
-      act();
+      work();
     } catch (const CannotWrite&) {
-      outcome = cannot_write;
+      throw RunError(cannot_write_text(path_));
     } catch (const CannotGoOn& reason) {
-      outcome = cannot_go_on;
-      why = reason.why;
+      throw InputError(
+          fmt::format("{}: the file cannot be continued, {}; move it away or restart into another folder with "
+                      "--out.",
+                      path_.string(), reason.why));
     }
-  }
-  MPI_Bcast(&outcome, 1, MPI_INT, 0, communicator_);
-  if (outcome == cannot_go_on)
-    throw InputError(
-        fmt::format("{}: the file cannot be continued, {}; move it away or restart into another folder with "
-                    "--out.",
-                    path_.string(), from_first_rank(communicator_, why)));
-  if (outcome == cannot_write) throw RunError(cannot_write_text(path_));
+  });
 }
 
 }  // namespace thalweg::io

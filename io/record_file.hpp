@@ -11,6 +11,7 @@
 #include <mpi.h>
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 
 namespace thalweg::io {
@@ -33,9 +34,8 @@ public:
 
 private:
   void open_or_create(const Records& records);
-  void write(const Records& records);  // on rank 0
-  template <typename Act>
-  void on_first_rank_or_refused(const Act& act) const;  // throws on all
+  void write(const Records& records);                 // on rank 0
+  void act(const std::function<void()>& work) const;  // on rank 0; what is wrong with the file, all ranks throw
 
   MPI_Comm communicator_;
   std::filesystem::path path_;

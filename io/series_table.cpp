@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
+#include "core/on_first_rank.hpp"
 #include "io/atomic_file.hpp"
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <functional>
 
 namespace thalweg::io {
 namespace {
@@ -33,62 +35,56 @@ std::string kept_rows(const std::string& text, std::size_t start, double continu
   return rows;
 }
 
-// Whether the file can be continued with rows under this header; an empty file can.
-bool has_other_columns(const std::string& text, const std::string& header) {
-  return !text.empty() && !text.starts_with(header);
+std::string cannot_write_text(const std::filesystem::path& path) {
+  return fmt::format("{}: cannot write the series; is the disk full or the folder write-protected?", path.string());
 }
 
-void refuse_other_columns(const std::filesystem::path& path, std::string header) {
-  header.pop_back();  // the end of the line
+// Throws InputError where the text of a file does not begin with this header; an empty file can be continued.
+void refuse_other_columns(const std::filesystem::path& path, const std::string& text, const std::string& header) {
+  if (text.empty() || text.starts_with(header)) return;
   throw InputError(
       fmt::format("{}: the file has other columns than this run writes ({}); restart into another folder "
                   "with --out.",
-                  path.string(), header));
+                  path.string(), header.substr(0, header.size() - 1)));
+}
+
+// work: with the file, on rank 0. Anything but an InputError means that it cannot be written.
+void act(MPI_Comm communicator, const std::filesystem::path& path, const std::function<void()>& work) {
+  on_first_rank(communicator, [&] {
+    try {
+      work();
+    } catch (const InputError&) {
+      throw;
+    } catch (const std::runtime_error&) {
+      throw RunError(cannot_write_text(path));
+    }
+  });
 }
 
 }  // namespace
 
 void SeriesTable::check_columns(MPI_Comm communicator, const std::filesystem::path& path,
                                 const std::vector<Column>& columns) {
-  bool other = false;
-  std::error_code ignored;
-  if (rank_of(communicator) == 0 && std::filesystem::exists(path, ignored)) {
-    try {
-      other = has_other_columns(read_text(path), header_of(columns));
-    } catch (const std::runtime_error&) {  // the constructor will say that it cannot be used
-    }
-  }
-  if (any_rank(communicator, other)) refuse_other_columns(path, header_of(columns));
+  act(communicator, path, [&] {
+    if (std::filesystem::exists(path)) refuse_other_columns(path, read_text(path), header_of(columns));
+  });
 }
 
 SeriesTable::SeriesTable(MPI_Comm communicator, std::filesystem::path path, std::vector<Column> columns,
                          std::optional<double> continue_from)
     : communicator_(communicator), path_(std::move(path)), columns_(std::move(columns)) {
-  enum Outcome { good, cannot_write, other_columns };
-  int outcome = good;
-  if (rank_of(communicator_) == 0) {
-    try {
-      const std::string header = header_of(columns_);
-      std::string rows;
-      if (continue_from && std::filesystem::exists(path_)) {
-        const std::string text = read_text(path_);
-        if (has_other_columns(text, header))
-          outcome = other_columns;
-        else if (!text.empty())
-          rows = kept_rows(text, header.size(), *continue_from);
-      }
-      if (outcome == good) {
-        write_text_atomically(path_, header + rows);
-        file_.open(path_, std::ios::binary | std::ios::app);
-        if (!file_) outcome = cannot_write;
-      }
-    } catch (const std::runtime_error&) {
-      outcome = cannot_write;
+  act(communicator_, path_, [&] {
+    const std::string header = header_of(columns_);
+    std::string rows;
+    if (continue_from && std::filesystem::exists(path_)) {
+      const std::string text = read_text(path_);
+      refuse_other_columns(path_, text, header);
+      if (!text.empty()) rows = kept_rows(text, header.size(), *continue_from);
     }
-  }
-  MPI_Bcast(&outcome, 1, MPI_INT, 0, communicator_);
-  if (outcome == other_columns) refuse_other_columns(path_, header_of(columns_));
-  throw_if_failed(outcome == cannot_write);
+    write_text_atomically(path_, header + rows);
+    file_.open(path_, std::ios::binary | std::ios::app);
+    if (!file_) throw RunError(cannot_write_text(path_));
+  });
 }
 
 void SeriesTable::append(double time, std::span<const double> values) {
@@ -104,9 +100,7 @@ void SeriesTable::append(double time, std::span<const double> values) {
 void SeriesTable::put_on_disk() { throw_if_failed(rank_of(communicator_) == 0 && !io::put_on_disk(path_)); }
 
 void SeriesTable::throw_if_failed(bool failed) const {
-  if (any_rank(communicator_, failed))
-    throw RunError(
-        fmt::format("{}: cannot write the series; is the disk full or the folder write-protected?", path_.string()));
+  if (any_rank(communicator_, failed)) throw RunError(cannot_write_text(path_));
 }
 
 }  // namespace thalweg::io

@@ -4,8 +4,8 @@
 // post-collision, x_ff = x_f - c_i, u_w the velocity of the surface where the link meets it. What comes back, f_i'(x_f,
 // t+1), is given by a rule: bouzidi_link.hpp or cli_link.hpp.
 // If x_ff is covered by a body, Bouzidi's rule takes for f_i^c(x_ff) the equilibrium at the density of x_f and that
-// body's velocity at x_ff (Zhang et al. 2022; upstream_bodies.hpp); the other rule becomes bounce-back. If it lies
-// beyond a wall, the population that the wall returns to x_f stands in.
+// body's velocity at x_ff (Zhang et al. 2022; upstream_bodies.hpp); the other rule becomes half-way bounce-back, and
+// both do where gaps slip. If it lies beyond a wall, the population that the wall returns to x_f stands in.
 //
 // Force on the body per step: the Galilean-invariant exchange of Wen et al. 2014, sum (c_i - u_w) f_i^c - (c_i' - u_w)
 // f_i', or the classical one of Mei et al. 2002, sum c_i (f_i^c + f_i'). w_i times a reference density is subtracted

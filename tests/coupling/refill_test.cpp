@@ -33,7 +33,38 @@ double density(const Index3& cell) { return 1e-3 * cell[0] - 4e-4 * cell[1] + 2e
 
 double scale(const Index3& cell) { return 1.0 + 0.03 * cell[0] - 0.02 * cell[1] + 0.01 * cell[2]; }
 
-class UncoveredCells : public ::testing::TestWithParam<RefillRule> {};
+// A sphere of 3 cells goes from `before` to where `body` is, and the cells that it leaves are filled.
+RefillTotals move_sphere(lbm::Fluid<double>& fluid, const Decomposition& decomposition, MPI_Comm communicator,
+                         RefillRule rule, const Hydrostatic& rest, const Vec3& before, const lbm::LinkBody& body) {
+  GrainMap map(decomposition, fluid.block(), fluid.cells());
+  map.begin_update();
+  const int slot = map.add(0, {3.0});
+  map.place(slot, before);
+  map.settle();
+  map.begin_update();
+  map.place(slot, body.centre);
+  const std::vector<CellChange> changes = map.settle();
+  std::vector<lbm::LinkBody> bodies{body};
+  const auto outward = [&](int, const Vec3& point) { return map.shapes()[0].outward(point); };
+  return Refill(decomposition, communicator, rule).fill(fluid, changes, rest, outward, bodies);
+}
+
+lbm::LinkBody body_at(const Vec3& centre) {
+  lbm::LinkBody body;
+  body.centre = centre;
+  return body;
+}
+
+lbm::FaceConditions floor_and_top() {
+  lbm::FaceConditions faces;
+  faces[4].type = faces[5].type = lbm::FaceType::no_slip;
+  return faces;
+}
+
+class UncoveredCells : public ::testing::TestWithParam<RefillRule> {
+protected:
+  const Decomposition upright_{{16, 16, 16}, 1.0, {true, true, false}, {1, 1, 1}};  // between floor and top
+};
 
 // A sphere of 3 cells moves on by 0.8 cells. Every cell it leaves has neighbours on many ranks and across a periodic
 // face. With the stress the same everywhere, both rules that keep it must return it to round-off of the fixed-point
@@ -56,22 +87,11 @@ TEST_P(UncoveredCells, KeepWhatTheRuleSays) {
           fluid.populations().post_collision(i, fluid.indexing().index(x, y, z)) =
               lbm::equilibrium_deviation(i, density(global), flow(global)) + off_equilibrium(i, force, scale(global));
       }
-  GrainMap map(decomposition, fluid.block(), fluid.cells());
   const Vec3 before(7.9, 15.7, 8.1), after(8.6, 15.9, 7.8);
-  map.begin_update();
-  const int slot = map.add(0, {3.0});
-  map.place(slot, before);
-  map.settle();
-  map.begin_update();
-  map.place(slot, after);
-  std::vector<lbm::LinkBody> bodies(1);
-  bodies[0].centre = after;
-  bodies[0].velocity = Vec3(0.7, 0.2, -0.3) * 0.05;
-  bodies[0].angular_velocity = Vec3(0.001, -0.002, 0.003);
-  const std::vector<CellChange> changes = map.settle();
-  Refill refill(decomposition, MPI_COMM_WORLD, GetParam());
-  const RefillTotals totals = refill.fill(
-      fluid, changes, {}, [&](int, const Vec3& point) { return map.shapes()[0].outward(point); }, bodies);
+  lbm::LinkBody body = body_at(after);
+  body.velocity = Vec3(0.7, 0.2, -0.3) * 0.05;
+  body.angular_velocity = Vec3(0.001, -0.002, 0.003);
+  const RefillTotals totals = move_sphere(fluid, decomposition, MPI_COMM_WORLD, GetParam(), {}, before, body);
 
   // The plain answer, from global coordinates.
   const auto offset = [&](const Index3& cell, const Vec3& centre) {
@@ -88,7 +108,7 @@ TEST_P(UncoveredCells, KeepWhatTheRuleSays) {
         const Index3 cell{from[0] + x, from[1] + y, from[2] + z};
         if (!inside(cell, before) || inside(cell, after)) continue;
         ++filled;
-        const Vec3 d = offset(cell, after), velocity = bodies[0].velocity + bodies[0].angular_velocity.cross(d);
+        const Vec3 d = offset(cell, after), velocity = body.velocity + body.angular_velocity.cross(d);
         double mean = 0.0, mean_scale = 0.0, donor_scale = 0.0, nearest = -1e9;
         int count = 0;
         for (int i = 1; i < 19; ++i) {
@@ -124,24 +144,9 @@ TEST_P(UncoveredCells, KeepWhatTheRuleSays) {
 // A sphere that is taken away leaves cells whose neighbours it had covered as well. Nothing around them tells their
 // density, which is that at rest.
 TEST_P(UncoveredCells, WithoutFluidBesideThemHaveTheDensityAtRest) {
-  const Decomposition decomposition({16, 16, 16}, 1.0, {true, true, false}, {1, 1, 1});
-  lbm::FaceConditions faces;
-  faces[4].type = faces[5].type = lbm::FaceType::no_slip;
-  lbm::Fluid<double> fluid(decomposition, MPI_COMM_SELF, {}, faces);
-  GrainMap map(decomposition, fluid.block(), fluid.cells());
-  map.begin_update();
-  const int slot = map.add(0, {3.0});
-  map.place(slot, Vec3(4.5, 8.5, 4.5));
-  map.settle();
-  map.begin_update();
-  map.place(slot, Vec3(11.5, 8.5, 11.5));
-  std::vector<lbm::LinkBody> bodies(1);
-  bodies[0].centre = Vec3(11.5, 8.5, 11.5);
-  const std::vector<CellChange> changes = map.settle();
+  lbm::Fluid<double> fluid(upright_, MPI_COMM_SELF, {}, floor_and_top());
   const Hydrostatic rest{Vec3(0.0, 0.0, -3e-4), Vec3(8.0, 8.0, 8.0)};
-  Refill refill(decomposition, MPI_COMM_SELF, GetParam());
-  refill.fill(
-      fluid, changes, rest, [&](int, const Vec3& point) { return map.shapes()[0].outward(point); }, bodies);
+  move_sphere(fluid, upright_, MPI_COMM_SELF, GetParam(), rest, Vec3(4.5, 8.5, 4.5), body_at(Vec3(11.5, 8.5, 11.5)));
   double density = 0.0;
   for (int i = 0; i < 19; ++i) density += fluid.populations().post_collision(i, fluid.indexing().index(4, 8, 4));
   EXPECT_NEAR(density, 3e-4 * 3.5, 1e-15);
@@ -150,27 +155,13 @@ TEST_P(UncoveredCells, WithoutFluidBesideThemHaveTheDensityAtRest) {
 // Under its full weight water at rest has another density at every height. A cell with more fluid below than above it
 // still gets that of its own, and no mass is brought.
 TEST_P(UncoveredCells, HaveTheDensityOfTheirHeightInWaterAtRest) {
-  const Decomposition decomposition({16, 16, 16}, 1.0, {true, true, false}, {1, 1, 1});
-  lbm::FaceConditions faces;
-  faces[4].type = faces[5].type = lbm::FaceType::no_slip;
   lbm::CollisionParameters parameters;
   parameters.force[2] = -1e-4;
-  lbm::Fluid<double> fluid(decomposition, MPI_COMM_SELF, parameters, faces);
-  const Hydrostatic rest = hydrostatic_under(Vec3(0.0, 0.0, -1e-4), decomposition);
+  lbm::Fluid<double> fluid(upright_, MPI_COMM_SELF, parameters, floor_and_top());
+  const Hydrostatic rest = hydrostatic_under(Vec3(0.0, 0.0, -1e-4), upright_);
   fluid.initialise([&](const Vec3& position) { return lbm::FluidState{rest.deviation(position), Vec3::Zero()}; });
-  GrainMap map(decomposition, fluid.block(), fluid.cells());
-  map.begin_update();
-  const int slot = map.add(0, {3.0});
-  map.place(slot, Vec3(8.3, 8.5, 7.6));
-  map.settle();
-  map.begin_update();
-  map.place(slot, Vec3(8.1, 8.6, 8.5));
-  std::vector<lbm::LinkBody> bodies(1);
-  bodies[0].centre = Vec3(8.1, 8.6, 8.5);
-  const std::vector<CellChange> changes = map.settle();
-  Refill refill(decomposition, MPI_COMM_SELF, GetParam());
-  const RefillTotals totals = refill.fill(
-      fluid, changes, rest, [&](int, const Vec3& point) { return map.shapes()[0].outward(point); }, bodies);
+  const RefillTotals totals =
+      move_sphere(fluid, upright_, MPI_COMM_SELF, GetParam(), rest, Vec3(8.3, 8.5, 7.6), body_at(Vec3(8.1, 8.6, 8.5)));
   ASSERT_GT(totals.cells, 10);
   // To the rounding of the mean over at most 18 neighbours and of 19 populations.
   EXPECT_NEAR(LatticeFixed::to_double(totals.mass), 0.0, static_cast<double>(totals.cells) * 0x1p-44);

@@ -34,6 +34,11 @@ def files_below(folder):
     return sorted(str(p.relative_to(folder)) for p in Path(folder).rglob("*"))
 
 
+def contents_below(folder):
+    """The contents of all files, by path, but for locks."""
+    return {path: path.read_bytes() for path in Path(folder).rglob("*") if path.is_file() and path.name != ".lock"}
+
+
 class ProgramTest(unittest.TestCase):
     CASE = ""   # text of case.yaml; subclasses give theirs
 
@@ -104,13 +109,9 @@ class ProgramTest(unittest.TestCase):
             for name in names:
                 self.assertEqual(a[name][()].tobytes(), b[name][()].tobytes(), name)
 
-    def files_of(self, run):
-        """The contents of all files of a run, by name, but for the lock."""
-        return {path: path.read_bytes() for path in (self.folder / run).rglob("*") if path.is_file() and path.name != ".lock"}
-
     def assert_refused(self, *arguments, words, ranks=0):
         """Exit code 2, one sentence with the words on standard error, nothing written anywhere."""
-        before = files_below(self.folder)
+        before, contents = files_below(self.folder), contents_below(self.folder)
         result = self.thalweg(*arguments, ranks=ranks)
         self.assertEqual(result.returncode, 2, result.stderr + result.stdout)
         ours = [line for line in result.stderr.splitlines() if line.startswith("thalweg: ")]
@@ -122,6 +123,7 @@ class ProgramTest(unittest.TestCase):
         for word in words:
             self.assertIn(word, ours[0])
         self.assertEqual(files_below(self.folder), before)
+        self.assertEqual(contents_below(self.folder), contents)
 
 
 def main():

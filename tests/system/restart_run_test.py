@@ -11,7 +11,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 import program
-from program import ProgramTest
+from program import ProgramTest, contents_below
 
 
 class RestartRun(ProgramTest):
@@ -119,11 +119,11 @@ output: {series: {every: 0.01}}
         self.assert_same_bed("run", "first")
 
     def test_a_table_that_cannot_be_continued_is_refused_and_nothing_is_touched(self):
-        kept = self.files_of("run")
+        kept = contents_below(self.folder)
         refused = self.thalweg("run", self.case, "--restart", "run", "--until", "0.1", "--set", "analysis.transport_rate={}")
         self.assertEqual(refused.returncode, 2)
         self.assertIn("series.csv: the file has other columns than this run writes", refused.stderr)
-        self.assertEqual(self.files_of("run"), kept)
+        self.assertEqual(contents_below(self.folder), kept)
 
     def test_a_checkpoint_that_has_left_its_folder_is_compared_too(self):
         shutil.copy(self.last_checkpoint("run"), self.folder / "copy.h5")

@@ -2,9 +2,9 @@
 """Thresholds of motion beside Clark et al. (2017): thresholds.py [--figure FILE]
 
 Reads the tables thresholds.csv of the sweeps shields_curve.yaml, linear_drag.yaml, lift.yaml, inertia.yaml, friction.yaml and
-friction_long.yaml, and runs.csv of long_watch.yaml and hysteresis.yaml, which are kept here under the names of the sweeps; those that are missing are left
-out. Prints every threshold with half the width of its bracket, the value of the paper, what is accepted, and pass or fail. Exit
-code 0 if all pass.
+friction_long.yaml, and runs.csv of long_watch.yaml and hysteresis.yaml, which are kept here under the names of the sweeps; those
+that are missing are left out. Prints every threshold with half the width of its bracket, the value of the paper, what is accepted,
+and pass or fail. Exit code 0 if all pass.
 """
 import argparse
 import sys
@@ -205,11 +205,12 @@ def friction_as_in_the_paper(axes, report):
     points(axes, found, "friction", fmt="D", color="tab:purple", mfc="none", label="the same, as long as in the paper")
     axes.plot([row["friction"] for row in limits], [row["lower"] for row in limits], "^", color="tab:purple", mfc="none",
               label="lower limits")
-    least = max(row["lower"] for row in others) / without[0]["upper"]
+    above = max(row["lower"] for row in others)
+    least = above / without[0]["upper"]
     most = max(row["upper"] for row in others) / without[0]["lower"]
     verdict = "UNDECIDED" if least <= FRICTION_ACCEPTED < most else report.verdict(most <= FRICTION_ACCEPTED)
     print(f"the same, as long as in the paper: {without[0]['lower']:.3f} to {without[0]['upper']:.3f} with friction "
-          f"{without[0]['friction']:g}, more than {max(row['lower'] for row in others):.3f} with friction: at least "
+          f"{without[0]['friction']:g}, more than {above:.3f} with friction: at least "
           f"+{100 * (least - 1):.0f} %   {verdict}")
 
 
