@@ -35,7 +35,7 @@ std::string kept_rows(const std::string& text, std::size_t start, double continu
   return rows;
 }
 
-std::string cannot_write_text(const std::filesystem::path& path) {
+std::string cannot_write_series(const std::filesystem::path& path) {
   return fmt::format("{}: cannot write the series; is the disk full or the folder write-protected?", path.string());
 }
 
@@ -56,7 +56,7 @@ void act(MPI_Comm communicator, const std::filesystem::path& path, const std::fu
     } catch (const InputError&) {
       throw;
     } catch (const std::runtime_error&) {
-      throw RunError(cannot_write_text(path));
+      throw RunError(cannot_write_series(path));
     }
   });
 }
@@ -83,7 +83,7 @@ SeriesTable::SeriesTable(MPI_Comm communicator, std::filesystem::path path, std:
     }
     write_text_atomically(path_, header + rows);
     file_.open(path_, std::ios::binary | std::ios::app);
-    if (!file_) throw RunError(cannot_write_text(path_));
+    if (!file_) throw RunError(cannot_write_series(path_));
   });
 }
 
@@ -100,7 +100,7 @@ void SeriesTable::append(double time, std::span<const double> values) {
 void SeriesTable::put_on_disk() { throw_if_failed(rank_of(communicator_) == 0 && !io::put_on_disk(path_)); }
 
 void SeriesTable::throw_if_failed(bool failed) const {
-  if (any_rank(communicator_, failed)) throw RunError(cannot_write_text(path_));
+  if (any_rank(communicator_, failed)) throw RunError(cannot_write_series(path_));
 }
 
 }  // namespace thalweg::io
