@@ -39,16 +39,19 @@ void describe(SectionVisitor& visit, FluidKeys& fluid) {
   visit.require(!fluid.maximum_lattice_velocity || fluid.expected_velocity, "expected_velocity",
                 "maximum_lattice_velocity needs it; give the largest velocity expected in m/s, for example 0.5");
   visit.choice("collision", fluid.collision, {.meaning = "collision operator"});
-  visit.real("magic_parameter", fluid.magic_parameter,
-             {.meaning = "of trt: (1/omega+ - 1/2)(1/omega- - 1/2); 3/16 puts walls exactly half way",
-              .above = 0.0,
-              .only_if = {fluid.collision == lbm::CollisionModel::trt,
-                          "only collision trt has a magic parameter; remove it", "collision: trt"}});
+  visit.real(
+      "magic_parameter", fluid.magic_parameter,
+      {.meaning = "of trt and trt_at_bodies: (1/omega+ - 1/2)(1/omega- - 1/2); 3/16 puts walls exactly half way",
+       .above = 0.0,
+       .only_if = {fluid.collision == lbm::CollisionModel::trt || fluid.collision == lbm::CollisionModel::trt_at_bodies,
+                   "only collision trt and trt_at_bodies have a magic parameter; remove it",
+                   "collision: trt or trt_at_bodies"}});
   visit.real(
       "bulk_relaxation_time", fluid.bulk_relaxation_time,
       {.meaning =
            "relaxation time of the trace of the stress, in steps; damps only sound, by a bulk viscosity of 2/9 (tau - "
-           "1/2); 0: the same as for shear, as published; default: 1 with grains, bgk and a subgrid model, else 0",
+           "1/2); 0: the same as for shear, as published; default: 1 with grains, bgk or trt_at_bodies and a subgrid "
+           "model, else 0",
        .at_least = 0.0,
        .at_most = 1000.0,
        .example = 1.0});

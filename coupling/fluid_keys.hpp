@@ -25,8 +25,9 @@ struct FluidKeys {
   std::optional<double> maximum_lattice_velocity;  // cells per step
   std::optional<double> expected_velocity;         // m/s, the largest
   lbm::CollisionModel collision = lbm::CollisionModel::bgk;
-  double magic_parameter = 3.0 / 16.0;  // of trt
-  // 1, of the trace of the stress; 0: as the shear's. Read as 1 with grains, bgk and a subgrid model, else 0.
+  double magic_parameter = 3.0 / 16.0;  // of trt and trt_at_bodies
+  // 1, of the trace of the stress; 0: as the shear's. Read as 1 with grains, bgk or trt_at_bodies and a subgrid model,
+  // else 0.
   std::optional<double> bulk_relaxation_time;
   Precision precision = Precision::single;
   std::optional<FlowTargetKeys> mean_velocity;

@@ -81,7 +81,7 @@ void warn_of_bulk_relaxation(const Case& c, Warnings& found) {
                     excess));
   // The largest stable stream at tau - 1/2 = 0.003, where the subgrid model brings water (docs/stability.md), to 5 %.
   const double calm = 0.17 / std::sqrt(bulk), fastest = expected_lattice_velocity(c);
-  if (c.fluid.collision == lbm::CollisionModel::bgk && bulk > 1.0 && excess < 0.003 && fastest > calm)
+  if (lbm::bgk_in_the_open(c.fluid.collision) && bulk > 1.0 && excess < 0.003 && fastest > calm)
     found.push_back(
         fmt::format("With a bulk relaxation time of {:g} steps a stream faster than about {:.2g} cells a step "
                     "grows stripes, and this one may reach {:.2g}: consider fluid.bulk_relaxation_time: 1.",
@@ -189,7 +189,9 @@ void warn_of_floating_grains(const Case& c, Warnings& found) {
 // (benchmarks/validation/simple_cubic_arrays).
 void warn_of_links(const Case& c, Warnings& found) {
   const double excess = relaxation_time(c) - 0.5;
-  const bool bgk = c.fluid.collision == lbm::CollisionModel::bgk, trt = c.fluid.collision == lbm::CollisionModel::trt,
+  const bool bgk = c.fluid.collision == lbm::CollisionModel::bgk,
+             trt = c.fluid.collision == lbm::CollisionModel::trt ||
+                   c.fluid.collision == lbm::CollisionModel::trt_at_bodies,
              bouzidi = c.coupling.links == lbm::LinkRule::bouzidi;
   if (c.grains.empty() || c.fluid.smagorinsky_constant > 0.0 || excess < 0.0299) return;
   if (bgk || (trt && bouzidi && excess > 0.15))

@@ -10,7 +10,7 @@ double stable_lattice_velocity(lbm::CollisionModel collision, double excess) {
                          {1e-2, 0.15, 0.10, 0.02}, {3e-3, 0.05, 0.02, 0.0},  {1e-3, 0.02, 0.0, 0.0}};
   for (const Row& row : map) {
     if (excess < row.excess) continue;
-    return collision == lbm::CollisionModel::bgk   ? row.bgk
+    return lbm::bgk_in_the_open(collision)         ? row.bgk
            : collision == lbm::CollisionModel::trt ? row.trt
                                                    : row.regularised;
   }

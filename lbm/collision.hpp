@@ -13,6 +13,8 @@
 //   bgk          f_i^c = f_i - omega (f_i - f_i^eq) + (1 - omega/2) S_i                               (Guo et al. 2002)
 //   trt          the same for the even part (f_i + f_i')/2; the odd part (f_i - f_i')/2 relaxes with omega', where
 //                (1/omega - 1/2)(1/omega' - 1/2) = magic parameter                           (Ginzburg et al. 2008)
+//   trt_at_bodies  trt in cells with a body beside them (CellMap::beside_bodies), bgk elsewhere: walls stay in place
+//                where they need to, without the odd parts that trt hardly damps in the open fluid
 //   regularised  bgk after f_i - f_i^eq has been replaced by its projection on Hermite polynomials up to second order,
 //                w_i [-3/2 c_i.F + 9/2 (c_ia c_ib - delta_ab/3) sum_j c_ja c_jb (f_j - f_j^eq)]
 //                (Latt and Chopard 2006; the first-order term is the half force, without which momentum would be lost)
@@ -257,12 +259,18 @@ template <bool with_bulk, typename Number>
   });
 }
 
+// omega' of trt: (2 - omega)/(1 + omega (2 magic - 1/2)).
+template <typename Number>
+[[gnu::always_inline]] inline Number odd_rate_of(const Number& omega, const CollisionConstants<Number>& constants) {
+  constexpr auto constant = pack_constant<Number>;
+  return (constant(2) - omega) / (constant(1) + constants.magic * omega);
+}
+
+// The even part with the cell's omega, the odd part with a rate of its own.
 template <bool with_bulk, typename Number>
 [[gnu::always_inline]] inline void relax_trt(Number (&f)[19], const CellMoments<Number>& m,
-                                             const CollisionConstants<Number>& constants) {
+                                             const CollisionConstants<Number>& constants, const Number& odd_rate) {
   constexpr auto constant = pack_constant<Number>;
-  // omega' = (2 - omega)/(1 + omega (2 magic - 1/2)).
-  const Number odd_rate = (constant(2) - m.omega) / (constant(1) + constants.magic * m.omega);
   const Number keep_even = constant(1) - m.omega, keep_odd = constant(1) - odd_rate;
   const Number same = constant(0.5) * (keep_even + keep_odd), swapped = constant(0.5) * (keep_even - keep_odd);
   const detail::Target<with_bulk, Number> target(m, constants, m.omega, odd_rate);
@@ -322,15 +330,16 @@ template <bool with_bulk, typename Number>
   });
 }
 
+// With trt_at_bodies, the relaxation beside a body.
 template <CollisionModel model, bool with_bulk, typename Number>
 [[gnu::always_inline]] inline void relax(Number (&f)[19], const CellMoments<Number>& m,
                                          const CollisionConstants<Number>& constants) {
   if constexpr (model == CollisionModel::bgk)
     relax_bgk<with_bulk>(f, m, constants);
-  else if constexpr (model == CollisionModel::trt)
-    relax_trt<with_bulk>(f, m, constants);
-  else
+  else if constexpr (model == CollisionModel::regularised)
     relax_regularised<with_bulk>(f, m, constants);
+  else
+    relax_trt<with_bulk>(f, m, constants, odd_rate_of(m.omega, constants));
 }
 
 // Both steps at once; returns the moments before the collision.

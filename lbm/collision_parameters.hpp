@@ -7,14 +7,19 @@
 
 namespace thalweg::lbm {
 
-enum class CollisionModel { bgk, trt, regularised };
+enum class CollisionModel { bgk, trt, trt_at_bodies, regularised };
 
 // Its words in a case file (core/section_visitor.hpp).
 std::vector<NamedChoice<CollisionModel>> choices_of(CollisionModel);
 
+// Whether cells without a body beside them have one relaxation time.
+constexpr bool bgk_in_the_open(CollisionModel model) {
+  return model == CollisionModel::bgk || model == CollisionModel::trt_at_bodies;
+}
+
 struct CollisionParameters {
   CollisionModel model = CollisionModel::bgk;
-  double magic_parameter = 3.0 / 16.0;  // of trt; 3/16 puts half-link walls exactly half way
+  double magic_parameter = 3.0 / 16.0;  // of both trt; 3/16 puts half-link walls exactly half way
   double relaxation_time = 1.0;         // tau_0 = 1/2 + 3 nu dt/dx^2
   double bulk_relaxation_time = 0.0;    // tau_b, above 1/2; 0: as the shear's, eddies included
   double smagorinsky_constant = 0.0;    // C_s; 0 switches the subgrid model off
@@ -22,8 +27,8 @@ struct CollisionParameters {
 
   bool with_bulk() const { return bulk_relaxation_time > 0.0; }
 
-  // omega' of the odd part, without eddies; 1 in the regularised model, which puts all of it but the momentum into
-  // equilibrium.
+  // omega' of the odd part, without eddies: in trt_at_bodies that of cells beside a body; 1 in the regularised model,
+  // which puts all of it but the momentum into equilibrium.
   double odd_rate() const {
     if (model == CollisionModel::regularised) return 1.0;
     if (model == CollisionModel::bgk) return 1.0 / relaxation_time;

@@ -64,6 +64,14 @@ template <typename Real>
   });
 }
 
+// A row, and what CellMap knows of its packs.
+struct RowCells {
+  std::ptrdiff_t first;
+  int packs;
+  const std::uint8_t* fluid;
+  const std::uint16_t* beside_bodies;
+};
+
 // Which of its variants a row takes.
 struct Kind {
   CollisionModel model;
@@ -96,10 +104,23 @@ template <Kind kind, typename Real>
   }
 }
 
+// That of trt in the lanes of `beside_bodies` (a bit each), that of bgk in the others. All packs pass through the same
+// arithmetic, so that a cell's bits do not depend on its neighbours in the pack.
+template <typename Real>
+[[gnu::always_inline]] inline Pack<Real> odd_rates(const Pack<Real>& omega,
+                                                   const CollisionConstants<Pack<Real>>& constants,
+                                                   unsigned beside_bodies) {
+  Pack<Real> beside = Real(0);
+  if (beside_bodies != 0) beside = Pack<Real>([&](auto lane) { return Real(beside_bodies >> lane & 1u); });
+  Pack<Real> rate = odd_rate_of(omega, constants);
+  stdx::where(beside == Pack<Real>(Real(0)), rate) = omega;
+  return rate;
+}
+
 template <Kind kind, typename Real>
 [[gnu::always_inline]] inline void relax_pack(const Streams<Real>& streams, std::ptrdiff_t cell,
                                               const CollisionConstants<Pack<Real>>& constants,
-                                              const RowSegment<Real>& s, int p) {
+                                              const RowSegment<Real>& s, int p, unsigned beside_bodies) {
   Pack<Real> f[D3Q19::directions];
   CellMoments<Pack<Real>> m;
   m.deviation = s.deviation[p];
@@ -113,7 +134,10 @@ template <Kind kind, typename Real>
     m.pi = {s.xx[p], s.yy[p], s.zz[p], s.xy[p], s.xz[p], s.yz[p]};
   else
     load(f, streams, cell);
-  relax<kind.model, kind.bulk>(f, m, constants);
+  if constexpr (kind.model == CollisionModel::trt_at_bodies)
+    relax_trt<kind.bulk>(f, m, constants, odd_rates<Real>(m.omega, constants, beside_bodies));
+  else
+    relax<kind.model, kind.bulk>(f, m, constants);
   for_each_direction([&]<int i>() __attribute__((always_inline)) {
     f[i].copy_to(streams.out[i] + cell, stdx::element_aligned);
   });
@@ -132,22 +156,22 @@ template <typename Real>
 // Moments of a whole segment first, then its relaxation: either pass alone is short enough for the processor to work on
 // several packs at once, while one long pass waits for its own divisions and roots.
 template <Kind kind, typename Real>
-void sweep_packs(const Streams<Real>& streams, std::ptrdiff_t row, const std::uint8_t* fluid_in_packs, int packs,
-                 const CollisionParameters& parameters, const RowShear<Real>* shear) {
+void sweep_packs(const Streams<Real>& streams, const RowCells& row, const CollisionParameters& parameters,
+                 const RowShear<Real>* shear) {
   constexpr int width = static_cast<int>(Pack<Real>::size());
   const CollisionConstants<Pack<Real>> constants(parameters);
   RowSegment<Real> segment;
-  for (int first = 0; first < packs; first += RowSegment<Real>::packs) {
-    const int count = std::min(RowSegment<Real>::packs, packs - first);
+  for (int first = 0; first < row.packs; first += RowSegment<Real>::packs) {
+    const int count = std::min(RowSegment<Real>::packs, row.packs - first);
     for (int p = 0; p < count; ++p) {
-      if (fluid_in_packs[first + p] == 0) continue;
-      measure_pack<kind>(streams, row + (first + p) * width, constants, segment, p);
+      if (row.fluid[first + p] == 0) continue;
+      measure_pack<kind>(streams, row.first + (first + p) * width, constants, segment, p);
     }
     for (int p = 0; p < count; ++p) {
-      if (fluid_in_packs[first + p] == 0) continue;
-      const std::ptrdiff_t cell = row + (first + p) * width;
+      if (row.fluid[first + p] == 0) continue;
+      const std::ptrdiff_t cell = row.first + (first + p) * width;
       prefetch(streams, cell);
-      relax_pack<kind>(streams, cell, constants, segment, p);
+      relax_pack<kind>(streams, cell, constants, segment, p, row.beside_bodies[first + p]);
       if constexpr (kind.shear) store_shear(segment, p, *shear, (first + p) * width);
     }
   }
@@ -163,12 +187,12 @@ void as_constant(bool value, Visit visit) {
 }
 
 template <CollisionModel model, typename Real>
-void sweep_row_with(const Streams<Real>& streams, std::ptrdiff_t row, const std::uint8_t* fluid, int packs,
-                    const CollisionParameters& parameters, const RowShear<Real>* shear) {
+void sweep_row_with(const Streams<Real>& streams, const RowCells& row, const CollisionParameters& parameters,
+                    const RowShear<Real>* shear) {
   as_constant(parameters.smagorinsky_constant > 0.0, [&]<bool eddies>() {
     as_constant(parameters.with_bulk(), [&]<bool bulk>() {
       as_constant(shear != nullptr, [&]<bool with_shear>() {
-        sweep_packs<Kind{model, eddies, bulk, with_shear}>(streams, row, fluid, packs, parameters, shear);
+        sweep_packs<Kind{model, eddies, bulk, with_shear}>(streams, row, parameters, shear);
       });
     });
   });
@@ -180,16 +204,17 @@ template <typename Real>
 void sweep_row(Populations<Real>& populations, const CellMap& cells, const CollisionParameters& parameters, int y,
                int z, const RowShear<Real>* shear) {
   const Streams<Real> streams(populations);
-  const std::ptrdiff_t row = populations.indexing().index(0, y, z);
-  const std::uint8_t* fluid = cells.fluid_in_packs(y, z);
-  const int packs = populations.indexing().packs_per_row();
+  const RowCells row{populations.indexing().index(0, y, z), populations.indexing().packs_per_row(),
+                     cells.fluid_in_packs(y, z), cells.beside_bodies(y, z)};
   switch (parameters.model) {
     case CollisionModel::bgk:
-      return sweep_row_with<CollisionModel::bgk>(streams, row, fluid, packs, parameters, shear);
+      return sweep_row_with<CollisionModel::bgk>(streams, row, parameters, shear);
     case CollisionModel::trt:
-      return sweep_row_with<CollisionModel::trt>(streams, row, fluid, packs, parameters, shear);
+      return sweep_row_with<CollisionModel::trt>(streams, row, parameters, shear);
+    case CollisionModel::trt_at_bodies:
+      return sweep_row_with<CollisionModel::trt_at_bodies>(streams, row, parameters, shear);
     case CollisionModel::regularised:
-      return sweep_row_with<CollisionModel::regularised>(streams, row, fluid, packs, parameters, shear);
+      return sweep_row_with<CollisionModel::regularised>(streams, row, parameters, shear);
   }
 }
 

@@ -103,6 +103,12 @@ TEST(Ranks, DoNotChangeOneBitOfABedInAFlume) {
   for (const Index3& layout : layouts_of(size_of(MPI_COMM_WORLD))) compare<float>(box, layout, 25);
 }
 
+TEST(Ranks, DoNotChangeOneBitWhereCellsBesideGrainsCollideInTheirOwnWay) {
+  WaterBox box = crowded({48, 36, 36}, {true, false, false}, 100, 5.4e-3);
+  box.collision = lbm::CollisionModel::trt_at_bodies;
+  for (const Index3& layout : two_layouts_of(size_of(MPI_COMM_WORLD))) compare<float>(box, layout, 25);
+}
+
 TEST(Ranks, DoNotChangeOneBitWithLubricationAndVirtualMass) {
   WaterBox box = crowded({48, 36, 36}, {true, false, false}, 100, 5.4e-3);  // half a cell between the grains
   box.lubrication = box.virtual_mass = true;

@@ -120,7 +120,8 @@ int settling_steps(double viscosity) { return static_cast<int>(20.0 / (8.0 * std
 TEST(NarrowGaps, WithoutSlipFlowAsTheMagicParameterSays) {
   // u = 2/3 Lambda F/nu (Ginzburg and d'Humieres 2003).
   for (const double viscosity : {0.01, 0.03}) {
-    for (const CollisionModel model : {CollisionModel::bgk, CollisionModel::regularised, CollisionModel::trt}) {
+    for (const CollisionModel model :
+         {CollisionModel::bgk, CollisionModel::regularised, CollisionModel::trt, CollisionModel::trt_at_bodies}) {
       const CollisionParameters p = parameters(model, viscosity);
       Gap gap(p, GapRule::no_slip);
       gap.run(settling_steps(viscosity));
@@ -133,7 +134,8 @@ TEST(NarrowGaps, WithoutSlipFlowAsTheMagicParameterSays) {
 
 TEST(NarrowGaps, WithSlipFlowAsBetweenTwoPlatesUpToTheMagicParameter) {
   for (const double viscosity : {0.002, 0.01, 0.03, 0.08, 0.12}) {
-    for (const CollisionModel model : {CollisionModel::bgk, CollisionModel::regularised, CollisionModel::trt}) {
+    for (const CollisionModel model :
+         {CollisionModel::bgk, CollisionModel::regularised, CollisionModel::trt, CollisionModel::trt_at_bodies}) {
       Gap gap(parameters(model, viscosity), GapRule::slip);
       gap.run(settling_steps(viscosity));
       const double expected = force / (8.0 * viscosity);

@@ -63,7 +63,8 @@ TEST(ShearWave, DecaysWithTheViscosityInAnyDirection) {
                              {{1, 1, 0}, Vec3(0, 0, 1), Vec3::Zero()},
                              {{1, 1, 1}, Vec3(1, -1, 0).normalized(), Vec3::Zero()},
                              {{2, 1, 0}, Vec3(1, -2, 0).normalized(), Vec3::Zero()}};
-  for (const CollisionModel model : {CollisionModel::bgk, CollisionModel::trt, CollisionModel::regularised})
+  for (const CollisionModel model :
+       {CollisionModel::bgk, CollisionModel::trt, CollisionModel::trt_at_bodies, CollisionModel::regularised})
     for (const ShearWave& wave : waves)
       EXPECT_NEAR(viscosity_and_speed(wave, model, 0.8).first, 1.0, 0.02)
           << int(model) << " " << wave.waves[0] << wave.waves[1] << wave.waves[2];

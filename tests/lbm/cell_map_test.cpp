@@ -1,0 +1,41 @@
+#include "lbm/cell_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace thalweg::lbm {
+namespace {
+
+bool has_covered_neighbour(const CellMap& map, std::ptrdiff_t cell) {
+  for (int i = 1; i < D3Q19::directions; ++i)
+    if (!map.is_fluid(cell + map.indexing().offset(i))) return true;
+  return false;
+}
+
+// Bodies that come, go and take cells from each other, in the block and in its ghost cells.
+TEST(CellMap, KnowsWhichCellsHaveABodyBesideThem) {
+  const Index3 size{21, 6, 5};
+  for (const int pack : {4, 8, 16}) {
+    CellMap map(CellIndexing(size, pack));
+    std::mt19937 generator(3);
+    const auto any = [&](int from, int to) { return std::uniform_int_distribution<int>(from, to)(generator); };
+    int with = 0, without = 0;
+    for (int change = 0; change < 400; ++change) {
+      map.assign(any(-1, size[0]), any(-1, size[1]), any(-1, size[2]), change % 3 ? CellMap::fluid : any(0, 4));
+      for (int z = 0; z < size[2]; ++z)
+        for (int y = 0; y < size[1]; ++y)
+          for (int x = 0; x < size[0]; ++x) {
+            const bool known = map.beside_bodies(y, z)[x / pack] >> x % pack & 1;
+            const bool is = has_covered_neighbour(map, map.indexing().index(x, y, z));
+            ASSERT_EQ(known, is) << x << " " << y << " " << z;
+            (is ? with : without) += 1;
+          }
+    }
+    EXPECT_GT(with, 1000);
+    EXPECT_GT(without, 1000);
+  }
+}
+
+}  // namespace
+}  // namespace thalweg::lbm
