@@ -27,21 +27,20 @@ inline Row corrected(Row (&q)[4], const Row& found) {
   return difference;
 }
 
-inline Row found(const Row& contacts, const Row& load) { return load[3] * first_three * (contacts + load); }
+// dt^2/2 times the acceleration (of the rotation); the last entry of a load is the inverse mass or moment of inertia.
+inline Row found(const Row& contacts, const Row& load, double half_square) {
+  return half_square * load[3] * first_three * (contacts + load);
+}
 
 }  // namespace
 
-void GearPredictor::load(const GrainStore& store, std::span<const Vec3> body_force, double time_step) {
+void GearPredictor::load(const GrainStore& store, const MovingGrains& grains, double time_step) {
   time_step_ = time_step;
   derivatives_.resize(store.owned);
-  loads_.resize(store.owned);
-  const double half_square = 0.5 * time_step * time_step;
   for (std::size_t s = 0; s < store.owned; ++s) {
-    loads_[s] = {row_of(store.load_force[s] + body_force[s], half_square * store.inverse_mass[s]),
-                 row_of(store.load_torque[s], half_square * store.inverse_inertia[s])};
     Derivatives& d = derivatives_[s];
-    d.q[0] = found(row_of(store.contact_force[s]), loads_[s].force);
-    d.angle[0] = found(row_of(store.contact_torque[s]), loads_[s].torque);
+    d.q[0] = found(grains[s].force, grains.load_force(s), half_square());
+    d.angle[0] = found(grains[s].torque, grains.load_torque(s), half_square());
     const double* value = store.attached_of(s).data() + store.attached_width - columns;
     for (int k = 1; k < 4; ++k, value += 3) d.q[k] = Row{value[0], value[1], value[2], 0.0};
     for (int k = 1; k < 4; ++k, value += 3) d.angle[k] = Row{value[0], value[1], value[2], 0.0};
@@ -70,10 +69,12 @@ void GearPredictor::predict(MovingGrains& grains) {
 }
 
 void GearPredictor::correct(MovingGrains& grains) {
+  for (const std::size_t s : grains.stopped())
+    for (Row& q : derivatives_[s].q) q[0] = q[1] = 0.0;
   for (std::size_t s = 0; s < derivatives_.size(); ++s) {
     MovingGrain& grain = grains[s];
-    const Row way = corrected(derivatives_[s].q, found(grain.force, loads_[s].force));
-    const Row turn = corrected(derivatives_[s].angle, found(grain.torque, loads_[s].torque));
+    const Row way = corrected(derivatives_[s].q, found(grain.force, grains.load_force(s), half_square()));
+    const Row turn = corrected(derivatives_[s].angle, found(grain.torque, grains.load_torque(s), half_square()));
     grain.position += of_position * way;
     grain.velocity += of_velocity / time_step_ * way;
     grain.spin += of_velocity / time_step_ * turn;

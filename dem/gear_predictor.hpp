@@ -14,7 +14,6 @@
 #include "dem/moving_grains.hpp"
 
 #include <cstddef>
-#include <span>
 #include <vector>
 
 namespace thalweg::dem {
@@ -25,13 +24,15 @@ public:
   // the last columns attached to every grain, zero at first: a grain starts with constant acceleration.
   static constexpr int columns = 18;
 
-  // Takes the higher derivatives of owned grains, and their accelerations by the present forces (N). time_step: s.
-  void load(const GrainStore& store, std::span<const Vec3> body_force, double time_step);
+  // Takes the higher derivatives of owned grains, and their accelerations by the present forces. grains: loaded from
+  // the same store; time_step: s.
+  void load(const GrainStore& store, const MovingGrains& grains, double time_step);
   void unload(GrainStore& store) const;
 
   // Moves owned grains to the predicted state, and sets the contact forces of all grains to zero.
   void predict(MovingGrains& grains);
-  // Moves owned grains to the corrected state, by the forces at the predicted one.
+  // Moves owned grains to the corrected state, by the forces at the predicted one; those that have been stopped stay
+  // where they are along the floor.
   void correct(MovingGrains& grains);
 
 private:
@@ -39,14 +40,10 @@ private:
   struct Derivatives {
     Row q[4], angle[4];
   };
-  // Loads besides contacts; last entry: dt^2/2 over mass or moment of inertia.
-  struct Load {
-    Row force, torque;
-  };
+  double half_square() const { return 0.5 * time_step_ * time_step_; }
 
   double time_step_ = 0.0;
   std::vector<Derivatives> derivatives_;
-  std::vector<Load> loads_;
 };
 
 }  // namespace thalweg::dem

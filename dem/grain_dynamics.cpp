@@ -142,8 +142,6 @@ void GrainDynamics::check_integrator() const {
   const bool gear = parameters_.integrator == Integrator::gear;
   if (clump_count_ > 0 && gear)
     throw InputError("Clumps are moved by velocity Verlet, not by Gear's predictor-corrector; use the former.");
-  if (parameters_.field && gear)
-    throw InputError("A force field acts on grains that are moved by velocity Verlet; use that.");
 }
 
 // The contact list must outlast a step.
@@ -403,7 +401,7 @@ void GrainDynamics::advance_by_verlet(int sub_steps) {
 
 void GrainDynamics::advance_by_gear(int sub_steps) {
   const double dt = parameters_.time_step;
-  timed(motion_phase_, [&] { gear_.load(store_, body_force_, dt); });
+  timed(motion_phase_, [&] { gear_.load(store_, moving_, dt); });
   for (int s = 0; s < sub_steps; ++s) {
     timed(motion_phase_, [&] { gear_.predict(moving_); });
     ++steps_done_;

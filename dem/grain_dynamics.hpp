@@ -60,7 +60,7 @@ struct GrainParameters {
   double ghost_width = 0.0;  // m: grains at least this near to a rank's block are its ghosts at all times
   int attached_width = 0;    // the caller's columns attached to every grain (Gear's predictor adds its own behind them)
   std::optional<LubricationParameters> lubrication;  // between near surfaces, in every sub-step
-  std::shared_ptr<ForceField> field;                 // on every grain, in every sub-step; not with Gear's integrator
+  std::shared_ptr<ForceField> field;                 // on every grain, in every sub-step
   double disk_thickness = 0.0;                       // m, of disks in an x-z plane: I = 1/2 m R^2; 0: spheres
   bool movable_cuts = false;                         // whether the cuts between ranks follow the grains
   double initial_overlap = allowed_initial_overlap;  // diameters, by which seeds may overlap: those of a settled bed do

@@ -37,6 +37,7 @@ ModelForce ModelFluidField::force_on(std::size_t slot, double radius, const Vec3
 
 void ModelFluidField::act(MovingGrains& grains, GrainStore& store, Clumps& clumps, std::span<const Vec3> body_force) {
   for (const std::uint32_t s : fraction_.update(grains, clumps, store)) update_flow(s);
+  grains.forget_stops();
   for (std::size_t s = 0; s < store.owned; ++s) {
     if (store.clump[s] >= 0) continue;
     MovingGrain& grain = grains[s];
@@ -46,11 +47,8 @@ void ModelFluidField::act(MovingGrains& grains, GrainStore& store, Clumps& clump
     const ModelForce f = force_on(s, radius, vector_of(grain.velocity));
     store.load_force[s] = Vec3(f.x, f.y, f.z);
     const Vec3 load = store.load_force[s] + body_force[s];
-    if (held) {  // the floor takes what would move it along
-      grain.force[0] = -load.x();
-      grain.force[1] = -load.y();
-    }
     grains.set_load(s, load);
+    if (held) grains.stop_along_floor(s);
   }
   for (std::size_t n = 0; n < clumps.size(); ++n) act_on_clump(n, grains, store, clumps);
 }

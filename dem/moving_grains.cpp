@@ -68,6 +68,15 @@ double MovingGrains::speed_bound(bool written) const {
   return std::sqrt(fastest[0] + fastest[1] + fastest[2]);
 }
 
+void MovingGrains::stop_along_floor(std::size_t slot) {
+  MovingGrain& grain = grains_[slot];
+  for (int axis = 0; axis < 2; ++axis) {
+    grain.velocity[axis] = 0.0;
+    grain.force[axis] = -loads_[slot].force[axis];
+  }
+  stopped_.push_back(slot);
+}
+
 void MovingGrains::forget_forces() {
   for (MovingGrain& grain : grains_) grain.force = grain.torque = zero;
 }

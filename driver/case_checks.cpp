@@ -215,9 +215,6 @@ void check_model_fluid(const Case& c, const io::YamlDocument& document) {
   if (!periodic[0] || !(c.disks || periodic[1]))
     throw document.error("domain.boundaries",
                          "beside a side wall the fluid would flow as where grains are missing; make x and y periodic");
-  if (c.run.grain_integrator != dem::Integrator::velocity_verlet)
-    throw document.error("run.grain_integrator",
-                         "with a model fluid grains are moved by velocity_verlet; remove the key");
   if (c.model_fluid.ramp && c.run.until_at_rest)
     throw document.error(
         "run.until_at_rest",

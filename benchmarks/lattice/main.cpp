@@ -49,6 +49,7 @@ struct Collision {
 constexpr Collision collisions[] = {{"bgk", lbm::CollisionModel::bgk},
                                     {"bgk, bulk", lbm::CollisionModel::bgk, 3.0},
                                     {"trt", lbm::CollisionModel::trt},
+                                    {"trt at bodies", lbm::CollisionModel::trt_at_bodies},
                                     {"regularised", lbm::CollisionModel::regularised}};
 
 lbm::CollisionParameters water(const Collision& collision) {

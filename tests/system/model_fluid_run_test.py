@@ -34,11 +34,17 @@ output: {series: {every: 0.1}, checkpoint: {every: 2, keep: 3}}
 """
 
     def test_the_same_bits_on_any_ranks_and_after_a_restart(self):
-        self.run_well("run", self.case, "--out", "one")
+        self.check_bits()
+
+    def test_the_same_bits_with_gears_integrator_and_friction(self):
+        self.check_bits("--set", "run.grain_integrator=gear", "--set", "contact.friction=0.6", "--set", "run.time_step=6e-4")
+
+    def check_bits(self, *settings):
+        self.run_well("run", self.case, *settings, "--out", "one")
         for ranks in (2, 4):
-            self.run_well("run", self.case, "--out", f"on_{ranks}", ranks=ranks)
-        self.run_well("run", self.case, "--out", "half", "--until", "2")
-        self.run_well("run", self.case, "--out", "half", "--restart", "half", ranks=2)
+            self.run_well("run", self.case, *settings, "--out", f"on_{ranks}", ranks=ranks)
+        self.run_well("run", self.case, *settings, "--out", "half", "--until", "2")
+        self.run_well("run", self.case, *settings, "--out", "half", "--restart", "half", ranks=2)
         for other in ("on_2", "on_4", "half"):
             self.assert_same_bed("one", other)
 
