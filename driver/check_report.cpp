@@ -67,6 +67,28 @@ void add_rebound(const Case& c, Lines& lines) {
                   contact, around, advice));
 }
 
+// With one relaxation time water hardly seeps through a bed: speed over the right one in random beds, by cells across a
+// grain, with tau - 1/2 below 0.001 (benchmarks/validation/seepage).
+void add_seepage(const Case& c, Lines& lines) {
+  constexpr double few = 6.25, some = 10.0, many = 16.0;
+  constexpr double with_few = 0.005, with_some = 0.084, with_many = 0.47;
+  constexpr std::int64_t fewest_grains = 20;  // that make a bed
+  const double cells = smallest_diameter(c) / c.domain.spacing;
+  if (c.fluid.collision != lbm::CollisionModel::bgk || relaxation_time(c) - 0.5 > 1e-3 ||
+      grain_count(c) < fewest_grains || cells > many)
+    return;
+  const auto between = [cells](double from, double with_from, double to, double with_to) {
+    return with_from * std::pow(with_to / with_from, (cells - from) / (to - from));
+  };
+  const double speed = cells < few    ? with_few
+                       : cells < some ? between(few, with_few, some, with_some)
+                                      : between(some, with_some, many, with_many);
+  lines.push_back(
+      fmt::format("seepage    through a dense bed {} {:.1g} of the right speed with fluid.collision: bgk; "
+                  "with trt_at_bodies more than half",
+                  cells < few ? "at most" : "about", speed));
+}
+
 void add_overlaps(const Case& c, Lines& lines) {
   const Overlaps overlaps = expected_overlaps(c);
   if (c.system == SystemKind::model_fluid) return;  // its speeds are not those of a fall
@@ -104,6 +126,7 @@ void add_grains(const Case& c, Lines& lines) {
       fmt::format("flight     a grain moves a fiftieth of a cell a step at {:.3g} m/s; faster grains are less accurate",
                   0.02 * units_of(c).velocity()));
   add_rebound(c, lines);
+  add_seepage(c, lines);
 }
 
 void add_solids(const Case& c, Lines& lines) {

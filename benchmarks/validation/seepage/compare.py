@@ -23,7 +23,7 @@ from thalweg.literature import beetstra_drag, tenneti_drag
 
 COLUMNS = ["run", "cells [1]", "method", "solid_fraction [1]", "speed [m/s]", "beetstra [m/s]", "tenneti [m/s]"]
 ACCEPTED = 0.1   # of the drag
-METHODS = ["bgk", "bgk, slip", "trt_at_bodies", "trt"]
+METHODS = ["bgk", "bgk, slip", "trt_at_bodies", "trt_at_bodies, C_s 0", "trt"]
 
 
 def speed_of_law(law, phi, viscosity, diameter, acceleration):
@@ -70,7 +70,7 @@ def report(points):
 
 def draw(points, name):
     figure, axes = plt.subplots(figsize=(6.5, 4.5), layout="constrained")
-    for method, marker in zip(METHODS, "osD^"):
+    for method, marker in zip(METHODS, "osDv^"):
         at = [(cells, speed) for cells, other, _, speed, _ in points if other == method]
         axes.plot(*np.array(at).T, marker=marker, label=method)
     axes.axhline(1.0, color="k", lw=1.0, label="Beetstra et al. 2007")
