@@ -13,8 +13,8 @@
 //   bgk          f_i^c = f_i - omega (f_i - f_i^eq) + (1 - omega/2) S_i                               (Guo et al. 2002)
 //   trt          the same for the even part (f_i + f_i')/2; the odd part (f_i - f_i')/2 relaxes with omega', where
 //                (1/omega - 1/2)(1/omega' - 1/2) = magic parameter                           (Ginzburg et al. 2008)
-//   trt_at_bodies  trt in cells with a body beside them (CellMap::beside_bodies), bgk elsewhere: walls stay in place
-//                where they need to, without the odd parts that trt hardly damps in the open fluid
+//   trt_at_bodies  trt in cells with a body beside them (CellMap::beside_bodies), bgk elsewhere: walls and pores are
+//                right, and the odd parts of the open fluid do not stay for hundreds of steps
 //   regularised  bgk after f_i - f_i^eq has been replaced by its projection on Hermite polynomials up to second order,
 //                w_i [-3/2 c_i.F + 9/2 (c_ia c_ib - delta_ab/3) sum_j c_ja c_jb (f_j - f_j^eq)]
 //                (Latt and Chopard 2006; the first-order term is the half force, without which momentum would be lost)
