@@ -40,7 +40,7 @@ INSTANTIATE_TEST_SUITE_P(
             {"system = \"shallow_water\": expected one of resolved, fluid, grains, model_fluid, continuum."}},
         Bad{"collision_not_built",
             {"fluid.collision=mrt"},
-            {"fluid.collision = \"mrt\": expected one of bgk, trt, regularised."}},
+            {"fluid.collision = \"mrt\": expected one of bgk, trt, trt_at_bodies, regularised."}},
         Bad{"face_not_built",
             {"domain.boundaries.top=porous"},
             {"top.type = \"porous\": expected one of periodic, no_slip, free_slip, moving, navier_slip, "
