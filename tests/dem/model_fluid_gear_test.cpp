@@ -20,6 +20,7 @@ ModelFluidParameters slow_fluid(double gravity) {
   ModelFluidParameters parameters;
   parameters.numbers = {0.3, 0.5, 0.0, ModelDrag::linear, 0.5};
   parameters.scales = {diameter, glass_density * grain_volume(glass_radius, 0.0), gravity};
+  parameters.profile = VelocityProfile::of_spheres();
   parameters.solid_fraction.largest_radius = glass_radius;
   parameters.solid_fraction.margin = diameter;
   parameters.solid_fraction.tolerance = 0.01 * diameter;
