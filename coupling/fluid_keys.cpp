@@ -39,13 +39,12 @@ void describe(SectionVisitor& visit, FluidKeys& fluid) {
   visit.require(!fluid.maximum_lattice_velocity || fluid.expected_velocity, "expected_velocity",
                 "maximum_lattice_velocity needs it; give the largest velocity expected in m/s, for example 0.5");
   visit.choice("collision", fluid.collision, {.meaning = "collision operator"});
-  visit.real(
-      "magic_parameter", fluid.magic_parameter,
-      {.meaning = "of trt and trt_at_bodies: (1/omega+ - 1/2)(1/omega- - 1/2); 3/16 puts walls exactly half way",
-       .above = 0.0,
-       .only_if = {fluid.collision == lbm::CollisionModel::trt || fluid.collision == lbm::CollisionModel::trt_at_bodies,
-                   "only collision trt and trt_at_bodies have a magic parameter; remove it",
-                   "collision: trt or trt_at_bodies"}});
+  visit.real("magic_parameter", fluid.magic_parameter,
+             {.meaning = "of trt and trt_at_bodies: (1/omega+ - 1/2)(1/omega- - 1/2); 3/16 puts walls exactly half way",
+              .above = 0.0,
+              .only_if = {lbm::trt_beside_bodies(fluid.collision),
+                          "only collision trt and trt_at_bodies have a magic parameter; remove it",
+                          "collision: trt or trt_at_bodies"}});
   visit.real(
       "bulk_relaxation_time", fluid.bulk_relaxation_time,
       {.meaning =

@@ -40,11 +40,12 @@ void ModelFluidField::act(MovingGrains& grains, GrainStore& store, Clumps& clump
   grains.forget_stops();
   for (std::size_t s = 0; s < store.owned; ++s) {
     if (store.clump[s] >= 0) continue;
-    MovingGrain& grain = grains[s];
+    const MovingGrain& grain = grains[s];
     const double radius = grain.position[3];
     const bool held = parameters_.rough_floor && store.inverse_mass[s] > 0.0 && grain.position[2] < radius;
-    if (held) grain.velocity[0] = grain.velocity[1] = 0.0;
-    const ModelForce f = force_on(s, radius, vector_of(grain.velocity));
+    Vec3 velocity = vector_of(grain.velocity);
+    if (held) velocity.x() = velocity.y() = 0.0;
+    const ModelForce f = force_on(s, radius, velocity);
     store.load_force[s] = Vec3(f.x, f.y, f.z);
     const Vec3 load = store.load_force[s] + body_force[s];
     grains.set_load(s, load);

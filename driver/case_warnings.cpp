@@ -189,9 +189,7 @@ void warn_of_floating_grains(const Case& c, Warnings& found) {
 // (benchmarks/validation/simple_cubic_arrays).
 void warn_of_links(const Case& c, Warnings& found) {
   const double excess = relaxation_time(c) - 0.5;
-  const bool bgk = c.fluid.collision == lbm::CollisionModel::bgk,
-             trt = c.fluid.collision == lbm::CollisionModel::trt ||
-                   c.fluid.collision == lbm::CollisionModel::trt_at_bodies,
+  const bool bgk = c.fluid.collision == lbm::CollisionModel::bgk, trt = lbm::trt_beside_bodies(c.fluid.collision),
              bouzidi = c.coupling.links == lbm::LinkRule::bouzidi;
   if (c.grains.empty() || c.fluid.smagorinsky_constant > 0.0 || excess < 0.0299) return;
   if (bgk || (trt && bouzidi && excess > 0.15))

@@ -17,6 +17,11 @@ constexpr bool bgk_in_the_open(CollisionModel model) {
   return model == CollisionModel::bgk || model == CollisionModel::trt_at_bodies;
 }
 
+// Whether cells with a body beside them have two, and so the magic parameter counts.
+constexpr bool trt_beside_bodies(CollisionModel model) {
+  return model == CollisionModel::trt || model == CollisionModel::trt_at_bodies;
+}
+
 struct CollisionParameters {
   CollisionModel model = CollisionModel::bgk;
   double magic_parameter = 3.0 / 16.0;  // of both trt; 3/16 puts half-link walls exactly half way

@@ -16,9 +16,9 @@ import numpy as np
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[2] / "python"))
-from thalweg import Run
 from thalweg.comparison import compared_rows
 from thalweg.literature import beetstra_drag, tenneti_drag
+from thalweg.random_array import RandomArray
 
 COLUMNS = ["run", "setting", "cells [1]", "collision", "solid_fraction [1]", "reynolds_number [1]", "drag [1]"]
 # Between the two laws, or beyond them by as much as their authors' own data scatter.
@@ -26,20 +26,18 @@ ACCEPTED = 0.1
 
 
 def measured(folder):
-    run = Run(folder)
-    case, grains, count = run.case, run.case["grains"][0], run.summary["grains"]
-    density, viscosity = float(case["fluid"]["density"]), float(case["fluid"]["kinematic_viscosity"])
-    diameter, box = float(grains["diameter"]), float(run.size.prod())
-    phi = count * np.pi / 6.0 * diameter**3 / box
+    array = RandomArray(folder)
+    run, phi, mass = array.run, array.solid_fraction, array.density * array.volume
     time, momentum = run.series["time"], run.series["fluid_momentum_x"]
     later = time >= 0.5 * time[-1]
     time, momentum = time[later], momentum[later]
-    velocity = np.trapz(momentum, time) / (time[-1] - time[0]) / (density * box)
+    velocity = np.trapz(momentum, time) / (time[-1] - time[0]) / mass
     acceleration = (momentum[-1] - momentum[0]) / (time[-1] - time[0])
-    driving = density * float(case["gravity"]["vector"][0]) * box * (1.0 - phi)
-    drag = (driving - acceleration) / count / (3.0 * np.pi * density * viscosity * diameter * velocity)
-    values = [run.folder.name, case["name"], f"{diameter / float(case['domain']['spacing']):.4g}", case["fluid"]["collision"]]
-    return dict(zip(COLUMNS, values + [f"{value:.6g}" for value in (phi, velocity * diameter / viscosity, drag)]))
+    driving = mass * array.acceleration * (1.0 - phi)
+    stokes = 3.0 * np.pi * array.density * array.viscosity * array.diameter * velocity
+    values = [run.folder.name, array.case["name"], f"{array.cells:.4g}", array.case["fluid"]["collision"]]
+    numbers = phi, velocity * array.diameter / array.viscosity, (driving - acceleration) / array.count / stokes
+    return dict(zip(COLUMNS, values + [f"{value:.6g}" for value in numbers]))
 
 
 def means(rows):

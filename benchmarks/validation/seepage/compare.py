@@ -17,34 +17,29 @@ from scipy.optimize import brentq
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[2] / "python"))
-from thalweg import Run
 from thalweg.comparison import compared_rows
 from thalweg.literature import beetstra_drag, tenneti_drag
+from thalweg.random_array import RandomArray
 
 COLUMNS = ["run", "cells [1]", "method", "solid_fraction [1]", "speed [m/s]", "beetstra [m/s]", "tenneti [m/s]"]
 ACCEPTED = 0.1   # of the drag
 METHODS = ["bgk", "bgk, slip", "trt_at_bodies", "trt_at_bodies, C_s 0", "trt"]
 
 
-def speed_of_law(law, phi, viscosity, diameter, acceleration):
+def speed_of_law(law, array):
     """Superficial velocity U at which spheres with the drag 3 pi eta d U law(phi, U d/nu) hold the driven fluid back."""
-    volume = np.pi / 6.0 * diameter**3
-    given = acceleration * (1.0 - phi) * volume / phi   # over the fluid's density, per sphere
+    phi, viscosity, diameter = array.solid_fraction, array.viscosity, array.diameter
+    given = array.acceleration * (1.0 - phi) * array.volume / array.count   # over the fluid's density, per sphere
     return brentq(lambda u: 3.0 * np.pi * viscosity * diameter * u * law(phi, u * diameter / viscosity) - given, 1e-9, 1.0)
 
 
 def measured(folder):
-    run = Run(folder)
-    case, grains, count = run.case, run.case["grains"][0], run.summary["grains"]
-    density, viscosity = float(case["fluid"]["density"]), float(case["fluid"]["kinematic_viscosity"])
-    diameter, box = float(grains["diameter"]), float(run.size.prod())
-    phi = count * np.pi / 6.0 * diameter**3 / box
-    last = run.series["fluid_momentum_x"][-3:]
-    laws = [speed_of_law(law, phi, viscosity, diameter, float(case["gravity"]["vector"][0])) for law in (beetstra_drag, tenneti_drag)]
-    cells = f"{diameter / float(case['domain']['spacing']):.4g}"
-    method = case["name"].split(", ", 1)[1]
-    values = [run.folder.name, cells, method] + [f"{value:.5g}" for value in (phi, last.mean() / (density * box), *laws)]
-    return dict(zip(COLUMNS, values))
+    array = RandomArray(folder)
+    speed = array.run.series["fluid_momentum_x"][-3:].mean() / (array.density * array.volume)
+    laws = [speed_of_law(law, array) for law in (beetstra_drag, tenneti_drag)]
+    method = array.case["name"].split(", ", 1)[1]
+    values = [array.run.folder.name, f"{array.cells:.4g}", method]
+    return dict(zip(COLUMNS, values + [f"{value:.5g}" for value in (array.solid_fraction, speed, *laws)]))
 
 
 def means(rows):
