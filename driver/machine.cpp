@@ -1,10 +1,11 @@
 #include "driver/machine.hpp"
 
+#include "core/huge_pages.hpp"
 #include "core/mpi_session.hpp"
 
 #include <algorithm>
 #include <chrono>
-#include <vector>
+#include <span>
 
 namespace thalweg::driver {
 
@@ -12,8 +13,15 @@ namespace {
 
 constexpr std::size_t all_values = std::size_t{1} << 25;  // 256 MiB: caches of a whole chip hold less than half of it
 
+// As the lattice, in huge pages.
+HugePages<double> array_of_ones(std::size_t count) {
+  HugePages<double> array = allocate_huge_pages_for<double>(count);
+  std::fill_n(array.get(), count, 1.0);
+  return array;
+}
+
 // Bytes per second that this process reads and writes updating the array.
-double bandwidth_on(std::vector<double>& array) {
+double bandwidth_on(std::span<double> array) {
   constexpr double patience = 0.08;  // s
   using Clock = std::chrono::steady_clock;
   const auto seconds_since = [](Clock::time_point start) {
@@ -32,14 +40,15 @@ double bandwidth_on(std::vector<double>& array) {
 }  // namespace
 
 double measure_bandwidth() {
-  std::vector<double> array(all_values, 1.0);
-  return bandwidth_on(array);
+  const HugePages<double> array = array_of_ones(all_values);
+  return bandwidth_on({array.get(), all_values});
 }
 
 double measure_bandwidth(MPI_Comm communicator) {
-  std::vector<double> array(all_values / static_cast<std::size_t>(std::min(8, size_of(communicator))), 1.0);
+  const std::size_t count = all_values / static_cast<std::size_t>(std::min(8, size_of(communicator)));
+  const HugePages<double> array = array_of_ones(count);
   MPI_Barrier(communicator);
-  return sum_over_ranks(communicator, bandwidth_on(array));
+  return sum_over_ranks(communicator, bandwidth_on({array.get(), count}));
 }
 
 }  // namespace thalweg::driver

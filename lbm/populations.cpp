@@ -1,12 +1,6 @@
 #include "lbm/populations.hpp"
 
 #include <algorithm>
-#include <cstdlib>
-#include <new>
-
-#if defined(__linux__)
-#include <sys/mman.h>
-#endif
 
 namespace thalweg::lbm {
 
@@ -20,25 +14,13 @@ CellIndexing::CellIndexing(const Index3& size, int pack) : size_(size), pack_(pa
 }
 
 template <typename Real>
-void Populations<Real>::Free::operator()(void* memory) const {
-  std::free(memory);
-}
-
-template <typename Real>
 Populations<Real>::Populations(const CellIndexing& indexing) : indexing_(indexing) {
   constexpr std::size_t line = 64;                          // bytes in a cache line
   constexpr std::size_t stagger = 9 * line / sizeof(Real);  // keeps the 19 streams out of each other's cache sets
   const std::size_t per_line = line / sizeof(Real);
   stride_ = (indexing.count() + per_line - 1) / per_line * per_line + stagger;
-  const std::size_t bytes = stride_ * D3Q19::directions * sizeof(Real);
   // 38 streams over as many distant pages: huge pages keep them all in the TLB.
-  constexpr std::size_t huge_page = std::size_t{2} << 20;
-  void* memory = std::aligned_alloc(huge_page, (bytes + huge_page - 1) / huge_page * huge_page);
-  if (!memory) throw std::bad_alloc();
-#if defined(__linux__)
-  madvise(memory, bytes, MADV_HUGEPAGE);  // only a hint: its failure changes nothing
-#endif
-  memory_.reset(static_cast<Real*>(memory));
+  memory_ = allocate_huge_pages_for<Real>(stride_ * D3Q19::directions);
   std::fill_n(memory_.get(), stride_ * D3Q19::directions, Real(0));
   for (int i = 0; i < D3Q19::directions; ++i) planes_[i] = memory_.get() + stride_ * i;
 }

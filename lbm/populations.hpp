@@ -10,13 +10,13 @@
 #pragma once
 
 #include "core/decomposition.hpp"
+#include "core/huge_pages.hpp"
 #include "core/types.hpp"
 #include "lbm/d3q19.hpp"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 
 namespace thalweg::lbm {
 
@@ -102,14 +102,10 @@ private:
                                                 : planes_[i] + cell + indexing_.offset(i);
   }
 
-  struct Free {
-    void operator()(void* memory) const;
-  };
-
   CellIndexing indexing_;
   Arrangement arrangement_ = Arrangement::swapped;
   std::size_t stride_;  // Reals from one direction's plane to the next
-  std::unique_ptr<Real[], Free> memory_;
+  HugePages<Real> memory_;
   Real* planes_[D3Q19::directions];
 };
 
