@@ -13,14 +13,7 @@ namespace {
 
 constexpr std::size_t all_values = std::size_t{1} << 25;  // 256 MiB: caches of a whole chip hold less than half of it
 
-// As the lattice, in huge pages.
-HugePages<double> array_of_ones(std::size_t count) {
-  HugePages<double> array = allocate_huge_pages_for<double>(count);
-  std::fill_n(array.get(), count, 1.0);
-  return array;
-}
-
-// Bytes per second that this process reads and writes updating the array.
+// Bytes per second that this process reads and writes updating the array, which lies in huge pages as the lattice does.
 double bandwidth_on(std::span<double> array) {
   constexpr double patience = 0.08;  // s
   using Clock = std::chrono::steady_clock;
@@ -40,13 +33,13 @@ double bandwidth_on(std::span<double> array) {
 }  // namespace
 
 double measure_bandwidth() {
-  const HugePages<double> array = array_of_ones(all_values);
+  const HugePages<double> array = in_huge_pages(all_values, 1.0);
   return bandwidth_on({array.get(), all_values});
 }
 
 double measure_bandwidth(MPI_Comm communicator) {
   const std::size_t count = all_values / static_cast<std::size_t>(std::min(8, size_of(communicator)));
-  const HugePages<double> array = array_of_ones(count);
+  const HugePages<double> array = in_huge_pages(count, 1.0);
   MPI_Barrier(communicator);
   return sum_over_ranks(communicator, bandwidth_on({array.get(), count}));
 }

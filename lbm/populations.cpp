@@ -1,7 +1,5 @@
 #include "lbm/populations.hpp"
 
-#include <algorithm>
-
 namespace thalweg::lbm {
 
 CellIndexing::CellIndexing(const Index3& size, int pack) : size_(size), pack_(pack) {
@@ -20,8 +18,7 @@ Populations<Real>::Populations(const CellIndexing& indexing) : indexing_(indexin
   const std::size_t per_line = line / sizeof(Real);
   stride_ = (indexing.count() + per_line - 1) / per_line * per_line + stagger;
   // 38 streams over as many distant pages: huge pages keep them all in the TLB.
-  memory_ = allocate_huge_pages_for<Real>(stride_ * D3Q19::directions);
-  std::fill_n(memory_.get(), stride_ * D3Q19::directions, Real(0));
+  memory_ = in_huge_pages(stride_ * D3Q19::directions, Real(0));
   for (int i = 0; i < D3Q19::directions; ++i) planes_[i] = memory_.get() + stride_ * i;
 }
 

@@ -221,15 +221,13 @@ int bridges_across_borders(const Case& c, const thalweg::test::MemoryArchive& ar
   return count;
 }
 
-// Layouts matter to what crosses borders, not to the law of a contact: cases that add only a law take two. Of the ten
-// of eight ranks lines along each axis and the best one are taken.
+// Layouts matter to what crosses borders, not to the law of a contact: cases that add only a law take two.
 enum class Layouts { all, two };
 
 std::vector<Index3> layouts(const Case& c, int ranks, Layouts wanted) {
   const std::vector<Index3> possible = layouts(c.cells, ranks);
-  if (possible.size() <= 2 || (wanted == Layouts::all && ranks <= 4)) return possible;
-  if (wanted == Layouts::two) return {possible.front(), Decomposition::best_layout(c.cells, ranks)};
-  return {possible.front(), possible[possible.size() / 3], possible.back(), Decomposition::best_layout(c.cells, ranks)};
+  if (wanted == Layouts::all || possible.size() <= 2) return possible;
+  return {possible.front(), Decomposition::best_layout(c.cells, ranks)};
 }
 
 void compare(const Case& c, int steps, Layouts wanted = Layouts::all) {

@@ -190,8 +190,10 @@ TEST(FlowFields, MomentumFluxIsTheMeanOfBeforeAndAfterTheCollision) {
       EXPECT_NEAR(0.5 * (one + other), convected - viscous - subgrid, 1e-15) << "cell " << b.cell;
     };
     expect(b.second_moment.xx, after.xx, flux.viscous.xx, flux.subgrid.xx, pressure + rho * u.x() * u.x());
+    expect(b.second_moment.yy, after.yy, flux.viscous.yy, flux.subgrid.yy, pressure + rho * u.y() * u.y());
     expect(b.second_moment.zz, after.zz, flux.viscous.zz, flux.subgrid.zz, pressure + rho * u.z() * u.z());
     expect(b.second_moment.xy, after.xy, flux.viscous.xy, flux.subgrid.xy, rho * u.x() * u.y());
+    expect(b.second_moment.xz, after.xz, flux.viscous.xz, flux.subgrid.xz, rho * u.x() * u.z());
     expect(b.second_moment.yz, after.yz, flux.viscous.yz, flux.subgrid.yz, rho * u.y() * u.z());
   }
 }
