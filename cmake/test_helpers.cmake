@@ -1,35 +1,80 @@
 # thalweg_test(NAME name SOURCES file... LIBRARIES target... [RANKS 1 2 4 8] [QUICK 1 2] [LABELS label...])
 #
-# One GoogleTest executable, registered once per number of MPI ranks. Ranks may outnumber the cores of the machine. On the
-# numbers of ranks after QUICK it takes a second or two, also where the sanitizers make it several times slower than that:
-# these have the label quick, and the target quick_tests builds them.
+# The GoogleTest suites in some sources of a module, registered once per number of MPI ranks. Ranks may outnumber the cores of the
+# machine. On the numbers of ranks after QUICK they take a second or two, also where the sanitizers make them several times slower
+# than that: these have the label quick, and the target quick_tests builds them.
+#
+# All tests of a module are one program, MODULE_tests. It is compiled in a few units of several sources, which takes a third of the
+# time: what these instantiate of Eigen and GoogleTest is instantiated once for each unit.
 function(thalweg_test)
   cmake_parse_arguments(T "" "NAME" "SOURCES;LIBRARIES;RANKS;QUICK;LABELS" ${ARGN})
   if(NOT T_RANKS)
     set(T_RANKS 1)
   endif()
-  add_executable(${T_NAME} ${T_SOURCES})
-  set_target_properties(${T_NAME} PROPERTIES UNITY_BUILD OFF)   # each source has its own constants
-  target_link_libraries(${T_NAME} PRIVATE thalweg_test_support ${T_LIBRARIES})
-  if(NOT CMAKE_CXX_COMPILER_LAUNCHER)
-    target_precompile_headers(${T_NAME} REUSE_FROM thalweg_test_support)
+  cmake_path(GET CMAKE_CURRENT_SOURCE_DIR FILENAME module)
+  set(program ${module}_tests)
+  if(NOT TARGET ${program})
+    add_executable(${program})
+    target_link_libraries(${program} PRIVATE thalweg_test_support)
+    if(NOT CMAKE_CXX_COMPILER_LAUNCHER)
+      target_precompile_headers(${program} REUSE_FROM thalweg_test_support)
+    endif()
   endif()
+  target_sources(${program} PRIVATE ${T_SOURCES})
+  target_link_libraries(${program} PRIVATE ${T_LIBRARIES})
   if(T_QUICK)
     if(NOT TARGET quick_tests)
       add_custom_target(quick_tests)
     endif()
-    add_dependencies(quick_tests ${T_NAME})
+    add_dependencies(quick_tests ${program})
   endif()
+  thalweg_suites_of(${T_NAME} filter ${T_SOURCES})
   foreach(ranks IN LISTS T_RANKS)
     set(labels ${T_LABELS})
     if(ranks IN_LIST T_QUICK)
       list(APPEND labels quick)
     endif()
     add_test(NAME ${T_NAME}.${ranks}
-             COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks} $<TARGET_FILE:${T_NAME}>)
+             COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks} $<TARGET_FILE:${program}> --gtest_filter=${filter})
     thalweg_mpi_test_properties(${T_NAME}.${ranks} ${ranks})
     set_property(TEST ${T_NAME}.${ranks} PROPERTY LABELS ${labels})
   endforeach()
+endfunction()
+
+# Sets FILTER to GoogleTest's filter for the suites in the sources of the test NAME. A suite belongs to one test; a source has one at
+# least. CMake runs again when one of the sources has changed.
+function(thalweg_suites_of name filter)
+  foreach(source IN LISTS ARGN)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${source})
+    file(READ ${source} text)
+    string(REGEX MATCHALL "\nTEST(_F|_P)?\\([A-Za-z0-9_]+" beginnings "${text}")
+    list(TRANSFORM beginnings REPLACE ".*\\(" "")
+    if(NOT beginnings)
+      message(FATAL_ERROR "${name}: there is no test in ${source}")
+    endif()
+    list(APPEND suites ${beginnings})
+  endforeach()
+  list(REMOVE_DUPLICATES suites)
+  get_property(others DIRECTORY PROPERTY thalweg_suites)
+  foreach(suite IN LISTS suites)
+    if(suite IN_LIST others)
+      message(FATAL_ERROR "${name}: another test of this folder also has a suite ${suite}")
+    endif()
+    list(APPEND patterns ${suite}.* */${suite}.*)
+  endforeach()
+  set_property(DIRECTORY APPEND PROPERTY thalweg_suites ${suites})
+  list(JOIN patterns : patterns)
+  set(${filter} ${patterns} PARENT_SCOPE)
+endfunction()
+
+# thalweg_long_test(NAME name FILTER pattern): tests of this folder's program whose names begin with DISABLED_, which take minutes:
+# ctest -L validation.
+function(thalweg_long_test)
+  cmake_parse_arguments(T "" "NAME;FILTER" "" ${ARGN})
+  cmake_path(GET CMAKE_CURRENT_SOURCE_DIR FILENAME module)
+  add_test(NAME ${T_NAME} COMMAND $<TARGET_FILE:${module}_tests> --gtest_also_run_disabled_tests --gtest_filter=${T_FILTER})
+  thalweg_mpi_test_properties(${T_NAME} 1)
+  set_tests_properties(${T_NAME} PROPERTIES LABELS validation TIMEOUT 1800)
 endfunction()
 
 # Environment under which Open MPI runs more ranks than cores, as root in a container, and gives up its time slice.

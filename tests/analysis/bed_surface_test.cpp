@@ -12,7 +12,7 @@
 #include <numbers>
 #include <set>
 
-namespace thalweg::analysis {
+namespace thalweg::analysis::bed_surface_test {
 namespace {
 
 const MPI_Comm world = MPI_COMM_WORLD;
@@ -280,4 +280,4 @@ TEST(BedSurface, HasTheSameBitsOnAnyNumberOfRanksAndAfterARestart) {
 }
 
 }  // namespace
-}  // namespace thalweg::analysis
+}  // namespace thalweg::analysis::bed_surface_test

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <vector>
 
-namespace thalweg::analysis {
+namespace thalweg::analysis::correlated_mean_test {
 namespace {
 
 TEST(CorrelatedMean, HasMeanAndDeviationOfItsValues) {
@@ -140,4 +140,4 @@ TEST(CorrelatedMean, GoesOnFromItsState) {
 }
 
 }  // namespace
-}  // namespace thalweg::analysis
+}  // namespace thalweg::analysis::correlated_mean_test

@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-namespace thalweg::analysis {
+namespace thalweg::analysis::entrainment_test {
 namespace {
 
 constexpr double dt = 0.01, radius = 0.5, lever = 0.4;
@@ -186,4 +186,4 @@ TEST(Entrainment, GoesOnAfterARestartWithTheSameBits) {
 }
 
 }  // namespace
-}  // namespace thalweg::analysis
+}  // namespace thalweg::analysis::entrainment_test

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace thalweg::analysis {
+namespace thalweg::analysis::fluid_statistics_test {
 namespace {
 
 const Index3 cells{13, 9, 8};
@@ -150,4 +150,4 @@ TEST(FluidStatistics, HaveTheSameBitsOnAnyRanksAndAfterARestart) {
 }
 
 }  // namespace
-}  // namespace thalweg::analysis
+}  // namespace thalweg::analysis::fluid_statistics_test

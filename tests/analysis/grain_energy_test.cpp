@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace thalweg::analysis {
+namespace thalweg::analysis::grain_energy_test {
 namespace {
 
 TEST(GrainEnergy, SumsMotionAndSpinOfSpheres) {
@@ -36,4 +36,4 @@ TEST(GrainEnergy, TakesAClumpForOneGrain) {
 }
 
 }  // namespace
-}  // namespace thalweg::analysis
+}  // namespace thalweg::analysis::grain_energy_test

@@ -14,7 +14,7 @@
 #include <map>
 #include <numbers>
 
-namespace thalweg::analysis {
+namespace thalweg::analysis::grain_profiles_test {
 namespace {
 
 using dem::GrainDynamics;
@@ -294,4 +294,4 @@ TEST(GrainProfiles, GoOnAfterARestartWithTheSameBits) {
 }
 
 }  // namespace
-}  // namespace thalweg::analysis
+}  // namespace thalweg::analysis::grain_profiles_test

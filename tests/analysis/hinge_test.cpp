@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace thalweg::analysis {
+namespace thalweg::analysis::hinge_test {
 namespace {
 
 // A grain on two downstream grains (1 and 2) and one upstream (3), contacts at a = 0.2 m downstream or twice that
@@ -94,4 +94,4 @@ TEST(Hinge, TheShareIsThatOfTheSumsUntilTheOnset) {
 }
 
 }  // namespace
-}  // namespace thalweg::analysis
+}  // namespace thalweg::analysis::hinge_test

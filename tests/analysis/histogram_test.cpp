@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace thalweg::analysis {
+namespace thalweg::analysis::histogram_test {
 namespace {
 
 TEST(Histogram, CountsWhatLiesBetweenEdgesAndOutside) {
@@ -30,4 +30,4 @@ TEST(Histogram, QuantilesOfEvenValuesAreExact) {
 }
 
 }  // namespace
-}  // namespace thalweg::analysis
+}  // namespace thalweg::analysis::histogram_test

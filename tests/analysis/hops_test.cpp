@@ -8,7 +8,7 @@
 #include <cmath>
 #include <map>
 
-namespace thalweg::analysis {
+namespace thalweg::analysis::hops_test {
 namespace {
 
 const MPI_Comm world = MPI_COMM_WORLD;
@@ -97,4 +97,4 @@ TEST(Hops, HaveTheSameBitsOnAnyNumberOfRanksAndAfterARestart) {
 }
 
 }  // namespace
-}  // namespace thalweg::analysis
+}  // namespace thalweg::analysis::hops_test

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace thalweg::analysis {
+namespace thalweg::analysis::moving_balance_test {
 namespace {
 
 // Momentum along x above the middle of the lowest plane of cells, after a step that was booked, of fluid (without a
@@ -99,4 +99,4 @@ TEST(MovingGrains, BalanceClosesWhereTheMomentumOfCoveredCellsIsLost) { expect_c
 TEST(MovingGrains, BalanceClosesWhereGrainsKeepIt) { expect_closed(true); }
 
 }  // namespace
-}  // namespace thalweg::analysis
+}  // namespace thalweg::analysis::moving_balance_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace thalweg::analysis {
+namespace thalweg::analysis::population_loads_test {
 namespace {
 
 // Two populations dealt out to the ranks: forces and torques with small whole numbers, so that sums are exact.
@@ -65,4 +65,4 @@ TEST(PopulationLoads, AddsForcesAndTurnsThemAboutThePivot) {
 }
 
 }  // namespace
-}  // namespace thalweg::analysis
+}  // namespace thalweg::analysis::population_loads_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace thalweg::analysis {
+namespace thalweg::analysis::stress_balance_ranks_test {
 namespace {
 
 // The same sums, bit by bit, whatever the ranks; measured again from a saved state, the means go on as if nothing had
@@ -52,8 +52,8 @@ void looks_without_touching(bool side_walls) {
   EXPECT_EQ(watched->fluid().totals().momentum, alone->fluid().totals().momentum);
 }
 
-TEST(StressBalance, LooksWithoutTouchingAndGoesOnAfterARestart) { looks_without_touching(false); }
-TEST(StressBalance, LooksWithoutTouchingBetweenSideWalls) { looks_without_touching(true); }
+TEST(StressBalanceOnRanks, LooksWithoutTouchingAndGoesOnAfterARestart) { looks_without_touching(false); }
+TEST(StressBalanceOnRanks, LooksWithoutTouchingBetweenSideWalls) { looks_without_touching(true); }
 
 }  // namespace
-}  // namespace thalweg::analysis
+}  // namespace thalweg::analysis::stress_balance_ranks_test

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
-namespace thalweg::analysis {
+namespace thalweg::analysis::stress_balance_test {
 namespace {
 
 using coupling::FluidInitialState;
@@ -304,4 +304,4 @@ TEST(StressBalance, TheTopDragsGrainsAsWell) {
 }
 
 }  // namespace
-}  // namespace thalweg::analysis
+}  // namespace thalweg::analysis::stress_balance_test

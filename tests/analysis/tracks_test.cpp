@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace thalweg::analysis {
+namespace thalweg::analysis::tracks_test {
 namespace {
 
 // Three grains in a box of 20 m x 10 m x 5 m, periodic along x and y; each belongs to another rank at every step. Grain
@@ -109,4 +109,4 @@ TEST(Tracks, GoOnAfterARestartOnAnyRanks) {
 }
 
 }  // namespace
-}  // namespace thalweg::analysis
+}  // namespace thalweg::analysis::tracks_test

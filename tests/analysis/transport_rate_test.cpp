@@ -9,7 +9,7 @@
 #include <map>
 #include <numbers>
 
-namespace thalweg::analysis {
+namespace thalweg::analysis::transport_rate_test {
 namespace {
 
 const MPI_Comm world = MPI_COMM_WORLD;
@@ -163,4 +163,4 @@ TEST(TransportRate, SaysWhetherTheMeanIsSteady) {
 }
 
 }  // namespace
-}  // namespace thalweg::analysis
+}  // namespace thalweg::analysis::transport_rate_test

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace thalweg::analysis {
+namespace thalweg::analysis::trend_test_test {
 namespace {
 
 // How many of `runs` chains of memory a are said to drift, with a rise over the whole length added to them.
@@ -75,4 +75,4 @@ TEST(TrendTest, TakesStudentsNumbers) {  // of tables
 }
 
 }  // namespace
-}  // namespace thalweg::analysis
+}  // namespace thalweg::analysis::trend_test_test

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace thalweg::continuum {
+namespace thalweg::continuum::closures_test {
 namespace {
 
 const Mixture glass_in_water{1000.0, 1e-3, 2550.0, 5e-3};
@@ -92,4 +92,4 @@ TEST(Drag, OfManyGrains) {
 TEST(Drag, RateOfStokesFlow) { EXPECT_NEAR(drag_rate({}, glass_in_water, 0.0, 0.0), 720.0, 1e-9); }
 
 }  // namespace
-}  // namespace thalweg::continuum
+}  // namespace thalweg::continuum::closures_test

@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace thalweg::continuum {
+namespace thalweg::continuum::column_test {
 namespace {
 
 constexpr double slope = 0.016, gravity = 9.8;
@@ -109,4 +109,4 @@ TEST(Column, ConservesSolidsAndComesToTheBalanceOfStresses) {
 }
 
 }  // namespace
-}  // namespace thalweg::continuum
+}  // namespace thalweg::continuum::column_test

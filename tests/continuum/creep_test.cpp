@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace thalweg::continuum {
+namespace thalweg::continuum::creep_test {
 namespace {
 
 const Mixture glass_in_water{1000.0, 1e-3, 2550.0, 5e-3};
@@ -74,4 +74,4 @@ TEST(Creep, NoSteadyStateBeyondTheLimitFriction) {
 }
 
 }  // namespace
-}  // namespace thalweg::continuum
+}  // namespace thalweg::continuum::creep_test

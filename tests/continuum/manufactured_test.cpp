@@ -9,7 +9,7 @@
 #include <functional>
 #include <numbers>
 
-namespace thalweg::continuum {
+namespace thalweg::continuum::manufactured_test {
 namespace {
 
 constexpr double height = 0.02;  // m
@@ -162,4 +162,4 @@ TEST(Column, ManufacturedSolution) {
 }
 
 }  // namespace
-}  // namespace thalweg::continuum
+}  // namespace thalweg::continuum::manufactured_test

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace thalweg::continuum {
+namespace thalweg::continuum::stiff_integrator_test {
 namespace {
 
 TEST(StiffIntegrator, TellsOfAFailureByItsErrorAlone) {
@@ -25,4 +25,4 @@ TEST(StiffIntegrator, TellsOfAFailureByItsErrorAlone) {
 }
 
 }  // namespace
-}  // namespace thalweg::continuum
+}  // namespace thalweg::continuum::stiff_integrator_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace thalweg {
+namespace thalweg::decomposition_test {
 namespace {
 
 TEST(Decomposition, BlocksTileTheBox) {
@@ -102,4 +102,4 @@ TEST(Decomposition, BalancedCutsLeaveEveryRankItsLeastCells) {
 }
 
 }  // namespace
-}  // namespace thalweg
+}  // namespace thalweg::decomposition_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace thalweg {
+namespace thalweg::exchange_test {
 namespace {
 
 TEST(ExchangeRows, DeliversInOrderOfTheSendingRank) {
@@ -98,4 +98,4 @@ TEST(Schedule, CountsFromStepZero) {
 }
 
 }  // namespace
-}  // namespace thalweg
+}  // namespace thalweg::exchange_test

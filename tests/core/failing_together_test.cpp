@@ -10,7 +10,7 @@
 #include <string>
 #include <thread>
 
-namespace thalweg {
+namespace thalweg::failing_together_test {
 namespace {
 
 const MPI_Comm world = MPI_COMM_WORLD;
@@ -73,4 +73,4 @@ TEST(FailureBarrier, NoticesThatTheOthersDoNotCome) {
 }
 
 }  // namespace
-}  // namespace thalweg
+}  // namespace thalweg::failing_together_test

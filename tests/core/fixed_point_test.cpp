@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-namespace thalweg {
+namespace thalweg::fixed_point_test {
 namespace {
 
 TEST(FixedPoint, SumDoesNotDependOnTheOrder) {
@@ -124,4 +124,4 @@ TEST(WideSum, GrowsBeyondSixtyFourBitsAndBack) {
 }
 
 }  // namespace
-}  // namespace thalweg
+}  // namespace thalweg::fixed_point_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace thalweg {
+namespace thalweg::order_free_sum_test {
 namespace {
 
 const MPI_Comm world = MPI_COMM_WORLD;
@@ -56,4 +56,4 @@ TEST(OrderFreeSum, OfNothingIsZeroAndOfNonsenseIsNotANumber) {
 }
 
 }  // namespace
-}  // namespace thalweg
+}  // namespace thalweg::order_free_sum_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace thalweg {
+namespace thalweg::ramp_test {
 namespace {
 
 TEST(Ramp, IsZeroBeforeAndOneAfter) {
@@ -37,4 +37,4 @@ TEST(Ramp, RisesAllTheTime) {
 }
 
 }  // namespace
-}  // namespace thalweg
+}  // namespace thalweg::ramp_test

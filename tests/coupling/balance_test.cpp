@@ -9,7 +9,7 @@
 #include <numbers>
 #include <tuple>
 
-namespace thalweg::coupling {
+namespace thalweg::coupling::balance_test {
 namespace {
 
 Vec3 over_ranks(const Vec3& v) {
@@ -127,4 +127,4 @@ INSTANTIATE_TEST_SUITE_P(
                        ::testing::Values(RefillRule::equilibrium, RefillRule::non_equilibrium, RefillRule::grad)));
 
 }  // namespace
-}  // namespace thalweg::coupling
+}  // namespace thalweg::coupling::balance_test

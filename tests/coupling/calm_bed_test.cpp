@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace thalweg::coupling {
+namespace thalweg::coupling::calm_bed_test {
 namespace {
 
 // Let go at rest in a slot two diameters wide, at a fifth of the step that a free grain would need: sound between the
@@ -60,4 +60,4 @@ TEST(CalmBed, ShakesUnderTheMeanOfTwoExchanges) {
 }
 
 }  // namespace
-}  // namespace thalweg::coupling
+}  // namespace thalweg::coupling::calm_bed_test

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace thalweg::coupling {
+namespace thalweg::coupling::clump_test {
 namespace {
 
 Vec3 over_ranks(const Vec3& v) {
@@ -197,4 +197,4 @@ TEST(ClumpInAFlow, OfSpheresInTheSamePlaceIsThatSphere) {
 }
 
 }  // namespace
-}  // namespace thalweg::coupling
+}  // namespace thalweg::coupling::clump_test

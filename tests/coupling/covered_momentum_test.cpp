@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace thalweg::coupling {
+namespace thalweg::coupling::covered_momentum_test {
 namespace {
 
 // What there is of the fluid, lattice units, over all ranks.
@@ -78,4 +78,4 @@ TEST(CoveredMomentum, IsMissingWhereItIsLost) {
 }
 
 }  // namespace
-}  // namespace thalweg::coupling
+}  // namespace thalweg::coupling::covered_momentum_test

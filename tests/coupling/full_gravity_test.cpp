@@ -10,7 +10,7 @@
 #include <numbers>
 #include <random>
 
-namespace thalweg::coupling {
+namespace thalweg::coupling::full_gravity_test {
 namespace {
 
 constexpr double radius = 2.5e-3, gravity = 9.8;
@@ -175,4 +175,4 @@ TEST(FullGravity, MovesAGrainAsReducedGravityDoes) {
 }
 
 }  // namespace
-}  // namespace thalweg::coupling
+}  // namespace thalweg::coupling::full_gravity_test

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace thalweg::coupling {
+namespace thalweg::coupling::grain_stress_test {
 namespace {
 
 double volume(double radius) { return 4.0 / 3.0 * std::numbers::pi * std::pow(radius, 3); }
@@ -106,4 +106,4 @@ TEST(GrainStress, InSlowShearIsTheStresslet) {
 }
 
 }  // namespace
-}  // namespace thalweg::coupling
+}  // namespace thalweg::coupling::grain_stress_test

@@ -8,7 +8,7 @@
 
 #include <numbers>
 
-namespace thalweg::coupling {
+namespace thalweg::coupling::held_grains_test {
 namespace {
 
 // Three spheres in a stream: one in a corner of the periodic box, none touching.
@@ -107,4 +107,4 @@ TEST(HeldGrains, ARigidAssemblyTakesFromTheFluidWhatItsLoadSays) {
 }
 
 }  // namespace
-}  // namespace thalweg::coupling
+}  // namespace thalweg::coupling::held_grains_test

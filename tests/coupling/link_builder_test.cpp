@@ -12,7 +12,7 @@
 #include <set>
 #include <utility>
 
-namespace thalweg::coupling {
+namespace thalweg::coupling::link_builder_test {
 namespace {
 
 // Every link there must be by the map of the cells, and no other, in the words of the table.
@@ -171,4 +171,4 @@ TEST(LinkBuilder, KnowsWhichCellsAreConfined) {
 }
 
 }  // namespace
-}  // namespace thalweg::coupling
+}  // namespace thalweg::coupling::link_builder_test

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace thalweg::coupling {
+namespace thalweg::coupling::lubrication_test {
 namespace {
 
 // Over 6 pi eta R U, of a sphere at height R + h above a wall towards which it moves with U.
@@ -155,4 +155,4 @@ TEST(LubricationForce, OfASphereThatSlidesOrTurnsNearAWall) {
 }
 
 }  // namespace
-}  // namespace thalweg::coupling
+}  // namespace thalweg::coupling::lubrication_test

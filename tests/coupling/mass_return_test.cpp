@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-namespace thalweg::coupling {
+namespace thalweg::coupling::mass_return_test {
 namespace {
 
 using lbm::D3Q19;
@@ -64,4 +64,4 @@ TEST(MassReturn, IsBoundedWhereThereAreHardlyAnyLinks) {
 }
 
 }  // namespace
-}  // namespace thalweg::coupling
+}  // namespace thalweg::coupling::mass_return_test

@@ -12,7 +12,7 @@
 #include <numbers>
 #include <tuple>
 
-namespace thalweg::coupling {
+namespace thalweg::coupling::near_contact_test {
 namespace {
 
 using lbm::D3Q19;
@@ -150,4 +150,4 @@ TEST(NearContact, GrainsThatDriftTogetherFeelNothingWithThePapersLinks) {
 }
 
 }  // namespace
-}  // namespace thalweg::coupling
+}  // namespace thalweg::coupling::near_contact_test

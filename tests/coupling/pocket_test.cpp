@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace thalweg::coupling {
+namespace thalweg::coupling::pocket_test {
 namespace {
 
 constexpr Index3 pocket{12, 12, 12};
@@ -53,4 +53,4 @@ INSTANTIATE_TEST_SUITE_P(Gaps, Pocket, ::testing::Values(lbm::GapRule::no_slip, 
                          [](const auto& gap) { return gap.param == lbm::GapRule::slip ? "slip" : "no_slip"; });
 
 }  // namespace
-}  // namespace thalweg::coupling
+}  // namespace thalweg::coupling::pocket_test

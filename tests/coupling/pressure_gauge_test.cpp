@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-namespace thalweg::coupling {
+namespace thalweg::coupling::pressure_gauge_test {
 namespace {
 
 FluidInitialState at_rest(const Vec3&) { return {0.0, Vec3::Zero()}; }
@@ -91,4 +91,4 @@ TEST(PressureGauge, IsNotFeltUnderFullGravity) {
 }
 
 }  // namespace
-}  // namespace thalweg::coupling
+}  // namespace thalweg::coupling::pressure_gauge_test

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace thalweg::coupling {
+namespace thalweg::coupling::ramp_test {
 namespace {
 
 Index3 best_layout(const Index3& cells) { return Decomposition::best_layout(cells, size_of(MPI_COMM_WORLD)); }
@@ -131,4 +131,4 @@ TEST(Ramp, GoesOnInItsMiddleWithTheSameBits) {
 }
 
 }  // namespace
-}  // namespace thalweg::coupling
+}  // namespace thalweg::coupling::ramp_test

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <map>
 
-namespace thalweg::coupling {
+namespace thalweg::coupling::ranks_test {
 namespace {
 
 std::vector<Index3> layouts_of(int ranks) {
@@ -203,4 +203,4 @@ TEST(Ranks, DoNotChangeOneBitOfAGrainThatSpansAllOfThem) {
 }
 
 }  // namespace
-}  // namespace thalweg::coupling
+}  // namespace thalweg::coupling::ranks_test

@@ -13,7 +13,7 @@
 #include <tuple>
 #include <vector>
 
-namespace thalweg::coupling {
+namespace thalweg::coupling::reference_lattice_test {
 namespace {
 
 using lbm::D3Q19;
@@ -302,4 +302,4 @@ INSTANTIATE_TEST_SUITE_P(
                        ::testing::Values(lbm::CollisionModel::bgk, lbm::CollisionModel::trt_at_bodies)));
 
 }  // namespace
-}  // namespace thalweg::coupling
+}  // namespace thalweg::coupling::reference_lattice_test

@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-namespace thalweg::coupling {
+namespace thalweg::coupling::refill_test {
 namespace {
 
 using lbm::D3Q19;
@@ -171,4 +171,4 @@ INSTANTIATE_TEST_SUITE_P(AllRules, UncoveredCells,
                          ::testing::Values(RefillRule::equilibrium, RefillRule::non_equilibrium, RefillRule::grad));
 
 }  // namespace
-}  // namespace thalweg::coupling
+}  // namespace thalweg::coupling::refill_test

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace thalweg::coupling {
+namespace thalweg::coupling::settling_test {
 namespace {
 
 struct Place {
@@ -56,4 +56,4 @@ TEST(Settling, SphereReachesItsTerminalSpeedAndRestsOnTheFloor) {
 }
 
 }  // namespace
-}  // namespace thalweg::coupling
+}  // namespace thalweg::coupling::settling_test

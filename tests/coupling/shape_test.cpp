@@ -13,7 +13,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace thalweg::coupling {
+namespace thalweg::coupling::shape_test {
 namespace {
 
 // Cells are those inside by the equation of the surface, and links meet it where it is zero, to the round-off of a few
@@ -206,4 +206,4 @@ TEST(AnyShape, ASpheroidHasTheStokesDragOfTheClosedForm) {
 }
 
 }  // namespace
-}  // namespace thalweg::coupling
+}  // namespace thalweg::coupling::shape_test

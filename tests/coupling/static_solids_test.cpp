@@ -9,7 +9,7 @@
 #include <map>
 #include <numbers>
 
-namespace thalweg::coupling {
+namespace thalweg::coupling::static_solids_test {
 namespace {
 
 // A box from corner to corner.
@@ -319,4 +319,4 @@ TEST(StaticSolids, AreTheSameOnAnyRanks) {
 }
 
 }  // namespace
-}  // namespace thalweg::coupling
+}  // namespace thalweg::coupling::static_solids_test

@@ -12,7 +12,7 @@
 #include <exception>
 #include <numbers>
 
-namespace thalweg::coupling {
+namespace thalweg::coupling::virtual_mass_test {
 namespace {
 
 constexpr double fluid_density = 1000.0;  // kg/m^3
@@ -123,4 +123,4 @@ TEST(VirtualMass, LeavesTheWeightOnAContactAlone) {
 }
 
 }  // namespace
-}  // namespace thalweg::coupling
+}  // namespace thalweg::coupling::virtual_mass_test

@@ -8,7 +8,7 @@
 
 #include <numbers>
 
-namespace thalweg::coupling {
+namespace thalweg::coupling::wall_forces_test {
 namespace {
 
 Vec3 over_ranks(const Vec3& v) {
@@ -77,4 +77,4 @@ TEST(WallForces, OfAGrainHeldOnTheFloorAreItsSpring) {
 }
 
 }  // namespace
-}  // namespace thalweg::coupling
+}  // namespace thalweg::coupling::wall_forces_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace thalweg::dem {
+namespace thalweg::dem::asperity_test {
 namespace {
 
 struct Model {
@@ -102,4 +102,4 @@ TEST(Asperities, SlideAtTheirEffectiveFriction) {
 }
 
 }  // namespace
-}  // namespace thalweg::dem
+}  // namespace thalweg::dem::asperity_test

@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-namespace thalweg::dem {
+namespace thalweg::dem::cell_grid_test {
 namespace {
 
 using Pair = std::pair<std::uint32_t, std::uint32_t>;
@@ -89,4 +89,4 @@ TEST(CellGrid, VisitsNoMorePairsInALargerBox) {
 }
 
 }  // namespace
-}  // namespace thalweg::dem
+}  // namespace thalweg::dem::cell_grid_test

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace thalweg::dem {
+namespace thalweg::dem::chung_ooi_test {
 namespace {
 
 ContactParameters elastic(double youngs_modulus, double poisson_ratio, double friction = 0.0,
@@ -241,4 +241,4 @@ TEST(ChungOoi, Test7EqualAndOppositeSpinsChangeNothing) {
 }
 
 }  // namespace
-}  // namespace thalweg::dem
+}  // namespace thalweg::dem::chung_ooi_test

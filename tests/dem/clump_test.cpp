@@ -10,7 +10,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace thalweg::dem {
+namespace thalweg::dem::clump_test {
 namespace {
 
 using test::angular_momentum;
@@ -366,4 +366,4 @@ TEST(Clump, ThatCannotBeIsRefused) {
 }
 
 }  // namespace
-}  // namespace thalweg::dem
+}  // namespace thalweg::dem::clump_test

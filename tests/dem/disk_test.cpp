@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace thalweg::dem {
+namespace thalweg::dem::disk_test {
 namespace {
 
 constexpr double gravity = 9.81, thickness = 4e-3;
@@ -117,4 +117,4 @@ TEST(Disks, RefuseSpheresAndOtherPlanes) {
 }
 
 }  // namespace
-}  // namespace thalweg::dem
+}  // namespace thalweg::dem::disk_test

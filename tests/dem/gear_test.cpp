@@ -10,7 +10,7 @@
 #include <numbers>
 #include <vector>
 
-namespace thalweg::dem {
+namespace thalweg::dem::gear_test {
 namespace {
 
 constexpr double gravity = 9.81;
@@ -142,4 +142,4 @@ TEST(Gear, DoesNotTakeOtherColumnsForItsOwn) {
 }
 
 }  // namespace
-}  // namespace thalweg::dem
+}  // namespace thalweg::dem::gear_test

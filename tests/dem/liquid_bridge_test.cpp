@@ -12,7 +12,7 @@
 #include <numbers>
 #include <numeric>
 
-namespace thalweg::dem {
+namespace thalweg::dem::liquid_bridge_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -236,4 +236,4 @@ TEST(LiquidBridge, RefusesTheImpossible) {
 }
 
 }  // namespace
-}  // namespace thalweg::dem
+}  // namespace thalweg::dem::liquid_bridge_test

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace thalweg::dem {
+namespace thalweg::dem::lubrication_test {
 namespace {
 
 constexpr double eta = 0.8;             // Pa s
@@ -207,4 +207,4 @@ TEST(Lubrication, SlowsASphereOnItsWayToAWallAsThePathSays) {
 }
 
 }  // namespace
-}  // namespace thalweg::dem
+}  // namespace thalweg::dem::lubrication_test

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace thalweg::dem {
+namespace thalweg::dem::mass_curve_test {
 namespace {
 
 struct Sample {
@@ -107,4 +107,4 @@ TEST(MassCurve, IsLognormalBetweenThePercentiles) {
 }
 
 }  // namespace
-}  // namespace thalweg::dem
+}  // namespace thalweg::dem::mass_curve_test

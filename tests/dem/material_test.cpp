@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace thalweg::dem {
+namespace thalweg::dem::material_test {
 namespace {
 
 // Restitution of m x'' + gamma x' + k x = 0 with m = k = 1 by classical Runge-Kutta steps of 1e-4: no closed form.
@@ -149,4 +149,4 @@ TEST(Mixing, GrainsOfTwoMaterialsAndAWallPartWithTheirRestitutions) {
 }
 
 }  // namespace
-}  // namespace thalweg::dem
+}  // namespace thalweg::dem::material_test

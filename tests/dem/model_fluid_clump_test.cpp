@@ -15,7 +15,7 @@
 #include <numbers>
 #include <vector>
 
-namespace thalweg::dem {
+namespace thalweg::dem::model_fluid_clump_test {
 namespace {
 
 using test::glass_clump;
@@ -184,4 +184,4 @@ TEST(ModelFluidClump, ThatIsHeldKeepsItsVelocityOnTheFloor) {
 }
 
 }  // namespace
-}  // namespace thalweg::dem
+}  // namespace thalweg::dem::model_fluid_clump_test

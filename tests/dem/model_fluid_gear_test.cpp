@@ -8,7 +8,7 @@
 #include <cmath>
 #include <memory>
 
-namespace thalweg::dem {
+namespace thalweg::dem::model_fluid_gear_test {
 namespace {
 
 using test::glass_density;
@@ -84,4 +84,4 @@ TEST(ModelFluidGear, HoldsAGrainOnTheFloor) {
 }
 
 }  // namespace
-}  // namespace thalweg::dem
+}  // namespace thalweg::dem::model_fluid_gear_test

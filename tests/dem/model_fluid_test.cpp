@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace thalweg::dem {
+namespace thalweg::dem::model_fluid_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -183,4 +183,4 @@ TEST(LocalSolidFraction, FollowsTheGrainsToATolerance) {
 }
 
 }  // namespace
-}  // namespace thalweg::dem
+}  // namespace thalweg::dem::model_fluid_test

@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace thalweg::dem {
+namespace thalweg::dem::motion_test {
 namespace {
 
 // x and y periodic, 12 cells of 2.5 mm each way: six diameters.
@@ -159,4 +159,4 @@ TEST(MovingWall, DragsTheGrainThatLiesOnIt) {
 }
 
 }  // namespace
-}  // namespace thalweg::dem
+}  // namespace thalweg::dem::motion_test

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace thalweg::dem {
+namespace thalweg::dem::normal_impact_test {
 namespace {
 
 constexpr double impact_speed = 0.1;  // m/s
@@ -120,4 +120,4 @@ TEST(NormalImpact, SpheresOfDifferentSizePartWithTheRestitution) {
 }
 
 }  // namespace
-}  // namespace thalweg::dem
+}  // namespace thalweg::dem::normal_impact_test

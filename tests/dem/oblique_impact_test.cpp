@@ -11,7 +11,7 @@
 #include <memory>
 #include <numbers>
 
-namespace thalweg::dem {
+namespace thalweg::dem::oblique_impact_test {
 namespace {
 
 constexpr double normal_speed = 5e-4;  // m/s: slow, so that the line of centres hardly turns and overlaps are small
@@ -182,4 +182,4 @@ TEST(ObliqueImpact, SpringsOfAnotherLawAreNotGoneOnWith) {
 }
 
 }  // namespace
-}  // namespace thalweg::dem
+}  // namespace thalweg::dem::oblique_impact_test

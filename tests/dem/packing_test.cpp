@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <numbers>
 
-namespace thalweg::dem {
+namespace thalweg::dem::packing_test {
 namespace {
 
 const PeriodicBox flume{Vec3(0.12, 0.04, 0.106), {true, true, false}};
@@ -141,4 +141,4 @@ TEST(RandomPacking, SaysHowManyFitted) {
 }
 
 }  // namespace
-}  // namespace thalweg::dem
+}  // namespace thalweg::dem::packing_test

@@ -9,7 +9,7 @@
 #include <memory>
 #include <string>
 
-namespace thalweg::dem {
+namespace thalweg::dem::plate_test {
 namespace {
 
 constexpr double radius = test::glass_radius;
@@ -197,4 +197,4 @@ TEST(Plate, IsRefusedWithoutLengthOrOffItsPlane) {
 }
 
 }  // namespace
-}  // namespace thalweg::dem
+}  // namespace thalweg::dem::plate_test

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace thalweg::dem {
+namespace thalweg::dem::prescribed_motion_test {
 namespace {
 
 using std::numbers::pi;
@@ -195,4 +195,4 @@ TEST(Assembly, ImpossibleOnesAreRefused) {
 }
 
 }  // namespace
-}  // namespace thalweg::dem
+}  // namespace thalweg::dem::prescribed_motion_test

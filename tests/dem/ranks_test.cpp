@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace thalweg::dem {
+namespace thalweg::dem::ranks_test {
 namespace {
 
 struct Case {
@@ -408,4 +408,4 @@ TEST(Ranks, StateSavedByAllIsLoadedByOne) {
 }
 
 }  // namespace
-}  // namespace thalweg::dem
+}  // namespace thalweg::dem::ranks_test

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace thalweg::dem {
+namespace thalweg::dem::refusal_test {
 namespace {
 
 Decomposition shared_box() {
@@ -128,4 +128,4 @@ TEST(Run, StopsWhereALoadIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace thalweg::dem
+}  // namespace thalweg::dem::refusal_test

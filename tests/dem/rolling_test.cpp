@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace thalweg::dem {
+namespace thalweg::dem::rolling_test {
 namespace {
 
 constexpr double g = 9.8;
@@ -167,4 +167,4 @@ TEST(RollingFriction, ImpossibleCoefficientsAreRefused) {
 }
 
 }  // namespace
-}  // namespace thalweg::dem
+}  // namespace thalweg::dem::rolling_test

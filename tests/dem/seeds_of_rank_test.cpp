@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <map>
 
-namespace thalweg::dem {
+namespace thalweg::dem::seeds_of_rank_test {
 namespace {
 
 constexpr Index3 cells{24, 16, 24};
@@ -204,4 +204,4 @@ TEST(SeedsOfRank, AreRefusedOnAllRanks) {
 }
 
 }  // namespace
-}  // namespace thalweg::dem
+}  // namespace thalweg::dem::seeds_of_rank_test

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace thalweg::dem {
+namespace thalweg::dem::static_test {
 namespace {
 
 constexpr double g = 9.8;  // m/s^2
@@ -173,4 +173,4 @@ TEST(Bed, AtRestStaysAtRestForAMillionSteps) {
 }
 
 }  // namespace
-}  // namespace thalweg::dem
+}  // namespace thalweg::dem::static_test

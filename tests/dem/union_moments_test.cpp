@@ -11,7 +11,7 @@
 #include <numbers>
 #include <vector>
 
-namespace thalweg::dem {
+namespace thalweg::dem::union_moments_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -177,4 +177,4 @@ TEST(UnionMoments, DisksApartTheSameAndOverlapping) {
 }
 
 }  // namespace
-}  // namespace thalweg::dem
+}  // namespace thalweg::dem::union_moments_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace thalweg::driver {
+namespace thalweg::driver::bed_flow_test {
 namespace {
 
 // The parameters of Zhang et al. 2022; the expected numbers are theirs, to the digits printed.
@@ -84,4 +84,4 @@ TEST(FlowNumbers, AreMissingWithoutAFlow) {
 }
 
 }  // namespace
-}  // namespace thalweg::driver
+}  // namespace thalweg::driver::bed_flow_test

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace thalweg::driver {
+namespace thalweg::driver::bed_share_test {
 namespace {
 
 using testing::put;
@@ -238,4 +238,4 @@ TEST_F(BedShare, IsRefusedWhereThereIsNone) {
 }
 
 }  // namespace
-}  // namespace thalweg::driver
+}  // namespace thalweg::driver::bed_share_test

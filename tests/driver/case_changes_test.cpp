@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace thalweg::driver {
+namespace thalweg::driver::case_changes_test {
 namespace {
 
 constexpr const char* before = R"(
@@ -106,4 +106,4 @@ TEST(CaseChanges, AWallIsWhereItsMotionSinceTheStartHasBroughtIt) {
 }
 
 }  // namespace
-}  // namespace thalweg::driver
+}  // namespace thalweg::driver::case_changes_test

@@ -9,7 +9,7 @@
 
 #include <algorithm>
 
-namespace thalweg::driver {
+namespace thalweg::driver::case_reader_test {
 namespace {
 
 using testing::flume;
@@ -262,4 +262,4 @@ TEST(CaseReader, TheDefaultsOfEverySystemAreValid) {
 }
 
 }  // namespace
-}  // namespace thalweg::driver
+}  // namespace thalweg::driver::case_reader_test

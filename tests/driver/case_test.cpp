@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace thalweg::driver {
+namespace thalweg::driver::case_test {
 namespace {
 
 // The wide wall-free flume WWF1 of Zhang et al. 2022 at Shields number 0.085.
@@ -193,4 +193,4 @@ TEST(Case, WarnsOfABulkViscosityThatMakesAFastStreamUnstable) {
 }
 
 }  // namespace
-}  // namespace thalweg::driver
+}  // namespace thalweg::driver::case_test

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace thalweg::driver {
+namespace thalweg::driver::check_report_test {
 namespace {
 
 bool any_contains(const std::vector<std::string>& texts, const std::string& part) {
@@ -142,4 +142,4 @@ TEST(CheckReport, AsksForContactsAsLongAsSoundGoesAroundAGrain) {
 }
 
 }  // namespace
-}  // namespace thalweg::driver
+}  // namespace thalweg::driver::check_report_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace thalweg::driver {
+namespace thalweg::driver::command_line_test {
 namespace {
 
 CommandLine parse(std::vector<const char*> words) {
@@ -101,4 +101,4 @@ TEST(CommandLine, WallTimesAsBatchSystemsWriteThem) {
 }
 
 }  // namespace
-}  // namespace thalweg::driver
+}  // namespace thalweg::driver::command_line_test

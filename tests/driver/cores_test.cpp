@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace thalweg::driver {
+namespace thalweg::driver::cores_test {
 namespace {
 
 TEST(Cores, ByTheQuotaOfAContainer) {
@@ -15,4 +15,4 @@ TEST(Cores, ByTheQuotaOfAContainer) {
 }
 
 }  // namespace
-}  // namespace thalweg::driver
+}  // namespace thalweg::driver::cores_test

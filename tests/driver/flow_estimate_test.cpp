@@ -10,7 +10,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace thalweg::driver {
+namespace thalweg::driver::flow_estimate_test {
 namespace {
 
 constexpr double d = 5e-3, depth = 0.0412;
@@ -257,4 +257,4 @@ TEST(DragText, DependsOnReynoldsNumberAndSubgridConstant) {
 }
 
 }  // namespace
-}  // namespace thalweg::driver
+}  // namespace thalweg::driver::flow_estimate_test

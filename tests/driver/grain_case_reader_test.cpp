@@ -10,7 +10,7 @@
 #include <numbers>
 #include <utility>
 
-namespace thalweg::driver {
+namespace thalweg::driver::grain_case_reader_test {
 namespace {
 
 using testing::flume;
@@ -229,4 +229,4 @@ TEST(GrainCaseReader, WallsAndPopulationsMove) {
 }
 
 }  // namespace
-}  // namespace thalweg::driver
+}  // namespace thalweg::driver::grain_case_reader_test

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace thalweg::driver {
+namespace thalweg::driver::grain_fill_test {
 namespace {
 
 using testing::flume;
@@ -108,4 +108,4 @@ TEST(GrainFill, Refusals) {
 }
 
 }  // namespace
-}  // namespace thalweg::driver
+}  // namespace thalweg::driver::grain_fill_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace thalweg::driver {
+namespace thalweg::driver::limit_text_test {
 namespace {
 
 TEST(LimitText, KeepsTheLimit) {
@@ -24,4 +24,4 @@ TEST(LimitText, KeepsTheLimit) {
 }
 
 }  // namespace
-}  // namespace thalweg::driver
+}  // namespace thalweg::driver::limit_text_test

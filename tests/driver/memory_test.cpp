@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace thalweg::driver {
+namespace thalweg::driver::memory_test {
 namespace {
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
@@ -57,4 +57,4 @@ TEST(Memory, IsThatOfTheLatticeAboveAll) {
 }
 
 }  // namespace
-}  // namespace thalweg::driver
+}  // namespace thalweg::driver::memory_test

@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace thalweg::driver {
+namespace thalweg::driver::rank_cost_test {
 namespace {
 
 RankWork total(const Case& c, const Index3& layout) {
@@ -107,4 +107,4 @@ TEST(SampleCase, IsAShortPieceOfTheWhole) {
 }
 
 }  // namespace
-}  // namespace thalweg::driver
+}  // namespace thalweg::driver::rank_cost_test

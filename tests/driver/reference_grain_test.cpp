@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace thalweg::driver {
+namespace thalweg::driver::reference_grain_test {
 namespace {
 
 dem::Population population(std::int64_t count, double diameter, double density) {
@@ -65,4 +65,4 @@ TEST(ReferenceGrain, IsWhatTheUserSays) {
 }
 
 }  // namespace
-}  // namespace thalweg::driver
+}  // namespace thalweg::driver::reference_grain_test

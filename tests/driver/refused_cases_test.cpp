@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace thalweg::driver {
+namespace thalweg::driver::refused_cases_test {
 namespace {
 
 using testing::flume;
@@ -230,4 +230,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& bad) { return bad.param.name; });
 
 }  // namespace
-}  // namespace thalweg::driver
+}  // namespace thalweg::driver::refused_cases_test

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace thalweg::driver {
+namespace thalweg::driver::watch_rules_test {
 namespace {
 
 using namespace loop;
@@ -81,4 +81,4 @@ TEST(WatchRules, GrainsMayFallAndBeCarried) {
 }
 
 }  // namespace
-}  // namespace thalweg::driver
+}  // namespace thalweg::driver::watch_rules_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace thalweg::driver {
+namespace thalweg::driver::work_cuts_test {
 namespace {
 
 // 24 x 8 x 100 cells of 0.5 mm.
@@ -46,4 +46,4 @@ TEST(WorkCuts, OfAPlanFollowTheSettledBed) {
 }
 
 }  // namespace
-}  // namespace thalweg::driver
+}  // namespace thalweg::driver::work_cuts_test

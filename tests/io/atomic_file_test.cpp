@@ -20,7 +20,7 @@ extern "C" int fallocate(int file, int mode, off_t offset, off_t length) {
   return -1;
 }
 
-namespace thalweg::io {
+namespace thalweg::io::atomic_file_test {
 namespace {
 
 TEST(AtomicFile, ASignalDoesNotMakeTheDiskFull) {
@@ -36,4 +36,4 @@ TEST(AtomicFile, ASignalDoesNotMakeTheDiskFull) {
 }
 
 }  // namespace
-}  // namespace thalweg::io
+}  // namespace thalweg::io::atomic_file_test

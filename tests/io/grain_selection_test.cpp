@@ -7,7 +7,7 @@
 
 #include <numbers>
 
-namespace thalweg::io {
+namespace thalweg::io::grain_selection_test {
 namespace {
 
 const PopulationEnds ends{10, 10, 25};  // the second population has no grains
@@ -111,4 +111,4 @@ TEST(GrainFields, DensityAndOrientationOfAMemberAreThoseOfItsClump) {
 }
 
 }  // namespace
-}  // namespace thalweg::io
+}  // namespace thalweg::io::grain_selection_test

@@ -12,7 +12,7 @@
 #include <csignal>
 #include <thread>
 
-namespace thalweg::io {
+namespace thalweg::io::hdf5_archive_test {
 namespace {
 
 using testing::contents;
@@ -266,4 +266,4 @@ TEST(Hdf5Archive, AFullDiskIsARunErrorOnEveryRank) {
 }
 
 }  // namespace
-}  // namespace thalweg::io
+}  // namespace thalweg::io::hdf5_archive_test

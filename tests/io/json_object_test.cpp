@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace thalweg::io {
+namespace thalweg::io::json_object_test {
 namespace {
 
 JsonObject example() {
@@ -40,4 +40,4 @@ TEST(JsonObject, Indented) {
 }
 
 }  // namespace
-}  // namespace thalweg::io
+}  // namespace thalweg::io::json_object_test

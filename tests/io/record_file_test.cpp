@@ -10,7 +10,7 @@
 #include <functional>
 #include <numeric>
 
-namespace thalweg::io {
+namespace thalweg::io::record_file_test {
 namespace {
 
 using testing::message_of;
@@ -154,4 +154,4 @@ TEST(RecordFile, RefusesWhatItCannotContinue) {
 }
 
 }  // namespace
-}  // namespace thalweg::io
+}  // namespace thalweg::io::record_file_test

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace thalweg::io {
+namespace thalweg::io::run_folder_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -244,4 +244,4 @@ TEST_F(RunFolderTest, ASecondRunIsKeptOut) {
 }
 
 }  // namespace
-}  // namespace thalweg::io
+}  // namespace thalweg::io::run_folder_test

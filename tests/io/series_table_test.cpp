@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace thalweg::io {
+namespace thalweg::io::series_table_test {
 namespace {
 
 using testing::contents;
@@ -74,4 +74,4 @@ TEST(SeriesTable, AMissingFolderIsARunErrorOnEveryRank) {
 }
 
 }  // namespace
-}  // namespace thalweg::io
+}  // namespace thalweg::io::series_table_test

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-namespace thalweg::io {
+namespace thalweg::io::vtk_series_test {
 namespace {
 
 using testing::contents;
@@ -228,4 +228,4 @@ TEST(VtkSeries, AFolderThatCannotBeWrittenIsARunErrorOnEveryRank) {
 }
 
 }  // namespace
-}  // namespace thalweg::io
+}  // namespace thalweg::io::vtk_series_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace thalweg::io {
+namespace thalweg::io::yaml_section_test {
 
 enum class Colour { red, green };
 
@@ -286,4 +286,4 @@ TEST(YamlSection, MissingFilesAndFolders) {
 }
 
 }  // namespace
-}  // namespace thalweg::io
+}  // namespace thalweg::io::yaml_section_test

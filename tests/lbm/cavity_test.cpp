@@ -25,7 +25,7 @@
 #include <optional>
 #include <vector>
 
-namespace thalweg::lbm {
+namespace thalweg::lbm::cavity_test {
 namespace {
 
 struct Point {
@@ -247,4 +247,4 @@ TEST(CubicCavity, ConvergesToThePublishedCentreLines) {
 }
 
 }  // namespace
-}  // namespace thalweg::lbm
+}  // namespace thalweg::lbm::cavity_test

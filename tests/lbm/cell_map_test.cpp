@@ -4,7 +4,7 @@
 
 #include <random>
 
-namespace thalweg::lbm {
+namespace thalweg::lbm::cell_map_test {
 namespace {
 
 bool has_covered_neighbour(const CellMap& map, std::ptrdiff_t cell) {
@@ -38,4 +38,4 @@ TEST(CellMap, KnowsWhichCellsHaveABodyBesideThem) {
 }
 
 }  // namespace
-}  // namespace thalweg::lbm
+}  // namespace thalweg::lbm::cell_map_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace thalweg::lbm {
+namespace thalweg::lbm::channel_test {
 namespace {
 
 Channel plain(int height, double tau, double force, const FaceCondition& wall, int normal = 1) {
@@ -86,4 +86,4 @@ TEST(LawOfTheWall, OfTheFirstCellSlipsMoreUnderALargerStress) {
 }
 
 }  // namespace
-}  // namespace thalweg::lbm
+}  // namespace thalweg::lbm::channel_test

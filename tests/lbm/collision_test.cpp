@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-namespace thalweg::lbm {
+namespace thalweg::lbm::collision_test {
 namespace {
 
 struct Sums {
@@ -236,4 +236,4 @@ TEST_F(Collision, PureCompressionRaisesNoEddyViscosity) {
 }
 
 }  // namespace
-}  // namespace thalweg::lbm
+}  // namespace thalweg::lbm::collision_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace thalweg::lbm {
+namespace thalweg::lbm::conservation_test {
 namespace {
 
 FluidState swirl(const Vec3& p) {
@@ -55,4 +55,4 @@ INSTANTIATE_TEST_SUITE_P(Walls, ClosedBox,
                                            FaceType::navier_slip, FaceType::law_of_the_wall));
 
 }  // namespace
-}  // namespace thalweg::lbm
+}  // namespace thalweg::lbm::conservation_test

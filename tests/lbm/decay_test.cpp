@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace thalweg::lbm {
+namespace thalweg::lbm::decay_test {
 namespace {
 
 // Runs u = U (-cos kx sin ky, sin kx cos ky) e^{-2 nu k^2 t} for a time of 1/(2 nu k^2); returns the relative L2 error
@@ -72,4 +72,4 @@ TEST(BodyForce, AcceleratesUniformly) {
 }
 
 }  // namespace
-}  // namespace thalweg::lbm
+}  // namespace thalweg::lbm::decay_test

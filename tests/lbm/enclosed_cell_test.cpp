@@ -7,7 +7,7 @@
 #include <array>
 #include <vector>
 
-namespace thalweg::lbm {
+namespace thalweg::lbm::enclosed_cell_test {
 namespace {
 
 constexpr std::array<int, 3> size{6, 5, 4};
@@ -82,4 +82,4 @@ INSTANTIATE_TEST_SUITE_P(Links, EnclosedCell, ::testing::Values(LinkRule::bouzid
                          [](const auto& links) { return links.param == LinkRule::cli ? "cli" : "bouzidi"; });
 
 }  // namespace
-}  // namespace thalweg::lbm
+}  // namespace thalweg::lbm::enclosed_cell_test

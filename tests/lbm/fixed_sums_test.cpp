@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-namespace thalweg::lbm {
+namespace thalweg::lbm::fixed_sums_test {
 namespace {
 
 using Sums = FixedSums<2>;
@@ -64,4 +64,4 @@ TEST(FixedSums, NoteATermThatIsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace thalweg::lbm
+}  // namespace thalweg::lbm::fixed_sums_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace thalweg::lbm {
+namespace thalweg::lbm::flow_control_test {
 namespace {
 
 FaceConditions plates() {
@@ -68,4 +68,4 @@ TEST(FlowControl, RefusesToRespondFasterThanItLooks) {
 }
 
 }  // namespace
-}  // namespace thalweg::lbm
+}  // namespace thalweg::lbm::flow_control_test

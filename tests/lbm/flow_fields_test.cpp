@@ -10,7 +10,7 @@
 #include <numbers>
 #include <vector>
 
-namespace thalweg::lbm {
+namespace thalweg::lbm::flow_fields_test {
 namespace {
 
 Index3 layout_of_all_ranks(const Index3& cells) { return Decomposition::best_layout(cells, size_of(MPI_COMM_WORLD)); }
@@ -261,4 +261,4 @@ TEST(FlowFields, AreTheSameOnAnyRanks) {
 }
 
 }  // namespace
-}  // namespace thalweg::lbm
+}  // namespace thalweg::lbm::flow_fields_test

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace thalweg::lbm {
+namespace thalweg::lbm::flow_transfer_test {
 namespace {
 
 // Periodic along x and y, walls across z: where a fraction s of the box is reached.
@@ -141,4 +141,4 @@ TEST(FlowTransfer, IsTheSameOnEveryNumberOfRanks) {
 }
 
 }  // namespace
-}  // namespace thalweg::lbm
+}  // namespace thalweg::lbm::flow_transfer_test

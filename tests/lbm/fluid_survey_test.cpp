@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-namespace thalweg::lbm {
+namespace thalweg::lbm::fluid_survey_test {
 namespace {
 
 constexpr Index3 cells{37, 17, 11};  // no whole packs
@@ -224,4 +224,4 @@ TEST(FluidSurvey, SumsOfRanksAreWide) {
 }
 
 }  // namespace
-}  // namespace thalweg::lbm
+}  // namespace thalweg::lbm::fluid_survey_test

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <numbers>
 
-namespace thalweg::lbm {
+namespace thalweg::lbm::gap_slip_test {
 namespace {
 
 constexpr double force = 1e-7;
@@ -195,4 +195,4 @@ TEST(NarrowGaps, KeepTheRuleOfTheirLinksFromAMagicParameterOfThreeSixteenthsOn) 
 }
 
 }  // namespace
-}  // namespace thalweg::lbm
+}  // namespace thalweg::lbm::gap_slip_test

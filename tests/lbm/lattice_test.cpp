@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace thalweg::lbm {
+namespace thalweg::lbm::lattice_test {
 namespace {
 
 // The isotropy of the lattice: sum w = 1, sum w c_a c_b = delta_ab/3, fourth moment (1/9)(dd + dd + dd).
@@ -76,4 +76,4 @@ TEST(Populations, SlotsOfTheTwoArrangementsBelongToOneCell) {
 }
 
 }  // namespace
-}  // namespace thalweg::lbm
+}  // namespace thalweg::lbm::lattice_test

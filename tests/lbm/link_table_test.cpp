@@ -6,7 +6,7 @@
 #include <random>
 #include <set>
 
-namespace thalweg::lbm {
+namespace thalweg::lbm::link_table_test {
 namespace {
 
 // What LinkTable says of the links of a run: those with a covered cell come first, copies of the last fill it up.
@@ -71,4 +71,4 @@ TEST(LinkTable, HoldsWhatWasPutInLast) {
 }
 
 }  // namespace
-}  // namespace thalweg::lbm
+}  // namespace thalweg::lbm::link_table_test

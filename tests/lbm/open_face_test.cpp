@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace thalweg::lbm {
+namespace thalweg::lbm::open_face_test {
 namespace {
 
 constexpr double speed = 0.004;
@@ -76,4 +76,4 @@ TEST(OpenFaces, DevelopTheParabolaOfTheSameFlux) {
 }
 
 }  // namespace
-}  // namespace thalweg::lbm
+}  // namespace thalweg::lbm::open_face_test

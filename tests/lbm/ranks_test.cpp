@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace thalweg::lbm {
+namespace thalweg::lbm::ranks_test {
 namespace {
 
 FluidState swirl(const Vec3& p) {
@@ -106,4 +106,4 @@ TEST(Ranks, DoNotChangeOneBitWithABulkViscosityOfItsOwn) {
 }
 
 }  // namespace
-}  // namespace thalweg::lbm
+}  // namespace thalweg::lbm::ranks_test

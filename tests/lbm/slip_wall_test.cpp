@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace thalweg::lbm {
+namespace thalweg::lbm::slip_wall_test {
 namespace {
 
 constexpr double wall_velocity = 0.03;
@@ -115,7 +115,7 @@ TEST(SlipTable, OnNode) {
 
 // The wall error of the half-link wall is F (16 L - 3)/(24 nu) with L the magic parameter (Ginzburg and d'Humieres
 // 2003): none at 3/16, at any viscosity.
-TEST(Poiseuille, IsExactForTrtWithMagicParameterThreeSixteenths) {
+TEST(ExactPoiseuille, ForTrtWithMagicParameterThreeSixteenths) {
   for (const double magic : {3.0 / 16.0, 0.25})
     for (const double tau : {0.55, 0.8, 2.0}) {
       Channel channel;
@@ -150,4 +150,4 @@ TEST(Walls, RefuseWhatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace thalweg::lbm
+}  // namespace thalweg::lbm::slip_wall_test

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace thalweg::lbm {
+namespace thalweg::lbm::solenoidal_noise_test {
 namespace {
 
 const NoiseBox flume{{48, 21, 30}, {true, false, false}, 6.0};
@@ -77,4 +77,4 @@ TEST(SolenoidalNoise, HasTheStrengthAskedFor) {
 }
 
 }  // namespace
-}  // namespace thalweg::lbm
+}  // namespace thalweg::lbm::solenoidal_noise_test

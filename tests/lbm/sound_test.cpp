@@ -9,7 +9,7 @@
 #include <complex>
 #include <numbers>
 
-namespace thalweg::lbm {
+namespace thalweg::lbm::sound_test {
 namespace {
 
 using std::numbers::pi;
@@ -116,4 +116,4 @@ TEST(BulkViscosity, NeedsARelaxationTimeAboveOneHalf) {
 }
 
 }  // namespace
-}  // namespace thalweg::lbm
+}  // namespace thalweg::lbm::sound_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-namespace thalweg::lbm {
+namespace thalweg::lbm::stream_test {
 namespace {
 
 constexpr int side = 16;          // cells of the periodic box
@@ -60,4 +60,4 @@ TEST(Stream, StaysCalmWithTheBulkViscosityOfCasesWithGrains) {
 }
 
 }  // namespace
-}  // namespace thalweg::lbm
+}  // namespace thalweg::lbm::stream_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-namespace thalweg::lbm {
+namespace thalweg::lbm::two_lattice_test {
 namespace {
 
 struct Moments {
@@ -161,4 +161,4 @@ TEST(Fluid, IsTheTextbookMethodCellByCell) {
 }
 
 }  // namespace
-}  // namespace thalweg::lbm
+}  // namespace thalweg::lbm::two_lattice_test

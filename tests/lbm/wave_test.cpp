@@ -7,7 +7,7 @@
 #include <complex>
 #include <numbers>
 
-namespace thalweg::lbm {
+namespace thalweg::lbm::wave_test {
 namespace {
 
 using std::numbers::pi;
@@ -153,4 +153,4 @@ TEST(Womersley, AgreesWithinOnePerCent) {
 }
 
 }  // namespace
-}  // namespace thalweg::lbm
+}  // namespace thalweg::lbm::wave_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace thalweg::loop {
+namespace thalweg::loop::progress_test {
 namespace {
 
 TEST(Progress, ShowsWhatAPersonWantsToSee) {
@@ -32,4 +32,4 @@ TEST(Progress, ClockTexts) {
 }
 
 }  // namespace
-}  // namespace thalweg::loop
+}  // namespace thalweg::loop::progress_test

@@ -20,7 +20,7 @@
 #include <string>
 #include <thread>
 
-namespace thalweg::loop {
+namespace thalweg::loop::time_loop_test {
 namespace {
 
 const MPI_Comm world = MPI_COMM_WORLD;
@@ -373,4 +373,4 @@ TEST(Summary, AccountsForTheWholeWallTime) {
 }
 
 }  // namespace
-}  // namespace thalweg::loop
+}  // namespace thalweg::loop::time_loop_test

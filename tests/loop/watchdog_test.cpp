@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-namespace thalweg::loop {
+namespace thalweg::loop::watchdog_test {
 namespace {
 
 const MPI_Comm world = MPI_COMM_WORLD;
@@ -79,4 +79,4 @@ TEST(Whereabouts, SaysWhatIsAround) {
 }
 
 }  // namespace
-}  // namespace thalweg::loop
+}  // namespace thalweg::loop::watchdog_test
