@@ -26,7 +26,7 @@ void describe(SectionVisitor& visit, EntrainmentKeys& keys) {
               .above = 0.0});
   visit.real("rest_time", keys.rest_time,
              {.unit = "s",
-              .meaning = "a grain is at rest after it has been slower than the threshold of motion for this long",
+              .meaning = "a grain is at rest after it has been slower than 1 % of sqrt((s - 1) g d) for this long",
               .at_least = 0.0});
 }
 

@@ -1,4 +1,4 @@
-// Gear's predictor-corrector of sixth order: the second way to move grains.
+// Gear's predictor-corrector of six values: the second way to move grains.
 //
 // Of every grain the position and its first five derivatives are kept, scaled: q_k = dt^k/k! d^k x/dt^k. A step
 // predicts them by Taylor's series, evaluates the forces once there, and corrects all by the difference between the

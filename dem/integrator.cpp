@@ -3,7 +3,8 @@
 namespace thalweg::dem {
 
 std::vector<NamedChoice<Integrator>> choices_of(Integrator) {
-  return {{Integrator::velocity_verlet, "velocity_verlet", ""}, {Integrator::gear, "gear", "sixth order"}};
+  return {{Integrator::velocity_verlet, "velocity_verlet", ""},
+          {Integrator::gear, "gear", "Gear's predictor-corrector of six values"}};
 }
 
 }  // namespace thalweg::dem

@@ -28,7 +28,7 @@ constexpr const char* examples = R"(Examples:
   thalweg stop run/a                                   save and end; --restart goes on
   thalweg analyze run/a --from 4                       transport, surface and profiles of what it has stored
   thalweg sweep slopes.yaml                            many runs of one case, into one table (docs/sweep.md)
-  thalweg defaults > all_keys.yaml                     every key of a case with its default and meaning
+  thalweg defaults > all_keys.yaml                     the keys of a case, with default and meaning
   thalweg defaults coupling.lubrication                one section of it
 
 Exit codes: 0 done; 1 the run failed; 2 the input cannot be run (nothing was written); 3 stopped in good order by a signal,
@@ -82,7 +82,7 @@ void add_others(CLI::App& app, Command& command) {
       ->check(positive_number())
       ->capture_default_str();
   check->final_callback([&] { command.kind = Command::Kind::check; });
-  CLI::App* defaults = app.add_subcommand("defaults", "Print every key with its default, unit and meaning");
+  CLI::App* defaults = app.add_subcommand("defaults", "Print the keys of a system with default, unit and meaning");
   defaults->add_option("SYSTEM.SECTION", command.system,
                        "resolved (default), fluid, grains, model_fluid or continuum; a section, e.g. contact; or both, "
                        "e.g. grains.contact");
