@@ -96,16 +96,16 @@ void Hops::take_in(const std::vector<double>& ended) {
 
 std::vector<Figure> Hops::results() const {
   const auto count = static_cast<double>(lengths_.total());
-  const double divisor = std::max(1.0, count);
+  const auto of_hops = [count](double value) { return count > 0.0 ? value : std::nan(""); };
   return {{"hops", "1", count},
-          {"hop_length_mean", "m", sum_of_lengths_ / divisor},
-          {"hop_length_10", "m", lengths_.quantile(0.1)},
-          {"hop_length_50", "m", lengths_.quantile(0.5)},
-          {"hop_length_90", "m", lengths_.quantile(0.9)},
-          {"hop_time_mean", "s", sum_of_times_ / divisor},
-          {"hop_time_10", "s", times_.quantile(0.1)},
-          {"hop_time_50", "s", times_.quantile(0.5)},
-          {"hop_time_90", "s", times_.quantile(0.9)}};
+          {"hop_length_mean", "m", of_hops(sum_of_lengths_ / count)},
+          {"hop_length_10", "m", of_hops(lengths_.quantile(0.1))},
+          {"hop_length_50", "m", of_hops(lengths_.quantile(0.5))},
+          {"hop_length_90", "m", of_hops(lengths_.quantile(0.9))},
+          {"hop_time_mean", "s", of_hops(sum_of_times_ / count)},
+          {"hop_time_10", "s", of_hops(times_.quantile(0.1))},
+          {"hop_time_50", "s", of_hops(times_.quantile(0.5))},
+          {"hop_time_90", "s", of_hops(times_.quantile(0.9))}};
 }
 
 std::vector<Profile> Hops::profiles() const {

@@ -43,7 +43,7 @@ public:
   void observe(double time, const PeriodicBox& box, GlobalId id_count, const std::vector<Body>& bodies, bool counts);
 
   // hops (1: that have ended), hop_length_mean, hop_length_10, _50, _90 (m: quantiles in per cent, from the histogram),
-  // hop_time_mean, hop_time_10, _50, _90 (s). 0 as long as there was none.
+  // hop_time_mean, hop_time_10, _50, _90 (s). Not a number as long as there was none.
   std::vector<Figure> results() const;
 
   // hop_length_edges (m), hop_time_edges (s), hop_length_count, hop_time_count (1: one more than there are edges, the

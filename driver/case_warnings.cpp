@@ -245,6 +245,11 @@ std::vector<std::string> warnings(const Case& c) {
 std::vector<std::string> warnings_of_plan(const Case& c) {
   Warnings found;
   warn_of_frequent_output(c, found);
+  if (c.run.ramp > c.run.until)
+    found.push_back(
+        fmt::format("Gravity rises until {:g} s and the run ends at {:g} s: consider a shorter run.ramp or a later "
+                    "run.until.",
+                    c.run.ramp, c.run.until));
   const FlowEstimate flow = flow_estimate(c);
   if (flow.drive == FlowCause::none) return found;
   const bool developed =

@@ -129,7 +129,11 @@ void print_header(const Case& c, RunIdentity& identity, const System& system, co
 // Keeps others out of the folder as long as the lock lives, on the first rank.
 io::FolderLock lock_folder(const Places& places, MPI_Comm communicator) {
   io::FolderLock lock;
-  on_first_rank(communicator, [&] { lock = io::FolderLock(places.folder.path()); });
+  on_first_rank(communicator, [&] {
+    lock = io::FolderLock(places.folder.path());
+    std::error_code ignored;
+    fs::remove(places.folder.stop(), ignored);  // meant an earlier run
+  });
   return lock;
 }
 
@@ -146,8 +150,7 @@ void prepare_folder(const Places& places, const Case& c, const Command& command,
     // First of all, because the folder is known by it.
     places.folder.write_case(fmt::format("version {}\ncommand {}", version_text(), command.line), resolved_yaml(c));
     std::error_code ignored;
-    fs::remove(places.folder.stop(), ignored);     // meant an earlier run
-    fs::remove(places.folder.summary(), ignored);  // told of one
+    fs::remove(places.folder.summary(), ignored);  // told of an earlier run
     io::make_folder(places.folder.checkpoints());
     log.copy_to(places.folder.log().string());
   });
@@ -247,7 +250,12 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   loop::listen_for_stop_signals();
   std::vector<std::string> settings = command.settings;
   if (command.until) settings.push_back(fmt::format("run.until={}", *command.until));
-  const Places places = places_of(command);
+  Places places = places_of(command);
+  io::FolderLock lock;
+  if (places.same_folder) {  // whoever still writes there may save once more: checkpoints are looked for under the lock
+    lock = lock_folder(places, communicator);
+    places = places_of(command);
+  }
   const Case c = read_case(command.path, settings, beds_of(places.checkpoints), communicator);
   on_first_rank(communicator, [&] {
     if (!places.same_folder) places.folder.check_new(command.overwrite);
@@ -273,11 +281,11 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   else
     beginning.checkpoint = read_first_whole_checkpoint(communicator, places.checkpoints, c, *system, observers,
                                                        beginning.damage, beginning.accounts);
-  if (system->time() > c.run.until * (1.0 + 1e-12))
+  if (system->step() > loop::final_step(c.run.until, system->time_step()))
     throw InputError(fmt::format("{} is at {:.6g} s already and the run ends at {:.6g} s: give a later --until.",
                                  beginning.checkpoint.string(), system->time(), c.run.until));
 
-  const io::FolderLock lock = lock_folder(places, communicator);
+  if (!places.same_folder) lock = lock_folder(places, communicator);
   RunOutput output(communicator, c, places.folder, *system, observers, loop::series_row(*system, observers),
                    beginning.accounts.since, places.same_folder ? std::optional<double>(system->time()) : std::nullopt);
   prepare_folder(places, c, command, system->step(), communicator, log);

@@ -66,6 +66,15 @@ FolderLock::FolderLock(const std::filesystem::path& folder) {
   }
 }
 
+bool FolderLock::is_held(const std::filesystem::path& folder) {
+  const int file = opened(folder / file_name, O_RDWR);
+  if (file < 0) return false;
+  const bool held =
+      repeated_if_interrupted([&] { return ::flock(file, LOCK_EX | LOCK_NB); }) != 0 && errno == EWOULDBLOCK;
+  ::close(file);
+  return held;
+}
+
 FolderLock::FolderLock(FolderLock&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
 
 FolderLock& FolderLock::operator=(FolderLock&& other) noexcept {

@@ -19,6 +19,9 @@ public:
   FolderLock& operator=(FolderLock&& other) noexcept;
   ~FolderLock();
 
+  // Whether a process, be it this one, holds the lock of the folder now.
+  static bool is_held(const std::filesystem::path& folder);
+
   static constexpr const char* file_name = ".lock";
 
 private:

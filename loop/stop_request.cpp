@@ -29,6 +29,9 @@ void listen_for_stop_signals() {
   struct sigaction hang_up {};
   sigaction(SIGHUP, nullptr, &hang_up);
   if (hang_up.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
+  struct sigaction ignore {};
+  ignore.sa_handler = SIG_IGN;
+  sigaction(SIGPIPE, &ignore, nullptr);
   continued = 0;
   action.sa_handler = note_continuation;
   if (seconds_between_strokes() > 0.0) sigaction(SIGCONT, &action, nullptr);

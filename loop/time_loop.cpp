@@ -35,6 +35,13 @@ bool is_followed_by_a_kill(int signal) { return signal == SIGTERM || signal == S
 // Of such a figure the smallest value is kept, not the largest.
 bool is_smallest(const Figure& figure) { return figure.name.starts_with("smallest_"); }
 
+// Of such a figure the value that is furthest from zero is kept, with its sign.
+bool is_bad_either_way(const Figure& figure, const std::vector<WatchRule>& rules) {
+  return std::any_of(rules.begin(), rules.end(), [&figure](const WatchRule& rule) {
+    return rule.figure == figure.name && rule.side == WatchRule::Side::either;
+  });
+}
+
 // Takes the request away, so that the run can go on later.
 bool was_asked_to_stop(const std::filesystem::path& file) {
   std::error_code ignored;
@@ -62,6 +69,11 @@ std::vector<Figure> series_row(const System& system,
   return row_of(system.figures(), figures_of(observers));
 }
 
+// Rounded up, except where the quotient misses a whole number of steps by round-off only.
+std::int64_t final_step(double until, double time_step) {
+  return static_cast<std::int64_t>(std::ceil(until / time_step * (1.0 - 1e-12)));
+}
+
 TimeLoop::TimeLoop(MPI_Comm communicator, System& system, std::vector<std::unique_ptr<analysis::Observer>>& observers,
                    const LoopPlan& plan, Log& log)
     : communicator_(communicator),
@@ -70,8 +82,7 @@ TimeLoop::TimeLoop(MPI_Comm communicator, System& system, std::vector<std::uniqu
       plan_(plan),
       log_(log),
       watchdog_(communicator, system, plan.watch, plan.out_of_bounds) {
-  // Rounded up, except where the quotient misses a whole number of steps by round-off only.
-  final_step_ = static_cast<std::int64_t>(std::ceil(plan.until / system.time_step() * (1.0 - 1e-12)));
+  final_step_ = final_step(plan.until, system.time_step());
   for (const auto& observer : observers) {
     const double every = observer->every();
     schedules_.push_back(every > 0.0 ? Schedule(every, system.time_step()) : plan.series);
@@ -131,7 +142,8 @@ void TimeLoop::begin_largest() {
   record_.largest = record_.figures;
   for (Figure& figure : record_.largest) {
     const double none = std::numeric_limits<double>::infinity();
-    figure.value = find_figure(plan_.largest, figure.name).value_or(is_smallest(figure) ? none : -none);
+    const double first = is_smallest(figure) ? none : is_bad_either_way(figure, plan_.watch) ? 0.0 : -none;
+    figure.value = find_figure(plan_.largest, figure.name).value_or(first);
   }
 }
 
@@ -139,7 +151,12 @@ void TimeLoop::count_among_largest() {
   for (std::size_t f = 0; f < record_.figures.size(); ++f) {
     const double now = record_.figures[f].value;
     double& extreme = record_.largest[f].value;
-    extreme = is_smallest(record_.figures[f]) ? std::min(extreme, now) : std::max(extreme, now);
+    if (is_smallest(record_.figures[f]))
+      extreme = std::min(extreme, now);
+    else if (is_bad_either_way(record_.figures[f], plan_.watch))
+      extreme = std::abs(now) > std::abs(extreme) ? now : extreme;
+    else
+      extreme = std::max(extreme, now);
   }
 }
 

@@ -44,8 +44,9 @@ struct LoopRecord {
   double wall_seconds = 0.0;     // in run(), this time
   double advance_seconds = 0.0;  // of which in System::advance()
   std::vector<Figure> figures;   // of the system, at the latest look
-  // Of the system: the largest value of each figure (the smallest of those named smallest_...) since largest_from (s,
-  // simulated), at the regular looks and at the end; minus (plus) infinity as long as there was none.
+  // Of the system: the largest value of each figure (the smallest of those named smallest_..., and of those that are bad
+  // either way the one furthest from zero) since largest_from (s, simulated), at the regular looks and at the end; an
+  // infinity, or 0 of the last kind, as long as there was none.
   std::vector<Figure> largest;
   double largest_from = 0.0;
   std::int64_t warnings = 0;  // of the watchdog
@@ -85,6 +86,9 @@ struct LoopPlan {
 // A row of the series with the current values: the figures of the system and those of the observers, a column a name.
 // Collective.
 std::vector<Figure> series_row(const System& system, const std::vector<std::unique_ptr<analysis::Observer>>& observers);
+
+// The step at or after `until` (s) with which a run ends.
+std::int64_t final_step(double until, double time_step);
 
 class TimeLoop {
 public:

@@ -31,8 +31,8 @@ def parse(arguments):
 
 def analyze(wanted):
     report = report_of(Run(wanted.run), wanted.start, wanted.stop)
+    print("\n".join(report.lines), flush=True)
     files = report.write(wanted.out or wanted.run / "analysis")
-    print("\n".join(report.lines))
     print(f"{'written':<11}{', '.join(str(file) for file in files)}")
     return 0
 

@@ -116,7 +116,10 @@ class Run:
     def summary(self):
         """summary.json as a dictionary, or None while the run is going."""
         path = self.folder / "summary.json"
-        return json.loads(path.read_text()) if path.exists() else None
+        try:
+            return json.loads(path.read_text()) if path.exists() else None
+        except ValueError:
+            raise RunFolderError(f"{path} is damaged; thalweg run ... --restart {self.folder} writes it again.") from None
 
     def result(self, observer, name):
         """A mean of summary.json: `name` of the group `observer`. Raises RunFolderError where there is none, because the run is

@@ -51,6 +51,9 @@ test::MemoryArchive saved(const Hops& hops, MPI_Comm communicator) {
 
 TEST(Hops, AreFromRestToRestThroughPeriodicFacesAndFromRankToRank) {
   Hops hops(world, 0.1, 0.1, 0.5);
+  EXPECT_EQ(value_of(hops.results(), "hops"), 0.0);
+  EXPECT_TRUE(std::isnan(value_of(hops.results(), "hop_length_mean")));
+  EXPECT_TRUE(std::isnan(value_of(hops.results(), "hop_time_50")));
   for (int n = 0; n < 14; ++n) observe(hops, world, n, 0);
   double ways = 0.0, times = 0.0;
   for (GlobalId id = 0; id < count; ++id) {

@@ -287,6 +287,24 @@ class Running(DryGrains):
             self.assertIn("rain 0", summary["reason"])
             self.assertEqual(self.last_checkpoint(out).name, "step_100.h5")
 
+    def test_what_a_crash_has_left_without_summary_is_finished(self):
+        """The last step of a run lies beyond an end that is no whole number of steps."""
+        self.run_well("run", self.case, "--out", "run", "--until", "0.020003")
+        (self.folder / "run/summary.json").unlink()
+        self.run_well("run", self.case, "--out", "run", "--until", "0.020003", "--restart", "run")
+        self.assertTrue(self.summary("run")["finished"])
+        self.assert_refused("run", self.case, "--until", "0.02", "--restart", "run", words=["0.0202 s already", "--until"])
+
+    def test_goes_on_when_nobody_reads_what_it_says(self):
+        reader, writer = os.pipe()
+        os.close(reader)
+        run = subprocess.run(self.command(("run", self.case, "--out", "run"), 0), stdout=writer, stderr=writer, cwd=self.folder,
+                             timeout=120)
+        os.close(writer)
+        self.assertEqual(run.returncode, 0)
+        self.assertTrue(self.summary("run")["finished"])
+        self.assertIn("finished at 0.1 s", (self.folder / "run/run.log").read_text())
+
     def test_says_that_ranks_outnumber_cores(self):
         """Two ranks on one core, which mpirun does not notice."""
         core = str(min(os.sched_getaffinity(0)))

@@ -165,7 +165,10 @@ class Sweep(ProgramTest):
 
     def test_tasks_of_an_array_job_and_their_tables(self):
         sweep = self.write("set: {run.until: 0.01}\nvary: {contact.wall_friction: [0.2, 0.3]}\n")
-        self.assertIn("--array=0-1", self.run_well("sweep", sweep, "--slurm").stdout)
+        job = self.run_well("sweep", sweep, "--slurm").stdout
+        self.assertIn("--array=0-1", job)
+        self.assertNotIn("--retry", job)
+        self.assertIn("--jobs 1 --retry\n", self.run_well("sweep", sweep, "--slurm", "--retry").stdout)
         self.assertIn("contact.wall_friction = 0.3: waiting", self.run_well("sweep", sweep, "--dry-run").stdout)
         self.run_well("sweep", sweep, "--task", "1")
         self.run_well("sweep", sweep, "--tables")

@@ -75,7 +75,7 @@ def slurm_job(wanted, count, ranks, folder):
 #SBATCH --signal=B:TERM@300
 #SBATCH --requeue
 # Made by thalweg sweep --slurm. Afterwards, for the tables: thalweg sweep {file} --out {out} --tables
-exec {command} sweep {file} --out {out} --task "$SLURM_ARRAY_TASK_ID" --jobs {jobs}
+exec {command} sweep {file} --out {out} --task "$SLURM_ARRAY_TASK_ID" --jobs {jobs}{" --retry" if wanted.retry else ""}
 """
 
 

@@ -46,9 +46,14 @@ def state_of(path):
 @functools.lru_cache(maxsize=None)
 def content_of(case, _state):
     try:
-        return read_case(case)
+        content = read_case(case)
+    except UnicodeDecodeError:
+        raise SweepError(f"{case} is not UTF-8; save it as UTF-8.") from None
     except yaml.YAMLError as error:
         raise SweepError(f"{case} is not YAML: {' '.join(str(error).split())}.") from None
+    if not isinstance(content, dict):
+        raise SweepError(f"{case} is no case: it has no keys.")
+    return content
 
 
 def digest_of(content):
