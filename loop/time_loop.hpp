@@ -44,9 +44,9 @@ struct LoopRecord {
   double wall_seconds = 0.0;     // in run(), this time
   double advance_seconds = 0.0;  // of which in System::advance()
   std::vector<Figure> figures;   // of the system, at the latest look
-  // Of the system: the largest value of each figure (the smallest of those named smallest_..., and of those that are bad
-  // either way the one furthest from zero) since largest_from (s, simulated), at the regular looks and at the end; an
-  // infinity, or 0 of the last kind, as long as there was none.
+  // Of the system: the largest value of each figure (the smallest of those named smallest_..., and of those that are
+  // bad either way the one furthest from zero) since largest_from (s, simulated), at the regular looks and at the end;
+  // an infinity, or 0 of the last kind, as long as there was none.
   std::vector<Figure> largest;
   double largest_from = 0.0;
   std::int64_t warnings = 0;  // of the watchdog
