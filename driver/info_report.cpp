@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "io/atomic_file.hpp"
+#include "io/folder_lock.hpp"
 #include "io/hdf5_archive.hpp"
 #include "io/run_folder.hpp"
 #include "loop/progress.hpp"
@@ -11,6 +12,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace thalweg::driver {
 
@@ -101,6 +103,12 @@ YAML::Node summary_in(const io::RunFolder& folder) {
   }
 }
 
+std::string state_without_summary(const io::RunFolder& folder) {
+  const std::optional<bool> held = io::FolderLock::is_held(folder.path());
+  if (!held) return "running, or killed without notice";
+  return *held ? "running" : "not running: it was killed, or it failed and could not write a summary";
+}
+
 std::vector<std::string> info_report(const fs::path& path) {
   Lines lines;
   std::error_code ignored;
@@ -113,7 +121,7 @@ std::vector<std::string> info_report(const fs::path& path) {
   if (const YAML::Node summary = summary_in(folder); summary.IsMap())
     add_summary(summary, lines);
   else
-    lines.push_back("state       still running, or killed without notice");
+    lines.push_back("state       " + state_without_summary(folder));
   if (fs::exists(folder.log(), ignored)) lines.push_back("last line   " + last_line(folder.log()));
   if (folder.has_checkpoint())
     add_checkpoint(folder.latest_checkpoint(), lines);

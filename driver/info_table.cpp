@@ -67,7 +67,7 @@ std::vector<std::string> info_table(const std::vector<std::string>& runs) {
     table.set("run", run);
     const YAML::Node summary = summary_in(folder);
     if (!summary.IsMap()) {
-      table.set("state", "running, or killed without notice");
+      table.set("state", state_without_summary(folder));
       continue;
     }
     const bool finished = summary["finished"].as<bool>(false);

@@ -15,7 +15,7 @@ std::string ask_to_stop(const std::filesystem::path& path) {
   if (!folder.is_run_folder())
     throw InputError(fmt::format("{} is not a run folder; give the folder that thalweg run writes.", path.string()));
   std::error_code ignored;
-  if (std::filesystem::exists(folder.summary(), ignored) && !io::FolderLock::is_held(path))
+  if (std::filesystem::exists(folder.summary(), ignored) && !io::FolderLock::is_held(path).value_or(false))
     return fmt::format("{} has ended; thalweg info {} tells how.", path.string(), shell_word(path.string()));
   io::write_text_atomically(folder.stop(), "");
   return fmt::format("If {} is running, it saves its state and ends within a step; --restart {} goes on from there.",

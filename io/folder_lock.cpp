@@ -66,11 +66,14 @@ FolderLock::FolderLock(const std::filesystem::path& folder) {
   }
 }
 
-bool FolderLock::is_held(const std::filesystem::path& folder) {
+std::optional<bool> FolderLock::is_held(const std::filesystem::path& folder) {
   const int file = opened(folder / file_name, O_RDWR);
-  if (file < 0) return false;
-  const bool held =
-      repeated_if_interrupted([&] { return ::flock(file, LOCK_EX | LOCK_NB); }) != 0 && errno == EWOULDBLOCK;
+  if (file < 0) return {};
+  std::optional<bool> held;
+  if (repeated_if_interrupted([&] { return ::flock(file, LOCK_EX | LOCK_NB); }) == 0)
+    held = false;
+  else if (errno == EWOULDBLOCK)
+    held = true;
   ::close(file);
   return held;
 }

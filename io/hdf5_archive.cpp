@@ -194,7 +194,7 @@ Hdf5Writer::Hdf5Writer(MPI_Comm communicator, const std::filesystem::path& path)
     creatable = can_create(file_->partial);
   }
   file_->agree(creatable);
-  const Handle access = mpi_access(communicator);
+  const Handle access = mpi_access(communicator, file_->partial);
   H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18);  // the earliest format with checksums of metadata
   keep_tables_until_close(access);
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
@@ -276,7 +276,7 @@ struct Hdf5Reader::File {
     }
     if (!alone()) MPI_Bcast(&outcome, 1, MPI_INT, 0, communicator);
     if (outcome == missing) throw InputError(fmt::format("{}: there is no such file; check the path.", path.string()));
-    const Handle access = alone() ? lone_access() : mpi_access(communicator);
+    const Handle access = alone() ? lone_access() : mpi_access(communicator, path);
     if (outcome == well) file = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
     if (any(!file.good()))
       throw DamagedFile(

@@ -44,7 +44,7 @@ inline void silence_hdf5() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
 // Access to a file through MPI-IO by all ranks of a communicator, also where there is only one, so that the layout of
 // the file is always the same.
-Handle mpi_access(MPI_Comm communicator);
+Handle mpi_access(MPI_Comm communicator, const std::filesystem::path& file);
 
 // Access by this process alone, without MPI, to a file that is not being written.
 Handle lone_access();

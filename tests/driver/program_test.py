@@ -260,7 +260,7 @@ class Running(DryGrains):
         a, b, c = (dict(zip(header, row)) for row in rows)
         self.assertEqual([row["run"] for row in (a, b, c)], ["a", "b", "c"])
         self.assertEqual((a["state"], a["name"], b["state"]), ("finished", "fast, loose", "finished"))
-        self.assertIn("running", c["state"])
+        self.assertIn("not running: it was killed", c["state"])
         self.assertEqual(set(c.values()), {"c", c["state"], ""})
         summary = self.summary("b")
         self.assertEqual(float(b["reference_diameter [m]"]), summary["reference_diameter"])

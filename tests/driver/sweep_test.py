@@ -163,6 +163,14 @@ class Sweep(ProgramTest):
         self.assertIn("did you mean contact.wall_friction", result.stderr)
         self.assertFalse((self.folder / "sweep/runs").exists())
 
+    def test_a_refused_bisection_can_be_corrected(self):
+        bisect = "bisect: {key: gravity.slope, from: 0.1, to: 0.9, width: 0.5, holds: figures.largest_grain_speed > 0.01}\n"
+        sweep = self.write("set: {contact.wal_friction: 0.3}\n" + bisect)
+        self.assertEqual(self.thalweg("sweep", sweep).returncode, 1)
+        self.write("set: {contact.wall_friction: 0.3}\n" + bisect)
+        self.run_well("sweep", sweep)
+        self.assertEqual([row["state"] for row in self.table("sweep/thresholds.csv")], ["done"])
+
     def test_tasks_of_an_array_job_and_their_tables(self):
         sweep = self.write("set: {run.until: 0.01}\nvary: {contact.wall_friction: [0.2, 0.3]}\n")
         job = self.run_well("sweep", sweep, "--slurm").stdout

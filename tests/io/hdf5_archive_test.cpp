@@ -7,9 +7,12 @@
 
 #include <gtest/gtest.h>
 
+#include <fcntl.h>
+#include <semaphore.h>
 #include <sys/resource.h>
 #include <chrono>
 #include <csignal>
+#include <string>
 #include <thread>
 
 namespace thalweg::io::hdf5_archive_test {
@@ -107,6 +110,18 @@ TEST(Hdf5Archive, ReadsBackTheSameBits) {
   EXPECT_EQ(datasets[0].type, "float64");
   EXPECT_EQ(datasets[2].path, "grains/deep/id");
   EXPECT_EQ(datasets[2].type, "int64");
+}
+
+// As a process leaves it that is killed while it opens such a file: Open MPI's semaphore of this name is taken.
+TEST(Hdf5Archive, IsNotHeldUpByWhoHasBeenKilled) {
+  const ScratchFolder folder;
+  for (const char* name : {"held_up.h5.partial", "held_up.h5"})
+    if (sem_t* left = sem_open((std::string("OMPIO_") + name).c_str(), O_CREAT, 0644, 0); left != SEM_FAILED)
+      sem_close(left);
+  MPI_Barrier(MPI_COMM_WORLD);
+  write_all(MPI_COMM_WORLD, folder / "held_up.h5");
+  Hdf5Reader reader(MPI_COMM_WORLD, folder / "held_up.h5");
+  expect_what_was_written(reader);
 }
 
 TEST(Hdf5Archive, ABoxThatCrossesTheWritersBlocksReadsBack) {

@@ -230,17 +230,17 @@ TEST_F(RunFolderTest, RoomIsTakenByWritingWhereItCannotBePromised) {
 
 TEST_F(RunFolderTest, ASecondRunIsKeptOut) {
   const fs::path path = scratch("locked");
-  EXPECT_FALSE(FolderLock::is_held(path));
+  EXPECT_EQ(FolderLock::is_held(path), std::nullopt);
   {
     const FolderLock mine(path);
-    EXPECT_TRUE(FolderLock::is_held(path));
+    EXPECT_EQ(FolderLock::is_held(path), std::optional(true));
     const std::string message = message_of<InputError>([&] { FolderLock second(path); });
     EXPECT_NE(message.find("a run is writing there now (process "), std::string::npos) << message;
     FolderLock moved;
     moved = FolderLock(path.parent_path());
     EXPECT_THROW(FolderLock(path.parent_path()), InputError);
   }
-  EXPECT_FALSE(FolderLock::is_held(path));
+  EXPECT_EQ(FolderLock::is_held(path), std::optional(false));
   EXPECT_NO_THROW(FolderLock{path});
   fs::remove(path.parent_path() / FolderLock::file_name);
   RunFolder(path).create(false);  // the lock makes it no folder that holds something

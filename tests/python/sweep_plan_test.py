@@ -259,7 +259,7 @@ class TwoSweepsOfAFolder(Folder):
 
 class Slurm(Folder):
     def test_a_task_has_room_for_the_ranks_of_its_runs(self):
-        wanted = argparse.Namespace(sweep=self.folder / "my sweep.yaml", jobs=2)
+        wanted = argparse.Namespace(sweep=self.folder / "my sweep.yaml", jobs=2, retry=False)
         os.environ["THALWEG_PROGRAM"] = "/opt/thalweg"
         self.addCleanup(os.environ.pop, "THALWEG_PROGRAM")
         job = command.slurm_job(wanted, 10, 4, self.folder / "out")

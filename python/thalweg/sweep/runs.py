@@ -35,6 +35,8 @@ class SweepRun:
         without the figure of a bisection has failed."""
         known = self.read_note()
         self.failure = known.pop("failure", None)
+        if self.failure and known != self.inputs and not self.folder.exists():   # it was refused, and has been corrected since
+            known, self.failure = {}, None
         if known and known != self.inputs:
             raise SweepError(f"{self.folder} was run with other settings, or the case has changed since, or a file that it names; "
                              f"give another --out, or remove that folder and {self.note.name} beside it.")
