@@ -169,7 +169,7 @@ class Sweep(ProgramTest):
         self.assertEqual(self.thalweg("sweep", sweep).returncode, 1)
         self.write("set: {contact.wall_friction: 0.3}\n" + bisect)
         self.run_well("sweep", sweep)
-        self.assertEqual([row["state"] for row in self.table("sweep/thresholds.csv")], ["done"])
+        self.assertEqual([row["state"] for row in self.table("sweep/thresholds.csv")], ["found"])
 
     def test_tasks_of_an_array_job_and_their_tables(self):
         sweep = self.write("set: {run.until: 0.01}\nvary: {contact.wall_friction: [0.2, 0.3]}\n")
