@@ -126,7 +126,8 @@ void print_header(const Case& c, RunIdentity& identity, const System& system, co
   identity.warnings = static_cast<std::int64_t>(all.size());
 }
 
-// Keeps others out of the folder as long as the lock lives, on the first rank.
+// Keeps others out of the folder as long as the lock lives, on the first rank. From now on a request to stop is meant
+// for this run.
 io::FolderLock lock_folder(const Places& places, MPI_Comm communicator) {
   io::FolderLock lock;
   on_first_rank(communicator, [&] {

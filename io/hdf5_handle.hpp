@@ -43,7 +43,8 @@ private:
 inline void silence_hdf5() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
 // Access to a file through MPI-IO by all ranks of a communicator, also where there is only one, so that the layout of
-// the file is always the same.
+// the file is always the same. What a process that was killed while it opened this file has left behind is taken away.
+// Collective.
 Handle mpi_access(MPI_Comm communicator, const std::filesystem::path& file);
 
 // Access by this process alone, without MPI, to a file that is not being written.

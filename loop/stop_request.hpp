@@ -8,6 +8,7 @@
 namespace thalweg::loop {
 
 // From now on these signals only set a flag; earlier ones are forgotten. Under Open MPI's mpirun SIGCONT sets one too.
+// SIGPIPE is ignored: that nobody reads the output any more is no reason to end a run.
 void listen_for_stop_signals();
 
 // Number of the last stop signal this process has received since then; 0: none.

@@ -175,8 +175,6 @@ TEST(TimeLoop, EndsWhereASumHasLeftItsRangeBeforeAnythingIsWritten) {
   EXPECT_EQ(bench.pictures, (Steps{0, 5}));
 }
 
-// The regular looks at steps 100, 200, 300, 400 count, and the end at 450; others, here at step 7 and at the stops, do
-// not, so that a run is saved with the same numbers wherever it was interrupted.
 // A figure that is bad either way keeps the value furthest from zero, with its sign.
 TEST(TimeLoop, LargestOfAFigureThatIsBadEitherWay) {
   for (const double worst : {-0.15, 0.15}) {
@@ -189,6 +187,8 @@ TEST(TimeLoop, LargestOfAFigureThatIsBadEitherWay) {
   }
 }
 
+// The regular looks at steps 100, 200, 300, 400 count, and the end at 450; others, here at step 7 and at the stops, do
+// not, so that a run is saved with the same numbers wherever it was interrupted.
 TEST(TimeLoop, LargestFiguresGoOnWithARun) {
   const auto speed = [](std::int64_t step) {
     return step == 450 ? 0.18 : step == 300 ? 0.17 : step % 100 == 0 ? 0.1 : 0.19;
