@@ -34,19 +34,18 @@ void FluidStatistics::observe(const Snapshot& snapshot) {
   if (!snapshot.fluid || snapshot.step <= counted_step_ || snapshot.time < keys_.from * (1.0 - 1e-12)) return;
   counted_step_ = snapshot.step;
   ++measurements_;
-  std::vector<std::int64_t> sums(sums_.size(), 0);
+  std::vector<WideSum> sums(sums_.size());
   snapshot.fluid->for_each_velocity([&](const Index3& cell, const Vec3& velocity_si) {
     const int bin = sections_ ? cell[2] * cells_[1] + cell[1] : cell[2];
-    std::int64_t* columns = sums.data() + static_cast<std::size_t>(bin) * quantities;
+    WideSum* columns = sums.data() + static_cast<std::size_t>(bin) * quantities;
     const Vec3 u = velocity_si / velocity_unit_;
-    columns[count] += 1;
-    for (int a = 0; a < 3; ++a) columns[velocity + a] = exact_sum(columns[velocity + a], VelocitySum::from(u[a]));
+    columns[count].add(1);
+    for (int a = 0; a < 3; ++a) columns[velocity + a].add(VelocitySum::from(u[a]));
     for (int p = 0; p < 6; ++p)
-      columns[product + p] =
-          exact_sum(columns[product + p], VelocitySum::from(u[symmetric_pairs[p][0]] * u[symmetric_pairs[p][1]]));
+      columns[product + p].add(VelocitySum::from(u[symmetric_pairs[p][0]] * u[symmetric_pairs[p][1]]));
   });
-  const std::vector<WideSum> totals = wide_sums_over_ranks(communicator_, sums);
-  for (std::size_t s = 0; s < sums.size(); ++s) sums_[s].add(totals[s]);
+  sum_over_ranks(communicator_, sums);
+  for (std::size_t s = 0; s < sums.size(); ++s) sums_[s].add(sums[s]);
 }
 
 std::vector<WideSum> FluidStatistics::layer(int z) const {

@@ -6,9 +6,9 @@
 // Between side walls also over the fluid cells of a line along x: sections over y and z. There the mean flow varies
 // along y, and R of a layer contains this variation as well.
 //
-// Every velocity counts as a multiple of 2^-40 of the lattice velocity unit and sums are integers, so that the means
-// have the same bits on any number of ranks and after any restart. |u| must stay below 1 cell a step and a layer below
-// 8 million cells.
+// Every velocity counts as a multiple of 2^-40 of the lattice velocity unit and sums are integers of 128 bits, so that
+// the means have the same bits on any number of ranks and after any restart, however large the layers and however many
+// the measurements.
 #pragma once
 
 #include "analysis/observer_keys.hpp"

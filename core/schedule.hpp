@@ -5,6 +5,11 @@
 
 namespace thalweg {
 
+// A whole number of steps as an integer. More than no_step_reaches (infinity, too) counts as that many, so that a time
+// written as 1e30 s stands for never.
+inline constexpr std::int64_t no_step_reaches = std::int64_t{1} << 62;
+std::int64_t whole_steps(double steps);
+
 class Schedule {
 public:
   Schedule() = default;  // never due

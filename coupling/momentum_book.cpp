@@ -9,22 +9,22 @@ namespace thalweg::coupling {
 
 namespace {
 
-// Stresses in lattice units are far below 1, so a plane's sum has room for 2^23 cells of them.
+// A cell's share of a plane's sums, which are wide: planes may have any number of cells.
 using CellSum = FixedPoint<40>;
 
 // Columns of a plane of cells.
 enum Column { cells, density = 1, flow = 2, flow_flux = 5, viscous = 11, subgrid = 17, columns = 23 };
 
-void add(double term, std::int64_t& sum) { sum = exact_sum(sum, CellSum::from(term)); }
+void add(double term, WideSum& sum) { sum.add(CellSum::from(term)); }
 
-void add_stress(const lbm::Symmetric<double>& s, std::int64_t* into) {
+void add_stress(const lbm::Symmetric<double>& s, WideSum* into) {
   const double components[6] = {s.xx, s.yy, s.zz, s.xy, s.xz, s.yz};
   for (int p = 0; p < 6; ++p) add(components[p], into[p]);
 }
 
-void add_cell(const lbm::MomentumFlux& flux, std::int64_t* sums) {
+void add_cell(const lbm::MomentumFlux& flux, WideSum* sums) {
   const Vec3& u = flux.velocity;
-  sums[cells] += 1;
+  sums[cells].add(1);
   add(flux.density, sums[density]);
   for (int a = 0; a < 3; ++a) add(flux.density * u[a], sums[flow + a]);
   for (int p = 0; p < 6; ++p)
@@ -52,13 +52,13 @@ template <typename Real>
 std::vector<PlaneMomentum> planes_of(const lbm::Fluid<Real>& fluid, const Units& units) {
   const Index3& from = fluid.block().lower;
   const int planes = fluid.decomposition().cells()[2];
-  std::vector<std::int64_t> sums(static_cast<std::size_t>(planes * columns), 0);
+  std::vector<WideSum> sums(static_cast<std::size_t>(planes * columns));
   lbm::for_each_fluid_cell(fluid.cells(), [&](std::ptrdiff_t cell, const Index3& at) {
     add_cell(lbm::momentum_flux(fluid, cell), &sums[(from[2] + at[2]) * columns]);
   });
-  const std::vector<WideSum> totals = wide_sums_over_ranks(fluid.communicator(), sums);
+  sum_over_ranks(fluid.communicator(), sums);
   std::vector<PlaneMomentum> all;
-  for (int z = 0; z < planes; ++z) all.push_back(in_si(&totals[static_cast<std::size_t>(z * columns)], units));
+  for (int z = 0; z < planes; ++z) all.push_back(in_si(&sums[static_cast<std::size_t>(z * columns)], units));
   return all;
 }
 

@@ -165,13 +165,16 @@ void ResolvedSystem<Real, S>::settle_masses() {
     settle_mass(clumps.first_slot(n), static_cast<std::size_t>(clumps[n].members));
 }
 
-// Multiples of 2^-44, whose sum in any order is exact.
+// Multiples of 2^-44, whose sum in any order is exact. A grain may owe more than a term of LatticeFixed holds: a large
+// clump that closes a gap covers thousands of cells in a few steps, and returns their mass as slowly as its links
+// allow.
 template <typename Real, GrainShape S>
 double ResolvedSystem<Real, S>::mass_owed() const {
-  std::int64_t owed = 0;
+  WideSum owed;
   for (std::size_t g = 0; g < grains_->store().owned; ++g)
-    owed = exact_sum(owed, LatticeFixed::from(exchange_of(g).owed_mass()));
-  return wide_sums_over_ranks(communicator_, {&owed, 1}).front().to_double(LatticeFixed::bits);
+    owed.add(WideSum::from(exchange_of(g).owed_mass(), LatticeFixed::bits));
+  sum_over_ranks(communicator_, {&owed, 1});
+  return owed.to_double(LatticeFixed::bits);
 }
 
 // sigma_ab = (1/V) sum F_a x_b over the surface (Zhang et al. 2022, eq. 13), the mean of two exchanges.

@@ -114,9 +114,7 @@ void ResolvedSystem<Real, S>::update_bodies() {
     body.returned = kept.returned_density();
     body.returned_slope = kept.returned_slope();
     surrounding_[map_slot_[g]] = kept.surrounding();
-    body.force = {};
-    body.torque = {};
-    body.mass = body.pressure = 0;
+    body.clear_sums();
   }
   if (parameters_.grain_stress || parameters_.mass_balance) moments_.assign(bodies_.size(), {});
 }

@@ -240,7 +240,7 @@ void StaticSolids::build_links(const lbm::RowTiles& tiles) {
 
 std::vector<lbm::LinkBody>& StaticSolids::begin_step() {
   loaded_.clear();
-  for (lbm::LinkBody& body : bodies_) body.force = body.torque = {};
+  for (lbm::LinkBody& body : bodies_) body.clear_sums();
   return bodies_;
 }
 

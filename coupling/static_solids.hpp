@@ -30,7 +30,7 @@ public:
   int count() const { return static_cast<int>(bodies_.size()); }
   const lbm::LinkTable& links() const { return links_; }
 
-  // What the links of a step work on: begin_step() forgets the forces of the last one.
+  // What the links of a step work on: begin_step() forgets the sums of the last one.
   std::vector<lbm::LinkBody>& begin_step();
   const std::vector<lbm::LinkBody>& bodies() const { return bodies_; }
 

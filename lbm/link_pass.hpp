@@ -56,9 +56,10 @@ template <typename S>
 concept LinkShape = Shape<S> || std::same_as<S, StoredCrossings>;
 
 // Applies the links of one step, tile by tile. For every link it writes the population that the sweep will take from
-// the solid side, and adds the momentum to bodies[...].force and torque (which the caller has cleared). Halo and walls
-// must be up to date. The cell map holds indices into `bodies`. box: the domain in cells, for the minimum image between
-// bodies. shapes: of the bodies, all of one kind; empty where crossings are stored. All of these must outlive the pass.
+// the solid side, and adds to the sums of bodies[...], which the caller has cleared (LinkBody::clear_sums()). Halo and
+// walls must be up to date. The cell map holds indices into `bodies`. box: the domain in cells, for the minimum image
+// between bodies. shapes: of the bodies, all of one kind; empty where crossings are stored. All of these must outlive
+// the pass.
 //
 // The links of a row read what cells of the rows around it sent out, so they must be applied before any of these rows
 // is swept; Fluid::stream_and_collide(before_tile) does so while the tile is still in the cache. Apply tiles in order.

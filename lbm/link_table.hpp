@@ -106,6 +106,12 @@ struct LinkBody {
   std::int64_t mass = 0;      // LatticeFixed: given to the fluid, sum f_i' - f_i^c and what the caller adds
   std::int64_t pressure = 0;  // LatticeFixed: sum w_i (rho - rho_rest)(x_f), rho_rest that of the fluid at rest
 
+  // To be called at the beginning of every step: sums over many steps leave their range (core/sum_range.hpp).
+  void clear_sums() {
+    force = torque = {};
+    mass = pressure = 0;
+  }
+
   // Prefetches it.
   void prefetch() const {
     for (std::size_t byte = 0; byte < sizeof(LinkBody); byte += 64)

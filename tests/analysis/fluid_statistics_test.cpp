@@ -1,6 +1,7 @@
 // Mean flow and Reynolds stresses of a made-up flow against plain sums, on any ranks, with an interruption.
 #include "analysis/fluid_statistics.hpp"
 #include "core/mpi_session.hpp"
+#include "core/sum_range.hpp"
 #include "tests/support/memory_archive.hpp"
 
 #include <gtest/gtest.h>
@@ -125,6 +126,42 @@ TEST(FluidStatistics, AreThoseOfPlainSums) {
   const std::vector<Figure> results = bench.statistics.results();
   EXPECT_NEAR(results[0].value, static_cast<double>(Plain([](int, int) { return true; }).u[0]), 1e-11);
   EXPECT_EQ(results[2].value, 21.0);
+}
+
+// The same velocity again and again, as of a layer of so many cells.
+class LargeFlow final : public FluidSource {
+public:
+  LargeFlow(const Vec3& velocity, int cells_here) : velocity_(velocity), cells_here_(cells_here) {}
+  FluidFields sample(const std::vector<FluidField>&, const Block&) const override { return {}; }
+  void for_each_velocity(const VelocityVisitor& visit) const override {
+    for (int cell = 0; cell < cells_here_; ++cell) visit({0, 0, 1}, velocity_);
+  }
+  std::optional<State> state_in(const Index3&) const override { return std::nullopt; }
+
+private:
+  Vec3 velocity_;
+  int cells_here_;
+};
+
+// 64 bits in multiples of 2^-40 end at 2^23 cells of velocity 1.
+TEST(FluidStatistics, HoldLayersOfMoreThanEightMillionCells) {
+  constexpr int cells_here = 8'500'000;
+  const Vec3 velocity(0.995 * unit, 0.0, -0.995 * unit);
+  ASSERT_GT(0.995 * cells_here, 0x1p23);
+  const Decomposition decomposition(cells, spacing, {true, true, true}, {1, 1, 1});
+  FluidStatistics statistics(MPI_COMM_SELF, decomposition, unit, {0.0, time_step}, false);
+  const LargeFlow flow(velocity, cells_here);
+  Snapshot snapshot;
+  snapshot.decomposition = &decomposition;
+  snapshot.fluid = &flow;
+  SumRange::reset();
+  statistics.observe(snapshot);
+  EXPECT_FALSE(SumRange::was_left());
+  SumRange::reset();
+  const std::vector<Profile> profiles = statistics.profiles();
+  const double bound = 2.0 * std::ldexp(unit, -41);
+  for (int a = 0; a < 3; ++a) EXPECT_NEAR(named(profiles, "velocity").values[3 + a], velocity[a], bound);
+  for (int p = 0; p < 6; ++p) EXPECT_NEAR(named(profiles, "reynolds_stress").values[6 + p], 0.0, 2.0 * bound * unit);
 }
 
 TEST(FluidStatistics, HaveTheSameBitsOnAnyRanksAndAfterARestart) {

@@ -2,6 +2,7 @@
 #include "coupling/fluid_mass.hpp"
 
 #include "core/mpi_session.hpp"
+#include "core/sum_range.hpp"
 #include "tests/coupling/water_box.hpp"
 #include "tests/support/memory_archive.hpp"
 
@@ -217,6 +218,22 @@ TEST(WaterMass, IsTheSameAfterARestart) {
   EXPECT_EQ(test::first_difference(end, continued), "");
   for (const char* name : {"mass_by_links", "mass_by_covered_cells", "mass_by_uncovered_cells", "mass_owed"})
     EXPECT_EQ(figure(*whole, name), figure(*second, name)) << name;
+}
+
+// A term of a LatticeFixed sum ends at 128.
+TEST(WaterMass, OfAGrainThatOwesMoreThanALinkMayCarryIsStillExact) {
+  WaterBox box;
+  box.seeds = {glass_sphere(0, Vec3(0.0061, 0.0096, 0.0096)), glass_sphere(1, Vec3(0.0181, 0.0046, 0.0126))};
+  const auto system = make<double>(box);
+  auto& store = const_cast<dem::GrainStore&>(system->grains().store());
+  for (std::size_t s = 0; s < store.owned; ++s)
+    GrainExchange<double>(store.attached_of(s)).owed_mass() = store.id[s] == 0 ? 1000.0 : -300.25;
+  SumRange::reset();
+  const std::optional<double> owed = find_figure(system->figures(), "mass_owed");
+  EXPECT_FALSE(SumRange::was_left());
+  SumRange::reset();
+  ASSERT_TRUE(owed);
+  EXPECT_DOUBLE_EQ(*owed, 699.75 * 1000.0 * std::pow(box.spacing, 3));
 }
 
 }  // namespace

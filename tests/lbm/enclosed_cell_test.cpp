@@ -48,7 +48,7 @@ protected:
     double given = 0.0;
     for (int step = 0; step < steps; ++step) {
       fluid_.exchange_halo();
-      bodies_[0].force = bodies_[0].torque = {}, bodies_[0].mass = 0;
+      bodies_[0].clear_sums();
       LinkPass<double> pass(fluid_, links_, box_, options_, bodies_);
       fluid_.stream_and_collide([&](int tile) { pass.apply_tile(tile); });
       given += LatticeFixed::to_double(bodies_[0].mass);

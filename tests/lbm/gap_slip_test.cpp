@@ -44,7 +44,7 @@ public:
     for (int step = 0; step < steps; ++step) {
       fluid_.exchange_halo();
       fluid_.apply_walls();
-      for (LinkBody& body : bodies_) body.force = body.torque = {}, body.mass = 0;
+      for (LinkBody& body : bodies_) body.clear_sums();
       LinkPass pass(fluid_, links_, box_, options_, bodies_, std::span<const Sphere>(shapes_));
       fluid_.stream_and_collide([&](int tile) { pass.apply_tile(tile); });
     }

@@ -117,6 +117,23 @@ struct Bench {
 
 using Steps = std::vector<std::int64_t>;
 
+TEST(TimeLoop, KeepsEveryBeatBeyondThirtyTwoBitsOfSteps) {
+  constexpr std::int64_t start = 6'000'000'000;  // a multiple of 3, 4 and 5
+  Bench bench(6'000'000.010, start);
+  const LoopRecord& record = bench.run().record();
+  EXPECT_TRUE(record.finished);
+  EXPECT_EQ(record.last_step, start + 10);
+  EXPECT_EQ(bench.rows, (Steps{start, start + 3, start + 6, start + 9}));
+  EXPECT_EQ(bench.pictures, (Steps{start, start + 5, start + 10}));
+  EXPECT_EQ(bench.checkpoints, (Steps{start + 4, start + 8, start + 10}));
+}
+
+TEST(TimeLoop, AnEndThatNoRunReachesIsNotBehindIt) {
+  EXPECT_EQ(final_step(0.010, 0.001), 10);
+  for (const double until : {1e30, std::numeric_limits<double>::infinity()})
+    EXPECT_EQ(final_step(until, 1e-5), no_step_reaches);
+}
+
 TEST(TimeLoop, KeepsEveryBeatAndEndsWithACheckpoint) {
   Bench bench(0.010);
   const LoopRecord& record = bench.run().record();
