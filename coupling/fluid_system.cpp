@@ -33,6 +33,7 @@ FluidSystem<Real>::FluidSystem(std::unique_ptr<Decomposition> decomposition, MPI
   if (parameters_.flow_target) fluid_.control_flow(*parameters_.flow_target);
   initialise(fluid_, parameters_, rest_);
   set_gravity(fluid_, parameters_, step_);
+  fluid_.carry_force();
 }
 
 template <typename Real>
@@ -159,6 +160,7 @@ void FluidSystem<Real>::load(ArchiveReader& archive) {
   step_ = archive.integer_attribute("system/step");
   fluid_.load(archive);
   set_gravity(fluid_, parameters_, step_);
+  fluid_.carry_force();
   if (solids_) solids_->load(archive);
   start_excess_ = archive.real_attribute("mass/start");
 }

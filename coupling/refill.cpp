@@ -208,8 +208,7 @@ RefillTotals Refill::fill(lbm::Fluid<Real>& fluid, const std::vector<CellChange>
   add_own_neighbours(fluid, bodies, rest, outward, uncovered);
   exchange(uncovered);
 
-  const double(&f)[3] = fluid.parameters().force;
-  const Vec3 force(f[0], f[1], f[2]);
+  const Vec3& force = fluid.carried_force();
   for (const Uncovered& cell : uncovered) {
     if (!block_.contains(cell.global)) continue;
     lbm::LinkBody& body = bodies[cell.before];

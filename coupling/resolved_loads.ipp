@@ -39,10 +39,9 @@ void ResolvedSystem<Real, S>::account_for_covered_cells() {
 template <typename Real, GrainShape S>
 void ResolvedSystem<Real, S>::keep_momentum(lbm::LinkBody& body, int plane, const Vec3& position, double density,
                                             const Vec3& momentum) {
-  const double(&f)[3] = fluid_.parameters().force;
   const Vec3 arm = lattice_box_.difference(position, body.centre);
   const Vec3 wall = body.velocity + body.angular_velocity.cross(arm);
-  const Vec3 kept = momentum - 0.5 * Vec3(f[0], f[1], f[2]) - density * wall, torque = arm.cross(kept);
+  const Vec3 kept = momentum - 0.5 * fluid_.carried_force() - density * wall, torque = arm.cross(kept);
   body.force += FixedVec3::from(kept);
   if (booking_) given_by_height_[static_cast<std::size_t>(2 * plane + 1)] += FixedVec3::from(kept);
   body.torque += FixedVec3::from(torque);

@@ -51,6 +51,7 @@ ResolvedSystem<Real, S>::ResolvedSystem(std::unique_ptr<Decomposition> decomposi
   initialise_map();
   open_account();
   set_gravity_of(step_);
+  fluid_.carry_force();
   show_stresses();
 }
 
@@ -333,6 +334,7 @@ void ResolvedSystem<Real, S>::load(ArchiveReader& archive) {
   parameters_.links.reference_density = archive.real_attribute("mass/reference");
   initialise_map();
   set_gravity_of(step_);
+  fluid_.carry_force();
   show_stresses();
 }
 

@@ -45,6 +45,7 @@ Fluid<Real>::Fluid(const Decomposition& decomposition, MPI_Comm communicator, co
       walls_(decomposition, rank_of(communicator), populations_.indexing(), faces, parameters),
       halo_(decomposition, communicator, populations_, walls_) {
   for (auto& row : shear_rows_) row.resize(populations_.indexing().packs_per_row() * populations_.indexing().pack());
+  carry_force();
 }
 
 template <typename Real>
@@ -70,7 +71,12 @@ void Fluid<Real>::exchange_halo() {
 template <typename Real>
 void Fluid<Real>::set_force(const Vec3& force) {
   for (int a = 0; a < 3; ++a) parameters_.force[a] = force[a];
-  walls_.set_force(force);
+}
+
+template <typename Real>
+void Fluid<Real>::carry_force() {
+  carried_force_ = Vec3(parameters_.force[0], parameters_.force[1], parameters_.force[2]);
+  walls_.set_carried_force(carried_force_);
 }
 
 template <typename Real>
@@ -84,7 +90,7 @@ void Fluid<Real>::update_force() {
   const int axis = control_->target().axis;
   if (control_->due()) {
     const FluidTotals sums = totals();
-    control_->update(sums.momentum[axis] / static_cast<double>(sums.cells) - 0.5 * parameters_.force[axis]);
+    control_->update(sums.momentum[axis] / static_cast<double>(sums.cells) - 0.5 * carried_force_[axis]);
   }
   Vec3 force(parameters_.force[0], parameters_.force[1], parameters_.force[2]);
   force[axis] = control_->force();
@@ -102,10 +108,12 @@ std::array<Vec3, 6> Fluid<Real>::wall_forces(double reference, std::vector<Fixed
   return forces;
 }
 
+// All rows are swept: the populations lie in the other arrangement and carry the force of this collision.
 template <typename Real>
-void Fluid<Real>::switch_arrangement() {
+void Fluid<Real>::end_step() {
   populations_.set_arrangement(populations_.arrangement() == Arrangement::swapped ? Arrangement::moved
                                                                                   : Arrangement::swapped);
+  carry_force();
 }
 
 // Every row takes the same way through the sweep on every rank, because with shear rates it may round differently.
@@ -123,7 +131,7 @@ void Fluid<Real>::stream_and_collide() {
   const Index3& n = indexing().size();
   for (int z = 0; z < n[2]; ++z)
     for (int y = 0; y < n[1]; ++y) sweep(y, z);
-  switch_arrangement();
+  end_step();
 }
 
 // The sweep follows one plane and one row behind.
@@ -140,7 +148,7 @@ void Fluid<Real>::stream_and_collide(const std::function<void(int)>& before_tile
       for (int y = first_row; z >= 0 && y < end_row; ++y) sweep(y, z);
     }
   }
-  switch_arrangement();
+  end_step();
 }
 
 // A sweep of a cell touches the 19 slots of the cell and no other. Those of cells two or more away from the block's
@@ -163,7 +171,7 @@ void Fluid<Real>::advance_behind_halo() {
   for (int z = 0; z < n[2]; ++z)
     for (int y = 0; y < n[1]; ++y)
       if (!inside(y, z)) sweep(y, z);
-  switch_arrangement();
+  end_step();
 }
 
 // Where rows end at another rank or at a wall, the halo is not hidden: sweeping the ends of all rows apart costs more
@@ -187,7 +195,7 @@ FluidState Fluid<Real>::state_at(std::ptrdiff_t cell) const {
     for (int a = 0; a < 3; ++a) momentum[a] += D3Q19::c[i][a] * f;
   }
   // A collision adds the whole force to the momentum; the velocity is the one half-way.
-  for (int a = 0; a < 3; ++a) s.velocity[a] = (momentum[a] - 0.5 * parameters_.force[a]) / (1.0 + s.density_deviation);
+  for (int a = 0; a < 3; ++a) s.velocity[a] = (momentum[a] - 0.5 * carried_force_[a]) / (1.0 + s.density_deviation);
   return s;
 }
 
@@ -251,6 +259,7 @@ void Fluid<Real>::load(ArchiveReader& archive) {
     force[control_->target().axis] = control_->force();
     set_force(force);
   }
+  carry_force();
 }
 
 template class Fluid<float>;

@@ -47,8 +47,13 @@ public:
   void initialise(const std::function<FluidState(const Vec3&)>& state, const Vec3& force = Vec3::Zero());
 
   // The force density of the collisions to come, the same everywhere. A caller who changes it in time must set it again
-  // after load().
+  // after load(), and then carry_force().
   void set_force(const Vec3& force);
+  // The force density of the last collision: the populations carry half of it beyond rho u, whatever is set for the
+  // next one. Walls and all who take velocities from post-collision populations reckon with it.
+  const Vec3& carried_force() const { return carried_force_; }
+  // Declares the present force that of the last collision, for a state that was set up or loaded.
+  void carry_force();
   // Hands the force along one axis to a controller; its state is part of the checkpoint.
   void control_flow(const FlowTarget& target);
 
@@ -91,7 +96,7 @@ public:
 private:
   ArrayBox array_box() const;
   void sweep(int y, int z);  // a row, and the shear rates its walls want
-  void switch_arrangement();
+  void end_step();
   void advance_behind_halo();
   void update_force();
 
@@ -105,6 +110,7 @@ private:
   Walls<Real> walls_;
   Halo<Real> halo_;
   std::optional<FlowControl> control_;
+  Vec3 carried_force_ = Vec3::Zero();
   std::array<std::vector<Real>, 3> shear_rows_;
 };
 

@@ -68,7 +68,7 @@ public:
         indexing_(fluid.indexing()),
         slots_(fluid.populations().sent()),
         lane_([](int lane) { return static_cast<double>(lane); }) {
-    for (int a = 0; a < 3; ++a) half_force_[a] = 0.5 * fluid.parameters().force[a];
+    for (int a = 0; a < 3; ++a) half_force_[a] = 0.5 * fluid.carried_force()[a];
   }
 
   FluidSurvey run() {

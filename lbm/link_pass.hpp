@@ -217,7 +217,7 @@ private:
   Values values_;
   UpstreamBodies upstream_;
   GapFlow gaps_;
-  double force_[3];  // on the fluid
+  double force_[3];  // on the fluid, in the last collision
   bool has_rest_;    // the fluid at rest is not the same everywhere
 };
 

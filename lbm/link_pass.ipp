@@ -34,7 +34,7 @@ LinkPass<Real, S>::LinkPass(Fluid<Real>& fluid, const LinkTable& links, const Pe
       next_(fluid.populations(), fluid.tiles()),
       gaps_(has_normals && options.gaps == GapRule::slip ? gap_flow(fluid.parameters()) : GapFlow{}),
       has_rest_(!options.rest_gradient.isZero(0.0)) {
-  std::copy_n(fluid.parameters().force, 3, force_);
+  std::copy_n(fluid.carried_force().data(), 3, force_);
   Populations<Real>& populations = fluid.populations();
   const auto plane = static_cast<std::size_t>(populations.indexing().plane_stride());
   for (const int parity : {0, 1}) {

@@ -49,8 +49,7 @@ Walls<Real>::Walls(const Decomposition& decomposition, int rank, const CellIndex
     : indexing_(indexing),
       faces_(faces),
       viscosity_((parameters.relaxation_time - 0.5) / 3.0),
-      eddy_coefficient_(parameters.smagorinsky_constant * parameters.smagorinsky_constant),
-      half_force_(0.5 * Vec3(parameters.force[0], parameters.force[1], parameters.force[2])) {
+      eddy_coefficient_(parameters.smagorinsky_constant * parameters.smagorinsky_constant) {
   const Block block = decomposition.block_of(rank);
   for (int axis = 0; axis < 3; ++axis)
     for (const bool high : {false, true}) {

@@ -80,8 +80,8 @@ public:
   // theirs goes back to the start value).
   void update_bounced(int y, int z, const RowShear<Real>& shear, const CellMap& cells);
 
-  // The body force, where it changes with time.
-  void set_force(const Vec3& force) { half_force_ = 0.5 * force; }
+  // The force density of the last collision, half of which post-collision populations carry beyond rho u.
+  void set_carried_force(const Vec3& force) { half_force_ = 0.5 * force; }
 
   // Bounced fraction r at a slip or law-of-the-wall face, for the halo exchange; empty elsewhere.
   FaceField<Real>& bounced(int face) { return bounced_[face]; }
@@ -127,7 +127,7 @@ private:
   CellIndexing indexing_;
   FaceConditions faces_;
   double viscosity_, eddy_coefficient_;  // nu and C_s^2, lattice units
-  Vec3 half_force_;
+  Vec3 half_force_ = Vec3::Zero();       // of the last collision
   std::array<bool, 6> present_{};
   mutable std::array<FaceField<Real>, 6> bounced_;
 };

@@ -9,10 +9,23 @@
 namespace thalweg::lbm::flow_control_test {
 namespace {
 
-FaceConditions plates() {
+struct Channel {
+  std::array<bool, 3> periodic;
   FaceConditions faces;
-  faces[2].type = faces[3].type = FaceType::no_slip;
-  return faces;
+};
+
+Channel between_plates() {
+  Channel channel{{true, false, true}, {}};
+  channel.faces[2].type = channel.faces[3].type = FaceType::no_slip;
+  return channel;
+}
+
+// An outlet looks at the velocity of the last step, and the controller sets the force of the next.
+Channel under_an_outlet() {
+  Channel channel{{true, true, false}, {}};
+  channel.faces[4].type = FaceType::no_slip;
+  channel.faces[5].type = FaceType::pressure_outlet;
+  return channel;
 }
 
 CollisionParameters viscous() {
@@ -27,7 +40,7 @@ CollisionParameters viscous() {
 // nothing is left after 20000 steps.
 TEST(FlowControl, HoldsTheTargetWithTheForceOfPoiseuilleFlow) {
   const Decomposition decomposition({4, 10, 4}, 1.0, {true, false, true}, {1, 1, 1});
-  Fluid<double> fluid(decomposition, MPI_COMM_SELF, viscous(), plates());
+  Fluid<double> fluid(decomposition, MPI_COMM_SELF, viscous(), between_plates().faces);
   fluid.control_flow({0, 0.01, 50.0, 5});
   for (int step = 0; step < 20000; ++step) fluid.advance();
   const FluidTotals sums = fluid.totals();
@@ -38,10 +51,10 @@ TEST(FlowControl, HoldsTheTargetWithTheForceOfPoiseuilleFlow) {
 }
 
 template <typename Real>
-test::MemoryArchive state_after(int steps, MPI_Comm communicator, const Index3& layout,
-                                const test::MemoryArchive* from) {
-  const Decomposition decomposition({17, 16, 18}, 1.0, {true, false, true}, layout);
-  Fluid<Real> fluid(decomposition, communicator, viscous(), plates());
+test::MemoryArchive state_after(int steps, const Channel& channel, MPI_Comm communicator, const Index3& layout,
+                                const test::MemoryArchive* from = nullptr) {
+  const Decomposition decomposition({17, 16, 18}, 1.0, channel.periodic, layout);
+  Fluid<Real> fluid(decomposition, communicator, viscous(), channel.faces);
   fluid.control_flow({0, 0.02, 50.0, 4});
   if (from) {
     test::MemoryReader reader(*from);
@@ -56,10 +69,26 @@ test::MemoryArchive state_after(int steps, MPI_Comm communicator, const Index3& 
 
 TEST(FlowControl, RestartsToTheSameBitsOnAnyRanks) {
   const Index3 layout = Decomposition::best_layout({17, 16, 18}, size_of(MPI_COMM_WORLD));
-  const test::MemoryArchive straight = state_after<float>(23, MPI_COMM_SELF, {1, 1, 1}, nullptr);
-  const test::MemoryArchive half = state_after<float>(9, MPI_COMM_WORLD, layout, nullptr);  // between two looks
-  const test::MemoryArchive resumed = state_after<float>(14, MPI_COMM_WORLD, layout, &half);
-  EXPECT_EQ(test::first_difference(straight, resumed), "");
+  for (const Channel& channel : {between_plates(), under_an_outlet()}) {
+    const test::MemoryArchive straight = state_after<float>(23, channel, MPI_COMM_SELF, {1, 1, 1});
+    const test::MemoryArchive half = state_after<float>(9, channel, MPI_COMM_WORLD, layout);  // between two looks
+    const test::MemoryArchive resumed = state_after<float>(14, channel, MPI_COMM_WORLD, layout, &half);
+    EXPECT_EQ(test::first_difference(straight, resumed), "");
+  }
+}
+
+// With and without a halo that is hidden behind the sweep.
+TEST(FlowControl, HasTheSameBitsUnderAnOutletInAnyLayout) {
+  const int ranks = size_of(MPI_COMM_WORLD), few = ranks < 8 ? 1 : 2, many = ranks / few;
+  const auto expect_the_same = [&]<typename Real>(const Index3& layout) {
+    const test::MemoryArchive alone = state_after<Real>(14, under_an_outlet(), MPI_COMM_SELF, {1, 1, 1});
+    const test::MemoryArchive shared = state_after<Real>(14, under_an_outlet(), MPI_COMM_WORLD, layout);
+    EXPECT_EQ(test::first_difference(alone, shared), "") << layout[0] << layout[1] << layout[2] << sizeof(Real);
+  };
+  for (const Index3& layout : {Index3{few, many, 1}, Index3{many, few, 1}, Index3{1, few, many}}) {
+    expect_the_same.template operator()<float>(layout);
+    expect_the_same.template operator()<double>(layout);
+  }
 }
 
 TEST(FlowControl, RefusesToRespondFasterThanItLooks) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 namespace thalweg::lbm::open_face_test {
 namespace {
@@ -73,6 +74,45 @@ TEST(OpenFaces, DevelopTheParabolaOfTheSameFlux) {
   // the order of one cell's fall (3 nu du/dx): two cells' falls bound both.
   EXPECT_NEAR(state(length - 1, height / 2).density_deviation, 0.0,
               2.0 * 3.0 * 12.0 * 0.144 * speed / (height * height));
+}
+
+// The rule of walls.hpp for an outlet, with the velocity of the populations as they are: they carry half the force of
+// the last collision, and the force of the next, which is set already, changes nothing.
+TEST(OpenFaces, ReckonWithTheForceOfTheLastCollision) {
+  const Vec3 last(2e-4, -1e-4, 3e-4), next(-5e-3, 4e-3, 1e-3);
+  const Decomposition decomposition({6, 5, 4}, 1.0, {true, true, false}, {1, 1, 1});
+  CollisionParameters parameters;
+  parameters.relaxation_time = 0.6;
+  FaceConditions faces;
+  faces[4].type = FaceType::no_slip;
+  faces[5].type = FaceType::pressure_outlet;
+  faces[5].density_deviation = 0.01;
+  Fluid<double> fluid(decomposition, MPI_COMM_SELF, parameters, faces);
+  fluid.set_force(last);
+  for (int step = 0; step < 7; ++step) fluid.advance();
+  fluid.set_force(next);
+  EXPECT_EQ(fluid.carried_force(), last);
+  fluid.exchange_halo();
+  fluid.apply_walls();
+  const Populations<double>& f = std::as_const(fluid).populations();
+  for (int y = 0; y < 5; ++y)
+    for (int x = 0; x < 6; ++x) {
+      const std::ptrdiff_t cell = fluid.indexing().index(x, y, 3);
+      Vec3 momentum = Vec3::Zero();
+      for (int i = 0; i < D3Q19::directions; ++i)
+        momentum += f.post_collision(i, cell) * Vec3(D3Q19::c[i][0], D3Q19::c[i][1], D3Q19::c[i][2]);
+      const Vec3 u = (momentum - 0.5 * last) / (1.0 + f.density_deviation(cell));
+      EXPECT_LT((fluid.state_at(cell).velocity - u).norm(), 1e-16);
+      for (int o = 1; o < D3Q19::directions; ++o) {
+        if (D3Q19::c[o][2] != -1) continue;
+        const double along = Vec3(D3Q19::c[o][0], D3Q19::c[o][1], D3Q19::c[o][2]).dot(u);
+        const double even = 0.01 + 1.01 * (4.5 * along * along - 1.5 * u.squaredNorm());
+        EXPECT_NEAR(f.incoming(o, cell), -f.post_collision(D3Q19::opposite(o), cell) + 2.0 * D3Q19::weight(o) * even,
+                    1e-16);
+      }
+    }
+  fluid.advance();
+  EXPECT_EQ(fluid.carried_force(), next);
 }
 
 }  // namespace
