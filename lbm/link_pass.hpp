@@ -179,6 +179,7 @@ private:
   void finish(const Batch& batch);
   template <typename Rule>
   void gather(const Batch& batch);
+  void forget_second_of_covered(const Batch& batch);
   void look_at_covered(const Batch& batch);
   void let_gaps_flow(const Batch& batch);
   void look_upstream(const Batch& batch);

@@ -229,10 +229,19 @@ void LinkPass<Real, S>::gather(const Batch& b) {
     values_.incident[k] = base_[b.incident_at[k]];
     values_.second[k] = base_[b.second_at[k]];
   }
+  if (Rule::needs_both || gaps_flow()) forget_second_of_covered(b);
   if (b.covered_count > 0) look_at_covered(b);
   if constexpr (Rule::needs_both) look_upstream(b);
   if (has_rest_) subtract_rest(b);
   if (b.leaks) find_leaks(b);
+}
+
+// Where covered links have half-way bounce-back: the slot of x_ff is a solid cell's, which may hold anything, and no
+// weight, not even 0, takes an infinity or NaN out again.
+template <typename Real, LinkShape S>
+void LinkPass<Real, S>::forget_second_of_covered(const Batch& b) {
+  for (int p = 0; p < b.pieces; ++p)
+    std::fill(values_.second + b.piece[p].first, values_.second + b.piece[p].covered_end(), Real(0));
 }
 
 template <typename Real, LinkShape S>
@@ -308,7 +317,7 @@ void LinkPass<Real, S>::let_gaps_flow(const Batch& b) {
   }
 }
 
-// For a rule that needs both. Without x_ff the second value has no weight.
+// For a rule that needs both. Covered links have none (forget_second_of_covered()).
 template <typename Real, LinkShape S>
 void LinkPass<Real, S>::look_upstream(const Batch& b) {
   for (int p = 0; p < b.pieces; ++p)

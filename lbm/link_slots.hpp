@@ -50,15 +50,16 @@ public:
     using Pack = std::experimental::native_simd<Real>;
     using Ints = std::experimental::rebind_simd_t<std::int32_t, Pack>;
     constexpr auto unaligned = std::experimental::element_aligned;
-    const int start = (z + 1) * plane_ - middle * stride_, corner = first_ - plane_;
+    const int start = (z + 1) * plane_, corner = first_ - plane_;
     for (int k = 0; k < count; k += static_cast<int>(Pack::size())) {
       const Ints place(places + k, unaligned), tag(tags + k, unaligned);
       const Ints cell = corner + (place >> LinkPlace::y_shift & static_cast<int>(LinkPlace::x_mask)) * row_ +
                         (place & static_cast<int>(LinkPlace::x_mask));
       const Ints i = tag & static_cast<int>(LinkTag::direction_mask), opposite = ((i - 1) ^ 1) + 1;
       const Ints along = along_link(tag);
-      const Ints a = start + cell + (moved_ ? i : opposite) * stride_ + (moved_ ? along : Ints(0));
-      const Ints b = start + cell + (moved_ ? opposite : i) * stride_ - (moved_ ? along : Ints(0));
+      // Planes count from the middle one: products beyond 9 strides would not fit into 32 bits.
+      const Ints a = start + cell + ((moved_ ? i : opposite) - middle) * stride_ + (moved_ ? along : Ints(0));
+      const Ints b = start + cell + ((moved_ ? opposite : i) - middle) * stride_ - (moved_ ? along : Ints(0));
       // 1 where the link is cut before its middle: as numbers, because masks of integers and of Real do not mix.
       Pack before_middle = 0;
       where(Pack(distance + k, unaligned) < Pack(Real(0.5)), before_middle) = Real(1);

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace thalweg::lbm::gap_slip_test {
@@ -72,6 +73,13 @@ public:
     bodies_[1].velocity = above;
   }
   void set_link_rule(LinkRule rule) { options_.rule = rule; }
+  void spoil_solid_cells() {
+    for (int z = 0; z < 3; z += 2)
+      for (int y = 0; y < cells[1]; ++y)
+        for (int x = 0; x < cells[0]; ++x)
+          for (int i = 0; i < D3Q19::directions; ++i)
+            fluid_.populations().post_collision(i, fluid_.indexing().index(x, y, z)) = std::nan("");
+  }
   const LinkBody& body(int b) const { return bodies_[static_cast<std::size_t>(b)]; }
 
   static constexpr int fluid_cells() { return cells[0] * cells[1]; }
@@ -130,6 +138,23 @@ TEST(NarrowGaps, WithoutSlipFlowAsTheMagicParameterSays) {
       EXPECT_NEAR(gap.velocity(), expected, curvature * force / (8.0 * viscosity));
     }
   }
+}
+
+// x_ff of every link is a solid cell. The links of one of the bodies cross at 0.2, and would take a population from it.
+TEST(NarrowGaps, TakeNothingOfWhatSolidCellsHold) {
+  const CollisionParameters collision = parameters(CollisionModel::trt, 0.03);
+  for (const double shift : {-0.3, 0.3})
+    for (const GapRule gaps : {GapRule::no_slip, GapRule::slip})
+      for (const LinkRule links : {LinkRule::bouzidi, LinkRule::cli}) {
+        Gap clean(collision, gaps, Ends::periodic, shift), spoilt(collision, gaps, Ends::periodic, shift);
+        spoilt.spoil_solid_cells();
+        for (Gap* gap : {&clean, &spoilt}) {
+          gap->set_link_rule(links);
+          gap->run(5);
+        }
+        EXPECT_EQ(clean.velocity(), spoilt.velocity());
+        EXPECT_GT(clean.velocity(), force);
+      }
 }
 
 TEST(NarrowGaps, WithSlipFlowAsBetweenTwoPlatesUpToTheMagicParameter) {
