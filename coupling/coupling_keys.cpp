@@ -58,12 +58,17 @@ void describe(SectionVisitor& visit, CouplingKeys& coupling, bool with_grains) {
       {{CoveredMomentum::lost, "lost", "as published: grains get a little less than the fluid loses"},
        {CoveredMomentum::to_grain, "to_grain"}},
       {.meaning = "momentum, relative to the grain, of a cell that a grain covers"});
-  visit.choice("load", coupling.load, {.meaning = "the force and torque of the fluid that move a grain in a step"});
+  visit.choice("load", coupling.load, choices_of(LoadRule{}),
+               {.meaning = "the force and torque of the fluid that move a grain in a step; default: extrapolated, with "
+                           "virtual_mass mean"});
   visit.section(
       "lubrication", coupling.lubrication,
       {.meaning = "adds the force between near surfaces that the cells do not resolve, in every sub-step; {}"});
   visit.section("virtual_mass", coupling.virtual_mass,
                 {.meaning = "for grains much lighter than the fluid: filters their load; {}"});
+  visit.require(!coupling.virtual_mass || coupling.load != LoadRule::extrapolated, "load",
+                "the filter of coupling.virtual_mass is made for the mean of two exchanges; write mean, or remove the "
+                "key");
   visit.flag("grain_stress", coupling.grain_stress,
              {.meaning = "measure the fluid's stress on every grain, for the VTK output: fluid_stress"});
   visit.flag("mass_balance", coupling.mass_balance,

@@ -41,12 +41,15 @@ struct CouplingKeys {
   NearContact near_contact = NearContact::subtracted;
   RefillRule refill = RefillRule::equilibrium;
   CoveredMomentum covered_momentum = CoveredMomentum::lost;
-  LoadRule load = LoadRule::extrapolated;
+  std::optional<LoadRule> load;
   std::optional<LubricationKeys> lubrication;
   std::optional<VirtualMassKeys> virtual_mass;
   bool grain_stress = false;  // measure the fluid's stress on every grain
   bool mass_balance = false;  // show what the links' mass is made of
   bool operator==(const CouplingKeys&) const = default;
+
+  // The filter of the virtual mass makes up for the lag of the mean.
+  LoadRule load_rule() const { return load.value_or(virtual_mass ? LoadRule::mean : LoadRule::extrapolated); }
 };
 
 // with_grains: whether the case has grains, and so the keys that concern them.

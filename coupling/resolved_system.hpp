@@ -29,7 +29,7 @@ struct ResolvedParameters : FluidParameters {
   double link_tolerance = 1e-3;             // cells a grain may move before the map of its cells follows
   int sub_steps = 50;                       // DEM steps per lattice step
   bool wall_forces = false;                 // whether the figures include the forces on walls
-  std::optional<VirtualMass> virtual_mass;  // of light grains
+  std::optional<VirtualMass> virtual_mass;  // of light grains; its filter is made for LoadRule::mean
   RefillRule refill = RefillRule::equilibrium;
   LoadRule load = LoadRule::extrapolated;
   bool keep_covered_momentum = false;  // what a covered cell carries relative to its grain, the grain gets

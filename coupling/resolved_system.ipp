@@ -41,8 +41,6 @@ ResolvedSystem<Real, S>::ResolvedSystem(std::unique_ptr<Decomposition> decomposi
       closed_(closed(parameters.faces)) {
   phases_ = {timer_.phase("grain map"), timer_.phase("refill"), timer_.phase("halo"),  timer_.phase("walls"),
              timer_.phase("links"),     timer_.phase("sweep"),  timer_.phase("loads"), timer_.phase("grains")};
-  // The filter of the virtual mass, which makes up for the lag, is made for the mean.
-  if (parameters_.virtual_mass) parameters_.load = LoadRule::mean;
   set_rest(parameters_.links, rest_);
   if (parameters_.flow_target) fluid_.control_flow(*parameters_.flow_target);
   initialise(fluid_, parameters_, rest_);

@@ -15,7 +15,7 @@ std::unique_ptr<System> build_resolved(const Case& c, MPI_Comm communicator, con
   coupling::ResolvedParameters parameters;
   static_cast<coupling::FluidParameters&>(parameters) = fluid_parameters(c);
   parameters.link_tolerance = c.coupling.link_tolerance;
-  parameters.load = c.coupling.load;
+  parameters.load = c.coupling.load_rule();
   parameters.keep_covered_momentum = c.coupling.covered_momentum == coupling::CoveredMomentum::to_grain;
   parameters.mass_balance = c.coupling.mass_balance;
   parameters.refill = c.coupling.refill;

@@ -161,7 +161,7 @@ void warn_of_coarse_cells(const Case& c, Warnings& found) {
 // half the fluid's density.
 void warn_of_grains(const Case& c, Warnings& found) {
   for (const dem::Population& population : c.grains) {
-    const double least = c.coupling.load == coupling::LoadRule::mean
+    const double least = c.coupling.load_rule() == coupling::LoadRule::mean
                              ? 0.5
                              : 3.8 / 1.15 * c.domain.spacing / population.smallest_diameter();
     if (!c.coupling.virtual_mass && !population.fixed && !population.prescribed_velocity &&

@@ -29,8 +29,8 @@ struct WaterBox {
   double link_tolerance = 1e-3;
   int sub_steps = 50;
   bool wall_forces = false;
-  bool lubrication = false;  // with the cut-offs of the case's defaults, at the floor alone
-  bool virtual_mass = false;
+  bool lubrication = false;   // with the cut-offs of the case's defaults, at the floor alone
+  bool virtual_mass = false;  // and then the load is the mean
   RefillRule refill = RefillRule::equilibrium;
   bool keep_covered_momentum = false;
   bool grain_stress = false;
@@ -78,7 +78,7 @@ std::unique_ptr<ResolvedSystem<Real, S>> make_system(const WaterBox& box, MPI_Co
   p.grain_stress = box.grain_stress;
   p.full_gravity = box.full_gravity;
   p.paper_near_contact = box.paper_near_contact;
-  p.load = box.load;
+  p.load = box.virtual_mass ? LoadRule::mean : box.load;
   if (box.initial)
     p.initial_fluid = box.initial;
   else

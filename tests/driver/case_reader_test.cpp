@@ -188,6 +188,17 @@ TEST(CaseReader, ReadsEveryWallAndCollision) {
   EXPECT_EQ(read(resolved_yaml(c)), c);  // and writes them all
 }
 
+TEST(CaseReader, VirtualMassGoesWithTheMeanLoad) {
+  EXPECT_EQ(read(flume).coupling.load_rule(), coupling::LoadRule::extrapolated);
+  EXPECT_EQ(read(flume, {"coupling.load=mean"}).coupling.load_rule(), coupling::LoadRule::mean);
+  for (const std::vector<std::string>& overrides :
+       {std::vector<std::string>{"coupling.virtual_mass={}"}, {"coupling.virtual_mass={}", "coupling.load=mean"}}) {
+    const Case c = read(flume, overrides);
+    EXPECT_EQ(c.coupling.load_rule(), coupling::LoadRule::mean);
+    EXPECT_EQ(read(resolved_yaml(c)), c);
+  }
+}
+
 TEST(CaseReader, StartsWithALinearProfile) {
   const Case c = read(flume, {"initial.fluid={linear_profile: {lower: 0.01, upper: 0.05, velocity: [0.4, 0, 0.2]}}"});
   EXPECT_EQ(read(resolved_yaml(c)), c);
