@@ -7,6 +7,7 @@
 - VTK and HDF5 appear only in io, and a header of io that shows them is not included from elsewhere; yaml-cpp appears
   only in io and driver.
 - Includes are written from the repository root, and what they name exists.
+- Wherever all modules are listed, all of them are; scripts/check and scripts/coverage take the list of CMakeLists.txt.
 - No file carries a note that something is left to do.
 
 Prints one line per violation and exits with 1 if there is any.
@@ -26,6 +27,14 @@ MODULES = {
     "loop": {"core", "analysis", "loop"},
     "driver": {"core", "lbm", "dem", "continuum", "analysis", "io", "coupling", "loop", "driver"},
 }
+# Files with a list of the modules, and the modules that it need not have.
+LISTS = {
+    "CMakeLists.txt": set(),
+    "tests/CMakeLists.txt": set(),
+    "cmake/install.cmake": {"driver"},
+    "docs/site/Doxyfile": set(),
+}
+BEGIN_OF_LIST = re.compile(r"^.*\bcore lbm\b.*$", re.MULTILINE)
 # Whoever else may use the driver: its own tests, tests of the whole program, and measurements of whole cases.
 USERS_OF_DRIVER = ("driver/", "tests/driver/", "tests/system/", "benchmarks/")
 SOURCE_SUFFIXES = {".hpp", ".cpp", ".ipp", ".h", ".cc"}
@@ -114,9 +123,25 @@ def check_targets(relative, text):
             yield line_of(text, match.start()), f"{module} must not link thalweg::{target}"
 
 
+def check_lists(root):
+    """(file, line, what) of every module that a list has forgotten."""
+    for name, others in LISTS.items():
+        if not (root / name).is_file():
+            continue
+        text = (root / name).read_text(encoding="utf-8")
+        for match in BEGIN_OF_LIST.finditer(text):
+            for module in sorted(MODULES.keys() - others - set(re.findall(r"\w+", match.group()))):
+                yield pathlib.Path(name), line_of(text, match.start()), f"this list of modules leaves out {module}"
+            unknown = set(re.findall(r"\w+", match.group())) - MODULES.keys() - {"foreach", "module"}
+            for module in sorted(unknown) if name == "CMakeLists.txt" else ():
+                yield pathlib.Path(name), line_of(text, match.start()), \
+                    f"check_includes.py does not know what the module {module} may depend on"
+
+
 def violations(root):
     """(file, line, what) of everything that is wrong."""
     private = headers_that_show_vtk_or_hdf5(root)
+    yield from check_lists(root)
     for path, relative in files_of(root):
         if path.suffix not in TEXT_SUFFIXES:
             continue
