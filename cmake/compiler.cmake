@@ -5,6 +5,7 @@
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
+include(CheckCXXSourceCompiles)
 include(GNUInstallDirs)
 # FindMPI and FindHDF5 look for the C components, hence LANGUAGES C; all sources are C++.
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
@@ -39,6 +40,16 @@ if(CMAKE_UNITY_BUILD)   # the sources of one unit see the names of the others, a
   target_compile_options(thalweg_own_options INTERFACE
     -Wno-shadow $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endif()
+# GCC 12 and 13 take the undefined vectors in their own AVX-512 header, which Eigen uses, for variables that somebody has
+# forgotten to set: https://gcc.gnu.org/PR105593. Clang and GCC for other architectures still look for such variables.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 14)
+  set(CMAKE_REQUIRED_FLAGS -march=${THALWEG_ARCHITECTURE})
+  check_cxx_source_compiles("#ifndef __AVX512F__\n#error\n#endif\nint main() {}" THALWEG_HAS_AVX512)
+  unset(CMAKE_REQUIRED_FLAGS)
+  if(THALWEG_HAS_AVX512)
+    target_compile_options(thalweg_own_options INTERFACE -Wno-maybe-uninitialized -Wno-uninitialized)
+  endif()
+endif()
 if(THALWEG_SANITIZE)
   target_compile_options(thalweg_compile_options INTERFACE
     -fsanitize=${THALWEG_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
@@ -56,5 +67,5 @@ endfunction()
 # thalweg_links(source...): files that instantiate passes over links. Batches of links are whole vectors, however short.
 function(thalweg_links)
   set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS
-    "$<$<CXX_COMPILER_ID:GNU>:-fvect-cost-model=unlimited;-Wno-maybe-uninitialized;-Wno-uninitialized>")
+    "$<$<CXX_COMPILER_ID:GNU>:-fvect-cost-model=unlimited>")
 endfunction()

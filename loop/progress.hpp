@@ -1,4 +1,4 @@
-// The line a person watches while a run goes on, about once a second.
+// The line a person watches while a run goes on: once a second at first, every ten minutes after an hour.
 #pragma once
 
 #include "core/system.hpp"

@@ -22,8 +22,11 @@ namespace {
 constexpr double seconds_between_decisions = 0.2;  // mpirun kills one second after its SIGTERM
 constexpr double seconds_a_stroke_may_be_late = 0.5;
 constexpr double most_of_the_time = 0.7;  // share of the time after a signal that a checkpoint may take
-constexpr double seconds_between_lines = 1.0;
 constexpr std::int64_t most_steps_between_decisions = 100000;
+
+// s until the next progress line, after one at `now` s: often at first, when somebody is watching, and a few hundred lines in
+// a run of days.
+double seconds_to_next_line(double now) { return std::clamp(0.25 * now, 1.0, 600.0); }
 
 double seconds_since(WallClock::time_point start) {
   return std::chrono::duration<double>(WallClock::now() - start).count();
@@ -263,7 +266,7 @@ TimeLoop::Decision TimeLoop::decide_together() {
   if (rank_of(communicator_) == 0) {
     votes[decision] = own_decision();
     votes[steps] = steps_to_next_decision(now);
-    votes[print] = now - printed_at_ >= seconds_between_lines ? 1 : 0;
+    votes[print] = now - printed_at_ >= seconds_to_next_line(printed_at_) ? 1 : 0;
     votes[save] = plan_.checkpoint_wall > 0.0 && now - saved_at_ >= plan_.checkpoint_wall ? 1 : 0;
     decided_at_ = now;
     decided_step_ = system_.step();
