@@ -1,6 +1,5 @@
 #include "core/mpi_session.hpp"
 #include "core/packed_exchange.hpp"
-#include "core/schedule.hpp"
 
 #include <gtest/gtest.h>
 
@@ -85,16 +84,6 @@ TEST(PackedExchange, RingPassesAgainAndAgain) {
     EXPECT_EQ(*ring.receive_buffer<int>(0), -100 * right - round);
     EXPECT_EQ(*ring.receive_buffer<int>(1), 100 * left + round);
   }
-}
-
-TEST(Schedule, CountsFromStepZero) {
-  const Schedule schedule(0.01, 0.002);
-  EXPECT_EQ(schedule.interval(), 5);
-  EXPECT_TRUE(schedule.due(0));
-  EXPECT_FALSE(schedule.due(4));
-  EXPECT_TRUE(schedule.due(15));
-  EXPECT_FALSE(Schedule().due(0));
-  EXPECT_EQ(Schedule(1e-9, 1.0).interval(), 1);
 }
 
 }  // namespace
