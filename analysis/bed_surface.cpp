@@ -185,7 +185,7 @@ std::optional<BedFlow> bed_flow(const RunFacts& run) {
   if (!run.fluid) return std::nullopt;
   BedFlow flow;
   flow.side_walls = run.fluid->side_walls;
-  const bool by_slope = run.gravity.x() > 0.0 && run.gravity.z() < 0.0 && !run.fluid->steered;
+  const bool by_slope = run.gravity.x() > 0.0 && run.gravity.z() < 0.0 && run.box.periodic[0] && !run.fluid->steered;
   if (!by_slope && !run.fluid->steered && !run.fluid->top_moves) return flow;
   flow.shields_stress =
       (run.grains->reference_density - run.fluid->density) * run.gravity.norm() * run.grains->reference_diameter;

@@ -28,7 +28,7 @@ FlowNumbers flow_numbers(const Case& c) {
   flow.slope = gravity.x() / -gravity.z();
   flow.bed_height = settled_height(c);
   flow.depth = c.domain.size.z() - flow.bed_height;
-  if (flow.depth <= 0.0 || gravity.x() <= 0.0 || c.fluid.mean_velocity) return flow;
+  if (flow.depth <= 0.0 || gravity.x() <= 0.0 || !periodic_axes(c.domain)[0] || c.fluid.mean_velocity) return flow;
   flow.side_walls = side_walls(c);
   flow.hydraulic_radius = hydraulic_radius(c, flow.depth);
   flow.shields_depth = gravity.x() * flow.depth / (excess * g * d);
@@ -46,6 +46,14 @@ double slope_for(const FlowNumbers& flow, double shields) {
 double settled_height(const Case& c) {
   if (gravity_vector(c.gravity).z() == 0.0) return 0.0;
   return grain_volume(c) / (settled_fraction(c) * c.domain.size.x() * c.domain.size.y());
+}
+
+bool drives_flow(const Case& c, int axis) {
+  const auto lets_through = [](const coupling::FaceKeys& face) {
+    return face.type == lbm::FaceType::periodic || lbm::is_open(face.type);
+  };
+  const auto low = static_cast<std::size_t>(2 * axis);
+  return lets_through(c.domain.faces[low]) && lets_through(c.domain.faces[low + 1]);
 }
 
 int side_walls(const Case& c) { return c.domain.faces[y_low].drags() + c.domain.faces[y_high].drags(); }
