@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace thalweg::analysis {
 
@@ -21,13 +22,13 @@ double mean_of(const std::vector<double>& values) {
 }  // namespace
 
 BedSurface::BedSurface(MPI_Comm communicator, const PeriodicBox& box, const BedSurfaceKeys& keys, double diameter,
-                       const std::optional<BedFlow>& flow, double disk_thickness)
+                       const std::optional<BedFlow>& flow, double disk_thickness, std::vector<GlobalId> obstacles)
     : communicator_(communicator),
       box_(box),
       keys_(keys),
       flow_(flow),
       diameter_(diameter),
-      layers_(communicator, box, keys.layer.value_or(diameter), disk_thickness),
+      layers_(communicator, box, keys.layer.value_or(diameter), disk_thickness, std::move(obstacles)),
       pixels_(communicator, box, keys.pixel.value_or(diameter / 25.0), keys.static_time),
       surface_sums_(static_cast<std::size_t>(pixels_.columns()), 0.0) {
   sums_.assign(figures().size(), 0.0);
@@ -196,7 +197,7 @@ std::optional<BedFlow> bed_flow(const RunFacts& run) {
 
 std::unique_ptr<Observer> make_observer(const BedSurfaceKeys& keys, const RunFacts& run, const RunningSystem& system) {
   return std::make_unique<BedSurface>(system.communicator, run.box, keys, run.grains->reference_diameter, bed_flow(run),
-                                      run.grains->disk_thickness);
+                                      run.grains->disk_thickness, run.grains->obstacles);
 }
 
 }  // namespace thalweg::analysis

@@ -50,6 +50,7 @@ std::unique_ptr<Observer> make_observer(const EntrainmentKeys& keys, const RunFa
   settings.window = settings.diameter = run.grains->reference_diameter;
   settings.moving_speed = transport_scales(run).moving_speed();
   settings.held = run.grains->held();
+  settings.obstacles = run.grains->obstacles;
   settings.weight = run.grains->submerged_weight;
   settings.buoyancy = run.grains->buoyancy;
   return std::make_unique<Entrainment>(system.communicator, run.box, std::move(settings));

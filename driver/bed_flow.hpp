@@ -32,7 +32,12 @@ FlowNumbers flow_numbers(const Case& c);
 // sin = tau* (s - 1) d / R. Infinite where no slope is steep enough.
 double slope_for(const FlowNumbers& flow, double shields);
 
-// m, of the grains settled at settled_fraction(); 0 without gravity across the bed.
+// Solid fraction: less is no bed but a suspension, or grains that still fall. Random loose packing has 0.55 (beds
+// between near walls 0.5).
+inline constexpr double loosest_bed = 0.4;
+
+// m, of the grains settled at settled_fraction() in the room that obstacles leave (obstacles.hpp); 0 without gravity
+// across the bed. Where there are only obstacles, their surface as the run measures it, or 0 where they make no bed.
 double settled_height(const Case& c);
 
 // Whether gravity along an axis (0: x, 1: y) drives a flow: between periodic or open faces. Walls carry it as pressure.

@@ -2,6 +2,7 @@
 
 #include "driver/bed_flow.hpp"
 #include "driver/laminar_channel.hpp"
+#include "driver/obstacles.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -150,7 +151,7 @@ FlowEstimate flow_of_mean_velocity(const Case& c, const Channel& channel) {
   FlowEstimate flow;
   if (!c.fluid.mean_velocity || c.fluid.mean_velocity->velocity == 0.0) return flow;
   const Vec3 size = c.domain.size;
-  const double water = size.x() * size.y() * size.z() - grain_volume(c);
+  const double water = size.x() * size.y() * size.z() - solid_volume(c);
   const double mean = std::abs(c.fluid.mean_velocity->velocity) * water / (size.x() * size.y() * channel.depth);
   flow.cause = flow.drive = FlowCause::mean_velocity;
   flow.bulk_velocity = mean;
