@@ -1,17 +1,18 @@
 #include "analysis/bed_layers.hpp"
 
 #include "analysis/sphere_in_layer.hpp"
+#include "analysis/union_of_spheres.hpp"
 #include "core/order_free_sum.hpp"
+#include "core/ranks.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 namespace thalweg::analysis {
 
 namespace {
-
-constexpr int thin_layers_a_window = 10;
 
 // For each clump, its volume over that of its members together, which may overlap.
 std::map<GlobalId, double> shares_of_members(const GrainView& grains) {
@@ -24,25 +25,46 @@ std::map<GlobalId, double> shares_of_members(const GrainView& grains) {
 
 }  // namespace
 
-BedLayers::BedLayers(MPI_Comm communicator, const PeriodicBox& box, double window, double disk_thickness)
+BedLayers::BedLayers(MPI_Comm communicator, const PeriodicBox& box, double window, double disk_thickness,
+                     std::vector<GlobalId> obstacles)
     : communicator_(communicator),
       box_(box),
-      layers_(std::max(1, static_cast<int>(std::lround(thin_layers_a_window * box.size.z() / window)))),
+      layers_(thin_layers(box.size.z(), window)),
       thickness_(box.size.z() / layers_),
-      width_(disk_thickness > 0.0 ? disk_thickness : box.size.y()) {}
+      width_(disk_thickness > 0.0 ? disk_thickness : box.size.y()),
+      obstacles_(std::move(obstacles)) {}
 
 BedLayers::Bed BedLayers::bed(const Snapshot& snapshot) const {
-  const std::vector<double> volumes = volume_below(snapshot);
-  const VolumeBelow below{volumes, thickness_, box_.size.x() * width_};
+  std::vector<double> grains = grains_below(snapshot), obstacles = obstacles_below(snapshot);
+  if (static_cast<std::int64_t>(obstacles_.size()) == snapshot.grains.global_count)
+    grains = std::exchange(obstacles, {});
+  const VolumeBelow below{grains, thickness_, box_.size.x() * width_, obstacles};
   return {bed_height(below, thin_layers_a_window / 2), bulk_solid_fraction(below)};
 }
 
-std::vector<double> BedLayers::volume_below(const Snapshot& snapshot) const {
+bool BedLayers::is_obstacle(GlobalId id) const { return std::binary_search(obstacles_.begin(), obstacles_.end(), id); }
+
+std::vector<double> BedLayers::obstacles_below(const Snapshot& snapshot) const {
+  if (obstacles_.empty()) return {};
+  const GrainView& grains = snapshot.grains;
+  std::vector<SphereInBed> spheres;
+  for (std::size_t i = 0; i < grains.id.size(); ++i)
+    if (is_obstacle(grains.id[i])) {
+      const Vec3& centre = grains.position[i];
+      spheres.push_back({grains.id[i], {centre.x(), centre.y(), centre.z()}, grains.radius[i]});
+    }
+  spheres = Ranks(communicator_).gathered(std::move(spheres));
+  std::sort(spheres.begin(), spheres.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+  return union_below(box_, spheres, layers_);
+}
+
+std::vector<double> BedLayers::grains_below(const Snapshot& snapshot) const {
   const GrainView& grains = snapshot.grains;
   const std::map<GlobalId, double> shares = shares_of_members(grains);
   std::vector<int> layer_of_row;
   std::vector<double> volumes;
   for (std::size_t i = 0; i < grains.id.size(); ++i) {
+    if (is_obstacle(grains.id[i])) continue;
     const double radius = grains.radius[i], foot = grains.position[i].z() - radius;
     const double share = grains.is_member(i) ? shares.at(grains.clump[i]) : 1.0;
     const int first = static_cast<int>(std::floor(foot / thickness_));

@@ -7,12 +7,16 @@
 
 #include <mpi.h>
 
+#include <vector>
+
 namespace thalweg::analysis {
 
 class BedLayers {
 public:
-  // window: m, the height over which the solid fraction is averaged. disk_thickness: m, 0: spheres.
-  BedLayers(MPI_Comm communicator, const PeriodicBox& box, double window, double disk_thickness = 0.0);
+  // window: m, the height over which the solid fraction is averaged. disk_thickness: m, 0: spheres. obstacles: the ids,
+  // ascending, of spheres that are no grains of the bed but stand in it; where there is nothing else, they are the bed.
+  BedLayers(MPI_Comm communicator, const PeriodicBox& box, double window, double disk_thickness = 0.0,
+            std::vector<GlobalId> obstacles = {});
 
   struct Bed {
     double height;          // m, above the floor of the box; 0 without grains
@@ -22,13 +26,16 @@ public:
   double width() const { return width_; }   // m, of the bed
 
 private:
-  std::vector<double> volume_below(const Snapshot& snapshot) const;
+  bool is_obstacle(GlobalId id) const;
+  std::vector<double> grains_below(const Snapshot& snapshot) const;
+  std::vector<double> obstacles_below(const Snapshot& snapshot) const;
 
   MPI_Comm communicator_;
   PeriodicBox box_;
   int layers_;        // thin ones
   double thickness_;  // m, of a thin layer
   double width_;
+  std::vector<GlobalId> obstacles_;
 };
 
 }  // namespace thalweg::analysis

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace thalweg::analysis {
 
@@ -21,13 +22,13 @@ double mean_of(const std::vector<double>& values) {
 }  // namespace
 
 BedSurface::BedSurface(MPI_Comm communicator, const PeriodicBox& box, const BedSurfaceKeys& keys, double diameter,
-                       const std::optional<BedFlow>& flow, double disk_thickness)
+                       const std::optional<BedFlow>& flow, double disk_thickness, std::vector<GlobalId> obstacles)
     : communicator_(communicator),
       box_(box),
       keys_(keys),
       flow_(flow),
       diameter_(diameter),
-      layers_(communicator, box, keys.layer.value_or(diameter), disk_thickness),
+      layers_(communicator, box, keys.layer.value_or(diameter), disk_thickness, std::move(obstacles)),
       pixels_(communicator, box, keys.pixel.value_or(diameter / 25.0), keys.static_time),
       surface_sums_(static_cast<std::size_t>(pixels_.columns()), 0.0) {
   sums_.assign(figures().size(), 0.0);
@@ -185,7 +186,7 @@ std::optional<BedFlow> bed_flow(const RunFacts& run) {
   if (!run.fluid) return std::nullopt;
   BedFlow flow;
   flow.side_walls = run.fluid->side_walls;
-  const bool by_slope = run.gravity.x() > 0.0 && run.gravity.z() < 0.0 && !run.fluid->steered;
+  const bool by_slope = run.gravity.x() > 0.0 && run.gravity.z() < 0.0 && run.box.periodic[0] && !run.fluid->steered;
   if (!by_slope && !run.fluid->steered && !run.fluid->top_moves) return flow;
   flow.shields_stress =
       (run.grains->reference_density - run.fluid->density) * run.gravity.norm() * run.grains->reference_diameter;
@@ -196,7 +197,7 @@ std::optional<BedFlow> bed_flow(const RunFacts& run) {
 
 std::unique_ptr<Observer> make_observer(const BedSurfaceKeys& keys, const RunFacts& run, const RunningSystem& system) {
   return std::make_unique<BedSurface>(system.communicator, run.box, keys, run.grains->reference_diameter, bed_flow(run),
-                                      run.grains->disk_thickness);
+                                      run.grains->disk_thickness, run.grains->obstacles);
 }
 
 }  // namespace thalweg::analysis

@@ -55,9 +55,10 @@ struct BedFlow {
 
 class BedSurface : public Observer {
 public:
-  // diameter: m, that stands for all grains. disk_thickness: m, 0: spheres. The box must end in walls along z.
+  // diameter: m, that stands for all grains. disk_thickness: m, 0: spheres. obstacles: as BedLayers has them. The box
+  // must end in walls along z.
   BedSurface(MPI_Comm communicator, const PeriodicBox& box, const BedSurfaceKeys& keys, double diameter,
-             const std::optional<BedFlow>& flow, double disk_thickness);
+             const std::optional<BedFlow>& flow, double disk_thickness, std::vector<GlobalId> obstacles = {});
 
   std::string name() const override { return "bed_surface"; }
   double every() const override { return keys_.every; }

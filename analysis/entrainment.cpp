@@ -29,7 +29,7 @@ Entrainment::Entrainment(MPI_Comm communicator, const PeriodicBox& box, Entrainm
     : communicator_(communicator),
       box_(box),
       settings_(std::move(settings)),
-      layers_(communicator, box, settings_.window) {}
+      layers_(communicator, box, settings_.window, 0.0, settings_.obstacles) {}
 
 void Entrainment::observe(const Snapshot& snapshot) {
   if (snapshot.step <= seen_step_ || snapshot.time < settings_.from * (1.0 - 1e-12)) return;

@@ -46,14 +46,15 @@ std::unique_ptr<Observer> make_observer(const EntrainmentKeys& keys, const RunFa
 
 // The same for a run: the ids ascending, and what follows from its step and its grains.
 struct EntrainmentSettings : EntrainmentKeys {
-  double interval = 0.0;           // s, between samples
-  std::int64_t refresh_steps = 0;  // between two selections of the surface grains
-  double window = 0.0;             // m, over which the solid fraction is averaged for the bed height
-  double diameter = 0.0;           // m, the depth below the bed height that belongs to its surface
-  double moving_speed = 0.0;       // m/s
-  std::vector<HeldGrains> held;    // grains that cannot move
-  GrainFacts::Force weight;        // submerged
-  GrainFacts::Force buoyancy;      // as torques_about() has it
+  double interval = 0.0;            // s, between samples
+  std::int64_t refresh_steps = 0;   // between two selections of the surface grains
+  double window = 0.0;              // m, over which the solid fraction is averaged for the bed height
+  double diameter = 0.0;            // m, the depth below the bed height that belongs to its surface
+  double moving_speed = 0.0;        // m/s
+  std::vector<HeldGrains> held;     // grains that cannot move
+  std::vector<GlobalId> obstacles;  // as BedLayers has them
+  GrainFacts::Force weight;         // submerged
+  GrainFacts::Force buoyancy;       // as torques_about() has it
 };
 
 class Entrainment : public Observer {

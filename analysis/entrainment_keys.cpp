@@ -45,12 +45,12 @@ std::unique_ptr<Observer> make_observer(const EntrainmentKeys& keys, const RunFa
   EntrainmentSettings settings;
   static_cast<EntrainmentKeys&>(settings) = keys;
   std::sort(settings.grains.begin(), settings.grains.end());
-  const std::int64_t steps = Schedule(keys.every, system.time_step).interval();
-  settings.interval = static_cast<double>(std::max<std::int64_t>(1, steps)) * system.time_step;
+  settings.interval = std::max(keys.every, system.time_step);
   settings.refresh_steps = Schedule(keys.refresh, system.time_step).interval();
   settings.window = settings.diameter = run.grains->reference_diameter;
   settings.moving_speed = transport_scales(run).moving_speed();
   settings.held = run.grains->held();
+  settings.obstacles = run.grains->obstacles;
   settings.weight = run.grains->submerged_weight;
   settings.buoyancy = run.grains->buoyancy;
   return std::make_unique<Entrainment>(system.communicator, run.box, std::move(settings));

@@ -45,6 +45,8 @@ struct GrainFacts {
   double smallest_diameter = 0.0;   // m, of spheres and members of clumps
   double largest_diameter = 0.0;    // m
   double disk_thickness = 0.0;      // m; 0: spheres
+  // Ids, ascending, of spheres that are no grains of the bed but stand in it: a sill, a pier, a boulder.
+  std::vector<GlobalId> obstacles = {};
 
   using Force = std::function<Vec3(double mass, double radius)>;  // N, on a sphere (kg, m)
   Force body_force = {};                                          // in a fluid only, as the next two

@@ -1,4 +1,5 @@
-// When something is due: every n steps, counted from step 0, so that a restarted run keeps the same schedule.
+// When something is due: at the first step at or after each multiple of an interval, counted from step 0. Whether a
+// step is due follows from its number alone, so that a restarted run keeps the same schedule.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +15,17 @@ class Schedule {
 public:
   Schedule() = default;  // never due
 
-  // Due every `every` seconds of simulated time (rounded to whole steps, at least one). every <= 0: never.
+  // Due every `every` seconds of simulated time, at most once a step; a step that comes too early by less than a
+  // thousandth of its length counts. every <= 0: never.
   Schedule(double every, double time_step);
 
-  bool due(std::int64_t step) const { return interval_ > 0 && step % interval_ == 0; }
-  std::int64_t interval() const { return interval_; }  // steps; 0: never
+  bool due(std::int64_t step) const { return interval_ > 0.0 && (step == 0 || passed(step) != passed(step - 1)); }
+  std::int64_t interval() const;  // steps, the most from one that is due to the next; 0: never
 
 private:
-  std::int64_t interval_ = 0;
+  double passed(std::int64_t step) const;  // how many multiples of the interval, 0 not counted
+
+  double interval_ = 0.0;  // steps
 };
 
 }  // namespace thalweg

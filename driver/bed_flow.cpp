@@ -1,8 +1,12 @@
 #include "driver/bed_flow.hpp"
 
+#include "analysis/bed_height.hpp"
 #include "dem/packing.hpp"
+#include "driver/grain_setup.hpp"
+#include "driver/obstacles.hpp"
 #include "driver/reference_grain.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -11,6 +15,30 @@ namespace thalweg::driver {
 namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+// m, up to which this volume (m^3, with its pores) fills the room that obstacles leave: A h - O(h).
+double filled_height(double volume, const analysis::VolumeBelow& below) {
+  const auto room = [&](std::size_t k) {
+    return static_cast<double>(k) * below.spacing * below.area - below.obstacle[k];
+  };
+  std::size_t k = 1;
+  while (k + 1 < below.obstacle.size() && room(k) < volume) ++k;
+  const double here = room(k) - room(k - 1), left = volume - room(k - 1);
+  return (static_cast<double>(k - 1) + (here > 0.0 ? left / here : 1.0)) * below.spacing;
+}
+
+double settled_height(const Case& c, const Obstacles& obstacles) {
+  const PeriodicBox box = grain_box(c);
+  const int layers = analysis::thin_layers(box.size.z(), reference_grain(c).diameter);
+  const std::vector<double> filled = analysis::union_below(box, obstacles.spheres, layers);
+  analysis::VolumeBelow below{filled, box.size.z() / layers, box.size.x() * box.size.y()};
+  const double grains = grain_volume(c) - obstacles.volume_of_grains;
+  constexpr double rounding = 1e-9;
+  if (grains <= rounding * obstacles.volume_of_grains)
+    return bulk_solid_fraction(below) < loosest_bed ? 0.0 : bed_height(below, analysis::thin_layers_a_window / 2);
+  below.obstacle = filled;
+  return filled_height(grains / settled_fraction(c), below);
+}
 
 }  // namespace
 
@@ -28,7 +56,7 @@ FlowNumbers flow_numbers(const Case& c) {
   flow.slope = gravity.x() / -gravity.z();
   flow.bed_height = settled_height(c);
   flow.depth = c.domain.size.z() - flow.bed_height;
-  if (flow.depth <= 0.0 || gravity.x() <= 0.0 || c.fluid.mean_velocity) return flow;
+  if (flow.depth <= 0.0 || gravity.x() <= 0.0 || !periodic_axes(c.domain)[0] || c.fluid.mean_velocity) return flow;
   flow.side_walls = side_walls(c);
   flow.hydraulic_radius = hydraulic_radius(c, flow.depth);
   flow.shields_depth = gravity.x() * flow.depth / (excess * g * d);
@@ -45,7 +73,16 @@ double slope_for(const FlowNumbers& flow, double shields) {
 
 double settled_height(const Case& c) {
   if (gravity_vector(c.gravity).z() == 0.0) return 0.0;
+  if (const Obstacles obstacles = obstacles_of(c); !obstacles.spheres.empty()) return settled_height(c, obstacles);
   return grain_volume(c) / (settled_fraction(c) * c.domain.size.x() * c.domain.size.y());
+}
+
+bool drives_flow(const Case& c, int axis) {
+  const auto lets_through = [](const coupling::FaceKeys& face) {
+    return face.type == lbm::FaceType::periodic || lbm::is_open(face.type);
+  };
+  const auto low = static_cast<std::size_t>(2 * axis);
+  return lets_through(c.domain.faces[low]) && lets_through(c.domain.faces[low + 1]);
 }
 
 int side_walls(const Case& c) { return c.domain.faces[y_low].drags() + c.domain.faces[y_high].drags(); }

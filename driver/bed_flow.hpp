@@ -11,7 +11,8 @@ inline constexpr double neutral_density = 1e-6;
 
 // Shields number and depth follow Zhang et al. 2022: tau_b = rho_f g_x H far from side walls, rho_f g_x H W/(2 H + W)
 // between two of them, rho_f g_x H W/(H + W) beside one, and tau* = tau_b / ((rho_s - rho_f) g d). g_x is the part of
-// gravity along the bed, g times the sine of its angle. Not a number where a case lacks what a number needs.
+// gravity along the bed, g times the sine of its angle. Not a number where a case lacks what a number needs: without a
+// slope down along x, which is periodic, there is no Shields number.
 struct FlowNumbers {
   double slope;              // tangent of the bed's angle
   double bed_height;         // m: the grains settled at settled_fraction()
@@ -31,8 +32,16 @@ FlowNumbers flow_numbers(const Case& c);
 // sin = tau* (s - 1) d / R. Infinite where no slope is steep enough.
 double slope_for(const FlowNumbers& flow, double shields);
 
-// m, of the grains settled at settled_fraction(); 0 without gravity across the bed.
+// Solid fraction: less is no bed but a suspension, or grains that still fall. Random loose packing has 0.55 (beds
+// between near walls 0.5).
+inline constexpr double loosest_bed = 0.4;
+
+// m, of the grains settled at settled_fraction() in the room that obstacles leave (obstacles.hpp); 0 without gravity
+// across the bed. Where there are only obstacles, their surface as the run measures it, or 0 where they make no bed.
 double settled_height(const Case& c);
+
+// Whether gravity along an axis (0: x, 1: y) drives a flow: between periodic or open faces. Walls carry it as pressure.
+bool drives_flow(const Case& c, int axis);
 
 // How many of the faces across y hold the flow back, 0 to 2.
 int side_walls(const Case& c);

@@ -2,7 +2,6 @@
 
 #include "dem/grain_volume.hpp"
 #include "dem/population_seeds.hpp"
-#include "driver/bed_flow.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -206,39 +205,6 @@ double shortest_contact(const Case& c) {
 std::int64_t sub_steps_needed(const Case& c) {
   const double needed = fluid_time_step(c) * dem::fewest_steps_per_contact / shortest_contact(c);
   return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(needed * (1.0 - 1e-9))));
-}
-
-namespace {
-
-// Smooth walls on either side carry their share of the weight: the stress is that of the hydraulic radius, and the law
-// of the wall holds over half the width.
-double velocity_between_side_walls(double along, double depth, double width, double nu) {
-  const double shear_velocity = std::sqrt(along * depth * width / (width + 2.0 * depth));
-  const double distance = 9.0 * shear_velocity * std::min(depth, 0.5 * width) / nu;
-  return distance > std::numbers::e ? shear_velocity / karman * std::log(distance)
-                                    : std::numeric_limits<double>::infinity();
-}
-
-bool holds_back(const coupling::FaceKeys& face) {
-  return face.type == lbm::FaceType::no_slip || face.type == lbm::FaceType::law_of_the_wall;
-}
-
-}  // namespace
-
-double estimated_velocity(const Case& c) {
-  const Vec3 gravity = gravity_vector(c.gravity);
-  const double along = std::hypot(gravity[0], gravity[1]);
-  const double depth = c.domain.size[2] - settled_height(c);
-  if (!has_fluid(c) || along == 0.0 || depth <= 0.0) return 0.0;
-  const double nu = c.fluid.kinematic_viscosity;
-  const double laminar = along * depth * depth / (2.0 * nu);
-  const double shear_velocity = std::sqrt(along * depth);
-  // Rough over grains (equivalent roughness two diameters), smooth over a bare floor.
-  const double roughness = c.grains.empty() ? nu / (9.0 * shear_velocity) : largest_diameter(c) / 15.0;
-  if (depth <= std::numbers::e * roughness) return laminar;
-  const double over_bed = std::min(laminar, shear_velocity / karman * std::log(depth / roughness));
-  if (!holds_back(c.domain.faces[y_low]) || !holds_back(c.domain.faces[y_high])) return over_bed;
-  return std::min(over_bed, velocity_between_side_walls(along, depth, c.domain.size[1], nu));
 }
 
 }  // namespace thalweg::driver

@@ -206,9 +206,4 @@ inline constexpr double karman = 0.41;  // von Karman's constant of the logarith
 // dem::fewest_steps_per_contact of them; at least 1.
 std::int64_t sub_steps_needed(const Case& c);
 
-// The speed (m/s) a flow driven by gravity along the bed can reach: that of a laminar film over the bed or of the log
-// law above it or, between two side walls that hold it back, at theirs, whichever is least. An upper estimate, for
-// warnings and `thalweg check`. 0 without slope.
-double estimated_velocity(const Case& c);
-
 }  // namespace thalweg::driver

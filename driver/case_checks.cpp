@@ -203,6 +203,35 @@ void check_gravity(const Case& c, const io::YamlDocument& document) {
                          "reduced");
 }
 
+// Grains bounce off a face through which the water flows, and jam there.
+void check_open_faces(const Case& c, const io::YamlDocument& document) {
+  const auto free = std::find_if(c.grains.begin(), c.grains.end(), [](const auto& grains) { return !grains.held(); });
+  if (!has_fluid(c) || free == c.grains.end()) return;
+  const char* keys[] = {"x_low", "x_high", "y_low", "y_high"};
+  for (std::size_t face = x_low; face <= y_high; ++face) {
+    if (!lbm::is_open(c.domain.faces[face].type)) continue;
+    const std::string axis = axis_name[face / 2], own = fmt::format("domain.boundaries.{}", keys[face]);
+    throw document.error(
+        document.find(own) ? own : "domain.boundaries." + axis,
+        fmt::format(
+            "grains cannot come in or leave where the water does, and would jam at this face; give {0}: periodic "
+            "in place of {0}_low and {0}_high, or hold the grains with grains.{1}.fixed: true",
+            axis, free - c.grains.begin()));
+  }
+}
+
+// Steps are counted one by one, and times are multiples of the step in double precision.
+void check_number_of_steps(const Case& c, const io::YamlDocument& document) {
+  constexpr double most = 9007199254740992.0;  // 2^53
+  const double step = c.system == SystemKind::continuum ? *c.run.time_step : step_time(c);
+  if (c.run.until <= most * step) return;
+  throw document.error("run.until",
+                       fmt::format("the run would take {:.3g} steps of {:.3g} s, more than can be counted; "
+                                   "give a longer {}, or at most {} s",
+                                   c.run.until / step, step, has_fluid(c) ? "fluid.time_step" : "run.time_step",
+                                   at_most_text(most * step, 3)));
+}
+
 void check_model_fluid(const Case& c, const io::YamlDocument& document) {
   if (c.system != SystemKind::model_fluid) return;
   const Vec3 gravity = gravity_vector(c.gravity);
@@ -240,7 +269,9 @@ void check_case(const Case& c, const io::YamlDocument& document) {
   check_that_grains_fit(c, document);
   check_solids(c, document);
   check_fluid(c, document);
+  check_number_of_steps(c, document);
   check_gravity(c, document);
+  check_open_faces(c, document);
   check_grains(c, document);
   check_model_fluid(c, document);
   check_observers(c, document);

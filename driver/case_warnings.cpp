@@ -4,6 +4,7 @@
 #include "driver/case_checks.hpp"
 #include "driver/contact_estimate.hpp"
 #include "driver/drag_accuracy.hpp"
+#include "driver/drive_warnings.hpp"
 #include "driver/flow_estimate.hpp"
 #include "driver/limit_text.hpp"
 #include "driver/run_facts.hpp"
@@ -229,6 +230,7 @@ void warn_of_frequent_output(const Case& c, Warnings& found) {
 
 std::vector<std::string> warnings(const Case& c) {
   Warnings found = warnings(c.analysis.observers, run_facts(c));
+  for (const std::string& warning : drive_warnings(c)) found.push_back(warning);
   if (c.system == SystemKind::model_fluid) warn_of_model_fluid(c, found);
   if (c.system == SystemKind::grains || c.system == SystemKind::resolved) {
     warn_of_overlap(c, found);

@@ -1,6 +1,7 @@
 #include "driver/final_bed.hpp"
 
 #include "analysis/bed_surface.hpp"
+#include "driver/bed_flow.hpp"
 #include "driver/run_facts.hpp"
 
 #include <fmt/format.h>
@@ -8,10 +9,6 @@
 #include <cmath>
 
 namespace thalweg::driver {
-
-// Solid fraction: less is a suspension, or grains that still fall. Random loose packing has 0.55 (beds between near
-// walls 0.5).
-constexpr double loosest_bed = 0.4;
 
 std::vector<Figure> final_bed(MPI_Comm communicator, const Case& c, const System& system) {
   const Snapshot snapshot = system.snapshot();

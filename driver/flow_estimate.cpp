@@ -1,34 +1,52 @@
 #include "driver/flow_estimate.hpp"
 
 #include "driver/bed_flow.hpp"
+#include "driver/laminar_channel.hpp"
+#include "driver/obstacles.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace thalweg::driver {
 
 namespace {
 
-// Transition: of a film U H/nu, of Couette flow V H/nu (Tillmark and Alfredsson 1992: 360 with half of both).
-constexpr double film_transition = 500.0, couette_transition = 1440.0;
+constexpr double infinite = std::numeric_limits<double>::infinity();
+// Transition: of U R/nu, and of Couette flow V H/nu (Tillmark and Alfredsson 1992: 360 with half of both).
+constexpr double channel_transition = 500.0, couette_transition = 1440.0;
 constexpr double turnovers_to_adapt = 10.0, response_times_to_settle = 9.5;
 
 struct Channel {
-  double depth;      // m, H
-  double reach;      // m, h: of one surface
-  double roughness;  // m, z_0 over grains; 0: a bare floor
-  double viscosity;  // m^2/s
-  double radius;     // m, of the share that the bed has: h, or the hydraulic radius between side walls
+  double depth;       // m, H
+  double reach;       // m, h: of one surface; infinite where neither floor nor top holds the flow
+  double half_width;  // m, to the middle between two side walls, the whole width beside one; infinite without
+  double roughness;   // m, z_0 over grains; 0: a bare floor
+  double viscosity;   // m^2/s
+  double radius;      // m, of the share that the bed has: h, or the hydraulic radius between side walls
+
+  // Of the log law: the reach, without floor and top the half-width; where nothing holds the flow, the depth.
+  double distance() const { return std::isfinite(reach) ? reach : std::isfinite(half_width) ? half_width : depth; }
+  // Where nothing holds the flow, that of a film.
+  LaminarChannel laminar(double acceleration) const {
+    const bool held = std::isfinite(reach) || std::isfinite(half_width);
+    return laminar_channel(acceleration, held ? reach : depth, half_width, viscosity);
+  }
 };
 
 Channel channel_of(const Case& c) {
+  const double width = c.domain.size.y();
+  const int walls = side_walls(c);
+  const bool floor = c.domain.faces[bottom].drags() || (settled_height(c) > 0.0 && !periodic_axes(c.domain)[2]);
+  const int surfaces = floor + c.domain.faces[top].drags();
   Channel channel{};
   channel.depth = c.domain.size.z() - settled_height(c);
-  channel.reach = c.domain.faces[top].drags() ? 0.5 * channel.depth : channel.depth;
+  channel.reach = surfaces == 0 ? infinite : channel.depth / surfaces;
+  channel.half_width = walls == 0 ? infinite : width / walls;
   channel.roughness = largest_diameter(c) / 15.0;
   channel.viscosity = c.fluid.kinematic_viscosity;
-  channel.radius = hydraulic_radius(c, channel.reach);
+  channel.radius = surfaces > 0 ? hydraulic_radius(c, channel.reach) : walls > 0 ? width / walls : channel.depth;
   return channel;
 }
 
@@ -73,20 +91,58 @@ void limit_to_what_the_slope_gives(const Case& c, double along, FlowEstimate& fl
   flow.speed = std::min(flow.speed, reached);
 }
 
+// Smooth walls on either side: the law of the wall holds over half the width.
+double velocity_between_side_walls(double friction_velocity, const Channel& channel) {
+  const double distance = 9.0 * friction_velocity * std::min(channel.reach, channel.half_width) / channel.viscosity;
+  return distance > std::numbers::e ? friction_velocity / karman * std::log(distance) : infinite;
+}
+
+bool holds_back(const coupling::FaceKeys& face) {
+  return face.type == lbm::FaceType::no_slip || face.type == lbm::FaceType::law_of_the_wall;
+}
+
+// m/s, u_max of a turbulent flow that this acceleration (m/s^2) drives along the bed.
+double turbulent_velocity(const Case& c, const Channel& channel, double along) {
+  const double between = holds_back(c.domain.faces[y_low]) && holds_back(c.domain.faces[y_high])
+                             ? velocity_between_side_walls(std::sqrt(along * channel.radius), channel)
+                             : infinite;
+  const double over_bed = std::sqrt(along * channel.distance());
+  return std::min(over_bed / karman * log_of(channel.distance(), over_bed, channel), between);
+}
+
+// m/s^2, of gravity along the bed, as far as it drives a flow: walls carry what goes across them.
+double acceleration_along(const Case& c) {
+  const Vec3 gravity = gravity_vector(c.gravity);
+  return std::hypot(drives_flow(c, 0) ? gravity.x() : 0.0, drives_flow(c, 1) ? gravity.y() : 0.0);
+}
+
+struct SlopeFlow {
+  double speed, bulk_velocity, friction_velocity;  // m/s, without end
+  bool laminar;
+  double spin_up;  // s
+};
+
+SlopeFlow developed_flow(const Case& c, const Channel& channel, double along) {
+  const LaminarChannel slow = channel.laminar(along);
+  const double friction_velocity = std::sqrt(along * channel.radius);
+  if (slow.mean * channel.radius / channel.viscosity < channel_transition)
+    return {slow.largest, slow.mean, friction_velocity, true, slow.spin_up};
+  const double speed = turbulent_velocity(c, channel, along);
+  const double bulk = std::max(0.5 * speed, speed - friction_velocity / karman);
+  return {speed, bulk, friction_velocity, false, 2.0 * bulk / along};
+}
+
 FlowEstimate flow_of_slope(const Case& c, const Channel& channel) {
   FlowEstimate flow;
-  const Vec3 gravity = gravity_vector(c.gravity);
-  const double along = std::hypot(gravity.x(), gravity.y());
+  const double along = acceleration_along(c);
   if (c.fluid.mean_velocity || along == 0.0) return flow;
+  const SlopeFlow developed = developed_flow(c, channel, along);
   flow.cause = flow.drive = FlowCause::slope;
-  flow.speed = estimated_velocity(c);
-  flow.friction_velocity = std::sqrt(along * channel.radius);
-  const double film = along * channel.depth * channel.depth / (2.0 * channel.viscosity);
-  flow.laminar = flow.speed >= film * (1.0 - 1e-9);
-  flow.bulk_velocity =
-      flow.laminar ? 2.0 / 3.0 * flow.speed : std::max(0.5 * flow.speed, flow.speed - flow.friction_velocity / karman);
-  flow.spin_up =
-      flow.laminar ? 1.2 * channel.reach * channel.reach / channel.viscosity : 2.0 * flow.bulk_velocity / along;
+  flow.speed = developed.speed;
+  flow.bulk_velocity = developed.bulk_velocity;
+  flow.friction_velocity = developed.friction_velocity;
+  flow.laminar = developed.laminar;
+  flow.spin_up = developed.spin_up;
   limit_to_what_the_slope_gives(c, along, flow);
   return flow;
 }
@@ -95,20 +151,20 @@ FlowEstimate flow_of_mean_velocity(const Case& c, const Channel& channel) {
   FlowEstimate flow;
   if (!c.fluid.mean_velocity || c.fluid.mean_velocity->velocity == 0.0) return flow;
   const Vec3 size = c.domain.size;
-  const double water = size.x() * size.y() * size.z() - grain_volume(c);
+  const double water = size.x() * size.y() * size.z() - solid_volume(c);
   const double mean = std::abs(c.fluid.mean_velocity->velocity) * water / (size.x() * size.y() * channel.depth);
   flow.cause = flow.drive = FlowCause::mean_velocity;
   flow.bulk_velocity = mean;
-  flow.laminar = mean * channel.reach / channel.viscosity < film_transition;
+  flow.laminar = mean * channel.radius / channel.viscosity < channel_transition;
+  const LaminarChannel of_unit = channel.laminar(1.0);
   flow.friction_velocity = flow.laminar
-                               ? std::sqrt(3.0 * channel.viscosity * mean / channel.reach)
+                               ? std::sqrt(mean / of_unit.mean * channel.radius)
                                : friction_velocity_of(mean, [&](double friction_velocity) {
-                                   return std::max(1.0, log_of(channel.reach, friction_velocity, channel) - 1.0);
+                                   return std::max(1.0, log_of(channel.distance(), friction_velocity, channel) - 1.0);
                                  });
-  flow.speed = flow.laminar ? 1.5 * mean : mean + flow.friction_velocity / karman;
+  flow.speed = flow.laminar ? mean * of_unit.largest / of_unit.mean : mean + flow.friction_velocity / karman;
   flow.spin_up = response_times_to_settle * c.fluid.mean_velocity->response_time +
-                 (flow.laminar ? 1.2 * channel.reach * channel.reach / channel.viscosity
-                               : turnovers_to_adapt * channel.depth / flow.friction_velocity);
+                 (flow.laminar ? of_unit.spin_up : turnovers_to_adapt * channel.depth / flow.friction_velocity);
   return flow;
 }
 
@@ -211,6 +267,13 @@ double settling_velocity(const Case& c) {
   for (const dem::Population& grains : c.grains)
     if (!grains.held()) fastest = std::max(fastest, settling_velocity_of(c, grains));
   return fastest;
+}
+
+double estimated_velocity(const Case& c) {
+  if (!has_fluid(c)) return 0.0;
+  const Channel channel = channel_of(c);
+  const double along = acceleration_along(c);
+  return along == 0.0 || channel.depth <= 0.0 ? 0.0 : developed_flow(c, channel, along).speed;
 }
 
 FlowEstimate flow_estimate(const Case& c) {

@@ -4,6 +4,7 @@
 #include "dem/packing.hpp"
 #include "driver/case_checks.hpp"
 #include "driver/limit_text.hpp"
+#include "driver/obstacles.hpp"
 
 #include <fmt/format.h>
 
@@ -31,7 +32,9 @@ void check_room(const Case& c, const io::YamlDocument& document) {
                                        c.domain.size[axis], axis_name[axis], extent));
   }
   const double box = c.disks ? c.domain.size[0] * c.disks->thickness * c.domain.size[2] : c.domain.size.prod();
-  const double fraction = grain_volume(c) / box, densest = c.disks ? dem::densest_disks : dem::densest_bed;
+  const double densest = c.disks ? dem::densest_disks : dem::densest_bed;
+  double fraction = grain_volume(c) / box;
+  if (fraction > densest) fraction = solid_volume(c) / box;
   if (fraction > densest) {
     const double share = densest / fraction;
     const std::string at_most =

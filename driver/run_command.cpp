@@ -282,7 +282,7 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   else
     beginning.checkpoint = read_first_whole_checkpoint(communicator, places.checkpoints, c, *system, observers,
                                                        beginning.damage, beginning.accounts);
-  if (system->step() > loop::final_step(c.run.until, system->time_step()))
+  if (restarts && system->step() > loop::final_step(c.run.until, system->time_step()))
     throw InputError(fmt::format("{} is at {:.6g} s already and the run ends at {:.6g} s: give a later --until.",
                                  beginning.checkpoint.string(), system->time(), c.run.until));
 

@@ -1,6 +1,7 @@
 #include "driver/run_facts.hpp"
 
 #include "driver/grain_weight.hpp"
+#include "driver/obstacles.hpp"
 #include "driver/reference_grain.hpp"
 
 #include <fmt/format.h>
@@ -43,6 +44,7 @@ analysis::GrainFacts grain_facts(const Case& c) {
   const ReferenceGrain reference = reference_grain(c);
   analysis::GrainFacts facts{populations_of(c),    reference.diameter,  reference.density,
                              smallest_diameter(c), largest_diameter(c), c.disks ? c.disks->thickness : 0.0};
+  for (const analysis::SphereInBed& sphere : obstacles_of(c).spheres) facts.obstacles.push_back(sphere.id);
   if (!has_fluid(c)) return facts;
   facts.body_force = body_force(c);
   facts.submerged_weight = submerged_weight(c);

@@ -1,5 +1,7 @@
 #include "driver/watch_rules.hpp"
 
+#include "driver/flow_estimate.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>

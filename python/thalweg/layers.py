@@ -7,6 +7,7 @@ import numpy as np
 
 from thalweg.columns import Columns
 from thalweg.errors import RunFolderError
+from thalweg.obstacles import obstacles, union_in_layers
 
 UNITS = {"z": "m", "solid_fraction": "1", "velocity": "m/s", "flux": "m/s", "granular_temperature": "m^2/s^2",
          "contact_stress": "Pa", "fluid_stress": "Pa", "rotation_stress": "Pa"}
@@ -37,9 +38,11 @@ def layer_edges(bottom, top, thickness):
 
 class LayerSums:
     """Sums over frames of what the grains contribute to layers; profiles() makes means of them. area: of a layer, m^2;
-    lengths in m; height: of a period, where z is periodic; thickness: of disks."""
+    lengths in m; height: of a period, where z is periodic; thickness: of disks. With a run, its obstacles are no grains, and
+    a layer is the room that they leave; where there is nothing else, they are grains, and overlaps count once."""
 
-    def __init__(self, edges, area, height=None, thickness=None):
+    def __init__(self, edges, area, height=None, thickness=None, run=None):
+        self.run, self.obstacle_ids, self.union, self.taken = run, None, None, 0.0
         self.edges, self.layer_volumes = np.asarray(edges, float), area * np.diff(edges)
         self.height, self.thickness = height, thickness
         layers = len(edges) - 1
@@ -59,6 +62,12 @@ class LayerSums:
                                  "case, which counts clumps.")
         part = self.parts(frame.position[:, 2], frame.radius)
         self.frames += 1
+        stands = self.obstacles_in(frame)
+        if stands.all():
+            part *= (self.union / np.maximum(part.sum(axis=1), 1e-300))[:, None]
+        elif stands.any():
+            self.taken = self.taken + self.union
+            part[:, stands] = 0.0
         self.volume += part.sum(axis=1)
         self.momentum += part @ frame.velocity
         self.square += part @ np.sum(frame.velocity**2, axis=1)
@@ -67,13 +76,21 @@ class LayerSums:
                 sums = self.stresses.setdefault(name, np.zeros((len(part), 9)))
                 sums += part @ frame.arrays[name].reshape(-1, 9)
 
+    def obstacles_in(self, frame):
+        """Which grains of a frame are obstacles; they stand still, so that the first frame tells."""
+        if self.obstacle_ids is None:
+            stands = obstacles(self.run, frame) if self.run else np.zeros(len(frame), bool)
+            self.obstacle_ids = frame.id[stands]
+            self.union = union_in_layers(self.run, self.edges, frame.position[stands], frame.radius[stands])
+        return np.isin(frame.id, self.obstacle_ids)
+
     def profiles(self):
         """Columns over z, the middle of the layers: solid fraction, velocity (NaN where no grain was), flux, granular
         temperature (sum V |v|^2/sum V - |U|^2)/3 over grains and frames, stresses weighted with the solid fraction, and of
         the fluid's on grains the rotation stress sigma_xz - sigma_zx (Zhang et al. 2022, sec. 2.4)."""
         if self.frames == 0:
             raise RunFolderError("there is no frame of the grains in this time.")
-        whole = self.frames * self.layer_volumes
+        whole = np.maximum(self.frames * self.layer_volumes - self.taken, 1e-9 * self.frames * self.layer_volumes)
         volume = np.where(self.volume > 1e-9 * whole, self.volume, np.nan)
         velocity = self.momentum / volume[:, None]
         found = {"z": 0.5 * (self.edges[1:] + self.edges[:-1]), "solid_fraction": self.volume / whole,
@@ -92,7 +109,7 @@ def layer_profiles(run, start=-np.inf, stop=np.inf, thickness=None):
     edges = layer_edges(0.0, run.size[2], thickness or 0.5 * run.diameter)
     disks = run.case.get("disks")
     width = float(disks["thickness"]) if disks else None
-    sums = LayerSums(edges, run.size[0] * (width or run.size[1]), run.size[2] if run.periodic[2] else None, width)
+    sums = LayerSums(edges, run.size[0] * (width or run.size[1]), run.size[2] if run.periodic[2] else None, width, run)
     for frame in run.grains.between(start, stop):
         sums.add(frame)
     return sums.profiles()

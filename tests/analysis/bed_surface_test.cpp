@@ -85,6 +85,24 @@ TEST(BedHeight, OfAUniformBlockIsItsTop) {
   EXPECT_EQ(bed_height({nothing, 0.1, 2.0}, 5), 0.0);
 }
 
+// The same bed around a block of half its height that takes half of its plan: R = 1 m^2 up to 2 m, then 2 m^2.
+TEST(BedHeight, LeavesObstaclesOut) {
+  std::vector<double> grains, block;
+  for (int k = 0; k <= 100; ++k) {
+    block.push_back(0.1 * std::min(k, 20));
+    grains.push_back(0.6 * (2.0 * 0.1 * std::min(k, 43) - block.back()));
+  }
+  EXPECT_NEAR(bulk_solid_fraction({grains, 0.1, 2.0, block}), 0.6, 1e-12);
+  EXPECT_NEAR(bed_height({grains, 0.1, 2.0, block}, 5), 4.3, 1e-12);
+  // One that reaches through the bed to the top leaves both as they are.
+  for (int k = 0; k <= 100; ++k) {
+    block[static_cast<std::size_t>(k)] = 0.1 * k;
+    grains[static_cast<std::size_t>(k)] = 0.6 * 0.1 * std::min(k, 43);
+  }
+  EXPECT_NEAR(bulk_solid_fraction({grains, 0.1, 2.0, block}), 0.6, 1e-12);
+  EXPECT_NEAR(bed_height({grains, 0.1, 2.0, block}, 5), 4.3, 1e-12);
+}
+
 // Ten layers of a simple cubic lattice: a window of one diameter holds pi/6 anywhere inside, and half of it around the
 // top.
 TEST(BedSurface, OfACubicLatticeIsTheTopOfItsHighestLayer) {
@@ -114,6 +132,35 @@ TEST(BedSurface, OfACubicLatticeIsTheTopOfItsHighestLayer) {
   EXPECT_NEAR(value_of(wide.figures(), "bed_height"), 10.0 * d, 1e-12);
   EXPECT_NEAR(value_of(wide.figures(), "hydraulic_radius"), 22.0 * d, 1e-12);
   EXPECT_EQ(dry.figures().size(), 2u);
+}
+
+// A sill of overlapping spheres across a lattice of nine layers, four diameters wide and six high, in place of its
+// grains there. Its spheres are a quarter of a diameter apart: the surface is within 1 - sqrt(1 - 1/8) of a radius of
+// the block, 0.03 d, and its two upper edges are round, 0.2 d^2/4 of a section of 24 d^2: at most 3 % of the block,
+// which is a quarter of the room in the bulk. Of the 960 grains left a tenth is the lowest layer, and half are the
+// lowest five.
+TEST(BedSurface, LeavesOutASillOfOverlappingSpheres) {
+  Spheres spheres(world);
+  std::vector<Vec3> grains;
+  std::vector<GlobalId> sill;
+  for (int z = 0; z <= 20; ++z)
+    for (int y = 0; y < 32; ++y)
+      for (int x = 0; x <= 12; ++x) {
+        sill.push_back(static_cast<GlobalId>(grains.size()));
+        grains.emplace_back((4.5 + 0.25 * x) * d, 0.25 * y * d, (0.5 + 0.25 * z) * d);
+      }
+  for (const Vec3& grain : cubic_lattice(9))
+    if (grain.x() < 4.0 * d || grain.x() > 8.0 * d || grain.z() > 6.0 * d) grains.push_back(grain);
+  BedSurface surface(world, spheres.box(), keys(), d, flume, 0.0, sill);
+  surface.observe(spheres.at(0, grains));
+  EXPECT_NEAR(value_of(surface.figures(), "bed_height"), 9.0 * d, 0.02 * d);
+  EXPECT_NEAR(value_of(surface.results(), "bulk_solid_fraction_mean"), std::numbers::pi / 6.0, 0.02 * 0.53);
+  // Where there is nothing else, it is the bed.
+  grains.resize(sill.size());
+  BedSurface alone(world, spheres.box(), keys(), d, flume, 0.0, sill);
+  alone.observe(spheres.at(0, grains));
+  EXPECT_NEAR(value_of(alone.results(), "bulk_solid_fraction_mean"), 0.25, 0.03 * 0.25);
+  EXPECT_NEAR(value_of(alone.figures(), "bed_height"), 6.0 * d, 0.08 * d);
 }
 
 // A fluid that a force drives and whose top takes or gives stress.

@@ -1,6 +1,5 @@
 #include "core/mpi_session.hpp"
 #include "core/packed_exchange.hpp"
-#include "core/schedule.hpp"
 
 #include <gtest/gtest.h>
 
@@ -87,28 +86,6 @@ TEST(PackedExchange, RingPassesAgainAndAgain) {
     EXPECT_EQ(*ring.receive_buffer<int>(0), -100 * right - round);
     EXPECT_EQ(*ring.receive_buffer<int>(1), 100 * left + round);
   }
-}
-
-TEST(Schedule, CountsFromStepZero) {
-  const Schedule schedule(0.01, 0.002);
-  EXPECT_EQ(schedule.interval(), 5);
-  EXPECT_TRUE(schedule.due(0));
-  EXPECT_FALSE(schedule.due(4));
-  EXPECT_TRUE(schedule.due(15));
-  EXPECT_FALSE(Schedule().due(0));
-  EXPECT_EQ(Schedule(1e-9, 1.0).interval(), 1);
-}
-
-// More steps than an integer holds, as of a time of 1e30 s that stands for never.
-TEST(Schedule, OfATimeThatNoRunReachesIsDueAtTheStartOnly) {
-  for (const double every : {1e14, 1e30, std::numeric_limits<double>::infinity()}) {
-    const Schedule schedule(every, 1e-5);
-    EXPECT_TRUE(schedule.due(0));
-    for (const std::int64_t step : {std::int64_t{1}, std::int64_t{1000}, std::int64_t{1} << 40})
-      EXPECT_FALSE(schedule.due(step)) << every;
-  }
-  EXPECT_EQ(whole_steps(4e18), 4'000'000'000'000'000'000);
-  EXPECT_EQ(whole_steps(9e18), no_step_reaches);
 }
 
 }  // namespace

@@ -165,7 +165,7 @@ TEST(CaseReader, ReadsEveryWallAndCollision) {
       read(flume, {"domain.boundaries={x_low: {type: velocity_inlet, velocity: [0.2, 0, 0]}, x_high: {type: "
                    "pressure_outlet, pressure: 3}, y: {type: navier_slip, slip_length: 1e-4, on_node: true}, "
                    "bottom: law_of_the_wall_as_printed, top: {type: moving, velocity: [0.1, 0, 0]}}",
-                   "fluid.collision=trt", "fluid.magic_parameter=0.25",
+                   "grains.0.fixed=true", "fluid.collision=trt", "fluid.magic_parameter=0.25",
                    "fluid.mean_velocity={velocity: 0.3, response_time: 0.05}", "coupling.links=cli",
                    "coupling.near_contact=paper", "coupling.refill=grad", "coupling.covered_momentum=to_grain",
                    "coupling.narrow_gaps=slip", "coupling.grain_stress=true"});

@@ -1,5 +1,6 @@
 // The numbers that follow from a case, against the tables of the two papers' parameters.
 #include "driver/case_warnings.hpp"
+#include "driver/flow_estimate.hpp"
 #include "driver/stability.hpp"
 
 #include <gtest/gtest.h>

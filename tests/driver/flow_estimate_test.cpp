@@ -102,6 +102,59 @@ TEST(FlowEstimate, OfAFilmOfOilIsItsParabola) {
   EXPECT_NEAR(left, 0.05, 0.01);
 }
 
+// Plates hold the flow on both sides: u_max = g H^2/(8 nu), a quarter of a film's.
+TEST(FlowEstimate, BetweenFloorAndLidIsTheParabolaOfPlates) {
+  Case c = film(1e-3);
+  c.domain.faces[top].type = lbm::FaceType::no_slip;
+  const FlowEstimate flow = flow_estimate(c);
+  const double along = 9.8 * std::sin(std::atan(0.016));
+  EXPECT_TRUE(flow.laminar);
+  EXPECT_NEAR(flow.speed, along * 4e-4 / 8e-3, 1e-12);
+  EXPECT_NEAR(flow.bulk_velocity, flow.speed / 1.5, 1e-12);
+  EXPECT_NEAR(flow.friction_velocity, std::sqrt(along * 0.01), 1e-12);
+  EXPECT_NEAR(flow.spin_up, 1.2 * 1e-4 / 1e-3, 1e-12);
+}
+
+// A slot much narrower than deep: u_max = g W^2/(8 nu), and Re 0.2 is laminar.
+TEST(FlowEstimate, BetweenNearSideWallsIsThatOfTheSlot) {
+  Case c = film(1e-3);
+  c.domain.size.y() = 0.002;
+  c.domain.faces[y_low].type = c.domain.faces[y_high].type = lbm::FaceType::no_slip;
+  const double along = 9.8 * std::sin(std::atan(0.016));
+  FlowEstimate flow = flow_estimate(c);
+  EXPECT_TRUE(flow.laminar);
+  EXPECT_NEAR(flow.speed, along * 4e-6 / 8e-3, 1e-6 * flow.speed);
+  EXPECT_NEAR(flow.bulk_velocity, flow.speed / 1.5, 0.035 * flow.speed);  // less at the floor, by 0.63 W/(2 H)
+  EXPECT_NEAR(flow.friction_velocity, std::sqrt(along * 0.02 * 0.002 / 0.042), 1e-12);
+  // The same slot without a floor, and half of one as wide: a plane of symmetry.
+  c.domain.faces[bottom].type = lbm::FaceType::free_slip;
+  EXPECT_NEAR(flow_estimate(c).bulk_velocity, along * 4e-6 / 12e-3, 1e-12);
+  c.domain.faces[y_high].type = lbm::FaceType::free_slip;
+  EXPECT_NEAR(flow_estimate(c).speed, along * 4e-6 / 2e-3, 1e-12);
+}
+
+// U R/nu = 500, the 2000 of the hydraulic diameter: of a film U = g H^2/(3 nu).
+TEST(FlowEstimate, IsLaminarByItsReynoldsNumber) {
+  const double along = 9.8 * std::sin(std::atan(0.016)), nu = std::sqrt(along * 8e-6 / 3.0 / 500.0);
+  EXPECT_TRUE(flow_estimate(film(1.01 * nu)).laminar);
+  EXPECT_FALSE(flow_estimate(film(0.99 * nu)).laminar);
+  EXPECT_LT(flow_estimate(film(0.99 * nu)).speed, flow_estimate(film(1.01 * nu)).speed);
+}
+
+// A mean velocity that is held makes the same profile as a slope that gives it.
+TEST(FlowEstimate, OfASlowMeanVelocityIsThatOfTheSameChannel) {
+  Case c = film(1e-3);
+  c.domain.faces[top].type = lbm::FaceType::no_slip;
+  c.domain.faces[y_low].type = c.domain.faces[y_high].type = lbm::FaceType::no_slip;
+  const FlowEstimate by_slope = flow_estimate(c);
+  c.gravity.slope = 0.0;
+  c.fluid.mean_velocity = coupling::FlowTargetKeys{.velocity = by_slope.bulk_velocity, .response_time = 0.5};
+  const FlowEstimate held = flow_estimate(c);
+  EXPECT_TRUE(held.laminar);
+  EXPECT_NEAR(held.speed, by_slope.speed, 1e-12);
+  EXPECT_NEAR(held.friction_velocity, by_slope.friction_velocity, 1e-12);
+}
+
 TEST(FlowEstimate, OfAMovingTopIsCouetteFlow) {
   Case c = film(1e-3);
   c.gravity.slope = 0.0;

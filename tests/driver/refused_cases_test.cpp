@@ -76,6 +76,20 @@ INSTANTIATE_TEST_SUITE_P(
              "domain.boundaries={x_low: {type: velocity_inlet, velocity: [0.2, 0, 0]}, x_high: pressure_outlet, "
              "y: no_slip, bottom: no_slip, top: free_slip}"},
             {"gravity.mode", "an outlet of one pressure"}},
+        Bad{"free_grains_at_an_outlet",
+            {"domain.boundaries={x_low: no_slip, x_high: pressure_outlet, y: no_slip, bottom: no_slip, top: "
+             "free_slip}"},
+            {"domain.boundaries.x_high", "would jam at this face", "give x: periodic in place of x_low and x_high",
+             "grains.0.fixed: true"}},
+        Bad{"free_grains_beside_an_inlet",
+            {"domain.boundaries={x: periodic, y: {type: velocity_inlet, velocity: [0.1, 0, 0]}, bottom: no_slip, "
+             "top: free_slip}"},
+            {"domain.boundaries.y", "would jam at this face", "y: periodic"}},
+        Bad{"too_many_steps",
+            {"run.until=1e30"},
+            {"run.until = 1e30: the run would take 5e+34 steps of 2e-05 s",
+             "give a longer fluid.time_step, or at most "
+             "1.8e+11 s"}},
         Bad{"full_gravity_from_another_run",
             {"gravity.mode=full", "initial.from=other"},
             {"gravity.mode", "its own hydrostatic pressure"}},

@@ -1,5 +1,6 @@
 #include "driver/watch_rules.hpp"
 
+#include "driver/flow_estimate.hpp"
 #include "tests/driver/case_texts.hpp"
 #include "tests/loop/made_up_system.hpp"
 

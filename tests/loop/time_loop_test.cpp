@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <unistd.h>
+#include <algorithm>
 
 #include <csignal>
 #include <cstdio>
@@ -144,6 +145,28 @@ TEST(TimeLoop, KeepsEveryBeatAndEndsWithACheckpoint) {
   EXPECT_EQ(bench.columns, 2u);
   EXPECT_EQ(bench.pictures, (Steps{0, 5, 10}));
   EXPECT_EQ(bench.checkpoints, (Steps{4, 8, 10}));
+}
+
+// 1.4 and 2.5 steps: the first steps at or after their multiples, from wherever the run goes on.
+TEST(TimeLoop, KeepsIntervalsThatAreNoWholeStepsAfterARestart) {
+  const auto set = [](Bench& bench) {
+    bench.plan.series = Schedule(0.0014, 0.001);
+    bench.plan.checkpoint = Schedule(0.0025, 0.001);
+  };
+  Bench straight(0.010);
+  set(straight);
+  straight.run();
+  EXPECT_EQ(straight.rows, (Steps{0, 2, 3, 5, 6, 7, 9, 10}));
+  EXPECT_EQ(straight.looks_on->steps, straight.rows);
+  EXPECT_EQ(straight.checkpoints, (Steps{3, 5, 8, 10}));
+  for (const std::int64_t from : {3, 4, 5}) {
+    Bench again(0.010, from);
+    set(again);
+    again.plan.write_at_start = false;
+    again.run();
+    const auto later = std::upper_bound(straight.rows.begin(), straight.rows.end(), from);
+    EXPECT_EQ(again.rows, Steps(later, straight.rows.end())) << from;
+  }
 }
 
 TEST(TimeLoop, SavesByWallTimeAsWell) {

@@ -8,6 +8,7 @@ import made_up_folder as made_up
 import thalweg
 from thalweg import bed, literature
 from thalweg.layers import LayerSums, disk_below, layer_profiles, parts_in_layers, volume_below
+from thalweg.obstacles import obstacles, union_in_layers
 
 D, SIZE = 4.95e-3, np.array([0.12, 0.0105, 0.1485])
 
@@ -105,6 +106,46 @@ class Layers(made_up.MadeUpFolder):
         case.write_text(case.read_text().replace("slope: 0.0748", "slope: 0"))
         (self.folder / "series.csv").write_text("time [s],shields_number [1]\n0,0.07\n1,0.09\n2,0.2\n")
         self.assertAlmostEqual(bed.shields_number(thalweg.Run(self.folder), height, 0.0, 1.0), 0.08, 12)
+
+    def with_a_post(self, fixed):
+        """The bed with a post of spheres a quarter of a diameter apart through the whole depth, fixed in the case or not."""
+        post = np.column_stack([np.full(100, 0.0625), np.full(100, 0.5 * SIZE[1]), D * (0.5 + 0.25 * np.arange(100))])
+        bed_grains = self.bed_of_layers(10)[:-1]
+        apart = np.linalg.norm((bed_grains - post[0])[:, :2], axis=1)
+        places = np.vstack([post, bed_grains[apart > D]])
+        self.write_frames((0.0, 1.0), [places, places])
+        if fixed:
+            case = self.folder / "case.yaml"
+            case.write_text(case.read_text().replace("grains: [{", "grains: [{diameter: 4.95e-3, density: 2550, fixed: true, "
+                                                     f"placement: {{positions: {post.tolist()}}}}}, {{"))
+        return thalweg.Run(self.folder), post, places
+
+    def test_a_post_of_overlapping_spheres_is_no_bed(self):
+        run, post, places = self.with_a_post(fixed=True)
+        self.assertEqual(np.flatnonzero(obstacles(run, run.grains[0])).tolist(), list(range(len(post))))
+        profiles = layer_profiles(run, thickness=D)
+        # Nearly a cylinder: r^2 less a twelfth of the quarter of a diameter, squared.
+        radius = 0.5 * D
+        room = SIZE[0] * SIZE[1] - np.pi * (radius**2 - (0.25 * D)**2 / 12.0)
+        grains_a_layer = (len(places) - len(post)) / 10
+        right = grains_a_layer * np.pi / 6 * D**3 / (room * D)
+        layers = profiles["z"] < 9.5 * D
+        np.testing.assert_allclose(profiles["solid_fraction"][layers][1:], right, rtol=2e-3)
+        self.assertLess(abs(bed.bed_height(run) / D - 10.0), 0.25)
+
+    def test_spheres_that_are_free_count_one_by_one(self):
+        run, post, _ = self.with_a_post(fixed=False)
+        self.assertFalse(obstacles(run, run.grains[0]).any())
+
+    def test_the_union_of_two_spheres(self):
+        run, _, _ = self.with_a_post(fixed=False)
+        apart, radius = 0.6 * D, 0.5 * D
+        lens = np.pi * (4 * radius + apart) * (2 * radius - apart)**2 / 12
+        for x in (0.05, SIZE[0] - 0.2 * D):   # through a periodic face
+            two = np.array([[x, 0.005, 0.02], [x + apart, 0.005, 0.02]])
+            found = union_in_layers(run, np.array([0.0, 0.02, 0.04]), two, np.full(2, radius))
+            self.assertLess(abs(found.sum() / (np.pi / 3 * D**3 - lens) - 1.0), 5e-3)
+            self.assertLess(abs(found[0] / found[1] - 1.0), 1e-2)
 
     def test_profiles_of_the_run_count_for_its_own_time_only(self):
         (self.folder / "series.csv").write_text("time [s],q_star [1]\n" + "".join(f"{t / 10},0.1\n" for t in range(101)))

@@ -127,6 +127,8 @@ class RunFolder(made_up.MadeUpFolder):
         inlet = "x_low: {type: velocity_inlet, velocity: [0.1, 0, 0]}, x_high: pressure_outlet"
         self.assertFalse(self.with_case("x: periodic", inlet).driven_by_slope)
         self.assertTrue(self.with_case(inlet, "x: periodic").driven_by_slope)
+        self.assertFalse(self.with_case("x: periodic", "x: no_slip").driven_by_slope)   # a closed tank
+        self.assertTrue(self.with_case("x: no_slip", "x: periodic").driven_by_slope)
         self.assertFalse(self.with_case("slope: 0.0748", "slope: 0").driven_by_slope)
 
     def test_side_walls_are_counted(self):

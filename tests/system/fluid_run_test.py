@@ -3,6 +3,7 @@
 
 Called by ctest: fluid_run_test.py THALWEG MPIEXEC [unittest arguments]
 """
+import re
 import sys
 from pathlib import Path
 
@@ -316,6 +317,32 @@ output: {fluid: {every: 8.0, region: slice_y}}
         for x in range(4):
             numpy.testing.assert_allclose(arrays["velocity"][:, 0, x, 0], exact, rtol=0, atol=2e-7 * exact.max())
         self.assertLess(abs(arrays["velocity"][..., 1:]).max(), 1e-9 * exact.max())
+
+
+class SlowFlow(ProgramTest):
+    """What check expects of laminar flow is what the run gives, to the 1 or 2 % of twelve cells."""
+    CASE = """
+system: fluid
+name: slow flow in a duct
+domain: {size: [0.002, 0.006, 0.006], spacing: 0.5e-3, boundaries: {x: periodic, y: no_slip, bottom: no_slip, top: no_slip}}
+fluid: {density: 1000, kinematic_viscosity: 1.0e-4, smagorinsky_constant: 0, time_step: 2.0e-4, collision: trt, precision: double}
+gravity: {vector: [0.5, 0, -9.8]}
+run: {until: 0.3}
+output: {series: {every: 0.3}}
+"""
+
+    def test_is_as_fast_as_check_says(self):
+        for walls in ("{x: periodic, y: no_slip, bottom: no_slip, top: no_slip}",
+                      "{x: periodic, y: no_slip, bottom: no_slip, top: free_slip}",
+                      "{x: periodic, y: periodic, bottom: no_slip, top: no_slip}",
+                      "{x: periodic, y: no_slip, bottom: free_slip, top: free_slip}"):
+            with self.subTest(walls):
+                setting = ("--set", f"domain.boundaries={walls}")
+                report = self.run_well("check", self.case, *setting).stdout
+                expected = float(re.search(r"up to about ([\d.e-]+) m/s", report).group(1))
+                self.assertIn("(laminar)", report)
+                self.run_well("run", self.case, "--out", "run", "--overwrite", *setting)
+                self.assertAlmostEqual(self.series()["largest_fluid_speed"][-1] / expected, 1.0, delta=0.03)
 
 
 if __name__ == "__main__":
