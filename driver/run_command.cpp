@@ -293,7 +293,7 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   RunIdentity identity{c.name, name_of(c.system), command.line, c.run.until, layout, size_of(communicator)};
   if (!c.grains.empty()) identity.reference = reference_grain(c);
   print_header(c, identity, *system, places, beginning, bandwidth, communicator, log);
-  output.begin();
+  output.begin(log);
   loop::LoopPlan plan;
   plan.until = c.run.until;
   set_end(c, plan);
