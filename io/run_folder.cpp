@@ -24,9 +24,9 @@ namespace fs = std::filesystem;
 namespace {
 
 // All a run writes, and thalweg analyze; --overwrite removes these and nothing else.
-constexpr std::array run_contents{"case.yaml",    "run.log",        "series.csv",  "profiles.h5", "probes.h5",
-                                  "tracks.h5",    "entrainment.h5", "bed.h5",      "grains.pvd",  "fluid.pvd",
-                                  "grains",       "fluid",          "fluid_parts", "grain_parts", "checkpoints",
+constexpr std::array run_contents{"case.yaml",    "series.csv",     "profiles.h5", "probes.h5", "tracks.h5",
+                                  "grains.pvd",   "entrainment.h5", "fluid.pvd",   "grains",    "fluid",
+                                  "fluid_parts",  "grain_parts",    "checkpoints", "bed.h5",    "run.log",
                                   "summary.json", "analysis",       "stop"};
 // Of these, what a run that goes on changes in its place: folders, and files that are not replaced as a whole.
 constexpr std::array added_to{"checkpoints", "grains",    "fluid",     "fluid_parts",   "grain_parts",
@@ -201,6 +201,13 @@ void RunFolder::rotate_checkpoints(std::int64_t step, int keep) const {
     fs::remove(file, error);
     if (error) throw RunError(fmt::format("{}: cannot remove: {}.", file.string(), error.message()));
   }
+}
+
+bool RunFolder::has_had_checkpoint() const {
+  std::error_code ignored;
+  const bool without_folder = fs::exists(log(), ignored) && !fs::exists(checkpoints(), ignored);
+  return has_checkpoint() || fs::exists(checkpoints() / latest_name, ignored) || fs::exists(bed(), ignored) ||
+         without_folder;
 }
 
 std::vector<fs::path> RunFolder::checkpoints_to_try() const {
