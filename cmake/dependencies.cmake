@@ -14,7 +14,7 @@ endif()
 find_package(yaml-cpp 0.7 REQUIRED)
 find_package(fmt 9.0 REQUIRED)
 find_package(CLI11 2.1 REQUIRED)
-find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOCore IOGeometry)
+find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore IOCore)
 
 # Debian's own interpreter where there is one, since scripts/setup installs the packages for that.
 find_program(THALWEG_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH

@@ -7,7 +7,7 @@ set(thalweg_data_folder ${CMAKE_INSTALL_DATADIR}/thalweg)
 
 install(TARGETS thalweg RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY python cases DESTINATION ${thalweg_data_folder}
-        PATTERN "__pycache__" EXCLUDE)
+        PATTERN "__pycache__" EXCLUDE PATTERN "run" EXCLUDE)   # run: where thalweg run writes beside a case
 install(FILES scripts/plot_run.py scripts/picture.py DESTINATION ${thalweg_data_folder}/scripts
         PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 

@@ -12,6 +12,7 @@ namespace thalweg {
 struct TriangleMesh {
   std::vector<Vec3> points;                   // in the caller's unit of length
   std::vector<std::array<int, 3>> triangles;  // indices of points, anticlockwise seen from outside
+  bool operator==(const TriangleMesh&) const = default;
 };
 
 // What keeps a mesh from enclosing a volume, as the part of a sentence ("3 edges belong to one triangle only"); empty

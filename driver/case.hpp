@@ -4,6 +4,7 @@
 
 #include "analysis/observer_list.hpp"
 #include "continuum/column_keys.hpp"
+#include "core/triangle_mesh.hpp"
 #include "core/types.hpp"
 #include "core/units.hpp"
 #include "coupling/coupling_keys.hpp"
@@ -64,6 +65,7 @@ struct SolidCase {
   std::string stl;                // file, absolute once read; empty: none
   double scale = 1.0;             // m per unit of the file
   Vec3 translate = Vec3::Zero();  // m, after scaling
+  TriangleMesh surface = {};      // of the file, in m, once read; not a key
   bool operator==(const SolidCase&) const = default;
 };
 

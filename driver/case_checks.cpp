@@ -4,13 +4,13 @@
 #include "driver/grain_weight.hpp"
 #include "driver/limit_text.hpp"
 #include "driver/run_facts.hpp"
+#include "driver/solid_setup.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <numbers>
 
 namespace thalweg::driver {
@@ -60,15 +60,12 @@ void check_resolution(const Case& c, const io::YamlDocument& document) {
 void check_solids(const Case& c, const io::YamlDocument& document) {
   for (std::size_t n = 0; n < c.solids.size(); ++n) {
     const SolidCase& solid = c.solids[n];
-    const std::string key = fmt::format("solids.{}", n);
     if (solid.sphere && solid.sphere->radius < fewest_cells_per_radius * c.domain.spacing)
-      throw document.error(key + ".sphere.radius",
+      throw document.error(fmt::format("solids.{}.sphere.radius", n),
                            fmt::format("the sphere is smaller than the cells can show; give at least {:.4g} m",
                                        fewest_cells_per_radius * c.domain.spacing));
-    std::error_code ignored;
-    if (!solid.stl.empty() && !std::filesystem::is_regular_file(solid.stl, ignored))
-      throw document.error(key + ".stl", "there is no such file; give an STL file, relative to the case");
   }
+  check_solid_extents(c, document);
 }
 
 void check_lattice_velocity(const Case& c, const io::YamlDocument& document, const std::string& key, double velocity) {

@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "driver/case_checks.hpp"
 #include "driver/case_sections.hpp"
+#include "driver/solid_setup.hpp"
 #include "io/section_reader.hpp"
 #include "io/section_writer.hpp"
 #include "io/yaml_document.hpp"
@@ -111,9 +112,7 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
   for (std::optional<std::string>* source : {&c.initial.from.run, &c.initial.from.grains, &c.initial.from.fluid})
     if (*source && !(*source)->empty())
       *source = (std::filesystem::absolute(path).parent_path() / **source).lexically_normal().string();
-  for (SolidCase& solid : c.solids)
-    if (!solid.stl.empty())
-      solid.stl = (std::filesystem::absolute(path).parent_path() / solid.stl).lexically_normal().string();
+  fill_in_surfaces(c, document);
   check_case(c, document);
   return c;
 }

@@ -8,6 +8,7 @@
 #include "driver/flow_estimate.hpp"
 #include "driver/limit_text.hpp"
 #include "driver/run_facts.hpp"
+#include "driver/solid_setup.hpp"
 #include "driver/stability.hpp"
 
 #include <fmt/format.h>
@@ -144,6 +145,24 @@ void warn_of_overlap(const Case& c, Warnings& found) {
       100.0 * overlaps.under_weight, 100.0 * overlaps.in_impact, overlaps.speed, stiffer_contact(c, overlaps)));
 }
 
+constexpr double suspiciously_long = 10.0;  // boxes; a file in millimetres is a thousand times too large
+
+void warn_of_large_solids(const Case& c, Warnings& found) {
+  for (std::size_t n = 0; n < c.solids.size(); ++n) {
+    const SolidCase& solid = c.solids[n];
+    if (solid.stl.empty()) continue;
+    const coupling::Extent extent = extent_of(solid);
+    const Vec3 boxes = (extent.upper - extent.lower).cwiseQuotient(c.domain.size);
+    int axis = 0;
+    if (boxes.maxCoeff(&axis) <= suspiciously_long) continue;
+    found.push_back(
+        fmt::format("The surface solids.{} is {:.4g} m long along {}, {:.3g} times the box: if its file is in "
+                    "millimetres, consider "
+                    "solids.{}.scale: {:g}.",
+                    n, extent.upper[axis] - extent.lower[axis], axis_name[axis], boxes[axis], n, 1e-3 * solid.scale));
+  }
+}
+
 // Fewer cells than this across a grain do not resolve the flow around it.
 constexpr double barely_resolved = 5.0;
 
@@ -237,9 +256,9 @@ std::vector<std::string> warnings(const Case& c) {
     warn_of_sliding_bed(c, found);
   }
   if (!has_fluid(c)) return found;
-  for (const auto warn :
-       {warn_of_fast_flow, warn_of_compression, warn_of_collision, warn_of_unmapped_relaxation, warn_of_bulk_relaxation,
-        warn_of_laminar_flow, warn_of_coarse_cells, warn_of_grains, warn_of_floating_grains, warn_of_links})
+  for (const auto warn : {warn_of_fast_flow, warn_of_compression, warn_of_collision, warn_of_unmapped_relaxation,
+                          warn_of_bulk_relaxation, warn_of_laminar_flow, warn_of_large_solids, warn_of_coarse_cells,
+                          warn_of_grains, warn_of_floating_grains, warn_of_links})
     warn(c, found);
   return found;
 }

@@ -20,6 +20,7 @@ namespace {
 constexpr const char* examples = R"(Examples:
   thalweg check cases/quickstart/case.yaml             what the case means and what it costs
   thalweg run cases/quickstart/case.yaml --out run/a   run it on one core
+  thalweg run case.yaml --out run/a --resume           begin, or go on after any interruption
   thalweg check case.yaml --ranks 1,16,64,256          how long it takes on so many ranks (docs/scaling.md)
   mpirun -n 8 thalweg run case.yaml --walltime 23:50:00 --set fluid.time_step=1e-5
   mpirun -n 4 thalweg run case.yaml --out run/a --restart run/a --until 60
@@ -31,8 +32,8 @@ constexpr const char* examples = R"(Examples:
   thalweg defaults > all_keys.yaml                     the keys of a case, with default and meaning
   thalweg defaults coupling.lubrication                one section of it
 
-Exit codes: 0 done; 1 the run failed; 2 the input cannot be run (nothing was written); 3 stopped in good order by a signal,
---walltime or thalweg stop (summary.json says which; --restart goes on from there).)";
+Exit codes: 0 done; 1 the run failed; 2 the input cannot be run (nothing was written); 3 stopped in good order by a signal
+or --walltime (summary.json says which); 4 the same by thalweg stop. After 3 and 4 --resume goes on from there.)";
 
 // CLI11's own says "not in range 0.000000 to 179769313486231570..." of what is not one.
 CLI::Validator positive_number() {
@@ -62,6 +63,12 @@ void add_run(CLI::App& app, Command& command, Texts& texts) {
       ->type_name("HH:MM:SS");
   run->add_option("--layout", texts.layout, "Ranks along x, y and z (default: chosen)")->type_name("PX,PY,PZ");
   run->add_flag("--overwrite", command.overwrite, "Replace an existing run folder");
+  run->add_flag(
+         "--resume", command.resume,
+         "Begin the run, or go on with it from its last checkpoint, by what the run folder holds; a finished one is "
+         "left as it is (for job scripts)")
+      ->excludes("--restart")
+      ->excludes("--overwrite");
   run->final_callback([&] { command.kind = Command::Kind::run; });
 }
 

@@ -22,6 +22,7 @@ struct Command {
   double walltime = 0.0;              // s; 0: none
   std::optional<Index3> layout;       // ranks along x, y, z
   bool overwrite = false;
+  bool resume = false;     // begin the run, or go on with it, by what `out` holds
   std::vector<int> ranks;  // of check: numbers of ranks to plan for
   Network network;         // the same: between them
   bool csv = false;        // of info

@@ -103,6 +103,15 @@ YAML::Node summary_in(const io::RunFolder& folder) {
   }
 }
 
+YAML::Node whole_summary_in(const io::RunFolder& folder) {
+  try {
+    const YAML::Node summary = summary_in(folder);
+    if (summary.IsMap()) return summary;
+  } catch (const InputError&) {
+  }
+  return {};
+}
+
 std::string state_without_summary(const io::RunFolder& folder) {
   const std::optional<bool> held = io::FolderLock::is_held(folder.path());
   if (!held) return "running, or killed without notice";

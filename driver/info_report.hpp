@@ -26,4 +26,7 @@ std::string state_without_summary(const io::RunFolder& folder);
 // summary.json; null where there is none. Throws InputError where it is damaged.
 YAML::Node summary_in(const io::RunFolder& folder);
 
+// The same; null also where a crash has left half of it.
+YAML::Node whole_summary_in(const io::RunFolder& folder);
+
 }  // namespace thalweg::driver

@@ -30,7 +30,7 @@ namespace {
 using namespace thalweg;
 using namespace thalweg::driver;
 
-enum ExitCode { done = 0, run_failed = 1, bad_input = 2, stopped = 3 };
+enum ExitCode { done = 0, run_failed = 1, bad_input = 2, interrupted = 3, asked_to_stop = 4 };
 
 struct Failure {
   ExitCode code;
@@ -66,13 +66,24 @@ bool first_of_its_launcher() {
   return true;
 }
 
+ExitCode exit_code_of(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::finished:
+      return done;
+    case Outcome::interrupted:
+      return interrupted;
+    default:
+      return asked_to_stop;
+  }
+}
+
 int run(const Command& command, int argc, char** argv, loop::WallClock::time_point started) {
   MpiSession session(argc, argv);
   const bool prints = rank_of(MPI_COMM_WORLD) == 0;
   FailureBarrier failures(MPI_COMM_WORLD);
   loop::Log log(prints);
   try {
-    return run_case(command, MPI_COMM_WORLD, started, failures, log) ? done : stopped;
+    return exit_code_of(run_case(command, MPI_COMM_WORLD, started, failures, log));
   } catch (...) {
     return end_with(failure(), failures, prints);
   }

@@ -20,6 +20,7 @@
 #include "driver/machine.hpp"
 #include "driver/memory.hpp"
 #include "driver/reference_grain.hpp"
+#include "driver/resume.hpp"
 #include "driver/run_facts.hpp"
 #include "driver/run_output.hpp"
 #include "driver/summary.hpp"
@@ -38,6 +39,8 @@
 #include <exception>
 #include <filesystem>
 #include <limits>
+#include <optional>
+#include <utility>
 
 namespace thalweg::driver {
 
@@ -60,6 +63,8 @@ fs::path run_folder_of(const fs::path& checkpoint) {
   return folder.is_run_folder() && folder.checkpoints() == checkpoints ? folder.path() : fs::path();
 }
 
+fs::path folder_beside(const fs::path& case_file) { return case_file.parent_path() / "run"; }
+
 Places places_of(const Command& command) {
   std::vector<fs::path> checkpoints;
   fs::path origin;
@@ -68,10 +73,52 @@ Places places_of(const Command& command) {
     origin = run_folder_of(checkpoints.front());
   }
   fs::path out = command.out;
-  if (out.empty()) out = origin.empty() ? fs::path(command.path).parent_path() / "run" : origin;
+  if (out.empty()) out = origin.empty() ? folder_beside(command.path) : origin;
   std::error_code ignored;
   const bool same = !origin.empty() && fs::equivalent(out, origin, ignored);
   return {checkpoints, origin, io::RunFolder(out), same};
+}
+
+std::vector<std::string> settings_of(const Command& command) {
+  std::vector<std::string> settings = command.settings;
+  if (command.until) settings.push_back(fmt::format("run.until={}", *command.until));
+  return settings;
+}
+
+// Puts what --resume finds into the command, as if its user had looked and given --restart, --overwrite or neither;
+// lock: of the folder, where there is a run that is not finished. Returns the outcome where there is nothing to run.
+std::optional<Outcome> resume(Command& command, std::optional<io::FolderLock>& lock, MPI_Comm communicator,
+                              loop::Log& log) {
+  const io::RunFolder folder(command.out.empty() ? folder_beside(command.path) : fs::path(command.out));
+  const std::string name = folder.path().string();
+  io::FolderLock taken;
+  int found = 0;
+  on_first_rank(communicator, [&] {
+    found = static_cast<int>(resumption_of(folder, wanted_end(command.path, settings_of(command)), taken));
+  });
+  MPI_Bcast(&found, 1, MPI_INT, 0, communicator);
+  switch (static_cast<Resumption>(found)) {
+    case Resumption::finished:
+      log.line(fmt::format("{} is finished: nothing to do (a later --until goes on)", name));
+      return Outcome::finished;
+    case Resumption::asked_to_stop:
+      log.line(
+          fmt::format("{}: thalweg stop came after the last run there had ended, and ends this one before it begins; "
+                      "the same command goes on",
+                      name));
+      return Outcome::asked_to_stop;
+    case Resumption::go_on:
+      command.restart = name;
+      break;
+    case Resumption::begin_again:
+      log.line(fmt::format("{}: the run there ended before its first checkpoint, and begins again", name));
+      command.overwrite = true;
+      break;
+    case Resumption::begin:
+      return {};
+  }
+  lock = std::move(taken);
+  return {};
 }
 
 // What a run begins with.
@@ -232,6 +279,11 @@ void set_end(const Case& c, loop::LoopPlan& plan) {
   }
 }
 
+Outcome outcome_of(const loop::LoopRecord& record) {
+  if (record.finished) return Outcome::finished;
+  return record.asked ? Outcome::asked_to_stop : Outcome::interrupted;
+}
+
 // Which checkpoint a run that has failed can go on from, in a sentence.
 std::string last_good(const Places& places) {
   fs::path checkpoint = places.checkpoints.empty() ? fs::path() : places.checkpoints.front();
@@ -246,18 +298,19 @@ std::string last_good(const Places& places) {
 
 }  // namespace
 
-bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::time_point started,
-              FailureBarrier& failures, loop::Log& log) {
+Outcome run_case(Command command, MPI_Comm communicator, loop::WallClock::time_point started, FailureBarrier& failures,
+                 loop::Log& log) {
   loop::listen_for_stop_signals();
-  std::vector<std::string> settings = command.settings;
-  if (command.until) settings.push_back(fmt::format("run.until={}", *command.until));
+  std::optional<io::FolderLock> lock;
+  if (command.resume)
+    if (const std::optional<Outcome> outcome = resume(command, lock, communicator, log)) return *outcome;
   Places places = places_of(command);
-  io::FolderLock lock;
-  if (places.same_folder) {  // whoever still writes there may save once more: checkpoints are looked for under the lock
+  if (places.same_folder &&
+      !lock) {  // whoever still writes there may save once more: checkpoints are looked for under the lock
     lock = lock_folder(places, communicator);
     places = places_of(command);
   }
-  const Case c = read_case(command.path, settings, beds_of(places.checkpoints), communicator);
+  const Case c = read_case(command.path, settings_of(command), beds_of(places.checkpoints), communicator);
   on_first_rank(communicator, [&] {
     if (!places.same_folder) places.folder.check_new(command.overwrite);
     places.folder.check_writable();
@@ -286,14 +339,14 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
     throw InputError(fmt::format("{} is at {:.6g} s already and the run ends at {:.6g} s: give a later --until.",
                                  beginning.checkpoint.string(), system->time(), c.run.until));
 
-  if (!places.same_folder) lock = lock_folder(places, communicator);
+  if (!lock) lock = lock_folder(places, communicator);
   RunOutput output(communicator, c, places.folder, *system, observers, loop::series_row(*system, observers),
                    beginning.accounts.since, places.same_folder ? std::optional<double>(system->time()) : std::nullopt);
   prepare_folder(places, c, command, system->step(), communicator, log);
   RunIdentity identity{c.name, name_of(c.system), command.line, c.run.until, layout, size_of(communicator)};
   if (!c.grains.empty()) identity.reference = reference_grain(c);
   print_header(c, identity, *system, places, beginning, bandwidth, communicator, log);
-  output.begin();
+  output.begin(log);
   loop::LoopPlan plan;
   plan.until = c.run.until;
   set_end(c, plan);
@@ -330,8 +383,12 @@ bool run_case(const Command& command, MPI_Comm communicator, loop::WallClock::ti
   if (const std::string remark = rest_remark(c, plan, time_loop.record(), *system); !remark.empty()) log.line(remark);
   const io::JsonObject summary =
       summary_of(identity, *system, time_loop.record(), observers, beginning.accounts, bed, phases);
-  on_first_rank(communicator, [&] { summary.write(places.folder.summary()); });
-  return time_loop.record().finished;
+  on_first_rank(communicator, [&] {
+    summary.write(places.folder.summary());
+    std::error_code ignored;  // a request that came too late
+    if (time_loop.record().finished) fs::remove(places.folder.stop(), ignored);
+  });
+  return outcome_of(time_loop.record());
 }
 
 }  // namespace thalweg::driver

@@ -49,7 +49,7 @@ RunOutput::RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& 
   }
 }
 
-void RunOutput::begin() {
+void RunOutput::begin(loop::Log& log) {
   const Snapshot snapshot = system_.snapshot();
   if (snapshot.grains.global_count > 0) {
     add_grains(folder_.path(), "grains", case_.output.grains, {});
@@ -61,7 +61,10 @@ void RunOutput::begin() {
     for (const io::NamedFluidOutputKeys& part : case_.output.fluid_parts)
       add_fluid(folder_.fluid_parts(), part.name, part);
   }
-  for (ObserverRecords& records : records_) records.file.add(std::exchange(records.first, {}));
+  for (ObserverRecords& records : records_) {
+    records.file.add(std::exchange(records.first, {}));
+    if (!records.file.warning().empty()) log.line("warning: " + records.file.warning());
+  }
   if (case_.output.series.every > 0.0)
     series_ = std::make_unique<io::SeriesTable>(communicator_, folder_.series(), columns_, continue_from_);
 }

@@ -10,6 +10,7 @@
 #include "io/record_file.hpp"
 #include "io/run_folder.hpp"
 #include "io/series_table.hpp"
+#include "loop/log.hpp"
 #include "loop/time_loop.hpp"
 
 #include <mpi.h>
@@ -33,8 +34,8 @@ public:
             const Observers& observers, const std::vector<Figure>& row, std::map<std::string, double> since,
             std::optional<double> continue_from);
 
-  // Begins the files, or takes them up. Collective; the first of all calls.
-  void begin();
+  // Begins the files, or takes them up, and warns of those that are damaged. Collective; the first of all calls.
+  void begin(loop::Log& log);
 
   // Schedules and actions for the time loop; they refer to this object.
   void add_to(loop::LoopPlan& plan);

@@ -1,28 +1,85 @@
 #include "driver/solid_setup.hpp"
 
 #include "core/error.hpp"
+#include "driver/case_checks.hpp"
 #include "io/stl_file.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+
 namespace thalweg::driver {
+namespace {
+
+constexpr double most_boxes_long = 100.0;  // along a periodic axis, where every box more is one more image
+constexpr double most_boxes_away = 1e6;
+
+std::string shape_key(const Case& c, std::size_t solid) {
+  return fmt::format("solids.{}.{}", solid, c.solids[solid].sphere ? "sphere.radius" : "stl");
+}
+
+std::string smaller_text(const SolidCase& solid) {
+  return solid.sphere ? "give the radius in m"
+                      : fmt::format("if the file is in millimetres, give scale: {:g}", 1e-3 * solid.scale);
+}
+
+}  // namespace
+
+void fill_in_surfaces(Case& c, const io::YamlDocument& document) {
+  for (std::size_t n = 0; n < c.solids.size(); ++n) {
+    SolidCase& solid = c.solids[n];
+    if (solid.stl.empty()) continue;
+    solid.stl = (std::filesystem::absolute(document.path()).parent_path() / solid.stl).lexically_normal().string();
+    try {
+      solid.surface = io::read_stl(solid.stl);
+    } catch (const InputError& error) {
+      std::string reason = error.what();
+      if (reason.ends_with('.')) reason.pop_back();
+      throw document.error(fmt::format("solids.{}.stl", n), reason);
+    }
+    for (Vec3& point : solid.surface.points) point = point * solid.scale + solid.translate;
+  }
+}
+
+coupling::Extent extent_of(const SolidCase& solid) {
+  if (solid.sphere) return coupling::extent_of(coupling::SolidSphere{solid.sphere->centre, {solid.sphere->radius}});
+  return coupling::extent_of(solid.surface);
+}
+
+void check_solid_extents(const Case& c, const io::YamlDocument& document) {
+  for (std::size_t n = 0; n < c.solids.size(); ++n) {
+    const coupling::Extent extent = extent_of(c.solids[n]);
+    for (int axis = 0; axis < 3; ++axis) {
+      const double low = extent.lower[axis], high = extent.upper[axis], box = c.domain.size[axis];
+      if (periodic_axes(c.domain)[axis] && !(high - low <= most_boxes_long * box))
+        throw document.error(
+            shape_key(c, n),
+            fmt::format("the solid is {:.4g} m long along {}, {:.3g} times the periodic box of {:g} m; {}", high - low,
+                        axis_name[axis], (high - low) / box, box, smaller_text(c.solids[n])));
+      if (!(std::max(std::abs(low), std::abs(high)) <= most_boxes_away * box))
+        throw document.error(
+            shape_key(c, n),
+            fmt::format("the solid extends from {:.4g} to {:.4g} m along {}, and the box from 0 to {:g} m; give it a "
+                        "place and a size in m that fit the box",
+                        low, high, axis_name[axis], box));
+    }
+  }
+}
 
 std::vector<coupling::SolidShape> solid_shapes(const Case& c) {
   const double spacing = c.domain.spacing;
   std::vector<coupling::SolidShape> shapes;
-  for (std::size_t n = 0; n < c.solids.size(); ++n) {
-    const SolidCase& solid = c.solids[n];
+  for (const SolidCase& solid : c.solids) {
     if (solid.sphere) {
       shapes.push_back(coupling::SolidSphere{solid.sphere->centre / spacing, {solid.sphere->radius / spacing}});
       continue;
     }
-    try {
-      TriangleMesh mesh = io::read_stl(solid.stl);
-      for (Vec3& point : mesh.points) point = (point * solid.scale + solid.translate) / spacing;
-      shapes.push_back(std::move(mesh));
-    } catch (const InputError& error) {
-      throw InputError(fmt::format("solids.{}.stl: {}", n, error.what()));
-    }
+    TriangleMesh mesh = solid.surface;
+    for (Vec3& point : mesh.points) point /= spacing;
+    shapes.push_back(std::move(mesh));
   }
   return shapes;
 }

@@ -17,7 +17,8 @@ namespace {
 
 // What went wrong on rank 0, for all to throw.
 struct CannotWrite {};
-struct CannotGoOn {
+struct Damaged {};   // a file of which nothing can be made
+struct CannotGoOn {  // a good file, of a run that records something else
   std::string why;
 };
 
@@ -123,7 +124,7 @@ void create_growing(hid_t file, const Profile& array) {
 }
 
 Handle open_array(hid_t file, const std::string& name) {
-  if (H5Lexists(file, name.c_str(), H5P_DEFAULT) <= 0) throw CannotGoOn{fmt::format("it has no array {}", name)};
+  if (H5Lexists(file, name.c_str(), H5P_DEFAULT) <= 0) throw Damaged{};
   return Handle(must(H5Dopen2(file, name.c_str(), H5P_DEFAULT)), H5Dclose);
 }
 
@@ -145,16 +146,35 @@ void add_rows(hid_t file, const Profile& array) {
 void check_fixed(hid_t file, const WholeNumbers& numbers) {
   const Handle dataset = open_array(file, numbers.name);
   const std::vector<hsize_t> extents = extents_of(dataset);
-  std::vector<std::int64_t> found(extents.size() == 1 ? extents[0] : 0);
+  const bool fits = extents.size() == 1 && extents[0] == numbers.values.size();
+  std::vector<std::int64_t> found(fits ? extents[0] : 0);
   if (!found.empty()) must(H5Dread(dataset, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, found.data()));
   if (found != numbers.values) throw CannotGoOn{fmt::format("its {} is not that of this run", numbers.name)};
+}
+
+// The rows of an array for which the file has room: one that is damaged may claim any number.
+hsize_t stored_rows(hid_t dataset) {
+  const std::vector<hsize_t> extents = extents_of(dataset);
+  if (extents.empty()) throw Damaged{};
+  if (extents[0] == 0) return 0;
+  hsize_t row = sizeof(double);
+  for (std::size_t d = 1; d < extents.size(); ++d) row *= extents[d];
+  const hsize_t stored = H5Dget_storage_size(dataset);  // it goes through the whole index of chunks; 0: that is broken
+  if (stored == 0 || row == 0) throw Damaged{};
+  return std::min(extents[0], stored / row);
 }
 
 // The number of rows up to a time, as far as times rise: after a crash there may be rows that were never written.
 hsize_t rows_until(hid_t file, double time) {
   const Handle dataset = open_array(file, "time");
-  std::vector<double> times(extents_of(dataset).at(0));
-  if (!times.empty()) must(H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, times.data()));
+  if (extents_of(dataset).size() != 1) throw Damaged{};
+  const hsize_t start = 0, count = stored_rows(dataset);
+  std::vector<double> times(count);
+  if (count > 0) {
+    const Handle space(H5Dget_space(dataset), H5Sclose), memory(must(H5Screate_simple(1, &count, nullptr)), H5Sclose);
+    must(H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, nullptr, &count, nullptr));
+    must(H5Dread(dataset, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, times.data()));
+  }
   std::size_t rows = 0;
   while (rows < times.size() && times[rows] <= time && (rows == 0 || times[rows] > times[rows - 1])) ++rows;
   return rows;
@@ -171,7 +191,7 @@ void drop_rows_after(hid_t file, const std::vector<Profile>& rows, double time) 
   if (rows.empty()) return;
   hsize_t kept = rows_until(file, time);
   for (const Profile& array : rows)  // all have as many, unless the last addition was cut off
-    kept = std::min(kept, extents_of(open_array(file, array.name)).at(0));
+    kept = std::min(kept, stored_rows(open_array(file, array.name)));
   for (const Profile& array : rows) {
     const Handle dataset = open_array(file, array.name);
     std::vector<hsize_t> extents = extents_of(dataset);
@@ -199,20 +219,56 @@ void drop_events_after(hid_t file, double time) {
   }
 }
 
+Handle access_to_add() {
+  Handle access = lone_access();
+  H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18);  // the earliest format with checksums of metadata
+  return access;
+}
+
 // Also while somebody reads it.
 Handle open_file(const std::filesystem::path& path, unsigned access = H5F_ACC_RDWR) {
-  return Handle(H5Fopen(path.c_str(), access, lone_access()), H5Fclose);
+  return Handle(H5Fopen(path.c_str(), access, access_to_add()), H5Fclose);
 }
 
 void check_file(const std::filesystem::path& path, const Records& records) {
   const Handle file = open_file(path, H5F_ACC_RDONLY);
-  if (!file.good()) throw CannotGoOn{"it is damaged, or another program has it open"};
+  if (!file.good()) throw Damaged{};
   try {
     for (const WholeNumbers& numbers : records.fixed) check_fixed(file, numbers);
     for (const Profile& array : records.rows) check_shape(file, array);
   } catch (const CannotWrite&) {
-    throw CannotGoOn{"it is damaged"};
+    throw Damaged{};
   }
+}
+
+void take_up(const std::filesystem::path& path, const Records& records, double from) {
+  check_file(path, records);
+  const Handle file = open_file(path);
+  if (!file.good()) throw Damaged{};
+  try {
+    drop_rows_after(file, records.rows, from);
+    drop_events_after(file, from);
+  } catch (const CannotWrite&) {
+    throw Damaged{};
+  }
+}
+
+void create(const std::filesystem::path& path, const Records& records) {
+  const Handle file(must(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, plain(H5P_FILE_CREATE), access_to_add())), H5Fclose);
+  for (const WholeNumbers& numbers : records.fixed) write_numbers(file, numbers);
+  for (const Profile& array : records.rows) create_growing(file, array);
+}
+
+// Moves a file to the first free name of tracks.damaged_1.h5, tracks.damaged_2.h5, ... and returns that.
+std::filesystem::path set_aside(const std::filesystem::path& path) {
+  std::filesystem::path aside;
+  std::error_code error;
+  for (int number = 1; aside.empty() || std::filesystem::exists(aside, error); ++number)
+    aside = path.parent_path() /
+            fmt::format("{}{}{}{}", path.stem().string(), RecordFile::damaged_mark, number, path.extension().string());
+  std::filesystem::rename(path, aside, error);
+  if (error) throw CannotWrite{};
+  return aside;
 }
 
 std::string cannot_write_text(const std::filesystem::path& path) {
@@ -230,20 +286,17 @@ void RecordFile::open_or_create(const Records& records) {
   opened_ = true;
   std::error_code ignored;
   if (continue_from_ && std::filesystem::exists(path_, ignored)) {
-    check_file(path_, records);
-    const Handle file = open_file(path_);
-    if (!file.good()) throw CannotGoOn{"it is damaged, or another program has it open"};
     try {
-      drop_rows_after(file, records.rows, *continue_from_);
-      drop_events_after(file, *continue_from_);
-    } catch (const CannotWrite&) {
-      throw CannotGoOn{"it is damaged"};
+      return take_up(path_, records, *continue_from_);
+    } catch (const Damaged&) {
+      warning_ = fmt::format(
+          "{} is damaged, as by a kill while it was being written, and cannot be continued: it is kept as {}, and a "
+          "new "
+          "file begins at {:.6g} s",
+          path_.string(), set_aside(path_).filename().string(), *continue_from_);
     }
-    return;
   }
-  const Handle file(must(H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)), H5Fclose);
-  for (const WholeNumbers& numbers : records.fixed) write_numbers(file, numbers);
-  for (const Profile& array : records.rows) create_growing(file, array);
+  create(path_, records);
 }
 
 void RecordFile::write(const Records& records) {
@@ -266,7 +319,11 @@ void RecordFile::put_on_disk() {
 void RecordFile::check(const Records& records) const {
   act([&] {
     std::error_code ignored;
-    if (continue_from_ && std::filesystem::exists(path_, ignored)) check_file(path_, records);
+    if (!continue_from_ || !std::filesystem::exists(path_, ignored)) return;
+    try {
+      check_file(path_, records);
+    } catch (const Damaged&) {  // add() sets it aside
+    }
   });
 }
 

@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string>
 
 namespace thalweg::io {
 
@@ -20,14 +21,20 @@ namespace thalweg::io {
 // written.
 class RecordFile {
 public:
+  static constexpr const char* damaged_mark = ".damaged_";  // in the name of a file that has been moved
+
   // continue_from: take up an existing file and drop rows and events after that time (s); where its `fixed` numbers or
-  // the shapes of its rows differ, or it is damaged, the first add() throws InputError. Empty: a new file.
+  // the shapes of its rows differ, the first add() throws InputError. One that is damaged, as by a kill, it moves to
+  // tracks.damaged_1.h5 (the first number that is free) and begins anew. Empty: a new file.
   RecordFile(MPI_Comm communicator, std::filesystem::path path, std::optional<double> continue_from);
 
   // Throws what add() would, and changes nothing. records: they may have no rows yet.
   void check(const Records& records) const;
 
   void add(const Records& records);  // only rank 0's are used
+
+  // On rank 0, after the first add(): that a damaged file has been moved, and where to; empty: none has.
+  const std::string& warning() const { return warning_; }
 
   // What has been added outlasts a loss of power once this returns: before a checkpoint that counts on it.
   void put_on_disk();
@@ -41,6 +48,7 @@ private:
   std::filesystem::path path_;
   std::optional<double> continue_from_;
   bool opened_ = false;
+  std::string warning_;
 };
 
 }  // namespace thalweg::io

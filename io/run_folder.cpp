@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "io/atomic_file.hpp"
 #include "io/folder_lock.hpp"
+#include "io/record_file.hpp"
 
 #include <fmt/format.h>
 
@@ -23,13 +24,14 @@ namespace fs = std::filesystem;
 namespace {
 
 // All a run writes, and thalweg analyze; --overwrite removes these and nothing else.
-constexpr std::array run_contents{"case.yaml",    "run.log",        "series.csv",  "profiles.h5", "probes.h5",
-                                  "tracks.h5",    "entrainment.h5", "bed.h5",      "grains.pvd",  "fluid.pvd",
-                                  "grains",       "fluid",          "fluid_parts", "grain_parts", "checkpoints",
+constexpr std::array run_contents{"case.yaml",    "series.csv",     "profiles.h5", "probes.h5", "tracks.h5",
+                                  "grains.pvd",   "entrainment.h5", "fluid.pvd",   "grains",    "fluid",
+                                  "fluid_parts",  "grain_parts",    "checkpoints", "bed.h5",    "run.log",
                                   "summary.json", "analysis",       "stop"};
 // Of these, what a run that goes on changes in its place: folders, and files that are not replaced as a whole.
 constexpr std::array added_to{"checkpoints", "grains",    "fluid",     "fluid_parts",   "grain_parts",
                               "run.log",     "probes.h5", "tracks.h5", "entrainment.h5"};
+constexpr std::array records{"probes", "tracks", "entrainment"};
 constexpr const char* latest_name = "latest";
 constexpr const char* unfinished_case = "case.yaml.partial";
 constexpr const char* kept_case = "case_until_step_";
@@ -45,6 +47,13 @@ std::optional<std::int64_t> step_between(const std::string& name, std::string_vi
 }
 
 std::optional<std::int64_t> step_of_checkpoint(const std::string& name) { return step_between(name, "step_", ".h5"); }
+
+// Of a file of records that a restart has moved out of its way.
+bool is_damaged_record(const std::string& name) {
+  return std::any_of(records.begin(), records.end(), [&name](const char* record) {
+    return step_between(name, std::string(record) + RecordFile::damaged_mark, ".h5").has_value();
+  });
+}
 
 // Empty if this process may change the file, or add to the folder.
 std::string why_not_writable(const fs::path& path) {
@@ -104,8 +113,11 @@ void RunFolder::create(bool overwrite) const {
   make_folder(path_);
   std::vector<fs::path> old;
   for (const auto& entry : fs::directory_iterator(path_))
-    if (entry.path().filename().string().starts_with(kept_case)) old.push_back(entry.path());
-  // case.yaml, by which the folder is known, goes last: an interrupted removal can be taken up again.
+    if (const std::string name = entry.path().filename().string();
+        name.starts_with(kept_case) || is_damaged_record(name))
+      old.push_back(entry.path());
+  // case.yaml, by which the folder is known, goes last, and what would show that there have been checkpoints before
+  // them: an interrupted removal can be taken up again.
   for (auto name = run_contents.rbegin(); name != run_contents.rend(); ++name) old.push_back(path_ / *name);
   for (const fs::path& path : old) {
     std::error_code error;
@@ -189,6 +201,13 @@ void RunFolder::rotate_checkpoints(std::int64_t step, int keep) const {
     fs::remove(file, error);
     if (error) throw RunError(fmt::format("{}: cannot remove: {}.", file.string(), error.message()));
   }
+}
+
+bool RunFolder::has_had_checkpoint() const {
+  std::error_code ignored;
+  const bool without_folder = fs::exists(log(), ignored) && !fs::exists(checkpoints(), ignored);
+  return has_checkpoint() || fs::exists(checkpoints() / latest_name, ignored) || fs::exists(bed(), ignored) ||
+         without_folder;
 }
 
 std::vector<fs::path> RunFolder::checkpoints_to_try() const {

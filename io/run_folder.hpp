@@ -64,6 +64,9 @@ public:
 
   bool has_checkpoint() const { return !steps_of_checkpoints().empty(); }
 
+  // Also where they have been removed since, as far as that can still be seen.
+  bool has_had_checkpoint() const;
+
   // The checkpoints to go on from, the best first: the latest, as far as that is known, then those before it from new
   // to old, then those after it. InputError if there is none.
   std::vector<std::filesystem::path> checkpoints_to_try() const;

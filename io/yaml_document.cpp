@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <functional>
@@ -16,10 +17,28 @@ constexpr int deepest = 32;  // levels: more are a file gone wrong, or one that 
 
 using PlaceOf = std::function<std::string(const YAML::Mark&)>;
 
+// Counts the values of a tree. Every alias (*name) is a copy of what it stands for, so that a few lines could fill the
+// memory; what a text writes out itself has less values than characters, and is not refused.
+class ValueCount {
+public:
+  explicit ValueCount(std::size_t characters) : most_(std::max(most_with_aliases, characters)) {}
+  void add(const std::string& place, const std::string& key_path) {
+    if (++count_ > most_)
+      throw InputError(
+          fmt::format("{}: {}: with its aliases (*name) the file has more than {} values; write out what is meant.",
+                      place, key_path, most_));
+  }
+
+private:
+  static constexpr std::size_t most_with_aliases = 1000000;
+  std::size_t count_ = 0, most_;
+};
+
 YamlNode converted(const YAML::Node& node, const std::string& place, const std::string& key_path,
-                   const PlaceOf& place_of, int depth) {
+                   const PlaceOf& place_of, int depth, ValueCount& count) {
   if (depth > deepest)
     throw InputError(fmt::format("{}: {}: the file is nested more than {} levels deep.", place, key_path, deepest));
+  count.add(place, key_path);
   YamlNode result;
   result.place = place;
   if (node.IsMap()) {
@@ -33,14 +52,14 @@ YamlNode converted(const YAML::Node& node, const std::string& place, const std::
       if (const YamlNode* first = result.find(key))
         throw InputError(fmt::format("{}: {}: the key is given twice (first at {}); remove one of the two.", here, path,
                                      first->place));
-      result.entries.push_back({key, converted(entry.second, here, path, place_of, depth + 1)});
+      result.entries.push_back({key, converted(entry.second, here, path, place_of, depth + 1, count)});
     }
   } else if (node.IsSequence()) {
     result.kind = YamlNode::Kind::list;
     for (const auto& item : node)
       result.items.push_back(converted(item, place_of(item.Mark()),
                                        joined_key(key_path, fmt::format("{}", result.items.size())), place_of,
-                                       depth + 1));
+                                       depth + 1, count));
   } else {
     result.kind = YamlNode::Kind::scalar;
     if (node.IsScalar()) result.text = node.Scalar();
@@ -51,7 +70,15 @@ YamlNode converted(const YAML::Node& node, const std::string& place, const std::
 YamlNode parsed(const std::string& text, const PlaceOf& place_of, const std::string& whole_place,
                 const std::string& key_path) {
   try {
-    return converted(YAML::Load(text), whole_place, key_path, place_of, 0);
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    for (std::size_t n = 1; n < documents.size(); ++n)
+      if (!documents[n].IsNull())
+        throw InputError(fmt::format(
+            "{}: a second document begins here, after a line ---, and would be ignored; remove that line, or "
+            "what follows it.",
+            place_of(documents[n].Mark())));
+    ValueCount count(text.size());
+    return converted(documents.empty() ? YAML::Node() : documents.front(), whole_place, key_path, place_of, 0, count);
   } catch (const YAML::Exception& error) {
     const std::string place = error.mark.is_null() ? whole_place : place_of(error.mark);
     throw InputError(

@@ -31,7 +31,8 @@ struct YamlEntry {
 class YamlDocument {
 public:
   // Reads a file, then applies the overrides ("key.sub=VALUE", VALUE being YAML itself; list items by index).
-  // Throws InputError: missing file, YAML syntax, duplicate key, an override that names no key.
+  // Throws InputError: missing file, YAML syntax, duplicate key, more than one document, aliases that multiply to more
+  // than a million values, an override that names no key.
   YamlDocument(const std::filesystem::path& path, const std::vector<std::string>& overrides);
 
   const YamlNode& root() const { return root_; }

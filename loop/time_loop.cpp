@@ -271,7 +271,7 @@ TimeLoop::Decision TimeLoop::decide_together() {
     decided_at_ = now;
     decided_step_ = system_.step();
   }
-  if (votes[signal] != 0) votes[decision] = static_cast<int>(Decision::signal);
+  if (votes[signal] != 0) votes[decision] = std::max<std::int64_t>(votes[decision], static_cast<int>(Decision::signal));
   MPI_Allreduce(MPI_IN_PLACE, votes.data(), items, MPI_INT64_T, MPI_MAX, communicator_);
   next_decision_ = system_.step() + votes[steps];
   const auto agreed = static_cast<Decision>(votes[decision]);
@@ -280,7 +280,8 @@ TimeLoop::Decision TimeLoop::decide_together() {
     if (saved_step_ != system_.step() && is_followed_by_a_kill(static_cast<int>(votes[signal])))
       log_.line(fmt::format("{}: saving{}", signal_name(static_cast<int>(votes[signal])), danger_of_being_killed()));
   }
-  if (agreed == Decision::asked) record_.reason = "stopped by a file named stop";
+  record_.asked = agreed == Decision::asked;
+  if (record_.asked) record_.reason = stopped_on_request;
   if (agreed == Decision::wall_time_is_up) record_.reason = "the wall time is nearly up";
   if (votes[print] != 0) report(now);
   if (votes[save] != 0) checkpoint();

@@ -35,11 +35,14 @@ struct OutputTask {
 
 using SeriesRow = std::function<void(double time, std::int64_t step, const std::vector<Figure>&)>;  // collective
 
+inline constexpr const char* stopped_on_request = "stopped on request (thalweg stop)";  // LoopRecord::reason
+
 // The outcome of a run so far.
 struct LoopRecord {
   bool finished = false;
   std::string early;   // LoopPlan::enough_means, where that has finished the run
   std::string reason;  // why it is not finished; empty if it is
+  bool asked = false;  // stopped by LoopPlan::stop_file
   std::int64_t first_step = 0, last_step = 0;
   double wall_seconds = 0.0;     // in run(), this time
   double advance_seconds = 0.0;  // of which in System::advance()
@@ -107,7 +110,8 @@ public:
   static constexpr std::int64_t steps_between_health_checks = 100;
 
 private:
-  enum class Decision : int { go_on = 0, wall_time_is_up = 1, asked = 2, signal = 3, enough = 4 };
+  // Of several the last: whoever asks for a stop means more than the end of a job.
+  enum class Decision : int { go_on = 0, wall_time_is_up = 1, signal = 2, asked = 3, enough = 4 };
 
   // Only the regular looks, by the number of the step alone, count among the largest figures: a run that writes more,
   // or is saved elsewhere, has the same checkpoints.

@@ -5,6 +5,7 @@ summary.json) are better where they cover the time wanted; this is for other tim
 """
 import csv
 import json
+import math
 
 import numpy as np
 
@@ -38,11 +39,20 @@ class Report:
         """summary.json with the numbers (SI units) and a table for each profile. Returns the files."""
         folder.mkdir(parents=True, exist_ok=True)
         files = [folder / "summary.json"]
-        files[0].write_text(json.dumps(self.numbers, indent=2) + "\n")
+        files[0].write_text(json.dumps(without_nan(self.numbers), indent=2, allow_nan=False) + "\n")
         for name, columns in self.profiles.items():
             files.append(folder / f"{name}.csv")
             write_columns(files[-1], columns)
         return files
+
+
+def without_nan(value):
+    """JSON has no word for what is not finite: None in its place, as in the summary of a run."""
+    if isinstance(value, dict):
+        return {name: without_nan(item) for name, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [without_nan(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def write_columns(path, columns):

@@ -1,6 +1,7 @@
 """A run folder."""
 import json
 import re
+from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
 
@@ -79,7 +80,7 @@ class Run:
         path = self.folder / "profiles.h5"
         if not path.exists():
             return {}
-        with h5py.File(path) as file:
+        with opened(path) as file:
             return {name: columns_of(group) for name, group in file.items()}
 
     @cached_property
@@ -89,7 +90,7 @@ class Run:
         path = self.folder / "tracks.h5"
         if not path.exists():
             return None
-        with h5py.File(path) as file:
+        with opened(path) as file:
             return columns_of(file)
 
     @cached_property
@@ -99,7 +100,7 @@ class Run:
         path = self.folder / "probes.h5"
         if not path.exists():
             return None
-        with h5py.File(path) as file:
+        with opened(path) as file:
             columns = columns_of(file)
         cells = np.column_stack([columns[f"cell_{axis}"] for axis in "xyz"])
         spacing = float(self.case["domain"]["spacing"])
@@ -251,6 +252,17 @@ def runs_of_sweep(folder):
     return found
 
 
+@contextmanager
+def opened(path):
+    """An HDF5 file for reading; RunFolderError where it cannot be read."""
+    try:
+        with h5py.File(path) as file:
+            yield file
+    except (OSError, RuntimeError, KeyError):   # h5py raises any of them
+        raise RunFolderError(f"{path} cannot be read: it is being written at this moment, or a kill has damaged it; try again, or "
+                             "restart the run, which writes a new one.") from None
+
+
 def columns_of(group):
     """The arrays of an HDF5 group with their units and components."""
     arrays = {name: data[()] for name, data in group.items()}
@@ -262,7 +274,7 @@ def columns_of(group):
 
 def read_bed(path):
     """The grains in a bed.h5: position, radius and what else is there, one row a grain."""
-    with h5py.File(path) as file:
+    with opened(path) as file:
         return columns_of(file["grains"])
 
 

@@ -6,7 +6,8 @@
 # Adapt the #PBS lines (or give them to qsub) and, with another walltime, THALWEG_WALLTIME (to be added to -v). The program
 # saves its state and stops in good order before its --walltime; the next job goes on from there, and the result has the
 # same bits as a run that was never interrupted, whatever the number of ranks of each job. A job that PBS itself runs again
-# (after a failed node: -r y) goes on as well.
+# (after a failed node: -r y) goes on as well. thalweg stop RUN_FOLDER ends it all, also while the next job waits in the queue,
+# and so does qdel; the same qsub goes on.
 #PBS -N thalweg
 #PBS -l select=1:ncpus=64:mpiprocs=64
 #PBS -l walltime=24:00:00

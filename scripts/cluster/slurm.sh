@@ -5,7 +5,8 @@
 #
 # Adapt the #SBATCH lines (or give them to sbatch) and, with another --time, THALWEG_WALLTIME. The program saves its
 # state and stops in good order before its --walltime; the next turn goes on from there, and the result has the same bits
-# as a run that was never interrupted, whatever the number of ranks of each turn.
+# as a run that was never interrupted, whatever the number of ranks of each turn. thalweg stop RUN_FOLDER ends it all, also while
+# the job waits in the queue, and so does scancel; the same sbatch goes on.
 #SBATCH --job-name=thalweg
 #SBATCH --nodes=1
 #SBATCH --ntasks-per-node=64

@@ -415,9 +415,9 @@ class Stopping(DryGrains):
 
     def stop_by_command(self, ranks):
         process = self.start(ranks=ranks)
-        self.assertIn("--restart run", self.run_well("stop", "run").stdout)
-        self.assertEqual(process.wait(timeout=30), 3)
-        self.assertEqual(self.summary("run")["reason"], "stopped by a file named stop")
+        self.assertIn("run saves its state and ends within a step; --restart run", self.run_well("stop", "run").stdout)
+        self.assertEqual(process.wait(timeout=30), 4)
+        self.assertEqual(self.summary("run")["reason"], "stopped on request (thalweg stop)")
         self.assertFalse((self.folder / "run/stop").exists())
         self.assertIn("run has ended", self.run_well("stop", "run").stdout)   # the next run is not meant
         self.assert_can_go_on(ranks)

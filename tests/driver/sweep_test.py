@@ -104,7 +104,10 @@ class Sweep(ProgramTest):
             time.sleep(0.02)
         going.kill()
         going.wait()
+        for name in ("slope_0.5", "slope_0.6"):   # as where the kill came between a checkpoint and `latest`
+            (self.folder / "sweep/runs" / name / "checkpoints/latest").unlink(missing_ok=True)
         said = self.run_well("sweep", sweep).stdout
+        self.assertIn("going on from", (self.folder / "sweep/runs/slope_0.5.txt").read_text())
         self.assertIn("2 of 2 runs done", said)
         self.run_well("run", self.case, "--set", "gravity.slope=0.5", "--set", "run.until=1.0", "--out", "alone")
         self.assert_same_bed("sweep/runs/slope_0.5", "alone")

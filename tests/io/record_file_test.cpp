@@ -5,14 +5,17 @@
 #include "io/hdf5_archive.hpp"
 #include "tests/io/scratch_folder.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <numeric>
 
 namespace thalweg::io::record_file_test {
 namespace {
 
+using testing::contents;
 using testing::message_of;
 using testing::put;
 using testing::ScratchFolder;
@@ -136,19 +139,86 @@ TEST(RecordFile, GoesOnBehindTheLastWholeRow) {
   expect_seconds(path, 9);
 }
 
+// The bytes of a new file with rows up to before `end`.
+std::string file_until(int end, const std::filesystem::path& path) {
+  RecordFile(MPI_COMM_WORLD, path, std::nullopt).add(seconds(0, end));
+  MPI_Barrier(MPI_COMM_WORLD);
+  const std::string bytes = contents(path);
+  MPI_Barrier(MPI_COMM_WORLD);
+  return bytes;
+}
+
+// Goes on at 3 s with a file of this content, which must be set aside as it is.
+void expect_begun_anew(const ScratchFolder& folder, const std::string& content, int number) {
+  const auto path = folder / "tracks.h5", aside = folder / fmt::format("tracks.damaged_{}.h5", number);
+  if (rank_of(MPI_COMM_WORLD) == 0) put(path, content);
+  MPI_Barrier(MPI_COMM_WORLD);
+  RecordFile again(MPI_COMM_WORLD, path, 2.0);
+  again.check(seconds(3, 3));
+  if (rank_of(MPI_COMM_WORLD) == 0) EXPECT_TRUE(contents(path) == content);  // nothing is touched before add()
+  again.add(seconds(3, 3));
+  again.add(seconds(3, 5));
+  if (rank_of(MPI_COMM_WORLD) == 0) {
+    EXPECT_EQ(again.warning(),
+              fmt::format("{} is damaged, as by a kill while it was being written, and cannot be "
+                          "continued: it is kept as tracks.damaged_{}.h5, and a new file begins at 2 s",
+                          path.string(), number));
+    EXPECT_TRUE(contents(aside) == content);
+  }
+  Hdf5Reader file(MPI_COMM_WORLD, path);
+  EXPECT_EQ(numbers(file, "time"), (std::vector<double>{3.0, 4.0}));
+  MPI_Barrier(MPI_COMM_WORLD);
+}
+
+// No byte of it is lost, and none of an earlier one.
+TEST(RecordFile, SetsADamagedFileAsideAndBeginsAnew) {
+  const ScratchFolder folder;
+  const auto path = folder / "tracks.h5";
+  const std::string whole = file_until(2000, path);
+  int number = 1;
+  expect_begun_anew(folder, "", number++);
+  expect_begun_anew(folder, "no HDF5", number++);
+  expect_begun_anew(folder, whole.substr(0, whole.size() / 2), number++);
+  expect_begun_anew(folder, whole.substr(0, whole.size() - 1), number++);
+  std::string garbage = whole;
+  garbage.replace(40, 60, 60, '\x5a');
+  expect_begun_anew(folder, garbage, number++);
+}
+
+// Whatever is wrong with it, a file is continued, set aside, or (where numbers of its header have changed) refused.
+TEST(RecordFile, GarbageAnywhereEndsInGoodOrder) {
+  const ScratchFolder folder;
+  const auto path = folder / "tracks.h5";
+  const std::string whole = file_until(20, path);
+  int set_aside = 0;
+  const std::size_t step = std::max<std::size_t>(1, whole.size() / 150);
+  for (std::size_t at = 0; at + 16 < whole.size(); at += step) {
+    std::string garbage = whole;
+    garbage.replace(at, 16, 16, '\xa5');
+    if (rank_of(MPI_COMM_WORLD) == 0) put(path, garbage);
+    MPI_Barrier(MPI_COMM_WORLD);
+    RecordFile again(MPI_COMM_WORLD, path, 9.0);
+    const std::string refused = message_of<InputError>([&] {
+      again.add(seconds(10, 10));
+      again.add(seconds(10, 12));
+    });
+    EXPECT_TRUE(refused.empty() || refused.find("its id is not that of this run") != std::string::npos)
+        << at << refused;
+    set_aside += again.warning().empty() ? 0 : 1;
+    MPI_Barrier(MPI_COMM_WORLD);
+  }
+  if (rank_of(MPI_COMM_WORLD) == 0) EXPECT_GT(set_aside, 5);
+}
+
 TEST(RecordFile, RefusesWhatItCannotContinue) {
   const ScratchFolder folder;
-  const auto path = folder / "tracks.h5", damaged = folder / "damaged.h5";
+  const auto path = folder / "tracks.h5";
   RecordFile(MPI_COMM_WORLD, path, std::nullopt).add(seconds(0, 3));
   RecordFile other(MPI_COMM_WORLD, path, 2.0);
   EXPECT_NE(message_of<InputError>([&] {
               other.add(seconds(3, 3, {4, 8}));
             }).find("its id is not that of this run; move"),
             std::string::npos);
-  if (rank_of(MPI_COMM_WORLD) == 0) put(damaged, "no HDF5");
-  MPI_Barrier(MPI_COMM_WORLD);
-  RecordFile broken(MPI_COMM_WORLD, damaged, 2.0);
-  EXPECT_NE(message_of<InputError>([&] { broken.add(seconds(3, 3)); }).find("it is damaged"), std::string::npos);
   RecordFile nowhere(MPI_COMM_WORLD, folder / "missing/tracks.h5", std::nullopt);
   EXPECT_NE(message_of<RunError>([&] { nowhere.add(seconds(0, 1)); }).find("cannot write the file"), std::string::npos);
 }

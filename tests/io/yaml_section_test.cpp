@@ -4,6 +4,7 @@
 #include "io/section_writer.hpp"
 #include "tests/io/scratch_folder.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace thalweg::io::yaml_section_test {
@@ -267,6 +268,9 @@ INSTANTIATE_TEST_SUITE_P(
             "--set wheels.1.radius=2: wheels is a list of 1 and has no entry \"1\"; count from 0."},
         Bad{"override_into_scalar", minimal, "length.x=2",
             "--set length.x=2: length = 2.5 is a single value and has no key x; set length itself."},
+        Bad{"second_document", minimal + "---\n# nothing\nnonsense: 1\n", "",
+            "FILE:5: a second document begins here, after a line ---, and would be ignored; remove that line, or what "
+            "follows it."},
         Bad{"no_sections_at_all", "just words\n", "",
             "FILE:1: expected keys with values, for example system: resolved."}),
     [](const auto& bad) { return bad.param.name; });
@@ -274,6 +278,26 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(YamlSection, SyntaxErrorsHaveALine) {
   const std::string message = message_of<InputError>([] { read("paint: red\nlength: [1, 2\nseats: 3\n"); });
   EXPECT_NE(message.find("cart.yaml:3: this is not valid YAML: "), std::string::npos) << message;
+}
+
+TEST(YamlSection, ADocumentMayBeMarkedAsOne) {
+  for (const std::string& text : {"---\n" + minimal, "# words\n---\n" + minimal + "...\n", minimal + "---\n"})
+    EXPECT_EQ(read(text).length, 2.5) << text;
+}
+
+// Seven levels of ten aliases each: 330 bytes that stand for ten million values.
+TEST(YamlSection, AliasesThatMultiplyAreRefused) {
+  std::string text = minimal + "a0: &a0 [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]\n";
+  for (int level = 1; level < 7; ++level) {
+    text += fmt::format("a{0}: &a{0} [", level);
+    for (int n = 0; n < 10; ++n) text += fmt::format("{}*a{}", n ? ", " : "", level - 1);
+    text += "]\n";
+  }
+  const std::string message = message_of<InputError>([&] { read(text); });
+  EXPECT_NE(message.find("with its aliases (*name) the file has more than 1000000 values; write out what is meant."),
+            std::string::npos)
+      << message;
+  EXPECT_EQ(read(minimal + "wheels: [&w {radius: 1}, *w, *w]\n").wheels.size(), 3u);
 }
 
 TEST(YamlSection, MissingFilesAndFolders) {

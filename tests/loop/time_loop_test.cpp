@@ -6,6 +6,7 @@
 #include "loop/phase_shares.hpp"
 #include "loop/stop_request.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <unistd.h>
@@ -14,6 +15,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <limits>
@@ -330,6 +332,29 @@ TEST(TimeLoop, StopsEverywhereWhenOneRankReceivesASignal) {
   EXPECT_EQ(record.reason, "stopped by SIGUSR1");
   EXPECT_GE(record.last_step, 50);
   EXPECT_EQ(bench.checkpoints, (Steps{record.last_step}));
+}
+
+// Whoever asks means it, also where a job ends at the same moment.
+TEST(TimeLoop, ARequestToStopCountsMoreThanASignal) {
+  const std::filesystem::path request = fmt::format("stop_of_{}_ranks", size_of(world));
+  for (const bool signal : {false, true}) {
+    Bench bench(1e9);
+    bench.plan.checkpoint = Schedule();
+    bench.plan.stop_file = request;
+    bench.system.on_advance = [&](std::int64_t step) {
+      std::this_thread::sleep_for(std::chrono::microseconds(200));
+      if (step != 50) return;
+      MPI_Barrier(world);  // no decision is taken meanwhile
+      if (rank_of(world) == 0) std::ofstream{request};
+      if (signal) std::raise(SIGUSR1);
+    };
+    const LoopRecord& record = bench.run().record();
+    EXPECT_FALSE(record.finished);
+    EXPECT_TRUE(record.asked);
+    EXPECT_EQ(record.reason, stopped_on_request);
+    EXPECT_EQ(bench.checkpoints, (Steps{record.last_step}));
+    EXPECT_FALSE(std::filesystem::exists(request));
+  }
 }
 
 // Open MPI's mpirun kills in three strokes, SIGCONT, SIGTERM, SIGKILL; the first of them saves.

@@ -66,6 +66,16 @@ class Report(made_up.MadeUpFolder):
         self.assertAlmostEqual(volume / (480 * np.pi / 6 * D**3), 1.0, 6)
         self.assertEqual(layers.units["velocity_x"], "m/s")
 
+    def test_what_is_no_number_is_null(self):
+        report = report_of(thalweg.Run(self.folder), 2.0, 4.0)
+        report.numbers["one_row"] = {"error": float("nan"), "steps": [np.float64("inf"), 1.5], "steady": None}
+
+        def refuse(word):
+            self.fail(f"{word} is not JSON")
+
+        text = report.write(self.folder / "analysis")[0].read_text()
+        self.assertEqual(json.loads(text, parse_constant=refuse)["one_row"], {"error": None, "steps": [None, 1.5], "steady": None})
+
     def test_the_shields_number_under_a_moving_top_is_the_measured_one(self):
         self.write_bed()
         case = self.folder / "case.yaml"

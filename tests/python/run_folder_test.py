@@ -243,6 +243,17 @@ class RunFolder(made_up.MadeUpFolder):
         self.assertEqual(group.units["velocity"], "m/s")
         self.assertEqual(group.components["velocity"], ["x", "y", "z"])
 
+    def test_a_damaged_file_is_said_in_a_sentence(self):
+        for name in ("tracks", "probes", "profiles", "bed"):
+            path = self.folder / f"{name}.h5"
+            with h5py.File(path, "w") as file:
+                file["time"] = np.arange(1000.0)
+            whole = path.read_bytes()
+            for content in (b"", b"no HDF5", whole[:len(whole) // 2], whole[:8] + b"\xa5" * 200 + whole[208:]):
+                path.write_bytes(content)
+                with self.assertRaisesRegex(thalweg.RunFolderError, f"{name}.h5 cannot be read: .* restart the run"):
+                    getattr(thalweg.Run(self.folder), name)
+
     def test_the_bed_at_the_end(self):
         self.assertIsNone(thalweg.Run(self.folder).bed)
         with h5py.File(self.folder / "bed.h5", "w") as file:

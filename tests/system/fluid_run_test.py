@@ -275,11 +275,18 @@ output:
     def test_a_bad_geometry_is_refused(self):
         write_stl(self.folder / "open.stl", (0, -1, -1), (2.3, 17, 2.6), leave_out=1)
         (self.folder / "text.stl").write_text("no geometry at all\n")
+        good = (self.folder / "sill.stl").read_text()
+        (self.folder / "line.stl").write_text(good.replace("vertex 0 -1 -1", "vertex 1,5 -1 -1", 1))
         for file, words in (("open.stl", ["solids.1.stl", "open.stl", "3 edges belong to one triangle only"]),
-                            ("text.stl", ["solids.1.stl", "text.stl", "not an STL file"]),
+                            ("line.stl", ["solids.1.stl", 'line.stl:4: "1,5" stands where an STL file has a finite coordinate']),
+                            ("text.stl", ["solids.1.stl", "text.stl:1: this is not an STL file"]),
                             ("none.stl", ["solids.1.stl", "no such file"])):
             for command in ("run", "check"):
                 self.assert_refused(command, self.case, "--set", f"solids.1.stl={file}", words=words)
+        line = self.CASE.splitlines().index("  - {stl: sill.stl, scale: 1.0e-3, translate: [0.0102, 0.0, 0.0]}") + 1
+        self.case.write_text(self.CASE.replace("sill.stl", "line.stl"))
+        self.assert_refused("check", self.case, words=[f'case.yaml:{line}: solids.1.stl = "line.stl": ', "line.stl:4: "])
+        self.case.write_text(self.CASE)
         self.assert_refused("run", self.case, "--set", "solids.1.translate=[0, 0, 1]", ranks=2,
                             words=["solids.1 covers no cell"])
         self.assert_refused("check", self.case, "--set", "solids.0.sphere.radius=1e-4",
@@ -288,6 +295,28 @@ output:
                             "radius: 1}}", words=["solids.0", "two shapes"])
         self.assert_refused("check", self.case, "--set", "solids.0={scale: 2}", words=["solids.0", "no shape"])
         self.assert_refused("check", self.case, "--set", "system=resolved", words=["solids", "fixed: true"])
+
+
+    def test_dialects_of_stl_are_the_same_surface(self):
+        plain = (self.folder / "sill.stl").read_text()
+        report = self.run_well("check", self.case).stdout
+        where = [line for line in report.splitlines() if line.startswith("solid 1")]
+        for text in ("\ufeff" + plain, plain.replace("endloop", "end loop"), plain.replace(" 2.6", " 0.26D+01"),
+                     plain.replace("\n", "\r\n"), plain.upper()):
+            (self.folder / "sill.stl").write_text(text, encoding="utf-8", newline="")
+            self.assertEqual([line for line in self.run_well("check", self.case).stdout.splitlines() if line.startswith("solid 1")],
+                             where)
+
+    def test_a_surface_in_millimetres_is_noticed(self):
+        self.assert_refused("check", self.case, "--set", "solids.1.scale=1", words=[
+            "solids.1.stl", "the solid is 18 m long along y, 1.13e+03 times the periodic box of 0.016 m; if the file is in "
+            "millimetres, give scale: 0.001"])
+        self.assert_refused("check", self.case, "--set", "solids.1.translate=[1e12, 0, 0]",
+                            words=["the solid extends from 1e+12 to 1e+12 m along x, and the box from 0 to 0.024 m"])
+        warning = "warning    The surface solids.1 is 0.36 m long along y, 22.5 times the box: if its file is in millimetres, " \
+                  "consider solids.1.scale: 2e-05."
+        self.assertIn(warning, self.run_well("check", self.case, "--set", "solids.1.scale=0.02").stdout)
+        self.assertNotIn("millimetres", self.run_well("check", self.case).stdout)
 
 
 class Poiseuille(ProgramTest):

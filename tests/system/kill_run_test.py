@@ -3,7 +3,7 @@
 
 Called by ctest: kill_run_test.py THALWEG MPIEXEC NUMBER_OF_KILLS [SEED]. SIGKILL to mpirun and its ranks at once, as when a
 node fails: every second time at a random moment, else within the writing of a checkpoint, as soon as its unfinished file
-is seen and a random moment later. The run writes a checkpoint every few steps.
+is seen and a random moment later. The run writes a checkpoint every few steps, and series, frames and tracks beside it.
 """
 import os
 import random
@@ -18,7 +18,9 @@ KILLS = int(sys.argv[3])
 SEED = int(sys.argv[4]) if len(sys.argv) > 4 else 1
 del sys.argv[3:]
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 import program
+import thalweg
 from program import ProgramTest
 
 
@@ -35,8 +37,12 @@ gravity: {magnitude: 9.8, slope: 0.05}
 grains: [{count: 6, diameter: 4.8e-3, density: 2550, placement: {pattern: random, seed: 1}}]
 contact: {restitution: 0.9}
 coupling: {grain_steps_per_fluid_step: 20}
-output: {series: {every: 0.001}, checkpoint: {every: 0.001, keep: 2}}
-analysis: {transport_rate: {}}
+output:
+  series: {every: 0.001}
+  grains: {every: 0.002}
+  fluid: {every: 0.004, fields: [velocity]}
+  checkpoint: {every: 0.001, keep: 2}
+analysis: {transport_rate: {}, tracks: {grains: [0, 3], every: 2.0e-4}}
 """
     RANKS = (1, 2, 4)
     STEPS_A_KILL = 120    # so that the end is not there before the last kill
@@ -68,9 +74,7 @@ analysis: {transport_rate: {}}
             pass
 
     def begin(self, ranks):
-        checkpoints = self.folder / "run/checkpoints"
-        where = ("--restart", "run") if any(checkpoints.glob("step_*.h5")) else ("--out", "run", "--overwrite")
-        return subprocess.Popen(self.command(("run", self.case) + where, ranks), cwd=self.folder, stdout=subprocess.DEVNULL,
+        return subprocess.Popen(self.command(("run", self.case, "--out", "run", "--resume"), ranks), cwd=self.folder, stdout=subprocess.DEVNULL,
                                 stderr=subprocess.PIPE, text=True, start_new_session=True)
 
     def wait_until(self, happened, process, seconds):
@@ -87,6 +91,22 @@ analysis: {transport_rate: {}}
     def step(self):
         steps = [int(re.search(r"\d+", path.name)[0]) for path in (self.folder / "run/checkpoints").glob("step_*.h5")]
         return max(steps, default=0)
+
+    def assert_same_pictures(self, run, other):
+        """The same frames at the same times, and no frame that only one has."""
+        for pattern in ("*.pvd", "grains/*", "fluid/*"):
+            found = [{path.name: path.read_bytes() for path in (self.folder / out).glob(pattern)} for out in (run, other)]
+            self.assertEqual(list(found[0]), list(found[1]))
+            self.assertTrue(found[0] and found[0] == found[1], pattern)
+
+    def assert_same_tracks(self, run, other):
+        """Of a file that a kill has damaged the rows before the restart are in the one that was set aside."""
+        found, expected = (thalweg.Run(self.folder / out).tracks for out in (run, other))
+        rows = len(found["time"])
+        if not list((self.folder / run).glob("tracks.damaged_*.h5")):
+            self.assertEqual(rows, len(expected["time"]))
+        for name in ("time", "position", "velocity"):
+            self.assertEqual(found[name].tobytes(), expected[name][len(expected["time"]) - rows:].tobytes(), name)
 
     def test_same_bits_after_any_kill(self):
         kills, within, goes_on = 0, 0, 0
@@ -120,6 +140,8 @@ analysis: {transport_rate: {}}
         for end in ("run",) + tuple(f"end_{ranks}" for ranks in self.RANKS):
             self.assertEqual(self.last_checkpoint(end).read_bytes(), straight, end)
         self.assertEqual((self.folder / "run/series.csv").read_text(), (self.folder / "straight/series.csv").read_text())
+        self.assert_same_pictures("run", "straight")
+        self.assert_same_tracks("run", "straight")
         self.assertEqual(self.unfinished(), [])
 
 

@@ -86,6 +86,31 @@ analysis:
         self.assertEqual(others.returncode, 2, others.stderr)
         self.assertIn("its id is not that of this run", others.stderr)
 
+    def test_a_file_that_a_kill_has_damaged_is_set_aside(self):
+        self.run_well("run", self.case, "--out", "straight")
+        state, late = self.last_checkpoint("straight").read_bytes(), self.tracks("straight")["time"] > 0.02
+        self.run_well("run", self.case, "--out", "run", "--until", "0.035")
+        whole = (self.folder / "run/tracks.h5").read_bytes()
+        damaged = (whole[:len(whole) // 2], b"", whole[:60] + b"\xa5" * 200 + whole[260:])
+        half_way = self.folder / "run/checkpoints/step_200.h5"
+        for number, content in enumerate(damaged, 1):
+            (self.folder / "run/tracks.h5").write_bytes(content)
+            with self.assertRaisesRegex(thalweg.RunFolderError, "tracks.h5 cannot be read: it is being written at this moment, or"):
+                self.tracks("run")
+            said = self.run_well("run", self.case, "--out", "run", "--restart", half_way, ranks=number % 3).stdout
+            warning = f"warning: run/tracks.h5 is damaged, as by a kill while it was being written, and cannot be continued: it is " \
+                      f"kept as tracks.damaged_{number}.h5, and a new file begins at 0.02 s"
+            self.assertIn(warning, said)
+            self.assertIn(warning, (self.folder / "run/run.log").read_text())
+            self.assertEqual((self.folder / f"run/tracks.damaged_{number}.h5").read_bytes(), content)
+            numpy.testing.assert_array_equal(self.tracks("run")["position"], self.tracks("straight")["position"][late])
+            self.assertEqual(self.last_checkpoint("run").read_bytes(), state)
+        for number, content in enumerate(damaged, 1):   # none has been overwritten by a later one
+            self.assertEqual((self.folder / f"run/tracks.damaged_{number}.h5").read_bytes(), content)
+        (self.folder / "run/mine.damaged_1.h5").write_text("not a run's")
+        self.run_well("run", self.case, "--out", "run", "--overwrite", "--until", "0.001")
+        self.assertEqual([path.name for path in (self.folder / "run").glob("*damaged*")], ["mine.damaged_1.h5"])
+
     def test_the_run_does_not_notice(self):
         self.run_well("run", self.case, "--out", "watched", "--until", "0.01", "--set", "analysis.tracks.every=1.0e-4")
         self.run_well("run", self.case, "--out", "alone", "--until", "0.01", "--set", "analysis={}")

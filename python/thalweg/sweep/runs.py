@@ -16,7 +16,7 @@ from pathlib import Path
 from thalweg.sweep.inputs import SweepError, inputs_of
 
 WAITING, DONE, FAILED, BEGUN = "waiting", "done", "failed", "begun"
-STOPPED = 3   # exit code of thalweg run
+STOPPED = (3, 4)   # exit codes of thalweg run: by a signal or the wall time, and by thalweg stop
 
 
 class SweepRun:
@@ -89,9 +89,7 @@ class SweepRun:
         return str(self.summary["version"]) if self.summary else ""
 
     def command(self, program):
-        arguments = ["run", str(self.case), "--out", str(self.folder)]
-        arguments += ["--restart", str(self.folder)] if self.has_checkpoint() else ["--overwrite"]
-        arguments += self.set_options()
+        arguments = ["run", str(self.case), "--out", str(self.folder), "--resume"] + self.set_options()
         launcher = ["mpirun", "-n", str(self.ranks)] if self.ranks > 1 else []
         return launcher + [program] + arguments
 
@@ -100,9 +98,6 @@ class SweepRun:
 
     def set_options(self):
         return [word for key, value in self.settings.items() for word in ("--set", f"{key}={json.dumps(value)}")]
-
-    def has_checkpoint(self):
-        return (self.folder / "checkpoints" / "latest").exists()
 
     def start(self, program):
         """The process of the run, which saves its state and stops at SIGUSR1 and when the sweep is killed; None while another
@@ -133,7 +128,7 @@ class SweepRun:
 
     def ended(self, exit_code):
         """To be called when the process has ended."""
-        if exit_code not in (0, STOPPED):
+        if exit_code not in (0, *STOPPED):
             self.remember(complaint_in(self.output) or f"the program ended with exit code {exit_code}; see {self.output}")
         self.look()
 
