@@ -1,18 +1,11 @@
 // The mean of a series whose values depend on those before, and how far it may be off.
 //
-// The values are averaged in pairs, the averages in pairs again, and so on (Flyvbjerg & Petersen, J. Chem. Phys. 91
-// (1989) 461). Values at the end that fill no block make one that is shorter. With blocks of 2^k values, their means b,
-// their lengths w in units of a whole one, n_k blocks in all and the mean m of the series,
+// The series is kept as 512 to 1023 means of batches of 1, 2, 4, ... values, which grow as it goes on, so that what
+// goes into a checkpoint does not. The standard error of the mean of n values is sqrt(sigma^2 L/n), with L the values
+// in a batch and sigma^2 the long-run variance of the batches (long_run_variance.hpp). Values that fill no batch, fewer
+// than one in 512, are in the mean, but not in its error.
 //
-//   sigma_k^2 = sum w (b - m)^2 / ((n_k - 1) sum w)
-//
-// grows with k until blocks are longer than the memory of the series, and is then the square of the error of the mean.
-// The shortest blocks with B^3 > 2 n (sigma_k / sigma_0)^4, B = 2^k, n the number of values, are taken (Wolff, Comput.
-// Phys. Commun. 156 (2004) 143; Lee et al., Phys. Rev. E 83 (2011) 066706), if there are at least eight. The integrated
-// autocorrelation time is then sigma_k^2 / (2 sigma_0^2) times the interval between values: half an interval where
-// values do not depend on each other.
-//
-// What is kept grows with the logarithm of the number of values, so that it goes into a checkpoint.
+// With s the standard deviation of the values, the series is worth (s/error)^2 + 1 independent values, at most n.
 #pragma once
 
 #include <cstdint>
@@ -21,39 +14,39 @@
 
 namespace thalweg::analysis {
 
+// Below this an error is too small more often than by chance, and nothing is said of drifts: of series worth five
+// values one in fifty seems to be worth twenty.
+constexpr double fewest_independent_values = 20.0;
+
 class CorrelatedMean {
 public:
   void add(double value);
 
-  std::int64_t count() const;
-  double mean() const;       // 0 as long as there is no value
-  double deviation() const;  // standard deviation of the values about their mean: root of the mean square
+  std::int64_t count() const { return static_cast<std::int64_t>(count_); }
+  double mean() const { return mean_; }  // 0 as long as there is no value
+  double deviation() const;              // standard deviation of the values about their mean: root of the mean square
 
   struct Error {
-    double of_mean = 0.0;           // standard error; where no length of blocks is enough, the largest found
-    double correlation_time = 0.5;  // intervals between values
-    bool blocks_long_enough = false;
+    double of_mean;      // standard error, in the unit of the values; not a number with fewer than two values
+    double independent;  // values, 1
+    bool holds() const { return independent >= fewest_independent_values; }  // else it is an underestimate
   };
   Error error() const;
 
-  // For a checkpoint: numbers_a_level numbers for each length of blocks.
-  static constexpr std::size_t numbers_a_level = 5;
+  std::span<const double> batches() const { return batches_; }  // means of the complete ones
+  double round_off() const;  // by which batches that should be alike may differ, in their unit
+
+  // For a checkpoint.
   std::vector<double> state() const;
   void restore(std::span<const double> state);
 
-private:
-  // Blocks of one length.
-  struct Level {
-    double blocks = 0.0, mean = 0.0, squares = 0.0;  // squares: sum of (block - mean)^2
-    double waits = 0.0, waiting = 0.0;               // waits 1: a block, `waiting`, waits for its partner
-  };
-  // The values at the end that fill no block of a level: their length in blocks, and their mean times that length.
-  struct Rest {
-    double length = 0.0, sum = 0.0;
-  };
-  static double squared_error(const Level& level, const Rest& rest);  // sigma_k^2
+  static constexpr std::size_t most_batches = 1024;
 
-  std::vector<Level> levels_;
+private:
+  double count_ = 0.0, mean_ = 0.0, squares_ = 0.0;  // squares: sum of (value - mean)^2, as Welford adds it up
+  std::vector<double> batches_;
+  double length_ = 1.0;                      // values in a batch
+  double begun_ = 0.0, sum_of_begun_ = 0.0;  // number and sum of the values in the batch that is not complete
 };
 
 }  // namespace thalweg::analysis

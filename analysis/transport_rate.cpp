@@ -65,12 +65,11 @@ void TransportRate::observe(const Snapshot& snapshot) {
   // A state seen twice, as when a run goes on from a checkpoint, does not change the hops.
   hops_.observe(snapshot.time, snapshot.decomposition->box(), snapshot.grains.global_count, bodies, counts);
   if (!counts || snapshot.step <= counted_step_) return;
+  if (q_s_.count() == 0) first_time_ = snapshot.time;
   counted_step_ = snapshot.step;
   last_time_ = snapshot.time;
-  if (q_s_.count() == 0) first_time_ = snapshot.time;
   q_s_.add(latest_.q_s);
-  trend_.add(latest_.q_s);
-  sum_of_moving_ += static_cast<double>(latest_.moving);
+  moving_.add(static_cast<double>(latest_.moving));
   sum_of_shares_ += latest_.share();
   sum_of_activity_ += latest_.activity;
   count_velocities(bodies);
@@ -125,26 +124,31 @@ double TransportRate::interval() const {
 
 std::vector<Figure> TransportRate::results() const {
   const CorrelatedMean::Error error = q_s_.error();
-  const TrendTest::Verdict verdict = trend_.verdict();
-  const double steady = verdict.trend == Trend::steady ? 1.0 : verdict.trend == Trend::drifting ? 0.0 : -1.0;
+  const TrendVerdict verdict = trend_of(q_s_);
+  const double values = static_cast<double>(std::max<std::int64_t>(1, q_s_.count()));
   std::vector<Figure> results{{"q_s_mean", "m^2/s", q_s_.mean()},
                               {"q_s_deviation", "m^2/s", q_s_.deviation()},
                               {"q_s_error", "m^2/s", error.of_mean},
-                              {"q_s_error_holds", "1", error.blocks_long_enough ? 1.0 : 0.0},
-                              {"q_s_correlation_time", "s", error.correlation_time * interval()},
+                              {"q_s_independent", "1", error.independent},
+                              {"q_s_error_holds", "1", error.holds() ? 1.0 : 0.0},
+                              {"q_s_correlation_time", "s", 0.5 * values / error.independent * interval()},
                               {"q_s_drift", "m^2/s", verdict.drift},
                               {"q_s_drift_error", "m^2/s", verdict.error},
-                              {"steady", "1", steady}};
+                              {"steady", "1", verdict.as_number()}};
   if (scales_.have_q_star()) {
     results.push_back({"q_star_mean", "1", q_s_.mean() / scales_.flux()});
     results.push_back({"q_star_deviation", "1", q_s_.deviation() / scales_.flux()});
     results.push_back({"q_star_error", "1", error.of_mean / scales_.flux()});
+    results.push_back({"q_star_drift", "1", verdict.drift / scales_.flux()});
+    results.push_back({"q_star_drift_error", "1", verdict.error / scales_.flux()});
   }
-  const double count = static_cast<double>(std::max<std::int64_t>(1, q_s_.count()));
-  results.push_back({"moving_grains_mean", "1", sum_of_moving_ / count});
-  results.push_back({"moving_share_mean", "1", sum_of_shares_ / count});
-  results.push_back({"activity_mean", "m", sum_of_activity_ / count});
+  results.push_back({"moving_grains_mean", "1", moving_.mean()});
+  results.push_back({"moving_grains_error", "1", moving_.error().of_mean});
+  results.push_back({"moving_share_mean", "1", sum_of_shares_ / values});
+  results.push_back({"activity_mean", "m", sum_of_activity_ / values});
   for (const Figure& of_hops : hops_.results()) results.push_back(of_hops);
+  results.push_back({"measured_from", "s", first_time_});
+  results.push_back({"measured_until", "s", last_time_});
   if (q_s_.count() == 0) forget_values(results);
   results.push_back({"reference_diameter", "m", scales_.grain_diameter});
   results.push_back({"reference_density", "kg/m^3", scales_.grain_density});
@@ -158,24 +162,13 @@ std::vector<Figure> TransportRate::results() const {
 std::vector<std::string> TransportRate::remarks() const {
   if (q_s_.count() == 0) return {};
   const CorrelatedMean::Error error = q_s_.error();
-  const TrendTest::Verdict verdict = trend_.verdict();
   const double unit = scales_.have_q_star() ? scales_.flux() : 1.0;
-  const std::string mean = fmt::format(
-      "transport: {} = {:.4g} +- {:.2g}{} from {:.4g} to {:.4g} s ({} measurements, correlation time {:.2g} s{})",
-      scales_.have_q_star() ? "q*" : "q_s", q_s_.mean() / unit, error.of_mean / unit,
-      scales_.have_q_star() ? "" : " m^2/s", first_time_, last_time_, q_s_.count(), error.correlation_time * interval(),
-      error.blocks_long_enough ? "" : "; too short a time, the error is larger");
-  const std::string line = fmt::format("a straight line through it changes by {:+.2g} +- {:.2g} over this time",
-                                       verdict.drift / unit, verdict.error / unit);
-  switch (verdict.trend) {
-    case Trend::steady:
-      return {mean, fmt::format("transport: steady, {}, which is within chance", line)};
-    case Trend::drifting:
-      return {mean, fmt::format("transport: not steady, {}, which is beyond chance", line)};
-    case Trend::too_short:
-      break;
-  }
-  return {mean, "transport: too short a time to tell whether it is steady"};
+  return {fmt::format("transport: {} = {:.4g} +- {:.2g}{}, deviation {:.2g}, from {:.4g} to {:.4g} s ({} measurements "
+                      "worth {:.3g} independent ones{})",
+                      scales_.have_q_star() ? "q*" : "q_s", q_s_.mean() / unit, error.of_mean / unit,
+                      scales_.have_q_star() ? "" : " m^2/s", q_s_.deviation() / unit, first_time_, last_time_,
+                      q_s_.count(), error.independent, error.holds() ? "" : ": too few, the error is larger"),
+          fmt::format("transport: {}", trend_of(q_s_).sentence(unit))};
 }
 
 std::vector<Profile> TransportRate::profiles() const {
@@ -196,7 +189,6 @@ std::vector<Profile> TransportRate::profiles() const {
 std::vector<double> TransportRate::sums() const {
   return {first_time_,
           last_time_,
-          sum_of_moving_,
           sum_of_shares_,
           sum_of_activity_,
           latest_.q_s,
@@ -215,8 +207,8 @@ void TransportRate::save(ArchiveWriter& archive) const {
   save_settings(archive, "transport_rate", settings());
   archive.attribute("transport_rate/counted_step", counted_step_);
   write_once(archive, communicator_, "transport_rate/sums", sums());
-  write_once(archive, communicator_, "transport_rate/trend", trend_.state());
-  if (q_s_.count() > 0) write_once(archive, communicator_, "transport_rate/blocks", q_s_.state());
+  write_once(archive, communicator_, "transport_rate/q_s_batches", q_s_.state());
+  write_once(archive, communicator_, "transport_rate/moving_batches", moving_.state());
   std::vector<std::int64_t> counts;
   for (const Histogram& velocity : velocities_)
     counts.insert(counts.end(), velocity.counts().begin(), velocity.counts().end());
@@ -229,18 +221,17 @@ bool TransportRate::load(ArchiveReader& archive) {
   const std::vector<std::uint64_t> shape{3 * cells};
   if (!archive.has("transport_rate/mean_from") || archive.real_attribute("transport_rate/mean_from") != keys_.from ||
       !were_saved_with(archive, "transport_rate", settings()) || !archive.has("transport_rate/velocity_counts") ||
-      archive.shape("transport_rate/velocity_counts") != shape)
+      !archive.has("transport_rate/q_s_batches") || archive.shape("transport_rate/velocity_counts") != shape)
     return false;
   counted_step_ = archive.integer_attribute("transport_rate/counted_step");
   const auto sums = read_all<double>(archive, "transport_rate/sums");
   first_time_ = sums.at(0);
   last_time_ = sums.at(1);
-  sum_of_moving_ = sums.at(2);
-  sum_of_shares_ = sums.at(3);
-  sum_of_activity_ = sums.at(4);
-  latest_ = {sums.at(5), sums.at(6), std::llround(sums.at(7)), std::llround(sums.at(8)), sums.at(9)};
-  trend_.restore(read_all<double>(archive, "transport_rate/trend"));
-  if (archive.has("transport_rate/blocks")) q_s_.restore(read_all<double>(archive, "transport_rate/blocks"));
+  sum_of_shares_ = sums.at(2);
+  sum_of_activity_ = sums.at(3);
+  latest_ = {sums.at(4), sums.at(5), std::llround(sums.at(6)), std::llround(sums.at(7)), sums.at(8)};
+  q_s_.restore(read_all<double>(archive, "transport_rate/q_s_batches"));
+  moving_.restore(read_all<double>(archive, "transport_rate/moving_batches"));
   const auto counts = read_all<std::int64_t>(archive, "transport_rate/velocity_counts");
   for (std::size_t c = 0; c < counts.size(); ++c) velocities_[c / cells].counts()[c % cells] = counts[c];
   hops_.load(archive, "transport_rate");

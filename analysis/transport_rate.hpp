@@ -66,11 +66,13 @@ public:
   std::vector<Figure> figures() const override;
 
   // q_s_mean, q_s_deviation (standard deviation of the measurements), q_s_error (standard error of the mean),
-  // q_s_error_holds (1, or 0: the run is too short for it, and it is more), q_s_correlation_time (s), q_s_drift and
-  // q_s_drift_error (m^2/s, over the whole time), steady (1: no drift beyond chance, 0: there is one, -1: too short to
-  // tell); in a fluid q_star_mean, _deviation, _error; moving_grains_mean, moving_share_mean, activity_mean; those of
-  // Hops; reference_diameter, reference_density, moving_speed, mean_from (s), measurements; then the latest figures.
-  // Means are 0 as long as nothing was measured.
+  // q_s_independent (values that the measurements are worth), q_s_error_holds (1, or 0: the run is too short for it,
+  // and it is more), q_s_correlation_time (s, integrated), q_s_drift and q_s_drift_error (m^2/s, over the whole time),
+  // steady (1: it is, 0: it drifts, -1: too few values to tell, -2:
+  // half of the mean may be hidden); in a fluid q_star_mean, _deviation, _error, _drift,
+  // _drift_error; moving_grains_mean and _error, moving_share_mean, activity_mean; those of Hops; reference_diameter,
+  // reference_density, moving_speed, mean_from (s), measured_from and measured_until (s: first and last measurement
+  // that counts), measurements; then the latest figures. Means are not a number as long as nothing was measured.
   std::vector<Figure> results() const override;
   std::vector<std::string> remarks() const override;  // the mean, its error and whether it is steady
 
@@ -99,11 +101,10 @@ private:
   TransportScales scales_;
   TransportRateKeys keys_;
   Latest latest_;
-  std::int64_t counted_step_ = -1;             // of the latest measurement from keys_.from on
-  double first_time_ = 0.0, last_time_ = 0.0;  // s, of those
-  double sum_of_moving_ = 0.0, sum_of_shares_ = 0.0, sum_of_activity_ = 0.0;
-  CorrelatedMean q_s_;
-  TrendTest trend_;
+  std::int64_t counted_step_ = -1;             // of the latest measurement that counts
+  double first_time_ = 0.0, last_time_ = 0.0;  // s, of the first and the latest of those
+  double sum_of_shares_ = 0.0, sum_of_activity_ = 0.0;
+  CorrelatedMean q_s_, moving_;
   std::array<Histogram, 3> velocities_;  // of moving grains, over all ranks, on every rank
   Hops hops_;
 };

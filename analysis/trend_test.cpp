@@ -1,48 +1,37 @@
 #include "analysis/trend_test.hpp"
 
-#include <algorithm>
+#include "analysis/long_run_variance.hpp"
+
+#include <fmt/format.h>
+
 #include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
 
 namespace thalweg::analysis {
 
 namespace {
 
-// Residuals count as at least this part of the largest value, so that round-off is no drift.
-constexpr double round_off = 1e-12;
+// Part of the mean by which a steady series may change from its begin to its end.
+constexpr double bound = 0.5;
 
 // A straight line by least squares through equally spaced values.
 struct Line {
-  double slope = 0.0;        // a step
-  double spread = 0.0;       // S_tt, sum of (i - middle)^2
-  double squares = 0.0;      // sum of e_i^2
-  double correlation = 0.0;  // r, of neighbours
+  double slope;                   // a step
+  double spread;                  // S_tt, sum of (i - middle)^2
+  std::vector<double> distances;  // of the values from it
 };
 
 Line line_through(std::span<const double> values) {
   const auto n = static_cast<double>(values.size());
-  const double middle = 0.5 * (n - 1.0);
-  double mean = 0.0, product = 0.0, largest = 0.0;
-  for (const double value : values) {
-    mean += value / n;
-    largest = std::max(largest, std::abs(value));
-  }
-  Line line;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double t = static_cast<double>(i) - middle;
-    product += t * (values[i] - mean);
-    line.spread += t * t;
-  }
+  const double middle = 0.5 * (n - 1.0), mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+  double product = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) product += (static_cast<double>(i) - middle) * (values[i] - mean);
+  Line line{0.0, n * (n * n - 1.0) / 12.0, {}};
   line.slope = product / line.spread;
-  double before = 0.0, neighbours = 0.0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double rest = values[i] - mean - line.slope * (static_cast<double>(i) - middle);
-    line.squares += rest * rest;
-    neighbours += before * rest;
-    before = rest;
-  }
-  const double least = n * round_off * largest * round_off * largest;
-  line.correlation = line.squares > least ? neighbours / line.squares : 0.0;
-  line.squares = std::max(line.squares, least);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    line.distances.push_back(values[i] - mean - line.slope * (static_cast<double>(i) - middle));
   return line;
 }
 
@@ -57,44 +46,51 @@ double student_t_of_5_percent(double degrees_of_freedom) {
   return z * (1.0 + v * (first + v * (second + v * (third + v * fourth))));
 }
 
-void TrendTest::add(double value) {
-  sum_of_begun_ += value;
-  begun_ += 1.0;
-  if (begun_ < length_) return;
-  batches_.push_back(sum_of_begun_ / length_);
-  begun_ = sum_of_begun_ = 0.0;
-  if (batches_.size() < most_batches) return;
-  for (std::size_t b = 0; b < most_batches / 2; ++b) batches_[b] = 0.5 * (batches_[2 * b] + batches_[2 * b + 1]);
-  batches_.resize(most_batches / 2);
-  length_ *= 2.0;
+TrendVerdict trend_of(const CorrelatedMean& series) {
+  const auto n = static_cast<double>(series.batches().size());
+  if (n < 3.0) {
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    return {Trend::too_few_values, unknown, unknown};
+  }
+  const Line line = line_through(series.batches());
+  const LongRunVariance about_line = long_run_variance(line.distances, About::line, series.round_off());
+  const double drift = line.slope * n, error = std::sqrt(about_line.of_values / line.spread) * n;
+  if (about_line.independent < fewest_independent_values) return {Trend::too_few_values, drift, error};
+  const double chance = student_t_of_5_percent(about_line.independent - 2.0) * error;
+  if (std::abs(drift) > chance) return {Trend::drifting, drift, error};
+  if (!series.error().holds()) return {Trend::too_few_values, drift, error};
+  const bool bounded = std::abs(drift) + chance <= bound * std::abs(series.mean());
+  return {bounded ? Trend::steady : Trend::not_bounded, drift, error};
 }
 
-TrendTest::Verdict TrendTest::verdict() const {
-  if (batches_.size() < fewest_batches) return {};
-  const auto n = static_cast<double>(batches_.size());
-  const Line line = line_through(batches_);
-  Verdict verdict;
-  verdict.drift = line.slope * n;
-  const double worth = std::min(n, n * (1.0 - line.correlation) / (1.0 + line.correlation));
-  if (worth < 4.0) return verdict;
-  const double error = std::sqrt(line.squares / ((worth - 2.0) * line.spread));
-  verdict.error = error * n;
-  verdict.trend = std::abs(line.slope) <= student_t_of_5_percent(worth - 2.0) * error ? Trend::steady : Trend::drifting;
-  return verdict;
+double TrendVerdict::as_number() const {
+  switch (trend) {
+    case Trend::steady:
+      return 1.0;
+    case Trend::drifting:
+      return 0.0;
+    case Trend::too_few_values:
+      return -1.0;
+    default:
+      return -2.0;
+  }
 }
 
-std::vector<double> TrendTest::state() const {
-  std::vector<double> state{length_, begun_, sum_of_begun_};
-  state.insert(state.end(), batches_.begin(), batches_.end());
-  return state;
-}
-
-void TrendTest::restore(std::span<const double> state) {
-  if (state.size() < 3) return;
-  length_ = state[0];
-  begun_ = state[1];
-  sum_of_begun_ = state[2];
-  batches_.assign(state.begin() + 3, state.end());
+std::string TrendVerdict::sentence(double unit) const {
+  if (trend == Trend::too_few_values)
+    return fmt::format("too short a time to tell whether it is steady, which takes {:.0f} independent values",
+                       fewest_independent_values);
+  const std::string line = fmt::format(
+      "a straight line through it changes by {:+.2g} +- {:.2g} over this time, which is", drift / unit, error / unit);
+  switch (trend) {
+    case Trend::drifting:
+      return fmt::format("not steady: {} beyond chance", line);
+    case Trend::steady:
+      return fmt::format("steady: {} within chance and (95 %) less than half of the mean", line);
+    default:
+      return fmt::format("too short a time to tell whether it is steady: {} within chance, but may be half of the mean",
+                         line);
+  }
 }
 
 }  // namespace thalweg::analysis

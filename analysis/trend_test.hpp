@@ -1,47 +1,39 @@
-// Whether a series has settled: a straight line through it that rises or falls by more than chance is a drift.
+// Whether a series has settled: how much a straight line through it rises or falls.
 //
-// The series is kept as 32 to 63 means of batches of equal length, which grow as it goes on. A line is fitted to them
-// by least squares. The residuals e have the lag-one autocorrelation r = sum e_i e_(i+1) / sum e_i^2, so that the n
-// batches are worth n_e = n (1 - r)/(1 + r) independent ones, at most n, and the slope b = S_tx / S_tt has the error
+// A line is fitted by least squares to the batches of the series (correlated_mean.hpp). Its slope has the variance
+// sigma^2/S_tt, with sigma^2 the long-run variance of the batches about the line (long_run_variance.hpp), which are
+// worth n_r independent values. With t Student's at n_r - 2 degrees of freedom and 5 % (both sides), the series
 //
-//   s_b^2 = sum e_i^2 / ((n_e - 2) S_tt).
+//   - is too short to tell if n_r is below 20,
+//   - drifts if the line changes over the series by more than t times its error,
+//   - otherwise is too short if it is worth fewer than 20 independent values, or if the change plus t times its error
+//     exceeds half of the mean, so that such a change cannot be excluded,
+//   - and is steady otherwise.
 //
-// The series drifts if |b| > t s_b with t Student's at n_e - 2 degrees of freedom and 5 % (both sides): Santer et al.,
-// J. Geophys. Res. 105 (2000) 7337, their "adjusted" test. A series without a drift is thus called drifting about once
-// in twenty times. With fewer than 8 batches or n_e < 4 nothing can be said.
+// Steady thus means: with 95 % confidence a straight line through the series changes by less than half of its mean, and
+// no drift is seen. A series without a drift is called drifting about once in twenty times. The test is that of Santer
+// et al. (J. Geophys. Res. 105 (2000) 7337) with the number of independent values from all lags instead of the first.
 #pragma once
 
-#include <cstdint>
-#include <span>
+#include "analysis/correlated_mean.hpp"
+
 #include <string>
-#include <vector>
 
 namespace thalweg::analysis {
 
-enum class Trend { too_short, steady, drifting };
+enum class Trend { too_few_values, not_bounded, drifting, steady };
 
-class TrendTest {
-public:
-  void add(double value);
+struct TrendVerdict {
+  Trend trend;
+  double drift;  // by which the line rises over the series, in the unit of the values; with < 3 batches not a number
+  double error;  // standard error of the drift
 
-  struct Verdict {
-    Trend trend = Trend::too_short;
-    double drift = 0.0;  // by which the line rises over the whole series, in the unit of the values
-    double error = 0.0;  // standard error of the drift
-  };
-  Verdict verdict() const;
-
-  // For a checkpoint.
-  std::vector<double> state() const;
-  void restore(std::span<const double> state);
-
-  static constexpr std::size_t fewest_batches = 8, most_batches = 64;
-
-private:
-  std::vector<double> batches_;              // means of the complete ones
-  double length_ = 1.0;                      // values in a batch
-  double begun_ = 0.0, sum_of_begun_ = 0.0;  // number and sum of the values in the batch that is not complete
+  double as_number() const;  // 1: steady, 0: drifting, -1: too few values, -2: not bounded
+  // The verdict with its reason, without a full stop; unit: by which the drift is divided before it is printed.
+  std::string sentence(double unit) const;
 };
+
+TrendVerdict trend_of(const CorrelatedMean& series);
 
 // Student's t that is exceeded on either side with 5 %: Cornish and Fisher's expansion about the normal distribution
 // (Abramowitz & Stegun 26.7.5), within 1 % of the exact value from two degrees of freedom on.

@@ -25,7 +25,7 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
 import thalweg
-from thalweg import drawing, film, height_profiles
+from thalweg import drawing, film, height_profiles, transport
 from thalweg.means import running_mean
 
 
@@ -62,43 +62,75 @@ def draw_fluid_profiles(run, path):
     save(figure, path)
 
 
-def range_of_interest(rate, counted):
-    """Axis limits that leave out the start, when settling grains may carry tens of times as much."""
-    low, high = min(0.0, 1.05 * float(np.min(rate))), 1.08 * float(np.max(rate))
-    if 0.0 < np.max(counted) < 0.25 * np.max(rate):
-        high = 1.5 * float(np.max(counted))
-    return low, high if high > low else low + 1.0
+RATE_COLOUR, SMOOTH_COLOUR, MEAN_COLOUR = "#9bbfd6", "#14496e", "#c0392b"
+LEAST_SHARE = 0.35   # of the axis that the rates in the averaging window fill; below, a second panel enlarges them
+
+
+def mean_transport(run):
+    """The mean that run.log has, or None before the first measurement that counts."""
+    try:
+        return transport.transport(run)
+    except thalweg.RunFolderError:
+        return None
+
+
+def draw_rates(axes, time, rate, found):
+    """The measured rates and their running mean over a tenth of the time; behind them the averaging window, with the mean in a
+    band of one standard error on either side."""
+    axes.plot(time, rate, color=RATE_COLOUR, linewidth=0.9, zorder=3, label="measured")
+    if len(time) > 100:
+        window = 0.1 * (time[-1] - time[0])
+        axes.plot(time, running_mean(time, rate, window), color=SMOOTH_COLOUR, linewidth=1.6, zorder=4,
+                  label=f"running mean over {window:.2g} s")
+    if found is not None:
+        axes.axvspan(found.start, found.stop, color="0.94", lw=0, zorder=0)
+        mean, error = found.rate.mean, found.rate.error
+        if np.isfinite(error):
+            axes.fill_between((found.start, found.stop), mean - error, mean + error, color=MEAN_COLOUR, alpha=0.2, lw=0, zorder=1)
+        axes.hlines(mean, found.start, found.stop, color=MEAN_COLOUR, linewidth=1.4, zorder=5,
+                    label=f"mean from {found.start:.4g} to {found.stop:.4g} s: {mean:.4g} \u00b1 {error:.2g}{found.unit}")
+    axes.spines[["top", "right"]].set_visible(False)
+
+
+def padded(values):
+    """Axis limits that show all of the values, and nought."""
+    low, high = min(0.0, float(np.min(values))), max(0.0, float(np.max(values)))
+    span = (high - low) or 1.0
+    return low - (0.05 * span if low < 0.0 else 0.0), high + 0.05 * span
 
 
 def draw_transport_rate(run, path):
-    """q* against time with its running mean and the mean that summary.json reports."""
+    """All measured q* against time with their running mean, and the mean with its error that run.log has over its time; where a
+    start carries so much that this hardly shows, once more below, enlarged."""
     series = run.series
-    name, label = "q_star", r"transport rate $q^*$ [1]"
+    name, label = "q_star", r"$q^* = q_s\,/\sqrt{(s-1)\,g\,d^3}$"
     if name not in series:
-        name, label = "q_s", r"transport rate $q_s$ [m$^2$/s]"
+        name, label = "q_s", r"$q_s$ [m$^2$/s]"
     if name not in series:
         raise thalweg.RunFolderError(f"{run.folder / 'series.csv'}: it has no column q_star "
                                      "(analysis.transport_rate in the case).")
-    time, rate = series["time"], series[name]
-    start = float(((run.case.get("analysis") or {}).get("transport_rate") or {}).get("from", 0.0))
-    figure, axes = plt.subplots(figsize=(7.6, 3.8), constrained_layout=True)
-    axes.plot(time, rate, color="#9bbfd6", linewidth=0.9, label="measured")
-    window = 0.1 * (time[-1] - time[0])
-    if len(time) > 20:
-        axes.plot(time, running_mean(time, rate, window), color="#14496e", linewidth=1.8,
-                  label=f"mean over {window:.2g} s")
-    counted = time >= start
-    if counted.any():
-        mean = float(np.mean(rate[counted]))
-        axes.hlines(mean, max(start, time[0]), time[-1], color="#c0392b", linestyle="--", linewidth=1.3,
-                    label=f"mean from {start:g} s on: {mean:.3g}")
-    axes.set(xlabel="time [s]", ylabel=label, xlim=(time[0], time[-1] if time[-1] > time[0] else time[0] + 1))
-    axes.set_ylim(*range_of_interest(rate, rate[counted] if counted.any() else rate))
-    axes.set_title(run.name, fontsize=11)
-    axes.grid(**height_profiles.GRID)
-    axes.set_axisbelow(True)
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.legend(frameon=False, fontsize=9)
+    known = np.isfinite(series[name])
+    time, rate = series["time"][known], series[name][known]
+    if not len(time):
+        raise thalweg.RunFolderError(f"{run.folder / 'series.csv'}: it has no measurement of the transport rate yet.")
+    found = mean_transport(run)
+    inside = rate[(time >= found.start) & (time <= found.stop)] if found is not None else rate
+    enlarged = np.ptp(padded(inside)) < LEAST_SHARE * np.ptp(padded(rate))
+    figure, panels = plt.subplots(2 if enlarged else 1, 1, figsize=(6.4, 5.4 if enlarged else 3.6), squeeze=False,
+                                  constrained_layout=True)
+    for axes, shown in zip(panels[:, 0], (rate, inside)):
+        draw_rates(axes, time, rate, found)
+        axes.set(ylabel=label, ylim=padded(shown))
+    end = time[-1] if time[-1] > time[0] else time[0] + 1.0
+    panels[0, 0].set(xlim=(time[0], end))
+    if enlarged:
+        panels[1, 0].set(xlim=(found.start, max(found.stop, found.start + 1e-3 * end)))
+        panels[1, 0].set_title("the averaging window, enlarged", fontsize=10)
+    panels[-1, 0].set_xlabel("time $t$ [s]")
+    panels[0, 0].legend(frameon=False, fontsize=9, ncol=3, loc="lower center", bbox_to_anchor=(0.5, 1.0), columnspacing=1.2,
+                        handlelength=1.6)
+    figure.suptitle(run.name, fontsize=11)
+    figure.align_ylabels()
     save(figure, path)
 
 

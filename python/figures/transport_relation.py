@@ -2,8 +2,8 @@
 """q* against the Shields number, as fig. 3(a) of Zhang et al. (2022): transport_relation.py [RUN_FOLDER...] [options]
 
 Draws their printed points (bars: standard deviation of q* over the last 10 s), relations of the literature and the given
-runs, whose bars are the standard errors of the means. The Shields number of a run is that of its slope and its measured
-surface. Open symbols: not steady, or too short to tell. Prints the table.
+runs, whose means, standard errors (bars) and verdicts are those of run.log unless times are given. The Shields number of a
+run is that of its slope and its measured surface. Open symbols: not steady, or too short to tell. Prints the table.
 """
 import argparse
 import sys
@@ -18,6 +18,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import thalweg
 from thalweg import bed, literature
 from thalweg.tables import merged_rows
+from thalweg.transport import transport
 
 SMALLEST = 1e-3   # q* that is drawn; what is below stands on the axis
 VERDICTS = {True: "yes", False: "no", None: "too short"}
@@ -26,7 +27,10 @@ VERDICTS = {True: "yes", False: "no", None: "too short"}
 def measure(folder, start, stop, surface):
     """Shields number, q* (Mean), steadiness and height of the bed over the diameter."""
     run = thalweg.Run(folder)
-    time, rate = bed.transport_rate(run, start, stop)
+    found = transport(run, start, stop)
+    if found.symbol != "q*":
+        raise thalweg.RunFolderError(f"{run.folder}: there is no q* of grains without a fluid.")
+    time = (found.start, found.stop)
     if surface == "static":
         height = bed.static_bed_height(run, time[0], time[-1])
     elif bed.has_profiles_of(run, time[0], time[-1]):
@@ -37,8 +41,8 @@ def measure(folder, start, stop, surface):
               f"{run.averaged_from('grain_profiles'):g} s to its end, not of the time of q*.", file=sys.stderr)
     else:
         height = bed.bed_height(run, time[0], time[-1])
-    return (bed.shields_number(run, height, time[0], time[-1], surface != "static"), thalweg.mean_with_error(rate),
-            thalweg.steadiness(rate).steady, height / run.diameter)
+    return (bed.shields_number(run, height, time[0], time[-1], surface != "static"), found.rate, found.verdict.steady,
+            height / run.diameter)
 
 
 def draw_literature(axes):
@@ -78,7 +82,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("runs", nargs="*", type=Path, metavar="RUN_FOLDER")
     parser.add_argument("--from", dest="start", type=float, help="s, beginning of the means (default: as in the case)")
-    parser.add_argument("--to", dest="stop", type=float, default=np.inf, help="s, their end")
+    parser.add_argument("--to", dest="stop", type=float, help="s, their end (default: that of the run)")
     parser.add_argument("--surface", choices=("fraction", "static"), default="fraction",
                         help="of the bed: half its solid fraction, or the paper's static pixels")
     parser.add_argument("--table", help="of the points, which is brought up to date; all that it has are drawn")

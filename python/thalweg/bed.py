@@ -69,7 +69,18 @@ def measured_shields_number(run, start, stop):
     if "shields_number" not in run.series:
         raise RunFolderError(f"{run.folder}: no slope alone drives this flow, so its Shields number needs the stress at the top: "
                              "add analysis.bed_surface to the case.")
-    return float(np.mean(run.series["shields_number"][rows_between(run, start, stop)]))
+    return mean_between(run, "shields_number", start, stop)
+
+
+def mean_between(run, column, start, stop):
+    """Mean of a column of series.csv between two times (s). Rows that have no number, because nothing could be measured, do not
+    count; RunFolderError where none has."""
+    values = run.series[column][rows_between(run, start, stop)]
+    values = values[np.isfinite(values)]
+    if not len(values):
+        raise RunFolderError(f"{run.folder / 'series.csv'}: no row from {start:g} to {stop:g} s has a number in the column "
+                             f"{column}.")
+    return float(np.mean(values))
 
 
 def rows_between(run, start, stop):
@@ -92,7 +103,7 @@ def shields_number(run, surface, start=-np.inf, stop=np.inf, by_solid_fraction=T
     if run.faces("z")[1] in DRAGGING:
         raise RunFolderError(f"{run.folder}: the top of the box drags on the flow, and the stress was measured for the surface by "
                              "solid fraction.")
-    radius = np.mean(run.series["hydraulic_radius"][rows_between(run, start, stop)])
+    radius = mean_between(run, "hydraulic_radius", start, stop)
     return measured * hydraulic_radius(run.size[2] - surface, run.size[1], run.side_walls) / radius
 
 
@@ -106,6 +117,7 @@ def transport_rate(run, start=None, stop=np.inf, column="q_star"):
     if start is None:
         start = run.averaged_from("transport_rate")
     rows = rows_between(run, start, stop)
+    rows = rows[np.isfinite(run.series[column][rows])]
     if not len(rows):
         raise RunFolderError(f"{run.folder / 'series.csv'}: there is no measurement from {start:g} s on yet.")
     return run.series["time"][rows], run.series[column][rows]

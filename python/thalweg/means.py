@@ -1,18 +1,24 @@
-"""Means of correlated series, their error, and whether they are steady."""
+"""Means of correlated series, their error, and whether they are steady: the same numbers as the run itself gives
+(analysis/correlated_mean.hpp, long_run_variance.hpp and trend_test.hpp; docs/theory.md section 5)."""
 from typing import NamedTuple, Optional
 
 import numpy as np
 
-FEWEST_BATCHES, MOST_BATCHES = 8, 64   # of steadiness()
-FEWEST_INDEPENDENT = 20                # values, below which an error is an underestimate
-LEAST_SHARE = 0.05                     # of the time, with intervals that count in at_equal_intervals()
-ROUND_OFF = 1e-12                      # of the largest value, below which there is no drift
+MOST_BATCHES = 1024
+LEAST_SHARE = 0.05        # of the time, with intervals that count in at_equal_intervals()
+FEWEST_INDEPENDENT = 20   # values, below which an error is an underestimate and nothing is said of drifts
+BOUND = 0.5               # part of the mean by which a steady series may change from its begin to its end
+ROUND_OFF = 1e-12         # of the largest batch, below which there is no scatter
+LARGEST_LACK = 0.8        # share that a sum of autocovariances is taken to lack, at most
+NEGLIGIBLE = 1e-10        # of the variance: a pair of autocovariances below counts as none
+
+TOO_FEW, NOT_BOUNDED, DRIFTING, STEADY = "too few values", "not bounded", "drifting", "steady"
 
 
 class Mean(NamedTuple):
     """A mean over time in the unit of the series."""
     mean: float
-    error: float         # standard error of the mean, correlation counted
+    error: float         # standard error of the mean, correlation counted; not a number of a single value
     deviation: float     # standard deviation of the values
     independent: float   # how many independent values the series is worth, 1
 
@@ -24,9 +30,24 @@ class Mean(NamedTuple):
 
 class Steadiness(NamedTuple):
     """Verdict of steadiness()."""
-    steady: Optional[bool]   # None: too short a series to tell
-    drift: float             # by which a straight line rises over the series, in the unit of the values
-    error: float             # standard error of the drift; not a number where the series is too short
+    trend: str     # STEADY, DRIFTING, or why the series is too short to tell: TOO_FEW, NOT_BOUNDED
+    drift: float   # by which a straight line rises over the series, in the unit of the series; not a number with < 3 batches
+    error: float   # standard error of the drift
+
+    @property
+    def steady(self) -> Optional[bool]:
+        """None: too short a series to tell."""
+        return {STEADY: True, DRIFTING: False}.get(self.trend)
+
+    def sentence(self):
+        """The verdict with its reason, as run.log has it."""
+        if self.trend == TOO_FEW:
+            return f"too short a time to tell whether it is steady, which takes {FEWEST_INDEPENDENT} independent values"
+        line = f"a straight line through it changes by {self.drift:+.2g} +- {self.error:.2g} over this time, which is"
+        return {DRIFTING: f"not steady: {line} beyond chance",
+                STEADY: f"steady: {line} within chance and (95 %) less than half of the mean",
+                NOT_BOUNDED: f"too short a time to tell whether it is steady: {line} within chance, but may be half of the mean",
+                }[self.trend]
 
 
 def at_equal_intervals(time):
@@ -50,70 +71,94 @@ def at_equal_intervals(time):
     return chosen
 
 
-def autocovariance(values):
-    """Autocovariance at the lags 0, 1, ... of the values about their mean, each sum divided by the number of values."""
-    values = np.asarray(values, float)
-    count = len(values)
-    spectrum = np.fft.rfft(values - values.mean(), 2 * count)
-    return np.fft.irfft(np.abs(spectrum)**2, 2 * count)[:count] / count
+def in_batches(values):
+    """Means of batches of 1, 2, 4, ... values, the shortest that make fewer than 1024, and the length of a batch; values of an
+    incomplete batch are left out."""
+    length = 1
+    while len(values) // length >= MOST_BATCHES:
+        length *= 2
+    return values[:len(values) // length * length].reshape(-1, length).mean(axis=1), length
+
+
+def autocovariance(distances, lag):
+    """Sum of the products of values that many apart, divided by the number of values."""
+    return float(distances[lag:] @ distances[:len(distances) - lag]) / len(distances)
+
+
+def lack(count, lag, fitted):
+    """The share of the long-run variance, times count, that the autocovariance at a lag lacks where a mean (fitted: 1) or a line
+    (2) through the same values was taken away: the sum over i of H_(i, i + lag), H the projection onto what was taken away."""
+    terms = count - lag
+    of_line = terms * (terms * terms - 1.0 - 3.0 * lag * lag) / (count * (count * count - 1.0)) if fitted == 2 else 0.0
+    return terms / count + of_line
+
+
+def long_run_variance(distances, fitted, round_off):
+    """Number of values times the variance of their mean, by Geyer's initial monotone sequence (Stat. Sci. 7 (1992) 473, sec. 3.3)
+    with the bias of the autocovariances removed, and how many independent values would have the same.
+
+    distances: of values at equal intervals from their mean (fitted: 1) or from a straight line (2). round_off: what they are
+    off by at least, in their unit.
+    """
+    count = len(distances)
+    variance = autocovariance(distances, 0)
+    if variance <= round_off**2:
+        return round_off**2, float(count)
+    total, lacking, before = -variance, -lack(count, 0, fitted), 2.0 * variance
+    for lag in range(0, max(2, count // 2) - 1, 2):
+        pair = autocovariance(distances, lag) + autocovariance(distances, lag + 1)
+        if pair <= NEGLIGIBLE * variance:
+            break
+        before = min(before, pair)
+        total += 2.0 * before
+        lacking += 2.0 * (lack(count, lag, fitted) + lack(count, lag + 1, fitted))
+    # Careful: a series that swings about its mean would be worth more than its length.
+    total = max(total / (1.0 - min(lacking / count, LARGEST_LACK)), variance * count / (count - fitted))
+    return total, min(float(count), count * variance / total + fitted)
 
 
 def mean_with_error(values):
-    """Mean of a stationary series at equal intervals, with its standard error.
-
-    The variance of the mean is that of Geyer's initial positive sequence (Stat. Sci. 7 (1992) 473, sec. 3.3): the
-    autocovariances are added in pairs of neighbouring lags as long as a pair is positive. Of a series that is worth fewer than
-    20 independent values the error is an underestimate: see Mean.error_holds.
-    """
+    """Mean of a stationary series at equal intervals, with its standard error, from the long-run variance of its batches. Of a
+    series that is worth fewer than 20 independent values the error is an underestimate: see Mean.error_holds."""
     values = np.asarray(values, float)
     count = len(values)
     if count == 0:
         raise ValueError("the mean of no values")
-    mean = float(values.mean())
-    covariance = autocovariance(values)
-    variance = covariance[0]
-    if variance <= 1e-24 * mean**2 or count < 2:
-        return Mean(mean, 0.0 if count > 1 else float("nan"), 0.0, float(count))
-    pairs = covariance[:count // 2 * 2].reshape(-1, 2).sum(axis=1)
-    negative = np.flatnonzero(pairs <= 0.0)
-    total = 2.0 * pairs[:negative[0] if len(negative) else len(pairs)].sum() - variance
-    # Careful: a series that swings about its mean would be worth more than its length.
-    total = max(total, variance)
-    return Mean(mean, float(np.sqrt(total / count)), float(np.sqrt(variance)), float(count * variance / total))
+    mean, deviation = float(values.mean()), float(values.std())
+    if count < 2:
+        return Mean(mean, float("nan"), 0.0, 1.0)
+    batches, length = in_batches(values)
+    round_off = ROUND_OFF * float(np.max(np.abs(batches)))
+    if deviation <= round_off:
+        return Mean(mean, 0.0, deviation, float(count))
+    squared = long_run_variance(batches - batches.mean(), 1, round_off)[0] * length / count
+    return Mean(mean, float(np.sqrt(squared)), deviation, float(min(count, deviation**2 / squared + 1.0)))
 
 
 def steadiness(values):
-    """Whether a straight line through a series at equal intervals rises or falls by no more than chance.
+    """Whether a straight line through a series at equal intervals rises or falls by no more than chance, and by less than half
+    of the mean: that is what `steady` claims, with 95 % confidence. A steady series is said to drift one time in twenty.
 
-    The test is that of the run itself (analysis/trend_test.hpp, docs/theory.md section 5): a line is fitted to at most 63
-    batches of equal length, and the lag-one autocorrelation of the residuals says how many independent ones they are
-    worth (Santer et al., J. Geophys. Res. 105 (2000) 7337). A steady series fails one time in twenty; a drift smaller than
-    the scatter is not seen.
+    The slope has the variance that the long-run variance of the values about the line gives it (Santer et al., J. Geophys. Res.
+    105 (2000) 7337, who take the number of independent values from the first lag alone).
     """
-    batches = in_batches(np.asarray(values, float))
+    values = np.asarray(values, float)
+    batches, _ = in_batches(values)
     count = len(batches)
-    if count < FEWEST_BATCHES:
-        return Steadiness(None, float("nan"), float("nan"))
-    time = np.arange(count) - 0.5 * (count - 1.0)
-    spread = float(time @ time)
+    if count < 3:
+        return Steadiness(TOO_FEW, float("nan"), float("nan"))
+    time, spread = np.arange(count) - 0.5 * (count - 1.0), count * (count**2 - 1.0) / 12.0
     slope = float(time @ (batches - batches.mean())) / spread
-    rest = batches - batches.mean() - slope * time
-    least = count * (ROUND_OFF * np.max(np.abs(batches)))**2
-    squares = float(rest @ rest)
-    correlation = float(rest[:-1] @ rest[1:]) / squares if squares > least else 0.0
-    worth = min(count, count * (1.0 - correlation) / (1.0 + correlation))
-    if worth < 4.0:
-        return Steadiness(None, slope * count, float("nan"))
-    error = float(np.sqrt(max(squares, least) / ((worth - 2.0) * spread)))
-    return Steadiness(bool(abs(slope) <= student_t_of_5_percent(worth - 2.0) * error), slope * count, error * count)
-
-
-def in_batches(values):
-    """Means of batches of 1, 2, 4, ... values, the shortest that make fewer than 64; those of an incomplete one are left out."""
-    length = 1
-    while len(values) // length >= MOST_BATCHES:
-        length *= 2
-    return values[:len(values) // length * length].reshape(-1, length).mean(axis=1)
+    variance, independent = long_run_variance(batches - batches.mean() - slope * time, 2, ROUND_OFF * np.max(np.abs(batches)))
+    drift, error = slope * count, float(np.sqrt(variance / spread)) * count
+    if independent < FEWEST_INDEPENDENT:
+        return Steadiness(TOO_FEW, drift, error)
+    chance, mean = student_t_of_5_percent(independent - 2.0) * error, mean_with_error(values)
+    if abs(drift) > chance:
+        return Steadiness(DRIFTING, drift, error)
+    if not mean.error_holds:
+        return Steadiness(TOO_FEW, drift, error)
+    return Steadiness(STEADY if abs(drift) + chance <= BOUND * abs(mean.mean) else NOT_BOUNDED, drift, error)
 
 
 def student_t_of_5_percent(degrees_of_freedom):

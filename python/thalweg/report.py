@@ -12,7 +12,7 @@ import numpy as np
 from thalweg import bed, water
 from thalweg.errors import RunFolderError
 from thalweg.layers import layer_profiles
-from thalweg.means import mean_with_error, steadiness
+from thalweg.transport import column_of, transport
 from thalweg.visible_profiles import visible_profiles
 
 VISIBLE_FRAMES = 20   # the most that are looked at pixel by pixel
@@ -21,9 +21,11 @@ VISIBLE_FRAMES = 20   # the most that are looked at pixel by pixel
 class Report:
     """Findings by name as text lines and as numbers, and profiles as columns."""
 
-    def __init__(self, run, start, stop):
-        self.run, self.start, self.stop = run, start, stop
-        self.lines, self.numbers, self.profiles = [], {"from": start, "until": stop}, {}
+    def __init__(self, run, start=None, stop=None):
+        """start, stop: the times (s) that are wanted, None: those of the run's own means (see window())."""
+        self.run, self.wanted = run, (start, stop)
+        self.start, self.stop = window(run, start, stop)
+        self.lines, self.numbers, self.profiles = [], {"from": self.start, "until": self.stop}, {}
 
     def say(self, name, text):
         self.lines.append(f"{name:<11}{text}")
@@ -71,12 +73,12 @@ def write_columns(path, columns):
 
 
 def window(run, start=None, stop=None):
-    """Times (s) to average over, within those of series.csv: from the begin of the run's means of transport, or the middle of the
-    run, to its end."""
+    """Times (s) to average over, within those of series.csv: from the begin of the run's means of transport, or, where it has
+    none, the middle of the run, to its end."""
     times = run.series["time"]
     stop = float(times[-1]) if stop is None else stop
     if start is None:
-        start = run.averaged_from("transport_rate") or 0.5 * stop
+        start = run.averaged_from("transport_rate") if "transport_rate" in (run.case.get("analysis") or {}) else 0.5 * stop
     if not start < stop or start >= times[-1] or stop <= times[0]:
         raise RunFolderError(f"{run.folder}: there is nothing to average from {start:g} to {stop:g} s: the run has rows from "
                              f"{times[0]:g} to {times[-1]:g} s. Give other times.")
@@ -84,24 +86,17 @@ def window(run, start=None, stop=None):
 
 
 def describe_transport(report):
-    run = report.run
-    column, symbol, unit = ("q_star", "q*", "") if "q_star" in run.series else ("q_s", "q_s", " m^2/s")
-    _, rate = bed.transport_rate(run, report.start, report.stop, column)
-    mean, verdict = mean_with_error(rate), steadiness(rate)
-    report.numbers[column] = mean._asdict() | {"error_holds": mean.error_holds, "steady": verdict.steady}
-    text = (f"{symbol} {mean.mean:.4g} +- {mean.error:.2g}{unit}, deviation {mean.deviation:.2g}, {mean.independent:.3g} "
-            f"independent values{'' if mean.error_holds else ': too few, the error is larger'}")
-    if verdict.steady is None:
-        text += "; too short a time to tell whether it is steady"
-    else:
-        report.numbers[column] |= {"drift": verdict.drift, "drift_error": verdict.error}
-        text += (f"; {'steady' if verdict.steady else 'NOT steady'}: a straight line through it changes by "
-                 f"{verdict.drift:+.2g} +- {verdict.error:.2g}")
-    report.say("transport", text)
-    if "moving_grains" in run.series:
-        moving = mean_with_error(run.series["moving_grains"][bed.rows_between(run, report.start, report.stop)])
-        report.numbers["moving_grains"] = moving._asdict()
-        report.say("moving", f"{moving.mean:.4g} +- {moving.error:.2g} grains faster than the threshold")
+    found = transport(report.run, *report.wanted)
+    mean, verdict = found.rate, found.verdict
+    report.numbers[column_of(report.run)] = mean._asdict() | {
+        "error_holds": mean.error_holds, "steady": verdict.steady, "trend": verdict.trend, "drift": verdict.drift,
+        "drift_error": verdict.error, "measurements": found.measurements}
+    for sentence in found.sentences():
+        report.say("transport", sentence)
+    if found.moving is not None:
+        moving, error = found.moving
+        report.numbers["moving_grains"] = {"mean": moving, "error": error}
+        report.say("moving", f"{moving:.4g} +- {error:.2g} grains faster than the threshold")
 
 
 def describe_surface(report, name, title, surface):
@@ -155,7 +150,7 @@ def describe_camera(report):
 
 def report_of(run, start=None, stop=None):
     """Report of a run between two times (s); see window() for what counts where none are given."""
-    report = Report(run, *window(run, start, stop))
+    report = Report(run, start, stop)
     report.say("run", f"{run.name}: {report.start:g} to {report.stop:g} s of {run.series['time'][-1]:g} s")
     if (start is not None and start < report.start) or (stop is not None and stop > report.stop):
         report.say("window", "shorter than wanted: series.csv has no rows of the rest")

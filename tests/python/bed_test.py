@@ -189,6 +189,16 @@ class Layers(made_up.MadeUpFolder):
         with self.assertRaisesRegex(thalweg.RunFolderError, "no measurement from 2 s on"):
             bed.transport_rate(thalweg.Run(self.folder), 2.0)
 
+    def test_rows_without_a_number_do_not_count(self):
+        """As of a bed that reached the top of the box for a moment."""
+        (self.folder / "series.csv").write_text("time [s],q_star [1],shields_number [1]\n"
+                                                "0,0.1,0.1\n1,nan,nan\n2,0.3,0.2\n3,nan,nan\n4,nan,nan\n")
+        run = thalweg.Run(self.folder)
+        self.assertAlmostEqual(bed.measured_shields_number(run, 0.0, 2.0), 0.15, 12)
+        np.testing.assert_array_equal(bed.transport_rate(run, 0.0)[0], (0.0, 2.0))
+        with self.assertRaisesRegex(thalweg.RunFolderError, "no row from 3 to 4 s has a number in the column shields_number"):
+            bed.measured_shields_number(run, 3.0, 4.0)
+
 
 class Shields(unittest.TestCase):
     def test_of_the_flume_and_the_wide_bed(self):

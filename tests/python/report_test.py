@@ -82,7 +82,7 @@ class Report(made_up.MadeUpFolder):
         case.write_text(case.read_text().replace("top: free_slip", "top: {type: moving, velocity: [0.1, 0, 0]}"))
         numbers = report_of(thalweg.Run(self.folder)).numbers
         self.assertNotIn("shields", numbers["surface_by_static_pixels"])
-        (self.folder / "series.csv").write_text("time [s],shields_number [1]\n0.5,9\n1.0,0.1\n2.0,0.2\n4.0,0.6\n")
+        (self.folder / "series.csv").write_text("time [s],shields_number [1]\n0.5,9\n1.0,0.1\n2.0,0.2\n3.0,0.6\n")
         report = report_of(thalweg.Run(self.folder))
         self.assertAlmostEqual(report.numbers["surface_by_solid_fraction"]["shields"], 0.3, 12)
         self.assertTrue(any("as measured" in line for line in report.lines))
@@ -130,6 +130,30 @@ class Report(made_up.MadeUpFolder):
             self.assertAlmostEqual(found["middle_speed"], middle, 9)
             self.assertAlmostEqual(found["mean_speed"], shape.mean(), 9)
             self.assertTrue(any(line.startswith("water") and "(+0.0 %)" in line for line in report.lines))
+
+    def test_a_mean_from_the_start_on_and_none_at_all(self):
+        case = self.folder / "case.yaml"
+        text = case.read_text()
+        for analysis, start in (("{transport_rate: {from: 0}}", 0.0), ("{transport_rate: {}}", 0.0), ("{}", 2.0)):
+            case.write_text(text.replace("{transport_rate: {from: 1.0}}", analysis))
+            self.assertEqual(window(thalweg.Run(self.folder)), (start, 4.0))
+
+    def test_the_mean_of_the_run_itself(self):
+        """Where no times are given it is that of summary.json, which may be of more measurements than series.csv has rows."""
+        means = {"q_s_independent": 25.0, "q_star_mean": 0.1234, "q_star_error": 0.002, "q_star_deviation": 0.01, "steady": -2,
+                 "q_star_drift": 0.05, "q_star_drift_error": 0.01, "measured_from": 1.0, "measured_until": 3.99,
+                 "measurements": 2991, "moving_grains_mean": 7.0, "moving_grains_error": None, "mean_from": 1.0}
+        (self.folder / "summary.json").write_text(json.dumps({"finished": True, "transport_rate": means}))
+        run = thalweg.Run(self.folder)
+        report = report_of(run)
+        self.assertIn("transport  q* = 0.1234 +- 0.002, deviation 0.01, from 1 to 3.99 s (2991 measurements worth 25 independent "
+                      "ones)", report.lines)
+        self.assertIn("transport  too short a time to tell whether it is steady: a straight line through it changes by +0.05 +- 0.01 "
+                      "over this time, which is within chance, but may be half of the mean", report.lines)
+        report.write(self.folder / "out")
+        numbers = json.loads((self.folder / "out/summary.json").read_text(), parse_constant=self.fail)
+        self.assertEqual(numbers["moving_grains"], {"mean": 7.0, "error": None})
+        self.assertAlmostEqual(report_of(run, 1.0).numbers["q_star"]["mean"], 0.1, 3)   # of the rows
 
     def test_times(self):
         run = thalweg.Run(self.folder)

@@ -5,9 +5,11 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 import h5py
 import matplotlib.image
+import matplotlib.pyplot
 import numpy as np
 from PIL import Image
 
@@ -19,7 +21,7 @@ sys.path[:0] = [str(SCRIPT.parent), str(ROOT / "tests/support")]
 import made_up_profiles  # noqa: E402
 import plot_run  # noqa: E402
 import thalweg  # noqa: E402
-from thalweg import drawing, height_profiles  # noqa: E402
+from thalweg import drawing, height_profiles, transport  # noqa: E402
 
 # Stands in for ffmpeg: the size of a frame follows -s; what arrives is counted into the film.
 FFMPEG = """#!{python}
@@ -176,12 +178,39 @@ class PlotRun(unittest.TestCase):
             case.write_text(text.replace("law_of_the_wall", sides) + f"gravity: {gravity}\n")
             self.assertEqual(drawing.flow_direction(thalweg.Run(self.folder)), expected)
 
-    def test_the_settling_at_the_start_does_not_dwarf_the_rest(self):
-        rate = np.array([0.0, 2.0, 0.1, 0.08])
-        self.assertEqual(plot_run.range_of_interest(rate, rate[2:]), (0.0, 1.5 * 0.1))
-        self.assertEqual(plot_run.range_of_interest(rate, rate), (0.0, 1.08 * 2.0))
-        low, high = plot_run.range_of_interest(np.zeros(3), np.zeros(3))
-        self.assertLess(low, high)
+    def rate_panels(self, early):
+        """The panels of transport_rate.png of three seconds about 0.05, of which the first 20 measurements are `early`, the rates and
+        the mean from 1 s on."""
+        case = self.folder / "case.yaml"
+        case.write_text("name: rates\nsystem: resolved\nanalysis: {transport_rate: {from: 1.0}}\n")
+        rate = 0.05 + 0.01 * np.random.default_rng(1).normal(size=300)
+        rate[:20] = early
+        (self.folder / "series.csv").write_text("time [s],q_star [1]\n" +
+                                                "".join(f"{0.01 * n:g},{value}\n" for n, value in enumerate(rate)))
+        drawn, run = [], thalweg.Run(self.folder)
+        with unittest.mock.patch.object(plot_run, "save", lambda figure, path: drawn.append(figure)):
+            plot_run.draw_transport_rate(run, None)
+        self.addCleanup(matplotlib.pyplot.close, drawn[0])
+        return drawn[0].axes, rate, transport.transport(run)
+
+    def test_the_transport_rate_is_drawn_whole_with_its_averaging_window(self):
+        for early, panels in ((0.05, 1), (1.58, 2), (-0.3, 2)):   # a start that carries thirty times as much
+            axes, rate, found = self.rate_panels(early)
+            self.assertEqual(len(axes), panels)
+            self.assertEqual(axes[0].get_xlim(), (0.0, 2.99))
+            low, high = axes[0].get_ylim()
+            self.assertGreater(high, rate.max())
+            self.assertLessEqual(low, rate.min())
+            self.assertEqual((found.start, found.stop), (1.0, 2.99))
+            self.assertIn(f"mean from 1 to 2.99 s: {found.rate.mean:.4g} \u00b1 {found.rate.error:.2g}",
+                          [text.get_text() for text in axes[0].get_legend().get_texts()])
+            if panels == 2:
+                self.assertEqual(axes[1].get_xlim(), (1.0, 2.99))
+                low, high = axes[1].get_ylim()
+                self.assertTrue(low <= rate[100:].min() and rate[100:].max() < high < 0.2)
+
+    def test_axes_of_nothing(self):
+        self.assertEqual(plot_run.padded(np.zeros(3)), (0.0, 0.05))
 
     def test_a_run_without_a_fluid_or_grain_pictures(self):
         (self.folder / "fluid.pvd").unlink()
