@@ -57,7 +57,7 @@ void check_solid_extents(const Case& c, const io::YamlDocument& document) {
       if (periodic_axes(c.domain)[axis] && !(high - low <= most_boxes_long * box))
         throw document.error(
             shape_key(c, n),
-            fmt::format("the solid is {:.4g} m long along {}, {:.3g} times the periodic box of {:g} m; {}", high - low,
+            fmt::format("the solid is {:.4g} m long along {}, {:.6g} times the periodic box of {:g} m; {}", high - low,
                         axis_name[axis], (high - low) / box, box, smaller_text(c.solids[n])));
       if (!(std::max(std::abs(low), std::abs(high)) <= most_boxes_away * box))
         throw document.error(

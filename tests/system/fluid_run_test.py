@@ -309,7 +309,7 @@ output:
 
     def test_a_surface_in_millimetres_is_noticed(self):
         self.assert_refused("check", self.case, "--set", "solids.1.scale=1", words=[
-            "solids.1.stl", "the solid is 18 m long along y, 1.13e+03 times the periodic box of 0.016 m; if the file is in "
+            "solids.1.stl", "the solid is 18 m long along y, 1125 times the periodic box of 0.016 m; if the file is in "
             "millimetres, give scale: 0.001"])
         self.assert_refused("check", self.case, "--set", "solids.1.translate=[1e12, 0, 0]",
                             words=["the solid extends from 1e+12 to 1e+12 m along x, and the box from 0 to 0.024 m"])
