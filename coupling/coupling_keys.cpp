@@ -34,7 +34,8 @@ void describe(SectionVisitor& visit, CouplingKeys& coupling, bool with_grains) {
     return;
   }
   visit.integer("grain_steps_per_fluid_step", coupling.grain_steps_per_fluid_step,
-                {.meaning = "sub-steps of the grains in one step of the fluid; auto: 20 in the shortest contact",
+                {.meaning = "sub-steps of the grains in one step of the fluid; auto: as many as contacts (20 in the "
+                            "shortest) and lubrication need",
                  .at_least = 1,
                  .automatic = CouplingKeys::as_many_as_needed});
   visit.real("link_tolerance", coupling.link_tolerance,

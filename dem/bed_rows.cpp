@@ -68,17 +68,25 @@ std::vector<SizeCount> sizes_of(const std::vector<Body>& bodies, const Ranks& ra
 // Extremes of all rows.
 void take_extremes(const Population& population, const Ranks& ranks, FileFigures& figures) {
   double smallest = std::numeric_limits<double>::infinity(), largest = 0.0, fastest = 0.0;
-  double lightest = std::numeric_limits<double>::max();
+  double lightest = std::numeric_limits<double>::max(), radius_per_mass = 0.0, largest_member = 0.0;
   for (const BedGrain& row : population.file) {
     smallest = std::min(smallest, 2.0 * row.radius);
     largest = std::max(largest, 2.0 * row.radius);
     fastest = std::max(fastest, row.velocity.norm());
-    if (row.clump < 0) lightest = std::min(lightest, row.density * population.volume_of(2.0 * row.radius));
+    if (row.clump >= 0) {
+      largest_member = std::max(largest_member, row.radius);
+      continue;
+    }
+    const double mass = row.density * population.volume_of(2.0 * row.radius);
+    lightest = std::min(lightest, mass);
+    radius_per_mass = std::max(radius_per_mass, row.radius / mass);
   }
   figures.smallest_diameter = ranks.smallest(smallest);
   figures.largest_diameter = ranks.largest(largest);
   figures.fastest = ranks.largest(fastest);
   figures.lightest_grain = ranks.smallest(lightest);
+  figures.radius_per_mass = ranks.largest(radius_per_mass);
+  figures.largest_member = ranks.largest(largest_member);
 }
 
 // Sums in the order of the rows.

@@ -1,12 +1,14 @@
 #include "dem/lubrication.hpp"
 
 #include "core/error.hpp"
+#include "dem/material.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -118,6 +120,11 @@ LubricationResistance lubrication_resistance(const LubricationParameters& parame
   return resistance;
 }
 
+double longest_lubrication_step(const LubricationParameters& parameters, double radius_per_mass) {
+  const double rate = 6.0 * std::numbers::pi * parameters.viscosity * radius_per_mass / parameters.minimum_gap;
+  return rate > 0.0 ? largest_damping_a_step / rate : std::numeric_limits<double>::infinity();
+}
+
 void check(const LubricationParameters& parameters, double largest_radius, double radius_per_mass,
            const PeriodicBox& box, double time_step) {
   if (!(parameters.viscosity >= 0.0 && parameters.normal_cut_off >= 0.0 && parameters.tangential_cut_off >= 0.0))
@@ -136,12 +143,12 @@ void check(const LubricationParameters& parameters, double largest_radius, doubl
           "The box is {:g} m long along the periodic axis {}; with the lubrication force on grains of {:g} m "
           "give at least {:g} m, two diameters and twice the cut-off.",
           box.size[axis], "xyz"[axis], 2.0 * largest_radius, shortest));
-  const double rate = 6.0 * std::numbers::pi * parameters.viscosity * radius_per_mass / parameters.minimum_gap;
-  if (rate * time_step <= largest_damping_a_step) return;
-  throw InputError(fmt::format(
-      "A step of the grains of {:g} s is too long for the lubrication force on the smallest that are free; "
-      "give at most {:g} s or a minimum gap of at least {:g} radii.",
-      time_step, largest_damping_a_step / rate, parameters.minimum_gap * rate * time_step / largest_damping_a_step));
+  const double longest = longest_lubrication_step(parameters, radius_per_mass);
+  if (time_step <= longest * (1.0 + rounding_of_a_step)) return;
+  throw InputError(
+      fmt::format("A step of the grains of {:g} s is too long for the lubrication force on the smallest that are free; "
+                  "give at most {:g} s or a minimum gap of at least {:g} radii.",
+                  time_step, longest, parameters.minimum_gap * time_step / longest));
 }
 
 void add_lubrication(MovingGrains& grains, const ContactList& list, const PeriodicBox& box,

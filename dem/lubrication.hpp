@@ -48,12 +48,15 @@ struct LubricationResistance {
 LubricationResistance lubrication_resistance(const LubricationParameters& parameters, double radius, double ratio,
                                              double gap);
 
-// Throws InputError for impossible parameters, or where the explicit step (s) cannot follow the damping of a free grain
-// near a wall: 6 pi eta a/(minimum_gap m) times the step must not exceed 1/2. Twelve neighbours damp no more than a
-// wall does, because each has a quarter of its resistance. A periodic axis must be two diameters and twice the reach
-// long, so that no pair is near across both of its ends.
-// largest_radius: m, of all grains; radius_per_mass: m/kg, the largest of free grains with the mass their contacts
-// feel.
+// The longest step (s) that can follow, explicitly, the damping of a free grain near a wall: 6 pi eta a/(minimum_gap m)
+// times the step must not exceed 1/2. Twelve neighbours damp no more than a wall does, because each has a quarter of
+// its resistance. radius_per_mass: m/kg, the largest of free grains with the mass their contacts feel; 0: no free
+// grains, whose step may be infinite.
+double longest_lubrication_step(const LubricationParameters& parameters, double radius_per_mass);
+
+// Throws InputError for impossible parameters, or where the step (s) is longer than longest_lubrication_step(). A
+// periodic axis must be two diameters and twice the reach long, so that no pair is near across both of its ends.
+// largest_radius: m, of all grains.
 void check(const LubricationParameters& parameters, double largest_radius, double radius_per_mass,
            const PeriodicBox& box, double time_step);
 

@@ -157,7 +157,7 @@ void refuse_longer(double time_step, double contact_time, const ContactParameter
   const double longest = contact_time / fewest_steps_per_contact;
   if (!(time_step > 0.0))
     throw InputError(fmt::format("The time step of the grains is {:g} s; it must be positive.", time_step));
-  if (time_step <= longest) return;
+  if (time_step <= longest * (1.0 + rounding_of_a_step)) return;
   const std::string softer =
       with_spring_law(grain.law, [&](auto spring) { return decltype(spring)::type::softer(grain, other); });
   throw InputError(

@@ -53,6 +53,13 @@ double Population::lightest_mass() const {
   return density * volume_of(smallest_diameter());
 }
 
+double Population::radius_per_mass() const {
+  if (shape) return 0.5 * largest_diameter() / clumps.least_contact_mass;
+  if (!from_file()) return 0.5 * smallest_diameter() / lightest_mass();
+  const double of_members = clumps.count > 0 ? figures.largest_member / clumps.least_contact_mass : 0.0;
+  return std::max(figures.radius_per_mass, of_members);
+}
+
 double Population::volume() const {
   if (shape) return clumps.volume;
   if (from_file()) return figures.volume;

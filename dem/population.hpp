@@ -92,6 +92,8 @@ struct FileFigures {
   double smallest_diameter = 0.0;  // m, of grains and members
   double largest_diameter = 0.0;   // m
   double lightest_grain = 0.0;     // kg, of those that are not members
+  double radius_per_mass = 0.0;    // m/kg, the largest of those
+  double largest_member = 0.0;     // m, radius
   double volume = 0.0;             // m^3, of all grains
   double fastest = 0.0;            // m/s
   std::vector<SizeCount> sizes;    // of the grains, as for the sums
@@ -124,6 +126,7 @@ struct Population : PopulationKeys {
   double largest_diameter() const;                 // m
   double largest_extent() const;                   // m, of spheres and clumps
   double lightest_mass() const;                    // kg, the least that a contact feels
+  double radius_per_mass() const;                  // m/kg, the largest, with the mass that a contact feels
   double volume() const;                           // m^3, of all its grains
 };
 

@@ -1,6 +1,8 @@
 #include "driver/case.hpp"
 
 #include "dem/grain_volume.hpp"
+#include "dem/lubrication.hpp"
+#include "dem/material.hpp"
 #include "dem/population_seeds.hpp"
 
 #include <algorithm>
@@ -190,21 +192,35 @@ double shortest_contact(const Case& c) {
   for (std::size_t p = 0; p < c.grains.size(); ++p) {
     const dem::ContactParameters& own = materials[static_cast<std::size_t>(dem::material_of(c.grains, p))];
     const double mass = c.grains[p].lightest_mass(), radius = 0.5 * c.grains[p].smallest_diameter();
-    const auto undamped = [&](double stiffness, double effective) {
-      return std::numbers::pi * std::sqrt(effective / stiffness);
+    // pi/omega_0, or pi/beta of a dashpot that is faster than the spring (dem/material.hpp).
+    const auto spring = [](const dem::ContactParameters& material, double effective) {
+      const double frequency = std::sqrt(material.normal_stiffness / effective);
+      return std::numbers::pi / std::max(frequency, 0.5 * dem::Damping(material).coefficient(effective) / effective);
     };
-    shortest = std::min(shortest, linear ? undamped(own.normal_stiffness, 0.5 * mass)
-                                         : dem::contact_time(own, 0.5 * mass, 0.5 * radius));
+    shortest = std::min(shortest, linear ? spring(own, 0.5 * mass) : dem::contact_time(own, 0.5 * mass, 0.5 * radius));
     if (walls)
-      shortest = std::min(shortest, linear ? undamped(walls->normal_stiffness, mass)
-                                           : dem::wall_contact_time(own, *walls, mass, radius));
+      shortest = std::min(shortest, linear ? spring(*walls, mass) : dem::wall_contact_time(own, *walls, mass, radius));
   }
   return shortest;
 }
 
+double longest_contact_step(const Case& c) { return shortest_contact(c) / dem::fewest_steps_per_contact; }
+
+double longest_lubrication_step(const Case& c) {
+  if (!has_fluid(c) || !c.coupling.lubrication) return std::numeric_limits<double>::infinity();
+  dem::LubricationParameters parameters;
+  parameters.viscosity = c.fluid.density * c.fluid.kinematic_viscosity;
+  parameters.minimum_gap = c.coupling.lubrication->minimum_gap;
+  double radius_per_mass = 0.0;
+  for (const dem::Population& population : c.grains)
+    if (!dem::holds_translation(dem::motion_of(population)))
+      radius_per_mass = std::max(radius_per_mass, population.radius_per_mass());
+  return dem::longest_lubrication_step(parameters, radius_per_mass);
+}
+
 std::int64_t sub_steps_needed(const Case& c) {
-  const double needed = fluid_time_step(c) * dem::fewest_steps_per_contact / shortest_contact(c);
-  return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(needed * (1.0 - 1e-9))));
+  const double needed = fluid_time_step(c) / std::min(longest_contact_step(c), longest_lubrication_step(c));
+  return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(needed * (1.0 - dem::rounding_of_a_step))));
 }
 
 }  // namespace thalweg::driver

@@ -196,16 +196,20 @@ dem::ModelFluidParameters model_fluid_of(const Case& c);
 // m/s, of the model fluid around a grain without neighbours, the fastest there is; 0 without a model fluid
 double fastest_model_fluid(const Case& c);
 
-// The shortest contact there can be (damping makes it longer), between two of the lightest grains of a population or
-// of one of them with a wall: half a period of the undamped spring, pi sqrt(m / 2 / k_n), or Hertz's contact at 1 m/s
-// (dem/material.hpp). Contacts between populations are never shorter than the shortest within one. s; infinite without
-// grains.
+// The shortest contact there can be, between two of the lightest grains of a population or of one of them with a wall:
+// half a period of the undamped spring, pi sqrt(m / 2 / k_n), which a dashpot makes longer up to the critical damping
+// and by which it is divided beyond; or Hertz's contact at 1 m/s (dem/material.hpp). Contacts between populations are
+// never shorter than the shortest within one. s; infinite without grains.
 double shortest_contact(const Case& c);
 
 inline constexpr double karman = 0.41;  // von Karman's constant of the logarithmic law
 
-// Sub-steps of the grains in one step of the fluid with which the shortest contact takes
-// dem::fewest_steps_per_contact of them; at least 1.
+// The longest step of the grains (s) with which the shortest contact takes dem::fewest_steps_per_contact of them, and
+// that which can follow the lubrication force; infinite without grains, the second also without that force.
+double longest_contact_step(const Case& c);
+double longest_lubrication_step(const Case& c);
+
+// Sub-steps of the grains in one step of the fluid that keep both; at least 1.
 std::int64_t sub_steps_needed(const Case& c);
 
 }  // namespace thalweg::driver

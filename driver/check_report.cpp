@@ -212,7 +212,8 @@ LightestGrains check_placed_grains(const Case& c, const PeriodicBox& box, const 
   dem::check(start.clumps, box);
   const std::vector<dem::GrainSeed> seeds = dem::with_members(std::move(start.grains), start.clumps, box);
   for (const dem::GrainSeed& seed : seeds)
-    lightest[static_cast<std::size_t>(seed.material)].include(seed.contact_mass(), seed.radius);
+    if (!dem::holds_translation(seed.motion))
+      lightest[static_cast<std::size_t>(seed.material)].include(seed.contact_mass(), seed.radius);
   dem::check(seeds, box, parameters.walls, parameters.initial_overlap);
   return lightest;
 }
@@ -222,7 +223,8 @@ LightestGrains lightest_taken_grains(const Case& c, const dem::GrainParameters& 
   LightestGrains lightest(1 + parameters.other_materials.size());
   for (std::size_t population = 0; population < c.grains.size(); ++population)
     for (const dem::PopulationRow& row : dem::rows_of(c.grains, population, dem::share_of_rows(c.grains[population])))
-      lightest[static_cast<std::size_t>(row.material)].include(row.contact_mass, row.radius);
+      if (!dem::holds_translation(row.motion))
+        lightest[static_cast<std::size_t>(row.material)].include(row.contact_mass, row.radius);
   return lightest;
 }
 

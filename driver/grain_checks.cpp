@@ -13,6 +13,8 @@
 namespace thalweg::driver {
 namespace {
 
+constexpr const char* sub_steps_key = "coupling.grain_steps_per_fluid_step";
+
 void check_room(const Case& c, const io::YamlDocument& document) {
   const std::array<bool, 3> periodic = periodic_axes(c.domain);
   const double diameter = largest_diameter(c);
@@ -49,19 +51,31 @@ void check_room(const Case& c, const io::YamlDocument& document) {
 }
 
 void check_contact_steps(const Case& c, const io::YamlDocument& document) {
-  if (c.grains.empty()) return;
-  const double longest = shortest_contact(c) / dem::fewest_steps_per_contact;
-  const double step = grain_time_step(c);
-  if (step <= longest * (1.0 + whole_number_tolerance)) return;
+  const double longest = longest_contact_step(c), step = grain_time_step(c);
+  if (step <= longest * (1.0 + dem::rounding_of_a_step)) return;
   const std::string reason = fmt::format(
       "a step of the grains of {:.4g} s is longer than 1/20 of their shortest contact "
       "({:.4g} s)",
       step, shortest_contact(c));
   if (!has_fluid(c))
     throw document.error("run.time_step", fmt::format("{}; give at most {} s", reason, at_most_text(longest, 3)));
-  throw document.error("coupling.grain_steps_per_fluid_step",
-                       fmt::format("{}; give at least {} sub-steps, or a lower contact.normal_stiffness in N/m", reason,
-                                   sub_steps_needed(c)));
+  throw document.error(sub_steps_key, fmt::format("{}; give {}: {} or more, or a lower contact.normal_stiffness in N/m",
+                                                  reason, sub_steps_key, sub_steps_needed(c)));
+}
+
+void check_lubrication_steps(const Case& c, const io::YamlDocument& document) {
+  const double longest = longest_lubrication_step(c), step = grain_time_step(c);
+  if (step <= longest * (1.0 + dem::rounding_of_a_step)) return;
+  constexpr double widest_gap = 0.1;  // that the key may have, radii
+  const double gap = c.coupling.lubrication->minimum_gap * step / longest;
+  throw document.error(
+      sub_steps_key,
+      fmt::format(
+          "a step of the grains of {:.4g} s is too long for the lubrication force on the smallest that are free, "
+          "which needs one of at most {} s; give {}: {} or more{}",
+          step, at_most_text(longest, 3), sub_steps_key, sub_steps_needed(c),
+          gap <= widest_gap ? fmt::format(", or coupling.lubrication.minimum_gap: {} or more", at_least_text(gap, 3))
+                            : ""));
 }
 
 void check_walls(const Case& c, const io::YamlDocument& document) {
@@ -121,7 +135,9 @@ void check_grains(const Case& c, const io::YamlDocument& document) {
   check_populations(c, document);
   check_clumps(c, document);
   check_materials(c, document);
+  if (c.grains.empty()) return;
   check_contact_steps(c, document);
+  check_lubrication_steps(c, document);
 }
 
 }  // namespace thalweg::driver

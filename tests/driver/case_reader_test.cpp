@@ -8,6 +8,8 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace thalweg::driver::case_reader_test {
 namespace {
@@ -88,6 +90,23 @@ TEST(CaseReader, TakesAsManySubStepsAsTheContactNeeds) {
   EXPECT_EQ(read(flume, {"coupling.grain_steps_per_fluid_step=auto", "fluid.time_step=1e-6"})
                 .coupling.grain_steps_per_fluid_step,
             1);
+}
+
+// 6 pi eta a/(1e-5 m) of the flume's glass in 0.01 Pa s, 2.881e5/s: half of its inverse is 11.5 times in 2e-5 s. The
+// fixed grains, of 4 mm, would need more.
+TEST(CaseReader, TakesAsManySubStepsAsLubricationNeeds) {
+  const std::vector<std::string> oil = {"fluid.kinematic_viscosity=1e-5", "coupling.lubrication={minimum_gap: 1e-5}",
+                                        "coupling.grain_steps_per_fluid_step=auto"};
+  EXPECT_EQ(read(flume, oil).coupling.grain_steps_per_fluid_step, 12);
+}
+
+// Beyond the critical damping 2 sqrt(k m*) = 2.55 kg/s a contact must be resolved in pi/beta = 2 pi m*/gamma.
+TEST(CaseReader, TakesAsManySubStepsAsStrongDashpotsNeed) {
+  const Case c = read(flume, {"contact.restitution=null", "contact.damping=5.1", "contact.attraction=none",
+                              "coupling.grain_steps_per_fluid_step=auto"});
+  const double lighter = 0.5 * 2550.0 * std::numbers::pi / 6.0 * std::pow(4.0e-3, 3);
+  EXPECT_NEAR(shortest_contact(c), 2.0 * std::numbers::pi * lighter / 5.1, 1e-12);
+  EXPECT_LE(grain_time_step(c), shortest_contact(c) / 20.0 * (1.0 + 1e-9));
 }
 
 TEST(CaseReader, ReadsEveryFormOfFacesGravityStepAndStart) {

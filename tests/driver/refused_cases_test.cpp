@@ -163,7 +163,15 @@ INSTANTIATE_TEST_SUITE_P(
             {"coupling.grain_steps_per_fluid_step = 1: a step of the grains of 2e-05 s is longer than 1/20 of their "
              "shortest "
              "contact (0.000145",
-             "give at least 3 sub-steps"}},
+             "give coupling.grain_steps_per_fluid_step: 3 or more"}},
+        // Glass of 4.95 mm, 1.619e-4 kg, in 0.01 Pa s: 6 pi eta a/(1e-5 m) = 2.881e5/s, half of whose inverse is the
+        // step.
+        Bad{"sub_step_too_long_for_lubrication",
+            {"fluid.kinematic_viscosity=1e-5", "coupling.lubrication={minimum_gap: 1e-5}",
+             "coupling.grain_steps_per_fluid_step=5"},
+            {"coupling.grain_steps_per_fluid_step = 5: a step of the grains of 4e-06 s is too long for the lubrication "
+             "force on the smallest that are free, which needs one of at most 1.73e-06 s; give "
+             "coupling.grain_steps_per_fluid_step: 12 or more, or coupling.lubrication.minimum_gap: 2.31e-05 or more"}},
         Bad{"sub_steps_zero",
             {"coupling.grain_steps_per_fluid_step=0"},
             {"expected a whole number, at least 1, for example 50, or auto"}},
