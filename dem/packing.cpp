@@ -27,6 +27,11 @@ void check_region(const PeriodicBox& box, const Region& region) {
 
 namespace {
 
+// m, along an axis, without the clearance to faces that are not periodic.
+double sites_extent(const PeriodicBox& box, const Region& region, int axis, double clearance) {
+  return region.upper[axis] - region.lower[axis] - (wraps(box, region, axis) ? 0.0 : 2.0 * clearance);
+}
+
 struct Lattice {
   std::array<std::int64_t, 3> count{0, 0, 0};
   double spacing = 0.0;  // m, the smallest of the three
@@ -50,6 +55,22 @@ Lattice widest_lattice(const Vec3& extent, std::int64_t count, const std::array<
 
 }  // namespace
 
+std::array<std::int64_t, 3> UniformSites::most(const PeriodicBox& box, const Region& region, double radius,
+                                               double clearance) {
+  std::array<std::int64_t, 3> most{};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (region.plane && axis == 1) {
+      most[1] = 1;  // one sheet, in the middle
+      continue;
+    }
+    // A box made for n grains must take n in spite of rounding; the overlap this allows is far below a millionth.
+    const double extent = sites_extent(box, region, axis, clearance);
+    most[static_cast<std::size_t>(axis)] =
+        std::max<std::int64_t>(0, static_cast<std::int64_t>(std::floor(extent / (2.0 * radius) + 1e-9)));
+  }
+  return most;
+}
+
 UniformSites::UniformSites(const PeriodicBox& box, const Region& region, std::int64_t count, double radius,
                            double clearance, std::uint64_t seed)
     : box_(box),
@@ -60,19 +81,12 @@ UniformSites::UniformSites(const PeriodicBox& box, const Region& region, std::in
       extent_(region.upper - region.lower) {
   check_region(box, region);
   const double diameter = 2.0 * radius;
-  std::array<std::int64_t, 3> most{};
   for (int axis = 0; axis < 3; ++axis) {
-    if (region.plane && axis == 1) {
-      most[1] = 1;  // one sheet, in the middle
-      continue;
-    }
-    if (!wraps(box, region, axis)) {
-      lower_[axis] += clearance;
-      extent_[axis] -= 2.0 * clearance;
-    }
-    // A box made for n grains must take n in spite of rounding; the overlap this allows is far below a millionth.
-    most[axis] = std::max<std::int64_t>(0, static_cast<std::int64_t>(std::floor(extent_[axis] / diameter + 1e-9)));
+    if (region.plane && axis == 1) continue;
+    if (!wraps(box, region, axis)) lower_[axis] += clearance;
+    extent_[axis] = sites_extent(box, region, axis, clearance);
   }
+  const std::array<std::int64_t, 3> most = UniformSites::most(box, region, radius, clearance);
   if (count > most[0] * most[1] * most[2])
     throw InputError(
         fmt::format("{} grains of {:g} m do not fit on a lattice in {:g} x {:g} x {:g} m: {} would; use fewer "

@@ -45,6 +45,10 @@ public:
   UniformSites(const PeriodicBox& box, const Region& region, std::int64_t count, double radius, double clearance,
                std::uint64_t seed);
 
+  // How many grains of this radius (m) have room on a lattice, along each axis.
+  static std::array<std::int64_t, 3> most(const PeriodicBox& box, const Region& region, double radius,
+                                          double clearance);
+
   Vec3 centre(std::int64_t grain) const;  // m, wrapped; grain: 0 .. count - 1
 
 private:

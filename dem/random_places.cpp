@@ -35,7 +35,7 @@ InputError too_many_at_random(const GrainsToPlace& grains, std::int64_t placed) 
   const Vec3 extent = grains.region.upper - grains.region.lower;
   return InputError(
       fmt::format("{} grains do not fit at random in {:g} x {:g} x {:g} m: {} did; use fewer or smaller "
-                  "grains, a larger region, or another placement.pattern: uniform, or dense.",
+                  "grains, a larger region, or another placement.pattern (dense or uniform).",
                   grains.count, extent.x(), extent.y(), extent.z(), placed));
 }
 

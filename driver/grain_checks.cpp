@@ -3,6 +3,7 @@
 #include "dem/material.hpp"
 #include "dem/packing.hpp"
 #include "driver/case_checks.hpp"
+#include "driver/grain_setup.hpp"
 #include "driver/limit_text.hpp"
 #include "driver/obstacles.hpp"
 
@@ -78,6 +79,44 @@ void check_lubrication_steps(const Case& c, const io::YamlDocument& document) {
                             : ""));
 }
 
+// Of all grains, with spheres around clumps, as they are placed. m^3
+double volume_to_place(const Case& c) {
+  double volume = 0.0;
+  for (const dem::Population& grains : c.grains)
+    volume +=
+        grains.shape ? static_cast<double>(grains.count) * grains.volume_of(grains.room_of_all()) : grains.volume();
+  return volume;
+}
+
+// A pattern that has room for a population where all grains fill so much of its region; none is sure to have it beyond.
+const char* pattern_for(double fraction, bool only_population) {
+  constexpr double most_at_random = 0.3, most_dense = 0.58;
+  if (fraction <= most_at_random) return "random";
+  return only_population && fraction <= most_dense ? "dense" : nullptr;
+}
+
+void check_pattern(const Case& c, std::size_t n, const io::YamlDocument& document) {
+  const dem::Population& grains = c.grains[n];
+  const dem::PlacementKeys& placement = grains.placement;
+  if (placement.file || !placement.positions.empty() || placement.pattern != dem::PlacementPattern::uniform) return;
+  const PeriodicBox box = grain_box(c);
+  dem::Region region =
+      placement.region ? dem::Region{placement.region->lower, placement.region->upper} : dem::whole(box);
+  region.plane = c.disks.has_value();
+  if (region.plane) region.lower[1] = 0.0, region.upper[1] = c.disks->thickness;
+  const double room = grains.room_of_all();
+  const std::array<std::int64_t, 3> sites = dem::UniformSites::most(box, region, 0.5 * room, 0.0);
+  const std::int64_t most = sites[0] * sites[1] * sites[2];
+  if (grains.count <= most) return;
+  const std::string key = fmt::format("grains.{}.placement.pattern", n);
+  const char* pattern = pattern_for(volume_to_place(c) / (region.upper - region.lower).prod(), c.grains.size() == 1);
+  throw document.error(
+      key, fmt::format("{} grains do not fit on a lattice of places for the largest, {:.4g} m wide: {} would; give {}",
+                       grains.count, room, most,
+                       pattern ? fmt::format("{}: {}", key, pattern)
+                               : std::string("fewer or smaller grains or a larger placement.region in m")));
+}
+
 void check_walls(const Case& c, const io::YamlDocument& document) {
   for (std::size_t n = 0; n < c.walls.size(); ++n)
     at_place(document, fmt::format("walls.{}", n), [&] {
@@ -127,6 +166,8 @@ void check_that_grains_fit(const Case& c, const io::YamlDocument& document) {
   for (std::size_t n = 0; n < c.grains.size(); ++n)
     at_place(document, fmt::format("grains.{}", n),
              [&] { check_placement(c.grains[n], c.domain.size, c.disks.has_value()); });
+  if (c.initial.takes(InitialField::grains)) return;
+  for (std::size_t n = 0; n < c.grains.size(); ++n) check_pattern(c, n, document);
 }
 
 void check_grains(const Case& c, const io::YamlDocument& document) {

@@ -68,7 +68,7 @@ TEST(GrainFill, DisksCountByTheirArea) {
 TEST(GrainFill, ClumpsCountByTheirVolume) {
   const Case c = testing::read_text(
       flume, {"grains=[{shape: {clump: [{position: [0, 0, 0], diameter: 4.0e-3}, {position: [0, 0, 2.0e-3], diameter: "
-              "4.0e-3}]}, density: 2500, fill: {depth: 0.02}}]"});
+              "4.0e-3}]}, density: 2500, fill: {depth: 0.02}, placement: {pattern: dense}}]"});
   const double volume = (8.0 / 3.0 - 5.0 / 12.0) * std::numbers::pi * 8e-9;  // of the union of two spheres
   EXPECT_EQ(c.grains[0].count, std::llround(0.6 * 0.02 * 0.06 * 0.0105 / volume));
 }

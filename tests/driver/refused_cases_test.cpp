@@ -108,7 +108,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"smaller_than_a_cell", {"domain.size=[0.06, 0.0001, 0.075]"}, {"along y", "at least 0.0005 m"}},
         Bad{"too_coarse",
             {"domain.size=[0.06, 0.012, 0.075]", "domain.spacing=3e-3"},
-            {"domain.spacing = 3e-3: the spacing is too coarse for grains of 0.004 m", "give at most 0.002299 m"}},
+            {"domain.spacing = 3e-3: the spacing is too coarse for grains of 0.004 m",
+             "give at most 0.002298 m, better domain.spacing: 0.0006"}},
         Bad{"too_many_cells", {"domain.spacing=1e-9"}, {"domain.spacing = 1e-9", "6e+07 cells", "larger spacing in m"}},
         Bad{"narrow_periodic_axis",
             {"domain.size=[0.009, 0.0105, 0.075]", "grains.0.placement.region=null"},
@@ -133,6 +134,11 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"positions_and_pattern",
             {"grains.1.placement.seed=3"},
             {"grains.1.placement.seed = 3: the positions are given one by one"}},
+        // 0.06 x 0.0105 x 0.05 m, periodic along x: 12 x 2 x 10 places of 4.95 mm; 250 of them fill 0.504.
+        Bad{"too_many_for_a_lattice",
+            {"grains.0.count=250", "grains.0.placement.pattern=uniform"},
+            {"grains.0.placement.pattern = \"uniform\": 250 grains do not fit on a lattice of places for the largest, "
+             "0.00495 m wide: 240 would; give fewer or smaller grains"}},
         Bad{"count_and_positions", {"grains.1.count=3"}, {"grains.1.count = 3: there are 2 positions"}},
         Bad{"no_count", {"grains.0.count=null"}, {"grains.0.count: the number of grains is missing"}},
         Bad{"fixed_and_moving",
