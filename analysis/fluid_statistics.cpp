@@ -158,8 +158,8 @@ std::optional<std::string> warning(const FluidStatisticsKeys& keys, const RunFac
   if (keys.from < run.until) return std::nullopt;
   return fmt::format(
       "The means of the fluid begin at {} s, after the end of the run at {} s, so profiles.h5 will hold "
-      "none: consider an earlier analysis.fluid_statistics.from.",
-      keys.from, run.until);
+      "none: consider analysis.fluid_statistics.from: {:.2g}.",
+      keys.from, run.until, 0.5 * run.until);
 }
 
 std::unique_ptr<Observer> make_observer(const FluidStatisticsKeys& keys, const RunFacts& run,

@@ -251,8 +251,8 @@ std::optional<std::string> warning(const TransportRateKeys& keys, const RunFacts
   if (keys.from < run.until) return std::nullopt;
   return fmt::format(
       "The mean transport rate begins at {} s, after the end of the run at {} s, so the summary will have "
-      "none: consider an earlier analysis.transport_rate.from.",
-      keys.from, run.until);
+      "none: consider analysis.transport_rate.from: {:.2g}.",
+      keys.from, run.until, 0.5 * run.until);
 }
 
 TransportScales transport_scales(const RunFacts& run) {

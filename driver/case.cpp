@@ -46,11 +46,11 @@ Index3 cells_of(const DomainCase& domain) {
 
 double spacing_below(const DomainCase& domain, double most) {
   const double longest = domain.size.maxCoeff();
-  for (double cells = std::ceil(longest / most); cells < 1.25 * longest / most + 1.0; cells += 1.0) {
+  for (double cells = std::ceil(longest / most * (1.0 - 1e-9)); cells < 1.25 * longest / most + 1.0; cells += 1.0) {
     const Vec3 along = domain.size * cells / longest;
-    if (((along.array() - along.array().round()).abs() <= 1e-6 * along.array()).all()) return longest / cells;
+    if (((along.array() - along.array().round()).abs() <= 5e-7 * along.array()).all()) return longest / cells;
   }
-  return most;
+  return domain.spacing / std::ceil(domain.spacing / most * (1.0 - 1e-9));
 }
 
 std::array<bool, 3> periodic_axes(const DomainCase& domain) {

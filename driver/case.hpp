@@ -171,8 +171,8 @@ continuum::SystemParameters column_of(const Case& c);  // of system: continuum
 
 Index3 cells_of(const DomainCase& domain);  // size over spacing
 
-// The largest spacing (m) of at most `most` of which every side of the domain is a whole number; `most` where there is
-// none within a fifth of it.
+// The largest spacing (m) of at most `most` of which every side of the domain is a whole number; where there is none
+// within a fifth of it, the largest whole fraction of the present spacing.
 double spacing_below(const DomainCase& domain, double most);
 std::array<bool, 3> periodic_axes(const DomainCase& domain);
 double fluid_time_step(const Case& c);            // s; given, or from the lattice velocity

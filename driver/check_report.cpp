@@ -22,7 +22,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <numbers>
+#include <optional>
 
 namespace thalweg::driver {
 
@@ -51,20 +51,17 @@ std::string damping_text(const Case& c) {
   return text + (c.contact.law == dem::Law::linear ? " kg/s" : " kg/(s m^1/2)");
 }
 
-// A contact that ends before sound has gone around the grain reverses the grain alone, which then loses momentum to the
-// water that moved with it (benchmarks/validation/rebound_in_water).
-void add_rebound(const Case& c, Lines& lines) {
-  const double contact = shortest_contact(c) / fluid_time_step(c);
-  const double around = 0.5 * std::numbers::pi * std::sqrt(3.0) * smallest_diameter(c) / c.domain.spacing;  // steps
-  if (contact >= around) return;
-  const std::string advice = c.contact.law == dem::Law::linear
-                                 ? fmt::format("; contact.normal_stiffness: {:.4g} would make the two times equal",
-                                               c.contact.normal_stiffness * contact * contact / (around * around))
-                                 : std::string("; softer grains have longer contacts");
-  lines.push_back(
-      fmt::format("rebound    too weak: a contact lasts {:.3g} fluid steps, less than the {:.3g} that sound takes "
-                  "around a grain{}",
-                  contact, around, advice));
+std::string range_text(double least, double most) {
+  const std::string low = fmt::format("{:.3g}", least), high = fmt::format("{:.3g}", most);
+  return low == high ? low : low + " to " + high;
+}
+
+// Where it follows from the damping.
+std::string restitution_text(const Case& c) {
+  const std::optional<DryRestitution> dry = dry_restitution(c);
+  if (!dry) return {};
+  return fmt::format(", dry restitution {} of two grains and {} of grain and wall", range_text(dry->least, dry->most),
+                     range_text(dry->least_at_wall, dry->most_at_wall));
 }
 
 // With one relaxation time water hardly seeps through a bed: speed over the right one in random beds, by cells across a
@@ -83,10 +80,10 @@ void add_seepage(const Case& c, Lines& lines) {
   const double speed = cells < few    ? with_few
                        : cells < some ? between(few, with_few, some, with_some)
                                       : between(some, with_some, many, with_many);
-  lines.push_back(
-      fmt::format("seepage    through a dense bed {} {:.1g} of the right speed with fluid.collision: bgk; "
-                  "with trt_at_bodies more than half",
-                  cells < few ? "at most" : "about", speed));
+  lines.push_back(fmt::format(
+      "seepage    through a dense bed {} {:.1g} of the right speed with bgk: for more than half of it consider "
+      "fluid.collision: trt_at_bodies",
+      cells < few ? "at most" : "about", speed));
 }
 
 void add_overlaps(const Case& c, Lines& lines) {
@@ -117,15 +114,15 @@ void add_grains(const Case& c, Lines& lines) {
   }
   if (c.grains.empty()) return;
   const double step = grain_time_step(c);
-  lines.push_back(fmt::format("contact    lasts {:.3g} s: {:.3g} sub-steps of {:.3g} s (at least {:g}); damping {}",
+  lines.push_back(fmt::format("contact    lasts {:.3g} s: {:.3g} sub-steps of {:.3g} s (at least {:g}); damping {}{}",
                               shortest_contact(c), shortest_contact(c) / step, step, dem::fewest_steps_per_contact,
-                              damping_text(c)));
+                              damping_text(c), restitution_text(c)));
   add_overlaps(c, lines);
   if (!has_fluid(c)) return;
   lines.push_back(
       fmt::format("flight     a grain moves a fiftieth of a cell a step at {:.3g} m/s; faster grains are less accurate",
                   0.02 * units_of(c).velocity()));
-  add_rebound(c, lines);
+  for (const std::string& weak : remarks_on_rebound(c)) lines.push_back("rebound    " + weak);
   add_seepage(c, lines);
 }
 

@@ -1,5 +1,6 @@
 #include "driver/contact_estimate.hpp"
 
+#include "dem/material.hpp"
 #include "dem/population_seeds.hpp"
 #include "driver/bed_flow.hpp"
 #include "driver/flow_estimate.hpp"
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 
 namespace thalweg::driver {
 
@@ -32,7 +34,23 @@ double overlap_in_impact(const dem::ContactParameters& material, double mass, do
   return std::pow(15.0 * mass * speed * speed / (16.0 * effective_modulus(material) * std::sqrt(0.25 * diameter)), 0.4);
 }
 
-double impact_speed(const Case& c) {
+// m/s, of free grains that start towards or past those of another population.
+double given_speed(const Case& c) {
+  double fastest = 0.0;
+  for (const dem::Population& one : c.grains)
+    for (const dem::Population& other : c.grains)
+      if (!one.held() && !other.held()) fastest = std::max(fastest, (one.velocity - other.velocity).norm());
+  return fastest;
+}
+
+// By mass, of spheres or disks of one density; clumps are alike.
+double heaviest_over_lightest(const dem::Population& grains) {
+  return grains.shape
+             ? 1.0
+             : std::pow(grains.largest_diameter() / grains.smallest_diameter(), grains.thickness > 0.0 ? 2 : 3);
+}
+
+double speed_of_a_fall(const Case& c) {
   if (has_fluid(c)) return settling_velocity(c);
   const double height = std::max(0.0, c.domain.size.z() - settled_height(c));
   return periodic_axes(c.domain)[2] ? 0.0 : std::sqrt(2.0 * std::abs(gravity_vector(c.gravity).z()) * height);
@@ -41,7 +59,7 @@ double impact_speed(const Case& c) {
 }  // namespace
 
 Overlaps expected_overlaps(const Case& c) {
-  Overlaps found{0.0, 0.0, impact_speed(c)};
+  Overlaps found{0.0, 0.0, std::max(speed_of_a_fall(c), given_speed(c))};
   const std::vector<dem::ContactParameters> materials = dem::materials_of(c.contact, c.grains);
   const bool bed = !periodic_axes(c.domain)[2] && !c.disks;
   for (std::size_t p = 0; p < c.grains.size(); ++p) {
@@ -54,6 +72,38 @@ Overlaps expected_overlaps(const Case& c) {
     if (!grains.held())
       found.in_impact = std::max(found.in_impact, overlap_in_impact(material, mass, found.speed, d) / d);
   }
+  return found;
+}
+
+std::optional<ReboundTimes> rebound_times(const Case& c) {
+  if (!has_fluid(c) || c.grains.empty()) return std::nullopt;
+  return ReboundTimes{shortest_contact(c) / fluid_time_step(c),
+                      0.5 * std::numbers::pi * std::sqrt(3.0) * smallest_diameter(c) / c.domain.spacing};
+}
+
+std::optional<DryRestitution> dry_restitution(const Case& c) {
+  if (c.grains.empty() || !c.contact.damping) return std::nullopt;
+  const std::vector<dem::ContactParameters> materials = dem::materials_of(c.contact, c.grains);
+  const std::optional<dem::ContactParameters> walls = dem::wall_material_of(c.contact);
+  const auto of = [](const dem::ContactParameters& material, double mass) {
+    const double ratio = *material.damping / (2.0 * std::sqrt(material.normal_stiffness * mass));
+    return dem::restitution_of_damping_ratio(ratio, material.attraction);
+  };
+  DryRestitution found{1.0, 0.0, 1.0, 0.0};
+  for (std::size_t p = 0; p < c.grains.size(); ++p) {
+    const dem::Population& grains = c.grains[p];
+    if (grains.held()) continue;
+    const dem::ContactParameters& own = materials[static_cast<std::size_t>(dem::material_of(c.grains, p))];
+    const double lightest = grains.lightest_mass();
+    for (const double mass : {lightest, lightest * heaviest_over_lightest(grains)}) {
+      const double between = of(own, 0.5 * mass), at_wall = of(walls.value_or(own), mass);
+      found.least = std::min(found.least, between);
+      found.most = std::max(found.most, between);
+      found.least_at_wall = std::min(found.least_at_wall, at_wall);
+      found.most_at_wall = std::max(found.most_at_wall, at_wall);
+    }
+  }
+  if (found.least > found.most) return std::nullopt;
   return found;
 }
 

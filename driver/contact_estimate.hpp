@@ -4,15 +4,33 @@
 
 #include "driver/case.hpp"
 
+#include <optional>
+
 namespace thalweg::driver {
 
 // Overlaps of the softest contact between two grains of a population, over their diameter; 0 without grains.
 struct Overlaps {
   double under_weight;  // at the base of the settled bed: each grain carries the weight above its own d^2
   double in_impact;     // of two free grains at `speed`
-  double speed;         // m/s, of a fall: through the fluid, or dry from the top of the box onto the bed
+  double speed;         // m/s, of a fall, through the fluid or dry from the top of the box onto the bed, or as given
 };
 Overlaps expected_overlaps(const Case& c);
+
+// How long the shortest contact lasts, and sound takes around the smallest grain, in steps of the fluid. A contact that
+// ends before reverses the grain alone, which then loses momentum to the water that moved with it
+// (benchmarks/validation/rebound_in_water). None without grains in a fluid.
+struct ReboundTimes {
+  double contact, around;
+};
+std::optional<ReboundTimes> rebound_times(const Case& c);
+
+// Coefficients of restitution of dry collisions that follow from the damping (kg/s) of a linear contact, whatever the
+// speed: of the lightest and the heaviest two grains of a population that are free, and of one of them with a wall.
+// None where the case gives the restitution itself.
+struct DryRestitution {
+  double least, most, least_at_wall, most_at_wall;
+};
+std::optional<DryRestitution> dry_restitution(const Case& c);
 
 // Shear stress over normal stress between the grains at the base of a settled bed, where gravity along x drives water
 // and grains: with the pores full of water and H of it above,

@@ -14,7 +14,7 @@ namespace thalweg::driver {
 
 namespace {
 
-using Warnings = std::vector<std::string>;
+using Sentences = std::vector<std::string>;
 
 bool any_held(const Case& c) {
   return std::any_of(c.grains.begin(), c.grains.end(), [](const dem::Population& grains) { return grains.held(); });
@@ -59,7 +59,7 @@ std::string what_would_hold(const Case& c) {
   return has_floor ? "domain.boundaries.bottom: no_slip" : "domain.boundaries.bottom: no_slip and top: no_slip";
 }
 
-void warn_of_endless_acceleration(const Case& c, Warnings& found) {
+void warn_of_endless_acceleration(const Case& c, Sentences& found) {
   const Vec3 acceleration = common_acceleration(c);
   for (int axis = 0; axis < 3; ++axis) {
     const double gained = std::abs(acceleration[axis]);
@@ -74,7 +74,7 @@ void warn_of_endless_acceleration(const Case& c, Warnings& found) {
   }
 }
 
-void warn_of_closed_ends(const Case& c, Warnings& found) {
+void warn_of_closed_ends(const Case& c, Sentences& found) {
   const Vec3 gravity = gravity_vector(c.gravity);
   for (int axis = 0; axis < 2; ++axis)
     if (gravity[axis] != 0.0 && !drives_flow(c, axis))
@@ -85,7 +85,7 @@ void warn_of_closed_ends(const Case& c, Warnings& found) {
 }
 
 // x points downstream.
-void warn_of_uphill_flow(const Case& c, Warnings& found) {
+void warn_of_uphill_flow(const Case& c, Sentences& found) {
   const Vec3 gravity = gravity_vector(c.gravity);
   if (c.grains.empty() || gravity.x() >= 0.0 || gravity.z() >= 0.0 || flow_estimate(c).drive != FlowCause::slope)
     return;
@@ -100,7 +100,7 @@ void warn_of_uphill_flow(const Case& c, Warnings& found) {
 }  // namespace
 
 std::vector<std::string> drive_warnings(const Case& c) {
-  Warnings found;
+  Sentences found;
   if (c.system == SystemKind::model_fluid || c.system == SystemKind::continuum) return found;
   if (!has_fluid(c) || c.gravity.mode != GravityMode::balanced) warn_of_endless_acceleration(c, found);
   if (!has_fluid(c)) return found;

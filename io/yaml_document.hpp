@@ -30,6 +30,9 @@ struct YamlEntry {
 
 class YamlDocument {
 public:
+  // An empty document: its errors name no place.
+  YamlDocument() = default;
+
   // Reads a file, then applies the overrides ("key.sub=VALUE", VALUE being YAML itself; list items by index).
   // Throws InputError: missing file, YAML syntax, duplicate key, more than one document, aliases that multiply to more
   // than a million values, an override that names no key.

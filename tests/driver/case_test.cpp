@@ -131,8 +131,10 @@ TEST(Case, WarnsOfCoarseCellsUnlessTheyAreAccepted) {
   };
   EXPECT_EQ(warning(), "");
   c.domain.spacing = smallest_diameter(c) / 5.5;
+  c.domain.size = Vec3(132, 44, 117) * c.domain.spacing;
   EXPECT_NE(warning().find("The smallest grain is only 5.5 cells across; its drag"), std::string::npos) << warning();
   c.domain.spacing = smallest_diameter(c) / 3.25;
+  c.domain.size = Vec3(78, 26, 69) * c.domain.spacing;
   EXPECT_NE(warning().find("only 3.2 cells across, which does not resolve"), std::string::npos) << warning();
   EXPECT_NE(warning().find("accept it with coupling.fewest_cells_per_diameter: 3.2."), std::string::npos) << warning();
   c.coupling.fewest_cells_per_diameter = 3.2;
@@ -157,6 +159,7 @@ TEST(Case, WarnsOfABulkViscosityThatMakesTrtUnstable) {
 // (benchmarks/validation/simple_cubic_arrays), which it does except with trt and cli.
 TEST(Case, WarnsOfLinksWhoseDragDependsOnTheViscosity) {
   Case c = wide_bed();
+  c.domain.size.z() = cells_of(c.domain)[2] * c.domain.spacing;
   c.run.until = 30.0;
   c.fluid.smagorinsky_constant = 0.0;
   c.fluid.bulk_relaxation_time = 0.0;

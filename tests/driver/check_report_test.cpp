@@ -1,10 +1,13 @@
 #include "driver/check_report.hpp"
 
 #include "driver/case_warnings.hpp"
+#include "driver/contact_warnings.hpp"
 #include "driver/disk_space.hpp"
+#include "driver/remedy.hpp"
 #include "driver/run_cost.hpp"
 #include "tests/driver/water_over_glass.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -131,7 +134,7 @@ TEST(CheckReport, AsksForContactsAsLongAsSoundGoesAroundAGrain) {
     return {};
   };
   // Ten cells a diameter: pi 5 sqrt(3) = 27.2 steps around.
-  EXPECT_NE(line().find("the 27.2 that sound takes around a grain"), std::string::npos) << line();
+  EXPECT_NE(line().find("the 27.3 that sound takes around a grain"), std::string::npos) << line();
   // A contact lasts pi sqrt(m/(2 k)): as long as that with the stiffness that the line asks for, m = pi/6 d^3 rho.
   const double mass = std::numbers::pi / 6.0 * std::pow(5e-3, 3) * c.grains[0].density;
   const double longest = 0.5 * mass * std::pow(std::numbers::pi / (27.2 * *c.fluid.time_step), 2);
@@ -139,6 +142,47 @@ TEST(CheckReport, AsksForContactsAsLongAsSoundGoesAroundAGrain) {
   EXPECT_NE(line(), "");
   c.contact.normal_stiffness = 0.99 * longest;
   EXPECT_EQ(line(), "");
+}
+
+// e = exp(-pi zeta/sqrt(1 - zeta^2)), zeta = gamma/(2 sqrt(k m*)), of two grains m* = m/2, at a wall m* = m.
+TEST(CheckReport, AsksForSofterContactsOfTheSameRestitution) {
+  Case c = wide_bed();
+  c.contact.restitution.reset();
+  c.contact.damping = 0.09;
+  c.domain.size[2] = 0.106;
+  const double mass = std::numbers::pi / 6.0 * std::pow(5e-3, 3) * c.grains[0].density;
+  const auto restitution = [](double damping, double stiffness, double effective) {
+    const double zeta = damping / (2.0 * std::sqrt(stiffness * effective));
+    return std::exp(-std::numbers::pi * zeta / std::sqrt(1.0 - zeta * zeta));
+  };
+  const auto report = check_report(c, 10e9);
+  EXPECT_TRUE(
+      any_contains(report, fmt::format("dry restitution {:.3g} of two grains and {:.3g} of grain and wall",
+                                       restitution(0.09, 20000.0, 0.5 * mass), restitution(0.09, 20000.0, mass))));
+  const Remedy softer = stiffness_changes(c, 0.1, 4, Rounding::down);
+  EXPECT_EQ(text_of({softer.begin(), softer.begin() + 2}),
+            "contact.normal_stiffness: 2000 and contact.tangential_stiffness: 571.4");
+  const Case after = changed(c, softer);
+  EXPECT_NEAR(restitution(*after.contact.damping, 2000.0, mass), restitution(0.09, 20000.0, mass), 1e-6);
+}
+
+TEST(Remedy, IsPrintedAsItIsPasted) {
+  const Remedy one = {exact_change("a.b", 320.0, 2, [](Case&, double) {})};
+  EXPECT_EQ(text_of(one), "a.b: 320");
+  const Remedy three = joined(joined(one, {word_change("c", "{}", [](Case&) {})}),
+                              {number_change("a.b", 0.01238, 2, Rounding::down, [](Case&, double) {}),
+                               number_change("d", 0.01231, 2, Rounding::up, [](Case&, double) {})});
+  EXPECT_EQ(text_of(three), "c: {}, a.b: 0.012 and d: 0.013");
+}
+
+// 80 by 40 by 36 cells of a millimetre: a third of it for six cells in grains of 2 mm. Sides of primes leave halves.
+TEST(Remedy, IsASpacingThatDividesTheBox) {
+  Case c;
+  c.domain.size = Vec3(0.08, 0.04, 0.036);
+  c.domain.spacing = 1e-3;
+  EXPECT_EQ(spacing_change(c, 2.00031e-3 / 6.0).value, "0.000333333333");
+  c.domain.size = Vec3(0.061, 0.019, 0.041);
+  EXPECT_EQ(spacing_change(c, 0.9e-3).value, "0.0005");
 }
 
 }  // namespace

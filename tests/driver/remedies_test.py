@@ -1,0 +1,263 @@
+#!/usr/bin/python3
+"""Every remedy that `thalweg check` prints, pasted as it is printed: the case is accepted, the warning is gone, no other is new,
+and what the remedy does not name is as it was.
+
+Called by ctest: remedies_test.py THALWEG MPIEXEC [unittest arguments]
+"""
+import re
+import sys
+from pathlib import Path
+
+import yaml
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+import program
+from program import ProgramTest
+
+CASES = Path(__file__).resolve().parents[2] / "cases"
+
+# Gravel of a sieve curve, four layers under a slope.
+GRAVEL = """
+system: resolved
+domain: {size: [0.08, 0.04, 0.036], spacing: 1.0e-3, boundaries: {x: periodic, y: periodic, bottom: no_slip, top: free_slip}}
+fluid: {density: 1000, kinematic_viscosity: 1.0e-6, time_step: 1.0e-4}
+gravity: {magnitude: 9.81, slope: 0.02}
+grains:
+  - fill: {layers: 4}
+    diameter: {sieve: {sizes: [2.0e-3, 2.8e-3, 4.0e-3, 5.6e-3, 8.0e-3], finer: [0, 0.15, 0.5, 0.85, 1]}}
+    density: 2650
+    placement: {pattern: random, seed: 1}
+contact: {restitution: 0.5}
+run: {until: 1.0}
+"""
+
+# 150 glass spheres of ten cells in water.
+WATER = """
+system: resolved
+domain: {size: [0.06, 0.02, 0.04], spacing: 0.5e-3, boundaries: {x: periodic, y: periodic, bottom: no_slip, top: free_slip}}
+fluid: {density: 1000, kinematic_viscosity: 1.0e-6, smagorinsky_constant: 0.27, time_step: 4.0e-5}
+gravity: {magnitude: 9.8, slope: 0.01}
+grains: [{count: 150, diameter: 5.0e-3, density: 2550, placement: {pattern: uniform, seed: 1}}]
+contact: {normal_stiffness: 600, tangential_stiffness: 171, restitution: 0.93}
+run: {until: 30}
+output: {series: {every: 0.01}}
+"""
+
+# A suspension of light spheres of six cells in oil.
+SUSPENSION = """
+system: resolved
+domain: {size: [0.0048, 0.0048, 0.0048], spacing: 1.0e-4, boundaries: {x: periodic, y: periodic, bottom: periodic, top: periodic}}
+fluid: {density: 1000, kinematic_viscosity: 1.0e-5, time_step: 1.6e-5, collision: trt}
+gravity: {vector: [0, 0, -9.81], mode: balanced}
+grains: [{solid_fraction: 0.25, density: 1100, diameter: 6.0e-4, placement: {pattern: dense, seed: 1}}]
+contact: {normal_stiffness: 0.5, tangential_stiffness: 0.15, restitution: 0.5}
+coupling: {links: cli, grain_steps_per_fluid_step: auto, lubrication: {minimum_gap: 0.01}}
+run: {until: 0.06}
+"""
+
+# Spheres in oil under a lid.
+OIL = """
+system: resolved
+domain:
+  size: [0.03, 0.01, 0.02]
+  spacing: 0.5e-3
+  boundaries: {x: periodic, y: periodic, bottom: no_slip, top: {type: moving, velocity: [0.02, 0, 0]}}
+fluid: {density: 900, kinematic_viscosity: 1.0e-4, time_step: 1.0e-4, collision: trt}
+gravity: {magnitude: 9.8}
+grains: [{count: 30, diameter: 4.0e-3, density: 1200, placement: {pattern: uniform, seed: 1}}]
+contact: {normal_stiffness: 5, tangential_stiffness: 1.5, restitution: 0.9}
+coupling: {links: cli}
+run: {until: 20}
+"""
+
+CLEAR = ["system=fluid", "grains=null", "contact=null"]   # of the case in water
+
+DRY = """
+system: grains
+domain: {size: [0.06, 0.02, 0.06], spacing: 1.0e-3, boundaries: {x: periodic, y: periodic, bottom: no_slip, top: no_slip}}
+gravity: {magnitude: 9.8, slope: 0.1}
+grains:
+  - {count: 150, diameter: 5.0e-3, density: 2550, placement: {pattern: random, seed: 3}}
+  - {count: 20, diameter: 4.0e-3, density: 4000, placement: {pattern: random, seed: 4},
+     contact: {normal_stiffness: 1000, damping: 0.02}}
+contact: {normal_stiffness: 2000, tangential_stiffness: 571, damping: 0.03, walls: {normal_stiffness: 4000, damping: 0.05}}
+run: {until: 1}
+"""
+
+MODEL_FLUID = (CASES / "model_fluid/case.yaml").read_text()
+
+# Text of the case, changes of it, and words of the warnings or the refusal that they bring.
+VARIATIONS = [
+    (GRAVEL, [], ["no subgrid model", "2 cells across", "too short", "too weak"]),
+    (GRAVEL, ["fluid.smagorinsky_constant=0.27", "domain.spacing=3.3333333333e-4"], ["cells a step"]),
+    (GRAVEL, ["fluid.time_step=null", "fluid.maximum_lattice_velocity=0.1", "fluid.expected_velocity=0.45",
+              "fluid.smagorinsky_constant=0.27", "run.until=30", "coupling={grain_steps_per_fluid_step: auto}"],
+     ["times fluid.expected_velocity"]),
+    (GRAVEL, ["fluid.smagorinsky_constant=0.27", "coupling.fewest_cells_per_diameter=2", "contact.normal_stiffness=20"],
+     ["would overlap"]),
+    (GRAVEL, ["domain.size.2=0.06", "grains.0.placement.pattern=uniform"], ["pattern: random"]),
+    (GRAVEL, ["domain.spacing=4.0e-3", "coupling.fewest_cells_per_diameter=0.5"], ["domain.spacing: "]),
+    (WATER, ["fluid.time_step=8.0e-5", "gravity.slope=0.03"], ["cells a step", "too weak"]),
+    (WATER, ["fluid.time_step=2.0e-6"], ["has not been tested below"]),
+    (WATER, ["fluid.time_step=4.0e-6", "gravity.slope=0.2"], ["has not been tested below", "slides as a whole"]),
+    (WATER, ["gravity={magnitude: 9.8, slope: 0, mode: full}", "fluid.time_step=1.1e-4"], ["compresses it"]),
+    (WATER, ["gravity.slope=0.3"], ["slides as a whole"]),
+    (WATER, ["gravity={vector: [2.5, 0, -9.5]}"], ["slides as a whole"]),
+    (WATER, ["contact={normal_stiffness: 20, tangential_stiffness: 5.71, damping: 0.004}"], ["would overlap", "dry restitution"]),
+    (WATER, ["contact={normal_stiffness: 20000, tangential_stiffness: 5714, damping: 0.09}"], ["too weak", "dry restitution"]),
+    (WATER, ["contact={law: hertz_mindlin, youngs_modulus: 2.0e4, restitution: 0.9}"], ["would overlap"]),
+    (WATER, ["contact={law: hertz_mindlin, youngs_modulus: 1.0e7, restitution: 0.9}"], ["too weak"]),
+    (WATER, ["contact.walls={normal_stiffness: 1200}", "grains.0.contact={tangential_stiffness: 100}", "fluid.time_step=8.0e-5"],
+     ["too weak"]),
+    (WATER, ["grains.0.count=400"], ["placement.pattern: dense"]),
+    (WATER, ["fluid.collision=regularised"], ["'regularised'"]),
+    (WATER, ["fluid.bulk_relaxation_time=100", "gravity.slope=0.02"], ["grows stripes"]),
+    (WATER, ["fluid.smagorinsky_constant=0"], ["no subgrid model"]),
+    (WATER, ["run.until=0.5"], ["too short"]),
+    (WATER, ["run.until=0.1", "initial={fluid: {log_profile: {bed_height: 0.0137, shear_velocity: 0.05, roughness: 3.0e-4}}}"],
+     ["shorter than one turnover"]),
+    (WATER, ["initial={fluid: {log_profile: {bed_height: 0.0137, shear_velocity: 0.02, roughness: 3.0e-4}}}"], ["shear velocity"]),
+    (WATER, ["run.ramp=40"], ["Gravity rises"]),
+    (WATER, ["output.series.every=1.0e-5"], ["less than a step"]),
+    (WATER, ["domain.spacing=1.0e-3"], ["5 cells across"]),
+    (WATER, ["domain.spacing=1.0e-3", "coupling.fewest_cells_per_diameter=1"], []),
+    (WATER, ["domain.size=[0.061, 0.021, 0.041]", "domain.spacing=1.0e-3"], ["5 cells across"]),
+    (WATER, ["analysis={transport_rate: {from: 40}, fluid_statistics: {from: 30}}"], ["mean transport rate", "means of the fluid"]),
+    (WATER, ["grains.0.density=300"], ["so light", "no heavier"]),
+    (WATER, ["coupling={grain_steps_per_fluid_step: 1}", "contact.normal_stiffness=20000"], ["grain_steps_per_fluid_step: "]),
+    (WATER, ["gravity.slope=-0.01"], ["towards -x"]),
+    (SUSPENSION, [], []),
+    (SUSPENSION, ["coupling.grain_steps_per_fluid_step=1"], ["lubrication force"]),
+    (SUSPENSION, ["fluid.collision=bgk"], ["In a dense bed"]),
+    (SUSPENSION, ["fluid.time_step=1.0e-3", "run.until=10"], ["so large"]),
+    (SUSPENSION, ["fluid.smagorinsky_constant=0.27"], ["The flow is laminar"]),
+    (OIL, [], []),
+    (OIL, ["fluid.smagorinsky_constant=0.27", "fluid.collision=bgk", "coupling.links=bouzidi"], ["The flow is laminar"]),
+    (OIL, ["fluid.collision=bgk"], ["In a dense bed"]),
+    (OIL, ["fluid.time_step=1.0e-6"], ["at no velocity"]),
+    (OIL, ["fluid.time_step=5.0e-6", "fluid.bulk_relaxation_time=1"], ["bulk relaxation time"]),
+    (OIL, ["fluid.time_step=1.0e-3"], ["so large"]),
+    (OIL, ["run.until=0.1"], ["too short"]),
+    (WATER, CLEAR, []),
+    (WATER, [*CLEAR, "fluid.time_step=1.0e-6"], ["has not been tested below"]),
+    (WATER, [*CLEAR, "gravity.slope=0.1"], ["cells a step"]),
+    (WATER, [*CLEAR, "run.until=1"], ["too short"]),
+    (DRY, ["gravity.slope=0.6"], ["slides as a whole"]),
+    (DRY, ["contact.normal_stiffness=30", "grains.1.contact.normal_stiffness=20", "run.time_step=2.8e-5"], ["would overlap"]),
+    (DRY, ["grains.0.placement.pattern=uniform", "grains.0.count=600"], ["fewer or smaller grains"]),
+    (MODEL_FLUID, ["run.time_step=1.3e-3", "model_fluid.shields_number=2000"], ["a twentieth of a diameter"]),
+]
+
+KEY = r"(?<![\w.])((?:[a-z_]+\.)+[a-z0-9_.]*[a-z0-9_]): (\{[^}]*\}|\[[^\]]*\]|[^\s,]+)"
+
+
+def remedies_in(text):
+    """The alternatives that a sentence gives, each as (key, value) pairs."""
+    found = re.split(r": consider |; give |; consider ", text)
+    if len(found) == 1:
+        return []
+    return [pairs for part in found[-1].split(", or ")
+            if (pairs := [(key, value.rstrip(".;")) for key, value in re.findall(KEY, part)])]
+
+
+def kind_of(sentence):
+    """The first words of a warning, which tell it from others."""
+    return " ".join(re.sub(r"[-+0-9.e]*[0-9][-+0-9.e]*", "#", sentence).split()[:6])
+
+
+class Report:
+    """What check said: its warnings by kind, among them that of rebounds, or its refusal."""
+
+    def __init__(self, result):
+        self.accepted = result.returncode == 0
+        self.text = result.stdout + result.stderr
+        lines = [re.split(r"  +", line, maxsplit=1) for line in result.stdout.splitlines()]
+        self.lines = [(line[0], line[1]) for line in lines if len(line) == 2]
+        self.warnings = [text for name, text in self.lines if name in ("warning", "rebound")]
+        if not self.accepted:
+            self.warnings = [result.stderr]
+        self.kinds = sorted(kind_of(warning) for warning in self.warnings)
+
+    def all(self, name):
+        return [text for own, text in self.lines if own == name]
+
+    def restitution(self):
+        return re.findall(r"dry restitution (.*)", self.text)
+
+
+def number_of(contact, key):
+    return float(contact.get(key, {"normal_stiffness": 20000.0, "tangential_stiffness": 5714.0}[key]))
+
+
+class Remedies(ProgramTest):
+    def check(self, path, settings):
+        return Report(self.thalweg("check", path, *(word for setting in settings for word in ("--set", setting))))
+
+    def assert_contact_is_kept(self, remedy, before, after, path):
+        """The restitution, and of stiffnesses the ratio."""
+        if "normal_stiffness" not in " ".join(remedy):
+            return
+        self.assertEqual(after.restitution(), before.restitution())
+        contact = (yaml.safe_load(path.read_text()).get("contact") or {}) | self.contact
+        ratio = number_of(contact, "tangential_stiffness") / number_of(contact, "normal_stiffness")
+        if "contact.normal_stiffness" in remedy:
+            self.assertAlmostEqual(float(remedy["contact.tangential_stiffness"]) / float(remedy["contact.normal_stiffness"]) / ratio,
+                                   1.0, 5)
+
+    def assert_the_rest_is_kept(self, remedy, before, after):
+        if not any(key.startswith(("domain", "grains")) for key in remedy):
+            for name in ("domain", "grains", "reference"):
+                self.assertEqual(after.all(name), before.all(name), name)
+        if not any(key.startswith(("domain", "gravity")) for key in remedy):
+            self.assertEqual(after.all("Shields"), before.all("Shields"))
+            self.assertEqual(after.all("bed"), before.all("bed"))
+
+    def apply(self, path, settings, warning, pairs, before):
+        remedy = dict(pairs)
+        after = self.check(path, [*settings, *(f"{key}={value}" for key, value in pairs)])
+        self.assertTrue(after.accepted, after.text)
+        if not before.accepted:
+            return
+        gone, left = kind_of(warning), list(after.kinds)
+        self.assertLess(left.count(gone), before.kinds.count(gone), after.text)
+        for kind in set(left):
+            self.assertLessEqual(left.count(kind), before.kinds.count(kind), f"new: {kind}\n{after.text}")
+        self.assert_contact_is_kept(remedy, before, after, path)
+        self.assert_the_rest_is_kept(remedy, before, after)
+
+    def apply_all(self, path, settings=(), words=()):
+        self.contact = {}
+        for setting in settings:
+            key, value = setting.split("=", 1)
+            if key == "contact":
+                self.contact = yaml.safe_load(value)
+            elif key.startswith("contact."):
+                self.contact[key.split(".")[1]] = yaml.safe_load(value)
+        before = self.check(path, settings)
+        for word in words:
+            self.assertIn(word, before.text)
+        count = 0
+        for warning in before.warnings:
+            for pairs in remedies_in(warning):
+                with self.subTest(case=path.parent.name, settings=settings, remedy=pairs):
+                    self.apply(path, settings, warning, pairs, before)
+                    count += 1
+        return count
+
+    def test_of_shipped_cases(self):
+        applied = 0
+        for path in sorted(CASES.rglob("*.yaml")):
+            if "system" in yaml.safe_load(path.read_text()):   # no sweep
+                applied += self.apply_all(path)
+        self.assertGreater(applied, 8)
+
+    def test_of_cases_that_are_warned_of(self):
+        applied = 0
+        for text, settings, words in VARIATIONS:
+            self.case.write_text(text)
+            with self.subTest(settings=settings):
+                applied += self.apply_all(self.case, settings, words)
+        self.assertGreater(applied, len(VARIATIONS))
+
+
+program.main()
