@@ -155,7 +155,9 @@ void expect_begun_anew(const ScratchFolder& folder, const std::string& content, 
   MPI_Barrier(MPI_COMM_WORLD);
   RecordFile again(MPI_COMM_WORLD, path, 2.0);
   again.check(seconds(3, 3));
-  if (rank_of(MPI_COMM_WORLD) == 0) EXPECT_TRUE(contents(path) == content);  // nothing is touched before add()
+  if (rank_of(MPI_COMM_WORLD) == 0) {
+    EXPECT_TRUE(contents(path) == content);  // nothing is touched before add()
+  }
   again.add(seconds(3, 3));
   again.add(seconds(3, 5));
   if (rank_of(MPI_COMM_WORLD) == 0) {
@@ -207,7 +209,9 @@ TEST(RecordFile, GarbageAnywhereEndsInGoodOrder) {
     set_aside += again.warning().empty() ? 0 : 1;
     MPI_Barrier(MPI_COMM_WORLD);
   }
-  if (rank_of(MPI_COMM_WORLD) == 0) EXPECT_GT(set_aside, 5);
+  if (rank_of(MPI_COMM_WORLD) == 0) {
+    EXPECT_GT(set_aside, 5);
+  }
 }
 
 TEST(RecordFile, RefusesWhatItCannotContinue) {

@@ -33,8 +33,8 @@ const std::vector<Facet> tetrahedron = [] {
 
 // How a program writes a text file.
 struct Dialect {
-  std::string name, before, line_end = "\n", indent, end_loop = "endloop", end_facet = "endfacet",
-                            end_solid = "endsolid part", half = "0.5", normal = "0 0 0", title = "part";
+  std::string name = "", before = "", line_end = "\n", indent = "", end_loop = "endloop", end_facet = "endfacet",
+              end_solid = "endsolid part", half = "0.5", normal = "0 0 0", title = "part";
 };
 
 std::string text_of(const Dialect& d, const std::vector<Facet>& facets = tetrahedron) {
