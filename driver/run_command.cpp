@@ -211,7 +211,7 @@ void print_outcome(const RunIdentity& identity, const loop::LoopRecord& record, 
   if (!bed.empty()) log.line(final_bed_text(bed));
   for (const auto& observer : observers)
     for (const std::string& remark : observer->remarks()) log.line(remark);
-  for (const std::string& line : loop::phase_table(phases)) log.line(line);
+  for (const std::string& line : loop::phase_table(phases)) log.file_line(line);
   const loop::Speeds speeds = loop::speeds_of(system, record);
   std::string speed = fmt::format("{:.4g} steps/s", speeds.steps_per_second);
   if (speeds.mlups > 0.0) speed += fmt::format(", {:.3g} MLUPS", speeds.mlups);

@@ -20,6 +20,11 @@ void Log::line(const std::string& text) {
   if (!prints_) return;
   std::fprintf(stdout, "%s\n", text.c_str());
   std::fflush(stdout);  // a pipe to tee or a batch system's file must not lag behind
+  file_line(text);
+}
+
+void Log::file_line(const std::string& text) {
+  if (!prints_) return;
   if (file_.is_open())
     file_ << text << '\n' << std::flush;
   else

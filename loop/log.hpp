@@ -15,6 +15,7 @@ public:
   void copy_to(const std::string& path);
 
   void line(const std::string& text);
+  void file_line(const std::string& text);  // in the file only
   bool prints() const { return prints_; }
 
 private:

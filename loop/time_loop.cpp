@@ -26,7 +26,7 @@ constexpr std::int64_t most_steps_between_decisions = 100000;
 
 // s until the next progress line, after one at `now` s: often at first, when somebody is watching, and a few hundred
 // lines in a run of days.
-double seconds_to_next_line(double now) { return std::clamp(0.25 * now, 1.0, 600.0); }
+double seconds_to_next_line(double now) { return std::clamp(now / 3.0, 1.0, 600.0); }
 
 double seconds_since(WallClock::time_point start) {
   return std::chrono::duration<double>(WallClock::now() - start).count();
