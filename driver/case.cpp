@@ -194,8 +194,8 @@ double shortest_contact(const Case& c) {
     const double mass = c.grains[p].lightest_mass(), radius = 0.5 * c.grains[p].smallest_diameter();
     // pi/omega_0, or pi/beta of a dashpot that is faster than the spring (dem/material.hpp).
     const auto spring = [](const dem::ContactParameters& material, double effective) {
-      const double frequency = std::sqrt(material.normal_stiffness / effective);
-      return std::numbers::pi / std::max(frequency, 0.5 * dem::Damping(material).coefficient(effective) / effective);
+      return std::min(std::numbers::pi * std::sqrt(effective / material.normal_stiffness),
+                      2.0 * std::numbers::pi * effective / dem::Damping(material).coefficient(effective));
     };
     shortest = std::min(shortest, linear ? spring(own, 0.5 * mass) : dem::contact_time(own, 0.5 * mass, 0.5 * radius));
     if (walls)
