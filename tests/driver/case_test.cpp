@@ -23,6 +23,7 @@ Case wide_bed() {
   c.fluid.time_step = 2e-5;
   c.gravity.magnitude = 9.8;
   c.gravity.slope = 0.016;
+  c.contact.damping = 0.09;
   dem::Population glass;
   glass.count = 2884;
   glass.diameter = 5e-3;
