@@ -13,8 +13,7 @@ std::int64_t whole_steps(double steps) {
 
 namespace {
 
-constexpr double early = 1e-3;                  // steps, by which a step may come too early
-constexpr double longest = 9007199254740992.0;  // steps, 2^53: more are not counted one by one in double precision
+constexpr double early = 1e-3;  // steps, by which a step may come too early
 
 // Numbers such as 0.01/1e-4 = 100.00000000000001 are whole.
 double without_rounding(double steps) {
@@ -25,7 +24,7 @@ double without_rounding(double steps) {
 }  // namespace
 
 Schedule::Schedule(double every, double time_step)
-    : interval_(every > 0.0 ? std::clamp(without_rounding(every / time_step), 1.0, longest) : 0.0) {}
+    : interval_(every > 0.0 ? std::clamp(without_rounding(every / time_step), 1.0, most_countable_steps) : 0.0) {}
 
 std::int64_t Schedule::interval() const { return static_cast<std::int64_t>(std::ceil(interval_)); }
 

@@ -11,6 +11,9 @@ namespace thalweg {
 inline constexpr std::int64_t no_step_reaches = std::int64_t{1} << 62;
 std::int64_t whole_steps(double steps);
 
+// Steps, 2^53: more are not told apart where their number or their time is in double precision.
+inline constexpr double most_countable_steps = 0x1p53;
+
 class Schedule {
 public:
   Schedule() = default;  // never due

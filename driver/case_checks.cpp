@@ -1,5 +1,6 @@
 #include "driver/case_checks.hpp"
 
+#include "core/schedule.hpp"
 #include "driver/grain_checks.hpp"
 #include "driver/grain_weight.hpp"
 #include "driver/limit_text.hpp"
@@ -218,16 +219,15 @@ void check_open_faces(const Case& c, const io::YamlDocument& document) {
   }
 }
 
-// Steps are counted one by one, and times are multiples of the step in double precision.
+// Times are multiples of the step in double precision.
 void check_number_of_steps(const Case& c, const io::YamlDocument& document) {
-  constexpr double most = 9007199254740992.0;  // 2^53
   const double step = c.system == SystemKind::continuum ? *c.run.time_step : step_time(c);
-  if (c.run.until <= most * step) return;
+  if (c.run.until <= most_countable_steps * step) return;
   throw document.error("run.until",
                        fmt::format("the run would take {:.3g} steps of {:.3g} s, more than can be counted; "
                                    "give a longer {}, or at most {} s",
                                    c.run.until / step, step, has_fluid(c) ? "fluid.time_step" : "run.time_step",
-                                   at_most_text(most * step, 3)));
+                                   at_most_text(most_countable_steps * step, 3)));
 }
 
 void check_model_fluid(const Case& c, const io::YamlDocument& document) {

@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "driver/info_report.hpp"
 #include "io/yaml_document.hpp"
+#include "loop/time_loop.hpp"
 
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
@@ -24,11 +25,9 @@ std::optional<double> finished_until(const io::RunFolder& folder) {
   return summary["until"].as<double>(-std::numeric_limits<double>::infinity());
 }
 
-constexpr double rounding = 1e-12;  // relative; as that of loop::final_step()
-
 bool is_finished(const io::RunFolder& folder, double until) {
   const std::optional<double> end = finished_until(folder);
-  return end && until <= *end * (1.0 + rounding);
+  return end && until <= *end * (1.0 + loop::rounding_of_the_end);
 }
 
 }  // namespace

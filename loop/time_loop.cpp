@@ -74,7 +74,7 @@ std::vector<Figure> series_row(const System& system,
 
 // Rounded up, except where the quotient misses a whole number of steps by round-off only.
 std::int64_t final_step(double until, double time_step) {
-  return whole_steps(std::ceil(until / time_step * (1.0 - 1e-12)));
+  return whole_steps(std::ceil(until / time_step * (1.0 - rounding_of_the_end)));
 }
 
 TimeLoop::TimeLoop(MPI_Comm communicator, System& system, std::vector<std::unique_ptr<analysis::Observer>>& observers,

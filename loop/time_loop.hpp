@@ -90,7 +90,9 @@ struct LoopPlan {
 // Collective.
 std::vector<Figure> series_row(const System& system, const std::vector<std::unique_ptr<analysis::Observer>>& observers);
 
-// The step at or after `until` (s) with which a run ends.
+// The step at or after `until` (s) with which a run ends. It may come too early by rounding_of_the_end, relative to the
+// time.
+constexpr double rounding_of_the_end = 1e-12;
 std::int64_t final_step(double until, double time_step);
 
 class TimeLoop {
