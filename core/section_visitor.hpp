@@ -58,6 +58,11 @@ struct TextKey {
   OnlyIf only_if = {};
 };
 
+// A word that a choice had in earlier versions, and what to do about a case that gives it: "take grad, ... ".
+struct RemovedWord {
+  std::string word, remedy;
+};
+
 // A section, a list of sections, or a choice.
 struct SectionKey {
   std::string meaning = {};
@@ -65,6 +70,7 @@ struct SectionKey {
   std::string shorthand = {};   // a plain word in place of the section is the value of this key: x: no_slip
   std::string expected = {};    // with shorthand: what is given in most cases, for complaints: "a number in m"
   std::string empty_name = {};  // this word in place of the section stands for the section without keys: fluid: rest
+  std::vector<RemovedWord> removed = {};  // of a choice: reading one is an error that gives its remedy
   OnlyIf only_if = {};
 };
 

@@ -253,13 +253,15 @@ void SectionReader::value_of(const std::string& key, bool& value, const TextKey&
   value = node->text == "true";
 }
 
-std::size_t SectionReader::word_from(const YamlNode& node, const std::string& key,
-                                     const std::vector<Word>& words) const {
+std::size_t SectionReader::word_from(const YamlNode& node, const std::string& key, const std::vector<Word>& words,
+                                     const SectionKey& about) const {
   std::vector<std::string> names;
   for (std::size_t n = 0; n < words.size(); ++n) {
     if (node.kind == YamlNode::Kind::scalar && node.text == words[n].name) return n;
     names.push_back(words[n].name);
   }
+  for (const RemovedWord& removed : about.removed)
+    if (node.kind == YamlNode::Kind::scalar && node.text == removed.word) fail(node, key, removed.remedy);
   fail(node, key, fmt::format("expected {}{}", names.size() == 1 ? "" : "one of ", fmt::join(names, ", ")));
 }
 
@@ -268,7 +270,7 @@ void SectionReader::word(const std::string& key, std::size_t& index, const std::
   std::vector<std::string> names;
   for (const Word& word : words) names.push_back(word.name);
   if (const YamlNode* node = look_up(key, about.required, fmt::format("one of {}", fmt::join(names, ", "))))
-    index = word_from(*node, key, words);
+    index = word_from(*node, key, words, about);
 }
 
 void SectionReader::word(const std::string& key, std::optional<std::size_t>& index, const std::vector<Word>& words,
@@ -290,7 +292,7 @@ void SectionReader::word_list(const std::string& key, std::vector<std::size_t>& 
   indices.clear();
   for (std::size_t n = 0; n < node->items.size(); ++n) {
     const std::string item_key = fmt::format("{}.{}", key, n);
-    const std::size_t index = word_from(node->items[n], item_key, words);
+    const std::size_t index = word_from(node->items[n], item_key, words, about);
     if (std::find(indices.begin(), indices.end(), index) != indices.end())
       fail(node->items[n], item_key, "the word is given twice; remove one of the two");
     indices.push_back(index);

@@ -48,7 +48,8 @@ private:
                    const std::string& expectation) const;
   Vec3 vec3_from(const YamlNode& node, const std::string& key, const RealKey& about,
                  const std::string& expectation) const;
-  std::size_t word_from(const YamlNode& node, const std::string& key, const std::vector<Word>& words) const;
+  std::size_t word_from(const YamlNode& node, const std::string& key, const std::vector<Word>& words,
+                        const SectionKey& about) const;
   void read_inside(const YamlNode& node, const std::string& key, const SectionKey& about, const Body& body) const;
   [[noreturn]] void fail(const YamlNode& node, const std::string& key, const std::string& remedy) const;
 

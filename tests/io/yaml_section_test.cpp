@@ -49,7 +49,8 @@ static void describe(SectionVisitor& visit, Wheel& wheel) {
   visit.vec3("axis", wheel.axis, {.meaning = "of turning"});
 }
 static void describe(SectionVisitor& visit, Paint& paint) {
-  visit.choice("colour", paint.colour, colours, {.meaning = "seen in daylight", .required = true});
+  visit.choice("colour", paint.colour, colours,
+               {.meaning = "seen in daylight", .required = true, .removed = {{"scarlet", "take red"}}});
   if (paint.colour == Colour::green)
     visit.real("gloss", paint.gloss, {.meaning = "shine", .at_least = 0.0, .at_most = 1.0});
   else
@@ -245,6 +246,8 @@ INSTANTIATE_TEST_SUITE_P(
             "[0.1, 0.1, 0.1]."},
         Bad{"choice", "length: 2\npaint:\n  colour: blue\n", "",
             "FILE:3: paint.colour = \"blue\": expected one of red, green."},
+        Bad{"removed_word", "length: 2\npaint:\n  colour: scarlet\n", "",
+            "FILE:3: paint.colour = \"scarlet\": take red."},
         Bad{"choice_in_list", minimal + "flags: [red, blue]\n", "",
             "FILE:3: flags.1 = \"blue\": expected one of red, green."},
         Bad{"twice_in_list", minimal + "flags: [red, red]\n", "",
