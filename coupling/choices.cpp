@@ -11,7 +11,6 @@ std::vector<NamedChoice<LoadRule>> choices_of(LoadRule) {
 
 std::vector<NamedChoice<RefillRule>> choices_of(RefillRule) {
   return {{RefillRule::equilibrium, "equilibrium", ""},
-          {RefillRule::non_equilibrium, "non_equilibrium", "with that of the neighbour along the normal"},
           {RefillRule::grad, "grad", "with the mean stress of the neighbours"}};
 }
 

@@ -23,13 +23,22 @@ static void describe(SectionVisitor& visit, VirtualMassKeys& virtual_mass) {
              {.meaning = "of the mass of the displaced fluid; 1/2 is that of a sphere", .above = 0.0, .at_most = 10.0});
 }
 
+// Keys of earlier versions.
+static void refuse_former_keys(SectionVisitor& visit) {
+  visit.not_here("mass_correction", "the fluid's mass is always kept; remove the key");
+  visit.not_here("narrow_gaps", "water flows in narrow gaps with the default fluid.collision; remove the key");
+  visit.not_here("near_contact",
+                 "patches that grains hide from each other always count with the pressure around them; remove the key");
+  visit.not_here("mass_balance",
+                 "mass_by_links and the columns beside it in series.csv show where mass goes; remove the key");
+}
+
 void describe(SectionVisitor& visit, CouplingKeys& coupling, bool with_grains) {
   visit.choice("links", coupling.links, {.meaning = "interpolated bounce-back at grain surfaces"});
-  visit.not_here("mass_correction", "the fluid's mass is always kept; remove the key");
+  refuse_former_keys(visit);
   if (!with_grains) {
     for (const char* key : {"grain_steps_per_fluid_step", "link_tolerance", "fewest_cells_per_diameter",
-                            "momentum_exchange", "wall_density", "narrow_gaps", "near_contact", "refill",
-                            "covered_momentum", "load", "grain_stress", "mass_balance"})
+                            "momentum_exchange", "wall_density", "refill", "covered_momentum", "load", "grain_stress"})
       visit.not_here(key, "system: fluid has no grains; remove the key or set system: resolved");
     return;
   }
@@ -48,12 +57,11 @@ void describe(SectionVisitor& visit, CouplingKeys& coupling, bool with_grains) {
              {.meaning = "across the smallest grain, without a warning; fewer than 1.74 are refused", .above = 0.0});
   visit.choice("momentum_exchange", coupling.momentum_exchange, {.meaning = "how the force on a grain is summed"});
   visit.choice("wall_density", coupling.wall_density, {.meaning = "density in the moving-wall term"});
-  visit.choice("narrow_gaps", coupling.narrow_gaps, {.meaning = "gaps of one cell between two grains"});
-  visit.choice<NearContact>("near_contact", coupling.near_contact,
-                            {{NearContact::subtracted, "subtracted", "reference pressure taken out of every link"},
-                             {NearContact::paper, "paper", "and the paper's links between grains"}},
-                            {.meaning = "patches of a grain's surface that its neighbours hide"});
-  visit.choice("refill", coupling.refill, {.meaning = "initial populations of a cell that a grain has uncovered"});
+  visit.choice("refill", coupling.refill,
+               {.meaning = "initial populations of a cell that a grain has uncovered",
+                .removed = {{"non_equilibrium",
+                             "a cell no longer copies one neighbour; take grad, the mean stress of all of them, or "
+                             "remove the key"}}});
   visit.choice<CoveredMomentum>(
       "covered_momentum", coupling.covered_momentum,
       {{CoveredMomentum::lost, "lost", "as published: grains get a little less than the fluid loses"},
@@ -72,8 +80,6 @@ void describe(SectionVisitor& visit, CouplingKeys& coupling, bool with_grains) {
                 "key");
   visit.flag("grain_stress", coupling.grain_stress,
              {.meaning = "measure the fluid's stress on every grain, for the VTK output: fluid_stress"});
-  visit.flag("mass_balance", coupling.mass_balance,
-             {.meaning = "report in series.csv where the fluid gains and loses mass"});
 }
 
 }  // namespace thalweg::coupling

@@ -11,7 +11,6 @@
 
 namespace thalweg::coupling {
 
-enum class NearContact { subtracted, paper };
 enum class CoveredMomentum { lost, to_grain };
 
 // The part of the lubrication force between near surfaces that the cells cannot resolve.
@@ -37,15 +36,12 @@ struct CouplingKeys {
   lbm::MomentumExchange momentum_exchange = lbm::MomentumExchange::galilean_invariant;
   lbm::WallDensity wall_density = lbm::WallDensity::local;
   lbm::LinkRule links = lbm::LinkRule::bouzidi;
-  lbm::GapRule narrow_gaps = lbm::GapRule::no_slip;
-  NearContact near_contact = NearContact::subtracted;
   RefillRule refill = RefillRule::equilibrium;
   CoveredMomentum covered_momentum = CoveredMomentum::lost;
   std::optional<LoadRule> load;
   std::optional<LubricationKeys> lubrication;
   std::optional<VirtualMassKeys> virtual_mass;
   bool grain_stress = false;  // measure the fluid's stress on every grain
-  bool mass_balance = false;  // show what the links' mass is made of
   bool operator==(const CouplingKeys&) const = default;
 
   // The filter of the virtual mass makes up for the lag of the mean.

@@ -1,8 +1,5 @@
 #include "coupling/hidden_links.hpp"
 
-#include "lbm/bouzidi_link.hpp"
-#include "lbm/equilibrium.hpp"
-
 #include <algorithm>
 
 namespace thalweg::coupling {
@@ -11,13 +8,12 @@ using lbm::CellMap;
 using lbm::D3Q19;
 
 HiddenLinks::HiddenLinks(const Decomposition& decomposition, const Block& block, const CellMap& cells,
-                         const HiddenLinkOptions& options, lbm::MomentumExchange exchange)
+                         const Hydrostatic& rest)
     : decomposition_(decomposition),
       block_(block),
       local_cells_(decomposition, block),
       cells_(cells),
-      options_(options),
-      galilean_(exchange == lbm::MomentumExchange::galilean_invariant),
+      rest_(rest),
       box_{Vec3(decomposition.cells()[0], decomposition.cells()[1], decomposition.cells()[2]),
            decomposition.periodic()} {}
 
@@ -28,7 +24,7 @@ std::size_t HiddenLinks::count() const {
 }
 
 void HiddenLinks::update(const CellClaims& map) {
-  if (!wanted()) return;
+  if (rest_.none()) return;
   links_.resize(map.grains().size());
   is_stale_.resize(map.grains().size(), 0);
   for (const CellChange& change : map.changes()) {
@@ -92,42 +88,18 @@ void HiddenLinks::find_at_cell(int slot, const Index3& local, const std::vector<
     const std::int32_t other = beyond_wall ? CellMap::fluid : cells_.body(cell - cells_.indexing().offset(i));
     const bool same_body = clump >= 0 && other >= 0 && grains[static_cast<std::size_t>(other)].clump == clump;
     if (other != slot && !same_body && (other != CellMap::fluid || beyond_wall))
-      links_[static_cast<std::size_t>(slot)].push_back({i, other, from});
+      links_[static_cast<std::size_t>(slot)].push_back({i, from});
   }
 }
 
-// from: x_f from the body's centre.
-Vec3 HiddenLinks::momentum_of(const Link& link, const Vec3& from, double distance, const lbm::LinkBody& body,
-                              const std::vector<lbm::LinkBody>& bodies) const {
-  const Vec3 c = velocity_of(link.direction);
-  const double weight = D3Q19::weight(link.direction), density = options_.rest.deviation(link.from + distance * c);
-  if (!options_.moving || link.other == CellMap::fluid) return (2.0 * weight * density) * c;
-  const lbm::LinkBody& other = bodies[static_cast<std::size_t>(link.other)];
-  const Vec3 between = box_.difference(body.centre, other.centre);
-  const auto equilibrium = [&](int direction, const Vec3& at) {
-    const Vec3 velocity = other.velocity + other.angular_velocity.cross(between + at);
-    return lbm::equilibrium_deviation(direction, density, velocity);
-  };
-  const double incident = equilibrium(link.direction, from);
-  const double second =
-      distance < 0.5 ? equilibrium(link.direction, from - c) : equilibrium(D3Q19::opposite(link.direction), from);
-  const Vec3 surface = body.velocity + body.angular_velocity.cross(from + distance * c);
-  const lbm::LinkWeights<double> rule = lbm::BouzidiLink::weights(distance);
-  const double reflected =
-      rule.incident * incident + rule.second * second - rule.wall * weight * (1.0 + density) * c.dot(surface);
-  Vec3 momentum = (incident + reflected) * c;
-  if (galilean_) momentum -= (incident - reflected) * surface;
-  return momentum;
-}
-
-void HiddenLinks::add(const Link& link, const Vec3& from, double distance, std::size_t slot,
-                      std::vector<lbm::LinkBody>& bodies, std::vector<FixedTensor>* moments) const {
-  lbm::LinkBody& body = bodies[slot];
-  const Vec3 arm = from + distance * velocity_of(link.direction);
-  const Vec3 momentum = momentum_of(link, from, distance, body, bodies);
+void HiddenLinks::add(const Link& link, const Vec3& from, double distance, lbm::LinkBody& body,
+                      FixedTensor* moments) const {
+  const Vec3 c = velocity_of(link.direction), arm = from + distance * c;
+  const double weight = D3Q19::weight(link.direction), density = rest_.deviation(link.from + distance * c);
+  const Vec3 momentum = (2.0 * weight * density) * c;
   body.force += FixedVec3::from(momentum);
   body.torque += FixedVec3::from(arm.cross(momentum));
-  if (moments) (*moments)[slot].add(momentum, arm);
+  if (moments) moments->add(momentum, arm);
 }
 
 }  // namespace thalweg::coupling

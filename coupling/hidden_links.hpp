@@ -3,14 +3,10 @@
 //
 // A lattice line enters a cell of grain p from a cell x_f that grain q covers, or that is beyond a wall. No population
 // runs there, but a fluid between the two would press. The exchange counts populations less their weight
-// (link_pass.hpp), so that the reference pressure needs no such links. What is left:
-//   full gravity        the hydrostatic density above the reference, rho_g - 1 on the surface: momentum
-//                       2 w_i (rho_g - 1) c_i, without which a grain that touches others or the floor would lose part
-//                       of its buoyancy;
-//   near_contact paper  a link with equilibrium populations at x_f and x_ff, of density rho_g and with q's rigid motion
-//                       there (Zhang et al. 2022), between grains only.
-// There is no surface between members of one clump, and so no such link. Both use the rule of Bouzidi and the momentum
-// exchange chosen. Lattice units.
+// (link_pass.hpp), so that the reference pressure needs no such links. What is left under full gravity is the
+// hydrostatic density above the reference, rho_g - 1 on the surface: momentum 2 w_i (rho_g - 1) c_i, without which a
+// grain that touches others or the floor would lose part of its buoyancy. There is no surface between members of one
+// clump, and so no such link. Lattice units.
 #pragma once
 
 #include "core/decomposition.hpp"
@@ -19,7 +15,8 @@
 #include "coupling/hydrostatic.hpp"
 #include "coupling/lattice_vectors.hpp"
 #include "coupling/local_cells.hpp"
-#include "lbm/link_pass.hpp"
+#include "lbm/cell_map.hpp"
+#include "lbm/link_table.hpp"
 
 #include <algorithm>
 #include <span>
@@ -27,20 +24,13 @@
 
 namespace thalweg::coupling {
 
-struct HiddenLinkOptions {
-  bool moving = false;  // near_contact paper
-  Hydrostatic rest;
-};
-
 class HiddenLinks {
 public:
   HiddenLinks(const Decomposition& decomposition, const Block& block, const lbm::CellMap& cells,
-              const HiddenLinkOptions& options, lbm::MomentumExchange exchange);
+              const Hydrostatic& rest);
 
-  bool wanted() const { return options_.moving || !options_.rest.none(); }
-
-  // Finds anew the hidden links around cells that changed hands since the last call; does nothing where none are wanted
-  // them. A link belongs to the rank that owns its solid cell.
+  // Finds anew the hidden links around cells that changed hands since the last call; does nothing where the density at
+  // rest is the same everywhere. A link belongs to the rank that owns its solid cell.
   void update(const CellClaims& map);
 
   // Adds the momentum of all hidden links to their bodies, and sum F_a x_b to moments, where given. shapes: by slot.
@@ -51,27 +41,22 @@ public:
 
 private:
   struct Link {
-    int direction;       // into the grain
-    std::int32_t other;  // slot of the grain that covers x_f; CellMap::fluid: a wall
-    Vec3 from;           // x_f, global
+    int direction;  // into the grain
+    Vec3 from;      // x_f, global
   };
 
   void mark(std::int32_t slot);
   void mark_around(const Index3& local);
   void rebuild(int slot, const std::vector<MappedGrain>& grains);
   void find_at_cell(int slot, const Index3& local, const std::vector<MappedGrain>& grains);
-  Vec3 momentum_of(const Link& link, const Vec3& from, double distance, const lbm::LinkBody& body,
-                   const std::vector<lbm::LinkBody>& bodies) const;
-  // from: x_f from the body's centre.
-  void add(const Link& link, const Vec3& from, double distance, std::size_t slot, std::vector<lbm::LinkBody>& bodies,
-           std::vector<FixedTensor>* moments) const;
+  // from: x_f from the body's centre; moments: of the body, null: not measured.
+  void add(const Link& link, const Vec3& from, double distance, lbm::LinkBody& body, FixedTensor* moments) const;
 
   const Decomposition& decomposition_;
   Block block_;
   LocalCells local_cells_;
   const lbm::CellMap& cells_;
-  HiddenLinkOptions options_;
-  bool galilean_;
+  Hydrostatic rest_;
   PeriodicBox box_;                       // cells
   std::vector<std::vector<Link>> links_;  // by slot
   std::vector<int> stale_;                // slots to look at anew
@@ -89,7 +74,7 @@ void HiddenLinks::apply(std::span<const S> shapes, std::vector<lbm::LinkBody>& b
       const Vec3 c = velocity_of(link.direction), from = box_.difference(link.from, bodies[slot].centre);
       double met = 0.0;
       if (!is_inside(shapes[slot], from)) met = shapes[slot].crossing(from, c).value_or(-c.dot(from) / c.squaredNorm());
-      add(link, from, std::clamp(met, 0.0, 1.0), slot, bodies, moments);
+      add(link, from, std::clamp(met, 0.0, 1.0), bodies[slot], moments ? &(*moments)[slot] : nullptr);
     }
 }
 

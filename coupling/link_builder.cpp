@@ -31,7 +31,7 @@ void LinkBuilder::update(const CellClaims& map, lbm::LinkTable& table) {
   stale_tiles_.resize(map.grains().size());
   for (const CellChange& change : map.changes()) {
     mark_around(change);
-    look_for_confined(change);
+    look_for_enclosed(change);
   }
   std::sort(stale_.begin(), stale_.end());
   for (const int slot : stale_) {
@@ -77,21 +77,16 @@ void LinkBuilder::mark_around(const CellChange& change) {
   }
 }
 
-// The tags of all links of a cell say how confined it is, so they all change with it.
-void LinkBuilder::look_for_confined(const CellChange& change) {
+// The tags of all links of a cell say whether it is enclosed, so they all change with that.
+void LinkBuilder::look_for_enclosed(const CellChange& change) {
   const lbm::CellIndexing& indexing = cells_.indexing();
   for (int i = 0; i < D3Q19::directions; ++i) {
     const int x = change.cell[0] + D3Q19::c[i][0], y = change.cell[1] + D3Q19::c[i][1],
               z = change.cell[2] + D3Q19::c[i][2];
     if (!indexing.owned(x, y, z)) continue;
     const std::ptrdiff_t cell = indexing.index(x, y, z);
-    const lbm::Confinement now = cells_.confinement(cell);
-    const auto known = confined_.find(cell);
-    if (now == (known == confined_.end() ? lbm::Confinement::open : known->second)) continue;
-    if (now == lbm::Confinement::open)
-      confined_.erase(known);
-    else
-      confined_.insert_or_assign(cell, now);
+    const bool changed = cells_.is_enclosed(cell) ? enclosed_.insert(cell).second : enclosed_.erase(cell) > 0;
+    if (!changed) continue;
     for (int j = 1; j < D3Q19::directions; ++j) {
       const std::int32_t body = cells_.body(cell + indexing.offset(j));
       if (body != CellMap::fluid) mark(body, tiles_.tile_of(y, z));
@@ -138,24 +133,24 @@ void LinkBuilder::find_in_cells(int slot, int x, int count, int y, int z) {
   static_assert(Cells::size() <= CellMap::read_beyond);
   const lbm::CellIndexing& indexing = cells_.indexing();
   const std::int32_t* row = cells_.bodies() + indexing.index(x, y, z);
-  Cells hits = 0, lines = 0;  // the directions that end in the grain, as bits; the lines with fluid beside the cell
+  Cells hits = 0, open = 0;  // the directions that end in the grain, as bits; 1 where a neighbour is fluid
   for (int i = 1; i < D3Q19::directions; i += 2) {
     const Cells there(row + indexing.offset(i), unaligned), behind(row - indexing.offset(i), unaligned);
     where(there == slot, hits) = hits | (1 << i);
     where(behind == slot, hits) = hits | (2 << i);
-    where(there == CellMap::fluid || behind == CellMap::fluid, lines) = lines + 1;
+    where(there == CellMap::fluid || behind == CellMap::fluid, open) = 1;
   }
   where(Cells(row, unaligned) != CellMap::fluid, hits) = 0;
   if (none_of(hits != 0)) return;
-  std::int32_t hit[Cells::size()], open_lines[Cells::size()];
+  std::int32_t hit[Cells::size()], is_open[Cells::size()];
   hits.copy_to(hit, unaligned);
-  lines.copy_to(open_lines, unaligned);
+  open.copy_to(is_open, unaligned);
   for (int k = 0; k < count; ++k) {
     const std::uint32_t place = lbm::LinkPlace::of(x + k, y);
-    const lbm::Confinement confinement = lbm::confinement_of(open_lines[k]);
+    const bool enclosed = is_open[k] == 0;
     for (auto left = static_cast<std::uint32_t>(hit[k]); left != 0; left &= left - 1) {
       const int i = std::countr_zero(left);
-      links_.push_back({place, lbm::LinkTag::of(i, row[k - indexing.offset(i)], confinement)});
+      links_.push_back({place, lbm::LinkTag::of(i, row[k - indexing.offset(i)], enclosed)});
     }
   }
 }

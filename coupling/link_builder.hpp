@@ -12,7 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <experimental/simd>
-#include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 namespace thalweg::coupling {
@@ -30,7 +30,7 @@ private:
   using Cells = std::experimental::native_simd<std::int32_t>;
 
   void mark_around(const CellChange& change);
-  void look_for_confined(const CellChange& change);
+  void look_for_enclosed(const CellChange& change);
   void mark(std::int32_t slot, int tile);
   void rebuild(int slot, const MappedGrain& grain, lbm::LinkTable& table);
   void find_in_row(int slot, int y, int z);
@@ -39,10 +39,10 @@ private:
   LocalCells local_cells_;
   const lbm::CellMap& cells_;
   const lbm::RowTiles& tiles_;
-  std::vector<std::vector<int>> stale_tiles_;                      // of each slot
-  std::vector<int> stale_;                                         // slots that have any
-  std::unordered_map<std::ptrdiff_t, lbm::Confinement> confined_;  // cells that are not open
-  std::vector<LocalCell> xs_, ys_;                                 // scratch from here on
+  std::vector<std::vector<int>> stale_tiles_;    // of each slot
+  std::vector<int> stale_;                       // slots that have any
+  std::unordered_set<std::ptrdiff_t> enclosed_;  // cells without fluid beside them
+  std::vector<LocalCell> xs_, ys_;               // scratch from here on
   std::vector<lbm::Link> links_;
 };
 

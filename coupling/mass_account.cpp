@@ -12,17 +12,9 @@ namespace {
 
 constexpr int fraction_bits = 44;  // of LatticeFixed
 
-constexpr const char* names[MassAccount::entries] = {"links",    "covered_cells", "uncovered_cells",  "corrections",
-                                                     "upstream", "same_cell",     "covered_upstream", "moving_wall"};
+constexpr const char* names[MassAccount::entries] = {"links", "covered_cells", "uncovered_cells", "corrections"};
 
 }  // namespace
-
-void MassAccount::book(const lbm::LinkBalance& balance) {
-  book(upstream, balance.upstream);
-  book(same_cell, balance.same_cell);
-  book(covered_upstream, balance.covered);
-  book(moving_wall, balance.moving_wall);
-}
 
 // What is owed was taken by links before.
 void MassAccount::open(double excess, double owed) {
@@ -50,21 +42,17 @@ std::array<double, MassAccount::entries> MassAccount::totals() const {
   return totals;
 }
 
-std::vector<Figure> MassAccount::figures(double excess, double owed, const Units& units, bool with_parts) const {
+std::vector<Figure> MassAccount::figures(double excess, double owed, const Units& units) const {
   const double cell = units.density * std::pow(units.spacing, 3);
   const std::array<double, entries> t = totals();
   const double by_walls = excess - kept_ - t[links] - t[covered] - t[uncovered] - t[corrections];
-  std::vector<Figure> figures{{"excess_mass", "kg", cell * excess},
-                              {"mass_by_links", "kg", cell * t[links]},
-                              {"mass_by_covered_cells", "kg", cell * t[covered]},
-                              {"mass_by_uncovered_cells", "kg", cell * t[uncovered]},
-                              {"mass_by_corrections", "kg", cell * t[corrections]},
-                              {"mass_by_walls", "kg", cell * by_walls},
-                              {"mass_owed", "kg", cell * owed}};
-  if (with_parts)
-    for (const Entry part : {upstream, same_cell, covered_upstream, moving_wall})
-      figures.push_back({fmt::format("mass_by_links_{}", names[part]), "kg", cell * t[part]});
-  return figures;
+  return {{"excess_mass", "kg", cell * excess},
+          {"mass_by_links", "kg", cell * t[links]},
+          {"mass_by_covered_cells", "kg", cell * t[covered]},
+          {"mass_by_uncovered_cells", "kg", cell * t[uncovered]},
+          {"mass_by_corrections", "kg", cell * t[corrections]},
+          {"mass_by_walls", "kg", cell * by_walls},
+          {"mass_owed", "kg", cell * owed}};
 }
 
 void MassAccount::save(ArchiveWriter& archive) const {

@@ -15,7 +15,6 @@
 #include "core/system.hpp"
 #include "core/units.hpp"
 #include "core/wide_sum.hpp"
-#include "lbm/link_pass.hpp"
 
 #include <mpi.h>
 
@@ -28,7 +27,7 @@ namespace thalweg::coupling {
 
 class MassAccount {
 public:
-  enum Entry { links, covered, uncovered, corrections, upstream, same_cell, covered_upstream, moving_wall, entries };
+  enum Entry { links, covered, uncovered, corrections, entries };
 
   explicit MassAccount(MPI_Comm communicator) : communicator_(communicator) {}
 
@@ -36,7 +35,6 @@ public:
   // may be larger than a LatticeFixed term.
   void book(Entry entry, std::int64_t mass) { sums_[entry].add(mass); }
   void book(Entry entry, double mass) { sums_[entry].add(WideSum::from(mass, LatticeFixed::bits)); }
-  void book(const lbm::LinkBalance& balance);
 
   // Since the start of the run, over all ranks, by Entry; all at once because a reduction is shared. Collective.
   std::array<double, entries> totals() const;
@@ -45,9 +43,8 @@ public:
   void open(double excess, double owed);
   double kept() const { return kept_; }  // excess and owed mass at the start of the run, which are to stay
 
-  // Columns of the series (kg): excess: E as measured; owed: what is still to be returned, over all ranks; with_parts:
-  // with the entries of the link rules. Collective.
-  std::vector<Figure> figures(double excess, double owed, const Units& units, bool with_parts) const;
+  // Columns of the series (kg): excess: E as measured; owed: what is still to be returned, over all ranks. Collective.
+  std::vector<Figure> figures(double excess, double owed, const Units& units) const;
 
   void save(ArchiveWriter& archive) const;
   void load(ArchiveReader& archive);

@@ -6,7 +6,6 @@
 #include "lbm/equilibrium.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 namespace thalweg::coupling {
@@ -33,18 +32,10 @@ Refill::Refill(const Decomposition& decomposition, MPI_Comm communicator, Refill
       box_{Vec3(decomposition.cells()[0], decomposition.cells()[1], decomposition.cells()[2]),
            decomposition.periodic()} {}
 
-// Of two donors the better one; the lower direction where both are as good.
 void Refill::Neighbours::add(const Neighbours& others) {
   count += others.count;
   excess += others.excess;
   for (std::size_t k = 0; k < stress.size(); ++k) stress[k] += others.stress[k];
-  if (others.donor == 0) return;
-  const bool better =
-      donor == 0 || others.alignment > alignment || (others.alignment == alignment && others.donor < donor);
-  if (!better) return;
-  donor = others.donor;
-  alignment = others.alignment;
-  non_equilibrium = others.non_equilibrium;
 }
 
 Index3 Refill::wrapped(Index3 cell) const {
@@ -97,46 +88,41 @@ std::vector<Refill::Uncovered> Refill::uncovered_cells(const std::vector<CellCha
 }
 
 template <typename Real>
-Refill::Neighbours Refill::look_at(const lbm::Fluid<Real>& fluid, std::ptrdiff_t cell, double at_rest, int direction,
-                                   const Vec3& normal) const {
+Refill::Neighbours Refill::look_at(const lbm::Fluid<Real>& fluid, std::ptrdiff_t cell, double at_rest) const {
   Neighbours one;
   one.count = 1;
   one.excess = LatticeFixed::from(fluid.populations().density_deviation(cell) - at_rest);
   if (rule_ == RefillRule::equilibrium) return one;
   const lbm::FluidState state = fluid.state_at(cell);
+  std::array<double, 19> off_equilibrium;
   for (int i = 0; i < D3Q19::directions; ++i)
-    one.non_equilibrium[i] = static_cast<double>(fluid.populations().post_collision(i, cell)) -
-                             lbm::equilibrium_deviation(i, state.density_deviation, state.velocity);
+    off_equilibrium[i] = static_cast<double>(fluid.populations().post_collision(i, cell)) -
+                         lbm::equilibrium_deviation(i, state.density_deviation, state.velocity);
   for (std::size_t k = 0; k < one.stress.size(); ++k) {
     double moment = 0.0;
     for (int i = 1; i < D3Q19::directions; ++i)
-      moment += D3Q19::c[i][symmetric_pairs[k][0]] * D3Q19::c[i][symmetric_pairs[k][1]] * one.non_equilibrium[i];
+      moment += D3Q19::c[i][symmetric_pairs[k][0]] * D3Q19::c[i][symmetric_pairs[k][1]] * off_equilibrium[i];
     one.stress[k] = LatticeFixed::from(moment);
   }
-  one.donor = direction;
-  one.alignment = velocity_of(direction).dot(normal) / std::sqrt(double(D3Q19::length_squared(direction)));
   return one;
 }
 
 template <typename Real>
-void Refill::add_own_neighbours(const lbm::Fluid<Real>& fluid, const std::vector<lbm::LinkBody>& bodies,
-                                const Hydrostatic& rest, const Outward& outward,
+void Refill::add_own_neighbours(const lbm::Fluid<Real>& fluid, const Hydrostatic& rest,
                                 std::vector<Uncovered>& uncovered) const {
   const auto fresh = [&](const Index3& global) {
     const auto found = std::lower_bound(uncovered.begin(), uncovered.end(), key(global),
                                         [](const Uncovered& u, const auto& k) { return key(u.global) < k; });
     return found != uncovered.end() && found->global == global;
   };
-  for (Uncovered& cell : uncovered) {
-    const Vec3 normal = outward(cell.before, box_.difference(centre_of(cell.global), bodies[cell.before].centre));
+  for (Uncovered& cell : uncovered)
     for (int i = 1; i < D3Q19::directions; ++i) {
       const Index3 neighbour = wrapped(step_from(cell.global, i));
       if (!block_.contains(neighbour)) continue;
       const std::ptrdiff_t at = index_of(fluid.indexing(), neighbour);
       if (fluid.cells().is_fluid(at) && !fresh(neighbour))
-        cell.neighbours.add(look_at(fluid, at, rest.deviation(centre_of(neighbour)), i, normal));
+        cell.neighbours.add(look_at(fluid, at, rest.deviation(centre_of(neighbour))));
     }
-  }
 }
 
 void Refill::exchange(std::vector<Uncovered>& uncovered) const {
@@ -184,10 +170,6 @@ std::array<double, 19> Refill::populations_of(const Neighbours& n, double at_res
   std::array<double, 19> f;
   for (int i = 0; i < D3Q19::directions; ++i) {
     f[i] = lbm::equilibrium_deviation(i, density, velocity);
-    if (rule_ == RefillRule::non_equilibrium && n.donor != 0) {
-      f[i] += n.non_equilibrium[i];
-      continue;
-    }
     f[i] += 1.5 * D3Q19::weight(i) * velocity_of(i).dot(force);
     if (rule_ != RefillRule::grad) continue;
     double projected = -trace;
@@ -201,11 +183,11 @@ std::array<double, 19> Refill::populations_of(const Neighbours& n, double at_res
 
 template <typename Real>
 RefillTotals Refill::fill(lbm::Fluid<Real>& fluid, const std::vector<CellChange>& changes, const Hydrostatic& rest,
-                          const Outward& outward, std::vector<lbm::LinkBody>& bodies) {
+                          std::vector<lbm::LinkBody>& bodies) {
   RefillTotals totals;
   std::vector<Uncovered> uncovered = uncovered_cells(changes);
   if (uncovered.empty()) return totals;
-  add_own_neighbours(fluid, bodies, rest, outward, uncovered);
+  add_own_neighbours(fluid, rest, uncovered);
   exchange(uncovered);
 
   const Vec3& force = fluid.carried_force();
@@ -234,8 +216,8 @@ RefillTotals Refill::fill(lbm::Fluid<Real>& fluid, const std::vector<CellChange>
 }
 
 template RefillTotals Refill::fill(lbm::Fluid<float>&, const std::vector<CellChange>&, const Hydrostatic&,
-                                   const Outward&, std::vector<lbm::LinkBody>&);
+                                   std::vector<lbm::LinkBody>&);
 template RefillTotals Refill::fill(lbm::Fluid<double>&, const std::vector<CellChange>&, const Hydrostatic&,
-                                   const Outward&, std::vector<lbm::LinkBody>&);
+                                   std::vector<lbm::LinkBody>&);
 
 }  // namespace thalweg::coupling

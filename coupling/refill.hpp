@@ -1,17 +1,14 @@
 // Gives cells that a grain has just uncovered their populations. With n the mean over the neighbours that were fluid
 // before, rho_n the density at rest plus their mean excess over it (none: 0), u_w the velocity of the grain's rigid
 // motion at the cell, F the body force:
-//   equilibrium      f_i^c = f_i^eq(rho_n, u_w) + 3/2 w_i c_i.F
-//   non_equilibrium  f_i^c = f_i^eq(rho_n, u_w) + [f_i^c - f_i^eq](donor); the donor is the one of these neighbours
-//                    whose direction is nearest to the outward normal (Caiazzo 2008)
-//   grad             f_i^c = f_i^eq(rho_n, u_w) + 3/2 w_i c_i.F + 9/2 w_i (c_ia c_ib - delta_ab/3) P_ab, where P_ab is
-//                    the mean over these neighbours of sum c_ia c_ib (f_i^c - f_i^eq) (Chikatamarla, Ansumali and
-//                    Karlin 2006, with the neighbours' stress)
+//   equilibrium  f_i^c = f_i^eq(rho_n, u_w) + 3/2 w_i c_i.F
+//   grad         f_i^c = f_i^eq(rho_n, u_w) + 3/2 w_i c_i.F + 9/2 w_i (c_ia c_ib - delta_ab/3) P_ab, where P_ab is the
+//                mean over these neighbours of sum c_ia c_ib (f_i^c - f_i^eq) (Chikatamarla, Ansumali and Karlin 2006,
+//                with the neighbours' stress)
 // All populations are post-collision ones, whose momentum is rho u + F/2. Lattice units.
 //
 // Neighbours may be on other ranks. Every rank that owns neighbours of an uncovered cell sees that cell in its ghost
-// layer too, so both sides know without asking who sends what; sums are exact and the choice of the donor is the same
-// from any side, so the result is the same on any ranks.
+// layer too, so both sides know without asking who sends what; sums are exact, so the result is the same on any ranks.
 #pragma once
 
 #include "core/decomposition.hpp"
@@ -24,7 +21,6 @@
 #include <mpi.h>
 
 #include <array>
-#include <functional>
 #include <vector>
 
 namespace thalweg::coupling {
@@ -38,26 +34,20 @@ struct RefillTotals {
 
 class Refill {
 public:
-  // The direction of the normal of a slot's body, of any length, at a point from its centre (core/shape.hpp).
-  using Outward = std::function<Vec3(std::int32_t slot, const Vec3& point)>;
-
   Refill(const Decomposition& decomposition, MPI_Comm communicator, RefillRule rule = RefillRule::equilibrium);
 
   // changes: from CellClaims::settle(); bodies: centre and motion of the slots, to whose mass rho - rho_rest of the
-  // cells that each has uncovered is added; outward: their normals. Call after the map is settled and before the halo
-  // exchange. Every rank calls it each step.
+  // cells that each has uncovered is added. Call after the map is settled and before the halo exchange. Every rank
+  // calls it each step.
   template <typename Real>
   RefillTotals fill(lbm::Fluid<Real>& fluid, const std::vector<CellChange>& changes, const Hydrostatic& rest,
-                    const Outward& outward, std::vector<lbm::LinkBody>& bodies);
+                    std::vector<lbm::LinkBody>& bodies);
 
 private:
   // What the fluid neighbours of one uncovered cell tell; a message between ranks as it stands.
   struct Neighbours {
-    std::int64_t count = 0, excess = 0;        // LatticeFixed sum of rho - rho_rest
-    std::array<std::int64_t, 6> stress{};      // LatticeFixed sums of P: xx, yy, zz, xy, xz, yz
-    std::int64_t donor = 0;                    // its direction from the cell; 0: none
-    double alignment = 0.0;                    // cosine of that direction to the normal, times the normal's length
-    std::array<double, 19> non_equilibrium{};  // of the donor
+    std::int64_t count = 0, excess = 0;    // LatticeFixed sum of rho - rho_rest
+    std::array<std::int64_t, 6> stress{};  // LatticeFixed sums of P: xx, yy, zz, xy, xz, yz
 
     void add(const Neighbours& others);
   };
@@ -74,12 +64,11 @@ private:
   std::ptrdiff_t index_of(const lbm::CellIndexing& indexing, const Index3& global) const;
   std::vector<Uncovered> uncovered_cells(const std::vector<CellChange>& changes) const;
   template <typename Real>
-  void add_own_neighbours(const lbm::Fluid<Real>& fluid, const std::vector<lbm::LinkBody>& bodies,
-                          const Hydrostatic& rest, const Outward& outward, std::vector<Uncovered>& uncovered) const;
+  void add_own_neighbours(const lbm::Fluid<Real>& fluid, const Hydrostatic& rest,
+                          std::vector<Uncovered>& uncovered) const;
   // at_rest: rho_rest - 1 in the cell.
   template <typename Real>
-  Neighbours look_at(const lbm::Fluid<Real>& fluid, std::ptrdiff_t cell, double at_rest, int direction,
-                     const Vec3& normal) const;
+  Neighbours look_at(const lbm::Fluid<Real>& fluid, std::ptrdiff_t cell, double at_rest) const;
   void exchange(std::vector<Uncovered>& uncovered) const;
   // at_rest: rho_rest - 1 in the cell.
   std::array<double, 19> populations_of(const Neighbours& neighbours, double at_rest, const Vec3& velocity,

@@ -7,7 +7,7 @@
 
 namespace thalweg::coupling {
 
-enum class RefillRule { equilibrium, non_equilibrium, grad };
+enum class RefillRule { equilibrium, grad };
 std::vector<NamedChoice<RefillRule>> choices_of(RefillRule);  // its words in a case file
 
 }  // namespace thalweg::coupling

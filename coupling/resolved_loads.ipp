@@ -52,7 +52,7 @@ void ResolvedSystem<Real, S>::keep_momentum(lbm::LinkBody& body, int plane, cons
 
 // To be called before forces are added that the fluid does not feel.
 template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::book_links(const lbm::LinkBalance& balance) {
+void ResolvedSystem<Real, S>::book_links() {
   for (std::size_t g = 0; g < grains_->store().total(); ++g) {
     const lbm::LinkBody& body = bodies_[map_slot_[g]];
     const Vec3 force = body.force.to_vec3();
@@ -66,7 +66,6 @@ void ResolvedSystem<Real, S>::book_links(const lbm::LinkBalance& balance) {
   mass_.book(MassAccount::links, step_totals_.link_mass);
   mass_.book(MassAccount::uncovered, step_totals_.refilled_mass);
   mass_.book(MassAccount::covered, step_totals_.covered_mass);
-  if (parameters_.mass_balance) mass_.book(balance);
 }
 
 template <typename Real, GrainShape S>

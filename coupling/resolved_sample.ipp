@@ -39,7 +39,7 @@ FluidSource::Drive ResolvedSystem<Real, S>::drive() const {
 template <typename Real, GrainShape S>
 void ResolvedSystem<Real, S>::write_momentum_book() {
   std::vector<lbm::LinkBody> bodies = bodies_;
-  lbm::LinkPass<Real, S> links(fluid_, links_, lattice_box_, parameters_.links, bodies, map_.shapes(), nullptr, nullptr,
+  lbm::LinkPass<Real, S> links(fluid_, links_, lattice_box_, parameters_.links, bodies, map_.shapes(), nullptr,
                                &given_by_height_);
   for (int tile = 0; tile < fluid_.tiles().count(); ++tile) links.apply_tile(tile);
   momentum_ = book_of(fluid_, parameters_.units, parameters_.links.reference_density, given_by_height_);

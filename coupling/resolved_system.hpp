@@ -34,8 +34,6 @@ struct ResolvedParameters : FluidParameters {
   LoadRule load = LoadRule::extrapolated;
   bool keep_covered_momentum = false;  // what a covered cell carries relative to its grain, the grain gets
   bool grain_stress = false;           // the stress of the fluid on every grain is measured
-  bool paper_near_contact = false;     // hidden_links.hpp
-  bool mass_balance = false;           // the figures include where the links' mass comes from
 };
 
 // This rank's part of the sums that a momentum balance of the fluid needs (lattice units, of the step just done).
@@ -117,7 +115,7 @@ private:
   void keep_momentum(lbm::LinkBody& body, int plane, const Vec3& position, double density, const Vec3& momentum);
   void open_account();
   void correct_mass();
-  void book_links(const lbm::LinkBalance& balance);
+  void book_links();
   lbm::LinkSums link_sums_of(std::size_t grain) const;
   void settle_masses();
   void settle_mass(std::size_t first, std::size_t count);

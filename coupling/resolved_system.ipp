@@ -34,8 +34,7 @@ ResolvedSystem<Real, S>::ResolvedSystem(std::unique_ptr<Decomposition> decomposi
       map_(*decomposition_, fluid_.block(), fluid_.cells()),
       links_(fluid_.tiles().count()),
       link_builder_(*decomposition_, fluid_.block(), fluid_.cells(), fluid_.tiles()),
-      hidden_links_(*decomposition_, fluid_.block(), fluid_.cells(), {parameters.paper_near_contact, rest_},
-                    parameters.links.momentum_exchange),
+      hidden_links_(*decomposition_, fluid_.block(), fluid_.cells(), rest_),
       refill_(*decomposition_, communicator, parameters.refill),
       mass_(communicator),
       closed_(closed(parameters.faces)) {
@@ -115,7 +114,7 @@ void ResolvedSystem<Real, S>::update_bodies() {
     surrounding_[map_slot_[g]] = kept.surrounding();
     body.clear_sums();
   }
-  if (parameters_.grain_stress || parameters_.mass_balance) moments_.assign(bodies_.size(), {});
+  if (parameters_.grain_stress) moments_.assign(bodies_.size(), {});
 }
 
 // Cells follow a grain once it has moved by the tolerance; links know its place exactly all the same. Ghosts follow the
@@ -136,16 +135,14 @@ void ResolvedSystem<Real, S>::update_map() {
 template <typename Real, GrainShape S>
 void ResolvedSystem<Real, S>::sweep_behind_links() {
   std::vector<FixedTensor>* moments = moments_.empty() ? nullptr : &moments_;
-  lbm::LinkBalance balance;
-  lbm::LinkPass<Real, S> links(fluid_, links_, lattice_box_, parameters_.links, bodies_, map_.shapes(), moments,
-                               parameters_.mass_balance ? &balance : nullptr);
+  lbm::LinkPass<Real, S> links(fluid_, links_, lattice_box_, parameters_.links, bodies_, map_.shapes(), moments);
   const auto sweep = timer_.measure(phases_.sweep);
   fluid_.stream_and_collide([&](int tile) {
     const auto scope = timer_.measure(phases_.links);
     links.apply_tile(tile);
   });
   const auto scope = timer_.measure(phases_.links);
-  book_links(balance);
+  book_links();
   hidden_links_.apply(map_.shapes(), bodies_, moments);
   map_.hidden_patches().apply(map_.grains(), map_.shapes(), surrounding_, parameters_.links.reference_density, bodies_,
                               moments);
@@ -190,8 +187,7 @@ void ResolvedSystem<Real, S>::advance() {
   }
   {
     const auto scope = timer_.measure(phases_.refill);
-    const auto outward = [this](std::int32_t slot, const Vec3& point) { return map_.shapes()[slot].outward(point); };
-    const RefillTotals totals = refill_.fill(fluid_, map_.changes(), rest_, outward, bodies_);
+    const RefillTotals totals = refill_.fill(fluid_, map_.changes(), rest_, bodies_);
     step_totals_.refilled_mass = totals.mass;
     step_totals_.refilled = totals.momentum;
     step_totals_.refilled_angular_momentum = totals.angular_momentum;
@@ -268,8 +264,7 @@ std::vector<Figure> ResolvedSystem<Real, S>::figures() const {
   if (parameters_.wall_forces) add_wall_forces(figures);
   add_extremes(survey, figures);
   figures.push_back({"largest_grain_speed", "m/s", grains_->largest_speed()});
-  for (const Figure& figure : mass_.figures(excess.sum, mass_owed(), parameters_.units, parameters_.mass_balance))
-    figures.push_back(figure);
+  for (const Figure& figure : mass_.figures(excess.sum, mass_owed(), parameters_.units)) figures.push_back(figure);
   const auto& force = fluid_.parameters().force;
   add_momentum(survey, Vec3(force[0], force[1], force[2]), parameters_.units, figures);
   return figures;

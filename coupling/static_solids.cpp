@@ -204,7 +204,7 @@ void StaticSolids::add_links_of_cell(const Index3& local, std::vector<SolidLinks
   const auto found = cut_.find(cell);
   if (found == cut_.end()) return;
   const Vec3 centre = centre_of({block_.lower[0] + local[0], block_.lower[1] + local[1], block_.lower[2] + local[2]});
-  const lbm::Confinement confinement = cells_.confinement(cell);
+  const bool enclosed = cells_.is_enclosed(cell);
   for (int i = 1; i < D3Q19::directions; ++i) {
     const std::int32_t solid = cells_.body(cell + cells_.indexing().offset(i));
     if (solid == CellMap::fluid) continue;
@@ -212,7 +212,7 @@ void StaticSolids::add_links_of_cell(const Index3& local, std::vector<SolidLinks
     const double distance = std::min(found->second[i], 1.0);
     const Vec3 arm = box.difference(centre + distance * velocity_of(i), bodies_[solid].centre);
     const std::int32_t upstream = cells_.body(cell - cells_.indexing().offset(i));
-    links[solid].links.push_back({lbm::LinkPlace::of(local[0], local[1]), lbm::LinkTag::of(i, upstream, confinement)});
+    links[solid].links.push_back({lbm::LinkPlace::of(local[0], local[1]), lbm::LinkTag::of(i, upstream, enclosed)});
     links[solid].crossings.push_back(
         {static_cast<float>(distance),
          {static_cast<float>(arm[0]), static_cast<float>(arm[1]), static_cast<float>(arm[2])}});

@@ -17,9 +17,7 @@ std::unique_ptr<System> build_resolved(const Case& c, MPI_Comm communicator, con
   parameters.link_tolerance = c.coupling.link_tolerance;
   parameters.load = c.coupling.load_rule();
   parameters.keep_covered_momentum = c.coupling.covered_momentum == coupling::CoveredMomentum::to_grain;
-  parameters.mass_balance = c.coupling.mass_balance;
   parameters.refill = c.coupling.refill;
-  parameters.paper_near_contact = c.coupling.near_contact == coupling::NearContact::paper;
   parameters.grain_stress = measures_grain_stress(c);
   parameters.wall_forces = c.analysis.wall_forces.has_value();
   parameters.sub_steps = static_cast<int>(c.coupling.grain_steps_per_fluid_step);

@@ -53,7 +53,6 @@ coupling::FluidParameters fluid_parameters(const Case& c) {
   parameters.links.momentum_exchange = c.coupling.momentum_exchange;
   parameters.links.wall_density = c.coupling.wall_density;
   parameters.links.rule = c.coupling.links;
-  parameters.links.gaps = c.coupling.narrow_gaps;
   parameters.initial_fluid =
       initial_fluid(c.initial.fluid, cells_of(c.domain), periodic_axes(c.domain), c.domain.spacing);
   return parameters;

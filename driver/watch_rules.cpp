@@ -169,7 +169,8 @@ void add_fluid_rules(const Case& c, std::vector<WatchRule>& rules) {
                              ", or take fluid.precision: double."
                        : "Grains cost the fluid more than their links can return, or the collision has "
                          "become unstable: " +
-                             shorter_step + "; coupling.mass_balance shows in series.csv where the mass goes."});
+                             shorter_step +
+                             "; mass_by_links and the columns beside it in series.csv show where the mass goes."});
   const std::string waves =
       "Pressure waves of this size come from a flow or grains that start or stop at once, or from "
       "an unstable collision: begin with a smoother state (initial, grains.0.velocity), or " +

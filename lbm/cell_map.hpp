@@ -9,17 +9,6 @@
 
 namespace thalweg::lbm {
 
-// How far bodies shut a fluid cell off from the rest: on how many of the nine lines along c_i it has a fluid neighbour.
-enum class Confinement : std::uint8_t {
-  open,     // on two or more
-  pocket,   // on one
-  enclosed  // on none
-};
-
-constexpr Confinement confinement_of(int open_lines) {
-  return open_lines == 0 ? Confinement::enclosed : open_lines == 1 ? Confinement::pocket : Confinement::open;
-}
-
 class CellMap {
 public:
   static constexpr std::int32_t fluid = -1;  // any other value: the id of the covering body
@@ -43,13 +32,11 @@ public:
   const CellIndexing& indexing() const { return indexing_; }
   bool is_fluid(std::ptrdiff_t cell) const { return body_[cell] == fluid; }
   std::int32_t body(std::ptrdiff_t cell) const { return body_[cell]; }
-  // Of an owned cell; open where it is covered.
-  Confinement confinement(std::ptrdiff_t cell) const {
-    if (!is_fluid(cell)) return Confinement::open;
-    int lines = 0;
-    for (int i = 1; i < D3Q19::directions && lines < 2; i += 2)
-      lines += is_fluid(cell + indexing_.offset(i)) || is_fluid(cell - indexing_.offset(i));
-    return confinement_of(lines);
+  // Whether a fluid cell, which must be owned, has no fluid beside it.
+  bool is_enclosed(std::ptrdiff_t cell) const {
+    for (int i = 1; i < D3Q19::directions; ++i)
+      if (is_fluid(cell + indexing_.offset(i))) return false;
+    return is_fluid(cell);
   }
   const std::int32_t* bodies() const { return body_.data(); }
 

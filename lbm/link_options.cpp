@@ -17,9 +17,4 @@ std::vector<NamedChoice<LinkRule>> choices_of(LinkRule) {
           {LinkRule::cli, "cli", "Ginzburg et al. 2008; with collision trt"}};
 }
 
-std::vector<NamedChoice<GapRule>> choices_of(GapRule) {
-  return {{GapRule::no_slip, "no_slip", "as published: in water they do not flow"},
-          {GapRule::slip, "slip", "they flow as their width and the viscosity say"}};
-}
-
 }  // namespace thalweg::lbm

@@ -11,21 +11,16 @@ namespace thalweg::lbm {
 enum class MomentumExchange { galilean_invariant, classical };
 enum class WallDensity { local, reference };  // rho in the moving-wall term: of x_f, or 1
 enum class LinkRule { bouzidi, cli };
-// Gaps of one cell between two bodies: the fluid in them sticks to both, or slips just enough to flow as its viscosity
-// requires (upstream_bodies.hpp; not for bodies with stored crossings).
-enum class GapRule { no_slip, slip };
 
 // Their words in a case file (core/section_visitor.hpp).
 std::vector<NamedChoice<MomentumExchange>> choices_of(MomentumExchange);
 std::vector<NamedChoice<WallDensity>> choices_of(WallDensity);
 std::vector<NamedChoice<LinkRule>> choices_of(LinkRule);
-std::vector<NamedChoice<GapRule>> choices_of(GapRule);
 
 struct LinkOptions {
   MomentumExchange momentum_exchange = MomentumExchange::galilean_invariant;
   WallDensity wall_density = WallDensity::local;
   LinkRule rule = LinkRule::bouzidi;
-  GapRule gaps = GapRule::no_slip;
   // Density of the fluid at rest, 1 + rest_gradient.(x - rest_middle): hydrostatic, or 1 everywhere.
   Vec3 rest_gradient = Vec3::Zero();  // of rho a cell
   Vec3 rest_middle = Vec3::Zero();    // cells

@@ -4,8 +4,8 @@
 // post-collision, x_ff = x_f - c_i, u_w the velocity of the surface where the link meets it. What comes back, f_i'(x_f,
 // t+1), is given by a rule: bouzidi_link.hpp or cli_link.hpp.
 // If x_ff is covered by a body, Bouzidi's rule takes for f_i^c(x_ff) the equilibrium at the density of x_f and that
-// body's velocity at x_ff (Zhang et al. 2022; upstream_bodies.hpp); the other rule becomes half-way bounce-back, and
-// both do where gaps slip. If it lies beyond a wall, the population that the wall returns to x_f stands in.
+// body's velocity at x_ff (Zhang et al. 2022; upstream_bodies.hpp); the other rule becomes half-way bounce-back. If it
+// lies beyond a wall, the population that the wall returns to x_f stands in.
 //
 // Force on the body per step: the Galilean-invariant exchange of Wen et al. 2014, sum (c_i - u_w) f_i^c - (c_i' - u_w)
 // f_i', or the classical one of Mei et al. 2002, sum c_i (f_i^c + f_i'). w_i times a reference density is subtracted
@@ -40,15 +40,6 @@
 
 namespace thalweg::lbm {
 
-// Sources of the mass that links give to the fluid (LatticeFixed sums over a rank's links in one step), by what the
-// rule reads besides f_i^c(x_f). The rest of LinkBody::mass is what is returned and what enclosed cells lose.
-struct LinkBalance {
-  std::int64_t upstream = 0;     // f_i^c(x_ff): Bouzidi's rule below a half, cli
-  std::int64_t same_cell = 0;    // f_i'^c(x_f): Bouzidi's rule from a half on
-  std::int64_t covered = 0;      // the equilibrium in an x_ff that a body covers
-  std::int64_t moving_wall = 0;  // the term with c_i.u_w
-};
-
 // In place of a shape: the crossings are stored with the links (LinkTable).
 struct StoredCrossings {};
 
@@ -68,9 +59,9 @@ concept LinkShape = Shape<S> || std::same_as<S, StoredCrossings>;
 // finish(), one batch later, does the exchange. Meanwhile the populations two planes ahead are prefetched.
 //
 // moments: where given, one for each body, to which sum F_a x_b is added, F the momentum of a link and x its arm; the
-// torque is its antisymmetric part. balance: where given (with moments), the sources of the mass are added to it.
-// by_height: where given, 2 n_z + 1 sums for the n_z planes of this rank, to which the force of every link is added at
-// the height half a link from its fluid cell: entry h lies h half cells above the block's lower face.
+// torque is its antisymmetric part. by_height: where given, 2 n_z + 1 sums for the n_z planes of this rank, to which
+// the force of every link is added at the height half a link from its fluid cell: entry h lies h half cells above the
+// block's lower face.
 //
 // The members are defined in link_pass.ipp, to be included where they are instantiated for a new shape.
 template <typename Real, LinkShape S = StoredCrossings>
@@ -78,7 +69,7 @@ class LinkPass {
 public:
   LinkPass(Fluid<Real>& fluid, const LinkTable& links, const PeriodicBox& box, const LinkOptions& options,
            std::vector<LinkBody>& bodies, std::span<const S> shapes = {}, std::vector<FixedTensor>* moments = nullptr,
-           LinkBalance* balance = nullptr, std::vector<FixedVec3>* by_height = nullptr);
+           std::vector<FixedVec3>* by_height = nullptr);
 
   void apply_tile(int tile);
 
@@ -119,14 +110,11 @@ private:
     alignas(64) Real incident[capacity], second[capacity];  // f_i^c(x_f); the rule's other value
     alignas(64) Real leak[capacity];                        // rho - rho_rest where x_f is enclosed, else 0
     alignas(64) Real reflected[capacity];                   // f_i'(x_f, t+1)
-    alignas(64) Real slip[capacity], odd_change[capacity];  // c_i.v, change of o (upstream_bodies.hpp)
     // What is summed, zero for copies. taken, given: f_i^c(x_f), f_i'(x_f, t+1); pressure: w_i (rho - rho_rest)(x_f).
     alignas(64) Real taken[capacity], given[capacity], pressure[capacity];
     alignas(64) Real momentum[3][capacity], torque[3][capacity];
     alignas(64) Real moment[9][capacity];
-    alignas(64) Real interpolated[capacity], moving_wall[capacity];  // parts of f_i' - f_i^c
   };
-  static constexpr bool has_normals = Shape<S>;
   static int component(std::uint32_t tag, int axis) { return LinkTag::velocity(static_cast<int>(tag), axis); }
 
   using Wide = std::experimental::native_simd<double>;
@@ -155,19 +143,14 @@ private:
   [[gnu::always_inline]] static Pack velocity(const Ints& tag, int axis) {
     return std::experimental::static_simd_cast<Pack>(LinkTag::velocity(tag, axis));
   }
-  enum class Extra { none, moments, moments_and_balance };  // what is measured besides force, torque and mass
 
-  template <typename Rule, Extra extra>
+  // with_moments: whether sum F_a x_b is measured besides force, torque and mass.
+  template <typename Rule, bool with_moments>
   void apply_links(int tile);
-  void measure_cells(int tile);
-  template <bool momentum_too>
-  void measure_rows(int tile);
+  void measure_densities(int tile);
   LinkBody& body_of(const Batch& batch, int link) const {
     return bodies_[static_cast<std::size_t>(batch.body[link / links_at_a_time])];
   }
-  bool gaps_flow() const { return gaps_.kept < 1.0; }
-  // Whether values_.slip and odd_change count.
-  bool slips(const Batch& batch) const { return gaps_flow() && batch.covered_count > 0; }
   const Real* excess() const { return has_rest_ ? values_.excess : values_.deviation; }
 
   void append(Batch& batch, const LinkTable::Tile& tile, const LinkTable::Run& run, int from, int count) const;
@@ -175,23 +158,20 @@ private:
   void prepare(Batch& batch) const;
   template <typename Rule>
   void find_covered(Batch& batch) const;
-  template <typename Rule, Extra extra>
+  template <typename Rule, bool with_moments>
   void finish(const Batch& batch);
   template <typename Rule>
   void gather(const Batch& batch);
   void forget_second_of_covered(const Batch& batch);
   void look_at_covered(const Batch& batch);
-  void let_gaps_flow(const Batch& batch);
   void look_upstream(const Batch& batch);
   void subtract_rest(const Batch& batch);
   void find_leaks(const Batch& batch);
-  template <typename Rule, Extra extra>
+  template <typename Rule, bool with_moments>
   void reflect(const Batch& batch, const Piece& piece);
   void add_momentum(const Piece& piece) const;
   void add_moments(const Piece& piece) const;
   void add_by_height(const Batch& batch, const Piece& piece) const;
-  template <typename Rule>
-  void add_balance(const Batch& batch, const Piece& piece) const;
 
   const CellMap& cells_;
   const RowTiles& tiles_;
@@ -201,7 +181,6 @@ private:
   std::vector<LinkBody>& bodies_;
   std::span<const S> shapes_;
   std::vector<FixedTensor>* moments_;  // null: not measured
-  LinkBalance* balance_;               // null: not measured
   std::vector<FixedVec3>* by_height_;  // null: not measured
   BlockPlace block_;
 
@@ -209,17 +188,14 @@ private:
   Real* base_ = nullptr;
   std::array<const Real*, D3Q19::directions> sent_;  // Populations::sent()
 
-  // rho - 1 of the cells of two neighbouring planes, even z and odd z, and where gaps flow sum c_i f_i^c.
-  std::vector<Real> deviations_[2], momenta_[2][3];
-  int parity_ = 0;  // of the present plane
+  std::vector<Real> deviations_[2];  // rho - 1 of the cells of two neighbouring planes, even z and odd z
+  int parity_ = 0;                   // of the present plane
 
   TilePrefetch<Real> next_;
   Batch batches_[2];
   Values values_;
   UpstreamBodies upstream_;
-  GapFlow gaps_;
-  double force_[3];  // on the fluid, in the last collision
-  bool has_rest_;    // the fluid at rest is not the same everywhere
+  bool has_rest_;  // the fluid at rest is not the same everywhere
 };
 
 }  // namespace thalweg::lbm

@@ -19,7 +19,7 @@ namespace stdx = std::experimental;
 template <typename Real, LinkShape S>
 LinkPass<Real, S>::LinkPass(Fluid<Real>& fluid, const LinkTable& links, const PeriodicBox& box,
                             const LinkOptions& options, std::vector<LinkBody>& bodies, std::span<const S> shapes,
-                            std::vector<FixedTensor>* moments, LinkBalance* balance, std::vector<FixedVec3>* by_height)
+                            std::vector<FixedTensor>* moments, std::vector<FixedVec3>* by_height)
     : cells_(fluid.cells()),
       tiles_(fluid.tiles()),
       links_(links),
@@ -28,19 +28,13 @@ LinkPass<Real, S>::LinkPass(Fluid<Real>& fluid, const LinkTable& links, const Pe
       bodies_(bodies),
       shapes_(shapes),
       moments_(moments),
-      balance_(balance),
       by_height_(by_height),
       block_(box, fluid.block().lower),
       next_(fluid.populations(), fluid.tiles()),
-      gaps_(has_normals && options.gaps == GapRule::slip ? gap_flow(fluid.parameters()) : GapFlow{}),
       has_rest_(!options.rest_gradient.isZero(0.0)) {
-  std::copy_n(fluid.carried_force().data(), 3, force_);
   Populations<Real>& populations = fluid.populations();
-  const auto plane = static_cast<std::size_t>(populations.indexing().plane_stride());
-  for (const int parity : {0, 1}) {
-    deviations_[parity].resize(plane);
-    for (std::vector<Real>& component : momenta_[parity]) component.resize(gaps_flow() ? plane : 0);
-  }
+  for (std::vector<Real>& deviations : deviations_)
+    deviations.resize(static_cast<std::size_t>(populations.indexing().plane_stride()));
   sent_ = populations.sent();
   slots_ = LinkSlots(populations);
   base_ = populations.plane(LinkSlots::middle);
@@ -49,12 +43,7 @@ LinkPass<Real, S>::LinkPass(Fluid<Real>& fluid, const LinkTable& links, const Pe
 template <typename Real, LinkShape S>
 void LinkPass<Real, S>::apply_tile(int tile) {
   const auto apply = [&]<typename Rule>() {
-    if (balance_)
-      apply_links<Rule, Extra::moments_and_balance>(tile);
-    else if (moments_)
-      apply_links<Rule, Extra::moments>(tile);
-    else
-      apply_links<Rule, Extra::none>(tile);
+    moments_ ? apply_links<Rule, true>(tile) : apply_links<Rule, false>(tile);
   };
   if (options_.rule == LinkRule::cli)
     apply.template operator()<CliLink>();
@@ -63,13 +52,13 @@ void LinkPass<Real, S>::apply_tile(int tile) {
 }
 
 template <typename Real, LinkShape S>
-template <typename Rule, typename LinkPass<Real, S>::Extra extra>
+template <typename Rule, bool with_moments>
 void LinkPass<Real, S>::apply_links(int tile) {
   // One plane ahead, because links reach for slots in the next plane: the straight pass for the densities brings them
   // into the cache at the speed of memory.
   const int z = tiles_.plane_of(tile);
-  if (z == 0) measure_cells(tile);
-  if (z + 1 < tiles_.planes()) measure_cells(tile + 1);
+  if (z == 0) measure_densities(tile);
+  if (z + 1 < tiles_.planes()) measure_densities(tile + 1);
   parity_ = z % 2;
 
   const LinkTable::Tile& t = links_.tiles()[tile];
@@ -92,7 +81,7 @@ void LinkPass<Real, S>::apply_links(int tile) {
   const auto pass_on = [&] {
     prepare<Rule>(batches_[turn]);
     turn ^= 1;
-    finish<Rule, extra>(batches_[turn]);
+    finish<Rule, with_moments>(batches_[turn]);
     batches_[turn].clear(z);
     next_.advance(static_cast<double>(done) / static_cast<double>(t.live));
   };
@@ -109,20 +98,14 @@ void LinkPass<Real, S>::apply_links(int tile) {
     }
   }
   pass_on();
-  finish<Rule, extra>(batches_[turn ^ 1]);
+  finish<Rule, with_moments>(batches_[turn ^ 1]);
 }
 
 // Links never change what is measured: they write incoming slots of fluid cells, which hold no post-collision
 // population of a fluid cell.
 template <typename Real, LinkShape S>
-void LinkPass<Real, S>::measure_cells(int tile) {
+void LinkPass<Real, S>::measure_densities(int tile) {
   if (links_.tiles()[tile].live == 0) return;
-  gaps_flow() ? measure_rows<true>(tile) : measure_rows<false>(tile);
-}
-
-template <typename Real, LinkShape S>
-template <bool momentum_too>
-void LinkPass<Real, S>::measure_rows(int tile) {
   constexpr std::ptrdiff_t width = Pack::size();
   const CellIndexing& indexing = cells_.indexing();
   const int z = tiles_.plane_of(tile), block = tiles_.block_of(tile);
@@ -132,18 +115,10 @@ void LinkPass<Real, S>::measure_rows(int tile) {
     for (int p = 0; p < indexing.packs_per_row(); ++p) {
       if (fluid[p] == 0) continue;
       const std::ptrdiff_t cell = indexing.index(0, y, z) + p * width;
-      Pack sum = 0, momentum[3] = {0, 0, 0};
-      for_each_direction([&]<int i>() __attribute__((always_inline)) {
-        const Pack f(sent_[i] + cell, stdx::element_aligned);
-        sum += f;
-        if constexpr (momentum_too)
-          for (int a = 0; a < 3; ++a)
-            if (D3Q19::c[i][a] != 0) momentum[a] += D3Q19::c[i][a] > 0 ? f : -f;
-      });
+      Pack sum = 0;
+      for_each_direction([&]<int i>()
+                             __attribute__((always_inline)) { sum += Pack(sent_[i] + cell, stdx::element_aligned); });
       sum.copy_to(deviations_[z % 2].data() + (cell - start), stdx::element_aligned);
-      if constexpr (momentum_too)
-        for (int a = 0; a < 3; ++a)
-          momentum[a].copy_to(momenta_[z % 2][a].data() + (cell - start), stdx::element_aligned);
     }
   }
 }
@@ -194,28 +169,26 @@ void LinkPass<Real, S>::prepare(Batch& b) const {
 template <typename Real, LinkShape S>
 template <typename Rule>
 void LinkPass<Real, S>::find_covered(Batch& b) const {
-  const bool at_any_distance = gaps_flow(), near_wall = !Rule::needs_both;
   int count = 0;
-  for (int p = 0; p < b.pieces; ++p)
+  for (int p = 0; p < b.pieces && !Rule::needs_both; ++p)
     for (int k = b.piece[p].first; k < b.piece[p].covered_end(); ++k) {
       b.covered[count] = k;
-      count += static_cast<int>(at_any_distance | (near_wall & (b.distance[k] < Real(0.5))));
+      count += static_cast<int>(b.distance[k] < Real(0.5));
     }
   b.covered_count = count;
   for (int c = 0; c < count; ++c) bodies_[LinkTag::upstream_body(b.tag[b.covered[c]])].prefetch();
 }
 
 template <typename Real, LinkShape S>
-template <typename Rule, typename LinkPass<Real, S>::Extra extra>
+template <typename Rule, bool with_moments>
 void LinkPass<Real, S>::finish(const Batch& b) {
   gather<Rule>(b);
   for (int p = 0; p < b.pieces; ++p) {
     const Piece& piece = b.piece[p];
-    reflect<Rule, extra>(b, piece);
+    reflect<Rule, with_moments>(b, piece);
     add_momentum(piece);
     if (by_height_) add_by_height(b, piece);
-    if constexpr (extra != Extra::none) add_moments(piece);
-    if constexpr (extra == Extra::moments_and_balance) add_balance<Rule>(b, piece);
+    if constexpr (with_moments) add_moments(piece);
   }
   for (int k = 0; k < b.size; ++k) base_[b.reflected_at[k]] = values_.reflected[k];
 }
@@ -229,9 +202,12 @@ void LinkPass<Real, S>::gather(const Batch& b) {
     values_.incident[k] = base_[b.incident_at[k]];
     values_.second[k] = base_[b.second_at[k]];
   }
-  if (Rule::needs_both || gaps_flow()) forget_second_of_covered(b);
-  if (b.covered_count > 0) look_at_covered(b);
-  if constexpr (Rule::needs_both) look_upstream(b);
+  if constexpr (Rule::needs_both) {
+    forget_second_of_covered(b);
+    look_upstream(b);
+  } else {
+    if (b.covered_count > 0) look_at_covered(b);
+  }
   if (has_rest_) subtract_rest(b);
   if (b.leaks) find_leaks(b);
 }
@@ -274,47 +250,8 @@ void LinkPass<Real, S>::look_at_covered(const Batch& b) {
     upstream_.take(c, b.tag[k], b.distance[k], Vec3(b.arm[0][k], b.arm[1][k], b.arm[2][k]), values_.deviation[k], other,
                    box_.difference(body_of(b, k).centre, other.centre));
   }
-  if (gaps_flow()) {
-    let_gaps_flow(b);
-    return;
-  }
   upstream_.find_populations(options_.rest_gradient);
-  for (int c = 0; c < b.covered_count; ++c) {
-    const int k = b.covered[c];
-    // Without a branch, which would be unpredictable.
-    const Real either[2] = {values_.second[k], static_cast<Real>(upstream_.population(c))};
-    values_.second[k] = either[static_cast<int>(b.distance[k] < Real(0.5))];
-  }
-}
-
-template <typename Real, LinkShape S>
-void LinkPass<Real, S>::let_gaps_flow(const Batch& b) {
-  if constexpr (std::same_as<S, Sphere>) {
-    upstream_.set_radial_normals();
-  } else if constexpr (Shape<S>) {
-    for (int c = 0; c < b.covered_count; ++c) {
-      const int k = b.covered[c];
-      const S &own = shapes_[static_cast<std::size_t>(b.body[k / links_at_a_time])],
-              &other = shapes_[LinkTag::upstream_body(b.tag[k])];
-      upstream_.set_normals(c, own.outward(upstream_.from_own(c)), other.outward(upstream_.from_other(c)));
-    }
-  }
-  const std::vector<Real>(&momentum)[3] = momenta_[parity_];
-  for (int c = 0; c < b.covered_count; ++c) {
-    const int k = b.covered[c];
-    const auto cell = static_cast<std::size_t>(b.cell[k]);
-    const Vec3 flow(momentum[0][cell], momentum[1][cell], momentum[2][cell]);
-    const Real back = base_[slots_.one_back(b.reflected_at[k], b.tag[k])];
-    const double odd = 0.5 * (static_cast<double>(values_.incident[k]) - static_cast<double>(back));
-    upstream_.set_flow(c, body_of(b, k), flow, odd);
-  }
-  upstream_.let_flow(force_, gaps_);
-  std::fill_n(values_.slip, b.size, Real(0));
-  std::fill_n(values_.odd_change, b.size, Real(0));
-  for (int c = 0; c < b.covered_count; ++c) {
-    values_.slip[b.covered[c]] = static_cast<Real>(upstream_.slip_along(c));
-    values_.odd_change[b.covered[c]] = static_cast<Real>(upstream_.odd_change(c));
-  }
+  for (int c = 0; c < b.covered_count; ++c) values_.second[b.covered[c]] = static_cast<Real>(upstream_.population(c));
 }
 
 // For a rule that needs both. Covered links have none (forget_second_of_covered()).
@@ -327,14 +264,14 @@ void LinkPass<Real, S>::look_upstream(const Batch& b) {
 }
 
 template <typename Real, LinkShape S>
-template <typename Rule, typename LinkPass<Real, S>::Extra extra>
+template <typename Rule, bool with_moments>
 void LinkPass<Real, S>::reflect(const Batch& b, const Piece& piece) {
   constexpr int width = static_cast<int>(Pack::size());
   const Body body(bodies_[static_cast<std::size_t>(piece.body)]);
   const Pack zero = Real(0), lane([](auto j) { return Real(static_cast<int>(j)); });
   const Pack galilean = options_.momentum_exchange == MomentumExchange::galilean_invariant ? Real(1) : Real(0);
   const Pack reference = Real(2.0 * options_.reference_density);
-  const bool local = options_.wall_density == WallDensity::local, with_slip = slips(b);
+  const bool local = options_.wall_density == WallDensity::local;
   for (int k = piece.first; k < piece.filled_end(); k += width) {
     const auto at = [k](const Real* values) { return Pack(values + k, stdx::element_aligned); };
     const auto put = [k](const Pack& pack, Real* values) { pack.copy_to(values + k, stdx::element_aligned); };
@@ -344,10 +281,9 @@ void LinkPass<Real, S>::reflect(const Batch& b, const Piece& piece) {
     const Pack weight = (Pack(Real(3)) - squared) * Pack(Real(1.0 / 36.0));
     const Pack ux = body.vx + (body.wy * az - body.wz * ay), uy = body.vy + (body.wz * ax - body.wx * az),
                uz = body.vz + (body.wx * ay - body.wy * ax);
-    Pack towards_wall = cx * ux + cy * uy + cz * uz;
-    if (with_slip) towards_wall += at(values_.slip);
+    const Pack towards_wall = cx * ux + cy * uy + cz * uz;
     LinkWeights<Pack> rule = Rule::weights(at(b.distance));
-    if (Rule::needs_both || with_slip) {  // half-way bounce-back in a gap of one cell
+    if constexpr (Rule::needs_both) {  // half-way bounce-back in a gap of one cell
       const typename Pack::mask_type covered = lane < Pack(Real(piece.covered_end() - k));
       rule.incident = chosen<Pack>(covered, Pack(Real(1)), rule.incident);
       rule.second = chosen<Pack>(covered, Pack(Real(0)), rule.second);
@@ -355,8 +291,7 @@ void LinkPass<Real, S>::reflect(const Batch& b, const Piece& piece) {
     }
     const Pack deviation = at(values_.deviation), incident = at(values_.incident);
     const Pack density = local ? Pack(Real(1)) + deviation : Pack(Real(1));
-    Pack interpolated = rule.incident * incident + rule.second * at(values_.second);
-    if (with_slip) interpolated += at(values_.odd_change);
+    const Pack interpolated = rule.incident * incident + rule.second * at(values_.second);
     const Pack moving_wall = rule.wall * weight * density * towards_wall;
     Pack returned = body.returned + (cx * body.sx + cy * body.sy + cz * body.sz);
     if (b.leaks) returned -= at(values_.leak);
@@ -377,11 +312,7 @@ void LinkPass<Real, S>::reflect(const Batch& b, const Piece& piece) {
     put(ay * mz - az * my, values_.torque[0]);
     put(az * mx - ax * mz, values_.torque[1]);
     put(ax * my - ay * mx, values_.torque[2]);
-    if constexpr (extra == Extra::moments_and_balance) {
-      put(interpolated - incident, values_.interpolated);
-      put(-moving_wall, values_.moving_wall);
-    }
-    if constexpr (extra != Extra::none) {
+    if constexpr (with_moments) {
       const Pack m[3] = {mx, my, mz}, arm[3] = {ax, ay, az};
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) put(m[i] * arm[j], values_.moment[3 * i + j]);
@@ -423,19 +354,6 @@ void LinkPass<Real, S>::add_by_height(const Batch& b, const Piece& piece) const 
   for (int k = piece.first; k < piece.end(); ++k) {
     const auto at = [&](int axis) { return LatticeFixed::from(static_cast<double>(values_.momentum[axis][k])); };
     (*by_height_)[static_cast<std::size_t>(2 * b.plane + 1 + component(b.tag[k], 2))] += {at(0), at(1), at(2)};
-  }
-}
-
-template <typename Real, LinkShape S>
-template <typename Rule>
-void LinkPass<Real, S>::add_balance(const Batch& b, const Piece& piece) const {
-  for (int k = piece.first; k < piece.end(); ++k) {
-    const bool near_wall = b.distance[k] < Real(0.5), has_covered = LinkTag::is_covered(b.tag[k]);
-    const bool reads_upstream = Rule::needs_both ? !has_covered : near_wall;
-    std::int64_t& part = !reads_upstream ? balance_->same_cell : has_covered ? balance_->covered : balance_->upstream;
-    part = exact_sum(part, LatticeFixed::from(static_cast<double>(values_.interpolated[k])));
-    balance_->moving_wall =
-        exact_sum(balance_->moving_wall, LatticeFixed::from(static_cast<double>(values_.moving_wall[k])));
   }
 }
 

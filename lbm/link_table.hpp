@@ -36,8 +36,7 @@ struct LinkTag {
   static constexpr std::uint32_t direction_mask = 31;  // i, from the fluid cell into the body
   static constexpr std::uint32_t enclosed = 32;        // flag: no neighbour of x_f is fluid
   static constexpr int covered_shift = 12;             // 1: a body covers x_f - c_i
-  static constexpr int confined_shift = 13;            // 1: x_f is a pocket or enclosed
-  static constexpr int body_shift = 14;                // the body that covers x_f - c_i
+  static constexpr int body_shift = 13;                // the body that covers x_f - c_i
   // As many bodies as a tag can tell apart.
   static constexpr std::int32_t bodies = 1 << (32 - body_shift);
   // c_i + 1 of an axis, so that vector code needs no table.
@@ -52,10 +51,9 @@ struct LinkTag {
   static constexpr std::uint32_t upstream_body(std::uint32_t tag) { return tag >> body_shift; }  // of a covered link
 
   // upstream_body: which covers x_f - c_i; -1: none.
-  static constexpr std::uint32_t of(int direction, std::int32_t upstream_body, Confinement cell = Confinement::open) {
+  static constexpr std::uint32_t of(int direction, std::int32_t upstream_body, bool is_enclosed = false) {
     std::uint32_t tag = static_cast<std::uint32_t>(direction);
-    if (cell == Confinement::enclosed) tag |= enclosed;
-    if (cell != Confinement::open) tag |= 1u << confined_shift;
+    if (is_enclosed) tag |= enclosed;
     if (upstream_body >= 0) tag |= 1u << covered_shift | static_cast<std::uint32_t>(upstream_body) << body_shift;
     for (int a = 0; a < 3; ++a) tag |= static_cast<std::uint32_t>(D3Q19::c[direction][a] + 1) << velocity_shift(a);
     return tag;

@@ -121,10 +121,8 @@ lbm::FaceConditions faces_of(const Box& box) {
 
 template <typename Real>
 std::unique_ptr<coupling::ResolvedSystem<Real>> flowing_bed(const Box& box, const Decomposition& decomposition,
-                                                            const std::vector<dem::GrainSeed>& seeds,
-                                                            lbm::GapRule gaps) {
+                                                            const std::vector<dem::GrainSeed>& seeds) {
   coupling::ResolvedParameters p;
-  p.links.gaps = gaps;
   p.units = {box.spacing, box.time_step, water};
   p.collision = collision_of(box);
   p.faces = faces_of(box);
@@ -162,10 +160,10 @@ double pure_sweep(const Box& box, const Decomposition& decomposition, int steps)
 
 template <typename Real>
 void measure(const Box& box, const Decomposition& decomposition, const std::vector<dem::GrainSeed>& seeds, int steps,
-             int flow, lbm::GapRule gaps, io::JsonObject& json) {
+             int flow, io::JsonObject& json) {
   const bool first_rank = rank_of(MPI_COMM_WORLD) == 0;
   const std::string storage = sizeof(Real) == 4 ? "single" : "double";
-  const auto system = flowing_bed<Real>(box, decomposition, seeds, gaps);
+  const auto system = flowing_bed<Real>(box, decomposition, seeds);
   for (int k = 0; k < flow; ++k) system->advance();
   double best = 1e9;
   std::vector<std::pair<std::string, double>> phases;  // of the best pair, s on this rank
@@ -223,11 +221,7 @@ int main(int argc, char** argv) {
   app.add_option("--storage", storage, "single or double; both if not given")
       ->check(CLI::IsMember({"single", "double"}));
   app.add_option("--flow", flow, "steps of flow before the timing")->check(CLI::NonNegativeNumber);
-  std::string gap_rule = "no_slip";
-  app.add_option("--narrow-gaps", gap_rule, "no_slip or slip: gaps of one cell between grains")
-      ->check(CLI::IsMember({"no_slip", "slip"}));
   CLI11_PARSE(app, argc, argv);
-  const lbm::GapRule gaps = gap_rule == "slip" ? lbm::GapRule::slip : lbm::GapRule::no_slip;
   steps = std::max(2, steps / 2 * 2);
   const Box& box = *std::find_if(boxes.begin(), boxes.end(), [&](const Box& b) { return b.name == name; });
   const Index3 layout = Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD));
@@ -238,11 +232,8 @@ int main(int argc, char** argv) {
     fmt::print("{} grains settled in {:.1f} s; {} ranks, layout {} x {} x {}\n", box.grains, seconds_since(start),
                size_of(MPI_COMM_WORLD), layout[0], layout[1], layout[2]);
   io::JsonObject json;
-  json.set("benchmark", "coupled_bed")
-      .set("box", box.name)
-      .set("narrow_gaps", gap_rule)
-      .set("ranks", size_of(MPI_COMM_WORLD));
-  if (storage != "double") measure<float>(box, decomposition, seeds, steps, flow, gaps, json);
-  if (storage != "single") measure<double>(box, decomposition, seeds, steps, flow, gaps, json);
+  json.set("benchmark", "coupled_bed").set("box", box.name).set("ranks", size_of(MPI_COMM_WORLD));
+  if (storage != "double") measure<float>(box, decomposition, seeds, steps, flow, json);
+  if (storage != "single") measure<double>(box, decomposition, seeds, steps, flow, json);
   if (rank_of(MPI_COMM_WORLD) == 0) fmt::print("{}\n", json.line());
 }

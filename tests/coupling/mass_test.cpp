@@ -200,7 +200,6 @@ TEST(WaterMass, IsTheSameAfterARestart) {
   WaterBox box = crowd(Sides::closed, true);
   box.refill = RefillRule::grad;
   box.grain_stress = true;
-  box.paper_near_contact = true;
   const auto whole = make<float>(box), first = make<float>(box), second = make<float>(box);
   test::MemoryArchive half, end, continued;
   for (int step = 0; step < 70; ++step) {

@@ -76,8 +76,6 @@ TEST(PressureGauge, IsNotFeltWithAnyLinkRuleAndExchange) {
       box.links.rule = rule;
       box.links.momentum_exchange = exchange;
       expect_no_difference(box);
-      box.paper_near_contact = true;
-      expect_no_difference(box);
     }
 }
 

@@ -143,19 +143,17 @@ TEST(Ranks, DoNotChangeOneBitOfClumpsInAPeriodicBox) {
 
 TEST(Ranks, DoNotChangeOneBitWithFullGravityAndEveryOtherChoiceInAFlume) {
   WaterBox box = crowded({48, 36, 36}, {true, false, false}, 100, 5.4e-3);
-  box.full_gravity = box.grain_stress = box.paper_near_contact = box.keep_covered_momentum = true;
+  box.full_gravity = box.grain_stress = box.keep_covered_momentum = true;
   box.links.rule = lbm::LinkRule::cli;
-  box.links.gaps = lbm::GapRule::slip;
   box.refill = RefillRule::grad;
   for (const Index3& layout : two_layouts_of(size_of(MPI_COMM_WORLD))) compare<float>(box, layout, 8);
 }
 
-TEST(Ranks, DoNotChangeOneBitWithTheOtherRefillInAPeriodicBox) {
+TEST(Ranks, DoNotChangeOneBitWithTheOtherExchangeAndRefillInAPeriodicBox) {
   WaterBox box = crowded({33, 34, 35}, {true, true, true}, 60, 5.4e-3);
-  box.refill = RefillRule::non_equilibrium;
-  box.paper_near_contact = box.grain_stress = true;
+  box.refill = RefillRule::grad;
+  box.grain_stress = true;
   box.links.momentum_exchange = lbm::MomentumExchange::classical;
-  box.links.gaps = lbm::GapRule::slip;
   for (const Index3& layout : two_layouts_of(size_of(MPI_COMM_WORLD))) compare<double>(box, layout, 14);
 }
 
@@ -182,7 +180,7 @@ TEST(Ranks, DoNotChangeOneBitInANarrowPeriodicBox) {
 // A grain right where blocks meet, drifting and turning through the corner of eight: every rank has a share of its
 // links, its cells and its load. Another one stands where the corners of the periodic box meet.
 TEST(Ranks, DoNotChangeOneBitOfAGrainThatSpansAllOfThem) {
-  for (const RefillRule refill : {RefillRule::equilibrium, RefillRule::non_equilibrium, RefillRule::grad}) {
+  for (const RefillRule refill : {RefillRule::equilibrium, RefillRule::grad}) {
     WaterBox box;
     box.cells = {20, 20, 20};
     box.gravity = Vec3(1.0, 0.3, -9.0);

@@ -87,7 +87,7 @@ TEST(AnyShape, TakesFromTheFluidTheMomentumThatItsLinksSay) {
   box.smagorinsky_constant = 0.0;
   box.fluid_velocity = Vec3(0.1, -0.05, 0.0);
   box.links.momentum_exchange = lbm::MomentumExchange::classical;
-  box.refill = RefillRule::non_equilibrium;
+  box.refill = RefillRule::grad;
   box.seeds = {glass_sphere(0, Vec3(1.3e-3, 7.9e-3, 8.2e-3), Vec3(0.4, 0.15, -0.1)),
                glass_sphere(1, Vec3(13.1e-3, 8.8e-3, 1.2e-3), Vec3(-0.3, 0.2, 0.1))};
   for (dem::GrainSeed& seed : box.seeds) seed.motion = dem::Motion::fixed;

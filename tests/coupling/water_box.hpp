@@ -35,7 +35,6 @@ struct WaterBox {
   bool keep_covered_momentum = false;
   bool grain_stress = false;
   bool full_gravity = false;  // gravity acts on everything, and buoyancy comes from the fluid
-  bool paper_near_contact = false;
   LoadRule load = LoadRule::extrapolated;
   std::vector<dem::GrainSeed> seeds;
   std::vector<dem::PrescribedMotion> assemblies;
@@ -77,7 +76,6 @@ std::unique_ptr<ResolvedSystem<Real, S>> make_system(const WaterBox& box, MPI_Co
   p.keep_covered_momentum = box.keep_covered_momentum;
   p.grain_stress = box.grain_stress;
   p.full_gravity = box.full_gravity;
-  p.paper_near_contact = box.paper_near_contact;
   p.load = box.virtual_mass ? LoadRule::mean : box.load;
   if (box.initial)
     p.initial_fluid = box.initial;

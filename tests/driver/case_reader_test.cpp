@@ -186,13 +186,10 @@ TEST(CaseReader, ReadsEveryWallAndCollision) {
                    "bottom: law_of_the_wall_as_printed, top: {type: moving, velocity: [0.1, 0, 0]}}",
                    "grains.0.fixed=true", "fluid.collision=trt", "fluid.magic_parameter=0.25",
                    "fluid.mean_velocity={velocity: 0.3, response_time: 0.05}", "coupling.links=cli",
-                   "coupling.near_contact=paper", "coupling.refill=grad", "coupling.covered_momentum=to_grain",
-                   "coupling.narrow_gaps=slip", "coupling.grain_stress=true"});
+                   "coupling.refill=grad", "coupling.covered_momentum=to_grain", "coupling.grain_stress=true"});
   EXPECT_EQ(c.coupling.links, lbm::LinkRule::cli);
-  EXPECT_EQ(c.coupling.near_contact, coupling::NearContact::paper);
   EXPECT_EQ(c.coupling.refill, coupling::RefillRule::grad);
   EXPECT_EQ(c.coupling.covered_momentum, coupling::CoveredMomentum::to_grain);
-  EXPECT_EQ(c.coupling.narrow_gaps, lbm::GapRule::slip);
   EXPECT_TRUE(c.coupling.grain_stress);
   EXPECT_EQ(c.domain.faces[x_low].velocity, Vec3(0.2, 0, 0));
   EXPECT_EQ(c.domain.faces[x_high].pressure, 3.0);

@@ -30,8 +30,8 @@ TEST(WatchRules, EveryRuleOfACaseWarnsAndStops) {
   const double reach = expected_grain_speed(c);
   const std::vector<Trouble> troubles{
       {"largest_lattice_velocity", 0.21, 0.31, {"velocity of the fluid", "fluid.time_step", "docs/stability.md"}},
-      {"mean_density_deviation", -0.0011, -0.011, {"mean density", "coupling.mass_balance"}},
-      {"mean_density_deviation", 0.0011, 0.011, {"mean density", "coupling.mass_balance"}},
+      {"mean_density_deviation", -0.0011, -0.011, {"mean density", "mass_by_links"}},
+      {"mean_density_deviation", 0.0011, 0.011, {"mean density", "mass_by_links"}},
       {"smallest_density_deviation", -0.31, -0.51, {"smallest density", "fluid.time_step"}},
       {"largest_density_deviation", 0.31, 1.01, {"largest density", "fluid.time_step"}},
       {"largest_grain_speed", 2.01 * reach, 5.01 * reach, {"speed of a grain", "contact.normal_stiffness"}},

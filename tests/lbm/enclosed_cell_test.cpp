@@ -27,7 +27,7 @@ protected:
     std::vector<Link> links;
     std::vector<LinkCrossing> crossings;
     for (int i = 1; i < D3Q19::directions; ++i) {
-      links.push_back({LinkPlace::of(place[0], place[1]), LinkTag::of(i, 0, fluid_.cells().confinement(cell()))});
+      links.push_back({LinkPlace::of(place[0], place[1]), LinkTag::of(i, 0, fluid_.cells().is_enclosed(cell()))});
       crossings.push_back({static_cast<float>(i) / 19.0f, {}});  // no two alike
     }
     links_.replace(0, fluid_.tiles().tile_of(place[1], place[2]), links, crossings);

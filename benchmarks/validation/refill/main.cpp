@@ -158,10 +158,7 @@ std::pair<std::string, std::vector<Setting>> settings_of(int argc, char** argv) 
     for (int n = 1; n < argc; ++n) settings.push_back({argv[n], RefillRule::equilibrium, std::atof(argv[n])});
     return {"tau_b", settings};
   }
-  return {"refill",
-          {{"equilibrium", RefillRule::equilibrium},
-           {"non_equilibrium", RefillRule::non_equilibrium},
-           {"grad", RefillRule::grad}}};
+  return {"refill", {{"equilibrium", RefillRule::equilibrium}, {"grad", RefillRule::grad}}};
 }
 
 void print_heading(const std::string& varied) {

@@ -23,7 +23,7 @@ from thalweg.random_array import RandomArray
 
 COLUMNS = ["run", "cells [1]", "method", "solid_fraction [1]", "speed [m/s]", "beetstra [m/s]", "tenneti [m/s]"]
 ACCEPTED = 0.1   # of the drag
-METHODS = ["bgk", "bgk, slip", "trt_at_bodies", "trt_at_bodies, C_s 0", "trt"]
+METHODS = ["bgk", "trt_at_bodies", "trt_at_bodies, C_s 0", "trt"]
 
 
 def speed_of_law(law, array):
