@@ -27,17 +27,48 @@ static void describe(SectionVisitor& visit, LiquidBridgeParameters& bridge) {
               .example = 1e-11});
 }
 
-void describe(SectionVisitor& visit, ContactParameters& contact) {
+static void describe(SectionVisitor& visit, ContactDuration& duration) {
+  visit.real("seconds", duration.seconds, {.unit = "s", .meaning = "of a collision", .above = 0.0, .example = 1.6e-3});
+  visit.real("fluid_steps", duration.fluid_steps,
+             {.unit = "steps of the fluid", .meaning = "in place of seconds", .above = 0.0, .example = 40.0});
+  visit.require(duration.seconds.has_value() != duration.fluid_steps.has_value(), "seconds",
+                "give either seconds or fluid_steps");
+}
+
+static void describe_stiffness(SectionVisitor& visit, StiffnessKeys& stiffness, const OnlyIf& linear) {
+  visit.section(
+      "duration", stiffness.duration,
+      {.meaning = "of a collision, half a period of its spring, in place of normal_stiffness: of the lightest "
+                  "two free grains; in s, or {fluid_steps: 40}; default of grains in a fluid: 4 steps of it "
+                  "for each cell of the smallest diameter, or less where overlaps would be too large",
+       .shorthand = "seconds",
+       .expected = "a number in s above 0, for example 0.0016, or {fluid_steps: 40}",
+       .only_if = linear});
+  visit.real("normal_stiffness", stiffness.normal,
+             {.unit = "N/m",
+              .meaning = "of the normal spring; default: by the duration, without a fluid 20000",
+              .above = 0.0,
+              .example = 20000.0,
+              .only_if = linear});
+  visit.require(!(stiffness.duration && stiffness.normal), "normal_stiffness",
+                "the stiffness is that with which a collision lasts as long as contact.duration says; give one of the "
+                "two");
+  visit.real("tangential_stiffness", stiffness.tangential,
+             {.unit = "N/m",
+              .meaning = "of the tangential spring; default: 2/7 of the normal one",
+              .above = 0.0,
+              .example = 5714.0,
+              .only_if = linear});
+}
+
+void describe(SectionVisitor& visit, ContactParameters& contact, StiffnessKeys& stiffness) {
   visit.choice("law", contact.law, {.meaning = "force of a contact"});
   const OnlyIf linear{contact.law == Law::linear,
                       "elastic spheres have youngs_modulus, poisson_ratio and restitution; remove it or set law: "
                       "linear"};
   const OnlyIf elastic{contact.law == Law::hertz_mindlin,
                        "the linear law has stiffnesses; remove it or set law: hertz_mindlin", "law: hertz_mindlin"};
-  visit.real("normal_stiffness", contact.normal_stiffness,
-             {.unit = "N/m", .meaning = "of the normal spring", .above = 0.0, .only_if = linear});
-  visit.real("tangential_stiffness", contact.tangential_stiffness,
-             {.unit = "N/m", .meaning = "of the tangential spring", .above = 0.0, .only_if = linear});
+  describe_stiffness(visit, stiffness, linear);
   visit.real("youngs_modulus", contact.youngs_modulus,
              {.unit = "Pa",
               .meaning = "of grains and walls",

@@ -46,8 +46,21 @@ struct ContactParameters {
   double least_normal_force() const { return attraction ? -std::numeric_limits<double>::infinity() : 0.0; }  // N
 };
 
+// How long a collision lasts: half a period of the spring with its dashpot. One of the two.
+struct ContactDuration {
+  std::optional<double> seconds;
+  std::optional<double> fluid_steps;
+  bool operator==(const ContactDuration&) const = default;
+};
+
+// What a case says of the stiffness of a linear contact; that of ContactParameters follows from it.
+struct StiffnessKeys {
+  std::optional<double> normal, tangential;  // N/m
+  std::optional<ContactDuration> duration;   // in place of `normal`
+};
+
 // The keys of a case's section `contact`.
-void describe(SectionVisitor& visit, ContactParameters& contact);
+void describe(SectionVisitor& visit, ContactParameters& contact, StiffnessKeys& stiffness);
 
 // Throws InputError naming the first parameter that is impossible.
 void check(const ContactParameters& parameters);

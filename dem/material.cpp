@@ -143,6 +143,16 @@ double contact_time(double normal_stiffness, double effective_mass, double dampi
   return std::numbers::pi / (omega_0 * std::max(omega, zeta));
 }
 
+double stiffness_lasting(double duration, const ContactParameters& p, double effective_mass) {
+  const double omega = std::numbers::pi / duration;
+  if (p.damping) {
+    const double beta = *p.damping / (2.0 * effective_mass);
+    return effective_mass * (omega * omega + beta * beta);
+  }
+  const double zeta = damping_ratio_of_restitution(*p.restitution, p.attraction);
+  return effective_mass * omega * omega / (zeta < 1.0 ? (1.0 - zeta) * (1.0 + zeta) : zeta * zeta);
+}
+
 namespace {
 
 template <typename Spring>

@@ -91,6 +91,11 @@ double effective_mass(double mass_1, bool held_1, double mass_2, bool held_2);
 // The time a contact must be resolved in (s): t_c = pi/omega, or pi/beta where the damping is faster than the spring.
 double contact_time(double normal_stiffness, double effective_mass, double damping);
 
+// N/m: the normal stiffness with which a linear contact of this effective mass (kg) lasts so long (s): half a period of
+// the spring with its dashpot, t_c = pi/sqrt(k/m* - (gamma/(2 m*))^2); with a restitution so low that nothing swings,
+// pi/beta.
+double stiffness_lasting(double duration, const ContactParameters& parameters, double effective_mass);
+
 // The same of any law, between grains of one material, and against a wall of another. effective_radius: m, used by
 // elastic spheres only.
 double contact_time(const ContactParameters& parameters, double effective_mass, double effective_radius);

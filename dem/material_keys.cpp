@@ -33,7 +33,7 @@ void describe(SectionVisitor& visit, MaterialKeys& material) { describe_material
 void describe(SectionVisitor& visit, WallMaterialKeys& walls) { describe_material(visit, walls, true); }
 
 void describe(SectionVisitor& visit, ContactKeys& contact) {
-  describe(visit, static_cast<ContactParameters&>(contact));
+  describe(visit, contact, contact.given);
   visit.section("walls", contact.walls,
                 {.meaning = "contact of grains with walls where it differs from that between grains"});
 }

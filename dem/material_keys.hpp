@@ -27,16 +27,23 @@ struct WallMaterialKeys : MaterialKeys {
 
 // The section `contact`: of grains, and of walls as far as nothing else is said.
 struct ContactKeys : ContactParameters {
+  static constexpr double default_stiffness = 20000.0, default_tangential_stiffness = 5714.0;  // N/m
+
   ContactKeys() {
-    normal_stiffness = 20000.0;
-    tangential_stiffness = 5714.0;
+    normal_stiffness = default_stiffness;
+    tangential_stiffness = default_tangential_stiffness;
     poisson_ratio = 0.3;
     friction = 0.5;
     wall_friction = 0.45;
     attraction = true;
   }
   std::optional<WallMaterialKeys> walls;  // contact of grains with walls, where it differs
-  bool operator==(const ContactKeys&) const = default;
+  StiffnessKeys given;                    // what the stiffnesses follow from
+
+  // Whatever the stiffnesses follow from.
+  bool operator==(const ContactKeys& other) const {
+    return static_cast<const ContactParameters&>(*this) == other && walls == other.walls;
+  }
 };
 
 void describe(SectionVisitor& visit, ContactKeys& contact);

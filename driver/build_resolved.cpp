@@ -20,7 +20,7 @@ std::unique_ptr<System> build_resolved(const Case& c, MPI_Comm communicator, con
   parameters.refill = c.coupling.refill;
   parameters.grain_stress = measures_grain_stress(c);
   parameters.wall_forces = c.analysis.wall_forces.has_value();
-  parameters.sub_steps = static_cast<int>(c.coupling.grain_steps_per_fluid_step);
+  parameters.sub_steps = static_cast<int>(grain_steps(c));
 
   if (c.coupling.virtual_mass)
     parameters.virtual_mass = coupling::VirtualMass{c.coupling.virtual_mass->coefficient, c.fluid.density};

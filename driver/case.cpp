@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 namespace thalweg::driver {
 
@@ -63,14 +65,21 @@ double fluid_time_step(const Case& c) {
   return *c.fluid.maximum_lattice_velocity * c.domain.spacing / *c.fluid.expected_velocity;
 }
 
+std::int64_t grain_steps(const Case& c) {
+  constexpr std::int64_t dry_steps = 50;
+  if (!has_fluid(c)) return dry_steps;
+  const std::int64_t given = c.coupling.grain_steps_per_fluid_step;
+  return given == coupling::CouplingKeys::as_many_as_needed ? sub_steps_needed(c) : given;
+}
+
 double grain_time_step(const Case& c) {
   if (!has_fluid(c)) return *c.run.time_step;
-  return fluid_time_step(c) / static_cast<double>(c.coupling.grain_steps_per_fluid_step);
+  return fluid_time_step(c) / static_cast<double>(grain_steps(c));
 }
 
 double step_time(const Case& c) {
   if (has_fluid(c)) return fluid_time_step(c);
-  return grain_time_step(c) * static_cast<double>(c.coupling.grain_steps_per_fluid_step);
+  return grain_time_step(c) * static_cast<double>(grain_steps(c));
 }
 
 Vec3 gravity_vector(const GravityCase& gravity) {
@@ -184,12 +193,19 @@ double fastest_model_fluid(const Case& c) {
   return coefficients_of(fluid.numbers, fluid.scales).velocity * fluid.profile(alone);
 }
 
+std::vector<std::size_t> free_populations(const Case& c) {
+  std::vector<std::size_t> all(c.grains.size()), free;
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  std::copy_if(all.begin(), all.end(), std::back_inserter(free), [&c](std::size_t p) { return !c.grains[p].held(); });
+  return free.empty() ? all : free;
+}
+
 double shortest_contact(const Case& c) {
   const bool linear = c.contact.law == dem::Law::linear;
   const std::vector<dem::ContactParameters> materials = dem::materials_of(c.contact, c.grains);
   const std::optional<dem::ContactParameters> walls = dem::wall_material_of(c.contact);
   double shortest = std::numeric_limits<double>::infinity();
-  for (std::size_t p = 0; p < c.grains.size(); ++p) {
+  for (const std::size_t p : free_populations(c)) {
     const dem::ContactParameters& own = materials[static_cast<std::size_t>(dem::material_of(c.grains, p))];
     const double mass = c.grains[p].lightest_mass(), radius = 0.5 * c.grains[p].smallest_diameter();
     // pi/omega_0, or pi/beta of a dashpot that is faster than the spring (dem/material.hpp).

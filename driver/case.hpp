@@ -141,6 +141,14 @@ struct DisksCase {
   bool operator==(const DisksCase&) const = default;
 };
 
+// What a case leaves open and what follows from its other keys, so that it has to follow again where they change
+// (contact_stiffness.hpp). It does not make two cases differ.
+struct FilledIn {
+  bool stiffness = false, tangential_stiffness = false;  // of the section contact
+  bool grain_steps = false;
+  bool operator==(const FilledIn&) const { return true; }
+};
+
 struct Case {
   SystemKind system = SystemKind::resolved;
   std::string name;
@@ -159,6 +167,7 @@ struct Case {
   RunCase run;
   io::OutputKeys output;
   AnalysisCase analysis;
+  FilledIn filled_in;
   bool operator==(const Case&) const = default;
 };
 
@@ -176,6 +185,7 @@ Index3 cells_of(const DomainCase& domain);  // size over spacing
 double spacing_below(const DomainCase& domain, double most);
 std::array<bool, 3> periodic_axes(const DomainCase& domain);
 double fluid_time_step(const Case& c);            // s; given, or from the lattice velocity
+std::int64_t grain_steps(const Case& c);          // of a step of the fluid; of dry grains, of one step_time()
 double grain_time_step(const Case& c);            // s: a sub-step, or the step of dry grains
 double step_time(const Case& c);                  // s: of the fluid, or as many steps of dry grains as make one
 Vec3 gravity_vector(const GravityCase& gravity);  // m/s^2: (g sin, 0, -g cos) of atan(slope)
@@ -196,10 +206,13 @@ dem::ModelFluidParameters model_fluid_of(const Case& c);
 // m/s, of the model fluid around a grain without neighbours, the fastest there is; 0 without a model fluid
 double fastest_model_fluid(const Case& c);
 
-// The shortest contact there can be, between two of the lightest grains of a population or of one of them with a wall:
-// half a period of the undamped spring, pi sqrt(m / 2 / k_n), which a dashpot makes longer up to the critical damping
-// and by which it is divided beyond; or Hertz's contact at 1 m/s (dem/material.hpp). Contacts between populations are
-// never shorter than the shortest within one. s; infinite without grains.
+// Indices of the populations that are free to move; of all where none is.
+std::vector<std::size_t> free_populations(const Case& c);
+
+// The shortest contact there can be, between two of the lightest free grains of a population or of one of them with a
+// wall: half a period of the undamped spring, pi sqrt(m / 2 / k_n), which a dashpot makes longer up to the critical
+// damping and by which it is divided beyond; or Hertz's contact at 1 m/s (dem/material.hpp). Contacts between
+// populations are never shorter than the shortest within one. s; infinite without grains.
 double shortest_contact(const Case& c);
 
 inline constexpr double karman = 0.41;  // von Karman's constant of the logarithmic law

@@ -261,10 +261,14 @@ void check_column(const Case& c, const io::YamlDocument& document) {
   at_place(document, "", [&] { check(c.continuum, gravity.x(), -gravity.z()); });
 }
 
-void check_case(const Case& c, const io::YamlDocument& document) {
+void check_box(const Case& c, const io::YamlDocument& document) {
   check_whole_cells(c.domain, document);
   check_resolution(c, document);
   check_that_grains_fit(c, document);
+}
+
+void check_case(const Case& c, const io::YamlDocument& document) {
+  check_box(c, document);
   check_solids(c, document);
   check_fluid(c, document);
   check_number_of_steps(c, document);

@@ -22,6 +22,10 @@ void at_place(const io::YamlDocument& document, const std::string& section, cons
   }
 }
 
+// The part of check_case() that asks for whole cells, and for cells and room for the grains: without them nothing can
+// be estimated.
+void check_box(const Case& c, const io::YamlDocument& document);
+
 // Throws InputError at the first thing that cannot be, with the place of the key to change in the document.
 void check_case(const Case& c, const io::YamlDocument& document);
 

@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "driver/case_checks.hpp"
 #include "driver/case_sections.hpp"
+#include "driver/contact_stiffness.hpp"
 #include "driver/solid_setup.hpp"
 #include "io/section_reader.hpp"
 #include "io/section_writer.hpp"
@@ -100,13 +101,9 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
   }
   fill_in_grains(c, document, known, Ranks(communicator));
   if (has_fluid(c) && !c.fluid.bulk_relaxation_time) c.fluid.bulk_relaxation_time = bulk_relaxation_time_for(c);
-  if (c.coupling.grain_steps_per_fluid_step == coupling::CouplingKeys::as_many_as_needed) {
-    if (!has_fluid(c))
-      throw document.error("coupling.grain_steps_per_fluid_step",
-                           "auto goes by the step of the fluid, and here is none; give a number");
-    // Where the step itself is missing, check_case() says so.
-    const bool has_step = c.fluid.time_step || (c.fluid.expected_velocity && c.fluid.maximum_lattice_velocity);
-    c.coupling.grain_steps_per_fluid_step = has_step ? sub_steps_needed(c) : 1;
+  if (has_grains(c.system)) {
+    check_box(c, document);
+    complete_contacts(c);
   }
   if (!has_fluid(c) && !c.run.time_step) c.run.time_step = shortest_contact(c) / steps_per_contact;
   for (std::optional<std::string>* source : {&c.initial.from.run, &c.initial.from.grains, &c.initial.from.fluid})
@@ -117,7 +114,7 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
   return c;
 }
 
-std::string resolved_yaml(const Case& c) { return io::written(c, io::YamlStyle::plain); }
+std::string resolved_yaml(const Case& c) { return io::written(with_stiffnesses(c), io::YamlStyle::plain); }
 
 namespace {
 

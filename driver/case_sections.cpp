@@ -244,6 +244,9 @@ void describe(SectionVisitor& visit, Case& c) {
   visit.section("contact", {.meaning = "force between grains that touch, with friction", .only_if = of_grains},
                 [&](SectionVisitor& inside) {
                   describe(inside, c.contact);
+                  const std::optional<dem::ContactDuration>& duration = c.contact.given.duration;
+                  inside.require(with_fluid || !duration || !duration->fluid_steps, "duration",
+                                 "there is no fluid whose steps could be counted; give the duration in s");
                   inside.require(
                       c.grains.empty() || c.contact.restitution || c.contact.damping, "restitution",
                       "the loss in a collision is missing; give restitution, for example 0.93, or damping in kg/s");

@@ -7,6 +7,7 @@
 #include "driver/build_system.hpp"
 #include "driver/case_warnings.hpp"
 #include "driver/contact_estimate.hpp"
+#include "driver/contact_stiffness.hpp"
 #include "driver/disk_space.hpp"
 #include "driver/flow_report.hpp"
 #include "driver/grain_setup.hpp"
@@ -86,6 +87,31 @@ void add_seepage(const Case& c, Lines& lines) {
       cells < few ? "at most" : "about", speed));
 }
 
+// How long it lasts, and the stiffness that follows where the case does not give it.
+std::string duration_text(const Case& c) {
+  const double shortest = shortest_contact(c);
+  if (!has_fluid(c) && !c.contact.given.duration) return fmt::format("lasts {:.3g} s", shortest);
+  const bool by_duration = has_default_duration(c) || c.contact.given.duration;
+  const double lasts = by_duration ? contact_duration(c) : shortest;
+  std::string text = fmt::format("lasts {:.3g} s", lasts);
+  if (has_fluid(c)) text += fmt::format(", {:.3g} fluid steps", lasts / fluid_time_step(c));
+  if (by_duration)
+    text += fmt::format(", by normal and tangential stiffnesses of {:.4g} and {:.4g} N/m", c.contact.normal_stiffness,
+                        c.contact.tangential_stiffness);
+  constexpr double rounding = 1e-9;
+  if (const double steps = has_default_duration(c) ? default_contact_steps(c) : 0.0;
+      steps > 0.0 && steps * fluid_time_step(c) > lasts * (1.0 + rounding))
+    text += fmt::format(" (with {:.3g} steps overlaps would be too large)", steps);
+  return text;
+}
+
+std::string contact_text(const Case& c) {
+  const double step = grain_time_step(c);
+  return fmt::format("{}: {:.3g} sub-steps of {:.3g} s (at least {:g}); damping {}{}", duration_text(c),
+                     shortest_contact(c) / step, step, dem::fewest_steps_per_contact, damping_text(c),
+                     restitution_text(c));
+}
+
 void add_overlaps(const Case& c, Lines& lines) {
   const Overlaps overlaps = expected_overlaps(c);
   if (c.system == SystemKind::model_fluid) return;  // its speeds are not those of a fall
@@ -113,10 +139,7 @@ void add_grains(const Case& c, Lines& lines) {
                     (has_fluid(c) ? fmt::format(": {:.3g} cells a diameter", smallest / c.domain.spacing) : ""));
   }
   if (c.grains.empty()) return;
-  const double step = grain_time_step(c);
-  lines.push_back(fmt::format("contact    lasts {:.3g} s: {:.3g} sub-steps of {:.3g} s (at least {:g}); damping {}{}",
-                              shortest_contact(c), shortest_contact(c) / step, step, dem::fewest_steps_per_contact,
-                              damping_text(c), restitution_text(c)));
+  lines.push_back("contact    " + contact_text(c));
   add_overlaps(c, lines);
   if (!has_fluid(c)) return;
   lines.push_back(

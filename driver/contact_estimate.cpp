@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numbers>
 
 namespace thalweg::driver {
@@ -56,29 +57,50 @@ double speed_of_a_fall(const Case& c) {
   return periodic_axes(c.domain)[2] ? 0.0 : std::sqrt(2.0 * std::abs(gravity_vector(c.gravity).z()) * height);
 }
 
+double impact_speed(const Case& c) { return std::max(speed_of_a_fall(c), given_speed(c)); }
+
+// Adds those of a population with contacts of this material. height: m, of the settled bed.
+void add_overlaps(const Case& c, const dem::Population& grains, const dem::ContactParameters& material, double height,
+                  Overlaps& found) {
+  const double d = grains.smallest_diameter(), mass = 0.5 * grains.lightest_mass();
+  const double pressure = settled_fraction(c) * std::abs(submerged_density(c, grains.density)) *
+                          std::abs(gravity_vector(c.gravity).z()) * height;
+  if (!periodic_axes(c.domain)[2] && !c.disks)
+    found.under_weight = std::max(found.under_weight, overlap_under(material, pressure * d * d, d) / d);
+  if (!grains.held())
+    found.in_impact = std::max(found.in_impact, overlap_in_impact(material, mass, found.speed, d) / d);
+}
+
 }  // namespace
 
 Overlaps expected_overlaps(const Case& c) {
-  Overlaps found{0.0, 0.0, std::max(speed_of_a_fall(c), given_speed(c))};
+  Overlaps found{0.0, 0.0, impact_speed(c)};
+  if (c.grains.empty()) return found;
   const std::vector<dem::ContactParameters> materials = dem::materials_of(c.contact, c.grains);
-  const bool bed = !periodic_axes(c.domain)[2] && !c.disks;
-  for (std::size_t p = 0; p < c.grains.size(); ++p) {
-    const dem::Population& grains = c.grains[p];
-    const dem::ContactParameters& material = materials[static_cast<std::size_t>(dem::material_of(c.grains, p))];
-    const double d = grains.smallest_diameter(), mass = 0.5 * grains.lightest_mass();
-    const double pressure = settled_fraction(c) * std::abs(submerged_density(c, grains.density)) *
-                            std::abs(gravity_vector(c.gravity).z()) * settled_height(c);
-    if (bed) found.under_weight = std::max(found.under_weight, overlap_under(material, pressure * d * d, d) / d);
-    if (!grains.held())
-      found.in_impact = std::max(found.in_impact, overlap_in_impact(material, mass, found.speed, d) / d);
-  }
+  const double height = settled_height(c);
+  for (std::size_t p = 0; p < c.grains.size(); ++p)
+    add_overlaps(c, c.grains[p], materials[static_cast<std::size_t>(dem::material_of(c.grains, p))], height, found);
   return found;
+}
+
+// Of overlaps in contacts of 1 N/m: those under weight fall with the stiffness, those in an impact with its root.
+double least_stiffness(const Case& c) {
+  dem::ContactParameters unit = c.contact;
+  unit.normal_stiffness = 1.0;
+  Overlaps found{0.0, 0.0, impact_speed(c)};
+  const double height = settled_height(c);
+  for (const dem::Population& grains : c.grains)
+    if (!grains.contact || !grains.contact->normal_stiffness) add_overlaps(c, grains, unit, height, found);
+  return stiffness_margin *
+         std::max(found.under_weight / deep_under_weight, std::pow(found.in_impact / deep_in_impact, 2));
 }
 
 std::optional<ReboundTimes> rebound_times(const Case& c) {
   if (!has_fluid(c) || c.grains.empty()) return std::nullopt;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const std::size_t p : free_populations(c)) smallest = std::min(smallest, c.grains[p].smallest_diameter());
   return ReboundTimes{shortest_contact(c) / fluid_time_step(c),
-                      0.5 * std::numbers::pi * std::sqrt(3.0) * smallest_diameter(c) / c.domain.spacing};
+                      0.5 * std::numbers::pi * std::sqrt(3.0) * smallest / c.domain.spacing};
 }
 
 std::optional<DryRestitution> dry_restitution(const Case& c) {

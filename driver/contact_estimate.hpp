@@ -16,8 +16,18 @@ struct Overlaps {
 };
 Overlaps expected_overlaps(const Case& c);
 
-// How long the shortest contact lasts, and sound takes around the smallest grain, in steps of the fluid. A contact that
-// ends before reverses the grain alone, which then loses momentum to the water that moved with it
+// From where they are large.
+inline constexpr double deep_under_weight = 0.01, deep_in_impact = 0.05;
+
+// By how much a stiffness that is to keep overlaps small exceeds the least.
+inline constexpr double stiffness_margin = 1.02;
+
+// N/m: the normal stiffness of the section contact, of the linear law, with which the overlaps of the populations that
+// have none of their own are smaller, by this margin; 0 where nothing presses.
+double least_stiffness(const Case& c);
+
+// How long the shortest contact lasts, and sound takes around the smallest free grain, in steps of the fluid. A contact
+// that ends before reverses the grain alone, which then loses momentum to the water that moved with it
 // (benchmarks/validation/rebound_in_water). None without grains in a fluid.
 struct ReboundTimes {
   double contact, around;

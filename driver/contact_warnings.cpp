@@ -1,6 +1,7 @@
 #include "driver/contact_warnings.hpp"
 
 #include "driver/contact_estimate.hpp"
+#include "driver/contact_stiffness.hpp"
 #include "driver/limit_text.hpp"
 
 #include <fmt/format.h>
@@ -13,9 +14,7 @@ namespace thalweg::driver {
 
 namespace {
 
-constexpr double deep_under_weight = 0.01, deep_in_impact = 0.05;
-constexpr double margin = 1.02;  // of a stiffness over the least
-constexpr int digits_kept = 6;   // of what is scaled along
+constexpr int digits_kept = 6;  // of what is scaled along
 
 bool is_linear(const Case& c) { return c.contact.law == dem::Law::linear; }
 
@@ -38,7 +37,11 @@ double most_factor(const Case& c) {
 
 // A stiffness with which the grains overlap little enough and rebound, with a shorter step where there is none.
 Remedy suitable_contact(const Case& c) {
-  const double least = margin * least_factor(c), most = most_factor(c);
+  const double least = stiffness_margin * least_factor(c), most = most_factor(c);
+  if (has_default_duration(c) && most < 1.0) {  // it is as short as overlaps ask for
+    const ReboundTimes times = *rebound_times(c);
+    return {fluid_step_change(c, fluid_time_step(c) * times.contact / times.around, 3, Rounding::down)};
+  }
   if (least <= most)
     return most < 1.0 ? stiffness_changes(c, most, 4, Rounding::down) : stiffness_changes(c, least, 2, Rounding::up);
   const Remedy contact = stiffness_changes(c, least, 3, Rounding::up);
@@ -63,20 +66,40 @@ void scale_material(Case c, const std::string& section, const Material& material
   scale("damping", &dem::MaterialKeys::damping, std::sqrt(factor));
 }
 
+// Of the stiffness of the section contact, or of what it follows from; factor: what it is multiplied with, on return as
+// rounded.
+Change main_stiffness_change(const Case& c, double& factor, int digits, Rounding rounding) {
+  if (!is_linear(c)) {
+    const Change change = number_change("contact.youngs_modulus", factor * c.contact.youngs_modulus, digits, rounding,
+                                        [](Case& other, double to) { other.contact.youngs_modulus = to; });
+    factor = changed(c, {change}).contact.youngs_modulus / c.contact.youngs_modulus;
+    return change;
+  }
+  if (has_default_duration(c) || c.contact.given.duration) {
+    const double lasts = contact_duration(c);
+    const Change change =
+        number_change("contact.duration", lasts / std::sqrt(factor), digits,
+                      rounding == Rounding::up ? Rounding::down : Rounding::up, [](Case& other, double to) {
+                        other.contact.given.duration = dem::ContactDuration{to, std::nullopt};
+                      });
+    factor = std::pow(lasts / std::stod(change.value), 2);
+    return change;
+  }
+  const Change change = number_change("contact.normal_stiffness", factor * c.contact.normal_stiffness, digits, rounding,
+                                      [](Case& other, double to) {
+                                        other.contact.normal_stiffness = to;
+                                        other.filled_in.stiffness = false;
+                                      });
+  factor = changed(c, {change}).contact.normal_stiffness / c.contact.normal_stiffness;
+  return change;
+}
+
 }  // namespace
 
 Remedy stiffness_changes(const Case& c, double factor, int digits, Rounding rounding) {
-  Remedy changes;
-  if (is_linear(c))
-    changes = {number_change("contact.normal_stiffness", factor * c.contact.normal_stiffness, digits, rounding,
-                             [](Case& other, double to) { other.contact.normal_stiffness = to; })};
-  else
-    changes = {number_change("contact.youngs_modulus", factor * c.contact.youngs_modulus, digits, rounding,
-                             [](Case& other, double to) { other.contact.youngs_modulus = to; })};
-  const Case after = changed(c, changes);
-  const double rounded = is_linear(c) ? after.contact.normal_stiffness / c.contact.normal_stiffness
-                                      : after.contact.youngs_modulus / c.contact.youngs_modulus;
-  if (is_linear(c) && c.contact.tangential_stiffness > 0.0)
+  double rounded = factor;
+  Remedy changes{main_stiffness_change(c, rounded, digits, rounding)};
+  if (is_linear(c) && c.contact.tangential_stiffness > 0.0 && !c.filled_in.tangential_stiffness)
     changes.push_back(exact_change("contact.tangential_stiffness", rounded * c.contact.tangential_stiffness,
                                    digits_kept,
                                    [](Case& other, double to) { other.contact.tangential_stiffness = to; }));

@@ -12,7 +12,8 @@ Warnings overlap_warnings(const Case& c);
 Warnings rebound_warnings(const Case& c);
 
 // Changes that make all contacts of the case stiffer by a factor, rounded, and keep the ratios of stiffnesses and the
-// dry restitution: of normal_stiffness (youngs_modulus), tangential_stiffness and damping, wherever they are given.
+// dry restitution: of the duration, normal_stiffness or youngs_modulus, tangential_stiffness and damping, wherever they
+// are given.
 Remedy stiffness_changes(const Case& c, double factor, int digits, Rounding rounding);
 
 }  // namespace thalweg::driver

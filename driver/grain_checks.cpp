@@ -60,8 +60,9 @@ void check_contact_steps(const Case& c, const io::YamlDocument& document) {
       step, shortest_contact(c));
   if (!has_fluid(c))
     throw document.error("run.time_step", fmt::format("{}; give at most {} s", reason, at_most_text(longest, 3)));
-  throw document.error(sub_steps_key, fmt::format("{}; give {}: {} or more, or a lower contact.normal_stiffness in N/m",
-                                                  reason, sub_steps_key, sub_steps_needed(c)));
+  throw document.error(sub_steps_key,
+                       fmt::format("{}; give {}: {} or more, or a longer contact.duration in s in place of stiffnesses",
+                                   reason, sub_steps_key, sub_steps_needed(c)));
 }
 
 void check_lubrication_steps(const Case& c, const io::YamlDocument& document) {

@@ -158,7 +158,7 @@ RankWork work_of(const Case& c, const GrainsOfCase& grains, const Decomposition&
   }
   if (c.grains.empty()) return work;
   const double count = grains.count;
-  const auto sub_steps = static_cast<double>(c.coupling.grain_steps_per_fluid_step);
+  const auto sub_steps = static_cast<double>(grain_steps(c));
   work.share_of_grains = share_of_grains(c, grains, decomposition, rank, 0.0);
   work.grains = work.share_of_grains * count;
   work.ghosts = share_of_grains(c, grains, decomposition, rank, grains.reach) * count - work.grains;

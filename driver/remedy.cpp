@@ -1,5 +1,6 @@
 #include "driver/remedy.hpp"
 
+#include "driver/contact_stiffness.hpp"
 #include "driver/limit_text.hpp"
 
 #include <fmt/format.h>
@@ -38,6 +39,7 @@ std::string text_of(const Remedy& remedy) {
 
 Case changed(Case c, const Remedy& remedy) {
   for (const Change& change : remedy) change.apply(c);
+  fill_in_contacts(c);
   return c;
 }
 
@@ -82,10 +84,9 @@ Remedy with_grain_steps(const Case& c, Remedy remedy) {
     if (grain_time_step(after) > longest_contact_step(after))
       remedy.push_back(number_change("run.time_step", shortest_contact(after) / dry_steps_per_contact, 3,
                                      Rounding::down, [](Case& other, double step) { other.run.time_step = step; }));
-  } else if (after.coupling.grain_steps_per_fluid_step < sub_steps_needed(after)) {
-    remedy.push_back(word_change("coupling.grain_steps_per_fluid_step", "auto", [](Case& other) {
-      other.coupling.grain_steps_per_fluid_step = sub_steps_needed(other);
-    }));
+  } else if (grain_steps(after) < sub_steps_needed(after)) {
+    remedy.push_back(word_change("coupling.grain_steps_per_fluid_step", "auto",
+                                 [](Case& other) { other.filled_in.grain_steps = true; }));
   }
   return remedy;
 }

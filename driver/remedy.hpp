@@ -22,6 +22,7 @@ using Remedy = std::vector<Change>;
 // "a: 1", "a: 1 and b: 2", "a: 1, b: 2 and c: 3".
 std::string text_of(const Remedy& remedy);
 
+// With what the case leaves open filled in anew (contact_stiffness.hpp).
 Case changed(Case c, const Remedy& remedy);
 
 // The first with the changes of the second, which come later and replace those of the same keys.

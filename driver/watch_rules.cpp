@@ -1,5 +1,6 @@
 #include "driver/watch_rules.hpp"
 
+#include "driver/contact_stiffness.hpp"
 #include "driver/flow_estimate.hpp"
 
 #include <fmt/format.h>
@@ -183,6 +184,18 @@ void add_fluid_rules(const Case& c, std::vector<WatchRule>& rules) {
                    "the largest density of a cell, less the reference,", waves});
 }
 
+enum class Contacts { softer, stiffer };
+
+// By the key that the case gives, or by the duration that it leaves open.
+std::string change_of_contacts(const Case& c, Contacts to) {
+  const bool softer = to == Contacts::softer;
+  if (c.contact.law != dem::Law::linear)
+    return softer ? "lower contact.youngs_modulus" : "raise contact.youngs_modulus";
+  if (c.contact.given.duration || has_default_duration(c))
+    return fmt::format("give a {} contact.duration than {:.3g} s", softer ? "longer" : "shorter", contact_duration(c));
+  return softer ? "lower contact.normal_stiffness" : "raise contact.normal_stiffness";
+}
+
 void add_grain_rules(const Case& c, std::vector<WatchRule>& rules) {
   using Side = WatchRule::Side;
   const double expected = expected_grain_speed(c);
@@ -196,8 +209,8 @@ void add_grain_rules(const Case& c, std::vector<WatchRule>& rules) {
        },
        "the largest speed of a grain",
        fmt::format("Neither the flow nor a fall gives a grain this speed; its contacts or its load do: check "
-                   "overlaps at the start, or shorten {} or soften contact.normal_stiffness.",
-                   has_fluid(c) ? "fluid.time_step" : "run.time_step")});
+                   "overlaps at the start, or shorten {} or {}.",
+                   has_fluid(c) ? "fluid.time_step" : "run.time_step", change_of_contacts(c, Contacts::softer))});
   double allowed = 0.0;
   for (const dem::Population& grains : c.grains)
     if (grains.from_file())
@@ -206,8 +219,8 @@ void add_grain_rules(const Case& c, std::vector<WatchRule>& rules) {
                    always(std::max(suspicious_overlap, 2.0 * allowed), std::max(impossible_overlap, 2.0 * allowed)),
                    "the largest overlap of two grains in diameters",
                    fmt::format("The contacts are too soft for the load or the speed, or grains were placed into each "
-                               "other: raise contact.{}, or check grains.0.placement.",
-                               c.contact.law == dem::Law::linear ? "normal_stiffness" : "youngs_modulus")});
+                               "other: {}, or check grains.0.placement.",
+                               change_of_contacts(c, Contacts::stiffer))});
 }
 
 }  // namespace

@@ -27,8 +27,7 @@ using Profile = std::array<std::vector<std::int64_t>, 3>;  // work in the cells 
 
 double work_of_grain(const Case& c, double radius) {
   const double cells_across = 2.0 * radius / c.domain.spacing;
-  return links_of_sphere(cells_across) * link_work +
-         static_cast<double>(c.coupling.grain_steps_per_fluid_step) * sub_step_work;
+  return links_of_sphere(cells_across) * link_work + static_cast<double>(grain_steps(c)) * sub_step_work;
 }
 
 Profile profile_of_cells(const Index3& cells) {

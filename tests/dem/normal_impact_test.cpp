@@ -74,6 +74,43 @@ TEST(NormalImpact, LastsTheContactTime) {
   }
 }
 
+// A glass sphere at rest is met by one of another radius (m) with 500 steps in the duration (s): how long they touch.
+double duration_of_collision(const ContactParameters& contact, double radius, double duration) {
+  const double dt = duration / 500.0, distance = test::glass_radius + radius + 2.3 * dt * impact_speed;
+  GrainParameters p = impact_parameters(contact, dt);
+  p.walls.clear();
+  const Vec3 place(0.02, 0.025, 0.025);
+  GrainDynamics grains(test::cube(), MPI_COMM_SELF, p,
+                       {test::glass_sphere(0, place, Vec3(impact_speed, 0, 0)),
+                        test::glass_sphere(1, place + Vec3(distance, 0, 0), Vec3::Zero(), radius)});
+  int touching = 0;
+  for (int n = 0; n < 1000; ++n) {
+    test::step(grains);
+    if (!grains.contacts().empty()) ++touching;
+  }
+  return touching * dt;
+}
+
+// Half a period of the damped spring, whatever the loss and the two masses.
+TEST(NormalImpact, LastsAsLongAsTheStiffnessIsFor) {
+  const double mass = test::glass_sphere(0, Vec3::Zero()).mass(), duration = 1.2e-3;
+  for (const double radius : {test::glass_radius, 1.5e-3}) {
+    const double other = mass * std::pow(radius / test::glass_radius, 3), effective = mass * other / (mass + other);
+    for (const double e : {1.0, 0.93, 0.5}) {
+      ContactParameters by_loss = test::glass(e, true);
+      by_loss.normal_stiffness = stiffness_lasting(duration, by_loss, effective);
+      EXPECT_NEAR(duration_of_collision(by_loss, radius, duration), duration, 3.0 * duration / 500.0) << radius << e;
+      EXPECT_NEAR(contact_time(by_loss.normal_stiffness, effective, Damping(by_loss).coefficient(effective)), duration,
+                  1e-12 * duration);
+      ContactParameters by_dashpot = by_loss;
+      by_dashpot.restitution.reset();
+      by_dashpot.damping = Damping(by_loss).coefficient(effective);
+      EXPECT_NEAR(stiffness_lasting(duration, by_dashpot, effective), by_loss.normal_stiffness,
+                  1e-9 * by_loss.normal_stiffness);
+    }
+  }
+}
+
 TEST(NormalImpact, ErrorsOfVelocityVerletAtFiftyStepsAContact) {
   const ContactParameters elastic = test::glass(1.0, true), glass = test::glass(0.93, true),
                           soft = test::glass(0.2, true);

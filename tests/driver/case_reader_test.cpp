@@ -38,7 +38,6 @@ TEST(CaseReader, ReadsWhatTheFileSays) {
   EXPECT_EQ(c.grains[1].count, 2);
   EXPECT_TRUE(c.grains[1].fixed);
   EXPECT_EQ(grain_count(c), 152);
-  EXPECT_EQ(c.coupling.grain_steps_per_fluid_step, 50);
   EXPECT_EQ(c.output.fluid.fields, std::vector<io::FluidField>{io::FluidField::velocity});
   EXPECT_EQ(c.output.checkpoint.keep, 3);
   EXPECT_EQ(c.analysis.observers.of<analysis::TransportRateKeys>()->from, 1.0);
@@ -79,16 +78,15 @@ TEST(CaseReader, FramesOfGrainsMayBeOfSome) {
   EXPECT_EQ(read(resolved_yaml(c)), c) << resolved_yaml(c);
 }
 
-// The lightest pair of the flume touches for 0.000145 s: 2e-5 s of the fluid are 2.8 twentieths of it.
+// The lightest free pair of the flume touches for 0.0001999 s: 2e-5 s of the fluid are 2.001 twentieths of it.
 TEST(CaseReader, TakesAsManySubStepsAsTheContactNeeds) {
-  const Case c = read(flume, {"coupling.grain_steps_per_fluid_step=auto"});
+  const Case c = read(flume, {"coupling.grain_steps_per_fluid_step=auto", "contact.normal_stiffness=20000"});
   EXPECT_EQ(c.coupling.grain_steps_per_fluid_step, 3);
   EXPECT_EQ(sub_steps_needed(c), 3);
   EXPECT_LE(grain_time_step(c), shortest_contact(c) / 20.0);
   // What is kept with the run is the number.
   EXPECT_NE(resolved_yaml(c).find("grain_steps_per_fluid_step: 3\n"), std::string::npos);
-  EXPECT_EQ(read(flume, {"coupling.grain_steps_per_fluid_step=auto", "fluid.time_step=1e-6"})
-                .coupling.grain_steps_per_fluid_step,
+  EXPECT_EQ(read(flume, {"contact.normal_stiffness=20000", "fluid.time_step=1e-6"}).coupling.grain_steps_per_fluid_step,
             1);
 }
 
@@ -103,8 +101,8 @@ TEST(CaseReader, TakesAsManySubStepsAsLubricationNeeds) {
 // Beyond the critical damping 2 sqrt(k m*) = 2.55 kg/s a contact must be resolved in pi/beta = 2 pi m*/gamma.
 TEST(CaseReader, TakesAsManySubStepsAsStrongDashpotsNeed) {
   const Case c = read(flume, {"contact.restitution=null", "contact.damping=5.1", "contact.attraction=none",
-                              "coupling.grain_steps_per_fluid_step=auto"});
-  const double lighter = 0.5 * 2550.0 * std::numbers::pi / 6.0 * std::pow(4.0e-3, 3);
+                              "contact.normal_stiffness=20000", "coupling.grain_steps_per_fluid_step=auto"});
+  const double lighter = 0.5 * 2550.0 * std::numbers::pi / 6.0 * std::pow(4.95e-3, 3);
   EXPECT_NEAR(shortest_contact(c), 2.0 * std::numbers::pi * lighter / 5.1, 1e-12);
   EXPECT_LE(grain_time_step(c), shortest_contact(c) / 20.0 * (1.0 + 1e-9));
 }
@@ -259,8 +257,8 @@ TEST(CaseReader, DefaultsAndExamplesAreToldApart) {
     EXPECT_TRUE(comment_of(key).starts_with("example, ")) << key << comment_of(key);
   for (const std::string key :
        {"  smagorinsky_constant: ", "  collision: ", "  mode: ", "      seed: ", "    velocity: ", "  friction: ",
-        "  normal_stiffness: ", "  links: ", "  grain_steps_per_fluid_step: ", "  grain_integrator: ", "domain:",
-        "contact:", "    fixed: "})
+        "  law: ", "  links: ", "  grain_steps_per_fluid_step: ", "  grain_integrator: ", "domain:", "contact:",
+        "    fixed: "})
     EXPECT_EQ(comment_of(key).find("example"), std::string::npos) << key << comment_of(key);
 }
 

@@ -24,6 +24,7 @@ Case wide_bed() {
   c.gravity.magnitude = 9.8;
   c.gravity.slope = 0.016;
   c.contact.damping = 0.09;
+  c.coupling.grain_steps_per_fluid_step = 50;
   dem::Population glass;
   glass.count = 2884;
   glass.diameter = 5e-3;

@@ -23,8 +23,7 @@ bool any_contains(const std::vector<std::string>& texts, const std::string& part
 }
 
 TEST(Cost, CountsCellsAndSteps) {
-  Case c = water_over_glass(5e-3, 0.016, 0.0412, 0.040, lbm::FaceType::periodic);
-  c.domain.size = Vec3(0.120, 0.040, 0.106);
+  const Case c = wide_bed();
   const Cost cost = cost_of(c, 10e9);
   EXPECT_EQ(cost.cells, 240.0 * 80.0 * 212.0);
   EXPECT_EQ(cost.steps, 1.5e6);  // 30 s of 2e-5 s
@@ -39,8 +38,7 @@ TEST(Cost, CountsCellsAndSteps) {
 // that bandwidth allows: the 1.6 million links of 1000 grains, 10 cells each, cost several times as much as the water
 // without them.
 TEST(Cost, TakesAccountOfTheLinks) {
-  Case c = water_over_glass(5e-3, 0.016, 0.0412, 0.040, lbm::FaceType::periodic);
-  c.domain.size = Vec3(0.120, 0.040, 0.106);
+  Case c = wide_bed();
   const double with_grains = cost_of(c, 42e9).core_seconds;
   c.grains.clear();
   const double water = cost_of(c, 42e9).core_seconds;

@@ -47,6 +47,13 @@ TEST(GrainCaseReader, ElasticSpheresHaveModuliInPlaceOfStiffnesses) {
   EXPECT_THROW(read(defaults_yaml("grains"), {"contact.youngs_modulus=1e8"}), InputError);
 }
 
+TEST(GrainCaseReader, DryGrainsHaveNoStepsOfAFluid) {
+  EXPECT_NE(message_of<InputError>([] {
+              read(defaults_yaml("grains"), {"contact.duration={fluid_steps: 40}"});
+            }).find("there is no fluid whose steps could be counted; give the duration in s"),
+            std::string::npos);
+}
+
 // Two spheres of radius R whose centres are R apart: 4/3 pi R^3 each, less the lens of 5 pi/12 R^3 once.
 TEST(GrainCaseReader, ClumpsHaveTheVolumeOfTheirUnion) {
   const std::vector<std::string> twins{

@@ -173,11 +173,11 @@ INSTANTIATE_TEST_SUITE_P(
             {"fluid.time_step=null", "fluid.maximum_lattice_velocity=0.05"},
             {"fluid.expected_velocity: maximum_lattice_velocity needs it"}},
         Bad{"sub_step_too_long",
-            {"coupling.grain_steps_per_fluid_step=1"},
+            {"coupling.grain_steps_per_fluid_step=1", "contact.normal_stiffness=20000"},
             {"coupling.grain_steps_per_fluid_step = 1: a step of the grains of 2e-05 s is longer than 1/20 of their "
              "shortest "
-             "contact (0.000145",
-             "give coupling.grain_steps_per_fluid_step: 3 or more"}},
+             "contact (0.0001999",
+             "give coupling.grain_steps_per_fluid_step: 3 or more, or a longer contact.duration"}},
         // Glass of 4.95 mm, 1.619e-4 kg, in 0.01 Pa s: 6 pi eta a/(1e-5 m) = 2.881e5/s, half of whose inverse is the
         // step.
         Bad{"sub_step_too_long_for_lubrication",
@@ -188,7 +188,7 @@ INSTANTIATE_TEST_SUITE_P(
              "coupling.grain_steps_per_fluid_step: 12 or more, or coupling.lubrication.minimum_gap: 2.31e-05 or more"}},
         Bad{"sub_steps_zero",
             {"coupling.grain_steps_per_fluid_step=0"},
-            {"expected a whole number, at least 1, for example 50, or auto"}},
+            {"expected a whole number, at least 1, for example 1, or auto"}},
         Bad{"auto_without_step",
             {"coupling.grain_steps_per_fluid_step=auto", "fluid.time_step=null"},
             {"fluid.time_step: the step is missing"}},
@@ -196,6 +196,19 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"both_losses",
             {"contact.damping=0.09"},
             {"contact.restitution = 0.93: the loss in a collision is given twice"}},
+        Bad{"stiffness_and_duration",
+            {"contact.normal_stiffness=700", "contact.duration=1.0e-3"},
+            {"contact.normal_stiffness = 700: the stiffness is that with which a collision lasts as long as "
+             "contact.duration says; give one of the two"}},
+        Bad{"duration_in_words",
+            {"contact.duration=long"},
+            {"contact.duration = \"long\": expected a number in s above 0"}},
+        Bad{"duration_in_two_units",
+            {"contact.duration={seconds: 1.0e-3, fluid_steps: 40}"},
+            {"contact.duration.seconds = 1.0e-3: give either seconds or fluid_steps"}},
+        Bad{"duration_of_elastic_spheres",
+            {"contact={law: hertz_mindlin, youngs_modulus: 1.0e7, restitution: 0.9, duration: 1.0e-3}"},
+            {"contact.duration = 1.0e-3: elastic spheres have youngs_modulus"}},
         Bad{"restitution_above_one", {"contact.restitution=1.2"}, {"a number above 0 and at most 1, for example 0.93"}},
         Bad{"negative_stiffness", {"contact.normal_stiffness=-2e4"}, {"a number in N/m above 0, for example 20000"}},
         Bad{"half_periodic",

@@ -34,8 +34,8 @@ TEST(WatchRules, EveryRuleOfACaseWarnsAndStops) {
       {"mean_density_deviation", 0.0011, 0.011, {"mean density", "mass_by_links"}},
       {"smallest_density_deviation", -0.31, -0.51, {"smallest density", "fluid.time_step"}},
       {"largest_density_deviation", 0.31, 1.01, {"largest density", "fluid.time_step"}},
-      {"largest_grain_speed", 2.01 * reach, 5.01 * reach, {"speed of a grain", "contact.normal_stiffness"}},
-      {"largest_overlap", 0.11, 0.51, {"overlap", "contact.normal_stiffness"}}};
+      {"largest_grain_speed", 2.01 * reach, 5.01 * reach, {"speed of a grain", "a longer contact.duration"}},
+      {"largest_overlap", 0.11, 0.51, {"overlap", "a shorter contact.duration than 0.000792 s"}}};
   for (const Trouble& trouble : troubles) {
     Watchdog dog(world, system, watch_rules(c), OutOfBounds::stop);
     const std::vector<std::string> warnings = dog.judge({{trouble.figure, "1", trouble.suspicious}});

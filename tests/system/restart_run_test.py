@@ -9,6 +9,8 @@ import sys
 import time
 from pathlib import Path
 
+import yaml
+
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 import program
 from program import ProgramTest, contents_below
@@ -306,6 +308,23 @@ output: {series: {every: 0.001}}
         self.run_well("run", self.case, "--restart", "run")
         self.assertEqual(self.last_checkpoint("run").read_bytes(), self.last_checkpoint("straight").read_bytes())
         self.assertEqual((self.folder / "run/series.csv").read_text(), (self.folder / "straight/series.csv").read_text())
+
+    def kept_stiffness(self, folder):
+        return yaml.safe_load((self.folder / folder / "case.yaml").read_text())["contact"]["normal_stiffness"]
+
+    def test_the_stiffness_is_kept_and_a_new_one_told(self):
+        self.run_well("run", self.case, "--until", "0.005")
+        first = self.kept_stiffness("run")
+        said = self.run_well("run", self.case, "--restart", "run", "--until", "0.006").stdout
+        self.assertNotIn("changed since then: contact", said)
+        self.assertEqual(self.kept_stiffness("run"), first)
+        said = self.run_well("run", self.case, "--restart", "run", "--until", "0.007", "--set", "contact.duration=1.0e-3").stdout
+        self.assertIn(f"changed since then: contact.normal_stiffness: {first!r} -> ", said)
+        # New runs from that state: with half the step contacts are half as long.
+        for folder, step in (("fine", 5.0e-5), ("finer", 2.5e-5)):
+            self.run_well("run", self.case, "--out", folder, "--until", f"{5.0 * step!r}", "--set", f"fluid.time_step={step!r}",
+                          "--set", "initial={from: run, fields: [grains]}")
+        self.assertAlmostEqual(self.kept_stiffness("finer") / self.kept_stiffness("fine"), 4.0, 9)
 
     def test_the_lubrication_of_the_grains_of_the_checkpoint_is_looked_at(self):
         self.run_well("run", self.case, "--until", "0.005")
