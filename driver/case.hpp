@@ -146,6 +146,7 @@ struct DisksCase {
 struct FilledIn {
   bool stiffness = false, tangential_stiffness = false;  // of the section contact
   bool grain_steps = false;
+  std::string preset;  // what a preset has set, in words; empty: there is none
   bool operator==(const FilledIn&) const { return true; }
 };
 

@@ -4,6 +4,7 @@
 #include "driver/case_checks.hpp"
 #include "driver/case_sections.hpp"
 #include "driver/contact_stiffness.hpp"
+#include "driver/preset.hpp"
 #include "driver/solid_setup.hpp"
 #include "io/section_reader.hpp"
 #include "io/section_writer.hpp"
@@ -89,12 +90,14 @@ constexpr double steps_per_contact = 50.0;  // dry grains, where the user gives 
 
 Case read_case(const std::filesystem::path& path, const std::vector<std::string>& overrides, const KnownBeds& known,
                MPI_Comm communicator) {
-  const io::YamlDocument document(path, overrides);
+  io::YamlDocument document(path, overrides);
   if (document.find("case") && !document.find("system"))
     throw InputError(
         fmt::format("{}: this is a sweep, not a case: thalweg sweep {} makes its runs.", path.string(), path.string()));
+  const std::string preset = lay_preset_beneath(document);
   Case c;
   io::read_document(document, c);
+  c.filled_in.preset = preset;
   if (c.system == SystemKind::continuum) {
     check_column(c, document);
     fill_in_column(c);
@@ -158,6 +161,7 @@ std::vector<std::string> parts_of(const std::string& path) {
 }  // namespace
 
 std::string defaults_yaml(const std::string& what) {
+  if (const std::optional<std::string_view> preset = preset_text(what)) return std::string(*preset);
   const std::vector<std::string> path = parts_of(what);
   const auto* const named = std::find_if(std::begin(systems), std::end(systems), [&](const NamedSystem& system) {
     return !path.empty() && system.name == path.front();
@@ -172,8 +176,8 @@ std::string defaults_yaml(const std::string& what) {
     if (const auto text = path.empty() ? std::nullopt : section_yaml(system, path)) return *text;
   throw InputError(fmt::format(
       "There is no system or section \"{}\": give one of resolved, fluid, grains, model_fluid, continuum, or a section "
-      "such as contact, or both, such as grains.contact; the sections of resolved are {}.",
-      what, fmt::join(documentation_of(SystemKind::resolved).sections(), ", ")));
+      "such as contact, or both, such as grains.contact, or a preset ({}); the sections of resolved are {}.",
+      what, preset_names(), fmt::join(documentation_of(SystemKind::resolved).sections(), ", ")));
 }
 
 }  // namespace thalweg::driver

@@ -37,7 +37,8 @@ auto about_case(const std::filesystem::path& path, Work&& work) {
 // Every key of a system ("resolved", "fluid", "grains", "model_fluid", "continuum") with its default, unit and meaning:
 // a valid case, with plausible values, marked as examples, for the keys that have no default, and the optional ones
 // commented out. Or one section of it: "contact" (of the first system that has it), "grains.contact" (that of the
-// system grains), "resolved.grains.contact" (that of a population). Throws InputError where there is no such thing.
+// system grains), "resolved.grains.contact" (that of a population). Or a preset as it is, "zhang2022". Throws
+// InputError where there is no such thing.
 std::string defaults_yaml(const std::string& what = "resolved");
 
 }  // namespace thalweg::driver

@@ -1,5 +1,7 @@
 #include "driver/case_sections.hpp"
 
+#include "driver/preset.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -219,6 +221,12 @@ void describe(SectionVisitor& visit, Case& c) {
                            {.meaning = "what is simulated", .required = true});
   const bool with_fluid = has_fluid(c), with_grains = has_grains(c.system);
   const OnlyIf of_fluid = only_with_fluid(c.system), of_grains = only_with_grains(with_grains);
+  std::optional<std::string> preset;  // has been laid beneath the case before it is read
+  visit.text("preset", preset,
+             {.meaning = fmt::format("settings by name, beneath those of the case, which win: {}; `thalweg defaults "
+                                     "zhang2022` shows them",
+                                     preset_names()),
+              .example = "zhang2022"});
   visit.text("name", c.name, {.meaning = "what the run is called in its output"});
   if (c.system == SystemKind::continuum) {
     describe_column(visit, c);

@@ -267,6 +267,7 @@ std::vector<std::string> check_report(const Case& c, double bandwidth) {
   check_initial_sources(c);  // a restart may do without them, so reading a case does not ask
   refuse_impossible_grains(c);
   Lines lines{fmt::format("{} (system: {})", c.name, name_of(c.system))};
+  if (!c.filled_in.preset.empty()) lines.push_back("preset     " + c.filled_in.preset);
   add_domain(c, lines);
   append(fluid_lines(c), lines);
   add_grains(c, lines);

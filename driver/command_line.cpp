@@ -92,7 +92,7 @@ void add_others(CLI::App& app, Command& command) {
   CLI::App* defaults = app.add_subcommand("defaults", "Print the keys of a system with default, unit and meaning");
   defaults->add_option("SYSTEM.SECTION", command.system,
                        "resolved (default), fluid, grains, model_fluid or continuum; a section, e.g. contact; or both, "
-                       "e.g. grains.contact");
+                       "e.g. grains.contact; or a preset, zhang2022");
   defaults->final_callback([&] { command.kind = Command::Kind::defaults; });
   CLI::App* info = app.add_subcommand("info", "Show the contents of a run folder or a checkpoint");
   info->add_option("PATH", command.runs, "Run folder or checkpoint file; with --csv any number of run folders")

@@ -196,7 +196,9 @@ void prepare_folder(const Places& places, const Case& c, const Command& command,
       places.folder.create(command.overwrite);
     }
     // First of all, because the folder is known by it.
-    places.folder.write_case(fmt::format("version {}\ncommand {}", version_text(), command.line), resolved_yaml(c));
+    places.folder.write_case(fmt::format("version {}\ncommand {}{}{}", version_text(), command.line,
+                                         c.filled_in.preset.empty() ? "" : "\npreset ", c.filled_in.preset),
+                             resolved_yaml(c));
     std::error_code ignored;
     fs::remove(places.folder.summary(), ignored);  // told of an earlier run
     io::make_folder(places.folder.checkpoints());

@@ -140,6 +140,11 @@ std::string shown(const YamlNode& node) {
   return text + (node.items.size() > most ? ", ...]" : "]");
 }
 
+YamlNode parsed_yaml(const std::string& text, const std::string& name) {
+  return parsed(
+      text, [&name](const YAML::Mark& mark) { return fmt::format("{}:{}", name, mark.line + 1); }, name + ":1", "");
+}
+
 YamlDocument::YamlDocument(const std::filesystem::path& path, const std::vector<std::string>& overrides) : path_(path) {
   const std::string name = path.string();
   const auto place_of = [&](const YAML::Mark& mark) { return fmt::format("{}:{}", name, mark.line + 1); };
@@ -191,6 +196,7 @@ void YamlDocument::apply(const std::string& override_text) {
       }
       if (last && remove) {
         erase_entry(*node, key);
+        taken_out_.push_back(key_path);
         return;
       }
     }
@@ -198,6 +204,40 @@ void YamlDocument::apply(const std::string& override_text) {
     done = joined_key(done, key);
   }
   *node = std::move(value);
+}
+
+LaidBeneath YamlDocument::lay_beneath(const YamlNode& other, const std::vector<std::string>& without) {
+  LaidBeneath keys;
+  std::vector<std::string> all = without;
+  all.insert(all.end(), taken_out_.begin(), taken_out_.end());
+  lay_beneath(root_, other, "", all, keys);
+  return keys;
+}
+
+void YamlDocument::lay_beneath(YamlNode& section, const YamlNode& other, const std::string& key_path,
+                               const std::vector<std::string>& without, LaidBeneath& keys) const {
+  for (const auto& [key, value] : other.entries) {
+    const std::string path = joined_key(key_path, key);
+    YamlNode* own = entry_of(section, key);
+    const bool empty = own && own->kind == YamlNode::Kind::scalar && own->text.empty();
+    if (std::find(without.begin(), without.end(), path) != without.end()) {
+      keys.left_out.push_back(path);
+    } else if (value.kind == YamlNode::Kind::section && (!own || empty || own->kind == YamlNode::Kind::section)) {
+      YamlNode inside;
+      inside.place = value.place;
+      if (own && !empty) inside = *own;
+      lay_beneath(inside, value, path, without, keys);
+      if (own)
+        *own = std::move(inside);
+      else if (!inside.entries.empty())
+        section.entries.push_back({key, std::move(inside)});
+    } else if (own) {
+      keys.left_out.push_back(path);
+    } else {
+      section.entries.push_back({key, value});
+      keys.added.push_back(fmt::format("{}: {}", path, value.text));
+    }
+  }
 }
 
 const YamlNode* YamlDocument::find(const std::string& key_path) const {

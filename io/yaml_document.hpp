@@ -28,6 +28,15 @@ struct YamlEntry {
   YamlNode value;
 };
 
+// The text as a tree; name: of its places, "<name>:<line>". Throws InputError as a document does.
+YamlNode parsed_yaml(const std::string& text, const std::string& name);
+
+// What lay_beneath() has done with the values of the other tree: "fluid.collision: bgk" of those it has added, the key
+// paths of those it has not.
+struct LaidBeneath {
+  std::vector<std::string> added, left_out;
+};
+
 class YamlDocument {
 public:
   // An empty document: its errors name no place.
@@ -37,6 +46,10 @@ public:
   // Throws InputError: missing file, YAML syntax, duplicate key, more than one document, aliases that multiply to more
   // than a million values, an override that names no key.
   YamlDocument(const std::filesystem::path& path, const std::vector<std::string>& overrides);
+
+  // Adds the values of another tree, section by section, where the document has none of the same key, no override has
+  // taken it out, and it is not one of `without` or inside it.
+  LaidBeneath lay_beneath(const YamlNode& other, const std::vector<std::string>& without);
 
   const YamlNode& root() const { return root_; }
   const std::filesystem::path& path() const { return path_; }
@@ -50,9 +63,12 @@ public:
 
 private:
   void apply(const std::string& override_text);
+  void lay_beneath(YamlNode& section, const YamlNode& other, const std::string& key_path,
+                   const std::vector<std::string>& without, LaidBeneath& keys) const;
 
   std::filesystem::path path_;
   YamlNode root_;
+  std::vector<std::string> taken_out_;  // key paths, by overrides
 };
 
 // The value as an error message shows it: "water" in quotes, a number bare, [0, 1] or "a section with 3 keys".
