@@ -68,6 +68,7 @@ struct SectionKey {
   std::string meaning = {};
   bool required = false;
   std::string shorthand = {};   // a plain word in place of the section is the value of this key: x: no_slip
+  bool in_full = false;         // with shorthand: the documentation shows the section, with the keys of other choices
   std::string expected = {};    // with shorthand: what is given in most cases, for complaints: "a number in m"
   std::string empty_name = {};  // this word in place of the section stands for the section without keys: fluid: rest
   std::vector<RemovedWord> removed = {};  // of a choice: reading one is an error that gives its remedy

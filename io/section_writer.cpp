@@ -185,10 +185,10 @@ void SectionWriter::nested(const std::string& key, bool given, const SectionKey&
   // Keys of other choices are left to a section that is shown in full.
   const auto own = std::find_if(lines_.begin() + static_cast<std::ptrdiff_t>(head) + 1, lines_.end(),
                                 [&](const Line& line) { return !line.other_choice && line.depth == depth_ + 1; });
-  const bool only_shorthand =
-      own != lines_.end() && own->key == about.shorthand && std::none_of(own + 1, lines_.end(), [&](const Line& line) {
-        return !line.other_choice && line.depth == depth_ + 1;
-      });
+  const bool only_shorthand = !(about.in_full && style_ == YamlStyle::documented) && own != lines_.end() &&
+                              own->key == about.shorthand && std::none_of(own + 1, lines_.end(), [&](const Line& line) {
+                                return !line.other_choice && line.depth == depth_ + 1;
+                              });
   if (only_shorthand) {
     lines_[head].value = own->value;
     if (style_ == YamlStyle::documented) lines_[head].comment = fmt::format("{}; {}", own->comment, about.meaning);
