@@ -6,36 +6,28 @@ using lbm::FaceType;
 
 namespace {
 
-// What the word of a case chooses.
-struct FaceKind {
-  FaceType type;
-  bool as_printed = false;
-  bool operator==(const FaceKind&) const = default;
-};
-
-const std::vector<NamedChoice<FaceKind>> face_kinds{
-    {{FaceType::periodic}, "periodic"},
-    {{FaceType::no_slip}, "no_slip"},
-    {{FaceType::free_slip}, "free_slip"},
-    {{FaceType::moving}, "moving", "no slip on a moving wall; with a fluid it moves in its own plane"},
-    {{FaceType::navier_slip}, "navier_slip", "slip velocity = slip length x shear rate"},
-    {{FaceType::law_of_the_wall}, "law_of_the_wall", "slip velocity = coefficient x friction velocity"},
-    {{FaceType::law_of_the_wall, true}, "law_of_the_wall_as_printed", "with coefficient 2.35"},
-    {{FaceType::velocity_inlet}, "velocity_inlet"},
-    {{FaceType::pressure_outlet}, "pressure_outlet"}};
+const std::vector<NamedChoice<FaceType>> face_types{
+    {FaceType::periodic, "periodic"},
+    {FaceType::no_slip, "no_slip"},
+    {FaceType::free_slip, "free_slip"},
+    {FaceType::moving, "moving", "no slip on a moving wall; with a fluid it moves in its own plane"},
+    {FaceType::navier_slip, "navier_slip", "slip velocity = slip length x shear rate"},
+    {FaceType::law_of_the_wall, "law_of_the_wall", "imposes the stress of the boundary layer on a smooth wall"},
+    {FaceType::slip_law_of_the_wall, "slip_law_of_the_wall",
+     "slip velocity = coefficient x friction velocity, as published"},
+    {FaceType::velocity_inlet, "velocity_inlet"},
+    {FaceType::pressure_outlet, "pressure_outlet"}};
 
 bool same_law(const FaceKeys& a, const FaceKeys& b) {
-  if (a.as_printed || b.as_printed) return a.as_printed == b.as_printed;
   return a.of_first_cell == b.of_first_cell && (a.of_first_cell || a.coefficient == b.coefficient);
 }
 
 lbm::FaceCondition condition_of(const FaceKeys& face, const Units& units) {
   lbm::FaceCondition condition;
   condition.type = face.type;
-  condition.slip_coefficient = face.as_printed ? lbm::printed_slip_coefficient : face.coefficient;
-  condition.slip_of_first_cell = face.type == FaceType::law_of_the_wall && face.of_first_cell;
+  condition.slip_coefficient = face.coefficient;
+  condition.slip_of_first_cell = face.type == FaceType::slip_law_of_the_wall && face.of_first_cell;
   condition.slip_length = face.slip_length / units.spacing;
-  condition.on_node = face.slips() && face.on_node;
   condition.velocity = face.velocity / units.velocity();
   condition.density_deviation = 3.0 * face.pressure / units.stress();  // p = rho/3 in lattice units
   return condition;
@@ -44,30 +36,38 @@ lbm::FaceCondition condition_of(const FaceKeys& face, const Units& units) {
 }  // namespace
 
 bool FaceKeys::operator==(const FaceKeys& other) const {
-  return type == other.type && (type != FaceType::law_of_the_wall || same_law(*this, other)) &&
+  return type == other.type && (type != FaceType::slip_law_of_the_wall || same_law(*this, other)) &&
          (type != FaceType::navier_slip || slip_length == other.slip_length) &&
-         (!slips() || on_node == other.on_node) && (!has_velocity() || velocity == other.velocity) &&
+         (!has_velocity() || velocity == other.velocity) &&
          (type != FaceType::moving || oscillation == other.oscillation) &&
          (type != FaceType::pressure_outlet || pressure == other.pressure);
 }
 
 void describe(SectionVisitor& visit, FaceKeys& face) {
-  FaceKind kind{face.type, face.as_printed && face.type == FaceType::law_of_the_wall};
-  visit.choice("type", kind, face_kinds,
-               {.meaning = "kind of face, by half-link rules unless on_node", .required = true});
-  face.type = kind.type;
-  face.as_printed = kind.as_printed;
-  const bool law = face.type == FaceType::law_of_the_wall && !face.as_printed;
-  const std::string of_the_law = "only a law_of_the_wall has a coefficient; remove it";
+  visit.choice("type", face.type, face_types,
+               {.meaning = "kind of face",
+                .required = true,
+                .removed = {{"law_of_the_wall_as_printed",
+                             "the law with the coefficient that is printed is {type: slip_law_of_the_wall, "
+                             "coefficient: 2.35}; write that"}}});
+  visit.not_here("on_node", "faces lie half a cell beyond the last cell centres; remove the key");
+  const bool law = face.type == FaceType::slip_law_of_the_wall;
+  const std::string of_the_law =
+      face.type == FaceType::law_of_the_wall
+          ? "a law_of_the_wall imposes the stress of the law and has no coefficient; remove the key, or write type: "
+            "slip_law_of_the_wall, which is the slip as published"
+          : "only a slip_law_of_the_wall has a coefficient; remove it";
+  const std::string with_the_law = "type: slip_law_of_the_wall";
   visit.flag("of_first_cell", face.of_first_cell,
              {.meaning = "take the coefficient from the law of the wall at the first cell's centre, whose distance in "
                          "wall units grows with the stress",
-              .only_if = {law, of_the_law}});
-  visit.real("coefficient", face.coefficient,
-             {.meaning = "slip velocity at the wall over the friction velocity",
-              .above = 0.0,
-              .only_if = {law && !face.of_first_cell,
-                          law ? "of_first_cell finds the coefficient; remove one of the two" : of_the_law}});
+              .only_if = {law, of_the_law, with_the_law}});
+  visit.real(
+      "coefficient", face.coefficient,
+      {.meaning = "slip velocity at the wall over the friction velocity",
+       .above = 0.0,
+       .only_if = {law && !face.of_first_cell,
+                   law ? "of_first_cell finds the coefficient; remove one of the two" : of_the_law, with_the_law}});
   visit.real("slip_length", face.slip_length,
              {.unit = "m",
               .meaning = "from the wall to where the profile would come to rest",
@@ -76,12 +76,6 @@ void describe(SectionVisitor& visit, FaceKeys& face) {
               .example = 1e-4,
               .only_if = {face.type == FaceType::navier_slip, "only a navier_slip wall has a slip length; remove it",
                           "type: navier_slip"}});
-  visit.flag("on_node", face.on_node,
-             {.meaning = "the wall runs through the outermost cell centres, not beyond them",
-              .only_if = {face.slips() && !face.of_first_cell,
-                          face.of_first_cell
-                              ? "of_first_cell needs the first cell half a cell from the wall; remove one of the two"
-                              : "only slip walls can stand on the cell centres; remove it"}});
   visit.vec3("velocity", face.velocity,
              {.unit = "m/s",
               .meaning = "of the wall or of the fluid that enters",

@@ -13,18 +13,22 @@ namespace thalweg::coupling {
 
 struct FaceKeys {
   lbm::FaceType type = lbm::FaceType::no_slip;
-  double coefficient = lbm::derived_slip_coefficient;  // law of the wall: U+ at the wall
-  bool of_first_cell = false;                          // law of the wall: lbm::slip_coefficient_at instead
-  bool as_printed = false;                             // law of the wall: with the coefficient of the paper, 2.35
+  double coefficient = lbm::derived_slip_coefficient;  // slip law of the wall: U+ at the wall
+  bool of_first_cell = false;                          // slip law of the wall: lbm::slip_coefficient_at instead
   double slip_length = 0.0;                            // m, navier_slip
-  bool on_node = false;                                // of the two slips: through the outermost cell centres
   Vec3 velocity = Vec3::Zero();                        // m/s, moving and velocity_inlet
   double pressure = 0.0;                               // Pa above the reference, pressure_outlet
   std::optional<dem::Oscillation> oscillation = {};    // moving; dry grains only
 
-  bool slips() const { return type == lbm::FaceType::navier_slip || type == lbm::FaceType::law_of_the_wall; }
+  // Whether it is a wall that the boundary layer of a smooth one stands on.
+  bool obeys_the_law_of_the_wall() const {
+    return type == lbm::FaceType::law_of_the_wall || type == lbm::FaceType::slip_law_of_the_wall;
+  }
   // Whether it exerts shear on a flow along it.
-  bool drags() const { return type == lbm::FaceType::no_slip || type == lbm::FaceType::moving || slips(); }
+  bool drags() const {
+    return type == lbm::FaceType::no_slip || type == lbm::FaceType::moving || type == lbm::FaceType::navier_slip ||
+           obeys_the_law_of_the_wall();
+  }
   bool has_velocity() const { return type == lbm::FaceType::moving || type == lbm::FaceType::velocity_inlet; }
   bool operator==(const FaceKeys& other) const;  // what the type does not use does not count
 };

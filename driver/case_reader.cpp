@@ -41,7 +41,6 @@ Case example_case(SystemKind system) {
   c.domain.spacing = 0.5e-3;
   const coupling::FaceKeys periodic{lbm::FaceType::periodic}, floor{lbm::FaceType::no_slip},
       lid{lbm::FaceType::free_slip};
-  // Of the kind that has most keys.
   const coupling::FaceKeys side{has_fluid(c)                   ? lbm::FaceType::law_of_the_wall
                                 : system == SystemKind::grains ? lbm::FaceType::moving
                                                                : lbm::FaceType::periodic};

@@ -41,8 +41,8 @@ std::array<coupling::FaceKeys, 6> faces_of(const BoundaryKeys& keys) {
 }
 
 const std::string face_forms =
-    "periodic, no_slip, free_slip, law_of_the_wall, or with its numbers, for example {type: law_of_the_wall, "
-    "coefficient: 8.36}, {type: navier_slip, slip_length: 1e-4} or {type: moving, velocity: [0.1, 0, 0]}";
+    "periodic, no_slip, free_slip, law_of_the_wall, or with its numbers, for example {type: navier_slip, slip_length: "
+    "1e-4} or {type: moving, velocity: [0.1, 0, 0]}";
 
 void check_axis(SectionVisitor& visit, const std::string& axis, const std::optional<coupling::FaceKeys>& both,
                 const std::optional<coupling::FaceKeys>& low, const std::optional<coupling::FaceKeys>& high) {
@@ -63,7 +63,7 @@ bool half_periodic(const std::optional<coupling::FaceKeys>& a, const std::option
 
 static void describe_boundaries(SectionVisitor& visit, BoundaryKeys& keys, bool with_fluid) {
   const auto face = [&](const std::string& key, std::optional<coupling::FaceKeys>& value, const std::string& meaning) {
-    visit.section(key, value, {.meaning = meaning, .shorthand = "type"});
+    visit.section(key, value, {.meaning = meaning, .shorthand = "type", .in_full = with_fluid && key == "y"});
   };
   face("x", keys.x, "both faces across the stream; or x_low and x_high");
   face("x_low", keys.x_low, "the upstream face");

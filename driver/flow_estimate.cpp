@@ -98,7 +98,7 @@ double velocity_between_side_walls(double friction_velocity, const Channel& chan
 }
 
 bool holds_back(const coupling::FaceKeys& face) {
-  return face.type == lbm::FaceType::no_slip || face.type == lbm::FaceType::law_of_the_wall;
+  return face.type == lbm::FaceType::no_slip || face.obeys_the_law_of_the_wall();
 }
 
 // m/s, u_max of a turbulent flow that this acceleration (m/s^2) drives along the bed.

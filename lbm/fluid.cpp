@@ -151,12 +151,13 @@ void Fluid<Real>::stream_and_collide(const std::function<void(int)>& before_tile
   end_step();
 }
 
-// A sweep of a cell touches the 19 slots of the cell and no other. Those of cells two or more away from the block's
-// faces are neither filled by the halo or a wall, nor read by a wall (which looks at all that its own cell sends out).
+// A sweep of a cell touches the 19 slots of the cell and no other. Those of cells three or more away from the block's
+// faces are neither filled by the halo or a wall, nor read by a wall, which looks at all that the two cells next to it
+// send out.
 // Along x a block that is its own neighbour has copied its halo when start() returns, so that whole rows can be swept.
 template <typename Real>
 void Fluid<Real>::advance_behind_halo() {
-  constexpr int margin = 2;
+  constexpr int margin = 3;
   const Index3& n = indexing().size();
   const auto inside = [&](int y, int z) {
     return z >= margin && z < n[2] - margin && y >= margin && y < n[1] - margin;

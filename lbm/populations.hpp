@@ -32,6 +32,8 @@ public:
   int pack() const { return pack_; }
   int packs_per_row() const { return (size_[0] + pack_ - 1) / pack_; }
   std::ptrdiff_t row_stride() const { return row_stride_; }
+  // From a cell to the next along an axis.
+  std::ptrdiff_t stride(int axis) const { return axis == 0 ? 1 : axis == 1 ? row_stride_ : plane_stride_; }
   std::ptrdiff_t plane_stride() const { return plane_stride_; }
   std::size_t count() const {
     return static_cast<std::size_t>(plane_stride_) * (size_[2] + 2);

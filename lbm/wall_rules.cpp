@@ -8,10 +8,6 @@ namespace thalweg::lbm {
 
 namespace {
 
-std::ptrdiff_t axis_stride(const CellIndexing& indexing, int axis) {
-  return axis == 0 ? 1 : axis == 1 ? indexing.row_stride() : indexing.plane_stride();
-}
-
 // Who decides about a population that comes out of an edge: the larger number.
 int precedence(FaceType type) {
   switch (type) {
@@ -26,13 +22,10 @@ int precedence(FaceType type) {
   }
 }
 
-// Walls that only mix what bounces back and what reflects.
-bool reflects(const FaceCondition& wall) {
-  return wall.type == FaceType::no_slip || wall.type == FaceType::free_slip ||
-         ((wall.type == FaceType::navier_slip || wall.type == FaceType::law_of_the_wall) && !wall.on_node);
-}
-
 bool has_velocity(FaceType type) { return type == FaceType::moving || type == FaceType::velocity_inlet; }
+
+// Walls that give back what comes to them, bounced back or reflected.
+bool reflects(FaceType type) { return type != FaceType::periodic && !has_velocity(type) && !is_open(type); }
 
 double dot(int direction, const Vec3& v) {
   return D3Q19::c[direction][0] * v.x() + D3Q19::c[direction][1] * v.y() + D3Q19::c[direction][2] * v.z();
@@ -41,14 +34,15 @@ double dot(int direction, const Vec3& v) {
 }  // namespace
 
 template <typename Real>
-void Walls<Real>::apply(Populations<Real>& populations, const CellMap& cells) const {
+void Walls<Real>::apply(Populations<Real>& populations, const CellMap& cells) {
   for (int face = 0; face < 6; ++face)
     if (present_[face]) apply_face(populations, cells, face);
 }
 
 template <typename Real>
-void Walls<Real>::apply_face(Populations<Real>& populations, const CellMap& cells, int face) const {
+void Walls<Real>::apply_face(Populations<Real>& populations, const CellMap& cells, int face) {
   const int axis = face / 2, inward = face % 2 == 0 ? 1 : -1;
+  if (stress_[face]) stress_[face]->find(populations, cells, half_force_);
   for (int o = 1; o < D3Q19::directions; ++o)
     if (D3Q19::c[o][axis] == inward) {
       const Entry entry(indexing_, face, o);
@@ -58,16 +52,15 @@ void Walls<Real>::apply_face(Populations<Real>& populations, const CellMap& cell
 
 template <typename Real>
 Walls<Real>::Entry::Entry(const CellIndexing& indexing, int from_face, int along)
-    : face(from_face), direction(along), opposite(D3Q19::opposite(along)), axis(from_face / 2) {
-  mirror = D3Q19::mirror(direction, axis);
+    : face(from_face), direction(along), axis(from_face / 2) {
   u_axis = first_axis(axis);
   v_axis = second_axis(axis);
   nu = indexing.size()[u_axis];
   nv = indexing.size()[v_axis];
   cu = D3Q19::c[direction][u_axis];
   cv = D3Q19::c[direction][v_axis];
-  stride = axis_stride(indexing, u_axis);
-  tangential = cu * stride + cv * axis_stride(indexing, v_axis);
+  stride = indexing.stride(u_axis);
+  tangential = cu * stride + cv * indexing.stride(v_axis);
 }
 
 template <typename Real>
@@ -100,7 +93,7 @@ Real Walls<Real>::at_pressure(const Populations<Real>& populations, int o, std::
                                (deviation + (1.0 + deviation) * (4.5 * cu * cu - 1.5 * u.squaredNorm())));
 }
 
-// The three common walls, in loops over plain arrays.
+// The common walls, in loops over plain arrays.
 template <typename Real>
 void Walls<Real>::reflect_run(Populations<Real>& populations, const CellMap& cells, const Run& run) const {
   const int axis = run.face / 2, o = run.direction;
@@ -118,6 +111,17 @@ void Walls<Real>::reflect_run(Populations<Real>& populations, const CellMap& cel
       for (int u = run.begin; u < run.end; ++u)
         into[u * stride] = body[u * stride] == CellMap::fluid ? other[u * stride] : own[u * stride];
       break;
+    case FaceType::law_of_the_wall: {
+      if (cu == 0 && cv == 0) {
+        for (int u = run.begin; u < run.end; ++u) into[u * stride] = own[u * stride];
+        break;
+      }
+      const Real* stress = stress_[run.face]->row(cu != 0 ? 0 : 1, run.v);
+      const Real half = Real(0.5) * static_cast<Real>(cu + cv);  // one of the two is 0
+      for (int u = run.begin; u < run.end; ++u)
+        into[u * stride] = body[u * stride] == CellMap::fluid ? other[u * stride] - half * stress[u] : own[u * stride];
+      break;
+    }
     default: {
       const Real* r = bounced_[run.face].row(run.v);
       const Real* r_source = bounced_[run.face].row(run.v - cv) - cu;
@@ -152,37 +156,12 @@ Real Walls<Real>::from_edge(const Populations<Real>& populations, const Entry& e
   return with_velocity(populations, entry.direction, cell, velocity);
 }
 
+// What a cell away from edges gets from a wall that does not merely reflect.
 template <typename Real>
-Real Walls<Real>::from_slip_on_node(Populations<Real>& populations, const CellMap& cells, const Entry& e,
-                                    std::ptrdiff_t cell, int u, int v) const {
-  const bool along_u = e.cu != 0, along_v = e.cv != 0;
-  const bool by_edge =
-      (along_u && ((u == 0 && present(e.u_axis, false)) || (u == e.nu - 1 && present(e.u_axis, true)))) ||
-      (along_v && ((v == 0 && present(e.v_axis, false)) || (v == e.nv - 1 && present(e.v_axis, true))));
-  const bool by_body =
-      !cells.is_fluid(cell + indexing_.offset(e.direction)) || !cells.is_fluid(cell - indexing_.offset(e.mirror));
-  if (by_edge || by_body) return populations.post_collision(e.opposite, cell);
-  const Real r = bounced_[e.face].at(u, v);
-  return r * populations.incoming(e.opposite, cell) + (Real(1) - r) * populations.incoming(e.mirror, cell);
-}
-
-// What a cell away from edges gets from a wall that does not merely reflect; u, v only matter to a slip wall.
-template <typename Real>
-Real Walls<Real>::from_wall(Populations<Real>& populations, const CellMap& cells, const Entry& entry,
-                            std::ptrdiff_t cell, int u, int v) const {
+Real Walls<Real>::from_wall(const Populations<Real>& populations, const Entry& entry, std::ptrdiff_t cell) const {
   const FaceCondition& wall = faces_[entry.face];
-  switch (wall.type) {
-    case FaceType::moving:
-    case FaceType::velocity_inlet:
-      return with_velocity(populations, entry.direction, cell, wall.velocity);
-    case FaceType::pressure_outlet:
-      return at_pressure(populations, entry.direction, cell, wall.density_deviation);
-    case FaceType::navier_slip:
-    case FaceType::law_of_the_wall:
-      return from_slip_on_node(populations, cells, entry, cell, u, v);
-    default:
-      return populations.post_collision(entry.opposite, cell);
-  }
+  return has_velocity(wall.type) ? with_velocity(populations, entry.direction, cell, wall.velocity)
+                                 : at_pressure(populations, entry.direction, cell, wall.density_deviation);
 }
 
 // Edges with the faces at the ends of the row, or with the face along the whole of it; the rest is one run.
@@ -205,13 +184,13 @@ void Walls<Real>::apply_row(Populations<Real>& populations, const CellMap& cells
   };
   edges(0, begin);
   edges(end, e.nu);
-  if (reflects(faces_[e.face])) {
+  if (reflects(faces_[e.face].type)) {
     reflect_run(populations, cells, {e.face, e.direction, v, begin, end, first, e.stride, e.tangential});
     return;
   }
   for (int u = begin; u < end; ++u) {
     const std::ptrdiff_t cell = first + u * e.stride;
-    populations.incoming(e.direction, cell) = from_wall(populations, cells, e, cell, u, v);
+    populations.incoming(e.direction, cell) = from_wall(populations, e, cell);
   }
 }
 

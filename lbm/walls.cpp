@@ -15,7 +15,7 @@ namespace {
 constexpr const char* face_names[6] = {"x_low", "x_high", "y_low", "y_high", "z_low", "z_high"};
 constexpr double smallest_bounced_fraction = 1e-6;  // lets a wall without shear (a start from rest) take hold
 
-bool slips(FaceType type) { return type == FaceType::navier_slip || type == FaceType::law_of_the_wall; }
+bool slips(FaceType type) { return type == FaceType::navier_slip || type == FaceType::slip_law_of_the_wall; }
 
 void check(const FaceCondition& wall, int axis, const char* name) {
   if (wall.type == FaceType::moving && wall.velocity[axis] != 0.0)
@@ -26,7 +26,7 @@ void check(const FaceCondition& wall, int axis, const char* name) {
   if (wall.type == FaceType::navier_slip && !(wall.slip_length >= 0.0))
     throw InputError(
         fmt::format("The slip length at {} is {} cells; it must not be negative.", name, wall.slip_length));
-  if (wall.type == FaceType::law_of_the_wall && !(wall.slip_coefficient > 0.0))
+  if (wall.type == FaceType::slip_law_of_the_wall && !(wall.slip_coefficient > 0.0))
     throw InputError(
         fmt::format("The slip coefficient at {} is {}; it must be positive.", name, wall.slip_coefficient));
 }
@@ -61,11 +61,14 @@ Walls<Real>::Walls(const Decomposition& decomposition, int rank, const CellIndex
         bounced_[face].resize(indexing.size()[first_axis(axis)], indexing.size()[second_axis(axis)],
                               static_cast<Real>(bounced_fraction(face, 0.0)));
     }
+  for (int face = 0; face < 6; ++face)
+    if (present_[face] && faces[face].type == FaceType::law_of_the_wall)
+      stress_[face].emplace(indexing, face, present_, viscosity_);
 }
 
 template <typename Real>
 bool Walls<Real>::follows_shear(int face) const {
-  return faces_[face].type == FaceType::law_of_the_wall ||
+  return faces_[face].type == FaceType::slip_law_of_the_wall ||
          (faces_[face].type == FaceType::navier_slip && eddy_coefficient_ > 0.0);
 }
 
@@ -73,7 +76,7 @@ template <typename Real>
 double Walls<Real>::bounced_fraction(int face, double shear_rate) const {
   const FaceCondition& wall = faces_[face];
   const double viscosity = viscosity_ + eddy_coefficient_ * shear_rate;
-  const double scale = (wall.on_node ? 0.5 : 0.0) + 3.0 * viscosity;  // tau, or tau - 1/2
+  const double scale = 3.0 * viscosity;  // tau - 1/2
   if (wall.type == FaceType::navier_slip) return scale / (scale + wall.slip_length);
   // Slip length A nu/u_tau, multiplied through by u_tau, which is zero in fluid at rest.
   const double friction_velocity = std::sqrt(viscosity * shear_rate);

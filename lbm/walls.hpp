@@ -4,24 +4,24 @@
 // c_o, f^c post-collision populations, and r the fraction that bounces back (the rest reflects specularly):
 //   walls              f_o(x, t+1) = r(x) f_o'^c(x, t) + [1 - r(x - t)] f_m^c(x - t, t)
 //                      r = 1: no slip, r = 0: free slip. Taking 1 - r at the source cell conserves mass.
+//   law of the wall    f_o(x, t+1) = f_m^c(x - t, t) - (t.T)(x)/2,   T the stress of wall_stress.hpp
+//                      The two populations along an axis take just T out of the cell, and no mass, whatever collision
+//                      and subgrid model make of the flow.
 //   moving, inlet      f_o(x, t+1) = f_o'^c(x, t) + 6 w_o rho(x, t) c_o.U                               (Ladd 1994)
 //   outlet             f_o(x, t+1) = -f_o'^c(x, t) + 2 w_o rho_w [1 + 9/2 (c_o.u)^2 - 3/2 u.u],  u of the cell
 //                      (anti-bounce-back, Ginzburg, Verhaeghe and d'Humieres 2008)
-//   on_node            f_o(x, t+1) = r(x) f_o'(x, t+1) + [1 - r(x)] f_m(x, t+1), from what has streamed into x;
-//                      the wall runs through the cell centre, and mass is conserved only where nothing varies along it.
 //
 // Slip length s and bounced fraction, exact in Couette flow for tau - 1/2 = 3 nu and nu with the eddies' share C_s^2 g,
-// g being the shear rate in the cell at the wall (Zhang et al. 2022, appendix A, whose A2 holds for the half-link
-// wall):
-//   half-link r = 1/[1 + s/(tau - 1/2)],   on_node r = 1/(1 + s/tau).
-// Law of the wall (the same, A3 to A5): slip velocity A u_tau with u_tau^2 = nu g, hence s = A nu/u_tau and, half-link,
+// g being the shear rate in the cell at the wall (Zhang et al. 2022, appendix A, A2):
+//   r = 1/[1 + s/(tau - 1/2)].
+// Slip law of the wall (the same, A3 to A5): slip velocity A u_tau with u_tau^2 = nu g, hence s = A nu/u_tau and
 //   r = 3 u_tau/(3 u_tau + A).
 //
 // Next to a body: a population whose source cell is solid bounces back whole. A population that comes out of the edge
 // between two faces belongs to the face that comes first in: walls with friction, inlet, outlet, free slip. It bounces
 // back whole, plus the terms of both faces that have a velocity; at an outlet it obeys the outlet's rule. Two free-slip
 // faces reflect both components, which is the same. Populations with three components do not exist, so corners need no
-// rule. Next to an edge an on_node face falls back to bounce-back for the populations that run along the other normal.
+// rule.
 #pragma once
 
 #include "core/archive.hpp"
@@ -32,7 +32,9 @@
 #include "lbm/collision.hpp"
 #include "lbm/populations.hpp"
 #include "lbm/sweep.hpp"
+#include "lbm/wall_stress.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -65,7 +67,8 @@ public:
   bool present(int axis, bool high) const { return present_[face_of(axis, high)]; }
 
   // Fills the incoming populations of all owned cells at walls. The halo, which it reads, must be up to date.
-  void apply(Populations<Real>& populations, const CellMap& cells) const;
+  // Applied again before the next sweep, it fills in the same.
+  void apply(Populations<Real>& populations, const CellMap& cells);
 
   // The momentum that each face takes from this rank's fluid in the next step, once apply() is done. Populations count
   // as f - w (1 + reference), so that a fluid at rest with rho = 1 + reference exerts no force.
@@ -83,7 +86,7 @@ public:
   // The force density of the last collision, half of which post-collision populations carry beyond rho u.
   void set_carried_force(const Vec3& force) { half_force_ = 0.5 * force; }
 
-  // Bounced fraction r at a slip or law-of-the-wall face, for the halo exchange; empty elsewhere.
+  // Bounced fraction r at a face that slips, for the halo exchange; empty elsewhere.
   FaceField<Real>& bounced(int face) { return bounced_[face]; }
 
   void save(ArchiveWriter& archive, const Decomposition& decomposition, const Block& block) const;
@@ -101,22 +104,19 @@ private:
   // have.
   struct Entry {
     Entry(const CellIndexing& indexing, int from_face, int along);
-    int face, direction, opposite, mirror;
+    int face, direction;
     int axis, u_axis, v_axis, nu, nv, cu, cv;
     std::ptrdiff_t stride, tangential;  // of u in memory, and of the part of the direction along the face
   };
 
-  void apply_face(Populations<Real>& populations, const CellMap& cells, int face) const;
+  void apply_face(Populations<Real>& populations, const CellMap& cells, int face);
   void apply_row(Populations<Real>& populations, const CellMap& cells, const Entry& entry, int v) const;
   void reflect_run(Populations<Real>& populations, const CellMap& cells, const Run& run) const;
   void update_bounced_cell(int face, int x, int y, int z, double shear_rate, const CellMap& cells);
   bool decides_edge(int face, int other) const;
   int edge_face(const Entry& entry, int u, int v) const;
   Real from_edge(const Populations<Real>& populations, const Entry& entry, std::ptrdiff_t cell, int other) const;
-  Real from_wall(Populations<Real>& populations, const CellMap& cells, const Entry& entry, std::ptrdiff_t cell, int u,
-                 int v) const;
-  Real from_slip_on_node(Populations<Real>& populations, const CellMap& cells, const Entry& entry, std::ptrdiff_t cell,
-                         int u, int v) const;
+  Real from_wall(const Populations<Real>& populations, const Entry& entry, std::ptrdiff_t cell) const;
   int face_of_population(int face, int direction, const Index3& at) const;
   bool follows_shear(int face) const;
   double bounced_fraction(int face, double shear_rate) const;
@@ -130,6 +130,7 @@ private:
   Vec3 half_force_ = Vec3::Zero();       // of the last collision
   std::array<bool, 6> present_{};
   mutable std::array<FaceField<Real>, 6> bounced_;
+  std::array<std::optional<WallStress<Real>>, 6> stress_;  // at faces that obey the law of the wall
 };
 
 }  // namespace thalweg::lbm

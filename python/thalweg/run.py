@@ -34,7 +34,7 @@ def face_type(boundary):
 
 
 # Faces that exchange shear with the fluid.
-DRAGGING = ("no_slip", "moving", "navier_slip", "law_of_the_wall", "law_of_the_wall_as_printed")
+DRAGGING = ("no_slip", "moving", "navier_slip", "law_of_the_wall", "slip_law_of_the_wall")
 
 
 class Run:

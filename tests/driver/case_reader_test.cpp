@@ -27,7 +27,7 @@ TEST(CaseReader, ReadsWhatTheFileSays) {
   EXPECT_EQ(c.name, "small flume");
   EXPECT_EQ(cells_of(c.domain), (Index3{120, 21, 150}));
   EXPECT_EQ(c.domain.faces[x_high].type, lbm::FaceType::periodic);
-  EXPECT_EQ(c.domain.faces[y_low], (coupling::FaceKeys{lbm::FaceType::law_of_the_wall, 2.35}));
+  EXPECT_EQ(c.domain.faces[y_low], (coupling::FaceKeys{lbm::FaceType::slip_law_of_the_wall, 2.35}));
   EXPECT_EQ(c.domain.faces[top].type, lbm::FaceType::free_slip);
   EXPECT_EQ(c.fluid.smagorinsky_constant, 0.27);
   EXPECT_EQ(c.fluid.precision, coupling::Precision::single);
@@ -117,7 +117,7 @@ TEST(CaseReader, ReadsEveryFormOfFacesGravityStepAndStart) {
                               "grains.1.fixed=false", "grains.1.prescribed_angular_velocity=[0, 1, 0]"});
   EXPECT_EQ(c.domain.faces[x_low].type, lbm::FaceType::no_slip);
   EXPECT_EQ(c.domain.faces[x_high].type, lbm::FaceType::free_slip);
-  EXPECT_EQ(c.domain.faces[top], (coupling::FaceKeys{lbm::FaceType::law_of_the_wall, 8.36}));
+  EXPECT_EQ(c.domain.faces[top], coupling::FaceKeys{lbm::FaceType::law_of_the_wall});
   EXPECT_EQ(gravity_vector(c.gravity), Vec3(0.1, 0, -9.8));
   EXPECT_EQ(c.gravity.mode, GravityMode::reduced);
   EXPECT_EQ(fluid_time_step(c), 0.05 * 0.5e-3);
@@ -180,8 +180,8 @@ void collect_keys(const YAML::Node& node, const std::string& path, std::vector<s
 TEST(CaseReader, ReadsEveryWallAndCollision) {
   const Case c =
       read(flume, {"domain.boundaries={x_low: {type: velocity_inlet, velocity: [0.2, 0, 0]}, x_high: {type: "
-                   "pressure_outlet, pressure: 3}, y: {type: navier_slip, slip_length: 1e-4, on_node: true}, "
-                   "bottom: law_of_the_wall_as_printed, top: {type: moving, velocity: [0.1, 0, 0]}}",
+                   "pressure_outlet, pressure: 3}, y: {type: navier_slip, slip_length: 1e-4}, "
+                   "bottom: law_of_the_wall, top: {type: moving, velocity: [0.1, 0, 0]}}",
                    "grains.0.fixed=true", "fluid.collision=trt", "fluid.magic_parameter=0.25",
                    "fluid.mean_velocity={velocity: 0.3, response_time: 0.05}", "coupling.links=cli",
                    "coupling.refill=grad", "coupling.covered_momentum=to_grain", "coupling.grain_stress=true"});
@@ -192,14 +192,25 @@ TEST(CaseReader, ReadsEveryWallAndCollision) {
   EXPECT_EQ(c.domain.faces[x_low].velocity, Vec3(0.2, 0, 0));
   EXPECT_EQ(c.domain.faces[x_high].pressure, 3.0);
   EXPECT_EQ(c.domain.faces[y_high].slip_length, 1e-4);
-  EXPECT_TRUE(c.domain.faces[y_low].on_node);
   EXPECT_EQ(c.domain.faces[bottom].type, lbm::FaceType::law_of_the_wall);
-  EXPECT_TRUE(c.domain.faces[bottom].as_printed);
   EXPECT_EQ(c.domain.faces[top].velocity, Vec3(0.1, 0, 0));
   EXPECT_EQ(c.fluid.collision, lbm::CollisionModel::trt);
   EXPECT_EQ(c.fluid.magic_parameter, 0.25);
   EXPECT_EQ(c.fluid.mean_velocity->response_time, 0.05);
   EXPECT_EQ(read(resolved_yaml(c)), c);  // and writes them all
+}
+
+TEST(CaseReader, ReadsTheSlipLawOfTheWall) {
+  const Case c =
+      read(flume, {"domain.boundaries={x: periodic, y_low: {type: slip_law_of_the_wall, of_first_cell: true}, "
+                   "y_high: slip_law_of_the_wall, bottom: no_slip, top: free_slip}"});
+  const auto conditions = coupling::conditions_of(c.domain.faces, units_of(c));
+  EXPECT_EQ(conditions[y_low].type, lbm::FaceType::slip_law_of_the_wall);
+  EXPECT_TRUE(conditions[y_low].slip_of_first_cell);
+  EXPECT_EQ(conditions[y_high].type, lbm::FaceType::slip_law_of_the_wall);
+  EXPECT_FALSE(conditions[y_high].slip_of_first_cell);
+  EXPECT_EQ(conditions[y_high].slip_coefficient, 8.36);
+  EXPECT_EQ(read(resolved_yaml(c)), c);
 }
 
 TEST(CaseReader, VirtualMassGoesWithTheMeanLoad) {
@@ -230,13 +241,14 @@ TEST(CaseReader, TheDefaultsAreValidAndNameEveryKey) {
                                 "damping", "uniform", "log_profile", "bed_height", "shear_velocity", "roughness"})
     EXPECT_NE(text.find("# " + key + ": "), std::string::npos) << key;
   // Keys that belong to a choice the defaults do not make.
-  for (const std::string key : {"magic_parameter", "slip_length", "oscillation", "pressure", "youngs_modulus"})
+  for (const std::string key :
+       {"magic_parameter", "coefficient", "of_first_cell", "slip_length", "oscillation", "pressure", "youngs_modulus"})
     EXPECT_NE(text.find("# " + key + ": "), std::string::npos) << key;
   EXPECT_NE(text.find("; only with collision: trt or trt_at_bodies\n"), std::string::npos);
   std::vector<std::string> keys;
   collect_keys(YAML::Load(text), "", keys);
   EXPECT_GE(keys.size(), 50u);
-  for (const std::string key : {"domain.boundaries.y.coefficient", "coupling.link_tolerance", "gravity.mode",
+  for (const std::string key : {"domain.boundaries.y.type", "coupling.link_tolerance", "gravity.mode",
                                 "output.checkpoint.keep", "contact.attraction", "fluid.collision"})
     EXPECT_NE(std::find(keys.begin(), keys.end(), key), keys.end()) << key;
   EXPECT_NE(message_of<InputError>([] { defaults_yaml("shallow_water"); }).find("give one of resolved, fluid, grains"),

@@ -14,7 +14,7 @@ name: "small flume"
 domain:
   size: [0.060, 0.0105, 0.075]
   spacing: 0.5e-3
-  boundaries: {x: periodic, y: {type: law_of_the_wall, coefficient: 2.35}, bottom: no_slip, top: free_slip}
+  boundaries: {x: periodic, y: {type: slip_law_of_the_wall, coefficient: 2.35}, bottom: no_slip, top: free_slip}
 fluid:
   density: 1000
   kinematic_viscosity: 1.0e-6

@@ -44,8 +44,27 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"face_not_built",
             {"domain.boundaries.top=porous"},
             {"top.type = \"porous\": expected one of periodic, no_slip, free_slip, moving, navier_slip, "
-             "law_of_the_wall, "
-             "law_of_the_wall_as_printed, velocity_inlet, pressure_outlet."}},
+             "law_of_the_wall, slip_law_of_the_wall, velocity_inlet, pressure_outlet."}},
+        Bad{"face_as_printed",
+            {"domain.boundaries.top=law_of_the_wall_as_printed"},
+            {"domain.boundaries.top.type = \"law_of_the_wall_as_printed\": the law with the coefficient that is "
+             "printed is "
+             "{type: slip_law_of_the_wall, coefficient: 2.35}; write that."}},
+        Bad{"face_on_node",
+            {"domain.boundaries.top={type: navier_slip, slip_length: 1e-4, on_node: true}"},
+            {"domain.boundaries.top.on_node = \"true\": faces lie half a cell beyond the last cell centres; remove the "
+             "key."}},
+        Bad{"coefficient_of_the_law",
+            {"domain.boundaries.top={type: law_of_the_wall, coefficient: 8.36}"},
+            {"domain.boundaries.top.coefficient = 8.36: a law_of_the_wall imposes the stress of the law and has no "
+             "coefficient; remove the key, or write type: slip_law_of_the_wall, which is the slip as published."}},
+        Bad{"first_cell_of_the_law",
+            {"domain.boundaries.top={type: law_of_the_wall, of_first_cell: true}"},
+            {"domain.boundaries.top.of_first_cell = \"true\": a law_of_the_wall imposes the stress",
+             "type: slip_law_of_the_wall"}},
+        Bad{"both_coefficients",
+            {"domain.boundaries.top={type: slip_law_of_the_wall, of_first_cell: true, coefficient: 9}"},
+            {"top.coefficient = 9: of_first_cell finds the coefficient; remove one of the two."}},
         Bad{"bulk_without_damping",
             {"fluid.bulk_relaxation_time=0.5"},
             {"fluid.bulk_relaxation_time = 0.5", "give more than 0.5 steps"}},
@@ -223,7 +242,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"axis_missing", {"domain.boundaries.y=null"}, {"domain.boundaries.y: these two faces are missing"}},
         Bad{"coefficient_of_no_slip",
             {"domain.boundaries.top={type: no_slip, coefficient: 2}"},
-            {"top.coefficient = 2: only a law_of_the_wall has a coefficient"}},
+            {"top.coefficient = 2: only a slip_law_of_the_wall has a coefficient"}},
         Bad{"gravity_twice", {"gravity.vector=[0, 0, -9.8]"}, {"gravity.vector", "gravity is given twice"}},
         Bad{"gravity_missing", {"gravity={}"}, {"gravity.magnitude: gravity is missing"}},
         Bad{"dry_with_fluid",

@@ -45,10 +45,10 @@ TEST(FreeSlip, LetsTheFluidSlideAsABlock) {
 // Laminar flow between walls that obey u_slip = A u_tau. With F the force and h the height, the wall stress is F h/2;
 // the friction velocity is taken at the wall cell's centre, where the stress is smaller by 1 - 1/h:
 //   u(y) = A u_tau / sqrt(1 - 1/h) + F y (h - y)/(2 nu) + shift,   u_tau^2 = F h/2.
-TEST(LawOfTheWall, SlipsByItsCoefficientTimesTheFrictionVelocity) {
+TEST(SlipLawOfTheWall, SlipsByItsCoefficientTimesTheFrictionVelocity) {
   const double tau = 0.55, nu = (tau - 0.5) / 3.0, force = 1e-7;
   const int h = 20;
-  FaceCondition wall{FaceType::law_of_the_wall};
+  FaceCondition wall{FaceType::slip_law_of_the_wall};
   wall.slip_coefficient = 8.36;
   for (const int normal : {0, 1, 2}) {
     const double friction_velocity = std::sqrt(force * h / 2.0);
@@ -66,7 +66,7 @@ TEST(LawOfTheWall, SlipsByItsCoefficientTimesTheFrictionVelocity) {
 
 // The tangent to u+ = ln(y+)/0.41 + 5 at 10.8 is 8.36 at the wall, and further out what the table of the side-wall
 // channel has: A = 9.25 and 9.70 at dx+ = 31.0 and 37.3 (to the digits of dx+).
-TEST(LawOfTheWall, TakesTheTangentAtTheFirstCell) {
+TEST(SlipLawOfTheWall, TakesTheTangentAtTheFirstCell) {
   EXPECT_EQ(slip_coefficient_at(3.0), 8.36);
   EXPECT_NEAR(slip_coefficient_at(10.8 + 1e-9), 8.36, 0.01);
   EXPECT_NEAR(slip_coefficient_at(0.5 * 31.0), 9.25, 0.01);
@@ -75,9 +75,9 @@ TEST(LawOfTheWall, TakesTheTangentAtTheFirstCell) {
 
 // Where the first cell is nearer than 10.8 the coefficient is the constant one; further away, larger, and the flow
 // faster.
-TEST(LawOfTheWall, OfTheFirstCellSlipsMoreUnderALargerStress) {
+TEST(SlipLawOfTheWall, OfTheFirstCellSlipsMoreUnderALargerStress) {
   const auto speed = [](double tau, double force, bool first_cell) {
-    FaceCondition wall{FaceType::law_of_the_wall};
+    FaceCondition wall{FaceType::slip_law_of_the_wall};
     wall.slip_of_first_cell = first_cell;
     return velocity_across(plain(8, tau, force, wall), 20000, 0.1)[0];
   };

@@ -52,7 +52,8 @@ TEST_P(ClosedBox, DISABLED_KeepsItsMassOverAHundredThousandSteps) {
 
 INSTANTIATE_TEST_SUITE_P(Walls, ClosedBox,
                          ::testing::Values(FaceType::no_slip, FaceType::free_slip, FaceType::moving,
-                                           FaceType::navier_slip, FaceType::law_of_the_wall));
+                                           FaceType::navier_slip, FaceType::law_of_the_wall,
+                                           FaceType::slip_law_of_the_wall));
 
 }  // namespace
 }  // namespace thalweg::lbm::conservation_test

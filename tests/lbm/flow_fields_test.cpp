@@ -208,7 +208,7 @@ void compare_with_one_rank() {
   parameters.smagorinsky_constant = 0.2;
   FaceConditions faces;
   faces[2].type = FaceType::no_slip;
-  faces[3].type = FaceType::law_of_the_wall;
+  faces[3].type = FaceType::slip_law_of_the_wall;
   Fluid<Real> alone(whole, MPI_COMM_SELF, parameters, faces), shared(cut, MPI_COMM_WORLD, parameters, faces);
   for (Fluid<Real>* fluid : {&alone, &shared}) {
     fluid->initialise([](const Vec3& p) {

@@ -133,6 +133,7 @@ class RunFolder(made_up.MadeUpFolder):
 
     def test_side_walls_are_counted(self):
         for faces, count in (("y_low: no_slip, y_high: free_slip", 1), ("y: free_slip", 0), ("y: periodic", 0),
+                             ("y: {type: slip_law_of_the_wall, of_first_cell: true}", 2),
                              ("y_low: {type: navier_slip, slip_length: 1e-3}, y_high: {type: moving, velocity: [1, 0, 0]}", 2)):
             case = self.folder / "case.yaml"
             case.write_text(made_up.CASE.replace("y: {type: law_of_the_wall}", faces))

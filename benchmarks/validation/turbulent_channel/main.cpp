@@ -34,7 +34,6 @@ struct Options {
   lbm::FaceType wall = lbm::FaceType::no_slip;
   double slip_coefficient = lbm::derived_slip_coefficient;
   bool slip_of_first_cell = false;
-  bool on_node = false;
   double until = 20.0;         // end, in h/u_tau
   double average_from = 10.0;  // h/u_tau
   int samples = 50;            // per h/u_tau
@@ -127,7 +126,6 @@ private:
       faces[face].type = o_.wall;
       faces[face].slip_coefficient = o_.slip_coefficient;
       faces[face].slip_of_first_cell = o_.slip_of_first_cell;
-      faces[face].on_node = o_.on_node;
     }
     return faces;
   }
@@ -197,7 +195,8 @@ void read(Options& o, int argc, char** argv) {
                                                               {"trt", lbm::CollisionModel::trt},
                                                               {"regularised", lbm::CollisionModel::regularised}};
   const std::map<std::string, lbm::FaceType> walls{{"no_slip", lbm::FaceType::no_slip},
-                                                   {"law_of_the_wall", lbm::FaceType::law_of_the_wall}};
+                                                   {"law_of_the_wall", lbm::FaceType::law_of_the_wall},
+                                                   {"slip_law_of_the_wall", lbm::FaceType::slip_law_of_the_wall}};
   app.add_option("--length", o.cells[0], "cells along the flow");
   app.add_option("--width", o.cells[1], "cells across the flow");
   app.add_option("--height", o.cells[2], "cells from plate to plate");
@@ -207,9 +206,9 @@ void read(Options& o, int argc, char** argv) {
   app.add_option("--magic", o.magic, "magic parameter of trt");
   app.add_option("--collision", o.collision)->transform(CLI::CheckedTransformer(collisions));
   app.add_option("--wall", o.wall)->transform(CLI::CheckedTransformer(walls));
-  app.add_flag("--slip-of-first-cell", o.slip_of_first_cell, "A from the first cell's distance from the wall");
-  app.add_option("--slip-coefficient", o.slip_coefficient, "A of the law of the wall");
-  app.add_flag("--on-node", o.on_node, "law of the wall: the plates run through the outermost cell centres");
+  app.add_flag("--slip-of-first-cell", o.slip_of_first_cell,
+               "of the slip law: A from the first cell's distance from the wall");
+  app.add_option("--slip-coefficient", o.slip_coefficient, "A of the slip law of the wall");
   app.add_option("--until", o.until, "end, in h/u_tau");
   app.add_option("--average-from", o.average_from, "start of the averages, in h/u_tau");
   app.add_option("--samples", o.samples, "samples in a time h/u_tau");
