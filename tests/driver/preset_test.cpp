@@ -44,7 +44,7 @@ TEST(Preset, SetsWhatIsPublished) {
   EXPECT_EQ(*c.contact.damping, 0.09);
   EXPECT_EQ(c.contact.friction, 0.5);
   EXPECT_EQ(c.coupling.grain_steps_per_fluid_step, 50);
-  EXPECT_EQ(c.domain.faces[y_low].type, lbm::FaceType::law_of_the_wall);
+  EXPECT_EQ(c.domain.faces[y_low].type, lbm::FaceType::slip_law_of_the_wall);
   EXPECT_EQ(c.domain.faces[y_high], c.domain.faces[y_low]);
   EXPECT_TRUE(contains(c.filled_in.preset, "zhang2022 sets "));
   EXPECT_TRUE(contains(c.filled_in.preset, "fluid.collision: bgk, "));
