@@ -13,13 +13,40 @@ static void describe(SectionVisitor& visit, FlowTargetKeys& target) {
               .example = 0.1});
 }
 
+// Of Zhang et al. (2022).
+constexpr double published_smagorinsky_constant = 0.27;
+
+lbm::Subgrid FluidKeys::subgrid() const {
+  using lbm::SubgridModel;
+  switch (subgrid_model.value_or(smagorinsky_constant ? SubgridModel::smagorinsky : SubgridModel::qr)) {
+    case SubgridModel::none:
+      return lbm::Subgrid::none();
+    case SubgridModel::smagorinsky:
+      return lbm::Subgrid::smagorinsky(smagorinsky_constant.value_or(published_smagorinsky_constant));
+    case SubgridModel::qr:
+      return lbm::Subgrid::qr();
+  }
+  return {};
+}
+
 void describe(SectionVisitor& visit, FluidKeys& fluid) {
   visit.real("density", fluid.density,
              {.unit = "kg/m^3", .meaning = "mass density", .required = true, .above = 0.0, .example = 1000.0});
   visit.real("kinematic_viscosity", fluid.kinematic_viscosity,
              {.unit = "m^2/s", .meaning = "molecular viscosity", .required = true, .above = 0.0, .example = 1e-6});
+  visit.choice("subgrid_model", fluid.subgrid_model, choices_of(lbm::SubgridModel{}),
+               {.meaning = "of the eddies that cells do not resolve; default: smagorinsky where its constant is given, "
+                           "else qr"});
   visit.real("smagorinsky_constant", fluid.smagorinsky_constant,
-             {.meaning = "of the subgrid model; 0.27 for water, 0 switches it off", .at_least = 0.0, .below = 1.0});
+             {.meaning = "C_s of subgrid_model: smagorinsky",
+              .at_least = 0.0,
+              .below = 1.0,
+              .example = published_smagorinsky_constant});
+  visit.require(fluid.smagorinsky_constant != 0.0, "smagorinsky_constant",
+                "a constant of zero is no subgrid model; write subgrid_model: none");
+  visit.require(
+      !fluid.smagorinsky_constant || !fluid.subgrid_model || *fluid.subgrid_model == lbm::SubgridModel::smagorinsky,
+      "smagorinsky_constant", "only subgrid_model: smagorinsky has this constant; remove one of the two");
   visit.real("time_step", fluid.time_step,
              {.unit = "s", .meaning = "of the fluid; or give the two velocities below", .above = 0.0, .example = 2e-5});
   visit.real("maximum_lattice_velocity", fluid.maximum_lattice_velocity,
@@ -42,7 +69,7 @@ void describe(SectionVisitor& visit, FluidKeys& fluid) {
   visit.real("magic_parameter", fluid.magic_parameter,
              {.meaning = "of trt and trt_at_bodies: (1/omega+ - 1/2)(1/omega- - 1/2); 3/16 puts walls exactly half way",
               .above = 0.0,
-              .only_if = {lbm::trt_beside_bodies(fluid.collision),
+              .only_if = {lbm::trt_near_bodies(fluid.collision),
                           "only collision trt and trt_at_bodies have a magic parameter; remove it",
                           "collision: trt or trt_at_bodies"}});
   visit.real(

@@ -20,11 +20,12 @@ struct FlowTargetKeys {
 struct FluidKeys {
   double density = 0.0;                            // kg/m^3
   double kinematic_viscosity = 0.0;                // m^2/s
-  double smagorinsky_constant = 0.0;               // 1; 0: no subgrid model
+  std::optional<lbm::SubgridModel> subgrid_model;  // read as smagorinsky with its constant, else qr
+  std::optional<double> smagorinsky_constant;      // 1
   std::optional<double> time_step;                 // s; else from the two velocities
   std::optional<double> maximum_lattice_velocity;  // cells per step
   std::optional<double> expected_velocity;         // m/s, the largest
-  lbm::CollisionModel collision = lbm::CollisionModel::bgk;
+  lbm::CollisionModel collision = lbm::CollisionModel::trt_at_bodies;
   double magic_parameter = 3.0 / 16.0;  // of trt and trt_at_bodies
   // 1, of the trace of the stress; 0: as the shear's. Read as 1 with grains, bgk or trt_at_bodies and a subgrid model,
   // else 0.
@@ -32,6 +33,8 @@ struct FluidKeys {
   Precision precision = Precision::single;
   std::optional<FlowTargetKeys> mean_velocity;
   bool operator==(const FluidKeys&) const = default;
+
+  lbm::Subgrid subgrid() const;
 };
 
 void describe(SectionVisitor& visit, FluidKeys& fluid);

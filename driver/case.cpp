@@ -95,7 +95,7 @@ double relaxation_time(const Case& c) { return units_of(c).relaxation_time(c.flu
 // One step takes out the sound that moving grains make and leaves their drag as it is (benchmarks/validation/sound);
 // more makes a fast stream unstable (docs/stability.md).
 double bulk_relaxation_time_for(const Case& c) {
-  const bool suits = lbm::bgk_in_the_open(c.fluid.collision) && c.fluid.smagorinsky_constant > 0.0;
+  const bool suits = lbm::bgk_in_the_open(c.fluid.collision) && c.fluid.subgrid().on();
   return c.system == SystemKind::resolved && suits ? 1.0 : 0.0;
 }
 

@@ -60,9 +60,13 @@ Warnings compression(const Case& c) {
            {{{step}, {}}, {{mode}, {}}}}};
 }
 
-Change subgrid_change(double constant) {
-  return exact_change("fluid.smagorinsky_constant", constant, 3,
-                      [](Case& other, double to) { other.fluid.smagorinsky_constant = to; });
+// The constant of another model goes with it.
+Remedy subgrid_changes(const Case& c, const char* word, lbm::SubgridModel model) {
+  Remedy changes{word_change("fluid.subgrid_model", word, [model](Case& other) { other.fluid.subgrid_model = model; })};
+  if (c.fluid.smagorinsky_constant)
+    changes.push_back(word_change("fluid.smagorinsky_constant", "null",
+                                  [](Case& other) { other.fluid.smagorinsky_constant.reset(); }));
+  return changes;
 }
 
 Change collision_change(const char* word, lbm::CollisionModel model) {
@@ -79,21 +83,18 @@ Change excess_change(const Case& c, double excess, Rounding rounding) {
 // From here on both trt and bgk are stable and accurate without a subgrid model.
 constexpr double calm_excess = 0.03;
 
+bool smagorinsky(const Case& c) { return c.fluid.subgrid().model() == lbm::SubgridModel::smagorinsky; }
+
 Warnings unstable_collision(const Case& c) {
   const double excess = relaxation_time(c) - 0.5, fastest = expected_lattice_velocity(c);
   const double stable = stable_lattice_velocity(c.fluid.collision, excess);
-  const bool eddies = c.fluid.smagorinsky_constant > 0.0,
-             regularised = c.fluid.collision == lbm::CollisionModel::regularised;
-  if ((eddies && !regularised) || (stable > 0.0 && fastest <= stable)) return {};
-  Remedy remedy;
-  if (!eddies) remedy.push_back(subgrid_change(0.27));
-  if (regularised) remedy.push_back(trt_change());
-  std::vector<Advice> advice{{remedy, {}}};
-  if (!eddies) advice.push_back({{excess_change(c, calm_excess, Rounding::up)}, {}});
-  return {{fmt::format("The relaxation time is only {:.2g} above 1/2{}; the collision {} was stable there {}", excess,
-                       eddies ? "" : " and there is no subgrid model", regularised ? "'regularised'" : "chosen",
-                       stable == 0.0 ? std::string("at no velocity") : fmt::format("up to {:g} cells a step", stable)),
-           advice}};
+  if (c.fluid.subgrid().on() || (stable > 0.0 && fastest <= stable)) return {};
+  return {
+      {fmt::format("The relaxation time is only {:.2g} above 1/2 and there is no subgrid model; the collision "
+                   "chosen was stable there {}",
+                   excess,
+                   stable == 0.0 ? std::string("at no velocity") : fmt::format("up to {:g} cells a step", stable)),
+       {{subgrid_changes(c, "qr", lbm::SubgridModel::qr), {}}, {{excess_change(c, calm_excess, Rounding::up)}, {}}}}};
 }
 
 Warnings long_relaxation(const Case& c) {
@@ -111,7 +112,7 @@ Change bulk_change(double steps) {
 
 Warnings bulk_relaxation(const Case& c) {
   const double bulk = c.fluid.bulk_relaxation_time.value_or(0.0), excess = relaxation_time(c) - 0.5;
-  const bool eddies = c.fluid.smagorinsky_constant > 0.0;
+  const bool eddies = c.fluid.subgrid().on();
   if (!eddies && c.fluid.collision == lbm::CollisionModel::trt && bulk > 0.0 && excess < 0.0299)
     return {
         {fmt::format("With a bulk relaxation time of its own and no subgrid model the collision trt is unstable at a "
@@ -143,7 +144,7 @@ Remedy finer_cells_and_step(const Case& c, double excess) {
 
 Warnings unmapped_relaxation(const Case& c) {
   const double excess = relaxation_time(c) - 0.5;
-  if (c.fluid.smagorinsky_constant == 0.0 || excess >= least_mapped_excess * (1.0 - 1e-9)) return {};
+  if (!c.fluid.subgrid().on() || excess >= least_mapped_excess * (1.0 - 1e-9)) return {};
   return {{fmt::format("The relaxation time is only {:.2g} above 1/2, and stability has not been tested below {:g} "
                        "(docs/stability.md)",
                        excess, least_mapped_excess),
@@ -156,12 +157,11 @@ Warnings laminar_flow(const Case& c) {
   const FlowEstimate flow = flow_estimate(c);
   const double falling = settling_velocity(c) * largest_diameter(c) / c.fluid.kinematic_viscosity;
   const bool slow_grains = flow.drive == FlowCause::none && falling > 0.0 && falling < 10.0;
-  if (c.fluid.smagorinsky_constant == 0.0 || !(slow_grains || (flow.drive != FlowCause::none && flow.laminar)))
-    return {};
-  return {{fmt::format("The flow is laminar (Reynolds number {:.3g}) and the subgrid model would add to its viscosity",
-                       slow_grains ? falling : flow.bulk_velocity * flow.depth / c.fluid.kinematic_viscosity),
-           {{{subgrid_change(0.0), trt_change()}, {}}},
-           "fluid.smagorinsky_constant: 0 with a step and a collision that are stable without it"}};
+  if (!smagorinsky(c) || !(slow_grains || (flow.drive != FlowCause::none && flow.laminar))) return {};
+  return {
+      {fmt::format("The flow is laminar (Reynolds number {:.3g}) and Smagorinsky's model would add to its viscosity",
+                   slow_grains ? falling : flow.bulk_velocity * flow.depth / c.fluid.kinematic_viscosity),
+       {{subgrid_changes(c, "qr", lbm::SubgridModel::qr), {}}}}};
 }
 
 Change slope_change(const Case& c, double slope) {
@@ -264,9 +264,9 @@ Warnings floating_grains(const Case& c) {
 // (benchmarks/validation/simple_cubic_arrays).
 Warnings inexact_links(const Case& c) {
   const double excess = relaxation_time(c) - 0.5;
-  const bool bgk = c.fluid.collision == lbm::CollisionModel::bgk, trt = lbm::trt_beside_bodies(c.fluid.collision),
+  const bool bgk = c.fluid.collision == lbm::CollisionModel::bgk, trt = lbm::trt_near_bodies(c.fluid.collision),
              bouzidi = c.coupling.links == lbm::LinkRule::bouzidi;
-  if (c.grains.empty() || c.fluid.smagorinsky_constant > 0.0 || excess < 0.0299) return {};
+  if (c.grains.empty() || smagorinsky(c) || excess < 0.0299) return {};
   if (!bgk && !(trt && bouzidi && excess > 0.15)) return {};
   Remedy remedy;
   if (bgk) remedy.push_back(trt_change());

@@ -55,12 +55,12 @@ SlowDrag slow_drag_error(double cells_per_diameter, bool cli) {
 
 std::string drag_text(const Case& c) {
   if (!has_fluid(c) || c.grains.empty()) return {};
-  const double d = smallest_diameter(c), cells = d / c.domain.spacing, constant = c.fluid.smagorinsky_constant;
+  const double d = smallest_diameter(c), cells = d / c.domain.spacing, constant = c.fluid.subgrid().constant();
   const double falling = settling_velocity(c);
   const double speed = falling > 0.0 ? falling : flow_estimate(c).speed;
   const double reynolds = speed * d / c.fluid.kinematic_viscosity;
   const std::string where = fmt::format("at {:.3g} cells and a Reynolds number of {:.4g}", cells, reynolds);
-  const bool eddies = constant > 0.0;
+  const bool eddies = c.fluid.subgrid().on();
   if (reynolds < 10.0)
     return fmt::format("{}{}, {}", slow_text(c, cells),
                        eddies ? ", and by more with a subgrid constant, which slow flow does not need" : "", where);

@@ -30,7 +30,7 @@ lbm::CollisionParameters collision_parameters(const Case& c) {
   parameters.magic_parameter = c.fluid.magic_parameter;
   parameters.relaxation_time = relaxation_time(c);
   parameters.bulk_relaxation_time = c.fluid.bulk_relaxation_time.value_or(0.0);
-  parameters.smagorinsky_constant = c.fluid.smagorinsky_constant;
+  parameters.subgrid = c.fluid.subgrid();
   const Vec3 acceleration = driving_acceleration(c);
   for (int a = 0; a < 3; ++a) parameters.force[a] = acceleration[a] / units_of(c).acceleration();
   return parameters;

@@ -4,15 +4,13 @@ namespace thalweg::driver {
 
 double stable_lattice_velocity(lbm::CollisionModel collision, double excess) {
   struct Row {
-    double excess, bgk, trt, regularised;
+    double excess, bgk, trt;
   };
-  constexpr Row map[] = {{5e-2, 0.15, 0.15, 0.15}, {3e-2, 0.15, 0.15, 0.05}, {2e-2, 0.15, 0.15, 0.02},
-                         {1e-2, 0.15, 0.10, 0.02}, {3e-3, 0.05, 0.02, 0.0},  {1e-3, 0.02, 0.0, 0.0}};
+  constexpr Row map[] = {{5e-2, 0.15, 0.15}, {3e-2, 0.15, 0.15}, {2e-2, 0.15, 0.15},
+                         {1e-2, 0.15, 0.10}, {3e-3, 0.05, 0.02}, {1e-3, 0.02, 0.0}};
   for (const Row& row : map) {
     if (excess < row.excess) continue;
-    return lbm::bgk_in_the_open(collision)         ? row.bgk
-           : collision == lbm::CollisionModel::trt ? row.trt
-                                                   : row.regularised;
+    return lbm::bgk_in_the_open(collision) ? row.bgk : row.trt;
   }
   return 0.0;
 }

@@ -6,8 +6,8 @@
 namespace thalweg::driver {
 
 // The largest lattice velocity (cells a step) of the map that stayed stable at this distance of the relaxation time
-// from 1/2, looked up at the nearest smaller one of the map; 0 if none did. A subgrid model keeps bgk and trt steady
-// beyond it, but not the regularised collision at walls.
+// from 1/2, looked up at the nearest smaller one of the map; 0 if none did. A subgrid model keeps the fluid steady
+// beyond it.
 double stable_lattice_velocity(lbm::CollisionModel collision, double excess);
 
 }  // namespace thalweg::driver

@@ -156,7 +156,7 @@ void add_fluid_rules(const Case& c, std::vector<WatchRule>& rules) {
   rules.push_back({"largest_lattice_velocity", Side::above, always(fast_lattice_velocity, broken_lattice_velocity),
                    "the largest velocity of the fluid in cells a step",
                    "The flow is too fast for the step, or the collision has become unstable: " + shorter_step +
-                       ", or see docs/stability.md for fluid.collision and fluid.smagorinsky_constant."});
+                       ", or see docs/stability.md for fluid.collision and fluid.subgrid_model."});
   rules.push_back({"fast_cell_fraction", Side::above, always(most_fast_cells, never),
                    "the share of fluid cells that move at more than 0.15 cells a step",
                    "The flow is too fast for the step: " + shorter_step + "."});

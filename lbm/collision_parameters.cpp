@@ -5,8 +5,7 @@ namespace thalweg::lbm {
 std::vector<NamedChoice<CollisionModel>> choices_of(CollisionModel) {
   return {{CollisionModel::bgk, "bgk", "one relaxation time"},
           {CollisionModel::trt, "trt", "two relaxation times; walls stay in place at any viscosity"},
-          {CollisionModel::trt_at_bodies, "trt_at_bodies", "trt in cells beside grains and solids, bgk elsewhere"},
-          {CollisionModel::regularised, "regularised", "bgk without ghost modes; not near walls in water"}};
+          {CollisionModel::trt_at_bodies, "trt_at_bodies", "trt in calm cells near grains and solids, bgk elsewhere"}};
 }
 
 }  // namespace thalweg::lbm

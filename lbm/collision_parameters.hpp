@@ -1,41 +1,37 @@
-// Which collision the fluid has, and its numbers. Lattice units; the equations are in collision.hpp.
+// Which collision the fluid has, and its numbers. Lattice units; the equations are in cell_moments.hpp and
+// collision_*.hpp.
 #pragma once
 
 #include "core/named_choice.hpp"
+#include "lbm/subgrid.hpp"
 
 #include <vector>
 
 namespace thalweg::lbm {
 
-enum class CollisionModel { bgk, trt, trt_at_bodies, regularised };
+enum class CollisionModel { bgk, trt, trt_at_bodies };
 
 // Its words in a case file (core/section_visitor.hpp).
 std::vector<NamedChoice<CollisionModel>> choices_of(CollisionModel);
 
-// Whether cells without a body beside them have one relaxation time.
-constexpr bool bgk_in_the_open(CollisionModel model) {
-  return model == CollisionModel::bgk || model == CollisionModel::trt_at_bodies;
-}
+// Whether cells without a body near them have one relaxation time.
+constexpr bool bgk_in_the_open(CollisionModel model) { return model != CollisionModel::trt; }
 
-// Whether cells with a body beside them have two, and so the magic parameter counts.
-constexpr bool trt_beside_bodies(CollisionModel model) {
-  return model == CollisionModel::trt || model == CollisionModel::trt_at_bodies;
-}
+// Whether cells with a body near them have two, and so the magic parameter counts.
+constexpr bool trt_near_bodies(CollisionModel model) { return model != CollisionModel::bgk; }
 
 struct CollisionParameters {
   CollisionModel model = CollisionModel::bgk;
   double magic_parameter = 3.0 / 16.0;  // of both trt; 3/16 puts half-link walls exactly half way
   double relaxation_time = 1.0;         // tau_0 = 1/2 + 3 nu dt/dx^2
   double bulk_relaxation_time = 0.0;    // tau_b, above 1/2; 0: as the shear's, eddies included
-  double smagorinsky_constant = 0.0;    // C_s; 0 switches the subgrid model off
-  double force[3] = {0.0, 0.0, 0.0};    // force density on the fluid
+  Subgrid subgrid;
+  double force[3] = {0.0, 0.0, 0.0};  // force density on the fluid
 
   bool with_bulk() const { return bulk_relaxation_time > 0.0; }
 
-  // omega' of the odd part, without eddies: in trt_at_bodies that of cells beside a body; 1 in the regularised model,
-  // which puts all of it but the momentum into equilibrium.
+  // omega' of the odd part, without eddies: in trt_at_bodies that of calm cells near a body.
   double odd_rate() const {
-    if (model == CollisionModel::regularised) return 1.0;
     if (model == CollisionModel::bgk) return 1.0 / relaxation_time;
     return 1.0 / (0.5 + magic_parameter / (relaxation_time - 0.5));
   }

@@ -83,7 +83,19 @@ CellMoments<double> incoming_moments(const Fluid<Real>& fluid, std::ptrdiff_t ce
   double f[D3Q19::directions];
   for (int i = 0; i < D3Q19::directions; ++i) f[i] = static_cast<double>(fluid.populations().incoming(i, cell));
   const CollisionConstants<double> constants(fluid.parameters());
-  return fluid.parameters().with_bulk() ? moments_of<true, true>(f, constants) : moments_of<true, false>(f, constants);
+  const bool bulk = fluid.parameters().with_bulk();
+  const auto with = [&]<SubgridModel subgrid>() {
+    return bulk ? moments_of<subgrid, true>(f, constants) : moments_of<subgrid, false>(f, constants);
+  };
+  switch (fluid.parameters().subgrid.model()) {
+    case SubgridModel::none:
+      return with.template operator()<SubgridModel::none>();
+    case SubgridModel::smagorinsky:
+      return with.template operator()<SubgridModel::smagorinsky>();
+    case SubgridModel::qr:
+      return with.template operator()<SubgridModel::qr>();
+  }
+  return {};
 }
 
 Symmetric<double> times(double factor, const Symmetric<double>& s) {
@@ -99,7 +111,7 @@ SubgridState subgrid_state(const Fluid<Real>& fluid, std::ptrdiff_t cell) {
   const double squared = (parameters.with_bulk() ? m.pi.traceless() : m.pi).squared();
   SubgridState state;
   state.shear_rate = 1.5 * std::sqrt(2.0 * squared) * m.omega * m.inverse_rho;
-  state.eddy_viscosity = parameters.smagorinsky_constant * parameters.smagorinsky_constant * state.shear_rate;
+  state.eddy_viscosity = (1.0 / m.omega - parameters.relaxation_time) / 3.0;
   return state;
 }
 

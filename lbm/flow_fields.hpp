@@ -5,9 +5,9 @@
 // collision, across the borders of ranks. Next to a wall or a solid cell they are one-sided: of second order with two
 // fluid cells to look at, of first order with one, zero with none.
 //
-// The shear rate g = sqrt(2 S_ab S_ab) and the eddy viscosity C_s^2 g are not: they are those of the subgrid model
-// itself, from the non-equilibrium moment that the coming collision will see (collision.hpp), which is of second order
-// everywhere, at walls too, and is what acts on the flow. They belong to one step later than the velocity.
+// The shear rate g = sqrt(2 S_ab S_ab) and the eddy viscosity are not: they are those of the subgrid model
+// itself, from the non-equilibrium moment that the coming collision will see (cell_moments.hpp), which is of second
+// order everywhere, at walls too, and is what acts on the flow. They belong to one step later than the velocity.
 #pragma once
 
 #include "core/ghosted_field.hpp"

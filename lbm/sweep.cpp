@@ -46,7 +46,7 @@ template <typename Real>
 struct RowSegment {
   static constexpr int packs = 4;
   Pack<Real> deviation[packs], mx[packs], my[packs], mz[packs], inverse_rho[packs], omega[packs];
-  Pack<Real> xx[packs], yy[packs], zz[packs], xy[packs], xz[packs], yz[packs], bulk[packs];
+  Pack<Real> xy[packs], xz[packs], yz[packs], bulk[packs];
 };
 
 template <typename Real>
@@ -75,7 +75,8 @@ struct RowCells {
 // Which of its variants a row takes.
 struct Kind {
   CollisionModel model;
-  bool eddies, bulk, shear;
+  SubgridModel subgrid;
+  bool bulk, shear;
 };
 
 template <Kind kind, typename Real>
@@ -84,7 +85,7 @@ template <Kind kind, typename Real>
                                                 RowSegment<Real>& segment, int p) {
   Pack<Real> f[D3Q19::directions];
   load(f, streams, cell);
-  const CellMoments<Pack<Real>> m = moments_of<kind.eddies, kind.bulk>(f, constants);
+  const CellMoments<Pack<Real>> m = moments_of<kind.subgrid, kind.bulk>(f, constants);
   segment.deviation[p] = m.deviation;
   segment.mx[p] = m.mx;
   segment.my[p] = m.my;
@@ -92,35 +93,29 @@ template <Kind kind, typename Real>
   segment.inverse_rho[p] = m.inverse_rho;
   segment.omega[p] = m.omega;
   if constexpr (kind.bulk) segment.bulk[p] = m.bulk;
-  if constexpr (kind.model == CollisionModel::regularised) {
-    segment.xx[p] = m.pi.xx;
-    segment.yy[p] = m.pi.yy;
-    segment.zz[p] = m.pi.zz;
-  }
-  if constexpr (kind.model == CollisionModel::regularised || kind.shear) {
+  if constexpr (kind.shear) {
     segment.xy[p] = m.pi.xy;
     segment.xz[p] = m.pi.xz;
     segment.yz[p] = m.pi.yz;
   }
 }
 
-// That of trt in the lanes of `beside_bodies` (a bit each), that of bgk in the others. All packs pass through the same
-// arithmetic, so that a cell's bits do not depend on its neighbours in the pack.
+// Calmness in the lanes of `near_bodies` (a bit each), 0 in the others. All packs pass through the same arithmetic, so
+// that a cell's bits do not depend on its neighbours in the pack.
 template <typename Real>
-[[gnu::always_inline]] inline Pack<Real> odd_rates(const Pack<Real>& omega,
-                                                   const CollisionConstants<Pack<Real>>& constants,
-                                                   unsigned beside_bodies) {
-  Pack<Real> beside = Real(0);
-  if (beside_bodies != 0) beside = Pack<Real>([&](auto lane) { return Real(beside_bodies >> lane & 1u); });
-  Pack<Real> rate = odd_rate_of(omega, constants);
-  stdx::where(beside == Pack<Real>(Real(0)), rate) = omega;
-  return rate;
+[[gnu::always_inline]] inline Pack<Real> calmness_in_lanes(const Pack<Real> (&f)[D3Q19::directions],
+                                                           const CellMoments<Pack<Real>>& m,
+                                                           const CollisionConstants<Pack<Real>>& constants,
+                                                           unsigned near_bodies) {
+  if (near_bodies == 0) return Real(0);
+  const Pack<Real> near([&](auto lane) { return Real(near_bodies >> lane & 1u); });
+  return near * calmness_of(f, m, constants);
 }
 
 template <Kind kind, typename Real>
 [[gnu::always_inline]] inline void relax_pack(const Streams<Real>& streams, std::ptrdiff_t cell,
                                               const CollisionConstants<Pack<Real>>& constants,
-                                              const RowSegment<Real>& s, int p, unsigned beside_bodies) {
+                                              const RowSegment<Real>& s, int p, unsigned near_bodies) {
   Pack<Real> f[D3Q19::directions];
   CellMoments<Pack<Real>> m;
   m.deviation = s.deviation[p];
@@ -130,12 +125,9 @@ template <Kind kind, typename Real>
   m.inverse_rho = s.inverse_rho[p];
   m.omega = s.omega[p];
   if constexpr (kind.bulk) m.bulk = s.bulk[p];
-  if constexpr (kind.model == CollisionModel::regularised)
-    m.pi = {s.xx[p], s.yy[p], s.zz[p], s.xy[p], s.xz[p], s.yz[p]};
-  else
-    load(f, streams, cell);
+  load(f, streams, cell);
   if constexpr (kind.model == CollisionModel::trt_at_bodies)
-    relax_trt<kind.bulk>(f, m, constants, odd_rates<Real>(m.omega, constants, beside_bodies));
+    relax_trt_at_bodies<kind.bulk>(f, m, constants, calmness_in_lanes<Real>(f, m, constants, near_bodies));
   else
     relax<kind.model, kind.bulk>(f, m, constants);
   for_each_direction([&]<int i>() __attribute__((always_inline)) {
@@ -186,16 +178,27 @@ void as_constant(bool value, Visit visit) {
     visit.template operator()<false>();
 }
 
+template <CollisionModel model, SubgridModel subgrid, typename Real>
+void sweep_row_with(const Streams<Real>& streams, const RowCells& row, const CollisionParameters& parameters,
+                    const RowShear<Real>* shear) {
+  as_constant(parameters.with_bulk(), [&]<bool bulk>() {
+    as_constant(shear != nullptr, [&]<bool with_shear>() {
+      sweep_packs<Kind{model, subgrid, bulk, with_shear}>(streams, row, parameters, shear);
+    });
+  });
+}
+
 template <CollisionModel model, typename Real>
 void sweep_row_with(const Streams<Real>& streams, const RowCells& row, const CollisionParameters& parameters,
                     const RowShear<Real>* shear) {
-  as_constant(parameters.smagorinsky_constant > 0.0, [&]<bool eddies>() {
-    as_constant(parameters.with_bulk(), [&]<bool bulk>() {
-      as_constant(shear != nullptr, [&]<bool with_shear>() {
-        sweep_packs<Kind{model, eddies, bulk, with_shear}>(streams, row, parameters, shear);
-      });
-    });
-  });
+  switch (parameters.subgrid.model()) {
+    case SubgridModel::none:
+      return sweep_row_with<model, SubgridModel::none>(streams, row, parameters, shear);
+    case SubgridModel::smagorinsky:
+      return sweep_row_with<model, SubgridModel::smagorinsky>(streams, row, parameters, shear);
+    case SubgridModel::qr:
+      return sweep_row_with<model, SubgridModel::qr>(streams, row, parameters, shear);
+  }
 }
 
 }  // namespace
@@ -213,8 +216,6 @@ void sweep_row(Populations<Real>& populations, const CellMap& cells, const Colli
       return sweep_row_with<CollisionModel::trt>(streams, row, parameters, shear);
     case CollisionModel::trt_at_bodies:
       return sweep_row_with<CollisionModel::trt_at_bodies>(streams, row, parameters, shear);
-    case CollisionModel::regularised:
-      return sweep_row_with<CollisionModel::regularised>(streams, row, parameters, shear);
   }
 }
 

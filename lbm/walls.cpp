@@ -49,7 +49,7 @@ Walls<Real>::Walls(const Decomposition& decomposition, int rank, const CellIndex
     : indexing_(indexing),
       faces_(faces),
       viscosity_((parameters.relaxation_time - 0.5) / 3.0),
-      eddy_coefficient_(parameters.smagorinsky_constant * parameters.smagorinsky_constant) {
+      subgrid_(parameters.subgrid) {
   const Block block = decomposition.block_of(rank);
   for (int axis = 0; axis < 3; ++axis)
     for (const bool high : {false, true}) {
@@ -69,13 +69,13 @@ Walls<Real>::Walls(const Decomposition& decomposition, int rank, const CellIndex
 template <typename Real>
 bool Walls<Real>::follows_shear(int face) const {
   return faces_[face].type == FaceType::slip_law_of_the_wall ||
-         (faces_[face].type == FaceType::navier_slip && eddy_coefficient_ > 0.0);
+         (faces_[face].type == FaceType::navier_slip && subgrid_.viscosity_in_shear(1.0) > 0.0);
 }
 
 template <typename Real>
 double Walls<Real>::bounced_fraction(int face, double shear_rate) const {
   const FaceCondition& wall = faces_[face];
-  const double viscosity = viscosity_ + eddy_coefficient_ * shear_rate;
+  const double viscosity = viscosity_ + subgrid_.viscosity_in_shear(shear_rate);
   const double scale = 3.0 * viscosity;  // tau - 1/2
   if (wall.type == FaceType::navier_slip) return scale / (scale + wall.slip_length);
   // Slip length A nu/u_tau, multiplied through by u_tau, which is zero in fluid at rest.

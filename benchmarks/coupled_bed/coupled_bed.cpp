@@ -105,7 +105,7 @@ lbm::CollisionParameters collision_of(const Box& box) {
   const Units units{box.spacing, box.time_step, water};
   lbm::CollisionParameters p;
   p.relaxation_time = units.relaxation_time(1e-6);
-  p.smagorinsky_constant = 0.27;
+  p.subgrid = lbm::Subgrid::smagorinsky(0.27);
   p.bulk_relaxation_time = 1.0;
   p.force[0] = box.slope * gravity / units.acceleration();
   return p;

@@ -57,7 +57,7 @@ lbm::CollisionParameters water(const Collision& collision) {
   parameters.model = collision.model;
   parameters.bulk_relaxation_time = collision.bulk_relaxation_time;
   parameters.relaxation_time = 0.503;
-  parameters.smagorinsky_constant = 0.27;
+  parameters.subgrid = lbm::Subgrid::smagorinsky(0.27);
   parameters.force[0] = 1e-6;
   return parameters;
 }

@@ -46,7 +46,7 @@ struct Setting {
     lbm::CollisionParameters p;
     p.model = model;
     p.relaxation_time = 0.5 + excess;
-    p.smagorinsky_constant = smagorinsky;
+    p.subgrid = lbm::Subgrid::smagorinsky(smagorinsky);
     p.bulk_relaxation_time = bulk;
     return p;
   }

@@ -191,7 +191,7 @@ TEST_P(LinksAgainstPlainLattice, AgreeToRoundOff) {
   lbm::CollisionParameters parameters;
   parameters.model = std::get<3>(GetParam());
   parameters.relaxation_time = 0.55;
-  parameters.smagorinsky_constant = 0.2;
+  parameters.subgrid = lbm::Subgrid::smagorinsky(0.2);
   parameters.force[0] = 1e-5;
   parameters.force[2] = -2e-6;
   PlainLattice plain(cells, walls, parameters, spheres);

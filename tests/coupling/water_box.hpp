@@ -50,7 +50,7 @@ std::unique_ptr<ResolvedSystem<Real, S>> make_system(const WaterBox& box, MPI_Co
   p.units = {box.spacing, box.time_step, fluid_density};
   p.collision.relaxation_time = p.units.relaxation_time(box.viscosity);
   p.collision.model = box.collision;
-  p.collision.smagorinsky_constant = box.smagorinsky_constant;
+  p.collision.subgrid = lbm::Subgrid::smagorinsky(box.smagorinsky_constant);
   p.collision.bulk_relaxation_time = box.bulk_relaxation_time;
   p.ramp = box.ramp;
   for (int a = 0; a < (box.full_gravity ? 3 : 2); ++a) p.collision.force[a] = box.gravity[a] / p.units.acceleration();

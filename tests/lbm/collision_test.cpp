@@ -51,7 +51,7 @@ void expect_conservation(double (&f)[19], const CollisionParameters& parameters)
 
 // To a few units in the last place of populations of the order of 0.05.
 TEST_F(Collision, ConservesMassAndAddsExactlyTheForce) {
-  parameters.smagorinsky_constant = 0.2;
+  parameters.subgrid = Subgrid::smagorinsky(0.2);
   expect_conservation<CollisionModel::bgk>(f, parameters);
   expect_conservation<CollisionModel::trt>(f, parameters);
   expect_conservation<CollisionModel::regularised>(f, parameters);
@@ -86,7 +86,7 @@ struct WrittenOut {
 };
 
 TEST_F(Collision, MomentsAgreeWithTheFormulasWrittenOut) {
-  parameters.smagorinsky_constant = 0.27;
+  parameters.subgrid = Subgrid::smagorinsky(0.27);
   const WrittenOut w(f, parameters);
   const CellMoments<double> m = moments_of<true>(f, CollisionConstants<double>(parameters));
   EXPECT_NEAR(m.pi.xx, w.pi[0][0], 1e-15);
@@ -105,7 +105,7 @@ TEST_F(Collision, MomentsAgreeWithTheFormulasWrittenOut) {
 
 TEST_F(Collision, BgkAgreesWithTheFormulaWrittenOut) {
   for (const double cs : {0.0, 0.27}) {
-    parameters.smagorinsky_constant = cs;
+    parameters.subgrid = Subgrid::smagorinsky(cs);
     const WrittenOut w(f, parameters);
     double g[19];
     std::copy(f, f + 19, g);
@@ -119,7 +119,7 @@ TEST_F(Collision, BgkAgreesWithTheFormulaWrittenOut) {
 }
 
 TEST_F(Collision, TrtAgreesWithTheFormulaWrittenOut) {
-  parameters.smagorinsky_constant = 0.27;
+  parameters.subgrid = Subgrid::smagorinsky(0.27);
   parameters.magic_parameter = 0.21;
   const WrittenOut w(f, parameters);
   const double even_rate = 1.0 / w.tau, odd_rate = 1.0 / (0.5 + 0.21 / (w.tau - 0.5));
@@ -138,7 +138,7 @@ TEST_F(Collision, TrtAgreesWithTheFormulaWrittenOut) {
 }
 
 TEST_F(Collision, RegularisedAgreesWithTheFormulaWrittenOut) {
-  parameters.smagorinsky_constant = 0.27;
+  parameters.subgrid = Subgrid::smagorinsky(0.27);
   const WrittenOut w(f, parameters);
   double g[19];
   std::copy(f, f + 19, g);
@@ -168,7 +168,7 @@ void expect_only_the_trace_differs(const double (&f)[19], CollisionParameters pa
   const double omega = collide<model, with_eddies>(without, parameters).omega;
   parameters.bulk_relaxation_time = tau_b;
   if (with_eddies) {  // so that both have the same rate, though not the same norm of Pi
-    parameters.smagorinsky_constant = 0.0;
+    parameters.subgrid = Subgrid::smagorinsky(0.0);
     parameters.relaxation_time = 1.0 / omega;
   }
   collide<model, false, true>(with, parameters);
@@ -192,7 +192,7 @@ void expect_only_the_trace_differs(const double (&f)[19], CollisionParameters pa
 
 TEST_F(Collision, ABulkRateOfItsOwnChangesTheTraceAlone) {
   for (const double smagorinsky : {0.0, 0.27}) {
-    parameters.smagorinsky_constant = smagorinsky;
+    parameters.subgrid = Subgrid::smagorinsky(smagorinsky);
     for (const double tau_b : {0.51, 1.0, 30.0}) {
       if (smagorinsky > 0.0) {
         expect_only_the_trace_differs<CollisionModel::bgk, true>(f, parameters, tau_b);
@@ -209,7 +209,7 @@ TEST_F(Collision, ABulkRateOfItsOwnChangesTheTraceAlone) {
 
 // The subgrid model sees the part of Pi without its trace: tau as in the header, with that norm.
 TEST_F(Collision, ALongLivedTraceRaisesNoEddyViscosity) {
-  parameters.smagorinsky_constant = 0.27;
+  parameters.subgrid = Subgrid::smagorinsky(0.27);
   parameters.bulk_relaxation_time = 30.0;
   const WrittenOut w(f, parameters);
   const double trace = w.pi[0][0] + w.pi[1][1] + w.pi[2][2], tau0 = parameters.relaxation_time;
@@ -223,7 +223,7 @@ TEST_F(Collision, ALongLivedTraceRaisesNoEddyViscosity) {
 // A cell that is compressed alike from all sides has no shear: its norm is zero up to rounding, never the root of a
 // number below zero.
 TEST_F(Collision, PureCompressionRaisesNoEddyViscosity) {
-  parameters.smagorinsky_constant = 0.27;
+  parameters.subgrid = Subgrid::smagorinsky(0.27);
   parameters.bulk_relaxation_time = 30.0;
   for (int a = 0; a < 3; ++a) parameters.force[a] = 0.0;
   const CollisionConstants<float> constants(parameters);

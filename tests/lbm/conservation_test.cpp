@@ -18,7 +18,7 @@ double drift_in_closed_box(FaceType type, int steps) {
   const Decomposition decomposition({11, 9, 10}, 1.0, {false, false, false}, {1, 1, 1});
   CollisionParameters parameters;
   parameters.relaxation_time = 0.505;
-  parameters.smagorinsky_constant = 0.27;
+  parameters.subgrid = Subgrid::smagorinsky(0.27);
   FaceConditions faces;
   for (int face = 0; face < 6; ++face) {
     faces[face].type = type;

@@ -59,7 +59,7 @@ TEST(BodyForce, AcceleratesUniformly) {
   const Decomposition decomposition({8, 6, 5}, 1.0, {true, true, true}, {1, 1, 1});
   CollisionParameters parameters;
   parameters.relaxation_time = 0.51;
-  parameters.smagorinsky_constant = 0.2;
+  parameters.subgrid = Subgrid::smagorinsky(0.2);
   parameters.force[0] = 1e-6;
   parameters.force[2] = -2e-6;
   Fluid<double> fluid(decomposition, MPI_COMM_SELF, parameters, {});

@@ -110,7 +110,7 @@ TEST(FlowFields, ShearRateAndEddyViscosityOfPoiseuilleFlowCarryTheForce) {
     const Decomposition decomposition(cells, 1.0, {true, true, false}, layout_of_all_ranks(cells));
     CollisionParameters parameters;
     parameters.relaxation_time = 0.8;
-    parameters.smagorinsky_constant = smagorinsky;
+    parameters.subgrid = Subgrid::smagorinsky(smagorinsky);
     parameters.force[0] = 1e-4;
     FaceConditions faces;
     faces[4].type = faces[5].type = FaceType::no_slip;
@@ -154,7 +154,7 @@ TEST(FlowFields, MomentumFluxIsTheMeanOfBeforeAndAfterTheCollision) {
   CollisionParameters parameters;
   parameters.model = CollisionModel::trt_at_bodies;
   parameters.relaxation_time = 0.501;
-  parameters.smagorinsky_constant = 0.27;
+  parameters.subgrid = Subgrid::smagorinsky(0.27);
   parameters.force[0] = 1e-4;
   Fluid<double> fluid(decomposition, MPI_COMM_WORLD, parameters, {});
   fluid.cells().assign(2, 3, 2, 0);
@@ -205,7 +205,7 @@ void compare_with_one_rank() {
   const Decomposition whole(cells, 1.0, periodic, {1, 1, 1}), cut(cells, 1.0, periodic, layout_of_all_ranks(cells));
   CollisionParameters parameters;
   parameters.relaxation_time = 0.51;
-  parameters.smagorinsky_constant = 0.2;
+  parameters.subgrid = Subgrid::smagorinsky(0.2);
   FaceConditions faces;
   faces[2].type = FaceType::no_slip;
   faces[3].type = FaceType::slip_law_of_the_wall;

@@ -65,7 +65,7 @@ void compare(const Box& box, CollisionModel model, const Index3& layout, double 
   CollisionParameters parameters;
   parameters.model = model;
   parameters.relaxation_time = 0.503;
-  parameters.smagorinsky_constant = 0.27;
+  parameters.subgrid = Subgrid::smagorinsky(0.27);
   parameters.bulk_relaxation_time = bulk_relaxation_time;
   parameters.force[0] = 1e-5;
   const Decomposition whole(cells, 1.0, periodic, {1, 1, 1}), cut(cells, 1.0, periodic, layout);

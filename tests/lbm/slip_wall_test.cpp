@@ -67,7 +67,7 @@ TEST(Couette, SlipLengthHoldsWithEddies) {
   Channel channel;
   channel.height = 8;
   channel.collision.relaxation_time = 0.52;
-  channel.collision.smagorinsky_constant = 0.3;
+  channel.collision.subgrid = Subgrid::smagorinsky(0.3);
   channel.low.type = FaceType::navier_slip;
   channel.low.slip_length = 2.0;
   channel.high = moving_wall();

@@ -133,7 +133,7 @@ TEST(Fluid, IsTheTextbookMethodCellByCell) {
       parameters.bulk_relaxation_time = bulk;
       parameters.model = model;
       parameters.relaxation_time = 0.56;
-      parameters.smagorinsky_constant = smagorinsky;
+      parameters.subgrid = Subgrid::smagorinsky(smagorinsky);
       parameters.force[1] = 3e-5;
       parameters.force[2] = -1e-5;
       FaceConditions faces;

@@ -300,7 +300,7 @@ TEST(WallStress, BalancesTheForceAtTheVelocityOfTheLaw) {
       CollisionParameters parameters;
       parameters.model = model;
       parameters.relaxation_time = 0.5 + 3.0 * nu;
-      parameters.smagorinsky_constant = smagorinsky;
+      parameters.subgrid = Subgrid::smagorinsky(smagorinsky);
       parameters.force[0] = 2.0 * friction * friction / height;
       Fluid<double> fluid(decomposition, MPI_COMM_SELF, parameters, faces);
       fluid.initialise([&](const Vec3&) { return FluidState{0.0, Vec3(speed, 0.0, 0.0)}; });

@@ -58,7 +58,7 @@ std::unique_ptr<coupling::ResolvedSystem<double>> make(const Regime& regime, con
   coupling::ResolvedParameters p;
   p.units = {1.0, 1.0, 1.0};
   p.collision.relaxation_time = regime.relaxation_time;
-  p.collision.smagorinsky_constant = regime.smagorinsky_constant;
+  p.collision.subgrid = lbm::Subgrid::smagorinsky(regime.smagorinsky_constant);
   p.collision.bulk_relaxation_time = setting.bulk_relaxation_time;
   p.collision.model = setting.collision;
   p.links.rule = setting.links;

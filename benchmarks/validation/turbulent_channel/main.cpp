@@ -115,7 +115,7 @@ private:
     p.model = o_.collision;
     p.magic_parameter = o_.magic;
     p.relaxation_time = 0.5 + 3.0 * nu_;
-    p.smagorinsky_constant = o_.smagorinsky;
+    p.subgrid = lbm::Subgrid::smagorinsky(o_.smagorinsky);
     p.force[0] = o_.friction_velocity * o_.friction_velocity / h_;
     return p;
   }
