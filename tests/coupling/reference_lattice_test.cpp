@@ -65,18 +65,25 @@ public:
       if (owner_[at] >= 0) continue;
       double cell[19];
       std::copy(streamed[at].begin(), streamed[at].end(), cell);
-      if (has_odd_rate_of_trt(at))
-        lbm::collide<lbm::CollisionModel::trt, true>(cell, parameters_);
+      if (parameters_.subgrid.model() == lbm::SubgridModel::qr)
+        collide<lbm::SubgridModel::qr>(cell, at);
       else
-        lbm::collide<lbm::CollisionModel::bgk, true>(cell, parameters_);
+        collide<lbm::SubgridModel::smagorinsky>(cell, at);
       std::copy(cell, cell + 19, f_[at].begin());
     }
     return loads;
   }
 
 private:
-  bool has_odd_rate_of_trt(std::size_t at) const {
-    if (parameters_.model != lbm::CollisionModel::trt_at_bodies) return false;
+  template <lbm::SubgridModel subgrid>
+  void collide(double (&cell)[19], std::size_t at) const {
+    if (parameters_.model == lbm::CollisionModel::trt_at_bodies && near_a_sphere(at))
+      lbm::collide<lbm::CollisionModel::trt_at_bodies, subgrid>(cell, parameters_);
+    else
+      lbm::collide<lbm::CollisionModel::bgk, subgrid>(cell, parameters_);
+  }
+
+  bool near_a_sphere(std::size_t at) const {
     for (int i = 1; i < 19; ++i)
       if (!beyond_wall(at, i) && owner_[neighbour(at, i)] >= 0) return true;
     return false;
@@ -180,8 +187,13 @@ std::vector<Sphere> crowd(bool walls) {
   return spheres;
 }
 
+struct Model {
+  lbm::CollisionModel collision;
+  lbm::Subgrid subgrid;
+};
+
 class LinksAgainstPlainLattice
-    : public ::testing::TestWithParam<std::tuple<lbm::MomentumExchange, lbm::LinkRule, bool, lbm::CollisionModel>> {};
+    : public ::testing::TestWithParam<std::tuple<lbm::MomentumExchange, lbm::LinkRule, bool, Model>> {};
 
 TEST_P(LinksAgainstPlainLattice, AgreeToRoundOff) {
   const bool walls = std::get<2>(GetParam());
@@ -189,9 +201,9 @@ TEST_P(LinksAgainstPlainLattice, AgreeToRoundOff) {
   const std::array<bool, 3> periodic{true, true, !walls};
   const std::vector<Sphere> spheres = crowd(walls);
   lbm::CollisionParameters parameters;
-  parameters.model = std::get<3>(GetParam());
+  parameters.model = std::get<3>(GetParam()).collision;
   parameters.relaxation_time = 0.55;
-  parameters.subgrid = lbm::Subgrid::smagorinsky(0.2);
+  parameters.subgrid = std::get<3>(GetParam()).subgrid;
   parameters.force[0] = 1e-5;
   parameters.force[2] = -2e-6;
   PlainLattice plain(cells, walls, parameters, spheres);
@@ -266,7 +278,8 @@ INSTANTIATE_TEST_SUITE_P(
     ExchangesAndRules, LinksAgainstPlainLattice,
     ::testing::Combine(::testing::Values(lbm::MomentumExchange::galilean_invariant, lbm::MomentumExchange::classical),
                        ::testing::Values(lbm::LinkRule::bouzidi, lbm::LinkRule::cli), ::testing::Bool(),
-                       ::testing::Values(lbm::CollisionModel::bgk, lbm::CollisionModel::trt_at_bodies)));
+                       ::testing::Values(Model{lbm::CollisionModel::bgk, lbm::Subgrid::smagorinsky(0.2)},
+                                         Model{lbm::CollisionModel::trt_at_bodies, lbm::Subgrid::qr()})));
 
 }  // namespace
 }  // namespace thalweg::coupling::reference_lattice_test

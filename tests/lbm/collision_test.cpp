@@ -1,36 +1,19 @@
 #include "lbm/collision.hpp"
-#include "lbm/equilibrium.hpp"
+
+#include "tests/lbm/collision_formulas.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 namespace thalweg::lbm::collision_test {
 namespace {
 
-struct Sums {
-  double density = 0.0;
-  Vec3 momentum = Vec3::Zero();
-};
-
-Sums sums_of(const double (&f)[19]) {
-  Sums m;
-  for (int i = 0; i < 19; ++i) {
-    m.density += f[i];
-    for (int a = 0; a < 3; ++a) m.momentum[a] += D3Q19::c[i][a] * f[i];
-  }
-  return m;
-}
-
 class Collision : public ::testing::Test {
 protected:
   void SetUp() override {
-    std::mt19937 generator(3);
-    std::uniform_real_distribution<double> noise(-0.002, 0.002);
-    const Vec3 velocity(0.05, -0.03, 0.02);
-    for (int i = 0; i < 19; ++i) f[i] = equilibrium_deviation(i, 0.01, velocity) + noise(generator);
+    fill_noisy(f, 3);
     parameters.relaxation_time = 0.52;
     parameters.force[0] = 3e-4;
     parameters.force[1] = -2e-4;
@@ -43,7 +26,7 @@ protected:
 template <CollisionModel model>
 void expect_conservation(double (&f)[19], const CollisionParameters& parameters) {
   const Sums before = sums_of(f);
-  collide<model, true>(f, parameters);
+  collide<model, SubgridModel::smagorinsky>(f, parameters);
   const Sums after = sums_of(f);
   EXPECT_NEAR(after.density, before.density, 1e-16);
   for (int a = 0; a < 3; ++a) EXPECT_NEAR(after.momentum[a] - before.momentum[a], parameters.force[a], 1e-16);
@@ -54,53 +37,25 @@ TEST_F(Collision, ConservesMassAndAddsExactlyTheForce) {
   parameters.subgrid = Subgrid::smagorinsky(0.2);
   expect_conservation<CollisionModel::bgk>(f, parameters);
   expect_conservation<CollisionModel::trt>(f, parameters);
-  expect_conservation<CollisionModel::regularised>(f, parameters);
+  expect_conservation<CollisionModel::trt_at_bodies>(f, parameters);
 }
-
-// The formulas as they stand in the literature, term by term, with no short cut.
-struct WrittenOut {
-  double deviation, tau, q = 0.0;
-  Vec3 u, force;
-  double pi[3][3] = {};
-  double equilibrium[19], guo[19];  // guo without its prefactor
-
-  WrittenOut(const double (&f)[19], const CollisionParameters& p) : force(p.force[0], p.force[1], p.force[2]) {
-    const Sums m = sums_of(f);
-    deviation = m.density;
-    u = (m.momentum + 0.5 * force) / (1.0 + deviation);
-    for (int i = 0; i < 19; ++i) {
-      const Vec3 c(D3Q19::c[i][0], D3Q19::c[i][1], D3Q19::c[i][2]);
-      equilibrium[i] = equilibrium_deviation(i, deviation, u);
-      guo[i] = D3Q19::weight(i) * (3.0 * (c - u).dot(force) + 9.0 * c.dot(u) * c.dot(force));
-    }
-    for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b) {
-        for (int i = 0; i < 19; ++i) pi[a][b] += D3Q19::c[i][a] * D3Q19::c[i][b] * (f[i] - equilibrium[i]);
-        pi[a][b] += 0.5 * (u[a] * force[b] + u[b] * force[a]);
-        q += pi[a][b] * pi[a][b];
-      }
-    q = std::sqrt(q);
-    const double tau0 = p.relaxation_time, cs2 = p.smagorinsky_constant * p.smagorinsky_constant;
-    tau = 0.5 * (tau0 + std::sqrt(tau0 * tau0 + 18.0 * std::sqrt(2.0) * cs2 * q / (1.0 + deviation)));
-  }
-};
 
 TEST_F(Collision, MomentsAgreeWithTheFormulasWrittenOut) {
   parameters.subgrid = Subgrid::smagorinsky(0.27);
   const WrittenOut w(f, parameters);
-  const CellMoments<double> m = moments_of<true>(f, CollisionConstants<double>(parameters));
-  EXPECT_NEAR(m.pi.xx, w.pi[0][0], 1e-15);
-  EXPECT_NEAR(m.pi.yy, w.pi[1][1], 1e-15);
-  EXPECT_NEAR(m.pi.zz, w.pi[2][2], 1e-15);
-  EXPECT_NEAR(m.pi.xy, w.pi[0][1], 1e-15);
-  EXPECT_NEAR(m.pi.xz, w.pi[0][2], 1e-15);
-  EXPECT_NEAR(m.pi.yz, w.pi[1][2], 1e-15);
+  const CellMoments<double> m = moments_of<SubgridModel::smagorinsky>(f, CollisionConstants<double>(parameters));
+  EXPECT_NEAR(m.pi.xx, w.pi(0, 0), 1e-15);
+  EXPECT_NEAR(m.pi.yy, w.pi(1, 1), 1e-15);
+  EXPECT_NEAR(m.pi.zz, w.pi(2, 2), 1e-15);
+  EXPECT_NEAR(m.pi.xy, w.pi(0, 1), 1e-15);
+  EXPECT_NEAR(m.pi.xz, w.pi(0, 2), 1e-15);
+  EXPECT_NEAR(m.pi.yz, w.pi(1, 2), 1e-15);
   EXPECT_NEAR(m.omega, 1.0 / w.tau, 1e-15);
   // tau = tau_0 + 3 C_s^2 |S| with |S| = sqrt(2 S:S) = sqrt(2) 3 Q/(2 rho tau): the closed form solves its own
   // equation.
   const double cs2 = 0.27 * 0.27;
   EXPECT_NEAR(1.0 / m.omega - parameters.relaxation_time,
-              3.0 * cs2 * std::sqrt(2.0) * 3.0 * w.q / (2.0 * (1.0 + w.deviation) * w.tau), 1e-15);
+              3.0 * cs2 * std::sqrt(2.0) * 3.0 * w.pi.norm() / (2.0 * (1.0 + w.deviation) * w.tau), 1e-15);
 }
 
 TEST_F(Collision, BgkAgreesWithTheFormulaWrittenOut) {
@@ -110,9 +65,9 @@ TEST_F(Collision, BgkAgreesWithTheFormulaWrittenOut) {
     double g[19];
     std::copy(f, f + 19, g);
     if (cs > 0.0)
-      collide<CollisionModel::bgk, true>(g, parameters);
+      collide<CollisionModel::bgk, SubgridModel::smagorinsky>(g, parameters);
     else
-      collide<CollisionModel::bgk, false>(g, parameters);
+      collide<CollisionModel::bgk, SubgridModel::none>(g, parameters);
     for (int i = 0; i < 19; ++i)
       EXPECT_NEAR(g[i], f[i] - (f[i] - w.equilibrium[i]) / w.tau + (1.0 - 0.5 / w.tau) * w.guo[i], 1e-15);
   }
@@ -125,7 +80,7 @@ TEST_F(Collision, TrtAgreesWithTheFormulaWrittenOut) {
   const double even_rate = 1.0 / w.tau, odd_rate = 1.0 / (0.5 + 0.21 / (w.tau - 0.5));
   double g[19];
   std::copy(f, f + 19, g);
-  collide<CollisionModel::trt, true>(g, parameters);
+  collide<CollisionModel::trt, SubgridModel::smagorinsky>(g, parameters);
   for (int i = 0; i < 19; ++i) {
     const int o = D3Q19::opposite(i);
     const auto even = [&](const double* v) { return 0.5 * (v[i] + v[o]); };
@@ -137,42 +92,21 @@ TEST_F(Collision, TrtAgreesWithTheFormulaWrittenOut) {
   }
 }
 
-TEST_F(Collision, RegularisedAgreesWithTheFormulaWrittenOut) {
-  parameters.subgrid = Subgrid::smagorinsky(0.27);
-  const WrittenOut w(f, parameters);
-  double g[19];
-  std::copy(f, f + 19, g);
-  collide<CollisionModel::regularised, true>(g, parameters);
-  for (int i = 0; i < 19; ++i) {
-    double projected = 0.0;
-    for (int a = 0; a < 3; ++a) {
-      projected -= 1.5 * D3Q19::c[i][a] * w.force[a];
-      for (int b = 0; b < 3; ++b) {
-        const double moment = w.pi[a][b] - 0.5 * (w.u[a] * w.force[b] + w.u[b] * w.force[a]);
-        projected += 4.5 * (D3Q19::c[i][a] * D3Q19::c[i][b] - (a == b ? 1.0 / 3.0 : 0.0)) * moment;
-      }
-    }
-    projected *= D3Q19::weight(i);
-    EXPECT_NEAR(g[i], w.equilibrium[i] + (1.0 - 1.0 / w.tau) * projected + (1.0 - 0.5 / w.tau) * w.guo[i], 1e-15);
-  }
-}
-
 // What a bulk relaxation time of its own changes: the trace of the second moment after the collision, which is the one
 // of equilibrium and half force, u.F, and (1 - 1/tau_b) tr Pi; mass, momentum and all that has no trace stay.
-template <CollisionModel model, bool with_eddies>
+template <CollisionModel model, SubgridModel subgrid>
 void expect_only_the_trace_differs(const double (&f)[19], CollisionParameters parameters, double tau_b) {
   const WrittenOut w(f, parameters);
   double with[19], without[19];
   std::copy(f, f + 19, with);
   std::copy(f, f + 19, without);
-  const double omega = collide<model, with_eddies>(without, parameters).omega;
+  const double omega = collide<model, subgrid>(without, parameters).omega;
   parameters.bulk_relaxation_time = tau_b;
-  if (with_eddies) {  // so that both have the same rate, though not the same norm of Pi
-    parameters.subgrid = Subgrid::smagorinsky(0.0);
-    parameters.relaxation_time = 1.0 / omega;
-  }
-  collide<model, false, true>(with, parameters);
-  const double trace = w.pi[0][0] + w.pi[1][1] + w.pi[2][2];
+  // Both have the same rate, though not the same norm of Pi.
+  parameters.subgrid = Subgrid::none();
+  parameters.relaxation_time = 1.0 / omega;
+  collide<model, SubgridModel::none, true>(with, parameters);
+  const double trace = w.pi.trace();
   double change[3][3] = {};
   for (int i = 0; i < 19; ++i)
     for (int a = 0; a < 3; ++a)
@@ -191,19 +125,16 @@ void expect_only_the_trace_differs(const double (&f)[19], CollisionParameters pa
 }
 
 TEST_F(Collision, ABulkRateOfItsOwnChangesTheTraceAlone) {
-  for (const double smagorinsky : {0.0, 0.27}) {
-    parameters.subgrid = Subgrid::smagorinsky(smagorinsky);
-    for (const double tau_b : {0.51, 1.0, 30.0}) {
-      if (smagorinsky > 0.0) {
-        expect_only_the_trace_differs<CollisionModel::bgk, true>(f, parameters, tau_b);
-        expect_only_the_trace_differs<CollisionModel::trt, true>(f, parameters, tau_b);
-        expect_only_the_trace_differs<CollisionModel::regularised, true>(f, parameters, tau_b);
-      } else {
-        expect_only_the_trace_differs<CollisionModel::bgk, false>(f, parameters, tau_b);
-        expect_only_the_trace_differs<CollisionModel::trt, false>(f, parameters, tau_b);
-        expect_only_the_trace_differs<CollisionModel::regularised, false>(f, parameters, tau_b);
-      }
-    }
+  for (const double tau_b : {0.51, 1.0, 30.0}) {
+    parameters.subgrid = Subgrid::none();
+    expect_only_the_trace_differs<CollisionModel::bgk, SubgridModel::none>(f, parameters, tau_b);
+    expect_only_the_trace_differs<CollisionModel::trt, SubgridModel::none>(f, parameters, tau_b);
+    parameters.subgrid = Subgrid::smagorinsky(0.27);
+    expect_only_the_trace_differs<CollisionModel::bgk, SubgridModel::smagorinsky>(f, parameters, tau_b);
+    expect_only_the_trace_differs<CollisionModel::trt, SubgridModel::smagorinsky>(f, parameters, tau_b);
+    parameters.subgrid = Subgrid::qr();
+    expect_only_the_trace_differs<CollisionModel::bgk, SubgridModel::qr>(f, parameters, tau_b);
+    expect_only_the_trace_differs<CollisionModel::trt, SubgridModel::qr>(f, parameters, tau_b);
   }
 }
 
@@ -212,11 +143,11 @@ TEST_F(Collision, ALongLivedTraceRaisesNoEddyViscosity) {
   parameters.subgrid = Subgrid::smagorinsky(0.27);
   parameters.bulk_relaxation_time = 30.0;
   const WrittenOut w(f, parameters);
-  const double trace = w.pi[0][0] + w.pi[1][1] + w.pi[2][2], tau0 = parameters.relaxation_time;
-  const double shear = std::sqrt(w.q * w.q - trace * trace / 3.0);
+  const double trace = w.pi.trace(), tau0 = parameters.relaxation_time;
+  const double shear = std::sqrt(w.pi.squaredNorm() - trace * trace / 3.0);
   const double tau =
       0.5 * (tau0 + std::sqrt(tau0 * tau0 + 18.0 * std::sqrt(2.0) * 0.27 * 0.27 * shear / (1.0 + w.deviation)));
-  const CellMoments<double> m = moments_of<true, true>(f, CollisionConstants<double>(parameters));
+  const CellMoments<double> m = moments_of<SubgridModel::smagorinsky, true>(f, CollisionConstants<double>(parameters));
   EXPECT_NEAR(1.0 / m.omega, tau, 1e-15);
 }
 
@@ -231,7 +162,8 @@ TEST_F(Collision, PureCompressionRaisesNoEddyViscosity) {
     float compressed[19];
     for (int i = 0; i < 19; ++i)
       compressed[i] = static_cast<float>(1e-4 * n * 1.5 * D3Q19::weight(i) * (D3Q19::length_squared(i) - 1));
-    EXPECT_NEAR(1.0F / (moments_of<true, true>(compressed, constants).omega), parameters.relaxation_time, 1e-6);
+    EXPECT_NEAR(1.0F / (moments_of<SubgridModel::smagorinsky, true>(compressed, constants).omega),
+                parameters.relaxation_time, 1e-6);
   }
 }
 

@@ -101,16 +101,17 @@ TEST(FlowFields, GradientsOfALinearFlowAreExactAtWallsAndBesideSolidCells) {
   EXPECT_EQ(sum_over_ranks(MPI_COMM_WORLD, looked_at), 12 * 10 * 14 - 9);
 }
 
-// Between plates under a force F every cell balances its momentum: [nu + C_s^2 g] g = F |z - H/2|, with the subgrid
-// model and without, up to the normal components of the moment, which are smaller by g (in a step) and add in squares.
+// Between plates under a force F every cell balances its momentum: (nu + nu_t) g = F |z - H/2|, with a subgrid model
+// and without, up to the normal components of the moment, which are smaller by g (in a step) and add in squares. They
+// are all that the model QR sees.
 TEST(FlowFields, ShearRateAndEddyViscosityOfPoiseuilleFlowCarryTheForce) {
-  for (const double smagorinsky : {0.0, 0.27}) {
+  for (const Subgrid& subgrid : {Subgrid::none(), Subgrid::smagorinsky(0.27), Subgrid::qr()}) {
     constexpr int height = 16;
     const Index3 cells{4, 4, height};
     const Decomposition decomposition(cells, 1.0, {true, true, false}, layout_of_all_ranks(cells));
     CollisionParameters parameters;
     parameters.relaxation_time = 0.8;
-    parameters.subgrid = Subgrid::smagorinsky(smagorinsky);
+    parameters.subgrid = subgrid;
     parameters.force[0] = 1e-4;
     FaceConditions faces;
     faces[4].type = faces[5].type = FaceType::no_slip;
@@ -125,8 +126,9 @@ TEST(FlowFields, ShearRateAndEddyViscosityOfPoiseuilleFlowCarryTheForce) {
       const SubgridState state = subgrid_state(fluid, fluid.indexing().index(x, y, z));
       const double stress = parameters.force[0] * std::abs(fluid.block().lower[2] + z + 0.5 - height / 2.0);
       EXPECT_NEAR((nu + state.eddy_viscosity) * state.shear_rate, stress, steepest * steepest * scale)
-          << smagorinsky << " " << z;
-      EXPECT_NEAR(state.eddy_viscosity, smagorinsky * smagorinsky * state.shear_rate, 1e-15);
+          << int(subgrid.model()) << " " << z;
+      const double normal = subgrid.model() == SubgridModel::qr ? subgrid.constant() * steepest * steepest : 0.0;
+      EXPECT_NEAR(state.eddy_viscosity, subgrid.viscosity_in_shear(state.shear_rate), 1e-15 + normal);
     });
   }
 }
@@ -148,13 +150,13 @@ Symmetric<double> second_moment(const std::array<double, 19>& f) {
 
 // (P + P^c)/2 = rho/3 + rho u u less both stresses, where P is taken before a collision and P^c after it: in the open,
 // with one relaxation time, and beside a covered cell, with two.
-TEST(FlowFields, MomentumFluxIsTheMeanOfBeforeAndAfterTheCollision) {
+void expect_mean_of_before_and_after(const Subgrid& subgrid) {
   const Index3 cells{12, 12, 12};
   const Decomposition decomposition(cells, 1.0, {true, true, true}, layout_of_all_ranks(cells));
   CollisionParameters parameters;
   parameters.model = CollisionModel::trt_at_bodies;
   parameters.relaxation_time = 0.501;
-  parameters.subgrid = Subgrid::smagorinsky(0.27);
+  parameters.subgrid = subgrid;
   parameters.force[0] = 1e-4;
   Fluid<double> fluid(decomposition, MPI_COMM_WORLD, parameters, {});
   fluid.cells().assign(2, 3, 2, 0);
@@ -196,6 +198,11 @@ TEST(FlowFields, MomentumFluxIsTheMeanOfBeforeAndAfterTheCollision) {
     expect(b.second_moment.xz, after.xz, flux.viscous.xz, flux.subgrid.xz, rho * u.x() * u.z());
     expect(b.second_moment.yz, after.yz, flux.viscous.yz, flux.subgrid.yz, rho * u.y() * u.z());
   }
+}
+
+TEST(FlowFields, MomentumFluxIsTheMeanOfBeforeAndAfterTheCollision) {
+  expect_mean_of_before_and_after(Subgrid::smagorinsky(0.27));
+  expect_mean_of_before_and_after(Subgrid::qr());
 }
 
 template <typename Real>

@@ -95,8 +95,7 @@ int settling_steps(double viscosity) { return static_cast<int>(20.0 / (8.0 * std
 TEST(NarrowGaps, FlowAsTheMagicParameterSays) {
   // u = 2/3 Lambda F/nu (Ginzburg and d'Humieres 2003).
   for (const double viscosity : {0.01, 0.03}) {
-    for (const CollisionModel model :
-         {CollisionModel::bgk, CollisionModel::regularised, CollisionModel::trt, CollisionModel::trt_at_bodies}) {
+    for (const CollisionModel model : {CollisionModel::bgk, CollisionModel::trt, CollisionModel::trt_at_bodies}) {
       const CollisionParameters p = parameters(model, viscosity);
       Gap gap(p);
       gap.run(settling_steps(viscosity));

@@ -57,15 +57,20 @@ std::vector<Box> boxes() {
           {"open", {inlet, outlet, law, slip, no_slip, free_slip}}};
 }
 
+struct Model {
+  CollisionModel collision;
+  Subgrid subgrid;
+};
+
 template <typename Real>
-void compare(const Box& box, CollisionModel model, const Index3& layout, double bulk_relaxation_time = 0.0) {
+void compare(const Box& box, const Model& model, const Index3& layout, double bulk_relaxation_time = 0.0) {
   const Index3& cells = box.cells;
   std::array<bool, 3> periodic;
   for (int a = 0; a < 3; ++a) periodic[a] = box.faces[2 * a].type == FaceType::periodic;
   CollisionParameters parameters;
-  parameters.model = model;
+  parameters.model = model.collision;
   parameters.relaxation_time = 0.503;
-  parameters.subgrid = Subgrid::smagorinsky(0.27);
+  parameters.subgrid = model.subgrid;
   parameters.bulk_relaxation_time = bulk_relaxation_time;
   parameters.force[0] = 1e-5;
   const Decomposition whole(cells, 1.0, periodic, {1, 1, 1}), cut(cells, 1.0, periodic, layout);
@@ -92,12 +97,14 @@ void compare(const Box& box, CollisionModel model, const Index3& layout, double 
 }
 
 TEST(Ranks, DoNotChangeOneBit) {
-  // Every box with one collision, every collision in two boxes; layouts take turns between the two storages.
-  const CollisionModel models[] = {CollisionModel::bgk, CollisionModel::trt, CollisionModel::regularised};
+  // Every box with one model, every model in two boxes at least; layouts take turns between the two storages.
+  const Model models[] = {{CollisionModel::bgk, Subgrid::smagorinsky(0.27)},
+                          {CollisionModel::trt, Subgrid::qr()},
+                          {CollisionModel::trt_at_bodies, Subgrid::qr()}};
   const bool few = size_of(MPI_COMM_WORLD) < 4;
   int next = 0, turn = 0;
   for (const Box& box : boxes()) {
-    const CollisionModel model = models[next++ % 3];
+    const Model& model = models[next++ % 3];
     for (const Index3& layout : layouts_of(box.cells, size_of(MPI_COMM_WORLD))) {
       if (few || turn % 2 == 0) compare<float>(box, model, layout);
       if (few || turn % 2 == 1) compare<double>(box, model, layout);
@@ -110,9 +117,9 @@ TEST(Ranks, DoNotChangeOneBit) {
 TEST(Ranks, DoNotChangeOneBitWithABulkViscosityOfItsOwn) {
   const Box flume = boxes()[1];
   const Index3 layout = layouts_of(flume.cells, size_of(MPI_COMM_WORLD)).front();
-  compare<float>(flume, CollisionModel::bgk, layout, 10.0);
-  compare<double>(flume, CollisionModel::trt, layout, 3.0);
-  compare<float>(flume, CollisionModel::regularised, layout, 1.0);
+  compare<float>(flume, {CollisionModel::bgk, Subgrid::smagorinsky(0.27)}, layout, 10.0);
+  compare<double>(flume, {CollisionModel::trt, Subgrid::qr()}, layout, 3.0);
+  compare<float>(flume, {CollisionModel::trt_at_bodies, Subgrid::qr()}, layout, 1.0);
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ TEST(Couette, IsExactForEveryWallCollisionAndNormal) {
   const FaceCondition slip_law{FaceType::slip_law_of_the_wall};
   const double nu = 0.4 / 3.0, a = slip_law.slip_coefficient, h = 9.0;
   const double friction_velocity = nu / (2.0 * h) * (std::sqrt(a * a + 4.0 * h * wall_velocity / nu) - a);
-  for (const CollisionModel model : {CollisionModel::bgk, CollisionModel::trt, CollisionModel::regularised})
+  for (const CollisionModel model : {CollisionModel::bgk, CollisionModel::trt, CollisionModel::trt_at_bodies})
     for (const int normal : {0, 1, 2}) {
       expect_couette({FaceType::no_slip}, 0.0, model, normal);
       expect_couette({FaceType::law_of_the_wall}, 0.0, model, normal);  // y+ of the second cell is 0.24

@@ -15,7 +15,7 @@ namespace {
 using std::numbers::pi;
 using Complex = std::complex<double>;
 
-constexpr CollisionModel models[] = {CollisionModel::bgk, CollisionModel::trt, CollisionModel::regularised};
+constexpr CollisionModel models[] = {CollisionModel::bgk, CollisionModel::trt, CollisionModel::trt_at_bodies};
 
 // Growth and frequency of sound of wave number k. A viscous stress that relaxes in a time t answers a strain rate that
 // varies as e^{st} with its viscosity over 1 + s t (Maxwell); on the lattice t = tau - 1/2. Momentum and mass give

@@ -296,11 +296,11 @@ TEST(WallStress, BalancesTheForceAtTheVelocityOfTheLaw) {
   FaceConditions faces;
   faces[2].type = faces[3].type = FaceType::law_of_the_wall;
   for (const CollisionModel model : {CollisionModel::bgk, CollisionModel::trt})
-    for (const double smagorinsky : {0.0, 0.2}) {
+    for (const Subgrid& subgrid : {Subgrid::none(), Subgrid::smagorinsky(0.2), Subgrid::qr()}) {
       CollisionParameters parameters;
       parameters.model = model;
       parameters.relaxation_time = 0.5 + 3.0 * nu;
-      parameters.subgrid = Subgrid::smagorinsky(smagorinsky);
+      parameters.subgrid = subgrid;
       parameters.force[0] = 2.0 * friction * friction / height;
       Fluid<double> fluid(decomposition, MPI_COMM_SELF, parameters, faces);
       fluid.initialise([&](const Vec3&) { return FluidState{0.0, Vec3(speed, 0.0, 0.0)}; });
