@@ -36,13 +36,9 @@ def shear_collision(tau, u, model):
     rest = identity - equilibrium
     if model == "bgk":
         return identity - rest / tau, rest
-    if model == "trt":
-        swap = identity[OPPOSITE]
-        return identity - (0.5 * (identity + swap) / tau
-                           + 0.5 * (identity - swap) / (0.5 + MAGIC / (tau - 0.5))) @ rest, rest
-    second = sum(4.5 * np.outer(W * (C[:, a] * C[:, b] - (a == b) / 3), C[:, a] * C[:, b])
-                 for a in range(3) for b in range(3))
-    return equilibrium + (1 - 1 / tau) * second @ rest, rest
+    swap = identity[OPPOSITE]
+    return identity - (0.5 * (identity + swap) / tau
+                       + 0.5 * (identity - swap) / (0.5 + MAGIC / (tau - 0.5))) @ rest, rest
 
 
 def growth(matrix):
@@ -84,20 +80,20 @@ def largest_stable_stream(excess, tau_bulk):
 
 
 def main():
-    models = ("bgk", "trt", "regularised")
+    models = ("bgk", "trt")
     print("Couette flow, lid at 0.1: growth a step, and its wave number along and across the flow in units of pi\n")
-    print("| tau - 1/2 | " + " | ".join(models) + " |\n|---|---|---|---|")
+    print("| tau - 1/2 | " + " | ".join(models) + " |\n|---|---|---|")
     for excess in (0.1, 0.05, 0.03, 0.02, 0.01, 0.003, 0.001):
         cells = [couette(excess, 0.1, m) for m in models]
         print(f"| {excess:g} | " + " | ".join("stable" if g < 1e-9 else f"{g:.4f} ({x:.2f}, {y:.2f})"
                                              for g, x, y in cells) + " |", flush=True)
     print("\nUniform stream at 0.1: growth a step\n")
-    print("| tau - 1/2 | " + " | ".join(models) + " |\n|---|---|---|---|")
+    print("| tau - 1/2 | " + " | ".join(models) + " |\n|---|---|---|")
     for excess in (0.03, 0.01, 0.003, 0.001):
         print(f"| {excess:g} | " + " | ".join("stable" if g < 1e-9 else f"{g:.4f}"
                                              for g in (stream(excess, 0.1, m) for m in models)) + " |", flush=True)
     print("\nUniform stream at 0.05, bulk relaxation time 3: growth a step\n")
-    print("| tau - 1/2 | " + " | ".join(models) + " |\n|---|---|---|---|")
+    print("| tau - 1/2 | " + " | ".join(models) + " |\n|---|---|---|")
     for excess in (0.1, 0.05, 0.03, 0.01, 0.003, 0.001):
         print(f"| {excess:g} | " + " | ".join("stable" if g < 1e-9 else f"{g:.4f}"
                                              for g in (stream(excess, 0.05, m, 3) for m in models)) + " |", flush=True)

@@ -1,6 +1,7 @@
 // Turbulence left to itself in a periodic cube; compare.py makes its start and reads its end.
 //
-//   bin/decaying_turbulence --cells N --excess E --smagorinsky C --collision NAME --start FILE --steps N1 N2 ...
+//   bin/decaying_turbulence --cells N --excess E [--smagorinsky C | --qr] --collision NAME --start FILE --steps N1 N2
+//   ...
 //
 // FILE: float32, N^3 values (x fastest) each of rho - 1, u, v, w in lattice units. Writes u, v, w in the same way to
 // FILE.N1, FILE.N2, ... after so many steps. E is tau - 1/2. One rank.
@@ -20,7 +21,9 @@ namespace {
 struct Options {
   int cells = 64;
   double excess = 1e-3;
-  lbm::CollisionParameters collision;
+  double smagorinsky = 0.0;
+  bool qr = false;
+  lbm::CollisionModel collision = lbm::CollisionModel::bgk;
   std::string start;
   std::vector<int> steps;
 };
@@ -50,7 +53,9 @@ void write_velocity(const lbm::Fluid<float>& fluid, int n, const std::string& na
 void run(const Options& o) {
   const std::vector<float> start = read_start(o);
   const Decomposition decomposition({o.cells, o.cells, o.cells}, 1.0, {true, true, true}, {1, 1, 1});
-  lbm::CollisionParameters parameters = o.collision;
+  lbm::CollisionParameters parameters;
+  parameters.model = o.collision;
+  parameters.subgrid = o.qr ? lbm::Subgrid::qr() : lbm::Subgrid::smagorinsky(o.smagorinsky);
   parameters.relaxation_time = 0.5 + o.excess;
   lbm::Fluid<float> fluid(decomposition, MPI_COMM_SELF, parameters, {});
   const std::size_t count = start.size() / 4, n = static_cast<std::size_t>(o.cells);
@@ -69,12 +74,12 @@ void run(const Options& o) {
 void read(Options& o, int argc, char** argv) {
   CLI::App app("Turbulence left to itself in a periodic cube");
   const std::map<std::string, lbm::CollisionModel> collisions{{"bgk", lbm::CollisionModel::bgk},
-                                                              {"trt", lbm::CollisionModel::trt},
-                                                              {"regularised", lbm::CollisionModel::regularised}};
+                                                              {"trt", lbm::CollisionModel::trt}};
   app.add_option("--cells", o.cells, "cells along a side");
   app.add_option("--excess", o.excess, "relaxation time less 1/2");
-  app.add_option("--smagorinsky", o.collision.smagorinsky_constant);
-  app.add_option("--collision", o.collision.model)->transform(CLI::CheckedTransformer(collisions));
+  auto* smagorinsky = app.add_option("--smagorinsky", o.smagorinsky, "Smagorinsky's constant");
+  app.add_flag("--qr", o.qr, "Verstappen's QR model instead")->excludes(smagorinsky);
+  app.add_option("--collision", o.collision)->transform(CLI::CheckedTransformer(collisions));
   app.add_option("--start", o.start, "file of the initial fields")->required();
   app.add_option("--steps", o.steps, "steps after which to write the velocity, ascending")->required();
   app.parse(argc, argv);

@@ -19,15 +19,20 @@ from thalweg.comparison import compared_rows
 from thalweg.literature import SPHERE_CHANNEL_MEAN
 from thalweg.rough_bed import rough_flow, roughness_of
 
-COLUMNS = ["run", "cells [1]", "subgrid_constant [1]", "grain_reynolds_number [1]", "depth [d]", "mean_velocity [u*]", "error [u*]",
+COLUMNS = ["run", "cells [1]", "subgrid_model", "grain_reynolds_number [1]", "depth [d]", "mean_velocity [u*]", "error [u*]",
            "roughness [d]"]
 ACCEPTED = 0.05   # of the mean velocity: rounding of the simulations' printed numbers and two standard errors of a run
+
+
+def subgrid_model(fluid):
+    """C_s of Smagorinsky's model, or the name of another."""
+    return fluid.get("smagorinsky_constant") or fluid["subgrid_model"]
 
 
 def measured(folder):
     run = Run(folder)
     flow = rough_flow(run, 2.0 / 3.0 * run.series["time"][-1])
-    values = [f"{run.diameter / float(run.case['domain']['spacing']):.4g}", run.case["fluid"]["smagorinsky_constant"]]
+    values = [f"{run.diameter / float(run.case['domain']['spacing']):.4g}", subgrid_model(run.case["fluid"])]
     numbers = [flow.grain_reynolds, flow.depth, flow.bulk_velocity, flow.bulk_error, flow.roughness]
     return dict(zip(COLUMNS, [run.folder.name, *map(str, values), *[f"{number:.4g}" for number in numbers]]))
 
@@ -35,11 +40,12 @@ def measured(folder):
 def report(rows):
     passed = True
     for row in rows:
-        v = {column: float(row[column]) for column in COLUMNS[1:]}
+        model = row["subgrid_model"]
+        v = {column: float(row[column]) for column in COLUMNS[1:] if column != "subgrid_model"}
         difference = v["mean_velocity [u*]"] / SPHERE_CHANNEL_MEAN - 1.0
         good = abs(difference) <= ACCEPTED
         passed = passed and good
-        print(f"{row['run']}: {v['cells [1]']:.3g} cells, C_s {v['subgrid_constant [1]']:.2f}, mean velocity "
+        print(f"{row['run']}: {v['cells [1]']:.3g} cells, {model if model.isalpha() else 'C_s ' + model}, mean velocity "
               f"{v['mean_velocity [u*]']:.2f} +- {v['error [u*]']:.2f} u* (reference {SPHERE_CHANNEL_MEAN:.2f}, {100 * difference:+.0f} "
               f"%), k_s {v['roughness [d]']:.2f} d ({roughness_of(SPHERE_CHANNEL_MEAN, v['depth [d]']):.2f}): "
               f"{'pass' if good else 'FAIL'}")
@@ -48,13 +54,15 @@ def report(rows):
 
 def draw(rows, name):
     figure, axes = plt.subplots(figsize=(5.6, 4.0), layout="constrained")
+    models = sorted({row["subgrid_model"] for row in rows})   # numbers come before names
     for cells, colour in (("6", "#c0392b"), ("10", "#14496e")):
-        chosen = sorted((row for row in rows if row["cells [1]"] == cells), key=lambda row: float(row["subgrid_constant [1]"]))
+        chosen = sorted((row for row in rows if row["cells [1]"] == cells), key=lambda row: row["subgrid_model"])
         of = lambda column: np.array([float(row[column]) for row in chosen])
-        axes.errorbar(of("subgrid_constant [1]"), of("mean_velocity [u*]") / SPHERE_CHANNEL_MEAN, of("error [u*]") / SPHERE_CHANNEL_MEAN,
+        axes.errorbar([models.index(row["subgrid_model"]) for row in chosen], of("mean_velocity [u*]") / SPHERE_CHANNEL_MEAN, of("error [u*]") / SPHERE_CHANNEL_MEAN,
                       marker="o", color=colour, capsize=3, label=f"{cells} cells a diameter")
     axes.axhspan(1.0 - ACCEPTED, 1.0 + ACCEPTED, color="0.9")
-    axes.set(xlabel="subgrid constant $C_s$", ylabel="mean velocity over that of the direct simulation")
+    axes.set_xticks(range(len(models)), models)
+    axes.set(xlabel="subgrid model, or its constant $C_s$", ylabel="mean velocity over that of the direct simulation")
     axes.grid(color="#e5e8ea", linewidth=0.8)
     axes.legend(frameon=False, fontsize=9)
     figure.savefig(name, dpi=110)

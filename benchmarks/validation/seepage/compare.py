@@ -23,7 +23,7 @@ from thalweg.random_array import RandomArray
 
 COLUMNS = ["run", "cells [1]", "method", "solid_fraction [1]", "speed [m/s]", "beetstra [m/s]", "tenneti [m/s]"]
 ACCEPTED = 0.1   # of the drag
-METHODS = ["bgk", "trt_at_bodies", "trt_at_bodies, C_s 0", "trt"]
+METHODS = ["default", "bgk, as published"]
 
 
 def speed_of_law(law, array):
@@ -65,7 +65,7 @@ def report(points):
 
 def draw(points, name):
     figure, axes = plt.subplots(figsize=(6.5, 4.5), layout="constrained")
-    for method, marker in zip(METHODS, "osDv^"):
+    for method, marker in zip(METHODS, "os"):
         at = [(cells, speed) for cells, other, _, speed, _ in points if other == method]
         axes.plot(*np.array(at).T, marker=marker, label=method)
     axes.axhline(1.0, color="k", lw=1.0, label="Beetstra et al. 2007")

@@ -52,8 +52,8 @@ Sound measure(const lbm::CollisionParameters& parameters, int cells) {
 
 void run() {
   using lbm::CollisionModel;
-  constexpr std::pair<const char*, CollisionModel> models[] = {
-      {"bgk", CollisionModel::bgk}, {"trt", CollisionModel::trt}, {"regularised", CollisionModel::regularised}};
+  constexpr std::pair<const char*, CollisionModel> models[] = {{"bgk", CollisionModel::bgk},
+                                                               {"trt", CollisionModel::trt}};
   fmt::print("collision,cells,tau,tau_b,speed,damping\n");
   for (const auto& [name, model] : models)
     for (const int cells : {96, 384})

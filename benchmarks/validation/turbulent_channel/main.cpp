@@ -29,6 +29,7 @@ struct Options {
   double reynolds = 180.0;           // u_tau h/nu
   double friction_velocity = 0.008;  // cells a step
   double smagorinsky = 0.0;
+  bool qr = false;
   double magic = 3.0 / 16.0;
   lbm::CollisionModel collision = lbm::CollisionModel::bgk;
   lbm::FaceType wall = lbm::FaceType::no_slip;
@@ -115,7 +116,7 @@ private:
     p.model = o_.collision;
     p.magic_parameter = o_.magic;
     p.relaxation_time = 0.5 + 3.0 * nu_;
-    p.subgrid = lbm::Subgrid::smagorinsky(o_.smagorinsky);
+    p.subgrid = o_.qr ? lbm::Subgrid::qr() : lbm::Subgrid::smagorinsky(o_.smagorinsky);
     p.force[0] = o_.friction_velocity * o_.friction_velocity / h_;
     return p;
   }
@@ -192,8 +193,7 @@ void read(Options& o, int argc, char** argv) {
   CLI::App app("Turbulent flow between two plates");
   app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   const std::map<std::string, lbm::CollisionModel> collisions{{"bgk", lbm::CollisionModel::bgk},
-                                                              {"trt", lbm::CollisionModel::trt},
-                                                              {"regularised", lbm::CollisionModel::regularised}};
+                                                              {"trt", lbm::CollisionModel::trt}};
   const std::map<std::string, lbm::FaceType> walls{{"no_slip", lbm::FaceType::no_slip},
                                                    {"law_of_the_wall", lbm::FaceType::law_of_the_wall},
                                                    {"slip_law_of_the_wall", lbm::FaceType::slip_law_of_the_wall}};
@@ -202,7 +202,8 @@ void read(Options& o, int argc, char** argv) {
   app.add_option("--height", o.cells[2], "cells from plate to plate");
   app.add_option("--reynolds", o.reynolds, "friction velocity times half the height over the viscosity");
   app.add_option("--friction-velocity", o.friction_velocity, "cells a step");
-  app.add_option("--smagorinsky", o.smagorinsky, "Smagorinsky's constant");
+  auto* smagorinsky = app.add_option("--smagorinsky", o.smagorinsky, "Smagorinsky's constant");
+  app.add_flag("--qr", o.qr, "Verstappen's QR model instead")->excludes(smagorinsky);
   app.add_option("--magic", o.magic, "magic parameter of trt");
   app.add_option("--collision", o.collision)->transform(CLI::CheckedTransformer(collisions));
   app.add_option("--wall", o.wall)->transform(CLI::CheckedTransformer(walls));
