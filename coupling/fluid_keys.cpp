@@ -29,6 +29,12 @@ lbm::Subgrid FluidKeys::subgrid() const {
   return {};
 }
 
+void FluidKeys::fill_in_subgrid() {
+  const lbm::Subgrid read = subgrid();
+  subgrid_model = read.model();
+  if (read.model() == lbm::SubgridModel::smagorinsky) smagorinsky_constant = read.constant();
+}
+
 void describe(SectionVisitor& visit, FluidKeys& fluid) {
   visit.real("density", fluid.density,
              {.unit = "kg/m^3", .meaning = "mass density", .required = true, .above = 0.0, .example = 1000.0});
@@ -65,7 +71,10 @@ void describe(SectionVisitor& visit, FluidKeys& fluid) {
                 "expected_velocity");
   visit.require(!fluid.maximum_lattice_velocity || fluid.expected_velocity, "expected_velocity",
                 "maximum_lattice_velocity needs it; give the largest velocity expected in m/s, for example 0.5");
-  visit.choice("collision", fluid.collision, {.meaning = "collision operator"});
+  visit.choice("collision", fluid.collision,
+               {.meaning = "collision operator",
+                .removed = {{"regularised",
+                             "it was unstable along walls and is gone; write trt_at_bodies, or remove the key"}}});
   visit.real("magic_parameter", fluid.magic_parameter,
              {.meaning = "of trt and trt_at_bodies: (1/omega+ - 1/2)(1/omega- - 1/2); 3/16 puts walls exactly half way",
               .above = 0.0,

@@ -35,6 +35,7 @@ struct FluidKeys {
   bool operator==(const FluidKeys&) const = default;
 
   lbm::Subgrid subgrid() const;
+  void fill_in_subgrid();  // writes out the model, and its constant, where they are read from each other
 };
 
 void describe(SectionVisitor& visit, FluidKeys& fluid);

@@ -60,10 +60,10 @@ std::string drag_text(const Case& c) {
   const double speed = falling > 0.0 ? falling : flow_estimate(c).speed;
   const double reynolds = speed * d / c.fluid.kinematic_viscosity;
   const std::string where = fmt::format("at {:.3g} cells and a Reynolds number of {:.4g}", cells, reynolds);
-  const bool eddies = c.fluid.subgrid().on();
+  const bool eddies = c.fluid.subgrid().on(), thick = c.fluid.subgrid().viscosity_in_shear(1.0) > 0.0;
   if (reynolds < 10.0)
     return fmt::format("{}{}, {}", slow_text(c, cells),
-                       eddies ? ", and by more with a subgrid constant, which slow flow does not need" : "", where);
+                       thick ? ", and by more with a subgrid constant, which slow flow does not need" : "", where);
   if (reynolds < 500.0)
     return fmt::format("{} in slow flow, {}; nothing is validated between 10 and 500", slow_text(c, cells), where);
   if (!eddies) return fmt::format("not validated {} without a subgrid model, which was unstable at 2400", where);

@@ -25,6 +25,7 @@ const std::vector<Alternatives>& alternatives() {
       {"domain.boundaries.y", {"domain.boundaries.y", "domain.boundaries.y_low", "domain.boundaries.y_high"}},
       {"domain.boundaries.bottom", {"domain.boundaries.bottom"}},
       {"domain.boundaries.top", {"domain.boundaries.top"}},
+      {"fluid.smagorinsky_constant", {"fluid.subgrid_model"}},
       {"contact.normal_stiffness", {"contact.duration", "contact.youngs_modulus"}},
       {"contact.tangential_stiffness", {"contact.normal_stiffness", "contact.duration", "contact.youngs_modulus"}},
       {"contact.damping", {"contact.restitution"}},

@@ -153,10 +153,13 @@ TEST(CaseReader, AFluidWithoutGrainsIsACase) {
 
 TEST(CaseReader, ReadsTheBulkViscosityAndTheRamp) {
   const Case plain = read(flume), c = read(flume, {"fluid.bulk_relaxation_time=10", "run.ramp=0.2"});
-  EXPECT_EQ(plain.fluid.bulk_relaxation_time, 1.0);  // grains, bgk and a subgrid model
+  EXPECT_EQ(plain.fluid.bulk_relaxation_time, 1.0);  // grains, bgk in the open and a subgrid model
   const Case published = read(flume, {"fluid.bulk_relaxation_time=0"});
-  for (const char* other : {"fluid.smagorinsky_constant=0", "fluid.collision=trt"})
-    EXPECT_EQ(read(flume, {other}).fluid.bulk_relaxation_time, 0.0) << other;
+  EXPECT_EQ(read(flume, {"fluid.collision=bgk"}).fluid.bulk_relaxation_time, 1.0);
+  for (const std::vector<std::string>& other :
+       {std::vector<std::string>{"fluid.smagorinsky_constant=null", "fluid.subgrid_model=none"},
+        {"fluid.collision=trt"}})
+    EXPECT_EQ(read(flume, other).fluid.bulk_relaxation_time, 0.0) << other.back();
   EXPECT_EQ(plain.run.ramp, 0.0);
   EXPECT_EQ(c.fluid.bulk_relaxation_time, 10.0);
   EXPECT_EQ(c.run.ramp, 0.2);
@@ -164,6 +167,21 @@ TEST(CaseReader, ReadsTheBulkViscosityAndTheRamp) {
   EXPECT_NEAR(bulk_viscosity(c), 2.0 / 9.0 * 9.5 * 0.5e-3 * 0.5e-3 / 2e-5, 1e-15);
   EXPECT_NEAR(bulk_viscosity(published), 2.0 / 3.0 * 1e-6, 1e-15);  // 2/3 nu
   EXPECT_EQ(read(defaults_yaml("fluid"), {"run.ramp=0.2"}).run.ramp, 0.2);
+}
+
+TEST(CaseReader, ReadsTheSubgridModel) {
+  using lbm::Subgrid;
+  const auto subgrid = [](const std::vector<std::string>& overrides) {
+    const Case c = read(flume, overrides);
+    EXPECT_EQ(read(resolved_yaml(c)), c) << resolved_yaml(c);
+    return c.fluid.subgrid();
+  };
+  EXPECT_EQ(subgrid({}), Subgrid::smagorinsky(0.27));  // which its constant says
+  EXPECT_EQ(subgrid({"fluid.subgrid_model=smagorinsky"}), Subgrid::smagorinsky(0.27));
+  EXPECT_EQ(subgrid({"fluid.smagorinsky_constant=null"}), Subgrid::qr());
+  EXPECT_EQ(subgrid({"fluid.smagorinsky_constant=null", "fluid.subgrid_model=none"}), Subgrid::none());
+  EXPECT_EQ(subgrid({"fluid.smagorinsky_constant=null", "fluid.subgrid_model=smagorinsky"}),
+            Subgrid::smagorinsky(0.27));
 }
 
 // All keys at any depth, of the text with its commented-out keys brought to life.
@@ -268,9 +286,8 @@ TEST(CaseReader, DefaultsAndExamplesAreToldApart) {
         "    count: ", "  until: ", "  transport_rate:", "      type: law_of_the_wall", "    x: periodic"})
     EXPECT_TRUE(comment_of(key).starts_with("example, ")) << key << comment_of(key);
   for (const std::string key :
-       {"  smagorinsky_constant: ", "  collision: ", "  mode: ", "      seed: ", "    velocity: ", "  friction: ",
-        "  law: ", "  links: ", "  grain_steps_per_fluid_step: ", "  grain_integrator: ", "domain:", "contact:",
-        "    fixed: "})
+       {"  precision: ", "  collision: ", "  mode: ", "      seed: ", "    velocity: ", "  friction: ", "  law: ",
+        "  links: ", "  grain_steps_per_fluid_step: ", "  grain_integrator: ", "domain:", "contact:", "    fixed: "})
     EXPECT_EQ(comment_of(key).find("example"), std::string::npos) << key << comment_of(key);
 }
 

@@ -212,11 +212,15 @@ TEST(Warnings, CompareTheExpectedVelocityWithTheEstimate) {
   EXPECT_FALSE(any_contains(warnings(c), "The flow may reach"));
 }
 
-TEST(Warnings, OfLaminarFlowWithASubgridModel) {
+TEST(Warnings, OfLaminarFlowWithSmagorinskysModel) {
   Case c = film(1e-3);
   c.fluid.smagorinsky_constant = 0.27;
-  EXPECT_TRUE(any_contains(warnings(c), "The flow is laminar"));
-  c.fluid.smagorinsky_constant = 0.0;
+  EXPECT_TRUE(any_contains(warnings(c), "consider fluid.subgrid_model: qr and fluid.smagorinsky_constant: null"));
+  c.fluid.smagorinsky_constant.reset();  // the default vanishes in shear
+  EXPECT_FALSE(any_contains(warnings(c), "The flow is laminar"));
+  c.fluid.subgrid_model = lbm::SubgridModel::smagorinsky;
+  EXPECT_TRUE(any_contains(warnings(c), "consider fluid.subgrid_model: qr."));
+  c.fluid.subgrid_model = lbm::SubgridModel::none;
   EXPECT_FALSE(any_contains(warnings(c), "The flow is laminar"));
   c = wide_bed();
   c.fluid.smagorinsky_constant = 0.27;
@@ -225,7 +229,6 @@ TEST(Warnings, OfLaminarFlowWithASubgridModel) {
 
 TEST(Warnings, OfRelaxationTimesBelowTheMap) {
   Case c = wide_bed();
-  c.fluid.smagorinsky_constant = 0.27;
   EXPECT_FALSE(any_contains(warnings(c), "has not been tested below"));  // 2.4e-4
   c.fluid.time_step = 0.9 * 1e-4 * 2.5e-7 / 3e-6;                        // 0.9e-4
   EXPECT_TRUE(any_contains(warnings(c), "has not been tested below"));
@@ -304,7 +307,8 @@ TEST(DragText, DependsOnReynoldsNumberAndSubgridConstant) {
   EXPECT_NE(drag_text(c).find("28 % too slowly"), std::string::npos) << drag_text(c);
   c.fluid.smagorinsky_constant = 0.1;
   EXPECT_NE(drag_text(c).find("14 % too slowly"), std::string::npos) << drag_text(c);
-  c.fluid.smagorinsky_constant = 0.0;
+  c.fluid.smagorinsky_constant.reset();
+  c.fluid.subgrid_model = lbm::SubgridModel::none;
   EXPECT_NE(drag_text(c).find("not validated"), std::string::npos) << drag_text(c);
   c.fluid.kinematic_viscosity = 1e-3;  // Re 0.5
   EXPECT_NE(drag_text(c).find("off by -1.6 % alone and -4.4 % among others"), std::string::npos) << drag_text(c);

@@ -38,7 +38,7 @@ bool contains(const std::string& text, const std::string& part) { return text.fi
 TEST(Preset, SetsWhatIsPublished) {
   const Case c = read();
   EXPECT_EQ(c.fluid.collision, lbm::CollisionModel::bgk);
-  EXPECT_EQ(c.fluid.smagorinsky_constant, 0.27);
+  EXPECT_EQ(c.fluid.subgrid(), lbm::Subgrid::smagorinsky(0.27));
   EXPECT_EQ(c.contact.normal_stiffness, 20000.0);
   EXPECT_EQ(c.contact.tangential_stiffness, 5714.0);
   EXPECT_EQ(*c.contact.damping, 0.09);
@@ -69,6 +69,8 @@ TEST(Preset, GivesWayToAlternatives) {
   EXPECT_EQ(c.contact.tangential_stiffness, 2.0 / 7.0 * c.contact.normal_stiffness);
   EXPECT_EQ(c.domain.faces[y_low].type, lbm::FaceType::no_slip);
   EXPECT_EQ(c.domain.faces[y_high].type, lbm::FaceType::free_slip);
+  const Case modern = read({"fluid.subgrid_model=qr", "fluid.collision=trt_at_bodies"});
+  EXPECT_EQ(modern.fluid.subgrid(), lbm::Subgrid::qr());
   const Case elastic = read({"contact={law: hertz_mindlin, youngs_modulus: 1.0e7, restitution: 0.9}"});
   EXPECT_EQ(elastic.contact.law, dem::Law::hertz_mindlin);
 }

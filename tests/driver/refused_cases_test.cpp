@@ -40,7 +40,19 @@ INSTANTIATE_TEST_SUITE_P(
             {"system = \"shallow_water\": expected one of resolved, fluid, grains, model_fluid, continuum."}},
         Bad{"collision_not_built",
             {"fluid.collision=mrt"},
-            {"fluid.collision = \"mrt\": expected one of bgk, trt, trt_at_bodies, regularised."}},
+            {"fluid.collision = \"mrt\": expected one of bgk, trt, trt_at_bodies."}},
+        Bad{"collision_removed",
+            {"fluid.collision=regularised"},
+            {"fluid.collision = \"regularised\": it was unstable along walls and is gone; write trt_at_bodies, or "
+             "remove "
+             "the key."}},
+        Bad{"subgrid_constant_of_zero",
+            {"fluid.smagorinsky_constant=0"},
+            {"fluid.smagorinsky_constant = 0: a constant of zero is no subgrid model; write subgrid_model: none."}},
+        Bad{"subgrid_constant_of_another_model",
+            {"fluid.subgrid_model=qr"},
+            {"fluid.smagorinsky_constant = 0.27: only subgrid_model: smagorinsky has this constant; remove one of the "
+             "two."}},
         Bad{"face_not_built",
             {"domain.boundaries.top=porous"},
             {"top.type = \"porous\": expected one of periodic, no_slip, free_slip, moving, navier_slip, "

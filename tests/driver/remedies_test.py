@@ -35,7 +35,7 @@ run: {until: 1.0}
 WATER = """
 system: resolved
 domain: {size: [0.06, 0.02, 0.04], spacing: 0.5e-3, boundaries: {x: periodic, y: periodic, bottom: no_slip, top: free_slip}}
-fluid: {density: 1000, kinematic_viscosity: 1.0e-6, smagorinsky_constant: 0.27, time_step: 4.0e-5}
+fluid: {density: 1000, kinematic_viscosity: 1.0e-6, time_step: 4.0e-5}
 gravity: {magnitude: 9.8, slope: 0.01}
 grains: [{count: 150, diameter: 5.0e-3, density: 2550, placement: {pattern: uniform, seed: 1}}]
 contact: {normal_stiffness: 600, tangential_stiffness: 171, restitution: 0.93}
@@ -62,7 +62,7 @@ domain:
   size: [0.03, 0.01, 0.02]
   spacing: 0.5e-3
   boundaries: {x: periodic, y: periodic, bottom: no_slip, top: {type: moving, velocity: [0.02, 0, 0]}}
-fluid: {density: 900, kinematic_viscosity: 1.0e-4, time_step: 1.0e-4, collision: trt}
+fluid: {density: 900, kinematic_viscosity: 1.0e-4, subgrid_model: none, time_step: 1.0e-4, collision: trt}
 gravity: {magnitude: 9.8}
 grains: [{count: 30, diameter: 4.0e-3, density: 1200, placement: {pattern: uniform, seed: 1}}]
 contact: {normal_stiffness: 5, tangential_stiffness: 1.5, restitution: 0.9}
@@ -88,12 +88,12 @@ MODEL_FLUID = (CASES / "model_fluid/case.yaml").read_text()
 
 # Text of the case, changes of it, and words of the warnings or the refusal that they bring.
 VARIATIONS = [
-    (GRAVEL, [], ["no subgrid model", "2 cells across", "too short", "too weak"]),
-    (GRAVEL, ["fluid.smagorinsky_constant=0.27", "domain.spacing=3.3333333333e-4"], ["cells a step"]),
+    (GRAVEL, ["fluid.subgrid_model=none"], ["no subgrid model", "2 cells across", "too short", "too weak"]),
+    (GRAVEL, ["domain.spacing=3.3333333333e-4"], ["cells a step"]),
     (GRAVEL, ["fluid.time_step=null", "fluid.maximum_lattice_velocity=0.1", "fluid.expected_velocity=0.45",
-              "fluid.smagorinsky_constant=0.27", "run.until=30", "coupling={grain_steps_per_fluid_step: auto}"],
+              "run.until=30", "coupling={grain_steps_per_fluid_step: auto}"],
      ["times fluid.expected_velocity"]),
-    (GRAVEL, ["fluid.smagorinsky_constant=0.27", "coupling.fewest_cells_per_diameter=2", "contact.normal_stiffness=20"],
+    (GRAVEL, ["coupling.fewest_cells_per_diameter=2", "contact.normal_stiffness=20"],
      ["would overlap"]),
     (GRAVEL, ["domain.size.2=0.06", "grains.0.placement.pattern=uniform"], ["pattern: random"]),
     (GRAVEL, ["domain.spacing=4.0e-3", "coupling.fewest_cells_per_diameter=0.5"], ["domain.spacing: "]),
@@ -116,9 +116,11 @@ VARIATIONS = [
      ["too weak", "fluid.time_step: "]),
     (WATER, ["contact={restitution: 0.93}"], []),
     (WATER, ["grains.0.count=400"], ["placement.pattern: dense"]),
-    (WATER, ["fluid.collision=regularised"], ["'regularised'"]),
     (WATER, ["fluid.bulk_relaxation_time=100", "gravity.slope=0.02"], ["grows stripes"]),
-    (WATER, ["fluid.smagorinsky_constant=0"], ["no subgrid model"]),
+    (WATER, ["fluid.subgrid_model=none"], ["no subgrid model"]),
+    (WATER, ["fluid.subgrid_model=none", "fluid.collision=trt", "fluid.bulk_relaxation_time=1"],
+     ["no subgrid model", "bulk relaxation time"]),
+    (WATER, ["fluid.smagorinsky_constant=0.27", "fluid.collision=bgk"], []),
     (WATER, ["run.until=0.5"], ["too short"]),
     (WATER, ["run.until=0.1", "initial={fluid: {log_profile: {bed_height: 0.0137, shear_velocity: 0.05, roughness: 3.0e-4}}}"],
      ["shorter than one turnover"]),
@@ -138,7 +140,10 @@ VARIATIONS = [
     (SUSPENSION, ["fluid.time_step=1.0e-3", "run.until=10"], ["so large"]),
     (SUSPENSION, ["fluid.smagorinsky_constant=0.27"], ["The flow is laminar"]),
     (OIL, [], []),
-    (OIL, ["fluid.smagorinsky_constant=0.27", "fluid.collision=bgk", "coupling.links=bouzidi"], ["The flow is laminar"]),
+    (SUSPENSION, ["fluid.subgrid_model=smagorinsky"], ["The flow is laminar"]),
+    (OIL, ["fluid.subgrid_model=smagorinsky", "fluid.smagorinsky_constant=0.1", "fluid.collision=bgk", "coupling.links=bouzidi"],
+     ["The flow is laminar"]),
+    (OIL, ["fluid.subgrid_model=qr", "fluid.collision=trt_at_bodies"], []),
     (OIL, ["fluid.collision=bgk"], ["In a dense bed"]),
     (OIL, ["fluid.time_step=1.0e-6"], ["at no velocity"]),
     (OIL, ["fluid.time_step=5.0e-6", "fluid.bulk_relaxation_time=1"], ["bulk relaxation time"]),

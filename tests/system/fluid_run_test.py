@@ -354,7 +354,7 @@ class SlowFlow(ProgramTest):
 system: fluid
 name: slow flow in a duct
 domain: {size: [0.002, 0.006, 0.006], spacing: 0.5e-3, boundaries: {x: periodic, y: no_slip, bottom: no_slip, top: no_slip}}
-fluid: {density: 1000, kinematic_viscosity: 1.0e-4, smagorinsky_constant: 0, time_step: 2.0e-4, collision: trt, precision: double}
+fluid: {density: 1000, kinematic_viscosity: 1.0e-4, subgrid_model: none, time_step: 2.0e-4, collision: trt, precision: double}
 gravity: {vector: [0.5, 0, -9.8]}
 run: {until: 0.3}
 output: {series: {every: 0.3}}

@@ -207,7 +207,7 @@ domain:
   size: [0.012, 0.012, 0.024]   # m
   spacing: 1.0e-3               # m
   boundaries: {x: periodic, y: periodic, bottom: no_slip, top: {type: moving, velocity: [0.05, 0, 0]}}
-fluid: {density: 900, kinematic_viscosity: 1.0e-4, smagorinsky_constant: 0, time_step: 1.0e-3, collision: trt, precision: double}
+fluid: {density: 900, kinematic_viscosity: 1.0e-4, subgrid_model: none, time_step: 1.0e-3, collision: trt, precision: double}
 gravity: {magnitude: 9.8, slope: 0}
 grains:
   - {diameter: 5.0e-3, density: 2500, fixed: true,

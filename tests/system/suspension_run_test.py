@@ -25,7 +25,7 @@ domain:
   size: [0.008, 0.008, 0.008]
   spacing: 2.5e-4
   boundaries: {x: periodic, y: periodic, bottom: periodic, top: periodic}
-fluid: {density: 1000, kinematic_viscosity: 1.476e-4, time_step: 7.056e-5, collision: trt, smagorinsky_constant: 0}
+fluid: {density: 1000, kinematic_viscosity: 1.476e-4, time_step: 7.056e-5, collision: trt, subgrid_model: none}
 gravity: {vector: [3, 0, -9], mode: balanced}
 grains:
   - {solid_fraction: 0.2, diameter: 2.0e-3, density: 1500, placement: {pattern: dense, seed: 1}}

@@ -74,7 +74,7 @@ domain:
   size: [0.020, 0.010, 0.012]
   spacing: 0.5e-3
   boundaries: {x: periodic, y: periodic, bottom: no_slip, top: no_slip}
-fluid: {density: 1000, kinematic_viscosity: 1.0e-6, time_step: 5.0e-5}
+fluid: {density: 1000, kinematic_viscosity: 1.0e-6, subgrid_model: none, time_step: 5.0e-5}
 gravity: {magnitude: 9.8, slope: 0.3}
 initial: {fluid: {log_profile: {bed_height: 0.0, shear_velocity: 0.05, roughness: 1.0e-5, perturbation: {seed: 5}}}}
 run: {until: 1.0}
