@@ -75,12 +75,15 @@ void describe(SectionVisitor& visit, FluidKeys& fluid) {
                {.meaning = "collision operator",
                 .removed = {{"regularised",
                              "it was unstable along walls and is gone; write trt_at_bodies, or remove the key"}}});
-  visit.real("magic_parameter", fluid.magic_parameter,
-             {.meaning = "of trt and trt_at_bodies: (1/omega+ - 1/2)(1/omega- - 1/2); 3/16 puts walls exactly half way",
-              .above = 0.0,
-              .only_if = {lbm::trt_near_bodies(fluid.collision),
-                          "only collision trt and trt_at_bodies have a magic parameter; remove it",
-                          "collision: trt or trt_at_bodies"}});
+  visit.real(
+      "magic_parameter", fluid.magic_parameter,
+      {.meaning = "of trt and trt_at_bodies: (1/omega+ - 1/2)(1/omega- - 1/2); default: 3/16 with trt, which puts "
+                  "walls exactly half way, 1/4 with trt_at_bodies, the calmest",
+       .above = 0.0,
+       .example = 0.1875,
+       .only_if = {lbm::trt_near_bodies(fluid.collision),
+                   "only collision trt and trt_at_bodies have a magic parameter; remove it",
+                   "collision: trt or trt_at_bodies"}});
   visit.real(
       "bulk_relaxation_time", fluid.bulk_relaxation_time,
       {.meaning =

@@ -26,7 +26,7 @@ struct FluidKeys {
   std::optional<double> maximum_lattice_velocity;  // cells per step
   std::optional<double> expected_velocity;         // m/s, the largest
   lbm::CollisionModel collision = lbm::CollisionModel::trt_at_bodies;
-  double magic_parameter = 3.0 / 16.0;  // of trt and trt_at_bodies
+  std::optional<double> magic_parameter;  // of trt and trt_at_bodies; else lbm::usual_magic_parameter()
   // 1, of the trace of the stress; 0: as the shear's. Read as 1 with grains, bgk or trt_at_bodies and a subgrid model,
   // else 0.
   std::optional<double> bulk_relaxation_time;
@@ -36,6 +36,7 @@ struct FluidKeys {
 
   lbm::Subgrid subgrid() const;
   void fill_in_subgrid();  // writes out the model, and its constant, where they are read from each other
+  double magic() const { return magic_parameter.value_or(lbm::usual_magic_parameter(collision)); }
 };
 
 void describe(SectionVisitor& visit, FluidKeys& fluid);

@@ -27,7 +27,7 @@ Vec3 driving_acceleration(const Case& c) {
 lbm::CollisionParameters collision_parameters(const Case& c) {
   lbm::CollisionParameters parameters;
   parameters.model = c.fluid.collision;
-  parameters.magic_parameter = c.fluid.magic_parameter;
+  parameters.magic_parameter = c.fluid.magic();
   parameters.relaxation_time = relaxation_time(c);
   parameters.bulk_relaxation_time = c.fluid.bulk_relaxation_time.value_or(0.0);
   parameters.subgrid = c.fluid.subgrid();
