@@ -29,7 +29,8 @@ lbm::Subgrid FluidKeys::subgrid() const {
   return {};
 }
 
-void FluidKeys::fill_in_subgrid() {
+void FluidKeys::fill_in_models() {
+  if (lbm::trt_near_bodies(collision)) magic_parameter = magic();
   const lbm::Subgrid read = subgrid();
   subgrid_model = read.model();
   if (read.model() == lbm::SubgridModel::smagorinsky) smagorinsky_constant = read.constant();

@@ -35,7 +35,9 @@ struct FluidKeys {
   bool operator==(const FluidKeys&) const = default;
 
   lbm::Subgrid subgrid() const;
-  void fill_in_subgrid();  // writes out the model, and its constant, where they are read from each other
+  // Writes out what follows from other keys, so that a case that is kept means the same later: the subgrid model and
+  // its constant, and the magic parameter.
+  void fill_in_models();
   double magic() const { return magic_parameter.value_or(lbm::usual_magic_parameter(collision)); }
 };
 

@@ -102,7 +102,7 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
     fill_in_column(c);
   }
   fill_in_grains(c, document, known, Ranks(communicator));
-  if (has_fluid(c)) c.fluid.fill_in_subgrid();
+  if (has_fluid(c)) c.fluid.fill_in_models();
   if (has_fluid(c) && !c.fluid.bulk_relaxation_time) c.fluid.bulk_relaxation_time = bulk_relaxation_time_for(c);
   if (has_grains(c.system)) {
     check_box(c, document);
