@@ -16,7 +16,7 @@
 namespace thalweg::lbm {
 
 // lambda, in lattice units of the populations.
-constexpr double quiet = 0.015;
+constexpr double quiet = 0.01;
 
 // a in cells near bodies, before the collision.
 template <typename Number>

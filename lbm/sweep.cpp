@@ -69,7 +69,7 @@ struct RowCells {
   std::ptrdiff_t first;
   int packs;
   const std::uint8_t* fluid;
-  const std::uint16_t* beside_bodies;
+  const std::uint16_t* near_bodies;
 };
 
 // Which of its variants a row takes.
@@ -163,7 +163,7 @@ void sweep_packs(const Streams<Real>& streams, const RowCells& row, const Collis
       if (row.fluid[first + p] == 0) continue;
       const std::ptrdiff_t cell = row.first + (first + p) * width;
       prefetch(streams, cell);
-      relax_pack<kind>(streams, cell, constants, segment, p, row.beside_bodies[first + p]);
+      relax_pack<kind>(streams, cell, constants, segment, p, row.near_bodies[first + p]);
       if constexpr (kind.shear) store_shear(segment, p, *shear, (first + p) * width);
     }
   }
