@@ -262,7 +262,7 @@ TEST(CaseReader, TheDefaultsAreValidAndNameEveryKey) {
   for (const std::string key :
        {"magic_parameter", "coefficient", "of_first_cell", "slip_length", "oscillation", "pressure", "youngs_modulus"})
     EXPECT_NE(text.find("# " + key + ": "), std::string::npos) << key;
-  EXPECT_NE(text.find("; only with collision: trt or trt_at_bodies\n"), std::string::npos);
+  EXPECT_NE(text.find("; only with type: navier_slip\n"), std::string::npos);
   std::vector<std::string> keys;
   collect_keys(YAML::Load(text), "", keys);
   EXPECT_GE(keys.size(), 50u);
