@@ -38,7 +38,7 @@ domain:
   size: [{30 * DX}, {24 * DX}, {20 * DX}]
   spacing: {DX}
   boundaries: {{x: periodic, y: periodic, bottom: no_slip, top: free_slip}}
-fluid: {{density: 1000, kinematic_viscosity: 1.0e-6, smagorinsky_constant: 0.27, time_step: 1.0e-4}}
+fluid: {{density: 1000, kinematic_viscosity: 1.0e-6, smagorinsky_constant: 0.27, time_step: 1.0e-4, collision: bgk}}
 gravity: {{magnitude: 9.8, slope: 0.12}}
 grains:
   - {{count: {len(FIXED)}, diameter: {D}, density: 2000, fixed: true, placement: {{positions: {FIXED}}}}}
