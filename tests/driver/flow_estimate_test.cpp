@@ -301,8 +301,12 @@ TEST(SlowDrag, IsThatOfTheValidation) {
   EXPECT_NEAR(slow_drag_error(5.0, true).alone, -0.017 * 1.44, 1e-12);
 }
 
-TEST(DragText, DependsOnReynoldsNumberAndSubgridConstant) {
+TEST(DragText, DependsOnReynoldsNumberAndSubgridModel) {
   Case c = wide_bed();
+  c.fluid.collision = lbm::CollisionModel::trt_at_bodies;
+  c.fluid.subgrid_model = lbm::SubgridModel::qr;
+  EXPECT_NE(drag_text(c).find("13 % too slowly"), std::string::npos) << drag_text(c);
+  c.fluid.subgrid_model.reset();
   c.fluid.smagorinsky_constant = 0.27;
   EXPECT_NE(drag_text(c).find("28 % too slowly"), std::string::npos) << drag_text(c);
   c.fluid.smagorinsky_constant = 0.1;
