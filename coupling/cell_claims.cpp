@@ -39,10 +39,6 @@ void CellClaims::assign(const Index3& local, std::ptrdiff_t cell, std::int32_t s
 }
 
 void CellClaims::claim(int slot, const Index3& local) {
-  if (!cells_.indexing().in_memory(local[0], local[1], local[2])) {
-    cells_.claim_beyond(local);
-    return;
-  }
   const std::ptrdiff_t cell = cells_.indexing().index(local[0], local[1], local[2]);
   const std::int32_t holder = cells_.body(cell);
   if (holder == slot) return;
@@ -60,10 +56,6 @@ void CellClaims::claim(int slot, const Index3& local) {
 }
 
 void CellClaims::give_up(int slot, const Index3& local) {
-  if (!cells_.indexing().in_memory(local[0], local[1], local[2])) {
-    cells_.give_up_beyond(local);
-    return;
-  }
   const std::ptrdiff_t cell = cells_.indexing().index(local[0], local[1], local[2]);
   const auto found = claimants_.find(cell);
   if (cells_.body(cell) != slot) {

@@ -1,6 +1,5 @@
 // Which grain holds which cell of the lattice: grains claim cells and give them up, and of several that claim one the
-// lowest global id holds it, whatever the order of events. The cells are this rank's and one ghost layer; of those in
-// the next ones, up to lbm::near_body_layers, the lattice is told that a grain claims them and no more. A grain keeps
+// lowest global id holds it, whatever the order of events. The cells are this rank's and one ghost layer. A grain keeps
 // its slot as long as it is in reach of this rank; slots also index the lattice's LinkBody table. Which cells a grain
 // claims follows from its shape (grain_map.hpp).
 #pragma once
@@ -42,7 +41,7 @@ protected:
   void free_slot(int slot);
   MappedGrain& grain(int slot) { return grains_[static_cast<std::size_t>(slot)]; }
 
-  // A grain claims a cell it has no claim to, or gives up the claim it has.
+  // A grain claims a cell, or gives up what claim it has.
   void claim(int slot, const Index3& local);
   void give_up(int slot, const Index3& local);
 

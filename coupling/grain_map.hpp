@@ -69,9 +69,8 @@ void GrainMap<S>::place(int slot, const Vec3& centre) {
   if (was_here && is_here && (centre - old).squaredNorm() < 1.0) {
     turn_cells(slot, centre, reach + 1.0, old, centre);
   } else {
-    const Vec3 away = Vec3::Constant(2.0 * nowhere);
-    if (was_here) turn_cells(slot, old, reach, old, away);
-    if (is_here) turn_cells(slot, centre, reach, away, centre);
+    if (was_here) turn_cells(slot, old, reach, old, centre);
+    if (is_here) turn_cells(slot, centre, reach, old, centre);
   }
 }
 
@@ -80,8 +79,8 @@ void GrainMap<S>::place(int slot, const Vec3& centre) {
 template <Shape S>
 void GrainMap<S>::turn_cells(int slot, const Vec3& middle, double half_width, const Vec3& old, const Vec3& now) {
   for (int a = 0; a < 3; ++a) {
-    local_cells_.along(a, middle[a], half_width, old[a], lbm::near_body_layers, before_[a]);
-    local_cells_.along(a, middle[a], half_width, now[a], lbm::near_body_layers, after_[a]);
+    local_cells_.along(a, middle[a], half_width, old[a], 1, before_[a]);
+    local_cells_.along(a, middle[a], half_width, now[a], 1, after_[a]);
   }
   const auto offset = [](const LocalCell& place) { return place.offset; };
   x_before_.resize(before_[0].size());

@@ -4,7 +4,6 @@
 
 #include "core/decomposition.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -19,8 +18,8 @@ class LocalCells {
 public:
   LocalCells(const Decomposition& decomposition, const Block& block) : decomposition_(decomposition), block_(block) {}
 
-  // Cells along an axis whose centres are within `half_width` of `middle` (and perhaps one more), of this rank's block
-  // and `ghosts` layers around it, each once; offsets are taken from `reference`. All in cells.
+  // Cells along an axis whose centres are within `half_width` of `middle` (and perhaps one more), in memory on this
+  // rank out to `ghosts` layers; offsets are taken from `reference`. All in cells.
   void along(int axis, double middle, double half_width, double reference, int ghosts,
              std::vector<LocalCell>& places) const {
     places.clear();
@@ -28,16 +27,14 @@ public:
     const bool periodic = decomposition_.periodic()[axis];
     int first = static_cast<int>(std::floor(middle - half_width - 0.5)),
         last = static_cast<int>(std::ceil(middle + half_width - 0.5));
-    if (periodic) {
-      last = std::min(last, first + cells - 1);
-    } else {
-      first = std::max(first, 0);
-      last = std::min(last, cells - 1);
+    if (!periodic) {
+      first = first < 0 ? 0 : first;
+      last = last > cells - 1 ? cells - 1 : last;
     }
-    for (int image = periodic ? -2 : 0; image <= (periodic ? 2 : 0); ++image) {
-      const int shift = image * cells - block_.lower[axis];
-      const int end = std::min(last + 1, n + ghosts - shift);
-      for (int g = std::max(first, -ghosts - shift); g < end; ++g) {
+    for (int image = periodic ? -1 : 0; image <= (periodic ? 1 : 0); ++image)
+      for (int g = first; g <= last; ++g) {
+        const int local = g + image * cells - block_.lower[axis];
+        if (local < -ghosts || local >= n + ghosts) continue;
         // From the cell's coordinate inside the box, so that the bits do not depend on which image was asked for.
         const int wrapped = periodic ? (g % cells + cells) % cells : g;
         double offset = wrapped + 0.5 - reference;
@@ -47,9 +44,8 @@ public:
           else if (offset < -0.5 * cells)
             offset += cells;
         }
-        places.push_back({g + shift, offset});
+        places.push_back({local, offset});
       }
-    }
   }
 
 private:

@@ -64,10 +64,9 @@ public:
     return parameters.grain_stress ? GrainExchange<double>::width_with_stress : GrainExchange<double>::width;
   }
 
-  // How far beyond a block its grains must be known for the map, as a distance from the grain's centre (m): a cell
-  // further than to the centres of the last layer, since cells lag behind their grain.
+  // How far beyond a block its grains must be known for the map, as a distance from the grain's centre (m).
   static double ghost_reach(double largest_radius, double spacing) {
-    return S::of_grain(largest_radius).reach() + (lbm::near_body_layers + 0.5) * spacing;
+    return S::of_grain(largest_radius).reach() + 2.5 * spacing;
   }
 
   void advance() override;

@@ -45,7 +45,7 @@ StaticSolids::StaticSolids(const Decomposition& decomposition, MPI_Comm communic
       bodies_(shapes.size()),
       covered_(shapes.size(), 0) {
   for (int a = 0; a < 3; ++a) {
-    const int all = decomposition.cells()[a], ghosts = lbm::near_body_layers;
+    const int all = decomposition.cells()[a], ghosts = 1;
     places_[a].resize(all);
     for (int local = -ghosts; local < block_.size()[a] + ghosts; ++local) {
       const int global = block_.lower[a] + local;
@@ -90,10 +90,6 @@ void StaticSolids::for_each_image(const Extent& extent, Visit visit) const {
 }
 
 void StaticSolids::claim(int solid, const Index3& local) {
-  if (!cells_.indexing().in_memory(local[0], local[1], local[2])) {
-    cells_.claim_beyond(local);
-    return;
-  }
   if (!cells_.is_fluid(cells_.indexing().index(local[0], local[1], local[2]))) return;
   cells_.assign(local[0], local[1], local[2], solid);
   if (cells_.indexing().owned(local[0], local[1], local[2])) ++covered_[static_cast<std::size_t>(solid)];

@@ -69,8 +69,7 @@ private:
   MPI_Comm communicator_;
   Block block_;
   lbm::CellMap& cells_;
-  // Where the cells of a coordinate inside the box are on this rank, along each axis: owned, and near_body_layers
-  // around them, of periodic axes also beyond the ends.
+  // Where the cells of a coordinate inside the box are in memory, along each axis: owned, and ghosts of periodic axes.
   std::array<std::vector<std::vector<int>>, 3> places_;
   std::unordered_map<std::ptrdiff_t, Distances> cut_;  // of owned fluid cells beside solid ones
   lbm::LinkTable links_;

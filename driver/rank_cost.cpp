@@ -1,7 +1,6 @@
 #include "driver/rank_cost.hpp"
 
 #include "coupling/grain_exchange.hpp"
-#include "coupling/resolved_system.hpp"
 #include "driver/bed_flow.hpp"
 #include "driver/grain_setup.hpp"
 #include "driver/run_cost.hpp"
@@ -66,8 +65,7 @@ double reach_of_ghosts(const Case& c) {
   const dem::GrainParameters grains = grain_parameters(c, {c.domain.size, periodic_axes(c.domain)});
   const double contacts = largest_diameter(c) + grains.skin;
   if (!has_fluid(c)) return contacts;
-  const double map = coupling::ResolvedSystem<float>::ghost_reach(0.5 * largest_diameter(c), c.domain.spacing);
-  return std::max(contacts, map + 0.5 * grains.skin);
+  return std::max(contacts, 0.5 * largest_diameter(c) + 2.5 * c.domain.spacing + 0.5 * grains.skin);
 }
 
 // Bytes that a frame of the fluid takes while it is written: numbers as they are sampled and as they are stored.

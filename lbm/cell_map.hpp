@@ -1,8 +1,7 @@
 // Which cells are fluid and which are covered by a body, which packs of a row hold any fluid at all, and which cells
-// have a body near them.
+// have a body beside them.
 #pragma once
 
-#include "lbm/near_bodies.hpp"
 #include "lbm/populations.hpp"
 
 #include <cstdint>
@@ -20,8 +19,9 @@ public:
   explicit CellMap(const CellIndexing& indexing)
       : indexing_(indexing),
         body_(indexing.count() + read_beyond, fluid),
+        covered_beside_(indexing.count()),
         fluid_in_pack_(static_cast<std::size_t>(indexing.packs_per_row()) * indexing.size()[1] * indexing.size()[2]),
-        near_bodies_(indexing) {
+        beside_bodies_(fluid_in_pack_.size()) {
     const int width = indexing.pack(), nx = indexing.size()[0];
     for (std::size_t p = 0; p < fluid_in_pack_.size(); ++p) {
       const int first = static_cast<int>(p) % indexing.packs_per_row() * width;
@@ -50,30 +50,37 @@ public:
       std::uint8_t& count = fluid_in_pack_[pack_of(x, y, z)];
       count = static_cast<std::uint8_t>(count + (body == fluid ? 1 : -1));
     }
-    near_bodies_.cell_changes(x, y, z, body == fluid ? -1 : 1);
+    tell_neighbours(x, y, z, body == fluid ? -1 : 1);
   }
-
-  // A body claims a cell that is not in memory but no more than near_body_layers beyond the block, or gives it up: such
-  // cells count for near_bodies() alone, whatever body has them. Each claim ends by being given up once.
-  void claim_beyond(const Index3& cell) { near_bodies_.claims_change(cell[0], cell[1], cell[2], 1); }
-  void give_up_beyond(const Index3& cell) { near_bodies_.claims_change(cell[0], cell[1], cell[2], -1); }
 
   // Number of fluid cells in each pack of an owned row.
   const std::uint8_t* fluid_in_packs(int y, int z) const { return fluid_in_pack_.data() + pack_of(0, y, z); }
-  // For each pack of an owned row a bit for each cell, 1 where a covered cell is near (near_body_radius_squared).
-  const std::uint16_t* near_bodies(int y, int z) const { return near_bodies_.in_packs(y, z); }
-  // Whether any of the bits of a row is 1.
-  bool any_near_bodies(int y, int z) const { return near_bodies_.any_in_row(y, z); }
+  // For each pack of an owned row a bit for each cell, 1 where one of its 18 neighbours is covered.
+  const std::uint16_t* beside_bodies(int y, int z) const { return beside_bodies_.data() + pack_of(0, y, z); }
 
 private:
+  // A cell has become covered (1) or fluid (-1).
+  void tell_neighbours(int x, int y, int z, int change) {
+    for (int i = 1; i < D3Q19::directions; ++i) {
+      const int nx = x + D3Q19::c[i][0], ny = y + D3Q19::c[i][1], nz = z + D3Q19::c[i][2];
+      if (!indexing_.owned(nx, ny, nz)) continue;
+      std::uint8_t& count = covered_beside_[static_cast<std::size_t>(indexing_.index(nx, ny, nz))];
+      count = static_cast<std::uint8_t>(count + change);
+      const auto bit = static_cast<std::uint16_t>(1u << nx % indexing_.pack());
+      std::uint16_t& pack = beside_bodies_[pack_of(nx, ny, nz)];
+      pack = static_cast<std::uint16_t>(count > 0 ? pack | bit : pack & ~bit);
+    }
+  }
+
   std::size_t pack_of(int x, int y, int z) const {
     return (static_cast<std::size_t>(z) * indexing_.size()[1] + y) * indexing_.packs_per_row() + x / indexing_.pack();
   }
 
   CellIndexing indexing_;
   std::vector<std::int32_t> body_;
+  std::vector<std::uint8_t> covered_beside_;  // of the 18 neighbours of an owned cell, those that are covered
   std::vector<std::uint8_t> fluid_in_pack_;
-  NearBodies near_bodies_;
+  std::vector<std::uint16_t> beside_bodies_;
 };
 
 }  // namespace thalweg::lbm

@@ -47,9 +47,6 @@ public:
   bool owned(int x, int y, int z) const {
     return x >= 0 && y >= 0 && z >= 0 && x < size_[0] && y < size_[1] && z < size_[2];
   }
-  bool in_memory(int x, int y, int z) const {  // owned or ghost
-    return x >= -1 && y >= -1 && z >= -1 && x <= size_[0] && y <= size_[1] && z <= size_[2];
-  }
 
 private:
   Index3 size_;

@@ -208,7 +208,7 @@ void sweep_row(Populations<Real>& populations, const CellMap& cells, const Colli
                int z, const RowShear<Real>* shear) {
   const Streams<Real> streams(populations);
   const RowCells row{populations.indexing().index(0, y, z), populations.indexing().packs_per_row(),
-                     cells.fluid_in_packs(y, z), cells.near_bodies(y, z)};
+                     cells.fluid_in_packs(y, z), cells.beside_bodies(y, z)};
   switch (parameters.model) {
     case CollisionModel::bgk:
       return sweep_row_with<CollisionModel::bgk>(streams, row, parameters, shear);

@@ -84,15 +84,8 @@ private:
   }
 
   bool near_a_sphere(std::size_t at) const {
-    const int k = static_cast<int>(at);
-    for (int z = -3; z <= 3; ++z)
-      for (int y = -3; y <= 3; ++y)
-        for (int x = -3; x <= 3; ++x) {
-          Index3 c{k % n_[0] + x, k / n_[0] % n_[1] + y, k / n_[0] / n_[1] + z};
-          if (x * x + y * y + z * z > 9 || (walls_ && (c[2] < 0 || c[2] >= n_[2]))) continue;
-          for (int a = 0; a < 3; ++a) c[a] = (c[a] + n_[a]) % n_[a];
-          if (owner_[index(c)] >= 0) return true;
-        }
+    for (int i = 1; i < 19; ++i)
+      if (!beyond_wall(at, i) && owner_[neighbour(at, i)] >= 0) return true;
     return false;
   }
 
