@@ -7,7 +7,7 @@
 
 namespace thalweg::lbm {
 
-// Replaces f by its value after the collision; with trt_at_bodies, near a body.
+// Replaces f by its value after the collision; with trt_at_bodies, beside a body.
 template <CollisionModel model, bool with_bulk, typename Number>
 [[gnu::always_inline]] inline void relax(Number (&f)[19], const CellMoments<Number>& m,
                                          const CollisionConstants<Number>& constants) {
@@ -21,7 +21,7 @@ template <CollisionModel model, bool with_bulk, typename Number>
   }
 }
 
-// Both steps at once, near a body; returns the moments before the collision.
+// Both steps at once, beside a body; returns the moments before the collision.
 template <CollisionModel model, SubgridModel subgrid, bool with_bulk = false, typename Number>
 [[gnu::always_inline]] inline CellMoments<Number> collide(Number (&f)[19], const CollisionParameters& parameters) {
   const CollisionConstants<Number> constants(parameters);

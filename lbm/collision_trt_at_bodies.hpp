@@ -1,5 +1,5 @@
-// Two relaxation times near bodies (CellMap::near_bodies) as long as a cell is calm, one elsewhere. With n the odd
-// non-equilibrium of a cell near a body, of which trt keeps nearly all in water,
+// Two relaxation times beside bodies (CellMap::beside_bodies) as long as a cell is calm, one elsewhere. With n the odd
+// non-equilibrium of a cell beside a body, of which trt keeps nearly all in water,
 //   n^2 = sum over the nine pairs of [(f_i - f_i')/2 - (f_i^eq - f_i'^eq)/2]^2,   a = lambda^2/(n^2 + lambda^2),
 // both the odd rate and the relaxation of the trace go from trt's to those of the open fluid:
 //   omega' = omega + a (omega'_trt - omega),   the bulk term of cell_moments.hpp times 1 - a.
@@ -18,7 +18,7 @@ namespace thalweg::lbm {
 // lambda, in lattice units of the populations.
 constexpr double quiet = 0.01;
 
-// a in cells near bodies, before the collision.
+// a in cells beside bodies, before the collision.
 template <typename Number>
 [[gnu::always_inline]] inline Number calmness_of(const Number (&f)[19], const CellMoments<Number>& m,
                                                  const CollisionConstants<Number>& constants) {

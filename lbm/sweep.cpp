@@ -69,7 +69,7 @@ struct RowCells {
   std::ptrdiff_t first;
   int packs;
   const std::uint8_t* fluid;
-  const std::uint16_t* near_bodies;
+  const std::uint16_t* beside_bodies;
 };
 
 // Which of its variants a row takes.
@@ -100,22 +100,22 @@ template <Kind kind, typename Real>
   }
 }
 
-// Calmness in the lanes of `near_bodies` (a bit each), 0 in the others. All packs pass through the same arithmetic, so
-// that a cell's bits do not depend on its neighbours in the pack.
+// Calmness in the lanes of `beside_bodies` (a bit each), 0 in the others. All packs pass through the same arithmetic,
+// so that a cell's bits do not depend on its neighbours in the pack.
 template <typename Real>
 [[gnu::always_inline]] inline Pack<Real> calmness_in_lanes(const Pack<Real> (&f)[D3Q19::directions],
                                                            const CellMoments<Pack<Real>>& m,
                                                            const CollisionConstants<Pack<Real>>& constants,
-                                                           unsigned near_bodies) {
-  if (near_bodies == 0) return Real(0);
-  const Pack<Real> near([&](auto lane) { return Real(near_bodies >> lane & 1u); });
+                                                           unsigned beside_bodies) {
+  if (beside_bodies == 0) return Real(0);
+  const Pack<Real> near([&](auto lane) { return Real(beside_bodies >> lane & 1u); });
   return near * calmness_of(f, m, constants);
 }
 
 template <Kind kind, typename Real>
 [[gnu::always_inline]] inline void relax_pack(const Streams<Real>& streams, std::ptrdiff_t cell,
                                               const CollisionConstants<Pack<Real>>& constants,
-                                              const RowSegment<Real>& s, int p, unsigned near_bodies) {
+                                              const RowSegment<Real>& s, int p, unsigned beside_bodies) {
   Pack<Real> f[D3Q19::directions];
   CellMoments<Pack<Real>> m;
   m.deviation = s.deviation[p];
@@ -127,7 +127,7 @@ template <Kind kind, typename Real>
   if constexpr (kind.bulk) m.bulk = s.bulk[p];
   load(f, streams, cell);
   if constexpr (kind.model == CollisionModel::trt_at_bodies)
-    relax_trt_at_bodies<kind.bulk>(f, m, constants, calmness_in_lanes<Real>(f, m, constants, near_bodies));
+    relax_trt_at_bodies<kind.bulk>(f, m, constants, calmness_in_lanes<Real>(f, m, constants, beside_bodies));
   else
     relax<kind.model, kind.bulk>(f, m, constants);
   for_each_direction([&]<int i>() __attribute__((always_inline)) {
@@ -163,7 +163,7 @@ void sweep_packs(const Streams<Real>& streams, const RowCells& row, const Collis
       if (row.fluid[first + p] == 0) continue;
       const std::ptrdiff_t cell = row.first + (first + p) * width;
       prefetch(streams, cell);
-      relax_pack<kind>(streams, cell, constants, segment, p, row.near_bodies[first + p]);
+      relax_pack<kind>(streams, cell, constants, segment, p, row.beside_bodies[first + p]);
       if constexpr (kind.shear) store_shear(segment, p, *shear, (first + p) * width);
     }
   }

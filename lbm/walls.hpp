@@ -11,8 +11,8 @@
 //   outlet             f_o(x, t+1) = -f_o'^c(x, t) + 2 w_o rho_w [1 + 9/2 (c_o.u)^2 - 3/2 u.u],  u of the cell
 //                      (anti-bounce-back, Ginzburg, Verhaeghe and d'Humieres 2008)
 //
-// Slip length s and bounced fraction, exact in Couette flow for tau - 1/2 = 3 nu and nu with the eddies' share in shear,
-// g being the shear rate in the cell at the wall (Zhang et al. 2022, appendix A, A2):
+// Slip length s and bounced fraction, exact in Couette flow for tau - 1/2 = 3 nu and nu with the eddies' share in
+// shear, g being the shear rate in the cell at the wall (Zhang et al. 2022, appendix A, A2):
 //   r = 1/[1 + s/(tau - 1/2)].
 // Slip law of the wall (the same, A3 to A5): slip velocity A u_tau with u_tau^2 = nu g, hence s = A nu/u_tau and
 //   r = 3 u_tau/(3 u_tau + A).
