@@ -3,12 +3,13 @@
 # cells of 0.5 mm and steps of 5e-5 s they are a tenth of that in cells per step; half the width is 5.25 mm, the viscosity 1e-6 m^2/s.
 program=$1
 mkdir -p "$2" && cd "$2" || exit 1
-run() {  # name, friction velocity, C_s, further options
-  name=$1 friction=$2 smagorinsky=$3
+run() {  # name, friction velocity, C_s or qr, further options
+  name=$1 friction=$2
+  if [ "$3" = qr ]; then subgrid=--qr; else subgrid="--smagorinsky $3"; fi
   shift 3
   "$program" --height 21 --length 64 --width 32 --samples 10 --until 100 --average-from 40 \
     --friction-velocity "$(echo "$friction/10" | bc -l)" --reynolds "$(echo "$friction*5250" | bc -l)" \
-    --smagorinsky "$smagorinsky" --output "$name.csv" "$@"
+    $subgrid --output "$name.csv" "$@"
 }
 imposed="--wall law_of_the_wall" slip="--wall slip_law_of_the_wall --slip-coefficient"
 first_cell="--wall slip_law_of_the_wall --slip-of-first-cell"
@@ -32,6 +33,7 @@ run shorter_step 0.0620 0.27 $slip 8.36 --friction-velocity 0.00248 --until 80
 # The workstation's flume at 0.028: 13 cells of 0.8077 mm, 1e-4 s.
 coarse="--height 13 --length 40 --width 20 --until 160 --average-from 60 --friction-velocity 0.00593 --reynolds 251"
 run six 0.0479 0.27 $coarse $imposed
+run six_qr 0.0479 qr $coarse $imposed
 run six_trt 0.0479 0.27 $coarse $imposed --collision trt
 run six_first_cell 0.0479 0.27 $coarse $first_cell
 run six_trt_first_cell 0.0479 0.27 $coarse $first_cell --collision trt
