@@ -220,9 +220,12 @@ void YamlDocument::lay_beneath(YamlNode& section, const YamlNode& other, const s
     const std::string path = joined_key(key_path, key);
     YamlNode* own = entry_of(section, key);
     const bool empty = own && own->kind == YamlNode::Kind::scalar && own->text.empty();
-    if (std::find(without.begin(), without.end(), path) != without.end()) {
+    const bool unwanted = std::find(without.begin(), without.end(), path) != without.end();
+    const bool merges =
+        value.kind == YamlNode::Kind::section && (!own || empty || own->kind == YamlNode::Kind::section);
+    if (unwanted || (own && !merges)) {
       keys.left_out.push_back(path);
-    } else if (value.kind == YamlNode::Kind::section && (!own || empty || own->kind == YamlNode::Kind::section)) {
+    } else if (merges) {
       YamlNode inside;
       inside.place = value.place;
       if (own && !empty) inside = *own;
@@ -231,8 +234,6 @@ void YamlDocument::lay_beneath(YamlNode& section, const YamlNode& other, const s
         *own = std::move(inside);
       else if (!inside.entries.empty())
         section.entries.push_back({key, std::move(inside)});
-    } else if (own) {
-      keys.left_out.push_back(path);
     } else {
       section.entries.push_back({key, value});
       keys.added.push_back(fmt::format("{}: {}", path, value.text));
