@@ -85,10 +85,11 @@ void WallStress<Real>::find_row(const Populations<Real>& populations, const Cell
   at[v_axis_] = v;
   const std::ptrdiff_t first = indexing_.index(at[0], at[1], at[2]);
   const auto knows_second = [&](int u) { return depth > 1 && cells.is_fluid(first + inward + u * stride); };
-  bool all_second = true;
-  for (int u = 0; u < nu_; ++u) all_second = all_second && knows_second(u);
-  if (depth > 1) take_moments(populations, first + inward, half_force, second_);
-  if (!all_second) take_moments(populations, first, half_force, at_wall_);
+  bool second = false, at_wall = false;  // whether any fluid cell at the wall looks there
+  for (int u = 0; u < nu_; ++u)
+    if (cells.is_fluid(first + u * stride)) (knows_second(u) ? second : at_wall) = true;
+  if (second) take_moments(populations, first + inward, half_force, second_);
+  if (at_wall) take_moments(populations, first, half_force, at_wall_);
   for (int u = 0; u < nu_; ++u) {
     const std::ptrdiff_t cell = first + u * stride;
     const bool from_second = knows_second(u);
