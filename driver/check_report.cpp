@@ -91,7 +91,7 @@ void add_seepage(const Case& c, Lines& lines) {
 std::string duration_text(const Case& c) {
   const double shortest = shortest_contact(c);
   if (!has_fluid(c) && !c.contact.given.duration) return fmt::format("lasts {:.3g} s", shortest);
-  const bool by_duration = has_default_duration(c) || c.contact.given.duration;
+  const bool by_duration = goes_by_duration(c);
   const double lasts = by_duration ? contact_duration(c) : shortest;
   std::string text = fmt::format("lasts {:.3g} s", lasts);
   if (has_fluid(c)) text += fmt::format(", {:.3g} fluid steps", lasts / fluid_time_step(c));

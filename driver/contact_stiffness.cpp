@@ -74,6 +74,8 @@ bool has_default_duration(const Case& c) {
          c.filled_in.stiffness && !c.contact.given.duration;
 }
 
+bool goes_by_duration(const Case& c) { return c.contact.given.duration || has_default_duration(c); }
+
 // k_n = A/t^2 + B of each population.
 double contact_duration(const Case& c) {
   const std::vector<dem::ContactParameters> materials = dem::materials_of(c.contact, c.grains);

@@ -1,8 +1,7 @@
 // The stiffness of linear contacts where a case does not give it as a number, and the sub-steps that follow.
 //
-//   t_c = 4 (d/dx) dt        of grains in a fluid, by default: longer than sound takes around a grain, pi/2 sqrt(3)
-//   d/dx,
-//                            so that the water that moves with a grain takes part in its rebound
+//   t_c = 4 (d/dx) dt        of grains in a fluid, by default: longer than sound takes around a grain,
+//                            pi/2 sqrt(3) d/dx steps, so that the water that moves with it takes part in its rebound
 //   k_n = m* ((pi/t_c)^2 + (gamma/(2 m*))^2)                  and at least what keeps overlaps small; k_t = 2/7 k_n
 //
 // m*: of two of the lightest grains that are free and have no stiffness of their own. With 2/7 a grain that sticks
@@ -21,6 +20,9 @@ double default_contact_steps(const Case& c);
 // Whether the duration of contacts is the default one: the case has grains in a fluid and gives neither a duration nor
 // a stiffness.
 bool has_default_duration(const Case& c);
+
+// Whether the stiffness follows from a duration, given or default.
+bool goes_by_duration(const Case& c);
 
 // s: half a period of the shortest linear contact of two free grains whose stiffness is that of the section contact,
 // with its dashpot: the duration that gives its stiffness.

@@ -75,7 +75,7 @@ Change main_stiffness_change(const Case& c, double& factor, int digits, Rounding
     factor = changed(c, {change}).contact.youngs_modulus / c.contact.youngs_modulus;
     return change;
   }
-  if (has_default_duration(c) || c.contact.given.duration) {
+  if (goes_by_duration(c)) {
     const double lasts = contact_duration(c);
     const Change change =
         number_change("contact.duration", lasts / std::sqrt(factor), digits,

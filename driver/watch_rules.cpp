@@ -191,7 +191,7 @@ std::string change_of_contacts(const Case& c, Contacts to) {
   const bool softer = to == Contacts::softer;
   if (c.contact.law != dem::Law::linear)
     return softer ? "lower contact.youngs_modulus" : "raise contact.youngs_modulus";
-  if (c.contact.given.duration || has_default_duration(c))
+  if (goes_by_duration(c))
     return fmt::format("give a {} contact.duration than {:.3g} s", softer ? "longer" : "shorter", contact_duration(c));
   return softer ? "lower contact.normal_stiffness" : "raise contact.normal_stiffness";
 }
