@@ -1,7 +1,8 @@
 // What contact laws are made of. A law is one class: spring_dashpot.hpp and hertz_mindlin.hpp, which stand alone, or
 // rolling_friction.hpp and liquid_bridge.hpp, which add to another law. contact_laws.hpp has them all. Such a class has
 //
-//   Coefficients    doubles that two materials have together; the last one is `friction`, which walls replace by theirs
+//   Coefficients    doubles that two materials have together, among them `damping_ratio` and `damping` (material.hpp);
+//                   the last one is `friction`, which walls replace by theirs
 //   Constants       doubles that a contact has from its two bodies, by constants_of() when it is listed
 //   History         doubles that a contact keeps from one evaluation to the next, zero in a new one
 //   history_parts   their names, in which files have them
@@ -34,7 +35,7 @@ struct ContactMotion {
 
 // What a law is told of the two bodies of a contact when it is listed.
 struct ContactBodies {
-  double damping;           // of the dashpot: kg/s, or kg/(s m^1/2) of elastic spheres
+  double critical_damping;  // 2 sqrt(k m*), kg/s, or kg/(s m^1/2) of elastic spheres (material.hpp)
   double rolling_friction;  // mu_r
   double rolling_inertia;   // kg m^2, I_r of rolling_friction.hpp
 };

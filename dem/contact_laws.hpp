@@ -18,10 +18,10 @@ struct LawChoice {
   bool rolling_friction = false;  // whether any of the contacts may have it
 };
 
-// Calls visit(std::type_identity<Law>()) with the law of the spring across the contact, which the others add to.
+// Calls visit(std::type_identity<Springs>()) with what is the same of a law in a liquid and without one.
 template <typename Visitor>
 decltype(auto) with_spring_law(Law law, Visitor&& visit) {
-  if (law == Law::linear) return visit(std::type_identity<SpringDashpotFriction>());
+  if (law == Law::linear) return visit(std::type_identity<SpringDashpot>());
   return visit(std::type_identity<HertzMindlin>());
 }
 
@@ -32,10 +32,15 @@ decltype(auto) with_law(const LawChoice& choice, double time_step, Visitor&& vis
   const auto and_bridge = [&](const auto& law) -> decltype(auto) {
     return common.liquid_bridge ? visit(WithLiquidBridge(law, *common.liquid_bridge)) : visit(law);
   };
-  return with_spring_law(common.law, [&](auto spring) -> decltype(auto) {
-    const typename decltype(spring)::type law(common, time_step);
+  const auto and_rolling = [&](const auto& law) -> decltype(auto) {
     return choice.rolling_friction ? and_bridge(WithRollingFriction(law, common)) : and_bridge(law);
-  });
+  };
+  const auto in = [&](auto film) -> decltype(auto) {
+    using Film = typename decltype(film)::type;
+    if (common.law == Law::linear) return and_rolling(SpringDashpotFriction<Film>(common, time_step));
+    return and_rolling(HertzMindlinFriction<Film>(common, time_step));
+  };
+  return common.film_viscosity > 0.0 ? in(std::type_identity<ContactFilm>()) : in(std::type_identity<NoFilm>());
 }
 
 // Names and numbers of the doubles that a contact keeps.

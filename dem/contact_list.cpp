@@ -57,12 +57,12 @@ ContactBodies contact_bodies(const PairContact& c, const GrainStore& store, cons
                                      store.mass[c.second], holds_translation(store.motion[c.second]));
   const double inertia = effective_mass(rolling_inertia(store, c.first), holds_rotation(store.motion[c.first]),
                                         rolling_inertia(store, c.second), holds_rotation(store.motion[c.second]));
-  return {pair.damping.coefficient(mass), pair.rolling_friction, inertia};
+  return {pair.damping.critical(mass), pair.rolling_friction, inertia};
 }
 
 ContactBodies contact_bodies(const WallContact& c, const GrainStore& store, std::span<const Plane> walls,
                              const MaterialTable& materials) {
-  return {materials.wall(store.material[c.grain]).damping.coefficient(store.mass[c.grain]),
+  return {materials.wall(store.material[c.grain]).damping.critical(store.mass[c.grain]),
           walls[c.wall].rolling_friction, rolling_inertia(store, c.grain)};
 }
 

@@ -81,7 +81,8 @@ void describe(SectionVisitor& visit, ContactParameters& contact, StiffnessKeys& 
   visit.real("tangential_damping", contact.tangential_damping,
              {.meaning = "tangential over normal damping coefficient", .at_least = 0.0});
   visit.real("restitution", contact.restitution,
-             {.meaning = "coefficient of restitution of a dry collision; or give damping",
+             {.meaning = "coefficient of restitution of a dry collision (in a fluid slow ones are stopped by the film between the "
+                        "grains); or give damping",
               .above = 0.0,
               .at_most = 1.0,
               .example = 0.93});

@@ -20,7 +20,7 @@ HertzMindlin::Coefficients HertzMindlin::between(const ContactParameters& a, con
     return (1.0 - p.poisson_ratio * p.poisson_ratio) / p.youngs_modulus;
   };
   const auto shear_give = [](const ContactParameters& p) { return (2.0 - p.poisson_ratio) / shear_modulus(p); };
-  return {4.0 / 3.0 / (give(a) + give(b)), 8.0 / (shear_give(a) + shear_give(b)),
+  return {4.0 / 3.0 / (give(a) + give(b)), 8.0 / (shear_give(a) + shear_give(b)), 0.0, 0.0,
           geometric_mean(a.friction, b.friction)};
 }
 

@@ -7,9 +7,11 @@
 // While the contact unloads, F_t is scaled by a/a_before, so that no energy is made (Thornton, Cummins & Cleary, Powder
 // Technology 233 (2013) 30); a_before follows from delta - delta' dt. The dashpot d = zeta sqrt(5 m* 4/3 E*) makes the
 // restitution independent of the speed: delta^(5/4) obeys the linear equation with the damping ratio zeta (Antypov &
-// Elliott, EPL 94 (2011) 50004), so both closed forms of material.hpp hold exactly. SI units.
+// Elliott, EPL 94 (2011) 50004), so both closed forms of material.hpp hold exactly. In a liquid it has the film's beside
+// it (contact_film.hpp). SI units.
 #pragma once
 
+#include "dem/contact_film.hpp"
 #include "dem/contact_law.hpp"
 #include "dem/contact_parameters.hpp"
 
@@ -17,45 +19,23 @@
 
 namespace thalweg::dem {
 
-class HertzMindlin {
-public:
+struct HertzMindlin {
   struct Coefficients {
-    double normal;      // Pa, 4/3 E*
-    double tangential;  // Pa, 8 G*
-    double friction;    // mu
+    double normal;         // Pa, 4/3 E*
+    double tangential;     // Pa, 8 G*
+    double damping_ratio;  // zeta
+    double damping;        // 0: none beside it
+    double friction;       // mu
   };
   struct Constants {
-    double damping;  // kg/(s m^1/2), d
+    double critical_damping;  // kg/(s m^1/2), sqrt(5 m* 4/3 E*)
   };
   using History = std::array<double, 3>;                                        // m^2, F_t/(-8 G*)
   static constexpr std::array history_parts{HistoryPart{"mindlin_spring", 3}};  // no spring for the linear law
   static constexpr bool rolls = false;
 
-  // common: of any material; time_step: s, with 0 the springs do not grow: a force without history.
-  HertzMindlin(const ContactParameters& common, double time_step)
-      : least_(common.least_normal_force()), share_(common.tangential_damping), time_step_(time_step) {}
-
   static constexpr double range() { return 0.0; }
-  static Constants constants_of(const ContactBodies& bodies) { return {bodies.damping}; }
-
-  ContactLoad operator()(const ContactMotion& c, const Coefficients& k, const Constants& constants,
-                         History& history) const {
-    const double closing = -(c.vx * c.nx + c.vy * c.ny + c.vz * c.nz);
-    const double overlap = c.overlap > 0.0 ? c.overlap : 0.0;  // rounding may leave a touch without one
-    const double a = std::sqrt(c.effective_radius * overlap);
-    const double dashpot = constants.damping * std::sqrt(a);
-    const double pressed = k.normal * a * overlap + dashpot * closing;
-    const double normal = pressed > least_ ? pressed : least_;
-    const Friction f = friction_of(c, closing, normal, k.friction, k.tangential, share_ * dashpot,
-                                   kept(closing, overlap), a * time_step_, {history[0], history[1], history[2]});
-    history = {f.spring.x, f.spring.y, f.spring.z};
-    return {normal, f.x, f.y, f.z};
-  }
-
-  NormalSpring normal_spring(const ContactMotion& c, const Coefficients& k) const {
-    const double overlap = c.overlap > 0.0 ? c.overlap : 0.0, a = std::sqrt(c.effective_radius * overlap);
-    return {1.5 * k.normal, a, a * time_step_, kept(-(c.vx * c.nx + c.vy * c.ny + c.vz * c.nz), overlap)};
-  }
+  static Constants constants_of(const ContactBodies& bodies) { return {bodies.critical_damping}; }
 
   // Each body with its own moduli.
   static Coefficients between(const ContactParameters& a, const ContactParameters& b);
@@ -74,6 +54,40 @@ public:
   // What makes a contact of a grain and another, or a wall, softer; completes "a lower ..." in a message.
   static std::string softer(const ContactParameters& grain, const ContactParameters& other);
 
+};
+
+// Film: ContactFilm or NoFilm.
+template <typename Film>
+class HertzMindlinFriction : public HertzMindlin {
+public:
+  // common: of any material; time_step: s, with 0 the springs do not grow: a force without history.
+  HertzMindlinFriction(const ContactParameters& common, double time_step)
+      : film_(common.film_viscosity),
+        least_(common.least_normal_force()),
+        share_(common.tangential_damping),
+        time_step_(time_step) {}
+
+  ContactLoad operator()(const ContactMotion& c, const Coefficients& k, const Constants& constants,
+                         History& history) const {
+    const double closing = -(c.vx * c.nx + c.vy * c.ny + c.vz * c.nz), critical = constants.critical_damping;
+    const double overlap = c.overlap > 0.0 ? c.overlap : 0.0;  // rounding may leave a touch without one
+    const double a = std::sqrt(c.effective_radius * overlap);
+    const double root = std::sqrt(a);
+    const double dry = k.damping_ratio * critical + k.damping;
+    const Dashpots film = film_(c, closing, critical, damping_stiffness(k));
+    const double pressed = Film::pressed(k.normal * a * overlap + root * dry * closing, root * film.along, closing);
+    const double normal = pressed > least_ ? pressed : least_;
+    const Friction f = friction_of(c, closing, normal, k.friction, k.tangential, root * (share_ * dry + film.across),
+                                   kept(closing, overlap), a * time_step_, {history[0], history[1], history[2]});
+    history = {f.spring.x, f.spring.y, f.spring.z};
+    return {normal, f.x, f.y, f.z};
+  }
+
+  NormalSpring normal_spring(const ContactMotion& c, const Coefficients& k) const {
+    const double overlap = c.overlap > 0.0 ? c.overlap : 0.0, a = std::sqrt(c.effective_radius * overlap);
+    return {1.5 * k.normal, a, a * time_step_, kept(-(c.vx * c.nx + c.vy * c.ny + c.vz * c.nz), overlap)};
+  }
+
 private:
   // a/a_before where the contact opens.
   double kept(double closing, double overlap) const {
@@ -81,6 +95,7 @@ private:
     return opening > 0.0 ? std::sqrt(overlap / (overlap + opening)) : 1.0;
   }
 
+  Film film_;
   double least_, share_, time_step_;
 };
 

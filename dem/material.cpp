@@ -82,9 +82,7 @@ Damping::Damping(double stiffness, const ContactParameters& p) : stiffness_(stif
     damping_ratio_ = damping_ratio_of_restitution(*p.restitution, p.attraction);
 }
 
-double Damping::coefficient(double effective_mass) const {
-  return constant_ + 2.0 * damping_ratio_ * std::sqrt(stiffness_ * effective_mass);
-}
+double Damping::critical(double effective_mass) const { return 2.0 * std::sqrt(stiffness_ * effective_mass); }
 
 double harmonic_mean(double a, double b) { return a == b ? a : a > 0.0 && b > 0.0 ? 2.0 * a * b / (a + b) : 0.0; }
 double geometric_mean(double a, double b) { return a == b ? a : std::sqrt(a * b); }
@@ -115,8 +113,10 @@ MaterialTable::MaterialTable(std::span<const ContactParameters> materials,
   if (walls) check(*walls);
   with_spring_law(common_.law, [&](auto spring) {
     using Spring = typename decltype(spring)::type;
-    const auto entry = [](const typename Spring::Coefficients& k, const ContactParameters& both, double rolling) {
-      return Entry{as_doubles(k), Damping(Spring::damping_stiffness(k), both), rolling};
+    const auto entry = [](typename Spring::Coefficients k, const ContactParameters& both, double rolling) {
+      const Damping damping(Spring::damping_stiffness(k), both);
+      damping.write_into(k);
+      return Entry{as_doubles(k), damping, rolling};
     };
     for (const ContactParameters& a : materials) {
       for (const ContactParameters& b : materials) {

@@ -33,7 +33,16 @@ public:
   Damping(double stiffness, const ContactParameters& parameters);
 
   // effective_mass (kg): m1 m2/(m1 + m2) of two grains, m of a grain against a wall.
-  double coefficient(double effective_mass) const;
+  double coefficient(double effective_mass) const { return damping_ratio_ * critical(effective_mass) + constant_; }
+  // That of a contact which just does not swing, 2 sqrt(k m*).
+  double critical(double effective_mass) const;
+
+  // What a law adds up to coefficient().
+  template <typename Coefficients>
+  void write_into(Coefficients& k) const {
+    k.damping_ratio = damping_ratio_;
+    k.damping = constant_;
+  }
 
 private:
   double stiffness_;            // of the square root: damping_stiffness() of the law

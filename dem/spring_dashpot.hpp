@@ -2,8 +2,10 @@
 //
 //   F_n = k_n delta + gamma delta'                      delta' = -v.n; without attraction F_n >= 0
 //   F_t = -k_t xi - c gamma v_t,  xi = integral of v_t dt,  |F_t| <= mu |F_n|       c: tangential damping, 0 by default
+// In a liquid both dashpots have the film's beside theirs (contact_film.hpp).
 #pragma once
 
+#include "dem/contact_film.hpp"
 #include "dem/contact_law.hpp"
 #include "dem/contact_parameters.hpp"
 
@@ -11,43 +13,26 @@
 
 namespace thalweg::dem {
 
-class SpringDashpotFriction {
-public:
+struct SpringDashpot {
   struct Coefficients {
     double stiffness;             // N/m, k_n
     double tangential_stiffness;  // N/m, k_t
+    double damping_ratio;         // of the dashpot over the critical one
+    double damping;               // kg/s, beside it
     double friction;              // mu
   };
   struct Constants {
-    double damping;  // kg/s, gamma
+    double critical_damping;  // kg/s, 2 sqrt(k_n m*)
   };
   using History = std::array<double, 3>;  // m, xi
   static constexpr std::array history_parts{HistoryPart{"spring", 3}};
   static constexpr bool rolls = false;
 
-  // common: of any material; time_step: s, with 0 the springs do not grow: a force without history.
-  SpringDashpotFriction(const ContactParameters& common, double time_step)
-      : least_(common.least_normal_force()), share_(common.tangential_damping), time_step_(time_step) {}
-
   static constexpr double range() { return 0.0; }
-  static Constants constants_of(const ContactBodies& bodies) { return {bodies.damping}; }
+  static Constants constants_of(const ContactBodies& bodies) { return {bodies.critical_damping}; }
 
-  ContactLoad operator()(const ContactMotion& c, const Coefficients& k, const Constants& constants,
-                         History& history) const {
-    const double closing = -(c.vx * c.nx + c.vy * c.ny + c.vz * c.nz);
-    const double pressed = k.stiffness * c.overlap + constants.damping * closing;
-    const double normal = pressed > least_ ? pressed : least_;
-    const Friction f = friction_of(c, closing, normal, k.friction, k.tangential_stiffness, share_ * constants.damping,
-                                   1.0, time_step_, {history[0], history[1], history[2]});
-    history = {f.spring.x, f.spring.y, f.spring.z};
-    return {normal, f.x, f.y, f.z};
-  }
-
-  NormalSpring normal_spring(const ContactMotion&, const Coefficients& k) const {
-    return {k.stiffness, 1.0, time_step_, 1.0};
-  }
-
-  // Springs in series, the friction's geometric mean; with a wall the stiffness is that of the wall's contacts.
+  // Springs in series, the friction's geometric mean; with a wall the stiffness is that of the wall's contacts. Without
+  // the damping, which the two materials have together (Damping::write_into).
   static Coefficients between(const ContactParameters& a, const ContactParameters& b);
   static Coefficients against_wall(const ContactParameters& grain, const ContactParameters& wall);
 
@@ -60,8 +45,38 @@ public:
   static void check(const ContactParameters& parameters);  // throws InputError
   // What makes a contact of a grain and another, or a wall, softer; completes "a lower ..." in a message.
   static std::string softer(const ContactParameters& grain, const ContactParameters& other);
+};
+
+// Film: ContactFilm or NoFilm.
+template <typename Film>
+class SpringDashpotFriction : public SpringDashpot {
+public:
+  // common: of any material; time_step: s, with 0 the springs do not grow: a force without history.
+  SpringDashpotFriction(const ContactParameters& common, double time_step)
+      : film_(common.film_viscosity),
+        least_(common.least_normal_force()),
+        share_(common.tangential_damping),
+        time_step_(time_step) {}
+
+  ContactLoad operator()(const ContactMotion& c, const Coefficients& k, const Constants& constants,
+                         History& history) const {
+    const double closing = -(c.vx * c.nx + c.vy * c.ny + c.vz * c.nz), critical = constants.critical_damping;
+    const double dry = k.damping_ratio * critical + k.damping;
+    const Dashpots film = film_(c, closing, critical, k.stiffness);
+    const double pressed = Film::pressed(k.stiffness * c.overlap + dry * closing, film.along, closing);
+    const double normal = pressed > least_ ? pressed : least_;
+    const Friction f = friction_of(c, closing, normal, k.friction, k.tangential_stiffness, share_ * dry + film.across,
+                                   1.0, time_step_, {history[0], history[1], history[2]});
+    history = {f.spring.x, f.spring.y, f.spring.z};
+    return {normal, f.x, f.y, f.z};
+  }
+
+  NormalSpring normal_spring(const ContactMotion&, const Coefficients& k) const {
+    return {k.stiffness, 1.0, time_step_, 1.0};
+  }
 
 private:
+  Film film_;
   double least_, share_, time_step_;
 };
 

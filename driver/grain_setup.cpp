@@ -14,6 +14,13 @@ namespace {
 // neighbour list means a new look at the links, and grains are slower.
 constexpr double skin_in_diameters = 0.1, dry_skin_in_diameters = 0.5;
 
+// Of the film in contacts with a restitution, which is that of a dry collision. A `damping` is the whole dashpot, and
+// lubrication is a film of its own.
+double film_viscosity(const Case& c) {
+  const bool without = !has_fluid(c) || !c.contact.restitution || c.coupling.lubrication;
+  return without ? 0.0 : c.fluid.density * c.fluid.kinematic_viscosity;
+}
+
 // Faces the fluid sticks to; the other walls of the case are not the fluid's.
 dem::LubricationParameters lubrication_parameters(const Case& c, std::size_t walls) {
   const coupling::LubricationKeys& given = *c.coupling.lubrication;
@@ -63,6 +70,7 @@ dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box) {
   dem::GrainParameters parameters;
   const std::vector<dem::ContactParameters> materials = dem::materials_of(c.contact, c.grains);
   parameters.contact = materials.front();
+  parameters.contact.film_viscosity = film_viscosity(c);
   parameters.other_materials.assign(materials.begin() + 1, materials.end());
   parameters.wall_contact = wall_material_of(c.contact);
   parameters.walls = planes_of(c, box, parameters.contact);

@@ -1,0 +1,63 @@
+// The film of liquid between grains that touch, as a dashpot.
+//
+// Spheres that meet slowly in a liquid hardly rebound. Against walls and against each other they keep of the dry
+// restitution (Joseph et al. 2001; Gondret, Lance and Petit 2002; Yang and Hunt 2006)
+//   exp(-35/St),   St = m* v/(6 pi eta R*^2),   R* = R1 R2/(R1 + R2), R against a wall.
+// A lattice resolves what the film takes from a fast impact, while it is cells thick, but not the end of a slow one: at
+// St = 80 and below it leaves all of the dry restitution. Beside the dashpot of the dry collision there is therefore
+//   gamma = 2 sqrt(k m*)/[1 + (St/15)^2]
+// with the present speed in St: critical where St is small, nothing in an impact that is fast. It does not hold grains
+// together: as they part it takes no more than the spring gives. The constant 15 is fixed on rebounds at St = 17 to 150
+// (benchmarks/validation/rebound_in_water). The film also keeps a bed at rest: grains on springs softer than glass
+// would rattle on them.
+//
+// Across the contact, 2/7 of it: critical for a rolling grain, of which 2/7 of the mass counts, on a spring 2/7 as stiff.
+#pragma once
+
+#include "dem/contact_law.hpp"
+
+#include <numbers>
+
+namespace thalweg::dem {
+
+// Beside the dashpots of the dry contact: kg/s, or of elastic spheres kg/(s m^1/2).
+struct Dashpots {
+  double along, across;
+};
+
+class ContactFilm {
+public:
+  static constexpr double stokes_number = 15.0;
+  static constexpr double share_across = 2.0 / 7.0;
+
+  explicit ContactFilm(double viscosity)  // Pa s, above 0
+      : force_per_speed_(24.0 * std::numbers::pi * stokes_number * viscosity) {}
+
+  // closing: -v.n, m/s; critical: 2 sqrt(k m*), kg/s; stiffness: k, N/m (or both of elastic spheres, material.hpp).
+  Dashpots operator()(const ContactMotion& c, double closing, double critical, double stiffness) const {
+    // St = 15 at this speed: 15 x 6 pi eta R*^2/m*, with m* = critical^2/(4 k).
+    const double radius_squared = c.effective_radius * c.effective_radius;
+    const double speed = force_per_speed_ * stiffness * radius_squared / (critical * critical);
+    const double film = speed * speed, speed_squared = c.vx * c.vx + c.vy * c.vy + c.vz * c.vz;
+    return {critical * (film / (film + closing * closing)),
+            share_across * critical * (film / (film + speed_squared))};
+  }
+
+  // N, along the normal: without the film, and with its dashpot.
+  static double pressed(double dry, double along, double closing) {
+    const double with = dry + along * closing, least = dry < 0.0 ? dry : 0.0;
+    return with > least ? with : least;
+  }
+
+private:
+  double force_per_speed_;  // Pa s
+};
+
+// In its place without a liquid.
+struct NoFilm {
+  explicit NoFilm(double /*viscosity*/) {}
+  Dashpots operator()(const ContactMotion&, double, double, double) const { return {0.0, 0.0}; }
+  static double pressed(double dry, double /*along*/, double /*closing*/) { return dry; }
+};
+
+}  // namespace thalweg::dem
