@@ -44,13 +44,16 @@ Fluid<Real>::Fluid(const Decomposition& decomposition, MPI_Comm communicator, co
       tiles_(block_.size(), D3Q19::directions * sizeof(Real) * populations_.indexing().row_stride()),
       walls_(decomposition, rank_of(communicator), populations_.indexing(), faces, parameters),
       halo_(decomposition, communicator, populations_, walls_) {
-  for (auto& row : shear_rows_) row.resize(populations_.indexing().packs_per_row() * populations_.indexing().pack());
+  const int row_size = populations_.indexing().packs_per_row() * populations_.indexing().pack();
+  for (auto& row : shear_rows_) row.resize(row_size);
+  for (auto& row : moment_rows_) row.resize(row_size);
   carry_force();
 }
 
 template <typename Real>
 void Fluid<Real>::initialise(const std::function<FluidState(const Vec3&)>& state, const Vec3& force) {
   populations_.set_arrangement(Arrangement::swapped);
+  walls_.set_swept(false);
   for_each_cell(indexing(), [&](std::ptrdiff_t cell, const Index3& at) {
     const FluidState s =
         state(Vec3(block_.lower[0] + at[0] + 0.5, block_.lower[1] + at[1] + 0.5, block_.lower[2] + at[2] + 0.5));
@@ -113,6 +116,7 @@ template <typename Real>
 void Fluid<Real>::end_step() {
   populations_.set_arrangement(populations_.arrangement() == Arrangement::swapped ? Arrangement::moved
                                                                                   : Arrangement::swapped);
+  walls_.set_swept(true);
   carry_force();
 }
 
@@ -121,8 +125,15 @@ template <typename Real>
 void Fluid<Real>::sweep(int y, int z) {
   const bool wanted = walls_.wants_shear(y, z);
   const RowShear<Real> shear{{shear_rows_[0].data(), shear_rows_[1].data(), shear_rows_[2].data()}};
-  sweep_row<Real>(populations_, cells_, parameters_, y, z, wanted ? &shear : nullptr);
+  const bool takes_moments = walls_.wants_moments(y, z);
+  const RowMoments<Real> moments{moment_rows_[0].data(),
+                                 {moment_rows_[1].data(), moment_rows_[2].data(), moment_rows_[3].data()}};
+  sweep_row<Real>(populations_, cells_, parameters_, y, z, wanted ? &shear : nullptr,
+                  takes_moments ? &moments : nullptr);
   if (wanted) walls_.update_bounced(y, z, shear, cells_);
+  if (takes_moments)
+    walls_.take_moments(y, z, moments, cells_,
+                        0.5 * Vec3(parameters_.force[0], parameters_.force[1], parameters_.force[2]));
 }
 
 template <typename Real>
@@ -241,6 +252,7 @@ void Fluid<Real>::load_populations(ArchiveReader& archive) {
                     "and domain.spacing.",
                     saved.at(2), saved.at(1), saved.at(0), here[2], here[1], here[0]));
   populations_.set_arrangement(Arrangement::swapped);
+  walls_.set_swept(false);
   std::vector<Real> values(static_cast<std::size_t>(n[0]) * n[1] * n[2]);
   for (int i = 0; i < D3Q19::directions; ++i) {
     archive.read(fmt::format("fluid/populations_{:02d}", i), std::span<Real>(values), array_box());

@@ -95,7 +95,7 @@ public:
 
 private:
   ArrayBox array_box() const;
-  void sweep(int y, int z);  // a row, and the shear rates its walls want
+  void sweep(int y, int z);  // a row, and the shear rates and moments its walls want
   void end_step();
   void advance_behind_halo();
   void update_force();
@@ -112,6 +112,7 @@ private:
   std::optional<FlowControl> control_;
   Vec3 carried_force_ = Vec3::Zero();
   std::array<std::vector<Real>, 3> shear_rows_;
+  std::array<std::vector<Real>, 4> moment_rows_;
 };
 
 }  // namespace thalweg::lbm

@@ -145,11 +145,20 @@ template <typename Real>
   (factor * sqrt(xz + yz)).copy_to(shear.normal_to[2] + x, stdx::element_aligned);
 }
 
+// Likewise on its own.
+template <typename Real>
+[[gnu::noinline]] void store_moments(const RowSegment<Real>& s, int p, const RowMoments<Real>& moments, int x) {
+  s.deviation[p].copy_to(moments.deviation + x, stdx::element_aligned);
+  s.mx[p].copy_to(moments.momentum[0] + x, stdx::element_aligned);
+  s.my[p].copy_to(moments.momentum[1] + x, stdx::element_aligned);
+  s.mz[p].copy_to(moments.momentum[2] + x, stdx::element_aligned);
+}
+
 // Moments of a whole segment first, then its relaxation: either pass alone is short enough for the processor to work on
 // several packs at once, while one long pass waits for its own divisions and roots.
 template <Kind kind, typename Real>
 void sweep_packs(const Streams<Real>& streams, const RowCells& row, const CollisionParameters& parameters,
-                 const RowShear<Real>* shear) {
+                 const RowShear<Real>* shear, const RowMoments<Real>* moments) {
   constexpr int width = static_cast<int>(Pack<Real>::size());
   const CollisionConstants<Pack<Real>> constants(parameters);
   RowSegment<Real> segment;
@@ -165,6 +174,7 @@ void sweep_packs(const Streams<Real>& streams, const RowCells& row, const Collis
       prefetch(streams, cell);
       relax_pack<kind>(streams, cell, constants, segment, p, row.beside_bodies[first + p]);
       if constexpr (kind.shear) store_shear(segment, p, *shear, (first + p) * width);
+      if (moments) store_moments(segment, p, *moments, (first + p) * width);
     }
   }
 }
@@ -180,24 +190,24 @@ void as_constant(bool value, Visit visit) {
 
 template <CollisionModel model, SubgridModel subgrid, typename Real>
 void sweep_row_with(const Streams<Real>& streams, const RowCells& row, const CollisionParameters& parameters,
-                    const RowShear<Real>* shear) {
+                    const RowShear<Real>* shear, const RowMoments<Real>* moments) {
   as_constant(parameters.with_bulk(), [&]<bool bulk>() {
     as_constant(shear != nullptr, [&]<bool with_shear>() {
-      sweep_packs<Kind{model, subgrid, bulk, with_shear}>(streams, row, parameters, shear);
+      sweep_packs<Kind{model, subgrid, bulk, with_shear}>(streams, row, parameters, shear, moments);
     });
   });
 }
 
 template <CollisionModel model, typename Real>
 void sweep_row_with(const Streams<Real>& streams, const RowCells& row, const CollisionParameters& parameters,
-                    const RowShear<Real>* shear) {
+                    const RowShear<Real>* shear, const RowMoments<Real>* moments) {
   switch (parameters.subgrid.model()) {
     case SubgridModel::none:
-      return sweep_row_with<model, SubgridModel::none>(streams, row, parameters, shear);
+      return sweep_row_with<model, SubgridModel::none>(streams, row, parameters, shear, moments);
     case SubgridModel::smagorinsky:
-      return sweep_row_with<model, SubgridModel::smagorinsky>(streams, row, parameters, shear);
+      return sweep_row_with<model, SubgridModel::smagorinsky>(streams, row, parameters, shear, moments);
     case SubgridModel::qr:
-      return sweep_row_with<model, SubgridModel::qr>(streams, row, parameters, shear);
+      return sweep_row_with<model, SubgridModel::qr>(streams, row, parameters, shear, moments);
   }
 }
 
@@ -205,25 +215,25 @@ void sweep_row_with(const Streams<Real>& streams, const RowCells& row, const Col
 
 template <typename Real>
 void sweep_row(Populations<Real>& populations, const CellMap& cells, const CollisionParameters& parameters, int y,
-               int z, const RowShear<Real>* shear) {
+               int z, const RowShear<Real>* shear, const RowMoments<Real>* moments) {
   const Streams<Real> streams(populations);
   const RowCells row{populations.indexing().index(0, y, z), populations.indexing().packs_per_row(),
                      cells.fluid_in_packs(y, z), cells.beside_bodies(y, z)};
   switch (parameters.model) {
     case CollisionModel::bgk:
-      return sweep_row_with<CollisionModel::bgk>(streams, row, parameters, shear);
+      return sweep_row_with<CollisionModel::bgk>(streams, row, parameters, shear, moments);
     case CollisionModel::trt:
-      return sweep_row_with<CollisionModel::trt>(streams, row, parameters, shear);
+      return sweep_row_with<CollisionModel::trt>(streams, row, parameters, shear, moments);
     case CollisionModel::trt_at_bodies:
-      return sweep_row_with<CollisionModel::trt_at_bodies>(streams, row, parameters, shear);
+      return sweep_row_with<CollisionModel::trt_at_bodies>(streams, row, parameters, shear, moments);
   }
 }
 
 template int pack_width<float>();
 template int pack_width<double>();
 template void sweep_row(Populations<float>&, const CellMap&, const CollisionParameters&, int, int,
-                        const RowShear<float>*);
+                        const RowShear<float>*, const RowMoments<float>*);
 template void sweep_row(Populations<double>&, const CellMap&, const CollisionParameters&, int, int,
-                        const RowShear<double>*);
+                        const RowShear<double>*, const RowMoments<double>*);
 
 }  // namespace thalweg::lbm

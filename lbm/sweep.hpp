@@ -22,10 +22,17 @@ struct RowShear {
   Real* normal_to[3];
 };
 
-// Sweeps one owned row. shear: where to leave the shear rates, or null. The arrangement is not switched: the caller
+// rho - 1 and the momentum, without the half force, of the cells of one row before their collision. Rows of whole packs.
+template <typename Real>
+struct RowMoments {
+  Real* deviation;
+  Real* momentum[3];
+};
+
+// Sweeps one owned row. shear, moments: where to leave these, or null. The arrangement is not switched: the caller
 // does that once all rows are done.
 template <typename Real>
 void sweep_row(Populations<Real>& populations, const CellMap& cells, const CollisionParameters& parameters, int y,
-               int z, const RowShear<Real>* shear);
+               int z, const RowShear<Real>* shear, const RowMoments<Real>* moments);
 
 }  // namespace thalweg::lbm

@@ -42,7 +42,10 @@ void Walls<Real>::apply(Populations<Real>& populations, const CellMap& cells) {
 template <typename Real>
 void Walls<Real>::apply_face(Populations<Real>& populations, const CellMap& cells, int face) {
   const int axis = face / 2, inward = face % 2 == 0 ? 1 : -1;
-  if (stress_[face]) stress_[face]->find(populations, cells, half_force_);
+  if (stress_[face]) {
+    if (!swept_) stress_[face]->take_populations(populations, cells, half_force_);
+    stress_[face]->find(cells);
+  }
   for (int o = 1; o < D3Q19::directions; ++o)
     if (D3Q19::c[o][axis] == inward) {
       const Entry entry(indexing_, face, o);

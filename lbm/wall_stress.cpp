@@ -3,7 +3,6 @@
 #include "core/decomposition.hpp"
 #include "lbm/boundary.hpp"
 #include "lbm/face_axes.hpp"
-#include "lbm/law_of_the_wall.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,40 +17,115 @@ WallStress<Real>::WallStress(const CellIndexing& indexing, int face, const std::
                              double viscosity)
     : indexing_(indexing),
       face_(face),
-      u_axis_(first_axis(face / 2)),
-      v_axis_(second_axis(face / 2)),
+      normal_(face / 2),
+      u_axis_(first_axis(normal_)),
+      v_axis_(second_axis(normal_)),
       nu_(indexing.size()[u_axis_]),
       nv_(indexing.size()[v_axis_]),
+      depth_(indexing.size()[normal_]),
+      inward_(face % 2 == 0 ? indexing.stride(normal_) : -indexing.stride(normal_)),
       present_(present),
       viscosity_(viscosity) {
-  for (auto& component : stress_) component.assign(static_cast<std::size_t>(nu_) * nv_, Real(0));
-  for (Moments* of_row : {&at_wall_, &second_})
-    for (auto* values : {&of_row->density, &of_row->along[0], &of_row->along[1]}) values->resize(nu_);
+  for (auto& values : state_) values.assign(static_cast<std::size_t>(nu_) * nv_, Real(0));
+  resistance_.resize(static_cast<std::size_t>(indexing.size()[0]));
+  for (auto& values : stress_) values.assign(static_cast<std::size_t>(nu_) * nv_, Real(0));
 }
 
 template <typename Real>
-void WallStress<Real>::find(const Populations<Real>& populations, const CellMap& cells, const Vec3& half_force) {
-  for (int v = 0; v < nv_; ++v) find_row(populations, cells, half_force, v);
+std::ptrdiff_t WallStress<Real>::cell_at_wall(int u, int v) const {
+  Index3 at;
+  at[normal_] = face_ % 2 == 0 ? 0 : depth_ - 1;
+  at[u_axis_] = u;
+  at[v_axis_] = v;
+  return indexing_.index(at[0], at[1], at[2]);
 }
 
 template <typename Real>
-void WallStress<Real>::take_moments(const Populations<Real>& populations, std::ptrdiff_t first, const Vec3& half_force,
-                                    Moments& moments) const {
-  const std::ptrdiff_t stride = indexing_.stride(u_axis_);
-  const auto slots = populations.sent();
-  std::fill(moments.density.begin(), moments.density.end(), Real(0));
-  std::fill(moments.along[0].begin(), moments.along[0].end(), static_cast<Real>(-half_force[u_axis_]));
-  std::fill(moments.along[1].begin(), moments.along[1].end(), static_cast<Real>(-half_force[v_axis_]));
-  for (int i = 0; i < D3Q19::directions; ++i) {
-    const Real* f = slots[static_cast<std::size_t>(i)] + first;
-    const auto cu = static_cast<Real>(D3Q19::c[i][u_axis_]), cv = static_cast<Real>(D3Q19::c[i][v_axis_]);
-    for (int u = 0; u < nu_; ++u) {
-      moments.density[u] += f[u * stride];
-      moments.along[0][u] += cu * f[u * stride];
-      moments.along[1][u] += cv * f[u * stride];
-    }
+bool WallStress<Real>::second_is_fluid(const CellMap& cells, std::ptrdiff_t at_wall) const {
+  return depth_ > 1 && cells.is_fluid(at_wall + inward_);
+}
+
+template <typename Real>
+bool WallStress<Real>::wants(int y, int z) const {
+  const int at = normal_ == 1 ? y : z, from_face = face_ % 2 == 0 ? at : depth_ - 1 - at;
+  return normal_ == 0 || from_face < 2;
+}
+
+template <typename Real>
+void WallStress<Real>::take(std::size_t place, double along_u, double along_v) {
+  state_[2][place] = state_[0][place];
+  state_[3][place] = state_[1][place];
+  state_[0][place] = static_cast<Real>(along_u);
+  state_[1][place] = static_cast<Real>(along_v);
+}
+
+// T over rho u in the cells x to end of a row: (nu/distance) StressRatio. In two loops, the first of which is vectorised.
+template <typename Real>
+void WallStress<Real>::find_resistance(int x, int end, bool second, const RowMoments<Real>& moments,
+                                       const Vec3& half_force) {
+  static const StressRatio ratio;
+  const Real* density = moments.deviation;
+  const Real *along_u = moments.momentum[u_axis_], *along_v = moments.momentum[v_axis_];
+  const double half_u = half_force[u_axis_], half_v = half_force[v_axis_];
+  const double distance = second ? 1.5 : 0.5, scale = distance / viscosity_;
+  for (int n = x; n < end; ++n) {
+    const double u = along_u[n] + half_u, v = along_v[n] + half_v;
+    resistance_[n] = scale * std::sqrt(u * u + v * v) / (1.0 + density[n]);  // |u| distance/nu
   }
-  for (Real& density : moments.density) density += Real(1);
+  for (int n = x; n < end; ++n) resistance_[n] = viscosity_ / distance * ratio(resistance_[n]);
+}
+
+// Cells x to end of a row, of which the first belongs to a cell of the face and a place, and each further one to the
+// next. A first cell counts where its second is solid, a second one where it is fluid: each place is taken once in a
+// sweep.
+template <typename Real>
+void WallStress<Real>::take_cells(int x, int end, bool second, std::ptrdiff_t at_wall, std::size_t place,
+                                  const RowMoments<Real>& moments, const CellMap& cells, const Vec3& half_force) {
+  find_resistance(x, end, second, moments, half_force);
+  const Real *along_u = moments.momentum[u_axis_], *along_v = moments.momentum[v_axis_];
+  const double half_u = half_force[u_axis_], half_v = half_force[v_axis_];
+  for (; x < end; ++x, ++at_wall, ++place) {
+    if (second != second_is_fluid(cells, at_wall)) continue;
+    const bool fluid = second || cells.is_fluid(at_wall);
+    take(place, fluid ? resistance_[x] * (along_u[x] + half_u) : 0.0,
+         fluid ? resistance_[x] * (along_v[x] + half_v) : 0.0);
+  }
+}
+
+template <typename Real>
+void WallStress<Real>::take_row(int y, int z, const RowMoments<Real>& moments, const CellMap& cells,
+                                const Vec3& half_force) {
+  if (normal_ == 0) {
+    for (int from_face = 0; from_face < std::min(depth_, 2); ++from_face) {
+      const int x = face_ % 2 == 0 ? from_face : depth_ - 1 - from_face;
+      take_cells(x, x + 1, from_face == 1, cell_at_wall(y, z), place(y, z), moments, cells, half_force);
+    }
+    return;
+  }
+  const int at = normal_ == 1 ? y : z, v = normal_ == 1 ? z : y;
+  const int from_face = face_ % 2 == 0 ? at : depth_ - 1 - at;
+  take_cells(0, nu_, from_face == 1, cell_at_wall(0, v), place(0, v), moments, cells, half_force);
+}
+
+// A collision keeps the density and adds the force to the momentum. Cell by cell, as rows of one.
+template <typename Real>
+void WallStress<Real>::take_populations(const Populations<Real>& populations, const CellMap& cells,
+                                        const Vec3& half_force) {
+  for (int v = 0; v < nv_; ++v)
+    for (int u = 0; u < nu_; ++u) {
+      const std::ptrdiff_t at_wall = cell_at_wall(u, v);
+      const bool second = second_is_fluid(cells, at_wall);
+      const std::ptrdiff_t cell = second ? at_wall + inward_ : at_wall;
+      Real deviation = 0, momentum[3] = {0, 0, 0};
+      for (int i = 0; i < D3Q19::directions; ++i) {
+        const Real f = populations.post_collision(i, cell);
+        deviation += f;
+        for (int a = 0; a < 3; ++a) momentum[a] += static_cast<Real>(D3Q19::c[i][a]) * f;
+      }
+      const RowMoments<Real> moments{&deviation, {&momentum[0], &momentum[1], &momentum[2]}};
+      for (int collision = 0; collision < 2; ++collision)
+        take_cells(0, 1, second, at_wall, place(u, v), moments, cells, -half_force);
+    }
 }
 
 template <typename Real>
@@ -63,42 +137,15 @@ bool WallStress<Real>::has_both_neighbours(const CellMap& cells, std::ptrdiff_t 
 }
 
 template <typename Real>
-std::array<double, 2> WallStress<Real>::stress_of(const Moments& moments, int u, double distance) const {
-  const double density = moments.density[u];
-  const double along_u = moments.along[0][u] / density, along_v = moments.along[1][u] / density;
-  const double speed = std::sqrt(along_u * along_u + along_v * along_v);
-  if (speed == 0.0) return {0.0, 0.0};
-  const double friction = friction_velocity(speed, distance, viscosity_);
-  const double over_velocity = density * friction * friction / speed;
-  return {over_velocity * along_u, over_velocity * along_v};
-}
-
-template <typename Real>
-void WallStress<Real>::find_row(const Populations<Real>& populations, const CellMap& cells, const Vec3& half_force,
-                                int v) {
-  const int axis = face_ / 2, depth = indexing_.size()[axis];
-  const bool low = face_ % 2 == 0;
-  const std::ptrdiff_t stride = indexing_.stride(u_axis_);
-  const std::ptrdiff_t inward = low ? indexing_.stride(axis) : -indexing_.stride(axis);
-  Index3 at{0, 0, 0};
-  at[axis] = low ? 0 : depth - 1;
-  at[v_axis_] = v;
-  const std::ptrdiff_t first = indexing_.index(at[0], at[1], at[2]);
-  const auto knows_second = [&](int u) { return depth > 1 && cells.is_fluid(first + inward + u * stride); };
-  bool second = false, at_wall = false;  // whether any fluid cell at the wall looks there
-  for (int u = 0; u < nu_; ++u)
-    if (cells.is_fluid(first + u * stride)) (knows_second(u) ? second : at_wall) = true;
-  if (second) take_moments(populations, first + inward, half_force, second_);
-  if (at_wall) take_moments(populations, first, half_force, at_wall_);
-  for (int u = 0; u < nu_; ++u) {
-    const std::ptrdiff_t cell = first + u * stride;
-    const bool from_second = knows_second(u);
-    std::array<double, 2> stress{};
-    if (cells.is_fluid(cell)) stress = stress_of(from_second ? second_ : at_wall_, u, from_second ? 1.5 : 0.5);
-    const std::size_t place = static_cast<std::size_t>(v) * nu_ + u;
-    stress_[0][place] = has_both_neighbours(cells, cell, u_axis_, u) ? static_cast<Real>(stress[0]) : Real(0);
-    stress_[1][place] = has_both_neighbours(cells, cell, v_axis_, v) ? static_cast<Real>(stress[1]) : Real(0);
-  }
+void WallStress<Real>::find(const CellMap& cells) {
+  for (int v = 0; v < nv_; ++v)
+    for (int u = 0; u < nu_; ++u) {
+      const std::ptrdiff_t cell = cell_at_wall(u, v);
+      const std::size_t here = place(u, v);
+      const auto mean = [&](std::size_t axis) { return Real(0.5) * (state_[axis][here] + state_[2 + axis][here]); };
+      stress_[0][here] = has_both_neighbours(cells, cell, u_axis_, u) ? mean(0) : Real(0);
+      stress_[1][here] = has_both_neighbours(cells, cell, v_axis_, v) ? mean(1) : Real(0);
+    }
 }
 
 template class WallStress<float>;

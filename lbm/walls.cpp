@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 namespace thalweg::lbm {
 
@@ -41,6 +43,12 @@ ArrayBox face_box(const Decomposition& decomposition, const Block& block, int fa
           {count(v), count(u)}};
 }
 
+// The arrays of WallStress::state().
+std::string state_name(int face, int n) {
+  constexpr std::array names{"stress_u", "stress_v", "stress_before_u", "stress_before_v"};
+  return fmt::format("fluid/wall_{}_{}", names.at(n), face_names[face]);
+}
+
 }  // namespace
 
 template <typename Real>
@@ -62,7 +70,7 @@ Walls<Real>::Walls(const Decomposition& decomposition, int rank, const CellIndex
                               static_cast<Real>(bounced_fraction(face, 0.0)));
     }
   for (int face = 0; face < 6; ++face)
-    if (present_[face] && faces[face].type == FaceType::law_of_the_wall)
+    if (present_[face] && has_stress(face))
       stress_[face].emplace(indexing, face, present_, viscosity_);
 }
 
@@ -116,10 +124,26 @@ void Walls<Real>::update_bounced(int y, int z, const RowShear<Real>& shear, cons
 }
 
 template <typename Real>
+bool Walls<Real>::wants_moments(int y, int z) const {
+  return std::any_of(stress_.begin(), stress_.end(), [=](const auto& face) { return face && face->wants(y, z); });
+}
+
+template <typename Real>
+void Walls<Real>::take_moments(int y, int z, const RowMoments<Real>& moments, const CellMap& cells,
+                               const Vec3& half_force) {
+  for (auto& stress : stress_)
+    if (stress && stress->wants(y, z)) stress->take_row(y, z, moments, cells, half_force);
+}
+
+// Ranks away from a face take part with nothing.
+template <typename Real>
 void Walls<Real>::save(ArchiveWriter& archive, const Decomposition& decomposition, const Block& block) const {
   for (int face = 0; face < 6; ++face) {
-    if (!slips(faces_[face].type)) continue;
     const ArrayBox box = face_box(decomposition, block, face, present_[face]);
+    for (int n = 0; n < WallStress<Real>::arrays && has_stress(face) && swept_; ++n)
+      archive.write(state_name(face, n), stress_[face] ? std::as_const(*stress_[face]).state(n) : std::span<const Real>(),
+                    box);
+    if (!slips(faces_[face].type)) continue;
     std::vector<Real> values;
     for (int v = 0; v < bounced_[face].nv; ++v)
       for (int u = 0; u < bounced_[face].nu; ++u) values.push_back(bounced_[face].at(u, v));
@@ -127,11 +151,16 @@ void Walls<Real>::save(ArchiveWriter& archive, const Decomposition& decompositio
   }
 }
 
+// A state that no sweep has left has no stress.
 template <typename Real>
 void Walls<Real>::load(ArchiveReader& archive, const Decomposition& decomposition, const Block& block) {
   for (int face = 0; face < 6; ++face) {
-    if (!slips(faces_[face].type)) continue;
     const ArrayBox box = face_box(decomposition, block, face, present_[face]);
+    for (int n = 0; n < WallStress<Real>::arrays && has_stress(face) && archive.has(state_name(face, n)); ++n) {
+      archive.read(state_name(face, n), stress_[face] ? stress_[face]->state(n) : std::span<Real>(), box);
+      swept_ = true;
+    }
+    if (!slips(faces_[face].type)) continue;
     std::vector<Real> values(box.shape[0] * box.shape[1]);
     archive.read(std::string("fluid/bounced_fraction_") + face_names[face], std::span<Real>(values), box);
     std::size_t next = 0;

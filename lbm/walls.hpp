@@ -4,7 +4,7 @@
 // c_o, f^c post-collision populations, and r the fraction that bounces back (the rest reflects specularly):
 //   walls              f_o(x, t+1) = r(x) f_o'^c(x, t) + [1 - r(x - t)] f_m^c(x - t, t)
 //                      r = 1: no slip, r = 0: free slip. Taking 1 - r at the source cell conserves mass.
-//   law of the wall    f_o(x, t+1) = f_m^c(x - t, t) - (t.T)(x)/2,   T the stress of wall_stress.hpp
+//   law of the wall    f_o(x, t+1) = f_m^c(x - t, t) - (t.T)(x)/2,   T the stress of wall_stress.hpp, mean of two steps
 //                      The two populations along an axis take just T out of the cell, and no mass, whatever collision
 //                      and subgrid model make of the flow.
 //   moving, inlet      f_o(x, t+1) = f_o'^c(x, t) + 6 w_o rho(x, t) c_o.U                               (Ladd 1994)
@@ -83,6 +83,13 @@ public:
   // theirs goes back to the start value).
   void update_bounced(int y, int z, const RowShear<Real>& shear, const CellMap& cells);
 
+  // True if the moments of a row are wanted after the sweep.
+  bool wants_moments(int y, int z) const;
+  // Takes the stress of faces with a law of the wall from a row, just swept. half_force: of that collision.
+  void take_moments(int y, int z, const RowMoments<Real>& moments, const CellMap& cells, const Vec3& half_force);
+  // All rows have been swept, or populations have been set otherwise, from which the next apply() takes these stresses.
+  void set_swept(bool swept) { swept_ = swept; }
+
   // The force density of the last collision, half of which post-collision populations carry beyond rho u.
   void set_carried_force(const Vec3& force) { half_force_ = 0.5 * force; }
 
@@ -118,6 +125,7 @@ private:
   Real from_edge(const Populations<Real>& populations, const Entry& entry, std::ptrdiff_t cell, int other) const;
   Real from_wall(const Populations<Real>& populations, const Entry& entry, std::ptrdiff_t cell) const;
   int face_of_population(int face, int direction, const Index3& at) const;
+  bool has_stress(int face) const { return faces_[face].type == FaceType::law_of_the_wall; }
   bool follows_shear(int face) const;
   double bounced_fraction(int face, double shear_rate) const;
   Real with_velocity(const Populations<Real>& populations, int direction, std::ptrdiff_t cell,
@@ -132,6 +140,7 @@ private:
   std::array<bool, 6> present_{};
   mutable std::array<FaceField<Real>, 6> bounced_;
   std::array<std::optional<WallStress<Real>>, 6> stress_;  // at faces that obey the law of the wall
+  bool swept_ = false;
 };
 
 }  // namespace thalweg::lbm
