@@ -11,7 +11,8 @@
 // (benchmarks/validation/rebound_in_water). The film also keeps a bed at rest: grains on springs softer than glass
 // would rattle on them.
 //
-// Across the contact, 2/7 of it: critical for a rolling grain, of which 2/7 of the mass counts, on a spring 2/7 as stiff.
+// Across the contact, 2/7 of it: critical for a rolling grain, of which 2/7 of the mass counts, on a spring 2/7 as
+// stiff.
 #pragma once
 
 #include "dem/contact_law.hpp"
@@ -39,8 +40,7 @@ public:
     const double radius_squared = c.effective_radius * c.effective_radius;
     const double speed = force_per_speed_ * stiffness * radius_squared / (critical * critical);
     const double film = speed * speed, speed_squared = c.vx * c.vx + c.vy * c.vy + c.vz * c.vz;
-    return {critical * (film / (film + closing * closing)),
-            share_across * critical * (film / (film + speed_squared))};
+    return {critical * (film / (film + closing * closing)), share_across * critical * (film / (film + speed_squared))};
   }
 
   // N, along the normal: without the film, and with its dashpot.

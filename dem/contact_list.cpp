@@ -62,8 +62,8 @@ ContactBodies contact_bodies(const PairContact& c, const GrainStore& store, cons
 
 ContactBodies contact_bodies(const WallContact& c, const GrainStore& store, std::span<const Plane> walls,
                              const MaterialTable& materials) {
-  return {materials.wall(store.material[c.grain]).damping.critical(store.mass[c.grain]),
-          walls[c.wall].rolling_friction, rolling_inertia(store, c.grain)};
+  return {materials.wall(store.material[c.grain]).damping.critical(store.mass[c.grain]), walls[c.wall].rolling_friction,
+          rolling_inertia(store, c.grain)};
 }
 
 ContactKey key_of(const PairContact& c, const GrainStore& store) { return {store.id[c.first], store.id[c.second]}; }

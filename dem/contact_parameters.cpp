@@ -80,12 +80,14 @@ void describe(SectionVisitor& visit, ContactParameters& contact, StiffnessKeys& 
              {.meaning = "of grains and walls", .at_least = 0.0, .at_most = 0.5, .only_if = elastic});
   visit.real("tangential_damping", contact.tangential_damping,
              {.meaning = "tangential over normal damping coefficient", .at_least = 0.0});
-  visit.real("restitution", contact.restitution,
-             {.meaning = "coefficient of restitution of a dry collision (in a fluid slow ones are stopped by the film between the "
-                        "grains); or give damping",
-              .above = 0.0,
-              .at_most = 1.0,
-              .example = 0.93});
+  visit.real(
+      "restitution", contact.restitution,
+      {.meaning =
+           "coefficient of restitution of a dry collision (in a fluid slow ones are stopped by the film between the "
+           "grains); or give damping",
+       .above = 0.0,
+       .at_most = 1.0,
+       .example = 0.93});
   visit.real("damping", contact.damping,
              {.unit = "kg/s",
               .meaning = "of the dashpot across a contact, in place of restitution",

@@ -41,7 +41,7 @@ struct ContactParameters {
   bool attraction = false;             // whether the dashpot may pull at the end of the contact
   double tangential_damping = 0.0;     // dashpot across the contact over the one along the normal, >= 0
   std::optional<LiquidBridgeParameters> liquid_bridge;  // none: dry
-  double film_viscosity = 0.0;         // Pa s, of the liquid around all grains (contact_film.hpp); 0: none
+  double film_viscosity = 0.0;  // Pa s, of the liquid around all grains (contact_film.hpp); 0: none
   bool operator==(const ContactParameters&) const = default;
 
   double least_normal_force() const { return attraction ? -std::numeric_limits<double>::infinity() : 0.0; }  // N

@@ -7,8 +7,8 @@
 // While the contact unloads, F_t is scaled by a/a_before, so that no energy is made (Thornton, Cummins & Cleary, Powder
 // Technology 233 (2013) 30); a_before follows from delta - delta' dt. The dashpot d = zeta sqrt(5 m* 4/3 E*) makes the
 // restitution independent of the speed: delta^(5/4) obeys the linear equation with the damping ratio zeta (Antypov &
-// Elliott, EPL 94 (2011) 50004), so both closed forms of material.hpp hold exactly. In a liquid it has the film's beside
-// it (contact_film.hpp). SI units.
+// Elliott, EPL 94 (2011) 50004), so both closed forms of material.hpp hold exactly. In a liquid it has the film's
+// beside it (contact_film.hpp). SI units.
 #pragma once
 
 #include "dem/contact_film.hpp"
@@ -53,7 +53,6 @@ struct HertzMindlin {
   static void check(const ContactParameters& parameters);  // throws InputError
   // What makes a contact of a grain and another, or a wall, softer; completes "a lower ..." in a message.
   static std::string softer(const ContactParameters& grain, const ContactParameters& other);
-
 };
 
 // Film: ContactFilm or NoFilm.

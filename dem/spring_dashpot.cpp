@@ -8,20 +8,19 @@
 
 namespace thalweg::dem {
 
-SpringDashpot::Coefficients SpringDashpot::between(const ContactParameters& a,
-                                                                   const ContactParameters& b) {
+SpringDashpot::Coefficients SpringDashpot::between(const ContactParameters& a, const ContactParameters& b) {
   return {harmonic_mean(a.normal_stiffness, b.normal_stiffness),
           harmonic_mean(a.tangential_stiffness, b.tangential_stiffness), 0.0, 0.0,
           geometric_mean(a.friction, b.friction)};
 }
 
 SpringDashpot::Coefficients SpringDashpot::against_wall(const ContactParameters& /*grain*/,
-                                                                        const ContactParameters& wall) {
+                                                        const ContactParameters& wall) {
   return between(wall, wall);
 }
 
 double SpringDashpot::contact_time(const Coefficients& k, double damping, double effective_mass,
-                                           double /*effective_radius*/) {
+                                   double /*effective_radius*/) {
   return dem::contact_time(k.stiffness, effective_mass, damping);
 }
 

@@ -22,7 +22,8 @@ struct RowShear {
   Real* normal_to[3];
 };
 
-// rho - 1 and the momentum, without the half force, of the cells of one row before their collision. Rows of whole packs.
+// rho - 1 and the momentum, without the half force, of the cells of one row before their collision. Rows of whole
+// packs.
 template <typename Real>
 struct RowMoments {
   Real* deviation;

@@ -59,7 +59,8 @@ void WallStress<Real>::take(std::size_t place, double along_u, double along_v) {
   state_[1][place] = static_cast<Real>(along_v);
 }
 
-// T over rho u in the cells x to end of a row: (nu/distance) StressRatio. In two loops, the first of which is vectorised.
+// T over rho u in the cells x to end of a row: (nu/distance) StressRatio. In two loops, the first of which is
+// vectorised.
 template <typename Real>
 void WallStress<Real>::find_resistance(int x, int end, bool second, const RowMoments<Real>& moments,
                                        const Vec3& half_force) {

@@ -7,9 +7,9 @@
 // The second cell: in the first the profile is steeper than the lattice resolves, and its velocity belongs to the
 // lattice, not to the flow (Kawai and Larsson 2012). In a sublayer that the lattice does resolve, T is that of no slip.
 //
-// What a step takes is the mean of T in the last two collisions. The lattice has momenta of its own that change sign from
-// cell to cell along the wall and from step to step, and that neither collisions nor walls damp (Zanetti 1989): T of the
-// step before would always push them on, and quiet water would break down.
+// What a step takes is the mean of T in the last two collisions. The lattice has momenta of its own that change sign
+// from cell to cell along the wall and from step to step, and that neither collisions nor walls damp (Zanetti 1989): T
+// of the step before would always push them on, and quiet water would break down.
 //
 // Along an axis in which a body or another face is beside the cell there is no T: one of the two populations that would
 // carry it bounces back whole, and T from the other alone would change the mass.

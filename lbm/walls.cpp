@@ -70,8 +70,7 @@ Walls<Real>::Walls(const Decomposition& decomposition, int rank, const CellIndex
                               static_cast<Real>(bounced_fraction(face, 0.0)));
     }
   for (int face = 0; face < 6; ++face)
-    if (present_[face] && has_stress(face))
-      stress_[face].emplace(indexing, face, present_, viscosity_);
+    if (present_[face] && has_stress(face)) stress_[face].emplace(indexing, face, present_, viscosity_);
 }
 
 template <typename Real>
@@ -141,8 +140,8 @@ void Walls<Real>::save(ArchiveWriter& archive, const Decomposition& decompositio
   for (int face = 0; face < 6; ++face) {
     const ArrayBox box = face_box(decomposition, block, face, present_[face]);
     for (int n = 0; n < WallStress<Real>::arrays && has_stress(face) && swept_; ++n)
-      archive.write(state_name(face, n), stress_[face] ? std::as_const(*stress_[face]).state(n) : std::span<const Real>(),
-                    box);
+      archive.write(state_name(face, n),
+                    stress_[face] ? std::as_const(*stress_[face]).state(n) : std::span<const Real>(), box);
     if (!slips(faces_[face].type)) continue;
     std::vector<Real> values;
     for (int v = 0; v < bounced_[face].nv; ++v)

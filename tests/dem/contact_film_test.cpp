@@ -1,6 +1,6 @@
 // The film of a liquid in a contact: its dashpot, and what it leaves of a rebound.
-#include "core/mpi_session.hpp"
 #include "dem/contact_film.hpp"
+#include "core/mpi_session.hpp"
 #include "dem/material.hpp"
 #include "tests/dem/grain_cases.hpp"
 

@@ -202,8 +202,7 @@ void expect_stress_in(Box<Real>& box, int face, const Index3& at) {
       const double bounced = f.post_collision(D3Q19::opposite(o), cell),
                    reflected = f.post_collision(D3Q19::mirror(o, normal), source);
       if (both)
-        EXPECT_NEAR(f.incoming(o, cell), reflected - 0.5 * sign * stress[axis],
-                    rounding<Real> + table);
+        EXPECT_NEAR(f.incoming(o, cell), reflected - 0.5 * sign * stress[axis], rounding<Real> + table);
       else
         EXPECT_EQ(f.incoming(o, cell), box.is_fluid(source) ? reflected : bounced);
     }
