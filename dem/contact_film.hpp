@@ -21,6 +21,13 @@
 
 namespace thalweg::dem {
 
+inline constexpr double film_stokes_number = 15.0;
+
+// m/s: the speed with this St of two bodies. Pa s, kg (m*), m (R*).
+inline double film_speed(double viscosity, double effective_mass, double effective_radius) {
+  return film_stokes_number * 6.0 * std::numbers::pi * viscosity * effective_radius * effective_radius / effective_mass;
+}
+
 // Beside the dashpots of the dry contact: kg/s, or of elastic spheres kg/(s m^1/2).
 struct Dashpots {
   double along, across;
@@ -28,17 +35,15 @@ struct Dashpots {
 
 class ContactFilm {
 public:
-  static constexpr double stokes_number = 15.0;
   static constexpr double share_across = 2.0 / 7.0;
 
   explicit ContactFilm(double viscosity)  // Pa s, above 0
-      : force_per_speed_(24.0 * std::numbers::pi * stokes_number * viscosity) {}
+      : viscosity_(viscosity) {}
 
   // closing: -v.n, m/s; critical: 2 sqrt(k m*), kg/s; stiffness: k, N/m (or both of elastic spheres, material.hpp).
   Dashpots operator()(const ContactMotion& c, double closing, double critical, double stiffness) const {
-    // St = 15 at this speed: 15 x 6 pi eta R*^2/m*, with m* = critical^2/(4 k).
-    const double radius_squared = c.effective_radius * c.effective_radius;
-    const double speed = force_per_speed_ * stiffness * radius_squared / (critical * critical);
+    const double mass = critical * critical / (4.0 * stiffness);  // m*
+    const double speed = film_speed(viscosity_, mass, c.effective_radius);
     const double film = speed * speed, speed_squared = c.vx * c.vx + c.vy * c.vy + c.vz * c.vz;
     return {critical * (film / (film + closing * closing)), share_across * critical * (film / (film + speed_squared))};
   }
@@ -50,7 +55,7 @@ public:
   }
 
 private:
-  double force_per_speed_;  // Pa s
+  double viscosity_;  // Pa s
 };
 
 // In its place without a liquid.

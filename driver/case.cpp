@@ -234,6 +234,11 @@ double longest_lubrication_step(const Case& c) {
   return dem::longest_lubrication_step(parameters, radius_per_mass);
 }
 
+double film_viscosity(const Case& c) {
+  const bool without = !has_fluid(c) || !c.contact.restitution || c.coupling.lubrication;
+  return without ? 0.0 : c.fluid.density * c.fluid.kinematic_viscosity;
+}
+
 std::int64_t sub_steps_needed(const Case& c) {
   const double needed = fluid_time_step(c) / std::min(longest_contact_step(c), longest_lubrication_step(c));
   return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(needed * (1.0 - dem::rounding_of_a_step))));

@@ -223,6 +223,10 @@ inline constexpr double karman = 0.41;  // von Karman's constant of the logarith
 double longest_contact_step(const Case& c);
 double longest_lubrication_step(const Case& c);
 
+// Pa s, of the fluid whose film the contacts have (dem/contact_film.hpp); 0: none. There is one where contacts have a
+// restitution, which is that of a dry collision: a damping is the whole dashpot, and lubrication is a film of its own.
+double film_viscosity(const Case& c);
+
 // Sub-steps of the grains in one step of the fluid that keep both; at least 1.
 std::int64_t sub_steps_needed(const Case& c);
 

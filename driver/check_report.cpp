@@ -1,6 +1,7 @@
 #include "driver/check_report.hpp"
 
 #include "core/error.hpp"
+#include "dem/contact_film.hpp"
 #include "dem/grain_seed.hpp"
 #include "dem/material.hpp"
 #include "dem/population_rows.hpp"
@@ -57,6 +58,16 @@ std::string range_text(double least, double most) {
   return low == high ? low : low + " to " + high;
 }
 
+// Of the lightest two free grains.
+std::string film_text(const Case& c) {
+  if (!(film_viscosity(c) > 0.0)) return {};
+  double fastest = 0.0;
+  for (const std::size_t p : free_populations(c))
+    fastest = std::max(fastest, dem::film_speed(film_viscosity(c), 0.5 * c.grains[p].lightest_mass(),
+                                                0.25 * c.grains[p].smallest_diameter()));
+  return fmt::format(", and critical below {:.1g} m/s by the film", fastest);
+}
+
 // Where it follows from the damping.
 std::string restitution_text(const Case& c) {
   const std::optional<DryRestitution> dry = dry_restitution(c);
@@ -107,8 +118,8 @@ std::string duration_text(const Case& c) {
 
 std::string contact_text(const Case& c) {
   const double step = grain_time_step(c);
-  return fmt::format("{}: {:.3g} sub-steps of {:.3g} s (at least {:g}); damping {}{}", duration_text(c),
-                     shortest_contact(c) / step, step, dem::fewest_steps_per_contact, damping_text(c),
+  return fmt::format("{}: {:.3g} sub-steps of {:.3g} s (at least {:g}); damping {}{}{}", duration_text(c),
+                     shortest_contact(c) / step, step, dem::fewest_steps_per_contact, damping_text(c), film_text(c),
                      restitution_text(c));
 }
 

@@ -14,13 +14,6 @@ namespace {
 // neighbour list means a new look at the links, and grains are slower.
 constexpr double skin_in_diameters = 0.1, dry_skin_in_diameters = 0.5;
 
-// Of the film in contacts with a restitution, which is that of a dry collision. A `damping` is the whole dashpot, and
-// lubrication is a film of its own.
-double film_viscosity(const Case& c) {
-  const bool without = !has_fluid(c) || !c.contact.restitution || c.coupling.lubrication;
-  return without ? 0.0 : c.fluid.density * c.fluid.kinematic_viscosity;
-}
-
 // Faces the fluid sticks to; the other walls of the case are not the fluid's.
 dem::LubricationParameters lubrication_parameters(const Case& c, std::size_t walls) {
   const coupling::LubricationKeys& given = *c.coupling.lubrication;
