@@ -227,7 +227,7 @@ void YamlDocument::lay_beneath(YamlNode& section, const YamlNode& other, const s
       keys.left_out.push_back(path);
     } else if (merges) {
       YamlNode inside;
-      inside.place = value.place;
+      inside.place = own ? own->place : section.place;  // what is missing in it is missing in this file
       if (own && !empty) inside = *own;
       lay_beneath(inside, value, path, without, keys);
       if (own)

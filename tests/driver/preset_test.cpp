@@ -91,6 +91,12 @@ TEST(Preset, IsRefusedWithThePlaceAndTheNames) {
   EXPECT_TRUE(contains(message({"system=grains"}), "case.yaml:2: preset = \"zhang2022\": it is for system: resolved"));
   // Of keys of the case the place is the case's, of those of the preset the preset's; what is taken out stays out.
   EXPECT_TRUE(contains(message({"contact.friction=-1"}), "--set contact.friction=-1: contact.friction = -1"));
+  // What is missing in a section of the preset is missing in the case.
+  std::string without = published;
+  const std::size_t fluid = without.find("fluid: ");
+  without.erase(fluid, without.find("gravity: ") - fluid);
+  put(folder / "case.yaml", without);
+  EXPECT_TRUE(contains(message({}), "case.yaml:1: fluid.density is missing"));
   put(folder / "case.yaml", published + "coupling: {load: wrong}\n");
   EXPECT_TRUE(contains(message({}), "case.yaml:13: coupling.load = \"wrong\""));
   put(folder / "case.yaml", published);
