@@ -41,8 +41,7 @@ template <typename Real>
 void set_gravity(lbm::Fluid<Real>& fluid, const FluidParameters& parameters, std::int64_t step) {
   if (parameters.ramp == 0.0) return;
   const double factor = gravity_factor(parameters, step);
-  Vec3 force;
-  for (int a = 0; a < 3; ++a) force[a] = factor * parameters.collision.force[a];
+  Vec3 force = factor * parameters.collision.force;
   if (parameters.flow_target) {
     const int axis = parameters.flow_target->axis;
     force[axis] = fluid.parameters().force[axis];
@@ -58,8 +57,7 @@ inline bool closed(const lbm::FaceConditions& faces) {
 
 // The rest state of the fluid: hydrostatic with full gravity, uniform with reduced gravity.
 inline Hydrostatic rest_state(const FluidParameters& parameters, const Decomposition& decomposition) {
-  const double(&f)[3] = parameters.collision.force;
-  return parameters.full_gravity ? hydrostatic_under(Vec3(f[0], f[1], f[2]), decomposition) : Hydrostatic{};
+  return parameters.full_gravity ? hydrostatic_under(parameters.collision.force, decomposition) : Hydrostatic{};
 }
 
 // Brings the fluid to the initial state of the parameters. With full gravity the populations get the half force that a
@@ -67,8 +65,7 @@ inline Hydrostatic rest_state(const FluidParameters& parameters, const Decomposi
 template <typename Real>
 void initialise(lbm::Fluid<Real>& fluid, const FluidParameters& parameters, const Hydrostatic& rest) {
   if (!parameters.initial_fluid && rest.none()) return;
-  const double(&f)[3] = parameters.collision.force;
-  const Vec3 force = rest.none() ? Vec3(Vec3::Zero()) : Vec3(f[0], f[1], f[2]);
+  const Vec3 force = rest.none() ? Vec3(Vec3::Zero()) : parameters.collision.force;
   fluid.initialise(
       [&](const Vec3& cell_centre) {
         FluidInitialState s;

@@ -117,10 +117,9 @@ std::optional<FluidSource::State> state_of(const lbm::Fluid<Real>& fluid, const 
 
 template <typename Real>
 FluidSource::Drive drive_of(lbm::Fluid<Real>& fluid, const Units& units, double reference) {
-  const double(&force)[3] = fluid.parameters().force;
   FluidSource::Drive drive;
   drive.on_top = fluid.wall_forces(reference)[5] * units.force();
-  drive.body_force = Vec3(force[0], force[1], force[2]) * (units.stress() / units.spacing);
+  drive.body_force = fluid.parameters().force * (units.stress() / units.spacing);
   return drive;
 }
 

@@ -85,8 +85,7 @@ MomentumBook book_of(lbm::Fluid<Real>& fluid, const Units& units, double referen
   std::vector<FixedVec3> on_sides(on_grains.size());
   book.on_top = fluid.wall_forces(reference, &on_sides)[5] * units.force();
   book.on_sides = over_ranks(on_sides, fluid, units.force());
-  const double(&force)[3] = fluid.parameters().force;
-  book.driving = Vec3(force[0], force[1], force[2]) * (units.stress() / units.spacing);
+  book.driving = fluid.parameters().force * (units.stress() / units.spacing);
   return book;
 }
 

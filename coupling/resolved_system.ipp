@@ -265,8 +265,7 @@ std::vector<Figure> ResolvedSystem<Real, S>::figures() const {
   add_extremes(survey, figures);
   figures.push_back({"largest_grain_speed", "m/s", grains_->largest_speed()});
   for (const Figure& figure : mass_.figures(excess.sum, mass_owed(), parameters_.units)) figures.push_back(figure);
-  const auto& force = fluid_.parameters().force;
-  add_momentum(survey, Vec3(force[0], force[1], force[2]), parameters_.units, figures);
+  add_momentum(survey, fluid_.parameters().force, parameters_.units, figures);
   return figures;
 }
 

@@ -31,8 +31,7 @@ double take_fluid(lbm::Fluid<Real>& fluid, ArchiveReader& archive, double spacin
     return 1.0;
   }
   const double velocity_unit = spacing / saved_step / units.velocity();
-  const double(&f)[3] = parameters.collision.force;
-  lbm::transfer_flow(fluid, archive, velocity_unit, Vec3(f[0], f[1], f[2]));
+  lbm::transfer_flow(fluid, archive, velocity_unit, parameters.collision.force);
   return velocity_unit * velocity_unit;
 }
 

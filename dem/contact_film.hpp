@@ -16,6 +16,7 @@
 #pragma once
 
 #include "dem/contact_law.hpp"
+#include "dem/contact_parameters.hpp"
 
 #include <numbers>
 
@@ -63,6 +64,22 @@ struct NoFilm {
   explicit NoFilm(double /*viscosity*/) {}
   Dashpots operator()(const ContactMotion&, double, double, double) const { return {0.0, 0.0}; }
   static double pressed(double dry, double /*along*/, double /*closing*/) { return dry; }
+};
+
+// Numbers that the laws with springs and dashpots share. Film: ContactFilm or NoFilm.
+template <typename Film>
+struct SpringsAndDashpots {
+  // common: of any material; time_step: s, with 0 the springs do not grow: a force without history.
+  SpringsAndDashpots(const ContactParameters& common, double step)
+      : film(common.film_viscosity),
+        least_normal_force(common.least_normal_force()),
+        share_across(common.tangential_damping),
+        time_step(step) {}
+
+  Film film;
+  double least_normal_force;  // N
+  double share_across;        // c: of the dry dashpot along the normal, across it
+  double time_step;           // s
 };
 
 }  // namespace thalweg::dem

@@ -59,12 +59,7 @@ struct HertzMindlin {
 template <typename Film>
 class HertzMindlinFriction : public HertzMindlin {
 public:
-  // common: of any material; time_step: s, with 0 the springs do not grow: a force without history.
-  HertzMindlinFriction(const ContactParameters& common, double time_step)
-      : film_(common.film_viscosity),
-        least_(common.least_normal_force()),
-        share_(common.tangential_damping),
-        time_step_(time_step) {}
+  HertzMindlinFriction(const ContactParameters& common, double time_step) : common_(common, time_step) {}
 
   ContactLoad operator()(const ContactMotion& c, const Coefficients& k, const Constants& constants,
                          History& history) const {
@@ -73,29 +68,29 @@ public:
     const double a = std::sqrt(c.effective_radius * overlap);
     const double root = std::sqrt(a);
     const double dry = k.damping_ratio * critical + k.damping;
-    const Dashpots film = film_(c, closing, critical, damping_stiffness(k));
+    const Dashpots film = common_.film(c, closing, critical, damping_stiffness(k));
     const double pressed = Film::pressed(k.normal * a * overlap + root * dry * closing, root * film.along, closing);
-    const double normal = pressed > least_ ? pressed : least_;
-    const Friction f = friction_of(c, closing, normal, k.friction, k.tangential, root * (share_ * dry + film.across),
-                                   kept(closing, overlap), a * time_step_, {history[0], history[1], history[2]});
+    const double normal = pressed > common_.least_normal_force ? pressed : common_.least_normal_force;
+    const Friction f =
+        friction_of(c, closing, normal, k.friction, k.tangential, root * (common_.share_across * dry + film.across),
+                    kept(closing, overlap), a * common_.time_step, {history[0], history[1], history[2]});
     history = {f.spring.x, f.spring.y, f.spring.z};
     return {normal, f.x, f.y, f.z};
   }
 
   NormalSpring normal_spring(const ContactMotion& c, const Coefficients& k) const {
     const double overlap = c.overlap > 0.0 ? c.overlap : 0.0, a = std::sqrt(c.effective_radius * overlap);
-    return {1.5 * k.normal, a, a * time_step_, kept(-(c.vx * c.nx + c.vy * c.ny + c.vz * c.nz), overlap)};
+    return {1.5 * k.normal, a, a * common_.time_step, kept(-(c.vx * c.nx + c.vy * c.ny + c.vz * c.nz), overlap)};
   }
 
 private:
   // a/a_before where the contact opens.
   double kept(double closing, double overlap) const {
-    const double opening = closing < 0.0 ? -closing * time_step_ : 0.0;
+    const double opening = closing < 0.0 ? -closing * common_.time_step : 0.0;
     return opening > 0.0 ? std::sqrt(overlap / (overlap + opening)) : 1.0;
   }
 
-  Film film_;
-  double least_, share_, time_step_;
+  SpringsAndDashpots<Film> common_;
 };
 
 inline constexpr double elastic_contact_speed = 1.0;  // m/s

@@ -51,33 +51,28 @@ struct SpringDashpot {
 template <typename Film>
 class SpringDashpotFriction : public SpringDashpot {
 public:
-  // common: of any material; time_step: s, with 0 the springs do not grow: a force without history.
-  SpringDashpotFriction(const ContactParameters& common, double time_step)
-      : film_(common.film_viscosity),
-        least_(common.least_normal_force()),
-        share_(common.tangential_damping),
-        time_step_(time_step) {}
+  SpringDashpotFriction(const ContactParameters& common, double time_step) : common_(common, time_step) {}
 
   ContactLoad operator()(const ContactMotion& c, const Coefficients& k, const Constants& constants,
                          History& history) const {
     const double closing = -(c.vx * c.nx + c.vy * c.ny + c.vz * c.nz), critical = constants.critical_damping;
     const double dry = k.damping_ratio * critical + k.damping;
-    const Dashpots film = film_(c, closing, critical, k.stiffness);
+    const Dashpots film = common_.film(c, closing, critical, k.stiffness);
     const double pressed = Film::pressed(k.stiffness * c.overlap + dry * closing, film.along, closing);
-    const double normal = pressed > least_ ? pressed : least_;
-    const Friction f = friction_of(c, closing, normal, k.friction, k.tangential_stiffness, share_ * dry + film.across,
-                                   1.0, time_step_, {history[0], history[1], history[2]});
+    const double normal = pressed > common_.least_normal_force ? pressed : common_.least_normal_force;
+    const Friction f =
+        friction_of(c, closing, normal, k.friction, k.tangential_stiffness, common_.share_across * dry + film.across,
+                    1.0, common_.time_step, {history[0], history[1], history[2]});
     history = {f.spring.x, f.spring.y, f.spring.z};
     return {normal, f.x, f.y, f.z};
   }
 
   NormalSpring normal_spring(const ContactMotion&, const Coefficients& k) const {
-    return {k.stiffness, 1.0, time_step_, 1.0};
+    return {k.stiffness, 1.0, common_.time_step, 1.0};
   }
 
 private:
-  Film film_;
-  double least_, share_, time_step_;
+  SpringsAndDashpots<Film> common_;
 };
 
 }  // namespace thalweg::dem

@@ -48,7 +48,7 @@ struct CollisionConstants {
   [[gnu::always_inline]] explicit CollisionConstants(const CollisionParameters& p) {
     constexpr auto constant = pack_constant<Number>;
     constexpr double w = D3Q19::diagonal_weight;
-    const double(&f)[3] = p.force;
+    const Vec3& f = p.force;
     tau0 = constant(p.relaxation_time);
     tau0_squared = constant(p.relaxation_time * p.relaxation_time);
     eddies = constant(p.subgrid.closure_factor());

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/named_choice.hpp"
+#include "core/types.hpp"
 #include "lbm/subgrid.hpp"
 
 #include <vector>
@@ -32,7 +33,7 @@ struct CollisionParameters {
   double relaxation_time = 1.0;         // tau_0 = 1/2 + 3 nu dt/dx^2
   double bulk_relaxation_time = 0.0;    // tau_b, above 1/2; 0: as the shear's, eddies included
   Subgrid subgrid;
-  double force[3] = {0.0, 0.0, 0.0};  // force density on the fluid
+  Vec3 force = Vec3::Zero();  // force density on the fluid
 
   bool with_bulk() const { return bulk_relaxation_time > 0.0; }
 

@@ -121,7 +121,7 @@ MomentumFlux momentum_flux(const Fluid<Real>& fluid, std::ptrdiff_t cell) {
   const CellMoments<double> m = incoming_moments(fluid, cell);
   MomentumFlux flux;
   flux.density = 1.0 + m.deviation;
-  flux.velocity = m.inverse_rho * (Vec3(m.mx, m.my, m.mz) + 0.5 * Vec3(p.force[0], p.force[1], p.force[2]));
+  flux.velocity = m.inverse_rho * (Vec3(m.mx, m.my, m.mz) + 0.5 * p.force);
   const Symmetric<double> pi = p.with_bulk() ? m.pi.traceless() : m.pi;
   flux.viscous = times(-m.omega * (p.relaxation_time - 0.5), pi);
   flux.subgrid = times(-(1.0 - m.omega * p.relaxation_time), pi);

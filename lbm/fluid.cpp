@@ -73,12 +73,12 @@ void Fluid<Real>::exchange_halo() {
 
 template <typename Real>
 void Fluid<Real>::set_force(const Vec3& force) {
-  for (int a = 0; a < 3; ++a) parameters_.force[a] = force[a];
+  parameters_.force = force;
 }
 
 template <typename Real>
 void Fluid<Real>::carry_force() {
-  carried_force_ = Vec3(parameters_.force[0], parameters_.force[1], parameters_.force[2]);
+  carried_force_ = parameters_.force;
   walls_.set_carried_force(carried_force_);
 }
 
@@ -95,9 +95,7 @@ void Fluid<Real>::update_force() {
     const FluidTotals sums = totals();
     control_->update(sums.momentum[axis] / static_cast<double>(sums.cells) - 0.5 * carried_force_[axis]);
   }
-  Vec3 force(parameters_.force[0], parameters_.force[1], parameters_.force[2]);
-  force[axis] = control_->force();
-  set_force(force);
+  parameters_.force[axis] = control_->force();
 }
 
 template <typename Real>
@@ -123,17 +121,15 @@ void Fluid<Real>::end_step() {
 // Every row takes the same way through the sweep on every rank, because with shear rates it may round differently.
 template <typename Real>
 void Fluid<Real>::sweep(int y, int z) {
-  const bool wanted = walls_.wants_shear(y, z);
   const RowShear<Real> shear{{shear_rows_[0].data(), shear_rows_[1].data(), shear_rows_[2].data()}};
-  const bool takes_moments = walls_.wants_moments(y, z);
   const RowMoments<Real> moments{moment_rows_[0].data(),
                                  {moment_rows_[1].data(), moment_rows_[2].data(), moment_rows_[3].data()}};
-  sweep_row<Real>(populations_, cells_, parameters_, y, z, wanted ? &shear : nullptr,
-                  takes_moments ? &moments : nullptr);
-  if (wanted) walls_.update_bounced(y, z, shear, cells_);
-  if (takes_moments)
-    walls_.take_moments(y, z, moments, cells_,
-                        0.5 * Vec3(parameters_.force[0], parameters_.force[1], parameters_.force[2]));
+  RowOutput<Real> output;
+  if (walls_.wants_shear(y, z)) output.shear = &shear;
+  if (walls_.wants_moments(y, z)) output.moments = &moments;
+  sweep_row<Real>(populations_, cells_, parameters_, y, z, output);
+  if (output.shear) walls_.update_bounced(y, z, shear, cells_);
+  if (output.moments) walls_.take_moments(y, z, moments, cells_, 0.5 * parameters_.force);
 }
 
 template <typename Real>
@@ -268,9 +264,7 @@ void Fluid<Real>::load(ArchiveReader& archive) {
   walls_.load(archive, decomposition_, block_);
   if (control_) {
     control_->load(archive);
-    Vec3 force(parameters_.force[0], parameters_.force[1], parameters_.force[2]);
-    force[control_->target().axis] = control_->force();
-    set_force(force);
+    parameters_.force[control_->target().axis] = control_->force();
   }
   carry_force();
 }

@@ -158,7 +158,7 @@ template <typename Real>
 // several packs at once, while one long pass waits for its own divisions and roots.
 template <Kind kind, typename Real>
 void sweep_packs(const Streams<Real>& streams, const RowCells& row, const CollisionParameters& parameters,
-                 const RowShear<Real>* shear, const RowMoments<Real>* moments) {
+                 const RowOutput<Real>& output) {
   constexpr int width = static_cast<int>(Pack<Real>::size());
   const CollisionConstants<Pack<Real>> constants(parameters);
   RowSegment<Real> segment;
@@ -173,8 +173,8 @@ void sweep_packs(const Streams<Real>& streams, const RowCells& row, const Collis
       const std::ptrdiff_t cell = row.first + (first + p) * width;
       prefetch(streams, cell);
       relax_pack<kind>(streams, cell, constants, segment, p, row.beside_bodies[first + p]);
-      if constexpr (kind.shear) store_shear(segment, p, *shear, (first + p) * width);
-      if (moments) store_moments(segment, p, *moments, (first + p) * width);
+      if constexpr (kind.shear) store_shear(segment, p, *output.shear, (first + p) * width);
+      if (output.moments) store_moments(segment, p, *output.moments, (first + p) * width);
     }
   }
 }
@@ -190,24 +190,24 @@ void as_constant(bool value, Visit visit) {
 
 template <CollisionModel model, SubgridModel subgrid, typename Real>
 void sweep_row_with(const Streams<Real>& streams, const RowCells& row, const CollisionParameters& parameters,
-                    const RowShear<Real>* shear, const RowMoments<Real>* moments) {
+                    const RowOutput<Real>& output) {
   as_constant(parameters.with_bulk(), [&]<bool bulk>() {
-    as_constant(shear != nullptr, [&]<bool with_shear>() {
-      sweep_packs<Kind{model, subgrid, bulk, with_shear}>(streams, row, parameters, shear, moments);
+    as_constant(output.shear != nullptr, [&]<bool with_shear>() {
+      sweep_packs<Kind{model, subgrid, bulk, with_shear}>(streams, row, parameters, output);
     });
   });
 }
 
 template <CollisionModel model, typename Real>
 void sweep_row_with(const Streams<Real>& streams, const RowCells& row, const CollisionParameters& parameters,
-                    const RowShear<Real>* shear, const RowMoments<Real>* moments) {
+                    const RowOutput<Real>& output) {
   switch (parameters.subgrid.model()) {
     case SubgridModel::none:
-      return sweep_row_with<model, SubgridModel::none>(streams, row, parameters, shear, moments);
+      return sweep_row_with<model, SubgridModel::none>(streams, row, parameters, output);
     case SubgridModel::smagorinsky:
-      return sweep_row_with<model, SubgridModel::smagorinsky>(streams, row, parameters, shear, moments);
+      return sweep_row_with<model, SubgridModel::smagorinsky>(streams, row, parameters, output);
     case SubgridModel::qr:
-      return sweep_row_with<model, SubgridModel::qr>(streams, row, parameters, shear, moments);
+      return sweep_row_with<model, SubgridModel::qr>(streams, row, parameters, output);
   }
 }
 
@@ -215,25 +215,25 @@ void sweep_row_with(const Streams<Real>& streams, const RowCells& row, const Col
 
 template <typename Real>
 void sweep_row(Populations<Real>& populations, const CellMap& cells, const CollisionParameters& parameters, int y,
-               int z, const RowShear<Real>* shear, const RowMoments<Real>* moments) {
+               int z, const RowOutput<Real>& output) {
   const Streams<Real> streams(populations);
   const RowCells row{populations.indexing().index(0, y, z), populations.indexing().packs_per_row(),
                      cells.fluid_in_packs(y, z), cells.beside_bodies(y, z)};
   switch (parameters.model) {
     case CollisionModel::bgk:
-      return sweep_row_with<CollisionModel::bgk>(streams, row, parameters, shear, moments);
+      return sweep_row_with<CollisionModel::bgk>(streams, row, parameters, output);
     case CollisionModel::trt:
-      return sweep_row_with<CollisionModel::trt>(streams, row, parameters, shear, moments);
+      return sweep_row_with<CollisionModel::trt>(streams, row, parameters, output);
     case CollisionModel::trt_at_bodies:
-      return sweep_row_with<CollisionModel::trt_at_bodies>(streams, row, parameters, shear, moments);
+      return sweep_row_with<CollisionModel::trt_at_bodies>(streams, row, parameters, output);
   }
 }
 
 template int pack_width<float>();
 template int pack_width<double>();
 template void sweep_row(Populations<float>&, const CellMap&, const CollisionParameters&, int, int,
-                        const RowShear<float>*, const RowMoments<float>*);
+                        const RowOutput<float>&);
 template void sweep_row(Populations<double>&, const CellMap&, const CollisionParameters&, int, int,
-                        const RowShear<double>*, const RowMoments<double>*);
+                        const RowOutput<double>&);
 
 }  // namespace thalweg::lbm

@@ -30,10 +30,16 @@ struct RowMoments {
   Real* momentum[3];
 };
 
-// Sweeps one owned row. shear, moments: where to leave these, or null. The arrangement is not switched: the caller
-// does that once all rows are done.
+// What a sweep leaves of a row beside its populations; null: not wanted.
+template <typename Real>
+struct RowOutput {
+  const RowShear<Real>* shear = nullptr;
+  const RowMoments<Real>* moments = nullptr;
+};
+
+// Sweeps one owned row. The arrangement is not switched: the caller does that once all rows are done.
 template <typename Real>
 void sweep_row(Populations<Real>& populations, const CellMap& cells, const CollisionParameters& parameters, int y,
-               int z, const RowShear<Real>* shear, const RowMoments<Real>* moments);
+               int z, const RowOutput<Real>& output);
 
 }  // namespace thalweg::lbm
