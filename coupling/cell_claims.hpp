@@ -1,7 +1,7 @@
 // Which grain holds which cell of the lattice: grains claim cells and give them up, and of several that claim one the
 // lowest global id holds it, whatever the order of events. The cells are this rank's and one ghost layer. A grain keeps
 // its slot as long as it is in reach of this rank; slots also index the lattice's LinkBody table. Which cells a grain
-// claims follows from its shape (grain_map.hpp).
+// claims follows from its sphere (grain_map.hpp).
 #pragma once
 
 #include "core/decomposition.hpp"

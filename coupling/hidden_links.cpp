@@ -63,7 +63,7 @@ void HiddenLinks::rebuild(int slot, const std::vector<MappedGrain>& grains) {
   const MappedGrain& grain = grains[static_cast<std::size_t>(slot)];
   links_[static_cast<std::size_t>(slot)].clear();
   if (grain.id < 0) return;
-  for (int a = 0; a < 3; ++a) local_cells_.along(a, grain.centre[a], grain.reach, grain.centre[a], 0, places_[a]);
+  for (int a = 0; a < 3; ++a) local_cells_.along(a, grain.centre[a], grain.radius, grain.centre[a], 0, places_[a]);
   for (const LocalCell& z : places_[2])
     for (const LocalCell& y : places_[1])
       for (const LocalCell& x : places_[0]) {
@@ -100,6 +100,19 @@ void HiddenLinks::add(const Link& link, const Vec3& from, double distance, lbm::
   body.force += FixedVec3::from(momentum);
   body.torque += FixedVec3::from(arm.cross(momentum));
   if (moments) moments->add(momentum, arm);
+}
+
+// Where grains overlap, x_f can be inside this one, too. A line that just misses the surface, because the cells are
+// those of a place a little apart, meets it where it is nearest to the centre.
+void HiddenLinks::apply(std::vector<lbm::LinkBody>& bodies, std::vector<FixedTensor>* moments) const {
+  for (std::size_t slot = 0; slot < links_.size(); ++slot)
+    for (const Link& link : links_[slot]) {
+      const Vec3 c = velocity_of(link.direction), from = box_.difference(link.from, bodies[slot].centre);
+      const Sphere sphere{bodies[slot].radius};
+      double met = 0.0;
+      if (!sphere.holds(from)) met = sphere.crossing(from, c).value_or(-c.dot(from) / c.squaredNorm());
+      add(link, from, std::clamp(met, 0.0, 1.0), bodies[slot], moments ? &(*moments)[slot] : nullptr);
+    }
 }
 
 }  // namespace thalweg::coupling

@@ -10,7 +10,7 @@
 #pragma once
 
 #include "core/decomposition.hpp"
-#include "core/shape.hpp"
+#include "core/sphere.hpp"
 #include "coupling/cell_claims.hpp"
 #include "coupling/hydrostatic.hpp"
 #include "coupling/lattice_vectors.hpp"
@@ -18,8 +18,6 @@
 #include "lbm/cell_map.hpp"
 #include "lbm/link_table.hpp"
 
-#include <algorithm>
-#include <span>
 #include <vector>
 
 namespace thalweg::coupling {
@@ -33,9 +31,8 @@ public:
   // rest is the same everywhere. A link belongs to the rank that owns its solid cell.
   void update(const CellClaims& map);
 
-  // Adds the momentum of all hidden links to their bodies, and sum F_a x_b to moments, where given. shapes: by slot.
-  template <Shape S>
-  void apply(std::span<const S> shapes, std::vector<lbm::LinkBody>& bodies, std::vector<FixedTensor>* moments) const;
+  // Adds the momentum of all hidden links to their bodies, and sum F_a x_b to moments, where given.
+  void apply(std::vector<lbm::LinkBody>& bodies, std::vector<FixedTensor>* moments) const;
 
   std::size_t count() const;
 
@@ -63,19 +60,5 @@ private:
   std::vector<char> is_stale_;            // by slot
   std::vector<LocalCell> places_[3];      // scratch
 };
-
-// Where grains overlap, x_f can be inside this one, too. A line that just misses the surface, because the cells are
-// those of a place a little apart, meets it where it is nearest to the centre.
-template <Shape S>
-void HiddenLinks::apply(std::span<const S> shapes, std::vector<lbm::LinkBody>& bodies,
-                        std::vector<FixedTensor>* moments) const {
-  for (std::size_t slot = 0; slot < links_.size(); ++slot)
-    for (const Link& link : links_[slot]) {
-      const Vec3 c = velocity_of(link.direction), from = box_.difference(link.from, bodies[slot].centre);
-      double met = 0.0;
-      if (!is_inside(shapes[slot], from)) met = shapes[slot].crossing(from, c).value_or(-c.dot(from) / c.squaredNorm());
-      add(link, from, std::clamp(met, 0.0, 1.0), bodies[slot], moments ? &(*moments)[slot] : nullptr);
-    }
-}
 
 }  // namespace thalweg::coupling

@@ -71,20 +71,12 @@ Vec3 HiddenPatches::direction(const Pair& pair, const std::vector<lbm::LinkBody>
 
 // Numbers are rounded before they are multiplied by the patch, so that the parts of a patch on several ranks add up to
 // the whole.
-void HiddenPatches::press(const Patch& patch, const Vec3& arm, const Vec3& normal, double excess, lbm::LinkBody& body,
+void HiddenPatches::press(const Patch& patch, const Vec3& arm, double excess, lbm::LinkBody& body,
                           FixedTensor* moment) {
   const double line = 2.0 * excess / 36.0;
   const std::int64_t force = LatticeFixed::from(line);
   body.force +=
       {exact_product(force, patch.sum[0]), exact_product(force, patch.sum[1]), exact_product(force, patch.sum[2])};
-  // Exactly zero where the normal passes through the centre.
-  const Vec3 turning = arm.cross(normal) / normal.squaredNorm();
-  if (!turning.isZero(0.0))
-    for (int a = 0; a < 3; ++a) {
-      const FixedVec3 torque = FixedVec3::from(line * normal[a] * turning);
-      body.torque += {exact_product(torque.x, patch.sum[a]), exact_product(torque.y, patch.sum[a]),
-                      exact_product(torque.z, patch.sum[a])};
-    }
   if (!moment) return;
   std::array<std::int64_t, 3> half;
   for (int b = 0; b < 3; ++b) half[b] = LatticeFixed::from(0.5 * line * arm[b]);
@@ -97,6 +89,25 @@ void HiddenPatches::give_mass(const Patch& patch, lbm::LinkBody& body, const lbm
   const Vec3 velocity = 0.5 * (body.velocity + other.velocity);
   for (int a = 0; a < 3; ++a)
     body.mass = exact_sum(body.mass, -exact_product(LatticeFixed::from(6.0 / 36.0 * velocity[a]), patch.sum[a]));
+}
+
+void HiddenPatches::apply(const std::vector<MappedGrain>& grains, const std::vector<double>& surrounding,
+                          double reference, std::vector<lbm::LinkBody>& bodies,
+                          std::vector<FixedTensor>* moments) const {
+  for (const auto& [key, patch] : patches_) {
+    const Pair pair = pair_of(key);
+    const auto p = static_cast<std::size_t>(pair.p), q = static_cast<std::size_t>(pair.q);
+    if (pair.q >= 0 && grains[p].clump >= 0 && grains[q].clump == grains[p].clump) continue;
+    const Vec3 outward = direction(pair, bodies);
+    const double radius = bodies[p].radius;
+    double density = surrounding[p];
+    if (pair.q >= 0) {
+      density += (surrounding[q] - density) * radius / (radius + bodies[q].radius);
+      give_mass(patch, bodies[p], bodies[q]);
+    }
+    const Vec3 arm = outward * (radius / outward.norm());
+    press(patch, arm, density - reference, bodies[p], moments ? &(*moments)[p] : nullptr);
+  }
 }
 
 }  // namespace thalweg::coupling

@@ -6,10 +6,9 @@
 // lines together, sum w_i c_i = 0. A fluid presses between grains as well, where the lattice has no cell for it; its
 // density there is interpolated between those around the two grains, linearly between their centres, so that
 //   F_p += 2 D h,   D = D_p + (D_q - D_p) R_p/(R_p + R_q),   and F_q -= the same,
-// D = D_p at a wall, with R the distance of the surface from the centre, where the line between the centres meets it.
-// There the force acts, along the normal n (none of it turns a sphere): T_p += 2 D (h.n) r x n. Without this term
-// touching grains would be drawn together or pushed apart by any pressure but the reference. Between members of one
-// clump is no surface.
+// D = D_p at a wall, with R the radius. The force acts where the line between the centres meets the surface, and so
+// turns no sphere. Without this term touching grains would be drawn together or pushed apart by any pressure but the
+// reference. Between members of one clump is no surface.
 //
 // The same patches tell how much of the mass given by the links of p is given in the place of q: grains that touch and
 // move together push fluid away in front of the one and draw it in behind the other. With v the mean of the two
@@ -21,14 +20,12 @@
 #pragma once
 
 #include "core/decomposition.hpp"
-#include "core/shape.hpp"
 #include "coupling/mapped_grain.hpp"
 #include "lbm/cell_map.hpp"
 #include "lbm/link_table.hpp"
 
 #include <array>
 #include <cstdint>
-#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -42,11 +39,10 @@ public:
   void cell_changes(const Index3& local, std::int32_t now);
 
   // Adds to the bodies the force of the fluid on what is hidden by this rank's cells and takes from their mass what is
-  // given in another's place; the symmetric part of sum F_a x_b is added to moments, where given. shapes, surrounding:
-  // by slot, the latter rho - rho_rest around the grain; reference: that presses on nothing (lbm/link_pass.hpp).
-  template <Shape S>
-  void apply(const std::vector<MappedGrain>& grains, std::span<const S> shapes, const std::vector<double>& surrounding,
-             double reference, std::vector<lbm::LinkBody>& bodies, std::vector<FixedTensor>* moments) const;
+  // given in another's place; the symmetric part of sum F_a x_b is added to moments, where given. surrounding: by
+  // slot, rho - rho_rest around the grain; reference: that presses on nothing (lbm/link_pass.hpp).
+  void apply(const std::vector<MappedGrain>& grains, const std::vector<double>& surrounding, double reference,
+             std::vector<lbm::LinkBody>& bodies, std::vector<FixedTensor>* moments) const;
 
   // A face of the box (0 .. 5) in the place of the other grain.
   static std::int32_t wall_of_face(int face) { return lbm::CellMap::fluid - 1 - face; }
@@ -69,10 +65,8 @@ private:
     return static_cast<std::uint64_t>(static_cast<std::uint32_t>(p)) << 32 | static_cast<std::uint32_t>(q);
   }
   Vec3 direction(const Pair& pair, const std::vector<lbm::LinkBody>& bodies) const;
-  // arm: from the centre of p to where the patch is; normal: outward there, of any length; excess: D less the
-  // reference.
-  static void press(const Patch& patch, const Vec3& arm, const Vec3& normal, double excess, lbm::LinkBody& body,
-                    FixedTensor* moment);
+  // arm: from the centre of p to where the patch is; excess: D less the reference.
+  static void press(const Patch& patch, const Vec3& arm, double excess, lbm::LinkBody& body, FixedTensor* moment);
   static void give_mass(const Patch& patch, lbm::LinkBody& body, const lbm::LinkBody& other);
   void count(std::int32_t p, std::int32_t q, int direction, int lines);
 
@@ -81,25 +75,5 @@ private:
   const lbm::CellMap& cells_;
   std::unordered_map<std::uint64_t, Patch> patches_;
 };
-
-template <Shape S>
-void HiddenPatches::apply(const std::vector<MappedGrain>& grains, std::span<const S> shapes,
-                          const std::vector<double>& surrounding, double reference, std::vector<lbm::LinkBody>& bodies,
-                          std::vector<FixedTensor>* moments) const {
-  for (const auto& [key, patch] : patches_) {
-    const Pair pair = pair_of(key);
-    const auto p = static_cast<std::size_t>(pair.p), q = static_cast<std::size_t>(pair.q);
-    if (pair.q >= 0 && grains[p].clump >= 0 && grains[q].clump == grains[p].clump) continue;
-    const Vec3 outward = direction(pair, bodies);
-    const double radius = shapes[p].distance_to_surface(outward);
-    double density = surrounding[p];
-    if (pair.q >= 0) {
-      density += (surrounding[q] - density) * radius / (radius + shapes[q].distance_to_surface(-outward));
-      give_mass(patch, bodies[p], bodies[q]);
-    }
-    const Vec3 arm = outward * (radius / outward.norm());
-    press(patch, arm, shapes[p].outward(arm), density - reference, bodies[p], moments ? &(*moments)[p] : nullptr);
-  }
-}
 
 }  // namespace thalweg::coupling

@@ -95,7 +95,7 @@ void LinkBuilder::look_for_enclosed(const CellChange& change) {
 }
 
 void LinkBuilder::rebuild(int slot, const MappedGrain& grain, lbm::LinkTable& table) {
-  const double half_width = grain.reach + longest_link;
+  const double half_width = grain.radius + longest_link;
   std::vector<LocalCell>* places[2] = {&xs_, &ys_};
   const auto before = [](const LocalCell& p, const LocalCell& q) { return p.local < q.local; };
   const auto same = [](const LocalCell& p, const LocalCell& q) { return p.local == q.local; };

@@ -8,7 +8,7 @@ namespace thalweg::coupling {
 struct MappedGrain {
   GlobalId id = -1;            // -1: the slot is free
   GlobalId clump = -1;         // the clump it is a member of; -1: none
-  double reach = 0.0;          // from its centre, cells
+  double radius = 0.0;         // cells
   Vec3 centre = Vec3::Zero();  // for which its cells stand; lattice units, global
 };
 

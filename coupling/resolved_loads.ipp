@@ -11,8 +11,8 @@
 
 namespace thalweg::coupling {
 
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::account_for_covered_cells() {
+template <typename Real>
+void ResolvedSystem<Real>::account_for_covered_cells() {
   const Index3& lower = fluid_.block().lower;
   for (const CellChange& change : map_.changes()) {
     const Index3& at = change.cell;
@@ -36,9 +36,9 @@ void ResolvedSystem<Real, S>::account_for_covered_cells() {
 
 // Of a cell that this body covers: sum (c_i - u_w) f_i^c without the half force, which refill puts into cells again.
 // What is left, rho u_w, belongs to the mass, which comes back (docs/theory.md, section 3, "Covered cells").
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::keep_momentum(lbm::LinkBody& body, int plane, const Vec3& position, double density,
-                                            const Vec3& momentum) {
+template <typename Real>
+void ResolvedSystem<Real>::keep_momentum(lbm::LinkBody& body, int plane, const Vec3& position, double density,
+                                         const Vec3& momentum) {
   const Vec3 arm = lattice_box_.difference(position, body.centre);
   const Vec3 wall = body.velocity + body.angular_velocity.cross(arm);
   const Vec3 kept = momentum - 0.5 * fluid_.carried_force() - density * wall, torque = arm.cross(kept);
@@ -51,8 +51,8 @@ void ResolvedSystem<Real, S>::keep_momentum(lbm::LinkBody& body, int plane, cons
 }
 
 // To be called before forces are added that the fluid does not feel.
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::book_links() {
+template <typename Real>
+void ResolvedSystem<Real>::book_links() {
   for (std::size_t g = 0; g < grains_->store().total(); ++g) {
     const lbm::LinkBody& body = bodies_[map_slot_[g]];
     const Vec3 force = body.force.to_vec3();
@@ -68,8 +68,8 @@ void ResolvedSystem<Real, S>::book_links() {
   mass_.book(MassAccount::covered, step_totals_.covered_mass);
 }
 
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::collect_loads() {
+template <typename Real>
+void ResolvedSystem<Real>::collect_loads() {
   const std::size_t count = grains_->store().total();
   const int width = sums_per_grain();
   exchanged_.resize(static_cast<std::size_t>(width) * count);
@@ -88,8 +88,8 @@ void ResolvedSystem<Real, S>::collect_loads() {
   grains_->add_ghost_values(exchanged_, width);
 }
 
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::apply_loads() {
+template <typename Real>
+void ResolvedSystem<Real>::apply_loads() {
   for (std::size_t g = 0; g < grains_->store().owned; ++g) {
     const std::int64_t* sums = &exchanged_[sums_per_grain() * g];
     const Vec3 force = FixedVec3{sums[0], sums[1], sums[2]}.to_vec3() * parameters_.units.force();
@@ -110,8 +110,8 @@ void ResolvedSystem<Real, S>::apply_loads() {
   show_stresses();
 }
 
-template <typename Real, GrainShape S>
-lbm::LinkSums ResolvedSystem<Real, S>::link_sums_of(std::size_t grain) const {
+template <typename Real>
+lbm::LinkSums ResolvedSystem<Real>::link_sums_of(std::size_t grain) const {
   lbm::LinkSums links;
   std::copy_n(&exchanged_[sums_per_grain() * grain + plain_sums - lbm::LinkSums::size], lbm::LinkSums::size,
               links.sums.begin());
@@ -121,8 +121,8 @@ lbm::LinkSums ResolvedSystem<Real, S>::link_sums_of(std::size_t grain) const {
 // Of a grain, or of all members of a clump, in slots from `first` on. Besides half of what is owed, the links return
 // what they are likely to lose in the next step: as much as in the last ones, a mean that leaves out the steps in which
 // single cells change hands.
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::settle_mass(std::size_t first, std::size_t count) {
+template <typename Real>
+void ResolvedSystem<Real>::settle_mass(std::size_t first, std::size_t count) {
   // What comes back changes what the links take, with cli most of all: returned at once and whole it swings and grows.
   // A cell at a surface can swing by itself from step to step, hardly damped; the mean of two steps does not push it.
   constexpr double share_of_owed = 0.5, share_of_last_step = 0.125;
@@ -153,8 +153,8 @@ void ResolvedSystem<Real, S>::settle_mass(std::size_t first, std::size_t count) 
   }
 }
 
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::settle_masses() {
+template <typename Real>
+void ResolvedSystem<Real>::settle_masses() {
   const dem::GrainStore& store = grains_->store();
   for (std::size_t g = 0; g < store.owned; ++g)
     if (store.clump[g] < 0) settle_mass(g, 1);
@@ -166,8 +166,8 @@ void ResolvedSystem<Real, S>::settle_masses() {
 // Multiples of 2^-44, whose sum in any order is exact. A grain may owe more than a term of LatticeFixed holds: a large
 // clump that closes a gap covers thousands of cells in a few steps, and returns their mass as slowly as its links
 // allow.
-template <typename Real, GrainShape S>
-double ResolvedSystem<Real, S>::mass_owed() const {
+template <typename Real>
+double ResolvedSystem<Real>::mass_owed() const {
   WideSum owed;
   for (std::size_t g = 0; g < grains_->store().owned; ++g)
     owed.add(WideSum::from(exchange_of(g).owed_mass(), LatticeFixed::bits));
@@ -176,9 +176,9 @@ double ResolvedSystem<Real, S>::mass_owed() const {
 }
 
 // sigma_ab = (1/V) sum F_a x_b over the surface (Zhang et al. 2022, eq. 13), the mean of two exchanges.
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::apply_stress(std::size_t grain, bool first) {
-  const double volume = S::of_grain(grains_->store().radius[grain]).volume();
+template <typename Real>
+void ResolvedSystem<Real>::apply_stress(std::size_t grain, bool first) {
+  const double volume = Sphere{grains_->store().radius[grain]}.volume();
   FixedTensor sums;
   std::copy_n(&exchanged_[sums_per_grain() * grain + plain_sums], sums.sums.size(), sums.sums.begin());
   const Mat3 stress = sums.to_mat3() * (parameters_.units.torque() / volume);
@@ -187,16 +187,16 @@ void ResolvedSystem<Real, S>::apply_stress(std::size_t grain, bool first) {
   kept.last_stress() = stress;
 }
 
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::show_stresses() {
+template <typename Real>
+void ResolvedSystem<Real>::show_stresses() {
   if (!parameters_.grain_stress) return;
   fluid_stress_.resize(grains_->store().owned);
   for (std::size_t g = 0; g < fluid_stress_.size(); ++g) fluid_stress_[g] = exchange_of(g).mean_stress();
 }
 
 // What the store has is what the grain got in the step before.
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::set_load(std::size_t grain, const Vec3& force, const Vec3& torque, bool first) {
+template <typename Real>
+void ResolvedSystem<Real>::set_load(std::size_t grain, const Vec3& force, const Vec3& torque, bool first) {
   dem::GrainStore& store = grains_->store();
   if (!parameters_.virtual_mass || dem::holds_translation(store.motion[grain])) {
     store.load_force[grain] = force;
@@ -211,8 +211,8 @@ void ResolvedSystem<Real, S>::set_load(std::size_t grain, const Vec3& force, con
 
 // At the start of a run, whatever it begins from: what is there, and what the grains bring along as owed, is to be
 // kept.
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::open_account() {
+template <typename Real>
+void ResolvedSystem<Real>::open_account() {
   const ExcessMass excess = excess_mass(survey_of(fluid_), rest_);
   mass_.open(excess.sum, mass_owed());
   parameters_.links.reference_density = excess.mean();
@@ -221,8 +221,8 @@ void ResolvedSystem<Real, S>::open_account() {
 }
 
 // What no body owes: round-off, and walls that do not conserve mass. At the end of a step, so that a checkpoint has it.
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::correct_mass() {
+template <typename Real>
+void ResolvedSystem<Real>::correct_mass() {
   if (!looks_at_mass(step_)) return;
   const ExcessMass excess = excess_mass(survey_of(fluid_), rest_);
   parameters_.links.reference_density = excess.mean();

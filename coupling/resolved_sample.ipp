@@ -7,40 +7,39 @@
 
 namespace thalweg::coupling {
 
-template <typename Real, GrainShape S>
-FluidFields ResolvedSystem<Real, S>::sample(const std::vector<FluidField>& wanted, const Block& region) const {
+template <typename Real>
+FluidFields ResolvedSystem<Real>::sample(const std::vector<FluidField>& wanted, const Block& region) const {
   SampleContext context;
   context.units = parameters_.units;
   context.grain_id = [this](std::int32_t slot) { return static_cast<std::int32_t>(map_.grains()[slot].id); };
   context.apply_links = [this] {
     std::vector<lbm::LinkBody> bodies = bodies_;  // takes up the momentum, which belongs to the next step
-    lbm::LinkPass<Real, S> links(fluid_, links_, lattice_box_, parameters_.links, bodies, map_.shapes());
+    lbm::LinkPass<Real> links(fluid_, links_, lattice_box_, parameters_.links, bodies);
     for (int tile = 0; tile < fluid_.tiles().count(); ++tile) links.apply_tile(tile);
   };
   return sample_fields(fluid_, context, wanted, region);
 }
 
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::for_each_velocity(const VelocityVisitor& visit) const {
+template <typename Real>
+void ResolvedSystem<Real>::for_each_velocity(const VelocityVisitor& visit) const {
   visit_velocities(fluid_, parameters_.units, visit);
 }
 
-template <typename Real, GrainShape S>
-std::optional<FluidSource::State> ResolvedSystem<Real, S>::state_in(const Index3& cell) const {
+template <typename Real>
+std::optional<FluidSource::State> ResolvedSystem<Real>::state_in(const Index3& cell) const {
   return state_of(fluid_, parameters_.units, cell);
 }
 
-template <typename Real, GrainShape S>
-FluidSource::Drive ResolvedSystem<Real, S>::drive() const {
+template <typename Real>
+FluidSource::Drive ResolvedSystem<Real>::drive() const {
   return drive_of(fluid_, parameters_.units, parameters_.links.reference_density);
 }
 
 // The links of this step are applied twice: here on copies of the bodies, so that all that streams in lies ready.
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::write_momentum_book() {
+template <typename Real>
+void ResolvedSystem<Real>::write_momentum_book() {
   std::vector<lbm::LinkBody> bodies = bodies_;
-  lbm::LinkPass<Real, S> links(fluid_, links_, lattice_box_, parameters_.links, bodies, map_.shapes(), nullptr,
-                               &given_by_height_);
+  lbm::LinkPass<Real> links(fluid_, links_, lattice_box_, parameters_.links, bodies, nullptr, &given_by_height_);
   for (int tile = 0; tile < fluid_.tiles().count(); ++tile) links.apply_tile(tile);
   momentum_ = book_of(fluid_, parameters_.units, parameters_.links.reference_density, given_by_height_);
   booking_ = false;

@@ -1,7 +1,4 @@
 // Grains in a resolved flow: the system the project exists for. One step is one lattice step and its DEM sub-steps.
-//
-// S is the shape that the fluid sees of every grain, S::of_grain(its radius), in a fixed orientation: grains of dem
-// have none, and touch each other as spheres.
 #pragma once
 
 #include "core/decomposition.hpp"
@@ -51,7 +48,7 @@ struct ExchangeTotals {
   std::int64_t link_mass = 0, refilled_mass = 0, covered_mass = 0;
 };
 
-template <typename Real, GrainShape S = Sphere>
+template <typename Real>
 class ResolvedSystem final : public System, private FluidSource, private ContactSource {
 public:
   // The grains (already holding their seeds) must carry attached_width() attached columns and reach ghost_reach()
@@ -65,9 +62,7 @@ public:
   }
 
   // How far beyond a block its grains must be known for the map, as a distance from the grain's centre (m).
-  static double ghost_reach(double largest_radius, double spacing) {
-    return S::of_grain(largest_radius).reach() + 2.5 * spacing;
-  }
+  static double ghost_reach(double largest_radius, double spacing) { return largest_radius + 2.5 * spacing; }
 
   void advance() override;
   void book_momentum() override { booking_ = true; }
@@ -145,7 +140,7 @@ private:
   std::unique_ptr<dem::GrainDynamics> grains_;
   PeriodicBox box_, lattice_box_;  // m, cells
   Hydrostatic rest_;
-  GrainMap<S> map_;
+  GrainMap map_;
   lbm::LinkTable links_;
   LinkBuilder link_builder_;
   HiddenLinks hidden_links_;

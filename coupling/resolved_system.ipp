@@ -18,10 +18,9 @@
 
 namespace thalweg::coupling {
 
-template <typename Real, GrainShape S>
-ResolvedSystem<Real, S>::ResolvedSystem(std::unique_ptr<Decomposition> decomposition, MPI_Comm communicator,
-                                        const ResolvedParameters& parameters,
-                                        std::unique_ptr<dem::GrainDynamics> grains)
+template <typename Real>
+ResolvedSystem<Real>::ResolvedSystem(std::unique_ptr<Decomposition> decomposition, MPI_Comm communicator,
+                                     const ResolvedParameters& parameters, std::unique_ptr<dem::GrainDynamics> grains)
     : decomposition_(std::move(decomposition)),
       communicator_(communicator),
       parameters_(parameters),
@@ -53,16 +52,16 @@ ResolvedSystem<Real, S>::ResolvedSystem(std::unique_ptr<Decomposition> decomposi
 }
 
 // Of the fluid and of the grains, in the step of this number, from 1.
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::set_gravity_of(std::int64_t step) {
+template <typename Real>
+void ResolvedSystem<Real>::set_gravity_of(std::int64_t step) {
   if (parameters_.ramp == 0.0) return;
   set_gravity(fluid_, parameters_, step);
   grains_->set_body_force_factor(gravity_factor(parameters_, step));
 }
 
 // The cells covered at the start (of a run or after loading) were never fluid: nothing to refill.
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::initialise_map() {
+template <typename Real>
+void ResolvedSystem<Real>::initialise_map() {
   map_.begin_update();
   synchronise_slots();
   map_.settle();
@@ -70,8 +69,8 @@ void ResolvedSystem<Real, S>::initialise_map() {
   hidden_links_.update(map_);
 }
 
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::synchronise_slots() {
+template <typename Real>
+void ResolvedSystem<Real>::synchronise_slots() {
   dem::GrainStore& store = grains_->store();
   std::vector<char> present(map_.grains().size(), 0);
   map_slot_.resize(store.total());
@@ -84,7 +83,7 @@ void ResolvedSystem<Real, S>::synchronise_slots() {
   for (std::size_t g = 0; g < store.total(); ++g) {
     int slot = map_.slot_of(store.id[g]);
     if (slot < 0) {
-      slot = map_.add(store.id[g], S::of_grain(store.radius[g] / parameters_.units.spacing), store.clump[g]);
+      slot = map_.add(store.id[g], store.radius[g] / parameters_.units.spacing, store.clump[g]);
       map_.place(slot, lattice_position(exchange_of(g).link_position()));
     }
     map_slot_[g] = slot;
@@ -94,16 +93,17 @@ void ResolvedSystem<Real, S>::synchronise_slots() {
   update_bodies();
 }
 
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::place_body(std::size_t grain, lbm::LinkBody& body) const {
+template <typename Real>
+void ResolvedSystem<Real>::place_body(std::size_t grain, lbm::LinkBody& body) const {
   const dem::GrainStore& store = grains_->store();
+  body.radius = store.radius[grain] / parameters_.units.spacing;
   body.centre = lattice_position(store.position[grain]);
   body.velocity = store.velocity[grain] / parameters_.units.velocity();
   body.angular_velocity = store.angular_velocity[grain] * parameters_.units.time_step;
 }
 
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::update_bodies() {
+template <typename Real>
+void ResolvedSystem<Real>::update_bodies() {
   const dem::GrainStore& store = grains_->store();
   for (std::size_t g = 0; g < store.total(); ++g) {
     lbm::LinkBody& body = bodies_[map_slot_[g]];
@@ -119,8 +119,8 @@ void ResolvedSystem<Real, S>::update_bodies() {
 
 // Cells follow a grain once it has moved by the tolerance; links know its place exactly all the same. Ghosts follow the
 // same rule from the same numbers as their owners, so every rank moves a grain's cells in the same step.
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::update_map() {
+template <typename Real>
+void ResolvedSystem<Real>::update_map() {
   dem::GrainStore& store = grains_->store();
   const double tolerance = parameters_.link_tolerance * parameters_.units.spacing;
   for (std::size_t g = 0; g < store.total(); ++g) {
@@ -132,10 +132,10 @@ void ResolvedSystem<Real, S>::update_map() {
   }
 }
 
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::sweep_behind_links() {
+template <typename Real>
+void ResolvedSystem<Real>::sweep_behind_links() {
   std::vector<FixedTensor>* moments = moments_.empty() ? nullptr : &moments_;
-  lbm::LinkPass<Real, S> links(fluid_, links_, lattice_box_, parameters_.links, bodies_, map_.shapes(), moments);
+  lbm::LinkPass<Real> links(fluid_, links_, lattice_box_, parameters_.links, bodies_, moments);
   const auto sweep = timer_.measure(phases_.sweep);
   fluid_.stream_and_collide([&](int tile) {
     const auto scope = timer_.measure(phases_.links);
@@ -143,14 +143,13 @@ void ResolvedSystem<Real, S>::sweep_behind_links() {
   });
   const auto scope = timer_.measure(phases_.links);
   book_links();
-  hidden_links_.apply(map_.shapes(), bodies_, moments);
-  map_.hidden_patches().apply(map_.grains(), map_.shapes(), surrounding_, parameters_.links.reference_density, bodies_,
-                              moments);
+  hidden_links_.apply(bodies_, moments);
+  map_.hidden_patches().apply(map_.grains(), surrounding_, parameters_.links.reference_density, bodies_, moments);
 }
 
 // Links follow from the map of the cells alone, so they are rebuilt while the halo is on its way.
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::update_links_behind_halo() {
+template <typename Real>
+void ResolvedSystem<Real>::update_links_behind_halo() {
   {
     const auto scope = timer_.measure(phases_.halo);
     fluid_.start_halo_exchange();
@@ -164,8 +163,8 @@ void ResolvedSystem<Real, S>::update_links_behind_halo() {
   fluid_.finish_halo_exchange();
 }
 
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::advance() {
+template <typename Real>
+void ResolvedSystem<Real>::advance() {
   step_totals_ = {};
   momentum_.reset();
   given_by_height_.assign(booking_ ? static_cast<std::size_t>(2 * fluid_.indexing().size()[2] + 1) : 0, {});
@@ -214,19 +213,19 @@ void ResolvedSystem<Real, S>::advance() {
   correct_mass();
 }
 
-template <typename Real, GrainShape S>
-std::int64_t ResolvedSystem<Real, S>::cells() const {
+template <typename Real>
+std::int64_t ResolvedSystem<Real>::cells() const {
   const Index3& n = decomposition_->cells();
   return static_cast<std::int64_t>(n[0]) * n[1] * n[2];
 }
 
-template <typename Real, GrainShape S>
-std::int64_t ResolvedSystem<Real, S>::grain_steps_per_step() const {
+template <typename Real>
+std::int64_t ResolvedSystem<Real>::grain_steps_per_step() const {
   return grains_->global_count() * parameters_.sub_steps;
 }
 
-template <typename Real, GrainShape S>
-Snapshot ResolvedSystem<Real, S>::snapshot() const {
+template <typename Real>
+Snapshot ResolvedSystem<Real>::snapshot() const {
   const dem::GrainStore& store = grains_->store();
   const std::size_t n = store.owned;
   Snapshot s;
@@ -253,8 +252,8 @@ Snapshot ResolvedSystem<Real, S>::snapshot() const {
   return s;
 }
 
-template <typename Real, GrainShape S>
-std::vector<Figure> ResolvedSystem<Real, S>::figures() const {
+template <typename Real>
+std::vector<Figure> ResolvedSystem<Real>::figures() const {
   const lbm::FluidSurvey survey = survey_of(fluid_);
   const ExcessMass excess = excess_mass(survey, rest_);
   std::vector<Figure> figures = speed_figures(survey, parameters_.units);
@@ -269,16 +268,16 @@ std::vector<Figure> ResolvedSystem<Real, S>::figures() const {
   return figures;
 }
 
-template <typename Real, GrainShape S>
-std::optional<Place> ResolvedSystem<Real, S>::place_of(const std::string& figure) const {
+template <typename Real>
+std::optional<Place> ResolvedSystem<Real>::place_of(const std::string& figure) const {
   if (figure == "largest_overlap") return grains_->place_of_deepest_overlap();
   if (figure == "largest_grain_speed") return grains_->place_of_fastest();
   return place_in_fluid(survey_of(fluid_), parameters_.units, figure);
 }
 
 // Of the grains at the end of the step; of the fluid what the walls take from it in the step to come.
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::add_wall_forces(std::vector<Figure>& figures) const {
+template <typename Real>
+void ResolvedSystem<Real>::add_wall_forces(std::vector<Figure>& figures) const {
   const std::vector<Vec3> of_grains = grains_->wall_forces();
   const std::array<Vec3, 6> of_fluid = fluid_.wall_forces(parameters_.links.reference_density);
   std::size_t wall = 0;
@@ -295,8 +294,8 @@ void ResolvedSystem<Real, S>::add_wall_forces(std::vector<Figure>& figures) cons
   }
 }
 
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::save(ArchiveWriter& archive) const {
+template <typename Real>
+void ResolvedSystem<Real>::save(ArchiveWriter& archive) const {
   archive.attribute("system/step", step_);
   archive.attribute("system/time_step", time_step());
   fluid_.save(archive);
@@ -305,8 +304,8 @@ void ResolvedSystem<Real, S>::save(ArchiveWriter& archive) const {
   archive.attribute("mass/reference", parameters_.links.reference_density);
 }
 
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::forget_map() {
+template <typename Real>
+void ResolvedSystem<Real>::forget_map() {
   map_.begin_update();
   for (std::size_t slot = 0; slot < map_.grains().size(); ++slot)
     if (map_.grains()[slot].id >= 0) map_.remove(static_cast<int>(slot));
@@ -315,8 +314,8 @@ void ResolvedSystem<Real, S>::forget_map() {
   hidden_links_.update(map_);
 }
 
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::load(ArchiveReader& archive) {
+template <typename Real>
+void ResolvedSystem<Real>::load(ArchiveReader& archive) {
   require_same_time_step(archive, time_step());
   step_ = archive.integer_attribute("system/step");
   forget_map();
@@ -330,8 +329,8 @@ void ResolvedSystem<Real, S>::load(ArchiveReader& archive) {
   show_stresses();
 }
 
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::take_fluid(ArchiveReader& archive, double spacing) {
+template <typename Real>
+void ResolvedSystem<Real>::take_fluid(ArchiveReader& archive, double spacing) {
   const double density_unit = coupling::take_fluid(fluid_, archive, spacing, parameters_);
   open_account();
   // As the run that is taken over would go on.
@@ -341,8 +340,8 @@ void ResolvedSystem<Real, S>::take_fluid(ArchiveReader& archive, double spacing)
 
 // Grains of a resolved run keep the places their links were cut at, others begin where they are. What is in lattice
 // units begins anew on another lattice.
-template <typename Real, GrainShape S>
-void ResolvedSystem<Real, S>::take_grains(ArchiveReader& archive, double spacing) {
+template <typename Real>
+void ResolvedSystem<Real>::take_grains(ArchiveReader& archive, double spacing) {
   forget_map();
   grains_->take(archive);
   const bool same_units =

@@ -1,5 +1,7 @@
 #include "coupling/solid_shape.hpp"
 
+#include "core/sphere.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -20,10 +22,20 @@ bool crosses_edge(const Vec3& a, const Vec3& b, double y, double z) {
   return y < low.y() + (z - low.z()) / (high.z() - low.z()) * (high.y() - low.y());
 }
 
+// A fraction of a link at which its line meets a surface, if it is one of the link's, up to round-off.
+std::optional<double> on_link(std::optional<double> way) {
+  if (!way || *way < -slack || *way > 1.0 + slack) return std::nullopt;
+  return std::clamp(*way, 0.0, 1.0);
+}
+
 }  // namespace
 
 Extent extent_of(const SolidShape& shape) {
   return std::visit([](const auto& s) { return extent_of(s); }, shape);
+}
+
+Extent extent_of(const SolidSphere& solid) {
+  return {solid.centre.array() - solid.radius, solid.centre.array() + solid.radius};
 }
 
 Extent extent_of(const TriangleMesh& mesh) {
@@ -45,11 +57,6 @@ std::optional<Crossing> crossing(const Corners& t, double y, double z) {
   return Crossing{x, normal.x() < 0.0 ? 1 : -1};
 }
 
-std::optional<double> on_link(std::optional<double> way) {
-  if (!way || *way < -slack || *way > 1.0 + slack) return std::nullopt;
-  return std::clamp(*way, 0.0, 1.0);
-}
-
 // Moeller and Trumbore 1997.
 std::optional<double> meets(const Corners& t, const Vec3& from, const Vec3& along) {
   const Vec3 first = t[1] - t[0], second = t[2] - t[0], p = along.cross(second);
@@ -59,6 +66,10 @@ std::optional<double> meets(const Corners& t, const Vec3& from, const Vec3& alon
   const double u = offset.dot(p) / determinant, v = along.dot(q) / determinant, way = second.dot(q) / determinant;
   if (u < -slack || v < -slack || u + v > 1.0 + slack) return std::nullopt;
   return on_link(way);
+}
+
+std::optional<double> meets(const SolidSphere& solid, const Vec3& from, const Vec3& along) {
+  return on_link(Sphere{solid.radius}.crossing(from - solid.centre, along));
 }
 
 }  // namespace thalweg::coupling

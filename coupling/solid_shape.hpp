@@ -2,7 +2,6 @@
 // units, global coordinates.
 #pragma once
 
-#include "core/sphere.hpp"
 #include "core/triangle_mesh.hpp"
 #include "core/types.hpp"
 
@@ -11,25 +10,19 @@
 
 namespace thalweg::coupling {
 
-// A shape (core/shape.hpp) somewhere in the box.
-template <Shape S>
-struct PlacedShape {
+struct SolidSphere {
   Vec3 centre = Vec3::Zero();
-  S shape;
+  double radius = 0.0;
 };
-using SolidSphere = PlacedShape<Sphere>;
 
-// A further Shape is one more alternative here. A mesh must be closed and wound outwards.
+// A mesh must be closed and wound outwards.
 using SolidShape = std::variant<SolidSphere, TriangleMesh>;
 
 struct Extent {
   Vec3 lower, upper;
 };
 Extent extent_of(const TriangleMesh& mesh);
-template <Shape S>
-Extent extent_of(const PlacedShape<S>& solid) {
-  return {solid.centre.array() - solid.shape.reach(), solid.centre.array() + solid.shape.reach()};
-}
+Extent extent_of(const SolidSphere& solid);
 Extent extent_of(const SolidShape& shape);
 
 using Corners = std::array<Vec3, 3>;
@@ -44,13 +37,8 @@ struct Crossing {
 std::optional<Crossing> crossing(const Corners& triangle, double y, double z);
 
 // The fraction t in [0, 1] of the way from a point along a link at which it meets the surface; none: it does not. Links
-// that run along an edge or end on a surface count as meeting it, up to round-off: on_link() decides so from the
-// fraction at which the link's line meets the surface.
-std::optional<double> on_link(std::optional<double> way);
+// that run along an edge or end on a surface count as meeting it, up to round-off.
 std::optional<double> meets(const Corners& triangle, const Vec3& from, const Vec3& along);
-template <Shape S>
-std::optional<double> meets(const PlacedShape<S>& solid, const Vec3& from, const Vec3& along) {
-  return on_link(solid.shape.crossing(from - solid.centre, along));
-}
+std::optional<double> meets(const SolidSphere& solid, const Vec3& from, const Vec3& along);
 
 }  // namespace thalweg::coupling

@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
+#include "core/sphere.hpp"
 #include "core/wide_sums_over_ranks.hpp"
 #include "coupling/lattice_vectors.hpp"
 #include "lbm/for_each_cell.hpp"
@@ -41,7 +42,7 @@ StaticSolids::StaticSolids(const Decomposition& decomposition, MPI_Comm communic
       communicator_(communicator),
       block_(decomposition.block_of(rank_of(communicator))),
       cells_(cells),
-      links_(tiles.count(), true),
+      links_(tiles.count()),
       bodies_(shapes.size()),
       covered_(shapes.size(), 0) {
   for (int a = 0; a < 3; ++a) {
@@ -95,18 +96,17 @@ void StaticSolids::claim(int solid, const Index3& local) {
   if (cells_.indexing().owned(local[0], local[1], local[2])) ++covered_[static_cast<std::size_t>(solid)];
 }
 
-template <Shape S>
-void StaticSolids::cover(int solid, const PlacedShape<S>& shape) {
-  const Extent whole = coupling::extent_of(shape);
+void StaticSolids::cover(int solid, const SolidSphere& sphere) {
+  const Extent whole = coupling::extent_of(sphere);
   for_each_image(whole, [&](const Vec3& shift) {
-    const Vec3 centre = shape.centre + shift;
+    const Vec3 centre = sphere.centre + shift;
     std::pair<int, int> cells[3];
     for (int a = 0; a < 3; ++a)
       cells[a] = range(whole.lower[a] + shift[a], whole.upper[a] + shift[a], 1, 0, decomposition_.cells()[a]);
     for (int z = cells[2].first; z < cells[2].second; ++z)
       for (int y = cells[1].first; y < cells[1].second; ++y)
         for (int x = cells[0].first; x < cells[0].second; ++x) {
-          if (!is_inside(shape.shape, centre_of({x, y, z}) - centre)) continue;
+          if (!Sphere{sphere.radius}.holds(centre_of({x, y, z}) - centre)) continue;
           for (const int lz : places_[2][z])
             for (const int ly : places_[1][y])
               for (const int lx : places_[0][x]) claim(solid, {lx, ly, lz});
@@ -177,11 +177,10 @@ void StaticSolids::measure_near(const Extent& extent, Meets meets) {
       }
 }
 
-template <Shape S>
-void StaticSolids::measure(const PlacedShape<S>& shape) {
-  const Extent whole = coupling::extent_of(shape);
+void StaticSolids::measure(const SolidSphere& sphere) {
+  const Extent whole = coupling::extent_of(sphere);
   for_each_image(whole, [&](const Vec3& shift) {
-    const PlacedShape<S> image{shape.centre + shift, shape.shape};
+    const SolidSphere image{sphere.centre + shift, sphere.radius};
     measure_near({whole.lower + shift, whole.upper + shift},
                  [&](const Vec3& from, const Vec3& along) { return meets(image, from, along); });
   });

@@ -49,13 +49,11 @@ private:
     std::vector<lbm::LinkCrossing> crossings;
   };
 
-  template <Shape S>
-  void cover(int solid, const PlacedShape<S>& shape);
+  void cover(int solid, const SolidSphere& sphere);
   void cover(int solid, const TriangleMesh& mesh);
   void claim(int solid, const Index3& local);
   void find_cut_cells();
-  template <Shape S>
-  void measure(const PlacedShape<S>& shape);
+  void measure(const SolidSphere& sphere);
   void measure(const TriangleMesh& mesh);
   void build_links(const lbm::RowTiles& tiles);
   void add_links_of_cell(const Index3& local, std::vector<SolidLinks>& links) const;

@@ -45,7 +45,7 @@ void fill_in_surfaces(Case& c, const io::YamlDocument& document) {
 }
 
 coupling::Extent extent_of(const SolidCase& solid) {
-  if (solid.sphere) return coupling::extent_of(coupling::SolidSphere{solid.sphere->centre, {solid.sphere->radius}});
+  if (solid.sphere) return coupling::extent_of(coupling::SolidSphere{solid.sphere->centre, solid.sphere->radius});
   return coupling::extent_of(solid.surface);
 }
 
@@ -74,7 +74,7 @@ std::vector<coupling::SolidShape> solid_shapes(const Case& c) {
   std::vector<coupling::SolidShape> shapes;
   for (const SolidCase& solid : c.solids) {
     if (solid.sphere) {
-      shapes.push_back(coupling::SolidSphere{solid.sphere->centre / spacing, {solid.sphere->radius / spacing}});
+      shapes.push_back(coupling::SolidSphere{solid.sphere->centre / spacing, solid.sphere->radius / spacing});
       continue;
     }
     TriangleMesh mesh = solid.surface;

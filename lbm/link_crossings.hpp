@@ -1,10 +1,10 @@
-// Where links cross the surface of a body of a given shape (core/shape.hpp). With d = x_f - centre and delta in [0, 1]
+// Where links cross the surface of a sphere. With d = x_f - centre and delta in [0, 1]
 // the fraction of the link at which it enters: arm = d + delta c_i (cells). Cells may have been assigned when the body
 // was up to a small tolerance away; a crossing just beyond an end of its link is then put at that end.
 #pragma once
 
 #include "core/periodic_box.hpp"
-#include "core/shape.hpp"
+#include "core/sphere.hpp"
 #include "lbm/link_table.hpp"
 
 #include <cmath>
@@ -39,8 +39,8 @@ struct BlockPlace {
 namespace detail {
 
 // As find_crossings(). `wraps`: whether a link may be nearer to another image of the centre.
-template <bool wraps, typename Real, Shape S>
-[[gnu::always_inline]] inline void cross_links(S shape, const Vec3& centre, const BlockPlace& block, int z,
+template <bool wraps, typename Real>
+[[gnu::always_inline]] inline void cross_links(Sphere sphere, const Vec3& centre, const BlockPlace& block, int z,
                                                const std::uint32_t* __restrict places,
                                                const std::uint32_t* __restrict tags, int count,
                                                Real* __restrict distance, Real* __restrict arm_x,
@@ -71,7 +71,7 @@ template <bool wraps, typename Real, Shape S>
       const Real dx = Real(nearest(x + from_x + cx, half_x, period_x) - cx) + rest[0];
       const Real dy = Real(nearest(y + from_y + cy, half_y, period_y) - cy) + rest[1];
       const Real dz = Real(nearest(from_z + cz, half_z, period_z) - cz) + rest[2];
-      const Real delta = shape.link_crossing(dx, dy, dz, Real(cx), Real(cy), Real(cz));
+      const Real delta = sphere.link_crossing(dx, dy, dz, Real(cx), Real(cy), Real(cz));
       distance[k] = delta > Real(0) ? delta : Real(0);
       arm_x[k] = dx;
       arm_y[k] = dy;
@@ -95,14 +95,14 @@ template <bool wraps, typename Real, Shape S>
 // links_at_a_time, in the arithmetic of Real, which is the same for every link whatever its place in the arrays.
 // Coordinates are relative to a whole number near the centre, so that no digits are lost far from the origin; the
 // nearest image is that of the solid cell, which is inside.
-template <typename Real, Shape S>
-inline void find_crossings(const S& shape, const Vec3& centre, const BlockPlace& block, int z,
+template <typename Real>
+inline void find_crossings(const Sphere& sphere, const Vec3& centre, const BlockPlace& block, int z,
                            const std::uint32_t* places, const std::uint32_t* tags, int count, Real* distance,
                            Real* arm_x, Real* arm_y, Real* arm_z) {
-  if (block.may_wrap(centre, shape.reach()))
-    detail::cross_links<true>(shape, centre, block, z, places, tags, count, distance, arm_x, arm_y, arm_z);
+  if (block.may_wrap(centre, sphere.radius))
+    detail::cross_links<true>(sphere, centre, block, z, places, tags, count, distance, arm_x, arm_y, arm_z);
   else
-    detail::cross_links<false>(shape, centre, block, z, places, tags, count, distance, arm_x, arm_y, arm_z);
+    detail::cross_links<false>(sphere, centre, block, z, places, tags, count, distance, arm_x, arm_y, arm_z);
 }
 
 }  // namespace thalweg::lbm

@@ -21,8 +21,6 @@
 #pragma once
 
 #include "core/periodic_box.hpp"
-#include "core/shape.hpp"
-#include "core/sphere.hpp"
 #include "lbm/fluid.hpp"
 #include "lbm/link_crossings.hpp"
 #include "lbm/link_options.hpp"
@@ -32,25 +30,16 @@
 #include "lbm/upstream_bodies.hpp"
 
 #include <array>
-#include <concepts>
 #include <cstddef>
 #include <experimental/simd>
-#include <span>
 #include <vector>
 
 namespace thalweg::lbm {
 
-// In place of a shape: the crossings are stored with the links (LinkTable).
-struct StoredCrossings {};
-
-template <typename S>
-concept LinkShape = Shape<S> || std::same_as<S, StoredCrossings>;
-
 // Applies the links of one step, tile by tile. For every link it writes the population that the sweep will take from
 // the solid side, and adds to the sums of bodies[...], which the caller has cleared (LinkBody::clear_sums()). Halo and
 // walls must be up to date. The cell map holds indices into `bodies`. box: the domain in cells, for the minimum image
-// between bodies. shapes: of the bodies, all of one kind; empty where crossings are stored. All of these must outlive
-// the pass.
+// between bodies. All of these must outlive the pass.
 //
 // The links of a row read what cells of the rows around it sent out, so they must be applied before any of these rows
 // is swept; Fluid::stream_and_collide(before_tile) does so while the tile is still in the cache. Apply tiles in order.
@@ -62,13 +51,11 @@ concept LinkShape = Shape<S> || std::same_as<S, StoredCrossings>;
 // torque is its antisymmetric part. by_height: where given, 2 n_z + 1 sums for the n_z planes of this rank, to which
 // the force of every link is added at the height half a link from its fluid cell: entry h lies h half cells above the
 // block's lower face.
-//
-// The members are defined in link_pass.ipp, to be included where they are instantiated for a new shape.
-template <typename Real, LinkShape S = StoredCrossings>
+template <typename Real>
 class LinkPass {
 public:
   LinkPass(Fluid<Real>& fluid, const LinkTable& links, const PeriodicBox& box, const LinkOptions& options,
-           std::vector<LinkBody>& bodies, std::span<const S> shapes = {}, std::vector<FixedTensor>* moments = nullptr,
+           std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments = nullptr,
            std::vector<FixedVec3>* by_height = nullptr);
 
   void apply_tile(int tile);
@@ -179,7 +166,6 @@ private:
   const PeriodicBox& box_;
   const LinkOptions& options_;
   std::vector<LinkBody>& bodies_;
-  std::span<const S> shapes_;
   std::vector<FixedTensor>* moments_;  // null: not measured
   std::vector<FixedVec3>* by_height_;  // null: not measured
   BlockPlace block_;

@@ -45,6 +45,20 @@ void LinkStream::prefetch(std::size_t first, std::size_t count) const {
   }
 }
 
+void LinkStream::resize(std::size_t size) {
+  place.resize(size);
+  tag.resize(size);
+  if (!crossing.empty()) crossing.resize(size);
+}
+
+void LinkStream::fill_up(std::size_t end, std::size_t copies) {
+  for (std::size_t k = end; k < end + copies; ++k) {
+    place[k] = place[end - 1];
+    tag[k] = tag[end - 1];
+    if (!crossing.empty()) crossing[k] = crossing[end - 1];
+  }
+}
+
 std::size_t LinkTable::count() const {
   std::size_t total = 0;
   for (const Tile& tile : tiles_) total += tile.live;
@@ -132,12 +146,6 @@ const std::vector<LinkTable::Run>& LinkTable::runs_in_order(int tile) const {
   return t.runs;
 }
 
-void LinkTable::resize(LinkStream& links, std::size_t size) const {
-  links.place.resize(size);
-  links.tag.resize(size);
-  if (stores_crossings_) links.crossing.resize(size);
-}
-
 void LinkTable::put(Tile& tile, Chunk& chunk, std::span<const Link> links, std::span<const LinkCrossing> crossings) {
   tile.runs_current = false;
   tile.live += links.size();
@@ -149,8 +157,9 @@ void LinkTable::put(Tile& tile, Chunk& chunk, std::span<const Link> links, std::
     chunk.first = static_cast<std::uint32_t>(tile.end);
     chunk.capacity = padded(static_cast<std::uint32_t>(links.size() + links.size() / 4));
     tile.end += chunk.capacity;
-    resize(tile.links, tile.end);
+    tile.links.resize(tile.end);
   }
+  if (!crossings.empty()) tile.links.crossing.resize(tile.links.place.size());
   LinkSums& sums = sums_[static_cast<std::size_t>(chunk.body)];
   sums -= chunk.sums;
   const auto is_covered = [](const Link& link) { return LinkTag::is_covered(link.tag); };
@@ -161,28 +170,20 @@ void LinkTable::put(Tile& tile, Chunk& chunk, std::span<const Link> links, std::
     const std::uint32_t at = next[is_covered(links[k])]++;
     tile.links.place[at] = links[k].place;
     tile.links.tag[at] = links[k].tag;
-    if (stores_crossings_) tile.links.crossing[at] = crossings[k];
+    if (!crossings.empty()) tile.links.crossing[at] = crossings[k];
     ++by_direction[links[k].tag & LinkTag::direction_mask];
   }
   chunk.sums = LinkSums::of(by_direction);
   sums += chunk.sums;
   chunk.count = static_cast<std::uint32_t>(links.size());
-  fill_up(tile.links, chunk);
+  tile.links.fill_up(chunk.first + chunk.count, padded(chunk.count) - chunk.count);
   if (tile.end > 3 * tile.filled + 4096) compact(tile);
 }
 
-void LinkTable::fill_up(LinkStream& links, const Chunk& chunk) const {
-  const std::uint32_t end = chunk.first + chunk.count;
-  for (std::uint32_t k = end; k < chunk.first + padded(chunk.count); ++k) {
-    links.place[k] = links.place[end - 1];
-    links.tag[k] = links.tag[end - 1];
-    if (stores_crossings_) links.crossing[k] = links.crossing[end - 1];
-  }
-}
-
-void LinkTable::compact(Tile& tile) const {
+void LinkTable::compact(Tile& tile) {
   LinkStream packed;
-  resize(packed, tile.filled);
+  if (!tile.links.crossing.empty()) packed.crossing.resize(tile.filled);
+  packed.resize(tile.filled);
   std::size_t end = 0;
   for (Chunk& chunk : tile.chunks) {
     const auto move = [&](const auto& from, auto& to) {

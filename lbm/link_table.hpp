@@ -1,7 +1,7 @@
 // Cut lattice links: where a body's surface crosses the line from a fluid cell to its solid neighbour.
 //
 // A link is two words, place and tag, and says which cells it joins; where the surface crosses it follows from the
-// body's shape and present place when the link is applied (link_crossings.hpp), or is kept beside it (bodies of any
+// body's radius and present place when the link is applied (link_crossings.hpp), or is kept beside it (bodies of any
 // shape that stand still). So a link changes only when a cell changes hands, however its body moves. Links are kept
 // tile by tile (RowTiles, by the fluid cell) and, within a tile, body by body in memory order: the links of one body in
 // one tile are a chunk. The lattice knows bodies as rigid motions, and nothing of grains.
@@ -78,10 +78,13 @@ struct LinkCrossing {
   float arm[3] = {};      // the crossing from the body's centre, cells
 };
 
-// Links side by side, one array a word; crossings only in tables that store them.
+// Links side by side, one array a word; crossings are empty until a body stores them.
 struct LinkStream {
   std::vector<std::uint32_t> place, tag;
   std::vector<LinkCrossing> crossing;
+
+  void resize(std::size_t size);
+  void fill_up(std::size_t end, std::size_t copies);  // of the last link before `end`, from there on
 
   // Prefetches these links. Not inlined, because the compiler would drop it as having no effect.
   [[gnu::noinline]] void prefetch(std::size_t first, std::size_t count) const;
@@ -89,6 +92,7 @@ struct LinkStream {
 
 // A rigid body as the links see it; lattice units, global coordinates (cell centres at integer + 1/2).
 struct LinkBody {
+  double radius = 0.0;  // of a sphere; 0: any shape that stands still, whose links store their crossings
   Vec3 centre = Vec3::Zero();
   Vec3 velocity = Vec3::Zero();
   Vec3 angular_velocity = Vec3::Zero();
@@ -158,7 +162,7 @@ public:
     std::size_t end = 0;               // first entry of the stream that no chunk has
   };
 
-  explicit LinkTable(int tiles, bool stores_crossings = false) : stores_crossings_(stores_crossings), tiles_(tiles) {}
+  explicit LinkTable(int tiles) : tiles_(tiles) {}
 
   const std::vector<Tile>& tiles() const { return tiles_; }
 
@@ -167,7 +171,7 @@ public:
   std::size_t count() const;                // all links
   const LinkSums& sums_of(int body) const;  // over its links in all tiles; zero for a body without links
 
-  // Replaces the links of a body in a tile; crossings: one a link if the table stores them, else empty. Throws
+  // Replaces the links of a body in a tile; crossings: one a link of a body that stores them, else empty. Throws
   // InputError if there are more bodies than a tag can tell.
   void replace(int body, int tile, std::span<const Link> links, std::span<const LinkCrossing> crossings = {});
   // Drops the links of a body in all tiles.
@@ -181,11 +185,8 @@ private:
   std::uint32_t new_chunk(Tile& tile, int body);
   void drop_chunk(Tile& tile, std::uint32_t chunk);
   void put(Tile& tile, Chunk& chunk, std::span<const Link> links, std::span<const LinkCrossing> crossings);
-  void fill_up(LinkStream& links, const Chunk& chunk) const;
-  void resize(LinkStream& links, std::size_t size) const;
-  void compact(Tile& tile) const;
+  static void compact(Tile& tile);
 
-  bool stores_crossings_;
   mutable std::vector<Tile> tiles_;         // sorted on demand
   std::vector<std::vector<Place>> places_;  // of each body
   std::vector<LinkSums> sums_;              // of each body

@@ -92,7 +92,7 @@ TEST(LinkBuilder, FollowsTheMapThroughAnyMoves) {
     for (GlobalId id = 0; id < grains; ++id) {
       const int slot = map.slot_of(id);
       if (slot < 0) {
-        if (uniform(generator) < 0.5) map.place(map.add(id, {2.0 + 1.5 * uniform(generator)}), anywhere());
+        if (uniform(generator) < 0.5) map.place(map.add(id, 2.0 + 1.5 * uniform(generator)), anywhere());
       } else if (uniform(generator) < 0.05) {
         map.remove(slot);
       } else if (uniform(generator) < 0.7) {
@@ -143,7 +143,7 @@ TEST(LinkBuilder, KnowsWhichCellsAreEnclosed) {
     return count;
   };
   map.begin_update();
-  for (int i = 1; i < 19; ++i) map.place(map.add(i, {0.6}), beside(i));
+  for (int i = 1; i < 19; ++i) map.place(map.add(i, 0.6), beside(i));
   EXPECT_EQ(enclosed_links(), 18);
   for (int i = 1; i < 19; ++i) {
     map.begin_update();

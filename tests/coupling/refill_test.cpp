@@ -38,7 +38,7 @@ RefillTotals move_sphere(lbm::Fluid<double>& fluid, const Decomposition& decompo
                          RefillRule rule, const Hydrostatic& rest, const Vec3& before, const lbm::LinkBody& body) {
   GrainMap map(decomposition, fluid.block(), fluid.cells());
   map.begin_update();
-  const int slot = map.add(0, {3.0});
+  const int slot = map.add(0, 3.0);
   map.place(slot, before);
   map.settle();
   map.begin_update();

@@ -98,7 +98,7 @@ TEST(StaticSolids, ASphereOfTrianglesIsCutLikeASphere) {
   const Vec3 centre(9.3, 10.1, 0.4);  // across a periodic end
   const double radius = 6.2, side = 1.6 * std::numbers::pi / 64.0, sag = radius * side * side / 6.0;
   const Box box{{20, 20, 20}, {true, true, true}, {}, {}};
-  const auto round = make(box, {SolidSphere{centre, {radius}}}, MPI_COMM_SELF);
+  const auto round = make(box, {SolidSphere{centre, radius}}, MPI_COMM_SELF);
   const auto faceted = make(box, {sphere_mesh(centre, radius, 5)}, MPI_COMM_SELF);
   const auto exact = links_of(*round), found = links_of(*faceted);
   std::size_t common = 0;
@@ -140,7 +140,7 @@ TEST(StaticSolids, CoverWhatIsInsideEvenWhereLinesRunThroughEdges) {
       }
   EXPECT_EQ(solid % 12, 0);  // the same in every layer across x
   EXPECT_THROW(make(box, {block_mesh({2.6, 2.6, 2.6}, {3.4, 3.4, 3.4})}, MPI_COMM_SELF), InputError);
-  EXPECT_THROW(make(box, {SolidSphere{{5.0, 5.0, 30.0}, {3.0}}}, MPI_COMM_SELF), InputError);
+  EXPECT_THROW(make(box, {SolidSphere{{5.0, 5.0, 30.0}, 3.0}}, MPI_COMM_SELF), InputError);
 }
 
 // A block with a hole of one cell, which no fluid leaves: under full gravity the water in it has the pressure of its
@@ -282,7 +282,7 @@ double drag_factor(double solid_fraction, int cells, lbm::LinkRule rule, double 
   const double nu = (relaxation_time - 0.5) / 3.0, volume = 4.0 / 3.0 * std::numbers::pi * std::pow(radius, 3);
   box.collision.force[0] = 1e-6;
   const Vec3 centre(0.5 * cells + 0.21, 0.5 * cells - 0.34, 0.5 * cells + 0.08);
-  const auto system = make(box, {SolidSphere{centre, {radius}}}, MPI_COMM_WORLD);
+  const auto system = make(box, {SolidSphere{centre, radius}}, MPI_COMM_WORLD);
   for (int step = 0; step < 6.0 * cells * cells / nu / 9.87; ++step) system->advance();
   const lbm::FluidTotals totals = system->fluid().totals();
   // CLI links leave a small oscillation from step to step, so that the mean of two steps counts, as for grains.
@@ -320,7 +320,7 @@ TEST(StaticSolids, AreTheSameOnAnyRanks) {
   box.collision.force[0] = 1e-5;
   box.faces[4].type = lbm::FaceType::no_slip;
   box.faces[5].type = lbm::FaceType::free_slip;
-  const std::vector<SolidShape> solids{sphere_mesh({11.2, 8.7, 9.1}, 4.3, 3), SolidSphere{{21.4, 17.2, 12.0}, {3.1}},
+  const std::vector<SolidShape> solids{sphere_mesh({11.2, 8.7, 9.1}, 4.3, 3), SolidSphere{{21.4, 17.2, 12.0}, 3.1},
                                        block_mesh({-4, 3.3, -1}, {30, 7.1, 2.6})};
   const auto alone = make(box, solids, MPI_COMM_SELF), shared = make(box, solids, MPI_COMM_WORLD);
   for (int step = 0; step < 9; ++step) {

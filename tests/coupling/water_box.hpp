@@ -41,8 +41,8 @@ struct WaterBox {
   std::vector<dem::ClumpSeed> clumps;
 };
 
-template <typename Real, GrainShape S = Sphere>
-std::unique_ptr<ResolvedSystem<Real, S>> make_system(const WaterBox& box, MPI_Comm communicator, const Index3& layout) {
+template <typename Real>
+std::unique_ptr<ResolvedSystem<Real>> make_system(const WaterBox& box, MPI_Comm communicator, const Index3& layout) {
   constexpr double fluid_density = 1000.0;
   auto decomposition = std::make_unique<Decomposition>(box.cells, box.spacing, box.periodic, layout);
 
@@ -101,7 +101,7 @@ std::unique_ptr<ResolvedSystem<Real, S>> make_system(const WaterBox& box, MPI_Co
   for (const dem::ClumpSeed& clump : box.clumps)
     for (const dem::Sphere& member : clump.shape->members) largest = std::max(largest, member.radius);
   g.skin = largest > 0.0 ? 0.2 * largest : box.spacing;
-  g.ghost_width = ResolvedSystem<Real, S>::ghost_reach(largest, box.spacing);
+  g.ghost_width = ResolvedSystem<Real>::ghost_reach(largest, box.spacing);
   if (box.lubrication) {
     dem::LubricationParameters lubrication;
     lubrication.viscosity = fluid_density * box.viscosity;
@@ -110,9 +110,9 @@ std::unique_ptr<ResolvedSystem<Real, S>> make_system(const WaterBox& box, MPI_Co
     for (const dem::Plane& wall : g.walls) lubrication.walls.push_back(wall.normal.z() == 1.0);
     g.lubrication = lubrication;
   }
-  g.attached_width = ResolvedSystem<Real, S>::attached_width(p);
+  g.attached_width = ResolvedSystem<Real>::attached_width(p);
   auto grains = std::make_unique<dem::GrainDynamics>(*decomposition, communicator, g, box.seeds, box.clumps);
-  return std::make_unique<ResolvedSystem<Real, S>>(std::move(decomposition), communicator, p, std::move(grains));
+  return std::make_unique<ResolvedSystem<Real>>(std::move(decomposition), communicator, p, std::move(grains));
 }
 
 inline dem::GrainSeed glass_sphere(GlobalId id, const Vec3& position, const Vec3& velocity = Vec3::Zero(),

@@ -17,8 +17,7 @@ constexpr double force = 1e-4;
 
 class EnclosedCell : public ::testing::TestWithParam<LinkRule> {
 protected:
-  EnclosedCell()
-      : fluid_(decomposition_, MPI_COMM_SELF, parameters(), {}), links_(fluid_.tiles().count(), true), bodies_(1) {
+  EnclosedCell() : fluid_(decomposition_, MPI_COMM_SELF, parameters(), {}), links_(fluid_.tiles().count()), bodies_(1) {
     options_.rule = GetParam();
     for (int z = -1; z <= size[2]; ++z)
       for (int y = -1; y <= size[1]; ++y)

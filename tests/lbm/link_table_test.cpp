@@ -9,6 +9,9 @@
 namespace thalweg::lbm::link_table_test {
 namespace {
 
+// Every other body has its crossings stored.
+bool stores_crossings(std::int32_t body) { return body % 2 == 0; }
+
 // What LinkTable says of the links of a run: those with a covered cell come first, copies of the last fill it up.
 void expect_whole_vectors(const LinkStream& links, const LinkTable::Run& run) {
   for (std::uint32_t k = 0; k < run.count; ++k)
@@ -17,14 +20,16 @@ void expect_whole_vectors(const LinkStream& links, const LinkTable::Run& run) {
   for (std::uint32_t k = last + 1; k < run.first + padded(run.count); ++k) {
     ASSERT_EQ(links.place[k], links.place[last]);
     ASSERT_EQ(links.tag[k], links.tag[last]);
-    ASSERT_EQ(links.crossing[k].distance, links.crossing[last].distance);
+    if (stores_crossings(run.body)) {
+      ASSERT_EQ(links.crossing[k].distance, links.crossing[last].distance);
+    }
   }
 }
 
 // Random bodies come, change and go; the table must hold exactly what was put in last.
 TEST(LinkTable, HoldsWhatWasPutInLast) {
   constexpr int tiles = 9, bodies = 6;
-  LinkTable table(tiles, true);
+  LinkTable table(tiles);
   using Held = std::multiset<std::pair<std::uint32_t, std::uint32_t>>;
   std::map<std::pair<int, int>, Held> expected;  // by body and tile
   std::mt19937 generator(11);
@@ -43,7 +48,7 @@ TEST(LinkTable, HoldsWhatWasPutInLast) {
       const std::uint32_t tag =
           LinkTag::of(1 + static_cast<int>(serial % 18), static_cast<std::int32_t>(serial % 1000) - 400);
       links.push_back({serial, tag});
-      crossings.push_back({static_cast<float>(serial % 1000), {}});
+      if (stores_crossings(body)) crossings.push_back({static_cast<float>(serial % 1000), {}});
       expected[{body, tile}].insert({serial, tag});
       ++serial;
     }
@@ -62,7 +67,9 @@ TEST(LinkTable, HoldsWhatWasPutInLast) {
       for (const LinkTable::Chunk& chunk : there.chunks)
         for (std::uint32_t k = chunk.first; k < chunk.first + chunk.count; ++k, ++count) {
           found[{chunk.body, t}].insert({there.links.place[k], there.links.tag[k]});
-          ASSERT_EQ(there.links.crossing[k].distance, static_cast<float>(there.links.place[k] % 1000));
+          if (stores_crossings(chunk.body)) {
+            ASSERT_EQ(there.links.crossing[k].distance, static_cast<float>(there.links.place[k] % 1000));
+          }
         }
     }
     ASSERT_EQ(found, expected) << "in round " << round;

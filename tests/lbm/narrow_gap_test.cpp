@@ -1,7 +1,7 @@
 // A gap of one cell between two bodies, so large that they are flat: what flows along it under a force.
 #include "core/sphere.hpp"
 #include "lbm/fluid.hpp"
-#include "lbm/link_pass.ipp"
+#include "lbm/link_pass.hpp"
 
 #include <gtest/gtest.h>
 
@@ -27,6 +27,7 @@ public:
     for (int z = 0; z < 3; z += 2)
       for (int y = -1; y <= cells[1]; ++y)
         for (int x = -1; x <= cells[0]; ++x) fluid_.cells().assign(x, y, z, z / 2);
+    for (LinkBody& body : bodies_) body.radius = radius;
     bodies_[0].centre = Vec3(3.0, 2.0, 1.0 - radius + shift);
     bodies_[1].centre = Vec3(3.0, 2.0, 2.0 + radius + shift);
     for (int body = 0; body < 2; ++body)
@@ -37,7 +38,7 @@ public:
     for (int step = 0; step < steps; ++step) {
       fluid_.exchange_halo();
       for (LinkBody& body : bodies_) body.clear_sums();
-      LinkPass pass(fluid_, links_, box_, options_, bodies_, std::span<const Sphere>(shapes_));
+      LinkPass pass(fluid_, links_, box_, options_, bodies_);
       fluid_.stream_and_collide([&](int tile) { pass.apply_tile(tile); });
     }
   }
@@ -78,7 +79,6 @@ private:
   LinkTable links_;
   LinkOptions options_;
   std::vector<LinkBody> bodies_;
-  const std::vector<Sphere> shapes_{{radius}, {radius}};
 };
 
 CollisionParameters parameters(CollisionModel model, double viscosity) {

@@ -82,8 +82,9 @@ Result sphere(double excess, double velocity) {
   coupling::LinkBuilder builder(decomposition, fluid.block(), fluid.cells(), fluid.tiles());
   std::vector<lbm::LinkBody> bodies(1);
   map.begin_update();
+  bodies[0].radius = 0.5 * diameter;
   bodies[0].centre = Vec3(12.3, 11.9, 12.1);
-  map.place(map.add(0, {0.5 * diameter}), bodies[0].centre);
+  map.place(map.add(0, bodies[0].radius), bodies[0].centre);
   map.settle();
   builder.update(map, links);
   fluid.initialise([&](const Vec3&) { return lbm::FluidState{0.0, Vec3(velocity, 0.0, 0.0)}; });
@@ -95,7 +96,7 @@ Result sphere(double excess, double velocity) {
   for (int step = 0; step < steps; ++step) {
     fluid.exchange_halo();
     bodies[0].force = bodies[0].torque = {};
-    lbm::LinkPass pass(fluid, links, box, options, bodies, map.shapes());
+    lbm::LinkPass pass(fluid, links, box, options, bodies);
     fluid.stream_and_collide([&](int tile) { pass.apply_tile(tile); });
     drag = bodies[0].force.to_vec3().x();
   }
