@@ -1,10 +1,9 @@
 // How a case says that fluid and grains, or solids, act on each other.
 #pragma once
 
+#include "bodies/body_options.hpp"
 #include "core/section_visitor.hpp"
 #include "coupling/load_rule.hpp"
-#include "coupling/refill_rule.hpp"
-#include "lbm/link_options.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -33,10 +32,10 @@ struct CouplingKeys {
   std::int64_t grain_steps_per_fluid_step = as_many_as_needed;
   double link_tolerance = 1e-3;            // cells a grain may move before the map of its cells follows
   double fewest_cells_per_diameter = 6.0;  // of the smallest grain, without a warning
-  lbm::MomentumExchange momentum_exchange = lbm::MomentumExchange::galilean_invariant;
-  lbm::WallDensity wall_density = lbm::WallDensity::local;
-  lbm::LinkRule links = lbm::LinkRule::bouzidi;
-  RefillRule refill = RefillRule::equilibrium;
+  bodies::MomentumExchange momentum_exchange = bodies::MomentumExchange::galilean_invariant;
+  bodies::WallDensity wall_density = bodies::WallDensity::local;
+  bodies::LinkRule links = bodies::LinkRule::bouzidi;
+  bodies::RefillRule refill = bodies::RefillRule::equilibrium;
   CoveredMomentum covered_momentum = CoveredMomentum::lost;
   std::optional<LoadRule> load;
   std::optional<LubricationKeys> lubrication;

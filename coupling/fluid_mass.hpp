@@ -1,7 +1,7 @@
 // Excess mass of the fluid (mass_account.hpp), from a survey of all of it, and how to change it. Lattice units.
 #pragma once
 
-#include "coupling/hydrostatic.hpp"
+#include "bodies/hydrostatic.hpp"
 #include "lbm/fluid_survey.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ struct ExcessMass {
   double mean() const { return sum / static_cast<double>(std::max<std::int64_t>(1, cells)); }
 };
 
-inline ExcessMass excess_mass(const lbm::FluidSurvey& survey, const Hydrostatic& rest) {
+inline ExcessMass excess_mass(const lbm::FluidSurvey& survey, const bodies::Hydrostatic& rest) {
   return {survey.totals.mass_deviation - rest.gradient.dot(survey.lever), survey.totals.cells};
 }
 

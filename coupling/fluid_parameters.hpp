@@ -1,11 +1,11 @@
 // What the lattice fluid of a system is made of: shared by the fluid alone and the fluid with grains.
 #pragma once
 
+#include "bodies/hydrostatic.hpp"
+#include "bodies/link_pass.hpp"
 #include "core/ramp.hpp"
 #include "core/units.hpp"
-#include "coupling/hydrostatic.hpp"
 #include "lbm/fluid.hpp"
-#include "lbm/link_pass.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -23,7 +23,7 @@ struct FluidParameters {
   lbm::CollisionParameters collision;  // lattice units; force included
   lbm::FaceConditions faces;
   std::optional<lbm::FlowTarget> flow_target;  // a mean velocity to hold, in place of the force along its axis
-  lbm::LinkOptions links;
+  bodies::LinkOptions links;
   bool full_gravity = false;  // the force acts across walls, too: the fluid begins with its hydrostatic density
   double ramp = 0.0;          // steps in which gravity rises from zero; 0: it is there at once
   std::function<FluidInitialState(const Vec3&)> initial_fluid;  // of a position in m; empty: at rest
@@ -56,14 +56,15 @@ inline bool closed(const lbm::FaceConditions& faces) {
 }
 
 // The rest state of the fluid: hydrostatic with full gravity, uniform with reduced gravity.
-inline Hydrostatic rest_state(const FluidParameters& parameters, const Decomposition& decomposition) {
-  return parameters.full_gravity ? hydrostatic_under(parameters.collision.force, decomposition) : Hydrostatic{};
+inline bodies::Hydrostatic rest_state(const FluidParameters& parameters, const Decomposition& decomposition) {
+  return parameters.full_gravity ? bodies::hydrostatic_under(parameters.collision.force, decomposition)
+                                 : bodies::Hydrostatic{};
 }
 
 // Brings the fluid to the initial state of the parameters. With full gravity the populations get the half force that a
 // collision leaves in them, so that a fluid at rest stays so to round-off.
 template <typename Real>
-void initialise(lbm::Fluid<Real>& fluid, const FluidParameters& parameters, const Hydrostatic& rest) {
+void initialise(lbm::Fluid<Real>& fluid, const FluidParameters& parameters, const bodies::Hydrostatic& rest) {
   if (!parameters.initial_fluid && rest.none()) return;
   const Vec3 force = rest.none() ? Vec3(Vec3::Zero()) : parameters.collision.force;
   fluid.initialise(

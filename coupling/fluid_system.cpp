@@ -15,7 +15,7 @@ namespace thalweg::coupling {
 
 template <typename Real>
 FluidSystem<Real>::FluidSystem(std::unique_ptr<Decomposition> decomposition, MPI_Comm communicator,
-                               const FluidParameters& parameters, const std::vector<SolidShape>& solids)
+                               const FluidParameters& parameters, const std::vector<bodies::SolidShape>& solids)
     : decomposition_(std::move(decomposition)),
       communicator_(communicator),
       parameters_(parameters),
@@ -28,8 +28,9 @@ FluidSystem<Real>::FluidSystem(std::unique_ptr<Decomposition> decomposition, MPI
   else
     phases_ = {0, timer_.phase("halo"), timer_.phase("walls"), timer_.phase("links"), timer_.phase("sweep")};
   if (!solids.empty())
-    solids_ = std::make_unique<StaticSolids>(*decomposition_, communicator, fluid_.cells(), fluid_.tiles(), solids);
-  set_rest(parameters_.links, rest_);
+    solids_ =
+        std::make_unique<bodies::StaticSolids>(*decomposition_, communicator, fluid_.cells(), fluid_.tiles(), solids);
+  bodies::set_rest(parameters_.links, rest_);
   if (parameters_.flow_target) fluid_.control_flow(*parameters_.flow_target);
   initialise(fluid_, parameters_, rest_);
   set_gravity(fluid_, parameters_, step_);
@@ -66,7 +67,7 @@ void FluidSystem<Real>::advance_around_solids() {
     const auto scope = timer_.measure(phases_.walls);
     fluid_.apply_walls();
   }
-  lbm::LinkPass<Real> links(fluid_, solids_->links(), lattice_box_, parameters_.links, solids_->begin_step());
+  bodies::LinkPass<Real> links(fluid_, solids_->links(), lattice_box_, parameters_.links, solids_->begin_step());
   const auto sweep = timer_.measure(phases_.sweep);
   fluid_.stream_and_collide([&](int tile) {
     const auto scope = timer_.measure(phases_.links);
@@ -97,8 +98,8 @@ FluidFields FluidSystem<Real>::sample(const std::vector<FluidField>& wanted, con
   context.grain_id = [](std::int32_t solid) { return -2 - solid; };
   if (solids_)
     context.apply_links = [this] {
-      std::vector<lbm::LinkBody> bodies = solids_->bodies();
-      lbm::LinkPass<Real> links(fluid_, solids_->links(), lattice_box_, parameters_.links, bodies);
+      std::vector<bodies::LinkBody> bodies = solids_->bodies();
+      bodies::LinkPass<Real> links(fluid_, solids_->links(), lattice_box_, parameters_.links, bodies);
       for (int tile = 0; tile < fluid_.tiles().count(); ++tile) links.apply_tile(tile);
     };
   return sample_fields(fluid_, context, wanted, region);

@@ -2,10 +2,10 @@
 // Solids that stand still may be in it.
 #pragma once
 
+#include "bodies/static_solids.hpp"
 #include "core/decomposition.hpp"
 #include "core/system.hpp"
 #include "coupling/fluid_parameters.hpp"
-#include "coupling/static_solids.hpp"
 
 #include <memory>
 #include <vector>
@@ -17,7 +17,7 @@ class FluidSystem final : public System, private FluidSource {
 public:
   // solids: lattice units. Throws InputError where one covers no cell. Collective.
   FluidSystem(std::unique_ptr<Decomposition> decomposition, MPI_Comm communicator, const FluidParameters& parameters,
-              const std::vector<SolidShape>& solids = {});
+              const std::vector<bodies::SolidShape>& solids = {});
 
   void advance() override;
   std::int64_t step() const override { return step_; }
@@ -36,7 +36,7 @@ public:
   std::int64_t grain_steps_per_step() const override { return 0; }
 
   const lbm::Fluid<Real>& fluid() const { return fluid_; }
-  const StaticSolids* solids() const { return solids_.get(); }  // null: none
+  const bodies::StaticSolids* solids() const { return solids_.get(); }  // null: none
 
 private:
   void advance_around_solids();
@@ -49,9 +49,9 @@ private:
   std::unique_ptr<Decomposition> decomposition_;
   MPI_Comm communicator_;
   FluidParameters parameters_;
-  mutable lbm::Fluid<Real> fluid_;        // a sample fills slots that every step fills anew; see sample_fields()
-  std::unique_ptr<StaticSolids> solids_;  // null: none
-  Hydrostatic rest_;
+  mutable lbm::Fluid<Real> fluid_;  // a sample fills slots that every step fills anew; see sample_fields()
+  std::unique_ptr<bodies::StaticSolids> solids_;  // null: none
+  bodies::Hydrostatic rest_;
   PeriodicBox lattice_box_;    // cells
   double start_excess_ = 0.0;  // mass beyond that of the fluid at rest, at the start; lattice units
   std::int64_t step_ = 0;

@@ -1,10 +1,10 @@
 // What the links of a step come to: loads on the grains, and the mass that they owe to the fluid.
 #pragma once
 
+#include "bodies/mass_return.hpp"
 #include "core/mpi_session.hpp"
 #include "core/wide_sums_over_ranks.hpp"
 #include "coupling/fluid_mass.hpp"
-#include "coupling/mass_return.hpp"
 #include "coupling/resolved_system.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace thalweg::coupling {
 template <typename Real>
 void ResolvedSystem<Real>::account_for_covered_cells() {
   const Index3& lower = fluid_.block().lower;
-  for (const CellChange& change : map_.changes()) {
+  for (const bodies::CellChange& change : map_.changes()) {
     const Index3& at = change.cell;
     if (change.before != lbm::CellMap::fluid || !fluid_.indexing().owned(at[0], at[1], at[2])) continue;
     const std::ptrdiff_t cell = fluid_.indexing().index(at[0], at[1], at[2]);
@@ -27,7 +27,7 @@ void ResolvedSystem<Real>::account_for_covered_cells() {
     step_totals_.covered_angular_momentum += position.cross(momentum);
     const double deviation = fluid_.populations().density_deviation(cell);
     const std::int64_t mass = LatticeFixed::from(rest_.deviation(position) - deviation);
-    lbm::LinkBody& body = bodies_[static_cast<std::size_t>(change.now)];
+    bodies::LinkBody& body = bodies_[static_cast<std::size_t>(change.now)];
     body.mass += mass;
     step_totals_.covered_mass += mass;
     if (parameters_.keep_covered_momentum) keep_momentum(body, at[2], position, 1.0 + deviation, momentum);
@@ -37,7 +37,7 @@ void ResolvedSystem<Real>::account_for_covered_cells() {
 // Of a cell that this body covers: sum (c_i - u_w) f_i^c without the half force, which refill puts into cells again.
 // What is left, rho u_w, belongs to the mass, which comes back (docs/theory.md, section 3, "Covered cells").
 template <typename Real>
-void ResolvedSystem<Real>::keep_momentum(lbm::LinkBody& body, int plane, const Vec3& position, double density,
+void ResolvedSystem<Real>::keep_momentum(bodies::LinkBody& body, int plane, const Vec3& position, double density,
                                          const Vec3& momentum) {
   const Vec3 arm = lattice_box_.difference(position, body.centre);
   const Vec3 wall = body.velocity + body.angular_velocity.cross(arm);
@@ -54,7 +54,7 @@ void ResolvedSystem<Real>::keep_momentum(lbm::LinkBody& body, int plane, const V
 template <typename Real>
 void ResolvedSystem<Real>::book_links() {
   for (std::size_t g = 0; g < grains_->store().total(); ++g) {
-    const lbm::LinkBody& body = bodies_[map_slot_[g]];
+    const bodies::LinkBody& body = bodies_[map_slot_[g]];
     const Vec3 force = body.force.to_vec3();
     step_totals_.link_momentum += force;
     step_totals_.link_angular_momentum += body.centre.cross(force) + body.torque.to_vec3();
@@ -74,11 +74,11 @@ void ResolvedSystem<Real>::collect_loads() {
   const int width = sums_per_grain();
   exchanged_.resize(static_cast<std::size_t>(width) * count);
   for (std::size_t g = 0; g < count; ++g) {
-    const lbm::LinkBody& body = bodies_[map_slot_[g]];
+    const bodies::LinkBody& body = bodies_[map_slot_[g]];
     const std::int64_t sums[8] = {body.force.x,  body.force.y,  body.force.z, body.torque.x,
                                   body.torque.y, body.torque.z, body.mass,    body.pressure};
     auto into = std::copy(sums, sums + 8, exchanged_.begin() + static_cast<std::ptrdiff_t>(width * g));
-    const lbm::LinkSums& link_sums = links_.sums_of(map_slot_[g]);
+    const bodies::LinkSums& link_sums = links_.sums_of(map_slot_[g]);
     into = std::copy(link_sums.sums.begin(), link_sums.sums.end(), into);
     if (parameters_.grain_stress) {
       const FixedTensor& moments = moments_[map_slot_[g]];
@@ -111,9 +111,9 @@ void ResolvedSystem<Real>::apply_loads() {
 }
 
 template <typename Real>
-lbm::LinkSums ResolvedSystem<Real>::link_sums_of(std::size_t grain) const {
-  lbm::LinkSums links;
-  std::copy_n(&exchanged_[sums_per_grain() * grain + plain_sums - lbm::LinkSums::size], lbm::LinkSums::size,
+bodies::LinkSums ResolvedSystem<Real>::link_sums_of(std::size_t grain) const {
+  bodies::LinkSums links;
+  std::copy_n(&exchanged_[sums_per_grain() * grain + plain_sums - bodies::LinkSums::size], bodies::LinkSums::size,
               links.sums.begin());
   return links;
 }
@@ -126,16 +126,16 @@ void ResolvedSystem<Real>::settle_mass(std::size_t first, std::size_t count) {
   // What comes back changes what the links take, with cli most of all: returned at once and whole it swings and grows.
   // A cell at a surface can swing by itself from step to step, hardly damped; the mean of two steps does not push it.
   constexpr double share_of_owed = 0.5, share_of_last_step = 0.125;
-  lbm::LinkSums links;
+  bodies::LinkSums links;
   std::int64_t sum = 0;
   double came_back = 0.0;
   for (std::size_t g = first; g < first + count; ++g) {
-    const lbm::LinkSums of_grain = link_sums_of(g);
-    const lbm::LinkBody& body = bodies_[map_slot_[g]];
+    const bodies::LinkSums of_grain = link_sums_of(g);
+    const bodies::LinkBody& body = bodies_[map_slot_[g]];
     const std::int64_t* sums = &exchanged_[sums_per_grain() * g + 6];
     links += of_grain;
     sum = exact_sum(sum, sums[0]);
-    came_back += MassReturn{body.returned, body.returned_slope}.mass(of_grain);
+    came_back += bodies::MassReturn{body.returned, body.returned_slope}.mass(of_grain);
     // A grain without links has no fluid around it: what was there last stays.
     if (of_grain.weight() > 0.0) exchange_of(g).surrounding() = LatticeFixed::to_double(sums[1]) / of_grain.weight();
   }
@@ -145,7 +145,7 @@ void ResolvedSystem<Real>::settle_mass(std::size_t first, std::size_t count) {
   owed -= given;
   loss += share_of_last_step * (came_back - given - loss);
   const double wanted = share_of_owed * owed + loss;
-  const MassReturn next = unit_mass_return(links).scaled(0.5 * (wanted + wanted_before));
+  const bodies::MassReturn next = bodies::unit_mass_return(links).scaled(0.5 * (wanted + wanted_before));
   wanted_before = wanted;
   for (std::size_t g = first; g < first + count; ++g) {
     exchange_of(g).returned_density() = next.density;

@@ -1,17 +1,17 @@
 // Grains in a resolved flow: the system the project exists for. One step is one lattice step and its DEM sub-steps.
 #pragma once
 
+#include "bodies/body_map.hpp"
+#include "bodies/hidden_links.hpp"
+#include "bodies/link_builder.hpp"
+#include "bodies/refill.hpp"
 #include "core/decomposition.hpp"
 #include "core/sphere.hpp"
 #include "core/system.hpp"
 #include "coupling/fluid_parameters.hpp"
 #include "coupling/grain_exchange.hpp"
-#include "coupling/grain_map.hpp"
-#include "coupling/hidden_links.hpp"
-#include "coupling/link_builder.hpp"
 #include "coupling/load_rule.hpp"
 #include "coupling/mass_account.hpp"
-#include "coupling/refill.hpp"
 #include "coupling/virtual_mass.hpp"
 #include "dem/grain_dynamics.hpp"
 
@@ -27,7 +27,7 @@ struct ResolvedParameters : FluidParameters {
   int sub_steps = 50;                       // DEM steps per lattice step
   bool wall_forces = false;                 // whether the figures include the forces on walls
   std::optional<VirtualMass> virtual_mass;  // of light grains; its filter is made for LoadRule::mean
-  RefillRule refill = RefillRule::equilibrium;
+  bodies::RefillRule refill = bodies::RefillRule::equilibrium;
   LoadRule load = LoadRule::extrapolated;
   bool keep_covered_momentum = false;  // what a covered cell carries relative to its grain, the grain gets
   bool grain_stress = false;           // the stress of the fluid on every grain is measured
@@ -52,7 +52,7 @@ template <typename Real>
 class ResolvedSystem final : public System, private FluidSource, private ContactSource {
 public:
   // The grains (already holding their seeds) must carry attached_width() attached columns and reach ghost_reach()
-  // beyond their block. Takes both over. Throws InputError where a block is too long (LinkBuilder). Collective.
+  // beyond their block. Takes both over. Throws InputError where a block is too long (bodies::LinkBuilder). Collective.
   ResolvedSystem(std::unique_ptr<Decomposition> decomposition, MPI_Comm communicator,
                  const ResolvedParameters& parameters, std::unique_ptr<dem::GrainDynamics> grains);
 
@@ -84,7 +84,7 @@ public:
 
   const lbm::Fluid<Real>& fluid() const { return fluid_; }
   const dem::GrainDynamics& grains() const { return *grains_; }
-  const lbm::LinkTable& links() const { return links_; }
+  const bodies::LinkTable& links() const { return links_; }
   const ExchangeTotals& step_totals() const { return step_totals_; }
 
 private:
@@ -105,13 +105,13 @@ private:
   void synchronise_slots();
   void update_map();
   void update_bodies();
-  void place_body(std::size_t grain, lbm::LinkBody& body) const;
+  void place_body(std::size_t grain, bodies::LinkBody& body) const;
   void account_for_covered_cells();
-  void keep_momentum(lbm::LinkBody& body, int plane, const Vec3& position, double density, const Vec3& momentum);
+  void keep_momentum(bodies::LinkBody& body, int plane, const Vec3& position, double density, const Vec3& momentum);
   void open_account();
   void correct_mass();
   void book_links();
-  lbm::LinkSums link_sums_of(std::size_t grain) const;
+  bodies::LinkSums link_sums_of(std::size_t grain) const;
   void settle_masses();
   void settle_mass(std::size_t first, std::size_t count);
   double mass_owed() const;
@@ -129,7 +129,7 @@ private:
   void apply_stress(std::size_t grain, bool first);
   void show_stresses();
   // Of a grain: force, torque, mass, pressure, LinkSums; where asked for, moments.
-  static constexpr int plain_sums = 8 + lbm::LinkSums::size;
+  static constexpr int plain_sums = 8 + bodies::LinkSums::size;
   int sums_per_grain() const { return plain_sums + (parameters_.grain_stress ? 9 : 0); }
   Vec3 lattice_position(const Vec3& position) const { return position / parameters_.units.spacing; }
 
@@ -139,18 +139,18 @@ private:
   mutable lbm::Fluid<Real> fluid_;  // a sample fills slots that every step fills anew; see sample_fields()
   std::unique_ptr<dem::GrainDynamics> grains_;
   PeriodicBox box_, lattice_box_;  // m, cells
-  Hydrostatic rest_;
-  GrainMap map_;
-  lbm::LinkTable links_;
-  LinkBuilder link_builder_;
-  HiddenLinks hidden_links_;
-  Refill refill_;
-  std::vector<lbm::LinkBody> bodies_;    // by map slot
-  std::vector<int> map_slot_;            // of each grain of the store
-  std::vector<double> surrounding_;      // rho - rho_rest around the grain, by map slot
-  std::vector<FixedTensor> moments_;     // by map slot; empty unless measured
-  std::vector<std::int64_t> exchanged_;  // force and torque sums of each grain of the store, and those of moments
-  std::vector<Mat3> fluid_stress_;       // Pa, of owned grains; empty unless asked for
+  bodies::Hydrostatic rest_;
+  bodies::BodyMap map_;
+  bodies::LinkTable links_;
+  bodies::LinkBuilder link_builder_;
+  bodies::HiddenLinks hidden_links_;
+  bodies::Refill refill_;
+  std::vector<bodies::LinkBody> bodies_;  // by map slot
+  std::vector<int> map_slot_;             // of each grain of the store
+  std::vector<double> surrounding_;       // rho - rho_rest around the grain, by map slot
+  std::vector<FixedTensor> moments_;      // by map slot; empty unless measured
+  std::vector<std::int64_t> exchanged_;   // force and torque sums of each grain of the store, and those of moments
+  std::vector<Mat3> fluid_stress_;        // Pa, of owned grains; empty unless asked for
   ExchangeTotals step_totals_;
   bool booking_ = false;                    // this step's momentum is to be booked
   std::vector<FixedVec3> given_by_height_;  // to grains, by half planes of cells; empty unless booking

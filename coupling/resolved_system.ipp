@@ -39,7 +39,7 @@ ResolvedSystem<Real>::ResolvedSystem(std::unique_ptr<Decomposition> decompositio
       closed_(closed(parameters.faces)) {
   phases_ = {timer_.phase("grain map"), timer_.phase("refill"), timer_.phase("halo"),  timer_.phase("walls"),
              timer_.phase("links"),     timer_.phase("sweep"),  timer_.phase("loads"), timer_.phase("grains")};
-  set_rest(parameters_.links, rest_);
+  bodies::set_rest(parameters_.links, rest_);
   if (parameters_.flow_target) fluid_.control_flow(*parameters_.flow_target);
   initialise(fluid_, parameters_, rest_);
   dem::GrainStore& store = grains_->store();
@@ -72,14 +72,14 @@ void ResolvedSystem<Real>::initialise_map() {
 template <typename Real>
 void ResolvedSystem<Real>::synchronise_slots() {
   dem::GrainStore& store = grains_->store();
-  std::vector<char> present(map_.grains().size(), 0);
+  std::vector<char> present(map_.bodies().size(), 0);
   map_slot_.resize(store.total());
   for (std::size_t g = 0; g < store.total(); ++g) {
     const int slot = map_.slot_of(store.id[g]);
     if (slot >= 0) present[slot] = 1;
   }
   for (std::size_t slot = 0; slot < present.size(); ++slot)
-    if (!present[slot] && map_.grains()[slot].id >= 0) map_.remove(static_cast<int>(slot));
+    if (!present[slot] && map_.bodies()[slot].id >= 0) map_.remove(static_cast<int>(slot));
   for (std::size_t g = 0; g < store.total(); ++g) {
     int slot = map_.slot_of(store.id[g]);
     if (slot < 0) {
@@ -88,13 +88,13 @@ void ResolvedSystem<Real>::synchronise_slots() {
     }
     map_slot_[g] = slot;
   }
-  bodies_.resize(map_.grains().size());
-  surrounding_.resize(map_.grains().size());
+  bodies_.resize(map_.bodies().size());
+  surrounding_.resize(map_.bodies().size());
   update_bodies();
 }
 
 template <typename Real>
-void ResolvedSystem<Real>::place_body(std::size_t grain, lbm::LinkBody& body) const {
+void ResolvedSystem<Real>::place_body(std::size_t grain, bodies::LinkBody& body) const {
   const dem::GrainStore& store = grains_->store();
   body.radius = store.radius[grain] / parameters_.units.spacing;
   body.centre = lattice_position(store.position[grain]);
@@ -106,7 +106,7 @@ template <typename Real>
 void ResolvedSystem<Real>::update_bodies() {
   const dem::GrainStore& store = grains_->store();
   for (std::size_t g = 0; g < store.total(); ++g) {
-    lbm::LinkBody& body = bodies_[map_slot_[g]];
+    bodies::LinkBody& body = bodies_[map_slot_[g]];
     const GrainExchange<double> kept = exchange_of(g);
     place_body(g, body);
     body.returned = kept.returned_density();
@@ -135,7 +135,7 @@ void ResolvedSystem<Real>::update_map() {
 template <typename Real>
 void ResolvedSystem<Real>::sweep_behind_links() {
   std::vector<FixedTensor>* moments = moments_.empty() ? nullptr : &moments_;
-  lbm::LinkPass<Real> links(fluid_, links_, lattice_box_, parameters_.links, bodies_, moments);
+  bodies::LinkPass<Real> links(fluid_, links_, lattice_box_, parameters_.links, bodies_, moments);
   const auto sweep = timer_.measure(phases_.sweep);
   fluid_.stream_and_collide([&](int tile) {
     const auto scope = timer_.measure(phases_.links);
@@ -144,7 +144,7 @@ void ResolvedSystem<Real>::sweep_behind_links() {
   const auto scope = timer_.measure(phases_.links);
   book_links();
   hidden_links_.apply(bodies_, moments);
-  map_.hidden_patches().apply(map_.grains(), surrounding_, parameters_.links.reference_density, bodies_, moments);
+  map_.hidden_patches().apply(map_.bodies(), surrounding_, parameters_.links.reference_density, bodies_, moments);
 }
 
 // Links follow from the map of the cells alone, so they are rebuilt while the halo is on its way.
@@ -186,7 +186,7 @@ void ResolvedSystem<Real>::advance() {
   }
   {
     const auto scope = timer_.measure(phases_.refill);
-    const RefillTotals totals = refill_.fill(fluid_, map_.changes(), rest_, bodies_);
+    const bodies::RefillTotals totals = refill_.fill(fluid_, map_.changes(), rest_, bodies_);
     step_totals_.refilled_mass = totals.mass;
     step_totals_.refilled = totals.momentum;
     step_totals_.refilled_angular_momentum = totals.angular_momentum;
@@ -307,8 +307,8 @@ void ResolvedSystem<Real>::save(ArchiveWriter& archive) const {
 template <typename Real>
 void ResolvedSystem<Real>::forget_map() {
   map_.begin_update();
-  for (std::size_t slot = 0; slot < map_.grains().size(); ++slot)
-    if (map_.grains()[slot].id >= 0) map_.remove(static_cast<int>(slot));
+  for (std::size_t slot = 0; slot < map_.bodies().size(); ++slot)
+    if (map_.bodies()[slot].id >= 0) map_.remove(static_cast<int>(slot));
   map_.settle();
   link_builder_.update(map_, links_);
   hidden_links_.update(map_);

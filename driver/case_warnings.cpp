@@ -194,7 +194,7 @@ Warnings large_solids(const Case& c) {
   for (std::size_t n = 0; n < c.solids.size(); ++n) {
     const SolidCase& solid = c.solids[n];
     if (solid.stl.empty()) continue;
-    const coupling::Extent extent = extent_of(solid);
+    const bodies::Extent extent = extent_of(solid);
     const Vec3 boxes = (extent.upper - extent.lower).cwiseQuotient(c.domain.size);
     int axis = 0;
     if (boxes.maxCoeff(&axis) <= suspiciously_long) continue;
@@ -265,13 +265,13 @@ Warnings floating_grains(const Case& c) {
 Warnings inexact_links(const Case& c) {
   const double excess = relaxation_time(c) - 0.5;
   const bool bgk = c.fluid.collision == lbm::CollisionModel::bgk, trt = lbm::trt_near_bodies(c.fluid.collision),
-             bouzidi = c.coupling.links == lbm::LinkRule::bouzidi;
+             bouzidi = c.coupling.links == bodies::LinkRule::bouzidi;
   if (c.grains.empty() || smagorinsky(c) || excess < 0.0299) return {};
   if (!bgk && !(trt && bouzidi && excess > 0.15)) return {};
   Remedy remedy;
   if (bgk) remedy.push_back(trt_change());
   remedy.push_back(
-      word_change("coupling.links", "cli", [](Case& other) { other.coupling.links = lbm::LinkRule::cli; }));
+      word_change("coupling.links", "cli", [](Case& other) { other.coupling.links = bodies::LinkRule::cli; }));
   return {{fmt::format("In a dense bed with {}, drag depends on the relaxation time and is off by tens of percent",
                        bgk ? "bgk" : "bouzidi links"),
            {{remedy, {}}}}};

@@ -161,9 +161,9 @@ void add_grains(const Case& c, Lines& lines) {
 }
 
 void add_solids(const Case& c, Lines& lines) {
-  const std::vector<coupling::SolidShape> shapes = solid_shapes(c);
+  const std::vector<bodies::SolidShape> shapes = solid_shapes(c);
   for (std::size_t n = 0; n < shapes.size(); ++n) {
-    const coupling::Extent extent = coupling::extent_of(shapes[n]);
+    const bodies::Extent extent = extent_of(shapes[n]);
     const Vec3 cells = extent.upper - extent.lower, low = extent.lower * c.domain.spacing,
                high = extent.upper * c.domain.spacing;
     const auto* mesh = std::get_if<TriangleMesh>(&shapes[n]);

@@ -43,7 +43,7 @@ const char* nearest_in_water(const coupling::FluidKeys& fluid, double cells) {
 }
 
 std::string slow_text(const Case& c, double cells) {
-  const SlowDrag error = slow_drag_error(cells, c.coupling.links == lbm::LinkRule::cli);
+  const SlowDrag error = slow_drag_error(cells, c.coupling.links == bodies::LinkRule::cli);
   return fmt::format("off by {:+.2g} % alone and {:+.2g} % among others", 100.0 * error.alone,
                      100.0 * error.among_others);
 }

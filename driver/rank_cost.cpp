@@ -1,10 +1,10 @@
 #include "driver/rank_cost.hpp"
 
+#include "bodies/link_table.hpp"
 #include "coupling/grain_exchange.hpp"
 #include "driver/bed_flow.hpp"
 #include "driver/grain_setup.hpp"
 #include "driver/run_cost.hpp"
-#include "lbm/link_table.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ constexpr double motion_bytes = 9 * 8.0;
 // Of the ghosts, those that may touch a grain of the rank and are sent in sub-steps: in a wide bed 0.78 on 2 ranks, 0.6
 // on 32, 0.5 on 256 (docs/scaling.md).
 constexpr double touching_ghosts = 0.6;
-constexpr double sums_bytes = (8 + lbm::LinkSums::size) * 8.0, moment_bytes = 9 * 8.0;
+constexpr double sums_bytes = (8 + bodies::LinkSums::size) * 8.0, moment_bytes = 9 * 8.0;
 // The run's decision to go on, and the largest speed of a grain; and about one a step where lists are made anew.
 constexpr double reductions = 2.0;
 

@@ -44,14 +44,14 @@ void fill_in_surfaces(Case& c, const io::YamlDocument& document) {
   }
 }
 
-coupling::Extent extent_of(const SolidCase& solid) {
-  if (solid.sphere) return coupling::extent_of(coupling::SolidSphere{solid.sphere->centre, solid.sphere->radius});
-  return coupling::extent_of(solid.surface);
+bodies::Extent extent_of(const SolidCase& solid) {
+  if (solid.sphere) return bodies::extent_of(bodies::SolidSphere{solid.sphere->centre, solid.sphere->radius});
+  return bodies::extent_of(solid.surface);
 }
 
 void check_solid_extents(const Case& c, const io::YamlDocument& document) {
   for (std::size_t n = 0; n < c.solids.size(); ++n) {
-    const coupling::Extent extent = extent_of(c.solids[n]);
+    const bodies::Extent extent = extent_of(c.solids[n]);
     for (int axis = 0; axis < 3; ++axis) {
       const double low = extent.lower[axis], high = extent.upper[axis], box = c.domain.size[axis];
       if (periodic_axes(c.domain)[axis] && !(high - low <= most_boxes_long * box))
@@ -69,12 +69,12 @@ void check_solid_extents(const Case& c, const io::YamlDocument& document) {
   }
 }
 
-std::vector<coupling::SolidShape> solid_shapes(const Case& c) {
+std::vector<bodies::SolidShape> solid_shapes(const Case& c) {
   const double spacing = c.domain.spacing;
-  std::vector<coupling::SolidShape> shapes;
+  std::vector<bodies::SolidShape> shapes;
   for (const SolidCase& solid : c.solids) {
     if (solid.sphere) {
-      shapes.push_back(coupling::SolidSphere{solid.sphere->centre / spacing, solid.sphere->radius / spacing});
+      shapes.push_back(bodies::SolidSphere{solid.sphere->centre / spacing, solid.sphere->radius / spacing});
       continue;
     }
     TriangleMesh mesh = solid.surface;

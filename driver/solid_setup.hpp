@@ -1,7 +1,7 @@
 // The solids of a case, from their files to what coupling wants.
 #pragma once
 
-#include "coupling/solid_shape.hpp"
+#include "bodies/solid_shape.hpp"
 #include "driver/case.hpp"
 #include "io/yaml_document.hpp"
 
@@ -14,13 +14,13 @@ namespace thalweg::driver {
 void fill_in_surfaces(Case& c, const io::YamlDocument& document);
 
 // From the lowest to the highest coordinates of a solid whose surface has been read, m.
-coupling::Extent extent_of(const SolidCase& solid);
+bodies::Extent extent_of(const SolidCase& solid);
 
 // Throws InputError where a solid lies so far from the box, or is so much longer than a periodic box, that it cannot be
 // meant.
 void check_solid_extents(const Case& c, const io::YamlDocument& document);
 
 // In lattice units, in the order of the case.
-std::vector<coupling::SolidShape> solid_shapes(const Case& c);
+std::vector<bodies::SolidShape> solid_shapes(const Case& c);
 
 }  // namespace thalweg::driver

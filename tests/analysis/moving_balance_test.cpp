@@ -47,7 +47,7 @@ void expect_closed(bool keep) {
   box.smagorinsky_constant = 0.0;
   box.plate_velocity = 0.8;
   box.bottom_at_rest = true;
-  box.links.momentum_exchange = lbm::MomentumExchange::classical;
+  box.links.momentum_exchange = bodies::MomentumExchange::classical;
   box.grain_stress = true;
   box.keep_covered_momentum = keep;
   static double top;

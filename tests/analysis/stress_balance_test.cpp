@@ -29,7 +29,7 @@ WaterBox viscous_box(const Index3& cells, double cells_per_diameter, double tau)
   box.viscosity = (tau - 0.5) / 3.0 * box.spacing * box.spacing / box.time_step;
   box.smagorinsky_constant = 0.0;
   box.collision = lbm::CollisionModel::trt;
-  box.links.rule = lbm::LinkRule::cli;
+  box.links.rule = bodies::LinkRule::cli;
   box.grain_stress = true;
   return box;
 }

@@ -34,7 +34,7 @@ void expect_balance(double bulk_relaxation_time) {
   box.cells = {32, 24, 40};
   box.gravity = Vec3(0.8, 0.0, -9.8);
   box.fluid_velocity = Vec3(0.2, 0.0, 0.0);
-  box.links.momentum_exchange = lbm::MomentumExchange::classical;
+  box.links.momentum_exchange = bodies::MomentumExchange::classical;
   box.seeds = loose_grains();
   const Index3 layout = Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD));
   const auto system = make_system<double>(box, MPI_COMM_WORLD, layout);
@@ -90,11 +90,12 @@ TEST(Momentum, OfAGrainIsTheImpulseOfItsLoad) {
 // time; the rules of links, the moving-wall term and all refills are exact for it. So does the torque of the
 // classical exchange; the Galilean-invariant one leaves a torque of the order of the staircase (about 5e-3 of
 // 1/2 rho U^2 A R at ten cells a diameter), so there the grain is kept from spinning.
-class UniformMotion : public ::testing::TestWithParam<std::tuple<lbm::MomentumExchange, lbm::LinkRule, RefillRule>> {};
+class UniformMotion
+    : public ::testing::TestWithParam<std::tuple<bodies::MomentumExchange, bodies::LinkRule, bodies::RefillRule>> {};
 
 TEST_P(UniformMotion, ExertsNoForce) {
   const auto [exchange, rule, refill] = GetParam();
-  const bool classical = exchange == lbm::MomentumExchange::classical;
+  const bool classical = exchange == bodies::MomentumExchange::classical;
   WaterBox box;
   box.viscosity = 2e-5;
   box.smagorinsky_constant = 0.0;
@@ -121,10 +122,11 @@ TEST_P(UniformMotion, ExertsNoForce) {
 }
 
 INSTANTIATE_TEST_SUITE_P(AllRules, UniformMotion,
-                         ::testing::Combine(::testing::Values(lbm::MomentumExchange::galilean_invariant,
-                                                              lbm::MomentumExchange::classical),
-                                            ::testing::Values(lbm::LinkRule::bouzidi, lbm::LinkRule::cli),
-                                            ::testing::Values(RefillRule::equilibrium, RefillRule::grad)));
+                         ::testing::Combine(::testing::Values(bodies::MomentumExchange::galilean_invariant,
+                                                              bodies::MomentumExchange::classical),
+                                            ::testing::Values(bodies::LinkRule::bouzidi, bodies::LinkRule::cli),
+                                            ::testing::Values(bodies::RefillRule::equilibrium,
+                                                              bodies::RefillRule::grad)));
 
 }  // namespace
 }  // namespace thalweg::coupling::balance_test

@@ -97,10 +97,10 @@ TEST(ClumpInAFlow, GainsTheImpulseOfItsMembersLoads) {
 // does the torque. The arms of links are kept in single precision, 2^-24 of up to 4 cells; of a sphere their errors
 // cancel by symmetry, here up to all of them add up: some 300 links, 1.5e-1 in sum against 3.4e-2 x 2.75 cells, make
 // 4e-7 of the torque at worst, and the clump, free to turn, answers with a spin that small.
-class ClumpInUniformMotion : public ::testing::TestWithParam<lbm::MomentumExchange> {};
+class ClumpInUniformMotion : public ::testing::TestWithParam<bodies::MomentumExchange> {};
 
 TEST_P(ClumpInUniformMotion, FeelsNoForce) {
-  const bool classical = GetParam() == lbm::MomentumExchange::classical;
+  const bool classical = GetParam() == bodies::MomentumExchange::classical;
   WaterBox box;
   box.viscosity = 2e-5;
   box.smagorinsky_constant = 0.0;
@@ -124,8 +124,8 @@ TEST_P(ClumpInUniformMotion, FeelsNoForce) {
 }
 
 INSTANTIATE_TEST_SUITE_P(BothExchanges, ClumpInUniformMotion,
-                         ::testing::Values(lbm::MomentumExchange::galilean_invariant,
-                                           lbm::MomentumExchange::classical));
+                         ::testing::Values(bodies::MomentumExchange::galilean_invariant,
+                                           bodies::MomentumExchange::classical));
 
 // The rule CLI leaves the resting fluid exactly at rest (full_gravity_test.cpp), so that the force is the weight of the
 // fluid in the cells that the clump covers, each once. Patches where members meet carry nothing: they would count a
@@ -142,7 +142,7 @@ TEST(ClumpInAFlow, IsLiftedByTheWeightOfTheCellsOfItsUnion) {
   box.smagorinsky_constant = 0.0;
   box.gravity = Vec3(0.0, 0.0, -9.8);
   box.full_gravity = true;
-  box.links.rule = lbm::LinkRule::cli;
+  box.links.rule = bodies::LinkRule::cli;
   box.clumps = {glass_clump(0, pebble(), Vec3(5.1e-3, 6.3e-3, 6.2e-3))};
   box.clumps[0].motion = dem::Motion::fixed;
   const auto system = system_of(box);

@@ -44,7 +44,7 @@ void balance_of_a_crowd(int steps) {
   box.cells = {20, 20, 20};
   box.gravity = Vec3(0.3, -0.1, -1.0);  // so little that 1e4 steps of it stay slow
   box.sub_steps = 20;
-  box.links.momentum_exchange = lbm::MomentumExchange::classical;
+  box.links.momentum_exchange = bodies::MomentumExchange::classical;
   box.keep_covered_momentum = true;
   for (int k = 0; k < 27; ++k)
     box.seeds.push_back(
@@ -101,7 +101,7 @@ TEST(Conservation, AngularMomentumOfTheFluidChangesByWallsLinksAndCellsThatChang
   box.closed = true;
   box.viscosity = 1e-5;
   box.sub_steps = 20;
-  box.links.momentum_exchange = lbm::MomentumExchange::classical;
+  box.links.momentum_exchange = bodies::MomentumExchange::classical;
   box.initial = [](const Vec3& p) {
     return FluidInitialState{0.0, 20.0 * Vec3(0.0096 - p.y(), p.x() - 0.0104, 0.3 * (p.x() - 0.01))};
   };

@@ -109,7 +109,7 @@ double covered_share(const dem::GrainSeed& seed, double spacing) {
 // hundredths of a radius at most.
 TEST(FullGravity, LiftsAGrainWithCliLinksByTheWeightOfTheCellsItCovers) {
   WaterBox box = scattered_grains();
-  box.links.rule = lbm::LinkRule::cli;
+  box.links.rule = bodies::LinkRule::cli;
   double mean = 0.0, smallest = 2.0, largest = 0.0;
   for (const dem::GrainSeed& seed : box.seeds) {
     const double share = covered_share(seed, box.spacing);
@@ -142,7 +142,7 @@ TEST(FullGravity, LiftsAGrainAnywhereBetweenCellsByTheFluidItDisplaces) {
 // 20 cells of volume, 4 % of a sphere, and those between the spheres push sideways as much.
 TEST(FullGravity, LiftsGrainsThatTouchEachOtherAndTheFloor) {
   WaterBox box = deep_box({36, 36, 60});
-  box.links.rule = lbm::LinkRule::cli;
+  box.links.rule = bodies::LinkRule::cli;
   const Vec3 first(5.0e-3, 5.1e-3, 2.5e-3);
   box.seeds = {glass_sphere(0, first), glass_sphere(1, first + Vec3(5.0e-3, 0.0, 0.0)),
                glass_sphere(2, first + Vec3(2.5e-3, 5e-3 * std::sqrt(0.75), 0.0)),

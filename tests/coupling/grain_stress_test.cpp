@@ -14,7 +14,7 @@ namespace {
 
 double volume(double radius) { return 4.0 / 3.0 * std::numbers::pi * std::pow(radius, 3); }
 
-class GrainStress : public ::testing::TestWithParam<lbm::MomentumExchange> {};
+class GrainStress : public ::testing::TestWithParam<bodies::MomentumExchange> {};
 
 TEST_P(GrainStress, HasTheTorqueAsItsAntisymmetricPart) {
   WaterBox box;
@@ -49,8 +49,8 @@ TEST_P(GrainStress, HasTheTorqueAsItsAntisymmetricPart) {
 }
 
 INSTANTIATE_TEST_SUITE_P(BothExchanges, GrainStress,
-                         ::testing::Values(lbm::MomentumExchange::galilean_invariant,
-                                           lbm::MomentumExchange::classical));
+                         ::testing::Values(bodies::MomentumExchange::galilean_invariant,
+                                           bodies::MomentumExchange::classical));
 
 TEST(GrainStress, IsNotMeasuredUnlessAskedFor) {
   WaterBox box;
@@ -78,7 +78,7 @@ TEST(GrainStress, InSlowShearIsTheStresslet) {
   box.viscosity = nu;
   box.smagorinsky_constant = 0.0;
   box.collision = lbm::CollisionModel::trt;
-  box.links.rule = lbm::LinkRule::cli;
+  box.links.rule = bodies::LinkRule::cli;
   box.grain_stress = true;
   const double height = 36.0 * box.spacing, rate = 0.02 * nu / (2.5e-3 * 2.5e-3);  // Re = rate R^2/nu
   box.plate_velocity = 0.5 * rate * height;

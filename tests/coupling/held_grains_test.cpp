@@ -54,7 +54,7 @@ TEST(HeldGrains, FeelWhatFreeOnesFeelAtTheSamePlaceAndSpeed) {
 // A rigid body of three spheres that goes, swings and turns takes from the fluid exactly what its loads say.
 TEST(HeldGrains, ARigidAssemblyTakesFromTheFluidWhatItsLoadSays) {
   WaterBox box = three_spheres();
-  box.links.momentum_exchange = lbm::MomentumExchange::classical;
+  box.links.momentum_exchange = bodies::MomentumExchange::classical;
   box.assemblies.resize(1);
   dem::PrescribedMotion& motion = box.assemblies[0];
   motion.velocity = Vec3(0.3, 0.0, 0.0);

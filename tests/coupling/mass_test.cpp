@@ -98,11 +98,11 @@ TEST(WaterMass, IsBookedToRoundOffInEveryStep) {
 
 TEST(WaterMass, IsBookedForEveryLinkRule) {
   WaterBox box = crowd(Sides::periodic);
-  box.links.rule = lbm::LinkRule::cli;
+  box.links.rule = bodies::LinkRule::cli;
   balance_closes<double>(box, 80);
-  box.links.rule = lbm::LinkRule::bouzidi;
-  box.links.wall_density = lbm::WallDensity::reference;
-  box.refill = RefillRule::grad;
+  box.links.rule = bodies::LinkRule::bouzidi;
+  box.links.wall_density = bodies::WallDensity::reference;
+  box.refill = bodies::RefillRule::grad;
   balance_closes<double>(box, 80);
 }
 
@@ -148,7 +148,7 @@ TEST(WaterMass, ComesToRestWhereASurfaceGrazesACell) {
   box.viscosity = box.spacing * box.spacing / (6.0 * box.time_step);
   box.smagorinsky_constant = 0.0;
   box.collision = lbm::CollisionModel::trt;
-  box.links.rule = lbm::LinkRule::cli;
+  box.links.rule = bodies::LinkRule::cli;
   box.plate_velocity = 0.05;
   box.bottom_at_rest = true;
   box.seeds.push_back(glass_sphere(0, box.spacing * Vec3(11.78951599, 11.59191627, 4.0)));
@@ -198,7 +198,7 @@ TEST(WaterMass, AddingDensityGivesNoMomentum) {
 // What is owed, the sums of the account and the density that presses on nothing travel with the state.
 TEST(WaterMass, IsTheSameAfterARestart) {
   WaterBox box = crowd(Sides::closed, true);
-  box.refill = RefillRule::grad;
+  box.refill = bodies::RefillRule::grad;
   box.grain_stress = true;
   const auto whole = make<float>(box), first = make<float>(box), second = make<float>(box);
   test::MemoryArchive half, end, continued;

@@ -69,9 +69,9 @@ void expect_no_difference(const WaterBox& box) {
 }
 
 TEST(PressureGauge, IsNotFeltWithAnyLinkRuleAndExchange) {
-  for (const lbm::LinkRule rule : {lbm::LinkRule::bouzidi, lbm::LinkRule::cli})
-    for (const lbm::MomentumExchange exchange :
-         {lbm::MomentumExchange::galilean_invariant, lbm::MomentumExchange::classical}) {
+  for (const bodies::LinkRule rule : {bodies::LinkRule::bouzidi, bodies::LinkRule::cli})
+    for (const bodies::MomentumExchange exchange :
+         {bodies::MomentumExchange::galilean_invariant, bodies::MomentumExchange::classical}) {
       WaterBox box;
       box.links.rule = rule;
       box.links.momentum_exchange = exchange;
@@ -82,7 +82,7 @@ TEST(PressureGauge, IsNotFeltWithAnyLinkRuleAndExchange) {
 // With the links of cli the fluid is exactly at rest under its weight.
 TEST(PressureGauge, IsNotFeltUnderFullGravity) {
   WaterBox box;
-  box.links.rule = lbm::LinkRule::cli;
+  box.links.rule = bodies::LinkRule::cli;
   box.gravity = Vec3(0.0, 0.0, -9.8);
   box.full_gravity = true;
   expect_no_difference(box);

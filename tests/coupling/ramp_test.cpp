@@ -28,7 +28,7 @@ std::unique_ptr<FluidSystem<double>> fluid_in(const FluidParameters& parameters)
   auto decomposition =
       std::make_unique<Decomposition>(cells, 1.0, std::array<bool, 3>{true, true, true}, best_layout(cells));
   return std::make_unique<FluidSystem<double>>(std::move(decomposition), MPI_COMM_WORLD, parameters,
-                                               std::vector<SolidShape>{});
+                                               std::vector<bodies::SolidShape>{});
 }
 
 double figure(const System& system, const std::string& name) {

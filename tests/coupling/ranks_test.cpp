@@ -144,16 +144,16 @@ TEST(Ranks, DoNotChangeOneBitOfClumpsInAPeriodicBox) {
 TEST(Ranks, DoNotChangeOneBitWithFullGravityAndEveryOtherChoiceInAFlume) {
   WaterBox box = crowded({48, 36, 36}, {true, false, false}, 100, 5.4e-3);
   box.full_gravity = box.grain_stress = box.keep_covered_momentum = true;
-  box.links.rule = lbm::LinkRule::cli;
-  box.refill = RefillRule::grad;
+  box.links.rule = bodies::LinkRule::cli;
+  box.refill = bodies::RefillRule::grad;
   for (const Index3& layout : two_layouts_of(size_of(MPI_COMM_WORLD))) compare<float>(box, layout, 8);
 }
 
 TEST(Ranks, DoNotChangeOneBitWithTheOtherExchangeAndRefillInAPeriodicBox) {
   WaterBox box = crowded({33, 34, 35}, {true, true, true}, 60, 5.4e-3);
-  box.refill = RefillRule::grad;
+  box.refill = bodies::RefillRule::grad;
   box.grain_stress = true;
-  box.links.momentum_exchange = lbm::MomentumExchange::classical;
+  box.links.momentum_exchange = bodies::MomentumExchange::classical;
   for (const Index3& layout : two_layouts_of(size_of(MPI_COMM_WORLD))) compare<double>(box, layout, 14);
 }
 
@@ -162,9 +162,9 @@ TEST(Ranks, DoNotChangeOneBitWithTheOtherExchangeAndRefillInAPeriodicBox) {
 TEST(Ranks, DoNotChangeOneBitInABoxOfTwoDiametersPeriodicBothWays) {
   WaterBox box = crowded({13, 13, 48}, {true, true, false}, 28, 5.21e-3);
   box.spacing = 2.1 * 5e-3 / 13.0;
-  for (const RefillRule refill : {RefillRule::equilibrium, RefillRule::grad}) {
+  for (const bodies::RefillRule refill : {bodies::RefillRule::equilibrium, bodies::RefillRule::grad}) {
     box.refill = refill;
-    box.full_gravity = refill == RefillRule::grad;
+    box.full_gravity = refill == bodies::RefillRule::grad;
     for (const Index3& layout : layouts_of(size_of(MPI_COMM_WORLD)))
       if (layout[0] <= 2 && layout[1] <= 2) compare<float>(box, layout, 14);
   }
@@ -180,7 +180,7 @@ TEST(Ranks, DoNotChangeOneBitInANarrowPeriodicBox) {
 // A grain right where blocks meet, drifting and turning through the corner of eight: every rank has a share of its
 // links, its cells and its load. Another one stands where the corners of the periodic box meet.
 TEST(Ranks, DoNotChangeOneBitOfAGrainThatSpansAllOfThem) {
-  for (const RefillRule refill : {RefillRule::equilibrium, RefillRule::grad}) {
+  for (const bodies::RefillRule refill : {bodies::RefillRule::equilibrium, bodies::RefillRule::grad}) {
     WaterBox box;
     box.cells = {20, 20, 20};
     box.gravity = Vec3(1.0, 0.3, -9.0);

@@ -56,11 +56,11 @@ struct Box {
   std::array<bool, 3> periodic{true, true, true};
   lbm::CollisionParameters collision;
   lbm::FaceConditions faces;
-  lbm::LinkRule rule = lbm::LinkRule::bouzidi;
+  bodies::LinkRule rule = bodies::LinkRule::bouzidi;
 };
-constexpr lbm::LinkRule both_rules[] = {lbm::LinkRule::bouzidi, lbm::LinkRule::cli};
+constexpr bodies::LinkRule both_rules[] = {bodies::LinkRule::bouzidi, bodies::LinkRule::cli};
 
-std::unique_ptr<FluidSystem<double>> make(const Box& box, const std::vector<SolidShape>& solids,
+std::unique_ptr<FluidSystem<double>> make(const Box& box, const std::vector<bodies::SolidShape>& solids,
                                           MPI_Comm communicator) {
   const Index3 layout = Decomposition::best_layout(box.cells, size_of(communicator));
   FluidParameters parameters;
@@ -83,8 +83,8 @@ std::map<std::tuple<int, std::uint32_t, int>, CutLink> links_of(const FluidSyste
   for (const auto& tile : system.solids()->links().tiles()) {
     for (const auto& chunk : tile.chunks)
       for (std::uint32_t k = chunk.first; chunk.body >= 0 && k < chunk.first + chunk.count; ++k) {
-        const lbm::LinkCrossing& crossing = tile.links.crossing[k];
-        all[{number, tile.links.place[k], static_cast<int>(tile.links.tag[k] & lbm::LinkTag::direction_mask)}] = {
+        const bodies::LinkCrossing& crossing = tile.links.crossing[k];
+        all[{number, tile.links.place[k], static_cast<int>(tile.links.tag[k] & bodies::LinkTag::direction_mask)}] = {
             crossing.distance, {crossing.arm[0], crossing.arm[1], crossing.arm[2]}};
       }
     ++number;
@@ -98,7 +98,7 @@ TEST(StaticSolids, ASphereOfTrianglesIsCutLikeASphere) {
   const Vec3 centre(9.3, 10.1, 0.4);  // across a periodic end
   const double radius = 6.2, side = 1.6 * std::numbers::pi / 64.0, sag = radius * side * side / 6.0;
   const Box box{{20, 20, 20}, {true, true, true}, {}, {}};
-  const auto round = make(box, {SolidSphere{centre, radius}}, MPI_COMM_SELF);
+  const auto round = make(box, {bodies::SolidSphere{centre, radius}}, MPI_COMM_SELF);
   const auto faceted = make(box, {sphere_mesh(centre, radius, 5)}, MPI_COMM_SELF);
   const auto exact = links_of(*round), found = links_of(*faceted);
   std::size_t common = 0;
@@ -140,7 +140,7 @@ TEST(StaticSolids, CoverWhatIsInsideEvenWhereLinesRunThroughEdges) {
       }
   EXPECT_EQ(solid % 12, 0);  // the same in every layer across x
   EXPECT_THROW(make(box, {block_mesh({2.6, 2.6, 2.6}, {3.4, 3.4, 3.4})}, MPI_COMM_SELF), InputError);
-  EXPECT_THROW(make(box, {SolidSphere{{5.0, 5.0, 30.0}, 3.0}}, MPI_COMM_SELF), InputError);
+  EXPECT_THROW(make(box, {bodies::SolidSphere{{5.0, 5.0, 30.0}, 3.0}}, MPI_COMM_SELF), InputError);
 }
 
 // A block with a hole of one cell, which no fluid leaves: under full gravity the water in it has the pressure of its
@@ -184,7 +184,7 @@ TEST(StaticSolids, ForgetAllSumsOfAStepInTheNext) {
   // As large as they would be before the step in which they leave it.
   constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max(),
                          least = std::numeric_limits<std::int64_t>::min();
-  auto& body = const_cast<lbm::LinkBody&>(system->solids()->bodies()[0]);
+  auto& body = const_cast<bodies::LinkBody&>(system->solids()->bodies()[0]);
   for (const std::int64_t sum : {most, least}) {
     body.force = body.torque = {sum, sum, sum};
     body.mass = body.pressure = sum;
@@ -206,7 +206,7 @@ TEST(StaticSolids, CouetteFlowOverAPlateOffTheLatticeIsExact) {
   box.faces[5].type = lbm::FaceType::moving;
   box.faces[5].velocity = Vec3(0.05, 0.0, 0.0);
   for (const double surface : {2.2, 2.85})
-    for (const lbm::LinkRule rule : both_rules) {
+    for (const bodies::LinkRule rule : both_rules) {
       box.rule = rule;
       const auto system = make(box, {block_mesh({-1.0, -1.0, -1.0}, {5.0, 5.0, surface})}, MPI_COMM_SELF);
       for (int step = 0; step < 6000; ++step) system->advance();
@@ -220,7 +220,7 @@ TEST(StaticSolids, CouetteFlowOverAPlateOffTheLatticeIsExact) {
 
 // Largest error over the largest velocity, against the parabola that meets u + delta u' + slip u'' = 0 at both plates
 // (derivatives towards the plate, delta from the outermost fluid cell). Slip delta^2/2, here -1, is the plate itself.
-double poiseuille_error(double low, double high, int height, bool trt, lbm::LinkRule rule, double slip = -1.0) {
+double poiseuille_error(double low, double high, int height, bool trt, bodies::LinkRule rule, double slip = -1.0) {
   Box box{{4, 4, height}, {true, true, false}, {}, {}, rule};
   box.collision.relaxation_time = 0.8;
   if (trt) box.collision.model = lbm::CollisionModel::trt;
@@ -251,8 +251,8 @@ TEST(StaticSolids, PoiseuilleFlowBetweenPlatesOffTheLatticeIsOfSecondOrder) {
   // the profile is off by at most F/(4 nu), of the largest velocity F H^2/(8 nu) that is 2/H^2.
   for (const bool trt : {false, true})
     for (const double low : {2.1, 2.35, 2.6, 2.9}) {
-      const double coarse = poiseuille_error(low, low + 8.0, 14, trt, lbm::LinkRule::bouzidi),
-                   fine = poiseuille_error(low, low + 16.0, 22, trt, lbm::LinkRule::bouzidi);
+      const double coarse = poiseuille_error(low, low + 8.0, 14, trt, bodies::LinkRule::bouzidi),
+                   fine = poiseuille_error(low, low + 16.0, 22, trt, bodies::LinkRule::bouzidi);
       EXPECT_LT(coarse, 2.0 / 64.0) << low << trt;
       EXPECT_LT(fine, 2.0 / 256.0) << low << trt;
       EXPECT_NEAR(coarse / fine, 4.0, 0.5) << low << trt;  // the plates meet the lattice alike in both
@@ -266,15 +266,15 @@ TEST(StaticSolids, PoiseuilleFlowWithCliLinksIsThatOfTheClosureOfTheRule) {
   for (const bool trt : {false, true})
     for (const double low : {2.1, 2.35, 2.6, 2.9}) {
       const double slip = 2.0 / 3.0 * (trt ? 3.0 / 16.0 : 0.09);
-      EXPECT_LT(poiseuille_error(low, low + 8.0, 14, trt, lbm::LinkRule::cli, slip), 1e-5) << low << trt;
-      const double coarse = poiseuille_error(low, low + 8.0, 14, trt, lbm::LinkRule::cli),
-                   fine = poiseuille_error(low, low + 16.0, 22, trt, lbm::LinkRule::cli);
+      EXPECT_LT(poiseuille_error(low, low + 8.0, 14, trt, bodies::LinkRule::cli, slip), 1e-5) << low << trt;
+      const double coarse = poiseuille_error(low, low + 8.0, 14, trt, bodies::LinkRule::cli),
+                   fine = poiseuille_error(low, low + 16.0, 22, trt, bodies::LinkRule::cli);
       EXPECT_NEAR(coarse / fine, 4.0, 0.5) << low << trt;
     }
 }
 
 // Drag factor K of a simple cubic array, F = 6 pi mu R K U with U the superficial velocity.
-double drag_factor(double solid_fraction, int cells, lbm::LinkRule rule, double relaxation_time = 0.9) {
+double drag_factor(double solid_fraction, int cells, bodies::LinkRule rule, double relaxation_time = 0.9) {
   const double radius = std::cbrt(3.0 * solid_fraction / (4.0 * std::numbers::pi)) * cells;
   Box box{{cells, cells, cells}, {true, true, true}, {}, {}, rule};
   box.collision.model = lbm::CollisionModel::trt;
@@ -282,7 +282,7 @@ double drag_factor(double solid_fraction, int cells, lbm::LinkRule rule, double 
   const double nu = (relaxation_time - 0.5) / 3.0, volume = 4.0 / 3.0 * std::numbers::pi * std::pow(radius, 3);
   box.collision.force[0] = 1e-6;
   const Vec3 centre(0.5 * cells + 0.21, 0.5 * cells - 0.34, 0.5 * cells + 0.08);
-  const auto system = make(box, {SolidSphere{centre, radius}}, MPI_COMM_WORLD);
+  const auto system = make(box, {bodies::SolidSphere{centre, radius}}, MPI_COMM_WORLD);
   for (int step = 0; step < 6.0 * cells * cells / nu / 9.87; ++step) system->advance();
   const lbm::FluidTotals totals = system->fluid().totals();
   // CLI links leave a small oscillation from step to step, so that the mean of two steps counts, as for grains.
@@ -300,7 +300,7 @@ TEST(StaticSolids, DragOfSimpleCubicArraysIsThatOfZickAndHomsy) {
   // Zick and Homsy (1982), Table 2. With TRT and interpolated links the drag of spheres of 10 cells a diameter comes
   // out 1 to 2.5 % low at this viscosity, mostly because the sphere is too small by a fraction of a cell; these have 12
   // and 15.
-  for (const lbm::LinkRule rule : both_rules) {
+  for (const bodies::LinkRule rule : both_rules) {
     EXPECT_NEAR(drag_factor(0.125, 20, rule), 4.292, 0.03 * 4.292);
     EXPECT_NEAR(drag_factor(0.216, 20, rule), 7.442, 0.03 * 7.442);
   }
@@ -309,9 +309,9 @@ TEST(StaticSolids, DragOfSimpleCubicArraysIsThatOfZickAndHomsy) {
 TEST(StaticSolids, DragWithCliLinksAndTwoRelaxationTimesDoesNotDependOnTheViscosity) {
   // Stokes flow: with the magic parameter fixed the steady fields scale exactly with the viscosity; what is left is the
   // inertia of the lattice, of the order of the Reynolds number, below 1e-3, and that of not quite being steady.
-  const double reference = drag_factor(0.125, 16, lbm::LinkRule::cli, 0.9);
+  const double reference = drag_factor(0.125, 16, bodies::LinkRule::cli, 0.9);
   for (const double tau : {0.7, 1.4})
-    EXPECT_NEAR(drag_factor(0.125, 16, lbm::LinkRule::cli, tau), reference, 1e-3 * reference) << tau;
+    EXPECT_NEAR(drag_factor(0.125, 16, bodies::LinkRule::cli, tau), reference, 1e-3 * reference) << tau;
 }
 
 TEST(StaticSolids, AreTheSameOnAnyRanks) {
@@ -320,8 +320,9 @@ TEST(StaticSolids, AreTheSameOnAnyRanks) {
   box.collision.force[0] = 1e-5;
   box.faces[4].type = lbm::FaceType::no_slip;
   box.faces[5].type = lbm::FaceType::free_slip;
-  const std::vector<SolidShape> solids{sphere_mesh({11.2, 8.7, 9.1}, 4.3, 3), SolidSphere{{21.4, 17.2, 12.0}, 3.1},
-                                       block_mesh({-4, 3.3, -1}, {30, 7.1, 2.6})};
+  const std::vector<bodies::SolidShape> solids{sphere_mesh({11.2, 8.7, 9.1}, 4.3, 3),
+                                               bodies::SolidSphere{{21.4, 17.2, 12.0}, 3.1},
+                                               block_mesh({-4, 3.3, -1}, {30, 7.1, 2.6})};
   const auto alone = make(box, solids, MPI_COMM_SELF), shared = make(box, solids, MPI_COMM_WORLD);
   for (int step = 0; step < 9; ++step) {
     alone->advance();

@@ -25,7 +25,7 @@ TEST(WallForces, BalanceTheMomentumOfTheFluid) {
     box.periodic = {!closed, false, false};
     box.gravity = Vec3(0.8, 0.0, -9.8);
     box.fluid_velocity = Vec3(0.2, 0.05, 0.0);
-    box.links.momentum_exchange = lbm::MomentumExchange::classical;
+    box.links.momentum_exchange = bodies::MomentumExchange::classical;
     box.seeds = {glass_sphere(0, Vec3(0.0128, 0.0030, 0.0026), Vec3(0.1, -0.05, 0.0)),
                  glass_sphere(1, Vec3(0.0190, 0.0070, 0.0100), Vec3(0.0, 0.1, -0.1))};
     const auto system =

@@ -25,13 +25,13 @@ struct WaterBox {
   bool bottom_at_rest = false;         // of two plates the lower one does not move
   FluidInitialState (*initial)(const Vec3&) = nullptr;
   bool closed = false;  // no slip at all faces that are not periodic
-  lbm::LinkOptions links;
+  bodies::LinkOptions links;
   double link_tolerance = 1e-3;
   int sub_steps = 50;
   bool wall_forces = false;
   bool lubrication = false;   // with the cut-offs of the case's defaults, at the floor alone
   bool virtual_mass = false;  // and then the load is the mean
-  RefillRule refill = RefillRule::equilibrium;
+  bodies::RefillRule refill = bodies::RefillRule::equilibrium;
   bool keep_covered_momentum = false;
   bool grain_stress = false;
   bool full_gravity = false;  // gravity acts on everything, and buoyancy comes from the fluid

@@ -203,8 +203,8 @@ TEST(CaseReader, ReadsEveryWallAndCollision) {
                    "grains.0.fixed=true", "fluid.collision=trt", "fluid.magic_parameter=0.25",
                    "fluid.mean_velocity={velocity: 0.3, response_time: 0.05}", "coupling.links=cli",
                    "coupling.refill=grad", "coupling.covered_momentum=to_grain", "coupling.grain_stress=true"});
-  EXPECT_EQ(c.coupling.links, lbm::LinkRule::cli);
-  EXPECT_EQ(c.coupling.refill, coupling::RefillRule::grad);
+  EXPECT_EQ(c.coupling.links, bodies::LinkRule::cli);
+  EXPECT_EQ(c.coupling.refill, bodies::RefillRule::grad);
   EXPECT_EQ(c.coupling.covered_momentum, coupling::CoveredMomentum::to_grain);
   EXPECT_TRUE(c.coupling.grain_stress);
   EXPECT_EQ(c.domain.faces[x_low].velocity, Vec3(0.2, 0, 0));

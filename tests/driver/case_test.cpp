@@ -169,9 +169,9 @@ TEST(Case, WarnsOfLinksWhoseDragDependsOnTheViscosity) {
   EXPECT_TRUE(recommends("consider fluid.collision: trt and coupling.links: cli"));
   c.fluid.collision = lbm::CollisionModel::trt;
   EXPECT_TRUE(recommends("consider coupling.links: cli"));
-  c.coupling.links = lbm::LinkRule::cli;
+  c.coupling.links = bodies::LinkRule::cli;
   EXPECT_FALSE(recommends(""));
-  c.coupling.links = lbm::LinkRule::bouzidi;
+  c.coupling.links = bodies::LinkRule::bouzidi;
   c.fluid.smagorinsky_constant = 0.27;  // the published water
   EXPECT_FALSE(recommends(""));
 }

@@ -19,13 +19,14 @@ import sys
 MODULES = {
     "core": {"core"},
     "lbm": {"core", "lbm"},
+    "bodies": {"core", "lbm", "bodies"},
     "dem": {"core", "dem"},
     "continuum": {"core", "continuum"},
     "analysis": {"core", "analysis"},
     "io": {"core", "io"},
-    "coupling": {"core", "lbm", "dem", "continuum", "coupling"},
+    "coupling": {"core", "lbm", "bodies", "dem", "continuum", "coupling"},
     "loop": {"core", "analysis", "loop"},
-    "driver": {"core", "lbm", "dem", "continuum", "analysis", "io", "coupling", "loop", "driver"},
+    "driver": {"core", "lbm", "bodies", "dem", "continuum", "analysis", "io", "coupling", "loop", "driver"},
 }
 # Files with a list of the modules, and the modules that it need not have.
 LISTS = {

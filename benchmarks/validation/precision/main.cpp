@@ -8,11 +8,11 @@
 //            velocity, and of the velocity field.
 // No faster than 0.05: at a relaxation time of 0.503 bgk is unstable at walls beyond that (docs/stability.md).
 // Differences are divided by the largest velocity, or by the force in double. Prints a table in Markdown.
+#include "bodies/body_map.hpp"
+#include "bodies/link_builder.hpp"
+#include "bodies/link_pass.hpp"
 #include "core/mpi_session.hpp"
-#include "coupling/grain_map.hpp"
-#include "coupling/link_builder.hpp"
 #include "lbm/fluid.hpp"
-#include "lbm/link_pass.hpp"
 
 #include <fmt/format.h>
 
@@ -77,10 +77,10 @@ Result sphere(double excess, double velocity) {
   // About three times Stokes's drag at this distance from the images, and less at higher Reynolds numbers.
   parameters.force[0] = 3.0 * 3.0 * 3.14159 * nu * diameter * velocity / (side * side * side);
   lbm::Fluid<Real> fluid(decomposition, MPI_COMM_SELF, parameters, {});
-  coupling::GrainMap map(decomposition, fluid.block(), fluid.cells());
-  lbm::LinkTable links(fluid.tiles().count());
-  coupling::LinkBuilder builder(decomposition, fluid.block(), fluid.cells(), fluid.tiles());
-  std::vector<lbm::LinkBody> bodies(1);
+  bodies::BodyMap map(decomposition, fluid.block(), fluid.cells());
+  bodies::LinkTable links(fluid.tiles().count());
+  bodies::LinkBuilder builder(decomposition, fluid.block(), fluid.cells(), fluid.tiles());
+  std::vector<bodies::LinkBody> bodies(1);
   map.begin_update();
   bodies[0].radius = 0.5 * diameter;
   bodies[0].centre = Vec3(12.3, 11.9, 12.1);
@@ -89,14 +89,14 @@ Result sphere(double excess, double velocity) {
   builder.update(map, links);
   fluid.initialise([&](const Vec3&) { return lbm::FluidState{0.0, Vec3(velocity, 0.0, 0.0)}; });
   const PeriodicBox box{Vec3(side, side, side), {true, true, true}};
-  const lbm::LinkOptions options;
+  const bodies::LinkOptions options;
   const int steps = static_cast<int>(0.25 * side * side / nu);
   Result result;
   double drag = 0.0;
   for (int step = 0; step < steps; ++step) {
     fluid.exchange_halo();
     bodies[0].force = bodies[0].torque = {};
-    lbm::LinkPass pass(fluid, links, box, options, bodies);
+    bodies::LinkPass pass(fluid, links, box, options, bodies);
     fluid.stream_and_collide([&](int tile) { pass.apply_tile(tile); });
     drag = bodies[0].force.to_vec3().x();
   }

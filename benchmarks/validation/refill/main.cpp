@@ -29,7 +29,7 @@
 namespace thalweg::benchmark {
 namespace {
 
-using coupling::RefillRule;
+using bodies::RefillRule;
 
 // What becomes of the momentum of covered cells; none: the sphere rests, and the fluid moves past it.
 enum class Covered { lost, to_grain, none };
@@ -41,10 +41,10 @@ struct Regime {
 
 struct Setting {
   std::string name;
-  RefillRule refill = RefillRule::equilibrium;
+  bodies::RefillRule refill = bodies::RefillRule::equilibrium;
   double bulk_relaxation_time = 0.0;
   Covered covered = Covered::lost;
-  lbm::LinkRule links = lbm::LinkRule::bouzidi;
+  bodies::LinkRule links = bodies::LinkRule::bouzidi;
   lbm::CollisionModel collision = lbm::CollisionModel::bgk;
 };
 
@@ -141,24 +141,25 @@ std::pair<std::string, std::vector<Setting>> settings_of(int argc, char** argv) 
     for (const double bulk : {0.0, 3.0})
       for (const auto& [covered, name] :
            {std::pair{Covered::lost, "lost"}, {Covered::to_grain, "to_grain"}, {Covered::none, "none: sphere at rest"}})
-        settings.push_back({fmt::format("{}, tau_b = {}", name, bulk), RefillRule::equilibrium, bulk, covered});
+        settings.push_back({fmt::format("{}, tau_b = {}", name, bulk), bodies::RefillRule::equilibrium, bulk, covered});
     return {"covered", settings};
   }
   if (mode == "links") {
     std::vector<Setting> settings;
     for (const auto& [collision, name] :
          {std::pair{lbm::CollisionModel::bgk, "bgk"}, {lbm::CollisionModel::trt, "trt"}})
-      for (const auto& [links, rule] : {std::pair{lbm::LinkRule::bouzidi, "bouzidi"}, {lbm::LinkRule::cli, "cli"}})
+      for (const auto& [links, rule] :
+           {std::pair{bodies::LinkRule::bouzidi, "bouzidi"}, {bodies::LinkRule::cli, "cli"}})
         settings.push_back(
-            {fmt::format("{}, {}", rule, name), RefillRule::equilibrium, 1.0, Covered::lost, links, collision});
+            {fmt::format("{}, {}", rule, name), bodies::RefillRule::equilibrium, 1.0, Covered::lost, links, collision});
     return {"links", settings};
   }
   if (argc > 1) {
     std::vector<Setting> settings;
-    for (int n = 1; n < argc; ++n) settings.push_back({argv[n], RefillRule::equilibrium, std::atof(argv[n])});
+    for (int n = 1; n < argc; ++n) settings.push_back({argv[n], bodies::RefillRule::equilibrium, std::atof(argv[n])});
     return {"tau_b", settings};
   }
-  return {"refill", {{"equilibrium", RefillRule::equilibrium}, {"grad", RefillRule::grad}}};
+  return {"refill", {{"equilibrium", bodies::RefillRule::equilibrium}, {"grad", bodies::RefillRule::grad}}};
 }
 
 void print_heading(const std::string& varied) {

@@ -30,6 +30,7 @@ struct Options {
   double friction_velocity = 0.008;  // cells a step
   double smagorinsky = 0.0;
   bool qr = false;
+  double bulk_relaxation_time = 0.0;
   double magic = 3.0 / 16.0;
   lbm::CollisionModel collision = lbm::CollisionModel::bgk;
   lbm::FaceType wall = lbm::FaceType::no_slip;
@@ -115,6 +116,7 @@ private:
     lbm::CollisionParameters p;
     p.model = o_.collision;
     p.magic_parameter = o_.magic;
+    p.bulk_relaxation_time = o_.bulk_relaxation_time;
     p.relaxation_time = 0.5 + 3.0 * nu_;
     p.subgrid = o_.qr ? lbm::Subgrid::qr() : lbm::Subgrid::smagorinsky(o_.smagorinsky);
     p.force[0] = o_.friction_velocity * o_.friction_velocity / h_;
@@ -204,6 +206,7 @@ void read(Options& o, int argc, char** argv) {
   app.add_option("--friction-velocity", o.friction_velocity, "cells a step");
   auto* smagorinsky = app.add_option("--smagorinsky", o.smagorinsky, "Smagorinsky's constant");
   app.add_flag("--qr", o.qr, "Verstappen's QR model instead")->excludes(smagorinsky);
+  app.add_option("--bulk-relaxation-time", o.bulk_relaxation_time, "steps; 0: as the shear's");
   app.add_option("--magic", o.magic, "magic parameter of trt");
   app.add_option("--collision", o.collision)->transform(CLI::CheckedTransformer(collisions));
   app.add_option("--wall", o.wall)->transform(CLI::CheckedTransformer(walls));

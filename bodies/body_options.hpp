@@ -1,0 +1,32 @@
+// Options of the bodies in the fluid: their links (link_pass.hpp) and what uncovered cells begin with (refill.hpp).
+#pragma once
+
+#include "core/named_choice.hpp"
+#include "core/types.hpp"
+
+#include <vector>
+
+namespace thalweg::bodies {
+
+enum class MomentumExchange { galilean_invariant, classical };
+enum class WallDensity { local, reference };  // rho in the moving-wall term: of x_f, or 1
+enum class LinkRule { bouzidi, cli };
+enum class RefillRule { equilibrium, grad };
+
+// Their words in a case file (core/section_visitor.hpp).
+std::vector<NamedChoice<MomentumExchange>> choices_of(MomentumExchange);
+std::vector<NamedChoice<WallDensity>> choices_of(WallDensity);
+std::vector<NamedChoice<LinkRule>> choices_of(LinkRule);
+std::vector<NamedChoice<RefillRule>> choices_of(RefillRule);
+
+struct LinkOptions {
+  MomentumExchange momentum_exchange = MomentumExchange::galilean_invariant;
+  WallDensity wall_density = WallDensity::local;
+  LinkRule rule = LinkRule::bouzidi;
+  // Density of the fluid at rest, 1 + rest_gradient.(x - rest_middle): hydrostatic, or 1 everywhere.
+  Vec3 rest_gradient = Vec3::Zero();  // of rho a cell
+  Vec3 rest_middle = Vec3::Zero();    // cells
+  double reference_density = 0.0;     // rho - 1; force and torque count only what exceeds it
+};
+
+}  // namespace thalweg::bodies

@@ -1,0 +1,158 @@
+#include "bodies/link_builder.hpp"
+
+#include "core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+
+namespace thalweg::bodies {
+
+using lbm::CellMap;
+using lbm::D3Q19;
+
+namespace {
+
+constexpr double longest_link = 1.4142135623730951;
+
+}  // namespace
+
+LinkBuilder::LinkBuilder(const Decomposition& decomposition, const Block& block, const CellMap& cells,
+                         const lbm::RowTiles& tiles)
+    : local_cells_(decomposition, block), cells_(cells), tiles_(tiles) {
+  for (int a = 0; a < 2; ++a)
+    if (block.size()[a] > LinkPlace::largest)
+      throw InputError(fmt::format("A rank would hold {} cells along {}, more than {}; use more ranks.",
+                                   block.size()[a], "xy"[a], LinkPlace::largest));
+}
+
+void LinkBuilder::update(const BodyMap& map, LinkTable& table) {
+  stale_tiles_.resize(map.bodies().size());
+  for (const CellChange& change : map.changes()) {
+    mark_around(change);
+    look_for_enclosed(change);
+  }
+  std::sort(stale_.begin(), stale_.end());
+  for (const int slot : stale_) {
+    if (map.bodies()[slot].id < 0)
+      table.remove(slot);
+    else
+      rebuild(slot, map.bodies()[slot], table);
+    stale_tiles_[slot].clear();
+  }
+  stale_.clear();
+}
+
+void LinkBuilder::mark(std::int32_t slot, int tile) {
+  std::vector<int>& tiles = stale_tiles_[slot];
+  if (std::find(tiles.rbegin(), tiles.rend(), tile) != tiles.rend()) return;
+  if (tiles.empty()) stale_.push_back(slot);
+  tiles.push_back(tile);
+}
+
+// A link is identified by its fluid cell, its solid cell and the cell upstream, and a changed cell may be any of them.
+// The neighbours may have changed in the same update, so what they are now does not matter.
+void LinkBuilder::mark_around(const CellChange& change) {
+  const lbm::CellIndexing& indexing = cells_.indexing();
+  const Index3 &at = change.cell, &n = indexing.size();
+  const std::ptrdiff_t cell = indexing.index(at[0], at[1], at[2]);
+  const bool owned = indexing.owned(at[0], at[1], at[2]);
+  const auto in_memory = [&](const Index3& c) {
+    for (int a = 0; a < 3; ++a)
+      if (c[a] < -1 || c[a] > n[a]) return false;
+    return true;
+  };
+  for (int i = 1; i < D3Q19::directions; ++i) {
+    const Index3 next{at[0] + D3Q19::c[i][0], at[1] + D3Q19::c[i][1], at[2] + D3Q19::c[i][2]};
+    if (!in_memory(next)) continue;
+    const std::int32_t beside = cells_.body(cell + indexing.offset(i));
+    if (owned && beside != CellMap::fluid) mark(beside, tiles_.tile_of(at[1], at[2]));
+    if (!indexing.owned(next[0], next[1], next[2])) continue;
+    const int tile = tiles_.tile_of(next[1], next[2]);
+    if (change.before != CellMap::fluid) mark(change.before, tile);
+    if (change.now != CellMap::fluid) mark(change.now, tile);
+    const std::int32_t beyond = cells_.body(cell + 2 * indexing.offset(i));
+    if (beyond != CellMap::fluid) mark(beyond, tile);
+  }
+}
+
+// The tags of all links of a cell say whether it is enclosed, so they all change with that.
+void LinkBuilder::look_for_enclosed(const CellChange& change) {
+  const lbm::CellIndexing& indexing = cells_.indexing();
+  for (int i = 0; i < D3Q19::directions; ++i) {
+    const int x = change.cell[0] + D3Q19::c[i][0], y = change.cell[1] + D3Q19::c[i][1],
+              z = change.cell[2] + D3Q19::c[i][2];
+    if (!indexing.owned(x, y, z)) continue;
+    const std::ptrdiff_t cell = indexing.index(x, y, z);
+    const bool changed = cells_.is_enclosed(cell) ? enclosed_.insert(cell).second : enclosed_.erase(cell) > 0;
+    if (!changed) continue;
+    for (int j = 1; j < D3Q19::directions; ++j) {
+      const std::int32_t body = cells_.body(cell + indexing.offset(j));
+      if (body != CellMap::fluid) mark(body, tiles_.tile_of(y, z));
+    }
+  }
+}
+
+void LinkBuilder::rebuild(int slot, const MappedBody& grain, LinkTable& table) {
+  const double half_width = grain.radius + longest_link;
+  std::vector<LocalCell>* places[2] = {&xs_, &ys_};
+  const auto before = [](const LocalCell& p, const LocalCell& q) { return p.local < q.local; };
+  const auto same = [](const LocalCell& p, const LocalCell& q) { return p.local == q.local; };
+  for (int a = 0; a < 2; ++a) {
+    std::vector<LocalCell>& cells = *places[a];
+    local_cells_.along(a, grain.centre[a], half_width, grain.centre[a], 0, cells);
+    std::sort(cells.begin(), cells.end(), before);
+    cells.erase(std::unique(cells.begin(), cells.end(), same), cells.end());
+  }
+  for (const int tile : stale_tiles_[slot]) {
+    const int z = tiles_.plane_of(tile), block = tiles_.block_of(tile);
+    links_.clear();
+    for (const LocalCell& y : ys_)
+      if (y.local >= tiles_.first_row(block) && y.local < tiles_.end_row(block)) find_in_row(slot, y.local, z);
+    table.replace(slot, tile, links_);
+  }
+}
+
+// The map alone determines where links are: all neighbours of as many cells as a vector holds are compared with the
+// grain at once.
+void LinkBuilder::find_in_row(int slot, int y, int z) {
+  constexpr int width = static_cast<int>(Cells::size());
+  for (std::size_t begin = 0; begin < xs_.size();) {
+    std::size_t end = begin + 1;  // of a run of neighbouring cells
+    while (end < xs_.size() && xs_[end].local == xs_[end - 1].local + 1) ++end;
+    const int last = xs_[end - 1].local;
+    for (int x = xs_[begin].local; x <= last; x += width) find_in_cells(slot, x, std::min(width, last + 1 - x), y, z);
+    begin = end;
+  }
+}
+
+// Of `count` cells from x on, at most one vector.
+void LinkBuilder::find_in_cells(int slot, int x, int count, int y, int z) {
+  constexpr auto unaligned = std::experimental::element_aligned;
+  static_assert(Cells::size() <= CellMap::read_beyond);
+  const lbm::CellIndexing& indexing = cells_.indexing();
+  const std::int32_t* row = cells_.bodies() + indexing.index(x, y, z);
+  Cells hits = 0, open = 0;  // the directions that end in the grain, as bits; 1 where a neighbour is fluid
+  for (int i = 1; i < D3Q19::directions; i += 2) {
+    const Cells there(row + indexing.offset(i), unaligned), behind(row - indexing.offset(i), unaligned);
+    where(there == slot, hits) = hits | (1 << i);
+    where(behind == slot, hits) = hits | (2 << i);
+    where(there == CellMap::fluid || behind == CellMap::fluid, open) = 1;
+  }
+  where(Cells(row, unaligned) != CellMap::fluid, hits) = 0;
+  if (none_of(hits != 0)) return;
+  std::int32_t hit[Cells::size()], is_open[Cells::size()];
+  hits.copy_to(hit, unaligned);
+  open.copy_to(is_open, unaligned);
+  for (int k = 0; k < count; ++k) {
+    const std::uint32_t place = LinkPlace::of(x + k, y);
+    const bool enclosed = is_open[k] == 0;
+    for (auto left = static_cast<std::uint32_t>(hit[k]); left != 0; left &= left - 1) {
+      const int i = std::countr_zero(left);
+      links_.push_back({place, LinkTag::of(i, row[k - indexing.offset(i)], enclosed)});
+    }
+  }
+}
+
+}  // namespace thalweg::bodies

@@ -1,0 +1,15 @@
+// A sphere as the map of the cells knows it.
+#pragma once
+
+#include "core/types.hpp"
+
+namespace thalweg::bodies {
+
+struct MappedBody {
+  GlobalId id = -1;            // -1: the slot is free
+  GlobalId clump = -1;         // the clump it is a member of; -1: none
+  double radius = 0.0;         // cells
+  Vec3 centre = Vec3::Zero();  // for which its cells stand; lattice units, global
+};
+
+}  // namespace thalweg::bodies

@@ -1,0 +1,31 @@
+#include "bodies/mass_return.hpp"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+
+namespace thalweg::bodies {
+
+MassReturn MassReturn::scaled(double times) const {
+  constexpr double largest_density = 0.01;
+  const double largest = density == 0.0 ? 0.0 : largest_density / std::abs(density);
+  const double factor = std::clamp(times, -largest, largest);
+  return {factor * density, factor * slope};
+}
+
+MassReturn unit_mass_return(const LinkSums& links) {
+  const double weight = links.weight();
+  if (weight == 0.0) return {};
+  const Vec3 normal = links.normal();
+  const Mat3 second = links.second();
+  // With a few links in a plane, or none in some direction, there is no such x: then evenly.
+  constexpr double least_determinant = 1e-3 / 27.0, least_share = 0.1;
+  if (second.determinant() <= least_determinant * weight * weight * weight) return {1.0 / weight, Vec3::Zero()};
+  const Vec3 x = second.inverse() * normal;
+  const double share = weight - normal.dot(x);
+  if (share < least_share * weight) return {1.0 / weight, Vec3::Zero()};
+  return {1.0 / share, -x / share};
+}
+
+}  // namespace thalweg::bodies

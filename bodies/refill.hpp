@@ -1,0 +1,85 @@
+// Gives cells that a grain has just uncovered their populations. With n the mean over the neighbours that were fluid
+// before, rho_n the density at rest plus their mean excess over it (none: 0), u_w the velocity of the grain's rigid
+// motion at the cell, F the body force:
+//   equilibrium  f_i^c = f_i^eq(rho_n, u_w) + 3/2 w_i c_i.F
+//   grad         f_i^c = f_i^eq(rho_n, u_w) + 3/2 w_i c_i.F + 9/2 w_i (c_ia c_ib - delta_ab/3) P_ab, where P_ab is the
+//                mean over these neighbours of sum c_ia c_ib (f_i^c - f_i^eq) (Chikatamarla, Ansumali and Karlin 2006,
+//                with the neighbours' stress)
+// All populations are post-collision ones, whose momentum is rho u + F/2. Lattice units.
+//
+// Neighbours may be on other ranks. Every rank that owns neighbours of an uncovered cell sees that cell in its ghost
+// layer too, so both sides know without asking who sends what; sums are exact, so the result is the same on any ranks.
+#pragma once
+
+#include "bodies/body_map.hpp"
+#include "bodies/body_options.hpp"
+#include "bodies/hydrostatic.hpp"
+#include "core/decomposition.hpp"
+#include "core/fixed_point.hpp"
+#include "lbm/fluid.hpp"
+
+#include <mpi.h>
+
+#include <array>
+#include <vector>
+
+namespace thalweg::bodies {
+
+struct RefillTotals {
+  std::int64_t cells = 0;                // this rank's uncovered cells
+  Vec3 momentum = Vec3::Zero();          // they were given, lattice units
+  Vec3 angular_momentum = Vec3::Zero();  // the same about the origin
+  std::int64_t mass = 0;                 // LatticeFixed: the sum of what the bodies' masses got
+};
+
+class Refill {
+public:
+  Refill(const Decomposition& decomposition, MPI_Comm communicator, RefillRule rule = RefillRule::equilibrium);
+
+  // changes: from BodyMap::settle(); bodies: centre and motion of the slots, to whose mass rho - rho_rest of the
+  // cells that each has uncovered is added. Call after the map is settled and before the halo exchange. Every rank
+  // calls it each step.
+  template <typename Real>
+  RefillTotals fill(lbm::Fluid<Real>& fluid, const std::vector<CellChange>& changes, const Hydrostatic& rest,
+                    std::vector<LinkBody>& bodies);
+
+private:
+  // What the fluid neighbours of one uncovered cell tell; a message between ranks as it stands.
+  struct Neighbours {
+    std::int64_t count = 0, excess = 0;    // LatticeFixed sum of rho - rho_rest
+    std::array<std::int64_t, 6> stress{};  // LatticeFixed sums of P: xx, yy, zz, xy, xz, yz
+
+    void add(const Neighbours& others);
+  };
+  struct Uncovered {
+    Index3 global;        // inside the box
+    std::int32_t before;  // slot that covered it
+    Neighbours neighbours;
+  };
+
+  Index3 wrapped(Index3 cell) const;
+  bool inside_box(const Index3& cell) const;
+  int owner_of(const Index3& cell) const;
+  std::vector<int> owners_of_neighbours(const Index3& cell) const;  // other than this rank, sorted
+  std::ptrdiff_t index_of(const lbm::CellIndexing& indexing, const Index3& global) const;
+  std::vector<Uncovered> uncovered_cells(const std::vector<CellChange>& changes) const;
+  template <typename Real>
+  void add_own_neighbours(const lbm::Fluid<Real>& fluid, const Hydrostatic& rest,
+                          std::vector<Uncovered>& uncovered) const;
+  // at_rest: rho_rest - 1 in the cell.
+  template <typename Real>
+  Neighbours look_at(const lbm::Fluid<Real>& fluid, std::ptrdiff_t cell, double at_rest) const;
+  void exchange(std::vector<Uncovered>& uncovered) const;
+  // at_rest: rho_rest - 1 in the cell.
+  std::array<double, 19> populations_of(const Neighbours& neighbours, double at_rest, const Vec3& velocity,
+                                        const Vec3& force) const;
+
+  const Decomposition& decomposition_;
+  MPI_Comm communicator_;
+  RefillRule rule_;
+  int rank_;
+  Block block_;
+  PeriodicBox box_;  // cells
+};
+
+}  // namespace thalweg::bodies
