@@ -153,13 +153,16 @@ TEST(CaseReader, AFluidWithoutGrainsIsACase) {
 
 TEST(CaseReader, ReadsTheBulkViscosityAndTheRamp) {
   const Case plain = read(flume), c = read(flume, {"fluid.bulk_relaxation_time=10", "run.ramp=0.2"});
-  EXPECT_EQ(plain.fluid.bulk_relaxation_time, 1.0);  // grains, bgk in the open and a subgrid model
+  EXPECT_EQ(plain.fluid.bulk_relaxation_time, 1.0);  // bgk in the open and a subgrid model
   const Case published = read(flume, {"fluid.bulk_relaxation_time=0"});
   EXPECT_EQ(read(flume, {"fluid.collision=bgk"}).fluid.bulk_relaxation_time, 1.0);
   for (const std::vector<std::string>& other :
        {std::vector<std::string>{"fluid.smagorinsky_constant=null", "fluid.subgrid_model=none"},
         {"fluid.collision=trt"}})
     EXPECT_EQ(read(flume, other).fluid.bulk_relaxation_time, 0.0) << other.back();
+  Case clear = plain;
+  clear.system = SystemKind::fluid;
+  EXPECT_EQ(bulk_relaxation_time_for(clear), 1.0);
   EXPECT_EQ(plain.run.ramp, 0.0);
   EXPECT_EQ(c.fluid.bulk_relaxation_time, 10.0);
   EXPECT_EQ(c.run.ramp, 0.2);

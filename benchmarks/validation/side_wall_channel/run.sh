@@ -11,16 +11,29 @@ run() {  # name, friction velocity, C_s or qr, further options
     --friction-velocity "$(echo "$friction/10" | bc -l)" --reynolds "$(echo "$friction*5250" | bc -l)" \
     $subgrid --output "$name.csv" "$@"
 }
-imposed="--wall law_of_the_wall" slip="--wall slip_law_of_the_wall --slip-coefficient"
+imposed="--wall law_of_the_wall --bulk-relaxation-time 1" slip="--wall slip_law_of_the_wall --slip-coefficient"
 first_cell="--wall slip_law_of_the_wall --slip-of-first-cell"
+# The workstation's flume: 13 cells of 0.8077 mm, 1e-4 s.
+coarse="--height 13 --length 40 --width 20 --until 160 --average-from 60"
 # tau*, friction velocity, A of the tangent at the first cell's centre: ln(dx+/2)/0.41 + 5 - 1/0.41
 for case in 0.023:0.0434:8.38 0.028:0.0479:8.61 0.047:0.0620:9.25 0.063:0.0718:9.61 0.068:0.0746:9.70; do
   stress=${case%%:*} rest=${case#*:}
-  run "tau_${stress}" "${rest%:*}" 0.27 $imposed
-  run "tau_${stress}_A_8.36" "${rest%:*}" 0.27 $slip 8.36
-  run "tau_${stress}_A_${rest#*:}" "${rest%:*}" 0.27 $slip "${rest#*:}"
-  run "tau_${stress}_first_cell" "${rest%:*}" 0.27 $first_cell
+  friction=${rest%:*} a=${rest#*:}
+  on_coarse="$coarse --friction-velocity $(echo "$friction*0.1238" | bc -l)"
+  run "tau_$stress" "$friction" 0.27 $imposed
+  run "tau_${stress}_qr" "$friction" qr $imposed
+  run "six_$stress" "$friction" 0.27 $imposed $on_coarse
+  run "six_${stress}_qr" "$friction" qr $imposed $on_coarse
+  run "tau_${stress}_A_8.36" "$friction" 0.27 $slip 8.36
+  run "tau_${stress}_A_$a" "$friction" 0.27 $slip "$a"
+  run "tau_${stress}_first_cell" "$friction" 0.27 $first_cell
 done
+# What the middle depends on, with the walls that impose the stress, at 0.028 and 13 cells.
+coarse="$coarse --friction-velocity 0.00593"
+run six_half_step 0.0479 qr $imposed $coarse --friction-velocity 0.002965 --until 120 --average-from 40
+run six_larger_box 0.0479 qr $imposed $coarse --length 80 --width 40 --until 90 --average-from 40
+run fine 0.0479 qr $imposed $coarse --height 27 --length 84 --width 42 --until 70 --average-from 30
+run six_trt 0.0479 0.27 $imposed $coarse --collision trt
 # What the slip depends on, at 0.047.
 run printed_A_2.35 0.0620 0.27 $slip 2.35
 run Cs_0.17 0.0620 0.17 $slip 8.36
@@ -30,11 +43,7 @@ run trt 0.0620 0.27 $slip 8.36 --collision trt
 run larger_box 0.0620 0.27 $slip 8.36 --length 128 --width 64 --until 80
 run shorter_step 0.0620 0.27 $slip 8.36 --friction-velocity 0.00248 --until 80
 
-# The workstation's flume at 0.028: 13 cells of 0.8077 mm, 1e-4 s.
-coarse="--height 13 --length 40 --width 20 --until 160 --average-from 60 --friction-velocity 0.00593 --reynolds 251"
-run six 0.0479 0.27 $coarse $imposed
-run six_qr 0.0479 qr $coarse $imposed
-run six_trt 0.0479 0.27 $coarse $imposed --collision trt
+# The slip at 0.028 and 13 cells.
 run six_first_cell 0.0479 0.27 $coarse $first_cell
 run six_trt_first_cell 0.0479 0.27 $coarse $first_cell --collision trt
 run six_trt_A_7.4 0.0479 0.27 $coarse $slip 7.4 --collision trt
