@@ -29,4 +29,11 @@ struct LinkOptions {
   double reference_density = 0.0;     // rho - 1; force and torque count only what exceeds it
 };
 
+struct BodyOptions {
+  LinkOptions links;
+  RefillRule refill = RefillRule::equilibrium;
+  bool keep_covered_momentum = false;  // what a covered cell carries relative to its body, the body gets
+  bool moments = false;                // sum F_a x_b of every body is measured: the stress of the fluid on it
+};
+
 }  // namespace thalweg::bodies

@@ -89,7 +89,8 @@ void describe(SectionVisitor& visit, FluidKeys& fluid) {
       "bulk_relaxation_time", fluid.bulk_relaxation_time,
       {.meaning =
            "relaxation time of the trace of the stress, in steps; damps only sound, by a bulk viscosity of 2/9 (tau - "
-           "1/2); 0: the same as for shear, as published; default: 1 with bgk or trt_at_bodies and a subgrid model, else 0",
+           "1/2); 0: the same as for shear, as published; default: 1 with bgk or trt_at_bodies and a subgrid model, "
+           "else 0",
        .at_least = 0.0,
        .at_most = 1000.0,
        .example = 1.0});

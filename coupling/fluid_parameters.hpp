@@ -23,7 +23,7 @@ struct FluidParameters {
   lbm::CollisionParameters collision;  // lattice units; force included
   lbm::FaceConditions faces;
   std::optional<lbm::FlowTarget> flow_target;  // a mean velocity to hold, in place of the force along its axis
-  bodies::LinkOptions links;
+  bodies::BodyOptions bodies;
   bool full_gravity = false;  // the force acts across walls, too: the fluid begins with its hydrostatic density
   double ramp = 0.0;          // steps in which gravity rises from zero; 0: it is there at once
   std::function<FluidInitialState(const Vec3&)> initial_fluid;  // of a position in m; empty: at rest

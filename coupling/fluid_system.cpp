@@ -30,7 +30,7 @@ FluidSystem<Real>::FluidSystem(std::unique_ptr<Decomposition> decomposition, MPI
   if (!solids.empty())
     solids_ =
         std::make_unique<bodies::StaticSolids>(*decomposition_, communicator, fluid_.cells(), fluid_.tiles(), solids);
-  bodies::set_rest(parameters_.links, rest_);
+  bodies::set_rest(parameters_.bodies.links, rest_);
   if (parameters_.flow_target) fluid_.control_flow(*parameters_.flow_target);
   initialise(fluid_, parameters_, rest_);
   set_gravity(fluid_, parameters_, step_);
@@ -67,7 +67,7 @@ void FluidSystem<Real>::advance_around_solids() {
     const auto scope = timer_.measure(phases_.walls);
     fluid_.apply_walls();
   }
-  bodies::LinkPass<Real> links(fluid_, solids_->links(), lattice_box_, parameters_.links, solids_->begin_step());
+  bodies::LinkPass<Real> links(fluid_, solids_->links(), lattice_box_, parameters_.bodies.links, solids_->begin_step());
   const auto sweep = timer_.measure(phases_.sweep);
   fluid_.stream_and_collide([&](int tile) {
     const auto scope = timer_.measure(phases_.links);
@@ -99,7 +99,7 @@ FluidFields FluidSystem<Real>::sample(const std::vector<FluidField>& wanted, con
   if (solids_)
     context.apply_links = [this] {
       std::vector<bodies::LinkBody> bodies = solids_->bodies();
-      bodies::LinkPass<Real> links(fluid_, solids_->links(), lattice_box_, parameters_.links, bodies);
+      bodies::LinkPass<Real> links(fluid_, solids_->links(), lattice_box_, parameters_.bodies.links, bodies);
       for (int tile = 0; tile < fluid_.tiles().count(); ++tile) links.apply_tile(tile);
     };
   return sample_fields(fluid_, context, wanted, region);
@@ -117,7 +117,7 @@ std::optional<FluidSource::State> FluidSystem<Real>::state_in(const Index3& cell
 
 template <typename Real>
 FluidSource::Drive FluidSystem<Real>::drive() const {
-  return drive_of(fluid_, parameters_.units, parameters_.links.reference_density);
+  return drive_of(fluid_, parameters_.units, parameters_.bodies.links.reference_density);
 }
 
 template <typename Real>

@@ -12,60 +12,11 @@
 namespace thalweg::coupling {
 
 template <typename Real>
-void ResolvedSystem<Real>::account_for_covered_cells() {
-  const Index3& lower = fluid_.block().lower;
-  for (const bodies::CellChange& change : map_.changes()) {
-    const Index3& at = change.cell;
-    if (change.before != lbm::CellMap::fluid || !fluid_.indexing().owned(at[0], at[1], at[2])) continue;
-    const std::ptrdiff_t cell = fluid_.indexing().index(at[0], at[1], at[2]);
-    Vec3 momentum = Vec3::Zero();
-    for (int i = 0; i < lbm::D3Q19::directions; ++i)
-      for (int a = 0; a < 3; ++a)
-        momentum[a] += lbm::D3Q19::c[i][a] * static_cast<double>(fluid_.populations().post_collision(i, cell));
-    const Vec3 position(lower[0] + at[0] + 0.5, lower[1] + at[1] + 0.5, lower[2] + at[2] + 0.5);
-    step_totals_.covered += momentum;
-    step_totals_.covered_angular_momentum += position.cross(momentum);
-    const double deviation = fluid_.populations().density_deviation(cell);
-    const std::int64_t mass = LatticeFixed::from(rest_.deviation(position) - deviation);
-    bodies::LinkBody& body = bodies_[static_cast<std::size_t>(change.now)];
-    body.mass += mass;
-    step_totals_.covered_mass += mass;
-    if (parameters_.keep_covered_momentum) keep_momentum(body, at[2], position, 1.0 + deviation, momentum);
-  }
-}
-
-// Of a cell that this body covers: sum (c_i - u_w) f_i^c without the half force, which refill puts into cells again.
-// What is left, rho u_w, belongs to the mass, which comes back (docs/theory.md, section 3, "Covered cells").
-template <typename Real>
-void ResolvedSystem<Real>::keep_momentum(bodies::LinkBody& body, int plane, const Vec3& position, double density,
-                                         const Vec3& momentum) {
-  const Vec3 arm = lattice_box_.difference(position, body.centre);
-  const Vec3 wall = body.velocity + body.angular_velocity.cross(arm);
-  const Vec3 kept = momentum - 0.5 * fluid_.carried_force() - density * wall, torque = arm.cross(kept);
-  body.force += FixedVec3::from(kept);
-  if (booking_) given_by_height_[static_cast<std::size_t>(2 * plane + 1)] += FixedVec3::from(kept);
-  body.torque += FixedVec3::from(torque);
-  if (!moments_.empty()) moments_[static_cast<std::size_t>(&body - bodies_.data())].add(kept, arm);
-  step_totals_.kept += kept;
-  step_totals_.kept_angular_momentum += body.centre.cross(kept) + torque;
-}
-
-// To be called before forces are added that the fluid does not feel.
-template <typename Real>
-void ResolvedSystem<Real>::book_links() {
-  for (std::size_t g = 0; g < grains_->store().total(); ++g) {
-    const bodies::LinkBody& body = bodies_[map_slot_[g]];
-    const Vec3 force = body.force.to_vec3();
-    step_totals_.link_momentum += force;
-    step_totals_.link_angular_momentum += body.centre.cross(force) + body.torque.to_vec3();
-    step_totals_.link_mass = exact_sum(step_totals_.link_mass, body.mass);
-  }
-  step_totals_.link_momentum -= step_totals_.kept;
-  step_totals_.link_angular_momentum -= step_totals_.kept_angular_momentum;
-  step_totals_.link_mass -= step_totals_.refilled_mass + step_totals_.covered_mass;
-  mass_.book(MassAccount::links, step_totals_.link_mass);
-  mass_.book(MassAccount::uncovered, step_totals_.refilled_mass);
-  mass_.book(MassAccount::covered, step_totals_.covered_mass);
+void ResolvedSystem<Real>::book_masses() {
+  const bodies::ExchangeTotals& totals = bodies_.step_totals();
+  mass_.book(MassAccount::links, totals.link_mass);
+  mass_.book(MassAccount::uncovered, totals.refilled_mass);
+  mass_.book(MassAccount::covered, totals.covered_mass);
 }
 
 template <typename Real>
@@ -74,14 +25,14 @@ void ResolvedSystem<Real>::collect_loads() {
   const int width = sums_per_grain();
   exchanged_.resize(static_cast<std::size_t>(width) * count);
   for (std::size_t g = 0; g < count; ++g) {
-    const bodies::LinkBody& body = bodies_[map_slot_[g]];
+    const bodies::LinkBody& body = bodies_.body(slot_[g]);
     const std::int64_t sums[8] = {body.force.x,  body.force.y,  body.force.z, body.torque.x,
                                   body.torque.y, body.torque.z, body.mass,    body.pressure};
     auto into = std::copy(sums, sums + 8, exchanged_.begin() + static_cast<std::ptrdiff_t>(width * g));
-    const bodies::LinkSums& link_sums = links_.sums_of(map_slot_[g]);
+    const bodies::LinkSums& link_sums = bodies_.link_sums(slot_[g]);
     into = std::copy(link_sums.sums.begin(), link_sums.sums.end(), into);
-    if (parameters_.grain_stress) {
-      const FixedTensor& moments = moments_[map_slot_[g]];
+    if (parameters_.bodies.moments) {
+      const FixedTensor& moments = bodies_.moments(slot_[g]);
       std::copy(moments.sums.begin(), moments.sums.end(), into);
     }
   }
@@ -102,7 +53,7 @@ void ResolvedSystem<Real>::apply_loads() {
     kept.earlier_torque() = kept.last_torque();
     kept.last_force() = force;
     kept.last_torque() = torque;
-    if (parameters_.grain_stress) apply_stress(g, before == 0);
+    if (parameters_.bodies.moments) apply_stress(g, before == 0);
     kept.set_exchanges(std::min(before + 1, 2));
   }
   settle_masses();
@@ -131,7 +82,7 @@ void ResolvedSystem<Real>::settle_mass(std::size_t first, std::size_t count) {
   double came_back = 0.0;
   for (std::size_t g = first; g < first + count; ++g) {
     const bodies::LinkSums of_grain = link_sums_of(g);
-    const bodies::LinkBody& body = bodies_[map_slot_[g]];
+    const bodies::LinkBody& body = bodies_.body(slot_[g]);
     const std::int64_t* sums = &exchanged_[sums_per_grain() * g + 6];
     links += of_grain;
     sum = exact_sum(sum, sums[0]);
@@ -189,7 +140,7 @@ void ResolvedSystem<Real>::apply_stress(std::size_t grain, bool first) {
 
 template <typename Real>
 void ResolvedSystem<Real>::show_stresses() {
-  if (!parameters_.grain_stress) return;
+  if (!parameters_.bodies.moments) return;
   fluid_stress_.resize(grains_->store().owned);
   for (std::size_t g = 0; g < fluid_stress_.size(); ++g) fluid_stress_[g] = exchange_of(g).mean_stress();
 }
@@ -215,7 +166,7 @@ template <typename Real>
 void ResolvedSystem<Real>::open_account() {
   const ExcessMass excess = excess_mass(survey_of(fluid_), rest_);
   mass_.open(excess.sum, mass_owed());
-  parameters_.links.reference_density = excess.mean();
+  bodies_.set_reference_density(excess.mean());
   for (std::size_t g = 0; g < grains_->store().total(); ++g)
     if (exchange_of(g).exchanges() == 0) exchange_of(g).surrounding() = excess.mean();
 }
@@ -225,7 +176,7 @@ template <typename Real>
 void ResolvedSystem<Real>::correct_mass() {
   if (!looks_at_mass(step_)) return;
   const ExcessMass excess = excess_mass(survey_of(fluid_), rest_);
-  parameters_.links.reference_density = excess.mean();
+  bodies_.set_reference_density(excess.mean());
   if (!closed_) return;
   const double added = restore_excess(fluid_, excess, mass_.kept() - mass_owed());
   if (rank_of(communicator_) == 0) mass_.book(MassAccount::corrections, added);

@@ -11,12 +11,10 @@ template <typename Real>
 FluidFields ResolvedSystem<Real>::sample(const std::vector<FluidField>& wanted, const Block& region) const {
   SampleContext context;
   context.units = parameters_.units;
-  context.grain_id = [this](std::int32_t slot) { return static_cast<std::int32_t>(map_.bodies()[slot].id); };
-  context.apply_links = [this] {
-    std::vector<bodies::LinkBody> bodies = bodies_;  // takes up the momentum, which belongs to the next step
-    bodies::LinkPass<Real> links(fluid_, links_, lattice_box_, parameters_.links, bodies);
-    for (int tile = 0; tile < fluid_.tiles().count(); ++tile) links.apply_tile(tile);
+  context.grain_id = [this](std::int32_t slot) {
+    return static_cast<std::int32_t>(bodies_.mapped()[static_cast<std::size_t>(slot)].id);
   };
+  context.apply_links = [this] { bodies_.apply_links_on_copies(); };
   return sample_fields(fluid_, context, wanted, region);
 }
 
@@ -32,16 +30,12 @@ std::optional<FluidSource::State> ResolvedSystem<Real>::state_in(const Index3& c
 
 template <typename Real>
 FluidSource::Drive ResolvedSystem<Real>::drive() const {
-  return drive_of(fluid_, parameters_.units, parameters_.links.reference_density);
+  return drive_of(fluid_, parameters_.units, bodies_.reference_density());
 }
 
-// The links of this step are applied twice: here on copies of the bodies, so that all that streams in lies ready.
 template <typename Real>
 void ResolvedSystem<Real>::write_momentum_book() {
-  std::vector<bodies::LinkBody> bodies = bodies_;
-  bodies::LinkPass<Real> links(fluid_, links_, lattice_box_, parameters_.links, bodies, nullptr, &given_by_height_);
-  for (int tile = 0; tile < fluid_.tiles().count(); ++tile) links.apply_tile(tile);
-  momentum_ = book_of(fluid_, parameters_.units, parameters_.links.reference_density, given_by_height_);
+  momentum_ = book_of(fluid_, parameters_.units, bodies_.reference_density(), bodies_.momentum_by_height());
   booking_ = false;
 }
 

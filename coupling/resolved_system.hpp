@@ -1,12 +1,8 @@
 // Grains in a resolved flow: the system the project exists for. One step is one lattice step and its DEM sub-steps.
 #pragma once
 
-#include "bodies/body_map.hpp"
-#include "bodies/hidden_links.hpp"
-#include "bodies/link_builder.hpp"
-#include "bodies/refill.hpp"
+#include "bodies/bodies.hpp"
 #include "core/decomposition.hpp"
-#include "core/sphere.hpp"
 #include "core/system.hpp"
 #include "coupling/fluid_parameters.hpp"
 #include "coupling/grain_exchange.hpp"
@@ -27,25 +23,7 @@ struct ResolvedParameters : FluidParameters {
   int sub_steps = 50;                       // DEM steps per lattice step
   bool wall_forces = false;                 // whether the figures include the forces on walls
   std::optional<VirtualMass> virtual_mass;  // of light grains; its filter is made for LoadRule::mean
-  bodies::RefillRule refill = bodies::RefillRule::equilibrium;
   LoadRule load = LoadRule::extrapolated;
-  bool keep_covered_momentum = false;  // what a covered cell carries relative to its grain, the grain gets
-  bool grain_stress = false;           // the stress of the fluid on every grain is measured
-};
-
-// This rank's part of the sums that a momentum balance of the fluid needs (lattice units, of the step just done).
-struct ExchangeTotals {
-  Vec3 link_momentum = Vec3::Zero();  // force on the grains through this rank's links
-  Vec3 kept = Vec3::Zero();           // of `covered`: what the grains got
-  Vec3 refilled = Vec3::Zero();       // given to uncovered cells
-  Vec3 covered = Vec3::Zero();        // lost in cells that became solid
-  // The same about the origin. Angular momentum has a meaning only in a box without periodic faces.
-  Vec3 link_angular_momentum = Vec3::Zero();
-  Vec3 kept_angular_momentum = Vec3::Zero();
-  Vec3 refilled_angular_momentum = Vec3::Zero();
-  Vec3 covered_angular_momentum = Vec3::Zero();
-  // Gained by the fluid, LatticeFixed sums (mass_account.hpp).
-  std::int64_t link_mass = 0, refilled_mass = 0, covered_mass = 0;
 };
 
 template <typename Real>
@@ -58,7 +36,7 @@ public:
 
   // Columns that dem carries for the exchange (grain_exchange.hpp).
   static int attached_width(const ResolvedParameters& parameters) {
-    return parameters.grain_stress ? GrainExchange<double>::width_with_stress : GrainExchange<double>::width;
+    return parameters.bodies.moments ? GrainExchange<double>::width_with_stress : GrainExchange<double>::width;
   }
 
   // How far beyond a block its grains must be known for the map, as a distance from the grain's centre (m).
@@ -84,8 +62,8 @@ public:
 
   const lbm::Fluid<Real>& fluid() const { return fluid_; }
   const dem::GrainDynamics& grains() const { return *grains_; }
-  const bodies::LinkTable& links() const { return links_; }
-  const ExchangeTotals& step_totals() const { return step_totals_; }
+  const bodies::LinkTable& links() const { return bodies_.links(); }
+  const bodies::ExchangeTotals& step_totals() const { return bodies_.step_totals(); }
 
 private:
   FluidFields sample(const std::vector<FluidField>& wanted, const Block& region) const override;
@@ -100,17 +78,13 @@ private:
   void for_each_wall_force(const ContactEndVisitor& visit) const override { grains_->for_each_wall_force(visit); }
 
   void add_wall_forces(std::vector<Figure>& figures) const;
-  void forget_map();
   void initialise_map();
   void synchronise_slots();
   void update_map();
   void update_bodies();
-  void place_body(std::size_t grain, bodies::LinkBody& body) const;
-  void account_for_covered_cells();
-  void keep_momentum(bodies::LinkBody& body, int plane, const Vec3& position, double density, const Vec3& momentum);
+  void book_masses();
   void open_account();
   void correct_mass();
-  void book_links();
   bodies::LinkSums link_sums_of(std::size_t grain) const;
   void settle_masses();
   void settle_mass(std::size_t first, std::size_t count);
@@ -118,7 +92,6 @@ private:
   void set_gravity_of(std::int64_t step);
   void write_momentum_book();
   void update_links_behind_halo();
-  void sweep_behind_links();
   void collect_loads();
   void apply_loads();
   GrainExchange<double> exchange_of(std::size_t grain) { return GrainExchange(grains_->store().attached_of(grain)); }
@@ -130,7 +103,7 @@ private:
   void show_stresses();
   // Of a grain: force, torque, mass, pressure, LinkSums; where asked for, moments.
   static constexpr int plain_sums = 8 + bodies::LinkSums::size;
-  int sums_per_grain() const { return plain_sums + (parameters_.grain_stress ? 9 : 0); }
+  int sums_per_grain() const { return plain_sums + (parameters_.bodies.moments ? 9 : 0); }
   Vec3 lattice_position(const Vec3& position) const { return position / parameters_.units.spacing; }
 
   std::unique_ptr<Decomposition> decomposition_;
@@ -138,23 +111,14 @@ private:
   ResolvedParameters parameters_;
   mutable lbm::Fluid<Real> fluid_;  // a sample fills slots that every step fills anew; see sample_fields()
   std::unique_ptr<dem::GrainDynamics> grains_;
-  PeriodicBox box_, lattice_box_;  // m, cells
+  PeriodicBox box_;  // m
   bodies::Hydrostatic rest_;
-  bodies::BodyMap map_;
-  bodies::LinkTable links_;
-  bodies::LinkBuilder link_builder_;
-  bodies::HiddenLinks hidden_links_;
-  bodies::Refill refill_;
-  std::vector<bodies::LinkBody> bodies_;  // by map slot
-  std::vector<int> map_slot_;             // of each grain of the store
-  std::vector<double> surrounding_;       // rho - rho_rest around the grain, by map slot
-  std::vector<FixedTensor> moments_;      // by map slot; empty unless measured
+  bodies::Bodies<Real> bodies_;
+  std::vector<int> slot_;                 // of each grain of the store
   std::vector<std::int64_t> exchanged_;   // force and torque sums of each grain of the store, and those of moments
   std::vector<Mat3> fluid_stress_;        // Pa, of owned grains; empty unless asked for
-  ExchangeTotals step_totals_;
-  bool booking_ = false;                    // this step's momentum is to be booked
-  std::vector<FixedVec3> given_by_height_;  // to grains, by half planes of cells; empty unless booking
-  std::optional<MomentumBook> momentum_;    // of the last step
+  bool booking_ = false;                  // this step's momentum is to be booked
+  std::optional<MomentumBook> momentum_;  // of the last step
   MassAccount mass_;
   bool closed_;  // no face lets fluid in or out
   std::int64_t step_ = 0;

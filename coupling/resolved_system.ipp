@@ -27,19 +27,12 @@ ResolvedSystem<Real>::ResolvedSystem(std::unique_ptr<Decomposition> decompositio
       fluid_(*decomposition_, communicator, parameters.collision, parameters.faces),
       grains_(std::move(grains)),
       box_(decomposition_->box()),
-      lattice_box_{Vec3(decomposition_->cells()[0], decomposition_->cells()[1], decomposition_->cells()[2]),
-                   decomposition_->periodic()},
       rest_(rest_state(parameters, *decomposition_)),
-      map_(*decomposition_, fluid_.block(), fluid_.cells()),
-      links_(fluid_.tiles().count()),
-      link_builder_(*decomposition_, fluid_.block(), fluid_.cells(), fluid_.tiles()),
-      hidden_links_(*decomposition_, fluid_.block(), fluid_.cells(), rest_),
-      refill_(*decomposition_, communicator, parameters.refill),
+      bodies_(*decomposition_, communicator, fluid_, parameters.bodies, rest_),
       mass_(communicator),
       closed_(closed(parameters.faces)) {
   phases_ = {timer_.phase("grain map"), timer_.phase("refill"), timer_.phase("halo"),  timer_.phase("walls"),
              timer_.phase("links"),     timer_.phase("sweep"),  timer_.phase("loads"), timer_.phase("grains")};
-  bodies::set_rest(parameters_.links, rest_);
   if (parameters_.flow_target) fluid_.control_flow(*parameters_.flow_target);
   initialise(fluid_, parameters_, rest_);
   dem::GrainStore& store = grains_->store();
@@ -62,59 +55,39 @@ void ResolvedSystem<Real>::set_gravity_of(std::int64_t step) {
 // The cells covered at the start (of a run or after loading) were never fluid: nothing to refill.
 template <typename Real>
 void ResolvedSystem<Real>::initialise_map() {
-  map_.begin_update();
+  bodies_.begin_step();
   synchronise_slots();
-  map_.settle();
-  link_builder_.update(map_, links_);
-  hidden_links_.update(map_);
+  update_bodies();
+  bodies_.settle_at_start();
 }
 
+// Bodies for the grains that are in reach of this rank, and no others.
 template <typename Real>
 void ResolvedSystem<Real>::synchronise_slots() {
-  dem::GrainStore& store = grains_->store();
-  std::vector<char> present(map_.bodies().size(), 0);
-  map_slot_.resize(store.total());
+  const dem::GrainStore& store = grains_->store();
+  std::vector<char> present(bodies_.mapped().size(), 0);
+  slot_.resize(store.total());
   for (std::size_t g = 0; g < store.total(); ++g) {
-    const int slot = map_.slot_of(store.id[g]);
-    if (slot >= 0) present[slot] = 1;
+    slot_[g] = bodies_.slot_of(store.id[g]);
+    if (slot_[g] >= 0) present[static_cast<std::size_t>(slot_[g])] = 1;
   }
   for (std::size_t slot = 0; slot < present.size(); ++slot)
-    if (!present[slot] && map_.bodies()[slot].id >= 0) map_.remove(static_cast<int>(slot));
-  for (std::size_t g = 0; g < store.total(); ++g) {
-    int slot = map_.slot_of(store.id[g]);
-    if (slot < 0) {
-      slot = map_.add(store.id[g], store.radius[g] / parameters_.units.spacing, store.clump[g]);
-      map_.place(slot, lattice_position(exchange_of(g).link_position()));
-    }
-    map_slot_[g] = slot;
-  }
-  bodies_.resize(map_.bodies().size());
-  surrounding_.resize(map_.bodies().size());
-  update_bodies();
-}
-
-template <typename Real>
-void ResolvedSystem<Real>::place_body(std::size_t grain, bodies::LinkBody& body) const {
-  const dem::GrainStore& store = grains_->store();
-  body.radius = store.radius[grain] / parameters_.units.spacing;
-  body.centre = lattice_position(store.position[grain]);
-  body.velocity = store.velocity[grain] / parameters_.units.velocity();
-  body.angular_velocity = store.angular_velocity[grain] * parameters_.units.time_step;
+    if (!present[slot] && bodies_.mapped()[slot].id >= 0) bodies_.remove(static_cast<int>(slot));
+  for (std::size_t g = 0; g < store.total(); ++g)
+    if (slot_[g] < 0)
+      slot_[g] = bodies_.add(store.id[g], store.radius[g] / parameters_.units.spacing, store.clump[g],
+                             lattice_position(exchange_of(g).link_position()));
 }
 
 template <typename Real>
 void ResolvedSystem<Real>::update_bodies() {
   const dem::GrainStore& store = grains_->store();
   for (std::size_t g = 0; g < store.total(); ++g) {
-    bodies::LinkBody& body = bodies_[map_slot_[g]];
     const GrainExchange<double> kept = exchange_of(g);
-    place_body(g, body);
-    body.returned = kept.returned_density();
-    body.returned_slope = kept.returned_slope();
-    surrounding_[map_slot_[g]] = kept.surrounding();
-    body.clear_sums();
+    bodies_.move(slot_[g], {lattice_position(store.position[g]), store.velocity[g] / parameters_.units.velocity(),
+                            store.angular_velocity[g] * parameters_.units.time_step, kept.returned_density(),
+                            kept.returned_slope(), kept.surrounding()});
   }
-  if (parameters_.grain_stress) moments_.assign(bodies_.size(), {});
 }
 
 // Cells follow a grain once it has moved by the tolerance; links know its place exactly all the same. Ghosts follow the
@@ -128,23 +101,8 @@ void ResolvedSystem<Real>::update_map() {
     const Vec3 moved = box_.difference(store.position[g], kept.link_position());
     if (moved.squaredNorm() <= tolerance * tolerance) continue;
     kept.link_position() = store.position[g];
-    map_.place(map_slot_[g], lattice_position(store.position[g]));
+    bodies_.place(slot_[g], lattice_position(store.position[g]));
   }
-}
-
-template <typename Real>
-void ResolvedSystem<Real>::sweep_behind_links() {
-  std::vector<FixedTensor>* moments = moments_.empty() ? nullptr : &moments_;
-  bodies::LinkPass<Real> links(fluid_, links_, lattice_box_, parameters_.links, bodies_, moments);
-  const auto sweep = timer_.measure(phases_.sweep);
-  fluid_.stream_and_collide([&](int tile) {
-    const auto scope = timer_.measure(phases_.links);
-    links.apply_tile(tile);
-  });
-  const auto scope = timer_.measure(phases_.links);
-  book_links();
-  hidden_links_.apply(bodies_, moments);
-  map_.hidden_patches().apply(map_.bodies(), surrounding_, parameters_.links.reference_density, bodies_, moments);
 }
 
 // Links follow from the map of the cells alone, so they are rebuilt while the halo is on its way.
@@ -156,8 +114,7 @@ void ResolvedSystem<Real>::update_links_behind_halo() {
   }
   {
     const auto scope = timer_.measure(phases_.map);
-    link_builder_.update(map_, links_);
-    hidden_links_.update(map_);
+    bodies_.update_links();
   }
   const auto scope = timer_.measure(phases_.halo);
   fluid_.finish_halo_exchange();
@@ -165,9 +122,7 @@ void ResolvedSystem<Real>::update_links_behind_halo() {
 
 template <typename Real>
 void ResolvedSystem<Real>::advance() {
-  step_totals_ = {};
   momentum_.reset();
-  given_by_height_.assign(booking_ ? static_cast<std::size_t>(2 * fluid_.indexing().size()[2] + 1) : 0, {});
   bool slots_changed = false;
   {
     const auto scope = timer_.measure(phases_.grains);
@@ -175,21 +130,15 @@ void ResolvedSystem<Real>::advance() {
   }
   {
     const auto scope = timer_.measure(phases_.map);
-    map_.begin_update();
-    if (slots_changed)
-      synchronise_slots();
-    else
-      update_bodies();
+    bodies_.begin_step(booking_);
+    if (slots_changed) synchronise_slots();
+    update_bodies();
     update_map();
-    map_.settle();
-    account_for_covered_cells();
+    bodies_.settle();
   }
   {
     const auto scope = timer_.measure(phases_.refill);
-    const bodies::RefillTotals totals = refill_.fill(fluid_, map_.changes(), rest_, bodies_);
-    step_totals_.refilled_mass = totals.mass;
-    step_totals_.refilled = totals.momentum;
-    step_totals_.refilled_angular_momentum = totals.angular_momentum;
+    bodies_.refill();
   }
   set_gravity_of(step_ + 1);
   update_links_behind_halo();
@@ -198,9 +147,10 @@ void ResolvedSystem<Real>::advance() {
     fluid_.apply_walls();
   }
   if (booking_) write_momentum_book();
-  sweep_behind_links();
+  bodies_.sweep(timer_, phases_.sweep, phases_.links);
   {
     const auto scope = timer_.measure(phases_.loads);
+    book_masses();
     collect_loads();
     apply_loads();
   }
@@ -244,7 +194,7 @@ Snapshot ResolvedSystem<Real>::snapshot() const {
   s.grains.angular_velocity = {store.angular_velocity.data(), n};
   s.grains.fluid_force = {store.load_force.data(), n};
   s.grains.fluid_torque = {store.load_torque.data(), n};
-  if (parameters_.grain_stress) s.grains.fluid_stress = {fluid_stress_.data(), n};
+  if (parameters_.bodies.moments) s.grains.fluid_stress = {fluid_stress_.data(), n};
   s.grains.contact_force = {store.contact_force.data(), n};
   s.grains.contact_torque = {store.contact_torque.data(), n};
   s.grains.motion = grains_->motion();
@@ -279,7 +229,7 @@ std::optional<Place> ResolvedSystem<Real>::place_of(const std::string& figure) c
 template <typename Real>
 void ResolvedSystem<Real>::add_wall_forces(std::vector<Figure>& figures) const {
   const std::vector<Vec3> of_grains = grains_->wall_forces();
-  const std::array<Vec3, 6> of_fluid = fluid_.wall_forces(parameters_.links.reference_density);
+  const std::array<Vec3, 6> of_fluid = fluid_.wall_forces(bodies_.reference_density());
   std::size_t wall = 0;
   for (std::size_t face = 0; face < of_fluid.size(); ++face) {
     if (box_.periodic[face / 2]) continue;
@@ -301,28 +251,18 @@ void ResolvedSystem<Real>::save(ArchiveWriter& archive) const {
   fluid_.save(archive);
   grains_->save(archive);
   mass_.save(archive);
-  archive.attribute("mass/reference", parameters_.links.reference_density);
-}
-
-template <typename Real>
-void ResolvedSystem<Real>::forget_map() {
-  map_.begin_update();
-  for (std::size_t slot = 0; slot < map_.bodies().size(); ++slot)
-    if (map_.bodies()[slot].id >= 0) map_.remove(static_cast<int>(slot));
-  map_.settle();
-  link_builder_.update(map_, links_);
-  hidden_links_.update(map_);
+  archive.attribute("mass/reference", bodies_.reference_density());
 }
 
 template <typename Real>
 void ResolvedSystem<Real>::load(ArchiveReader& archive) {
   require_same_time_step(archive, time_step());
   step_ = archive.integer_attribute("system/step");
-  forget_map();
+  bodies_.remove_all();
   fluid_.load(archive);
   grains_->load(archive);
   mass_.load(archive);
-  parameters_.links.reference_density = archive.real_attribute("mass/reference");
+  bodies_.set_reference_density(archive.real_attribute("mass/reference"));
   initialise_map();
   set_gravity_of(step_);
   fluid_.carry_force();
@@ -335,14 +275,14 @@ void ResolvedSystem<Real>::take_fluid(ArchiveReader& archive, double spacing) {
   open_account();
   // As the run that is taken over would go on.
   if (archive.has("mass/reference"))
-    parameters_.links.reference_density = density_unit * archive.real_attribute("mass/reference");
+    bodies_.set_reference_density(density_unit * archive.real_attribute("mass/reference"));
 }
 
 // Grains of a resolved run keep the places their links were cut at, others begin where they are. What is in lattice
 // units begins anew on another lattice.
 template <typename Real>
 void ResolvedSystem<Real>::take_grains(ArchiveReader& archive, double spacing) {
-  forget_map();
+  bodies_.remove_all();
   grains_->take(archive);
   const bool same_units =
       spacing == parameters_.units.spacing && archive.real_attribute("system/time_step") == time_step();

@@ -16,9 +16,9 @@ std::unique_ptr<System> build_resolved(const Case& c, MPI_Comm communicator, con
   static_cast<coupling::FluidParameters&>(parameters) = fluid_parameters(c);
   parameters.link_tolerance = c.coupling.link_tolerance;
   parameters.load = c.coupling.load_rule();
-  parameters.keep_covered_momentum = c.coupling.covered_momentum == coupling::CoveredMomentum::to_grain;
-  parameters.refill = c.coupling.refill;
-  parameters.grain_stress = measures_grain_stress(c);
+  parameters.bodies.keep_covered_momentum = c.coupling.covered_momentum == coupling::CoveredMomentum::to_grain;
+  parameters.bodies.refill = c.coupling.refill;
+  parameters.bodies.moments = measures_grain_stress(c);
   parameters.wall_forces = c.analysis.wall_forces.has_value();
   parameters.sub_steps = static_cast<int>(grain_steps(c));
 

@@ -50,9 +50,9 @@ coupling::FluidParameters fluid_parameters(const Case& c) {
         lbm::FlowTarget{.axis = 0,
                         .velocity = c.fluid.mean_velocity->velocity / parameters.units.velocity(),
                         .response_time = c.fluid.mean_velocity->response_time / parameters.units.time_step};
-  parameters.links.momentum_exchange = c.coupling.momentum_exchange;
-  parameters.links.wall_density = c.coupling.wall_density;
-  parameters.links.rule = c.coupling.links;
+  parameters.bodies.links.momentum_exchange = c.coupling.momentum_exchange;
+  parameters.bodies.links.wall_density = c.coupling.wall_density;
+  parameters.bodies.links.rule = c.coupling.links;
   parameters.initial_fluid =
       initial_fluid(c.initial.fluid, cells_of(c.domain), periodic_axes(c.domain), c.domain.spacing);
   return parameters;

@@ -71,7 +71,7 @@ void expect_closed(bool keep) {
     system->advance();
     const Snapshot snapshot = system->snapshot();
     balance.observe(snapshot);
-    const coupling::ExchangeTotals& t = system->step_totals();
+    const bodies::ExchangeTotals& t = system->step_totals();
     const Vec3 net = t.covered - t.refilled - t.kept;
     lost += sum_over_ranks(MPI_COMM_WORLD, net.x()) * units.force() / (steps * area);
     exchanged += sum_over_ranks(MPI_COMM_WORLD, t.covered.x()) * units.force() / (steps * area);

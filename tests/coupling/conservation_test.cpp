@@ -76,7 +76,7 @@ void balance_of_a_crowd(int steps) {
     const Vec3 along(box.gravity.x(), box.gravity.y(), 0.0), submerged(0.0, 0.0, box.gravity.z() * (1.0 - 1.0 / 2.55));
     const double fluid_mass =
         1000.0 * std::pow(box.spacing, 3) * static_cast<double>(sum_over_ranks(MPI_COMM_WORLD, cells));
-    const ExchangeTotals& t = system->step_totals();
+    const bodies::ExchangeTotals& t = system->step_totals();
     expected += ((fluid_mass + mass) * along + mass * submerged) * box.time_step +
                 over_ranks(t.refilled - t.covered + t.kept) * impulse_unit;
     turned_over += over_ranks(t.link_momentum).cwiseAbs() * impulse_unit +
@@ -133,7 +133,7 @@ TEST(Conservation, AngularMomentumOfTheFluidChangesByWallsLinksAndCellsThatChang
   for (int step = 0; step < 60; ++step) {
     const Vec3 walls = to_walls();
     system->advance();
-    const ExchangeTotals& t = system->step_totals();
+    const bodies::ExchangeTotals& t = system->step_totals();
     const Vec3 expected =
         before - walls + over_ranks(t.refilled_angular_momentum - t.covered_angular_momentum - t.link_angular_momentum);
     const Vec3 after = angular();

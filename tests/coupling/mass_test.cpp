@@ -77,7 +77,7 @@ void balance_closes(const WaterBox& box, int steps) {
   double before = excess_of(*system, gradient, middle), turned_over = 0.0;
   for (int step = 0; step < steps; ++step) {
     system->advance();
-    const ExchangeTotals& t = system->step_totals();
+    const bodies::ExchangeTotals& t = system->step_totals();
     const auto whole = [](std::int64_t mass) { return LatticeFixed::to_double(sum_over_ranks(MPI_COMM_WORLD, mass)); };
     const double links = whole(t.link_mass), covered = whole(t.covered_mass), uncovered = whole(t.refilled_mass);
     const double now = excess_of(*system, gradient, middle);

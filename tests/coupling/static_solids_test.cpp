@@ -67,7 +67,7 @@ std::unique_ptr<FluidSystem<double>> make(const Box& box, const std::vector<bodi
   parameters.units = {1.0, 1.0, 1.0};
   parameters.collision = box.collision;
   parameters.faces = box.faces;
-  parameters.links.rule = box.rule;
+  parameters.bodies.links.rule = box.rule;
   return std::make_unique<FluidSystem<double>>(std::make_unique<Decomposition>(box.cells, 1.0, box.periodic, layout),
                                                communicator, parameters, solids);
 }

@@ -67,14 +67,14 @@ std::unique_ptr<ResolvedSystem<Real>> make_system(const WaterBox& box, MPI_Comm 
     const double along = face == 5 ? 1.0 : (box.bottom_at_rest ? 0.0 : -1.0);
     p.faces[face].velocity = Vec3(along * box.plate_velocity / p.units.velocity(), 0.0, 0.0);
   }
-  p.links = box.links;
+  p.bodies.links = box.links;
   p.link_tolerance = box.link_tolerance;
   p.sub_steps = box.sub_steps;
   p.wall_forces = box.wall_forces;
   if (box.virtual_mass) p.virtual_mass = VirtualMass{0.5, fluid_density};
-  p.refill = box.refill;
-  p.keep_covered_momentum = box.keep_covered_momentum;
-  p.grain_stress = box.grain_stress;
+  p.bodies.refill = box.refill;
+  p.bodies.keep_covered_momentum = box.keep_covered_momentum;
+  p.bodies.moments = box.grain_stress;
   p.full_gravity = box.full_gravity;
   p.load = box.virtual_mass ? LoadRule::mean : box.load;
   if (box.initial)

@@ -61,9 +61,9 @@ std::unique_ptr<coupling::ResolvedSystem<double>> make(const Regime& regime, con
   p.collision.subgrid = lbm::Subgrid::smagorinsky(regime.smagorinsky_constant);
   p.collision.bulk_relaxation_time = setting.bulk_relaxation_time;
   p.collision.model = setting.collision;
-  p.links.rule = setting.links;
-  p.refill = setting.refill;
-  p.keep_covered_momentum = setting.covered != Covered::lost;
+  p.bodies.links.rule = setting.links;
+  p.bodies.refill = setting.refill;
+  p.bodies.keep_covered_momentum = setting.covered != Covered::lost;
   const bool held = setting.covered == Covered::none;
   p.initial_fluid = [u = held ? Vec3(-velocity) : Vec3(Vec3::Zero())](const Vec3&) {
     return coupling::FluidInitialState{0.0, u};

@@ -1,0 +1,182 @@
+#include "bodies/bodies.hpp"
+
+namespace thalweg::bodies {
+
+template <typename Real>
+Bodies<Real>::Bodies(const Decomposition& decomposition, MPI_Comm communicator, lbm::Fluid<Real>& fluid,
+                     const BodyOptions& options, const Hydrostatic& rest)
+    : fluid_(fluid),
+      options_(options),
+      box_{Vec3(decomposition.cells()[0], decomposition.cells()[1], decomposition.cells()[2]),
+           decomposition.periodic()},
+      rest_(rest),
+      map_(decomposition, fluid.block(), fluid.cells()),
+      links_(fluid.tiles().count()),
+      link_builder_(decomposition, fluid.block(), fluid.cells(), fluid.tiles()),
+      hidden_links_(decomposition, fluid.block(), fluid.cells(), rest),
+      refill_(decomposition, communicator, options.refill) {
+  set_rest(options_.links, rest_);
+}
+
+template <typename Real>
+void Bodies<Real>::begin_step(bool booking) {
+  totals_ = {};
+  by_height_.assign(booking ? static_cast<std::size_t>(2 * fluid_.indexing().size()[2] + 1) : 0, {});
+  map_.begin_update();
+  for (LinkBody& body : bodies_) body.clear_sums();
+  if (options_.moments) moments_.assign(bodies_.size(), {});
+}
+
+template <typename Real>
+int Bodies<Real>::add(GlobalId id, double radius, GlobalId clump, const Vec3& centre) {
+  const int slot = map_.add(id, radius, clump);
+  map_.place(slot, centre);
+  const std::size_t slots = map_.bodies().size();
+  bodies_.resize(slots);
+  surrounding_.resize(slots);
+  if (options_.moments) moments_.resize(slots);
+  bodies_[static_cast<std::size_t>(slot)].radius = radius;
+  return slot;
+}
+
+template <typename Real>
+void Bodies<Real>::remove(int slot) {
+  map_.remove(slot);
+}
+
+template <typename Real>
+void Bodies<Real>::move(int slot, const BodyMotion& motion) {
+  LinkBody& body = bodies_[static_cast<std::size_t>(slot)];
+  body.centre = motion.centre;
+  body.velocity = motion.velocity;
+  body.angular_velocity = motion.angular_velocity;
+  body.returned = motion.returned;
+  body.returned_slope = motion.returned_slope;
+  surrounding_[static_cast<std::size_t>(slot)] = motion.surrounding;
+}
+
+template <typename Real>
+void Bodies<Real>::settle() {
+  map_.settle();
+  account_for_covered_cells();
+}
+
+template <typename Real>
+void Bodies<Real>::refill() {
+  const RefillTotals totals = refill_.fill(fluid_, map_.changes(), rest_, bodies_);
+  totals_.refilled_mass = totals.mass;
+  totals_.refilled = totals.momentum;
+  totals_.refilled_angular_momentum = totals.angular_momentum;
+}
+
+// Links follow from the map of the cells alone.
+template <typename Real>
+void Bodies<Real>::update_links() {
+  link_builder_.update(map_, links_);
+  hidden_links_.update(map_);
+}
+
+template <typename Real>
+void Bodies<Real>::sweep(PhaseTimer& timer, int sweep_phase, int links_phase) {
+  std::vector<FixedTensor>* moments = options_.moments ? &moments_ : nullptr;
+  LinkPass<Real> links(fluid_, links_, box_, options_.links, bodies_, moments);
+  const auto sweep = timer.measure(sweep_phase);
+  fluid_.stream_and_collide([&](int tile) {
+    const auto scope = timer.measure(links_phase);
+    links.apply_tile(tile);
+  });
+  const auto scope = timer.measure(links_phase);
+  book_links();
+  hidden_links_.apply(bodies_, moments);
+  map_.hidden_patches().apply(map_.bodies(), surrounding_, reference_density(), bodies_, moments);
+}
+
+template <typename Real>
+void Bodies<Real>::settle_at_start() {
+  map_.settle();
+  update_links();
+}
+
+template <typename Real>
+void Bodies<Real>::remove_all() {
+  map_.begin_update();
+  for (std::size_t slot = 0; slot < map_.bodies().size(); ++slot)
+    if (map_.bodies()[slot].id >= 0) map_.remove(static_cast<int>(slot));
+  settle_at_start();
+}
+
+template <typename Real>
+void Bodies<Real>::apply_links_on_copies() const {
+  std::vector<LinkBody> copies = bodies_;
+  LinkPass<Real> links(fluid_, links_, box_, options_.links, copies);
+  for (int tile = 0; tile < fluid_.tiles().count(); ++tile) links.apply_tile(tile);
+}
+
+// The links of this step are applied twice: here on copies of the bodies, so that all that streams in lies ready.
+template <typename Real>
+const std::vector<FixedVec3>& Bodies<Real>::momentum_by_height() {
+  std::vector<LinkBody> copies = bodies_;
+  LinkPass<Real> links(fluid_, links_, box_, options_.links, copies, nullptr, &by_height_);
+  for (int tile = 0; tile < fluid_.tiles().count(); ++tile) links.apply_tile(tile);
+  return by_height_;
+}
+
+template <typename Real>
+void Bodies<Real>::account_for_covered_cells() {
+  const Index3& lower = fluid_.block().lower;
+  for (const CellChange& change : map_.changes()) {
+    const Index3& at = change.cell;
+    if (change.before != lbm::CellMap::fluid || !fluid_.indexing().owned(at[0], at[1], at[2])) continue;
+    const std::ptrdiff_t cell = fluid_.indexing().index(at[0], at[1], at[2]);
+    Vec3 momentum = Vec3::Zero();
+    for (int i = 0; i < lbm::D3Q19::directions; ++i)
+      for (int a = 0; a < 3; ++a)
+        momentum[a] += lbm::D3Q19::c[i][a] * static_cast<double>(fluid_.populations().post_collision(i, cell));
+    const Vec3 position(lower[0] + at[0] + 0.5, lower[1] + at[1] + 0.5, lower[2] + at[2] + 0.5);
+    totals_.covered += momentum;
+    totals_.covered_angular_momentum += position.cross(momentum);
+    const double deviation = fluid_.populations().density_deviation(cell);
+    const std::int64_t mass = LatticeFixed::from(rest_.deviation(position) - deviation);
+    LinkBody& body = bodies_[static_cast<std::size_t>(change.now)];
+    body.mass += mass;
+    totals_.covered_mass += mass;
+    if (options_.keep_covered_momentum) keep_momentum(body, at[2], position, 1.0 + deviation, momentum);
+  }
+}
+
+// Of a cell that this body covers: sum (c_i - u_w) f_i^c without the half force, which refill puts into cells again.
+// What is left, rho u_w, belongs to the mass, which comes back (docs/theory.md, section 3, "Covered cells").
+template <typename Real>
+void Bodies<Real>::keep_momentum(LinkBody& body, int plane, const Vec3& position, double density,
+                                 const Vec3& momentum) {
+  const Vec3 arm = box_.difference(position, body.centre);
+  const Vec3 wall = body.velocity + body.angular_velocity.cross(arm);
+  const Vec3 kept = momentum - 0.5 * fluid_.carried_force() - density * wall, torque = arm.cross(kept);
+  body.force += FixedVec3::from(kept);
+  if (!by_height_.empty()) by_height_[static_cast<std::size_t>(2 * plane + 1)] += FixedVec3::from(kept);
+  body.torque += FixedVec3::from(torque);
+  if (options_.moments) moments_[static_cast<std::size_t>(&body - bodies_.data())].add(kept, arm);
+  totals_.kept += kept;
+  totals_.kept_angular_momentum += body.centre.cross(kept) + torque;
+}
+
+// To be called before forces are added that the fluid does not feel.
+template <typename Real>
+void Bodies<Real>::book_links() {
+  for (std::size_t slot = 0; slot < bodies_.size(); ++slot) {
+    if (map_.bodies()[slot].id < 0) continue;
+    const LinkBody& body = bodies_[slot];
+    const Vec3 force = body.force.to_vec3();
+    totals_.link_momentum += force;
+    totals_.link_angular_momentum += body.centre.cross(force) + body.torque.to_vec3();
+    totals_.link_mass = exact_sum(totals_.link_mass, body.mass);
+  }
+  totals_.link_momentum -= totals_.kept;
+  totals_.link_angular_momentum -= totals_.kept_angular_momentum;
+  totals_.link_mass -= totals_.refilled_mass + totals_.covered_mass;
+}
+
+template class Bodies<float>;
+template class Bodies<double>;
+
+}  // namespace thalweg::bodies

@@ -1,0 +1,117 @@
+// Rigid bodies in a lattice fluid: the cells they cover, the links to the fluid around them, what they hide from each
+// other, and the sums of force, torque and mass of every step. Spheres that move, by slots. Lattice units.
+//
+// A step, in this order:
+//   begin_step()             forgets the last one
+//   add(), remove()          where bodies come into reach of this rank or leave it
+//   move(), place()          the motion of every body; cells follow where place() says so
+//   settle()                 cells change hands
+//   refill()                 uncovered cells get their populations; collective
+//   update_links()           before the sweep; may overlap with the exchange of the halo
+//   sweep()                  links tile by tile, each before its rows are swept; then hidden surfaces
+//   body(slot)               the sums of this rank
+#pragma once
+
+#include "bodies/body_map.hpp"
+#include "bodies/body_options.hpp"
+#include "bodies/hidden_links.hpp"
+#include "bodies/hydrostatic.hpp"
+#include "bodies/link_builder.hpp"
+#include "bodies/link_pass.hpp"
+#include "bodies/link_table.hpp"
+#include "bodies/refill.hpp"
+#include "core/phase_timer.hpp"
+#include "lbm/fluid.hpp"
+
+#include <vector>
+
+namespace thalweg::bodies {
+
+// This rank's part of the sums that a balance of the fluid needs, of one step.
+struct ExchangeTotals {
+  Vec3 link_momentum = Vec3::Zero();  // force on the bodies through this rank's links
+  Vec3 kept = Vec3::Zero();           // of `covered`: what the bodies got
+  Vec3 refilled = Vec3::Zero();       // given to uncovered cells
+  Vec3 covered = Vec3::Zero();        // lost in cells that became solid
+  // The same about the origin. Angular momentum has a meaning only in a box without periodic faces.
+  Vec3 link_angular_momentum = Vec3::Zero();
+  Vec3 kept_angular_momentum = Vec3::Zero();
+  Vec3 refilled_angular_momentum = Vec3::Zero();
+  Vec3 covered_angular_momentum = Vec3::Zero();
+  // Gained by the fluid, LatticeFixed sums.
+  std::int64_t link_mass = 0, refilled_mass = 0, covered_mass = 0;
+};
+
+// What a body does in the coming step; the fields of LinkBody.
+struct BodyMotion {
+  Vec3 centre, velocity, angular_velocity;
+  double returned;  // of mass, by its links (mass_return.hpp)
+  Vec3 returned_slope;
+  double surrounding;  // rho - rho_rest of the fluid around it
+};
+
+template <typename Real>
+class Bodies {
+public:
+  // The decomposition and the fluid, whose cells this marks, must outlive it. Throws InputError where a block is too
+  // long (LinkBuilder). Collective.
+  Bodies(const Decomposition& decomposition, MPI_Comm communicator, lbm::Fluid<Real>& fluid, const BodyOptions& options,
+         const Hydrostatic& rest);
+
+  const std::vector<MappedBody>& mapped() const { return map_.bodies(); }  // by slot; a free one has the id -1
+  int slot_of(GlobalId id) const { return map_.slot_of(id); }              // -1: not on this rank
+  const LinkBody& body(int slot) const { return bodies_[static_cast<std::size_t>(slot)]; }
+  const LinkSums& link_sums(int slot) const { return links_.sums_of(slot); }
+  // sum F_a x_b of the step; where BodyOptions::moments asks for it.
+  const FixedTensor& moments(int slot) const { return moments_[static_cast<std::size_t>(slot)]; }
+  const LinkTable& links() const { return links_; }
+  const ExchangeTotals& step_totals() const { return totals_; }
+
+  // rho - 1 whose pressure counts as no force: the mean excess of the fluid.
+  double reference_density() const { return options_.links.reference_density; }
+  void set_reference_density(double density) { options_.links.reference_density = density; }
+
+  // booking: also sums by height what the fluid gives to bodies (momentum_by_height()).
+  void begin_step(bool booking = false);
+  int add(GlobalId id, double radius, GlobalId clump, const Vec3& centre);  // a new slot, with cells at `centre`
+  void remove(int slot);
+  void move(int slot, const BodyMotion& motion);
+  void place(int slot, const Vec3& centre) { map_.place(slot, centre); }
+  void settle();
+  void refill();
+  void update_links();  // writes no population
+  // Also sweeps the fluid. The time goes to these phases of the timer.
+  void sweep(PhaseTimer& timer, int sweep_phase, int links_phase);
+
+  // Cells and links without a step, as at a start: nothing is refilled. Cells must have been begun and placed.
+  void settle_at_start();
+  void remove_all();
+
+  // Fills the slots that links fill, as the sweep will do again, and changes nothing else.
+  void apply_links_on_copies() const;
+  // The momentum that links and covered cells give to bodies in the step that was begun with booking, by half planes
+  // of cells (LinkPass); before its sweep.
+  const std::vector<FixedVec3>& momentum_by_height();
+
+private:
+  void account_for_covered_cells();
+  void keep_momentum(LinkBody& body, int plane, const Vec3& position, double density, const Vec3& momentum);
+  void book_links();
+
+  lbm::Fluid<Real>& fluid_;
+  BodyOptions options_;
+  PeriodicBox box_;  // cells
+  Hydrostatic rest_;
+  BodyMap map_;
+  LinkTable links_;
+  LinkBuilder link_builder_;
+  HiddenLinks hidden_links_;
+  Refill refill_;
+  std::vector<LinkBody> bodies_;      // by slot
+  std::vector<double> surrounding_;   // by slot
+  std::vector<FixedTensor> moments_;  // by slot; empty unless measured
+  std::vector<FixedVec3> by_height_;  // empty unless booking
+  ExchangeTotals totals_;
+};
+
+}  // namespace thalweg::bodies
