@@ -1,10 +1,15 @@
 #include "bodies/bodies.hpp"
 
+#include "core/error.hpp"
+#include "core/mpi_session.hpp"
+
+#include <fmt/format.h>
+
 namespace thalweg::bodies {
 
 template <typename Real>
 Bodies<Real>::Bodies(const Decomposition& decomposition, MPI_Comm communicator, lbm::Fluid<Real>& fluid,
-                     const BodyOptions& options, const Hydrostatic& rest)
+                     const BodyOptions& options, const Hydrostatic& rest, const std::vector<SolidShape>& solids)
     : fluid_(fluid),
       options_(options),
       box_{Vec3(decomposition.cells()[0], decomposition.cells()[1], decomposition.cells()[2]),
@@ -12,10 +17,39 @@ Bodies<Real>::Bodies(const Decomposition& decomposition, MPI_Comm communicator, 
       rest_(rest),
       map_(decomposition, fluid.block(), fluid.cells()),
       links_(fluid.tiles().count()),
-      link_builder_(decomposition, fluid.block(), fluid.cells(), fluid.tiles()),
+      solids_(decomposition, fluid.block(), fluid.cells(), fluid.tiles(), solids),
+      link_builder_(decomposition, fluid.block(), fluid.cells(), fluid.tiles(), &solids_),
       hidden_links_(decomposition, fluid.block(), fluid.cells(), rest),
       refill_(decomposition, communicator, options.refill) {
   set_rest(options_.links, rest_);
+  add_solids(communicator);
+}
+
+template <typename Real>
+void Bodies<Real>::add_solids(MPI_Comm communicator) {
+  if (solids_.count() == 0) return;
+  std::vector<std::int64_t> cells(static_cast<std::size_t>(solids_.count()));
+  map_.add_static(solids_.count());
+  map_.begin_update();
+  solids_.visit_cells([&](int solid, const Index3& local) { map_.claim(solid, local); });
+  for (const CellChange& change : map_.settle())
+    if (fluid_.indexing().owned(change.cell[0], change.cell[1], change.cell[2]))
+      ++cells[static_cast<std::size_t>(change.now)];
+  for (std::size_t s = 0; s < cells.size(); ++s)
+    if (sum_over_ranks(communicator, cells[s]) == 0)
+      throw InputError(
+          fmt::format("solids.{} covers no cell: it lies outside the box, inside another solid, or between the centres "
+                      "of the cells; check its place and its size in m.",
+                      s));
+  solids_.measure();
+  bodies_.resize(cells.size());
+  surrounding_.resize(cells.size());
+  if (options_.moments) moments_.resize(cells.size());
+  for (std::size_t s = 0; s < cells.size(); ++s) {
+    bodies_[s].turns = false;
+    bodies_[s].centre = solids_.centre(static_cast<int>(s));
+  }
+  update_links();
 }
 
 template <typename Real>
@@ -88,7 +122,7 @@ void Bodies<Real>::sweep(PhaseTimer& timer, int sweep_phase, int links_phase) {
   const auto scope = timer.measure(links_phase);
   book_links();
   hidden_links_.apply(bodies_, moments);
-  map_.hidden_patches().apply(map_.bodies(), surrounding_, reference_density(), bodies_, moments);
+  map_.hidden_patches().apply(map_.bodies(), map_.static_bodies(), surrounding_, reference_density(), bodies_, moments);
 }
 
 template <typename Real>
@@ -100,14 +134,14 @@ void Bodies<Real>::settle_at_start() {
 template <typename Real>
 void Bodies<Real>::remove_all() {
   map_.begin_update();
-  for (std::size_t slot = 0; slot < map_.bodies().size(); ++slot)
-    if (map_.bodies()[slot].id >= 0) map_.remove(static_cast<int>(slot));
+  for (std::size_t slot = static_cast<std::size_t>(solids()); slot < map_.bodies().size(); ++slot)
+    if (map_.bodies()[slot].id != -1) map_.remove(static_cast<int>(slot));
   settle_at_start();
 }
 
 template <typename Real>
 void Bodies<Real>::apply_links_on_copies() const {
-  std::vector<LinkBody> copies = bodies_;
+  std::vector<LinkBody> copies = bodies_;  // take up the momentum, which belongs to the next step
   LinkPass<Real> links(fluid_, links_, box_, options_.links, copies);
   for (int tile = 0; tile < fluid_.tiles().count(); ++tile) links.apply_tile(tile);
 }
@@ -164,7 +198,7 @@ void Bodies<Real>::keep_momentum(LinkBody& body, int plane, const Vec3& position
 template <typename Real>
 void Bodies<Real>::book_links() {
   for (std::size_t slot = 0; slot < bodies_.size(); ++slot) {
-    if (map_.bodies()[slot].id < 0) continue;
+    if (map_.bodies()[slot].id == -1) continue;
     const LinkBody& body = bodies_[slot];
     const Vec3 force = body.force.to_vec3();
     totals_.link_momentum += force;

@@ -1,5 +1,6 @@
 // Rigid bodies in a lattice fluid: the cells they cover, the links to the fluid around them, what they hide from each
-// other, and the sums of force, torque and mass of every step. Spheres that move, by slots. Lattice units.
+// other, and the sums of force, torque and mass of every step. Bodies have slots: first the solids that stand still,
+// then spheres, which move. Lattice units.
 //
 // A step, in this order:
 //   begin_step()             forgets the last one
@@ -20,6 +21,7 @@
 #include "bodies/link_pass.hpp"
 #include "bodies/link_table.hpp"
 #include "bodies/refill.hpp"
+#include "bodies/static_solids.hpp"
 #include "core/phase_timer.hpp"
 #include "lbm/fluid.hpp"
 
@@ -53,10 +55,13 @@ struct BodyMotion {
 template <typename Real>
 class Bodies {
 public:
-  // The decomposition and the fluid, whose cells this marks, must outlive it. Throws InputError where a block is too
-  // long (LinkBuilder). Collective.
+  // The decomposition and the fluid, whose cells this marks, must outlive it. solids: where two overlap, the first one
+  // has the cell, and before any sphere. Throws InputError where a block is too long (LinkBuilder), or where a solid
+  // covers no cell. Collective.
   Bodies(const Decomposition& decomposition, MPI_Comm communicator, lbm::Fluid<Real>& fluid, const BodyOptions& options,
-         const Hydrostatic& rest);
+         const Hydrostatic& rest, const std::vector<SolidShape>& solids = {});
+
+  int solids() const { return map_.static_bodies(); }  // in the slots below this
 
   const std::vector<MappedBody>& mapped() const { return map_.bodies(); }  // by slot; a free one has the id -1
   int slot_of(GlobalId id) const { return map_.slot_of(id); }              // -1: not on this rank
@@ -74,7 +79,7 @@ public:
   // booking: also sums by height what the fluid gives to bodies (momentum_by_height()).
   void begin_step(bool booking = false);
   int add(GlobalId id, double radius, GlobalId clump, const Vec3& centre);  // a new slot, with cells at `centre`
-  void remove(int slot);
+  void remove(int slot);                                                    // of a sphere
   void move(int slot, const BodyMotion& motion);
   void place(int slot, const Vec3& centre) { map_.place(slot, centre); }
   void settle();
@@ -83,9 +88,9 @@ public:
   // Also sweeps the fluid. The time goes to these phases of the timer.
   void sweep(PhaseTimer& timer, int sweep_phase, int links_phase);
 
-  // Cells and links without a step, as at a start: nothing is refilled. Cells must have been begun and placed.
+  // Cells and links without a step, as at a start: nothing is refilled. After begin_step(), add() and place().
   void settle_at_start();
-  void remove_all();
+  void remove_all();  // spheres
 
   // Fills the slots that links fill, as the sweep will do again, and changes nothing else.
   void apply_links_on_copies() const;
@@ -94,6 +99,7 @@ public:
   const std::vector<FixedVec3>& momentum_by_height();
 
 private:
+  void add_solids(MPI_Comm communicator);
   void account_for_covered_cells();
   void keep_momentum(LinkBody& body, int plane, const Vec3& position, double density, const Vec3& momentum);
   void book_links();
@@ -104,6 +110,7 @@ private:
   Hydrostatic rest_;
   BodyMap map_;
   LinkTable links_;
+  StaticSolids solids_;
   LinkBuilder link_builder_;
   HiddenLinks hidden_links_;
   Refill refill_;

@@ -96,6 +96,12 @@ int BodyMap::add(GlobalId id, double radius, GlobalId clump) {
   return slot;
 }
 
+void BodyMap::add_static(int count) {
+  static_ = count;
+  for (int slot = 0; slot < count; ++slot)
+    bodies_.push_back({GlobalId(slot) - count - 1, -1, 0.0, Vec3::Constant(2.0 * nowhere)});
+}
+
 void BodyMap::remove(int slot) {
   place(slot, Vec3::Constant(2.0 * nowhere));
   slot_of_id_.erase(body(slot).id);

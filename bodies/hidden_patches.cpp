@@ -1,5 +1,7 @@
 #include "bodies/hidden_patches.hpp"
 
+#include <algorithm>
+
 namespace thalweg::bodies {
 
 using lbm::CellMap;
@@ -54,9 +56,10 @@ void HiddenPatches::count(std::int32_t p, std::int32_t q, int direction, int lin
 Vec3 HiddenPatches::patch(std::int32_t p, std::int32_t q) const {
   const auto found = patches_.find(key(p, q));
   if (found == patches_.end()) return Vec3::Zero();
-  const std::array<std::int32_t, 3>& sum = found->second.sum;
-  return Vec3(sum[0], sum[1], sum[2]) / 36.0;
+  return to_vec3(found->second);
 }
+
+Vec3 HiddenPatches::to_vec3(const Patch& patch) { return Vec3(patch.sum[0], patch.sum[1], patch.sum[2]) / 36.0; }
 
 // Out of p, towards q.
 Vec3 HiddenPatches::direction(const Pair& pair, const std::vector<LinkBody>& bodies) const {
@@ -90,20 +93,25 @@ void HiddenPatches::give_mass(const Patch& patch, LinkBody& body, const LinkBody
     body.mass = exact_sum(body.mass, -exact_product(LatticeFixed::from(6.0 / 36.0 * velocity[a]), patch.sum[a]));
 }
 
-void HiddenPatches::apply(const std::vector<MappedBody>& grains, const std::vector<double>& surrounding,
-                          double reference, std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments) const {
+void HiddenPatches::apply(const std::vector<MappedBody>& mapped, int static_bodies,
+                          const std::vector<double>& surrounding, double reference, std::vector<LinkBody>& bodies,
+                          std::vector<FixedTensor>* moments) const {
   for (const auto& [key, patch] : patches_) {
     const Pair pair = pair_of(key);
     const auto p = static_cast<std::size_t>(pair.p), q = static_cast<std::size_t>(pair.q);
-    if (pair.q >= 0 && grains[p].clump >= 0 && grains[q].clump == grains[p].clump) continue;
-    const Vec3 outward = direction(pair, bodies);
-    const double radius = bodies[p].radius;
+    const bool q_moves = pair.q >= static_bodies;
+    if (pair.p < static_bodies) {  // the opposite of what the other one feels
+      if (q_moves) press(patch, Vec3::Zero(), surrounding[q] - reference, bodies[p], nullptr);
+      continue;
+    }
+    if (q_moves && mapped[p].clump >= 0 && mapped[q].clump == mapped[p].clump) continue;
     double density = surrounding[p];
-    if (pair.q >= 0) {
-      density += (surrounding[q] - density) * radius / (radius + bodies[q].radius);
+    if (q_moves) {
+      density += (surrounding[q] - density) * bodies[p].radius / (bodies[p].radius + bodies[q].radius);
       give_mass(patch, bodies[p], bodies[q]);
     }
-    const Vec3 arm = outward * (radius / outward.norm());
+    const Vec3 outward = q_moves || pair.q < 0 ? direction(pair, bodies) : -to_vec3(patch);
+    const Vec3 arm = outward * (bodies[p].radius / std::max(outward.norm(), 1e-30));
     press(patch, arm, density - reference, bodies[p], moments ? &(*moments)[p] : nullptr);
   }
 }

@@ -6,9 +6,9 @@
 // lines together, sum w_i c_i = 0. A fluid presses between grains as well, where the lattice has no cell for it; its
 // density there is interpolated between those around the two grains, linearly between their centres, so that
 //   F_p += 2 D h,   D = D_p + (D_q - D_p) R_p/(R_p + R_q),   and F_q -= the same,
-// D = D_p at a wall, with R the radius. The force acts where the line between the centres meets the surface, and so
-// turns no sphere. Without this term touching grains would be drawn together or pushed apart by any pressure but the
-// reference. Between members of one clump is no surface.
+// D = D_p at a wall or a solid that stands still, with R the radius. The force acts where the line between the centres
+// meets the surface, and so turns no sphere. Without this term touching grains would be drawn together or pushed apart
+// by any pressure but the reference. Between members of one clump is no surface.
 //
 // The same patches tell how much of the mass given by the links of p is given in the place of q: grains that touch and
 // move together push fluid away in front of the one and draw it in behind the other. With v the mean of the two
@@ -41,8 +41,9 @@ public:
   // Adds to the bodies the force of the fluid on what is hidden by this rank's cells and takes from their mass what is
   // given in another's place; the symmetric part of sum F_a x_b is added to moments, where given. surrounding: by
   // slot, rho - rho_rest around the grain; reference: that presses on nothing (lbm/link_pass.hpp).
-  void apply(const std::vector<MappedBody>& grains, const std::vector<double>& surrounding, double reference,
-             std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments) const;
+  // static_bodies: so many slots, the first ones, are solids that stand still.
+  void apply(const std::vector<MappedBody>& mapped, int static_bodies, const std::vector<double>& surrounding,
+             double reference, std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments) const;
 
   // A face of the box (0 .. 5) in the place of the other grain.
   static std::int32_t wall_of_face(int face) { return lbm::CellMap::fluid - 1 - face; }
@@ -64,6 +65,7 @@ private:
   static std::uint64_t key(std::int32_t p, std::int32_t q) {
     return static_cast<std::uint64_t>(static_cast<std::uint32_t>(p)) << 32 | static_cast<std::uint32_t>(q);
   }
+  static Vec3 to_vec3(const Patch& patch);  // h
   Vec3 direction(const Pair& pair, const std::vector<LinkBody>& bodies) const;
   // arm: from the centre of p to where the patch is; excess: D less the reference.
   static void press(const Patch& patch, const Vec3& arm, double excess, LinkBody& body, FixedTensor* moment);

@@ -19,8 +19,8 @@ constexpr double longest_link = 1.4142135623730951;
 }  // namespace
 
 LinkBuilder::LinkBuilder(const Decomposition& decomposition, const Block& block, const CellMap& cells,
-                         const lbm::RowTiles& tiles)
-    : local_cells_(decomposition, block), cells_(cells), tiles_(tiles) {
+                         const lbm::RowTiles& tiles, const StaticSolids* solids)
+    : local_cells_(decomposition, block), cells_(cells), tiles_(tiles), solids_(solids) {
   for (int a = 0; a < 2; ++a)
     if (block.size()[a] > LinkPlace::largest)
       throw InputError(fmt::format("A rank would hold {} cells along {}, more than {}; use more ranks.",
@@ -35,8 +35,10 @@ void LinkBuilder::update(const BodyMap& map, LinkTable& table) {
   }
   std::sort(stale_.begin(), stale_.end());
   for (const int slot : stale_) {
-    if (map.bodies()[slot].id < 0)
+    if (map.bodies()[slot].id == -1)
       table.remove(slot);
+    else if (solids_ && slot < solids_->count())
+      rebuild_solid(slot, table);
     else
       rebuild(slot, map.bodies()[slot], table);
     stale_tiles_[slot].clear();
@@ -94,14 +96,23 @@ void LinkBuilder::look_for_enclosed(const CellChange& change) {
   }
 }
 
-void LinkBuilder::rebuild(int slot, const MappedBody& grain, LinkTable& table) {
-  const double half_width = grain.radius + longest_link;
+void LinkBuilder::rebuild_solid(int slot, LinkTable& table) {
+  for (const int tile : stale_tiles_[slot]) {
+    links_.clear();
+    crossings_.clear();
+    solids_->find_links(slot, tile, links_, crossings_);
+    table.replace(slot, tile, links_, crossings_);
+  }
+}
+
+void LinkBuilder::rebuild(int slot, const MappedBody& sphere, LinkTable& table) {
+  const double half_width = sphere.radius + longest_link;
   std::vector<LocalCell>* places[2] = {&xs_, &ys_};
   const auto before = [](const LocalCell& p, const LocalCell& q) { return p.local < q.local; };
   const auto same = [](const LocalCell& p, const LocalCell& q) { return p.local == q.local; };
   for (int a = 0; a < 2; ++a) {
     std::vector<LocalCell>& cells = *places[a];
-    local_cells_.along(a, grain.centre[a], half_width, grain.centre[a], 0, cells);
+    local_cells_.along(a, sphere.centre[a], half_width, sphere.centre[a], 0, cells);
     std::sort(cells.begin(), cells.end(), before);
     cells.erase(std::unique(cells.begin(), cells.end(), same), cells.end());
   }

@@ -1,13 +1,8 @@
 #include "bodies/static_solids.hpp"
 
 #include "bodies/lattice_vectors.hpp"
-#include "core/error.hpp"
-#include "core/mpi_session.hpp"
 #include "core/sphere.hpp"
-#include "core/wide_sums_over_ranks.hpp"
 #include "lbm/for_each_cell.hpp"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -36,15 +31,16 @@ std::pair<int, int> range(double lower, double upper, int widened, int begin, in
 
 }  // namespace
 
-StaticSolids::StaticSolids(const Decomposition& decomposition, MPI_Comm communicator, CellMap& cells,
-                           const lbm::RowTiles& tiles, const std::vector<SolidShape>& shapes)
+StaticSolids::StaticSolids(const Decomposition& decomposition, const Block& block, const CellMap& cells,
+                           const lbm::RowTiles& tiles, std::vector<SolidShape> shapes)
     : decomposition_(decomposition),
-      communicator_(communicator),
-      block_(decomposition.block_of(rank_of(communicator))),
+      block_(block),
       cells_(cells),
-      links_(tiles.count()),
-      bodies_(shapes.size()),
-      covered_(shapes.size(), 0) {
+      tiles_(tiles),
+      box_{Vec3(decomposition.cells()[0], decomposition.cells()[1], decomposition.cells()[2]),
+           decomposition.periodic()},
+      shapes_(std::move(shapes)),
+      cut_(static_cast<std::size_t>(tiles.count())) {
   for (int a = 0; a < 3; ++a) {
     const int all = decomposition.cells()[a], ghosts = 1;
     places_[a].resize(all);
@@ -56,21 +52,16 @@ StaticSolids::StaticSolids(const Decomposition& decomposition, MPI_Comm communic
         places_[a][global].push_back(local);
     }
   }
-  for (std::size_t s = 0; s < shapes.size(); ++s) {
-    const Extent extent = bodies::extent_of(shapes[s]);
-    bodies_[s].turns = false;
-    bodies_[s].centre = 0.5 * (extent.lower + extent.upper);
-    std::visit([&](const auto& shape) { cover(static_cast<int>(s), shape); }, shapes[s]);
-  }
-  for (std::size_t s = 0; s < shapes.size(); ++s)
-    if (sum_over_ranks(communicator, covered_[s]) == 0)
-      throw InputError(
-          fmt::format("solids.{} covers no cell: it lies outside the box, inside another solid, or between "
-                      "the centres of the cells; check its place and its size in m.",
-                      s));
-  find_cut_cells();
-  for (const SolidShape& any : shapes) std::visit([&](const auto& shape) { measure(shape); }, any);
-  build_links(tiles);
+}
+
+Vec3 StaticSolids::centre(int solid) const {
+  const Extent extent = extent_of(shapes_[static_cast<std::size_t>(solid)]);
+  return 0.5 * (extent.lower + extent.upper);
+}
+
+void StaticSolids::visit_cells(const std::function<void(int, const Index3&)>& claim) {
+  for (int s = 0; s < count(); ++s)
+    std::visit([&](const auto& shape) { visit_inside(s, shape, claim); }, shapes_[static_cast<std::size_t>(s)]);
 }
 
 // The images of something on the periodic axes that reach the box, each by its shift.
@@ -90,14 +81,9 @@ void StaticSolids::for_each_image(const Extent& extent, Visit visit) const {
         visit(Vec3(i * decomposition_.cells()[0], j * decomposition_.cells()[1], k * decomposition_.cells()[2]));
 }
 
-void StaticSolids::claim(int solid, const Index3& local) {
-  if (!cells_.is_fluid(cells_.indexing().index(local[0], local[1], local[2]))) return;
-  cells_.assign(local[0], local[1], local[2], solid);
-  if (cells_.indexing().owned(local[0], local[1], local[2])) ++covered_[static_cast<std::size_t>(solid)];
-}
-
-void StaticSolids::cover(int solid, const SolidSphere& sphere) {
-  const Extent whole = bodies::extent_of(sphere);
+void StaticSolids::visit_inside(int solid, const SolidSphere& sphere,
+                                const std::function<void(int, const Index3&)>& claim) {
+  const Extent whole = extent_of(sphere);
   for_each_image(whole, [&](const Vec3& shift) {
     const Vec3 centre = sphere.centre + shift;
     std::pair<int, int> cells[3];
@@ -116,10 +102,11 @@ void StaticSolids::cover(int solid, const SolidSphere& sphere) {
 
 // Row by row: the line of a row's centres is inside where it has entered more often than left. Rows are those of
 // coordinates inside the box, so that owned cells and their ghosts elsewhere are judged by the same arithmetic.
-void StaticSolids::cover(int solid, const TriangleMesh& mesh) {
+void StaticSolids::visit_inside(int solid, const TriangleMesh& mesh,
+                                const std::function<void(int, const Index3&)>& claim) {
   const Index3& n = decomposition_.cells();
   std::unordered_map<std::int64_t, std::vector<Crossing>> rows;
-  for_each_image(bodies::extent_of(mesh), [&](const Vec3& shift) {
+  for_each_image(extent_of(mesh), [&](const Vec3& shift) {
     for (const auto& triangle : mesh.triangles) {
       const Corners corners = corners_of(mesh, triangle, shift);
       const Extent extent = extent_of(corners);
@@ -147,14 +134,23 @@ void StaticSolids::cover(int solid, const TriangleMesh& mesh) {
   }
 }
 
-void StaticSolids::find_cut_cells() {
-  lbm::for_each_fluid_cell(cells_, [&](std::ptrdiff_t cell, const Index3&) {
+// Of cells beside solid ones, whether fluid or, for now, covered by something that moves.
+void StaticSolids::measure() {
+  lbm::for_each_cell(cells_.indexing(), [&](std::ptrdiff_t cell, const Index3& local) {
+    if (is_solid(cell)) return;
     for (int i = 1; i < D3Q19::directions; ++i)
-      if (!cells_.is_fluid(cell + cells_.indexing().offset(i))) {
-        cut_[cell].fill(not_met);
+      if (is_solid(cell + cells_.indexing().offset(i))) {
+        CutCell& cut = cut_[static_cast<std::size_t>(tiles_.tile_of(local[1], local[2]))].emplace_back();
+        cut.local = local;
+        cut.distances.fill(not_met);
         break;
       }
   });
+  for (std::vector<CutCell>& tile : cut_)
+    for (CutCell& cut : tile)
+      distances_of_[cells_.indexing().index(cut.local[0], cut.local[1], cut.local[2])] = &cut.distances;
+  for (const SolidShape& any : shapes_) std::visit([&](const auto& shape) { measure(shape); }, any);
+  distances_of_.clear();
 }
 
 // Shortens the links of the cut cells in and around an extent to where meets(from, along) says.
@@ -167,18 +163,19 @@ void StaticSolids::measure_near(const Extent& extent, Meets meets) {
       for (int x = cells[0].first; x < cells[0].second; ++x) {
         const std::ptrdiff_t cell =
             cells_.indexing().index(x - block_.lower[0], y - block_.lower[1], z - block_.lower[2]);
-        const auto found = cut_.find(cell);
-        if (found == cut_.end()) continue;
+        const auto found = distances_of_.find(cell);
+        if (found == distances_of_.end()) continue;
         for (int i = 1; i < D3Q19::directions; ++i) {
-          if (cells_.is_fluid(cell + cells_.indexing().offset(i))) continue;
+          if (!is_solid(cell + cells_.indexing().offset(i))) continue;
           const std::optional<double> way = meets(centre_of({x, y, z}), velocity_of(i));
-          if (way) found->second[i] = std::min(found->second[i], *way);
+          double& distance = (*found->second)[static_cast<std::size_t>(i)];
+          if (way) distance = std::min(distance, *way);
         }
       }
 }
 
 void StaticSolids::measure(const SolidSphere& sphere) {
-  const Extent whole = bodies::extent_of(sphere);
+  const Extent whole = extent_of(sphere);
   for_each_image(whole, [&](const Vec3& shift) {
     const SolidSphere image{sphere.centre + shift, sphere.radius};
     measure_near({whole.lower + shift, whole.upper + shift},
@@ -187,7 +184,7 @@ void StaticSolids::measure(const SolidSphere& sphere) {
 }
 
 void StaticSolids::measure(const TriangleMesh& mesh) {
-  for_each_image(bodies::extent_of(mesh), [&](const Vec3& shift) {
+  for_each_image(extent_of(mesh), [&](const Vec3& shift) {
     for (const auto& triangle : mesh.triangles) {
       const Corners corners = corners_of(mesh, triangle, shift);
       measure_near(extent_of(corners),
@@ -196,86 +193,26 @@ void StaticSolids::measure(const TriangleMesh& mesh) {
   });
 }
 
-void StaticSolids::add_links_of_cell(const Index3& local, std::vector<SolidLinks>& links) const {
-  const PeriodicBox box{Vec3(decomposition_.cells()[0], decomposition_.cells()[1], decomposition_.cells()[2]),
-                        decomposition_.periodic()};
-  const std::ptrdiff_t cell = cells_.indexing().index(local[0], local[1], local[2]);
-  const auto found = cut_.find(cell);
-  if (found == cut_.end()) return;
-  const Vec3 centre = centre_of({block_.lower[0] + local[0], block_.lower[1] + local[1], block_.lower[2] + local[2]});
-  const bool enclosed = cells_.is_enclosed(cell);
-  for (int i = 1; i < D3Q19::directions; ++i) {
-    const std::int32_t solid = cells_.body(cell + cells_.indexing().offset(i));
-    if (solid == CellMap::fluid) continue;
-    // A link can only miss a surface that touches its end, by round-off.
-    const double distance = std::min(found->second[i], 1.0);
-    const Vec3 arm = box.difference(centre + distance * velocity_of(i), bodies_[solid].centre);
-    const std::int32_t upstream = cells_.body(cell - cells_.indexing().offset(i));
-    links[solid].links.push_back({LinkPlace::of(local[0], local[1]), LinkTag::of(i, upstream, enclosed)});
-    links[solid].crossings.push_back(
-        {static_cast<float>(distance),
-         {static_cast<float>(arm[0]), static_cast<float>(arm[1]), static_cast<float>(arm[2])}});
-  }
-}
-
-// Tile by tile, and row by row in each, for every solid.
-void StaticSolids::build_links(const lbm::RowTiles& tiles) {
-  std::vector<SolidLinks> links(bodies_.size());
-  std::vector<std::vector<Index3>> rows(static_cast<std::size_t>(tiles.count()));
-  const Index3 n = block_.size();
-  for (int z = 0; z < n[2]; ++z)
-    for (int y = 0; y < n[1]; ++y) rows[tiles.tile_of(y, z)].push_back({0, y, z});
-  for (int tile = 0; tile < tiles.count(); ++tile) {
-    for (Index3 local : rows[tile])
-      for (local[0] = 0; local[0] < n[0]; ++local[0]) add_links_of_cell(local, links);
-    for (std::size_t s = 0; s < bodies_.size(); ++s) {
-      links_.replace(static_cast<int>(s), tile, links[s].links, links[s].crossings);
-      links[s].links.clear();
-      links[s].crossings.clear();
+void StaticSolids::find_links(int solid, int tile, std::vector<Link>& links,
+                              std::vector<LinkCrossing>& crossings) const {
+  const Vec3 middle = centre(solid);
+  for (const CutCell& cut : cut_[static_cast<std::size_t>(tile)]) {
+    const Index3& at = cut.local;
+    const std::ptrdiff_t cell = cells_.indexing().index(at[0], at[1], at[2]);
+    if (!cells_.is_fluid(cell)) continue;
+    const Vec3 place = centre_of({block_.lower[0] + at[0], block_.lower[1] + at[1], block_.lower[2] + at[2]});
+    const bool enclosed = cells_.is_enclosed(cell);
+    for (int i = 1; i < D3Q19::directions; ++i) {
+      if (cells_.body(cell + cells_.indexing().offset(i)) != solid) continue;
+      // A link can only miss a surface that touches its end, by round-off.
+      const double distance = std::min(cut.distances[static_cast<std::size_t>(i)], 1.0);
+      const Vec3 arm = box_.difference(place + distance * velocity_of(i), middle);
+      const std::int32_t upstream = cells_.body(cell - cells_.indexing().offset(i));
+      links.push_back({LinkPlace::of(at[0], at[1]), LinkTag::of(i, upstream, enclosed)});
+      crossings.push_back({static_cast<float>(distance),
+                           {static_cast<float>(arm[0]), static_cast<float>(arm[1]), static_cast<float>(arm[2])}});
     }
   }
-  cut_.clear();
-}
-
-std::vector<LinkBody>& StaticSolids::begin_step() {
-  loaded_.clear();
-  for (LinkBody& body : bodies_) body.clear_sums();
-  return bodies_;
-}
-
-// Force sums as integers, so that no order of ranks matters.
-std::vector<std::int64_t> StaticSolids::summed() const {
-  if (!loaded_.empty()) return loaded_;
-  std::vector<std::int64_t> sums;
-  for (const LinkBody& body : bodies_) sums.insert(sums.end(), {body.force.x, body.force.y, body.force.z});
-  const std::vector<WideSum> totals = wide_sums_over_ranks(communicator_, sums);
-  std::transform(totals.begin(), totals.end(), sums.begin(), [](const WideSum& total) { return total.narrowed(); });
-  return sums;
-}
-
-std::vector<Vec3> StaticSolids::forces() const {
-  const std::vector<std::int64_t> sums = summed();
-  std::vector<Vec3> forces;
-  for (std::size_t s = 0; s < bodies_.size(); ++s)
-    forces.push_back(FixedVec3{sums[3 * s], sums[3 * s + 1], sums[3 * s + 2]}.to_vec3());
-  return forces;
-}
-
-void StaticSolids::save(ArchiveWriter& archive) const {
-  const std::vector<std::int64_t> sums = summed();
-  const std::vector<std::uint64_t> shape{bodies_.size(), 3}, nothing{0, 0};
-  const bool first = rank_of(communicator_) == 0;
-  const std::span<const std::int64_t> values = sums;
-  archive.write("solids/force", first ? values : values.first(0), {shape, nothing, first ? shape : nothing});
-}
-
-void StaticSolids::load(ArchiveReader& archive) {
-  const std::vector<std::uint64_t> shape{bodies_.size(), 3};
-  if (!archive.has("solids/force") || archive.shape("solids/force") != shape)
-    throw InputError(fmt::format(
-        "The checkpoint does not hold {} static solids as this case does; keep the list solids.", bodies_.size()));
-  loaded_.assign(3 * bodies_.size(), 0);
-  archive.read("solids/force", std::span<std::int64_t>(loaded_), {shape, {0, 0}, shape});
 }
 
 }  // namespace thalweg::bodies

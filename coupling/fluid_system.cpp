@@ -21,16 +21,14 @@ FluidSystem<Real>::FluidSystem(std::unique_ptr<Decomposition> decomposition, MPI
       parameters_(parameters),
       fluid_(*decomposition_, communicator, parameters.collision, parameters.faces),
       rest_(rest_state(parameters, *decomposition_)),
-      lattice_box_{Vec3(decomposition_->cells()[0], decomposition_->cells()[1], decomposition_->cells()[2]),
-                   decomposition_->periodic()} {
+      solid_forces_(communicator, static_cast<int>(solids.size())) {
   if (solids.empty())
     phases_.lattice = timer_.phase("lattice");
   else
     phases_ = {0, timer_.phase("halo"), timer_.phase("walls"), timer_.phase("links"), timer_.phase("sweep")};
   if (!solids.empty())
     solids_ =
-        std::make_unique<bodies::StaticSolids>(*decomposition_, communicator, fluid_.cells(), fluid_.tiles(), solids);
-  bodies::set_rest(parameters_.bodies.links, rest_);
+        std::make_unique<bodies::Bodies<Real>>(*decomposition_, communicator, fluid_, parameters.bodies, rest_, solids);
   if (parameters_.flow_target) fluid_.control_flow(*parameters_.flow_target);
   initialise(fluid_, parameters_, rest_);
   set_gravity(fluid_, parameters_, step_);
@@ -67,12 +65,9 @@ void FluidSystem<Real>::advance_around_solids() {
     const auto scope = timer_.measure(phases_.walls);
     fluid_.apply_walls();
   }
-  bodies::LinkPass<Real> links(fluid_, solids_->links(), lattice_box_, parameters_.bodies.links, solids_->begin_step());
-  const auto sweep = timer_.measure(phases_.sweep);
-  fluid_.stream_and_collide([&](int tile) {
-    const auto scope = timer_.measure(phases_.links);
-    links.apply_tile(tile);
-  });
+  solid_forces_.forget();
+  solids_->begin_step();
+  solids_->sweep(timer_, phases_.sweep, phases_.links);
 }
 
 template <typename Real>
@@ -96,12 +91,7 @@ FluidFields FluidSystem<Real>::sample(const std::vector<FluidField>& wanted, con
   SampleContext context;
   context.units = parameters_.units;
   context.grain_id = [](std::int32_t solid) { return -2 - solid; };
-  if (solids_)
-    context.apply_links = [this] {
-      std::vector<bodies::LinkBody> bodies = solids_->bodies();
-      bodies::LinkPass<Real> links(fluid_, solids_->links(), lattice_box_, parameters_.bodies.links, bodies);
-      for (int tile = 0; tile < fluid_.tiles().count(); ++tile) links.apply_tile(tile);
-    };
+  if (solids_) context.apply_links = [this] { solids_->apply_links_on_copies(); };
   return sample_fields(fluid_, context, wanted, region);
 }
 
@@ -132,7 +122,7 @@ std::vector<Figure> FluidSystem<Real>::figures() const {
   figures.push_back({"mean_density_deviation", "1", excess_mass(survey, rest_).mean()});
   figures.push_back({"fluid_cells", "1", static_cast<double>(survey.totals.cells)});
   if (solids_) {
-    const std::vector<Vec3> forces = solids_->forces();
+    const std::vector<Vec3> forces = solid_forces_.of(*solids_);
     for (std::size_t s = 0; s < forces.size(); ++s)
       for (int a = 0; a < 3; ++a)
         figures.push_back({fmt::format("solid_{}_force_{}", s, "xyz"[a]), "N", forces[s][a] * units.force()});
@@ -151,7 +141,7 @@ void FluidSystem<Real>::save(ArchiveWriter& archive) const {
   archive.attribute("system/step", step_);
   archive.attribute("system/time_step", time_step());
   fluid_.save(archive);
-  if (solids_) solids_->save(archive);
+  if (solids_) solid_forces_.save(*solids_, archive);
   archive.attribute("mass/start", start_excess_);
 }
 
@@ -162,7 +152,7 @@ void FluidSystem<Real>::load(ArchiveReader& archive) {
   fluid_.load(archive);
   set_gravity(fluid_, parameters_, step_);
   fluid_.carry_force();
-  if (solids_) solids_->load(archive);
+  if (solids_) solid_forces_.load(archive);
   start_excess_ = archive.real_attribute("mass/start");
 }
 

@@ -2,10 +2,11 @@
 // Solids that stand still may be in it.
 #pragma once
 
-#include "bodies/static_solids.hpp"
+#include "bodies/bodies.hpp"
 #include "core/decomposition.hpp"
 #include "core/system.hpp"
 #include "coupling/fluid_parameters.hpp"
+#include "coupling/solid_forces.hpp"
 
 #include <memory>
 #include <vector>
@@ -36,7 +37,8 @@ public:
   std::int64_t grain_steps_per_step() const override { return 0; }
 
   const lbm::Fluid<Real>& fluid() const { return fluid_; }
-  const bodies::StaticSolids* solids() const { return solids_.get(); }  // null: none
+  const bodies::Bodies<Real>* solids() const { return solids_.get(); }           // null: none
+  std::vector<Vec3> solid_forces() const { return solid_forces_.of(*solids_); }  // in the last step; collective
 
 private:
   void advance_around_solids();
@@ -50,10 +52,10 @@ private:
   MPI_Comm communicator_;
   FluidParameters parameters_;
   mutable lbm::Fluid<Real> fluid_;  // a sample fills slots that every step fills anew; see sample_fields()
-  std::unique_ptr<bodies::StaticSolids> solids_;  // null: none
   bodies::Hydrostatic rest_;
-  PeriodicBox lattice_box_;    // cells
-  double start_excess_ = 0.0;  // mass beyond that of the fluid at rest, at the start; lattice units
+  SolidForces solid_forces_;
+  std::unique_ptr<bodies::Bodies<Real>> solids_;  // null: none
+  double start_excess_ = 0.0;                     // mass beyond that of the fluid at rest, at the start; lattice units
   std::int64_t step_ = 0;
   PhaseTimer timer_;
   struct Phases {
