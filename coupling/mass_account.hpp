@@ -5,7 +5,7 @@
 //   E changes by  links:       sum over links of f_i' - f_i^c, what is returned (mass_return.hpp) among it
 //                 covered:     less rho - rho_rest of every cell that becomes solid
 //                 uncovered:   rho - rho_rest of every cell that becomes fluid
-//                 corrections: what is regularly added to all cells (ResolvedSystem)
+//                 corrections: what is regularly added to all cells (LatticeSystem)
 //                 walls:       what passes through the faces; nothing, to round-off, where none is open
 // in exact integers, so that the first four are the same on any ranks. Lattice units.
 #pragma once

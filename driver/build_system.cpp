@@ -19,7 +19,7 @@ struct Entry {
 };
 
 constexpr Entry builders[] = {
-    {SystemKind::resolved, build_resolved_system},   {SystemKind::fluid, build_fluid_system},
+    {SystemKind::resolved, build_lattice_system},    {SystemKind::fluid, build_lattice_system},
     {SystemKind::grains, build_grains_system},       {SystemKind::model_fluid, build_grains_system},
     {SystemKind::continuum, build_continuum_system},
 };

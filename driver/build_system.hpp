@@ -27,10 +27,8 @@ std::unique_ptr<System> build_system(const Case& c, MPI_Comm communicator, const
                                      Start start = Start::as_placed);
 
 // One builder a system; build_system() chooses.
-std::unique_ptr<System> build_resolved_system(const Case& c, MPI_Comm communicator, const Decomposition& cuts,
-                                              Start start);
-std::unique_ptr<System> build_fluid_system(const Case& c, MPI_Comm communicator, const Decomposition& cuts,
-                                           Start start);
+std::unique_ptr<System> build_lattice_system(const Case& c, MPI_Comm communicator, const Decomposition& cuts,
+                                             Start start);
 std::unique_ptr<System> build_grains_system(const Case& c, MPI_Comm communicator, const Decomposition& cuts,
                                             Start start);
 std::unique_ptr<System> build_continuum_system(const Case& c, MPI_Comm communicator, const Decomposition& cuts,

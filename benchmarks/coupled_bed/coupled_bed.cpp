@@ -10,7 +10,7 @@
 // and double storage: milliseconds a step by phase, MLUPS over all cells, links and contacts a grain, nanoseconds a
 // link, and the ratio to the pure lattice sweep over the same box in the same run. The last line is the same as JSON.
 #include "core/mpi_session.hpp"
-#include "coupling/resolved_system.hpp"
+#include "coupling/lattice_system.hpp"
 #include "dem/packing.hpp"
 #include "dem/walls.hpp"
 #include "io/json_object.hpp"
@@ -120,9 +120,9 @@ lbm::FaceConditions faces_of(const Box& box) {
 }
 
 template <typename Real>
-std::unique_ptr<coupling::ResolvedSystem<Real>> flowing_bed(const Box& box, const Decomposition& decomposition,
-                                                            const std::vector<dem::GrainSeed>& seeds) {
-  coupling::ResolvedParameters p;
+std::unique_ptr<coupling::LatticeSystem<Real>> flowing_bed(const Box& box, const Decomposition& decomposition,
+                                                           const std::vector<dem::GrainSeed>& seeds) {
+  coupling::LatticeParameters p;
   p.units = {box.spacing, box.time_step, water};
   p.collision = collision_of(box);
   p.faces = faces_of(box);
@@ -136,11 +136,11 @@ std::unique_ptr<coupling::ResolvedSystem<Real>> flowing_bed(const Box& box, cons
                                        Vec3(u, 0.05 * u * std::sin(400.0 * x.x()), 0.05 * u * std::cos(300.0 * x.y()))};
   };
   dem::GrainParameters g = grain_parameters(box, decomposition);
-  g.ghost_width = coupling::ResolvedSystem<Real>::ghost_reach(0.5 * box.diameter, box.spacing);
-  g.attached_width = coupling::ResolvedSystem<Real>::attached_width(p);
+  g.ghost_width = coupling::LatticeSystem<Real>::ghost_reach(0.5 * box.diameter, box.spacing);
+  g.attached_width = coupling::LatticeSystem<Real>::attached_width(p);
   auto grains = std::make_unique<dem::GrainDynamics>(decomposition, MPI_COMM_WORLD, g, seeds);
-  return std::make_unique<coupling::ResolvedSystem<Real>>(std::make_unique<Decomposition>(decomposition),
-                                                          MPI_COMM_WORLD, p, std::move(grains));
+  return std::make_unique<coupling::LatticeSystem<Real>>(std::make_unique<Decomposition>(decomposition), MPI_COMM_WORLD,
+                                                         p, std::move(grains));
 }
 
 // Best of the repetitions of a lattice step without grains, in seconds.
@@ -180,7 +180,7 @@ void measure(const Box& box, const Decomposition& decomposition, const std::vect
   }
   const double cells = static_cast<double>(system->cells());
   const auto links =
-      static_cast<double>(sum_over_ranks(MPI_COMM_WORLD, static_cast<std::int64_t>(system->links().count())));
+      static_cast<double>(sum_over_ranks(MPI_COMM_WORLD, static_cast<std::int64_t>(system->bodies().links().count())));
   const std::int64_t moving = system->grains().moving_count(1e-3 * box.spacing / box.time_step);
   const double pure = pure_sweep<Real>(box, decomposition, std::max(6, steps / 2));
   const double mlups = cells / best / 1e6;

@@ -14,7 +14,7 @@ namespace thalweg::analysis {
 
 using coupling::glass_sphere;
 using coupling::make_system;
-using coupling::ResolvedSystem;
+using coupling::LatticeSystem;
 using coupling::WaterBox;
 
 using Values = std::map<std::string, std::vector<double>>;
@@ -25,11 +25,11 @@ inline Values by_name(const StressBalance& balance) {
   return values;
 }
 
-inline std::unique_ptr<ResolvedSystem<double>> system_of(const WaterBox& box) {
+inline std::unique_ptr<LatticeSystem<double>> system_of(const WaterBox& box) {
   return make_system<double>(box, MPI_COMM_WORLD, Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD)));
 }
 
-inline StressBalance balance_of(const WaterBox& box, const ResolvedSystem<double>& system, double layer,
+inline StressBalance balance_of(const WaterBox& box, const LatticeSystem<double>& system, double layer,
                                 std::vector<HeldGrains> held, MPI_Comm communicator = MPI_COMM_WORLD) {
   const BalanceScales scales{1000.0, 1000.0 * box.viscosity, 5e-3,
                              [g = box.gravity](double mass, double) { return Vec3(mass * g); },

@@ -11,7 +11,7 @@ namespace {
 
 // Momentum along x above the middle of the lowest plane of cells, after a step that was booked, of fluid (without a
 // body force) and grains; kg m/s, over all ranks.
-double momentum_above(const ResolvedSystem<double>& system, double spacing) {
+double momentum_above(const LatticeSystem<double>& system, double spacing) {
   const dem::GrainStore& store = system.grains().store();
   double grains = 0.0, fluid = 0.0;
   for (std::size_t g = 0; g < store.owned; ++g) grains += store.mass[g] * store.velocity[g].x();
@@ -23,7 +23,7 @@ double momentum_above(const ResolvedSystem<double>& system, double spacing) {
 
 // Momentum along x that the lowest plane of cells sends up and down in a step after one that was booked, per area (Pa):
 // P^c = rho u_x u_z + (1 - omega) Pi_xz, where the viscous stress is -(1 - omega/2) Pi_xz (BGK).
-double sent(const ResolvedSystem<double>& system, double omega) {
+double sent(const LatticeSystem<double>& system, double omega) {
   const PlaneMomentum& plane = system.snapshot().momentum->planes.front();
   constexpr int xz = 4;
   return (plane.flow_flux[xz] - (1.0 - omega) / (1.0 - 0.5 * omega) * plane.viscous[xz]) /
@@ -71,7 +71,7 @@ void expect_closed(bool keep) {
     system->advance();
     const Snapshot snapshot = system->snapshot();
     balance.observe(snapshot);
-    const bodies::ExchangeTotals& t = system->step_totals();
+    const bodies::ExchangeTotals& t = system->bodies().step_totals();
     const Vec3 net = t.covered - t.refilled - t.kept;
     lost += sum_over_ranks(MPI_COMM_WORLD, net.x()) * units.force() / (steps * area);
     exchanged += sum_over_ranks(MPI_COMM_WORLD, t.covered.x()) * units.force() / (steps * area);

@@ -36,7 +36,7 @@ WaterBox viscous_box(const Index3& cells, double cells_per_diameter, double tau)
 
 // Over some steps one after the other: exchanges over links swing a little from step to step, which the mean of two
 // takes out of the loads (docs/theory.md, section 3).
-void measure(StressBalance& balance, ResolvedSystem<double>& system) {
+void measure(StressBalance& balance, LatticeSystem<double>& system) {
   for (int n = 0; n < 20; ++n) {
     system.book_momentum();
     system.advance();

@@ -44,7 +44,7 @@ void expect_balance(double bulk_relaxation_time) {
   for (int step = 0; step < 200; ++step) {
     system->advance();
     const lbm::FluidTotals after = system->fluid().totals();
-    const bodies::ExchangeTotals& t = system->step_totals();
+    const bodies::ExchangeTotals& t = system->bodies().step_totals();
     const Vec3 exchanged = over_ranks(t.refilled - t.covered - t.link_momentum);
     const Vec3 expected = before.momentum + exchanged + Vec3(force * static_cast<double>(after.cells), 0.0, 0.0);
     // The totals round every cell to within 2^-37, like cells alike; all else rounds at 2^-53.

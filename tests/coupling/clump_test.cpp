@@ -17,7 +17,7 @@ Vec3 over_ranks(const Vec3& v) {
           sum_over_ranks(MPI_COMM_WORLD, v.z())};
 }
 
-std::unique_ptr<ResolvedSystem<double>> system_of(const WaterBox& box) {
+std::unique_ptr<LatticeSystem<double>> system_of(const WaterBox& box) {
   return make_system<double>(box, MPI_COMM_WORLD, Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD)));
 }
 
@@ -42,7 +42,7 @@ struct State {
   std::vector<Vec3> arms;
 };
 
-State state_of(const ResolvedSystem<double>& system, std::size_t members) {
+State state_of(const LatticeSystem<double>& system, std::size_t members) {
   State state;
   state.arms.assign(members, Vec3::Zero());
   const dem::GrainDynamics& grains = system.grains();

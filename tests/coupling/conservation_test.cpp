@@ -18,7 +18,7 @@ Vec3 over_ranks(const Vec3& v) {
 
 // Calls visit(position of the cell, cell index) for every fluid cell of this rank.
 template <typename Visit>
-void for_each_fluid_cell(const ResolvedSystem<double>& system, Visit visit) {
+void for_each_fluid_cell(const LatticeSystem<double>& system, Visit visit) {
   const lbm::Fluid<double>& fluid = system.fluid();
   const Index3& from = fluid.block().lower;
   lbm::for_each_fluid_cell(fluid.cells(), [&](std::ptrdiff_t cell, const Index3& at) {
@@ -26,7 +26,7 @@ void for_each_fluid_cell(const ResolvedSystem<double>& system, Visit visit) {
   });
 }
 
-Vec3 momentum_of(const ResolvedSystem<double>& system, std::ptrdiff_t cell) {
+Vec3 momentum_of(const LatticeSystem<double>& system, std::ptrdiff_t cell) {
   Vec3 m = Vec3::Zero();
   for (int i = 1; i < 19; ++i)
     for (int a = 0; a < 3; ++a) m[a] += lbm::D3Q19::c[i][a] * system.fluid().populations().post_collision(i, cell);
@@ -76,7 +76,7 @@ void balance_of_a_crowd(int steps) {
     const Vec3 along(box.gravity.x(), box.gravity.y(), 0.0), submerged(0.0, 0.0, box.gravity.z() * (1.0 - 1.0 / 2.55));
     const double fluid_mass =
         1000.0 * std::pow(box.spacing, 3) * static_cast<double>(sum_over_ranks(MPI_COMM_WORLD, cells));
-    const bodies::ExchangeTotals& t = system->step_totals();
+    const bodies::ExchangeTotals& t = system->bodies().step_totals();
     expected += ((fluid_mass + mass) * along + mass * submerged) * box.time_step +
                 over_ranks(t.refilled - t.covered + t.kept) * impulse_unit;
     turned_over += over_ranks(t.link_momentum).cwiseAbs() * impulse_unit +
@@ -133,7 +133,7 @@ TEST(Conservation, AngularMomentumOfTheFluidChangesByWallsLinksAndCellsThatChang
   for (int step = 0; step < 60; ++step) {
     const Vec3 walls = to_walls();
     system->advance();
-    const bodies::ExchangeTotals& t = system->step_totals();
+    const bodies::ExchangeTotals& t = system->bodies().step_totals();
     const Vec3 expected =
         before - walls + over_ranks(t.refilled_angular_momentum - t.covered_angular_momentum - t.link_angular_momentum);
     const Vec3 after = angular();

@@ -15,7 +15,7 @@ struct Content {
   Vec3 momentum = Vec3::Zero();
 };
 
-Content content_of(const ResolvedSystem<double>& system) {
+Content content_of(const LatticeSystem<double>& system) {
   const lbm::Fluid<double>& fluid = system.fluid();
   Content all;
   lbm::for_each_fluid_cell(fluid.cells(), [&](std::ptrdiff_t cell, const Index3&) {

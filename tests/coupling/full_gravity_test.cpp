@@ -29,7 +29,7 @@ WaterBox deep_box(const Index3& cells) {
   return box;
 }
 
-std::unique_ptr<ResolvedSystem<double>> make(const WaterBox& box) {
+std::unique_ptr<LatticeSystem<double>> make(const WaterBox& box) {
   return make_system<double>(box, MPI_COMM_WORLD, Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD)));
 }
 

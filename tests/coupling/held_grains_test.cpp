@@ -21,7 +21,7 @@ WaterBox three_spheres() {
   return box;
 }
 
-std::unique_ptr<ResolvedSystem<double>> system_of(const WaterBox& box) {
+std::unique_ptr<LatticeSystem<double>> system_of(const WaterBox& box) {
   return make_system<double>(box, MPI_COMM_WORLD, Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD)));
 }
 
@@ -72,7 +72,7 @@ TEST(HeldGrains, ARigidAssemblyTakesFromTheFluidWhatItsLoadSays) {
   for (int step = 0; step < 200; ++step) {
     system->advance();
     const lbm::FluidTotals after = system->fluid().totals();
-    const bodies::ExchangeTotals& t = system->step_totals();
+    const bodies::ExchangeTotals& t = system->bodies().step_totals();
     const Vec3 mine = t.refilled - t.covered - t.link_momentum;
     Vec3 exchanged;
     for (int a = 0; a < 3; ++a) exchanged[a] = sum_over_ranks(MPI_COMM_WORLD, mine[a]);

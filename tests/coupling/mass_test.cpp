@@ -36,13 +36,13 @@ WaterBox crowd(Sides sides, bool full_gravity = false) {
 }
 
 template <typename Real>
-std::unique_ptr<ResolvedSystem<Real>> make(const WaterBox& box) {
+std::unique_ptr<LatticeSystem<Real>> make(const WaterBox& box) {
   return make_system<Real>(box, MPI_COMM_WORLD, Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD)));
 }
 
 // The excess mass of all ranks, in double, and what walls without faces that conserve it may hide: nothing.
 template <typename Real>
-double excess_of(const ResolvedSystem<Real>& system, const Vec3& gradient, const Vec3& middle) {
+double excess_of(const LatticeSystem<Real>& system, const Vec3& gradient, const Vec3& middle) {
   const lbm::Fluid<Real>& fluid = system.fluid();
   const Index3 n = fluid.indexing().size(), from = fluid.block().lower;
   double sum = 0.0;
@@ -77,7 +77,7 @@ void balance_closes(const WaterBox& box, int steps) {
   double before = excess_of(*system, gradient, middle), turned_over = 0.0;
   for (int step = 0; step < steps; ++step) {
     system->advance();
-    const bodies::ExchangeTotals& t = system->step_totals();
+    const bodies::ExchangeTotals& t = system->bodies().step_totals();
     const auto whole = [](std::int64_t mass) { return LatticeFixed::to_double(sum_over_ranks(MPI_COMM_WORLD, mass)); };
     const double links = whole(t.link_mass), covered = whole(t.covered_mass), uncovered = whole(t.refilled_mass);
     const double now = excess_of(*system, gradient, middle);

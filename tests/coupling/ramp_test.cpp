@@ -1,6 +1,6 @@
 // Gravity that rises from zero: what fluid and grains gain is its integral, on any number of ranks, and a run that is
 // taken up again in the middle of the rise goes on with the same bits.
-#include "coupling/fluid_system.hpp"
+#include "coupling/lattice_system.hpp"
 #include "tests/coupling/water_box.hpp"
 #include "tests/support/memory_archive.hpp"
 
@@ -13,8 +13,8 @@ namespace {
 
 Index3 best_layout(const Index3& cells) { return Decomposition::best_layout(cells, size_of(MPI_COMM_WORLD)); }
 
-FluidParameters falling_fluid(double ramp) {
-  FluidParameters p;
+LatticeParameters falling_fluid(double ramp) {
+  LatticeParameters p;
   p.units = {1.0, 1.0, 1.0};
   p.collision.relaxation_time = 0.6;
   p.collision.force[0] = 1e-5;
@@ -23,12 +23,11 @@ FluidParameters falling_fluid(double ramp) {
   return p;
 }
 
-std::unique_ptr<FluidSystem<double>> fluid_in(const FluidParameters& parameters) {
+std::unique_ptr<LatticeSystem<double>> fluid_in(const LatticeParameters& parameters) {
   const Index3 cells{8, 6, 10};
   auto decomposition =
       std::make_unique<Decomposition>(cells, 1.0, std::array<bool, 3>{true, true, true}, best_layout(cells));
-  return std::make_unique<FluidSystem<double>>(std::move(decomposition), MPI_COMM_WORLD, parameters,
-                                               std::vector<bodies::SolidShape>{});
+  return std::make_unique<LatticeSystem<double>>(std::move(decomposition), MPI_COMM_WORLD, parameters);
 }
 
 double figure(const System& system, const std::string& name) {
@@ -60,7 +59,7 @@ TEST(Ramp, GivesThePeriodicFluidItsIntegral) {
 
 // What the controller steers is its own from the first step; the other axes rise.
 TEST(Ramp, LeavesTheSteeredAxisAlone) {
-  FluidParameters p = falling_fluid(50.0);
+  LatticeParameters p = falling_fluid(50.0);
   p.flow_target = lbm::FlowTarget{.axis = 0, .velocity = 0.01, .response_time = 100.0, .interval = 10};
   const auto ramped = fluid_in(p);
   p.ramp = 0.0;
@@ -76,13 +75,14 @@ TEST(Ramp, LeavesTheSteeredAxisAlone) {
 template <typename Real>
 test::MemoryArchive under_an_outlet_after(int steps, MPI_Comm communicator, const Index3& layout,
                                           const test::MemoryArchive* from = nullptr) {
-  FluidParameters p = falling_fluid(50.0);
+  LatticeParameters p = falling_fluid(50.0);
   p.flow_target = lbm::FlowTarget{.axis = 0, .velocity = 0.01, .response_time = 100.0, .interval = 10};
   p.faces[4].type = lbm::FaceType::no_slip;
   p.faces[5].type = lbm::FaceType::pressure_outlet;
   p.faces[5].density_deviation = 0.004;
   const std::array periodic{true, true, false};
-  FluidSystem<Real> system(std::make_unique<Decomposition>(Index3{16, 17, 10}, 1.0, periodic, layout), communicator, p);
+  LatticeSystem<Real> system(std::make_unique<Decomposition>(Index3{16, 17, 10}, 1.0, periodic, layout), communicator,
+                             p);
   if (from) {
     test::MemoryReader reader(*from);
     system.load(reader);

@@ -195,7 +195,7 @@ TEST(Ranks, DoNotChangeOneBitOfAGrainThatSpansAllOfThem) {
       if (layout[0] > 2 || layout[1] > 2 || layout[2] > 2) continue;
       compare<double>(box, layout, 14);
       const auto system = make_system<double>(box, MPI_COMM_WORLD, layout);
-      EXPECT_GT(system->links().count(), 100u);  // on this rank
+      EXPECT_GT(system->bodies().links().count(), 100u);  // on this rank
     }
   }
 }

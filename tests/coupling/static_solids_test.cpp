@@ -2,7 +2,7 @@
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
 #include "core/sum_range.hpp"
-#include "coupling/fluid_system.hpp"
+#include "coupling/lattice_system.hpp"
 
 #include <gtest/gtest.h>
 
@@ -60,16 +60,16 @@ struct Box {
 };
 constexpr bodies::LinkRule both_rules[] = {bodies::LinkRule::bouzidi, bodies::LinkRule::cli};
 
-std::unique_ptr<FluidSystem<double>> make(const Box& box, const std::vector<bodies::SolidShape>& solids,
-                                          MPI_Comm communicator) {
+std::unique_ptr<LatticeSystem<double>> make(const Box& box, const std::vector<bodies::SolidShape>& solids,
+                                            MPI_Comm communicator) {
   const Index3 layout = Decomposition::best_layout(box.cells, size_of(communicator));
-  FluidParameters parameters;
+  LatticeParameters parameters;
   parameters.units = {1.0, 1.0, 1.0};
   parameters.collision = box.collision;
   parameters.faces = box.faces;
   parameters.bodies.links.rule = box.rule;
-  return std::make_unique<FluidSystem<double>>(std::make_unique<Decomposition>(box.cells, 1.0, box.periodic, layout),
-                                               communicator, parameters, solids);
+  return std::make_unique<LatticeSystem<double>>(std::make_unique<Decomposition>(box.cells, 1.0, box.periodic, layout),
+                                                 communicator, parameters, nullptr, solids);
 }
 
 struct CutLink {
@@ -77,10 +77,10 @@ struct CutLink {
   Vec3 arm;
 };
 // By tile, place in it and direction.
-std::map<std::tuple<int, std::uint32_t, int>, CutLink> links_of(const FluidSystem<double>& system) {
+std::map<std::tuple<int, std::uint32_t, int>, CutLink> links_of(const LatticeSystem<double>& system) {
   std::map<std::tuple<int, std::uint32_t, int>, CutLink> all;
   int number = 0;
-  for (const auto& tile : system.solids()->links().tiles()) {
+  for (const auto& tile : system.bodies().links().tiles()) {
     for (const auto& chunk : tile.chunks)
       for (std::uint32_t k = chunk.first; chunk.body >= 0 && k < chunk.first + chunk.count; ++k) {
         const bodies::LinkCrossing& crossing = tile.links.crossing[k];
@@ -151,15 +151,15 @@ TEST(StaticSolids, EnclosedWaterKeepsThePressureAtRest) {
   const auto before = static_cast<int>(mesh.points.size());
   mesh.points.insert(mesh.points.end(), hole.points.begin(), hole.points.end());
   for (const auto& t : hole.triangles) mesh.triangles.push_back({before + t[0], before + t[2], before + t[1]});
-  FluidParameters parameters;
+  LatticeParameters parameters;
   parameters.units = {1.0, 1.0, 1.0};
   parameters.collision.relaxation_time = 0.8;
   parameters.collision.force[2] = -1e-4;
   parameters.full_gravity = true;
   parameters.faces[4].type = parameters.faces[5].type = lbm::FaceType::no_slip;
-  FluidSystem<double> system(
+  LatticeSystem<double> system(
       std::make_unique<Decomposition>(Index3{9, 9, 12}, 1.0, std::array{true, true, false}, Index3{1, 1, 1}),
-      MPI_COMM_SELF, parameters, {mesh});
+      MPI_COMM_SELF, parameters, nullptr, {mesh});
   const auto density = [&] {
     return system.fluid().state_at(system.fluid().indexing().index(4, 4, 3)).density_deviation;
   };
@@ -184,7 +184,7 @@ TEST(StaticSolids, ForgetAllSumsOfAStepInTheNext) {
   // As large as they would be before the step in which they leave it.
   constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max(),
                          least = std::numeric_limits<std::int64_t>::min();
-  auto& body = const_cast<bodies::LinkBody&>(system->solids()->body(0));
+  auto& body = const_cast<bodies::LinkBody&>(system->bodies().body(0));
   for (const std::int64_t sum : {most, least}) {
     body.force = body.torque = {sum, sum, sum};
     body.mass = body.pressure = sum;
@@ -194,7 +194,7 @@ TEST(StaticSolids, ForgetAllSumsOfAStepInTheNext) {
   }
 }
 
-double velocity_x(const FluidSystem<double>& system, int z) {
+double velocity_x(const LatticeSystem<double>& system, int z) {
   return system.fluid().state_at(system.fluid().indexing().index(1, 1, z)).velocity.x();
 }
 

@@ -40,7 +40,7 @@ TEST(WallForces, BalanceTheMomentumOfTheFluid) {
       // do not move far enough for that in single steps, which shows in their totals.
       system->advance();
       const lbm::FluidTotals after = system->fluid().totals();
-      const bodies::ExchangeTotals& t = system->step_totals();
+      const bodies::ExchangeTotals& t = system->bodies().step_totals();
       Vec3 expected = before.momentum + over_ranks(t.refilled - t.covered - t.link_momentum) +
                       Vec3(force * static_cast<double>(after.cells), 0.0, 0.0);
       for (const Vec3& wall : walls) expected -= wall;

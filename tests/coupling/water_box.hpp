@@ -1,7 +1,7 @@
 // A small resolved system for tests: 5 mm glass spheres in water or a thicker fluid, 6 to 8 cells a diameter.
 #pragma once
 
-#include "coupling/resolved_system.hpp"
+#include "coupling/lattice_system.hpp"
 #include "dem/walls.hpp"
 
 #include <memory>
@@ -42,11 +42,11 @@ struct WaterBox {
 };
 
 template <typename Real>
-std::unique_ptr<ResolvedSystem<Real>> make_system(const WaterBox& box, MPI_Comm communicator, const Index3& layout) {
+std::unique_ptr<LatticeSystem<Real>> make_system(const WaterBox& box, MPI_Comm communicator, const Index3& layout) {
   constexpr double fluid_density = 1000.0;
   auto decomposition = std::make_unique<Decomposition>(box.cells, box.spacing, box.periodic, layout);
 
-  ResolvedParameters p;
+  LatticeParameters p;
   p.units = {box.spacing, box.time_step, fluid_density};
   p.collision.relaxation_time = p.units.relaxation_time(box.viscosity);
   p.collision.model = box.collision;
@@ -68,15 +68,15 @@ std::unique_ptr<ResolvedSystem<Real>> make_system(const WaterBox& box, MPI_Comm 
     p.faces[face].velocity = Vec3(along * box.plate_velocity / p.units.velocity(), 0.0, 0.0);
   }
   p.bodies.links = box.links;
-  p.link_tolerance = box.link_tolerance;
+  p.grains.link_tolerance = box.link_tolerance;
   p.sub_steps = box.sub_steps;
   p.wall_forces = box.wall_forces;
-  if (box.virtual_mass) p.virtual_mass = VirtualMass{0.5, fluid_density};
+  if (box.virtual_mass) p.grains.virtual_mass = VirtualMass{0.5, fluid_density};
   p.bodies.refill = box.refill;
   p.bodies.keep_covered_momentum = box.keep_covered_momentum;
   p.bodies.moments = box.grain_stress;
   p.full_gravity = box.full_gravity;
-  p.load = box.virtual_mass ? LoadRule::mean : box.load;
+  p.grains.load = box.virtual_mass ? LoadRule::mean : box.load;
   if (box.initial)
     p.initial_fluid = box.initial;
   else
@@ -101,7 +101,7 @@ std::unique_ptr<ResolvedSystem<Real>> make_system(const WaterBox& box, MPI_Comm 
   for (const dem::ClumpSeed& clump : box.clumps)
     for (const dem::Sphere& member : clump.shape->members) largest = std::max(largest, member.radius);
   g.skin = largest > 0.0 ? 0.2 * largest : box.spacing;
-  g.ghost_width = ResolvedSystem<Real>::ghost_reach(largest, box.spacing);
+  g.ghost_width = LatticeSystem<Real>::ghost_reach(largest, box.spacing);
   if (box.lubrication) {
     dem::LubricationParameters lubrication;
     lubrication.viscosity = fluid_density * box.viscosity;
@@ -110,9 +110,9 @@ std::unique_ptr<ResolvedSystem<Real>> make_system(const WaterBox& box, MPI_Comm 
     for (const dem::Plane& wall : g.walls) lubrication.walls.push_back(wall.normal.z() == 1.0);
     g.lubrication = lubrication;
   }
-  g.attached_width = ResolvedSystem<Real>::attached_width(p);
+  g.attached_width = LatticeSystem<Real>::attached_width(p);
   auto grains = std::make_unique<dem::GrainDynamics>(*decomposition, communicator, g, box.seeds, box.clumps);
-  return std::make_unique<ResolvedSystem<Real>>(std::move(decomposition), communicator, p, std::move(grains));
+  return std::make_unique<LatticeSystem<Real>>(std::move(decomposition), communicator, p, std::move(grains));
 }
 
 inline dem::GrainSeed glass_sphere(GlobalId id, const Vec3& position, const Vec3& velocity = Vec3::Zero(),

@@ -15,7 +15,7 @@
 // of the change from one exchange to the next, and that of what is left of the load that the grains feel when its mean
 // over the time of crossing a cell is subtracted. Prints a table in Markdown.
 #include "core/mpi_session.hpp"
-#include "coupling/resolved_system.hpp"
+#include "coupling/lattice_system.hpp"
 
 #include <fmt/format.h>
 
@@ -50,12 +50,12 @@ struct Setting {
 
 constexpr double radius = 5.0;
 
-std::unique_ptr<coupling::ResolvedSystem<double>> make(const Regime& regime, const Vec3& velocity,
+std::unique_ptr<coupling::LatticeSystem<double>> make(const Regime& regime, const Vec3& velocity,
                                                        const Setting& setting) {
   const Index3 cells{56, 48, 48};
   auto decomposition =
       std::make_unique<Decomposition>(cells, 1.0, std::array<bool, 3>{true, true, true}, Index3{1, 1, 1});
-  coupling::ResolvedParameters p;
+  coupling::LatticeParameters p;
   p.units = {1.0, 1.0, 1.0};
   p.collision.relaxation_time = regime.relaxation_time;
   p.collision.subgrid = lbm::Subgrid::smagorinsky(regime.smagorinsky_constant);
@@ -80,11 +80,11 @@ std::unique_ptr<coupling::ResolvedSystem<double>> make(const Regime& regime, con
   g.contact.restitution = 0.9;
   g.time_step = 1.0;
   g.skin = 1.0;
-  g.ghost_width = coupling::ResolvedSystem<double>::ghost_reach(radius, 1.0);
-  g.attached_width = coupling::ResolvedSystem<double>::attached_width(p);
+  g.ghost_width = coupling::LatticeSystem<double>::ghost_reach(radius, 1.0);
+  g.attached_width = coupling::LatticeSystem<double>::attached_width(p);
   auto grains =
       std::make_unique<dem::GrainDynamics>(*decomposition, MPI_COMM_SELF, g, std::vector<dem::GrainSeed>{seed});
-  return std::make_unique<coupling::ResolvedSystem<double>>(std::move(decomposition), MPI_COMM_SELF, p,
+  return std::make_unique<coupling::LatticeSystem<double>>(std::move(decomposition), MPI_COMM_SELF, p,
                                                             std::move(grains));
 }
 

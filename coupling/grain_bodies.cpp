@@ -1,0 +1,251 @@
+#include "coupling/grain_bodies.hpp"
+
+#include "bodies/mass_return.hpp"
+#include "core/sphere.hpp"
+#include "core/wide_sums_over_ranks.hpp"
+
+#include <algorithm>
+
+namespace thalweg::coupling {
+
+template <typename Real>
+GrainBodies<Real>::GrainBodies(MPI_Comm communicator, dem::GrainDynamics& grains, bodies::Bodies<Real>& bodies,
+                               const PeriodicBox& box, const Units& units, const GrainBodyOptions& options,
+                               bool with_stress)
+    : communicator_(communicator),
+      grains_(grains),
+      bodies_(bodies),
+      box_(box),
+      units_(units),
+      options_(options),
+      with_stress_(with_stress) {}
+
+template <typename Real>
+void GrainBodies<Real>::begin_where_grains_are() {
+  const dem::GrainStore& store = grains_.store();
+  for (std::size_t g = 0; g < store.total(); ++g)
+    if (exchange_of(g).exchanges() == 0) exchange_of(g).link_position() = store.position[g];
+}
+
+template <typename Real>
+void GrainBodies<Real>::place_at_start() {
+  bodies_.remove_all();
+  bodies_.begin_step();
+  synchronise_slots();
+  update_motions();
+  bodies_.settle_at_start();
+  show_stresses();
+}
+
+template <typename Real>
+void GrainBodies<Real>::set_surroundings(double deviation) {
+  for (std::size_t g = 0; g < grains_.store().total(); ++g)
+    if (exchange_of(g).exchanges() == 0) exchange_of(g).surrounding() = deviation;
+}
+
+template <typename Real>
+void GrainBodies<Real>::forget_lattice_units() {
+  for (std::size_t g = 0; g < grains_.store().total(); ++g) exchange_of(g).forget_lattice_units();
+}
+
+template <typename Real>
+void GrainBodies<Real>::move_bodies(bool slots_changed) {
+  if (slots_changed) synchronise_slots();
+  update_motions();
+  update_cells();
+}
+
+template <typename Real>
+void GrainBodies<Real>::take_loads() {
+  collect();
+  apply();
+  settle_masses();
+  grains_.refresh_ghost_attached();
+  show_stresses();
+}
+
+// Bodies for the grains that are in reach of this rank, and no others.
+template <typename Real>
+void GrainBodies<Real>::synchronise_slots() {
+  const dem::GrainStore& store = grains_.store();
+  std::vector<char> present(bodies_.mapped().size(), 0);
+  slot_.resize(store.total());
+  for (std::size_t g = 0; g < store.total(); ++g) {
+    slot_[g] = bodies_.slot_of(store.id[g]);
+    if (slot_[g] >= 0) present[static_cast<std::size_t>(slot_[g])] = 1;
+  }
+  for (std::size_t slot = 0; slot < present.size(); ++slot)
+    if (!present[slot] && bodies_.mapped()[slot].id >= 0) bodies_.remove(static_cast<int>(slot));
+  for (std::size_t g = 0; g < store.total(); ++g)
+    if (slot_[g] < 0)
+      slot_[g] = bodies_.add(store.id[g], store.radius[g] / units_.spacing, store.clump[g],
+                             lattice_position(exchange_of(g).link_position()));
+}
+
+template <typename Real>
+void GrainBodies<Real>::update_motions() {
+  const dem::GrainStore& store = grains_.store();
+  for (std::size_t g = 0; g < store.total(); ++g) {
+    const GrainExchange<double> kept = exchange_of(g);
+    bodies_.move(slot_[g], {lattice_position(store.position[g]), store.velocity[g] / units_.velocity(),
+                            store.angular_velocity[g] * units_.time_step, kept.returned_density(),
+                            kept.returned_slope(), kept.surrounding()});
+  }
+}
+
+// Cells follow a grain once it has moved by the tolerance; links know its place exactly all the same. Ghosts follow the
+// same rule from the same numbers as their owners, so every rank moves a grain's cells in the same step.
+template <typename Real>
+void GrainBodies<Real>::update_cells() {
+  dem::GrainStore& store = grains_.store();
+  const double tolerance = options_.link_tolerance * units_.spacing;
+  for (std::size_t g = 0; g < store.total(); ++g) {
+    const GrainExchange<double> kept = exchange_of(g);
+    const Vec3 moved = box_.difference(store.position[g], kept.link_position());
+    if (moved.squaredNorm() <= tolerance * tolerance) continue;
+    kept.link_position() = store.position[g];
+    bodies_.place(slot_[g], lattice_position(store.position[g]));
+  }
+}
+
+template <typename Real>
+void GrainBodies<Real>::collect() {
+  const std::size_t count = grains_.store().total();
+  const int width = sums_per_grain();
+  exchanged_.resize(static_cast<std::size_t>(width) * count);
+  for (std::size_t g = 0; g < count; ++g) {
+    const bodies::LinkBody& body = bodies_.body(slot_[g]);
+    const std::int64_t sums[8] = {body.force.x,  body.force.y,  body.force.z, body.torque.x,
+                                  body.torque.y, body.torque.z, body.mass,    body.pressure};
+    auto into = std::copy(sums, sums + 8, exchanged_.begin() + static_cast<std::ptrdiff_t>(width * g));
+    const bodies::LinkSums& link_sums = bodies_.link_sums(slot_[g]);
+    into = std::copy(link_sums.sums.begin(), link_sums.sums.end(), into);
+    if (with_stress_) {
+      const FixedTensor& moments = bodies_.moments(slot_[g]);
+      std::copy(moments.sums.begin(), moments.sums.end(), into);
+    }
+  }
+  grains_.add_ghost_values(exchanged_, width);
+}
+
+template <typename Real>
+void GrainBodies<Real>::apply() {
+  for (std::size_t g = 0; g < grains_.store().owned; ++g) {
+    const std::int64_t* sums = &exchanged_[sums_per_grain() * g];
+    const Vec3 force = FixedVec3{sums[0], sums[1], sums[2]}.to_vec3() * units_.force();
+    const Vec3 torque = FixedVec3{sums[3], sums[4], sums[5]}.to_vec3() * units_.torque();
+    const GrainExchange<double> kept = exchange_of(g);
+    const int before = kept.exchanges();
+    set_load(g, load_of(options_.load, before, force, kept.last_force(), kept.earlier_force()),
+             load_of(options_.load, before, torque, kept.last_torque(), kept.earlier_torque()), before == 0);
+    kept.earlier_force() = kept.last_force();
+    kept.earlier_torque() = kept.last_torque();
+    kept.last_force() = force;
+    kept.last_torque() = torque;
+    if (with_stress_) apply_stress(g, before == 0);
+    kept.set_exchanges(std::min(before + 1, 2));
+  }
+}
+
+template <typename Real>
+bodies::LinkSums GrainBodies<Real>::link_sums_of(std::size_t grain) const {
+  bodies::LinkSums links;
+  std::copy_n(&exchanged_[sums_per_grain() * grain + plain_sums - bodies::LinkSums::size], bodies::LinkSums::size,
+              links.sums.begin());
+  return links;
+}
+
+// Of a grain, or of all members of a clump, in slots from `first` on. Besides half of what is owed, the links return
+// what they are likely to lose in the next step: a mean over the last ones, in which the latest counts an eighth.
+template <typename Real>
+void GrainBodies<Real>::settle_mass(std::size_t first, std::size_t count) {
+  // What comes back changes what the links take, with cli most of all: returned at once and whole it swings and grows.
+  // A cell at a surface can swing by itself from step to step, hardly damped; the mean of two steps does not push it.
+  constexpr double share_of_owed = 0.5, share_of_last_step = 0.125;
+  bodies::LinkSums links;
+  std::int64_t sum = 0;
+  double came_back = 0.0;
+  for (std::size_t g = first; g < first + count; ++g) {
+    const bodies::LinkSums of_grain = link_sums_of(g);
+    const bodies::LinkBody& body = bodies_.body(slot_[g]);
+    const std::int64_t* sums = &exchanged_[sums_per_grain() * g + 6];
+    links += of_grain;
+    sum = exact_sum(sum, sums[0]);
+    came_back += bodies::MassReturn{body.returned, body.returned_slope}.mass(of_grain);
+    // A grain without links has no fluid around it: what was there last stays.
+    if (of_grain.weight() > 0.0) exchange_of(g).surrounding() = LatticeFixed::to_double(sums[1]) / of_grain.weight();
+  }
+  const double given = LatticeFixed::to_double(sum);
+  const GrainExchange<double> account = exchange_of(first);
+  double &owed = account.owed_mass(), &loss = account.mean_loss(), &wanted_before = account.wanted_return();
+  owed -= given;
+  loss += share_of_last_step * (came_back - given - loss);
+  const double wanted = share_of_owed * owed + loss;
+  const bodies::MassReturn next = bodies::unit_mass_return(links).scaled(0.5 * (wanted + wanted_before));
+  wanted_before = wanted;
+  for (std::size_t g = first; g < first + count; ++g) {
+    exchange_of(g).returned_density() = next.density;
+    exchange_of(g).returned_slope() = next.slope;
+  }
+}
+
+template <typename Real>
+void GrainBodies<Real>::settle_masses() {
+  const dem::GrainStore& store = grains_.store();
+  for (std::size_t g = 0; g < store.owned; ++g)
+    if (store.clump[g] < 0) settle_mass(g, 1);
+  const dem::Clumps& clumps = grains_.clumps();
+  for (std::size_t n = 0; n < clumps.size(); ++n)
+    settle_mass(clumps.first_slot(n), static_cast<std::size_t>(clumps[n].members));
+}
+
+// Multiples of 2^-44, whose sum in any order is exact. A grain may owe more than a term of LatticeFixed holds: a large
+// clump that closes a gap covers thousands of cells in a few steps, and returns their mass as slowly as its links
+// allow.
+template <typename Real>
+double GrainBodies<Real>::mass_owed() const {
+  WideSum owed;
+  for (std::size_t g = 0; g < grains_.store().owned; ++g)
+    owed.add(WideSum::from(exchange_of(g).owed_mass(), LatticeFixed::bits));
+  sum_over_ranks(communicator_, {&owed, 1});
+  return owed.to_double(LatticeFixed::bits);
+}
+
+// sigma_ab = (1/V) sum F_a x_b over the surface (Zhang et al. 2022, eq. 13), the mean of two exchanges.
+template <typename Real>
+void GrainBodies<Real>::apply_stress(std::size_t grain, bool first) {
+  const double volume = Sphere{grains_.store().radius[grain]}.volume();
+  FixedTensor sums;
+  std::copy_n(&exchanged_[sums_per_grain() * grain + plain_sums], sums.sums.size(), sums.sums.begin());
+  const Mat3 stress = sums.to_mat3() * (units_.torque() / volume);
+  const GrainExchange<double> kept = exchange_of(grain);
+  kept.mean_stress() = first ? stress : Mat3(0.5 * (stress + kept.last_stress()));
+  kept.last_stress() = stress;
+}
+
+template <typename Real>
+void GrainBodies<Real>::show_stresses() {
+  if (!with_stress_) return;
+  stresses_.resize(grains_.store().owned);
+  for (std::size_t g = 0; g < stresses_.size(); ++g) stresses_[g] = exchange_of(g).mean_stress();
+}
+
+// What the store has is what the grain got in the step before.
+template <typename Real>
+void GrainBodies<Real>::set_load(std::size_t grain, const Vec3& force, const Vec3& torque, bool first) {
+  dem::GrainStore& store = grains_.store();
+  if (!options_.virtual_mass || dem::holds_translation(store.motion[grain])) {
+    store.load_force[grain] = force;
+    store.load_torque[grain] = torque;
+    return;
+  }
+  const double share = options_.virtual_mass->share(store.mass[grain], grains_.volume_radius(grain));
+  const Vec3 body = grains_.body_force(grain), before = first ? Vec3::Zero() : Vec3(store.load_force[grain] + body);
+  store.load_force[grain] = VirtualMass::filtered(before, force + body, share) - body;
+  store.load_torque[grain] = VirtualMass::filtered(store.load_torque[grain], torque, share);
+}
+
+template class GrainBodies<float>;
+template class GrainBodies<double>;
+
+}  // namespace thalweg::coupling
