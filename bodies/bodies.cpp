@@ -140,18 +140,15 @@ void Bodies<Real>::remove_all() {
 }
 
 template <typename Real>
-void Bodies<Real>::apply_links_on_copies() const {
+void Bodies<Real>::apply_links_on_copies(std::vector<FixedVec3>* by_height) const {
   std::vector<LinkBody> copies = bodies_;  // take up the momentum, which belongs to the next step
-  LinkPass<Real> links(fluid_, links_, box_, options_.links, copies);
+  LinkPass<Real> links(fluid_, links_, box_, options_.links, copies, nullptr, by_height);
   for (int tile = 0; tile < fluid_.tiles().count(); ++tile) links.apply_tile(tile);
 }
 
-// The links of this step are applied twice: here on copies of the bodies, so that all that streams in lies ready.
 template <typename Real>
 const std::vector<FixedVec3>& Bodies<Real>::momentum_by_height() {
-  std::vector<LinkBody> copies = bodies_;
-  LinkPass<Real> links(fluid_, links_, box_, options_.links, copies, nullptr, &by_height_);
-  for (int tile = 0; tile < fluid_.tiles().count(); ++tile) links.apply_tile(tile);
+  apply_links_on_copies(&by_height_);
   return by_height_;
 }
 

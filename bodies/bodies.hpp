@@ -92,10 +92,10 @@ public:
   void settle_at_start();
   void remove_all();  // spheres
 
-  // Fills the slots that links fill, as the sweep will do again, and changes nothing else.
-  void apply_links_on_copies() const;
+  // Fills the slots that links fill, as the sweep will do again, and changes no body. by_height: as for LinkPass.
+  void apply_links_on_copies(std::vector<FixedVec3>* by_height = nullptr) const;
   // The momentum that links and covered cells give to bodies in the step that was begun with booking, by half planes
-  // of cells (LinkPass); before its sweep.
+  // of cells (LinkPass); before its sweep, whose slots it fills as well.
   const std::vector<FixedVec3>& momentum_by_height();
 
 private:
