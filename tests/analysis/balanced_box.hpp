@@ -13,8 +13,8 @@
 namespace thalweg::analysis {
 
 using coupling::glass_sphere;
-using coupling::make_system;
 using coupling::LatticeSystem;
+using coupling::make_system;
 using coupling::WaterBox;
 
 using Values = std::map<std::string, std::vector<double>>;

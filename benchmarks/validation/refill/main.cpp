@@ -51,7 +51,7 @@ struct Setting {
 constexpr double radius = 5.0;
 
 std::unique_ptr<coupling::LatticeSystem<double>> make(const Regime& regime, const Vec3& velocity,
-                                                       const Setting& setting) {
+                                                      const Setting& setting) {
   const Index3 cells{56, 48, 48};
   auto decomposition =
       std::make_unique<Decomposition>(cells, 1.0, std::array<bool, 3>{true, true, true}, Index3{1, 1, 1});
@@ -85,7 +85,7 @@ std::unique_ptr<coupling::LatticeSystem<double>> make(const Regime& regime, cons
   auto grains =
       std::make_unique<dem::GrainDynamics>(*decomposition, MPI_COMM_SELF, g, std::vector<dem::GrainSeed>{seed});
   return std::make_unique<coupling::LatticeSystem<double>>(std::move(decomposition), MPI_COMM_SELF, p,
-                                                            std::move(grains));
+                                                           std::move(grains));
 }
 
 double step_to_step(const std::vector<Vec3>& values) {
