@@ -134,7 +134,7 @@ void StaticSolids::visit_inside(int solid, const TriangleMesh& mesh,
   }
 }
 
-// Of cells beside solid ones, whether fluid or, for now, covered by something that moves.
+// Cells beside solid ones are measured whether they are fluid or covered by something that moves.
 void StaticSolids::measure() {
   lbm::for_each_cell(cells_.indexing(), [&](std::ptrdiff_t cell, const Index3& local) {
     if (is_solid(cell)) return;
