@@ -42,14 +42,20 @@ void Bodies<Real>::add_solids(MPI_Comm communicator) {
                       "of the cells; check its place and its size in m.",
                       s));
   solids_.measure();
-  bodies_.resize(cells.size());
-  surrounding_.resize(cells.size());
-  if (options_.moments) moments_.resize(cells.size());
+  resize_to_slots();
   for (std::size_t s = 0; s < cells.size(); ++s) {
     bodies_[s].turns = false;
     bodies_[s].centre = solids_.centre(static_cast<int>(s));
   }
   update_links();
+}
+
+template <typename Real>
+void Bodies<Real>::resize_to_slots() {
+  const std::size_t slots = map_.bodies().size();
+  bodies_.resize(slots);
+  surrounding_.resize(slots);
+  if (options_.moments) moments_.resize(slots);
 }
 
 template <typename Real>
@@ -65,10 +71,7 @@ template <typename Real>
 int Bodies<Real>::add(GlobalId id, double radius, GlobalId clump, const Vec3& centre) {
   const int slot = map_.add(id, radius, clump);
   map_.place(slot, centre);
-  const std::size_t slots = map_.bodies().size();
-  bodies_.resize(slots);
-  surrounding_.resize(slots);
-  if (options_.moments) moments_.resize(slots);
+  resize_to_slots();
   bodies_[static_cast<std::size_t>(slot)].radius = radius;
   return slot;
 }

@@ -100,6 +100,7 @@ public:
 
 private:
   void add_solids(MPI_Comm communicator);
+  void resize_to_slots();
   void account_for_covered_cells();
   void keep_momentum(LinkBody& body, int plane, const Vec3& position, double density, const Vec3& momentum);
   void book_links();
