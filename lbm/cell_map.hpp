@@ -1,13 +1,22 @@
 // Which cells are fluid and which are covered by a body, which packs of a row hold any fluid at all, and which cells
-// have a body beside them.
+// are beside bodies or in gaps.
 #pragma once
 
 #include "lbm/populations.hpp"
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace thalweg::lbm {
+
+// Where walls begin, in local coordinates: the first cell behind the one at the lower end of each axis is lower - 1,
+// the one at the upper end upper. No walls by default.
+struct WallPlaces {
+  Index3 lower{none_below, none_below, none_below}, upper{none_above, none_above, none_above};
+  static constexpr int none_below = std::numeric_limits<int>::min() / 2;
+  static constexpr int none_above = std::numeric_limits<int>::max() / 2;
+};
 
 class CellMap {
 public:
@@ -16,12 +25,13 @@ public:
   // Entries of bodies() that can be read beyond the last cell, by vectors that begin at a cell.
   static constexpr std::size_t read_beyond = 16;
 
-  explicit CellMap(const CellIndexing& indexing)
+  explicit CellMap(const CellIndexing& indexing, const WallPlaces& walls = {})
       : indexing_(indexing),
+        walls_(walls),
         body_(indexing.count() + read_beyond, fluid),
-        covered_beside_(indexing.count()),
         fluid_in_pack_(static_cast<std::size_t>(indexing.packs_per_row()) * indexing.size()[1] * indexing.size()[2]),
-        beside_bodies_(fluid_in_pack_.size()) {
+        beside_bodies_(fluid_in_pack_.size()),
+        in_gaps_(fluid_in_pack_.size()) {
     const int width = indexing.pack(), nx = indexing.size()[0];
     for (std::size_t p = 0; p < fluid_in_pack_.size(); ++p) {
       const int first = static_cast<int>(p) % indexing.packs_per_row() * width;
@@ -50,7 +60,8 @@ public:
       std::uint8_t& count = fluid_in_pack_[pack_of(x, y, z)];
       count = static_cast<std::uint8_t>(count + (body == fluid ? 1 : -1));
     }
-    tell_neighbours(x, y, z, body == fluid ? -1 : 1);
+    for (int i = 1; i < D3Q19::directions; ++i)
+      look_around({x + D3Q19::c[i][0], y + D3Q19::c[i][1], z + D3Q19::c[i][2]});
   }
 
   // Number of fluid cells in each pack of an owned row.
@@ -58,18 +69,42 @@ public:
   // For each pack of an owned row a bit for each cell, 1 where one of its 18 neighbours is covered.
   const std::uint16_t* beside_bodies(int y, int z) const { return beside_bodies_.data() + pack_of(0, y, z); }
 
+  // The same, 1 where a cell is in a gap: two neighbours that are opposite are covered, or one is and a wall is within
+  // three cells on the other side. (Bodies are known from cell to cell, walls however far they are.)
+  const std::uint16_t* in_gaps(int y, int z) const { return in_gaps_.data() + pack_of(0, y, z); }
+
 private:
-  // A cell has become covered (1) or fluid (-1).
-  void tell_neighbours(int x, int y, int z, int change) {
-    for (int i = 1; i < D3Q19::directions; ++i) {
-      const int nx = x + D3Q19::c[i][0], ny = y + D3Q19::c[i][1], nz = z + D3Q19::c[i][2];
-      if (!indexing_.owned(nx, ny, nz)) continue;
-      std::uint8_t& count = covered_beside_[static_cast<std::size_t>(indexing_.index(nx, ny, nz))];
-      count = static_cast<std::uint8_t>(count + change);
-      const auto bit = static_cast<std::uint16_t>(1u << nx % indexing_.pack());
-      std::uint16_t& pack = beside_bodies_[pack_of(nx, ny, nz)];
-      pack = static_cast<std::uint16_t>(count > 0 ? pack | bit : pack & ~bit);
+  static constexpr int widest_gap_at_wall = 3;  // cells
+
+  // Whether a wall is this many steps of direction i away, or nearer.
+  bool meets_wall(const Index3& cell, int i, int steps) const {
+    for (int a = 0; a < 3; ++a) {
+      const int to = cell[a] + steps * D3Q19::c[i][a];
+      if (to < walls_.lower[a] || to >= walls_.upper[a]) return true;
     }
+    return false;
+  }
+
+  // Brings the bits of a cell up to date, if it is owned.
+  void look_around(const Index3& at) {
+    if (!indexing_.owned(at[0], at[1], at[2])) return;
+    const std::ptrdiff_t cell = indexing_.index(at[0], at[1], at[2]);
+    const auto covered = [&](int i) { return !is_fluid(cell + indexing_.offset(i)); };
+    bool beside = false, gap = false;
+    for (int i = 1; i < D3Q19::directions; ++i) {
+      if (!covered(i)) continue;
+      const int back = D3Q19::opposite(i);
+      beside = true;
+      gap = gap || covered(back) || meets_wall(at, back, widest_gap_at_wall);
+    }
+    set_bit(beside_bodies_, at, beside);
+    set_bit(in_gaps_, at, gap);
+  }
+
+  void set_bit(std::vector<std::uint16_t>& packs, const Index3& at, bool on) {
+    std::uint16_t& bits = packs[pack_of(at[0], at[1], at[2])];
+    const auto bit = static_cast<std::uint16_t>(1u << at[0] % indexing_.pack());
+    bits = static_cast<std::uint16_t>(on ? bits | bit : bits & ~bit);
   }
 
   std::size_t pack_of(int x, int y, int z) const {
@@ -77,10 +112,10 @@ private:
   }
 
   CellIndexing indexing_;
+  WallPlaces walls_;
   std::vector<std::int32_t> body_;
-  std::vector<std::uint8_t> covered_beside_;  // of the 18 neighbours of an owned cell, those that are covered
   std::vector<std::uint8_t> fluid_in_pack_;
-  std::vector<std::uint16_t> beside_bodies_;
+  std::vector<std::uint16_t> beside_bodies_, in_gaps_;
 };
 
 }  // namespace thalweg::lbm

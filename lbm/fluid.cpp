@@ -30,6 +30,20 @@ const CollisionParameters& checked(const CollisionParameters& parameters) {
   return parameters;
 }
 
+// Of this block's cells.
+WallPlaces wall_places(const Decomposition& decomposition, const Block& block, const FaceConditions& faces) {
+  WallPlaces walls;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto is_wall = [&](bool high) {
+      const FaceType type = faces[static_cast<std::size_t>(face_of(axis, high))].type;
+      return type != FaceType::periodic && !is_open(type);
+    };
+    if (is_wall(false)) walls.lower[axis] = -block.lower[axis];
+    if (is_wall(true)) walls.upper[axis] = decomposition.cells()[axis] - block.lower[axis];
+  }
+  return walls;
+}
+
 }  // namespace
 
 template <typename Real>
@@ -40,7 +54,7 @@ Fluid<Real>::Fluid(const Decomposition& decomposition, MPI_Comm communicator, co
       parameters_(checked(parameters)),
       block_(decomposition.block_of(rank_of(communicator))),
       populations_(CellIndexing(block_.size(), pack_width<Real>())),
-      cells_(populations_.indexing()),
+      cells_(populations_.indexing(), wall_places(decomposition, block_, faces)),
       tiles_(block_.size(), D3Q19::directions * sizeof(Real) * populations_.indexing().row_stride()),
       walls_(decomposition, rank_of(communicator), populations_.indexing(), faces, parameters),
       halo_(decomposition, communicator, populations_, walls_) {

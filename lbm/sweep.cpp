@@ -70,6 +70,7 @@ struct RowCells {
   int packs;
   const std::uint8_t* fluid;
   const std::uint16_t* beside_bodies;
+  const std::uint16_t* in_gaps;
 };
 
 // Which of its variants a row takes.
@@ -100,22 +101,24 @@ template <Kind kind, typename Real>
   }
 }
 
-// Calmness in the lanes of `beside_bodies` (a bit each), 0 in the others. All packs pass through the same arithmetic,
-// so that a cell's bits do not depend on its neighbours in the pack.
+// Calmness in the lanes of `beside_bodies` (a bit each, as in `in_gaps`), 0 in the others. All packs pass through the
+// same arithmetic, so that a cell's bits do not depend on its neighbours in the pack.
 template <typename Real>
 [[gnu::always_inline]] inline Pack<Real> calmness_in_lanes(const Pack<Real> (&f)[D3Q19::directions],
                                                            const CellMoments<Pack<Real>>& m,
                                                            const CollisionConstants<Pack<Real>>& constants,
-                                                           unsigned beside_bodies) {
+                                                           unsigned beside_bodies, unsigned in_gaps) {
   if (beside_bodies == 0) return Real(0);
   const Pack<Real> near([&](auto lane) { return Real(beside_bodies >> lane & 1u); });
-  return near * calmness_of(f, m, constants);
+  const Pack<Real> gap([&](auto lane) { return Real(in_gaps >> lane & 1u); });
+  return near * calmness_of(f, m, constants, gap);
 }
 
 template <Kind kind, typename Real>
 [[gnu::always_inline]] inline void relax_pack(const Streams<Real>& streams, std::ptrdiff_t cell,
                                               const CollisionConstants<Pack<Real>>& constants,
-                                              const RowSegment<Real>& s, int p, unsigned beside_bodies) {
+                                              const RowSegment<Real>& s, int p, unsigned beside_bodies,
+                                              unsigned in_gaps) {
   Pack<Real> f[D3Q19::directions];
   CellMoments<Pack<Real>> m;
   m.deviation = s.deviation[p];
@@ -127,7 +130,7 @@ template <Kind kind, typename Real>
   if constexpr (kind.bulk) m.bulk = s.bulk[p];
   load(f, streams, cell);
   if constexpr (kind.model == CollisionModel::trt_at_bodies)
-    relax_trt_at_bodies<kind.bulk>(f, m, constants, calmness_in_lanes<Real>(f, m, constants, beside_bodies));
+    relax_trt_at_bodies<kind.bulk>(f, m, constants, calmness_in_lanes<Real>(f, m, constants, beside_bodies, in_gaps));
   else
     relax<kind.model, kind.bulk>(f, m, constants);
   for_each_direction([&]<int i>() __attribute__((always_inline)) {
@@ -172,7 +175,7 @@ void sweep_packs(const Streams<Real>& streams, const RowCells& row, const Collis
       if (row.fluid[first + p] == 0) continue;
       const std::ptrdiff_t cell = row.first + (first + p) * width;
       prefetch(streams, cell);
-      relax_pack<kind>(streams, cell, constants, segment, p, row.beside_bodies[first + p]);
+      relax_pack<kind>(streams, cell, constants, segment, p, row.beside_bodies[first + p], row.in_gaps[first + p]);
       if constexpr (kind.shear) store_shear(segment, p, *output.shear, (first + p) * width);
       if (output.moments) store_moments(segment, p, *output.moments, (first + p) * width);
     }
@@ -218,7 +221,7 @@ void sweep_row(Populations<Real>& populations, const CellMap& cells, const Colli
                int z, const RowOutput<Real>& output) {
   const Streams<Real> streams(populations);
   const RowCells row{populations.indexing().index(0, y, z), populations.indexing().packs_per_row(),
-                     cells.fluid_in_packs(y, z), cells.beside_bodies(y, z)};
+                     cells.fluid_in_packs(y, z), cells.beside_bodies(y, z), cells.in_gaps(y, z)};
   switch (parameters.model) {
     case CollisionModel::bgk:
       return sweep_row_with<CollisionModel::bgk>(streams, row, parameters, output);

@@ -78,7 +78,7 @@ private:
   template <lbm::SubgridModel subgrid>
   void collide(double (&cell)[19], std::size_t at) const {
     if (parameters_.model == lbm::CollisionModel::trt_at_bodies && near_a_sphere(at))
-      lbm::collide<lbm::CollisionModel::trt_at_bodies, subgrid>(cell, parameters_);
+      lbm::collide<lbm::CollisionModel::trt_at_bodies, subgrid>(cell, parameters_, in_gap(at) ? 1.0 : 0.0);
     else
       lbm::collide<lbm::CollisionModel::bgk, subgrid>(cell, parameters_);
   }
@@ -86,6 +86,22 @@ private:
   bool near_a_sphere(std::size_t at) const {
     for (int i = 1; i < 19; ++i)
       if (!beyond_wall(at, i) && owner_[neighbour(at, i)] >= 0) return true;
+    return false;
+  }
+
+  // On a line with a sphere on one side, and a sphere or within three cells a wall on the other.
+  bool in_gap(std::size_t at) const {
+    const auto covered = [&](int i) { return !beyond_wall(at, i) && owner_[neighbour(at, i)] >= 0; };
+    const auto meets_wall = [&](int i) {
+      std::size_t cell = at;
+      for (int steps = 0; steps < 3; ++steps) {
+        if (beyond_wall(cell, i)) return true;
+        cell = neighbour(cell, i);
+      }
+      return false;
+    };
+    for (int i = 1; i < 19; ++i)
+      if (covered(i) && (covered(D3Q19::opposite(i)) || meets_wall(D3Q19::opposite(i)))) return true;
     return false;
   }
 

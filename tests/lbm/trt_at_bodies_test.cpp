@@ -13,21 +13,27 @@ namespace {
 
 constexpr SubgridModel qr = SubgridModel::qr;
 
+// Cells beside bodies, in a gap and not.
+struct Place {
+  double in_gap, lambda;
+};
+constexpr Place places[] = {{0.0, quiet}, {1.0, quiet_in_gaps}};
+
 CollisionParameters water() {
   CollisionParameters p;
   p.relaxation_time = 0.502;
   p.bulk_relaxation_time = 1.0;
   p.subgrid = Subgrid::qr();
-  // The odd part of a steady cell is off equilibrium by half the force, times 0.12: here 4e-4 of `quiet`.
+  // The odd part of a steady cell is off equilibrium by half the force, times 0.12: here 4e-4 of `quiet` or less.
   p.force[0] = 3e-3 * quiet;
   p.force[1] = -2e-3 * quiet;
   p.force[2] = 1e-3 * quiet;
   return p;
 }
 
-// A cell whose odd non-equilibrium is so many times `quiet`, but for the force's, in modes that have no momentum,
-// beside a deviation of the even part.
-void fill_with_odd_part(double (&f)[19], double times_quiet) {
+// A cell with this odd non-equilibrium, but for the force's, in modes that have no momentum, beside a deviation of the
+// even part.
+void fill_with_odd_part(double (&f)[19], double size) {
   fill_noisy(f, 5, 1e-4);
   const CollisionParameters p = water();
   const WrittenOut w(f, p);
@@ -45,7 +51,7 @@ void fill_with_odd_part(double (&f)[19], double times_quiet) {
     mode[i] = D3Q19::length_squared(i) == 1 ? 2.0 * towards : -0.5 * towards;
     squares += 0.5 * mode[i] * mode[i];
   }
-  for (int i = 0; i < 19; ++i) f[i] += times_quiet * quiet / std::sqrt(squares) * mode[i];
+  for (int i = 0; i < 19; ++i) f[i] += size / std::sqrt(squares) * mode[i];
 }
 
 using Cell = std::array<double, 19>;
@@ -64,58 +70,74 @@ double largest_difference(const Cell& a, const Cell& b) {
   return largest;
 }
 
+Cell after_at_bodies(const double (&f)[19], const CollisionParameters& p, double in_gap) {
+  const CollisionConstants<double> constants(p);
+  const CellMoments<double> m = moments_of<qr, true>(f, constants);
+  double g[19];
+  std::copy(f, f + 19, g);
+  relax_trt_at_bodies<true>(g, m, constants, calmness_of(f, m, constants, in_gap));
+  return std::to_array(g);
+}
+
 // Collisions of a cell: trt whose trace relaxes as the shear, bgk with a bulk relaxation time of its own, and what is
 // between them.
 struct Both {
   Cell trt, bgk, blend;
 
-  explicit Both(const double (&f)[19], const CollisionParameters& p = water())
-      : trt(after<CollisionModel::trt, false>(f, p)),
-        bgk(after<CollisionModel::bgk, true>(f, p)),
-        blend(after<CollisionModel::trt_at_bodies, true>(f, p)) {}
+  Both(const double (&f)[19], const Place& place)
+      : trt(after<CollisionModel::trt, false>(f, water())),
+        bgk(after<CollisionModel::bgk, true>(f, water())),
+        blend(after_at_bodies(f, water(), place.in_gap)) {}
 };
 
 TEST(TrtAtBodies, IsTrtInCalmCellsAndLeavesTheTraceToTheShear) {
-  double f[19];
-  fill_with_odd_part(f, 1e-3);
-  const Both both(f);
-  EXPECT_LT(largest_difference(both.blend, both.trt), 3e-6 * largest_difference(both.trt, both.bgk) + 1e-16);
-  EXPECT_GT(largest_difference(both.trt, both.bgk), 1e-6);
-  EXPECT_GT(largest_difference(both.trt, after<CollisionModel::trt, true>(f, water())), 1e-6);
+  for (const Place& place : places) {
+    double f[19];
+    fill_with_odd_part(f, 1e-2 * place.lambda);
+    const Both both(f, place);
+    EXPECT_LT(largest_difference(both.blend, both.trt), 3e-8 * largest_difference(both.trt, both.bgk) + 1e-16);
+    EXPECT_GT(largest_difference(both.trt, both.bgk), 1e-6);
+    EXPECT_GT(largest_difference(both.trt, after<CollisionModel::trt, true>(f, water())), 1e-6);
+  }
 }
 
 TEST(TrtAtBodies, IsBgkWithItsBulkViscosityInNoisyCells) {
-  double f[19];
-  fill_with_odd_part(f, 1e3);
-  const Both both(f);
-  EXPECT_LT(largest_difference(both.blend, both.bgk), 2e-6 * largest_difference(both.trt, both.bgk));
+  for (const Place& place : places) {
+    double f[19];
+    fill_with_odd_part(f, 30.0 * place.lambda);
+    const Both both(f, place);
+    EXPECT_LT(largest_difference(both.blend, both.bgk), 2e-6 * largest_difference(both.trt, both.bgk));
+  }
 }
 
-// The odd rate and the bulk term both enter a collision linearly: with a = lambda^2/(n^2 + lambda^2) it is a times trt
+// The odd rate and the bulk term both enter a collision linearly: with a = lambda^4/(n^4 + lambda^4) it is a times trt
 // and 1 - a times bgk.
 TEST(TrtAtBodies, IsBetweenThemAsItsFormulaSays) {
-  for (const double times_quiet : {0.1, 0.5, 1.0, 2.0, 10.0}) {
-    double f[19];
-    fill_with_odd_part(f, times_quiet);
-    const double n = WrittenOut(f, water()).odd_non_equilibrium(f), a = quiet * quiet / (n * n + quiet * quiet);
-    EXPECT_NEAR(n / quiet, times_quiet, 1e-3 + 0.01 * times_quiet);
-    const Both both(f);
-    for (int i = 0; i < 19; ++i)
-      EXPECT_NEAR(both.blend[i], a * both.trt[i] + (1.0 - a) * both.bgk[i], 1e-15 * (1.0 + times_quiet));
-  }
+  for (const Place& place : places)
+    for (const double times_quiet : {0.1, 0.5, 1.0, 2.0, 10.0}) {
+      double f[19];
+      fill_with_odd_part(f, times_quiet * place.lambda);
+      const double n = WrittenOut(f, water()).odd_non_equilibrium(f) / place.lambda, a = 1.0 / (n * n * n * n + 1.0);
+      EXPECT_NEAR(n, times_quiet, 1e-3 + 0.01 * times_quiet);
+      const Both both(f, place);
+      for (int i = 0; i < 19; ++i)
+        EXPECT_NEAR(both.blend[i], a * both.trt[i] + (1.0 - a) * both.bgk[i], 1e-15 * (1.0 + times_quiet));
+    }
 }
 
 TEST(TrtAtBodies, ConservesMassAndAddsTheForceHoweverNoisy) {
   const CollisionParameters p = water();
-  for (const double times_quiet : {0.0, 0.3, 1.0, 3.0}) {
-    double f[19], g[19];
-    fill_with_odd_part(f, times_quiet);
-    std::copy(f, f + 19, g);
-    collide<CollisionModel::trt_at_bodies, qr, true>(g, p);
-    const Sums before = sums_of(f), now = sums_of(g);
-    EXPECT_NEAR(now.density, before.density, 2e-16);
-    for (int a = 0; a < 3; ++a) EXPECT_NEAR(now.momentum[a] - before.momentum[a], p.force[a], 2e-16);
-  }
+  for (const Place& place : places)
+    for (const double times_quiet : {0.0, 0.3, 1.0, 3.0}) {
+      double f[19], g[19];
+      fill_with_odd_part(f, times_quiet * place.lambda);
+      const Cell after = after_at_bodies(f, p, place.in_gap);
+      std::copy(after.begin(), after.end(), g);
+      const Sums before = sums_of(f), now = sums_of(g);
+      EXPECT_NEAR(now.density, before.density, 2e-16);
+      for (int axis = 0; axis < 3; ++axis)
+        EXPECT_NEAR(now.momentum[axis] - before.momentum[axis], p.force[axis], 2e-16);
+    }
 }
 
 // A calmness of zero, which cells have that are far from bodies.
@@ -124,7 +146,7 @@ TEST(TrtAtBodies, IsBgkInTheOpen) {
   const CollisionConstants<double> constants(p);
   for (const double times_quiet : {0.0, 1.0}) {
     double f[19], g[19];
-    fill_with_odd_part(f, times_quiet);
+    fill_with_odd_part(f, times_quiet * quiet);
     std::copy(f, f + 19, g);
     relax_trt_at_bodies<true>(g, moments_of<qr, true>(f, constants), constants, 0.0);
     EXPECT_LT(largest_difference(std::to_array(g), after<CollisionModel::bgk, true>(f, p)), 1e-16);
