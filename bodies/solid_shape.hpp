@@ -2,6 +2,7 @@
 // units, global coordinates.
 #pragma once
 
+#include "core/triangle_crossing.hpp"
 #include "core/triangle_mesh.hpp"
 #include "core/types.hpp"
 
@@ -24,17 +25,6 @@ struct Extent {
 Extent extent_of(const TriangleMesh& mesh);
 Extent extent_of(const SolidSphere& solid);
 Extent extent_of(const SolidShape& shape);
-
-using Corners = std::array<Vec3, 3>;
-
-// Where a line along +x at (y, z) crosses a triangle: x, and +1 where it enters the solid, -1 where it leaves. A line
-// through an edge or a corner crosses exactly one of the triangles that meet there, so that the sum over a closed
-// surface is right for every line.
-struct Crossing {
-  double x;
-  int winding;
-};
-std::optional<Crossing> crossing(const Corners& triangle, double y, double z);
 
 // The fraction t in [0, 1] of the way from a point along a link at which it meets the surface; none: it does not. Links
 // that run along an edge or end on a surface count as meeting it, up to round-off.

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <optional>
 
@@ -66,6 +67,15 @@ ContactLoad load_of(const ContactLaw& law, const ContactMotion& motion, const Ma
   return law(motion, coefficients, constants, history);
 }
 
+// The load of a wall, or of a solid, on a grain.
+template <bool rolls>
+void add_wall_load(const ContactLoad& f, const WallView& view, MovingGrain& grain) {
+  const Vec3 tangential(f.tx, f.ty, f.tz);
+  grain.force += row_of(f.normal * view.normal + tangential);
+  grain.torque += row_of(view.distance * tangential.cross(view.normal));
+  if constexpr (rolls) grain.torque += Row{f.mx, f.my, f.mz, 0.0};
+}
+
 template <typename ContactLaw>
 [[gnu::flatten]] void evaluate_walls(const ContactLaw& law, MovingGrains& grains, std::vector<WallContact>& contacts,
                                      ContactRows& rows, const PeriodicBox& box, std::span<const Plane> walls,
@@ -83,11 +93,44 @@ template <typename ContactLaw>
     typename ContactLaw::History history;
     const ContactLoad f = load_of(law, motion, materials.wall(material[c.grain]), wall.friction, rows[number], history);
     std::copy(history.begin(), history.end(), rows[number]);
-    const Vec3 tangential(f.tx, f.ty, f.tz);
-    grain.force += row_of(f.normal * view.normal + tangential);
-    grain.torque += row_of(view.distance * tangential.cross(view.normal));
-    if constexpr (ContactLaw::rolls) grain.torque += Row{f.mx, f.my, f.mz, 0.0};
+    add_wall_load<ContactLaw::rolls>(f, view, grain);
   }
+}
+
+// The touches of the grain in entries first to last - 1 of the list of solids, each with the row of its history; rows
+// that no touch goes on with are as if new.
+template <typename ContactLaw>
+std::span<const SolidTouch> touches_of(const ContactLaw& law, SolidTouches& touches, const ContactList& list,
+                                       std::size_t first, std::size_t last, const Vec3& position, double radius) {
+  return touches.of(list.solids, first, last, position, radius, law.range(), [&](std::size_t near, std::size_t row) {
+    return surface_normal_of(list, near * touches_per_solid + row);
+  });
+}
+
+template <typename ContactLaw>
+void evaluate_solids(const ContactLaw& law, MovingGrains& grains, ContactList& list, const Surroundings& around,
+                     const MaterialTable& materials, std::span<const std::uint8_t> material) {
+  SolidTouches touches(around.box, around.placed, around.solids);
+  SolidTouches::for_each_grain(list.solids, [&](std::size_t first, std::size_t last) {
+    const std::uint32_t slot = list.solids[first].grain;
+    MovingGrain& grain = grains[slot];
+    const auto found = touches_of(law, touches, list, first, last, vector_of(grain.position), grain.position[3]);
+    for (std::size_t near = first; near < last; ++near)
+      for (std::size_t row = 0; row < touches_per_solid; ++row)
+        if (!touches.taken(first, near, row)) list.solid_rows.forget(near * touches_per_solid + row);
+    for (const SolidTouch& touch : found) {
+      const std::size_t number = touch.near * touches_per_solid + touch.row;
+      if (!touch.goes_on) list.solid_rows.forget(number);
+      ContactMotion motion = motion_of(body_of(grain), touch.view, touch.velocity);
+      motion.effective_radius = touch.effective_radius;
+      typename ContactLaw::History history;
+      const ContactLoad f =
+          load_of(law, motion, materials.wall(material[slot]), around.solids[list.solids[touch.near].solid].friction,
+                  list.solid_rows[number], history);
+      std::copy(history.begin(), history.end(), list.solid_rows[number]);
+      add_wall_load<ContactLaw::rolls>(f, touch.view, grain);
+    }
+  });
 }
 
 // What observers see: the force on the first body, with the history as it is; none where they neither touch nor act
@@ -105,18 +148,44 @@ std::optional<Vec3> force_of(const ContactLaw& law, const ContactMotion& motion,
 
 // Calls visit(contact number, motion, force on the grain) for every wall contact of the list that acts.
 template <typename Visitor>
-void visit_walls(const GrainStore& store, const ContactList& list, const PeriodicBox& box, std::span<const Plane> walls,
+void visit_walls(const GrainStore& store, const ContactList& list, const Surroundings& around,
                  const MaterialTable& materials, Visitor&& visit) {
   with_law(list.wall_rows.law(), 0.0, [&](const auto& law) {
     for (std::size_t number = 0; number < list.walls.size(); ++number) {
       const WallContact& c = list.walls[number];
-      const Plane& wall = walls[c.wall];
+      const Plane& wall = around.walls[c.wall];
       const ContactMotion motion =
-          motion_of(body_of(store, c.grain), wall.seen_from(store.position[c.grain], box), wall.velocity);
+          motion_of(body_of(store, c.grain), wall.seen_from(store.position[c.grain], around.box), wall.velocity);
       if (const std::optional<Vec3> force =
               force_of(law, motion, materials.wall(store.material[c.grain]), wall.friction, list.wall_rows[number]))
         visit(number, motion, *force);
     }
+  });
+}
+
+// The same of every touch with a solid: visit(touch, motion, force on the grain).
+template <typename Visitor>
+void visit_solids(const GrainStore& store, const ContactList& list, const Surroundings& around,
+                  const MaterialTable& materials, Visitor&& visit) {
+  if (list.solids.empty()) return;
+  SolidTouches touches(around.box, around.placed, around.solids);
+  with_surface_law(list.solid_rows.law(), 0.0, [&](const auto& law) {
+    SolidTouches::for_each_grain(list.solids, [&](std::size_t first, std::size_t last) {
+      const std::uint32_t slot = list.solids[first].grain;
+      const auto found = touches_of(law, touches, list, first, last, store.position[slot], store.radius[slot]);
+      for (const SolidTouch& touch : found) {
+        ContactMotion motion = motion_of(body_of(store, slot), touch.view, touch.velocity);
+        motion.effective_radius = touch.effective_radius;
+        using ContactLaw = std::decay_t<decltype(law)>;
+        std::array<double, ContactRows::width_of<ContactLaw>> row;
+        std::copy_n(list.solid_rows[touch.near * touches_per_solid + touch.row], row.size(), row.begin());
+        if (!touch.goes_on) std::fill_n(row.begin(), std::tuple_size_v<typename ContactLaw::History>, 0.0);
+        if (const std::optional<Vec3> force =
+                force_of(law, motion, materials.wall(store.material[slot]),
+                         around.solids[list.solids[touch.near].solid].friction, row.data()))
+          visit(touch, motion, *force);
+      }
+    });
   });
 }
 
@@ -139,20 +208,23 @@ void visit_pairs(const GrainStore& store, const ContactList& list, const Periodi
 
 }  // namespace
 
-void evaluate_contacts(MovingGrains& grains, ContactList& list, const PeriodicBox& box, std::span<const Plane> walls,
+void evaluate_contacts(MovingGrains& grains, ContactList& list, const Surroundings& around,
                        const MaterialTable& materials, std::span<const std::uint8_t> material, double time_step) {
   with_law(list.pair_rows.law(), time_step,
-           [&](const auto& law) { evaluate_pairs(law, grains, list, box, materials, material); });
+           [&](const auto& law) { evaluate_pairs(law, grains, list, around.box, materials, material); });
   with_law(list.wall_rows.law(), time_step, [&](const auto& law) {
-    evaluate_walls(law, grains, list.walls, list.wall_rows, box, walls, materials, material);
+    evaluate_walls(law, grains, list.walls, list.wall_rows, around.box, around.walls, materials, material);
   });
+  if (list.solids.empty()) return;
+  with_surface_law(list.solid_rows.law(), time_step,
+                   [&](const auto& law) { evaluate_solids(law, grains, list, around, materials, material); });
 }
 
-void for_each_contact_end(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
-                          std::span<const Plane> walls, const MaterialTable& materials, std::span<const char> chosen,
+void for_each_contact_end(const GrainStore& store, const ContactList& list, const Surroundings& around,
+                          const MaterialTable& materials, std::span<const char> chosen,
                           const ContactEndVisitor& visit) {
   const auto wanted = [&](std::size_t slot) { return !store.is_ghost(slot) && (chosen.empty() || chosen[slot] != 0); };
-  visit_pairs(store, list, box, materials, wanted,
+  visit_pairs(store, list, around.box, materials, wanted,
               [&](std::size_t number, const ContactMotion& motion, const Vec3& separation, const Vec3& force) {
                 const auto [first, second, reach] = list.pairs[number];
                 const Vec3 n = normal_of(motion);
@@ -162,21 +234,26 @@ void for_each_contact_end(const GrainStore& store, const ContactList& list, cons
                 if (wanted(second))
                   visit(second, {(store.radius[second] - half) * n, -force, store.id[first], separation});
               });
-  for_each_wall_contact(store, list, box, walls, materials, [&](std::size_t slot, const ContactEnd& end) {
+  for_each_wall_contact(store, list, around, materials, [&](std::size_t slot, const ContactEnd& end) {
     if (wanted(slot)) visit(slot, end);
   });
 }
 
-void for_each_wall_contact(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
-                           std::span<const Plane> walls, const MaterialTable& materials,
-                           const ContactEndVisitor& visit) {
-  visit_walls(store, list, box, walls, materials,
-              [&](std::size_t number, const ContactMotion& motion, const Vec3& force) {
-                const auto [grain, wall] = list.walls[number];
-                if (store.is_ghost(grain)) return;
-                const Vec3 arm = (motion.overlap - store.radius[grain]) * normal_of(motion);
-                visit(grain, {arm, force, -1 - static_cast<GlobalId>(wall), arm});
-              });
+void for_each_wall_contact(const GrainStore& store, const ContactList& list, const Surroundings& around,
+                           const MaterialTable& materials, const ContactEndVisitor& visit) {
+  const auto visit_end = [&](std::size_t slot, std::size_t partner, const ContactMotion& motion, const Vec3& force) {
+    if (store.is_ghost(slot)) return;
+    const Vec3 arm = (motion.overlap - store.radius[slot]) * normal_of(motion);
+    visit(slot, {arm, force, -1 - static_cast<GlobalId>(partner), arm});
+  };
+  visit_walls(store, list, around, materials, [&](std::size_t number, const ContactMotion& motion, const Vec3& force) {
+    visit_end(list.walls[number].grain, list.walls[number].wall, motion, force);
+  });
+  visit_solids(store, list, around, materials,
+               [&](const SolidTouch& touch, const ContactMotion& motion, const Vec3& force) {
+                 const NearSolid& near = list.solids[touch.near];
+                 visit_end(near.grain, around.walls.size() + near.solid, motion, force);
+               });
 }
 
 }  // namespace thalweg::dem

@@ -5,6 +5,7 @@
 #include "dem/liquid_bridge.hpp"
 #include "dem/rolling_friction.hpp"
 #include "dem/spring_dashpot.hpp"
+#include "dem/surface_law.hpp"
 
 #include <type_traits>
 #include <utility>
@@ -16,6 +17,7 @@ namespace thalweg::dem {
 struct LawChoice {
   ContactParameters common;       // of any material
   bool rolling_friction = false;  // whether any of the contacts may have it
+  bool at_surface = false;        // with solids, whose law keeps the normal
 };
 
 // Calls visit(std::type_identity<Springs>()) with what is the same of a law in a liquid and without one.
@@ -43,9 +45,21 @@ decltype(auto) with_law(const LawChoice& choice, double time_step, Visitor&& vis
   return common.film_viscosity > 0.0 ? in(std::type_identity<ContactFilm>()) : in(std::type_identity<NoFilm>());
 }
 
+// The same of contacts with solids.
+template <typename Visitor>
+decltype(auto) with_surface_law(const LawChoice& choice, double time_step, Visitor&& visit) {
+  return with_law(choice, time_step, [&](const auto& law) -> decltype(auto) { return visit(AtSurface(law)); });
+}
+
+// Whichever the choice is.
+template <typename Visitor>
+decltype(auto) with_either_law(const LawChoice& choice, Visitor&& visit) {
+  return choice.at_surface ? with_surface_law(choice, 0.0, visit) : with_law(choice, 0.0, visit);
+}
+
 // Names and numbers of the doubles that a contact keeps.
 inline std::vector<HistoryPart> history_parts_of(const LawChoice& choice) {
-  return with_law(choice, 0.0, [](const auto& law) {
+  return with_either_law(choice, [](const auto& law) {
     return std::vector<HistoryPart>(law.history_parts.begin(), law.history_parts.end());
   });
 }

@@ -11,6 +11,7 @@
 #include "dem/material.hpp"
 #include "dem/moving_grains.hpp"
 #include "dem/near_pairs.hpp"
+#include "dem/solid_contacts.hpp"
 #include "dem/walls.hpp"
 
 #include <algorithm>
@@ -66,21 +67,39 @@ struct ContactList {
   NearPairs near;                  // of the pairs; kept by evaluate_contacts()
   std::vector<WallContact> walls;  // of owned grains, sorted by id, then from the last wall to the first
   ContactRows wall_rows;
+  std::vector<NearSolid> solids;
+  ContactRows solid_rows;  // touches_per_solid for each of these
 };
+
+// Where the contacts with walls and solids are among the ids of partners: -1 - w for wall w, and behind the walls -1 -
+// (walls + touches_per_solid s + n) for touch n with solid s.
+GlobalId solid_key(std::size_t walls, std::size_t solid, std::size_t row);
+
+// The normal of a contact with a solid at its last evaluation, of this row; zero: it had none.
+Vec3 surface_normal_of(const ContactList& list, std::size_t row);
 
 // The parts of the histories of all contacts of the list: contacts of pairs and of walls may have different ones.
 std::vector<HistoryPart> history_parts_of(const ContactList& list);
 
-// All pairs with at least one owned grain whose surfaces are closer than `range` (m), and all owned grains closer than
-// that to a wall, but no two members of one clump; without history. Positions must be wrapped. largest_radius: m, of
-// all grains.
-ContactList find_contacts(const GrainStore& store, const PeriodicBox& box, std::span<const Plane> walls,
-                          const MaterialTable& materials, double range, double largest_radius);
+// What grains may touch besides each other.
+struct Surroundings {
+  PeriodicBox box;
+  std::span<const Plane> walls;         // where they are now
+  std::span<const PlacedSolid> placed;  // solids where they are now
+  std::span<const Solid> solids;
+};
 
-// The histories that are not zero, sorted by ids, with the doubles of history_parts_of().
-ContactHistories histories_of(const ContactList& list, const GrainStore& store);
+// All pairs with at least one owned grain whose surfaces are closer than `range` (m), and all owned grains closer than
+// that to a wall or a solid, but no two members of one clump; without history. Positions must be wrapped.
+// largest_radius: m, of all grains.
+ContactList find_contacts(const GrainStore& store, const Surroundings& around, const MaterialTable& materials,
+                          double range, double largest_radius);
+
+// The histories that are not zero, sorted by ids, with the doubles of history_parts_of(). walls: their number.
+ContactHistories histories_of(const ContactList& list, const GrainStore& store, std::size_t walls);
 
 // Gives the contacts of the list their histories; those (sorted by ids) of pairs not in the list are dropped.
-void restore_histories(ContactList& list, const GrainStore& store, const ContactHistories& histories);
+void restore_histories(ContactList& list, const GrainStore& store, std::size_t walls,
+                       const ContactHistories& histories);
 
 }  // namespace thalweg::dem

@@ -20,6 +20,7 @@ namespace {
 
 const GrainParameters& checked(const GrainParameters& p) {
   for (const Plane& wall : p.walls) check(wall);
+  for (const Solid& solid : p.solids) check(solid);
   if (p.sub_steps < 1)
     throw InputError(fmt::format("The number of grain sub-steps is {}; it must be positive.", p.sub_steps));
   if (!(p.skin > 0.0))
@@ -74,6 +75,8 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
       largest_offset_(max_over_ranks(communicator, largest_offset_of(seeds.clumps))),
       walls_change_(std::any_of(parameters.walls.begin(), parameters.walls.end(),
                                 [](const Plane& wall) { return wall.changes(); })),
+      solids_change_(std::any_of(parameters.solids.begin(), parameters.solids.end(),
+                                 [](const Solid& solid) { return solid.motion.moves(); })),
       assemblies_(parameters.assemblies, seeds.grains),
       store_(columns_of(parameters), parameters.disk_thickness > 0.0 ? GrainStore::of_disk : GrainStore::of_sphere),
       ghosts_(decomposition, communicator, ghost_reach(), largest_offset_),
@@ -82,6 +85,7 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
       motion_phase_(timer_.phase("motion")),
       messages_phase_(timer_.phase("messages")) {
   assert(decomposition.ranks() == size_of(communicator));
+  place_solids(0.0, 0.0);
   take_seeds(std::move(seeds));
   check_integrator();
   check_prescribed_speed();
@@ -105,6 +109,7 @@ void GrainDynamics::take_seeds(GrainSeeds seeds) {
       check(grains, box_, parameters_.walls, parameters_.initial_overlap);
     else
       check_part(grains, box_, parameters_.walls, parameters_.initial_overlap, largest_radius_);
+    check_solids(grains);
     check_kinds(grains);
   });
   std::vector<LightestGrain> lightest(static_cast<std::size_t>(materials_.count()));
@@ -125,6 +130,20 @@ void GrainDynamics::take_seeds(GrainSeeds seeds) {
   check_lubrication(parameters_, lightest, largest_radius_, box_);
   replace_owned(store_, batch);
   clumps_.replace(mine);
+}
+
+void GrainDynamics::check_solids(std::span<const GrainSeed> grains) const {
+  for (const GrainSeed& grain : grains) {
+    if (is_fixed(grain.motion)) continue;
+    const SolidDepth in = depth_in_solids(grain.position, grain.radius, box_, solids_, parameters_.solids);
+    if (in.depth <= parameters_.initial_overlap * 2.0 * grain.radius) continue;
+    const Vec3& x = grain.position;
+    throw InputError(fmt::format("Grain {} at ({:g}, {:g}, {:g}) m with radius {:g} m {}; move it away.", grain.id,
+                                 x[0], x[1], x[2], grain.radius,
+                                 std::isfinite(in.depth)
+                                     ? fmt::format("reaches {:g} m into solid {}", in.depth, in.solid)
+                                     : fmt::format("is inside solid {}", in.solid)));
+  }
 }
 
 void GrainDynamics::check_kinds(std::span<const GrainSeed> grains) const {
@@ -157,6 +176,7 @@ void GrainDynamics::check_prescribed_speed() const {
 double GrainDynamics::largest_prescribed_speed() const {
   double largest = assemblies_.largest_speed();
   for (const Plane& wall : parameters_.walls) largest = std::max(largest, wall.largest_speed());
+  for (const Solid& solid : parameters_.solids) largest = std::max(largest, largest_speed_of(solid));
   return largest;
 }
 
@@ -217,9 +237,11 @@ GrainDynamics::Outlook GrainDynamics::look_ahead() {
   // speed, and the loads accelerate it.
   double farthest = 0.0, fastest = largest_prescribed_speed();
   bool trouble = false;
-  const GrainWatch watch{GrainSpace(box_, planes_), parameters_.skin, step_time()};
+  const GrainWatch watch{GrainSpace(box_, planes_), parameters_.skin, step_time(), deep_in_solids()};
   for (std::size_t w = 0; w < planes_.size(); ++w)
     farthest = std::max(farthest, planes_[w].moved_since(listed_planes_[w]));
+  for (std::size_t n = 0; n < solids_.size(); ++n)
+    farthest = std::max(farthest, solids_[n].moved_since(listed_solids_[n]));
   for (std::size_t s = 0; s < store_.owned; ++s) {
     const double displacement = box_.difference(store_.position[s], listed_position_[s]).norm();
     const double speed = store_.velocity[s].norm();
@@ -234,6 +256,16 @@ GrainDynamics::Outlook GrainDynamics::look_ahead() {
   MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_MAX, communicator_);
   if (all[2] != 0.0) watch.throw_first(store_, box_, listed_position_, communicator_);
   return {all[0], all[1]};
+}
+
+std::vector<std::size_t> GrainDynamics::deep_in_solids() const {
+  std::vector<std::size_t> deep;
+  for (const NearSolid& near : list_.solids) {
+    const double radius = store_.radius[near.grain];
+    const double depth = depth_in_solids(store_.position[near.grain], radius, box_, solids_, parameters_.solids).depth;
+    if (depth > 0.5 * radius) deep.push_back(near.grain);
+  }
+  return deep;
 }
 
 // A hit off the centre throws the far end of a clump faster than the near one.
@@ -251,7 +283,7 @@ void GrainDynamics::wrap_positions() {
 }
 
 void GrainDynamics::rebuild() {
-  ContactHistories histories = histories_of(list_, store_);
+  ContactHistories histories = histories_of(list_, store_, planes_.size());
   if (size_of(communicator_) > 1) {
     if (parameters_.movable_cuts) move_cuts();
     migrate(histories);
@@ -300,9 +332,10 @@ void GrainDynamics::build_dependents(const ContactHistories& histories) {
   ghosts_.build(store_);
   assemblies_.find(store_);
   listed_planes_ = planes_;
-  list_ = find_contacts(store_, box_, planes_, materials_, list_range(), largest_radius_);
+  listed_solids_ = solids_;
+  list_ = find_contacts(store_, surroundings(), materials_, list_range(), largest_radius_);
   if (!parameters_.field) ghosts_.follow(list_.pairs, store_);  // a field may look further than contacts
-  restore_histories(list_, store_, histories);
+  restore_histories(list_, store_, planes_.size(), histories);
   if (parameters_.field) parameters_.field->find_neighbours(store_, parameters_.skin, clumps_);
   const auto owned_end = static_cast<std::ptrdiff_t>(store_.owned);
   listed_position_.assign(store_.position.begin(), store_.position.begin() + owned_end);
@@ -329,8 +362,8 @@ void GrainDynamics::set_body_force_factor(double factor) {
 
 void GrainDynamics::evaluate_forces(double time_step) {
   const auto scope = timer_.measure(forces_phase_);
-  evaluate_contacts(moving_, list_, box_, planes_, materials_, store_.material, time_step);
-  if (parameters_.lubrication) add_lubrication(moving_, list_, box_, planes_, *parameters_.lubrication);
+  evaluate_contacts(moving_, list_, surroundings(), materials_, store_.material, time_step);
+  if (parameters_.lubrication) add_lubrication(moving_, list_, surroundings(), *parameters_.lubrication);
   if (parameters_.field) parameters_.field->act(moving_, store_, clumps_, body_force_);
 }
 
@@ -339,8 +372,14 @@ void GrainDynamics::place_walls(double time, double time_of_velocity) {
     if (parameters_.walls[w].changes()) planes_[w] = parameters_.walls[w].at(time, time_of_velocity);
 }
 
+void GrainDynamics::place_solids(double time, double time_of_velocity) {
+  solids_.clear();
+  for (const Solid& solid : parameters_.solids) solids_.emplace_back(solid, time, time_of_velocity);
+}
+
 void GrainDynamics::place_prescribed(double time, double time_of_velocity) {
   if (walls_change_) place_walls(time, time_of_velocity);
+  if (solids_change_) place_solids(time, time_of_velocity);
   assemblies_.place(moving_, box_, time, time_of_velocity);
 }
 

@@ -30,6 +30,7 @@
 #include "dem/lubrication.hpp"
 #include "dem/material.hpp"
 #include "dem/moving_grains.hpp"
+#include "dem/solid.hpp"
 #include "dem/walls.hpp"
 
 #include <mpi.h>
@@ -50,6 +51,7 @@ struct GrainParameters {
   std::vector<ContactParameters> other_materials;  // 1, 2, ...: mixed with each other as material.hpp says
   std::optional<ContactParameters> wall_contact;   // of grains with walls, where it differs (but for the friction)
   std::vector<Plane> walls;
+  std::vector<Solid> solids;
   std::vector<PrescribedMotion> assemblies;  // of the rigid assemblies the seeds name
   // N, of a grain by its mass (kg) and radius (m, of a clump that of its volume), constant; empty: none
   std::function<Vec3(double mass, double radius)> body_force;
@@ -75,11 +77,11 @@ void check_time_step(const GrainParameters& parameters, std::span<const Lightest
 void check_lubrication(const GrainParameters& parameters, std::span<const LightestGrain> lightest,
                        double largest_radius, const PeriodicBox& box);
 
-// Two grains in contact, or a grain and a wall.
+// Two grains in contact, or a grain and a wall or solid.
 struct Contact {
-  GlobalId first, second;       // the lower id; the higher one, or -1 - w for wall w
-  double overlap;               // m
-  Vec3 normal;                  // unit, from second to first
+  GlobalId first, second;  // the lower id; the higher one, or -1 - w for wall w, -1 - (number of walls + s) for solid s
+  double overlap;          // m
+  Vec3 normal;             // unit, from second to first
   std::vector<double> history;  // what its law keeps (contact_law.hpp), at the last evaluation
 };
 
@@ -101,8 +103,8 @@ public:
   // Before the sub-steps of a fluid step: wraps positions and, where some grain may leave its half skin during the
   // coming sub-steps, moves grains to the rank of their centre and rebuilds ghosts and contact list. True if slots
   // changed. Throws RunError, on every rank, where a grain has outrun its half skin, moves more than its radius in one
-  // fluid step, is beyond a wall or a non-periodic face by more than its radius or half its radius deep in a plate, or
-  // is no longer a number. One reduction. Collective.
+  // fluid step, is beyond a wall or a non-periodic face by more than its radius or half its radius deep in a plate or a
+  // solid, or is no longer a number. One reduction. Collective.
   bool prepare();
 
   // The same before a part of the sub-steps, for grains too fast for one list per fluid step. Returns how many
@@ -167,14 +169,14 @@ public:
 
   // Figures over all ranks, the same bits in any layout; a clump is one grain, with the velocity of its centre, but
   // overlap and contacts are those of its members. Collective.
-  std::vector<Vec3> wall_forces() const;          // N, of all grains on each wall, by contacts and lubrication
-  std::int64_t contact_count() const;             // touching pairs of grains
-  double largest_overlap() const;                 // of two grains, not both held, in diameters of the smaller
-  double kinetic_energy() const;                  // J, with rotation
-  Vec3 momentum() const;                          // kg m/s
-  double largest_speed() const;                   // m/s
-  double largest_free_speed() const;              // m/s, of grains that are free to move
-  double largest_acceleration() const;            // m/s^2, of the same, by all forces at the end of the last step
+  std::vector<Vec3> wall_forces() const;  // N, of all grains on each wall, then each solid, by contacts and lubrication
+  std::int64_t contact_count() const;     // touching pairs of grains
+  double largest_overlap() const;         // of two grains, not both held, in diameters of the smaller
+  double kinetic_energy() const;          // J, with rotation
+  Vec3 momentum() const;                  // kg m/s
+  double largest_speed() const;           // m/s
+  double largest_free_speed() const;      // m/s, of grains that are free to move
+  double largest_acceleration() const;    // m/s^2, of the same, by all forces at the end of the last step
   std::int64_t moving_count(double speed) const;  // free grains faster than speed (m/s)
   double moving_share(double speed) const;        // of the free grains; 0 if there are none
   // Free grains that are not slower than speed (m/s), or not accelerated by less than this (m/s^2).
@@ -203,6 +205,8 @@ private:
   void restore(ArchiveReader& archive, const std::string& group, Restored what);
   void check_range() const;
   void place_walls(double time, double time_of_velocity);
+  void place_solids(double time, double time_of_velocity);
+  Surroundings surroundings() const { return {box_, planes_, solids_, parameters_.solids}; }
   void place_prescribed(double time, double time_of_velocity);
   double largest_prescribed_speed() const;
   void check_prescribed_speed() const;
@@ -212,6 +216,7 @@ private:
   void for_each_body(Visitor&& visit) const;
   void take_seeds(GrainSeeds seeds);
   void check_kinds(std::span<const GrainSeed> grains) const;
+  void check_solids(std::span<const GrainSeed> grains) const;
   void check_integrator() const;
   double list_range() const;
   void wrap_positions();
@@ -221,6 +226,7 @@ private:
   };
   Outlook look_ahead();
   double fastest_member() const;
+  std::vector<std::size_t> deep_in_solids() const;
   bool rebuild_for(const Outlook& outlook, int sub_steps);
   void rebuild();
   void move_cuts();
@@ -250,7 +256,8 @@ private:
 
   std::int64_t steps_done_ = 0;  // sub-steps since the start of the run
   std::vector<Plane> planes_;    // the walls where they are now
-  bool walls_change_;
+  std::vector<PlacedSolid> solids_;
+  bool walls_change_, solids_change_;
   Assemblies assemblies_;
 
   GrainStore store_;
@@ -261,6 +268,7 @@ private:
   Clumps clumps_{parameters_.disk_thickness};
   std::vector<Vec3> listed_position_;  // of owned grains, when the list was built
   std::vector<Plane> listed_planes_;
+  std::vector<PlacedSolid> listed_solids_;
   std::vector<Vec3> body_force_;  // of owned grains, times the factor
   double body_force_factor_ = 1.0;
 

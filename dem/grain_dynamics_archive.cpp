@@ -1,9 +1,10 @@
 // Saving and loading of GrainDynamics. Datasets, one row a grain in order of id: radius, mass, motion, material,
 // position, velocity, angular_velocity, contact_force, contact_torque, load_force, load_torque, attached. One row a
-// contact, sorted by ids: contact_ids (lower id; higher id, or -1 - w for wall w), and what its law keeps, by the names
-// that the law gives to the parts: contact_spring or contact_mindlin_spring; with rolling friction contact_rolling; and
-// so on. Where there are clumps also, of each grain, clump (its clump's id, or -1) and offset, and one row a clump,
-// sorted by id: clump_id, clump_members, clump_motion, clump_mass and so on with the names of struct ClumpRow.
+// contact, sorted by ids: contact_ids (lower id; higher id, or what solid_key() says of walls and solids), and what its
+// law keeps, by the names that the law gives to the parts: contact_spring or contact_mindlin_spring; with rolling
+// friction contact_rolling; and so on. Where there are clumps also, of each grain, clump (its clump's id, or -1) and
+// offset, and one row a clump, sorted by id: clump_id, clump_members, clump_motion, clump_mass and so on with the names
+// of struct ClumpRow.
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
 #include "core/row_range.hpp"
@@ -201,6 +202,8 @@ std::vector<LightestGrain> lightest_of(const GrainStore& store, const std::vecto
 void GrainDynamics::save(ArchiveWriter& archive, const std::string& group) const {
   const int ranks = size_of(communicator_), me = rank_of(communicator_);
   archive.attribute(group + "/walls", static_cast<std::int64_t>(parameters_.walls.size()));
+  if (!parameters_.solids.empty())
+    archive.attribute(group + "/solids", static_cast<std::int64_t>(parameters_.solids.size()));
   archive.attribute(group + "/sub_steps", steps_done_);
   archive.attribute(group + "/time", time());
   archive.attribute(group + "/system_columns", static_cast<std::int64_t>(parameters_.attached_width));
@@ -222,7 +225,7 @@ void GrainDynamics::save(ArchiveWriter& archive, const std::string& group) const
   }
 
   // A pair known to two ranks is written by the owner of its lower id.
-  const ContactHistories known = histories_of(list_, store_);
+  const ContactHistories known = histories_of(list_, store_, planes_.size());
   ContactHistories mine(known.width());
   const auto owned_end = store_.id.begin() + static_cast<std::ptrdiff_t>(store_.owned);
   home.clear();
@@ -252,11 +255,13 @@ void GrainDynamics::restore(ArchiveReader& archive, const std::string& group, Re
   const bool as_start = what != Restored::whole;
   const int ranks = size_of(communicator_), me = rank_of(communicator_);
   const std::int64_t walls = archive.integer_attribute(group + "/walls");
-  const bool same_walls = walls == static_cast<std::int64_t>(parameters_.walls.size());
+  const std::int64_t solids = archive.has(group + "/solids") ? archive.integer_attribute(group + "/solids") : 0;
+  const bool same_walls = walls == static_cast<std::int64_t>(parameters_.walls.size()) &&
+                          solids == static_cast<std::int64_t>(parameters_.solids.size());
   if (!same_walls && !as_start)
     throw InputError(
-        fmt::format("The saved grains had {} walls, but this case has {}; the boundaries must be the same.", walls,
-                    parameters_.walls.size()));
+        fmt::format("The saved grains had {} walls and {} solids, but this case has {} and {}; both must be the same.",
+                    walls, solids, parameters_.walls.size(), parameters_.solids.size()));
   global_count_ = static_cast<std::int64_t>(archive.shape(group + "/radius").at(0));
   // A start may be that of another kind of run, whose columns mean something else.
   const bool same_columns =
@@ -274,6 +279,7 @@ void GrainDynamics::restore(ArchiveReader& archive, const std::string& group, Re
   if (!as_start) assemblies_.load(archive, group);
   check_prescribed_speed();
   if (walls_change_) place_walls(time(), time());
+  if (solids_change_) place_solids(time(), time());
   check_loaded(batch, GrainSpace(box_, planes_), communicator_);
   const bool stranger = std::any_of(batch.rows.begin(), batch.rows.end(), [this](const GrainRow& row) {
     return row.material < 0 || row.material >= materials_.count();

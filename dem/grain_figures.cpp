@@ -46,6 +46,18 @@ std::vector<Contact> GrainDynamics::contacts() const {
       touching.push_back({store_.id[c.grain], -1 - static_cast<GlobalId>(c.wall), overlap, wall.normal,
                           kept(list_.wall_rows.history_of(number))});
   }
+  SolidTouches touches(box_, solids_, parameters_.solids);
+  SolidTouches::for_each_grain(list_.solids, [&](std::size_t first, std::size_t last) {
+    const std::uint32_t slot = list_.solids[first].grain;
+    const auto normal_of = [this](std::size_t near, std::size_t row) {
+      return surface_normal_of(list_, near * touches_per_solid + row);
+    };
+    for (const SolidTouch& touch :
+         touches.of(list_.solids, first, last, store_.position[slot], store_.radius[slot], 0.0, normal_of))
+      touching.push_back({store_.id[slot], -1 - static_cast<GlobalId>(planes_.size() + list_.solids[touch.near].solid),
+                          store_.radius[slot] - touch.view.distance, touch.view.normal,
+                          kept(list_.solid_rows.history_of(touch.near * touches_per_solid + touch.row))});
+  });
   return touching;
 }
 
@@ -63,7 +75,7 @@ std::vector<Vec3> GrainDynamics::places_in_clumps() const {
 void GrainDynamics::for_each_contact(
     const std::function<void(std::size_t slot, const Vec3& arm, const Vec3& force)>& visit) const {
   const std::vector<Vec3> from_centre = places_in_clumps();
-  for_each_contact_end(store_, list_, box_, planes_, materials_, {}, [&](std::size_t slot, const ContactEnd& end) {
+  for_each_contact_end(store_, list_, surroundings(), materials_, {}, [&](std::size_t slot, const ContactEnd& end) {
     visit(slot, from_centre.empty() ? end.arm : Vec3(end.arm + from_centre[slot]), end.force);
   });
 }
@@ -72,7 +84,7 @@ void GrainDynamics::for_each_lubrication(
     const std::function<void(std::size_t slot, const Vec3& arm, const Vec3& force)>& visit) const {
   if (!parameters_.lubrication) return;
   const std::vector<Vec3> from_centre = places_in_clumps();
-  for_each_lubrication_end(store_, list_, box_, planes_, *parameters_.lubrication,
+  for_each_lubrication_end(store_, list_, surroundings(), *parameters_.lubrication,
                            [&](std::size_t slot, const Vec3& arm, const Vec3& force) {
                              visit(slot, from_centre.empty() ? arm : Vec3(arm + from_centre[slot]), force);
                            });
@@ -80,17 +92,18 @@ void GrainDynamics::for_each_lubrication(
 
 void GrainDynamics::for_each_contact_of(
     std::span<const char> chosen, const std::function<void(std::size_t slot, const ContactEnd& end)>& visit) const {
-  for_each_contact_end(store_, list_, box_, planes_, materials_, chosen, visit);
+  for_each_contact_end(store_, list_, surroundings(), materials_, chosen, visit);
 }
 
 void GrainDynamics::for_each_wall_force(
     const std::function<void(std::size_t slot, const ContactEnd& end)>& visit) const {
-  for_each_wall_contact(store_, list_, box_, planes_, materials_, visit);
-  if (parameters_.lubrication) for_each_wall_lubrication(store_, list_, box_, planes_, *parameters_.lubrication, visit);
+  for_each_wall_contact(store_, list_, surroundings(), materials_, visit);
+  if (parameters_.lubrication)
+    for_each_wall_lubrication(store_, list_, surroundings(), *parameters_.lubrication, visit);
 }
 
 std::vector<Vec3> GrainDynamics::wall_forces() const {
-  const std::size_t walls = planes_.size();
+  const std::size_t walls = planes_.size() + solids_.size();
   std::vector<double> terms;  // 3 * walls of each force
   for_each_wall_force([&](std::size_t /*slot*/, const ContactEnd& end) {
     const auto wall = static_cast<std::size_t>(-1 - end.partner);

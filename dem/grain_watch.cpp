@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -39,6 +40,7 @@ GrainTrouble GrainWatch::trouble_of(const GrainStore& store, std::size_t s, doub
   if (!holds_translation(store.motion[s])) {
     if (space.beyond_moving_wall(x, radius)) return GrainTrouble::beyond_wall;
     if (space.deep_in_plate(x, radius)) return GrainTrouble::in_plate;
+    if (std::binary_search(in_solids.begin(), in_solids.end(), s)) return GrainTrouble::in_solid;
   }
   if (speed * step_time > radius) return GrainTrouble::too_fast;
   return displacement > 0.5 * skin ? GrainTrouble::outran : GrainTrouble::none;
@@ -66,6 +68,9 @@ void GrainWatch::throw_first(const GrainStore& store, const PeriodicBox& box, co
     case GrainTrouble::in_plate:
       throw RunError(grain +
                      " is more than half its radius deep in a plate; use stiffer contacts, or less load or speed.");
+    case GrainTrouble::in_solid:
+      throw RunError(grain +
+                     " is more than half its radius deep in a solid; use stiffer contacts, or less load or speed.");
     case GrainTrouble::too_fast:
       throw RunError(fmt::format("{} moves more than its radius in one step of {:g} s; use a shorter time step.", grain,
                                  step_time));

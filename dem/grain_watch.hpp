@@ -13,12 +13,13 @@
 
 namespace thalweg::dem {
 
-enum class GrainTrouble { none, not_finite, outside, beyond_wall, in_plate, too_fast, outran };
+enum class GrainTrouble { none, not_finite, outside, beyond_wall, in_plate, in_solid, too_fast, outran };
 
 struct GrainWatch {
   GrainSpace space;
-  double skin;       // m, of the contact list: a grain may go half of it
-  double step_time;  // s, of the caller's step, in which a grain may move its radius
+  double skin;                         // m, of the contact list: a grain may go half of it
+  double step_time;                    // s, of the caller's step, in which a grain may move its radius
+  std::vector<std::size_t> in_solids;  // slots of grains that are half their radius deep in a solid, rising
 
   // displacement: m, since the contact list was built.
   GrainTrouble trouble_of(const GrainStore& store, std::size_t owned_slot, double displacement) const;

@@ -67,14 +67,15 @@ std::optional<NearSurfaces> between(const MovingSphere& first, const MovingSpher
                               normal, approach, approach - spin.cross(normal), first.spin - second.spin)};
 }
 
+// ratio: the radius of the sphere over that of what it is near; 0 of a plane.
 std::optional<NearSurfaces> between(const MovingSphere& sphere, const WallView& view, const Vec3& wall_velocity,
-                                    const LubricationParameters& parameters) {
+                                    double ratio, const LubricationParameters& parameters) {
   const auto [height, n] = view;
   const double gap = height - sphere.radius;
   if (!(gap > 0.0 && gap < parameters.reach())) return std::nullopt;
   const Vec3 approach = sphere.velocity - wall_velocity;
   return NearSurfaces{n, height, 0.0,
-                      load_of(lubrication_resistance(parameters, sphere.radius, 0.0, gap), n, approach,
+                      load_of(lubrication_resistance(parameters, sphere.radius, ratio, gap), n, approach,
                               approach - height * sphere.spin.cross(n), sphere.spin)};
 }
 
@@ -90,14 +91,35 @@ void add_to_pair(MovingGrain& first, MovingGrain& second, const Vec3& separation
   second.torque += near->second_arm * turn - couple;
 }
 
-void add_to_wall(MovingGrain& grain, const Plane& wall, const PeriodicBox& box,
-                 const LubricationParameters& parameters) {
-  const auto near =
-      between(moving_sphere_of(grain), wall.seen_from(vector_of(grain.position), box), wall.velocity, parameters);
-  if (!near) return;
-  const LubricationLoad& load = near->load;
-  grain.force += row_of(load.force);
-  grain.torque += row_of(near->first_arm * load.force.cross(near->normal) + load.couple);
+void add_to_grain(MovingGrain& grain, const NearSurfaces& near) {
+  grain.force += row_of(near.load.force);
+  grain.torque += row_of(near.first_arm * near.load.force.cross(near.normal) + near.load.couple);
+}
+
+// Calls visit(slot, partner, surfaces) for every wall and every place of a solid that is near a grain. sphere_of(slot)
+// and position_of(slot): as the grain is now.
+template <typename SphereOf, typename PositionOf, typename Visit>
+void for_each_near_wall(const ContactList& list, const Surroundings& around, const LubricationParameters& parameters,
+                        SphereOf sphere_of, PositionOf position_of, Visit visit) {
+  for (const WallContact& c : list.walls) {
+    if (!parameters.walls[c.wall]) continue;
+    const Plane& wall = around.walls[c.wall];
+    const WallView view = wall.seen_from(position_of(c.grain), around.box);
+    if (const auto near = between(sphere_of(c.grain), view, wall.velocity, 0.0, parameters))
+      visit(c.grain, c.wall, *near);
+  }
+  SolidTouches touches(around.box, around.placed, around.solids);
+  SolidTouches::for_each_grain(list.solids, [&](std::size_t first, std::size_t last) {
+    const std::uint32_t slot = list.solids[first].grain;
+    const MovingSphere sphere = sphere_of(slot);
+    const auto without_history = [](std::size_t, std::size_t) -> Vec3 { return Vec3::Zero(); };
+    for (const SolidTouch& touch :
+         touches.of(list.solids, first, last, position_of(slot), sphere.radius, parameters.reach(), without_history)) {
+      const double ratio = sphere.radius / touch.effective_radius - 1.0;
+      if (const auto near = between(sphere, touch.view, touch.velocity, ratio, parameters))
+        visit(slot, around.walls.size() + list.solids[touch.near].solid, *near);
+    }
+  });
 }
 
 }  // namespace
@@ -151,42 +173,42 @@ void check(const LubricationParameters& parameters, double largest_radius, doubl
                   time_step, longest, parameters.minimum_gap * time_step / longest));
 }
 
-void add_lubrication(MovingGrains& grains, const ContactList& list, const PeriodicBox& box,
-                     std::span<const Plane> walls, const LubricationParameters& parameters) {
+void add_lubrication(MovingGrains& grains, const ContactList& list, const Surroundings& around,
+                     const LubricationParameters& parameters) {
   for (const PairContact& c : list.pairs) {
     MovingGrain &first = grains[c.first], &second = grains[c.second];
-    add_to_pair(first, second, box.difference(vector_of(first.position), vector_of(second.position)), parameters);
+    add_to_pair(first, second, around.box.difference(vector_of(first.position), vector_of(second.position)),
+                parameters);
   }
-  for (const WallContact& c : list.walls)
-    if (parameters.walls[c.wall]) add_to_wall(grains[c.grain], walls[c.wall], box, parameters);
+  for_each_near_wall(
+      list, around, parameters, [&](std::uint32_t slot) { return moving_sphere_of(grains[slot]); },
+      [&](std::uint32_t slot) { return vector_of(grains[slot].position); },
+      [&](std::uint32_t slot, std::size_t, const NearSurfaces& near) { add_to_grain(grains[slot], near); });
 }
 
-void for_each_lubrication_end(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
-                              std::span<const Plane> walls, const LubricationParameters& parameters,
-                              const LubricationVisitor& visit) {
+void for_each_lubrication_end(const GrainStore& store, const ContactList& list, const Surroundings& around,
+                              const LubricationParameters& parameters, const LubricationVisitor& visit) {
   for (const PairContact& c : list.pairs) {
     const auto near = between(moving_sphere_of(store, c.first), moving_sphere_of(store, c.second),
-                              box.difference(store.position[c.first], store.position[c.second]), parameters);
+                              around.box.difference(store.position[c.first], store.position[c.second]), parameters);
     if (!near) continue;
     if (!store.is_ghost(c.first)) visit(c.first, -near->first_arm * near->normal, near->load.force);
     if (!store.is_ghost(c.second)) visit(c.second, near->second_arm * near->normal, -near->load.force);
   }
-  for_each_wall_lubrication(store, list, box, walls, parameters,
+  for_each_wall_lubrication(store, list, around, parameters,
                             [&visit](std::size_t slot, const ContactEnd& end) { visit(slot, end.arm, end.force); });
 }
 
-void for_each_wall_lubrication(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
-                               std::span<const Plane> walls, const LubricationParameters& parameters,
-                               const ContactSource::ContactEndVisitor& visit) {
-  for (const WallContact& c : list.walls) {
-    if (!parameters.walls[c.wall] || store.is_ghost(c.grain)) continue;
-    const Plane& wall = walls[c.wall];
-    const auto near = between(moving_sphere_of(store, c.grain), wall.seen_from(store.position[c.grain], box),
-                              wall.velocity, parameters);
-    if (!near) continue;
-    const Vec3 arm = -near->first_arm * near->normal;
-    visit(c.grain, {arm, near->load.force, -1 - static_cast<GlobalId>(c.wall), arm});
-  }
+void for_each_wall_lubrication(const GrainStore& store, const ContactList& list, const Surroundings& around,
+                               const LubricationParameters& parameters, const ContactSource::ContactEndVisitor& visit) {
+  for_each_near_wall(
+      list, around, parameters, [&](std::uint32_t slot) { return moving_sphere_of(store, slot); },
+      [&](std::uint32_t slot) { return store.position[slot]; },
+      [&](std::uint32_t slot, std::size_t partner, const NearSurfaces& near) {
+        if (store.is_ghost(slot)) return;
+        const Vec3 arm = -near.first_arm * near.normal;
+        visit(slot, {arm, near.load.force, -1 - static_cast<GlobalId>(partner), arm});
+      });
 }
 
 }  // namespace thalweg::dem

@@ -60,21 +60,20 @@ double longest_lubrication_step(const LubricationParameters& parameters, double 
 void check(const LubricationParameters& parameters, double largest_radius, double radius_per_mass,
            const PeriodicBox& box, double time_step);
 
-// Adds these forces and torques for all pairs and walls of the list whose gap is below the cut-offs. Surfaces that
-// touch feel their contact law alone. Sums run in the order of the list.
-void add_lubrication(MovingGrains& grains, const ContactList& list, const PeriodicBox& box,
-                     std::span<const Plane> walls, const LubricationParameters& parameters);
+// Adds these forces and torques for all pairs, walls and solids of the list whose gap is below the cut-offs. Surfaces
+// that touch feel their contact law alone. The edge of a solid counts as the plane across the line from it to the
+// grain. Sums run in the order of the list.
+void add_lubrication(MovingGrains& grains, const ContactList& list, const Surroundings& around,
+                     const LubricationParameters& parameters);
 
 // Calls visit(slot, arm, force) for every such force on every owned grain, in the order of the list, pairs first: m
 // from its centre to the middle of the gap (to a wall's surface), N. By the present positions and velocities.
 using LubricationVisitor = std::function<void(std::size_t slot, const Vec3& arm, const Vec3& force)>;
-void for_each_lubrication_end(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
-                              std::span<const Plane> walls, const LubricationParameters& parameters,
-                              const LubricationVisitor& visit);
+void for_each_lubrication_end(const GrainStore& store, const ContactList& list, const Surroundings& around,
+                              const LubricationParameters& parameters, const LubricationVisitor& visit);
 
-// The same for walls only, with the wall.
-void for_each_wall_lubrication(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
-                               std::span<const Plane> walls, const LubricationParameters& parameters,
-                               const ContactSource::ContactEndVisitor& visit);
+// The same for walls and solids only, with the partner as for_each_wall_contact() gives it.
+void for_each_wall_lubrication(const GrainStore& store, const ContactList& list, const Surroundings& around,
+                               const LubricationParameters& parameters, const ContactSource::ContactEndVisitor& visit);
 
 }  // namespace thalweg::dem

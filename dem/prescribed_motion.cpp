@@ -21,6 +21,11 @@ Vec3 turned(const Vec3& arm, const Vec3& axis, double angle) {
 
 }  // namespace
 
+bool PrescribedMotion::moves() const {
+  const bool swings = oscillation.frequency > 0.0 && !oscillation.amplitude.isZero(0.0);
+  return swings || angular_velocity != 0.0 || !velocity.isZero(0.0);
+}
+
 Vec3 PrescribedMotion::displacement(double time) const {
   const double swing =
       std::sin(angular_frequency(oscillation) * time + oscillation.phase) - std::sin(oscillation.phase);

@@ -39,7 +39,7 @@ void expect_seen(GrainStore& store, const MovingGrains& grains, const ContactLis
                  std::span<const Plane> walls) {
   store.owned = store.total();
   std::vector<Vec3> force(store.owned, Vec3::Zero()), place(store.owned, Vec3::Zero());
-  for_each_lubrication_end(store, list, box, walls, parameters(),
+  for_each_lubrication_end(store, list, {box, walls, {}, {}}, parameters(),
                            [&](std::size_t slot, const Vec3& arm, const Vec3& on_it) {
                              force[slot] += on_it;
                              place[slot] = store.position[slot] + arm;
@@ -67,7 +67,7 @@ Loads pair_loads(const Body& first, const Body& second, const Vec3& direction, d
   ContactList list;
   list.pairs.push_back({0, 1, first.radius + second.radius});
   const PeriodicBox box{Vec3(0.1, 0.1, 0.1), {false, false, false}};
-  add_lubrication(grains, list, box, {}, parameters());
+  add_lubrication(grains, list, {box, {}, {}, {}}, parameters());
   expect_seen(store, grains, list, box, {});
   return {{vector_of(grains[0].force), vector_of(grains[1].force)},
           {vector_of(grains[0].torque), vector_of(grains[1].torque)}};
@@ -83,7 +83,7 @@ Loads wall_loads(const Body& body, double gap) {
   list.walls.push_back({0, 0});
   const Plane floor;
   const PeriodicBox box{Vec3(0.1, 0.1, 0.1), {false, false, false}};
-  add_lubrication(grains, list, box, {&floor, 1}, parameters());
+  add_lubrication(grains, list, {box, {&floor, 1}, {}, {}}, parameters());
   expect_seen(store, grains, list, box, {&floor, 1});
   return {{vector_of(grains[0].force), Vec3::Zero()}, {vector_of(grains[0].torque), Vec3::Zero()}};
 }

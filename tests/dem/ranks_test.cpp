@@ -5,6 +5,7 @@
 #include "dem/random_packing.hpp"
 #include "tests/dem/clump_cases.hpp"
 #include "tests/support/memory_archive.hpp"
+#include "tests/support/meshes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -26,7 +27,8 @@ struct Case {
   bool plate = false;    // comes up from below the floor, across the end of the box along x
   bool lubricated = false;
   bool movable_cuts = false;
-  bool moist = false;  // with liquid bridges
+  bool moist = false;   // with liquid bridges
+  bool solids = false;  // a floor of triangles, and a block that turns and comes up from below
 };
 
 struct Cloud {
@@ -100,6 +102,27 @@ GrainParameters parameters_of(const Case& c) {
     plate.point = Vec3(0.0, 0.5 * box.size[1], -3e-3);
     plate.plate = {Vec3::UnitX(), 6e-3, 5e-3};
     p.walls.push_back(plate);
+  }
+  if (c.solids) {
+    const Vec3 size = box.size, third = size / 3.0;
+    const auto hilly = [&](double x, double y) {
+      return 1e-3 * std::cos(6.0 * x / size.x()) * std::sin(6.0 * y / size.y()) - 5e-4;
+    };
+    const TriangleMesh floor = thalweg::test::slab_mesh(Vec3(0.0, 0.0, -3e-3), Vec3(size.x(), size.y(), 0.0), 9, 8,
+                                                        hilly, [](int, int) { return Vec3::Zero(); });
+    p.solids.push_back({std::make_shared<SolidSurface>(floor), 0.4, c.rolling, {}});
+    const auto solid = [&](SolidSurface surface) {
+      return Solid{std::make_shared<SolidSurface>(std::move(surface)), 0.6, c.rolling, {}};
+    };
+    Solid block = solid(SolidSurface(
+        thalweg::test::box_mesh(Vec3(-0.5 * third - Vec3(0, 0, 5e-3)), Vec3(0.5 * third - Vec3(0, 0, 5e-3)))));
+    block.motion.axis = Vec3(0.0, 0.6, 0.8);
+    block.motion.angular_velocity = 4.0;
+    block.motion.velocity = Vec3(0.1, 0.0, 0.02);
+    block.motion.oscillation = {Vec3(0.0, 1e-3, 0.0), 20.0, 0.0};
+    Solid ball = solid(SolidSurface::sphere(Vec3(0.0, third.y(), -3.2e-3), 3e-3));
+    ball.motion.velocity = Vec3(0.3, 0.2, 0.04);
+    p.solids.insert(p.solids.end(), {block, ball});
   }
   if (c.moving) {
     for (Plane& wall : p.walls)
@@ -255,6 +278,10 @@ void compare(const Case& c, int steps, Layouts wanted = Layouts::all) {
   if (c.plate) {
     EXPECT_LT(alone.wall_forces().back()[2], 0.0);
   }
+  if (c.solids) {
+    const std::vector<Vec3> forces = alone.wall_forces();
+    for (const std::size_t s : {p.walls.size(), p.walls.size() + 1}) EXPECT_NE(forces[s][2], 0.0) << s;
+  }
 
   for (const Index3& layout : layouts(c, ranks, wanted)) {
     const std::string name = fmt::format("layout {},{},{}", layout[0], layout[1], layout[2]);
@@ -321,6 +348,15 @@ TEST(Ranks, HeapWithRollingFriction) {
   c.rolling = 0.1;
   compare(c, 240, Layouts::two);
   c.elastic = true;
+  compare(c, 240, Layouts::two);
+}
+
+TEST(Ranks, HeapOnSolids) {
+  Case c{{16, 16, 16}, 1.5e-3, {true, true, false}, 60, Vec3(4.0, 2.0, -15.0), Vec3(0.4, 0.3, 0.0)};
+  c.solids = true;
+  compare(c, 240);
+  c.elastic = c.lubricated = true;
+  c.rolling = 0.1;
   compare(c, 240, Layouts::two);
 }
 

@@ -1,0 +1,94 @@
+#include "dem/solid_contacts.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace thalweg::dem {
+
+namespace {
+
+constexpr double same_corner = 1e-6;  // radii, by which corners at one place may differ
+
+// The position of a grain, wrapped or not, at the end of the box where it was when the list was made.
+Vec3 unwrapped(const Vec3& position, const Vec3& listed, const PeriodicBox& box) {
+  Vec3 at = position;
+  for (int axis = 0; axis < 3; ++axis)
+    if (box.periodic[axis]) at[axis] += box.size[axis] * std::round((listed[axis] - at[axis]) / box.size[axis]);
+  return at;
+}
+
+}  // namespace
+
+SolidDepth depth_in_solids(const Vec3& position, double radius, const PeriodicBox& box,
+                           std::span<const PlacedSolid> solids, std::span<const Solid> shapes) {
+  SolidDepth deepest{-std::numeric_limits<double>::infinity(), -1};
+  std::vector<SurfaceView> views;
+  for (std::size_t n = 0; n < solids.size(); ++n)
+    for_each_image(solids[n], box, position, radius, [&](const Vec3& shift) {
+      const SolidSurface& surface = *shapes[n].surface;
+      const Vec3 at = solids[n].in_solid(position - shift);
+      views.clear();
+      surface.look(surface.parts_near(at, radius), at, radius, views);
+      double depth = -std::numeric_limits<double>::infinity();
+      for (const SurfaceView& view : views) depth = std::max(depth, radius - view.distance);
+      if (surface.holds(at)) depth = std::numeric_limits<double>::infinity();
+      if (depth > deepest.depth) deepest = {depth, static_cast<int>(n)};
+    });
+  return deepest;
+}
+
+std::vector<NearSolid> find_near_solids(const GrainStore& store, const PeriodicBox& box,
+                                        std::span<const PlacedSolid> solids, std::span<const Solid> shapes,
+                                        double range) {
+  std::vector<NearSolid> near;
+  for (std::size_t s = 0; s < store.owned; ++s)
+    for (std::size_t n = solids.size(); n-- > 0;) {
+      NearSolid found{static_cast<std::uint32_t>(s), static_cast<std::uint32_t>(n), store.position[s], {}};
+      const double reach = store.radius[s] + range;
+      for_each_image(solids[n], box, store.position[s], reach, [&](const Vec3& shift) {
+        SolidSurface::Parts parts = shapes[n].surface->parts_near(solids[n].in_solid(store.position[s] - shift), reach);
+        if (!parts.empty()) found.images.push_back({shift, std::move(parts)});
+      });
+      if (!found.images.empty()) near.push_back(std::move(found));
+    }
+  return near;
+}
+
+void SolidTouches::look(std::span<const NearSolid> near, std::size_t first, std::size_t last, const Vec3& position,
+                        double radius, double distance) {
+  views_.clear();
+  touches_.clear();
+  taken_.resize((last - first) * touches_per_solid);
+  for (std::size_t n = first; n < last; ++n) {
+    const PlacedSolid& solid = solids_[near[n].solid];
+    const Vec3 at = unwrapped(position, near[n].listed, box_);
+    for (const NearSolid::Image& image : near[n].images) {
+      of_image_.clear();
+      shapes_[near[n].solid].surface->look(image.parts, solid.in_solid(at - image.shift), distance, of_image_);
+      for (SurfaceView& view : of_image_) {
+        view.normal = solid.turned_in_space(view.normal);
+        view.foot = solid.in_space(view.foot);  // of the solid itself, whose velocity all images have
+        for (int c = 0; c < view.corners; ++c) view.corner[c] = solid.in_space(view.corner[c]) + image.shift;
+        view.owner = static_cast<std::uint32_t>(n);
+        views_.push_back(view);
+      }
+    }
+  }
+  keep_contacts(views_, same_corner * radius);
+  std::fill(taken_.begin(), taken_.end(), 0);  // here: how many of an entry's rows are used
+  for (const SurfaceView& view : views_) {
+    char& used = taken_[(view.owner - first) * touches_per_solid];
+    if (static_cast<std::size_t>(used) == touches_per_solid) continue;
+    ++used;
+    const NearSolid& of = near[view.owner];
+    const double rounding = shapes_[of.solid].surface->rounding();
+    touches_.push_back({view.owner,
+                        0,
+                        false,
+                        {view.distance, view.normal},
+                        solids_[of.solid].velocity_at(view.foot),
+                        rounding > 0.0 ? radius * rounding / (radius + rounding) : radius});
+  }
+}
+
+}  // namespace thalweg::dem
