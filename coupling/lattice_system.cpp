@@ -262,10 +262,13 @@ void LatticeSystem<Real>::add_grain_figures(const lbm::FluidSurvey& survey, std:
 template <typename Real>
 void LatticeSystem<Real>::add_solid_forces(std::vector<Figure>& figures) const {
   if (bodies_.solids() == 0) return;
-  const std::vector<Vec3> forces = solid_forces();
-  for (std::size_t s = 0; s < forces.size(); ++s)
-    for (int a = 0; a < 3; ++a)
-      figures.push_back({fmt::format("solid_{}_force_{}", s, "xyz"[a]), "N", forces[s][a] * parameters_.units.force()});
+  const std::vector<Vec3> of_fluid = solid_forces();
+  for (std::size_t s = 0; s < of_fluid.size(); ++s)
+    dem::add_force(fmt::format("solid_{}_force", s), of_fluid[s] * parameters_.units.force(), figures);
+  if (!grains_) return;
+  const std::vector<Vec3> of_grains = grains_->wall_forces();
+  for (std::size_t s = 0; s < of_fluid.size(); ++s)
+    dem::add_force(dem::solid_force_figure(s), of_grains[grains_->walls().size() + s], figures);
 }
 
 // Of the grains at the end of the step; of the fluid what the walls take from it in the step to come.
@@ -277,12 +280,8 @@ void LatticeSystem<Real>::add_wall_forces(std::vector<Figure>& figures) const {
   for (std::size_t face = 0; face < of_fluid.size(); ++face) {
     if (decomposition_->periodic()[face / 2]) continue;
     const Vec3 fluid_force = of_fluid[face] * parameters_.units.force();
-    for (int axis = 0; axis < 3; ++axis)
-      figures.push_back(
-          {fmt::format("wall_force_{}_{}", dem::face_names[face], "xyz"[axis]), "N", of_grains[wall][axis]});
-    for (int axis = 0; axis < 3; ++axis)
-      figures.push_back(
-          {fmt::format("fluid_wall_force_{}_{}", dem::face_names[face], "xyz"[axis]), "N", fluid_force[axis]});
+    dem::add_force(fmt::format("wall_force_{}", dem::face_names[face]), of_grains[wall], figures);
+    dem::add_force(fmt::format("fluid_wall_force_{}", dem::face_names[face]), fluid_force, figures);
     ++wall;
   }
 }

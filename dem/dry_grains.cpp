@@ -93,11 +93,12 @@ std::vector<Figure> DryGrains::figures() const {
         {restless_figure, "1", static_cast<double>(grains_.restless_count(rest_->speed, rest_->acceleration))});
   if (field_)
     for (const Figure& figure : field_->figures(time())) figures.push_back(figure);
-  if (wall_names_.empty()) return figures;
+  if (wall_names_.empty() && grains_.parameters().solids.empty()) return figures;
   const std::vector<Vec3> forces = grains_.wall_forces();
-  for (std::size_t wall = 0; wall < forces.size(); ++wall)
-    for (int axis = 0; axis < 3; ++axis)
-      figures.push_back({fmt::format("wall_force_{}_{}", wall_names_[wall], "xyz"[axis]), "N", forces[wall][axis]});
+  for (std::size_t wall = 0; wall < wall_names_.size(); ++wall)
+    add_force("wall_force_" + wall_names_[wall], forces[wall], figures);
+  for (std::size_t solid = 0; solid < grains_.parameters().solids.size(); ++solid)
+    add_force(solid_force_figure(solid), forces[grains_.walls().size() + solid], figures);
   return figures;
 }
 

@@ -44,8 +44,8 @@ public:
   double time_step() const override { return time_step_; }
   Snapshot snapshot() const override;
   // contacts (1), largest_overlap (diameters), of the free grains largest_grain_speed (m/s), largest_grain_acceleration
-  // (m/s^2), with RestBounds restless_grains (1), those of the field, and three for each measured wall (N):
-  // wall_force_bottom_x ..., wall_force_wall_0_x ...
+  // (m/s^2), with RestBounds restless_grains (1), those of the field, and three for each measured wall and each
+  // solid (N): wall_force_bottom_x ..., wall_force_wall_0_x ..., solid_0_grain_force_x ...
   std::vector<Figure> figures() const override;
   std::optional<Place> place_of(const std::string& figure) const override;
   static constexpr const char* largest_speed_figure = "largest_grain_speed";

@@ -109,7 +109,7 @@ void GrainDynamics::take_seeds(GrainSeeds seeds) {
       check(grains, box_, parameters_.walls, parameters_.initial_overlap);
     else
       check_part(grains, box_, parameters_.walls, parameters_.initial_overlap, largest_radius_);
-    check_solids(grains);
+    check(grains, parameters_.solids, box_, parameters_.initial_overlap);
     check_kinds(grains);
   });
   std::vector<LightestGrain> lightest(static_cast<std::size_t>(materials_.count()));
@@ -130,20 +130,6 @@ void GrainDynamics::take_seeds(GrainSeeds seeds) {
   check_lubrication(parameters_, lightest, largest_radius_, box_);
   replace_owned(store_, batch);
   clumps_.replace(mine);
-}
-
-void GrainDynamics::check_solids(std::span<const GrainSeed> grains) const {
-  for (const GrainSeed& grain : grains) {
-    if (is_fixed(grain.motion)) continue;
-    const SolidDepth in = depth_in_solids(grain.position, grain.radius, box_, solids_, parameters_.solids);
-    if (in.depth <= parameters_.initial_overlap * 2.0 * grain.radius) continue;
-    const Vec3& x = grain.position;
-    throw InputError(fmt::format("Grain {} at ({:g}, {:g}, {:g}) m with radius {:g} m {}; move it away.", grain.id,
-                                 x[0], x[1], x[2], grain.radius,
-                                 std::isfinite(in.depth)
-                                     ? fmt::format("reaches {:g} m into solid {}", in.depth, in.solid)
-                                     : fmt::format("is inside solid {}", in.solid)));
-  }
 }
 
 void GrainDynamics::check_kinds(std::span<const GrainSeed> grains) const {
@@ -260,11 +246,11 @@ GrainDynamics::Outlook GrainDynamics::look_ahead() {
 
 std::vector<std::size_t> GrainDynamics::deep_in_solids() const {
   std::vector<std::size_t> deep;
-  for (const NearSolid& near : list_.solids) {
-    const double radius = store_.radius[near.grain];
-    const double depth = depth_in_solids(store_.position[near.grain], radius, box_, solids_, parameters_.solids).depth;
-    if (depth > 0.5 * radius) deep.push_back(near.grain);
-  }
+  SolidTouches touches(box_, solids_, parameters_.solids);
+  SolidTouches::for_each_grain(list_.solids, [&](std::size_t first, std::size_t last) {
+    const std::uint32_t slot = list_.solids[first].grain;
+    if (touches.is_deep(list_.solids, first, last, store_.position[slot], store_.radius[slot])) deep.push_back(slot);
+  });
   return deep;
 }
 

@@ -15,6 +15,7 @@
 #include "core/phase_timer.hpp"
 #include "core/place.hpp"
 #include "core/snapshot.hpp"
+#include "core/system.hpp"
 #include "dem/assemblies.hpp"
 #include "dem/clump_seed.hpp"
 #include "dem/clumps.hpp"
@@ -84,6 +85,10 @@ struct Contact {
   Vec3 normal;             // unit, from second to first
   std::vector<double> history;  // what its law keeps (contact_law.hpp), at the last evaluation
 };
+
+// Three figures of a force, N: `name`_x, `name`_y, `name`_z. And the name of that of all grains on a solid.
+void add_force(const std::string& name, const Vec3& force, std::vector<Figure>& figures);
+std::string solid_force_figure(std::size_t solid);
 
 class GrainDynamics {
 public:
@@ -216,7 +221,6 @@ private:
   void for_each_body(Visitor&& visit) const;
   void take_seeds(GrainSeeds seeds);
   void check_kinds(std::span<const GrainSeed> grains) const;
-  void check_solids(std::span<const GrainSeed> grains) const;
   void check_integrator() const;
   double list_range() const;
   void wrap_positions();

@@ -89,7 +89,8 @@ private:
     for (const Trial& tried : known) {
       if (tried.fits || !ranks_.owns(Vec3(tried.position))) continue;
       const auto goes_first = [&](std::int64_t other) { return other < tried.number; };
-      const bool fits = !placed_cells_.overlaps(tried.sphere()) && !trying.overlaps(tried.sphere(), goes_first);
+      const bool fits = !placed_cells_.overlaps(tried.sphere()) && !trying.overlaps(tried.sphere(), goes_first) &&
+                        !ranks_.blocked(Vec3(tried.position), tried.radius);
       next.push_back(fits ? tried : trial(tried.number, tried.radius, attempt + 1));
       next.back().fits = fits;
     }

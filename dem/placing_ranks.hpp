@@ -5,6 +5,7 @@
 #include "core/periodic_box.hpp"
 #include "core/ranks.hpp"
 
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -25,6 +26,10 @@ public:
         reach_(reach) {}
 
   const PeriodicBox& box() const { return box_; }
+
+  // Grains are not to be placed at random where blocked(centre, radius) says so (m), the same on all ranks.
+  void keep_clear_of(std::function<bool(const Vec3& centre, double radius)> blocked) { blocked_ = std::move(blocked); }
+  bool blocked(const Vec3& centre, double radius) const { return blocked_ && blocked_(centre, radius); }
 
   // Of a point (m, wrapped): whether it is in the block of this rank, and whether it is within reach of it.
   bool owns(const Vec3& point) const { return alone() || decomposition_->owner_of(point) == number(); }
@@ -68,6 +73,7 @@ private:
   PeriodicBox box_;
   const Decomposition* decomposition_ = nullptr;
   double reach_ = 0.0;  // m
+  std::function<bool(const Vec3&, double)> blocked_;
 };
 
 }  // namespace thalweg::dem

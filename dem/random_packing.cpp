@@ -48,7 +48,7 @@ std::vector<PlacedGrain> placed_one_by_one(const PlacingRanks& ranks, const Grai
     do {
       if (attempt == most_attempts_at_random) throw too_many_at_random(grains, static_cast<std::int64_t>(n));
       sphere.position = random_place(ranks.box(), grains, order[n], attempt++);
-    } while (cells.overlaps(sphere));
+    } while (cells.overlaps(sphere) || ranks.blocked(sphere.position, sphere.radius));
     cells.add(sphere);
     if (ranks.knows(sphere.position)) placed.push_back({order[n], sphere.position});
   }

@@ -1,5 +1,9 @@
 #include "dem/solid_contacts.hpp"
 
+#include "core/error.hpp"
+
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 
@@ -37,6 +41,24 @@ SolidDepth depth_in_solids(const Vec3& position, double radius, const PeriodicBo
   return deepest;
 }
 
+void check(std::span<const GrainSeed> grains, std::span<const Solid> solids, const PeriodicBox& box,
+           double allowed_overlap) {
+  std::vector<PlacedSolid> placed;
+  for (const Solid& solid : solids) placed.emplace_back(solid, 0.0, 0.0);
+  for (const GrainSeed& grain : grains) {
+    if (is_fixed(grain.motion)) continue;
+    const SolidDepth in = depth_in_solids(grain.position, grain.radius, box, placed, solids);
+    if (in.depth <= allowed_overlap * 2.0 * grain.radius) continue;
+    const Vec3& x = grain.position;
+    throw InputError(fmt::format(
+        "Grain {} at ({:g}, {:g}, {:g}) m with radius {:g} m {}; move it away, or place grains with pattern: random, "
+        "which keeps clear of solids.",
+        grain.id, x[0], x[1], x[2], grain.radius,
+        std::isfinite(in.depth) ? fmt::format("reaches {:g} m into solid {}", in.depth, in.solid)
+                                : fmt::format("is inside solid {}", in.solid)));
+  }
+}
+
 std::vector<NearSolid> find_near_solids(const GrainStore& store, const PeriodicBox& box,
                                         std::span<const PlacedSolid> solids, std::span<const Solid> shapes,
                                         double range) {
@@ -52,6 +74,22 @@ std::vector<NearSolid> find_near_solids(const GrainStore& store, const PeriodicB
       if (!found.images.empty()) near.push_back(std::move(found));
     }
   return near;
+}
+
+bool SolidTouches::is_deep(std::span<const NearSolid> near, std::size_t first, std::size_t last, const Vec3& position,
+                           double radius) {
+  look(near, first, last, position, radius, radius);
+  if (!touches_.empty()) return touches_.front().view.distance < 0.5 * radius;
+  // Near a surface that does not see it, it is behind it.
+  for (std::size_t n = first; n < last; ++n) {
+    const SolidSurface& surface = *shapes_[near[n].solid].surface;
+    const Vec3 at = unwrapped(position, near[n].listed, box_);
+    for (const NearSolid::Image& image : near[n].images) {
+      const Vec3 in_solid = solids_[near[n].solid].in_solid(at - image.shift);
+      if (surface.distance_to(image.parts, in_solid) < radius && surface.holds(in_solid)) return true;
+    }
+  }
+  return false;
 }
 
 void SolidTouches::look(std::span<const NearSolid> near, std::size_t first, std::size_t last, const Vec3& position,

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "core/periodic_box.hpp"
+#include "dem/grain_seed.hpp"
 #include "dem/grain_store.hpp"
 #include "dem/solid.hpp"
 #include "dem/walls.hpp"
@@ -40,6 +41,11 @@ struct SolidDepth {
 };
 SolidDepth depth_in_solids(const Vec3& position, double radius, const PeriodicBox& box,
                            std::span<const PlacedSolid> solids, std::span<const Solid> shapes);
+
+// Throws InputError where a grain that can move is inside a solid at the start, or reaches into it by more than this
+// (in diameters).
+void check(std::span<const GrainSeed> grains, std::span<const Solid> solids, const PeriodicBox& box,
+           double allowed_overlap);
 
 // All owned grains with solids whose surface is closer than `range` (m) to theirs, sorted by id, then from the last
 // solid to the first.
@@ -84,6 +90,10 @@ public:
   bool taken(std::size_t first, std::size_t number, std::size_t row) const {
     return taken_[(number - first) * touches_per_solid + row] != 0;
   }
+
+  // Whether such a grain is inside one of these solids, or as deep in one as half its radius.
+  bool is_deep(std::span<const NearSolid> near, std::size_t first, std::size_t last, const Vec3& position,
+               double radius);
 
 private:
   void look(std::span<const NearSolid> near, std::size_t first, std::size_t last, const Vec3& position, double radius,

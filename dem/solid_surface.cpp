@@ -27,7 +27,7 @@ double distance_to_segment(const Vec3& point, const Vec3& begin, const Vec3& alo
 
 // To the nearest point of a triangle (or within round-off of its sides).
 template <typename Triangle>
-double distance_to(const Vec3& point, const Triangle& t) {
+double distance_to_triangle(const Vec3& point, const Triangle& t) {
   bool above = true;
   double nearest = std::numeric_limits<double>::infinity();
   for (int k = 0; k < 3; ++k) {
@@ -169,7 +169,7 @@ SolidSurface::Parts SolidSurface::parts_near(const Vec3& point, double distance)
     return parts;
   }
   for_each_triangle_in(point.array() - distance, point.array() + distance, [&](std::uint32_t n) {
-    if (distance_to(point, triangles_[n]) <= distance) parts.triangles.push_back(n);
+    if (distance_to_triangle(point, triangles_[n]) <= distance) parts.triangles.push_back(n);
   });
   sort_and_drop_repeated(parts.triangles);
   for (const std::uint32_t n : parts.triangles)
@@ -220,6 +220,13 @@ void SolidSurface::look(const Parts& parts, const Vec3& point, double distance, 
     views.push_back(
         {length - rounding_, normal, c.point + rounding_ * normal, 1, {c.point, Vec3::Zero(), Vec3::Zero()}});
   }
+}
+
+double SolidSurface::distance_to(const Parts& parts, const Vec3& point) const {
+  double nearest = std::numeric_limits<double>::infinity();
+  if (rounding_ > 0.0) return parts.empty() ? nearest : std::abs((point - corners_.front().point).norm() - rounding_);
+  for (const std::uint32_t n : parts.triangles) nearest = std::min(nearest, distance_to_triangle(point, triangles_[n]));
+  return nearest;
 }
 
 // By the triangles that a line from the point along x crosses.

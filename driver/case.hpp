@@ -59,13 +59,15 @@ struct SphereCase {
   bool operator==(const SphereCase&) const = default;
 };
 
-// A body that stands still in a fluid without grains: a sphere, or the surface in an STL file.
+// A body that fluid and grains meet: a sphere, or the surface in an STL file.
 struct SolidCase {
   std::optional<SphereCase> sphere;
-  std::string stl;                // file, absolute once read; empty: none
-  double scale = 1.0;             // m per unit of the file
-  Vec3 translate = Vec3::Zero();  // m, after scaling
-  TriangleMesh surface = {};      // of the file, in m, once read; not a key
+  std::string stl;                                   // file, absolute once read; empty: none
+  double scale = 1.0;                                // m per unit of the file
+  Vec3 translate = Vec3::Zero();                     // m, after scaling
+  std::optional<double> friction, rolling_friction;  // else contact.wall_friction, contact.wall_rolling_friction
+  std::optional<dem::MotionKeys> motion;             // none: it stands still
+  TriangleMesh surface = {};                         // of the file, in m, once read; not a key
   bool operator==(const SolidCase&) const = default;
 };
 
@@ -159,7 +161,7 @@ struct Case {
   std::optional<DisksCase> disks;
   std::vector<dem::Population> grains;
   std::vector<dem::WallKeys> walls;  // of dry grains, besides the faces
-  std::vector<SolidCase> solids;     // of system: fluid
+  std::vector<SolidCase> solids;
   dem::ContactKeys contact;
   dem::ModelFluidKeys model_fluid;     // of system: model_fluid
   continuum::ContinuumKeys continuum;  // of system: continuum

@@ -62,10 +62,16 @@ void check_resolution(const Case& c, const io::YamlDocument& document) {
 void check_solids(const Case& c, const io::YamlDocument& document) {
   for (std::size_t n = 0; n < c.solids.size(); ++n) {
     const SolidCase& solid = c.solids[n];
-    if (solid.sphere && solid.sphere->radius < fewest_cells_per_radius * c.domain.spacing)
+    if (has_fluid(c) && solid.sphere && solid.sphere->radius < fewest_cells_per_radius * c.domain.spacing)
       throw document.error(fmt::format("solids.{}.sphere.radius", n),
                            fmt::format("the sphere is smaller than the cells can show; give at least {:.4g} m",
                                        fewest_cells_per_radius * c.domain.spacing));
+    if (solid.motion && has_fluid(c))
+      throw document.error(fmt::format("solids.{}.motion", n),
+                           "in a fluid solids stand still; remove it, or give a population of grains a motion");
+    if (c.grains.empty() && (solid.friction || solid.rolling_friction))
+      throw document.error(fmt::format("solids.{}.{}", n, solid.friction ? "friction" : "rolling_friction"),
+                           "there are no grains that would feel it; remove it");
   }
   check_solid_extents(c, document);
 }

@@ -49,7 +49,7 @@ Case example_case(SystemKind system) {
   c.gravity.slope = 0.07;
   c.run.until = 3.0;
   if (system == SystemKind::continuum) return example_column(c);
-  if (system == SystemKind::fluid) c.solids = {{SphereCase{{0.02, 0.00525, 0.02}, 2.5e-3}, {}, 1.0, Vec3::Zero()}};
+  if (system == SystemKind::fluid) c.solids.emplace_back().sphere = SphereCase{{0.02, 0.00525, 0.02}, 2.5e-3};
   if (system != SystemKind::fluid) {
     dem::Population glass;
     glass.count = 200;

@@ -269,11 +269,9 @@ void describe(SectionVisitor& visit, Case& c) {
                 [&](SectionVisitor& inside) { describe(inside, c.coupling, with_grains); });
   visit.section("initial", {.meaning = "state at the start"},
                 [&](SectionVisitor& inside) { describe_initial(inside, c.initial, c.system); });
-  visit.list("solids", c.solids,
-             {.meaning = "bodies that stand still in the fluid",
-              .only_if = {!with_grains,
-                          "only system: fluid has them, because grains would not feel them; for spheres give a "
-                          "population of grains with fixed: true"}});
+  visit.list("solids", c.solids, {.meaning = "bodies that fluid and grains meet"});
+  visit.require(c.solids.empty() || !c.disks, "solids",
+                "disks move in a plane, which a solid would push them out of; give walls");
   visit.section("run", {.meaning = "duration and time integration", .required = true},
                 [&](SectionVisitor& inside) { describe_run(inside, c.run, with_fluid, with_grains); });
   visit.section("output", {.meaning = "what the run writes, besides run.log and summary.json"},

@@ -246,6 +246,7 @@ LightestGrains check_placed_grains(const Case& c, const PeriodicBox& box, const 
     if (!dem::holds_translation(seed.motion))
       lightest[static_cast<std::size_t>(seed.material)].include(seed.contact_mass(), seed.radius);
   dem::check(seeds, box, parameters.walls, parameters.initial_overlap);
+  dem::check(seeds, parameters.solids, box, parameters.initial_overlap);
   return lightest;
 }
 

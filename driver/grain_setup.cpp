@@ -45,6 +45,33 @@ std::vector<dem::Plane> planes_of(const Case& c, const PeriodicBox& box, const d
   return planes;
 }
 
+std::vector<dem::Solid> solids_of(const Case& c, const dem::ContactParameters& contact) {
+  std::vector<dem::Solid> solids;
+  for (const SolidCase& given : c.solids) {
+    dem::Solid solid;
+    solid.surface = std::make_shared<dem::SolidSurface>(
+        given.sphere ? dem::SolidSurface::sphere(given.sphere->centre, given.sphere->radius)
+                     : dem::SolidSurface(given.surface));
+    solid.friction = given.friction.value_or(contact.wall_friction);
+    solid.rolling_friction = given.rolling_friction.value_or(contact.wall_rolling_friction);
+    if (given.motion) solid.motion = prescribed_motion(*given.motion);
+    solids.push_back(std::move(solid));
+  }
+  return solids;
+}
+
+// The box with its solids where they are at the start, for the placing of grains.
+dem::PlacingRanks keeping_clear(dem::PlacingRanks ranks, const Case& c) {
+  if (c.solids.empty()) return ranks;
+  const std::vector<dem::Solid> solids = solids_of(c, {});
+  std::vector<dem::PlacedSolid> placed;
+  for (const dem::Solid& solid : solids) placed.emplace_back(solid, 0.0, 0.0);
+  ranks.keep_clear_of([solids, placed, box = ranks.box()](const Vec3& centre, double radius) {
+    return depth_in_solids(centre, radius, box, placed, solids).depth > 0.0;
+  });
+  return ranks;
+}
+
 }  // namespace
 
 PeriodicBox grain_box(const Case& c) {
@@ -67,6 +94,7 @@ dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box) {
   parameters.other_materials.assign(materials.begin() + 1, materials.end());
   parameters.wall_contact = wall_material_of(c.contact);
   parameters.walls = planes_of(c, box, parameters.contact);
+  parameters.solids = solids_of(c, parameters.contact);
   parameters.assemblies = dem::assemblies_of(c.grains);
   if (c.coupling.lubrication) parameters.lubrication = lubrication_parameters(c, parameters.walls.size());
   parameters.time_step = grain_time_step(c);
@@ -78,11 +106,14 @@ dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box) {
   return parameters;
 }
 
-dem::GrainSeeds grain_seeds(const Case& c) { return dem::grain_seeds(c.grains, dem::PlacingRanks(grain_box(c))); }
+dem::GrainSeeds grain_seeds(const Case& c) {
+  return dem::grain_seeds(c.grains, keeping_clear(dem::PlacingRanks(grain_box(c)), c));
+}
 
 dem::GrainSeeds grain_seeds(const Case& c, MPI_Comm communicator, const Decomposition& decomposition) {
   const double reach = (1.0 + dem::allowed_initial_overlap) * largest_extent(c);  // of two centres that touch
-  return dem::grain_seeds(c.grains, dem::PlacingRanks(grain_box(c), communicator, decomposition, reach));
+  return dem::grain_seeds(c.grains,
+                          keeping_clear(dem::PlacingRanks(grain_box(c), communicator, decomposition, reach), c));
 }
 
 }  // namespace thalweg::driver

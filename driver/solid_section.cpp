@@ -1,6 +1,6 @@
 #include "driver/case_sections.hpp"
 
-// Section of the solids in a fluid.
+// Section of the solids in a case.
 namespace thalweg::driver {
 
 static void describe(SectionVisitor& visit, SphereCase& sphere) {
@@ -14,6 +14,11 @@ void describe(SectionVisitor& visit, SolidCase& solid) {
   visit.text("stl", solid.stl, {.meaning = "file with a closed surface, relative to this file; \"\": none"});
   visit.real("scale", solid.scale, {.unit = "m", .meaning = "length of one unit of the STL file", .above = 0.0});
   visit.vec3("translate", solid.translate, {.unit = "m", .meaning = "shift of the STL surface once scaled"});
+  visit.real("friction", solid.friction,
+             {.meaning = "default: contact.wall_friction", .at_least = 0.0, .example = 0.3});
+  visit.real("rolling_friction", solid.rolling_friction,
+             {.meaning = "default: contact.wall_rolling_friction", .at_least = 0.0, .example = 0.05});
+  visit.section("motion", solid.motion, {.meaning = "how it moves among dry grains; it stands still without"});
   visit.require(solid.sphere.has_value() || !solid.stl.empty(), "sphere",
                 "the solid has no shape; give sphere: {centre: [x, y, z], radius: r} in m, or stl: FILE");
   visit.require(!(solid.sphere && !solid.stl.empty()), "stl", "the solid has two shapes; remove either sphere or stl");

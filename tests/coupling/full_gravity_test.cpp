@@ -1,5 +1,6 @@
 // Gravity on everything: the fluid at rest, buoyancy through the links, and the same motion as in reduced gravity.
 #include "tests/coupling/water_box.hpp"
+#include "tests/support/meshes.hpp"
 
 #include "core/mpi_session.hpp"
 #include "lbm/fluid_survey.hpp"
@@ -149,6 +150,24 @@ TEST(FullGravity, LiftsGrainsThatTouchEachOtherAndTheFloor) {
                glass_sphere(3, first + 5e-3 * Vec3(0.5, std::sqrt(0.75) / 3.0, std::sqrt(2.0 / 3.0)))};
   const Buoyancy b = buoyancy_of(box, 400);
   EXPECT_NEAR(b.smallest, 1.0, 0.02);  // the covered cells' share differs by up to 2 % from the spheres'
+  EXPECT_NEAR(b.largest, 1.0, 0.02);
+  EXPECT_LT(b.sideways, 0.01);
+  EXPECT_LT(b.torque, 0.02);
+}
+
+// One on a block, one that leans on its side and one on a ball: what solids hide from grains presses as well.
+TEST(FullGravity, LiftsGrainsThatTouchSolids) {
+  WaterBox box = deep_box({46, 36, 60});
+  box.links.rule = bodies::LinkRule::cli;
+  const double top = 12.15e-3, side = 10.1e-3;
+  const Vec3 ball(18.0e-3, 9.0e-3, 8.0e-3);
+  box.solids = {thalweg::test::box_mesh(Vec3(2.1e-3, 2.2e-3, 4.0e-3), Vec3(side, 15.0e-3, top)),
+                bodies::SolidSphere{ball, 3.1e-3}};
+  box.seeds = {glass_sphere(0, Vec3(6.1e-3, 8.3e-3, top + radius)),
+               glass_sphere(1, Vec3(side + radius, 5.2e-3, 8.0e-3)),
+               glass_sphere(2, ball + Vec3(0.0, 0.6, 0.8) * (3.1e-3 + radius))};
+  const Buoyancy b = buoyancy_of(box, 400);
+  EXPECT_NEAR(b.smallest, 1.0, 0.02);  // as above
   EXPECT_NEAR(b.largest, 1.0, 0.02);
   EXPECT_LT(b.sideways, 0.01);
   EXPECT_LT(b.torque, 0.02);

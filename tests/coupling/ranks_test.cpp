@@ -3,6 +3,7 @@
 #include "tests/coupling/water_box.hpp"
 
 #include "core/mpi_session.hpp"
+#include "tests/support/meshes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -119,6 +120,34 @@ TEST(Ranks, DoNotChangeOneBitWithLubricationAndVirtualMass) {
 TEST(Ranks, DoNotChangeOneBitOfACloudInAPeriodicBox) {
   const WaterBox box = crowded({33, 34, 35}, {true, true, true}, 60, 5.4e-3);
   for (const Index3& layout : layouts_of(size_of(MPI_COMM_WORLD))) compare<double>(box, layout, 25);
+}
+
+// A block of triangles across the ends of the box along x, and a ball, with grains that hit, roll over and lie on them.
+TEST(Ranks, DoNotChangeOneBitOfGrainsOnSolids) {
+  WaterBox box = crowded({48, 36, 36}, {true, false, false}, 100, 5.4e-3);
+  box.collision = lbm::CollisionModel::trt_at_bodies;
+  const Vec3 size = box.spacing * Vec3(48, 36, 36);
+  box.solids = {thalweg::test::box_mesh(Vec3(-8e-3, 6e-3, -1e-3), Vec3(9e-3, 19e-3, 14e-3)),
+                bodies::SolidSphere{0.5 * size, 8e-3}};
+  const std::vector<dem::Solid> solids{grain_solid(box.solids[0]), grain_solid(box.solids[1])};
+  const PeriodicBox whole{size, box.periodic};
+  const std::vector<dem::PlacedSolid> placed{{solids[0], 0.0, 0.0}, {solids[1], 0.0, 0.0}};
+  std::erase_if(box.seeds, [&](const dem::GrainSeed& seed) {
+    return dem::depth_in_solids(seed.position, seed.radius, whole, placed, solids).depth > 0.0;
+  });
+  for (std::size_t n = 0; n < box.seeds.size(); ++n) box.seeds[n].id = static_cast<GlobalId>(n);
+  ASSERT_GT(box.seeds.size(), 40u);
+  for (const Index3& layout : two_layouts_of(size_of(MPI_COMM_WORLD))) compare<float>(box, layout, 60);
+  const auto system = make_system<float>(box, MPI_COMM_SELF, {1, 1, 1});
+  std::array<int, 2> steps_touched{};
+  for (int step = 0; step < 60; ++step) {
+    system->advance();
+    const std::vector<Vec3> forces = system->grains().wall_forces();
+    for (std::size_t solid = 0; solid < 2; ++solid)
+      if (!forces[forces.size() - 2 + solid].isZero(0.0)) ++steps_touched[solid];
+  }
+  EXPECT_GT(steps_touched[0], 0);
+  EXPECT_GT(steps_touched[1], 0);
 }
 
 TEST(Ranks, DoNotChangeOneBitWithABulkViscosityUnderRisingGravity) {

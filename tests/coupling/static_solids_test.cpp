@@ -3,6 +3,7 @@
 #include "core/mpi_session.hpp"
 #include "core/sum_range.hpp"
 #include "coupling/lattice_system.hpp"
+#include "tests/support/meshes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,43 +14,6 @@
 
 namespace thalweg::coupling::static_solids_test {
 namespace {
-
-// A box from corner to corner.
-TriangleMesh block_mesh(const Vec3& low, const Vec3& high) {
-  TriangleMesh mesh;
-  for (int corner = 0; corner < 8; ++corner)
-    mesh.points.emplace_back(corner & 1 ? high.x() : low.x(), corner & 2 ? high.y() : low.y(),
-                             corner & 4 ? high.z() : low.z());
-  const int faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-  for (const auto& f : faces) {
-    mesh.triangles.push_back({f[0], f[1], f[2]});
-    mesh.triangles.push_back({f[0], f[2], f[3]});
-  }
-  return mesh;
-}
-
-// An octahedron whose triangles have been halved in side `times` times, corners on the sphere.
-TriangleMesh sphere_mesh(const Vec3& centre, double radius, int times) {
-  TriangleMesh mesh;
-  mesh.points = {Vec3::UnitX(), -Vec3::UnitX(), Vec3::UnitY(), -Vec3::UnitY(), Vec3::UnitZ(), -Vec3::UnitZ()};
-  mesh.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
-  for (; times > 0; --times) {
-    std::map<std::pair<int, int>, int> middles;
-    const auto middle = [&](int a, int b) {
-      const auto [place, fresh] = middles.try_emplace({std::min(a, b), std::max(a, b)}, int(mesh.points.size()));
-      if (fresh) mesh.points.push_back(Vec3(mesh.points[a] + mesh.points[b]).normalized());
-      return place->second;
-    };
-    std::vector<std::array<int, 3>> finer;
-    for (const auto& t : mesh.triangles) {
-      const int a = middle(t[0], t[1]), b = middle(t[1], t[2]), c = middle(t[2], t[0]);
-      finer.insert(finer.end(), {{t[0], a, c}, {a, t[1], b}, {c, b, t[2]}, {a, b, c}});
-    }
-    mesh.triangles = finer;
-  }
-  for (Vec3& point : mesh.points) point = centre + radius * point;
-  return mesh;
-}
 
 struct Box {
   Index3 cells;
@@ -93,13 +57,13 @@ std::map<std::tuple<int, std::uint32_t, int>, CutLink> links_of(const LatticeSys
 }
 
 TEST(StaticSolids, ASphereOfTrianglesIsCutLikeASphere) {
-  // The surface of 8 x 4^5 triangles lies inside the sphere, by no more than its largest triangle sags: its sides are
-  // at most 1.6 times the mean side of the octahedron's halves, pi/2/32 radians, and the sag of a side s is R s^2/6.
+  // The surface of 20 x 4^5 triangles lies inside the sphere, by no more than its largest triangle sags: its sides are
+  // at most 1.2 times an icosahedron's, 1.107 radians, halved five times, and the sag of a side s is R s^2/6.
   const Vec3 centre(9.3, 10.1, 0.4);  // across a periodic end
-  const double radius = 6.2, side = 1.6 * std::numbers::pi / 64.0, sag = radius * side * side / 6.0;
+  const double radius = 6.2, side = 1.2 * 1.107 / 32.0, sag = radius * side * side / 6.0;
   const Box box{{20, 20, 20}, {true, true, true}, {}, {}};
   const auto round = make(box, {bodies::SolidSphere{centre, radius}}, MPI_COMM_SELF);
-  const auto faceted = make(box, {sphere_mesh(centre, radius, 5)}, MPI_COMM_SELF);
+  const auto faceted = make(box, {thalweg::test::sphere_mesh(centre, radius, 5)}, MPI_COMM_SELF);
   const auto exact = links_of(*round), found = links_of(*faceted);
   std::size_t common = 0;
   for (const auto& [key, link] : exact) {
@@ -123,7 +87,7 @@ TEST(StaticSolids, ASphereOfTrianglesIsCutLikeASphere) {
 TEST(StaticSolids, CoverWhatIsInsideEvenWhereLinesRunThroughEdges) {
   // Faces, edges and corners right on the lines of cell centres, and overlapping images across the periodic ends.
   const Box box{{12, 10, 11}, {true, true, false}, {}, {}};
-  const auto system = make(box, {block_mesh({-3.0, 2.5, 2.5}, {15.0, 6.5, 7.5})}, MPI_COMM_SELF);
+  const auto system = make(box, {thalweg::test::box_mesh({-3.0, 2.5, 2.5}, {15.0, 6.5, 7.5})}, MPI_COMM_SELF);
   const auto& fluid = system->fluid();
   int solid = 0;
   for (int z = 0; z < 11; ++z)
@@ -139,15 +103,15 @@ TEST(StaticSolids, CoverWhatIsInsideEvenWhereLinesRunThroughEdges) {
         }
       }
   EXPECT_EQ(solid % 12, 0);  // the same in every layer across x
-  EXPECT_THROW(make(box, {block_mesh({2.6, 2.6, 2.6}, {3.4, 3.4, 3.4})}, MPI_COMM_SELF), InputError);
+  EXPECT_THROW(make(box, {thalweg::test::box_mesh({2.6, 2.6, 2.6}, {3.4, 3.4, 3.4})}, MPI_COMM_SELF), InputError);
   EXPECT_THROW(make(box, {bodies::SolidSphere{{5.0, 5.0, 30.0}, 3.0}}, MPI_COMM_SELF), InputError);
 }
 
 // A block with a hole of one cell, which no fluid leaves: under full gravity the water in it has the pressure of its
 // height, as all water at rest.
 TEST(StaticSolids, EnclosedWaterKeepsThePressureAtRest) {
-  TriangleMesh mesh = block_mesh({3.0, 3.0, 2.0}, {6.0, 6.0, 5.0});
-  const TriangleMesh hole = block_mesh({4.0, 4.0, 3.0}, {5.0, 5.0, 4.0});
+  TriangleMesh mesh = thalweg::test::box_mesh({3.0, 3.0, 2.0}, {6.0, 6.0, 5.0});
+  const TriangleMesh hole = thalweg::test::box_mesh({4.0, 4.0, 3.0}, {5.0, 5.0, 4.0});
   const auto before = static_cast<int>(mesh.points.size());
   mesh.points.insert(mesh.points.end(), hole.points.begin(), hole.points.end());
   for (const auto& t : hole.triangles) mesh.triangles.push_back({before + t[0], before + t[2], before + t[1]});
@@ -177,7 +141,7 @@ TEST(StaticSolids, ForgetAllSumsOfAStepInTheNext) {
   box.faces[4].type = lbm::FaceType::no_slip;
   box.faces[5].type = lbm::FaceType::pressure_outlet;
   box.faces[5].density_deviation = 0.05;
-  const auto system = make(box, {block_mesh({3.0, 3.0, 3.0}, {6.0, 6.0, 6.0})}, MPI_COMM_WORLD);
+  const auto system = make(box, {thalweg::test::box_mesh({3.0, 3.0, 3.0}, {6.0, 6.0, 6.0})}, MPI_COMM_WORLD);
   SumRange::reset();
   for (int step = 0; step < 40; ++step) system->advance();
   EXPECT_FALSE(SumRange::was_left());
@@ -208,7 +172,7 @@ TEST(StaticSolids, CouetteFlowOverAPlateOffTheLatticeIsExact) {
   for (const double surface : {2.2, 2.85})
     for (const bodies::LinkRule rule : both_rules) {
       box.rule = rule;
-      const auto system = make(box, {block_mesh({-1.0, -1.0, -1.0}, {5.0, 5.0, surface})}, MPI_COMM_SELF);
+      const auto system = make(box, {thalweg::test::box_mesh({-1.0, -1.0, -1.0}, {5.0, 5.0, surface})}, MPI_COMM_SELF);
       for (int step = 0; step < 6000; ++step) system->advance();
       for (int z = 3; z < 12; ++z)
         EXPECT_NEAR(velocity_x(*system, z), 0.05 * (z + 0.5 - surface) / (12.0 - surface), 1e-8) << surface;
@@ -227,8 +191,10 @@ double poiseuille_error(double low, double high, int height, bool trt, bodies::L
   const double gap = high - low, nu = 0.1;
   box.collision.force[0] = 8.0 * nu * 0.02 / (gap * gap);
   box.faces[4].type = box.faces[5].type = lbm::FaceType::no_slip;
-  const auto system = make(
-      box, {block_mesh({-1, -1, -2}, {5, 5, low}), block_mesh({-1, -1, high}, {5, 5, height + 2.0})}, MPI_COMM_SELF);
+  const auto system = make(box,
+                           {thalweg::test::box_mesh({-1, -1, -2}, {5, 5, low}),
+                            thalweg::test::box_mesh({-1, -1, high}, {5, 5, height + 2.0})},
+                           MPI_COMM_SELF);
   for (int step = 0; step < 20.0 * gap * gap / (nu * 9.87); ++step) system->advance();
   const int first = static_cast<int>(std::ceil(low - 0.5)), last = static_cast<int>(std::floor(high - 0.5));
   // Velocity to be added at each plate: linear in between, and extrapolated from the outermost cells to the plates.
@@ -320,9 +286,9 @@ TEST(StaticSolids, AreTheSameOnAnyRanks) {
   box.collision.force[0] = 1e-5;
   box.faces[4].type = lbm::FaceType::no_slip;
   box.faces[5].type = lbm::FaceType::free_slip;
-  const std::vector<bodies::SolidShape> solids{sphere_mesh({11.2, 8.7, 9.1}, 4.3, 3),
+  const std::vector<bodies::SolidShape> solids{thalweg::test::sphere_mesh({11.2, 8.7, 9.1}, 4.3, 3),
                                                bodies::SolidSphere{{21.4, 17.2, 12.0}, 3.1},
-                                               block_mesh({-4, 3.3, -1}, {30, 7.1, 2.6})};
+                                               thalweg::test::box_mesh({-4, 3.3, -1}, {30, 7.1, 2.6})};
   const auto alone = make(box, solids, MPI_COMM_SELF), shared = make(box, solids, MPI_COMM_WORLD);
   for (int step = 0; step < 9; ++step) {
     alone->advance();

@@ -39,7 +39,25 @@ struct WaterBox {
   std::vector<dem::GrainSeed> seeds;
   std::vector<dem::PrescribedMotion> assemblies;
   std::vector<dem::ClumpSeed> clumps;
+  std::vector<bodies::SolidShape> solids;  // m
 };
+
+// The same shape in other units of length.
+inline bodies::SolidShape scaled(bodies::SolidShape shape, double factor) {
+  if (auto* sphere = std::get_if<bodies::SolidSphere>(&shape))
+    return bodies::SolidSphere{factor * sphere->centre, factor * sphere->radius};
+  for (Vec3& point : std::get<TriangleMesh>(shape).points) point *= factor;
+  return shape;
+}
+
+inline dem::Solid grain_solid(const bodies::SolidShape& shape) {
+  const auto* sphere = std::get_if<bodies::SolidSphere>(&shape);
+  return {std::make_shared<dem::SolidSurface>(sphere ? dem::SolidSurface::sphere(sphere->centre, sphere->radius)
+                                                     : dem::SolidSurface(std::get<TriangleMesh>(shape))),
+          0.45,
+          0.0,
+          {}};
+}
 
 template <typename Real>
 std::unique_ptr<LatticeSystem<Real>> make_system(const WaterBox& box, MPI_Comm communicator, const Index3& layout) {
@@ -94,6 +112,11 @@ std::unique_ptr<LatticeSystem<Real>> make_system(const WaterBox& box, MPI_Comm c
     return Vec3(mass * gravity.x(), mass * gravity.y(), (mass - displaced) * gravity.z());
   };
   g.assemblies = box.assemblies;
+  std::vector<bodies::SolidShape> solids;
+  for (const bodies::SolidShape& shape : box.solids) {
+    g.solids.push_back(grain_solid(shape));
+    solids.push_back(scaled(shape, 1.0 / box.spacing));
+  }
   g.time_step = box.time_step / box.sub_steps;
   g.sub_steps = box.sub_steps;
   double largest = 0.0;
@@ -112,7 +135,7 @@ std::unique_ptr<LatticeSystem<Real>> make_system(const WaterBox& box, MPI_Comm c
   }
   g.attached_width = LatticeSystem<Real>::attached_width(p);
   auto grains = std::make_unique<dem::GrainDynamics>(*decomposition, communicator, g, box.seeds, box.clumps);
-  return std::make_unique<LatticeSystem<Real>>(std::move(decomposition), communicator, p, std::move(grains));
+  return std::make_unique<LatticeSystem<Real>>(std::move(decomposition), communicator, p, std::move(grains), solids);
 }
 
 inline dem::GrainSeed glass_sphere(GlobalId id, const Vec3& position, const Vec3& velocity = Vec3::Zero(),

@@ -102,7 +102,9 @@ TEST(Solids, FrictionOnAnInclineIsCoulombs) {
   for (int n = 0; n < 64; ++n) {
     test::step(grains);
     const double time = (n + 1) * 1.25e-4;
-    if (time > 4e-3) EXPECT_NEAR(grains.store().velocity[0].dot(down), u0 + a * time, 0.01 * u0) << time;
+    if (time > 4e-3) {
+      EXPECT_NEAR(grains.store().velocity[0].dot(down), u0 + a * time, 0.01 * u0) << time;
+    }
   }
   EXPECT_NEAR(grains.store().velocity[0].y(), 0.0, 1e-9);
 }
@@ -190,7 +192,9 @@ TEST(Solids, HollowFacetsAreASmoothTrough) {
     const double x = grains.store().position[0].x() - axis.x();
     if (before < 0.0 && x >= 0.0) {
       if (crossings == 0) crossed = time;
-      if (++crossings == 5) EXPECT_NEAR((time - crossed) / 4.0, period, 0.02 * period);
+      if (++crossings == 5) {
+        EXPECT_NEAR((time - crossed) / 4.0, period, 0.02 * period);
+      }
     }
     if (time > 4.0 * period) largest = std::max(largest, std::abs(x) / arm);
     before = x;
