@@ -12,8 +12,7 @@ Bodies<Real>::Bodies(const Decomposition& decomposition, MPI_Comm communicator, 
                      const BodyOptions& options, const Hydrostatic& rest, const std::vector<SolidShape>& solids)
     : fluid_(fluid),
       options_(options),
-      box_{Vec3(decomposition.cells()[0], decomposition.cells()[1], decomposition.cells()[2]),
-           decomposition.periodic()},
+      box_(decomposition.cell_box()),
       rest_(rest),
       map_(decomposition, fluid.block(), fluid.cells()),
       links_(fluid.tiles().count()),
@@ -138,7 +137,7 @@ template <typename Real>
 void Bodies<Real>::remove_all() {
   map_.begin_update();
   for (std::size_t slot = static_cast<std::size_t>(solids()); slot < map_.bodies().size(); ++slot)
-    if (map_.bodies()[slot].id != -1) map_.remove(static_cast<int>(slot));
+    if (!map_.bodies()[slot].is_free()) map_.remove(static_cast<int>(slot));
   settle_at_start();
 }
 
@@ -198,7 +197,7 @@ void Bodies<Real>::keep_momentum(LinkBody& body, int plane, const Vec3& position
 template <typename Real>
 void Bodies<Real>::book_links() {
   for (std::size_t slot = 0; slot < bodies_.size(); ++slot) {
-    if (map_.bodies()[slot].id == -1) continue;
+    if (map_.bodies()[slot].is_free()) continue;
     const LinkBody& body = bodies_[slot];
     const Vec3 force = body.force.to_vec3();
     totals_.link_momentum += force;

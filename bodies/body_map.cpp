@@ -105,7 +105,7 @@ void BodyMap::add_static(int count) {
 void BodyMap::remove(int slot) {
   place(slot, Vec3::Constant(2.0 * nowhere));
   slot_of_id_.erase(body(slot).id);
-  body(slot).id = -1;
+  body(slot).id = MappedBody::nobody;
   free_slots_.push_back(slot);
 }
 

@@ -14,8 +14,7 @@ HiddenLinks::HiddenLinks(const Decomposition& decomposition, const Block& block,
       local_cells_(decomposition, block),
       cells_(cells),
       rest_(rest),
-      box_{Vec3(decomposition.cells()[0], decomposition.cells()[1], decomposition.cells()[2]),
-           decomposition.periodic()} {}
+      box_(decomposition.cell_box()) {}
 
 std::size_t HiddenLinks::count() const {
   std::size_t total = 0;

@@ -8,9 +8,7 @@ using lbm::CellMap;
 using lbm::D3Q19;
 
 HiddenPatches::HiddenPatches(const Decomposition& decomposition, const Block& block, const CellMap& cells)
-    : box_{Vec3(decomposition.cells()[0], decomposition.cells()[1], decomposition.cells()[2]),
-           decomposition.periodic()},
-      cells_(cells) {
+    : box_(decomposition.cell_box()), cells_(cells) {
   for (int a = 0; a < 3; ++a) {
     wall_below_[a] = !decomposition.periodic()[a] && block.lower[a] == 0;
     wall_above_[a] = !decomposition.periodic()[a] && block.upper[a] == decomposition.cells()[a];

@@ -35,7 +35,7 @@ void LinkBuilder::update(const BodyMap& map, LinkTable& table) {
   }
   std::sort(stale_.begin(), stale_.end());
   for (const int slot : stale_) {
-    if (map.bodies()[slot].id == -1)
+    if (map.bodies()[slot].is_free())
       table.remove(slot);
     else if (solids_ && slot < solids_->count())
       rebuild_solid(slot, table);

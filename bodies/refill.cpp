@@ -29,8 +29,7 @@ Refill::Refill(const Decomposition& decomposition, MPI_Comm communicator, Refill
       rule_(rule),
       rank_(rank_of(communicator)),
       block_(decomposition.block_of(rank_)),
-      box_{Vec3(decomposition.cells()[0], decomposition.cells()[1], decomposition.cells()[2]),
-           decomposition.periodic()} {}
+      box_(decomposition.cell_box()) {}
 
 void Refill::Neighbours::add(const Neighbours& others) {
   count += others.count;

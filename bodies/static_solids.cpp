@@ -37,8 +37,7 @@ StaticSolids::StaticSolids(const Decomposition& decomposition, const Block& bloc
       block_(block),
       cells_(cells),
       tiles_(tiles),
-      box_{Vec3(decomposition.cells()[0], decomposition.cells()[1], decomposition.cells()[2]),
-           decomposition.periodic()},
+      box_(decomposition.cell_box()),
       shapes_(std::move(shapes)),
       cut_(static_cast<std::size_t>(tiles.count())) {
   for (int a = 0; a < 3; ++a) {

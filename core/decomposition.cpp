@@ -104,6 +104,8 @@ PeriodicBox Decomposition::box() const {
   return {Vec3(cells_[0] * spacing_, cells_[1] * spacing_, cells_[2] * spacing_), periodic_};
 }
 
+PeriodicBox Decomposition::cell_box() const { return {Vec3(cells_[0], cells_[1], cells_[2]), periodic_}; }
+
 Index3 Decomposition::coordinates_of(int rank) const {
   return {rank % layout_[0], rank / layout_[0] % layout_[1], rank / (layout_[0] * layout_[1])};
 }

@@ -65,7 +65,8 @@ public:
   const std::array<bool, 3>& periodic() const { return periodic_; }
   const Index3& layout() const { return layout_; }
   int ranks() const { return layout_[0] * layout_[1] * layout_[2]; }
-  PeriodicBox box() const;  // in metres
+  PeriodicBox box() const;       // in metres
+  PeriodicBox cell_box() const;  // in cells
 
   Index3 coordinates_of(int rank) const;         // position of a rank in the layout
   int rank_at(const Index3& coordinates) const;  // -1 beyond a non-periodic face; wraps on periodic axes
