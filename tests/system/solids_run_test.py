@@ -1,0 +1,119 @@
+#!/usr/bin/python3
+"""Grains and solids in one case, with water and without.
+
+Called by ctest: solids_run_test.py THALWEG MPIEXEC [unittest arguments]
+"""
+import sys
+from pathlib import Path
+
+import numpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
+import program
+from program import ProgramTest
+from thalweg import Run
+
+GLASS = "contact: {restitution: 0.5, friction: 0.5, wall_friction: 0.4, duration: 1.0e-3}"
+
+
+def write_block(path, lower, upper):
+    """An STL box from corner to corner."""
+    corner = lambda n: [upper[a] if n >> a & 1 else lower[a] for a in range(3)]
+    with open(path, "w") as file:
+        file.write("solid block\n")
+        for a, b, c, d in ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)):
+            for triangle in ((a, b, c), (a, c, d)):
+                file.write("facet normal 0 0 0\nouter loop\n")
+                for n in triangle:
+                    file.write("vertex {:g} {:g} {:g}\n".format(*corner(n)))
+                file.write("endloop\nendfacet\n")
+        file.write("endsolid block\n")
+
+
+class SolidsInWater(ProgramTest):
+    # A sill across the channel and a ball across the periodic ends; grains fall on both.
+    CASE = f"""
+system: resolved
+name: sill and ball
+domain: {{size: [0.030, 0.015, 0.030], spacing: 0.75e-3, boundaries: {{x: periodic, y: no_slip, bottom: no_slip, top: free_slip}}}}
+fluid: {{density: 1000, kinematic_viscosity: 1.0e-6, time_step: 1.0e-4, precision: single}}
+gravity: {{magnitude: 9.8, slope: 0.05}}
+grains:
+  - {{count: 24, diameter: 4.5e-3, density: 2550, placement: {{pattern: random, seed: 3}}}}
+solids:
+  - {{stl: sill.stl, scale: 1.0e-3, translate: [0.012, 0, 0], friction: 0.3}}
+  - {{sphere: {{centre: [0.0005, 0.0075, 0.0035], radius: 3.5e-3}}}}
+{GLASS}
+run: {{until: 0.12}}
+output:
+  series: {{every: 0.01}}
+  grains: {{every: 0.04}}
+  checkpoint: {{every: 0.06, keep: 3}}
+"""
+
+    def setUp(self):
+        super().setUp()
+        write_block(self.folder / "sill.stl", (0, -1, -1), (5, 16, 6))
+
+    def test_the_same_bits_on_any_ranks_and_after_a_restart(self):
+        self.run_well("run", self.case, "--out", "one")
+        self.run_well("run", self.case, "--out", "two", ranks=2)
+        self.run_well("run", self.case, "--out", "again", "--restart", self.folder / "one/checkpoints/step_600.h5", ranks=2)
+        for out in ("two", "again"):
+            self.assertEqual(self.last_checkpoint(out).read_bytes(), self.last_checkpoint("one").read_bytes(), out)
+        series = Run(self.folder / "one").series
+        for solid in (0, 1):
+            self.assertLess(series[f"solid_{solid}_grain_force_z"].min(), 0.0)
+            self.assertTrue(numpy.isfinite(series[f"solid_{solid}_force_x"]).all())
+        # No grain is in the sill.
+        for frame in Run(self.folder / "one").grains:
+            x, y, z = frame.position.T
+            inside = (x > 0.012) & (x < 0.017) & (z < 0.006)
+            self.assertFalse(inside.any(), frame.time)
+
+    def test_what_cannot_be_is_refused(self):
+        self.assert_refused("check", self.case, "--set", "solids.0.motion={velocity: [0.1, 0, 0]}",
+                            words=["solids.0.motion", "in a fluid solids stand still"])
+        self.assert_refused("check", self.case, "--set", "grains.0.count=1", "--set",
+                            "grains.0.placement={positions: [[0.014, 0.007, 0.003]]}", words=["Grain 0", "is inside solid 0"])
+
+
+class SolidsAmongDryGrains(ProgramTest):
+    # A gate that sinks out of the way lets grains down.
+    CASE = f"""
+system: grains
+name: gate
+domain: {{size: [0.03, 0.03, 0.06], spacing: 3.0e-3, boundaries: {{x: no_slip, y: no_slip, bottom: no_slip, top: no_slip}}}}
+gravity: {{magnitude: 9.8, slope: 0.0}}
+grains:
+  - {{count: 60, diameter: 3.0e-3, density: 2550, placement: {{pattern: random, seed: 1, region: {{lower: [0.001, 0.001, 0.032],
+      upper: [0.029, 0.029, 0.058]}}}}}}
+solids:
+  - {{stl: shelf.stl, scale: 1.0e-3}}
+  - {{stl: gate.stl, scale: 1.0e-3, motion: {{velocity: [0.1, 0, 0]}}}}
+{GLASS}
+run: {{until: 0.3}}
+output: {{series: {{every: 0.01}}, grains: {{every: 0.1}}, checkpoint: {{every: 0.1, keep: 4}}}}
+"""
+
+    def setUp(self):
+        super().setUp()
+        write_block(self.folder / "shelf.stl", (-1, -1, 27), (15, 31, 30))
+        write_block(self.folder / "gate.stl", (15.1, -1, 27), (32, 31, 30))
+
+    def test_a_gate_that_moves_lets_grains_down(self):
+        self.run_well("run", self.case, "--out", "one")
+        self.run_well("run", self.case, "--out", "two", ranks=2)
+        earlier = min((self.folder / "one/checkpoints").glob("step_*.h5"), key=lambda path: int(path.stem[5:]))
+        self.run_well("run", self.case, "--out", "again", "--restart", earlier)
+        for out in ("two", "again"):
+            self.assertEqual(self.last_checkpoint(out).read_bytes(), self.last_checkpoint("one").read_bytes(), out)
+        first, *_, last = Run(self.folder / "one").grains
+        self.assertEqual((first.position[:, 2] < 0.027).sum(), 0)
+        self.assertGreater((last.position[:, 2] < 0.027).sum(), 10)   # through where the gate was
+        self.assertGreater((last.position[:, 2] > 0.030).sum(), 5)    # on the shelf
+
+
+if __name__ == "__main__":
+    program.main()
