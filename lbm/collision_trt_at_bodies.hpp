@@ -9,9 +9,9 @@
 // relaxes on its own would have the magic parameter (tau_b - 1/2)(1/omega' - 1/2), hundreds in water, and stop a tenth
 // of the flow through a bed; far from bodies it damps sound.
 //
-// Where a body meets open water, trt makes a fast stream lose too much at it, the less so the smaller lambda is, down to
-// where seepage suffers. In gaps the water that one body squeezes out before another must get away, fast as it is, which
-// with bgk it does not: there trt gives way later and more slowly, to the point where single cells break down.
+// Where a body meets open water, trt makes a fast stream lose too much at it, the less so the smaller lambda is, down
+// to where seepage suffers. In gaps the water that one body squeezes out before another must get away, fast as it is,
+// which with bgk it does not: there trt gives way later and more slowly, to the point where single cells break down.
 #pragma once
 
 #include "lbm/collision_trt.hpp"

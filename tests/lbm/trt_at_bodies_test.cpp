@@ -118,7 +118,8 @@ TEST(TrtAtBodies, IsBetweenThemAsItsFormulaSays) {
     for (const double times_quiet : {0.1, 0.5, 1.0, 2.0, 10.0}) {
       double f[19];
       fill_with_odd_part(f, times_quiet * place.lambda);
-      const double n = WrittenOut(f, water()).odd_non_equilibrium(f) / place.lambda, a = 1.0 / (std::pow(n, place.power) + 1.0);
+      const double n = WrittenOut(f, water()).odd_non_equilibrium(f) / place.lambda,
+                   a = 1.0 / (std::pow(n, place.power) + 1.0);
       EXPECT_NEAR(n, times_quiet, 1e-3 + 0.01 * times_quiet);
       const Both both(f, place);
       for (int i = 0; i < 19; ++i)
