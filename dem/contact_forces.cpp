@@ -97,14 +97,14 @@ template <typename ContactLaw>
   }
 }
 
-// The touches of the grain in entries first to last - 1 of the list of solids, each with the row of its history; rows
-// that no touch goes on with are as if new.
-template <typename ContactLaw>
-std::span<const SolidTouch> touches_of(const ContactLaw& law, SolidTouches& touches, const ContactList& list,
-                                       std::size_t first, std::size_t last, const Vec3& position, double radius) {
-  return touches.of(list.solids, first, last, position, radius, law.range(), [&](std::size_t near, std::size_t row) {
-    return surface_normal_of(list, near * touches_per_solid + row);
-  });
+ContactMotion motion_of(const ContactBody& grain, const SolidTouch& touch) {
+  ContactMotion motion = motion_of(grain, touch.view, touch.velocity);
+  motion.effective_radius = touch.effective_radius;
+  return motion;
+}
+
+double friction_of(const SolidTouch& touch, const ContactList& list, const Surroundings& around) {
+  return around.solids[list.solids[touch.near].solid].friction;
 }
 
 template <typename ContactLaw>
@@ -114,19 +114,18 @@ void evaluate_solids(const ContactLaw& law, MovingGrains& grains, ContactList& l
   SolidTouches::for_each_grain(list.solids, [&](std::size_t first, std::size_t last) {
     const std::uint32_t slot = list.solids[first].grain;
     MovingGrain& grain = grains[slot];
-    const auto found = touches_of(law, touches, list, first, last, vector_of(grain.position), grain.position[3]);
+    const auto found =
+        touches_of(touches, list, first, last, vector_of(grain.position), grain.position[3], law.range());
     for (std::size_t near = first; near < last; ++near)
       for (std::size_t row = 0; row < touches_per_solid; ++row)
         if (!touches.taken(first, near, row)) list.solid_rows.forget(near * touches_per_solid + row);
     for (const SolidTouch& touch : found) {
-      const std::size_t number = touch.near * touches_per_solid + touch.row;
+      const std::size_t number = row_of(touch);
       if (!touch.goes_on) list.solid_rows.forget(number);
-      ContactMotion motion = motion_of(body_of(grain), touch.view, touch.velocity);
-      motion.effective_radius = touch.effective_radius;
+      const ContactMotion motion = motion_of(body_of(grain), touch);
       typename ContactLaw::History history;
-      const ContactLoad f =
-          load_of(law, motion, materials.wall(material[slot]), around.solids[list.solids[touch.near].solid].friction,
-                  list.solid_rows[number], history);
+      const ContactLoad f = load_of(law, motion, materials.wall(material[slot]), friction_of(touch, list, around),
+                                    list.solid_rows[number], history);
       std::copy(history.begin(), history.end(), list.solid_rows[number]);
       add_wall_load<ContactLaw::rolls>(f, touch.view, grain);
     }
@@ -172,17 +171,15 @@ void visit_solids(const GrainStore& store, const ContactList& list, const Surrou
   with_surface_law(list.solid_rows.law(), 0.0, [&](const auto& law) {
     SolidTouches::for_each_grain(list.solids, [&](std::size_t first, std::size_t last) {
       const std::uint32_t slot = list.solids[first].grain;
-      const auto found = touches_of(law, touches, list, first, last, store.position[slot], store.radius[slot]);
+      const auto found = touches_of(touches, list, first, last, store.position[slot], store.radius[slot], law.range());
       for (const SolidTouch& touch : found) {
-        ContactMotion motion = motion_of(body_of(store, slot), touch.view, touch.velocity);
-        motion.effective_radius = touch.effective_radius;
+        const ContactMotion motion = motion_of(body_of(store, slot), touch);
         using ContactLaw = std::decay_t<decltype(law)>;
         std::array<double, ContactRows::width_of<ContactLaw>> row;
-        std::copy_n(list.solid_rows[touch.near * touches_per_solid + touch.row], row.size(), row.begin());
+        std::copy_n(list.solid_rows[row_of(touch)], row.size(), row.begin());
         if (!touch.goes_on) std::fill_n(row.begin(), std::tuple_size_v<typename ContactLaw::History>, 0.0);
-        if (const std::optional<Vec3> force =
-                force_of(law, motion, materials.wall(store.material[slot]),
-                         around.solids[list.solids[touch.near].solid].friction, row.data()))
+        if (const std::optional<Vec3> force = force_of(law, motion, materials.wall(store.material[slot]),
+                                                       friction_of(touch, list, around), row.data()))
           visit(touch, motion, *force);
       }
     });

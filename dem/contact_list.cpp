@@ -150,8 +150,12 @@ std::vector<HistoryPart> history_parts_of(const ContactList& list) {
   return history_parts_of(law);
 }
 
-Vec3 surface_normal_of(const ContactList& list, std::size_t row) {
-  return Vec3::Map(list.solid_rows.history_of(row).last<3>().data());
+std::span<const SolidTouch> touches_of(SolidTouches& touches, const ContactList& list, std::size_t first,
+                                       std::size_t last, const Vec3& position, double radius, double range) {
+  // The normal of the last evaluation is the last part of the history (surface_law.hpp).
+  return touches.of(list.solids, first, last, position, radius, range, [&list](std::size_t near, std::size_t row) {
+    return Vec3::Map(list.solid_rows.history_of(near * touches_per_solid + row).last<3>().data());
+  });
 }
 
 // From the last touch to the first: keys then rise.

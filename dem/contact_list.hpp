@@ -75,8 +75,13 @@ struct ContactList {
 // (walls + touches_per_solid s + n) for touch n with solid s.
 GlobalId solid_key(std::size_t walls, std::size_t solid, std::size_t row);
 
-// The normal of a contact with a solid at its last evaluation, of this row; zero: it had none.
-Vec3 surface_normal_of(const ContactList& list, std::size_t row);
+// What a grain at a position (m) touches of the entries first to last - 1 of the list's solids, its own, each with the
+// row of its history. range: of the law, m.
+std::span<const SolidTouch> touches_of(SolidTouches& touches, const ContactList& list, std::size_t first,
+                                       std::size_t last, const Vec3& position, double radius, double range);
+
+// The row of a touch among those of the list.
+inline std::size_t row_of(const SolidTouch& touch) { return touch.near * touches_per_solid + touch.row; }
 
 // The parts of the histories of all contacts of the list: contacts of pairs and of walls may have different ones.
 std::vector<HistoryPart> history_parts_of(const ContactList& list);

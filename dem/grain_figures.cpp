@@ -57,14 +57,11 @@ std::vector<Contact> GrainDynamics::contacts() const {
   SolidTouches touches(box_, solids_, parameters_.solids);
   SolidTouches::for_each_grain(list_.solids, [&](std::size_t first, std::size_t last) {
     const std::uint32_t slot = list_.solids[first].grain;
-    const auto normal_of = [this](std::size_t near, std::size_t row) {
-      return surface_normal_of(list_, near * touches_per_solid + row);
-    };
     for (const SolidTouch& touch :
-         touches.of(list_.solids, first, last, store_.position[slot], store_.radius[slot], 0.0, normal_of))
+         touches_of(touches, list_, first, last, store_.position[slot], store_.radius[slot], 0.0))
       touching.push_back({store_.id[slot], -1 - static_cast<GlobalId>(planes_.size() + list_.solids[touch.near].solid),
                           store_.radius[slot] - touch.view.distance, touch.view.normal,
-                          kept(list_.solid_rows.history_of(touch.near * touches_per_solid + touch.row))});
+                          kept(list_.solid_rows.history_of(row_of(touch)))});
   });
   return touching;
 }

@@ -22,8 +22,7 @@ Vec3 turned(const Vec3& arm, const Vec3& axis, double angle) {
 }  // namespace
 
 bool PrescribedMotion::moves() const {
-  const bool swings = oscillation.frequency > 0.0 && !oscillation.amplitude.isZero(0.0);
-  return swings || angular_velocity != 0.0 || !velocity.isZero(0.0);
+  return oscillation.swings() || angular_velocity != 0.0 || !velocity.isZero(0.0);
 }
 
 Vec3 PrescribedMotion::displacement(double time) const {

@@ -16,6 +16,7 @@ struct Oscillation {
   double frequency = 0.0;         // Hz
   double phase = 0.0;             // rad; pi/2 begins at rest
 
+  bool swings() const { return frequency > 0.0 && !amplitude.isZero(0.0); }
   bool operator==(const Oscillation&) const = default;
 };
 

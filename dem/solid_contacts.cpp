@@ -113,11 +113,10 @@ void SolidTouches::look(std::span<const NearSolid> near, std::size_t first, std:
     }
   }
   keep_contacts(views_, same_corner * radius);
-  std::fill(taken_.begin(), taken_.end(), 0);  // here: how many of an entry's rows are used
   for (const SurfaceView& view : views_) {
-    char& used = taken_[(view.owner - first) * touches_per_solid];
-    if (static_cast<std::size_t>(used) == touches_per_solid) continue;
-    ++used;
+    const auto is_of_entry = [&](const SolidTouch& touch) { return touch.near == view.owner; };
+    const auto of_entry = std::count_if(touches_.begin(), touches_.end(), is_of_entry);
+    if (static_cast<std::size_t>(of_entry) == touches_per_solid) continue;
     const NearSolid& of = near[view.owner];
     const double rounding = shapes_[of.solid].surface->rounding();
     touches_.push_back({view.owner,

@@ -34,7 +34,7 @@ void check_plate(const PlateExtent& plate, const Vec3& normal) {
 
 bool Plane::changes() const {
   const bool moves = plate ? !velocity.isZero(0.0) : velocity.dot(normal) != 0.0;
-  return moves || (oscillation.frequency > 0.0 && !oscillation.amplitude.isZero(0.0));
+  return moves || oscillation.swings();
 }
 
 WallView Plane::seen_as_plate(Vec3 from_point, const PeriodicBox& box) const {

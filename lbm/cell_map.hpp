@@ -10,8 +10,7 @@
 
 namespace thalweg::lbm {
 
-// Where walls begin, in local coordinates: the first cell behind the one at the lower end of each axis is lower - 1,
-// the one at the upper end upper. No walls by default.
+// Where walls are, in local coordinates: cells below `lower` and from `upper` on are behind one. No walls by default.
 struct WallPlaces {
   Index3 lower{none_below, none_below, none_below}, upper{none_above, none_above, none_above};
   static constexpr int none_below = std::numeric_limits<int>::min() / 2;
