@@ -76,7 +76,8 @@ void StressBalance::add_grains(const Snapshot& snapshot) {
     const Vec3 &v = grains.velocity[i], &by_fluid = grains.fluid_force[i], &by_contacts = grains.contact_force[i];
     const Mat3 of_fluid = grains.fluid_stress.empty() ? Mat3(Mat3::Zero()) : Mat3(whole * grains.fluid_stress[i]);
     const double outer = is_held(held_, grains.id[i]) ? -(by_fluid.x() + by_contacts.x())
-                                                      : scales_.body_force(grains.mass[i], radius).x();
+                                                      : scales_.body_force(grains.mass[i], radius).x() +
+                                                            whole * snapshot.momentum->driving_of_grains.x();
     for (int layer = layers_.at(lowest); layer <= layers_.at(lowest + 2.0 * radius); ++layer) {
       const double from = layers_.bottom(layer) - lowest, to = from + layers_.height(layer);
       const double part = volume_between(radius, 0.0, from, to), share = part / whole, m = share * grains.mass[i];

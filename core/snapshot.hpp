@@ -117,11 +117,12 @@ struct PlaneMomentum {
 // The momentum budget of a fluid among grains in one step, over the whole domain: fluxes, sources and sinks. The same
 // bits on every rank, and on any number of ranks.
 struct MomentumBook {
-  std::vector<PlaneMomentum> planes;  // of cells, from the floor
-  std::vector<Vec3> on_grains;        // N, by height: entry h lies h half cells above the floor, h = 0 .. 2 n_z
-  std::vector<Vec3> on_sides;         // N, on the faces across x and y, by height as on_grains
-  Vec3 on_top = Vec3::Zero();         // N, on the face z_high
-  Vec3 driving = Vec3::Zero();        // N/m^3, of the force that drives the fluid
+  std::vector<PlaneMomentum> planes;      // of cells, from the floor
+  std::vector<Vec3> on_grains;            // N, by height: entry h lies h half cells above the floor, h = 0 .. 2 n_z
+  std::vector<Vec3> on_sides;             // N, on the faces across x and y, by height as on_grains
+  Vec3 on_top = Vec3::Zero();             // N, on the face z_high
+  Vec3 driving = Vec3::Zero();            // N/m^3, of the force that drives the fluid
+  Vec3 driving_of_grains = Vec3::Zero();  // N/m^3, that part of it which the volume of grains feels, too
 };
 
 // A contact as one of its grains feels it, and what it touches.

@@ -11,6 +11,9 @@ static void describe(SectionVisitor& visit, FlowTargetKeys& target) {
               .required = true,
               .above = 0.0,
               .example = 0.1});
+  visit.flag(
+      "on_grains", target.on_grains,
+      {.meaning = "the force is that of a pressure gradient, which grains feel, too; false: on the fluid alone"});
 }
 
 // Of Zhang et al. (2022).

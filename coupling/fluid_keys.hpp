@@ -10,10 +10,12 @@ namespace thalweg::coupling {
 
 enum class Precision { single, double_ };
 
-// A mean velocity of the fluid that the body force is steered to, in place of gravity along that axis.
+// A mean velocity of the fluid that the body force is steered to, in place of gravity along that axis. The force is
+// that of a mean pressure gradient (with the fluid's weight along the axis, which it carries as well).
 struct FlowTargetKeys {
   double velocity = 0.0;       // m/s, along x
   double response_time = 0.0;  // s
+  bool on_grains = true;       // grains feel the pressure gradient, too; else the force acts on the fluid alone
   bool operator==(const FlowTargetKeys&) const = default;
 };
 

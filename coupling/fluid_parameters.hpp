@@ -23,6 +23,7 @@ struct FluidParameters {
   lbm::CollisionParameters collision;  // lattice units; force included
   lbm::FaceConditions faces;
   std::optional<lbm::FlowTarget> flow_target;  // a mean velocity to hold, in place of the force along its axis
+  bool target_moves_grains = false;            // the force that holds it acts on the volume of grains, too
   bodies::BodyOptions bodies;
   bool full_gravity = false;  // the force acts across walls, too: the fluid begins with its hydrostatic density
   double ramp = 0.0;          // steps in which gravity rises from zero; 0: it is there at once

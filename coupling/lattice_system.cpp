@@ -68,6 +68,16 @@ void LatticeSystem<Real>::set_gravity_of(std::int64_t step) {
   if (grains_ && parameters_.ramp > 0.0) grains_->set_body_force_factor(gravity_factor(parameters_, step));
 }
 
+// N/m^3: the pressure gradient that holds the mean velocity, as the last step had it on the fluid.
+template <typename Real>
+Vec3 LatticeSystem<Real>::held_force_on_grains() const {
+  Vec3 force = Vec3::Zero();
+  if (!parameters_.target_moves_grains) return force;
+  const int axis = parameters_.flow_target->axis;
+  force[axis] = fluid_.parameters().force[axis] * parameters_.units.density * parameters_.units.acceleration();
+  return force;
+}
+
 template <typename Real>
 void LatticeSystem<Real>::advance() {
   if (has_bodies()) {
@@ -132,6 +142,7 @@ void LatticeSystem<Real>::exchange_behind_links() {
 template <typename Real>
 void LatticeSystem<Real>::write_momentum_book() {
   momentum_ = book_of(fluid_, parameters_.units, bodies_.reference_density(), bodies_.momentum_by_height());
+  momentum_->driving_of_grains = held_force_on_grains();
   booking_ = false;
 }
 
@@ -148,6 +159,7 @@ void LatticeSystem<Real>::take_loads() {
 template <typename Real>
 void LatticeSystem<Real>::advance_grains() {
   const auto scope = timer_.measure(phases_.grains);
+  grains_->set_force_density(held_force_on_grains());
   grains_->advance(parameters_.sub_steps);
   grains_->refresh_ghosts();
 }
@@ -352,6 +364,7 @@ void LatticeSystem<Real>::load(ArchiveReader& archive) {
     start_excess_ = archive.real_attribute("mass/start");
   }
   set_gravity_of(step_);
+  if (grains_) grains_->set_force_density(held_force_on_grains());
   fluid_.carry_force();
 }
 

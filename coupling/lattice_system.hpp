@@ -89,6 +89,7 @@ private:
   void take_loads();
   void advance_grains();
   void set_gravity_of(std::int64_t step);
+  Vec3 held_force_on_grains() const;
   void open_account();
   void keep_mass();
   void show_grains(Snapshot& s) const;

@@ -6,6 +6,7 @@
 #include "dem/contact_forces.hpp"
 #include "dem/grain_balance.hpp"
 #include "dem/grain_start.hpp"
+#include "dem/grain_volume.hpp"
 #include "dem/grain_watch.hpp"
 
 #include <fmt/format.h>
@@ -330,8 +331,9 @@ void GrainDynamics::build_dependents(const ContactHistories& histories) {
 
 void GrainDynamics::compute_body_forces() {
   const auto force = [this](double mass, double radius) -> Vec3 {
-    if (!parameters_.body_force) return Vec3::Zero();
-    return body_force_factor_ * parameters_.body_force(mass, radius);
+    const Vec3 on_volume = grain_volume(radius, parameters_.disk_thickness) * force_density_;
+    if (!parameters_.body_force) return on_volume;
+    return body_force_factor_ * parameters_.body_force(mass, radius) + on_volume;
   };
   body_force_.assign(store_.owned, Vec3::Zero());
   for (std::size_t s = 0; s < store_.owned; ++s)
@@ -343,6 +345,12 @@ void GrainDynamics::compute_body_forces() {
 void GrainDynamics::set_body_force_factor(double factor) {
   if (factor == body_force_factor_) return;
   body_force_factor_ = factor;
+  compute_body_forces();
+}
+
+void GrainDynamics::set_force_density(const Vec3& density) {
+  if (density == force_density_) return;
+  force_density_ = density;
   compute_body_forces();
 }
 

@@ -124,6 +124,8 @@ public:
   // Scales the body forces of the sub-steps to come: 1 at first. Not part of a checkpoint: a caller who changes it must
   // set it again after load().
   void set_body_force_factor(double factor);
+  // Adds a force on their volume (N/m^3): none at first, and the same holds.
+  void set_force_density(const Vec3& density);
 
   // After the sub-steps: wraps positions and gives ghosts the final velocities of their owners. Collective.
   void refresh_ghosts();
@@ -275,6 +277,7 @@ private:
   std::vector<PlacedSolid> listed_solids_;
   std::vector<Vec3> body_force_;  // of owned grains, times the factor
   double body_force_factor_ = 1.0;
+  Vec3 force_density_ = Vec3::Zero();  // N/m^3
 
   PhaseTimer timer_;
   int lists_phase_, forces_phase_, motion_phase_, messages_phase_;

@@ -50,6 +50,7 @@ coupling::FluidParameters fluid_parameters(const Case& c) {
         lbm::FlowTarget{.axis = 0,
                         .velocity = c.fluid.mean_velocity->velocity / parameters.units.velocity(),
                         .response_time = c.fluid.mean_velocity->response_time / parameters.units.time_step};
+  parameters.target_moves_grains = c.fluid.mean_velocity && c.fluid.mean_velocity->on_grains;
   parameters.bodies.links.momentum_exchange = c.coupling.momentum_exchange;
   parameters.bodies.links.wall_density = c.coupling.wall_density;
   parameters.bodies.links.rule = c.coupling.links;

@@ -26,13 +26,30 @@ Vec3 balancing_acceleration(const Case& c) {
   return -excess / (c.fluid.density * c.domain.size.prod()) * gravity_vector(c.gravity);
 }
 
-ForceOnGrain body_force(const Case& c) {
+namespace {
+
+// That of the mode alone.
+ForceOnGrain weight_by_mode(const Case& c) {
   const Vec3 gravity = gravity_vector(c.gravity);
   if (c.gravity.mode == GravityMode::full) return [gravity](double mass, double) { return Vec3(mass * gravity); };
   if (c.gravity.mode == GravityMode::reduced) return submerged_weight(c);
   return [gravity, carried = balancing_acceleration(c), density = c.fluid.density](double mass, double radius) {
     const double displaced = displaced_mass(density, radius);
     return Vec3((mass - displaced) * gravity + displaced * carried);
+  };
+}
+
+}  // namespace
+
+// The pressure gradient that holds a flow carries the weight of the fluid along x as well; the rest of it is the force
+// on the fluid, which changes from step to step (coupling::FluidParameters::target_moves_grains).
+ForceOnGrain body_force(const Case& c) {
+  const ForceOnGrain weight = weight_by_mode(c);
+  if (!c.fluid.mean_velocity || !c.fluid.mean_velocity->on_grains) return weight;
+  return [weight, along = gravity_vector(c.gravity).x(), density = c.fluid.density](double mass, double radius) {
+    Vec3 force = weight(mass, radius);
+    force.x() = (mass - displaced_mass(density, radius)) * along;
+    return force;
   };
 }
 

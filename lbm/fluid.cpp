@@ -67,7 +67,7 @@ Fluid<Real>::Fluid(const Decomposition& decomposition, MPI_Comm communicator, co
 template <typename Real>
 void Fluid<Real>::initialise(const std::function<FluidState(const Vec3&)>& state, const Vec3& force) {
   populations_.set_arrangement(Arrangement::swapped);
-  walls_.set_swept(false);
+  walls_.forget_sweep();
   for_each_cell(indexing(), [&](std::ptrdiff_t cell, const Index3& at) {
     const FluidState s =
         state(Vec3(block_.lower[0] + at[0] + 0.5, block_.lower[1] + at[1] + 0.5, block_.lower[2] + at[2] + 0.5));
@@ -128,7 +128,7 @@ template <typename Real>
 void Fluid<Real>::end_step() {
   populations_.set_arrangement(populations_.arrangement() == Arrangement::swapped ? Arrangement::moved
                                                                                   : Arrangement::swapped);
-  walls_.set_swept(true);
+  walls_.end_sweep();
   carry_force();
 }
 
@@ -172,13 +172,13 @@ void Fluid<Real>::stream_and_collide(const std::function<void(int)>& before_tile
   end_step();
 }
 
-// A sweep of a cell touches the 19 slots of the cell and no other. Those of cells three or more away from the block's
-// faces are neither filled by the halo or a wall, nor read by a wall, which looks at all that the two cells next to it
+// A sweep of a cell touches the 19 slots of the cell and no other. Those of cells further from the block's faces than
+// the margin are neither filled by the halo or a wall, nor read by a wall, which looks at all that the cells next to it
 // send out.
 // Along x a block that is its own neighbour has copied its halo when start() returns, so that whole rows can be swept.
 template <typename Real>
 void Fluid<Real>::advance_behind_halo() {
-  constexpr int margin = 3;
+  const int margin = walls_.depth() + 1;
   const Index3& n = indexing().size();
   const auto inside = [&](int y, int z) {
     return z >= margin && z < n[2] - margin && y >= margin && y < n[1] - margin;
@@ -262,7 +262,7 @@ void Fluid<Real>::load_populations(ArchiveReader& archive) {
                     "and domain.spacing.",
                     saved.at(2), saved.at(1), saved.at(0), here[2], here[1], here[0]));
   populations_.set_arrangement(Arrangement::swapped);
-  walls_.set_swept(false);
+  walls_.forget_sweep();
   std::vector<Real> values(static_cast<std::size_t>(n[0]) * n[1] * n[2]);
   for (int i = 0; i < D3Q19::directions; ++i) {
     archive.read(fmt::format("fluid/populations_{:02d}", i), std::span<Real>(values), array_box());

@@ -43,6 +43,7 @@ template <typename Real>
 void Walls<Real>::apply_face(Populations<Real>& populations, const CellMap& cells, int face) {
   const int axis = face / 2, inward = face % 2 == 0 ? 1 : -1;
   if (stress_[face]) {
+    stress_[face]->find_layers(cells);
     if (!swept_) stress_[face]->take_populations(populations, cells, half_force_);
     stress_[face]->find(cells);
   }

@@ -1,20 +1,26 @@
 #include "lbm/wall_stress.hpp"
 
-#include "core/decomposition.hpp"
 #include "lbm/boundary.hpp"
 #include "lbm/face_axes.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace thalweg::lbm {
 
-// The second cell is on the rank of the first, unless the box has only one.
-static_assert(Decomposition::min_cells_per_rank >= 2);
+namespace {
+
+double stress_ratio(double reynolds) {
+  static const StressRatio ratio;
+  return ratio(reynolds);
+}
+
+}  // namespace
 
 template <typename Real>
 WallStress<Real>::WallStress(const CellIndexing& indexing, int face, const std::array<bool, 6>& present,
-                             double viscosity)
+                             int cells_across, double viscosity)
     : indexing_(indexing),
       face_(face),
       normal_(face / 2),
@@ -23,12 +29,18 @@ WallStress<Real>::WallStress(const CellIndexing& indexing, int face, const std::
       nu_(indexing.size()[u_axis_]),
       nv_(indexing.size()[v_axis_]),
       depth_(indexing.size()[normal_]),
+      farthest_(std::min(layers, (cells_across + 1) / 2) - 1),
       inward_(face % 2 == 0 ? indexing.stride(normal_) : -indexing.stride(normal_)),
       present_(present),
       viscosity_(viscosity) {
-  for (auto& values : state_) values.assign(static_cast<std::size_t>(nu_) * nv_, Real(0));
-  resistance_.resize(static_cast<std::size_t>(indexing.size()[0]));
-  for (auto& values : stress_) values.assign(static_cast<std::size_t>(nu_) * nv_, Real(0));
+  const std::size_t cells = static_cast<std::size_t>(nu_) * nv_;
+  for (auto& values : state_) values.assign(cells, Real(0));
+  for (auto* arrays : {&stress_, &no_slip_, &law_})
+    for (auto& values : *arrays) values.assign(cells, Real(0));
+  in_sublayer_.assign(cells, 0);
+  layer_.assign(cells, farthest_);
+  wanted_.assign(static_cast<std::size_t>(layers) * nv_, 0);
+  reynolds_.resize(static_cast<std::size_t>(indexing.size()[0]));
 }
 
 template <typename Real>
@@ -40,56 +52,76 @@ std::ptrdiff_t WallStress<Real>::cell_at_wall(int u, int v) const {
   return indexing_.index(at[0], at[1], at[2]);
 }
 
+// From the farthest cell to the wall: how many follow each other from here on without a body between.
 template <typename Real>
-bool WallStress<Real>::second_is_fluid(const CellMap& cells, std::ptrdiff_t at_wall) const {
-  return depth_ > 1 && cells.is_fluid(at_wall + inward_);
+void WallStress<Real>::find_layers(const CellMap& cells) {
+  std::fill(wanted_.begin(), wanted_.end(), 0);
+  const std::ptrdiff_t stride = indexing_.stride(u_axis_);
+  for (int v = 0; v < nv_; ++v) {
+    std::int32_t* layer = layer_.data() + place(0, v);
+    std::fill(layer, layer + nu_, 0);
+    for (int far = farthest_; far > 0; --far) {
+      const std::int32_t* body = cells.bodies() + cell_at_wall(0, v) + far * inward_;
+      for (int u = 0; u < nu_; ++u) layer[u] = body[u * stride] == CellMap::fluid ? layer[u] + 1 : 0;
+    }
+    for (int u = 0; u < nu_; ++u) wanted_[static_cast<std::size_t>(layer[u]) * nv_ + v] = 1;
+  }
 }
 
+// Across x a row has cells of several rows of the face.
 template <typename Real>
 bool WallStress<Real>::wants(int y, int z) const {
-  const int at = normal_ == 1 ? y : z, from_face = face_ % 2 == 0 ? at : depth_ - 1 - at;
-  return normal_ == 0 || from_face < 2;
+  if (normal_ == 0) return true;
+  const int layer = from_face(normal_ == 1 ? y : z), v = normal_ == 1 ? z : y;
+  if (layer == 0) return true;
+  return layer <= farthest_ && wanted_[static_cast<std::size_t>(layer) * nv_ + v] != 0;
 }
 
+// |u| distance/nu, in a loop that is vectorised.
 template <typename Real>
-void WallStress<Real>::take(std::size_t place, double along_u, double along_v) {
-  state_[2][place] = state_[0][place];
-  state_[3][place] = state_[1][place];
-  state_[0][place] = static_cast<Real>(along_u);
-  state_[1][place] = static_cast<Real>(along_v);
-}
-
-// T over rho u in the cells x to end of a row: (nu/distance) StressRatio. In two loops, the first of which is
-// vectorised.
-template <typename Real>
-void WallStress<Real>::find_resistance(int x, int end, bool second, const RowMoments<Real>& moments,
-                                       const Vec3& half_force) {
-  static const StressRatio ratio;
+void WallStress<Real>::find_reynolds(const Piece& piece, const RowMoments<Real>& moments, const Vec3& half_force) {
   const Real* density = moments.deviation;
   const Real *along_u = moments.momentum[u_axis_], *along_v = moments.momentum[v_axis_];
   const double half_u = half_force[u_axis_], half_v = half_force[v_axis_];
-  const double distance = second ? 1.5 : 0.5, scale = distance / viscosity_;
-  for (int n = x; n < end; ++n) {
-    const double u = along_u[n] + half_u, v = along_v[n] + half_v;
-    resistance_[n] = scale * std::sqrt(u * u + v * v) / (1.0 + density[n]);  // |u| distance/nu
+  const double scale = (piece.layer + 0.5) / viscosity_;
+  for (int x = piece.x; x < piece.end; ++x) {
+    const double u = along_u[x] + half_u, v = along_v[x] + half_v;
+    reynolds_[x] = scale * std::sqrt(u * u + v * v) / (1.0 + density[x]);
   }
-  for (int n = x; n < end; ++n) resistance_[n] = viscosity_ / distance * ratio(resistance_[n]);
 }
 
-// Cells x to end of a row, of which the first belongs to a cell of the face and a place, and each further one to the
-// next. A first cell counts where its second is solid, a second one where it is fluid: each place is taken once in a
-// sweep.
+// T of no slip, and that of the law where nothing but the first cell is before a body.
 template <typename Real>
-void WallStress<Real>::take_cells(int x, int end, bool second, std::ptrdiff_t at_wall, std::size_t place,
-                                  const RowMoments<Real>& moments, const CellMap& cells, const Vec3& half_force) {
-  find_resistance(x, end, second, moments, half_force);
+void WallStress<Real>::take_first(const Piece& piece, const RowMoments<Real>& moments, const CellMap& cells,
+                                  const Vec3& half_force) {
+  find_reynolds(piece, moments, half_force);
   const Real *along_u = moments.momentum[u_axis_], *along_v = moments.momentum[v_axis_];
-  const double half_u = half_force[u_axis_], half_v = half_force[v_axis_];
-  for (; x < end; ++x, ++at_wall, ++place) {
-    if (second != second_is_fluid(cells, at_wall)) continue;
-    const bool fluid = second || cells.is_fluid(at_wall);
-    take(place, fluid ? resistance_[x] * (along_u[x] + half_u) : 0.0,
-         fluid ? resistance_[x] * (along_v[x] + half_v) : 0.0);
+  std::size_t here = piece.place;
+  for (int x = piece.x; x < piece.end; ++x, ++here) {
+    no_slip_[0][here] = static_cast<Real>(2.0 * viscosity_ * (along_u[x] + half_force[u_axis_]));
+    no_slip_[1][here] = static_cast<Real>(2.0 * viscosity_ * (along_v[x] + half_force[v_axis_]));
+    if (layer_[here] != 0) continue;
+    const bool fluid = cells.is_fluid(cell_at_wall(static_cast<int>(here % nu_), static_cast<int>(here / nu_)));
+    const Real ratio = fluid ? static_cast<Real>(stress_ratio(reynolds_[x])) : Real(0);
+    law_[0][here] = ratio * no_slip_[0][here];
+    law_[1][here] = ratio * no_slip_[1][here];
+    in_sublayer_[here] = 0;
+  }
+}
+
+// Each place is taken once in a sweep, from the cell of its layer. T over rho u is (nu/distance) StressRatio.
+template <typename Real>
+void WallStress<Real>::take_far(const Piece& piece, const RowMoments<Real>& moments, const Vec3& half_force) {
+  find_reynolds(piece, moments, half_force);
+  const Real *along_u = moments.momentum[u_axis_], *along_v = moments.momentum[v_axis_];
+  const double laminar = viscosity_ / (piece.layer + 0.5);
+  std::size_t here = piece.place;
+  for (int x = piece.x; x < piece.end; ++x, ++here) {
+    if (layer_[here] != piece.layer) continue;
+    const double resistance = laminar * stress_ratio(reynolds_[x]);
+    law_[0][here] = static_cast<Real>(resistance * (along_u[x] + half_force[u_axis_]));
+    law_[1][here] = static_cast<Real>(resistance * (along_v[x] + half_force[v_axis_]));
+    in_sublayer_[here] = reynolds_[x] <= edge_of_viscous_sublayer * edge_of_viscous_sublayer;
   }
 }
 
@@ -97,15 +129,26 @@ template <typename Real>
 void WallStress<Real>::take_row(int y, int z, const RowMoments<Real>& moments, const CellMap& cells,
                                 const Vec3& half_force) {
   if (normal_ == 0) {
-    for (int from_face = 0; from_face < std::min(depth_, 2); ++from_face) {
-      const int x = face_ % 2 == 0 ? from_face : depth_ - 1 - from_face;
-      take_cells(x, x + 1, from_face == 1, cell_at_wall(y, z), place(y, z), moments, cells, half_force);
-    }
+    const std::size_t here = place(y, z);
+    const int first = from_face(0), far = from_face(layer_[here]);
+    take_first({0, first, first + 1, here}, moments, cells, half_force);
+    if (far != first) take_far({layer_[here], far, far + 1, here}, moments, half_force);
     return;
   }
-  const int at = normal_ == 1 ? y : z, v = normal_ == 1 ? z : y;
-  const int from_face = face_ % 2 == 0 ? at : depth_ - 1 - at;
-  take_cells(0, nu_, from_face == 1, cell_at_wall(0, v), place(0, v), moments, cells, half_force);
+  const Piece piece{from_face(normal_ == 1 ? y : z), 0, nu_, place(0, normal_ == 1 ? z : y)};
+  if (piece.layer == 0)
+    take_first(piece, moments, cells, half_force);
+  else
+    take_far(piece, moments, half_force);
+}
+
+template <typename Real>
+void WallStress<Real>::end_sweep() {
+  for (int axis = 0; axis < 2; ++axis) {
+    std::swap(state_[axis], state_[2 + axis]);
+    for (std::size_t here = 0; here < in_sublayer_.size(); ++here)
+      state_[axis][here] = in_sublayer_[here] ? no_slip_[axis][here] : law_[axis][here];
+  }
 }
 
 // A collision keeps the density and adds the force to the momentum. Cell by cell, as rows of one.
@@ -114,19 +157,25 @@ void WallStress<Real>::take_populations(const Populations<Real>& populations, co
                                         const Vec3& half_force) {
   for (int v = 0; v < nv_; ++v)
     for (int u = 0; u < nu_; ++u) {
-      const std::ptrdiff_t at_wall = cell_at_wall(u, v);
-      const bool second = second_is_fluid(cells, at_wall);
-      const std::ptrdiff_t cell = second ? at_wall + inward_ : at_wall;
-      Real deviation = 0, momentum[3] = {0, 0, 0};
-      for (int i = 0; i < D3Q19::directions; ++i) {
-        const Real f = populations.post_collision(i, cell);
-        deviation += f;
-        for (int a = 0; a < 3; ++a) momentum[a] += static_cast<Real>(D3Q19::c[i][a]) * f;
-      }
-      const RowMoments<Real> moments{&deviation, {&momentum[0], &momentum[1], &momentum[2]}};
-      for (int collision = 0; collision < 2; ++collision)
-        take_cells(0, 1, second, at_wall, place(u, v), moments, cells, -half_force);
+      const std::size_t here = place(u, v);
+      const auto in_layer = [&](int layer, const auto& take) {
+        Real deviation = 0, momentum[3] = {0, 0, 0};
+        for (int i = 0; i < D3Q19::directions; ++i) {
+          const Real f = populations.post_collision(i, cell_at_wall(u, v) + layer * inward_);
+          deviation += f;
+          for (int a = 0; a < 3; ++a) momentum[a] += static_cast<Real>(D3Q19::c[i][a]) * f;
+        }
+        take(Piece{layer, 0, 1, here}, RowMoments<Real>{&deviation, {&momentum[0], &momentum[1], &momentum[2]}});
+      };
+      in_layer(0, [&](const Piece& piece, const RowMoments<Real>& moments) {
+        take_first(piece, moments, cells, -half_force);
+      });
+      if (layer_[here] > 0)
+        in_layer(layer_[here],
+                 [&](const Piece& piece, const RowMoments<Real>& moments) { take_far(piece, moments, -half_force); });
     }
+  end_sweep();
+  end_sweep();
 }
 
 template <typename Real>

@@ -1,11 +1,14 @@
 // The stress that a law of the wall takes from the fluid at one face of the domain, cell by cell:
 //   T = rho u_tau^2 u/|u|,
-// where u is the velocity along the wall in the second cell from it, one and a half cells away (in the first, half a
-// cell away, where the second is solid or there is none), rho the density of that cell, and u_tau what the law makes of
-// |u| and the distance (StressRatio). Lattice units.
+// where u is the velocity along the wall in the fifth cell from it, four and a half cells away, rho the density of that
+// cell, and u_tau what the law makes of |u| and the distance (StressRatio). Where a body covers one of these cells, it
+// is the last one before the body; in a box of less than nine cells the last one before the middle. Where this cell
+// lies in the viscous sublayer, the lattice resolves it, and T is that of no slip, 2 nu rho u of the first cell.
+// Lattice units.
 //
-// The second cell: in the first the profile is steeper than the lattice resolves, and its velocity belongs to the
-// lattice, not to the flow (Kawai and Larsson 2012). In a sublayer that the lattice does resolve, T is that of no slip.
+// The fifth cell: the eddies of the first few are as large as their distance from the wall, which the lattice does not
+// resolve, so that their velocity belongs to the lattice and not to the flow. With cells of a fifth of the distance it
+// does (Kawai and Larsson 2012).
 //
 // What a step takes is the mean of T in the last two collisions. The lattice has momenta of its own that change sign
 // from cell to cell along the wall and from step to step, and that neither collisions nor walls damp (Zanetti 1989): T
@@ -21,6 +24,7 @@
 #include "lbm/sweep.hpp"
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -29,15 +33,27 @@ namespace thalweg::lbm {
 template <typename Real>
 class WallStress {
 public:
-  // present: at which faces of the box this rank's block ends; `face` is one of them. viscosity: of the fluid alone.
-  WallStress(const CellIndexing& indexing, int face, const std::array<bool, 6>& present, double viscosity);
+  // The cells from the wall to the one whose velocity counts, that one included.
+  static constexpr int layers = 5;
 
-  // Whether a row has first or second cells of this face.
+  // present: at which faces of the box this rank's block ends; `face` is one of them. cells_across: of the box, from
+  // this face to the other. viscosity: of the fluid alone.
+  WallStress(const CellIndexing& indexing, int face, const std::array<bool, 6>& present, int cells_across,
+             double viscosity);
+
+  // Finds the cells whose velocities count: before what follows, and again where the map has changed.
+  void find_layers(const CellMap& cells);
+
+  // Whether a row has such cells.
   bool wants(int y, int z) const;
-  // Takes the stress from such a row, just swept. half_force: of that collision.
+  // Takes the velocities of such a row, just swept. half_force: of that collision.
   void take_row(int y, int z, const RowMoments<Real>& moments, const CellMap& cells, const Vec3& half_force);
 
-  // Takes it from populations that no sweep has left. half_force: of the last collision.
+  // All rows have been swept.
+  void end_sweep();
+
+  // Takes the velocities, and the stress of the last two collisions, from populations that no sweep has left.
+  // half_force: of the last collision.
   void take_populations(const Populations<Real>& populations, const CellMap& cells, const Vec3& half_force);
   // Finds the stress of the coming exchange from what has been taken.
   void find(const CellMap& cells);
@@ -52,23 +68,33 @@ public:
   std::span<const Real> state(int n) const { return state_[n]; }
 
 private:
-  void find_resistance(int x, int end, bool second, const RowMoments<Real>& moments, const Vec3& half_force);
-  void take(std::size_t place, double along_u, double along_v);
-  void take_cells(int x, int end, bool second, std::ptrdiff_t at_wall, std::size_t place,
-                  const RowMoments<Real>& moments, const CellMap& cells, const Vec3& half_force);
-  bool second_is_fluid(const CellMap& cells, std::ptrdiff_t at_wall) const;
+  // Cells of one layer, from x to the end in a row of moments, with the first one's place on the face; the others
+  // follow it.
+  struct Piece {
+    int layer, x, end;
+    std::size_t place;
+  };
+
+  void take_first(const Piece& piece, const RowMoments<Real>& moments, const CellMap& cells, const Vec3& half_force);
+  void take_far(const Piece& piece, const RowMoments<Real>& moments, const Vec3& half_force);
+  void find_reynolds(const Piece& piece, const RowMoments<Real>& moments, const Vec3& half_force);
+  int from_face(int at) const { return face_ % 2 == 0 ? at : depth_ - 1 - at; }
   bool has_both_neighbours(const CellMap& cells, std::ptrdiff_t cell, int axis, int along) const;
   std::ptrdiff_t cell_at_wall(int u, int v) const;
   std::size_t place(int u, int v) const { return static_cast<std::size_t>(v) * nu_ + u; }
 
   CellIndexing indexing_;
-  int face_, normal_, u_axis_, v_axis_, nu_, nv_, depth_;
+  int face_, normal_, u_axis_, v_axis_, nu_, nv_, depth_, farthest_;
   std::ptrdiff_t inward_;
   std::array<bool, 6> present_;
   double viscosity_;
   std::array<std::vector<Real>, arrays> state_;  // at the cells of the face
   std::array<std::vector<Real>, 2> stress_;
-  std::vector<double> resistance_;  // of a row
+  std::array<std::vector<Real>, 2> no_slip_, law_;  // T of the last rows by the first cell, and by the far one
+  std::vector<char> in_sublayer_;                   // whether the far one is there
+  std::vector<std::int32_t> layer_;  // at the cells of the face: of the cell whose velocity counts, from 0
+  std::vector<char> wanted_;         // rows of layer_ with a cell of a layer: those of layer 0, then of 1, ...
+  std::vector<double> reynolds_;     // of a row
 };
 
 }  // namespace thalweg::lbm

@@ -33,6 +33,20 @@ void check(const FaceCondition& wall, int axis, const char* name) {
         fmt::format("The slip coefficient at {} is {}; it must be positive.", name, wall.slip_coefficient));
 }
 
+// The law looks at cells of the rank at the wall alone.
+void check_depth(const Decomposition& decomposition, int face, const char* name) {
+  constexpr int layers = WallStress<float>::layers;
+  const int axis = face / 2;
+  Index3 at{0, 0, 0};
+  if (face % 2 == 1) at[axis] = decomposition.layout()[axis] - 1;
+  const int cells = decomposition.block_of(decomposition.rank_at(at)).size()[axis];
+  if (cells < layers && cells < decomposition.cells()[axis])
+    throw InputError(fmt::format(
+        "The law of the wall at {} takes the velocity of cell {} from the wall, but a rank there has only {} "
+        "cells across it; use fewer ranks along {}.",
+        name, layers, cells, name[0]));
+}
+
 // The box of a face field in its global dataset: ranks away from the face write nothing.
 ArrayBox face_box(const Decomposition& decomposition, const Block& block, int face, bool present) {
   const int u = first_axis(face / 2), v = second_axis(face / 2);
@@ -70,7 +84,10 @@ Walls<Real>::Walls(const Decomposition& decomposition, int rank, const CellIndex
                               static_cast<Real>(bounced_fraction(face, 0.0)));
     }
   for (int face = 0; face < 6; ++face)
-    if (present_[face] && has_stress(face)) stress_[face].emplace(indexing, face, present_, viscosity_);
+    if (has_stress(face)) {
+      check_depth(decomposition, face, face_names[face]);
+      if (present_[face]) stress_[face].emplace(indexing, face, present_, decomposition.cells()[face / 2], viscosity_);
+    }
 }
 
 template <typename Real>
@@ -91,6 +108,12 @@ double Walls<Real>::bounced_fraction(int face, double shear_rate) const {
       wall.slip_of_first_cell ? slip_coefficient_at(0.5 * friction_velocity / viscosity_) : wall.slip_coefficient;
   return std::max(smallest_bounced_fraction,
                   scale * friction_velocity / (scale * friction_velocity + coefficient * viscosity));
+}
+
+template <typename Real>
+int Walls<Real>::depth() const {
+  const bool law = std::any_of(stress_.begin(), stress_.end(), [](const auto& face) { return face.has_value(); });
+  return law ? WallStress<Real>::layers : 1;
 }
 
 template <typename Real>
@@ -132,6 +155,13 @@ void Walls<Real>::take_moments(int y, int z, const RowMoments<Real>& moments, co
                                const Vec3& half_force) {
   for (auto& stress : stress_)
     if (stress && stress->wants(y, z)) stress->take_row(y, z, moments, cells, half_force);
+}
+
+template <typename Real>
+void Walls<Real>::end_sweep() {
+  for (auto& stress : stress_)
+    if (stress) stress->end_sweep();
+  swept_ = true;
 }
 
 // Ranks away from a face take part with nothing.

@@ -58,13 +58,16 @@ struct FaceField {
 template <typename Real>
 class Walls {
 public:
-  // Throws InputError where a moving wall would move out of its plane, a slip length is negative, or a slip coefficient
-  // is not positive.
+  // Throws InputError where a moving wall would move out of its plane, a slip length is negative, a slip coefficient is
+  // not positive, or a block at a law of the wall does not hold all cells that the law looks at.
   Walls(const Decomposition& decomposition, int rank, const CellIndexing& indexing, const FaceConditions& faces,
         const CollisionParameters& parameters);
 
   // True if this rank's block has a wall at that face.
   bool present(int axis, bool high) const { return present_[face_of(axis, high)]; }
+
+  // How many cells next to a face apply() reads.
+  int depth() const;
 
   // Fills the incoming populations of all owned cells at walls. The halo, which it reads, must be up to date.
   // Applied again before the next sweep, it fills in the same.
@@ -85,10 +88,12 @@ public:
 
   // True if the moments of a row are wanted after the sweep.
   bool wants_moments(int y, int z) const;
-  // Takes the stress of faces with a law of the wall from a row, just swept. half_force: of that collision.
+  // Takes the velocities at faces with a law of the wall from a row, just swept. half_force: of that collision.
   void take_moments(int y, int z, const RowMoments<Real>& moments, const CellMap& cells, const Vec3& half_force);
-  // All rows have been swept, or populations have been set otherwise, from which the next apply() takes these stresses.
-  void set_swept(bool swept) { swept_ = swept; }
+  // All rows have been swept.
+  void end_sweep();
+  // Populations have been set otherwise: the next apply() takes these velocities from them.
+  void forget_sweep() { swept_ = false; }
 
   // The force density of the last collision, half of which post-collision populations carry beyond rho u.
   void set_carried_force(const Vec3& force) { half_force_ = 0.5 * force; }

@@ -5,6 +5,7 @@
 #include "dem/walls.hpp"
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace thalweg::coupling {
@@ -36,6 +37,8 @@ struct WaterBox {
   bool grain_stress = false;
   bool full_gravity = false;  // gravity acts on everything, and buoyancy comes from the fluid
   LoadRule load = LoadRule::extrapolated;
+  std::optional<lbm::FlowTarget> flow_target;
+  bool target_moves_grains = true;
   std::vector<dem::GrainSeed> seeds;
   std::vector<dem::PrescribedMotion> assemblies;
   std::vector<dem::ClumpSeed> clumps;
@@ -71,6 +74,8 @@ std::unique_ptr<LatticeSystem<Real>> make_system(const WaterBox& box, MPI_Comm c
   p.collision.subgrid = lbm::Subgrid::smagorinsky(box.smagorinsky_constant);
   p.collision.bulk_relaxation_time = box.bulk_relaxation_time;
   p.ramp = box.ramp;
+  p.flow_target = box.flow_target;
+  p.target_moves_grains = box.flow_target && box.target_moves_grains;
   for (int a = 0; a < (box.full_gravity ? 3 : 2); ++a) p.collision.force[a] = box.gravity[a] / p.units.acceleration();
   for (int face = 0; face < 6; ++face)
     p.faces[face].type = box.periodic[face / 2] ? lbm::FaceType::periodic

@@ -53,7 +53,7 @@ std::vector<Box> boxes() {
           {"channel of one cell", {periodic, periodic, law, law, no_slip, free_slip}, {37, 1, 35}},
           {"channel of two cells", {periodic, periodic, law, law, no_slip, free_slip}, {37, 2, 35}},
           {"channel of three cells", {law, law, periodic, periodic, no_slip, free_slip}, {3, 37, 35}},
-          {"channel of four cells a rank at most", {periodic, periodic, law, law, law, free_slip}, {37, 8, 8}},
+          {"channel of five cells a rank at most", {periodic, periodic, law, law, law, free_slip}, {37, 10, 10}},
           {"open", {inlet, outlet, law, slip, no_slip, free_slip}}};
 }
 

@@ -46,7 +46,7 @@ TEST(Couette, IsExactForEveryWallCollisionAndNormal) {
   for (const CollisionModel model : {CollisionModel::bgk, CollisionModel::trt, CollisionModel::trt_at_bodies})
     for (const int normal : {0, 1, 2}) {
       expect_couette({FaceType::no_slip}, 0.0, model, normal);
-      expect_couette({FaceType::law_of_the_wall}, 0.0, model, normal);  // y+ of the second cell is 0.24
+      expect_couette({FaceType::law_of_the_wall}, 0.0, model, normal);  // the fifth cell is in the sublayer
       expect_couette(slip, 1.7, model, normal);
       expect_couette(slip_law, a * nu / friction_velocity, model, normal);
     }
@@ -136,6 +136,20 @@ TEST(Walls, RefuseWhatMakesNoSense) {
   negative.slip_length = -1.0;
   EXPECT_THROW(build(lifting), InputError);
   EXPECT_THROW(build(negative), InputError);
+}
+
+// Every rank sees it, also one without a share in the wall.
+TEST(Walls, RefuseALawOfTheWallWhoseCellsAreOnSeveralRanks) {
+  FaceConditions faces;
+  faces[4].type = faces[5].type = FaceType::law_of_the_wall;
+  const auto build = [&](int height, int ranks) {
+    const Decomposition decomposition({8, 8, height}, 1.0, {true, true, false}, {1, 1, ranks});
+    for (int rank = 0; rank < ranks; ++rank)
+      const Walls<float> walls(decomposition, rank, CellIndexing(decomposition.block_of(rank).size(), 8), faces, {});
+  };
+  EXPECT_THROW(build(12, 3), InputError);
+  build(15, 3);
+  build(4, 1);
 }
 
 }  // namespace
