@@ -87,7 +87,7 @@ void LinkBuilder::look_for_enclosed(const CellChange& change) {
               z = change.cell[2] + D3Q19::c[i][2];
     if (!indexing.owned(x, y, z)) continue;
     const std::ptrdiff_t cell = indexing.index(x, y, z);
-    const bool changed = cells_.is_enclosed(cell) ? enclosed_.insert(cell).second : enclosed_.erase(cell) > 0;
+    const bool changed = cells_.is_enclosed({x, y, z}) ? enclosed_.insert(cell).second : enclosed_.erase(cell) > 0;
     if (!changed) continue;
     for (int j = 1; j < D3Q19::directions; ++j) {
       const std::int32_t body = cells_.body(cell + indexing.offset(j));
@@ -158,7 +158,8 @@ void LinkBuilder::find_in_cells(int slot, int x, int count, int y, int z) {
   open.copy_to(is_open, unaligned);
   for (int k = 0; k < count; ++k) {
     const std::uint32_t place = LinkPlace::of(x + k, y);
-    const bool enclosed = is_open[k] == 0;
+    const bool enclosed =
+        hit[k] != 0 && (is_open[k] == 0 || (cells_.is_at_wall({x + k, y, z}) && cells_.is_enclosed({x + k, y, z})));
     for (auto left = static_cast<std::uint32_t>(hit[k]); left != 0; left &= left - 1) {
       const int i = std::countr_zero(left);
       links_.push_back({place, LinkTag::of(i, row[k - indexing.offset(i)], enclosed)});

@@ -217,7 +217,9 @@ void LinkPass<Real>::forget_second_of_covered(const Batch& b) {
 
 template <typename Real>
 void LinkPass<Real>::find_leaks(const Batch& b) {
-  for (int k = 0; k < b.size; ++k) values_.leak[k] = (b.tag[k] & LinkTag::enclosed) != 0 ? excess()[k] : Real(0);
+  const Real around = static_cast<Real>(options_.reference_density);
+  for (int k = 0; k < b.size; ++k)
+    values_.leak[k] = (b.tag[k] & LinkTag::enclosed) != 0 ? excess()[k] - around : Real(0);
 }
 
 // x_f from the body's centre: the arm, back by the distance.

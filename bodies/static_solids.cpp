@@ -200,7 +200,7 @@ void StaticSolids::find_links(int solid, int tile, std::vector<Link>& links,
     const std::ptrdiff_t cell = cells_.indexing().index(at[0], at[1], at[2]);
     if (!cells_.is_fluid(cell)) continue;
     const Vec3 place = centre_of({block_.lower[0] + at[0], block_.lower[1] + at[1], block_.lower[2] + at[2]});
-    const bool enclosed = cells_.is_enclosed(cell);
+    const bool enclosed = cells_.is_enclosed(at);
     for (int i = 1; i < D3Q19::directions; ++i) {
       if (cells_.body(cell + cells_.indexing().offset(i)) != solid) continue;
       // A link can only miss a surface that touches its end, by round-off.

@@ -41,11 +41,18 @@ public:
   const CellIndexing& indexing() const { return indexing_; }
   bool is_fluid(std::ptrdiff_t cell) const { return body_[cell] == fluid; }
   std::int32_t body(std::ptrdiff_t cell) const { return body_[cell]; }
-  // Whether a fluid cell, which must be owned, has no fluid beside it.
-  bool is_enclosed(std::ptrdiff_t cell) const {
+  // Whether a fluid cell, which must be owned, has nothing but bodies and walls beside it.
+  bool is_enclosed(const Index3& at) const {
+    const std::ptrdiff_t cell = indexing_.index(at[0], at[1], at[2]);
     for (int i = 1; i < D3Q19::directions; ++i)
-      if (is_fluid(cell + indexing_.offset(i))) return false;
+      if (is_fluid(cell + indexing_.offset(i)) && !meets_wall(at, i, 1)) return false;
     return is_fluid(cell);
+  }
+  // Whether there is a wall beside a cell.
+  bool is_at_wall(const Index3& at) const {
+    for (int a = 0; a < 3; ++a)
+      if (at[a] <= walls_.lower[a] || at[a] + 1 >= walls_.upper[a]) return true;
+    return false;
   }
   const std::int32_t* bodies() const { return body_.data(); }
 

@@ -29,7 +29,7 @@ std::set<std::array<std::uint32_t, 4>> links_by_definition(const lbm::Fluid<doub
           if (!cells.is_fluid(cell) || body == lbm::CellMap::fluid) continue;
           const std::int32_t upstream = cells.body(cell - fluid.indexing().offset(i));
           links.insert({static_cast<std::uint32_t>(body), static_cast<std::uint32_t>(fluid.tiles().tile_of(y, z)),
-                        LinkPlace::of(x, y), LinkTag::of(i, upstream, cells.is_enclosed(cell))});
+                        LinkPlace::of(x, y), LinkTag::of(i, upstream, cells.is_enclosed({x, y, z}))});
         }
       }
   return links;
