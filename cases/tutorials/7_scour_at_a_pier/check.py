@@ -1,0 +1,106 @@
+#!/usr/bin/python3
+"""Finds the scour hole of tutorial 7 and the vortex in front of the pier, and draws them."""
+import sys
+from pathlib import Path
+
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+from thalweg.checks import check_main
+from thalweg.run import Run
+
+PIER, RADIUS = np.array([30e-3, 25e-3]), 6.25e-3   # m: see pier.py
+AT_REST = 0.03                                     # m/s: slower grains are bed
+PIXEL = 1e-3                                       # m
+
+
+def grid_of(run):
+    """Middles of the pixels along x and along y, and each pixel's distance (m) from the axis of the pier."""
+    x, y = (PIXEL * (np.arange(round(length / PIXEL)) + 0.5) for length in run.size[:2])
+    return x, y, np.hypot(x[None, :] - PIER[0], y[:, None] - PIER[1])
+
+
+def surface_of(run, frame, x, y):
+    """Height (m) of the upper sides of grains at rest as [y, x], on periodic axes."""
+    heights = np.zeros((len(y), len(x)))
+    for (px, py, pz), radius, velocity in zip(frame.position, frame.radius, frame.velocity):
+        if np.linalg.norm(velocity) > AT_REST:
+            continue
+        dx = (x - px + run.size[0] / 2) % run.size[0] - run.size[0] / 2
+        dy = (y - py + run.size[1] / 2) % run.size[1] - run.size[1] / 2
+        inside = radius ** 2 - dx[None, :] ** 2 - dy[:, None] ** 2
+        heights = np.where(inside > 0, np.maximum(heights, pz + np.sqrt(np.maximum(inside, 0))), heights)
+    return heights
+
+
+def depths_of(run):
+    """Times, and how far (m) the deepest eighth of a ring of a diameter round the pier is below the bed away from it, as mean
+    of five frames."""
+    x, y, distance = grid_of(run)
+    ring, away = (distance > RADIUS) & (distance < RADIUS + 5e-3), distance > 2.5 * RADIUS
+    sector = np.floor((np.arctan2(y[:, None] - PIER[1], x[None, :] - PIER[0]) / np.pi + 1.0) * 4.0)
+    times, depths = [], []
+    for frame in run.grains:
+        heights = surface_of(run, frame, x, y)
+        deepest = min(heights[ring & (sector == k)].mean() for k in range(8))
+        times.append(frame.time)
+        depths.append(heights[away].mean() - deepest)
+    return np.array(times), np.convolve(np.pad(depths, 2, mode="edge"), np.full(5, 0.2), mode="valid")
+
+
+def flow_in_front(run):
+    """Times, the downward velocity (m/s) at the upstream face of the pier, and the backward velocity in front of its foot."""
+    times, down, back = [], [], []
+    for frame in run.fluid:
+        velocity, water = frame.arrays["velocity"][:, 0].astype(float), frame.arrays["grain_id"][:, 0] == -1
+        x = frame.corner[0] + frame.spacing[0] * (np.arange(velocity.shape[1]) + 0.5)
+        z = frame.corner[2] + frame.spacing[2] * (np.arange(velocity.shape[0]) + 0.5)
+        front = PIER[0] - RADIUS
+        face = water & (x > front - 2.5e-3) & (x < front) & (z[:, None] > 25e-3) & (z[:, None] < 45e-3)
+        foot = water & (x > front - 5e-3) & (x < front) & (z[:, None] > 15e-3) & (z[:, None] < 25e-3)
+        times.append(frame.time)
+        down.append(-velocity[face][:, 2].mean())
+        back.append(-velocity[foot][:, 0].min())
+    return np.array(times), np.array(down), np.array(back)
+
+
+def draw(run, depths, flow, path):
+    figure, (plan, graph) = plt.subplots(1, 2, figsize=(10.5, 3.6), layout="constrained")
+    x, y, distance = grid_of(run)
+    heights = np.mean([surface_of(run, frame, x, y) for frame in list(run.grains)[-10:]], axis=0)
+    image = plan.imshow(np.ma.masked_where(distance < RADIUS, 1e3 * heights), origin="lower", cmap="terrain", vmin=8, vmax=30,
+                        extent=(0, 1e3 * run.size[0], 0, 1e3 * run.size[1]))
+    plan.add_patch(plt.Circle(1e3 * PIER, 1e3 * RADIUS, color="0.4"))
+    plan.set(xlabel="x [mm], flow to the right", ylabel="y [mm]", title="height of the bed [mm], last 0.4 s")
+    figure.colorbar(image, ax=plan, shrink=0.8)
+    graph.plot(depths[0], 1e3 * depths[1], color="#14496e")
+    graph.set(xlabel="time [s]", ylabel="depth of the hole [mm]", ylim=(0, None))
+    graph.yaxis.label.set_color("#14496e")
+    speeds = graph.twinx()
+    speeds.plot(flow[0], 1e2 * flow[1], "o-", ms=3, lw=0.8, color="#c0392b", label="down the face of the pier")
+    speeds.plot(flow[0], 1e2 * flow[2], "s-", ms=3, lw=0.8, color="#d98c2b", label="back in front of its foot")
+    speeds.set(ylabel="water [cm/s]", ylim=(0, None))
+    speeds.legend(frameon=False, fontsize=8, loc="lower right")
+    figure.savefig(path, dpi=110)
+
+
+def check(checks, folder, figure):
+    run = Run(folder)
+    checks.finished(run)
+    depths, flow = depths_of(run), flow_in_front(run)
+    first, last = depths[0] < 0.1, depths[0] > depths[0][-1] - 0.5
+    moving = flow[0] > 0.5
+    checks.expect("hole at the start", 1e3 * depths[1][first].mean(), 0.0, 5.0, "mm")
+    checks.expect("hole over the last half second", 1e3 * depths[1][last].mean(), 5.0, 11.0, "mm")
+    checks.compare("the same in diameters of the pier", depths[1][last].mean() / (2 * RADIUS), 1.3, "equilibrium after days: Melville and Sutherland")
+    checks.expect("water down the face", 1e2 * flow[1][moving].mean(), 4.0, 12.0, "cm/s")
+    checks.expect("water back in front of the foot", 1e2 * flow[2][moving].mean(), 3.0, 15.0, "cm/s")
+    if figure:
+        draw(run, depths, flow, figure)
+
+
+if __name__ == "__main__":
+    sys.exit(check_main(__doc__, check, ["run/pier"], figure=True))
