@@ -96,8 +96,8 @@ private:
     alignas(64) Real deviation[capacity];                   // rho - 1 at x_f
     alignas(64) Real excess[capacity];                      // rho - rho_rest at x_f, where it is not the same
     alignas(64) Real incident[capacity], second[capacity];  // f_i^c(x_f); the rule's other value
-    alignas(64) Real leak[capacity];                        // rho - rho_rest - reference density where x_f is enclosed, else 0
-    alignas(64) Real reflected[capacity];                   // f_i'(x_f, t+1)
+    alignas(64) Real leak[capacity];       // rho - rho_rest - reference density where x_f is enclosed, else 0
+    alignas(64) Real reflected[capacity];  // f_i'(x_f, t+1)
     // What is summed, zero for copies. taken, given: f_i^c(x_f), f_i'(x_f, t+1); pressure: w_i (rho - rho_rest)(x_f).
     alignas(64) Real taken[capacity], given[capacity], pressure[capacity];
     alignas(64) Real momentum[3][capacity], torque[3][capacity];

@@ -96,18 +96,21 @@ void WallStress<Real>::find_reynolds(const Piece& piece, const RowMoments<Real>&
   }
 }
 
-// T of no slip, and that of the law where nothing but the first cell is before a body.
+// T of no slip, and that of the law where nothing but the first cell is before a body. Moments of a solid cell may be
+// anything.
 template <typename Real>
 void WallStress<Real>::take_first(const Piece& piece, const RowMoments<Real>& moments, const CellMap& cells,
                                   const Vec3& half_force) {
   find_reynolds(piece, moments, half_force);
   const Real *along_u = moments.momentum[u_axis_], *along_v = moments.momentum[v_axis_];
+  const std::ptrdiff_t stride = indexing_.stride(u_axis_);
   std::size_t here = piece.place;
-  for (int x = piece.x; x < piece.end; ++x, ++here) {
-    no_slip_[0][here] = static_cast<Real>(2.0 * viscosity_ * (along_u[x] + half_force[u_axis_]));
-    no_slip_[1][here] = static_cast<Real>(2.0 * viscosity_ * (along_v[x] + half_force[v_axis_]));
+  std::ptrdiff_t cell = cell_at_wall(static_cast<int>(here % nu_), static_cast<int>(here / nu_));
+  for (int x = piece.x; x < piece.end; ++x, ++here, cell += stride) {
+    const bool fluid = cells.is_fluid(cell);
+    no_slip_[0][here] = fluid ? static_cast<Real>(2.0 * viscosity_ * (along_u[x] + half_force[u_axis_])) : Real(0);
+    no_slip_[1][here] = fluid ? static_cast<Real>(2.0 * viscosity_ * (along_v[x] + half_force[v_axis_])) : Real(0);
     if (layer_[here] != 0) continue;
-    const bool fluid = cells.is_fluid(cell_at_wall(static_cast<int>(here % nu_), static_cast<int>(here / nu_)));
     const Real ratio = fluid ? static_cast<Real>(stress_ratio(reynolds_[x])) : Real(0);
     law_[0][here] = ratio * no_slip_[0][here];
     law_[1][here] = ratio * no_slip_[1][here];

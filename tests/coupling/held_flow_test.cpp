@@ -1,7 +1,7 @@
 // A mean velocity that is held drives grains like the fluid they displace.
 #include "core/mpi_session.hpp"
-#include "tests/support/memory_archive.hpp"
 #include "tests/coupling/water_box.hpp"
+#include "tests/support/memory_archive.hpp"
 
 #include <gtest/gtest.h>
 
@@ -27,8 +27,8 @@ double lag_of_grain(const LatticeSystem<double>& system) {
   return 1.0 - system.grains().store().velocity[0].x() / fluid;
 }
 
-// Both gain F/rho a step, and there is no flow between them. The load that a step gives is that of the steps before, and
-// the force that of ten steps: one part in a hundred of what a flow gains in its response time.
+// Both gain F/rho a step, and there is no flow between them. The load that a step gives is that of the steps before,
+// and the force that of ten steps: one part in a hundred of what a flow gains in its response time.
 TEST(HeldFlow, DrivesAGrainLikeTheFluidItDisplaces) {
   const auto with = make_system<double>(starting_flow(true), MPI_COMM_SELF, {1, 1, 1});
   const auto without = make_system<double>(starting_flow(false), MPI_COMM_SELF, {1, 1, 1});

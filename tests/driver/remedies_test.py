@@ -43,13 +43,13 @@ run: {until: 30}
 output: {series: {every: 0.01}}
 """
 
-# A suspension of light spheres of six cells in oil.
+# A suspension of spheres of six cells in oil.
 SUSPENSION = """
 system: resolved
 domain: {size: [0.0048, 0.0048, 0.0048], spacing: 1.0e-4, boundaries: {x: periodic, y: periodic, bottom: periodic, top: periodic}}
 fluid: {density: 1000, kinematic_viscosity: 1.0e-5, time_step: 1.6e-5, collision: trt}
 gravity: {vector: [0, 0, -9.81], mode: balanced}
-grains: [{solid_fraction: 0.25, density: 1100, diameter: 6.0e-4, placement: {pattern: dense, seed: 1}}]
+grains: [{solid_fraction: 0.25, density: 1250, diameter: 6.0e-4, placement: {pattern: dense, seed: 1}}]
 contact: {normal_stiffness: 0.5, tangential_stiffness: 0.15, restitution: 0.5}
 coupling: {links: cli, grain_steps_per_fluid_step: auto, lubrication: {minimum_gap: 0.01}}
 run: {until: 0.06}
@@ -135,6 +135,10 @@ VARIATIONS = [
     (WATER, ["coupling={grain_steps_per_fluid_step: 1}", "contact.normal_stiffness=20000"], ["grain_steps_per_fluid_step: "]),
     (WATER, ["gravity.slope=-0.01"], ["towards -x"]),
     (SUSPENSION, [], []),
+    (SUSPENSION, ["grains.0.density=1150"], ["so light", "coupling.load: mean"]),
+    (SUSPENSION, ["grains.0.density=1150", "coupling.links=bouzidi"], ["In a dense bed"]),
+    (SUSPENSION, ["grains.0.density=800", "coupling.links=bouzidi"], ["so light", "In a dense bed"]),
+    (SUSPENSION, ["grains.0.density=450"], ["so light", "coupling.virtual_mass: "]),
     (SUSPENSION, ["coupling.grain_steps_per_fluid_step=1"], ["lubrication force"]),
     (SUSPENSION, ["fluid.collision=bgk"], ["In a dense bed"]),
     (SUSPENSION, ["fluid.time_step=1.0e-3", "run.until=10"], ["so large"]),

@@ -77,13 +77,13 @@ def draw(run, depths, flow, path):
     plan.set(xlabel="x [mm], flow to the right", ylabel="y [mm]", title="height of the bed [mm], last 0.4 s")
     figure.colorbar(image, ax=plan, shrink=0.8)
     graph.plot(depths[0], 1e3 * depths[1], color="#14496e")
-    graph.set(xlabel="time [s]", ylabel="depth of the hole [mm]", ylim=(0, None))
+    graph.set(xlabel="time [s]", ylabel="depth of the hole [mm]", ylim=(0, 9))
     graph.yaxis.label.set_color("#14496e")
     speeds = graph.twinx()
     speeds.plot(flow[0], 1e2 * flow[1], "o-", ms=3, lw=0.8, color="#c0392b", label="down the face of the pier")
     speeds.plot(flow[0], 1e2 * flow[2], "s-", ms=3, lw=0.8, color="#d98c2b", label="back in front of its foot")
-    speeds.set(ylabel="water [cm/s]", ylim=(0, None))
-    speeds.legend(frameon=False, fontsize=8, loc="lower right")
+    speeds.set(ylabel="water [cm/s]")
+    speeds.legend(frameon=False, fontsize=8, loc="upper left", ncols=2)
     figure.savefig(path, dpi=110)
 
 
