@@ -17,6 +17,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace thalweg::driver {
@@ -229,10 +230,12 @@ Warnings coarse_cells(const Case& c) {
 constexpr double least_ratio_of_mean_load = 0.5;
 
 // Density over that of the fluid above which a grain is stable under the extrapolated load, by its diameter in cells:
-// the spin goes first. Spheres of six and ten cells, tau - 1/2 = 0.03: cli broke down at 6.9 and held at 7.2 cells over
-// the diameter, bouzidi at 4.3 and 5.0 (docs/theory.md, section 3, "The load in time").
+// the spin goes first (docs/theory.md, section 3, "The load in time"). With cli 7.2 cells over the diameter at
+// tau - 1/2 = 0.03 and 4.2 at 0.54, between them evenly in the logarithm; with bouzidi 5 at 0.03.
 double least_ratio_of_extrapolated_load(const Case& c, double diameter) {
-  const double cells = c.coupling.links == bodies::LinkRule::cli ? 7.2 : 5.0;
+  const double share = std::log(0.54 / (relaxation_time(c) - 0.5)) / std::log(0.54 / 0.03);
+  const double cells =
+      c.coupling.links == bodies::LinkRule::cli ? 4.2 + (7.2 - 4.2) * std::clamp(share, 0.0, 1.0) : 5.0;
   return cells * c.domain.spacing / diameter;
 }
 

@@ -100,18 +100,18 @@ void compare(const WaterBox& box, const Index3& layout, int steps) {
 }
 
 TEST(Ranks, DoNotChangeOneBitOfABedInAFlume) {
-  const WaterBox box = crowded({48, 36, 36}, {true, false, false}, 100, 5.4e-3);
+  const WaterBox box = crowded({48, 40, 36}, {true, false, false}, 100, 5.4e-3);
   for (const Index3& layout : layouts_of(size_of(MPI_COMM_WORLD))) compare<float>(box, layout, 25);
 }
 
 TEST(Ranks, DoNotChangeOneBitWhereCellsBesideGrainsCollideInTheirOwnWay) {
-  WaterBox box = crowded({48, 36, 36}, {true, false, false}, 100, 5.4e-3);
+  WaterBox box = crowded({48, 40, 36}, {true, false, false}, 100, 5.4e-3);
   box.collision = lbm::CollisionModel::trt_at_bodies;
   for (const Index3& layout : two_layouts_of(size_of(MPI_COMM_WORLD))) compare<float>(box, layout, 25);
 }
 
 TEST(Ranks, DoNotChangeOneBitWithLubricationAndVirtualMass) {
-  WaterBox box = crowded({48, 36, 36}, {true, false, false}, 100, 5.4e-3);  // half a cell between the grains
+  WaterBox box = crowded({48, 40, 36}, {true, false, false}, 100, 5.4e-3);  // half a cell between the grains
   box.lubrication = box.virtual_mass = true;
   box.viscosity = 1e-5;
   compare<double>(box, Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD)), 25);
@@ -124,7 +124,7 @@ TEST(Ranks, DoNotChangeOneBitOfACloudInAPeriodicBox) {
 
 // A block of triangles across the ends of the box along x, and a ball, with grains that hit, roll over and lie on them.
 TEST(Ranks, DoNotChangeOneBitOfGrainsOnSolids) {
-  WaterBox box = crowded({48, 36, 36}, {true, false, false}, 100, 5.4e-3);
+  WaterBox box = crowded({48, 40, 36}, {true, false, false}, 100, 5.4e-3);
   box.collision = lbm::CollisionModel::trt_at_bodies;
   const Vec3 size = box.spacing * Vec3(48, 36, 36);
   box.solids = {thalweg::test::box_mesh(Vec3(-8e-3, 6e-3, -1e-3), Vec3(9e-3, 19e-3, 14e-3)),
@@ -171,7 +171,7 @@ TEST(Ranks, DoNotChangeOneBitOfClumpsInAPeriodicBox) {
 }
 
 TEST(Ranks, DoNotChangeOneBitWithFullGravityAndEveryOtherChoiceInAFlume) {
-  WaterBox box = crowded({48, 36, 36}, {true, false, false}, 100, 5.4e-3);
+  WaterBox box = crowded({48, 40, 36}, {true, false, false}, 100, 5.4e-3);
   box.full_gravity = box.grain_stress = box.keep_covered_momentum = true;
   box.links.rule = bodies::LinkRule::cli;
   box.refill = bodies::RefillRule::grad;
