@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Drift of the grains and residual flow in a bed at rest: compare.py RUN [--from SECONDS] [--flowing]
 
 With --flowing the bed is under flowing water: the speeds of its grains.

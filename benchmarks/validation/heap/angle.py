@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Angle of repose of heaps on a plate: angle.py RUN [RUN ...] [--figure FILE]"""
 import argparse
 import pathlib

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """The heap of case.yaml in LAMMPS, from the same bed: lammps.py BED FOLDER. The program is lmp, or what LMP names.
 
 LAMMPS's pair_style granular has the same springs. Its rolling model also has a spring, a dashpot and a limit (sds); its
