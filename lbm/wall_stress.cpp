@@ -38,8 +38,8 @@ WallStress<Real>::WallStress(const CellIndexing& indexing, int face, const std::
   for (auto* arrays : {&stress_, &no_slip_, &law_})
     for (auto& values : *arrays) values.assign(cells, Real(0));
   in_sublayer_.assign(cells, 0);
-  layer_.assign(cells, farthest_);
-  wanted_.assign(static_cast<std::size_t>(layers) * nv_, 0);
+  layer_.resize(cells);
+  layers_in_row_.assign(static_cast<std::size_t>(layers) * nv_, 0);
   reynolds_.resize(static_cast<std::size_t>(indexing.size()[0]));
 }
 
@@ -70,7 +70,8 @@ void WallStress<Real>::find_layers(const CellMap& cells) {
     }
     std::int32_t present = 0;  // a bit for each layer
     for (int u = 0; u < nu; ++u) present |= 1 << layer[u];
-    for (int far = 0; far < layers; ++far) wanted_[static_cast<std::size_t>(far) * nv_ + v] = (present >> far & 1) != 0;
+    for (int far = 0; far < layers; ++far)
+      layers_in_row_[static_cast<std::size_t>(far) * nv_ + v] = (present >> far & 1) != 0;
   }
 }
 
@@ -79,8 +80,7 @@ template <typename Real>
 bool WallStress<Real>::wants(int y, int z) const {
   if (normal_ == 0) return true;
   const int layer = from_face(normal_ == 1 ? y : z), v = normal_ == 1 ? z : y;
-  if (layer == 0) return true;
-  return layer <= farthest_ && wanted_[static_cast<std::size_t>(layer) * nv_ + v] != 0;
+  return layer == 0 || (layer <= farthest_ && has_layer(layer, v));
 }
 
 // |u| distance/nu, in a loop that is vectorised.
@@ -101,11 +101,12 @@ void WallStress<Real>::find_reynolds(const Piece& piece, const RowMoments<Real>&
 template <typename Real>
 void WallStress<Real>::take_first(const Piece& piece, const RowMoments<Real>& moments, const CellMap& cells,
                                   const Vec3& half_force) {
-  find_reynolds(piece, moments, half_force);
+  const int u = static_cast<int>(piece.place % nu_), v = static_cast<int>(piece.place / nu_);
+  if (has_layer(0, v)) find_reynolds(piece, moments, half_force);
   const Real *along_u = moments.momentum[u_axis_], *along_v = moments.momentum[v_axis_];
   const std::ptrdiff_t stride = indexing_.stride(u_axis_);
   std::size_t here = piece.place;
-  std::ptrdiff_t cell = cell_at_wall(static_cast<int>(here % nu_), static_cast<int>(here / nu_));
+  std::ptrdiff_t cell = cell_at_wall(u, v);
   for (int x = piece.x; x < piece.end; ++x, ++here, cell += stride) {
     const bool fluid = cells.is_fluid(cell);
     no_slip_[0][here] = fluid ? static_cast<Real>(2.0 * viscosity_ * (along_u[x] + half_force[u_axis_])) : Real(0);

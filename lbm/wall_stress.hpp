@@ -78,6 +78,7 @@ private:
   void take_first(const Piece& piece, const RowMoments<Real>& moments, const CellMap& cells, const Vec3& half_force);
   void take_far(const Piece& piece, const RowMoments<Real>& moments, const Vec3& half_force);
   void find_reynolds(const Piece& piece, const RowMoments<Real>& moments, const Vec3& half_force);
+  bool has_layer(int layer, int v) const { return layers_in_row_[static_cast<std::size_t>(layer) * nv_ + v] != 0; }
   int from_face(int at) const { return face_ % 2 == 0 ? at : depth_ - 1 - at; }
   bool has_both_neighbours(const CellMap& cells, std::ptrdiff_t cell, int axis, int along) const;
   std::ptrdiff_t cell_at_wall(int u, int v) const;
@@ -93,7 +94,7 @@ private:
   std::array<std::vector<Real>, 2> no_slip_, law_;  // T of the last rows by the first cell, and by the far one
   std::vector<char> in_sublayer_;                   // whether the far one is there
   std::vector<std::int32_t> layer_;  // at the cells of the face: of the cell whose velocity counts, from 0
-  std::vector<char> wanted_;         // rows of layer_ with a cell of a layer: those of layer 0, then of 1, ...
+  std::vector<char> layers_in_row_;  // whether a row of layer_ has a layer: all rows for layer 0, then for 1, ...
   std::vector<double> reynolds_;     // of a row
 };
 

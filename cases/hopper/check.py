@@ -16,8 +16,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 import thalweg
+from hopper import BIN, BOTTOM
 
-BOTTOM, BIN = 0.060, 0.050   # m: see hopper.py
 ACCEPTED = 0.10              # the spread of C (0.55 to 0.65) and k (1.3 to 1.5) in the literature is 10 % at D = 6.7 d
 
 

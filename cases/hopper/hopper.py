@@ -5,7 +5,12 @@ hopper.stl is a cylindrical bin with a flat bottom and a round orifice in its mi
 """
 import argparse
 import math
+import sys
 from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[1] / "python"))
+from thalweg.stl import write_stl
 
 BIN, WALL, BOTTOM, TOP = 0.050, 0.003, 0.060, 0.295   # m: inner diameter, thickness, heights of the bottom's upper side and the rim
 
@@ -33,25 +38,15 @@ def disk(radius, low, high, facets):
     return triangles
 
 
-def write(name, triangles):
-    with open(Path(__file__).with_name(name), "w") as file:
-        file.write(f"solid {Path(name).stem}\n")
-        for corners in triangles:
-            file.write("facet normal 0 0 0\nouter loop\n")
-            file.writelines("vertex {:.7g} {:.7g} {:.7g}\n".format(*corner) for corner in corners)
-            file.write("endloop\nendfacet\n")
-        file.write(f"endsolid {Path(name).stem}\n")
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--orifice", type=float, default=0.020, help="its diameter, m (default: 0.020)")
     parser.add_argument("--facets", type=int, default=36, help="to the turn (default: 36)")
     arguments = parser.parse_args()
     n, hole, inner, outer = arguments.facets, 0.5 * arguments.orifice, 0.5 * BIN, 0.5 * BIN + WALL
-    write("hopper.stl", turned([ring(hole + WALL, BOTTOM - WALL, n), ring(hole, BOTTOM, n), ring(inner, BOTTOM, n), ring(inner, TOP, n),
+    write_stl(HERE / "hopper.stl", turned([ring(hole + WALL, BOTTOM - WALL, n), ring(hole, BOTTOM, n), ring(inner, BOTTOM, n), ring(inner, TOP, n),
                                 ring(outer, TOP, n), ring(outer, BOTTOM - WALL, n)]))
-    write("plug.stl", disk(hole + 0.5 * WALL, BOTTOM - 2 * WALL, BOTTOM - WALL, n))
+    write_stl(HERE / "plug.stl", disk(hole + 0.5 * WALL, BOTTOM - 2 * WALL, BOTTOM - WALL, n))
 
 
 if __name__ == "__main__":

@@ -15,6 +15,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 import program
 from pictures import cell_data
 from program import ProgramTest
+from stl_box import write_box
 from thalweg import Run
 
 
@@ -201,18 +202,6 @@ output: {series: {every: 0.005}, checkpoint: {every: 0.01, keep: 3}}
         self.assertNotIn("grain-steps", report)
 
 
-def write_stl(path, low, high, leave_out=0):
-    """A box from corner to corner as a text STL, less some of its triangles."""
-    corner = [[(low, high)[n >> a & 1][a] for a in range(3)] for n in range(8)]
-    faces = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)]
-    triangles = [t for a, b, c, d in faces for t in ((a, b, c), (a, c, d))][leave_out:]
-    lines = ["solid box"]
-    for triangle in triangles:
-        lines += ["facet normal 0 0 0", "outer loop"]
-        lines += ["vertex %g %g %g" % tuple(corner[n]) for n in triangle] + ["endloop", "endfacet"]
-    path.write_text("\n".join(lines + ["endsolid box", ""]))
-
-
 class Solids(ProgramTest):
     # A sphere across the periodic ends and a sill of STL, in millimetres, on the floor.
     CASE = """
@@ -233,7 +222,7 @@ output:
 
     def setUp(self):
         super().setUp()
-        write_stl(self.folder / "sill.stl", (0, -1, -1), (2.3, 17, 2.6))
+        write_box(self.folder / "sill.stl", (0, -1, -1), (2.3, 17, 2.6))
 
     def test_the_same_bits_on_any_ranks_and_after_a_restart(self):
         self.run_well("run", self.case, "--out", "one")
@@ -273,7 +262,7 @@ output:
                       report)
 
     def test_a_bad_geometry_is_refused(self):
-        write_stl(self.folder / "open.stl", (0, -1, -1), (2.3, 17, 2.6), leave_out=1)
+        write_box(self.folder / "open.stl", (0, -1, -1), (2.3, 17, 2.6), leave_out=1)
         (self.folder / "text.stl").write_text("no geometry at all\n")
         good = (self.folder / "sill.stl").read_text()
         (self.folder / "line.stl").write_text(good.replace("vertex 0 -1 -1", "vertex 1,5 -1 -1", 1))

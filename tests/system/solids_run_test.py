@@ -12,23 +12,10 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 import program
 from program import ProgramTest
+from stl_box import write_box
 from thalweg import Run
 
 GLASS = "contact: {restitution: 0.5, friction: 0.5, wall_friction: 0.4, duration: 1.0e-3}"
-
-
-def write_block(path, lower, upper):
-    """An STL box from corner to corner."""
-    corner = lambda n: [upper[a] if n >> a & 1 else lower[a] for a in range(3)]
-    with open(path, "w") as file:
-        file.write("solid block\n")
-        for a, b, c, d in ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)):
-            for triangle in ((a, b, c), (a, c, d)):
-                file.write("facet normal 0 0 0\nouter loop\n")
-                for n in triangle:
-                    file.write("vertex {:g} {:g} {:g}\n".format(*corner(n)))
-                file.write("endloop\nendfacet\n")
-        file.write("endsolid block\n")
 
 
 class SolidsInWater(ProgramTest):
@@ -54,7 +41,7 @@ output:
 
     def setUp(self):
         super().setUp()
-        write_block(self.folder / "sill.stl", (0, -1, -1), (5, 16, 6))
+        write_box(self.folder / "sill.stl", (0, -1, -1), (5, 16, 6))
 
     def test_the_same_bits_on_any_ranks_and_after_a_restart(self):
         self.run_well("run", self.case, "--out", "one")
@@ -99,8 +86,8 @@ output: {{series: {{every: 0.01}}, grains: {{every: 0.1}}, checkpoint: {{every: 
 
     def setUp(self):
         super().setUp()
-        write_block(self.folder / "shelf.stl", (-1, -1, 27), (15, 31, 30))
-        write_block(self.folder / "gate.stl", (15.1, -1, 27), (32, 31, 30))
+        write_box(self.folder / "shelf.stl", (-1, -1, 27), (15, 31, 30))
+        write_box(self.folder / "gate.stl", (15.1, -1, 27), (32, 31, 30))
 
     def test_a_gate_that_moves_lets_grains_down(self):
         self.run_well("run", self.case, "--out", "one")

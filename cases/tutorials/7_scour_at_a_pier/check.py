@@ -9,10 +9,12 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import pier
+from pier import RADIUS
 from thalweg.checks import check_main
 from thalweg.run import Run
 
-PIER, RADIUS = np.array([30e-3, 25e-3]), 6.25e-3   # m: see pier.py
+PIER = np.array([pier.X, pier.Y])                  # m
 AT_REST = 0.03                                     # m/s: slower grains are bed
 PIXEL = 1e-3                                       # m
 

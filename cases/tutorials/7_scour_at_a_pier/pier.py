@@ -1,7 +1,12 @@
 #!/usr/bin/python3
 """Writes pier.stl: an upright cylinder of 12.5 mm, 30 mm behind the upstream end of the box, in its middle. In metres."""
 import math
+import sys
 from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[2] / "python"))
+from thalweg.stl import write_stl
 
 RADIUS, LOW, HIGH, X, Y, FACETS = 6.25e-3, -2e-3, 55e-3, 30e-3, 25e-3, 48
 
@@ -13,13 +18,7 @@ def main():
         one, other = rim[k - 1], rim[k]
         triangles += [((*one, LOW), (*other, LOW), (*other, HIGH)), ((*one, LOW), (*other, HIGH), (*one, HIGH)),
                       ((X, Y, HIGH), (*one, HIGH), (*other, HIGH)), ((X, Y, LOW), (*other, LOW), (*one, LOW))]
-    with open(Path(__file__).with_name("pier.stl"), "w") as file:
-        file.write("solid pier\n")
-        for corners in triangles:
-            file.write("facet normal 0 0 0\nouter loop\n")
-            file.writelines("vertex {:.7g} {:.7g} {:.7g}\n".format(*corner) for corner in corners)
-            file.write("endloop\nendfacet\n")
-        file.write("endsolid pier\n")
+    write_stl(HERE / "pier.stl", triangles)
 
 
 if __name__ == "__main__":
