@@ -5,18 +5,22 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+#include <tuple>
+
 namespace thalweg::bodies {
 
 template <typename Real>
 Bodies<Real>::Bodies(const Decomposition& decomposition, MPI_Comm communicator, lbm::Fluid<Real>& fluid,
-                     const BodyOptions& options, const Hydrostatic& rest, const std::vector<SolidShape>& solids)
+                     const BodyOptions& options, const Hydrostatic& rest, std::vector<Solid> solids)
     : fluid_(fluid),
       options_(options),
       box_(decomposition.cell_box()),
       rest_(rest),
       map_(decomposition, fluid.block(), fluid.cells()),
       links_(fluid.tiles().count()),
-      solids_(decomposition, fluid.block(), fluid.cells(), fluid.tiles(), solids),
+      solids_(decomposition, fluid.block(), fluid.cells(), fluid.tiles(), std::move(solids)),
       link_builder_(decomposition, fluid.block(), fluid.cells(), fluid.tiles(), &solids_),
       hidden_links_(decomposition, fluid.block(), fluid.cells(), rest),
       refill_(decomposition, communicator, options.refill) {
@@ -28,22 +32,26 @@ template <typename Real>
 void Bodies<Real>::add_solids(MPI_Comm communicator) {
   if (solids_.count() == 0) return;
   std::vector<std::int64_t> cells(static_cast<std::size_t>(solids_.count()));
-  map_.add_static(solids_.count());
+  std::vector<bool> moves;
+  for (int s = 0; s < solids_.count(); ++s) moves.push_back(solids_.moves(s));
+  map_.add_solids(moves);
   map_.begin_update();
-  solids_.visit_cells([&](int solid, const Index3& local) { map_.claim(solid, local); });
+  const auto claim = [&](int solid, const Index3& local) { map_.claim(solid, local); };
+  solids_.visit_standing(claim);
+  for (int s = 0; s < solids_.count(); ++s)
+    for (const Index3& local : solids_.inside(s)) claim(s, local);
   for (const CellChange& change : map_.settle())
     if (fluid_.indexing().owned(change.cell[0], change.cell[1], change.cell[2]))
       ++cells[static_cast<std::size_t>(change.now)];
   for (std::size_t s = 0; s < cells.size(); ++s)
-    if (sum_over_ranks(communicator, cells[s]) == 0)
+    if (!moves[s] && sum_over_ranks(communicator, cells[s]) == 0)
       throw InputError(
           fmt::format("solids.{} covers no cell: it lies outside the box, inside another solid, or between the centres "
                       "of the cells; check its place and its size in m.",
                       s));
-  solids_.measure();
   resize_to_slots();
   for (std::size_t s = 0; s < cells.size(); ++s) {
-    bodies_[s].turns = false;
+    bodies_[s].turns = moves[s];
     bodies_[s].centre = solids_.centre(static_cast<int>(s));
   }
   update_links();
@@ -92,6 +100,28 @@ void Bodies<Real>::move(int slot, const BodyMotion& motion) {
 }
 
 template <typename Real>
+void Bodies<Real>::move_solid(int solid, const SolidMotion& motion) {
+  LinkBody& body = bodies_[static_cast<std::size_t>(solid)];
+  body.centre = motion.place.centre;
+  body.velocity = motion.velocity;
+  body.angular_velocity = motion.angular_velocity;
+  body.returned = motion.returned.density;
+  body.returned_slope = motion.returned.slope;
+  const std::vector<Index3> before = solids_.inside(solid);
+  solids_.place(solid, motion.place);
+  const std::vector<Index3>& now = solids_.inside(solid);
+  const auto in_memory = [](const Index3& a, const Index3& b) {
+    return std::tie(a[2], a[1], a[0]) < std::tie(b[2], b[1], b[0]);
+  };
+  std::vector<Index3> turned;
+  std::set_difference(now.begin(), now.end(), before.begin(), before.end(), std::back_inserter(turned), in_memory);
+  for (const Index3& local : turned) map_.claim(solid, local);
+  turned.clear();
+  std::set_difference(before.begin(), before.end(), now.begin(), now.end(), std::back_inserter(turned), in_memory);
+  for (const Index3& local : turned) map_.give_up(solid, local);
+}
+
+template <typename Real>
 void Bodies<Real>::settle() {
   map_.settle();
   account_for_covered_cells();
@@ -124,7 +154,7 @@ void Bodies<Real>::sweep(PhaseTimer& timer, int sweep_phase, int links_phase) {
   const auto scope = timer.measure(links_phase);
   book_links();
   hidden_links_.apply(bodies_, moments);
-  map_.hidden_patches().apply(map_.bodies(), map_.static_bodies(), surrounding_, reference_density(), bodies_, moments);
+  map_.hidden_patches().apply(map_.bodies(), map_.solids(), surrounding_, reference_density(), bodies_, moments);
 }
 
 template <typename Real>

@@ -1,11 +1,12 @@
 // Rigid bodies in a lattice fluid: the cells they cover, the links to the fluid around them, what they hide from each
-// other, and the sums of force, torque and mass of every step. Bodies have slots: first the solids that stand still,
-// then spheres, which move. Lattice units.
+// other, and the sums of force, torque and mass of every step. Bodies have slots: first the solids, which stand still
+// or move, then spheres. Lattice units.
 //
 // A step, in this order:
 //   begin_step()             forgets the last one
 //   add(), remove()          where bodies come into reach of this rank or leave it
-//   move(), place()          the motion of every body; cells follow where place() says so
+//   move(), place()          the motion of every sphere; cells follow where place() says so
+//   move_solid()             the motion of every solid that moves; its cells follow
 //   settle()                 cells change hands
 //   refill()                 uncovered cells get their populations; collective
 //   update_links()           before the sweep; may overlap with the exchange of the halo
@@ -20,8 +21,9 @@
 #include "bodies/link_builder.hpp"
 #include "bodies/link_pass.hpp"
 #include "bodies/link_table.hpp"
+#include "bodies/mass_return.hpp"
 #include "bodies/refill.hpp"
-#include "bodies/static_solids.hpp"
+#include "bodies/solids.hpp"
 #include "core/phase_timer.hpp"
 #include "lbm/fluid.hpp"
 
@@ -52,16 +54,24 @@ struct BodyMotion {
   double surrounding;  // rho - rho_rest of the fluid around it
 };
 
+// The same of a solid.
+struct SolidMotion {
+  RigidPlace place;
+  Vec3 velocity, angular_velocity;  // of and about the centre of its place
+  MassReturn returned;
+};
+
 template <typename Real>
 class Bodies {
 public:
-  // The decomposition and the fluid, whose cells this marks, must outlive it. solids: where two overlap, the first one
-  // has the cell, and before any sphere. Throws InputError where a block is too long (LinkBuilder), or where a solid
-  // covers no cell. Collective.
+  // The decomposition and the fluid, whose cells this marks, must outlive it. solids: where two overlap, one that
+  // stands still has the cell, or else the first one, and before any sphere. Those that move begin where they are
+  // given. Throws InputError where a block is too long (LinkBuilder), or where a solid that stands still covers no
+  // cell. Collective.
   Bodies(const Decomposition& decomposition, MPI_Comm communicator, lbm::Fluid<Real>& fluid, const BodyOptions& options,
-         const Hydrostatic& rest, const std::vector<SolidShape>& solids = {});
+         const Hydrostatic& rest, std::vector<Solid> solids = {});
 
-  int solids() const { return map_.static_bodies(); }  // in the slots below this
+  int solids() const { return map_.solids(); }  // in the slots below this
 
   const std::vector<MappedBody>& mapped() const { return map_.bodies(); }  // by slot; a free one has the id -1
   int slot_of(GlobalId id) const { return map_.slot_of(id); }              // -1: not on this rank
@@ -82,6 +92,7 @@ public:
   void remove(int slot);                                                    // of a sphere
   void move(int slot, const BodyMotion& motion);
   void place(int slot, const Vec3& centre) { map_.place(slot, centre); }
+  void move_solid(int solid, const SolidMotion& motion);
   void settle();
   void refill();
   void update_links();  // writes no population
@@ -111,7 +122,7 @@ private:
   Hydrostatic rest_;
   BodyMap map_;
   LinkTable links_;
-  StaticSolids solids_;
+  Solids solids_;
   LinkBuilder link_builder_;
   HiddenLinks hidden_links_;
   Refill refill_;

@@ -96,10 +96,12 @@ int BodyMap::add(GlobalId id, double radius, GlobalId clump) {
   return slot;
 }
 
-void BodyMap::add_static(int count) {
-  static_ = count;
-  for (int slot = 0; slot < count; ++slot)
-    bodies_.push_back({GlobalId(slot) - count - 1, -1, 0.0, Vec3::Constant(2.0 * nowhere)});
+void BodyMap::add_solids(const std::vector<bool>& moves) {
+  solids_ = static_cast<int>(moves.size());
+  for (int slot = 0; slot < solids_; ++slot) {
+    const GlobalId first = GlobalId(moves[static_cast<std::size_t>(slot)] ? -1 : -2) * solids_ - 1;
+    bodies_.push_back({first + slot, -1, 0.0, Vec3::Constant(2.0 * nowhere)});
+  }
 }
 
 void BodyMap::remove(int slot) {

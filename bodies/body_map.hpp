@@ -34,11 +34,13 @@ public:
   int add(GlobalId id, double radius, GlobalId clump = -1);
   void remove(int slot);  // gives up the body's cells
 
-  // Slots 0, 1, ... for `count` bodies that stand still, before any other; their cells are those that they claim. Their
-  // ids are below those of all others, and rise with the slot.
-  void add_static(int count);
-  int static_bodies() const { return static_; }
+  // Slots 0, 1, ... for solids, before any other body; their cells are those that they claim and do not give up again.
+  // Their ids are below those of all others, and rise with the slot: first those that stand still, then those that
+  // move.
+  void add_solids(const std::vector<bool>& moves);
+  int solids() const { return solids_; }
   void claim(int slot, const Index3& local);
+  void give_up(int slot, const Index3& local);
 
   void begin_update();  // forgets the changes of the last update
   // Moves a body: its cells are those inside its sphere at `centre`. Changes are collected until settle().
@@ -57,7 +59,6 @@ private:
   // places of its centre.
   void turn_cells(int slot, const Vec3& middle, double half_width, const Vec3& old, const Vec3& now);
   void turn_row(int slot, int y, int z, const Sphere::Chord& before, const Sphere::Chord& after);
-  void give_up(int slot, const Index3& local);
   void assign(const Index3& local, std::ptrdiff_t cell, std::int32_t slot);
   void withdraw(int slot, std::ptrdiff_t cell);
 
@@ -65,7 +66,7 @@ private:
   LocalCells local_cells_;
   HiddenPatches hidden_patches_;
   std::vector<MappedBody> bodies_;
-  int static_ = 0;
+  int solids_ = 0;
   std::vector<int> free_slots_;
   std::unordered_map<GlobalId, int> slot_of_id_;
   std::unordered_map<std::ptrdiff_t, std::vector<int>> claimants_;  // of cells that a lower id has

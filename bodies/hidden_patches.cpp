@@ -85,30 +85,48 @@ void HiddenPatches::press(const Patch& patch, const Vec3& arm, double excess, Li
                 exact_sum(exact_product(half[k % 3], patch.sum[k / 3]), exact_product(half[k / 3], patch.sum[k % 3])));
 }
 
-void HiddenPatches::give_mass(const Patch& patch, LinkBody& body, const LinkBody& other) {
-  const Vec3 velocity = 0.5 * (body.velocity + other.velocity);
+// On a solid, along a line through the centre of the sphere.
+void HiddenPatches::press_solid(const Patch& patch, double excess, const LinkBody& sphere, LinkBody& solid) const {
+  press(patch, Vec3::Zero(), excess, solid, nullptr);
+  if (!solid.turns) return;
+  const Vec3 arm = (2.0 * excess / 36.0) * box_.difference(sphere.centre, solid.centre);
+  const auto product = [&](int a, int b) {
+    return exact_product(LatticeFixed::from(arm[a]), patch.sum[static_cast<std::size_t>(b)]);
+  };
+  solid.torque += {exact_sum(product(1, 2), -product(2, 1)), exact_sum(product(2, 0), -product(0, 2)),
+                   exact_sum(product(0, 1), -product(1, 0))};
+}
+
+Vec3 HiddenPatches::velocity_beside(const LinkBody& solid, const LinkBody& sphere) const {
+  return solid.velocity + solid.angular_velocity.cross(box_.difference(sphere.centre, solid.centre));
+}
+
+void HiddenPatches::give_mass(const Patch& patch, const Vec3& velocity, LinkBody& body) {
   for (int a = 0; a < 3; ++a)
     body.mass = exact_sum(body.mass, -exact_product(LatticeFixed::from(6.0 / 36.0 * velocity[a]), patch.sum[a]));
 }
 
-void HiddenPatches::apply(const std::vector<MappedBody>& mapped, int static_bodies,
-                          const std::vector<double>& surrounding, double reference, std::vector<LinkBody>& bodies,
-                          std::vector<FixedTensor>* moments) const {
+void HiddenPatches::apply(const std::vector<MappedBody>& mapped, int solids, const std::vector<double>& surrounding,
+                          double reference, std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments) const {
   for (const auto& [key, patch] : patches_) {
     const Pair pair = pair_of(key);
     const auto p = static_cast<std::size_t>(pair.p), q = static_cast<std::size_t>(pair.q);
-    const bool q_moves = pair.q >= static_bodies;
-    if (pair.p < static_bodies) {  // the opposite of what the other one feels
-      if (q_moves) press(patch, Vec3::Zero(), surrounding[q] - reference, bodies[p], nullptr);
+    const bool q_is_sphere = pair.q >= solids;
+    if (pair.p < solids) {  // the opposite of what the other one feels
+      if (!q_is_sphere) continue;
+      press_solid(patch, surrounding[q] - reference, bodies[q], bodies[p]);
+      give_mass(patch, velocity_beside(bodies[p], bodies[q]), bodies[p]);
       continue;
     }
-    if (q_moves && mapped[p].clump >= 0 && mapped[q].clump == mapped[p].clump) continue;
+    if (q_is_sphere && mapped[p].clump >= 0 && mapped[q].clump == mapped[p].clump) continue;
     double density = surrounding[p];
-    if (q_moves) {
+    if (q_is_sphere) {
       density += (surrounding[q] - density) * bodies[p].radius / (bodies[p].radius + bodies[q].radius);
-      give_mass(patch, bodies[p], bodies[q]);
+      give_mass(patch, 0.5 * (bodies[p].velocity + bodies[q].velocity), bodies[p]);
+    } else if (pair.q >= 0) {
+      give_mass(patch, velocity_beside(bodies[q], bodies[p]), bodies[p]);
     }
-    const Vec3 outward = q_moves || pair.q < 0 ? direction(pair, bodies) : -to_vec3(patch);
+    const Vec3 outward = q_is_sphere || pair.q < 0 ? direction(pair, bodies) : -to_vec3(patch);
     const Vec3 arm = outward * (bodies[p].radius / std::max(outward.norm(), 1e-30));
     press(patch, arm, density - reference, bodies[p], moments ? &(*moments)[p] : nullptr);
   }

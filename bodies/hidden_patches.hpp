@@ -6,14 +6,14 @@
 // lines together, sum w_i c_i = 0. A fluid presses between grains as well, where the lattice has no cell for it; its
 // density there is interpolated between those around the two grains, linearly between their centres, so that
 //   F_p += 2 D h,   D = D_p + (D_q - D_p) R_p/(R_p + R_q),   and F_q -= the same,
-// D = D_p at a wall or a solid that stands still, with R the radius. The force acts where the line between the centres
+// D = D_p at a wall or a solid, with R the radius. The force acts where the line between the centres
 // meets the surface, and so turns no sphere. Without this term touching grains would be drawn together or pushed apart
 // by any pressure but the reference. Between members of one clump is no surface.
 //
 // The same patches tell how much of the mass given by the links of p is given in the place of q: grains that touch and
 // move together push fluid away in front of the one and draw it in behind the other. With v the mean of the two
 // velocities, that is 6 h.v from p to q; only the rest of what they cost the fluid is each grain's own
-// (mass_return.hpp).
+// (mass_return.hpp). Where q is a solid, v is its velocity.
 //
 // Kept up to date with every cell that changes hands; the sums are integers, so that their history does not matter.
 // Lattice units.
@@ -41,8 +41,8 @@ public:
   // Adds to the bodies the force of the fluid on what is hidden by this rank's cells and takes from their mass what is
   // given in another's place; the symmetric part of sum F_a x_b is added to moments, where given. surrounding: by
   // slot, rho - rho_rest around the grain; reference: that presses on nothing (lbm/link_pass.hpp).
-  // static_bodies: so many slots, the first ones, are solids that stand still.
-  void apply(const std::vector<MappedBody>& mapped, int static_bodies, const std::vector<double>& surrounding,
+  // solids: so many slots, the first ones.
+  void apply(const std::vector<MappedBody>& mapped, int solids, const std::vector<double>& surrounding,
              double reference, std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments) const;
 
   // A face of the box (0 .. 5) in the place of the other grain.
@@ -69,7 +69,9 @@ private:
   Vec3 direction(const Pair& pair, const std::vector<LinkBody>& bodies) const;
   // arm: from the centre of p to where the patch is; excess: D less the reference.
   static void press(const Patch& patch, const Vec3& arm, double excess, LinkBody& body, FixedTensor* moment);
-  static void give_mass(const Patch& patch, LinkBody& body, const LinkBody& other);
+  void press_solid(const Patch& patch, double excess, const LinkBody& sphere, LinkBody& solid) const;
+  Vec3 velocity_beside(const LinkBody& solid, const LinkBody& sphere) const;
+  static void give_mass(const Patch& patch, const Vec3& velocity, LinkBody& body);
   void count(std::int32_t p, std::int32_t q, int direction, int lines);
 
   PeriodicBox box_;                              // cells

@@ -19,7 +19,7 @@ constexpr double longest_link = 1.4142135623730951;
 }  // namespace
 
 LinkBuilder::LinkBuilder(const Decomposition& decomposition, const Block& block, const CellMap& cells,
-                         const lbm::RowTiles& tiles, const StaticSolids* solids)
+                         const lbm::RowTiles& tiles, const Solids* solids)
     : local_cells_(decomposition, block), cells_(cells), tiles_(tiles), solids_(solids) {
   for (int a = 0; a < 2; ++a)
     if (block.size()[a] > LinkPlace::largest)
@@ -37,13 +37,18 @@ void LinkBuilder::update(const BodyMap& map, LinkTable& table) {
   for (const int slot : stale_) {
     if (map.bodies()[slot].is_free())
       table.remove(slot);
-    else if (solids_ && slot < solids_->count())
-      rebuild_solid(slot, table);
-    else
+    else if (!solids_ || slot >= solids_->count())
       rebuild(slot, map.bodies()[slot], table);
+    else if (!solids_->moves(slot))
+      rebuild_solid(slot, stale_tiles_[slot], table);
     stale_tiles_[slot].clear();
   }
   stale_.clear();
+  for (int solid = 0; solids_ && solid < solids_->count(); ++solid) {
+    if (!solids_->moves(solid)) continue;
+    table.remove(solid);
+    rebuild_solid(solid, solids_->tiles(solid), table);
+  }
 }
 
 void LinkBuilder::mark(std::int32_t slot, int tile) {
@@ -96,8 +101,8 @@ void LinkBuilder::look_for_enclosed(const CellChange& change) {
   }
 }
 
-void LinkBuilder::rebuild_solid(int slot, LinkTable& table) {
-  for (const int tile : stale_tiles_[slot]) {
+void LinkBuilder::rebuild_solid(int slot, const std::vector<int>& tiles, LinkTable& table) {
+  for (const int tile : tiles) {
     links_.clear();
     crossings_.clear();
     solids_->find_links(slot, tile, links_, crossings_);

@@ -1,12 +1,13 @@
-// Keeps the cut links of all bodies: every lattice line from an owned fluid cell into a cell that a body covers. Links
-// depend on the map of the cells alone, so only those around cells that changed hands are found anew: the links of a
-// body in one tile at a time.
+// Keeps the cut links of all bodies: every lattice line from an owned fluid cell into a cell that a body covers. Those
+// of spheres and of solids that stand still depend on the map of the cells alone, so only those around cells that
+// changed hands are found anew: the links of a body in one tile at a time. Those of solids that move are all found
+// anew.
 #pragma once
 
 #include "bodies/body_map.hpp"
 #include "bodies/link_table.hpp"
 #include "bodies/local_cells.hpp"
-#include "bodies/static_solids.hpp"
+#include "bodies/solids.hpp"
 #include "lbm/cell_map.hpp"
 #include "lbm/row_tiles.hpp"
 
@@ -23,7 +24,7 @@ public:
   // Throws InputError where a block has more cells along x or y than a link can store (LinkPlace).
   // solids: those in the slots 0, 1, ...; null: none.
   LinkBuilder(const Decomposition& decomposition, const Block& block, const lbm::CellMap& cells,
-              const lbm::RowTiles& tiles, const StaticSolids* solids = nullptr);
+              const lbm::RowTiles& tiles, const Solids* solids = nullptr);
 
   // Brings the table up to date with the map's changes since the last call.
   void update(const BodyMap& map, LinkTable& table);
@@ -35,14 +36,14 @@ private:
   void look_for_enclosed(const CellChange& change);
   void mark(std::int32_t slot, int tile);
   void rebuild(int slot, const MappedBody& sphere, LinkTable& table);
-  void rebuild_solid(int slot, LinkTable& table);
+  void rebuild_solid(int slot, const std::vector<int>& tiles, LinkTable& table);
   void find_in_row(int slot, int y, int z);
   void find_in_cells(int slot, int x, int count, int y, int z);
 
   LocalCells local_cells_;
   const lbm::CellMap& cells_;
   const lbm::RowTiles& tiles_;
-  const StaticSolids* solids_;                   // null: none
+  const Solids* solids_;                         // null: none
   std::vector<std::vector<int>> stale_tiles_;    // of each slot
   std::vector<int> stale_;                       // slots that have any
   std::unordered_set<std::ptrdiff_t> enclosed_;  // cells without fluid beside them

@@ -28,4 +28,15 @@ MassReturn unit_mass_return(const LinkSums& links) {
   return {1.0 / share, -x / share};
 }
 
+// What comes back changes what the links take, with cli most of all: returned at once and whole it swings and grows. A
+// cell at a surface can swing by itself from step to step, hardly damped; the mean of two steps does not push it.
+MassReturn MassDebt::settle(double given, double came_back, const LinkSums& links) {
+  constexpr double share_of_owed = 0.5, share_of_last_step = 0.125;
+  owed -= given;
+  mean_loss += share_of_last_step * (came_back - given - mean_loss);
+  const double wanted_before = wanted;
+  wanted = share_of_owed * owed + mean_loss;
+  return unit_mass_return(links).scaled(0.5 * (wanted + wanted_before));
+}
+
 }  // namespace thalweg::bodies

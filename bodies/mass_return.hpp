@@ -29,4 +29,16 @@ struct MassReturn {
 // For a unit of mass; links: of the body, over all ranks. Zero for a body without links.
 MassReturn unit_mass_return(const LinkSums& links);
 
+// What one body owes the fluid, settled step by step. Besides half of what is owed its links return what they are
+// likely to lose in the next step: a mean over the last ones, in which the latest counts an eighth.
+struct MassDebt {
+  double owed = 0.0;
+  double mean_loss = 0.0;  // a step
+  double wanted = 0.0;     // of the last step; the links return the mean of two
+
+  // given: what the links and the cells that changed hands gave to the fluid in this step, came_back with it; links: of
+  // the body, over all ranks. Returns what the links are to return in the next step.
+  MassReturn settle(double given, double came_back, const LinkSums& links);
+};
+
 }  // namespace thalweg::bodies

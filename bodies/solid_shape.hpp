@@ -1,5 +1,5 @@
-// Shapes of solids that stand still in the fluid: what is inside, and where a lattice link meets the surface. Lattice
-// units, global coordinates.
+// Shapes of solids in the fluid: where they are once moved, and where a lattice link meets the surface. Lattice units,
+// global coordinates.
 #pragma once
 
 #include "core/triangle_crossing.hpp"
@@ -18,6 +18,17 @@ struct SolidSphere {
 
 // A mesh must be closed and wound outwards.
 using SolidShape = std::variant<SolidSphere, TriangleMesh>;
+
+// Where a rigid body has come to: its point `pivot` at the start is at `centre`, and it has turned about it.
+struct RigidPlace {
+  Vec3 pivot = Vec3::Zero(), centre = Vec3::Zero();
+  Mat3 turn = Mat3::Identity();
+
+  Vec3 of(const Vec3& at_start) const { return centre + turn * (at_start - pivot); }
+};
+
+// Writes a shape, moved to a place, over `moved`, which has been the same shape before.
+void move(const SolidShape& at_start, const RigidPlace& place, SolidShape& moved);
 
 struct Extent {
   Vec3 lower, upper;

@@ -155,13 +155,9 @@ bodies::LinkSums GrainBodies<Real>::link_sums_of(std::size_t grain) const {
   return links;
 }
 
-// Of a grain, or of all members of a clump, in slots from `first` on. Besides half of what is owed, the links return
-// what they are likely to lose in the next step: a mean over the last ones, in which the latest counts an eighth.
+// Of a grain, or of all members of a clump, in slots from `first` on.
 template <typename Real>
 void GrainBodies<Real>::settle_mass(std::size_t first, std::size_t count) {
-  // What comes back changes what the links take, with cli most of all: returned at once and whole it swings and grows.
-  // A cell at a surface can swing by itself from step to step, hardly damped; the mean of two steps does not push it.
-  constexpr double share_of_owed = 0.5, share_of_last_step = 0.125;
   bodies::LinkSums links;
   std::int64_t sum = 0;
   double came_back = 0.0;
@@ -175,14 +171,12 @@ void GrainBodies<Real>::settle_mass(std::size_t first, std::size_t count) {
     // A grain without links has no fluid around it: what was there last stays.
     if (of_grain.weight() > 0.0) exchange_of(g).surrounding() = LatticeFixed::to_double(sums[1]) / of_grain.weight();
   }
-  const double given = LatticeFixed::to_double(sum);
   const GrainExchange<double> account = exchange_of(first);
-  double &owed = account.owed_mass(), &loss = account.mean_loss(), &wanted_before = account.wanted_return();
-  owed -= given;
-  loss += share_of_last_step * (came_back - given - loss);
-  const double wanted = share_of_owed * owed + loss;
-  const bodies::MassReturn next = bodies::unit_mass_return(links).scaled(0.5 * (wanted + wanted_before));
-  wanted_before = wanted;
+  bodies::MassDebt debt{account.owed_mass(), account.mean_loss(), account.wanted_return()};
+  const bodies::MassReturn next = debt.settle(LatticeFixed::to_double(sum), came_back, links);
+  account.owed_mass() = debt.owed;
+  account.mean_loss() = debt.mean_loss;
+  account.wanted_return() = debt.wanted;
   for (std::size_t g = first; g < first + count; ++g) {
     exchange_of(g).returned_density() = next.density;
     exchange_of(g).returned_slope() = next.slope;

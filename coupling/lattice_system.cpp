@@ -14,6 +14,18 @@
 
 namespace thalweg::coupling {
 
+namespace {
+
+std::vector<bodies::Solid> with_motions(const std::vector<bodies::SolidShape>& shapes,
+                                        const std::vector<dem::PrescribedMotion>& motions) {
+  std::vector<bodies::Solid> solids;
+  for (std::size_t s = 0; s < shapes.size(); ++s)
+    solids.push_back({shapes[s], s < motions.size() && motions[s].moves()});
+  return solids;
+}
+
+}  // namespace
+
 template <typename Real>
 LatticeSystem<Real>::LatticeSystem(std::unique_ptr<Decomposition> decomposition, MPI_Comm communicator,
                                    const LatticeParameters& parameters, std::unique_ptr<dem::GrainDynamics> grains,
@@ -23,8 +35,9 @@ LatticeSystem<Real>::LatticeSystem(std::unique_ptr<Decomposition> decomposition,
       parameters_(parameters),
       fluid_(*decomposition_, communicator, parameters.collision, parameters.faces),
       rest_(rest_state(parameters, *decomposition_)),
-      bodies_(*decomposition_, communicator, fluid_, parameters.bodies, rest_, solids),
-      solid_forces_(communicator, static_cast<int>(solids.size())),
+      bodies_(*decomposition_, communicator, fluid_, parameters.bodies, rest_,
+              with_motions(solids, parameters.solid_motions)),
+      solid_bodies_(communicator, bodies_, parameters.units, parameters.solid_motions),
       grains_(std::move(grains)),
       mass_(communicator) {
   name_phases();
@@ -47,8 +60,8 @@ void LatticeSystem<Real>::name_phases() {
     phases_.lattice = timer_.phase("lattice");
     return;
   }
-  if (grains_) {
-    phases_.map = timer_.phase("grain map");
+  if (any_moves()) {
+    phases_.map = timer_.phase(grains_ ? "grain map" : "solid map");
     phases_.refill = timer_.phase("refill");
   }
   phases_.halo = timer_.phase("halo");
@@ -82,12 +95,13 @@ template <typename Real>
 void LatticeSystem<Real>::advance() {
   if (has_bodies()) {
     momentum_.reset();
-    solid_forces_.forget();
+    solid_bodies_.forget_loaded();
     move_bodies();
     set_gravity_of(step_ + 1);
     exchange_behind_links();
     if (booking_) write_momentum_book();
     bodies_.sweep(timer_, phases_.sweep, phases_.links);
+    solid_bodies_.settle_masses();
     if (grains_) take_loads();
     if (grains_) advance_grains();
   } else {
@@ -99,21 +113,36 @@ void LatticeSystem<Real>::advance() {
   keep_mass();
 }
 
+// Of solids that move, where the last step had them.
+template <typename Real>
+void LatticeSystem<Real>::place_solids_again() {
+  if (!solid_bodies_.any_moves() || step_ == 0) return;
+  bodies_.begin_step();
+  solid_bodies_.move(static_cast<double>(step_ - 1) * time_step());
+  bodies_.settle_at_start();
+}
+
+template <typename Real>
+double LatticeSystem<Real>::mass_owed() const {
+  return solid_bodies_.mass_owed() + (grains_ ? grain_bodies_->mass_owed() : 0.0);
+}
+
 template <typename Real>
 void LatticeSystem<Real>::move_bodies() {
-  if (!grains_) {
+  if (!any_moves()) {
     bodies_.begin_step();
     return;
   }
   bool slots_changed = false;
-  {
+  if (grains_) {
     const auto scope = timer_.measure(phases_.grains);
     slots_changed = grains_->prepare();
   }
   {
     const auto scope = timer_.measure(phases_.map);
     bodies_.begin_step(booking_);
-    grain_bodies_->move_bodies(slots_changed);
+    solid_bodies_.move(time());
+    if (grains_) grain_bodies_->move_bodies(slots_changed);
     bodies_.settle();
   }
   const auto scope = timer_.measure(phases_.refill);
@@ -127,7 +156,7 @@ void LatticeSystem<Real>::exchange_behind_links() {
     const auto scope = timer_.measure(phases_.halo);
     fluid_.start_halo_exchange();
   }
-  if (grains_) {
+  if (any_moves()) {
     const auto scope = timer_.measure(phases_.map);
     bodies_.update_links();
   }
@@ -173,7 +202,7 @@ void LatticeSystem<Real>::open_account() {
     start_excess_ = excess.sum;
     return;
   }
-  mass_.open(excess.sum, grain_bodies_->mass_owed());
+  mass_.open(excess.sum, mass_owed());
   bodies_.set_reference_density(excess.mean());
   grain_bodies_->set_surroundings(excess.mean());
 }
@@ -188,7 +217,7 @@ void LatticeSystem<Real>::keep_mass() {
   const ExcessMass excess = excess_mass(survey_of(fluid_), rest_);
   if (grains_) bodies_.set_reference_density(excess.mean());
   if (!is_closed) return;
-  const double kept = grains_ ? mass_.kept() - grain_bodies_->mass_owed() : start_excess_;
+  const double kept = (grains_ ? mass_.kept() : start_excess_) - mass_owed();
   const double added = restore_excess(fluid_, excess, kept);
   if (grains_ && rank_of(communicator_) == 0) mass_.book(MassAccount::corrections, added);
 }
@@ -247,7 +276,7 @@ std::vector<Figure> LatticeSystem<Real>::figures() const {
   figures.push_back({"fluid_cells", "1", static_cast<double>(excess.cells)});
   if (grains_) figures.push_back({"largest_overlap", "diameter", grains_->largest_overlap()});
   if (grains_ && parameters_.wall_forces) add_wall_forces(figures);
-  add_solid_forces(figures);
+  add_solid_figures(figures);
   add_extremes(survey, figures);
   if (grains_) add_grain_figures(survey, figures);
   return figures;
@@ -265,21 +294,19 @@ void LatticeSystem<Real>::add_flow_figures(const lbm::FluidSurvey& survey, std::
 template <typename Real>
 void LatticeSystem<Real>::add_grain_figures(const lbm::FluidSurvey& survey, std::vector<Figure>& figures) const {
   figures.push_back({"largest_grain_speed", "m/s", grains_->largest_speed()});
-  const std::vector<Figure> account =
-      mass_.figures(excess_mass(survey, rest_).sum, grain_bodies_->mass_owed(), parameters_.units);
+  const std::vector<Figure> account = mass_.figures(excess_mass(survey, rest_).sum, mass_owed(), parameters_.units);
   figures.insert(figures.end(), account.begin(), account.end());
   add_momentum(survey, fluid_.parameters().force, parameters_.units, figures);
 }
 
 template <typename Real>
-void LatticeSystem<Real>::add_solid_forces(std::vector<Figure>& figures) const {
+void LatticeSystem<Real>::add_solid_figures(std::vector<Figure>& figures) const {
   if (bodies_.solids() == 0) return;
-  const std::vector<Vec3> of_fluid = solid_forces();
-  for (std::size_t s = 0; s < of_fluid.size(); ++s)
-    dem::add_force(fmt::format("solid_{}_force", s), of_fluid[s] * parameters_.units.force(), figures);
+  const std::vector<Figure> of_fluid = solid_bodies_.figures();
+  figures.insert(figures.end(), of_fluid.begin(), of_fluid.end());
   if (!grains_) return;
   const std::vector<Vec3> of_grains = grains_->wall_forces();
-  for (std::size_t s = 0; s < of_fluid.size(); ++s)
+  for (std::size_t s = 0; s < static_cast<std::size_t>(bodies_.solids()); ++s)
     dem::add_force(dem::solid_force_figure(s), of_grains[grains_->walls().size() + s], figures);
 }
 
@@ -338,7 +365,7 @@ void LatticeSystem<Real>::save(ArchiveWriter& archive) const {
   archive.attribute("system/step", step_);
   archive.attribute("system/time_step", time_step());
   fluid_.save(archive);
-  if (bodies_.solids() > 0) solid_forces_.save(bodies_, archive);
+  if (bodies_.solids() > 0) solid_bodies_.save(archive);
   if (grains_) {
     grains_->save(archive);
     mass_.save(archive);
@@ -354,7 +381,8 @@ void LatticeSystem<Real>::load(ArchiveReader& archive) {
   step_ = archive.integer_attribute("system/step");
   bodies_.remove_all();
   fluid_.load(archive);
-  if (bodies_.solids() > 0) solid_forces_.load(archive);
+  if (bodies_.solids() > 0) solid_bodies_.load(archive);
+  place_solids_again();
   if (grains_) {
     grains_->load(archive);
     mass_.load(archive);

@@ -1,5 +1,5 @@
-// A lattice fluid with what is in it: solids that stand still, grains that move, or neither. One step is one lattice
-// step and, with grains, its DEM sub-steps.
+// A lattice fluid with what is in it: solids that stand still or move as they are told, grains, or neither. One step is
+// one lattice step and, with grains, its DEM sub-steps.
 #pragma once
 
 #include "bodies/bodies.hpp"
@@ -8,7 +8,7 @@
 #include "coupling/fluid_parameters.hpp"
 #include "coupling/grain_bodies.hpp"
 #include "coupling/mass_account.hpp"
-#include "coupling/solid_forces.hpp"
+#include "coupling/solid_bodies.hpp"
 #include "dem/grain_dynamics.hpp"
 #include "lbm/fluid_survey.hpp"
 
@@ -20,16 +20,17 @@ namespace thalweg::coupling {
 
 struct LatticeParameters : FluidParameters {
   GrainBodyOptions grains;
-  int sub_steps = 50;        // DEM steps per lattice step
-  bool wall_forces = false;  // whether the figures include the forces on walls
+  int sub_steps = 50;                                // DEM steps per lattice step
+  bool wall_forces = false;                          // whether the figures include the forces on walls
+  std::vector<dem::PrescribedMotion> solid_motions;  // SI, of the first solids; the others stand still
 };
 
 template <typename Real>
 class LatticeSystem final : public System, private FluidSource, private ContactSource {
 public:
-  // solids: lattice units. grains: null for none; they hold their seeds, carry attached_width() attached columns and
-  // reach ghost_reach() beyond their block. Takes both over. Throws InputError where a solid covers no cell or a block
-  // is too long (LinkBuilder). Collective.
+  // solids: lattice units, at the start. grains: null for none; they hold their seeds, carry attached_width() attached
+  // columns and reach ghost_reach() beyond their block. Takes both over. Throws InputError where a solid covers no cell
+  // or a block is too long (LinkBuilder). Collective.
   LatticeSystem(std::unique_ptr<Decomposition> decomposition, MPI_Comm communicator,
                 const LatticeParameters& parameters, std::unique_ptr<dem::GrainDynamics> grains = nullptr,
                 const std::vector<bodies::SolidShape>& solids = {});
@@ -48,8 +49,8 @@ public:
   double time_step() const override { return parameters_.units.time_step; }
   Snapshot snapshot() const override;
   // largest_lattice_velocity (1), largest_fluid_speed (m/s), mean_density_deviation (1), fluid_cells (1), those of
-  // add_extremes() (fluid_figures.hpp); of each solid solid_<n>_force_x, _y, _z (N), of the last step: what the fluid
-  // exerts on its surface, without the reference pressure.
+  // add_extremes() (fluid_figures.hpp); those of SolidBodies, of the last step: what the fluid exerts on the surface of
+  // each solid, without the reference pressure.
   // With grains largest_overlap (diameters), largest_grain_speed (m/s), those of MassAccount and of add_momentum(), if
   // asked for wall_force_bottom_x ... and fluid_wall_force_bottom_x ... (N); without grains mean_velocity_x (m/s) and
   // body_force_x (N/m^3). Collective.
@@ -65,8 +66,9 @@ public:
 
   const lbm::Fluid<Real>& fluid() const { return fluid_; }
   const bodies::Bodies<Real>& bodies() const { return bodies_; }
-  const dem::GrainDynamics& grains() const { return *grains_; }                 // where there are any
-  std::vector<Vec3> solid_forces() const { return solid_forces_.of(bodies_); }  // lattice units; collective
+  const dem::GrainDynamics& grains() const { return *grains_; }  // where there are any
+  double mass_owed() const;  // to the fluid by grains and moving solids, lattice units; collective
+  typename SolidBodies<Real>::Loads solid_loads() const { return solid_bodies_.loads(); }  // collective
 
 private:
   FluidFields sample(const std::vector<FluidField>& wanted, const Block& region) const override;
@@ -81,6 +83,8 @@ private:
   void for_each_wall_force(const ContactEndVisitor& visit) const override { grains_->for_each_wall_force(visit); }
 
   bool has_bodies() const { return grains_ || bodies_.solids() > 0; }
+  bool any_moves() const { return grains_ || solid_bodies_.any_moves(); }
+  void place_solids_again();
   void name_phases();
   void place_grains();
   void move_bodies();
@@ -96,7 +100,7 @@ private:
   void add_grain_figures(const lbm::FluidSurvey& survey, std::vector<Figure>& figures) const;
   void add_flow_figures(const lbm::FluidSurvey& survey, std::vector<Figure>& figures) const;
   void add_wall_forces(std::vector<Figure>& figures) const;
-  void add_solid_forces(std::vector<Figure>& figures) const;
+  void add_solid_figures(std::vector<Figure>& figures) const;
 
   std::unique_ptr<Decomposition> decomposition_;
   MPI_Comm communicator_;
@@ -104,7 +108,7 @@ private:
   mutable lbm::Fluid<Real> fluid_;  // a sample fills slots that every step fills anew; see sample_fields()
   bodies::Hydrostatic rest_;
   bodies::Bodies<Real> bodies_;
-  SolidForces solid_forces_;
+  SolidBodies<Real> solid_bodies_;
   std::unique_ptr<dem::GrainDynamics> grains_;     // null: none
   std::optional<GrainBodies<Real>> grain_bodies_;  // with grains
   bool booking_ = false;                           // the next step's momentum is to be booked

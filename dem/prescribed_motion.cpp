@@ -31,6 +31,10 @@ Vec3 PrescribedMotion::displacement(double time) const {
   return velocity * time + oscillation.amplitude * swing;
 }
 
+Mat3 PrescribedMotion::turn(double time) const {
+  return Eigen::AngleAxisd(angular_velocity * time, axis).toRotationMatrix();
+}
+
 Vec3 PrescribedMotion::place(const Vec3& at_start, double time) const {
   if (angular_velocity == 0.0) return at_start + displacement(time);
   return displacement(time) + centre + turned(at_start - centre, axis, angular_velocity * time);

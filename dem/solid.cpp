@@ -31,7 +31,7 @@ double largest_speed_of(const Solid& solid) {
 }
 
 PlacedSolid::PlacedSolid(const Solid& solid, double time, double time_of_velocity)
-    : turns_(solid.motion.angular_velocity != 0.0),
+    : turns_(solid.motion.turns()),
       angle_(solid.motion.angular_velocity * time),
       pivot_(solid.motion.centre),
       centre_(solid.motion.centre + solid.motion.displacement(time)),
@@ -42,7 +42,7 @@ PlacedSolid::PlacedSolid(const Solid& solid, double time, double time_of_velocit
   lower_ = solid.surface->lower() + way;
   upper_ = solid.surface->upper() + way;
   if (!turns_) return;
-  turn_ = Eigen::AngleAxisd(angle_, solid.motion.axis).toRotationMatrix();
+  turn_ = solid.motion.turn(time);
   const Vec3 middle = 0.5 * (solid.surface->lower() + solid.surface->upper());
   const Vec3 half = 0.5 * (solid.surface->upper() - solid.surface->lower());
   const Vec3 now = in_space(middle), reach = turn_.cwiseAbs() * half;

@@ -13,6 +13,7 @@ namespace {
 coupling::LatticeParameters lattice_parameters(const Case& c) {
   coupling::LatticeParameters parameters;
   static_cast<coupling::FluidParameters&>(parameters) = fluid_parameters(c);
+  parameters.solid_motions = solid_motions(c);
   if (c.system != SystemKind::resolved) return parameters;
   parameters.bodies.keep_covered_momentum = c.coupling.covered_momentum == coupling::CoveredMomentum::to_grain;
   parameters.bodies.refill = c.coupling.refill;

@@ -95,9 +95,10 @@ bool is_in_the_checkpoint(std::string_view key) {
   return is_or_is_below("grains") && (key.find(".contact") == std::string_view::npos || is_material(key));
 }
 
-// Where a wall is follows from its motion since the start of the run, so that another one would move it at once. A
-// fluid's walls move in their own plane.
+// Where a wall or a solid is follows from its motion since the start of the run, so that another one would move it at
+// once. A fluid's walls move in their own plane.
 bool places_a_wall(std::string_view key, bool dry) {
+  if (key.starts_with("solids.") && key.find(".motion") != std::string_view::npos) return true;
   const bool of_motion =
       key.find(".velocity") != std::string_view::npos || key.find(".oscillation") != std::string_view::npos;
   return of_motion && (key.starts_with("walls.") || (dry && key.starts_with("domain.boundaries.")));
@@ -153,8 +154,8 @@ void refuse_changes_of_state(const std::vector<CaseChange>& changes, bool dry) {
     if (places_a_wall(change.key, dry))
       throw InputError(
           told(change) +
-          ". A wall is where its motion since the start has brought it, and would jump; set the key back, or "
-          "begin a new run from that one with initial.from, with the wall where it is now.");
+          ". A wall or a solid is where its motion since the start has brought it, and would jump; set the key back, "
+          "or begin a new run from that one with initial.from, with the wall or the solid where it is now.");
     if (is_in_the_checkpoint(change.key))
       throw InputError(
           told(change) +

@@ -59,23 +59,6 @@ void check_resolution(const Case& c, const io::YamlDocument& document) {
             spacing_below(c.domain, std::min(largest, smallest_diameter(c) / c.coupling.fewest_cells_per_diameter))));
 }
 
-void check_solids(const Case& c, const io::YamlDocument& document) {
-  for (std::size_t n = 0; n < c.solids.size(); ++n) {
-    const SolidCase& solid = c.solids[n];
-    if (has_fluid(c) && solid.sphere && solid.sphere->radius < fewest_cells_per_radius * c.domain.spacing)
-      throw document.error(fmt::format("solids.{}.sphere.radius", n),
-                           fmt::format("the sphere is smaller than the cells can show; give at least {:.4g} m",
-                                       fewest_cells_per_radius * c.domain.spacing));
-    if (solid.motion && has_fluid(c))
-      throw document.error(fmt::format("solids.{}.motion", n),
-                           "in a fluid solids stand still; remove it, or give a population of grains a motion");
-    if (c.grains.empty() && (solid.friction || solid.rolling_friction))
-      throw document.error(fmt::format("solids.{}.{}", n, solid.friction ? "friction" : "rolling_friction"),
-                           "there are no grains that would feel it; remove it");
-  }
-  check_solid_extents(c, document);
-}
-
 void check_lattice_velocity(const Case& c, const io::YamlDocument& document, const std::string& key, double velocity) {
   const double lattice_velocity = velocity / units_of(c).velocity();
   if (lattice_velocity <= largest_lattice_velocity * (1.0 + whole_number_tolerance)) return;
@@ -84,6 +67,38 @@ void check_lattice_velocity(const Case& c, const io::YamlDocument& document, con
                                    "at most {} s",
                                    velocity, lattice_velocity, largest_lattice_velocity,
                                    at_most_text(largest_lattice_velocity * c.domain.spacing / velocity, 3)));
+}
+
+// A rotation is taken about the nearest image of the axis, so that a solid must not reach across half a periodic box.
+void check_motion_in_fluid(const Case& c, const io::YamlDocument& document, std::size_t n) {
+  const SolidCase& solid = c.solids[n];
+  const std::string key = fmt::format("solids.{}.motion", n);
+  check_lattice_velocity(c, document, key, largest_speed(solid));
+  const dem::PrescribedMotion motion = prescribed_motion(*solid.motion);
+  if (!motion.turns()) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!periodic_axes(c.domain)[axis] || std::abs(motion.axis[axis]) == 1.0) continue;
+    if (reach_from_axis(solid) > 0.5 * c.domain.size[axis] - c.domain.spacing)
+      throw document.error(key + ".rotation",
+                           fmt::format("the solid reaches {:.4g} m from its axis and would meet its own image along "
+                                       "{}, where the box is periodic and {:g} m long; give a longer box",
+                                       reach_from_axis(solid), axis_name[axis], c.domain.size[axis]));
+  }
+}
+
+void check_solids(const Case& c, const io::YamlDocument& document) {
+  for (std::size_t n = 0; n < c.solids.size(); ++n) {
+    const SolidCase& solid = c.solids[n];
+    if (has_fluid(c) && solid.sphere && solid.sphere->radius < fewest_cells_per_radius * c.domain.spacing)
+      throw document.error(fmt::format("solids.{}.sphere.radius", n),
+                           fmt::format("the sphere is smaller than the cells can show; give at least {:.4g} m",
+                                       fewest_cells_per_radius * c.domain.spacing));
+    if (solid.motion && has_fluid(c)) check_motion_in_fluid(c, document, n);
+    if (c.grains.empty() && (solid.friction || solid.rolling_friction))
+      throw document.error(fmt::format("solids.{}.{}", n, solid.friction ? "friction" : "rolling_friction"),
+                           "there are no grains that would feel it; remove it");
+  }
+  check_solid_extents(c, document);
 }
 
 void check_initial_fluid(const Case& c, const io::YamlDocument& document) {

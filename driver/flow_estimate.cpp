@@ -3,6 +3,7 @@
 #include "driver/bed_flow.hpp"
 #include "driver/laminar_channel.hpp"
 #include "driver/obstacles.hpp"
+#include "driver/solid_setup.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -239,6 +240,8 @@ const char* words_of(FlowCause cause) {
       return "the start";
     case FlowCause::moving_grains:
       return "the given speed of grains";
+    case FlowCause::moving_solids:
+      return "the given motion of solids";
     case FlowCause::settling:
       return "around grains that fall";
   }
@@ -300,6 +303,7 @@ FlowEstimate flow_estimate(const Case& c) {
     if (!grains.held() && !starts_from_a_bed(c, grains))
       consider(flow, settling_velocity_of(c, grains), FlowCause::settling);
   }
+  for (const SolidCase& solid : c.solids) consider(flow, largest_speed(solid), FlowCause::moving_solids);
   return flow;
 }
 

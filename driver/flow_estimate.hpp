@@ -27,7 +27,17 @@
 
 namespace thalweg::driver {
 
-enum class FlowCause { none, slope, mean_velocity, moving_face, inlet, initial_fluid, moving_grains, settling };
+enum class FlowCause {
+  none,
+  slope,
+  mean_velocity,
+  moving_face,
+  inlet,
+  initial_fluid,
+  moving_grains,
+  moving_solids,
+  settling
+};
 
 // "slope and depth", ...
 const char* words_of(FlowCause cause);

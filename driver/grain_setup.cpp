@@ -46,6 +46,7 @@ std::vector<dem::Plane> planes_of(const Case& c, const PeriodicBox& box, const d
 }
 
 std::vector<dem::Solid> solids_of(const Case& c, const dem::ContactParameters& contact) {
+  const std::vector<dem::PrescribedMotion> motions = solid_motions(c);
   std::vector<dem::Solid> solids;
   for (const SolidCase& given : c.solids) {
     dem::Solid solid;
@@ -54,7 +55,7 @@ std::vector<dem::Solid> solids_of(const Case& c, const dem::ContactParameters& c
                      : dem::SolidSurface(given.surface));
     solid.friction = given.friction.value_or(contact.wall_friction);
     solid.rolling_friction = given.rolling_friction.value_or(contact.wall_rolling_friction);
-    if (given.motion) solid.motion = prescribed_motion(*given.motion);
+    solid.motion = motions[solids.size()];
     solids.push_back(std::move(solid));
   }
   return solids;

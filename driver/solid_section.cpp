@@ -18,7 +18,7 @@ void describe(SectionVisitor& visit, SolidCase& solid) {
              {.meaning = "default: contact.wall_friction", .at_least = 0.0, .example = 0.3});
   visit.real("rolling_friction", solid.rolling_friction,
              {.meaning = "default: contact.wall_rolling_friction", .at_least = 0.0, .example = 0.05});
-  visit.section("motion", solid.motion, {.meaning = "how it moves among dry grains; it stands still without"});
+  visit.section("motion", solid.motion, {.meaning = "how it moves; it stands still without"});
   visit.require(solid.sphere.has_value() || !solid.stl.empty(), "sphere",
                 "the solid has no shape; give sphere: {centre: [x, y, z], radius: r} in m, or stl: FILE");
   visit.require(!(solid.sphere && !solid.stl.empty()), "stl", "the solid has two shapes; remove either sphere or stl");

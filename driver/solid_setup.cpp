@@ -84,4 +84,26 @@ std::vector<bodies::SolidShape> solid_shapes(const Case& c) {
   return shapes;
 }
 
+std::vector<dem::PrescribedMotion> solid_motions(const Case& c) {
+  std::vector<dem::PrescribedMotion> motions;
+  for (const SolidCase& solid : c.solids)
+    motions.push_back(solid.motion ? prescribed_motion(*solid.motion) : dem::PrescribedMotion());
+  return motions;
+}
+
+double reach_from_axis(const SolidCase& solid) {
+  const dem::PrescribedMotion motion = prescribed_motion(*solid.motion);
+  const auto from_axis = [&](const Vec3& point) { return motion.axis.cross(point - motion.centre).norm(); };
+  if (solid.sphere) return from_axis(solid.sphere->centre) + solid.sphere->radius;
+  double reach = 0.0;
+  for (const Vec3& point : solid.surface.points) reach = std::max(reach, from_axis(point));
+  return reach;
+}
+
+double largest_speed(const SolidCase& solid) {
+  if (!solid.motion) return 0.0;
+  const dem::PrescribedMotion motion = prescribed_motion(*solid.motion);
+  return motion.largest_speed(motion.turns() ? reach_from_axis(solid) : 0.0);
+}
+
 }  // namespace thalweg::driver

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bodies/solid_shape.hpp"
+#include "dem/prescribed_motion.hpp"
 #include "driver/case.hpp"
 #include "io/yaml_document.hpp"
 
@@ -20,7 +21,14 @@ bodies::Extent extent_of(const SolidCase& solid);
 // meant.
 void check_solid_extents(const Case& c, const io::YamlDocument& document);
 
-// In lattice units, in the order of the case.
+// In the order of the case: shapes at the start, in lattice units, and motions.
 std::vector<bodies::SolidShape> solid_shapes(const Case& c);
+std::vector<dem::PrescribedMotion> solid_motions(const Case& c);
+
+// Of a solid that turns, how far it reaches from the axis, m.
+double reach_from_axis(const SolidCase& solid);
+
+// That no point of a solid exceeds, m/s.
+double largest_speed(const SolidCase& solid);
 
 }  // namespace thalweg::driver

@@ -178,7 +178,7 @@ TEST(StaticSolids, CouetteFlowOverAPlateOffTheLatticeIsExact) {
         EXPECT_NEAR(velocity_x(*system, z), 0.05 * (z + 0.5 - surface) / (12.0 - surface), 1e-8) << surface;
       // Shear stress times area; distances are stored in single precision.
       const double drag = (0.9 - 0.5) / 3.0 * 0.05 / (12.0 - surface) * 16.0;
-      EXPECT_NEAR(system->solid_forces()[0].x(), drag, 1e-6 * drag);
+      EXPECT_NEAR(system->solid_loads().forces[0].x(), drag, 1e-6 * drag);
     }
 }
 
@@ -207,7 +207,7 @@ double poiseuille_error(double low, double high, int height, bool trt, bodies::L
     const double expected = (0.08 * above * below / gap + at_low * below + at_high * above) / gap;
     error = std::max(error, std::abs(velocity_x(*system, z) - expected));
   }
-  const double drag = system->solid_forces()[0].x() + system->solid_forces()[1].x();
+  const double drag = system->solid_loads().forces[0].x() + system->solid_loads().forces[1].x();
   EXPECT_NEAR(drag, box.collision.force[0] * 16.0 * (last - first + 1), 1e-6 * drag);  // all of the driving force
   return error / 0.02;
 }
@@ -252,9 +252,9 @@ double drag_factor(double solid_fraction, int cells, bodies::LinkRule rule, doub
   for (int step = 0; step < 6.0 * cells * cells / nu / 9.87; ++step) system->advance();
   const lbm::FluidTotals totals = system->fluid().totals();
   // CLI links leave a small oscillation from step to step, so that the mean of two steps counts, as for grains.
-  double drag = 0.5 * system->solid_forces()[0].x();
+  double drag = 0.5 * system->solid_loads().forces[0].x();
   system->advance();
-  drag += 0.5 * system->solid_forces()[0].x();
+  drag += 0.5 * system->solid_loads().forces[0].x();
   // Steady: the array takes up all the driving force.
   EXPECT_NEAR(drag, 1e-6 * static_cast<double>(totals.cells), 1e-4 * drag);
   const double superficial = (totals.momentum.x() - 0.5e-6 * static_cast<double>(totals.cells)) / std::pow(cells, 3);
@@ -294,7 +294,7 @@ TEST(StaticSolids, AreTheSameOnAnyRanks) {
     alone->advance();
     shared->advance();
   }
-  EXPECT_EQ(alone->solid_forces(), shared->solid_forces());
+  EXPECT_EQ(alone->solid_loads().forces, shared->solid_loads().forces);
   const auto& a = alone->fluid();
   const auto& s = shared->fluid();
   const Index3 n = s.indexing().size(), from = s.block().lower;

@@ -42,7 +42,8 @@ struct WaterBox {
   std::vector<dem::GrainSeed> seeds;
   std::vector<dem::PrescribedMotion> assemblies;
   std::vector<dem::ClumpSeed> clumps;
-  std::vector<bodies::SolidShape> solids;  // m
+  std::vector<bodies::SolidShape> solids;            // m
+  std::vector<dem::PrescribedMotion> solid_motions;  // of the first of them
 };
 
 // The same shape in other units of length.
@@ -118,8 +119,10 @@ std::unique_ptr<LatticeSystem<Real>> make_system(const WaterBox& box, MPI_Comm c
   };
   g.assemblies = box.assemblies;
   std::vector<bodies::SolidShape> solids;
+  p.solid_motions = box.solid_motions;
   for (const bodies::SolidShape& shape : box.solids) {
     g.solids.push_back(grain_solid(shape));
+    if (solids.size() < box.solid_motions.size()) g.solids.back().motion = box.solid_motions[solids.size()];
     solids.push_back(scaled(shape, 1.0 / box.spacing));
   }
   g.time_step = box.time_step / box.sub_steps;

@@ -1,0 +1,106 @@
+// Solids in the fluid, which stand still or move as they are told: which cells are inside them, and where lattice links
+// meet their surfaces.
+//
+// A cell is solid if its centre is inside a solid. On an axis that is periodic a solid that reaches beyond one end
+// comes in again at the other. A link runs from a fluid cell to a solid neighbour; its distance is that to the first
+// surface it meets. What is thinner than a cell may be missed. Cells and distances are the same on any ranks. Lattice
+// units.
+#pragma once
+
+#include "bodies/link_table.hpp"
+#include "bodies/solid_shape.hpp"
+#include "core/decomposition.hpp"
+#include "core/periodic_box.hpp"
+#include "lbm/cell_map.hpp"
+#include "lbm/row_tiles.hpp"
+
+#include <functional>
+#include <utility>
+#include <vector>
+
+namespace thalweg::bodies {
+
+// A solid as it is given.
+struct Solid {
+  SolidShape shape;  // where it is at the start
+  bool moves = false;
+};
+
+class Solids {
+public:
+  using Claim = std::function<void(int solid, const Index3& local)>;
+
+  // All of these must outlive it.
+  Solids(const Decomposition& decomposition, const Block& block, const lbm::CellMap& cells, const lbm::RowTiles& tiles,
+         std::vector<Solid> solids);
+
+  int count() const { return static_cast<int>(present_.size()); }
+  bool moves(int solid) const { return group_of_[static_cast<std::size_t>(solid)] != standing; }
+  // What arms and the motion are taken about: of a solid that stands still the middle of its extent, of one that moves
+  // the centre of its place.
+  const Vec3& centre(int solid) const { return centres_[static_cast<std::size_t>(solid)]; }
+
+  // Moves a solid that moves, with its cells and distances, to a place.
+  void place(int solid, const RigidPlace& place);
+
+  // Calls claim(solid, cell) for every cell in memory (local coordinates, owned or ghost) that is inside one of the
+  // solids that stand still, solid by solid.
+  void visit_standing(const Claim& claim) const;
+  // The same cells of a solid that moves, each once, in memory order.
+  const std::vector<Index3>& inside(int solid) const { return group(solid).inside; }
+  // The tiles with cells beside a solid that moves, rising.
+  std::vector<int> tiles(int solid) const;
+
+  // The links of a solid in a tile and where they meet it, from the cells that are fluid now.
+  void find_links(int solid, int tile, std::vector<Link>& links, std::vector<LinkCrossing>& crossings) const;
+
+private:
+  static constexpr std::size_t standing = 0;                     // the group of all solids that stand still
+  using Distances = std::array<double, lbm::D3Q19::directions>;  // of the links of a cell; 2: not met
+  struct CutCell {                                               // an owned cell outside, beside one inside
+    std::ptrdiff_t cell;
+    Index3 local;
+    Distances distances;
+  };
+  // Solids whose cells and links are found together: all that stand still, or one that moves.
+  struct Group {
+    std::vector<int> solids;
+    std::vector<Index3> inside;  // in memory order
+    std::vector<CutCell> cut;    // in memory order
+  };
+
+  const Group& group(int solid) const { return groups_[group_of_[static_cast<std::size_t>(solid)]]; }
+  std::ptrdiff_t index(const Index3& local) const { return cells_.indexing().index(local[0], local[1], local[2]); }
+  bool is_inside(std::ptrdiff_t cell) const { return inside_[static_cast<std::size_t>(cell)] != 0; }  // scratch
+
+  void visit_inside(int solid, const Claim& claim) const;
+  void visit_inside(int solid, const SolidSphere& sphere, const Claim& claim) const;
+  void visit_inside(int solid, const TriangleMesh& mesh, const Claim& claim) const;
+  void update(Group& group);
+  void find_inside(Group& group) const;
+  void sort_in_memory_order(std::vector<Index3>& cells) const;
+  void find_cut_cells(Group& group) const;
+  void measure(const SolidSphere& sphere, Group& group) const;
+  void measure(const TriangleMesh& mesh, Group& group) const;
+  template <typename Visit>
+  void for_each_image(const Extent& extent, Visit visit) const;
+  template <typename Meets>
+  void measure_near(const Extent& extent, Group& group, Meets meets) const;
+  static double distance(const Group& group, std::ptrdiff_t cell, int direction);
+
+  const Decomposition& decomposition_;
+  Block block_;
+  const lbm::CellMap& cells_;
+  const lbm::RowTiles& tiles_;
+  PeriodicBox box_;                   // cells
+  std::vector<SolidShape> at_start_;  // of those that move
+  std::vector<SolidShape> present_;
+  std::vector<Vec3> centres_;
+  std::vector<Group> groups_;
+  std::vector<std::size_t> group_of_;
+  // Where the cells of a coordinate inside the box are in memory, along each axis: owned, and ghosts of periodic axes.
+  std::array<std::vector<std::vector<int>>, 3> places_;
+  std::vector<std::uint8_t> inside_;  // scratch: of every cell in memory, whether it is inside the group at hand
+};
+
+}  // namespace thalweg::bodies
