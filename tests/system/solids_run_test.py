@@ -60,10 +60,61 @@ output:
             self.assertFalse(inside.any(), frame.time)
 
     def test_what_cannot_be_is_refused(self):
-        self.assert_refused("check", self.case, "--set", "solids.0.motion={velocity: [0.1, 0, 0]}",
-                            words=["solids.0.motion", "in a fluid solids stand still"])
+        self.assert_refused("check", self.case, "--set", "solids.0.motion={velocity: [3, 0, 0]}",
+                            words=["solids.0.motion", "0.4 cells a step", "fluid.time_step"])
+        self.assert_refused("check", self.case, "--set",
+                            "solids.1.motion={rotation: {point: [0, 0.0075, 0.02], angular_velocity: 1}}",
+                            words=["solids.1.motion.rotation", "would meet its own image along x"])
         self.assert_refused("check", self.case, "--set", "grains.0.count=1", "--set",
                             "grains.0.placement={positions: [[0.014, 0.007, 0.003]]}", words=["Grain 0", "is inside solid 0"])
+
+
+class SolidsThatMoveInWater(ProgramTest):
+    # A plate ploughs along the channel and across its periodic end, a wheel turns in the water; grains lie before the plate.
+    CASE = f"""
+system: resolved
+name: plough
+domain: {{size: [0.036, 0.015, 0.030], spacing: 0.75e-3, boundaries: {{x: periodic, y: no_slip, bottom: no_slip, top: free_slip}}}}
+fluid: {{density: 1000, kinematic_viscosity: 1.0e-6, time_step: 1.0e-4, precision: single}}
+gravity: {{magnitude: 9.8, slope: 0.0}}
+grains:
+  - {{count: 12, diameter: 4.5e-3, density: 2550, placement: {{pattern: random, seed: 3, region: {{lower: [0.011, 0, 0], upper: [0.034, 0.015, 0.012]}}}}}}
+solids:
+  - {{stl: plate.stl, scale: 1.0e-3, motion: {{velocity: [0.15, 0, 0]}}}}
+  - {{stl: wheel.stl, scale: 1.0e-3, motion: {{rotation: {{point: [0.024, 0.0075, 0.022], angular_velocity: 15}}}}}}
+{GLASS}
+run: {{until: 0.12}}
+output:
+  series: {{every: 0.01}}
+  grains: {{every: 0.04}}
+  checkpoint: {{every: 0.06, keep: 3}}
+"""
+
+    def setUp(self):
+        super().setUp()
+        write_box(self.folder / "plate.stl", (7, -1, -1), (10, 16, 9))
+        write_box(self.folder / "wheel.stl", (18, 3, 20.5), (30, 12, 23.5))
+
+    def test_the_same_bits_on_any_ranks_and_after_a_restart(self):
+        self.run_well("run", self.case, "--out", "one")
+        self.run_well("run", self.case, "--out", "two", ranks=2)
+        self.run_well("run", self.case, "--out", "again", "--restart", self.folder / "one/checkpoints/step_600.h5", ranks=2)
+        for out in ("two", "again"):
+            self.assertEqual(self.last_checkpoint(out).read_bytes(), self.last_checkpoint("one").read_bytes(), out)
+        series = Run(self.folder / "one").series
+        self.assertLess(series["solid_0_grain_force_x"].min(), 0.0)   # grains stand in its way
+        self.assertGreater(numpy.abs(series["solid_1_torque_y"]).max(), 0.0)
+        self.assertNotIn("solid_0_torque_y", series)                  # it does not turn
+        # The plate has come from 7 to 25 mm, through where grains lay, and none is in it.
+        for frame in Run(self.folder / "one").grains:
+            x, _, z = frame.position.T
+            behind = (x - 0.007 - 0.15 * frame.time) % 0.036
+            self.assertFalse(((behind < 0.003) & (z < 0.009)).any(), frame.time)
+
+    def test_another_motion_does_not_go_on(self):
+        self.run_well("run", self.case, "--out", "one", "--until", "0.005")
+        self.assert_refused("run", self.case, "--out", "other", "--restart", self.folder / "one", "--set",
+                            "solids.0.motion.velocity=[0.1, 0, 0]", words=["solids.0.motion.velocity", "would jump"])
 
 
 class SolidsAmongDryGrains(ProgramTest):
