@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
+#include "core/on_all_ranks.hpp"
 
 #include <fmt/format.h>
 
@@ -55,6 +56,27 @@ void Bodies<Real>::add_solids(MPI_Comm communicator) {
     bodies_[s].centre = solids_.centre(static_cast<int>(s));
   }
   update_links();
+}
+
+template <typename Real>
+void Bodies<Real>::check_block(MPI_Comm communicator) const {
+  on_all_ranks(communicator, [&] {
+    LinkSlots::check(fluid_.populations());
+    for (int a = 0; a < 2; ++a)
+      if (fluid_.block().size()[a] > LinkPlace::largest)
+        throw InputError(fmt::format("A rank would hold {} cells along {}, more than {}; use more ranks.",
+                                     fluid_.block().size()[a], "xy"[a], LinkPlace::largest));
+  });
+}
+
+template <typename Real>
+template <typename Error>
+void Bodies<Real>::check_count(MPI_Comm communicator) const {
+  on_all_ranks(communicator, [&] {
+    if (map_.bodies().size() > static_cast<std::size_t>(LinkTag::bodies))
+      throw Error(fmt::format("A rank would hold the links of {} bodies, more than {}; use more ranks.",
+                              map_.bodies().size(), LinkTag::bodies));
+  });
 }
 
 template <typename Real>
@@ -241,5 +263,9 @@ void Bodies<Real>::book_links() {
 
 template class Bodies<float>;
 template class Bodies<double>;
+template void Bodies<float>::check_count<InputError>(MPI_Comm) const;
+template void Bodies<double>::check_count<InputError>(MPI_Comm) const;
+template void Bodies<float>::check_count<RunError>(MPI_Comm) const;
+template void Bodies<double>::check_count<RunError>(MPI_Comm) const;
 
 }  // namespace thalweg::bodies

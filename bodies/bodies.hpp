@@ -66,10 +66,15 @@ class Bodies {
 public:
   // The decomposition and the fluid, whose cells this marks, must outlive it. solids: where two overlap, one that
   // stands still has the cell, or else the first one, and before any sphere. Those that move begin where they are
-  // given. Throws InputError where a block is too long (LinkBuilder), or where a solid that stands still covers no
-  // cell. Collective.
+  // given. Throws InputError where a solid that stands still covers no cell. Collective.
   Bodies(const Decomposition& decomposition, MPI_Comm communicator, lbm::Fluid<Real>& fluid, const BodyOptions& options,
          const Hydrostatic& rest, std::vector<Solid> solids = {});
+
+  // What links can tell apart, to be looked at before a run, and when bodies were added: throw on every rank InputError
+  // where the block of one has too many cells; Error where one has too many bodies. Collective.
+  void check_block(MPI_Comm communicator) const;
+  template <typename Error>
+  void check_count(MPI_Comm communicator) const;
 
   int solids() const { return map_.solids(); }  // in the slots below this
 

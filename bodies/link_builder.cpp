@@ -1,9 +1,5 @@
 #include "bodies/link_builder.hpp"
 
-#include "core/error.hpp"
-
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 
@@ -20,12 +16,7 @@ constexpr double longest_link = 1.4142135623730951;
 
 LinkBuilder::LinkBuilder(const Decomposition& decomposition, const Block& block, const CellMap& cells,
                          const lbm::RowTiles& tiles, const Solids* solids)
-    : local_cells_(decomposition, block), cells_(cells), tiles_(tiles), solids_(solids) {
-  for (int a = 0; a < 2; ++a)
-    if (block.size()[a] > LinkPlace::largest)
-      throw InputError(fmt::format("A rank would hold {} cells along {}, more than {}; use more ranks.",
-                                   block.size()[a], "xy"[a], LinkPlace::largest));
-}
+    : local_cells_(decomposition, block), cells_(cells), tiles_(tiles), solids_(solids) {}
 
 void LinkBuilder::update(const BodyMap& map, LinkTable& table) {
   stale_tiles_.resize(map.bodies().size());

@@ -21,7 +21,6 @@ namespace thalweg::bodies {
 
 class LinkBuilder {
 public:
-  // Throws InputError where a block has more cells along x or y than a link can store (LinkPlace).
   // solids: those in the slots 0, 1, ...; null: none.
   LinkBuilder(const Decomposition& decomposition, const Block& block, const lbm::CellMap& cells,
               const lbm::RowTiles& tiles, const Solids* solids = nullptr);

@@ -26,18 +26,22 @@ public:
   static constexpr int middle = lbm::D3Q19::directions / 2;
 
   LinkSlots() = default;
-  // Throws InputError where the populations of a rank are too many for 32 bits.
+  // The populations may not be too many for 32 bits; see check().
   template <typename Real>
   explicit LinkSlots(const lbm::Populations<Real>& populations)
       : moved_(populations.arrangement() == lbm::Arrangement::moved),
         row_(static_cast<int>(populations.indexing().row_stride())),
         plane_(static_cast<int>(populations.indexing().plane_stride())),
-        first_(static_cast<int>(populations.indexing().index(0, 0, 0))) {
-    const std::ptrdiff_t stride = populations.plane(1) - populations.plane(0);
-    if (stride > std::numeric_limits<int>::max() / (middle + 1))
-      throw InputError(fmt::format("A rank would hold {} cells around grains, more than {}; use more ranks.", stride,
-                                   std::numeric_limits<int>::max() / (middle + 1)));
-    stride_ = static_cast<int>(stride);
+        first_(static_cast<int>(populations.indexing().index(0, 0, 0))),
+        stride_(static_cast<int>(stride_of(populations))) {}
+
+  // Throws InputError where the populations of a rank are too many for 32 bits.
+  template <typename Real>
+  static void check(const lbm::Populations<Real>& populations) {
+    constexpr std::ptrdiff_t most = std::numeric_limits<int>::max() / (middle + 1);
+    if (stride_of(populations) > most)
+      throw InputError(fmt::format("A rank would hold {} cells around bodies, more than {}; use more ranks.",
+                                   stride_of(populations), most));
   }
 
   // Of links [0, count) in the plane z (owned local coordinate), count a multiple of links_at_a_time: the index of x_f
@@ -77,6 +81,10 @@ public:
   int one_back(int slot, std::uint32_t tag) const { return slot - along_link(static_cast<int>(tag)); }
 
 private:
+  template <typename Real>
+  static std::ptrdiff_t stride_of(const lbm::Populations<Real>& populations) {
+    return populations.plane(1) - populations.plane(0);
+  }
   // The step in memory along a link: of one tag or of a pack of them.
   template <typename Tag>
   [[gnu::always_inline]] Tag along_link(const Tag& tag) const {

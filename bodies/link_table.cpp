@@ -1,10 +1,7 @@
 #include "bodies/link_table.hpp"
 
-#include "core/error.hpp"
-
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <stdexcept>
 
 namespace thalweg::bodies {
 
@@ -96,9 +93,7 @@ void LinkTable::drop_chunk(Tile& tile, std::uint32_t chunk) {
 }
 
 void LinkTable::replace(int body, int tile, std::span<const Link> links, std::span<const LinkCrossing> crossings) {
-  if (body >= LinkTag::bodies)
-    throw InputError(
-        fmt::format("One rank would hold the links of more than {} grains; use more ranks.", LinkTag::bodies));
+  if (body >= LinkTag::bodies) throw std::logic_error("more bodies than a tag can tell apart (Bodies::check_count())");
   if (static_cast<std::size_t>(body) >= places_.size()) {
     places_.resize(body + 1);
     sums_.resize(body + 1);

@@ -172,7 +172,7 @@ public:
   const LinkSums& sums_of(int body) const;  // over its links in all tiles; zero for a body without links
 
   // Replaces the links of a body in a tile; crossings: one a link of a body that stores them, else empty. Throws
-  // InputError if there are more bodies than a tag can tell.
+  // std::logic_error if there are more bodies than a tag can tell.
   void replace(int body, int tile, std::span<const Link> links, std::span<const LinkCrossing> crossings = {});
   // Drops the links of a body in all tiles.
   void remove(int body);

@@ -20,9 +20,10 @@ PackedExchange::PackedExchange(MPI_Comm communicator, const std::vector<Neighbou
 PackedExchange::~PackedExchange() { release(); }
 
 PackedExchange::PackedExchange(PackedExchange&& other) noexcept
-    : send_(std::move(other.send_)), receive_(std::move(other.receive_)), requests_(std::move(other.requests_)) {
-  other.requests_.clear();
-}
+    : send_(std::move(other.send_)),
+      receive_(std::move(other.receive_)),
+      requests_(std::exchange(other.requests_, {})),
+      under_way_(std::exchange(other.under_way_, false)) {}
 
 PackedExchange& PackedExchange::operator=(PackedExchange&& other) noexcept {
   if (this == &other) return *this;
@@ -30,20 +31,29 @@ PackedExchange& PackedExchange::operator=(PackedExchange&& other) noexcept {
   send_ = std::move(other.send_);
   receive_ = std::move(other.receive_);
   requests_ = std::exchange(other.requests_, {});
+  under_way_ = std::exchange(other.under_way_, false);
   return *this;
 }
 
+// Messages are under way only where an error unwinds: then the buffers stay, which MPI may still write to.
 void PackedExchange::release() {
+  if (under_way_) {
+    static std::vector<std::vector<std::vector<std::byte>>> abandoned;
+    abandoned.push_back(std::move(send_));
+    abandoned.push_back(std::move(receive_));
+  }
   for (MPI_Request& request : requests_) MPI_Request_free(&request);
   requests_.clear();
 }
 
 void PackedExchange::start() {
   if (!requests_.empty()) MPI_Startall(static_cast<int>(requests_.size()), requests_.data());
+  under_way_ = true;
 }
 
 void PackedExchange::finish() {
   if (!requests_.empty()) MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
+  under_way_ = false;
 }
 
 }  // namespace thalweg

@@ -46,6 +46,7 @@ private:
 
   std::vector<std::vector<std::byte>> send_, receive_;
   std::vector<MPI_Request> requests_;
+  bool under_way_ = false;
 };
 
 }  // namespace thalweg

@@ -1,6 +1,7 @@
 #include "coupling/grain_bodies.hpp"
 
 #include "bodies/mass_return.hpp"
+#include "core/error.hpp"
 #include "core/sphere.hpp"
 #include "core/wide_sums_over_ranks.hpp"
 
@@ -32,6 +33,7 @@ void GrainBodies<Real>::place_at_start() {
   bodies_.remove_all();
   bodies_.begin_step();
   synchronise_slots();
+  bodies_.template check_count<InputError>(communicator_);
   update_motions();
   bodies_.settle_at_start();
   show_stresses();
@@ -50,7 +52,10 @@ void GrainBodies<Real>::forget_lattice_units() {
 
 template <typename Real>
 void GrainBodies<Real>::move_bodies(bool slots_changed) {
-  if (slots_changed) synchronise_slots();
+  if (slots_changed) {
+    synchronise_slots();
+    bodies_.template check_count<RunError>(communicator_);
+  }
   update_motions();
   update_cells();
 }

@@ -41,6 +41,7 @@ LatticeSystem<Real>::LatticeSystem(std::unique_ptr<Decomposition> decomposition,
       grains_(std::move(grains)),
       mass_(communicator) {
   name_phases();
+  if (has_bodies()) bodies_.check_block(communicator);
   if (parameters_.flow_target) fluid_.control_flow(*parameters_.flow_target);
   initialise(fluid_, parameters_, rest_);
   if (grains_) {

@@ -30,7 +30,7 @@ class LatticeSystem final : public System, private FluidSource, private ContactS
 public:
   // solids: lattice units, at the start. grains: null for none; they hold their seeds, carry attached_width() attached
   // columns and reach ghost_reach() beyond their block. Takes both over. Throws InputError where a solid covers no cell
-  // or a block is too long (LinkBuilder). Collective.
+  // or a rank has more cells or bodies than links can tell apart. Collective.
   LatticeSystem(std::unique_ptr<Decomposition> decomposition, MPI_Comm communicator,
                 const LatticeParameters& parameters, std::unique_ptr<dem::GrainDynamics> grains = nullptr,
                 const std::vector<bodies::SolidShape>& solids = {});
