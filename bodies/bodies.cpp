@@ -24,7 +24,7 @@ Bodies<Real>::Bodies(const Decomposition& decomposition, MPI_Comm communicator, 
       solids_(decomposition, fluid.block(), fluid.cells(), fluid.tiles(), std::move(solids)),
       link_builder_(decomposition, fluid.block(), fluid.cells(), fluid.tiles(), &solids_),
       hidden_links_(decomposition, fluid.block(), fluid.cells(), rest),
-      refill_(decomposition, communicator, options.refill) {
+      refill_(decomposition, communicator) {
   set_rest(options_.links, rest_);
   add_solids(communicator);
 }

@@ -1,4 +1,4 @@
-// Options of the bodies in the fluid: their links (link_pass.hpp) and what uncovered cells begin with (refill.hpp).
+// Options of the bodies in the fluid and their links (link_pass.hpp).
 #pragma once
 
 #include "core/named_choice.hpp"
@@ -9,19 +9,14 @@
 namespace thalweg::bodies {
 
 enum class MomentumExchange { galilean_invariant, classical };
-enum class WallDensity { local, reference };  // rho in the moving-wall term: of x_f, or 1
 enum class LinkRule { bouzidi, cli };
-enum class RefillRule { equilibrium, grad };
 
 // Their words in a case file (core/section_visitor.hpp).
 std::vector<NamedChoice<MomentumExchange>> choices_of(MomentumExchange);
-std::vector<NamedChoice<WallDensity>> choices_of(WallDensity);
 std::vector<NamedChoice<LinkRule>> choices_of(LinkRule);
-std::vector<NamedChoice<RefillRule>> choices_of(RefillRule);
 
 struct LinkOptions {
   MomentumExchange momentum_exchange = MomentumExchange::galilean_invariant;
-  WallDensity wall_density = WallDensity::local;
   LinkRule rule = LinkRule::bouzidi;
   // Density of the fluid at rest, 1 + rest_gradient.(x - rest_middle): hydrostatic, or 1 everywhere.
   Vec3 rest_gradient = Vec3::Zero();  // of rho a cell
@@ -31,7 +26,6 @@ struct LinkOptions {
 
 struct BodyOptions {
   LinkOptions links;
-  RefillRule refill = RefillRule::equilibrium;
   bool keep_covered_momentum = false;  // what a covered cell carries relative to its body, the body gets
   bool moments = false;                // sum F_a x_b of every body is measured: the stress of the fluid on it
 };

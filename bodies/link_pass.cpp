@@ -268,7 +268,6 @@ void LinkPass<Real>::reflect(const Batch& b, const Piece& piece) {
   const Pack zero = Real(0), lane([](auto j) { return Real(static_cast<int>(j)); });
   const Pack galilean = options_.momentum_exchange == MomentumExchange::galilean_invariant ? Real(1) : Real(0);
   const Pack reference = Real(2.0 * options_.reference_density);
-  const bool local = options_.wall_density == WallDensity::local;
   for (int k = piece.first; k < piece.filled_end(); k += width) {
     const auto at = [k](const Real* values) { return Pack(values + k, stdx::element_aligned); };
     const auto put = [k](const Pack& pack, Real* values) { pack.copy_to(values + k, stdx::element_aligned); };
@@ -287,7 +286,7 @@ void LinkPass<Real>::reflect(const Batch& b, const Piece& piece) {
       rule.wall = chosen<Pack>(covered, Pack(Real(6)), rule.wall);
     }
     const Pack deviation = at(values_.deviation), incident = at(values_.incident);
-    const Pack density = local ? Pack(Real(1)) + deviation : Pack(Real(1));
+    const Pack density = Pack(Real(1)) + deviation;
     const Pack interpolated = rule.incident * incident + rule.second * at(values_.second);
     const Pack moving_wall = rule.wall * weight * density * towards_wall;
     Pack returned = body.returned + (cx * body.sx + cy * body.sy + cz * body.sz);

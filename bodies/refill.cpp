@@ -2,7 +2,6 @@
 
 #include "bodies/lattice_vectors.hpp"
 #include "core/mpi_session.hpp"
-#include "core/symmetric_pairs.hpp"
 #include "lbm/equilibrium.hpp"
 
 #include <algorithm>
@@ -23,10 +22,9 @@ std::array<int, 3> key(const Index3& cell) { return {cell[2], cell[1], cell[0]};
 
 }  // namespace
 
-Refill::Refill(const Decomposition& decomposition, MPI_Comm communicator, RefillRule rule)
+Refill::Refill(const Decomposition& decomposition, MPI_Comm communicator)
     : decomposition_(decomposition),
       communicator_(communicator),
-      rule_(rule),
       rank_(rank_of(communicator)),
       block_(decomposition.block_of(rank_)),
       box_(decomposition.cell_box()) {}
@@ -34,7 +32,6 @@ Refill::Refill(const Decomposition& decomposition, MPI_Comm communicator, Refill
 void Refill::Neighbours::add(const Neighbours& others) {
   count += others.count;
   excess += others.excess;
-  for (std::size_t k = 0; k < stress.size(); ++k) stress[k] += others.stress[k];
 }
 
 Index3 Refill::wrapped(Index3 cell) const {
@@ -87,26 +84,6 @@ std::vector<Refill::Uncovered> Refill::uncovered_cells(const std::vector<CellCha
 }
 
 template <typename Real>
-Refill::Neighbours Refill::look_at(const lbm::Fluid<Real>& fluid, std::ptrdiff_t cell, double at_rest) const {
-  Neighbours one;
-  one.count = 1;
-  one.excess = LatticeFixed::from(fluid.populations().density_deviation(cell) - at_rest);
-  if (rule_ == RefillRule::equilibrium) return one;
-  const lbm::FluidState state = fluid.state_at(cell);
-  std::array<double, 19> off_equilibrium;
-  for (int i = 0; i < D3Q19::directions; ++i)
-    off_equilibrium[i] = static_cast<double>(fluid.populations().post_collision(i, cell)) -
-                         lbm::equilibrium_deviation(i, state.density_deviation, state.velocity);
-  for (std::size_t k = 0; k < one.stress.size(); ++k) {
-    double moment = 0.0;
-    for (int i = 1; i < D3Q19::directions; ++i)
-      moment += D3Q19::c[i][symmetric_pairs[k][0]] * D3Q19::c[i][symmetric_pairs[k][1]] * off_equilibrium[i];
-    one.stress[k] = LatticeFixed::from(moment);
-  }
-  return one;
-}
-
-template <typename Real>
 void Refill::add_own_neighbours(const lbm::Fluid<Real>& fluid, const Hydrostatic& rest,
                                 std::vector<Uncovered>& uncovered) const {
   const auto fresh = [&](const Index3& global) {
@@ -119,8 +96,9 @@ void Refill::add_own_neighbours(const lbm::Fluid<Real>& fluid, const Hydrostatic
       const Index3 neighbour = wrapped(step_from(cell.global, i));
       if (!block_.contains(neighbour)) continue;
       const std::ptrdiff_t at = index_of(fluid.indexing(), neighbour);
-      if (fluid.cells().is_fluid(at) && !fresh(neighbour))
-        cell.neighbours.add(look_at(fluid, at, rest.deviation(centre_of(neighbour))));
+      if (!fluid.cells().is_fluid(at) || fresh(neighbour)) continue;
+      const double excess = fluid.populations().density_deviation(at) - rest.deviation(centre_of(neighbour));
+      cell.neighbours.add({1, LatticeFixed::from(excess)});
     }
 }
 
@@ -158,24 +136,12 @@ void Refill::exchange(std::vector<Uncovered>& uncovered) const {
 }
 
 std::array<double, 19> Refill::populations_of(const Neighbours& n, double at_rest, const Vec3& velocity,
-                                              const Vec3& force) const {
-  const auto mean = [&n](std::int64_t sum) {
-    return n.count > 0 ? LatticeFixed::to_double(sum) / static_cast<double>(n.count) : 0.0;
-  };
-  const double density = at_rest + mean(n.excess);
-  std::array<double, 6> stress;
-  for (std::size_t k = 0; k < stress.size(); ++k) stress[k] = mean(n.stress[k]);
-  const double trace = (stress[0] + stress[1] + stress[2]) / 3.0;
+                                              const Vec3& force) {
+  const double excess = n.count > 0 ? LatticeFixed::to_double(n.excess) / static_cast<double>(n.count) : 0.0;
   std::array<double, 19> f;
   for (int i = 0; i < D3Q19::directions; ++i) {
-    f[i] = lbm::equilibrium_deviation(i, density, velocity);
+    f[i] = lbm::equilibrium_deviation(i, at_rest + excess, velocity);
     f[i] += 1.5 * D3Q19::weight(i) * velocity_of(i).dot(force);
-    if (rule_ != RefillRule::grad) continue;
-    double projected = -trace;
-    for (std::size_t k = 0; k < stress.size(); ++k)
-      projected +=
-          (k < 3 ? 1.0 : 2.0) * D3Q19::c[i][symmetric_pairs[k][0]] * D3Q19::c[i][symmetric_pairs[k][1]] * stress[k];
-    f[i] += 4.5 * D3Q19::weight(i) * projected;
   }
   return f;
 }

@@ -1,18 +1,14 @@
-// Gives cells that a grain has just uncovered their populations. With n the mean over the neighbours that were fluid
-// before, rho_n the density at rest plus their mean excess over it (none: 0), u_w the velocity of the grain's rigid
-// motion at the cell, F the body force:
-//   equilibrium  f_i^c = f_i^eq(rho_n, u_w) + 3/2 w_i c_i.F
-//   grad         f_i^c = f_i^eq(rho_n, u_w) + 3/2 w_i c_i.F + 9/2 w_i (c_ia c_ib - delta_ab/3) P_ab, where P_ab is the
-//                mean over these neighbours of sum c_ia c_ib (f_i^c - f_i^eq) (Chikatamarla, Ansumali and Karlin 2006,
-//                with the neighbours' stress)
-// All populations are post-collision ones, whose momentum is rho u + F/2. Lattice units.
+// Gives cells that a body has just uncovered their populations. With rho_n the density at rest plus the mean excess
+// over it of the neighbours that were fluid before (none: 0), u_w the velocity of the body's rigid motion at the cell,
+// F the body force:
+//   f_i^c = f_i^eq(rho_n, u_w) + 3/2 w_i c_i.F
+// These are post-collision populations, whose momentum is rho u + F/2. Lattice units.
 //
 // Neighbours may be on other ranks. Every rank that owns neighbours of an uncovered cell sees that cell in its ghost
 // layer too, so both sides know without asking who sends what; sums are exact, so the result is the same on any ranks.
 #pragma once
 
 #include "bodies/body_map.hpp"
-#include "bodies/body_options.hpp"
 #include "bodies/hydrostatic.hpp"
 #include "core/decomposition.hpp"
 #include "core/fixed_point.hpp"
@@ -34,7 +30,7 @@ struct RefillTotals {
 
 class Refill {
 public:
-  Refill(const Decomposition& decomposition, MPI_Comm communicator, RefillRule rule = RefillRule::equilibrium);
+  Refill(const Decomposition& decomposition, MPI_Comm communicator);
 
   // changes: from BodyMap::settle(); bodies: centre and motion of the slots, to whose mass rho - rho_rest of the
   // cells that each has uncovered is added. Call after the map is settled and before the halo exchange. Every rank
@@ -46,8 +42,7 @@ public:
 private:
   // What the fluid neighbours of one uncovered cell tell; a message between ranks as it stands.
   struct Neighbours {
-    std::int64_t count = 0, excess = 0;    // LatticeFixed sum of rho - rho_rest
-    std::array<std::int64_t, 6> stress{};  // LatticeFixed sums of P: xx, yy, zz, xy, xz, yz
+    std::int64_t count = 0, excess = 0;  // LatticeFixed sum of rho - rho_rest
 
     void add(const Neighbours& others);
   };
@@ -66,17 +61,13 @@ private:
   template <typename Real>
   void add_own_neighbours(const lbm::Fluid<Real>& fluid, const Hydrostatic& rest,
                           std::vector<Uncovered>& uncovered) const;
-  // at_rest: rho_rest - 1 in the cell.
-  template <typename Real>
-  Neighbours look_at(const lbm::Fluid<Real>& fluid, std::ptrdiff_t cell, double at_rest) const;
   void exchange(std::vector<Uncovered>& uncovered) const;
   // at_rest: rho_rest - 1 in the cell.
-  std::array<double, 19> populations_of(const Neighbours& neighbours, double at_rest, const Vec3& velocity,
-                                        const Vec3& force) const;
+  static std::array<double, 19> populations_of(const Neighbours& neighbours, double at_rest, const Vec3& velocity,
+                                               const Vec3& force);
 
   const Decomposition& decomposition_;
   MPI_Comm communicator_;
-  RefillRule rule_;
   int rank_;
   Block block_;
   PeriodicBox box_;  // cells

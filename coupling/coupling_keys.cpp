@@ -18,15 +18,13 @@ static void describe(SectionVisitor& visit, LubricationKeys& lubrication) {
               .at_most = 0.1});
 }
 
-static void describe(SectionVisitor& visit, VirtualMassKeys& virtual_mass) {
-  visit.real("coefficient", virtual_mass.coefficient,
-             {.meaning = "of the mass of the displaced fluid; 1/2 is that of a sphere", .above = 0.0, .at_most = 10.0});
-}
-
 // Keys of earlier versions.
 static void refuse_former_keys(SectionVisitor& visit) {
   visit.not_here("mass_correction", "the fluid's mass is always kept; remove the key");
   visit.not_here("narrow_gaps", "water flows in narrow gaps with the default fluid.collision; remove the key");
+  visit.not_here("refill", "uncovered cells begin with the equilibrium of their neighbours' density; remove the key");
+  visit.not_here("wall_density", "the moving-wall term has the density of the fluid cell; remove the key");
+  visit.not_here("virtual_mass", "light grains are stable without it; remove the key");
   visit.not_here("near_contact",
                  "patches that grains hide from each other always count with the pressure around them; remove the key");
   visit.not_here("mass_balance",
@@ -38,7 +36,7 @@ void describe(SectionVisitor& visit, CouplingKeys& coupling, bool with_grains) {
   refuse_former_keys(visit);
   if (!with_grains) {
     for (const char* key : {"grain_steps_per_fluid_step", "link_tolerance", "fewest_cells_per_diameter",
-                            "momentum_exchange", "wall_density", "refill", "covered_momentum", "load", "grain_stress"})
+                            "momentum_exchange", "covered_momentum", "load", "grain_stress"})
       visit.not_here(key, "system: fluid has no grains; remove the key or set system: resolved");
     return;
   }
@@ -56,28 +54,17 @@ void describe(SectionVisitor& visit, CouplingKeys& coupling, bool with_grains) {
   visit.real("fewest_cells_per_diameter", coupling.fewest_cells_per_diameter,
              {.meaning = "across the smallest grain, without a warning; fewer than 1.74 are refused", .above = 0.0});
   visit.choice("momentum_exchange", coupling.momentum_exchange, {.meaning = "how the force on a grain is summed"});
-  visit.choice("wall_density", coupling.wall_density, {.meaning = "density in the moving-wall term"});
-  visit.choice("refill", coupling.refill,
-               {.meaning = "initial populations of a cell that a grain has uncovered",
-                .removed = {{"non_equilibrium",
-                             "a cell no longer copies one neighbour; take grad, the mean stress of all of them, or "
-                             "remove the key"}}});
   visit.choice<CoveredMomentum>(
       "covered_momentum", coupling.covered_momentum,
       {{CoveredMomentum::lost, "lost", "as published: grains get a little less than the fluid loses"},
        {CoveredMomentum::to_grain, "to_grain"}},
       {.meaning = "momentum, relative to the grain, of a cell that a grain covers"});
   visit.choice("load", coupling.load, choices_of(LoadRule{}),
-               {.meaning = "the force and torque of the fluid that move a grain in a step; default: extrapolated, with "
-                           "virtual_mass mean"});
+               {.meaning = "the force and torque of the fluid that move a grain in a step; those of light grains are "
+                           "always filtered"});
   visit.section(
       "lubrication", coupling.lubrication,
       {.meaning = "adds the force between near surfaces that the cells do not resolve, in every sub-step; {}"});
-  visit.section("virtual_mass", coupling.virtual_mass,
-                {.meaning = "for grains much lighter than the fluid: filters their load; {}"});
-  visit.require(!coupling.virtual_mass || coupling.load != LoadRule::extrapolated, "load",
-                "the filter of coupling.virtual_mass is made for the mean of two exchanges; write mean, or remove the "
-                "key");
   visit.flag("grain_stress", coupling.grain_stress,
              {.meaning = "measure the fluid's stress on every grain, for the VTK output: fluid_stress"});
 }

@@ -20,12 +20,6 @@ struct LubricationKeys {
   bool operator==(const LubricationKeys&) const = default;
 };
 
-// Keeps light grains stable.
-struct VirtualMassKeys {
-  double coefficient = 0.5;  // of the mass of the displaced fluid
-  bool operator==(const VirtualMassKeys&) const = default;
-};
-
 struct CouplingKeys {
   // The word auto; once a case is read, it has sub_steps_needed() in its place.
   static constexpr std::int64_t as_many_as_needed = 0;
@@ -33,18 +27,12 @@ struct CouplingKeys {
   double link_tolerance = 1e-3;            // cells a grain may move before the map of its cells follows
   double fewest_cells_per_diameter = 6.0;  // of the smallest grain, without a warning
   bodies::MomentumExchange momentum_exchange = bodies::MomentumExchange::galilean_invariant;
-  bodies::WallDensity wall_density = bodies::WallDensity::local;
   bodies::LinkRule links = bodies::LinkRule::bouzidi;
-  bodies::RefillRule refill = bodies::RefillRule::equilibrium;
   CoveredMomentum covered_momentum = CoveredMomentum::lost;
-  std::optional<LoadRule> load;
+  LoadRule load = LoadRule::extrapolated;
   std::optional<LubricationKeys> lubrication;
-  std::optional<VirtualMassKeys> virtual_mass;
   bool grain_stress = false;  // measure the fluid's stress on every grain
   bool operator==(const CouplingKeys&) const = default;
-
-  // The filter of the virtual mass makes up for the lag of the mean.
-  LoadRule load_rule() const { return load.value_or(virtual_mass ? LoadRule::mean : LoadRule::extrapolated); }
 };
 
 // with_grains: whether the case has grains, and so the keys that concern them.

@@ -19,6 +19,7 @@ GrainBodies<Real>::GrainBodies(MPI_Comm communicator, dem::GrainDynamics& grains
       box_(box),
       units_(units),
       options_(options),
+      light_load_{units.density, units.spacing},
       with_stress_(with_stress) {}
 
 template <typename Real>
@@ -140,15 +141,13 @@ void GrainBodies<Real>::apply() {
     const Vec3 force = FixedVec3{sums[0], sums[1], sums[2]}.to_vec3() * units_.force();
     const Vec3 torque = FixedVec3{sums[3], sums[4], sums[5]}.to_vec3() * units_.torque();
     const GrainExchange<double> kept = exchange_of(g);
-    const int before = kept.exchanges();
-    set_load(g, load_of(options_.load, before, force, kept.last_force(), kept.earlier_force()),
-             load_of(options_.load, before, torque, kept.last_torque(), kept.earlier_torque()), before == 0);
+    set_load(g, force, torque);
     kept.earlier_force() = kept.last_force();
     kept.earlier_torque() = kept.last_torque();
     kept.last_force() = force;
     kept.last_torque() = torque;
-    if (with_stress_) apply_stress(g, before == 0);
-    kept.set_exchanges(std::min(before + 1, 2));
+    if (with_stress_) apply_stress(g);
+    kept.set_exchanges(std::min(kept.exchanges() + 1, 2));
   }
 }
 
@@ -212,13 +211,13 @@ double GrainBodies<Real>::mass_owed() const {
 
 // sigma_ab = (1/V) sum F_a x_b over the surface (Zhang et al. 2022, eq. 13), the mean of two exchanges.
 template <typename Real>
-void GrainBodies<Real>::apply_stress(std::size_t grain, bool first) {
+void GrainBodies<Real>::apply_stress(std::size_t grain) {
   const double volume = Sphere{grains_.store().radius[grain]}.volume();
   FixedTensor sums;
   std::copy_n(&exchanged_[sums_per_grain() * grain + plain_sums], sums.sums.size(), sums.sums.begin());
   const Mat3 stress = sums.to_mat3() * (units_.torque() / volume);
   const GrainExchange<double> kept = exchange_of(grain);
-  kept.mean_stress() = first ? stress : Mat3(0.5 * (stress + kept.last_stress()));
+  kept.mean_stress() = 0.5 * (stress + kept.last_stress());
   kept.last_stress() = stress;
 }
 
@@ -229,19 +228,24 @@ void GrainBodies<Real>::show_stresses() {
   for (std::size_t g = 0; g < stresses_.size(); ++g) stresses_[g] = exchange_of(g).mean_stress();
 }
 
-// What the store has is what the grain got in the step before.
+// From this exchange and those before it. Of a light grain, the store has what the grain got in the step before.
 template <typename Real>
-void GrainBodies<Real>::set_load(std::size_t grain, const Vec3& force, const Vec3& torque, bool first) {
+void GrainBodies<Real>::set_load(std::size_t grain, const Vec3& force, const Vec3& torque) {
   dem::GrainStore& store = grains_.store();
-  if (!options_.virtual_mass || dem::holds_translation(store.motion[grain])) {
-    store.load_force[grain] = force;
-    store.load_torque[grain] = torque;
+  const GrainExchange<const double> kept = std::as_const(*this).exchange_of(grain);
+  const double mass = store.mass[grain], radius = grains_.volume_radius(grain);
+  if (dem::holds_translation(store.motion[grain]) || !light_load_.concerns(mass, radius)) {
+    store.load_force[grain] = load_of(options_.load, force, kept.last_force(), kept.earlier_force());
+    store.load_torque[grain] = load_of(options_.load, torque, kept.last_torque(), kept.earlier_torque());
     return;
   }
-  const double share = options_.virtual_mass->share(store.mass[grain], grains_.volume_radius(grain));
-  const Vec3 body = grains_.body_force(grain), before = first ? Vec3::Zero() : Vec3(store.load_force[grain] + body);
-  store.load_force[grain] = VirtualMass::filtered(before, force + body, share) - body;
-  store.load_torque[grain] = VirtualMass::filtered(store.load_torque[grain], torque, share);
+  const double share = light_load_.share(mass, radius);
+  const Vec3 body = grains_.body_force(grain);
+  const Vec3 before = kept.exchanges() == 0 ? Vec3::Zero() : Vec3(store.load_force[grain] + body);
+  const Vec3 mean = load_of(LoadRule::mean, force, kept.last_force(), kept.earlier_force());
+  store.load_force[grain] = LightLoad::filtered(before, mean + body, share) - body;
+  store.load_torque[grain] = LightLoad::filtered(
+      store.load_torque[grain], load_of(LoadRule::mean, torque, kept.last_torque(), kept.earlier_torque()), share);
 }
 
 template class GrainBodies<float>;

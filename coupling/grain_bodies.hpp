@@ -6,8 +6,8 @@
 #include "bodies/bodies.hpp"
 #include "core/units.hpp"
 #include "coupling/grain_exchange.hpp"
+#include "coupling/light_load.hpp"
 #include "coupling/load_rule.hpp"
-#include "coupling/virtual_mass.hpp"
 #include "dem/grain_dynamics.hpp"
 
 #include <optional>
@@ -20,7 +20,6 @@ namespace thalweg::coupling {
 struct GrainBodyOptions {
   double link_tolerance = 1e-3;  // cells a grain may move before the cells of its body follow
   LoadRule load = LoadRule::extrapolated;
-  std::optional<VirtualMass> virtual_mass;  // of light grains; its filter is made for LoadRule::mean
 };
 
 template <typename Real>
@@ -63,8 +62,8 @@ private:
   void update_cells();
   void collect();
   void apply();
-  void set_load(std::size_t grain, const Vec3& force, const Vec3& torque, bool first);
-  void apply_stress(std::size_t grain, bool first);
+  void set_load(std::size_t grain, const Vec3& force, const Vec3& torque);
+  void apply_stress(std::size_t grain);
   void show_stresses();
   void settle_masses();
   void settle_mass(std::size_t first, std::size_t count);
@@ -79,6 +78,7 @@ private:
   PeriodicBox box_;  // m
   Units units_;
   GrainBodyOptions options_;
+  LightLoad light_load_;
   bool with_stress_;
   std::vector<int> slot_;                // of each grain of the store
   std::vector<std::int64_t> exchanged_;  // sums of each grain of the store

@@ -22,10 +22,9 @@ namespace thalweg::coupling {
 enum class LoadRule { extrapolated, mean };
 std::vector<NamedChoice<LoadRule>> choices_of(LoadRule);  // its words in a case file
 
-// exchanges: how many there have been before this one; those missing are left out.
-inline Vec3 load_of(LoadRule rule, int exchanges, const Vec3& now, const Vec3& last, const Vec3& before_last) {
-  if (exchanges == 0) return now;
-  if (exchanges == 1 || rule == LoadRule::mean) return 0.5 * (now + last);
+// Exchanges that have not been yet count as zero: every exchange gives its impulse in full, however a grain begins.
+inline Vec3 load_of(LoadRule rule, const Vec3& now, const Vec3& last, const Vec3& before_last) {
+  if (rule == LoadRule::mean) return 0.5 * (now + last);
   return now + 0.5 * (last - before_last);
 }
 

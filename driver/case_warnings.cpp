@@ -226,38 +226,6 @@ Warnings coarse_cells(const Case& c) {
            "finer cells"}};
 }
 
-// The mean load was stable down to half the fluid's density.
-constexpr double least_ratio_of_mean_load = 0.5;
-
-// Density over that of the fluid above which a grain is stable under the extrapolated load, by its diameter in cells:
-// the spin goes first (docs/theory.md, section 3, "The load in time"). With cli 7.2 cells over the diameter at
-// tau - 1/2 = 0.03 and 4.2 at 0.54, between them evenly in the logarithm; with bouzidi 5 at 0.03.
-double least_ratio_of_extrapolated_load(const Case& c, double diameter) {
-  const double share = std::log(0.54 / (relaxation_time(c) - 0.5)) / std::log(0.54 / 0.03);
-  const double cells =
-      c.coupling.links == bodies::LinkRule::cli ? 4.2 + (7.2 - 4.2) * std::clamp(share, 0.0, 1.0) : 5.0;
-  return cells * c.domain.spacing / diameter;
-}
-
-Warnings light_grains(const Case& c) {
-  Warnings found;
-  const bool mean = c.coupling.load_rule() == coupling::LoadRule::mean;
-  for (const dem::Population& population : c.grains) {
-    const double ratio = population.density / c.fluid.density;
-    const double least =
-        mean ? least_ratio_of_mean_load : least_ratio_of_extrapolated_load(c, population.smallest_diameter());
-    if (c.coupling.virtual_mass || population.fixed || population.prescribed_velocity || ratio >= least) continue;
-    const Change remedy =
-        !mean && ratio >= least_ratio_of_mean_load
-            ? word_change("coupling.load", "mean", [](Case& other) { other.coupling.load = coupling::LoadRule::mean; })
-            : word_change("coupling.virtual_mass", "{}", [](Case& other) { other.coupling.virtual_mass.emplace(); });
-    found.push_back({fmt::format("Grains of {} kg/m^3 are so light that the explicit coupling may become unstable",
-                                 population.density),
-                     {{{remedy}, {}}}});
-  }
-  return found;
-}
-
 // Only grains that sink make a bed.
 Warnings floating_grains(const Case& c) {
   Warnings found;
@@ -328,7 +296,6 @@ const std::vector<WarningRule> case_rules{observer_warnings,
                                           with_fluid<laminar_flow>,
                                           with_fluid<large_solids>,
                                           with_fluid<coarse_cells>,
-                                          with_fluid<light_grains>,
                                           with_fluid<floating_grains>,
                                           with_fluid<inexact_links>};
 

@@ -52,7 +52,6 @@ coupling::FluidParameters fluid_parameters(const Case& c) {
                         .response_time = c.fluid.mean_velocity->response_time / parameters.units.time_step};
   parameters.target_moves_grains = c.fluid.mean_velocity && c.fluid.mean_velocity->on_grains;
   parameters.bodies.links.momentum_exchange = c.coupling.momentum_exchange;
-  parameters.bodies.links.wall_density = c.coupling.wall_density;
   parameters.bodies.links.rule = c.coupling.links;
   parameters.initial_fluid =
       initial_fluid(c.initial.fluid, cells_of(c.domain), periodic_axes(c.domain), c.domain.spacing);

@@ -29,7 +29,6 @@ const std::vector<Alternatives>& alternatives() {
       {"contact.normal_stiffness", {"contact.duration", "contact.youngs_modulus"}},
       {"contact.tangential_stiffness", {"contact.normal_stiffness", "contact.duration", "contact.youngs_modulus"}},
       {"contact.damping", {"contact.restitution"}},
-      {"coupling.load", {"coupling.virtual_mass"}},
   };
   return all;
 }

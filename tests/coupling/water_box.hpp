@@ -29,10 +29,9 @@ struct WaterBox {
   bodies::LinkOptions links;
   double link_tolerance = 1e-3;
   int sub_steps = 50;
+  double normal_stiffness = 20000.0;  // N/m
   bool wall_forces = false;
-  bool lubrication = false;   // with the cut-offs of the case's defaults, at the floor alone
-  bool virtual_mass = false;  // and then the load is the mean
-  bodies::RefillRule refill = bodies::RefillRule::equilibrium;
+  bool lubrication = false;  // with the cut-offs of the case's defaults, at the floor alone
   bool keep_covered_momentum = false;
   bool grain_stress = false;
   bool full_gravity = false;  // gravity acts on everything, and buoyancy comes from the fluid
@@ -95,20 +94,18 @@ std::unique_ptr<LatticeSystem<Real>> make_system(const WaterBox& box, MPI_Comm c
   p.grains.link_tolerance = box.link_tolerance;
   p.sub_steps = box.sub_steps;
   p.wall_forces = box.wall_forces;
-  if (box.virtual_mass) p.grains.virtual_mass = VirtualMass{0.5, fluid_density};
-  p.bodies.refill = box.refill;
   p.bodies.keep_covered_momentum = box.keep_covered_momentum;
   p.bodies.moments = box.grain_stress;
   p.full_gravity = box.full_gravity;
-  p.grains.load = box.virtual_mass ? LoadRule::mean : box.load;
+  p.grains.load = box.load;
   if (box.initial)
     p.initial_fluid = box.initial;
   else
     p.initial_fluid = [u = box.fluid_velocity](const Vec3&) { return FluidInitialState{0.0, u}; };
 
   dem::GrainParameters g;
-  g.contact.normal_stiffness = 20000.0;
-  g.contact.tangential_stiffness = 5714.0;
+  g.contact.normal_stiffness = box.normal_stiffness;
+  g.contact.tangential_stiffness = 0.2857 * box.normal_stiffness;
   g.contact.restitution = 0.93;
   g.contact.friction = 0.5;
   g.contact.wall_friction = 0.45;

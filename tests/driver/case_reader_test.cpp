@@ -199,15 +199,13 @@ void collect_keys(const YAML::Node& node, const std::string& path, std::vector<s
 }
 
 TEST(CaseReader, ReadsEveryWallAndCollision) {
-  const Case c =
-      read(flume, {"domain.boundaries={x_low: {type: velocity_inlet, velocity: [0.2, 0, 0]}, x_high: {type: "
-                   "pressure_outlet, pressure: 3}, y: {type: navier_slip, slip_length: 1e-4}, "
-                   "bottom: law_of_the_wall, top: {type: moving, velocity: [0.1, 0, 0]}}",
-                   "grains.0.fixed=true", "fluid.collision=trt", "fluid.magic_parameter=0.25",
-                   "fluid.mean_velocity={velocity: 0.3, response_time: 0.05}", "coupling.links=cli",
-                   "coupling.refill=grad", "coupling.covered_momentum=to_grain", "coupling.grain_stress=true"});
+  const Case c = read(flume, {"domain.boundaries={x_low: {type: velocity_inlet, velocity: [0.2, 0, 0]}, x_high: {type: "
+                              "pressure_outlet, pressure: 3}, y: {type: navier_slip, slip_length: 1e-4}, "
+                              "bottom: law_of_the_wall, top: {type: moving, velocity: [0.1, 0, 0]}}",
+                              "grains.0.fixed=true", "fluid.collision=trt", "fluid.magic_parameter=0.25",
+                              "fluid.mean_velocity={velocity: 0.3, response_time: 0.05}", "coupling.links=cli",
+                              "coupling.covered_momentum=to_grain", "coupling.grain_stress=true"});
   EXPECT_EQ(c.coupling.links, bodies::LinkRule::cli);
-  EXPECT_EQ(c.coupling.refill, bodies::RefillRule::grad);
   EXPECT_EQ(c.coupling.covered_momentum, coupling::CoveredMomentum::to_grain);
   EXPECT_TRUE(c.coupling.grain_stress);
   EXPECT_EQ(c.domain.faces[x_low].velocity, Vec3(0.2, 0, 0));
@@ -232,17 +230,6 @@ TEST(CaseReader, ReadsTheSlipLawOfTheWall) {
   EXPECT_FALSE(conditions[y_high].slip_of_first_cell);
   EXPECT_EQ(conditions[y_high].slip_coefficient, 8.36);
   EXPECT_EQ(read(resolved_yaml(c)), c);
-}
-
-TEST(CaseReader, VirtualMassGoesWithTheMeanLoad) {
-  EXPECT_EQ(read(flume).coupling.load_rule(), coupling::LoadRule::extrapolated);
-  EXPECT_EQ(read(flume, {"coupling.load=mean"}).coupling.load_rule(), coupling::LoadRule::mean);
-  for (const std::vector<std::string>& overrides :
-       {std::vector<std::string>{"coupling.virtual_mass={}"}, {"coupling.virtual_mass={}", "coupling.load=mean"}}) {
-    const Case c = read(flume, overrides);
-    EXPECT_EQ(c.coupling.load_rule(), coupling::LoadRule::mean);
-    EXPECT_EQ(read(resolved_yaml(c)), c);
-  }
 }
 
 TEST(CaseReader, StartsWithALinearProfile) {

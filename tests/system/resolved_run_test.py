@@ -117,7 +117,7 @@ analysis:
         self.assertEqual(self.last_checkpoint("one").read_bytes(), self.last_checkpoint("two").read_bytes())
 
     def test_options_of_the_coupling_have_the_same_bits_after_a_restart(self):
-        options = ["--set", "coupling.lubrication={}", "--set", "coupling.virtual_mass={}",
+        options = ["--set", "coupling.lubrication={}", "--set", "coupling.links=cli", "--set", "grains.0.density=1200",
                    "--set", "fluid.kinematic_viscosity=1e-5", "--set", "output.checkpoint.every=0.01", "--until", "0.02"]
         self.run_well("run", self.case, "--out", "straight", *options)
         half_way = self.folder / "straight/checkpoints/step_100.h5"

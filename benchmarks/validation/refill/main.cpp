@@ -29,8 +29,6 @@
 namespace thalweg::benchmark {
 namespace {
 
-using bodies::RefillRule;
-
 // What becomes of the momentum of covered cells; none: the sphere rests, and the fluid moves past it.
 enum class Covered { lost, to_grain, none };
 
@@ -41,7 +39,6 @@ struct Regime {
 
 struct Setting {
   std::string name;
-  bodies::RefillRule refill = bodies::RefillRule::equilibrium;
   double bulk_relaxation_time = 0.0;
   Covered covered = Covered::lost;
   bodies::LinkRule links = bodies::LinkRule::bouzidi;
@@ -62,7 +59,6 @@ std::unique_ptr<coupling::LatticeSystem<double>> make(const Regime& regime, cons
   p.collision.bulk_relaxation_time = setting.bulk_relaxation_time;
   p.collision.model = setting.collision;
   p.bodies.links.rule = setting.links;
-  p.bodies.refill = setting.refill;
   p.bodies.keep_covered_momentum = setting.covered != Covered::lost;
   const bool held = setting.covered == Covered::none;
   p.initial_fluid = [u = held ? Vec3(-velocity) : Vec3(Vec3::Zero())](const Vec3&) {
@@ -141,7 +137,7 @@ std::pair<std::string, std::vector<Setting>> settings_of(int argc, char** argv) 
     for (const double bulk : {0.0, 3.0})
       for (const auto& [covered, name] :
            {std::pair{Covered::lost, "lost"}, {Covered::to_grain, "to_grain"}, {Covered::none, "none: sphere at rest"}})
-        settings.push_back({fmt::format("{}, tau_b = {}", name, bulk), bodies::RefillRule::equilibrium, bulk, covered});
+        settings.push_back({fmt::format("{}, tau_b = {}", name, bulk), bulk, covered});
     return {"covered", settings};
   }
   if (mode == "links") {
@@ -150,16 +146,15 @@ std::pair<std::string, std::vector<Setting>> settings_of(int argc, char** argv) 
          {std::pair{lbm::CollisionModel::bgk, "bgk"}, {lbm::CollisionModel::trt, "trt"}})
       for (const auto& [links, rule] :
            {std::pair{bodies::LinkRule::bouzidi, "bouzidi"}, {bodies::LinkRule::cli, "cli"}})
-        settings.push_back(
-            {fmt::format("{}, {}", rule, name), bodies::RefillRule::equilibrium, 1.0, Covered::lost, links, collision});
+        settings.push_back({fmt::format("{}, {}", rule, name), 1.0, Covered::lost, links, collision});
     return {"links", settings};
   }
   if (argc > 1) {
     std::vector<Setting> settings;
-    for (int n = 1; n < argc; ++n) settings.push_back({argv[n], bodies::RefillRule::equilibrium, std::atof(argv[n])});
+    for (int n = 1; n < argc; ++n) settings.push_back({argv[n], std::atof(argv[n])});
     return {"tau_b", settings};
   }
-  return {"refill", {{"equilibrium", bodies::RefillRule::equilibrium}, {"grad", bodies::RefillRule::grad}}};
+  return {"refill", {{"equilibrium"}}};
 }
 
 void print_heading(const std::string& varied) {
