@@ -27,6 +27,7 @@
 #include "core/phase_timer.hpp"
 #include "lbm/fluid.hpp"
 
+#include <array>
 #include <vector>
 
 namespace thalweg::bodies {
@@ -84,6 +85,10 @@ public:
   const LinkSums& link_sums(int slot) const { return links_.sums_of(slot); }
   // sum F_a x_b of the step; where BodyOptions::moments asks for it.
   const FixedTensor& moments(int slot) const { return moments_[static_cast<std::size_t>(slot)]; }
+  // What solids hide of every body, by slot (HiddenPatches::by_solids()), which is not in moments().
+  std::vector<std::array<std::int64_t, 3>> hidden_by_solids() const {
+    return map_.hidden_patches().by_solids(bodies_.size(), solids());
+  }
   const LinkTable& links() const { return links_; }
   const ExchangeTotals& step_totals() const { return totals_; }
 

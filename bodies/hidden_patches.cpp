@@ -57,6 +57,16 @@ Vec3 HiddenPatches::patch(std::int32_t p, std::int32_t q) const {
   return to_vec3(found->second);
 }
 
+std::vector<std::array<std::int64_t, 3>> HiddenPatches::by_solids(std::size_t slots, int solids) const {
+  std::vector<std::array<std::int64_t, 3>> sums(slots, std::array<std::int64_t, 3>{});
+  for (const auto& [key, patch] : patches_) {
+    const Pair pair = pair_of(key);
+    if (pair.p < solids || pair.q < 0 || pair.q >= solids) continue;
+    for (std::size_t a = 0; a < 3; ++a) sums[static_cast<std::size_t>(pair.p)][a] += patch.sum[a];
+  }
+  return sums;
+}
+
 Vec3 HiddenPatches::to_vec3(const Patch& patch) { return Vec3(patch.sum[0], patch.sum[1], patch.sum[2]) / 36.0; }
 
 // Out of p, towards q.
@@ -126,9 +136,10 @@ void HiddenPatches::apply(const std::vector<MappedBody>& mapped, int solids, con
     } else if (pair.q >= 0) {
       give_mass(patch, velocity_beside(bodies[q], bodies[p]), bodies[p]);
     }
-    const Vec3 outward = q_is_sphere || pair.q < 0 ? direction(pair, bodies) : -to_vec3(patch);
+    const bool is_solid = pair.q >= 0 && !q_is_sphere;
+    const Vec3 outward = is_solid ? Vec3::Zero() : direction(pair, bodies);
     const Vec3 arm = outward * (bodies[p].radius / std::max(outward.norm(), 1e-30));
-    press(patch, arm, density - reference, bodies[p], moments ? &(*moments)[p] : nullptr);
+    press(patch, arm, density - reference, bodies[p], moments && !is_solid ? &(*moments)[p] : nullptr);
   }
 }
 

@@ -39,7 +39,8 @@ public:
   void cell_changes(const Index3& local, std::int32_t now);
 
   // Adds to the bodies the force of the fluid on what is hidden by this rank's cells and takes from their mass what is
-  // given in another's place; the symmetric part of sum F_a x_b is added to moments, where given. surrounding: by
+  // given in another's place; the symmetric part of sum F_a x_b is added to moments, where given, but for what solids
+  // hide, whose direction follows from the whole patch: by_solids(). surrounding: by
   // slot, rho - rho_rest around the grain; reference: that presses on nothing (lbm/link_pass.hpp).
   // solids: so many slots, the first ones.
   void apply(const std::vector<MappedBody>& mapped, int solids, const std::vector<double>& surrounding,
@@ -50,6 +51,9 @@ public:
 
   // h of p towards q, a slot or a wall, of this rank's cells of p.
   Vec3 patch(std::int32_t p, std::int32_t q) const;
+
+  // h, in 36ths, of every slot towards all solids, which have the first slots; of this rank's cells.
+  std::vector<std::array<std::int64_t, 3>> by_solids(std::size_t slots, int solids) const;
 
 private:
   struct Patch {

@@ -6,6 +6,7 @@
 #include "core/wide_sums_over_ranks.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace thalweg::coupling {
 
@@ -119,6 +120,8 @@ void GrainBodies<Real>::collect() {
   const std::size_t count = grains_.store().total();
   const int width = sums_per_grain();
   exchanged_.resize(static_cast<std::size_t>(width) * count);
+  std::vector<std::array<std::int64_t, hidden_sums>> hidden;
+  if (with_stress_) hidden = bodies_.hidden_by_solids();
   for (std::size_t g = 0; g < count; ++g) {
     const bodies::LinkBody& body = bodies_.body(slot_[g]);
     const std::int64_t sums[8] = {body.force.x,  body.force.y,  body.force.z, body.torque.x,
@@ -128,7 +131,8 @@ void GrainBodies<Real>::collect() {
     into = std::copy(link_sums.sums.begin(), link_sums.sums.end(), into);
     if (with_stress_) {
       const FixedTensor& moments = bodies_.moments(slot_[g]);
-      std::copy(moments.sums.begin(), moments.sums.end(), into);
+      into = std::copy(moments.sums.begin(), moments.sums.end(), into);
+      std::copy_n(hidden[static_cast<std::size_t>(slot_[g])].begin(), hidden_sums, into);
     }
   }
   grains_.add_ghost_values(exchanged_, width);
@@ -209,13 +213,25 @@ double GrainBodies<Real>::mass_owed() const {
   return owed.to_double(LatticeFixed::bits);
 }
 
+// sum F_a x_b of what the fluid presses where solids hide the grain, F = 2 D h, x on the surface against h; lattice
+// units (bodies/hidden_patches.hpp).
+template <typename Real>
+Mat3 GrainBodies<Real>::moment_hidden_by_solids(std::size_t grain) const {
+  const std::int64_t* sums = &exchanged_[sums_per_grain() * grain + plain_sums + moment_sums];
+  const Vec3 h = Vec3(static_cast<double>(sums[0]), static_cast<double>(sums[1]), static_cast<double>(sums[2])) / 36.0;
+  if (h.isZero(0.0)) return Mat3::Zero();
+  const double excess = exchange_of(grain).surrounding() - bodies_.reference_density();
+  const double radius = grains_.store().radius[grain] / units_.spacing;
+  return -2.0 * excess * radius / h.norm() * (h * h.transpose());
+}
+
 // sigma_ab = (1/V) sum F_a x_b over the surface (Zhang et al. 2022, eq. 13), the mean of two exchanges.
 template <typename Real>
 void GrainBodies<Real>::apply_stress(std::size_t grain) {
   const double volume = Sphere{grains_.store().radius[grain]}.volume();
   FixedTensor sums;
   std::copy_n(&exchanged_[sums_per_grain() * grain + plain_sums], sums.sums.size(), sums.sums.begin());
-  const Mat3 stress = sums.to_mat3() * (units_.torque() / volume);
+  const Mat3 stress = (sums.to_mat3() + moment_hidden_by_solids(grain)) * (units_.torque() / volume);
   const GrainExchange<double> kept = exchange_of(grain);
   kept.mean_stress() = 0.5 * (stress + kept.last_stress());
   kept.last_stress() = stress;

@@ -68,9 +68,10 @@ private:
   void settle_masses();
   void settle_mass(std::size_t first, std::size_t count);
   bodies::LinkSums link_sums_of(std::size_t grain) const;
-  // Of a grain: force, torque, mass, pressure, LinkSums; where measured, moments.
-  static constexpr int plain_sums = 8 + bodies::LinkSums::size;
-  int sums_per_grain() const { return plain_sums + (with_stress_ ? 9 : 0); }
+  // Of a grain: force, torque, mass, pressure, LinkSums; where measured, moments and what solids hide.
+  static constexpr int plain_sums = 8 + bodies::LinkSums::size, moment_sums = 9, hidden_sums = 3;
+  int sums_per_grain() const { return plain_sums + (with_stress_ ? moment_sums + hidden_sums : 0); }
+  Mat3 moment_hidden_by_solids(std::size_t grain) const;
 
   MPI_Comm communicator_;
   dem::GrainDynamics& grains_;

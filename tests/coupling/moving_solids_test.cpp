@@ -168,6 +168,30 @@ TEST(MovingSolids, CouetteFlowOverASlidingSlabIsExact) {
   }
 }
 
+// Under its full weight the water lifts a solid by what it displaces, at rest and while it creeps along: to 1 %, which
+// is what the pressure, linear between cells, leaves at a surface of six cells, and the drag is a thousandth of that.
+TEST(MovingSolids, AreLiftedByTheWaterTheyDisplace) {
+  for (const double speed : {0.0, 1e-4}) {
+    WaterBox box;
+    box.cells = {24, 20, 26};
+    box.periodic = {true, true, false};
+    box.closed = true;
+    box.full_gravity = true;
+    box.gravity = Vec3(0.0, 0.0, -9.8);
+    box.viscosity = 1e-5;
+    const Vec3 centre(9.3e-3, 8.2e-3, 10.1e-3);
+    box.solids = {thalweg::test::sphere_mesh(centre, 2.5e-3, 4),
+                  bodies::SolidSphere{centre + Vec3(7e-3, 0, 3e-3), 2.5e-3}};
+    box.solid_motions = {motion_of(Vec3(speed, 0.0, 0.0)), motion_of(Vec3(speed, 0.0, 0.0))};
+    const auto system = make(box);
+    for (int step = 0; step < 600; ++step) system->advance();
+    const Units units{box.spacing, box.time_step, 1000.0};
+    const double displaced = 4.0 / 3.0 * std::numbers::pi * std::pow(2.5e-3, 3) * 1000.0 * 9.8;
+    for (const Vec3& force : system->solid_loads().forces)
+      EXPECT_NEAR(force.z() * units.force(), displaced, 0.01 * displaced) << speed;
+  }
+}
+
 // What links and cells that change hands take is owed, and comes back: excess mass and owed mass together stay what
 // they were, to round-off.
 TEST(MovingSolids, OweTheWaterWhatTheyTake) {

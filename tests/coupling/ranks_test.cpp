@@ -130,6 +130,7 @@ TEST(Ranks, DoNotChangeOneBitOfACloudInAPeriodicBox) {
 void compare_on_solids(const std::vector<dem::PrescribedMotion>& motions, int steps) {
   WaterBox box = crowded({48, 40, 36}, {true, false, false}, 100, 5.4e-3);
   box.collision = lbm::CollisionModel::trt_at_bodies;
+  box.grain_stress = true;
   const Vec3 size = box.spacing * Vec3(48, 36, 36);
   box.solids = {thalweg::test::box_mesh(Vec3(-8e-3, 6e-3, -1e-3), Vec3(9e-3, 19e-3, 14e-3)),
                 bodies::SolidSphere{0.5 * size, 8e-3}};
