@@ -78,7 +78,7 @@ std::vector<double> expected_rise(const Light& light, int steps) {
 
 // From the 20th step on, when the pressure has gone around the sphere and the layer at its surface is a cell thick:
 // what is left is the lattice's error there (4 cells in R sqrt(t nu)/R) and the walls of the box, 4 %. The sphere moves
-// by less than R/5 meanwhile. The virtual mass makes no difference to what is stable without it.
+// by less than R/5 meanwhile.
 TEST(LightGrains, LightSpheresRiseByTheEquationOfMotion) {
   for (const double density : {100.0, 500.0, 800.0, 1050.0}) {
     const Light light{density, 0.02, 0.4};

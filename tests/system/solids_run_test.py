@@ -18,7 +18,17 @@ from thalweg import Run
 GLASS = "contact: {restitution: 0.5, friction: 0.5, wall_friction: 0.4, duration: 1.0e-3}"
 
 
-class SolidsInWater(ProgramTest):
+class InWater(ProgramTest):
+    def series_of_the_same_bits_anywhere(self):
+        self.run_well("run", self.case, "--out", "one")
+        self.run_well("run", self.case, "--out", "two", ranks=2)
+        self.run_well("run", self.case, "--out", "again", "--restart", self.folder / "one/checkpoints/step_600.h5", ranks=2)
+        for out in ("two", "again"):
+            self.assertEqual(self.last_checkpoint(out).read_bytes(), self.last_checkpoint("one").read_bytes(), out)
+        return Run(self.folder / "one").series
+
+
+class SolidsInWater(InWater):
     # A sill across the channel and a ball across the periodic ends; grains fall on both.
     CASE = f"""
 system: resolved
@@ -44,12 +54,7 @@ output:
         write_box(self.folder / "sill.stl", (0, -1, -1), (5, 16, 6))
 
     def test_the_same_bits_on_any_ranks_and_after_a_restart(self):
-        self.run_well("run", self.case, "--out", "one")
-        self.run_well("run", self.case, "--out", "two", ranks=2)
-        self.run_well("run", self.case, "--out", "again", "--restart", self.folder / "one/checkpoints/step_600.h5", ranks=2)
-        for out in ("two", "again"):
-            self.assertEqual(self.last_checkpoint(out).read_bytes(), self.last_checkpoint("one").read_bytes(), out)
-        series = Run(self.folder / "one").series
+        series = self.series_of_the_same_bits_anywhere()
         for solid in (0, 1):
             self.assertLess(series[f"solid_{solid}_grain_force_z"].min(), 0.0)
             self.assertTrue(numpy.isfinite(series[f"solid_{solid}_force_x"]).all())
@@ -69,7 +74,7 @@ output:
                             "grains.0.placement={positions: [[0.014, 0.007, 0.003]]}", words=["Grain 0", "is inside solid 0"])
 
 
-class SolidsThatMoveInWater(ProgramTest):
+class SolidsThatMoveInWater(InWater):
     # A plate ploughs along the channel and across its periodic end, a wheel turns in the water; grains lie before the plate.
     CASE = f"""
 system: resolved
@@ -96,12 +101,7 @@ output:
         write_box(self.folder / "wheel.stl", (18, 3, 20.5), (30, 12, 23.5))
 
     def test_the_same_bits_on_any_ranks_and_after_a_restart(self):
-        self.run_well("run", self.case, "--out", "one")
-        self.run_well("run", self.case, "--out", "two", ranks=2)
-        self.run_well("run", self.case, "--out", "again", "--restart", self.folder / "one/checkpoints/step_600.h5", ranks=2)
-        for out in ("two", "again"):
-            self.assertEqual(self.last_checkpoint(out).read_bytes(), self.last_checkpoint("one").read_bytes(), out)
-        series = Run(self.folder / "one").series
+        series = self.series_of_the_same_bits_anywhere()
         self.assertLess(series["solid_0_grain_force_x"].min(), 0.0)   # grains stand in its way
         self.assertGreater(numpy.abs(series["solid_1_torque_y"]).max(), 0.0)
         self.assertNotIn("solid_0_torque_y", series)                  # it does not turn
