@@ -2,8 +2,8 @@
 
 #include "analysis/tensor_names.hpp"
 #include "core/fixed_point.hpp"
-#include "core/mpi_session.hpp"
 #include "core/symmetric_pairs.hpp"
+#include "core/whole_dataset.hpp"
 #include "core/wide_sums_over_ranks.hpp"
 
 #include <fmt/format.h>
@@ -126,13 +126,9 @@ void FluidStatistics::save(ArchiveWriter& archive) const {
   archive.attribute("fluid_statistics/measurements", measurements_);
   archive.attribute("fluid_statistics/counted_step", counted_step_);
   std::vector<std::int64_t> values;
-  const bool first = rank_of(communicator_) == 0;
-  if (first)
-    for (const WideSum& sum : sums_) values.insert(values.end(), {sum.high, sum.low});
-  const std::vector<std::uint64_t> shape{static_cast<std::uint64_t>(bins()), quantities, 2};
-  const std::vector<std::uint64_t> nothing(3, 0);
-  archive.write("fluid_statistics/sums", std::span<const std::int64_t>(values),
-                {shape, nothing, first ? shape : nothing});
+  for (const WideSum& sum : sums_) values.insert(values.end(), {sum.high, sum.low});
+  write_whole(archive, communicator_, "fluid_statistics/sums", std::span<const std::int64_t>(values),
+              {static_cast<std::uint64_t>(bins()), quantities, 2});
 }
 
 bool FluidStatistics::load(ArchiveReader& archive) {

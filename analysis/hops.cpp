@@ -1,8 +1,8 @@
 #include "analysis/hops.hpp"
 
 #include "analysis/sphere_in_layer.hpp"
-#include "core/mpi_session.hpp"
 #include "core/order_free_sum.hpp"
+#include "core/whole_dataset.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -124,10 +124,7 @@ void Hops::save(ArchiveWriter& archive, const std::string& group) const {
   archive.attribute(group + "/hops_sum_of_times", sum_of_times_);
   std::vector<std::int64_t> counts(lengths_.counts().begin(), lengths_.counts().end());
   counts.insert(counts.end(), times_.counts().begin(), times_.counts().end());
-  const bool first = rank_of(communicator_) == 0;
-  const std::vector<std::uint64_t> shape{counts.size()};
-  archive.write(group + "/hops_counts", std::span<const std::int64_t>(counts).first(first ? counts.size() : 0),
-                {shape, {0}, first ? shape : std::vector<std::uint64_t>{0}});
+  write_whole(archive, communicator_, group + "/hops_counts", std::span<const std::int64_t>(counts), {counts.size()});
   if (!homes_) return;
   std::vector<double> rows;
   for (const Memory& m : memory_)

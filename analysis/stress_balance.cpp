@@ -3,9 +3,9 @@
 
 #include "analysis/sphere_in_layer.hpp"
 #include "core/contact_stress.hpp"
-#include "core/mpi_session.hpp"
 #include "core/order_free_sum.hpp"
 #include "core/symmetric_pairs.hpp"
+#include "core/whole_dataset.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -128,11 +128,8 @@ void StressBalance::save(ArchiveWriter& archive) const {
   archive.attribute("stress_balance/counted_step", counted_step_);
   archive.attribute("stress_balance/layers", static_cast<std::int64_t>(layers_.count()));
   std::vector<double> all;
-  const bool first = rank_of(communicator_) == 0;
-  if (first)
-    for (const auto sums : stored) all.insert(all.end(), (this->*sums).begin(), (this->*sums).end());
-  const std::vector<std::uint64_t> shape{stored_size()}, nothing{0};
-  archive.write("stress_balance/sums", std::span<const double>(all), {shape, nothing, first ? shape : nothing});
+  for (const auto sums : stored) all.insert(all.end(), (this->*sums).begin(), (this->*sums).end());
+  write_whole(archive, communicator_, "stress_balance/sums", std::span<const double>(all), {stored_size()});
 }
 
 bool StressBalance::load(ArchiveReader& archive) {

@@ -1,6 +1,7 @@
 #include "analysis/tracks.hpp"
 
 #include "core/mpi_session.hpp"
+#include "core/whole_dataset.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -67,14 +68,11 @@ void Tracks::save(ArchiveWriter& archive) const {
   archive.attribute("tracks/measurements", measurements_);
   archive.attribute("tracks/last_time", last_time_);
   const std::uint64_t columns = std::tuple_size_v<decltype(GrainRecord::values)>;
-  const std::vector<std::uint64_t> id_shape{grains_.size()}, shape{measurements_ > 0 ? grains_.size() : 0, columns};
-  const bool first = rank_of(communicator_) == 0;
   std::vector<double> values;
   for (const GrainRecord& record : last_) values.insert(values.end(), record.values.begin(), record.values.end());
-  archive.write("tracks/id", std::span<const std::int64_t>(grains_).first(first ? grains_.size() : 0),
-                {id_shape, {0}, first ? id_shape : std::vector<std::uint64_t>{0}});
-  archive.write("tracks/last", std::span<const double>(values),
-                {shape, {0, 0}, first ? shape : std::vector<std::uint64_t>{0, columns}});
+  write_whole(archive, communicator_, "tracks/id", std::span<const std::int64_t>(grains_), {grains_.size()});
+  write_whole(archive, communicator_, "tracks/last", std::span<const double>(values),
+              {measurements_ > 0 ? grains_.size() : 0, columns});
 }
 
 bool Tracks::load(ArchiveReader& archive) {

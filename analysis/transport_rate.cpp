@@ -2,6 +2,7 @@
 
 #include "core/mpi_session.hpp"
 #include "core/order_free_sum.hpp"
+#include "core/whole_dataset.hpp"
 
 #include <fmt/format.h>
 
@@ -18,13 +19,10 @@ constexpr double share_of_fall_speed_that_counts_as_moving = 0.01;
 constexpr double slowest = -5.0, fastest = 15.0;
 constexpr int velocity_bins = 200;
 
-// Rank 0 writes what all ranks hold alike.
+// What all ranks hold alike.
 template <typename T>
 void write_once(ArchiveWriter& archive, MPI_Comm communicator, const std::string& path, const std::vector<T>& values) {
-  const bool first = rank_of(communicator) == 0;
-  const std::vector<std::uint64_t> shape{values.size()}, nothing{0};
-  archive.write(path, std::span<const T>(values).first(first ? values.size() : 0),
-                {shape, nothing, first ? shape : nothing});
+  write_whole(archive, communicator, path, std::span<const T>(values), {values.size()});
 }
 
 template <typename T>

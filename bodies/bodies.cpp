@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <tuple>
 
 namespace thalweg::bodies {
 
@@ -37,10 +36,7 @@ void Bodies<Real>::add_solids(MPI_Comm communicator) {
   for (int s = 0; s < solids_.count(); ++s) moves.push_back(solids_.moves(s));
   map_.add_solids(moves);
   map_.begin_update();
-  const auto claim = [&](int solid, const Index3& local) { map_.claim(solid, local); };
-  solids_.visit_standing(claim);
-  for (int s = 0; s < solids_.count(); ++s)
-    for (const Index3& local : solids_.inside(s)) claim(s, local);
+  solids_.hand_over([&](const InsideCell& cell) { map_.claim(cell.solid, cell.local); });
   for (const CellChange& change : map_.settle())
     if (fluid_.indexing().owned(change.cell[0], change.cell[1], change.cell[2]))
       ++cells[static_cast<std::size_t>(change.now)];
@@ -123,24 +119,17 @@ void Bodies<Real>::move(int slot, const BodyMotion& motion) {
 
 template <typename Real>
 void Bodies<Real>::move_solid(int solid, const SolidMotion& motion) {
-  LinkBody& body = bodies_[static_cast<std::size_t>(solid)];
-  body.centre = motion.place.centre;
-  body.velocity = motion.velocity;
-  body.angular_velocity = motion.angular_velocity;
-  body.returned = motion.returned.density;
-  body.returned_slope = motion.returned.slope;
-  const std::vector<Index3> before = solids_.inside(solid);
+  move(solid, {motion.place.centre, motion.velocity, motion.angular_velocity, motion.returned.density,
+               motion.returned.slope, 0.0});
+  const std::vector<InsideCell> before = solids_.inside(solid);
   solids_.place(solid, motion.place);
-  const std::vector<Index3>& now = solids_.inside(solid);
-  const auto in_memory = [](const Index3& a, const Index3& b) {
-    return std::tie(a[2], a[1], a[0]) < std::tie(b[2], b[1], b[0]);
-  };
-  std::vector<Index3> turned;
-  std::set_difference(now.begin(), now.end(), before.begin(), before.end(), std::back_inserter(turned), in_memory);
-  for (const Index3& local : turned) map_.claim(solid, local);
+  const std::vector<InsideCell>& now = solids_.inside(solid);
+  std::vector<InsideCell> turned;
+  std::set_difference(now.begin(), now.end(), before.begin(), before.end(), std::back_inserter(turned));
+  for (const InsideCell& cell : turned) map_.claim(solid, cell.local);
   turned.clear();
-  std::set_difference(before.begin(), before.end(), now.begin(), now.end(), std::back_inserter(turned), in_memory);
-  for (const Index3& local : turned) map_.give_up(solid, local);
+  std::set_difference(before.begin(), before.end(), now.begin(), now.end(), std::back_inserter(turned));
+  for (const InsideCell& cell : turned) map_.give_up(solid, cell.local);
 }
 
 template <typename Real>

@@ -63,7 +63,6 @@ Solids::Solids(const Decomposition& decomposition, const Block& block, const Cel
     present_.push_back(std::move(solid.shape));
   }
   for (Group& group : groups_) update(group);
-  groups_[standing].inside = {};
 }
 
 void Solids::place(int solid, const RigidPlace& place) {
@@ -71,10 +70,6 @@ void Solids::place(int solid, const RigidPlace& place) {
   move(at_start_[s], place, present_[s]);
   centres_[s] = place.centre;
   update(groups_[group_of_[s]]);
-}
-
-void Solids::visit_standing(const Claim& claim) const {
-  for (const int solid : groups_[standing].solids) visit_inside(solid, claim);
 }
 
 std::vector<int> Solids::tiles(int solid) const {
@@ -103,11 +98,7 @@ void Solids::for_each_image(const Extent& extent, Visit visit) const {
         visit(Vec3(i * decomposition_.cells()[0], j * decomposition_.cells()[1], k * decomposition_.cells()[2]));
 }
 
-void Solids::visit_inside(int solid, const Claim& claim) const {
-  std::visit([&](const auto& shape) { visit_inside(solid, shape, claim); }, present_[static_cast<std::size_t>(solid)]);
-}
-
-void Solids::visit_inside(int solid, const SolidSphere& sphere, const Claim& claim) const {
+void Solids::visit_inside(const SolidSphere& sphere, const VisitCell& visit) const {
   const Extent whole = extent_of(sphere);
   for_each_image(whole, [&](const Vec3& shift) {
     const Vec3 centre = sphere.centre + shift;
@@ -120,14 +111,14 @@ void Solids::visit_inside(int solid, const SolidSphere& sphere, const Claim& cla
           if (!Sphere{sphere.radius}.holds(centre_of({x, y, z}) - centre)) continue;
           for (const int lz : places_[2][z])
             for (const int ly : places_[1][y])
-              for (const int lx : places_[0][x]) claim(solid, {lx, ly, lz});
+              for (const int lx : places_[0][x]) visit({lx, ly, lz});
         }
   });
 }
 
 // Row by row: the line of a row's centres is inside where it has entered more often than left. Rows are those of
 // coordinates inside the box, so that owned cells and their ghosts elsewhere are judged by the same arithmetic.
-void Solids::visit_inside(int solid, const TriangleMesh& mesh, const Claim& claim) const {
+void Solids::visit_inside(const TriangleMesh& mesh, const VisitCell& visit) const {
   const Index3& n = decomposition_.cells();
   std::unordered_map<std::int64_t, std::vector<Crossing>> rows;
   for_each_image(extent_of(mesh), [&](const Vec3& shift) {
@@ -156,43 +147,43 @@ void Solids::visit_inside(int solid, const TriangleMesh& mesh, const Claim& clai
       if (winding <= 0) continue;
       for (const int lz : places_[2][z])
         for (const int ly : places_[1][y])
-          for (const int lx : places_[0][x]) claim(solid, {lx, ly, lz});
+          for (const int lx : places_[0][x]) visit({lx, ly, lz});
     }
   }
 }
 
 void Solids::update(Group& group) {
   find_inside(group);
-  for (const Index3& local : group.inside) inside_[static_cast<std::size_t>(index(local))] = 1;
+  for (const InsideCell& cell : group.inside) inside_[static_cast<std::size_t>(cell.cell)] = 1;
   find_cut_cells(group);
   for (const int solid : group.solids)
     std::visit([&](const auto& shape) { measure(shape, group); }, present_[static_cast<std::size_t>(solid)]);
-  for (const Index3& local : group.inside) inside_[static_cast<std::size_t>(index(local))] = 0;
+  for (const InsideCell& cell : group.inside) inside_[static_cast<std::size_t>(cell.cell)] = 0;
 }
 
 void Solids::find_inside(Group& group) const {
-  std::vector<Index3>& inside = group.inside;
+  std::vector<InsideCell>& inside = group.inside;
   inside.clear();
-  for (const int solid : group.solids) visit_inside(solid, [&](int, const Index3& local) { inside.push_back(local); });
-  sort_in_memory_order(inside);
-}
-
-// Each cell once.
-void Solids::sort_in_memory_order(std::vector<Index3>& cells) const {
-  std::sort(cells.begin(), cells.end(), [&](const Index3& a, const Index3& b) { return index(a) < index(b); });
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  for (const int solid : group.solids) {
+    const auto take = [&](const Index3& local) { inside.push_back({index(local), solid, local}); };
+    std::visit([&](const auto& shape) { visit_inside(shape, take); }, present_[static_cast<std::size_t>(solid)]);
+  }
+  std::sort(inside.begin(), inside.end());
+  const auto same = [](const InsideCell& a, const InsideCell& b) { return a.cell == b.cell; };
+  inside.erase(std::unique(inside.begin(), inside.end(), same), inside.end());
 }
 
 // Cells beside solid ones are measured whether they are fluid or covered by something else.
 void Solids::find_cut_cells(Group& group) const {
   const lbm::CellIndexing& indexing = cells_.indexing();
   std::vector<Index3> beside;
-  for (const Index3& at : group.inside)
+  for (const InsideCell& cell : group.inside)
     for (int i = 1; i < D3Q19::directions; ++i) {
-      const Index3 next{at[0] + D3Q19::c[i][0], at[1] + D3Q19::c[i][1], at[2] + D3Q19::c[i][2]};
+      const Index3 next{cell.local[0] + D3Q19::c[i][0], cell.local[1] + D3Q19::c[i][1], cell.local[2] + D3Q19::c[i][2]};
       if (indexing.owned(next[0], next[1], next[2]) && !is_inside(index(next))) beside.push_back(next);
     }
-  sort_in_memory_order(beside);
+  std::sort(beside.begin(), beside.end(), [&](const Index3& a, const Index3& b) { return index(a) < index(b); });
+  beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
   group.cut.resize(beside.size());
   for (std::size_t k = 0; k < beside.size(); ++k) {
     group.cut[k] = {index(beside[k]), beside[k], {}};

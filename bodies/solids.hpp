@@ -26,10 +26,18 @@ struct Solid {
   bool moves = false;
 };
 
+// A cell in memory (owned or ghost) whose centre is inside solids, and the first of them. In memory order, and one cell
+// in the order of solids.
+struct InsideCell {
+  std::ptrdiff_t cell;
+  int solid;
+  Index3 local;  // follows from the cell
+
+  bool operator<(const InsideCell& other) const { return cell != other.cell ? cell < other.cell : solid < other.solid; }
+};
+
 class Solids {
 public:
-  using Claim = std::function<void(int solid, const Index3& local)>;
-
   // All of these must outlive it.
   Solids(const Decomposition& decomposition, const Block& block, const lbm::CellMap& cells, const lbm::RowTiles& tiles,
          std::vector<Solid> solids);
@@ -43,11 +51,16 @@ public:
   // Moves a solid that moves, with its cells and distances, to a place.
   void place(int solid, const RigidPlace& place);
 
-  // Calls claim(solid, cell) for every cell in memory (local coordinates, owned or ghost) that is inside one of the
-  // solids that stand still, solid by solid.
-  void visit_standing(const Claim& claim) const;
-  // The same cells of a solid that moves, each once, in memory order.
-  const std::vector<Index3>& inside(int solid) const { return group(solid).inside; }
+  // Calls claim(cell) for every cell inside the solids at the start: once where several that stand still have it, and
+  // again for each that moves. Those of solids that stand still are then forgotten.
+  template <typename Claim>
+  void hand_over(Claim claim) {
+    for (const Group& group : groups_)
+      for (const InsideCell& cell : group.inside) claim(cell);
+    groups_[standing].inside = {};
+  }
+  // The cells of a solid that moves, each once, in memory order.
+  const std::vector<InsideCell>& inside(int solid) const { return group(solid).inside; }
   // The tiles with cells beside a solid that moves, rising.
   std::vector<int> tiles(int solid) const;
 
@@ -65,20 +78,19 @@ private:
   // Solids whose cells and links are found together: all that stand still, or one that moves.
   struct Group {
     std::vector<int> solids;
-    std::vector<Index3> inside;  // in memory order
-    std::vector<CutCell> cut;    // in memory order
+    std::vector<InsideCell> inside;  // each once, in memory order
+    std::vector<CutCell> cut;        // in memory order
   };
 
   const Group& group(int solid) const { return groups_[group_of_[static_cast<std::size_t>(solid)]]; }
   std::ptrdiff_t index(const Index3& local) const { return cells_.indexing().index(local[0], local[1], local[2]); }
   bool is_inside(std::ptrdiff_t cell) const { return inside_[static_cast<std::size_t>(cell)] != 0; }  // scratch
 
-  void visit_inside(int solid, const Claim& claim) const;
-  void visit_inside(int solid, const SolidSphere& sphere, const Claim& claim) const;
-  void visit_inside(int solid, const TriangleMesh& mesh, const Claim& claim) const;
+  using VisitCell = std::function<void(const Index3& local)>;
+  void visit_inside(const SolidSphere& sphere, const VisitCell& visit) const;
+  void visit_inside(const TriangleMesh& mesh, const VisitCell& visit) const;
   void update(Group& group);
   void find_inside(Group& group) const;
-  void sort_in_memory_order(std::vector<Index3>& cells) const;
   void find_cut_cells(Group& group) const;
   void measure(const SolidSphere& sphere, Group& group) const;
   void measure(const TriangleMesh& mesh, Group& group) const;

@@ -24,6 +24,13 @@ struct Figure {
   double value;
 };
 
+// Three figures of a vector: `name`_x, `name`_y, `name`_z.
+inline void add_vector(const std::string& name, const std::string& unit, const Vec3& value,
+                       std::vector<Figure>& figures) {
+  const char* const axes[] = {"_x", "_y", "_z"};
+  for (int axis = 0; axis < 3; ++axis) figures.push_back({name + axes[axis], unit, value[axis]});
+}
+
 // Sets all values to NaN (null in JSON), as means are before anything has been measured.
 inline void forget_values(std::vector<Figure>& figures) {
   for (Figure& figure : figures) figure.value = std::numeric_limits<double>::quiet_NaN();

@@ -308,7 +308,7 @@ void LatticeSystem<Real>::add_solid_figures(std::vector<Figure>& figures) const 
   if (!grains_) return;
   const std::vector<Vec3> of_grains = grains_->wall_forces();
   for (std::size_t s = 0; s < static_cast<std::size_t>(bodies_.solids()); ++s)
-    dem::add_force(dem::solid_force_figure(s), of_grains[grains_->walls().size() + s], figures);
+    add_vector(dem::solid_force_figure(s), "N", of_grains[grains_->walls().size() + s], figures);
 }
 
 // Of the grains at the end of the step; of the fluid what the walls take from it in the step to come.
@@ -320,8 +320,8 @@ void LatticeSystem<Real>::add_wall_forces(std::vector<Figure>& figures) const {
   for (std::size_t face = 0; face < of_fluid.size(); ++face) {
     if (decomposition_->periodic()[face / 2]) continue;
     const Vec3 fluid_force = of_fluid[face] * parameters_.units.force();
-    dem::add_force(fmt::format("wall_force_{}", dem::face_names[face]), of_grains[wall], figures);
-    dem::add_force(fmt::format("fluid_wall_force_{}", dem::face_names[face]), fluid_force, figures);
+    add_vector(fmt::format("wall_force_{}", dem::face_names[face]), "N", of_grains[wall], figures);
+    add_vector(fmt::format("fluid_wall_force_{}", dem::face_names[face]), "N", fluid_force, figures);
     ++wall;
   }
 }

@@ -1,7 +1,7 @@
 #include "coupling/solid_bodies.hpp"
 
 #include "core/error.hpp"
-#include "core/mpi_session.hpp"
+#include "core/whole_dataset.hpp"
 #include "core/wide_sums_over_ranks.hpp"
 
 #include <fmt/format.h>
@@ -21,15 +21,6 @@ std::vector<std::int64_t> over_ranks(MPI_Comm communicator, std::vector<std::int
 }
 
 void append(const FixedVec3& sum, std::vector<std::int64_t>& sums) { sums.insert(sums.end(), {sum.x, sum.y, sum.z}); }
-
-// A dataset that the first rank holds alone.
-template <typename Number>
-void write_whole(ArchiveWriter& archive, MPI_Comm communicator, const std::string& path, std::span<const Number> values,
-                 const std::vector<std::uint64_t>& shape) {
-  const std::vector<std::uint64_t> nothing(shape.size(), 0);
-  const bool first = rank_of(communicator) == 0;
-  archive.write(path, first ? values : values.first(0), {shape, nothing, first ? shape : nothing});
-}
 
 }  // namespace
 
@@ -108,15 +99,13 @@ template <typename Real>
 std::vector<Figure> SolidBodies<Real>::figures() const {
   const Loads all = loads();
   std::vector<Figure> figures;
-  const auto add = [&](int solid, const char* what, const char* unit, const Vec3& value) {
-    for (int axis = 0; axis < 3; ++axis)
-      figures.push_back({fmt::format("solid_{}_{}_{}", solid, what, "xyz"[axis]), unit, value[axis]});
-  };
   for (int s = 0; s < bodies_.solids(); ++s)
-    add(s, "force", "N", all.forces[static_cast<std::size_t>(s)] * units_.force());
+    add_vector(fmt::format("solid_{}_force", s), "N", all.forces[static_cast<std::size_t>(s)] * units_.force(),
+               figures);
   for (const Moving& m : moving_)
     if (m.motion.turns())
-      add(m.solid, "torque", "N m", all.torques[static_cast<std::size_t>(m.solid)] * units_.torque());
+      add_vector(fmt::format("solid_{}_torque", m.solid), "N m",
+                 all.torques[static_cast<std::size_t>(m.solid)] * units_.torque(), figures);
   return figures;
 }
 

@@ -96,9 +96,9 @@ std::vector<Figure> DryGrains::figures() const {
   if (wall_names_.empty() && grains_.parameters().solids.empty()) return figures;
   const std::vector<Vec3> forces = grains_.wall_forces();
   for (std::size_t wall = 0; wall < wall_names_.size(); ++wall)
-    add_force("wall_force_" + wall_names_[wall], forces[wall], figures);
+    add_vector("wall_force_" + wall_names_[wall], "N", forces[wall], figures);
   for (std::size_t solid = 0; solid < grains_.parameters().solids.size(); ++solid)
-    add_force(solid_force_figure(solid), forces[grains_.walls().size() + solid], figures);
+    add_vector(solid_force_figure(solid), "N", forces[grains_.walls().size() + solid], figures);
   return figures;
 }
 

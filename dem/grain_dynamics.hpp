@@ -86,8 +86,7 @@ struct Contact {
   std::vector<double> history;  // what its law keeps (contact_law.hpp), at the last evaluation
 };
 
-// Three figures of a force, N: `name`_x, `name`_y, `name`_z. And the name of that of all grains on a solid.
-void add_force(const std::string& name, const Vec3& force, std::vector<Figure>& figures);
+// The name of the figures of the force of all grains on a solid.
 std::string solid_force_figure(std::size_t solid);
 
 class GrainDynamics {

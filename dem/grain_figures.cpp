@@ -32,10 +32,6 @@ double overlap_in_diameters(const GrainStore& store, const PairContact& c, doubl
 
 }  // namespace
 
-void add_force(const std::string& name, const Vec3& force, std::vector<Figure>& figures) {
-  for (int axis = 0; axis < 3; ++axis) figures.push_back({fmt::format("{}_{}", name, "xyz"[axis]), "N", force[axis]});
-}
-
 std::string solid_force_figure(std::size_t solid) { return fmt::format("solid_{}_grain_force", solid); }
 
 std::vector<Contact> GrainDynamics::contacts() const {

@@ -13,7 +13,7 @@ namespace {
 coupling::LatticeParameters lattice_parameters(const Case& c) {
   coupling::LatticeParameters parameters;
   static_cast<coupling::FluidParameters&>(parameters) = fluid_parameters(c);
-  parameters.solid_motions = solid_motions(c);
+  for (const SolidCase& solid : c.solids) parameters.solid_motions.push_back(motion_of(solid));
   if (c.system != SystemKind::resolved) return parameters;
   parameters.bodies.keep_covered_momentum = c.coupling.covered_momentum == coupling::CoveredMomentum::to_grain;
   parameters.bodies.moments = measures_grain_stress(c);

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace thalweg::driver {
 namespace {
@@ -74,15 +73,16 @@ void check_motion_in_fluid(const Case& c, const io::YamlDocument& document, std:
   const SolidCase& solid = c.solids[n];
   const std::string key = fmt::format("solids.{}.motion", n);
   check_lattice_velocity(c, document, key, largest_speed(solid));
-  const dem::PrescribedMotion motion = prescribed_motion(*solid.motion);
+  const dem::PrescribedMotion motion = motion_of(solid);
   if (!motion.turns()) return;
+  const double reach = reach_from_axis(solid);
   for (int axis = 0; axis < 3; ++axis) {
     if (!periodic_axes(c.domain)[axis] || std::abs(motion.axis[axis]) == 1.0) continue;
-    if (reach_from_axis(solid) > 0.5 * c.domain.size[axis] - c.domain.spacing)
+    if (reach > 0.5 * c.domain.size[axis] - c.domain.spacing)
       throw document.error(key + ".rotation",
                            fmt::format("the solid reaches {:.4g} m from its axis and would meet its own image along "
                                        "{}, where the box is periodic and {:g} m long; give a longer box",
-                                       reach_from_axis(solid), axis_name[axis], c.domain.size[axis]));
+                                       reach, axis_name[axis], c.domain.size[axis]));
   }
 }
 
@@ -128,20 +128,15 @@ void check_initial_fluid(const Case& c, const io::YamlDocument& document) {
 
 // The largest speed (m/s) that a grain of a rigid population can have anywhere in its region or the box.
 double largest_speed(const Case& c, const dem::Population& grains) {
-  const dem::MotionKeys& motion = *grains.motion;
-  double speed = motion.velocity.norm();
-  if (motion.oscillation)
-    speed += 2.0 * std::numbers::pi * motion.oscillation->frequency * motion.oscillation->amplitude.norm();
-  if (!motion.rotation) return speed;
+  const dem::PrescribedMotion motion = prescribed_motion(*grains.motion);
   std::vector<Vec3> places = grains.placement.positions;
   const dem::RegionKeys room = grains.placement.region.value_or(dem::RegionKeys{Vec3::Zero(), c.domain.size});
   for (int corner = 0; corner < 8 && grains.placement.positions.empty(); ++corner)
     places.emplace_back((corner & 1 ? room.upper : room.lower)[0], (corner & 2 ? room.upper : room.lower)[1],
                         (corner & 4 ? room.upper : room.lower)[2]);
   double distance = 0.0;
-  for (const Vec3& place : places)
-    distance = std::max(distance, motion.rotation->axis.normalized().cross(place - motion.rotation->point).norm());
-  return speed + std::abs(motion.rotation->angular_velocity) * (distance + 0.5 * grains.largest_diameter());
+  for (const Vec3& place : places) distance = std::max(distance, motion.axis.cross(place - motion.centre).norm());
+  return motion.largest_speed(distance + 0.5 * grains.largest_diameter());
 }
 
 void check_fluid(const Case& c, const io::YamlDocument& document) {

@@ -205,11 +205,7 @@ void consider_faces(const Case& c, const Channel& channel, FlowEstimate& flow) {
 double given_speed(const dem::Population& grains) {
   if (grains.prescribed_velocity) return grains.prescribed_velocity->norm();
   if (!grains.motion) return grains.fixed ? 0.0 : grains.velocity.norm();
-  const double oscillation = grains.motion->oscillation
-                                 ? 2.0 * std::numbers::pi * grains.motion->oscillation->frequency *
-                                       grains.motion->oscillation->amplitude.norm()
-                                 : 0.0;
-  return grains.motion->velocity.norm() + oscillation;
+  return prescribed_motion(*grains.motion).largest_speed(0.0);  // without its rotation
 }
 
 // m/s, of the largest grain of a population.

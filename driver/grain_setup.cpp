@@ -46,7 +46,6 @@ std::vector<dem::Plane> planes_of(const Case& c, const PeriodicBox& box, const d
 }
 
 std::vector<dem::Solid> solids_of(const Case& c, const dem::ContactParameters& contact) {
-  const std::vector<dem::PrescribedMotion> motions = solid_motions(c);
   std::vector<dem::Solid> solids;
   for (const SolidCase& given : c.solids) {
     dem::Solid solid;
@@ -55,7 +54,7 @@ std::vector<dem::Solid> solids_of(const Case& c, const dem::ContactParameters& c
                      : dem::SolidSurface(given.surface));
     solid.friction = given.friction.value_or(contact.wall_friction);
     solid.rolling_friction = given.rolling_friction.value_or(contact.wall_rolling_friction);
-    solid.motion = motions[solids.size()];
+    solid.motion = motion_of(given);
     solids.push_back(std::move(solid));
   }
   return solids;

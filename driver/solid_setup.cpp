@@ -84,15 +84,12 @@ std::vector<bodies::SolidShape> solid_shapes(const Case& c) {
   return shapes;
 }
 
-std::vector<dem::PrescribedMotion> solid_motions(const Case& c) {
-  std::vector<dem::PrescribedMotion> motions;
-  for (const SolidCase& solid : c.solids)
-    motions.push_back(solid.motion ? prescribed_motion(*solid.motion) : dem::PrescribedMotion());
-  return motions;
+dem::PrescribedMotion motion_of(const SolidCase& solid) {
+  return solid.motion ? prescribed_motion(*solid.motion) : dem::PrescribedMotion();
 }
 
 double reach_from_axis(const SolidCase& solid) {
-  const dem::PrescribedMotion motion = prescribed_motion(*solid.motion);
+  const dem::PrescribedMotion motion = motion_of(solid);
   const auto from_axis = [&](const Vec3& point) { return motion.axis.cross(point - motion.centre).norm(); };
   if (solid.sphere) return from_axis(solid.sphere->centre) + solid.sphere->radius;
   double reach = 0.0;
@@ -101,8 +98,7 @@ double reach_from_axis(const SolidCase& solid) {
 }
 
 double largest_speed(const SolidCase& solid) {
-  if (!solid.motion) return 0.0;
-  const dem::PrescribedMotion motion = prescribed_motion(*solid.motion);
+  const dem::PrescribedMotion motion = motion_of(solid);
   return motion.largest_speed(motion.turns() ? reach_from_axis(solid) : 0.0);
 }
 

@@ -21,9 +21,11 @@ bodies::Extent extent_of(const SolidCase& solid);
 // meant.
 void check_solid_extents(const Case& c, const io::YamlDocument& document);
 
-// In the order of the case: shapes at the start, in lattice units, and motions.
+// In lattice units, at the start, in the order of the case.
 std::vector<bodies::SolidShape> solid_shapes(const Case& c);
-std::vector<dem::PrescribedMotion> solid_motions(const Case& c);
+
+// At rest for ever where the case gives none.
+dem::PrescribedMotion motion_of(const SolidCase& solid);
 
 // Of a solid that turns, how far it reaches from the axis, m.
 double reach_from_axis(const SolidCase& solid);

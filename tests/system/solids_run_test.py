@@ -16,6 +16,13 @@ from stl_box import write_box
 from thalweg import Run
 
 GLASS = "contact: {restitution: 0.5, friction: 0.5, wall_friction: 0.4, duration: 1.0e-3}"
+IN_WATER = f"""{GLASS}
+run: {{until: 0.12}}
+output:
+  series: {{every: 0.01}}
+  grains: {{every: 0.04}}
+  checkpoint: {{every: 0.06, keep: 3}}
+"""
 
 
 class InWater(ProgramTest):
@@ -41,13 +48,7 @@ grains:
 solids:
   - {{stl: sill.stl, scale: 1.0e-3, translate: [0.012, 0, 0], friction: 0.3}}
   - {{sphere: {{centre: [0.0005, 0.0075, 0.0035], radius: 3.5e-3}}}}
-{GLASS}
-run: {{until: 0.12}}
-output:
-  series: {{every: 0.01}}
-  grains: {{every: 0.04}}
-  checkpoint: {{every: 0.06, keep: 3}}
-"""
+{IN_WATER}"""
 
     def setUp(self):
         super().setUp()
@@ -87,13 +88,7 @@ grains:
 solids:
   - {{stl: plate.stl, scale: 1.0e-3, motion: {{velocity: [0.15, 0, 0]}}}}
   - {{stl: wheel.stl, scale: 1.0e-3, motion: {{rotation: {{point: [0.024, 0.0075, 0.022], angular_velocity: 15}}}}}}
-{GLASS}
-run: {{until: 0.12}}
-output:
-  series: {{every: 0.01}}
-  grains: {{every: 0.04}}
-  checkpoint: {{every: 0.06, keep: 3}}
-"""
+{IN_WATER}"""
 
     def setUp(self):
         super().setUp()
