@@ -18,7 +18,26 @@ void BodyMap::assign(const Index3& local, std::ptrdiff_t cell, std::int32_t slot
   cells_.assign(local[0], local[1], local[2], slot);
 }
 
+// Cells of the block and its layers, one by one.
+std::ptrdiff_t BodyMap::key_beyond(const Index3& local) const {
+  const Index3& n = cells_.indexing().size();
+  std::ptrdiff_t key = 0;
+  for (int a = 2; a >= 0; --a) key = key * (n[a] + 2 * layers) + local[a] + layers;
+  return key;
+}
+
+bool BodyMap::covers(const Index3& local) const {
+  const lbm::CellIndexing& indexing = cells_.indexing();
+  return indexing.in_memory(local) ? !cells_.is_fluid(indexing.index(local[0], local[1], local[2]))
+                                   : beyond_.contains(key_beyond(local));
+}
+
 void BodyMap::claim(int slot, const Index3& local) {
+  if (!cells_.indexing().in_memory(local)) {
+    std::vector<int>& there = beyond_[key_beyond(local)];
+    if (std::find(there.begin(), there.end(), slot) == there.end()) there.push_back(slot);
+    return;
+  }
   const std::ptrdiff_t cell = cells_.indexing().index(local[0], local[1], local[2]);
   const std::int32_t holder = cells_.body(cell);
   if (holder == slot) return;
@@ -36,6 +55,13 @@ void BodyMap::claim(int slot, const Index3& local) {
 }
 
 void BodyMap::give_up(int slot, const Index3& local) {
+  if (!cells_.indexing().in_memory(local)) {
+    const auto there = beyond_.find(key_beyond(local));
+    if (there == beyond_.end()) return;
+    std::erase(there->second, slot);
+    if (there->second.empty()) beyond_.erase(there);
+    return;
+  }
   const std::ptrdiff_t cell = cells_.indexing().index(local[0], local[1], local[2]);
   const auto found = claimants_.find(cell);
   if (cells_.body(cell) != slot) {
@@ -128,8 +154,8 @@ void BodyMap::place(int slot, const Vec3& centre) {
 // claims of the others stays.
 void BodyMap::turn_cells(int slot, const Vec3& middle, double half_width, const Vec3& old, const Vec3& now) {
   for (int a = 0; a < 3; ++a) {
-    local_cells_.along(a, middle[a], half_width, old[a], 1, before_[a]);
-    local_cells_.along(a, middle[a], half_width, now[a], 1, after_[a]);
+    local_cells_.along(a, middle[a], half_width, old[a], layers, before_[a]);
+    local_cells_.along(a, middle[a], half_width, now[a], layers, after_[a]);
   }
   const auto offset = [](const LocalCell& place) { return place.offset; };
   x_before_.resize(before_[0].size());

@@ -1,7 +1,7 @@
 // Which body holds which cell of the lattice, kept up to date as bodies move. A body claims the cells whose centres are
 // strictly inside its sphere; of several that claim a cell the lowest global id holds it, whatever the order of events.
-// The cells are this rank's and one ghost layer. A body keeps its slot as long as it is in reach of this rank; slots
-// also index the table of LinkBody.
+// The cells are this rank's and one ghost layer; of a second layer it is known whether a body claims a cell. A body
+// keeps its slot as long as it is in reach of this rank; slots also index the table of LinkBody.
 #pragma once
 
 #include "bodies/hidden_patches.hpp"
@@ -49,10 +49,14 @@ public:
   const std::vector<CellChange>& settle();
   const std::vector<CellChange>& changes() const { return changes_; }
 
+  // Whether a body covers a cell, which is in memory or in the layer around that.
+  bool covers(const Index3& local) const;
+
   const HiddenPatches& hidden_patches() const { return hidden_patches_; }  // of the bodies' present cells
 
 private:
   static constexpr double nowhere = -1e8;  // no body's centre is below this
+  static constexpr int layers = 2;         // around the block
 
   MappedBody& body(int slot) { return bodies_[static_cast<std::size_t>(slot)]; }
   // Claims or gives up the cells within `half_width` of `middle` that are inside the body at only one of the two
@@ -61,6 +65,7 @@ private:
   void turn_row(int slot, int y, int z, const Sphere::Chord& before, const Sphere::Chord& after);
   void assign(const Index3& local, std::ptrdiff_t cell, std::int32_t slot);
   void withdraw(int slot, std::ptrdiff_t cell);
+  std::ptrdiff_t key_beyond(const Index3& local) const;
 
   lbm::CellMap& cells_;
   LocalCells local_cells_;
@@ -70,6 +75,7 @@ private:
   std::vector<int> free_slots_;
   std::unordered_map<GlobalId, int> slot_of_id_;
   std::unordered_map<std::ptrdiff_t, std::vector<int>> claimants_;  // of cells that a lower id has
+  std::unordered_map<std::ptrdiff_t, std::vector<int>> beyond_;     // who claims cells of the second layer
   std::vector<CellChange> changes_;
   // Scratch of turn_cells: cells along each axis from the two centres; of a row, who turns.
   std::vector<LocalCell> before_[3], after_[3];

@@ -16,14 +16,12 @@ constexpr double longest_link = 1.4142135623730951;
 
 LinkBuilder::LinkBuilder(const Decomposition& decomposition, const Block& block, const CellMap& cells,
                          const lbm::RowTiles& tiles, const Solids* solids)
-    : local_cells_(decomposition, block), cells_(cells), tiles_(tiles), solids_(solids) {}
+    : local_cells_(decomposition, block), cells_(cells), tiles_(tiles), solids_(solids), enclosed_(cells) {}
 
 void LinkBuilder::update(const BodyMap& map, LinkTable& table) {
   stale_tiles_.resize(map.bodies().size());
-  for (const CellChange& change : map.changes()) {
-    mark_around(change);
-    look_for_enclosed(change);
-  }
+  for (const CellChange& change : map.changes()) mark_around(change);
+  for (const Index3& cell : enclosed_.update(map)) mark_links_of(cell);
   std::sort(stale_.begin(), stale_.end());
   for (const int slot : stale_) {
     if (map.bodies()[slot].is_free())
@@ -53,17 +51,12 @@ void LinkBuilder::mark(std::int32_t slot, int tile) {
 // The neighbours may have changed in the same update, so what they are now does not matter.
 void LinkBuilder::mark_around(const CellChange& change) {
   const lbm::CellIndexing& indexing = cells_.indexing();
-  const Index3 &at = change.cell, &n = indexing.size();
+  const Index3& at = change.cell;
   const std::ptrdiff_t cell = indexing.index(at[0], at[1], at[2]);
   const bool owned = indexing.owned(at[0], at[1], at[2]);
-  const auto in_memory = [&](const Index3& c) {
-    for (int a = 0; a < 3; ++a)
-      if (c[a] < -1 || c[a] > n[a]) return false;
-    return true;
-  };
   for (int i = 1; i < D3Q19::directions; ++i) {
     const Index3 next{at[0] + D3Q19::c[i][0], at[1] + D3Q19::c[i][1], at[2] + D3Q19::c[i][2]};
-    if (!in_memory(next)) continue;
+    if (!indexing.in_memory(next)) continue;
     const std::int32_t beside = cells_.body(cell + indexing.offset(i));
     if (owned && beside != CellMap::fluid) mark(beside, tiles_.tile_of(at[1], at[2]));
     if (!indexing.owned(next[0], next[1], next[2])) continue;
@@ -76,19 +69,12 @@ void LinkBuilder::mark_around(const CellChange& change) {
 }
 
 // The tags of all links of a cell say whether it is enclosed, so they all change with that.
-void LinkBuilder::look_for_enclosed(const CellChange& change) {
+void LinkBuilder::mark_links_of(const Index3& at) {
   const lbm::CellIndexing& indexing = cells_.indexing();
-  for (int i = 0; i < D3Q19::directions; ++i) {
-    const int x = change.cell[0] + D3Q19::c[i][0], y = change.cell[1] + D3Q19::c[i][1],
-              z = change.cell[2] + D3Q19::c[i][2];
-    if (!indexing.owned(x, y, z)) continue;
-    const std::ptrdiff_t cell = indexing.index(x, y, z);
-    const bool changed = cells_.is_enclosed({x, y, z}) ? enclosed_.insert(cell).second : enclosed_.erase(cell) > 0;
-    if (!changed) continue;
-    for (int j = 1; j < D3Q19::directions; ++j) {
-      const std::int32_t body = cells_.body(cell + indexing.offset(j));
-      if (body != CellMap::fluid) mark(body, tiles_.tile_of(y, z));
-    }
+  const std::ptrdiff_t cell = indexing.index(at[0], at[1], at[2]);
+  for (int i = 1; i < D3Q19::directions; ++i) {
+    const std::int32_t body = cells_.body(cell + indexing.offset(i));
+    if (body != CellMap::fluid) mark(body, tiles_.tile_of(at[1], at[2]));
   }
 }
 
@@ -96,7 +82,7 @@ void LinkBuilder::rebuild_solid(int slot, const std::vector<int>& tiles, LinkTab
   for (const int tile : tiles) {
     links_.clear();
     crossings_.clear();
-    solids_->find_links(slot, tile, links_, crossings_);
+    solids_->find_links(slot, tile, enclosed_, links_, crossings_);
     table.replace(slot, tile, links_, crossings_);
   }
 }
@@ -140,22 +126,20 @@ void LinkBuilder::find_in_cells(int slot, int x, int count, int y, int z) {
   static_assert(Cells::size() <= CellMap::read_beyond);
   const lbm::CellIndexing& indexing = cells_.indexing();
   const std::int32_t* row = cells_.bodies() + indexing.index(x, y, z);
-  Cells hits = 0, open = 0;  // the directions that end in the grain, as bits; 1 where a neighbour is fluid
+  Cells hits = 0;  // the directions that end in the grain, as bits
   for (int i = 1; i < D3Q19::directions; i += 2) {
     const Cells there(row + indexing.offset(i), unaligned), behind(row - indexing.offset(i), unaligned);
     where(there == slot, hits) = hits | (1 << i);
     where(behind == slot, hits) = hits | (2 << i);
-    where(there == CellMap::fluid || behind == CellMap::fluid, open) = 1;
   }
   where(Cells(row, unaligned) != CellMap::fluid, hits) = 0;
   if (none_of(hits != 0)) return;
-  std::int32_t hit[Cells::size()], is_open[Cells::size()];
+  std::int32_t hit[Cells::size()];
   hits.copy_to(hit, unaligned);
-  open.copy_to(is_open, unaligned);
   for (int k = 0; k < count; ++k) {
     const std::uint32_t place = LinkPlace::of(x + k, y);
-    const bool enclosed =
-        hit[k] != 0 && (is_open[k] == 0 || (cells_.is_at_wall({x + k, y, z}) && cells_.is_enclosed({x + k, y, z})));
+    if (hit[k] == 0) continue;
+    const bool enclosed = enclosed_.contains({x + k, y, z});
     for (auto left = static_cast<std::uint32_t>(hit[k]); left != 0; left &= left - 1) {
       const int i = std::countr_zero(left);
       links_.push_back({place, LinkTag::of(i, row[k - indexing.offset(i)], enclosed)});

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "bodies/body_map.hpp"
+#include "bodies/enclosed_cells.hpp"
 #include "bodies/link_table.hpp"
 #include "bodies/local_cells.hpp"
 #include "bodies/solids.hpp"
@@ -14,7 +15,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <experimental/simd>
-#include <unordered_set>
 #include <vector>
 
 namespace thalweg::bodies {
@@ -32,7 +32,7 @@ private:
   using Cells = std::experimental::native_simd<std::int32_t>;
 
   void mark_around(const CellChange& change);
-  void look_for_enclosed(const CellChange& change);
+  void mark_links_of(const Index3& cell);
   void mark(std::int32_t slot, int tile);
   void rebuild(int slot, const MappedBody& sphere, LinkTable& table);
   void rebuild_solid(int slot, const std::vector<int>& tiles, LinkTable& table);
@@ -42,11 +42,11 @@ private:
   LocalCells local_cells_;
   const lbm::CellMap& cells_;
   const lbm::RowTiles& tiles_;
-  const Solids* solids_;                         // null: none
-  std::vector<std::vector<int>> stale_tiles_;    // of each slot
-  std::vector<int> stale_;                       // slots that have any
-  std::unordered_set<std::ptrdiff_t> enclosed_;  // cells without fluid beside them
-  std::vector<LocalCell> xs_, ys_;               // scratch from here on
+  const Solids* solids_;  // null: none
+  EnclosedCells enclosed_;
+  std::vector<std::vector<int>> stale_tiles_;  // of each slot
+  std::vector<int> stale_;                     // slots that have any
+  std::vector<LocalCell> xs_, ys_;             // scratch from here on
   std::vector<Link> links_;
   std::vector<LinkCrossing> crossings_;
 };

@@ -14,10 +14,10 @@
 // Mass: a link takes f_i^c and gives f_i', which differ. The surplus that a body's links have taken is returned in the
 // next steps as w_i (a + b.c_i) on top of f_i', with LinkBody's a and b.
 //
-// Enclosed cells: a cell whose neighbours are all covered (near a contact; with ten or more cells a diameter, one in a
-// few hundred grains) can pass nothing on, and any surplus or deficit from its links would add up without bound. Actual
-// gaps around it, too narrow for the cells, would keep its pressure at that outside. Its links therefore take w_i (rho
-// - rho_rest), two thirds of its excess in a step, and owe it like all else that they take.
+// Enclosed cells (enclosed_cells.hpp; near contacts, with ten or more cells a diameter one for a few hundred grains)
+// pass nothing on, and any surplus or deficit from their links would add up without bound. Actual gaps around them, too
+// narrow for the cells, would keep their pressure at that outside. Their links therefore take w_i (rho - rho_rest), two
+// thirds of the excess in a step, and owe it like all else that they take.
 #pragma once
 
 #include "bodies/body_options.hpp"

@@ -34,7 +34,7 @@ struct LinkPlace {
 // The rest of it in one word.
 struct LinkTag {
   static constexpr std::uint32_t direction_mask = 31;  // i, from the fluid cell into the body
-  static constexpr std::uint32_t enclosed = 32;        // flag: no neighbour of x_f is fluid
+  static constexpr std::uint32_t enclosed = 32;        // flag: x_f is one of EnclosedCells
   static constexpr int covered_shift = 12;             // 1: a body covers x_f - c_i
   static constexpr int body_shift = 13;                // the body that covers x_f - c_i
   // As many bodies as a tag can tell apart.

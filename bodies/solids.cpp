@@ -42,9 +42,9 @@ Solids::Solids(const Decomposition& decomposition, const Block& block, const Cel
       box_(decomposition.cell_box()),
       groups_(1) {
   for (int a = 0; a < 3; ++a) {
-    const int all = decomposition.cells()[a], ghosts = 1;
+    const int all = decomposition.cells()[a], layers = 2;
     places_[a].resize(all);
-    for (int local = -ghosts; local < block_.size()[a] + ghosts; ++local) {
+    for (int local = -layers; local < block_.size()[a] + layers; ++local) {
       const int global = block_.lower[a] + local;
       if (decomposition.periodic()[a])
         places_[a][(global % all + all) % all].push_back(local);
@@ -154,22 +154,27 @@ void Solids::visit_inside(const TriangleMesh& mesh, const VisitCell& visit) cons
 
 void Solids::update(Group& group) {
   find_inside(group);
-  for (const InsideCell& cell : group.inside) inside_[static_cast<std::size_t>(cell.cell)] = 1;
+  mark_inside(group, 1);
   find_cut_cells(group);
   for (const int solid : group.solids)
     std::visit([&](const auto& shape) { measure(shape, group); }, present_[static_cast<std::size_t>(solid)]);
-  for (const InsideCell& cell : group.inside) inside_[static_cast<std::size_t>(cell.cell)] = 0;
+  mark_inside(group, 0);
+}
+
+void Solids::mark_inside(const Group& group, std::uint8_t mark) {
+  for (const InsideCell& cell : group.inside)
+    if (cells_.indexing().in_memory(cell.local)) inside_[static_cast<std::size_t>(index(cell.local))] = mark;
 }
 
 void Solids::find_inside(Group& group) const {
   std::vector<InsideCell>& inside = group.inside;
   inside.clear();
   for (const int solid : group.solids) {
-    const auto take = [&](const Index3& local) { inside.push_back({index(local), solid, local}); };
+    const auto take = [&](const Index3& local) { inside.push_back({local, solid}); };
     std::visit([&](const auto& shape) { visit_inside(shape, take); }, present_[static_cast<std::size_t>(solid)]);
   }
   std::sort(inside.begin(), inside.end());
-  const auto same = [](const InsideCell& a, const InsideCell& b) { return a.cell == b.cell; };
+  const auto same = [](const InsideCell& a, const InsideCell& b) { return a.local == b.local; };
   inside.erase(std::unique(inside.begin(), inside.end(), same), inside.end());
 }
 
@@ -239,7 +244,8 @@ double Solids::distance(const Group& group, std::ptrdiff_t cell, int direction) 
   return cut == group.cut.end() || cut->cell != cell ? not_met : cut->distances[static_cast<std::size_t>(direction)];
 }
 
-void Solids::find_links(int solid, int tile, std::vector<Link>& links, std::vector<LinkCrossing>& crossings) const {
+void Solids::find_links(int solid, int tile, const EnclosedCells& enclosed, std::vector<Link>& links,
+                        std::vector<LinkCrossing>& crossings) const {
   const std::vector<CutCell>& all = group(solid).cut;
   const int block = tiles_.block_of(tile), z = tiles_.plane_of(tile);
   const auto before = [](const CutCell& c, std::ptrdiff_t cell) { return c.cell < cell; };
@@ -249,7 +255,7 @@ void Solids::find_links(int solid, int tile, std::vector<Link>& links, std::vect
     const Index3& at = cut->local;
     if (!cells_.is_fluid(cut->cell)) continue;
     const Vec3 place = centre_of({block_.lower[0] + at[0], block_.lower[1] + at[1], block_.lower[2] + at[2]});
-    const bool enclosed = cells_.is_enclosed(at);
+    const bool is_enclosed = enclosed.contains(at);
     for (int i = 1; i < D3Q19::directions; ++i) {
       if (cells_.body(cut->cell + cells_.indexing().offset(i)) != solid) continue;
       // A link can only miss a surface that touches its end, by round-off.
@@ -258,7 +264,7 @@ void Solids::find_links(int solid, int tile, std::vector<Link>& links, std::vect
         if (&other != &group(solid)) way = std::min(way, distance(other, cut->cell, i));
       const Vec3 arm = box_.difference(place + way * velocity_of(i), centre(solid));
       const std::int32_t upstream = cells_.body(cut->cell - cells_.indexing().offset(i));
-      links.push_back({LinkPlace::of(at[0], at[1]), LinkTag::of(i, upstream, enclosed)});
+      links.push_back({LinkPlace::of(at[0], at[1]), LinkTag::of(i, upstream, is_enclosed)});
       crossings.push_back({static_cast<float>(way),
                            {static_cast<float>(arm[0]), static_cast<float>(arm[1]), static_cast<float>(arm[2])}});
     }

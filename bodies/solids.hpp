@@ -7,6 +7,7 @@
 // units.
 #pragma once
 
+#include "bodies/enclosed_cells.hpp"
 #include "bodies/link_table.hpp"
 #include "bodies/solid_shape.hpp"
 #include "core/decomposition.hpp"
@@ -26,14 +27,17 @@ struct Solid {
   bool moves = false;
 };
 
-// A cell in memory (owned or ghost) whose centre is inside solids, and the first of them. In memory order, and one cell
-// in the order of solids.
+// A cell of the block or the two layers around it whose centre is inside solids, and the first of them. In memory
+// order, and one cell in the order of solids.
 struct InsideCell {
-  std::ptrdiff_t cell;
+  Index3 local;
   int solid;
-  Index3 local;  // follows from the cell
 
-  bool operator<(const InsideCell& other) const { return cell != other.cell ? cell < other.cell : solid < other.solid; }
+  bool operator<(const InsideCell& other) const {
+    for (int a = 2; a >= 0; --a)
+      if (local[a] != other.local[a]) return local[a] < other.local[a];
+    return solid < other.solid;
+  }
 };
 
 class Solids {
@@ -65,7 +69,8 @@ public:
   std::vector<int> tiles(int solid) const;
 
   // The links of a solid in a tile and where they meet it, from the cells that are fluid now.
-  void find_links(int solid, int tile, std::vector<Link>& links, std::vector<LinkCrossing>& crossings) const;
+  void find_links(int solid, int tile, const EnclosedCells& enclosed, std::vector<Link>& links,
+                  std::vector<LinkCrossing>& crossings) const;
 
 private:
   static constexpr std::size_t standing = 0;                     // the group of all solids that stand still
@@ -90,6 +95,7 @@ private:
   void visit_inside(const SolidSphere& sphere, const VisitCell& visit) const;
   void visit_inside(const TriangleMesh& mesh, const VisitCell& visit) const;
   void update(Group& group);
+  void mark_inside(const Group& group, std::uint8_t mark);
   void find_inside(Group& group) const;
   void find_cut_cells(Group& group) const;
   void measure(const SolidSphere& sphere, Group& group) const;
@@ -110,7 +116,8 @@ private:
   std::vector<Vec3> centres_;
   std::vector<Group> groups_;
   std::vector<std::size_t> group_of_;
-  // Where the cells of a coordinate inside the box are in memory, along each axis: owned, and ghosts of periodic axes.
+  // Where the cells of a coordinate inside the box are in memory, along each axis: owned, and in the layers of periodic
+  // axes.
   std::array<std::vector<std::vector<int>>, 3> places_;
   std::vector<std::uint8_t> inside_;  // scratch: of every cell in memory, whether it is inside the group at hand
 };

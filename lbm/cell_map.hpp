@@ -41,20 +41,13 @@ public:
   const CellIndexing& indexing() const { return indexing_; }
   bool is_fluid(std::ptrdiff_t cell) const { return body_[cell] == fluid; }
   std::int32_t body(std::ptrdiff_t cell) const { return body_[cell]; }
-  // Whether a fluid cell, which must be owned, has nothing but bodies and walls beside it.
-  bool is_enclosed(const Index3& at) const {
-    const std::ptrdiff_t cell = indexing_.index(at[0], at[1], at[2]);
-    for (int i = 1; i < D3Q19::directions; ++i)
-      if (is_fluid(cell + indexing_.offset(i)) && !meets_wall(at, i, 1)) return false;
-    return is_fluid(cell);
-  }
-  // Whether there is a wall beside a cell.
-  bool is_at_wall(const Index3& at) const {
+  const std::int32_t* bodies() const { return body_.data(); }
+  // Whether a cell, in memory or not, is beyond a wall.
+  bool is_beyond_wall(const Index3& cell) const {
     for (int a = 0; a < 3; ++a)
-      if (at[a] <= walls_.lower[a] || at[a] + 1 >= walls_.upper[a]) return true;
+      if (cell[a] < walls_.lower[a] || cell[a] >= walls_.upper[a]) return true;
     return false;
   }
-  const std::int32_t* bodies() const { return body_.data(); }
 
   // Gives a cell (local coordinates; owned or ghost) to a body, or back to the fluid.
   void assign(int x, int y, int z, std::int32_t body) {
@@ -84,11 +77,8 @@ private:
 
   // Whether a wall is this many steps of direction i away, or nearer.
   bool meets_wall(const Index3& cell, int i, int steps) const {
-    for (int a = 0; a < 3; ++a) {
-      const int to = cell[a] + steps * D3Q19::c[i][a];
-      if (to < walls_.lower[a] || to >= walls_.upper[a]) return true;
-    }
-    return false;
+    return is_beyond_wall(
+        {cell[0] + steps * D3Q19::c[i][0], cell[1] + steps * D3Q19::c[i][1], cell[2] + steps * D3Q19::c[i][2]});
   }
 
   // Brings the bits of a cell up to date, if it is owned.

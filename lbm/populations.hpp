@@ -47,6 +47,11 @@ public:
   bool owned(int x, int y, int z) const {
     return x >= 0 && y >= 0 && z >= 0 && x < size_[0] && y < size_[1] && z < size_[2];
   }
+  bool in_memory(const Index3& cell) const {  // owned or ghost
+    for (int a = 0; a < 3; ++a)
+      if (cell[a] < -1 || cell[a] > size_[a]) return false;
+    return true;
+  }
 
 private:
   Index3 size_;

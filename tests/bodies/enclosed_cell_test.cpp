@@ -34,7 +34,7 @@ protected:
     std::vector<LinkCrossing> crossings;
     for (int i = 1; i < lbm::D3Q19::directions; ++i) {
       if (fluid_.cells().is_fluid(cell() + fluid_.indexing().offset(i))) continue;
-      links.push_back({LinkPlace::of(place[0], place[1]), LinkTag::of(i, 0, fluid_.cells().is_enclosed(place))});
+      links.push_back({LinkPlace::of(place[0], place[1]), LinkTag::of(i, 0, true)});
       crossings.push_back({static_cast<float>(i) / 19.0f, {}});  // no two alike
     }
     links_.replace(0, fluid_.tiles().tile_of(place[1], place[2]), links, crossings);

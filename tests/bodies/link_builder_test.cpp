@@ -3,9 +3,11 @@
 
 #include "bodies/body_map.hpp"
 #include "lbm/fluid.hpp"
+#include "tests/bodies/enclosed_by_definition.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <random>
@@ -20,6 +22,10 @@ std::set<std::array<std::uint32_t, 4>> links_by_definition(const lbm::Fluid<doub
   std::set<std::array<std::uint32_t, 4>> links;  // body, tile, place, tag
   const Index3& n = fluid.indexing().size();
   const lbm::CellMap& cells = fluid.cells();
+  const auto is_fluid = [&](const Index3& at) {  // periodic along x and y; the faces along z are open
+    const Index3 inside{(at[0] + n[0]) % n[0], (at[1] + n[1]) % n[1], std::clamp(at[2], -1, n[2])};
+    return cells.is_fluid(fluid.indexing().index(inside[0], inside[1], inside[2]));
+  };
   for (int z = 0; z < n[2]; ++z)
     for (int y = 0; y < n[1]; ++y)
       for (int x = 0; x < n[0]; ++x) {
@@ -29,7 +35,8 @@ std::set<std::array<std::uint32_t, 4>> links_by_definition(const lbm::Fluid<doub
           if (!cells.is_fluid(cell) || body == lbm::CellMap::fluid) continue;
           const std::int32_t upstream = cells.body(cell - fluid.indexing().offset(i));
           links.insert({static_cast<std::uint32_t>(body), static_cast<std::uint32_t>(fluid.tiles().tile_of(y, z)),
-                        LinkPlace::of(x, y), LinkTag::of(i, upstream, cells.is_enclosed({x, y, z}))});
+                        LinkPlace::of(x, y),
+                        LinkTag::of(i, upstream, thalweg::test::is_enclosed_by_definition({x, y, z}, is_fluid))});
         }
       }
   return links;
