@@ -24,6 +24,7 @@ static void refuse_former_keys(SectionVisitor& visit) {
   visit.not_here("narrow_gaps", "water flows in narrow gaps with the default fluid.collision; remove the key");
   visit.not_here("refill", "uncovered cells begin with the equilibrium of their neighbours' density; remove the key");
   visit.not_here("wall_density", "the moving-wall term has the density of the fluid cell; remove the key");
+  visit.not_here("link_tolerance", "the cells of a grain follow when it has moved by 0.001 of one; remove the key");
   visit.not_here("virtual_mass", "light grains are stable without it; remove the key");
   visit.not_here("near_contact",
                  "patches that grains hide from each other always count with the pressure around them; remove the key");
@@ -35,8 +36,8 @@ void describe(SectionVisitor& visit, CouplingKeys& coupling, bool with_grains) {
   visit.choice("links", coupling.links, {.meaning = "interpolated bounce-back at grain surfaces"});
   refuse_former_keys(visit);
   if (!with_grains) {
-    for (const char* key : {"grain_steps_per_fluid_step", "link_tolerance", "fewest_cells_per_diameter",
-                            "momentum_exchange", "covered_momentum", "load", "grain_stress"})
+    for (const char* key : {"grain_steps_per_fluid_step", "fewest_cells_per_diameter", "momentum_exchange",
+                            "covered_momentum", "load", "grain_stress"})
       visit.not_here(key, "system: fluid has no grains; remove the key or set system: resolved");
     return;
   }
@@ -45,12 +46,6 @@ void describe(SectionVisitor& visit, CouplingKeys& coupling, bool with_grains) {
                             "shortest) and lubrication need",
                  .at_least = 1,
                  .automatic = CouplingKeys::as_many_as_needed});
-  visit.real("link_tolerance", coupling.link_tolerance,
-             {.unit = "cells",
-              .meaning = "distance a grain moves before the cells it covers are updated (its surface is always at the "
-                         "exact position)",
-              .at_least = 0.0,
-              .at_most = 0.1});
   visit.real("fewest_cells_per_diameter", coupling.fewest_cells_per_diameter,
              {.meaning = "across the smallest grain, without a warning; fewer than 1.74 are refused", .above = 0.0});
   visit.choice("momentum_exchange", coupling.momentum_exchange, {.meaning = "how the force on a grain is summed"});

@@ -24,7 +24,6 @@ struct CouplingKeys {
   // The word auto; once a case is read, it has sub_steps_needed() in its place.
   static constexpr std::int64_t as_many_as_needed = 0;
   std::int64_t grain_steps_per_fluid_step = as_many_as_needed;
-  double link_tolerance = 1e-3;            // cells a grain may move before the map of its cells follows
   double fewest_cells_per_diameter = 6.0;  // of the smallest grain, without a warning
   bodies::MomentumExchange momentum_exchange = bodies::MomentumExchange::galilean_invariant;
   bodies::LinkRule links = bodies::LinkRule::bouzidi;

@@ -10,16 +10,21 @@
 
 namespace thalweg::coupling {
 
+namespace {
+
+constexpr double link_tolerance = 1e-3;  // cells a grain may move before the cells of its body follow
+
+}  // namespace
+
 template <typename Real>
 GrainBodies<Real>::GrainBodies(MPI_Comm communicator, dem::GrainDynamics& grains, bodies::Bodies<Real>& bodies,
-                               const PeriodicBox& box, const Units& units, const GrainBodyOptions& options,
-                               bool with_stress)
+                               const PeriodicBox& box, const Units& units, LoadRule load, bool with_stress)
     : communicator_(communicator),
       grains_(grains),
       bodies_(bodies),
       box_(box),
       units_(units),
-      options_(options),
+      load_(load),
       light_load_{units.density, units.spacing},
       with_stress_(with_stress) {}
 
@@ -105,7 +110,7 @@ void GrainBodies<Real>::update_motions() {
 template <typename Real>
 void GrainBodies<Real>::update_cells() {
   dem::GrainStore& store = grains_.store();
-  const double tolerance = options_.link_tolerance * units_.spacing;
+  const double tolerance = link_tolerance * units_.spacing;
   for (std::size_t g = 0; g < store.total(); ++g) {
     const GrainExchange<double> kept = exchange_of(g);
     const Vec3 moved = box_.difference(store.position[g], kept.link_position());
@@ -251,8 +256,8 @@ void GrainBodies<Real>::set_load(std::size_t grain, const Vec3& force, const Vec
   const GrainExchange<const double> kept = std::as_const(*this).exchange_of(grain);
   const double mass = store.mass[grain], radius = grains_.volume_radius(grain);
   if (dem::holds_translation(store.motion[grain]) || !light_load_.concerns(mass, radius)) {
-    store.load_force[grain] = load_of(options_.load, force, kept.last_force(), kept.earlier_force());
-    store.load_torque[grain] = load_of(options_.load, torque, kept.last_torque(), kept.earlier_torque());
+    store.load_force[grain] = load_of(load_, force, kept.last_force(), kept.earlier_force());
+    store.load_torque[grain] = load_of(load_, torque, kept.last_torque(), kept.earlier_torque());
     return;
   }
   const double share = light_load_.share(mass, radius);

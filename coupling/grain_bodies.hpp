@@ -17,17 +17,12 @@
 
 namespace thalweg::coupling {
 
-struct GrainBodyOptions {
-  double link_tolerance = 1e-3;  // cells a grain may move before the cells of its body follow
-  LoadRule load = LoadRule::extrapolated;
-};
-
 template <typename Real>
 class GrainBodies {
 public:
   // Both must outlive it; the grains carry attached_width() attached columns. with_stress: BodyOptions::moments.
   GrainBodies(MPI_Comm communicator, dem::GrainDynamics& grains, bodies::Bodies<Real>& bodies, const PeriodicBox& box,
-              const Units& units, const GrainBodyOptions& options, bool with_stress);
+              const Units& units, LoadRule load, bool with_stress);
 
   static int attached_width(bool with_stress) {
     return with_stress ? GrainExchange<double>::width_with_stress : GrainExchange<double>::width;
@@ -78,7 +73,7 @@ private:
   bodies::Bodies<Real>& bodies_;
   PeriodicBox box_;  // m
   Units units_;
-  GrainBodyOptions options_;
+  LoadRule load_;
   LightLoad light_load_;
   bool with_stress_;
   std::vector<int> slot_;                // of each grain of the store

@@ -45,7 +45,7 @@ LatticeSystem<Real>::LatticeSystem(std::unique_ptr<Decomposition> decomposition,
   if (parameters_.flow_target) fluid_.control_flow(*parameters_.flow_target);
   initialise(fluid_, parameters_, rest_);
   if (grains_) {
-    grain_bodies_.emplace(communicator, *grains_, bodies_, decomposition_->box(), parameters_.units, parameters_.grains,
+    grain_bodies_.emplace(communicator, *grains_, bodies_, decomposition_->box(), parameters_.units, parameters_.load,
                           parameters_.bodies.moments);
     grain_bodies_->begin_where_grains_are();
     grain_bodies_->place_at_start();

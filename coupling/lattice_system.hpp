@@ -19,7 +19,7 @@
 namespace thalweg::coupling {
 
 struct LatticeParameters : FluidParameters {
-  GrainBodyOptions grains;
+  LoadRule load = LoadRule::extrapolated;            // of grains
   int sub_steps = 50;                                // DEM steps per lattice step
   bool wall_forces = false;                          // whether the figures include the forces on walls
   std::vector<dem::PrescribedMotion> solid_motions;  // SI, of the first solids; the others stand still

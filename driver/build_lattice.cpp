@@ -17,8 +17,7 @@ coupling::LatticeParameters lattice_parameters(const Case& c) {
   if (c.system != SystemKind::resolved) return parameters;
   parameters.bodies.keep_covered_momentum = c.coupling.covered_momentum == coupling::CoveredMomentum::to_grain;
   parameters.bodies.moments = measures_grain_stress(c);
-  parameters.grains.link_tolerance = c.coupling.link_tolerance;
-  parameters.grains.load = c.coupling.load;
+  parameters.load = c.coupling.load;
   parameters.wall_forces = c.analysis.wall_forces.has_value();
   parameters.sub_steps = static_cast<int>(grain_steps(c));
   return parameters;

@@ -27,7 +27,6 @@ struct WaterBox {
   FluidInitialState (*initial)(const Vec3&) = nullptr;
   bool closed = false;  // no slip at all faces that are not periodic
   bodies::LinkOptions links;
-  double link_tolerance = 1e-3;
   int sub_steps = 50;
   double normal_stiffness = 20000.0;  // N/m
   bool wall_forces = false;
@@ -91,13 +90,12 @@ std::unique_ptr<LatticeSystem<Real>> make_system(const WaterBox& box, MPI_Comm c
     p.faces[face].velocity = Vec3(along * box.plate_velocity / p.units.velocity(), 0.0, 0.0);
   }
   p.bodies.links = box.links;
-  p.grains.link_tolerance = box.link_tolerance;
   p.sub_steps = box.sub_steps;
   p.wall_forces = box.wall_forces;
   p.bodies.keep_covered_momentum = box.keep_covered_momentum;
   p.bodies.moments = box.grain_stress;
   p.full_gravity = box.full_gravity;
-  p.grains.load = box.load;
+  p.load = box.load;
   if (box.initial)
     p.initial_fluid = box.initial;
   else

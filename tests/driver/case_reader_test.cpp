@@ -256,8 +256,8 @@ TEST(CaseReader, TheDefaultsAreValidAndNameEveryKey) {
   std::vector<std::string> keys;
   collect_keys(YAML::Load(text), "", keys);
   EXPECT_GE(keys.size(), 50u);
-  for (const std::string key : {"domain.boundaries.y.type", "coupling.link_tolerance", "gravity.mode",
-                                "output.checkpoint.keep", "contact.attraction", "fluid.collision"})
+  for (const std::string key : {"domain.boundaries.y.type", "coupling.load", "gravity.mode", "output.checkpoint.keep",
+                                "contact.attraction", "fluid.collision"})
     EXPECT_NE(std::find(keys.begin(), keys.end(), key), keys.end()) << key;
   EXPECT_NE(message_of<InputError>([] { defaults_yaml("shallow_water"); }).find("give one of resolved, fluid, grains"),
             std::string::npos);

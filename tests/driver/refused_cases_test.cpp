@@ -84,6 +84,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"virtual_mass",
             {"coupling.virtual_mass={}"},
             {"coupling.virtual_mass", "stable without it", "remove the key"}},
+        Bad{"link_tolerance", {"coupling.link_tolerance=0.01"}, {"coupling.link_tolerance", "remove the key"}},
         Bad{"ramp_in_full_gravity",
             {"gravity.mode=full", "run.ramp=0.1"},
             {"run.ramp = 0.1", "at rest under its whole weight"}},
