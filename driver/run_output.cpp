@@ -5,8 +5,10 @@
 #include "driver/checkpoint_file.hpp"
 #include "driver/reference_grain.hpp"
 #include "driver/run_facts.hpp"
+#include "driver/solid_setup.hpp"
 #include "io/profile_file.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace thalweg::driver {
@@ -61,6 +63,7 @@ void RunOutput::begin(loop::Log& log) {
     for (const io::NamedFluidOutputKeys& part : case_.output.fluid_parts)
       add_fluid(folder_.fluid_parts(), part.name, part);
   }
+  begin_solids();
   for (ObserverRecords& records : records_) {
     records.file.add(std::exchange(records.first, {}));
     if (!records.file.warning().empty()) log.line("warning: " + records.file.warning());
@@ -83,6 +86,28 @@ void RunOutput::add_fluid(const std::filesystem::path& folder, const std::string
         keys.every, io::FluidSeries(communicator_, folder, name, keys, keys.fields, keys.precision, continue_from_));
 }
 
+// The time between frames of solids that move, s, so that there is one for each of the grains and of the fluid; 0:
+// none.
+static double solid_frames_every(const Case& c) {
+  const double grains = c.grains.empty() ? 0.0 : c.output.grains.every, fluid = c.output.fluid.every;
+  return grains > 0.0 && fluid > 0.0 ? std::min(grains, fluid) : std::max(grains, fluid);
+}
+
+static bool any_solid_moves(const Case& c) {
+  return std::any_of(c.solids.begin(), c.solids.end(), [](const SolidCase& solid) { return motion_of(solid).moves(); });
+}
+
+// Solids that all stand still have one frame.
+void RunOutput::begin_solids() {
+  if (case_.solids.empty() || !(solid_frames_every(case_) > 0.0)) return;
+  solids_.emplace(communicator_, folder_.path(), continue_from_);
+  if (!continue_from_ && !any_solid_moves(case_)) write_solids(system_.time(), system_.step());
+}
+
+void RunOutput::write_solids(double time, std::int64_t step) {
+  solids_->write(time, step, solid_surfaces(case_, time));
+}
+
 void RunOutput::add_to(loop::LoopPlan& plan) {
   const double time_step = system_.time_step();
   plan.series = Schedule(case_.output.series.every, time_step);
@@ -96,6 +121,9 @@ void RunOutput::add_to(loop::LoopPlan& plan) {
   for (auto& [every, series] : fluid_)
     plan.outputs.push_back({"fluid output", Schedule(every, time_step),
                             [&written = series](const Snapshot& snapshot) { written.write(snapshot); }});
+  if (solids_ && any_solid_moves(case_))
+    plan.outputs.push_back({"solid output", Schedule(solid_frames_every(case_), time_step),
+                            [this](const Snapshot& snapshot) { write_solids(snapshot.time, snapshot.step); }});
   // With the looks at the system's health, so that nothing is written of a state that is broken.
   if (!records_.empty())
     plan.outputs.push_back({"records", Schedule(loop::TimeLoop::steps_between_health_checks * time_step, time_step),

@@ -10,6 +10,7 @@
 #include "io/record_file.hpp"
 #include "io/run_folder.hpp"
 #include "io/series_table.hpp"
+#include "io/solid_series.hpp"
 #include "loop/log.hpp"
 #include "loop/time_loop.hpp"
 
@@ -44,6 +45,8 @@ private:
   void add_grains(const std::filesystem::path& folder, const std::string& name, const io::GrainOutputKeys& keys,
                   const io::GrainSelectionKeys& selection);
   void add_fluid(const std::filesystem::path& folder, const std::string& name, const io::FluidOutputKeys& keys);
+  void begin_solids();
+  void write_solids(double time, std::int64_t step);
   void write_row(double time, const std::vector<Figure>& measured);
   std::uint64_t write_checkpoint(const loop::LoopRecord& record);  // bytes, on the first rank
   void write_profiles();
@@ -62,6 +65,7 @@ private:
   std::unique_ptr<io::SeriesTable> series_;                 // from begin() on, if there is to be one
   std::vector<std::pair<double, io::GrainSeries>> grains_;  // each with the time between its frames, s
   std::vector<std::pair<double, io::FluidSeries>> fluid_;   // likewise
+  std::optional<io::SolidSeries> solids_;                   // where there are frames of grains or fluid
   struct ObserverRecords {
     analysis::Observer* observer;
     io::RecordFile file;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <string>
 
 namespace thalweg::driver {
@@ -24,6 +25,28 @@ std::string shape_key(const Case& c, std::size_t solid) {
 std::string smaller_text(const SolidCase& solid) {
   return solid.sphere ? "give the radius in m"
                       : fmt::format("if the file is in millimetres, give scale: {:g}", 1e-3 * solid.scale);
+}
+
+// A sphere in `around` fields of equal angles round the z axis and half as many from pole to pole.
+TriangleMesh sphere_surface(const SphereCase& sphere) {
+  constexpr int around = 48, rows = around / 2;
+  constexpr double step = std::numbers::pi / rows;
+  TriangleMesh mesh;
+  mesh.points = {sphere.centre - sphere.radius * Vec3::UnitZ(), sphere.centre + sphere.radius * Vec3::UnitZ()};
+  const auto corner = [](int row, int k) {
+    return row == 0 ? 0 : row == rows ? 1 : 2 + (row - 1) * around + k % around;
+  };
+  for (int row = 1; row < rows; ++row)
+    for (int k = 0; k < around; ++k)
+      mesh.points.push_back(sphere.centre + sphere.radius * Vec3(std::sin(row * step) * std::cos(k * step),
+                                                                 std::sin(row * step) * std::sin(k * step),
+                                                                 -std::cos(row * step)));
+  for (int row = 0; row < rows; ++row)
+    for (int k = 0; k < around; ++k) {
+      if (row > 0) mesh.triangles.push_back({corner(row, k), corner(row, k + 1), corner(row + 1, k + 1)});
+      if (row + 1 < rows) mesh.triangles.push_back({corner(row, k), corner(row + 1, k + 1), corner(row + 1, k)});
+    }
+  return mesh;
 }
 
 }  // namespace
@@ -86,6 +109,16 @@ std::vector<bodies::SolidShape> solid_shapes(const Case& c) {
 
 dem::PrescribedMotion motion_of(const SolidCase& solid) {
   return solid.motion ? prescribed_motion(*solid.motion) : dem::PrescribedMotion();
+}
+
+std::vector<TriangleMesh> solid_surfaces(const Case& c, double time) {
+  std::vector<TriangleMesh> surfaces;
+  for (const SolidCase& solid : c.solids) {
+    surfaces.push_back(solid.sphere ? sphere_surface(*solid.sphere) : solid.surface);
+    const dem::PrescribedMotion motion = motion_of(solid);
+    for (Vec3& point : surfaces.back().points) point = motion.place(point, time);
+  }
+  return surfaces;
 }
 
 double reach_from_axis(const SolidCase& solid) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bodies/solid_shape.hpp"
+#include "core/triangle_mesh.hpp"
 #include "dem/prescribed_motion.hpp"
 #include "driver/case.hpp"
 #include "io/yaml_document.hpp"
@@ -26,6 +27,9 @@ std::vector<bodies::SolidShape> solid_shapes(const Case& c);
 
 // At rest for ever where the case gives none.
 dem::PrescribedMotion motion_of(const SolidCase& solid);
+
+// The surfaces of all solids at a time (s), in m; spheres as triangles.
+std::vector<TriangleMesh> solid_surfaces(const Case& c, double time);
 
 // Of a solid that turns, how far it reaches from the axis, m.
 double reach_from_axis(const SolidCase& solid);

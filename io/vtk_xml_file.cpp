@@ -37,6 +37,8 @@ std::string head_of(const std::string& name, int components) {
 VtkXmlFile::VtkXmlFile(MPI_Comm communicator, std::int64_t rows)
     : communicator_(communicator), share_(rows, rows_per_block, size_of(communicator)) {}
 
+void VtkXmlFile::set_rows(std::int64_t rows) { share_ = {rows, rows_per_block, size_of(communicator_)}; }
+
 void VtkXmlFile::add(const std::string& section, const std::string& name, int components,
                      std::span<const double> values) {
   add(section, head_of<double>(name, components), components * sizeof(double), std::as_bytes(values));
@@ -56,7 +58,7 @@ void VtkXmlFile::add(const std::string& section, const std::string& name, int co
 
 void VtkXmlFile::add(const std::string& section, const std::string& head, std::size_t bytes_per_row,
                      std::span<const std::byte> values) {
-  Array array{section, head, bytes_per_row, {}, {}};
+  Array array{section, head, share_, bytes_per_row, {}, {}};
   auto compressor = vtkSmartPointer<vtkZLibDataCompressor>::New();  // which every reader knows
   compressor->SetCompressionLevel(1);  // half the time of the default level 5, and half a per cent more bytes
   const std::size_t block = bytes_per_row * static_cast<std::size_t>(rows_per_block);
@@ -75,13 +77,15 @@ void VtkXmlFile::add(const std::string& section, const std::string& head, std::s
 
 // The first three words before the data of an array: the number of blocks, and the size of a block and of a last one
 // that is shorter (0: it is not), uncompressed. The compressed sizes of all blocks follow.
-std::vector<std::uint64_t> VtkXmlFile::header_of(const Array& array) const {
-  const auto rest = static_cast<std::uint64_t>(share_.rows() % rows_per_block);
-  return {static_cast<std::uint64_t>(share_.blocks()), static_cast<std::uint64_t>(rows_per_block) * array.bytes_per_row,
-          rest * array.bytes_per_row};
+std::vector<std::uint64_t> VtkXmlFile::header_of(const Array& array) {
+  const auto rest = static_cast<std::uint64_t>(array.share.rows() % rows_per_block);
+  return {static_cast<std::uint64_t>(array.share.blocks()),
+          static_cast<std::uint64_t>(rows_per_block) * array.bytes_per_row, rest * array.bytes_per_row};
 }
 
-std::uint64_t VtkXmlFile::header_bytes() const { return sizeof(std::uint64_t) * (3 + share_.blocks()); }
+std::uint64_t VtkXmlFile::header_bytes(const Array& array) {
+  return sizeof(std::uint64_t) * (3 + array.share.blocks());
+}
 
 // Where this rank writes what; `total` becomes the size of all appended data.
 std::vector<VtkXmlFile::Place> VtkXmlFile::places(std::uint64_t& total) const {
@@ -93,13 +97,14 @@ std::vector<VtkXmlFile::Place> VtkXmlFile::places(std::uint64_t& total) const {
   MPI_Exscan(here.data(), before.data(), count, MPI_UINT64_T, MPI_SUM, communicator_);
   MPI_Allreduce(here.data(), all.data(), count, MPI_UINT64_T, MPI_SUM, communicator_);
   const int me = rank_of(communicator_);
-  const auto first_block = static_cast<std::uint64_t>(share_.blocks_of(me).first);
   std::vector<Place> result;
   total = 0;
   for (std::size_t n = 0; n < arrays_.size(); ++n) {
     const std::uint64_t ours = me == 0 ? 0 : before[n];  // not defined on the first rank
-    result.push_back({total, total + sizeof(std::uint64_t) * (3 + first_block), total + header_bytes() + ours});
-    total += header_bytes() + all[n];
+    const auto first_block = static_cast<std::uint64_t>(arrays_[n].share.blocks_of(me).first);
+    const std::uint64_t header = header_bytes(arrays_[n]);
+    result.push_back({total, total + sizeof(std::uint64_t) * (3 + first_block), total + header + ours});
+    total += header + all[n];
   }
   return result;
 }

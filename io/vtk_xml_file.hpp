@@ -19,8 +19,9 @@ namespace thalweg::io {
 
 class VtkXmlFile {
 public:
-  // rows: tuples of every array, over all ranks.
+  // rows: tuples of every array that is added next, over all ranks.
   VtkXmlFile(MPI_Comm communicator, std::int64_t rows);
+  void set_rows(std::int64_t rows);
 
   // Which rows a rank adds and writes, and the first of this rank.
   const BlockShare& share() const { return share_; }
@@ -41,6 +42,7 @@ public:
 private:
   struct Array {
     std::string section, head;  // head: its element, without the offset
+    BlockShare share;
     std::size_t bytes_per_row;
     std::vector<std::uint64_t> sizes;  // of this rank's blocks, compressed
     std::vector<std::byte> data;       // those blocks
@@ -51,9 +53,9 @@ private:
 
   void add(const std::string& section, const std::string& head, std::size_t bytes_per_row,
            std::span<const std::byte> values);
-  std::uint64_t header_bytes() const;
+  static std::uint64_t header_bytes(const Array& array);
   std::vector<Place> places(std::uint64_t& total) const;
-  std::vector<std::uint64_t> header_of(const Array& array) const;
+  static std::vector<std::uint64_t> header_of(const Array& array);
 
   MPI_Comm communicator_;
   BlockShare share_;

@@ -15,7 +15,7 @@ from pathlib import Path
 from paraview import simple
 
 OF_GRAINS, OF_FLUID = "Viridis (matplotlib)", "Blues"
-DARK = [0.1, 0.1, 0.1]
+DARK, GREY = [0.1, 0.1, 0.1], [0.55, 0.55, 0.55]
 ZOOM = 1.1   # ParaView leaves room around what it shows
 RESOLUTION = 24   # of a sphere, around and from pole to pole
 
@@ -79,6 +79,12 @@ def show_fluid(fluid, view):
         colour(shown, view, "CELLS", "velocity", "speed of the fluid [m/s]", OF_FLUID)
 
 
+def show_solids(solids, view):
+    shown = simple.Show(solids, view)
+    simple.ColorBy(shown, None)
+    shown.AmbientColor = shown.DiffuseColor = GREY
+
+
 def look_from_the_side(view):
     simple.ResetCamera(view)
     camera = simple.GetActiveCamera()
@@ -98,7 +104,7 @@ def main():
     parser.add_argument("--size", type=int, nargs=2, default=(1280, 720), metavar=("WIDTH", "HEIGHT"), help="pixels")
     arguments = parser.parse_args()
     folder = arguments.run_folder
-    grains, fluid = series(folder, "grains"), series(folder, "fluid")
+    grains, fluid, solids = series(folder, "grains"), series(folder, "fluid"), series(folder, "solids")
     if not grains and not fluid:
         print(f"paraview_view: {folder} has neither grains.pvd nor fluid.pvd (output.grains and output.fluid of the case).",
               file=sys.stderr)
@@ -110,7 +116,7 @@ def main():
     view.OrientationAxesLabelColor = DARK
     times = (grains or fluid).TimestepValues
     view.ViewTime = times[-1] if arguments.time is None else min(times, key=lambda time: abs(time - arguments.time))
-    for source, show in ((grains, show_grains), (fluid, show_fluid)):
+    for source, show in ((grains, show_grains), (fluid, show_fluid), (solids, show_solids)):
         if source:
             source.UpdatePipeline(view.ViewTime)
             show(source, view)

@@ -3,7 +3,7 @@
 
     picture.py RUN_FOLDER [--out FILE] [--time SECONDS] [--from X Y Z] [--size WIDTH HEIGHT]
 
-It draws the stored frames of grains and fluid (output.grains and output.fluid in the case), whichever exist. The
+It draws the stored frames of grains and fluid (output.grains and output.fluid in the case), whichever exist, and solids. The
 slice is that through the middle of the box, drawn at its far side, where it hides no grain. VTK draws on a display of its own
 (Xvfb), so this also works where there is no screen.
 """
@@ -19,9 +19,10 @@ import matplotlib
 import numpy as np
 import vtkmodules.vtkRenderingFreeType  # noqa: F401  (text)
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  (what renders)
+from matplotlib.colors import to_rgb
 from vtkmodules.util.numpy_support import numpy_to_vtk
-from vtkmodules.vtkCommonCore import vtkLookupTable, vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
+from vtkmodules.vtkCommonCore import VTK_ID_TYPE, vtkLookupTable, vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkImageData, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkCellDataToPointData
 from vtkmodules.vtkFiltersSources import vtkOutlineSource, vtkSphereSource
 from vtkmodules.vtkIOImage import vtkPNGWriter
@@ -107,7 +108,7 @@ def grain_actor(frame):
 
 def slice_actor(frame, layer, y):
     """The fluid's speed (cm/s) in the middle layer across y, drawn at y (m), and the scale."""
-    speed, box = layer
+    speed, box, _ = layer
     values = 1e2 * drawing.without_holes(speed)
     table = lookup_table(drawing.FLUID_COLOURS, max(float(values.max()), 1e-12))
     image, points = vtkImageData(), vtkCellDataToPointData()
@@ -124,6 +125,21 @@ def slice_actor(frame, layer, y):
     actor.SetMapper(mapper)
     actor.GetProperty().LightingOff()
     return actor, table
+
+
+def solid_actor(frame):
+    points, triangles, surface = vtkPoints(), vtkCellArray(), vtkPolyData()
+    points.SetData(numpy_to_vtk(np.ascontiguousarray(frame.points), deep=True))
+    ends = np.arange(0, frame.triangles.size + 1, 3)
+    triangles.SetData(numpy_to_vtk(ends, deep=True, array_type=VTK_ID_TYPE),
+                      numpy_to_vtk(frame.triangles.ravel(), deep=True, array_type=VTK_ID_TYPE))
+    surface.SetPoints(points)
+    surface.SetPolys(triangles)
+    mapper, actor = vtkPolyDataMapper(), vtkActor()
+    mapper.SetInputData(surface)
+    actor.SetMapper(mapper)
+    actor.GetProperty().SetColor(*to_rgb(drawing.SOLID_COLOUR))
+    return actor
 
 
 def box_actor(size):
@@ -178,6 +194,9 @@ def scene(run, grains, fluid, far_side, font):
         renderer.SetBackground(1.0, 1.0, 1.0)
     vtkLightKit().AddLightsToRenderer(view)
     view.AddActor(box_actor(run.size))
+    solids = run.solids.nearest((grains or fluid).time)
+    if solids:
+        view.AddActor(solid_actor(solids))
     shown = [("grain speed", *grain_actor(grains))] if grains else []
     layer = drawing.fluid_slice(fluid) if fluid else None
     if layer is not None:

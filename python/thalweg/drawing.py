@@ -8,6 +8,8 @@ from thalweg.errors import RunFolderError
 
 GRAIN_COLOURS = matplotlib.colormaps["YlOrRd"]
 FLUID_COLOURS = colors.LinearSegmentedColormap.from_list("water", ["#f4f8fb", "#a9cfe3", "#4a93bd", "#14496e"])
+WATER = -1   # as grain_id; solids have lower ones
+SOLID_COLOUR = "#8d8d8d"
 PIXELS_PER_DIAMETER = 48
 
 
@@ -17,17 +19,17 @@ def colour_of(number):
 
 
 def fluid_slice(frame):
-    """Speed (m/s; masked inside grains) in the middle layer across y as [z, x], and its extent in m; None if the frame is
-    not one of the velocity in the x-z plane."""
+    """Speed (m/s; masked inside grains and solids) in the middle layer across y as [z, x], its extent in m, and which of its
+    cells are solids'; None if the frame is not one of the velocity in the x-z plane."""
     cells = frame.arrays
     if "velocity" not in cells or 1 in (cells["velocity"].shape[0], cells["velocity"].shape[2]):
         return None
     middle = cells["velocity"].shape[1] // 2
     speed = np.ma.array(np.linalg.norm(cells["velocity"][:, middle].astype(float), axis=-1))
-    if "grain_id" in cells:
-        speed.mask = cells["grain_id"][:, middle] >= 0
+    holder = cells["grain_id"][:, middle] if "grain_id" in cells else np.full(speed.shape, WATER)
+    speed.mask = holder != WATER
     upper = frame.corner + frame.spacing * cells["velocity"].shape[2::-1]
-    return speed, (frame.corner[0], upper[0], frame.corner[2], upper[2])
+    return speed, (frame.corner[0], upper[0], frame.corner[2], upper[2]), holder < WATER
 
 
 def without_holes(layer):
@@ -159,7 +161,10 @@ def flow_figure(run, fluid, largest_flow=None):
 
 def draw_water(figure, axes, bar, layer, largest=None):
     """A layer of fluid_slice() with its scale, which ends at `largest` (m/s) or at its own largest speed."""
-    flow, box = layer
+    flow, box, solid = layer
     water = axes.imshow(1e2 * without_holes(flow), origin="lower", extent=1e3 * np.array(box), cmap=FLUID_COLOURS,
                         vmin=0.0, vmax=None if largest is None else 1e2 * largest, interpolation="bilinear", zorder=1)
     figure.colorbar(water, cax=bar, label="fluid speed [cm/s]")
+    if solid.any():
+        axes.imshow(np.ma.array(np.ones(solid.shape), mask=~solid), origin="lower", extent=1e3 * np.array(box),
+                    cmap=colors.ListedColormap([SOLID_COLOUR]), interpolation="nearest", zorder=1.5)

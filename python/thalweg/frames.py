@@ -6,7 +6,7 @@ import numpy as np
 
 from thalweg.columns import Columns
 from thalweg.errors import RunFolderError
-from thalweg.vtk_files import read_image, read_index, read_points
+from thalweg.vtk_files import read_image, read_index, read_points, read_triangles
 
 GRAIN_UNITS = {"id": "1", "clump": "1", "radius": "m", "speed": "m/s", "position": "m", "velocity": "m/s",
                "angular_velocity": "rad/s", "contact_force": "N", "fluid_force": "N", "contact_stress": "Pa",
@@ -86,6 +86,30 @@ class FluidFrame:
         """Middle of the cells along x (0), y (1) or z (2), in m."""
         count = next(iter(self._image[2].values())).shape[2 - axis]
         return self.corner[axis] + (np.arange(count) + 0.5) * self.spacing[axis]
+
+
+class SolidFrame:
+    """The surfaces of the solids at one time: `points` [point, axis] in m, `triangles` [triangle, corner] as numbers of
+    points, and `solid`, the number of the solid of each triangle."""
+
+    def __init__(self, time, path):
+        self.time, self.path = time, path   # s
+
+    @cached_property
+    def _surface(self):
+        return read_triangles(self.path)
+
+    @property
+    def points(self):
+        return self._surface[0]
+
+    @property
+    def triangles(self):
+        return self._surface[1]
+
+    @property
+    def solid(self):
+        return self._surface[2]["solid"]
 
 
 class Frames(Sequence):

@@ -11,7 +11,7 @@ import yaml
 
 from thalweg.columns import Columns
 from thalweg.errors import RunFolderError
-from thalweg.frames import FluidFrame, Frames, GrainFrame, GrainPartFrame
+from thalweg.frames import FluidFrame, Frames, GrainFrame, GrainPartFrame, SolidFrame, SolidFrame
 from thalweg.tables import read_series
 
 
@@ -64,6 +64,11 @@ class Run:
     def fluid(self):
         """Frames of the fluid."""
         return Frames.of_index(self.folder / "fluid.pvd", FluidFrame)
+
+    @cached_property
+    def solids(self):
+        """Frames of the surfaces of the solids: one if they stand still."""
+        return Frames.of_index(self.folder / "solids.pvd", SolidFrame)
 
     def fluid_part(self, name):
         """Frames of one of `output.fluid_parts` of the case, by its name."""

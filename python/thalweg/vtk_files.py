@@ -60,7 +60,7 @@ def open_file(path):
 
 
 def arrays_in(section, appended, path):
-    """Arrays of a PointData, CellData or Points section by name."""
+    """Arrays of a PointData, CellData, Points or Polys section by name."""
     found = {}
     for entry in section if section is not None else ():
         if entry.get("format") != "appended":
@@ -78,6 +78,15 @@ def read_points(path):
     piece = root.find("PolyData/Piece")
     points = next(iter(arrays_in(piece.find("Points"), appended, path).values()), np.zeros((0, 3)))
     return points.astype(float), arrays_in(piece.find("PointData"), appended, path)
+
+
+def read_triangles(path):
+    """Points (m), triangles as three numbers of points, and arrays of the triangles by name, of a .vtp file."""
+    root, appended = open_file(path)
+    piece = root.find("PolyData/Piece")
+    points = next(iter(arrays_in(piece.find("Points"), appended, path).values()))
+    corners = arrays_in(piece.find("Polys"), appended, path)["connectivity"].reshape(-1, 3)
+    return points.astype(float), corners, arrays_in(piece.find("CellData"), appended, path)
 
 
 def numbers(text, kind=float):

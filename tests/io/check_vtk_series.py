@@ -12,7 +12,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLImageDataReader, vtkXMLPolyDataReader
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
-from thalweg.vtk_files import read_image, read_points
+from thalweg.vtk_files import read_image, read_points, read_triangles
 
 FOLDER, OTHERS = Path(sys.argv[1]), [Path(name) for name in sys.argv[2:]]
 CELLS, SPACING, GRAINS = (24, 20, 18), 0.25e-3, 9001
@@ -118,6 +118,24 @@ def check_fluid(name, fields, lower, upper, strides=(1, 1, 1), real=np.float32):
             assert values.dtype == (np.int32 if key == "grain_id" else real), f"{path}: {key}"
 
 
+def check_solids():
+    """A strip of 5000 triangles, and one alone."""
+    n = np.arange(5000)
+    corners = np.vstack([np.stack([n, n + 1, n + 2], axis=1), [[5002, 5003, 5004]]])
+    k = np.arange(5002)
+    for time, path in pictures(FOLDER / "solid/solids.pvd"):
+        data = read(vtkXMLPolyDataReader(), path)
+        points = np.vstack([np.stack([0.5 * k, k % 2, 0.0 * k + time], axis=1), [[0, 0, 0], [1, 0, 0], [0, 1, time]]])
+        assert np.array_equal(vtk_to_numpy(data.GetPoints().GetData()), points)
+        assert np.array_equal(vtk_to_numpy(data.GetPolys().GetConnectivityArray()), corners.ravel())
+        assert np.array_equal(vtk_to_numpy(data.GetPolys().GetOffsetsArray()), 3 * np.arange(5002))
+        assert arrays(data.GetCellData())["solid"].tolist() == 5000 * [0] + [1]
+        ours = read_triangles(path)
+        assert np.array_equal(ours[0], points) and np.array_equal(ours[1], corners)
+        assert ours[2]["solid"].tolist() == 5000 * [0] + [1]
+
+
+check_solids()
 check_grains("wet", True)
 check_grains("stressed", True, True)
 check_grains("dry", False)

@@ -4,6 +4,7 @@
 #include "core/mpi_session.hpp"
 #include "io/fluid_series.hpp"
 #include "io/grain_series.hpp"
+#include "io/solid_series.hpp"
 #include "tests/io/scratch_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -132,6 +133,7 @@ public:
     series<GrainSeries>("stressed", continue_from, snapshot, std::string("grains"), GrainSelectionKeys{},
                         std::vector<GrainField>{}, ends);
     write_grain_parts(continue_from, snapshot);
+    write_solids(continue_from, snapshot);
     snapshot.contacts = nullptr;
     series<FluidSeries>("whole", continue_from, snapshot, std::string("fluid"),
                         FluidRegionKeys{FluidRegion::whole, {}, {}, 1},
@@ -176,6 +178,15 @@ private:
     // Grains 3 to 7 at first, and fewer as they rise.
     part("boxed", {{}, {}, BoxKeys{{0.25, 0.5, 0.0}, {10.0, 10.0, 2.25}}}, {GrainField::held, GrainField::id});
     part("nobody", {{1}, 1, {}}, {GrainField::velocity});
+  }
+  // A strip of triangles, and one alone; more than the block of a file.
+  void write_solids(std::optional<double> continue_from, const Snapshot& snapshot) {
+    TriangleMesh strip, alone{{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, snapshot.time}}, {{0, 1, 2}}};
+    for (int n = 0; n < 5002; ++n) strip.points.emplace_back(0.5 * n, n % 2, snapshot.time);
+    for (int n = 0; n < 5000; ++n) strip.triangles.push_back({n, n + 1, n + 2});
+    const auto folder = folder_ / "solid";
+    if (rank_of(MPI_COMM_WORLD) == 0) std::filesystem::create_directories(folder);
+    SolidSeries(MPI_COMM_WORLD, folder, continue_from).write(snapshot.time, snapshot.step, {strip, alone});
   }
   template <typename Series, typename... Options>
   void series(const std::string& name, std::optional<double> continue_from, const Snapshot& snapshot,

@@ -64,6 +64,11 @@ solids:
             x, y, z = frame.position.T
             inside = (x > 0.012) & (x < 0.017) & (z < 0.006)
             self.assertFalse(inside.any(), frame.time)
+        # For ParaView once, because they stand still: the sill, and a sphere of triangles.
+        (surfaces,) = Run(self.folder / "one").solids
+        sill, ball = (surfaces.points[numpy.unique(surfaces.triangles[surfaces.solid == n])] for n in (0, 1))
+        numpy.testing.assert_allclose([sill.min(axis=0), sill.max(axis=0)], [[0.012, -0.001, -0.001], [0.017, 0.016, 0.006]])
+        numpy.testing.assert_allclose(numpy.linalg.norm(ball - [0.0005, 0.0075, 0.0035], axis=1), 3.5e-3)
 
     def test_what_cannot_be_is_refused(self):
         self.assert_refused("check", self.case, "--set", "solids.0.motion={velocity: [3, 0, 0]}",
@@ -105,6 +110,24 @@ solids:
             x, _, z = frame.position.T
             behind = (x - 0.007 - 0.15 * frame.time) % 0.036
             self.assertFalse(((behind < 0.003) & (z < 0.009)).any(), frame.time)
+        self.check_surfaces()
+
+    # One for each frame of the grains, of the plate and then of the wheel, about the y axis through its middle.
+    def check_surfaces(self):
+        run = Run(self.folder / "one")
+        numpy.testing.assert_array_equal(run.solids.times, run.grains.times)
+        first = run.solids[0].points
+        for frame in run.solids:
+            plate, wheel = (frame.points[numpy.unique(frame.triangles[frame.solid == n])] for n in (0, 1))
+            numpy.testing.assert_allclose(plate, first[:8] + [0.15 * frame.time, 0.0, 0.0], atol=1e-12)
+            turned = 15.0 * frame.time
+            x, z = (first[8:] - [0.024, 0.0, 0.022]).T[[0, 2]]
+            place = numpy.stack([0.024 + x * numpy.cos(turned) + z * numpy.sin(turned), first[8:, 1],
+                                 0.022 - x * numpy.sin(turned) + z * numpy.cos(turned)], axis=1)
+            numpy.testing.assert_allclose(wheel, place, atol=1e-12)
+        for out in ("two", "again"):
+            for path in (self.folder / out / "solids").iterdir():
+                self.assertEqual(path.read_bytes(), (self.folder / "one/solids" / path.name).read_bytes(), path)
 
     def test_another_motion_does_not_go_on(self):
         self.run_well("run", self.case, "--out", "one", "--until", "0.005")
