@@ -71,8 +71,7 @@ void run(const Options& o) {
   }
 }
 
-void read(Options& o, int argc, char** argv) {
-  CLI::App app("Turbulence left to itself in a periodic cube");
+void add_options(CLI::App& app, Options& o) {
   const std::map<std::string, lbm::CollisionModel> collisions{{"bgk", lbm::CollisionModel::bgk},
                                                               {"trt", lbm::CollisionModel::trt}};
   app.add_option("--cells", o.cells, "cells along a side");
@@ -82,7 +81,6 @@ void read(Options& o, int argc, char** argv) {
   app.add_option("--collision", o.collision)->transform(CLI::CheckedTransformer(collisions));
   app.add_option("--start", o.start, "file of the initial fields")->required();
   app.add_option("--steps", o.steps, "steps after which to write the velocity, ascending")->required();
-  app.parse(argc, argv);
 }
 
 }  // namespace
@@ -90,12 +88,14 @@ void read(Options& o, int argc, char** argv) {
 
 int main(int argc, char** argv) {
   thalweg::MpiSession session(argc, argv);
+  CLI::App app("Turbulence left to itself in a periodic cube");
+  thalweg::benchmark::Options options;
   try {
-    thalweg::benchmark::Options options;
-    thalweg::benchmark::read(options, argc, argv);
+    thalweg::benchmark::add_options(app, options);
+    app.parse(argc, argv);
     thalweg::benchmark::run(options);
   } catch (const CLI::Error& error) {
-    return CLI::App().exit(error);
+    return app.exit(error);
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 1;

@@ -191,8 +191,7 @@ private:
   std::int64_t step_ = 0;
 };
 
-void read(Options& o, int argc, char** argv) {
-  CLI::App app("Turbulent flow between two plates");
+void add_options(CLI::App& app, Options& o) {
   app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   const std::map<std::string, lbm::CollisionModel> collisions{{"bgk", lbm::CollisionModel::bgk},
                                                               {"trt", lbm::CollisionModel::trt}};
@@ -219,7 +218,6 @@ void read(Options& o, int argc, char** argv) {
   app.add_flag("--double", o.in_double, "populations in double instead of single");
   app.add_option("--checkpoint", o.checkpoint, "file to go on from, and to keep");
   app.add_option("--output", o.output, "profile, CSV");
-  app.parse(argc, argv);
 }
 
 }  // namespace
@@ -227,15 +225,17 @@ void read(Options& o, int argc, char** argv) {
 
 int main(int argc, char** argv) {
   thalweg::MpiSession session(argc, argv);
+  CLI::App app("Turbulent flow between two plates");
+  thalweg::benchmark::Options options;
   try {
-    thalweg::benchmark::Options options;
-    thalweg::benchmark::read(options, argc, argv);
+    thalweg::benchmark::add_options(app, options);
+    app.parse(argc, argv);
     if (options.in_double)
       thalweg::benchmark::Run<double>(options).run();
     else
       thalweg::benchmark::Run<float>(options).run();
   } catch (const CLI::Error& error) {
-    return CLI::App().exit(error);
+    return app.exit(error);
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 1;
