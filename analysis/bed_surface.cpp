@@ -14,9 +14,17 @@ namespace {
 
 const std::string static_height = "static_bed_height";
 
-double mean_of(const std::vector<double>& values) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+// Of the columns that have a static pixel; not a number where none has.
+double mean_height(const std::vector<double>& surface) {
+  const auto columns = static_cast<double>(std::count_if(surface.begin(), surface.end(), StaticPixels::is_static));
+  return std::accumulate(surface.begin(), surface.end(), 0.0) / columns;
+}
+
+// The mean of each column over the pictures that show a static pixel in it; 0 where none does.
+std::vector<double> means_of(const std::vector<double>& sums, const std::vector<double>& counts) {
+  std::vector<double> means;
+  for (std::size_t c = 0; c < sums.size(); ++c) means.push_back(sums[c] / std::max(1.0, counts[c]));
+  return means;
 }
 
 }  // namespace
@@ -30,7 +38,8 @@ BedSurface::BedSurface(MPI_Comm communicator, const PeriodicBox& box, const BedS
       diameter_(diameter),
       layers_(communicator, box, keys.layer.value_or(diameter), disk_thickness, std::move(obstacles)),
       pixels_(communicator, box, keys.pixel.value_or(diameter / 25.0), keys.static_time),
-      surface_sums_(static_cast<std::size_t>(pixels_.columns()), 0.0) {
+      surface_sums_(static_cast<std::size_t>(pixels_.columns()), 0.0),
+      surface_counts_(surface_sums_) {
   sums_.assign(figures().size(), 0.0);
 }
 
@@ -43,7 +52,10 @@ void BedSurface::observe(const Snapshot& snapshot) {
   const double from = keys_.from * (1.0 - 1e-12);
   if (pixels_.look(snapshot) && pixels_.begun() >= from) {
     ++pictures_;
-    for (std::size_t c = 0; c < surface_sums_.size(); ++c) surface_sums_[c] += pixels_.surface()[c];
+    for (std::size_t c = 0; c < surface_sums_.size(); ++c) {
+      surface_sums_[c] += pixels_.surface()[c];
+      surface_counts_[c] += StaticPixels::is_static(pixels_.surface()[c]) ? 1.0 : 0.0;
+    }
   }
   if (snapshot.time < from) return;
   ++measurements_;
@@ -73,7 +85,7 @@ double BedSurface::hydraulic_radius() const {
 }
 
 std::vector<Figure> BedSurface::figures() const {
-  std::vector<Figure> figures{{"bed_height", "m", bed_height_}, {static_height, "m", mean_of(pixels_.surface())}};
+  std::vector<Figure> figures{{"bed_height", "m", bed_height_}, {static_height, "m", mean_height(pixels_.surface())}};
   if (!flow_) return figures;
   figures.push_back({"flow_depth", "m", flow_depth()});
   figures.push_back({"hydraulic_radius", "m", hydraulic_radius()});
@@ -91,7 +103,10 @@ std::vector<Figure> BedSurface::results() const {
     if (figure.name != static_height) results.push_back({figure.name + "_mean", figure.unit, sums_[n++] / count});
   results.push_back({"bulk_solid_fraction_mean", "1", sums_[n] / count});
   const double pictures = static_cast<double>(pictures_);
-  results.push_back({static_height + "_mean", "m", mean_of(surface_sums_) / pictures});
+  results.push_back({static_height + "_mean", "m", mean_height(means_of(surface_sums_, surface_counts_))});
+  results.push_back({"static_share_mean", "1",
+                     std::accumulate(surface_counts_.begin(), surface_counts_.end(), 0.0) /
+                         (pictures * static_cast<double>(surface_counts_.size()))});
   results.push_back({"mean_from", "s", keys_.from});
   results.push_back({"measurements", "1", static_cast<double>(measurements_)});
   results.push_back({"static_pictures", "1", pictures});
@@ -105,7 +120,7 @@ std::vector<Profile> BedSurface::profiles() const {
   latest.values.resize(surface_sums_.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t c = 0; c < surface_sums_.size(); ++c) {
     x.values.push_back((static_cast<double>(c) + 0.5) * pixels_.column_width());
-    mean.values.push_back(surface_sums_[c] / static_cast<double>(pictures_));
+    mean.values.push_back(surface_sums_[c] / surface_counts_[c]);
   }
   return {x, mean, latest};
 }
@@ -132,13 +147,15 @@ void BedSurface::save(ArchiveWriter& archive) const {
   };
   write("bed_surface/sums", sums_);
   write("bed_surface/surface_sums", surface_sums_);
+  write("bed_surface/surface_counts", surface_counts_);
   pixels_.save(archive, "bed_surface");
 }
 
 bool BedSurface::load(ArchiveReader& archive) {
   if (!archive.has("bed_surface/mean_from") || archive.real_attribute("bed_surface/mean_from") != keys_.from ||
       archive.shape("bed_surface/sums") != std::vector<std::uint64_t>{sums_.size()} ||
-      archive.shape("bed_surface/surface_sums") != std::vector<std::uint64_t>{surface_sums_.size()})
+      !archive.has("bed_surface/surface_counts") ||
+      archive.shape("bed_surface/surface_counts") != std::vector<std::uint64_t>{surface_counts_.size()})
     return false;
   if (!were_saved_with(archive, "bed_surface", settings())) return false;
   seen_step_ = archive.integer_attribute("bed_surface/seen_step");
@@ -153,6 +170,7 @@ bool BedSurface::load(ArchiveReader& archive) {
   };
   read("bed_surface/sums", sums_);
   read("bed_surface/surface_sums", surface_sums_);
+  read("bed_surface/surface_counts", surface_counts_);
   pixels_.load(archive, "bed_surface");
   return true;
 }

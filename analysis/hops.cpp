@@ -17,14 +17,14 @@ constexpr int bins = 140;  // 20 a decade
 
 }  // namespace
 
-std::vector<Body> bodies_of(const GrainView& grains) {
+std::vector<Body> free_bodies_of(const GrainView& grains) {
   std::vector<Body> bodies;
   for (std::size_t i = 0; i < grains.id.size(); ++i)
-    if (!grains.is_member(i))
+    if (!grains.is_member(i) && !grains.velocity_is_held(i))
       bodies.push_back(
           {grains.id[i], volume_of(grains.radius[i], grains.disk_thickness), grains.position[i], grains.velocity[i]});
   for (const ClumpState& clump : grains.clumps)
-    bodies.push_back({clump.id, clump.volume, clump.position, clump.velocity});
+    if (!clump.velocity_is_held) bodies.push_back({clump.id, clump.volume, clump.position, clump.velocity});
   return bodies;
 }
 

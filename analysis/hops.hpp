@@ -30,8 +30,8 @@ struct Body {
   Vec3 velocity;  // m/s
 };
 
-// The bodies owned by this rank, of which a clump is one.
-std::vector<Body> bodies_of(const GrainView& grains);
+// The bodies owned by this rank that are free to move, of which a clump is one.
+std::vector<Body> free_bodies_of(const GrainView& grains);
 
 class Hops {
 public:

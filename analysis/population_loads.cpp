@@ -47,7 +47,7 @@ void describe(SectionVisitor&, PopulationLoadsKeys&) {}
 
 std::unique_ptr<Observer> make_observer(const PopulationLoadsKeys&, const RunFacts& run, const RunningSystem& system) {
   return std::make_unique<PopulationLoads>(system.communicator, run.box, run.grains->populations,
-                                           run.fluid.has_value());
+                                           run.fluid || run.model_fluid);
 }
 
 }  // namespace thalweg::analysis

@@ -24,6 +24,12 @@ struct FluidFacts {
   bool top_moves = false;            // and moves along x
 };
 
+// Of a model fluid (dem/model_fluid.hpp).
+struct ModelFluidFacts {
+  double speed = 0.0;    // m/s, v_0, of the first Shields number
+  double gravity = 0.0;  // m/s^2, reduced
+};
+
 // Grains of a case that belong together, with the ids first ... end - 1.
 struct Population {
   std::string name;  // of its columns
@@ -64,6 +70,7 @@ struct RunFacts {
   double ramp = 0.0;            // s in which gravity rises
   Vec3 gravity = Vec3::Zero();  // m/s^2
   std::optional<FluidFacts> fluid;
+  std::optional<ModelFluidFacts> model_fluid;
   std::optional<GrainFacts> grains;
 };
 

@@ -35,6 +35,7 @@ public:
   double begun() const { return picture_begun_; }  // s, of the latest picture
   // Of the latest picture, m above the floor, one a column; 0 where no pixel is static. Empty before the first picture.
   const std::vector<double>& surface() const { return surface_; }
+  static bool is_static(double height) { return height > 0.0; }  // one of surface()
 
   void save(ArchiveWriter& archive, const std::string& group) const;  // collective
   void load(ArchiveReader& archive, const std::string& group);        // does nothing where there is nothing that fits

@@ -13,7 +13,7 @@ namespace thalweg::analysis {
 
 namespace {
 
-constexpr double share_of_fall_speed_that_counts_as_moving = 0.01;
+constexpr double share_that_counts_as_moving = 0.01;
 
 // Of velocities, in fall speeds: water over a bed of sand or gravel seldom carries a grain faster than ten.
 constexpr double slowest = -5.0, fastest = 15.0;
@@ -35,28 +35,34 @@ std::vector<T> read_all(ArchiveReader& archive, const std::string& path) {
 
 }  // namespace
 
-double TransportScales::flux() const {
-  const double excess = fluid_density > 0.0 ? std::abs(grain_density / fluid_density - 1.0) : 1.0;
-  return std::sqrt(excess * gravity * grain_diameter) * grain_diameter;
+double TransportScales::weight() const {
+  return (fluid_density > 0.0 ? std::abs(grain_density / fluid_density - 1.0) : 1.0) * gravity;
 }
+
+double TransportScales::flux() const { return std::sqrt(weight() * grain_diameter) * grain_diameter; }
 
 double TransportScales::fall_speed() const { return flux() > 0.0 ? flux() / grain_diameter : 1.0; }
 
 double TransportScales::moving_speed() const {
-  return share_of_fall_speed_that_counts_as_moving * flux() / grain_diameter;
+  if (model_fluid_speed > 0.0) return share_that_counts_as_moving * model_fluid_speed;
+  double speed = flux() / grain_diameter;
+  if (kinematic_viscosity > 0.0)
+    speed = std::min(speed, weight() * grain_diameter * grain_diameter / (18.0 * kinematic_viscosity));
+  return share_that_counts_as_moving * speed;
 }
 
 TransportRate::TransportRate(MPI_Comm communicator, const TransportScales& scales, const TransportRateKeys& keys)
     : communicator_(communicator),
       scales_(scales),
       keys_(keys),
+      moving_speed_(keys.moving_speed.value_or(scales.moving_speed())),
       velocities_{Histogram::linear(slowest * scales.fall_speed(), fastest * scales.fall_speed(), velocity_bins),
                   Histogram::linear(slowest * scales.fall_speed(), fastest * scales.fall_speed(), velocity_bins),
                   Histogram::linear(slowest * scales.fall_speed(), fastest * scales.fall_speed(), velocity_bins)},
-      hops_(communicator, scales.grain_diameter, scales.grain_diameter / scales.fall_speed(), scales.moving_speed()) {}
+      hops_(communicator, scales.grain_diameter, scales.grain_diameter / scales.fall_speed(), moving_speed_) {}
 
 void TransportRate::observe(const Snapshot& snapshot) {
-  const std::vector<Body> bodies = bodies_of(snapshot.grains);
+  const std::vector<Body> bodies = free_bodies_of(snapshot.grains);
   measure(snapshot, bodies);
   // from may be a rounded multiple of the time step: a measurement at that very step counts.
   const bool counts = snapshot.time >= keys_.from * (1.0 - 1e-12);
@@ -74,13 +80,12 @@ void TransportRate::observe(const Snapshot& snapshot) {
 }
 
 void TransportRate::measure(const Snapshot& snapshot, const std::vector<Body>& bodies) {
-  const double threshold = scales_.moving_speed();
   std::vector<double> terms;
   std::int64_t moving = 0;
   double largest_squared = 0.0;
   for (const Body& body : bodies) {
     const double speed_squared = body.velocity.squaredNorm();
-    const bool moves = speed_squared > threshold * threshold;
+    const bool moves = speed_squared > moving_speed_ * moving_speed_;
     terms.insert(terms.end(), {body.volume * body.velocity.x(), moves ? body.volume : 0.0});
     if (moves) ++moving;
     largest_squared = std::max(largest_squared, speed_squared);
@@ -91,16 +96,15 @@ void TransportRate::measure(const Snapshot& snapshot, const std::vector<Body>& b
   latest_.q_s = sums[0] / (size.x() * width);
   latest_.activity = sums[1] / (size.x() * width);
   latest_.moving = sum_over_ranks(communicator_, moving);
-  latest_.grains = snapshot.grains.body_count();
+  latest_.grains = sum_over_ranks(communicator_, static_cast<std::int64_t>(bodies.size()));
   latest_.largest_speed = std::sqrt(max_over_ranks(communicator_, largest_squared));
 }
 
 void TransportRate::count_velocities(const std::vector<Body>& bodies) {
-  const double threshold = scales_.moving_speed();
   const std::size_t cells = velocities_[0].counts().size();
   std::vector<std::int64_t> counts(3 * cells, 0);
   for (const Body& body : bodies)
-    if (body.velocity.squaredNorm() > threshold * threshold)
+    if (body.velocity.squaredNorm() > moving_speed_ * moving_speed_)
       for (std::size_t a = 0; a < 3; ++a) ++counts[a * cells + velocities_[a].bin_of(body.velocity[a])];
   MPI_Allreduce(MPI_IN_PLACE, counts.data(), static_cast<int>(counts.size()), MPI_INT64_T, MPI_SUM, communicator_);
   for (std::size_t c = 0; c < counts.size(); ++c) velocities_[c / cells].counts()[c % cells] += counts[c];
@@ -150,7 +154,7 @@ std::vector<Figure> TransportRate::results() const {
   if (q_s_.count() == 0) forget_values(results);
   results.push_back({"reference_diameter", "m", scales_.grain_diameter});
   results.push_back({"reference_density", "kg/m^3", scales_.grain_density});
-  results.push_back({"moving_speed", "m/s", scales_.moving_speed()});
+  results.push_back({"moving_speed", "m/s", moving_speed_});
   results.push_back({"mean_from", "s", keys_.from});
   results.push_back({"measurements", "1", static_cast<double>(q_s_.count())});
   for (const Figure& latest : figures()) results.push_back(latest);
@@ -197,7 +201,7 @@ std::vector<double> TransportRate::sums() const {
 }
 
 SavedSettings TransportRate::settings() const {
-  return {{"moving_speed", scales_.moving_speed()}, {"grain_diameter", scales_.grain_diameter}};
+  return {{"moving_speed", moving_speed_}, {"grain_diameter", scales_.grain_diameter}};
 }
 
 void TransportRate::save(ArchiveWriter& archive) const {
@@ -241,6 +245,13 @@ void describe(SectionVisitor& visit, TransportRateKeys& keys) {
              {.unit = "s", .meaning = "start of the means, hops and distributions", .at_least = 0.0});
   visit.real("every", keys.every,
              {.unit = "s", .meaning = "between measurements; 0: with the rows of series.csv", .at_least = 0.0});
+  visit.real(
+      "moving_speed", keys.moving_speed,
+      {.unit = "m/s",
+       .meaning = "faster grains are moving; default: 1 % of the lower of sqrt((s - 1) g d) and Stokes' settling "
+                  "speed, of sqrt(g d) without a fluid, of v_0 in a model fluid",
+       .at_least = 0.0,
+       .example = 1e-3});
 }
 
 void check(const TransportRateKeys&, const RunFacts& run) { require_grains(run, "measure"); }
@@ -254,8 +265,16 @@ std::optional<std::string> warning(const TransportRateKeys& keys, const RunFacts
 }
 
 TransportScales transport_scales(const RunFacts& run) {
-  return {run.grains->reference_diameter, run.grains->reference_density, run.fluid ? run.fluid->density : 0.0,
-          run.gravity.norm()};
+  TransportScales scales{run.grains->reference_diameter, run.grains->reference_density, 0.0, run.gravity.norm()};
+  if (run.fluid) {
+    scales.fluid_density = run.fluid->density;
+    scales.kinematic_viscosity = run.fluid->kinematic_viscosity;
+  }
+  if (run.model_fluid) {
+    scales.gravity = run.model_fluid->gravity;
+    scales.model_fluid_speed = run.model_fluid->speed;
+  }
+  return scales;
 }
 
 std::unique_ptr<Observer> make_observer(const TransportRateKeys& keys, const RunFacts& run,

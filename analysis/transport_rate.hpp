@@ -5,7 +5,8 @@
 //   activity = sum over moving grains of V / (L W)      m (Furbish et al., J. Geophys. Res. 117 (2012) F03031)
 //
 // V volume of a grain, v_x its streamwise velocity, L and W length and width of the domain (Zhang et al. 2022: all
-// grains of the whole domain count). Without a fluid s has no meaning and q* is left out. A clump is one grain.
+// grains of the whole domain count). Grains whose velocity is held, at rest or moving, are no sediment and count
+// nowhere. Without a fluid s has no meaning and q* is left out. A clump is one grain.
 //
 // The mean of q_s comes with its error (correlated_mean.hpp) and a test of whether it drifts (trend_test.hpp); moving
 // grains with the distribution of their velocities (histogram.hpp) and their hops (hops.hpp).
@@ -26,14 +27,19 @@
 namespace thalweg::analysis {
 
 struct TransportScales {
-  double grain_diameter;       // m, of the reference grain
-  double grain_density;        // kg/m^3, of the reference grain
-  double fluid_density = 0.0;  // kg/m^3; 0: dry grains
-  double gravity = 0.0;        // m/s^2, magnitude
+  double grain_diameter;             // m, of the reference grain
+  double grain_density;              // kg/m^3, of the reference grain
+  double fluid_density = 0.0;        // kg/m^3; 0: dry grains
+  double gravity = 0.0;              // m/s^2, magnitude; in a model fluid the reduced one
+  double kinematic_viscosity = 0.0;  // m^2/s; 0: no fluid that has one
+  double model_fluid_speed = 0.0;    // m/s, v_0 of a model fluid
 
-  double flux() const;          // sqrt(|s - 1| g d^3), m^2/s; without a fluid sqrt(g d^3)
-  double fall_speed() const;    // m/s: sqrt(|s - 1| g d), without a fluid sqrt(g d); 1 m/s where that is zero
-  double moving_speed() const;  // m/s: 1 % of sqrt(|s - 1| g d), without a fluid of sqrt(g d)
+  double weight() const;      // m/s^2, |s - 1| g; without a fluid g
+  double flux() const;        // sqrt(|s - 1| g d^3), m^2/s; without a fluid sqrt(g d^3)
+  double fall_speed() const;  // m/s: sqrt(|s - 1| g d), without a fluid sqrt(g d); 1 m/s where that is zero
+  // m/s: 1 % of the lower of sqrt(|s - 1| g d) and Stokes' settling speed |s - 1| g d^2/(18 nu); without a fluid of
+  // sqrt(g d), in a model fluid of v_0.
+  double moving_speed() const;
   bool have_q_star() const { return fluid_density > 0.0 && flux() > 0.0; }
 };
 TransportScales transport_scales(const RunFacts& run);  // of a run with grains
@@ -43,8 +49,9 @@ struct TransportRateKeys {
   static constexpr const char* meaning =
       "transport rate q and q* along x with its error; number, speed and hop length of the moving grains";
   static constexpr Needs needs = Needs::grains;
-  double from = 0.0;   // s: means, hops and distributions begin here
-  double every = 0.0;  // s: between measurements; 0: with the rows of the series
+  double from = 0.0;                        // s: means, hops and distributions begin here
+  double every = 0.0;                       // s: between measurements; 0: with the rows of the series
+  std::optional<double> moving_speed = {};  // m/s, above which a grain moves; default: that of TransportScales
   bool operator==(const TransportRateKeys&) const = default;
 };
 void describe(SectionVisitor& visit, TransportRateKeys& keys);
@@ -61,8 +68,8 @@ public:
   double every() const override { return keys_.every; }
   void observe(const Snapshot& snapshot) override;  // a step seen before does not count again in the means
 
-  // q_s (m^2/s), q_star (1; only in a fluid), moving_grains (1: faster than moving_speed()), moving_share (1: of all
-  // grains), activity (m), largest_grain_speed (m/s).
+  // q_s (m^2/s), q_star (1; only in a fluid), moving_grains (1: faster than moving_speed), moving_share (1: of all
+  // free grains), activity (m), largest_grain_speed (m/s).
   std::vector<Figure> figures() const override;
 
   // q_s_mean, q_s_deviation (standard deviation of the measurements), q_s_error (standard error of the mean),
@@ -100,6 +107,7 @@ private:
   MPI_Comm communicator_;
   TransportScales scales_;
   TransportRateKeys keys_;
+  double moving_speed_;  // m/s
   Latest latest_;
   std::int64_t counted_step_ = -1;             // of the latest measurement that counts
   double first_time_ = 0.0, last_time_ = 0.0;  // s, of the first and the latest of those

@@ -22,6 +22,7 @@ struct ClumpState {
   double kinetic_energy;  // J, with rotation
   // Unit quaternion w, x, y, z that turns vectors from the frame of its principal axes into space.
   std::array<double, 4> orientation{1.0, 0.0, 0.0, 0.0};
+  bool velocity_is_held = false;  // no force changes it
 };
 
 // The grains this rank owns, in no particular order. Every span has one entry a grain. Members of clumps are among them
@@ -51,6 +52,7 @@ struct GrainView {
   // and 2 (angular velocity). Higher bits have no meaning here. Empty: everything is free.
   std::span<const std::uint8_t> motion;
   int held(std::size_t grain) const { return motion.empty() ? 0 : motion[grain] & 3; }
+  bool velocity_is_held(std::size_t grain) const { return (held(grain) & 1) != 0; }
   std::span<const Mat3> fluid_stress;  // Pa, of the fluid on the grain: sum F_a x_b over the surface, over the volume
 };
 

@@ -182,7 +182,8 @@ void GrainDynamics::show_clumps(GrainView& view) const {
                            clump.centre,
                            clump.velocity,
                            clump.kinetic_energy(),
-                           {q.w, q.x, q.y, q.z}});
+                           {q.w, q.x, q.y, q.z},
+                           holds_translation(clump.motion)});
   }
 }
 

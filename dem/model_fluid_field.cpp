@@ -70,7 +70,8 @@ void ModelFluidField::act_on_clump(std::size_t n, MovingGrains& grains, GrainSto
 void ModelFluidField::step_ended(const GrainDynamics& grains, double time) {
   if (!ramp_) return;
   if (ramp_->watches_share()) ramp_->watch(grains.moving_share(ramp_->moving_speed()));
-  if (!ramp_->advance(time, grains.largest_free_speed(), grains.largest_acceleration())) return;
+  if (!ramp_->advance(time, grains.largest_free_speed() / coefficients_.velocity, grains.largest_acceleration()))
+    return;
   update_coefficients();
   for (std::size_t s = 0; s < velocity_.size(); ++s) update_flow(s);
 }

@@ -20,13 +20,9 @@ VelocityProfile profile_of(const ModelFluidKeys& fluid, bool disks) {
 
 ShieldsRampParameters ramp_parameters(const ShieldsRampKeys& ramp, const GrainScales& s) {
   const double speed = std::sqrt(s.gravity * s.diameter);
-  return {ramp.step,
-          ramp.every,
-          ramp.hold,
-          ramp.mobile_share,
-          ramp.largest_speed * speed,
-          ramp.largest_acceleration * s.gravity,
-          speed};
+  return {
+      ramp.step, ramp.every, ramp.hold, ramp.mobile_share, ramp.largest_speed, ramp.largest_acceleration * s.gravity,
+      speed};
 }
 
 }  // namespace
@@ -48,8 +44,7 @@ void describe(SectionVisitor& visit, ShieldsRampKeys& ramp) {
                   "at once; 1: only `hold` counts",
        .above = 0.0,
        .at_most = 1.0});
-  visit.real("largest_speed", ramp.largest_speed,
-             {.unit = "sqrt(g'D)", .meaning = "grains that are slower", .above = 0.0});
+  visit.real("largest_speed", ramp.largest_speed, {.unit = "v_0", .meaning = "grains that are slower", .above = 0.0});
   visit.real("largest_acceleration", ramp.largest_acceleration,
              {.unit = "g'", .meaning = "and accelerated by less are at rest", .above = 0.0});
 }

@@ -17,7 +17,7 @@ struct ShieldsRampKeys {
   double every = 0.0;                 // s
   double hold = 0.0;                  // s
   double mobile_share = 1.0;          // of the grains
-  double largest_speed = 1e-3;        // sqrt(g'D)
+  double largest_speed = 1e-3;        // v_0
   double largest_acceleration = 0.1;  // g'
   bool operator==(const ShieldsRampKeys&) const = default;
 };

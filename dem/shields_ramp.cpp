@@ -19,11 +19,14 @@ double ShieldsRamp::hold_left(double time) const {
 void ShieldsRamp::save(ArchiveWriter& archive) const {
   archive.attribute("system/shields_ramp_factor", factor_);
   archive.attribute("system/shields_ramp_last_step", last_step_);
+  archive.attribute("system/shields_ramp_mobile", std::int64_t(mobile_));
 }
 
 void ShieldsRamp::load(ArchiveReader& archive) {
   factor_ = archive.real_attribute("system/shields_ramp_factor");
   last_step_ = archive.real_attribute("system/shields_ramp_last_step");
+  if (archive.has("system/shields_ramp_mobile"))  // older checkpoints have none
+    mobile_ = archive.integer_attribute("system/shields_ramp_mobile") != 0;
 }
 
 }  // namespace thalweg::dem

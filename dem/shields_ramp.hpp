@@ -12,7 +12,7 @@ struct ShieldsRampParameters {
   double every = 0.0;                 // s, at least, between two steps
   double hold = 0.0;                  // s, motion that lasts longer has no end
   double mobile_share = 1.0;          // of the grains; when more move, their motion has no end. 1: not looked at
-  double largest_speed = 0.0;         // m/s: grains that are slower
+  double largest_speed = 0.0;         // of v_0: grains that are slower
   double largest_acceleration = 0.0;  // m/s^2, and accelerated by less, are at rest
   double moving_speed = 0.0;          // m/s: grains that are faster move, for mobile_share
 };
@@ -21,8 +21,8 @@ class ShieldsRamp {
 public:
   explicit ShieldsRamp(const ShieldsRampParameters& parameters) : parameters_(parameters) {}
 
-  // To be called after every step with the figures of all free grains: raises the Shields number, if it is time, and
-  // returns whether it has.
+  // To be called after every step with the figures of all free grains, the speed in v_0 of the fluid as it is: raises
+  // the Shields number, if it is time, and returns whether it has.
   bool advance(double time, double largest_speed, double largest_acceleration);
 
   // To be called after every step when watches_share(), with the share of free grains faster than moving_speed().

@@ -61,6 +61,10 @@ analysis::RunFacts run_facts(const Case& c) {
   facts.ramp = c.run.ramp;
   facts.gravity = gravity_vector(c.gravity);
   if (has_fluid(c)) facts.fluid = fluid_facts(c);
+  if (c.system == SystemKind::model_fluid) {
+    const dem::ModelFluidParameters fluid = model_fluid_of(c);
+    facts.model_fluid = {coefficients_of(fluid.numbers, fluid.scales).velocity, fluid.scales.gravity};
+  }
   if (!c.grains.empty()) facts.grains = grain_facts(c);
   return facts;
 }

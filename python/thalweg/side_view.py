@@ -52,7 +52,9 @@ class Surface(NamedTuple):
 
     @property
     def mean(self):
-        return float(self.height.mean())
+        """m, of the columns where something is static; NaN where nothing is."""
+        static = self.height[self.height > 0.0]
+        return float(static.mean()) if len(static) else float("nan")
 
     def at(self, x, length=None):
         """Height (m) at places along the box, which is periodic with that length (m) if one is given."""

@@ -326,5 +326,20 @@ TEST(BedSurface, HasTheSameBitsOnAnyNumberOfRanksAndAfterARestart) {
             value_of(alone.results(), "static_bed_height_mean"));
 }
 
+// Columns through which all grains move have no height: the mean is that of the others, whose share is given.
+TEST(BedSurface, LeavesColumnsWithoutStaticPixelsOut) {
+  Spheres spheres(world);
+  BedSurface surface(world, spheres.box(), keys(), d, flume, 0.0);
+  // One at rest, 3 d high at its top, and one that goes up by two diameters from look to look.
+  for (std::int64_t step = 0; step <= 5; ++step)
+    surface.observe(spheres.at(
+        step, {Vec3(4.0 * d, 4.0 * d, 2.5 * d), Vec3(8.0 * d, 4.0 * d, d * (1.0 + 2.0 * static_cast<double>(step)))}));
+  const double seen = value_of(surface.results(), "static_share_mean"), width = 16.0 * 25.0;  // pixels
+  EXPECT_NEAR(seen * width, 25.0, 1.0);                                                       // a diameter, to a pixel
+  // The upper half of a circle is pi d/8 high on average; to a pixel of d/25.
+  EXPECT_NEAR(value_of(surface.results(), "static_bed_height_mean"), (2.5 + std::numbers::pi / 8.0) * d, d / 25.0);
+  EXPECT_NEAR(value_of(surface.figures(), "static_bed_height"), (2.5 + std::numbers::pi / 8.0) * d, d / 25.0);
+}
+
 }  // namespace
 }  // namespace thalweg::analysis::bed_surface_test

@@ -42,6 +42,11 @@ public:
     }
   }
 
+  // Holds the velocity of some, as of a plate that is driven.
+  void hold(const std::function<bool(GlobalId)>& held) {
+    for (const GlobalId id : id_) motion_.push_back(held(id) ? 3 : 0);
+  }
+
   Snapshot snapshot(double time) const {  // domain of 20 m x 10 m x 5 m
     Snapshot snapshot;
     snapshot.time = time;
@@ -54,6 +59,7 @@ public:
     snapshot.grains.position = position_;
     snapshot.grains.velocity = velocity_;
     snapshot.grains.angular_velocity = angular_velocity_;
+    snapshot.grains.motion = motion_;
     if (members_ == 0) return snapshot;
     snapshot.grains.clump_count = 1;
     snapshot.grains.member_count = members_;
@@ -68,6 +74,7 @@ private:
   std::vector<GlobalId> id_;
   std::vector<double> radius_, mass_;
   std::vector<Vec3> position_, velocity_, angular_velocity_;
+  std::vector<std::uint8_t> motion_;
   GlobalId members_ = 0;
   std::vector<GlobalId> clump_;
   std::vector<ClumpState> clumps_;

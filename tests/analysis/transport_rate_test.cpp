@@ -54,6 +54,42 @@ TEST(TransportRate, TakesAClumpForOneGrainWithItsVolumeAtItsCentre) {
   EXPECT_NEAR(value_of(rate.figures(), "largest_grain_speed"), std::sqrt(2.93 * 2.93 + 1.0), 1e-15 * 4);
 }
 
+// A plate of grains 0 to 99 that is driven along is no sediment, nor is a clump that is.
+TEST(TransportRate, LeavesOutGrainsWhoseMotionIsGiven) {
+  MadeUpGrains grains(world, 300, [](GlobalId id) { return runner(id, 1.0); });
+  grains.hold([](GlobalId id) { return id < 100; });
+  ClumpState clump{294, 1.0, 0.05, Vec3::Zero(), Vec3(0.5, 0.0, 0.0), 0.0};
+  clump.velocity_is_held = true;
+  grains.bind(6, clump);
+  TransportRate rate(world, scales, {});
+  rate.observe(grains.snapshot(0.0));
+  // The ids from 100 to 293 that are no multiple of 3: 130 of 194; their sum is 300 - (4950 - 1683)/100 - 11.88.
+  const double volume = std::numbers::pi / 6.0 * 0.25 * 0.25 * 0.25;
+  const double q_s = volume * (sum_of_speeds - 32.67 - 11.88) / (20.0 * 10.0);
+  EXPECT_NEAR(value_of(rate.figures(), "q_s"), q_s, 4e-16 * 1e3 * q_s);
+  EXPECT_EQ(value_of(rate.figures(), "moving_grains"), 130.0);
+  EXPECT_EQ(value_of(rate.figures(), "moving_share"), 130.0 / 194.0);
+  EXPECT_NEAR(value_of(rate.figures(), "largest_grain_speed"), std::sqrt(2.93 * 2.93 + 1.0), 1e-15 * 4);
+}
+
+// Grains of 1 mm and 1.15 times the density of an oil of 1e-4 m^2/s fall at 0.8 mm/s, not at the 38 mm/s of inertia; in
+// water, as in the paper, inertia is the lower. In a model fluid v_0 counts, whatever gravity.
+TEST(TransportScales, KnowAGrainThatMovesInAViscousFluid) {
+  TransportScales in{1e-3, 1150.0, 1000.0, 9.8};
+  EXPECT_NEAR(in.moving_speed(), 0.01 * std::sqrt(0.15 * 9.8 * 1e-3), 1e-15);
+  in.kinematic_viscosity = 1e-4;
+  EXPECT_NEAR(in.moving_speed(), 0.01 * 0.15 * 9.8 * 1e-6 / 18e-4, 1e-18);
+  in.kinematic_viscosity = 1e-6;
+  EXPECT_NEAR(in.moving_speed(), 0.01 * std::sqrt(0.15 * 9.8 * 1e-3), 1e-15);
+  in.model_fluid_speed = 0.009;
+  EXPECT_DOUBLE_EQ(in.moving_speed(), 9e-5);
+  TransportRate chosen(world, scales, {.moving_speed = 2.0});
+  chosen.observe(MadeUpGrains(world, 300, [](GlobalId id) { return runner(id, 1.0); }).snapshot(0.0));
+  // v_x^2 + 1 > 4 from id 174 on: the 84 of those up to 299 that are no multiple of 3.
+  EXPECT_EQ(value_of(chosen.figures(), "moving_grains"), 84.0);
+  EXPECT_EQ(value_of(chosen.results(), "moving_speed"), 2.0);
+}
+
 TEST(TransportRate, HasTheSameBitsOnAnyNumberOfRanks) {
   const auto made = [](GlobalId id) {
     const double phase = static_cast<double>(id);
