@@ -62,20 +62,14 @@ inline bodies::Hydrostatic rest_state(const FluidParameters& parameters, const D
                                  : bodies::Hydrostatic{};
 }
 
-// Brings the fluid to the initial state of the parameters. With full gravity the populations get the half force that a
-// collision leaves in them, so that a fluid at rest stays so to round-off.
+// Brings the fluid to the initial state of the parameters.
 template <typename Real>
 void initialise(lbm::Fluid<Real>& fluid, const FluidParameters& parameters, const bodies::Hydrostatic& rest) {
-  if (!parameters.initial_fluid && rest.none()) return;
-  const Vec3 force = rest.none() ? Vec3(Vec3::Zero()) : parameters.collision.force;
-  fluid.initialise(
-      [&](const Vec3& cell_centre) {
-        FluidInitialState s;
-        if (parameters.initial_fluid) s = parameters.initial_fluid(cell_centre * parameters.units.spacing);
-        return lbm::FluidState{s.density_deviation + rest.deviation(cell_centre),
-                               s.velocity / parameters.units.velocity()};
-      },
-      force);
+  fluid.initialise([&](const Vec3& cell_centre) {
+    FluidInitialState s;
+    if (parameters.initial_fluid) s = parameters.initial_fluid(cell_centre * parameters.units.spacing);
+    return lbm::FluidState{s.density_deviation + rest.deviation(cell_centre), s.velocity / parameters.units.velocity()};
+  });
 }
 
 }  // namespace thalweg::coupling

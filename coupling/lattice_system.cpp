@@ -43,6 +43,8 @@ LatticeSystem<Real>::LatticeSystem(std::unique_ptr<Decomposition> decomposition,
   name_phases();
   if (has_bodies()) bodies_.check_block(communicator);
   if (parameters_.flow_target) fluid_.control_flow(*parameters_.flow_target);
+  set_gravity_of(step_);
+  fluid_.carry_force();
   initialise(fluid_, parameters_, rest_);
   if (grains_) {
     grain_bodies_.emplace(communicator, *grains_, bodies_, decomposition_->box(), parameters_.units, parameters_.load,
@@ -51,8 +53,6 @@ LatticeSystem<Real>::LatticeSystem(std::unique_ptr<Decomposition> decomposition,
     grain_bodies_->place_at_start();
     open_account();
   }
-  set_gravity_of(step_);
-  fluid_.carry_force();
 }
 
 template <typename Real>

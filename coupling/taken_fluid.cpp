@@ -31,7 +31,7 @@ double take_fluid(lbm::Fluid<Real>& fluid, ArchiveReader& archive, double spacin
     return 1.0;
   }
   const double velocity_unit = spacing / saved_step / units.velocity();
-  lbm::transfer_flow(fluid, archive, velocity_unit, parameters.collision.force);
+  lbm::transfer_flow(fluid, archive, velocity_unit);
   return velocity_unit * velocity_unit;
 }
 

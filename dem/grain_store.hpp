@@ -30,9 +30,11 @@ struct GrainStore {
   std::size_t total() const { return id.size(); }
 
   std::vector<GlobalId> id;
-  std::vector<double> radius;           // m
-  std::vector<double> mass;             // kg; of a clump's member: of the clump, which is what contacts feel
-  std::vector<double> inertia;          // kg m^2, 2/5 m R^2; disks 1/2 m R^2; of a clump's member without meaning
+  std::vector<double> radius;  // m
+  std::vector<double> mass;    // kg; of a clump's member: of the clump, which is what contacts feel
+  // kg m^2, 2/5 m R^2; disks 1/2 m R^2. Of a clump's member with its radius and the clump's mass: no moment of the
+  // clump, and only the dashpot of rolling friction takes it for one.
+  std::vector<double> inertia;
   std::vector<double> inverse_mass;     // 1/kg, 0 where the translation is held, and of a clump's members
   std::vector<double> inverse_inertia;  // 1/(kg m^2), 0 where the rotation is held, and of a clump's members
   std::vector<Motion> motion;

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace thalweg::dem {
@@ -24,12 +25,12 @@ HertzMindlin::Coefficients HertzMindlin::between(const ContactParameters& a, con
           geometric_mean(a.friction, b.friction)};
 }
 
-double HertzMindlin::contact_time(const Coefficients& k, double /*damping*/, double effective_mass,
+double HertzMindlin::contact_time(const Coefficients& k, double damping, double effective_mass,
                                   double effective_radius) {
-  const double modulus = 0.75 * k.normal;
-  return 2.868 *
-         std::pow(effective_mass * effective_mass / (effective_radius * modulus * modulus * elastic_contact_speed),
-                  0.2);
+  const double modulus = 0.75 * k.normal, zeta = 0.5 * damping / std::sqrt(damping_stiffness(k) * effective_mass);
+  const double elastic =
+      std::pow(effective_mass * effective_mass / (effective_radius * modulus * modulus * elastic_contact_speed), 0.2);
+  return 2.868 * elastic / std::max(1.0, zeta);
 }
 
 void HertzMindlin::check(const ContactParameters& p) {

@@ -46,8 +46,11 @@ struct HertzMindlin {
   // Pa, k of the dashpot 2 zeta sqrt(k m*) with the damping ratio zeta of material.hpp.
   static double damping_stiffness(const Coefficients& k) { return 1.25 * k.normal; }
 
-  // s, without damping, of an impact at the speed v = elastic_contact_speed, with whose fifth root it falls:
-  // 2.868 (m*^2/(R* E*^2 v))^(1/5) (Hertz); m* in kg, R* in m.
+  // k_t/k_n at any overlap.
+  static double stiffness_ratio(const Coefficients& k) { return k.tangential / (1.5 * k.normal); }
+
+  // s, of an impact at the speed v = elastic_contact_speed, with whose fifth root it falls: 2.868 (m*^2/(R* E*^2
+  // v))^(1/5) (Hertz); m* in kg, R* in m. Divided by the damping ratio where that is above 1.
   static double contact_time(const Coefficients& k, double damping, double effective_mass, double effective_radius);
 
   static void check(const ContactParameters& parameters);  // throws InputError

@@ -155,53 +155,85 @@ double stiffness_lasting(double duration, const ContactParameters& p, double eff
 
 namespace {
 
+// The times in which a contact must be resolved, s.
+struct ContactTimes {
+  double normal;  // along the normal
+  double across;  // twice that of sliding and rolling, which are to be stable and need not be accurate
+  double shortest() const { return std::min(normal, across); }
+};
+
+// Sliding moves a sphere with 2/7 of its mass, m(1 + m R^2/I)^-1, against k_t; rolling turns it against a wall, which
+// is the faster of rolling_friction.hpp, with I_r = 7/5 m R^2 against 2.25 k_n (mu_r R)^2.
 template <typename Spring>
-double contact_time_of(const typename Spring::Coefficients& k, const ContactParameters& parameters, double mass,
-                       double radius) {
-  const Damping damping(Spring::damping_stiffness(k), parameters);
-  return Spring::contact_time(k, damping.coefficient(mass), mass, radius);
+ContactTimes contact_times_of(const typename Spring::Coefficients& k, const ContactParameters& p, double rolling,
+                              double mass, double radius) {
+  const Damping damping(Spring::damping_stiffness(k), p);
+  const double gamma = damping.coefficient(mass), zeta = gamma / damping.critical(mass);
+  const double sliding = std::max(std::sqrt(3.5 * Spring::stiffness_ratio(k)), 3.5 * p.tangential_damping * zeta);
+  const double turning = std::sqrt(2.25 / 1.4) * rolling * std::max(1.0, p.rolling_damping);
+  return {Spring::contact_time(k, gamma, mass, radius),
+          2.0 * Spring::contact_time(k, 0.0, mass, radius) / std::max(sliding, turning)};
 }
 
-void refuse_longer(double time_step, double contact_time, const ContactParameters& grain,
+void refuse_longer(double time_step, const ContactTimes& times, const ContactParameters& grain,
                    const ContactParameters& other) {
-  const double longest = contact_time / fewest_steps_per_contact;
+  const double longest = times.shortest() / fewest_steps_per_contact;
   if (!(time_step > 0.0))
     throw InputError(fmt::format("The time step of the grains is {:g} s; it must be positive.", time_step));
   if (time_step <= longest * (1.0 + rounding_of_a_step)) return;
   const std::string softer =
-      with_spring_law(grain.law, [&](auto spring) { return decltype(spring)::type::softer(grain, other); });
+      times.across < times.normal
+          ? "tangential stiffness, tangential damping or rolling friction"
+          : with_spring_law(grain.law, [&](auto spring) { return decltype(spring)::type::softer(grain, other); });
   throw InputError(
       fmt::format("The time step of the grains, {:g} s, is too long for their contacts: it must be at "
                   "most {:g} s, a {:g}th of the shortest contact time; use more sub-steps or a lower {}.",
                   time_step, longest, fewest_steps_per_contact, softer));
 }
 
+ContactTimes contact_times(const ContactParameters& p, double effective_mass, double effective_radius) {
+  return with_spring_law(p.law, [&](auto spring) {
+    using Spring = typename decltype(spring)::type;
+    return contact_times_of<Spring>(Spring::between(p, p), p, p.rolling_friction, effective_mass, effective_radius);
+  });
+}
+
+ContactTimes wall_contact_times(const ContactParameters& grain, const ContactParameters& wall, double mass,
+                                double radius) {
+  return with_spring_law(grain.law, [&](auto spring) {
+    using Spring = typename decltype(spring)::type;
+    return contact_times_of<Spring>(Spring::against_wall(grain, wall), wall, wall.wall_rolling_friction, mass, radius);
+  });
+}
+
 }  // namespace
 
 double contact_time(const ContactParameters& parameters, double effective_mass, double effective_radius) {
-  return with_spring_law(parameters.law, [&](auto spring) {
-    using Spring = typename decltype(spring)::type;
-    return contact_time_of<Spring>(Spring::between(parameters, parameters), parameters, effective_mass,
-                                   effective_radius);
-  });
+  return contact_times(parameters, effective_mass, effective_radius).normal;
 }
 
 double wall_contact_time(const ContactParameters& parameters, const ContactParameters& wall, double mass,
                          double radius) {
-  return with_spring_law(parameters.law, [&](auto spring) {
-    using Spring = typename decltype(spring)::type;
-    return contact_time_of<Spring>(Spring::against_wall(parameters, wall), wall, mass, radius);
-  });
+  return wall_contact_times(parameters, wall, mass, radius).normal;
+}
+
+double longest_step(const ContactParameters& parameters, double effective_mass, double effective_radius) {
+  return contact_times(parameters, effective_mass, effective_radius).shortest() / fewest_steps_per_contact;
+}
+
+double longest_wall_step(const ContactParameters& parameters, const ContactParameters& wall, double mass,
+                         double radius) {
+  return wall_contact_times(parameters, wall, mass, radius).shortest() / fewest_steps_per_contact;
 }
 
 void check_time_step(const ContactParameters& parameters, double effective_mass, double effective_radius,
                      double time_step) {
-  refuse_longer(time_step, contact_time(parameters, effective_mass, effective_radius), parameters, parameters);
+  refuse_longer(time_step, contact_times(parameters, effective_mass, effective_radius), parameters, parameters);
 }
 
 void check_wall_time_step(const ContactParameters& parameters, const ContactParameters& wall, double mass,
                           double radius, double time_step) {
-  refuse_longer(time_step, wall_contact_time(parameters, wall, mass, radius), parameters, wall);
+  refuse_longer(time_step, wall_contact_times(parameters, wall, mass, radius), parameters, wall);
 }
 
 }  // namespace thalweg::dem

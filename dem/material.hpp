@@ -114,11 +114,16 @@ double wall_contact_time(const ContactParameters& parameters, const ContactParam
 // Sub-steps a contact time needs at least.
 inline constexpr double fewest_steps_per_contact = 20.0;
 
+// The longest time step (s) of such contacts: a twentieth of the contact time, or a tenth of the time of sliding or
+// rolling against their springs and dashpots, if that is shorter.
+double longest_step(const ContactParameters& parameters, double effective_mass, double effective_radius);
+double longest_wall_step(const ContactParameters& parameters, const ContactParameters& wall, double mass,
+                         double radius);
+
 // By which a step may exceed its longest, relative: rounding of a quotient.
 inline constexpr double rounding_of_a_step = 1e-9;
 
-// Throws InputError if the time step (s) is longer than t_c/20 of a contact with this effective mass (kg) and, for
-// elastic spheres, effective radius (m).
+// Throws InputError if the time step (s) is longer than longest_step().
 void check_time_step(const ContactParameters& parameters, double effective_mass, double effective_radius,
                      double time_step);
 

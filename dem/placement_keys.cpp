@@ -37,7 +37,9 @@ void describe(SectionVisitor& visit, PlacementKeys& placement) {
        {PlacementPattern::dense, "dense", "the same up to 0.6: they push each other apart"}},
       {.meaning = "how the grains are spread over the region", .only_if = by_file ? of_none : spread_out});
   visit.integer("seed", placement.seed,
-                {.meaning = "seed of the random placement", .at_least = 0, .only_if = by_file ? of_none : spread_out});
+                {.meaning = "seed of the random placement; default: 1 of the first population, 2 of the second, ...",
+                 .at_least = 0,
+                 .only_if = by_file ? of_none : spread_out});
   visit.section("region", placement.region,
                 {.meaning = by_file ? "only the grains of the file with their centre in it"
                                     : "where the grains are put; default: the whole box",

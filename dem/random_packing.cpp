@@ -4,68 +4,143 @@
 #include "dem/sphere_cells.hpp"
 
 #include <algorithm>
-#include <numeric>
+#include <limits>
 #include <utility>
 
 namespace thalweg::dem {
-
 namespace {
 
-// Those of all ranks, on every rank.
-std::vector<Obstacle> known_to_all(const PlacingRanks& ranks, std::span<const Obstacle> known) {
-  struct Row {
-    std::int64_t number;
-    double position[3], radius;
-  };
-  std::vector<Row> rows;
-  for (const Obstacle& obstacle : known) {
-    const Vec3 at = ranks.box().wrapped(obstacle.sphere.position);
-    rows.push_back({obstacle.number, {at.x(), at.y(), at.z()}, obstacle.sphere.radius});
+// A place that a grain tries, or has been given.
+struct Trial {
+  std::int64_t number;
+  double radius, position[3];  // m, wrapped
+  bool fits;                   // it has been given the place
+
+  Sphere sphere() const { return {Vec3(position), radius}; }
+};
+
+// Trials after which to check whether grains still find places.
+constexpr std::int64_t trials_between_looks = 100'000;
+
+class PlacingTogether {
+public:
+  PlacingTogether(const PlacingRanks& ranks, const GrainsToPlace& grains, std::span<const Obstacle> obstacles,
+                  double largest_radius)
+      : ranks_(ranks), grains_(grains), largest_(largest_radius), placed_cells_(ranks.box(), largest_radius) {
+    for (const Obstacle& obstacle : obstacles)
+      placed_cells_.add({ranks.box().wrapped(obstacle.sphere.position), obstacle.sphere.radius});
   }
-  std::vector<Obstacle> all;
-  for (const Row& row : ranks.to_all(std::move(rows))) all.push_back({{Vec3(row.position), row.radius}, row.number});
-  return all;
-}
+
+  // Of the grains from this radius (m) up to another; whether all found a place.
+  bool place(double from, double below) {
+    std::vector<Trial> trials = first_trials(from, below);
+    tried_ = fitted_ = 0;
+    auto waiting = ranks_.sum(static_cast<std::int64_t>(trials.size()));
+    if (waiting == 0) return true;
+    for (unsigned attempt = 0; waiting > 0; ++attempt) {
+      if (attempt == most_attempts_at_random || hopeless()) return false;
+      trials = round(ranks_.to_knowing(trials), attempt);
+      const std::int64_t fitted = ranks_.sum(std::count_if(trials.begin(), trials.end(), &has_place));
+      tried_ += waiting;
+      fitted_ += fitted;
+      placed_by_all_ += fitted;
+      waiting -= fitted;
+    }
+    for (const Trial& trial : ranks_.to_knowing(trials)) take(trial);
+    return true;
+  }
+
+  // Those that this rank knows, in order.
+  std::vector<PlacedGrain> placed() {
+    std::sort(placed_.begin(), placed_.end());
+    return std::move(placed_);
+  }
+
+  std::int64_t placed_by_all() const { return placed_by_all_; }
+
+private:
+  std::vector<Trial> first_trials(double from, double below) const {
+    std::vector<Trial> trials;
+    const RowRange share = ranks_.share_of(grains_.count);
+    for (std::int64_t number = share.first; number < share.last; ++number)
+      if (const double radius = grains_.radius(number); radius >= from && radius < below)
+        trials.push_back(trial(number, radius, 0));
+    return trials;
+  }
+
+  static bool has_place(const Trial& trial) { return trial.fits; }
+
+  Trial trial(std::int64_t number, double radius, unsigned attempt) const {
+    Trial made{number, radius, {}, false};
+    Vec3::Map(made.position) = random_place(ranks_.box(), grains_, number, attempt);
+    return made;
+  }
+
+  // Takes note of the places that were given, and decides about the trials in this rank's block. Returns what came of
+  // these: given places, and the trials that come next.
+  std::vector<Trial> round(const std::vector<Trial>& known, unsigned attempt) {
+    SphereCells trying(ranks_.box(), largest_);
+    for (const Trial& trial : known) {
+      if (trial.fits)
+        take(trial);
+      else
+        trying.add(trial.sphere(), trial.number);
+    }
+    std::vector<Trial> next;
+    for (const Trial& tried : known) {
+      if (tried.fits || !ranks_.owns(Vec3(tried.position))) continue;
+      const auto goes_first = [&](std::int64_t other) { return other < tried.number; };
+      const bool fits = !placed_cells_.overlaps(tried.sphere()) && !trying.overlaps(tried.sphere(), goes_first) &&
+                        !ranks_.blocked(Vec3(tried.position), tried.radius);
+      next.push_back(fits ? tried : trial(tried.number, tried.radius, attempt + 1));
+      next.back().fits = fits;
+    }
+    return next;
+  }
+
+  void take(const Trial& trial) {
+    placed_cells_.add(trial.sphere());
+    placed_.push_back({trial.number, Vec3(trial.position)});
+  }
+
+  // Whether so few of the last trials fitted that a grain has no fair chance of a place.
+  bool hopeless() {
+    if (tried_ < trials_between_looks) return false;
+    const bool too_few = fitted_ * most_attempts_at_random < tried_;
+    tried_ = fitted_ = 0;
+    return too_few;
+  }
+
+  const PlacingRanks& ranks_;
+  const GrainsToPlace& grains_;
+  double largest_;  // m, radius
+  SphereCells placed_cells_;
+  std::vector<PlacedGrain> placed_;
+  std::int64_t placed_by_all_ = 0;
+  std::int64_t tried_ = 0, fitted_ = 0;  // by all ranks, since the last look
+};
 
 }  // namespace
-
-std::vector<PlacedGrain> placed_one_by_one(const PlacingRanks& ranks, const GrainsToPlace& grains,
-                                           std::span<const Obstacle> obstacles) {
-  const std::vector<Obstacle> all = known_to_all(ranks, obstacles);
-  if (!has_room_at_random(ranks.box(), grains)) throw too_many_at_random(grains, 0);
-  double largest = grains.largest_radius;
-  for (const Obstacle& obstacle : all) largest = std::max(largest, obstacle.sphere.radius);
-  SphereCells cells(ranks.box(), largest);
-  for (const Obstacle& obstacle : all) cells.add(obstacle.sphere);
-  std::vector<std::int64_t> order(static_cast<std::size_t>(grains.count));
-  std::iota(order.begin(), order.end(), std::int64_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return grains.radius(a) > grains.radius(b); });
-
-  std::vector<PlacedGrain> placed;
-  for (std::size_t n = 0; n < order.size(); ++n) {
-    Sphere sphere{Vec3::Zero(), grains.radius(order[n])};
-    unsigned attempt = 0;
-    do {
-      if (attempt == most_attempts_at_random) throw too_many_at_random(grains, static_cast<std::int64_t>(n));
-      sphere.position = random_place(ranks.box(), grains, order[n], attempt++);
-    } while (cells.overlaps(sphere) || ranks.blocked(sphere.position, sphere.radius));
-    cells.add(sphere);
-    if (ranks.knows(sphere.position)) placed.push_back({order[n], sphere.position});
-  }
-  std::sort(placed.begin(), placed.end());
-  return placed;
-}
 
 std::vector<PlacedGrain> random_packing(const PlacingRanks& ranks, const GrainsToPlace& grains,
                                         std::span<const Obstacle> obstacles) {
   check_region(ranks.box(), grains.region);
   if (grains.count == 0) return {};
-  const auto own = std::count_if(obstacles.begin(), obstacles.end(), [&](const Obstacle& obstacle) {
-    return ranks.owns(ranks.box().wrapped(obstacle.sphere.position));
-  });
-  constexpr std::int64_t few = 100'000;
-  const bool few_spheres = grains.count + ranks.sum(own) <= few;
-  return few_spheres ? placed_one_by_one(ranks, grains, obstacles) : placed_together(ranks, grains, obstacles);
+  double largest = grains.largest_radius, smallest = grains.largest_radius;
+  for (const Obstacle& obstacle : obstacles) largest = std::max(largest, obstacle.sphere.radius);
+  const RowRange share = ranks.share_of(grains.count);
+  for (auto number = share.first; number < share.last; ++number) smallest = std::min(smallest, grains.radius(number));
+  smallest = ranks.smallest(smallest);
+  PlacingTogether placing(ranks, grains, obstacles, ranks.largest(largest));
+  bool all = has_room_at_random(ranks.box(), grains);
+  constexpr double next_size = 0.95;
+  for (double below = std::numeric_limits<double>::infinity(), from = next_size * grains.largest_radius; all;
+       below = std::exchange(from, next_size * from)) {
+    all = placing.place(from, below);
+    if (from <= smallest) break;
+  }
+  if (!all) throw too_many_at_random(grains, placing.placed_by_all());
+  return placing.placed();
 }
 
 namespace {

@@ -38,19 +38,11 @@ struct PlacedGrain {
 // Collective. Throws InputError on every rank where the grains do not fit.
 //
 // Each grain is put anywhere, again and again until it is clear of all others and of the obstacles (random sequential
-// addition). Beyond about a third of the volume that gets hard. Up to 100,000 spheres are placed one by one, more
-// together.
+// addition). Beyond about a third of the volume that gets hard. Each rank decides about the places in its block. All
+// grains of a size class try at once, the largest first, each class down to 0.95 of the one before; of two in each
+// other's way the one with the lower number goes first.
 std::vector<PlacedGrain> random_packing(const PlacingRanks& ranks, const GrainsToPlace& grains,
                                         std::span<const Obstacle> obstacles);
-
-// Every rank places all grains, large ones first, among all obstacles.
-std::vector<PlacedGrain> placed_one_by_one(const PlacingRanks& ranks, const GrainsToPlace& grains,
-                                           std::span<const Obstacle> obstacles);
-
-// Each rank decides about the places in its block. All grains of a size class try at once, the largest first, each
-// class down to 0.95 of the one before; of two in each other's way the one with the lower number goes first.
-std::vector<PlacedGrain> placed_together(const PlacingRanks& ranks, const GrainsToPlace& grains,
-                                         std::span<const Obstacle> obstacles);
 
 // The same for beds and suspensions that fill up to 0.6 of the volume: grains start at random and are pushed apart, in
 // proportion to their overlaps, until none overlap (after W. S. Jodrey and E. M. Tory, Phys. Rev. A 32 (1985) 2347).

@@ -39,6 +39,8 @@ struct SpringDashpot {
   // N/m, k of the dashpot 2 zeta sqrt(k m*) with the damping ratio zeta of material.hpp.
   static double damping_stiffness(const Coefficients& k) { return k.stiffness; }
 
+  static double stiffness_ratio(const Coefficients& k) { return k.tangential_stiffness / k.stiffness; }  // k_t/k_n
+
   // s, of m* (kg) with the dashpot (kg/s).
   static double contact_time(const Coefficients& k, double damping, double effective_mass, double effective_radius);
 

@@ -46,6 +46,8 @@ void fill_in_grains(Case& c, const io::YamlDocument& document, const KnownBeds& 
       for (int axis = 0; axis < 3; ++axis)
         if (region->upper[axis] <= c.domain.size[axis])
           region->upper[axis] = std::min(region->upper[axis], box.size[axis]);
+    // Of their own, lest grain n of all of them be put at the same place.
+    if (!document.find(key + ".placement.seed")) c.grains[n].placement.seed = static_cast<std::int64_t>(n) + 1;
     std::optional<Bed> bed;
     if (std::optional<std::string>& file = c.grains[n].placement.file) {
       const std::filesystem::path path = absolute_path(*file, document);

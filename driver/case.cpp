@@ -200,27 +200,55 @@ std::vector<std::size_t> free_populations(const Case& c) {
   return free.empty() ? all : free;
 }
 
-double shortest_contact(const Case& c) {
-  const bool linear = c.contact.law == dem::Law::linear;
+namespace {
+
+// Calls between(material, effective mass, effective radius) and against_wall(material, wall, mass, radius) for the
+// lightest of each population that is free; kg, m.
+template <typename Between, typename AgainstWall>
+void for_each_lightest(const Case& c, Between between, AgainstWall against_wall) {
   const std::vector<dem::ContactParameters> materials = dem::materials_of(c.contact, c.grains);
   const std::optional<dem::ContactParameters> walls = dem::wall_material_of(c.contact);
-  double shortest = std::numeric_limits<double>::infinity();
   for (const std::size_t p : free_populations(c)) {
     const dem::ContactParameters& own = materials[static_cast<std::size_t>(dem::material_of(c.grains, p))];
     const double mass = c.grains[p].lightest_mass(), radius = 0.5 * c.grains[p].smallest_diameter();
-    // pi/omega_0, or pi/beta of a dashpot that is faster than the spring (dem/material.hpp).
-    const auto spring = [](const dem::ContactParameters& material, double effective) {
-      return std::min(std::numbers::pi * std::sqrt(effective / material.normal_stiffness),
-                      2.0 * std::numbers::pi * effective / dem::Damping(material).coefficient(effective));
-    };
-    shortest = std::min(shortest, linear ? spring(own, 0.5 * mass) : dem::contact_time(own, 0.5 * mass, 0.5 * radius));
-    if (walls)
-      shortest = std::min(shortest, linear ? spring(*walls, mass) : dem::wall_contact_time(own, *walls, mass, radius));
+    between(own, 0.5 * mass, 0.5 * radius);
+    if (walls) against_wall(own, *walls, mass, radius);
   }
+}
+
+}  // namespace
+
+double shortest_contact(const Case& c) {
+  const bool linear = c.contact.law == dem::Law::linear;
+  double shortest = std::numeric_limits<double>::infinity();
+  // pi/omega_0, or pi/beta of a dashpot that is faster than the spring (dem/material.hpp).
+  const auto spring = [](const dem::ContactParameters& material, double effective) {
+    return std::min(std::numbers::pi * std::sqrt(effective / material.normal_stiffness),
+                    2.0 * std::numbers::pi * effective / dem::Damping(material).coefficient(effective));
+  };
+  for_each_lightest(
+      c,
+      [&](const dem::ContactParameters& own, double mass, double radius) {
+        shortest = std::min(shortest, linear ? spring(own, mass) : dem::contact_time(own, mass, radius));
+      },
+      [&](const dem::ContactParameters& own, const dem::ContactParameters& wall, double mass, double radius) {
+        shortest = std::min(shortest, linear ? spring(wall, mass) : dem::wall_contact_time(own, wall, mass, radius));
+      });
   return shortest;
 }
 
-double longest_contact_step(const Case& c) { return shortest_contact(c) / dem::fewest_steps_per_contact; }
+double longest_contact_step(const Case& c) {
+  double longest = shortest_contact(c) / dem::fewest_steps_per_contact;
+  for_each_lightest(
+      c,
+      [&](const dem::ContactParameters& own, double mass, double radius) {
+        longest = std::min(longest, dem::longest_step(own, mass, radius));
+      },
+      [&](const dem::ContactParameters& own, const dem::ContactParameters& wall, double mass, double radius) {
+        longest = std::min(longest, dem::longest_wall_step(own, wall, mass, radius));
+      });
+  return longest;
+}
 
 double longest_lubrication_step(const Case& c) {
   if (!has_fluid(c) || !c.coupling.lubrication) return std::numeric_limits<double>::infinity();

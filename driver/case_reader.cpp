@@ -108,7 +108,8 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
     check_box(c, document);
     complete_contacts(c);
   }
-  if (!has_fluid(c) && !c.run.time_step) c.run.time_step = shortest_contact(c) / steps_per_contact;
+  if (!has_fluid(c) && !c.run.time_step)
+    c.run.time_step = std::min(shortest_contact(c) / steps_per_contact, longest_contact_step(c));
   for (std::optional<std::string>* source : {&c.initial.from.run, &c.initial.from.grains, &c.initial.from.fluid})
     if (*source && !(*source)->empty())
       *source = (std::filesystem::absolute(path).parent_path() / **source).lexically_normal().string();

@@ -54,10 +54,15 @@ void check_room(const Case& c, const io::YamlDocument& document) {
 void check_contact_steps(const Case& c, const io::YamlDocument& document) {
   const double longest = longest_contact_step(c), step = grain_time_step(c);
   if (step <= longest * (1.0 + dem::rounding_of_a_step)) return;
-  const std::string reason = fmt::format(
-      "a step of the grains of {:.4g} s is longer than 1/20 of their shortest contact "
-      "({:.4g} s)",
-      step, shortest_contact(c));
+  const bool by_collisions = longest == shortest_contact(c) / dem::fewest_steps_per_contact;
+  const std::string reason =
+      by_collisions
+          ? fmt::format("a step of the grains of {:.4g} s is longer than 1/20 of their shortest contact ({:.4g} s)",
+                        step, shortest_contact(c))
+          : fmt::format(
+                "a step of the grains of {:.4g} s is too long for contact.tangential_stiffness, "
+                "tangential_damping, rolling_friction or rolling_damping",
+                step);
   if (!has_fluid(c))
     throw document.error("run.time_step", fmt::format("{}; give at most {} s", reason, at_most_text(longest, 3)));
   throw document.error(sub_steps_key,

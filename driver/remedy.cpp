@@ -82,8 +82,9 @@ Remedy with_grain_steps(const Case& c, Remedy remedy) {
   if (after.grains.empty()) return remedy;
   if (!has_fluid(after)) {
     if (grain_time_step(after) > longest_contact_step(after))
-      remedy.push_back(number_change("run.time_step", shortest_contact(after) / dry_steps_per_contact, 3,
-                                     Rounding::down, [](Case& other, double step) { other.run.time_step = step; }));
+      remedy.push_back(number_change(
+          "run.time_step", std::min(shortest_contact(after) / dry_steps_per_contact, longest_contact_step(after)), 3,
+          Rounding::down, [](Case& other, double step) { other.run.time_step = step; }));
   } else if (grain_steps(after) < sub_steps_needed(after)) {
     remedy.push_back(word_change("coupling.grain_steps_per_fluid_step", "auto",
                                  [](Case& other) { other.filled_in.grain_steps = true; }));

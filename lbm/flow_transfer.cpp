@@ -134,20 +134,17 @@ private:
 }  // namespace
 
 template <typename Real>
-void transfer_flow(Fluid<Real>& fluid, ArchiveReader& archive, double velocity_unit, const Vec3& force) {
+void transfer_flow(Fluid<Real>& fluid, ArchiveReader& archive, double velocity_unit) {
   const SavedFlow saved(fluid, archive);
-  fluid.initialise(
-      [&](const Vec3& centre) {
-        FluidState s =
-            saved.at({static_cast<int>(centre.x()), static_cast<int>(centre.y()), static_cast<int>(centre.z())});
-        s.density_deviation *= velocity_unit * velocity_unit;
-        s.velocity *= velocity_unit;
-        return s;
-      },
-      force);
+  fluid.initialise([&](const Vec3& centre) {
+    FluidState s = saved.at({static_cast<int>(centre.x()), static_cast<int>(centre.y()), static_cast<int>(centre.z())});
+    s.density_deviation *= velocity_unit * velocity_unit;
+    s.velocity *= velocity_unit;
+    return s;
+  });
 }
 
-template void transfer_flow(Fluid<float>&, ArchiveReader&, double, const Vec3&);
-template void transfer_flow(Fluid<double>&, ArchiveReader&, double, const Vec3&);
+template void transfer_flow(Fluid<float>&, ArchiveReader&, double);
+template void transfer_flow(Fluid<double>&, ArchiveReader&, double);
 
 }  // namespace thalweg::lbm

@@ -65,7 +65,8 @@ Fluid<Real>::Fluid(const Decomposition& decomposition, MPI_Comm communicator, co
 }
 
 template <typename Real>
-void Fluid<Real>::initialise(const std::function<FluidState(const Vec3&)>& state, const Vec3& force) {
+void Fluid<Real>::initialise(const std::function<FluidState(const Vec3&)>& state) {
+  const Vec3& force = carried_force_;
   populations_.set_arrangement(Arrangement::swapped);
   walls_.forget_sweep();
   for_each_cell(indexing(), [&](std::ptrdiff_t cell, const Index3& at) {

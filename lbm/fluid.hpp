@@ -42,9 +42,9 @@ public:
   Fluid(const Decomposition& decomposition, MPI_Comm communicator, const CollisionParameters& parameters,
         const FaceConditions& faces);
 
-  // Sets every cell to the equilibrium of the given state; the argument is the cell's centre in global lattice units.
-  // force: density of a force whose half the populations carry, as a collision leaves it.
-  void initialise(const std::function<FluidState(const Vec3&)>& state, const Vec3& force = Vec3::Zero());
+  // Sets every cell to the equilibrium of the given state, with half of carried_force(), as a collision leaves it; the
+  // argument is the cell's centre in global lattice units.
+  void initialise(const std::function<FluidState(const Vec3&)>& state);
 
   // The force density of the collisions to come, the same everywhere. A caller who changes it in time must set it again
   // after load(), and then carry_force().

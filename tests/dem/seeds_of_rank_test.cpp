@@ -110,7 +110,7 @@ TEST(SeedsOfRank, DenselyPackedAmongOthersAreTheirShareOfAllSeeds) {
     expect_share_of_all({given, dense}, 3, decomposition);
 }
 
-// Grains too many to be placed by every rank alone, here few: two sizes among obstacles, a quarter of the volume.
+// Two sizes at random among obstacles, a quarter of the volume.
 TEST(SeedsOfRank, PlacedTogetherAreThoseOfOneRank) {
   const Decomposition decomposition = shared_box();
   const PeriodicBox box = decomposition.box();
@@ -121,8 +121,8 @@ TEST(SeedsOfRank, PlacedTogetherAreThoseOfOneRank) {
   std::vector<Obstacle> known;
   for (const Obstacle& obstacle : obstacles)
     if (together.knows(obstacle.sphere.position)) known.push_back(obstacle);
-  const std::vector<PlacedGrain> all = placed_together(PlacingRanks(box), grains, obstacles),
-                                 mine = placed_together(together, grains, known);
+  const std::vector<PlacedGrain> all = random_packing(PlacingRanks(box), grains, obstacles),
+                                 mine = random_packing(together, grains, known);
   ASSERT_EQ(all.size(), 720u);
   auto here = mine.begin();
   for (const PlacedGrain& grain : all) {
@@ -145,7 +145,7 @@ TEST(SeedsOfRank, TooManyPlacedTogetherAreRefusedOnAllRanks) {
   const Decomposition decomposition = shared_box();
   const GrainsToPlace grains{whole(decomposition.box()), 1100, [](std::int64_t) { return 2.5e-3; }, 2.5e-3, 0.0, 7};
   const PlacingRanks ranks(decomposition.box(), MPI_COMM_WORLD, decomposition, reach);
-  EXPECT_THROW(placed_together(ranks, grains, {}), InputError);
+  EXPECT_THROW(random_packing(ranks, grains, {}), InputError);
 }
 
 // All ranks say how many did.
