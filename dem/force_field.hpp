@@ -29,7 +29,7 @@ public:
   // moves further than half of it before the next call.
   virtual void find_neighbours(const GrainStore& store, double skin, const Clumps& clumps) = 0;
   // After the contacts: sets the loads of owned grains and clumps, in the store and, with the body forces (N) added, in
-  // `grains` and `clumps`. May stop grains, and change the contact forces of those that it stops.
+  // `grains` and `clumps`.
   virtual void act(MovingGrains& grains, GrainStore& store, Clumps& clumps, std::span<const Vec3> body_force) = 0;
 
   // A step of the system has ended (time: s). Collective, as are the next three.

@@ -91,6 +91,8 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
   check_integrator();
   check_prescribed_speed();
   planes_ = parameters_.walls;
+  for (std::size_t w = 0; w < planes_.size(); ++w)
+    if (planes_[w].rough) rough_floor_ = w;
   if (walls_change_) place_walls(0.0, 0.0);
   check_range();
   build_dependents({});
@@ -359,6 +361,22 @@ void GrainDynamics::evaluate_forces(double time_step) {
   evaluate_contacts(moving_, list_, surroundings(), materials_, store_.material, time_step);
   if (parameters_.lubrication) add_lubrication(moving_, list_, surroundings(), *parameters_.lubrication);
   if (parameters_.field) parameters_.field->act(moving_, store_, clumps_, body_force_);
+  if (rough_floor_) hold_on_rough_floor();
+}
+
+void GrainDynamics::hold_on_rough_floor() {
+  moving_.forget_stops();
+  const auto touches = [this](std::size_t s) {
+    return touches_rough_floor(moving_[s].position[2], moving_[s].position[3]);
+  };
+  for (std::size_t s = 0; s < store_.owned; ++s)
+    if (store_.clump[s] < 0 && store_.inverse_mass[s] > 0.0 && touches(s)) moving_.stop_along_floor(s);
+  for (std::size_t n = 0; n < clumps_.size(); ++n) {
+    bool held = false;
+    for (std::size_t s = clumps_.first_slot(n), end = s + clumps_.member_count(n); s < end; ++s)
+      held = held || touches(s);
+    if (held && !holds_translation(clumps_[n].motion)) clumps_.stop_along_floor(n, moving_);
+  }
 }
 
 void GrainDynamics::place_walls(double time, double time_of_velocity) {

@@ -244,6 +244,10 @@ private:
   void compute_body_forces();
   std::vector<Vec3> places_in_clumps() const;
   void evaluate_forces(double time_step);
+  bool touches_rough_floor(double z, double radius) const { return z - planes_[*rough_floor_].point.z() < radius; }
+  void hold_on_rough_floor();
+  std::vector<char> held_on_rough_floor() const;
+  void for_each_hold(std::span<const char> chosen, const ContactSource::ContactEndVisitor& visit) const;
   template <typename Work>
   void timed(int phase, Work&& work);
   void advance_by_verlet(int sub_steps);
@@ -259,8 +263,9 @@ private:
   std::int64_t global_count_ = 0, clump_count_ = 0, member_count_ = 0;
   std::int64_t rebuilds_ = 0;
 
-  std::int64_t steps_done_ = 0;  // sub-steps since the start of the run
-  std::vector<Plane> planes_;    // the walls where they are now
+  std::int64_t steps_done_ = 0;             // sub-steps since the start of the run
+  std::vector<Plane> planes_;               // the walls where they are now
+  std::optional<std::size_t> rough_floor_;  // which of them, if one is
   std::vector<PlacedSolid> solids_;
   bool walls_change_, solids_change_;
   Assemblies assemblies_;

@@ -73,10 +73,42 @@ std::vector<Vec3> GrainDynamics::places_in_clumps() const {
   return from_centre;
 }
 
+// Which owned grains the rough floor holds, members of clumps with all of their clump.
+std::vector<char> GrainDynamics::held_on_rough_floor() const {
+  std::vector<char> held(store_.owned, 0);
+  const auto touches = [this](std::size_t s) { return touches_rough_floor(store_.position[s].z(), store_.radius[s]); };
+  for (std::size_t s = 0; s < store_.owned; ++s)
+    held[s] = store_.clump[s] < 0 && store_.inverse_mass[s] > 0.0 && touches(s);
+  for (std::size_t n = 0; n < clumps_.size(); ++n) {
+    if (holds_translation(clumps_[n].motion)) continue;
+    const std::size_t first = clumps_.first_slot(n), end = first + clumps_.member_count(n);
+    bool any = false;
+    for (std::size_t s = first; s < end; ++s) any = any || touches(s);
+    std::fill(held.begin() + static_cast<std::ptrdiff_t>(first), held.begin() + static_cast<std::ptrdiff_t>(end), any);
+  }
+  return held;
+}
+
+// The forces with which the rough floor holds grains along it: what their contacts leave of contact_force.
+void GrainDynamics::for_each_hold(std::span<const char> chosen, const ContactSource::ContactEndVisitor& visit) const {
+  if (!rough_floor_) return;
+  const std::vector<char> held = held_on_rough_floor();
+  std::vector<Vec3> hold(store_.contact_force.begin(),
+                         store_.contact_force.begin() + static_cast<std::ptrdiff_t>(store_.owned));
+  for_each_contact_end(store_, list_, surroundings(), materials_, held,
+                       [&](std::size_t slot, const ContactEnd& end) { hold[slot] -= end.force; });
+  for (std::size_t s = 0; s < store_.owned; ++s) {
+    if (!held[s] || (!chosen.empty() && !chosen[s])) continue;
+    const double depth = store_.position[s].z() - planes_[*rough_floor_].point.z();
+    visit(s, {Vec3(0.0, 0.0, -depth), Vec3(hold[s].x(), hold[s].y(), 0.0), -1 - static_cast<GlobalId>(*rough_floor_),
+              Vec3(0.0, 0.0, -depth)});
+  }
+}
+
 void GrainDynamics::for_each_contact(
     const std::function<void(std::size_t slot, const Vec3& arm, const Vec3& force)>& visit) const {
   const std::vector<Vec3> from_centre = places_in_clumps();
-  for_each_contact_end(store_, list_, surroundings(), materials_, {}, [&](std::size_t slot, const ContactEnd& end) {
+  for_each_contact_of({}, [&](std::size_t slot, const ContactEnd& end) {
     visit(slot, from_centre.empty() ? end.arm : Vec3(end.arm + from_centre[slot]), end.force);
   });
 }
@@ -94,11 +126,13 @@ void GrainDynamics::for_each_lubrication(
 void GrainDynamics::for_each_contact_of(
     std::span<const char> chosen, const std::function<void(std::size_t slot, const ContactEnd& end)>& visit) const {
   for_each_contact_end(store_, list_, surroundings(), materials_, chosen, visit);
+  for_each_hold(chosen, visit);
 }
 
 void GrainDynamics::for_each_wall_force(
     const std::function<void(std::size_t slot, const ContactEnd& end)>& visit) const {
   for_each_wall_contact(store_, list_, surroundings(), materials_, visit);
+  for_each_hold({}, visit);
   if (parameters_.lubrication)
     for_each_wall_lubrication(store_, list_, surroundings(), *parameters_.lubrication, visit);
 }

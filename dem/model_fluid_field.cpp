@@ -37,34 +37,21 @@ ModelForce ModelFluidField::force_on(std::size_t slot, double radius, const Vec3
 
 void ModelFluidField::act(MovingGrains& grains, GrainStore& store, Clumps& clumps, std::span<const Vec3> body_force) {
   for (const std::uint32_t s : fraction_.update(grains, clumps, store)) update_flow(s);
-  grains.forget_stops();
   for (std::size_t s = 0; s < store.owned; ++s) {
     if (store.clump[s] >= 0) continue;
     const MovingGrain& grain = grains[s];
     const double radius = grain.position[3];
-    const bool held = parameters_.rough_floor && store.inverse_mass[s] > 0.0 && grain.position[2] < radius;
-    Vec3 velocity = vector_of(grain.velocity);
-    if (held) velocity.x() = velocity.y() = 0.0;
-    const ModelForce f = force_on(s, radius, velocity);
+    const ModelForce f = force_on(s, radius, vector_of(grain.velocity));
     store.load_force[s] = Vec3(f.x, f.y, f.z);
     const Vec3 load = store.load_force[s] + body_force[s];
     grains.set_load(s, load);
-    if (held) grains.stop_along_floor(s);
   }
-  for (std::size_t n = 0; n < clumps.size(); ++n) act_on_clump(n, grains, store, clumps);
+  for (std::size_t n = 0; n < clumps.size(); ++n) act_on_clump(n, store, clumps);
 }
 
-void ModelFluidField::act_on_clump(std::size_t n, MovingGrains& grains, GrainStore& store, Clumps& clumps) const {
-  const std::size_t first = clumps.first_slot(n), end = first + clumps.member_count(n);
-  const auto touches_floor = [&grains](std::size_t s) { return grains[s].position[2] < grains[s].position[3]; };
-  bool held = false;
-  if (parameters_.rough_floor && !holds_translation(clumps[n].motion))
-    for (std::size_t s = first; s < end; ++s) held = held || touches_floor(s);
-  Vec3 velocity = clumps[n].velocity;
-  if (held) velocity.x() = velocity.y() = 0.0;
-  const ModelForce f = force_on(first, clumps.radius_of(clumps[n]), velocity);
+void ModelFluidField::act_on_clump(std::size_t n, GrainStore& store, Clumps& clumps) const {
+  const ModelForce f = force_on(clumps.first_slot(n), clumps.radius_of(clumps[n]), clumps[n].velocity);
   clumps.set_central_force(n, Vec3(f.x, f.y, f.z), store);
-  if (held) clumps.stop_along_floor(n, grains);
 }
 
 void ModelFluidField::step_ended(const GrainDynamics& grains, double time) {

@@ -1,5 +1,5 @@
-// The force of model_fluid.hpp on every grain, as a force field, with a floor that no grain slides on. On a clump it
-// acts at the centre, as on a sphere (disk) of its volume.
+// The force of model_fluid.hpp on every grain, as a force field. On a clump it acts at the centre, as on a sphere
+// (disk) of its volume.
 #pragma once
 
 #include "dem/force_field.hpp"
@@ -18,7 +18,6 @@ struct ModelFluidParameters {
   VelocityProfile profile;
   SolidFractionParameters solid_fraction;
   std::optional<ShieldsRampParameters> ramp;  // else the Shields number is constant
-  bool rough_floor = true;                    // grains that touch the floor at z = 0 do not move along it
 };
 
 class ModelFluidField final : public ForceField {
@@ -43,7 +42,7 @@ private:
   void update_coefficients();
   void update_flow(std::size_t slot);
   ModelForce force_on(std::size_t slot, double radius, const Vec3& velocity) const;
-  void act_on_clump(std::size_t n, MovingGrains& grains, GrainStore& store, Clumps& clumps) const;
+  void act_on_clump(std::size_t n, GrainStore& store, Clumps& clumps) const;
 
   ModelFluidParameters parameters_;
   ModelFluidCoefficients coefficients_;

@@ -144,7 +144,6 @@ ModelFluidParameters model_fluid_parameters(const ModelFluidKeys& fluid, const M
   parameters.numbers = fluid.numbers();
   parameters.scales = scales;
   parameters.profile = profile_of(fluid, disks);
-  parameters.rough_floor = fluid.rough_floor;
   parameters.solid_fraction.largest_radius = 0.5 * mean.largest_diameter;
   parameters.solid_fraction.margin = fluid.margin.value_or(mean.largest_diameter);
   parameters.solid_fraction.tolerance = fluid.tolerance * mean.diameter;

@@ -35,6 +35,9 @@ struct Plane {
   Vec3 velocity = Vec3::Zero();   // m/s
   Oscillation oscillation;        // on top of the velocity
   std::optional<PlateExtent> plate;
+  // Of a floor at rest, whose normal is +z: a free grain that touches it does not move along it, but may turn, as if a
+  // force at its centre held it. At most one wall.
+  bool rough = false;
 
   WallView seen_from(const Vec3& position, const PeriodicBox& box) const {
     const Vec3 from_point = position - point;

@@ -33,10 +33,11 @@ dem::LubricationParameters lubrication_parameters(const Case& c, std::size_t wal
 std::vector<dem::Plane> planes_of(const Case& c, const PeriodicBox& box, const dem::ContactParameters& contact) {
   std::vector<dem::Plane> planes = dem::face_planes(box, contact);
   std::size_t number = 0;
-  for (const coupling::FaceKeys& face :
-       c.domain.faces) {  // face_planes() has the same order and leaves out the periodic ones
+  for (std::size_t n = 0; n < c.domain.faces.size(); ++n) {
+    const coupling::FaceKeys& face = c.domain.faces[n];
     if (face.type == lbm::FaceType::periodic) continue;
-    dem::Plane& plane = planes[number++];
+    dem::Plane& plane = planes[number++];  // face_planes() has the same order and leaves out the periodic ones
+    plane.rough = n == bottom && c.system == SystemKind::model_fluid && c.model_fluid.rough_floor;
     if (face.type != lbm::FaceType::moving) continue;
     plane.velocity = face.velocity;
     plane.oscillation = face.oscillation.value_or(dem::Oscillation{});

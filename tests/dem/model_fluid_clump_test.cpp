@@ -53,6 +53,7 @@ GrainParameters grains_in(const ModelFluidParameters& fluid, const Decomposition
   p.sub_steps = 50;
   p.skin = glass_radius;
   p.walls = face_planes(box.box(), p.contact);
+  p.walls[0].rough = true;
   p.body_force = [](double mass, double /*radius*/) { return Vec3(0.0, 0.0, -mass * gravity); };
   p.field = std::make_shared<ModelFluidField>(box.box(), fluid);
   p.attached_width = p.field->attached_columns();
@@ -161,6 +162,37 @@ TEST(ModelFluidClump, ThatTouchesTheFloorDoesNotMoveAlongIt) {
   EXPECT_LT((grains.clumps()[0].centre - resting.position).norm(), 1e-6);
   EXPECT_LT(std::abs(grains.clumps()[0].velocity.x()), 1e-12);
   EXPECT_GT(grains.clumps()[1].velocity.x(), 0.01);
+}
+
+// A floor without friction that holds grains along it carries what the fluid drags them with, of a clump and of a
+// sphere that lean on each other; and a grain's contacts balance its load.
+TEST(ModelFluidClump, OnTheFloorHandsItsDragToIt) {
+  const Decomposition plane({20, 2, 20}, 2.5e-3, {true, true, false}, {1, 1, 1});
+  const auto shape = ring();
+  ModelFluidParameters parameters = fluid(shape->equivalent_radius(), true, 0.0);
+  allow_clumps(parameters, *shape);
+  for (const double friction : {0.0, 0.5}) {
+    const double half = 0.05 * std::numbers::pi, lowest = 0.6 * 2.4e-3 * std::cos(std::numbers::pi / 5.0) + 1.2e-3;
+    ClumpSeed clump = glass_clump(1, shape, Vec3(0.02, 0.0025, lowest + 1e-8));
+    clump.orientation = {std::cos(half), 0.0, -std::sin(half), 0.0};
+    GrainSeed sphere = glass_sphere(0, Vec3(0.02 - 5.2e-3, 0.0025, glass_radius + 1e-8));
+    sphere.thickness = thickness;
+    GrainParameters p = grains_in(parameters, plane);
+    p.contact.friction = p.contact.wall_friction = friction;
+    p.walls[0].friction = friction;
+    GrainDynamics grains(plane, MPI_COMM_SELF, p, {sphere}, {clump});
+    for (int n = 0; n < 100; ++n) test::step(grains);
+    double drag = 0.0;
+    for (const Vec3& load : grains.store().load_force) drag += load.x();
+    ASSERT_GT(drag, 0.0);
+    EXPECT_NEAR(grains.wall_forces()[0].x(), drag, 1e-9 * drag) << friction;
+    Vec3 on_sphere = Vec3::Zero();
+    grains.for_each_contact([&](std::size_t slot, const Vec3&, const Vec3& force) {
+      if (grains.store().id[slot] == 0) on_sphere += force;
+    });
+    const std::size_t slot = grains.store().id[0] == 0 ? 0 : grains.store().owned - 1;
+    EXPECT_NEAR(on_sphere.x(), -grains.store().load_force[slot].x(), 1e-9 * drag) << friction;
+  }
 }
 
 // What is held regardless of forces is so by the floor as well: a plate of grains that is drawn along it moves on.

@@ -28,7 +28,7 @@ ModelFluidParameters slow_fluid(double gravity) {
 }
 
 GrainDynamics sphere_in(const ModelFluidParameters& fluid, const Vec3& place, const Vec3& velocity, double fall,
-                        double time_step) {
+                        double time_step, bool rough_floor = false) {
   const Decomposition box = test::cube();
   GrainParameters p;
   p.contact = test::glass(0.5);
@@ -39,6 +39,7 @@ GrainDynamics sphere_in(const ModelFluidParameters& fluid, const Vec3& place, co
   p.sub_steps = 1;
   p.skin = glass_radius;
   p.walls = face_planes(box.box(), p.contact);
+  p.walls[0].rough = rough_floor;
   p.body_force = [fall](double mass, double /*radius*/) { return Vec3(0.0, 0.0, -mass * fall); };
   p.field = std::make_shared<ModelFluidField>(box.box(), fluid);
   p.attached_width = p.field->attached_columns();
@@ -69,9 +70,8 @@ TEST(ModelFluidGear, GivesAGrainTheSpeedOfTheFluid) {
 
 // It comes down on the floor with a speed along it, and stays where it has touched it.
 TEST(ModelFluidGear, HoldsAGrainOnTheFloor) {
-  ModelFluidParameters fluid = slow_fluid(9.81);
-  fluid.rough_floor = true;
-  GrainDynamics grains = sphere_in(fluid, Vec3(0.01, 0.02, glass_radius + 1e-5), Vec3(0.05, 0.0, -0.02), 9.81, 1e-6);
+  GrainDynamics grains =
+      sphere_in(slow_fluid(9.81), Vec3(0.01, 0.02, glass_radius + 1e-5), Vec3(0.05, 0.0, -0.02), 9.81, 1e-6, true);
   const double surely = glass_radius - 1e-7;  // more than it moves in a step
   while (grains.store().position[0].z() > surely) test::step(grains);
   const Vec3 touched = grains.store().position[0];
