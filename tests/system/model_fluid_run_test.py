@@ -167,12 +167,12 @@ output: {series: {every: 0.1}, checkpoint: {every: 2, keep: 3}}
     def test_a_rising_shields_number_on_any_ranks_and_after_a_restart(self):
         self.run_well("run", self.case, *self.RAMP, "--out", "one", "--until", "40")
         self.assertGreater(self.summary("one")["figures"]["shields_number"], 0.055)   # it has risen
-        self.run_well("run", self.case, *self.RAMP, "--out", "half", "--until", "25", ranks=2)
+        self.run_well("run", self.case, *self.RAMP, "--out", "half", "--until", "34", ranks=2)
         self.run_well("run", self.case, *self.RAMP, "--out", "half", "--restart", "half", "--until", "40")
         self.assert_same_bed("one", "half")
 
     def test_a_restart_with_larger_steps_goes_on_from_the_shields_number_reached(self):
-        self.run_well("run", self.case, *self.RAMP, "--out", "run", "--until", "40")
+        self.run_well("run", self.case, *self.RAMP, "--out", "run", "--until", "36")
         reached = self.summary("run")["figures"]["shields_number"]
         self.assertGreater(reached, 0.055)
         self.run_well("run", self.case, *self.RAMP, "--set", "model_fluid.ramp.step=0.5", "--out", "run", "--restart", "run",
