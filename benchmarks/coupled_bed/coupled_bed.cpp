@@ -1,8 +1,7 @@
 // Speed of the whole coupled step on a settled bed under flowing water, everything included.
 //
 //   mpirun -n 2 coupled_bed [--box bed|box|flume|quickstart] [--steps N] [--flow N] [--storage single|double]
-//   [--published]
-//                                 [--narrow-gaps no_slip|slip]
+//                           [--published]
 //
 // bed: 240 x 80 x 200 cells and 2884 grains of 10 cells; box: 160 x 160 x 128 cells and 2250 grains of 10 cells; flume:
 // 147 x 13 x 184 cells and 969 grains of 6.13 cells between law-of-the-wall sides; quickstart: that case, 72 x 13 x 90
