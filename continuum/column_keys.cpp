@@ -76,6 +76,11 @@ void describe(SectionVisitor& visit, Closures& closures) {
 
 void describe(SectionVisitor& visit, CreepParameters& creep) {
   visit.real("nonlocal_amplitude", creep.nonlocal_amplitude, {.meaning = "A", .above = 0.0});
+  visit.real("rate_coefficient", creep.rate_coefficient,
+             {.meaning = "b of the fluidity; default: (mu_2 - mu_1)/friction_scale, with which an even flow obeys the "
+                         "flow rule of the grains",
+              .above = 0.0,
+              .example = 0.066});
   visit.real("upper", creep.upper,
              {.unit = "diameters",
               .meaning = "depth below the surface where the fluidity is given",

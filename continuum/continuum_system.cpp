@@ -110,8 +110,10 @@ static BedStress stress_below(const SystemParameters& parameters) {
 }
 
 static Creep creep_under(const SystemParameters& parameters, const BedStress& stress) {
-  return creep_of(parameters.column.closures.rheology, parameters.column.mixture, parameters.creep->nonlocal_amplitude,
-                  stress, parameters.creep->surface_fluidity);
+  const Rheology& rheology = parameters.column.closures.rheology;
+  const CreepParameters& creep = *parameters.creep;
+  return creep_of(rheology, parameters.column.mixture, creep.nonlocal_amplitude,
+                  creep.rate_coefficient.value_or(local_rate_coefficient(rheology)), stress, creep.surface_fluidity);
 }
 
 Creep creep_below(const SystemParameters& parameters) { return creep_under(parameters, stress_below(parameters)); }

@@ -20,7 +20,8 @@ struct Reaction {
   std::vector<double> linear, quadratic;
 };
 
-Reaction reaction_of(const Rheology& rheology, const Mixture& mixture, const BedStress& stress) {
+Reaction reaction_of(const Rheology& rheology, const Mixture& mixture, double rate_coefficient,
+                     const BedStress& stress) {
   Reaction reaction;
   for (std::size_t i = 0; i < stress.pressure.size(); ++i) {
     const double mu = stress.ratio(i);
@@ -31,7 +32,7 @@ Reaction reaction_of(const Rheology& rheology, const Mixture& mixture, const Bed
                       mu, rheology.limit_friction));
     reaction.linear.push_back((rheology.limit_friction - rheology.static_friction) * (rheology.static_friction - mu) /
                               (rheology.limit_friction - mu));
-    reaction.quadratic.push_back(rheology.friction_scale * mixture.diameter *
+    reaction.quadratic.push_back(rate_coefficient * mixture.diameter *
                                  std::sqrt(mixture.grain_density / stress.pressure[i]) * mu);
   }
   return reaction;
@@ -60,11 +61,15 @@ double correct(std::vector<double>& g, const Reaction& reaction, double diffusio
 
 }  // namespace
 
-Creep creep_of(const Rheology& rheology, const Mixture& mixture, double nonlocal_amplitude, const BedStress& stress,
-               double surface_fluidity) {
+double local_rate_coefficient(const Rheology& rheology) {
+  return (rheology.limit_friction - rheology.static_friction) / rheology.friction_scale;
+}
+
+Creep creep_of(const Rheology& rheology, const Mixture& mixture, double nonlocal_amplitude, double rate_coefficient,
+               const BedStress& stress, double surface_fluidity) {
   const std::size_t points = stress.pressure.size();
   if (points < 3) throw InputError("Creep needs at least three points between its ends.");
-  const Reaction reaction = reaction_of(rheology, mixture, stress);
+  const Reaction reaction = reaction_of(rheology, mixture, rate_coefficient, stress);
   const double length = nonlocal_amplitude * mixture.diameter / stress.spacing;
   Creep creep;
   creep.fluidity.assign(points, 0.0);

@@ -13,6 +13,18 @@ namespace {
 const Mixture glass_in_water{1000.0, 1e-3, 2550.0, 5e-3};
 const Rheology paper;
 constexpr double amplitude = 0.43;
+const double local = local_rate_coefficient(paper);
+
+// Where g'' = 0 the fluidity follows from the stress ratio alone: the inertial number g mu d sqrt(rho_s/p) then has
+// that friction.
+TEST(Creep, ObeysTheFlowRuleWhereItIsEven) {
+  const double pressure = 80.0, mu = 0.5;
+  const double growth =
+      (paper.limit_friction - paper.static_friction) * (mu - paper.static_friction) / (paper.limit_friction - mu);
+  const double fluidity = growth / (local * std::sqrt(2550.0 / pressure) * 5e-3 * mu);
+  const double inertial = inertial_number(glass_in_water, fluidity * mu, pressure);
+  EXPECT_NEAR(friction(paper, 0.0, inertial, 0.0), mu, 1e-12);
+}
 
 // With mu constant and so little fluidity that its square does not count, g = g_0 sinh(z/xi)/sinh(L/xi).
 double error_at_half(int points) {
@@ -22,7 +34,7 @@ double error_at_half(int points) {
   stress.pressure.assign(static_cast<std::size_t>(points), 100.0);
   stress.shear_stress.assign(static_cast<std::size_t>(points), 100.0 * mu);
   const double xi = amplitude * 5e-3 * std::sqrt((0.70 - mu) / ((0.70 - 0.37) * (0.37 - mu)));
-  const Creep creep = creep_of(paper, glass_in_water, amplitude, stress, 1e-9);
+  const Creep creep = creep_of(paper, glass_in_water, amplitude, local, stress, 1e-9);
   return creep.fluidity[static_cast<std::size_t>(points / 2)] /
              (1e-9 * std::sinh(0.5 * height / xi) / std::sinh(height / xi)) -
          1.0;
@@ -41,7 +53,7 @@ TEST(Creep, LengthsOfThePapersBeds) {
   for (int n = 0; n < 3; ++n) {
     const BedStress stress = resting_bed(paper, glass_in_water, gravity * std::sin(angle), gravity * std::cos(angle),
                                          shields[n] * 1550.0 * gravity * d, 10.0 * d, 2.0 * d, 801);
-    const Creep creep = creep_of(paper, glass_in_water, amplitude, stress, 1e-2);
+    const Creep creep = creep_of(paper, glass_in_water, amplitude, local, stress, 1e-2);
     const double length = decay_length(creep, stress.spacing, 300) / d;
     EXPECT_NEAR(length, e_fold[n], 0.02 * e_fold[n]);
     EXPECT_NEAR(length * std::numbers::ln10, decade[n], 0.02 * decade[n]);
@@ -53,7 +65,7 @@ TEST(Creep, RefusesANegativeFluidity) {
   const double d = 5e-3, angle = std::atan(0.18), gravity = 9.8;
   const BedStress stress = resting_bed(paper, glass_in_water, gravity * std::sin(angle), gravity * std::cos(angle),
                                        0.1 * 1550.0 * gravity * d, 10.0 * d, 2.0 * d, 801);
-  EXPECT_THROW(creep_of(paper, glass_in_water, amplitude, stress, 1e-2), InputError);
+  EXPECT_THROW(creep_of(paper, glass_in_water, amplitude, local, stress, 1e-2), InputError);
 }
 
 TEST(Creep, StressRatiosOfABedAtRest) {
@@ -70,7 +82,7 @@ TEST(Creep, NoSteadyStateBeyondTheLimitFriction) {
   stress.spacing = 1e-3;
   stress.pressure.assign(10, 10.0);
   stress.shear_stress.assign(10, 7.5);
-  EXPECT_THROW(creep_of(paper, glass_in_water, amplitude, stress, 1.0), InputError);
+  EXPECT_THROW(creep_of(paper, glass_in_water, amplitude, local, stress, 1.0), InputError);
 }
 
 }  // namespace
