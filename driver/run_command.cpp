@@ -230,8 +230,8 @@ void print_outcome(const RunIdentity& identity, const loop::LoopRecord& record, 
     log.line(fmt::format("finished{} at {:.6g} s: {}", record.early.empty() ? "" : ", " + record.early + ",",
                          system.time(), folder.summary().string()));
   else
-    log.line(fmt::format("not finished, {}: at {:.6g} s; to go on: --restart {}", record.reason, system.time(),
-                         shell_word(folder.path().string())));
+    log.line(fmt::format("not finished, {}: at {:.6g} s; to go on: the same command with --restart {}", record.reason,
+                         system.time(), shell_word(folder.path().string())));
 }
 
 // How many free grains need not be at rest.

@@ -39,8 +39,9 @@ std::string ask_to_stop(const std::filesystem::path& path) {
         "{} is not running now. A job that waits to go on with it (thalweg run --resume) will end at once "
         "with exit code 4; to take that back: rm {}",
         name, shell_word(folder.stop().string()));
-  return fmt::format("{} its state and ends within a step; --restart {} goes on from there.",
-                     runs ? name + " saves" : fmt::format("If {} is running, it saves", name), word);
+  return fmt::format(
+      "{} its state and ends within a step; the command of the run with --restart {} goes on from there.",
+      runs ? name + " saves" : fmt::format("If {} is running, it saves", name), word);
 }
 
 }  // namespace thalweg::driver
