@@ -449,7 +449,7 @@ class Stopping(DryGrains):
 
     def stop_by_command(self, ranks):
         process = self.start(ranks=ranks)
-        self.assertIn("run saves its state and ends within a step; --restart run", self.run_well("stop", "run").stdout)
+        self.assertIn("run saves its state and ends within a step; the command of the run with --restart run", self.run_well("stop", "run").stdout)
         self.assertEqual(process.wait(timeout=30), 4)
         self.assertEqual(self.summary("run")["reason"], "stopped on request (thalweg stop)")
         self.assertFalse((self.folder / "run/stop").exists())

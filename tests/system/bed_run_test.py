@@ -26,7 +26,7 @@ domain:
   boundaries: {x: periodic, y: no_slip, bottom: no_slip, top: no_slip}
 gravity: {magnitude: 9.8, slope: 0.05}
 grains:
-  - {count: 40, diameter: 5.0e-3, density: 2550, placement: {pattern: random, seed: 3}}
+  - {count: 40, diameter: 5.0e-3, density: 2550, placement: {pattern: random, seed: 2}}
 contact: {restitution: 0.4, tangential_damping: 0.5}
 run: {until: 2.0, until_at_rest: {largest_speed: 2.0e-4, largest_acceleration: 0.01}}
 output: {series: {every: 0.02}}

@@ -137,11 +137,20 @@ class PlotRun(unittest.TestCase):
         self.assertEqual(done.stdout.split(), [str(self.folder / name) for name in ("flow.png", "profiles.png")])
 
     def test_the_slice_behind_the_grains(self):
-        flow, box = drawing.fluid_slice(thalweg.Run(self.folder).fluid[0])
+        flow, box, solid = drawing.fluid_slice(thalweg.Run(self.folder).fluid[0])
+        self.assertFalse(solid.any())
         self.assertEqual(flow.shape, (90, 72))
         self.assertEqual(flow.mask.sum(), 40)
         self.assertTrue(flow.mask[0, :40].all())
         np.testing.assert_allclose(box, (0, 72 * made_up_run.SPACING, 0, 90 * made_up_run.SPACING), rtol=1e-12)
+
+    def test_the_slice_tells_solids_from_grains(self):
+        class Frame:   # one row: water, a grain, and the second solid
+            arrays = {"velocity": np.ones((2, 1, 3, 3)), "grain_id": np.array([[[-1, 5, -3]], [[-1, -1, -3]]])}
+            corner, spacing = np.zeros(3), np.ones(3)
+        flow, _, solid = drawing.fluid_slice(Frame)
+        self.assertEqual(flow.mask.tolist(), [[False, True, True], [False, False, True]])
+        self.assertEqual(solid.tolist(), [[False, False, True], [False, False, True]])
 
     def test_a_sphere_covers_its_disk(self):
         # Radius 20 pixels about the middle of the image; the error of counting pixels is below their border, 2 pi r.
