@@ -64,5 +64,20 @@ TEST(PopulationLoads, AddsForcesAndTurnsThemAboutThePivot) {
   EXPECT_EQ(dry.figures().size(), 6u);
 }
 
+// A model fluid loads grains as water does.
+TEST(PopulationLoads, HasTheLoadOfAModelFluid) {
+  const Decomposition decomposition({40, 20, 10}, 0.5, {true, true, false}, {1, 1, 1});
+  RunFacts run;
+  run.box = decomposition.box();
+  run.grains.emplace();
+  run.grains->populations = {{"bed", 0, 3, [](double) { return Vec3::Zero(); }}};
+  const auto figures = [&] {
+    return make_observer(PopulationLoadsKeys{}, run, {MPI_COMM_WORLD, decomposition, 1e-3})->figures().size();
+  };
+  EXPECT_EQ(figures(), 6u);  // dry: force and torque of contacts
+  run.model_fluid.emplace();
+  EXPECT_EQ(figures(), 12u);
+}
+
 }  // namespace
 }  // namespace thalweg::analysis::population_loads_test

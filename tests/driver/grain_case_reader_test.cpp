@@ -104,6 +104,18 @@ TEST(GrainCaseReader, SizesFollowTheirDistribution) {
   EXPECT_EQ(read(resolved_yaml(c)), c) << resolved_yaml(c);
 }
 
+// Populations scatter their grains differently, unless the case gives them the same seed.
+TEST(CaseReader, SeedsOfPopulationsDiffer) {
+  const std::string three =
+      "grains=[{count: 5, diameter: 4e-3, density: 2550}, {count: 5, diameter: 4e-3, density: 2550}, "
+      "{count: 5, diameter: 4e-3, density: 2550, placement: {seed: 1}}]";
+  const Case c = read(flume, {three});
+  EXPECT_EQ(c.grains[0].placement.seed, 1);
+  EXPECT_EQ(c.grains[1].placement.seed, 2);
+  EXPECT_EQ(c.grains[2].placement.seed, 1);
+  EXPECT_EQ(read(resolved_yaml(c)), c);
+}
+
 TEST(GrainCaseReader, ListedSizesHaveTheirShareOfTheNumber) {
   const Case c = read(flume, {"grains.0.diameter={sizes: [4e-3, 3e-3, 5e-3], fractions: [0.2, 0.3, 0.5]}"});
   const std::vector<double>& d = c.grains[0].diameters;
