@@ -1,6 +1,6 @@
 #include "analysis/bed_surface.hpp"
 
-#include "core/mpi_session.hpp"
+#include "core/whole_dataset.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -140,10 +140,8 @@ void BedSurface::save(ArchiveWriter& archive) const {
   archive.attribute("bed_surface/latest_bed_height", bed_height_);  // a row of the series may come before the next
   archive.attribute("bed_surface/latest_bulk", bulk_);
   archive.attribute("bed_surface/latest_bed_stress", bed_stress_);
-  const bool first = rank_of(communicator_) == 0;
   const auto write = [&](const std::string& path, const std::vector<double>& values) {
-    const std::uint64_t size = values.size(), mine = first ? size : 0;
-    archive.write(path, std::span<const double>(values).first(mine), {{size}, {0}, {mine}});
+    write_whole(archive, communicator_, path, std::span<const double>(values), {values.size()});
   };
   write("bed_surface/sums", sums_);
   write("bed_surface/surface_sums", surface_sums_);

@@ -65,9 +65,8 @@ public:
   void observe(const Snapshot& snapshot) override;  // a step seen before does not count again
 
   // bed_height (m), static_bed_height (m, mean of the columns that have a static pixel; not a number before the first
-  // static_time is over); over a bed in a fluid
-  // flow_depth (m), hydraulic_radius (m), and where a slope, a steering force or a moving top drives the flow
-  // bed_stress (Pa), shields_number (1).
+  // static_time is over); over a bed in a fluid flow_depth (m), hydraulic_radius (m), and where a slope, a steering
+  // force or a moving top drives the flow bed_stress (Pa), shields_number (1).
   std::vector<Figure> figures() const override;
 
   // The means of all of these (with _mean), bulk_solid_fraction_mean, static_share_mean (1: columns with a static

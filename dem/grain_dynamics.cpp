@@ -366,17 +366,9 @@ void GrainDynamics::evaluate_forces(double time_step) {
 
 void GrainDynamics::hold_on_rough_floor() {
   moving_.forget_stops();
-  const auto touches = [this](std::size_t s) {
-    return touches_rough_floor(moving_[s].position[2], moving_[s].position[3]);
-  };
-  for (std::size_t s = 0; s < store_.owned; ++s)
-    if (store_.clump[s] < 0 && store_.inverse_mass[s] > 0.0 && touches(s)) moving_.stop_along_floor(s);
-  for (std::size_t n = 0; n < clumps_.size(); ++n) {
-    bool held = false;
-    for (std::size_t s = clumps_.first_slot(n), end = s + clumps_.member_count(n); s < end; ++s)
-      held = held || touches(s);
-    if (held && !holds_translation(clumps_[n].motion)) clumps_.stop_along_floor(n, moving_);
-  }
+  for_each_held([this](std::size_t s) { return touches_rough_floor(moving_[s].position[2], moving_[s].position[3]); },
+                [this](std::size_t s) { moving_.stop_along_floor(s); },
+                [this](std::size_t n) { clumps_.stop_along_floor(n, moving_); });
 }
 
 void GrainDynamics::place_walls(double time, double time_of_velocity) {

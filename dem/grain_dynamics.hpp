@@ -245,8 +245,19 @@ private:
   std::vector<Vec3> places_in_clumps() const;
   void evaluate_forces(double time_step);
   bool touches_rough_floor(double z, double radius) const { return z - planes_[*rough_floor_].point.z() < radius; }
+  // Visits what the rough floor holds, of which touches(slot) says whether it touches it: on_grain(slot), on_clump(n).
+  template <typename Touches, typename OnGrain, typename OnClump>
+  void for_each_held(Touches touches, OnGrain on_grain, OnClump on_clump) const {
+    for (std::size_t s = 0; s < store_.owned; ++s)
+      if (store_.clump[s] < 0 && store_.inverse_mass[s] > 0.0 && touches(s)) on_grain(s);
+    for (std::size_t n = 0; n < clumps_.size(); ++n) {
+      bool held = false;
+      for (std::size_t s = clumps_.first_slot(n), end = s + clumps_.member_count(n); s < end; ++s)
+        held = held || touches(s);
+      if (held && !holds_translation(clumps_[n].motion)) on_clump(n);
+    }
+  }
   void hold_on_rough_floor();
-  std::vector<char> held_on_rough_floor() const;
   void for_each_hold(std::span<const char> chosen, const ContactSource::ContactEndVisitor& visit) const;
   template <typename Work>
   void timed(int phase, Work&& work);

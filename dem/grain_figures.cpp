@@ -73,26 +73,16 @@ std::vector<Vec3> GrainDynamics::places_in_clumps() const {
   return from_centre;
 }
 
-// Which owned grains the rough floor holds, members of clumps with all of their clump.
-std::vector<char> GrainDynamics::held_on_rough_floor() const {
-  std::vector<char> held(store_.owned, 0);
-  const auto touches = [this](std::size_t s) { return touches_rough_floor(store_.position[s].z(), store_.radius[s]); };
-  for (std::size_t s = 0; s < store_.owned; ++s)
-    held[s] = store_.clump[s] < 0 && store_.inverse_mass[s] > 0.0 && touches(s);
-  for (std::size_t n = 0; n < clumps_.size(); ++n) {
-    if (holds_translation(clumps_[n].motion)) continue;
-    const std::size_t first = clumps_.first_slot(n), end = first + clumps_.member_count(n);
-    bool any = false;
-    for (std::size_t s = first; s < end; ++s) any = any || touches(s);
-    std::fill(held.begin() + static_cast<std::ptrdiff_t>(first), held.begin() + static_cast<std::ptrdiff_t>(end), any);
-  }
-  return held;
-}
-
 // The forces with which the rough floor holds grains along it: what their contacts leave of contact_force.
 void GrainDynamics::for_each_hold(std::span<const char> chosen, const ContactSource::ContactEndVisitor& visit) const {
   if (!rough_floor_) return;
-  const std::vector<char> held = held_on_rough_floor();
+  std::vector<char> held(store_.owned, 0);  // members of a clump with all of it
+  for_each_held([this](std::size_t s) { return touches_rough_floor(store_.position[s].z(), store_.radius[s]); },
+                [&](std::size_t s) { held[s] = 1; },
+                [&](std::size_t n) {
+                  std::fill_n(held.begin() + static_cast<std::ptrdiff_t>(clumps_.first_slot(n)),
+                              clumps_.member_count(n), 1);
+                });
   std::vector<Vec3> hold(store_.contact_force.begin(),
                          store_.contact_force.begin() + static_cast<std::ptrdiff_t>(store_.owned));
   for_each_contact_end(store_, list_, surroundings(), materials_, held,

@@ -11,7 +11,7 @@ import yaml
 
 from thalweg.columns import Columns
 from thalweg.errors import RunFolderError
-from thalweg.frames import FluidFrame, Frames, GrainFrame, GrainPartFrame, SolidFrame, SolidFrame
+from thalweg.frames import FluidFrame, Frames, GrainFrame, GrainPartFrame, SolidFrame
 from thalweg.tables import read_series
 
 
