@@ -1,6 +1,7 @@
 #include "driver/case_reader.hpp"
 
 #include "core/error.hpp"
+#include "core/shell_word.hpp"
 #include "driver/case_checks.hpp"
 #include "driver/case_sections.hpp"
 #include "driver/contact_stiffness.hpp"
@@ -91,8 +92,8 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
                MPI_Comm communicator) {
   io::YamlDocument document(path, overrides);
   if (document.find("case") && !document.find("system"))
-    throw InputError(
-        fmt::format("{}: this is a sweep, not a case: thalweg sweep {} makes its runs.", path.string(), path.string()));
+    throw InputError(fmt::format("{}: this is a sweep, not a case: thalweg sweep {} makes its runs.", path.string(),
+                                 shell_word(path.string())));
   const std::string preset = lay_preset_beneath(document);
   Case c;
   io::read_document(document, c);

@@ -1,16 +1,14 @@
 #include "driver/command_line.hpp"
 
 #include "core/error.hpp"
+#include "core/shell_word.hpp"
 #include "driver/version.hpp"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <sstream>
 
 namespace thalweg::driver {
@@ -140,14 +138,6 @@ std::string as_sentence(std::string message) {
 }
 
 }  // namespace
-
-std::string shell_word(const std::string& text) {
-  const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || std::strchr("_./:=+,@%-", c) != nullptr; };
-  if (!text.empty() && std::all_of(text.begin(), text.end(), plain)) return text;
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
 
 double parse_walltime(const std::string& text) {
   int days = 0, hours = 0, minutes = 0, seconds = 0, end = 0;

@@ -37,9 +37,6 @@ struct CommandLine {
 
 CommandLine parse_command_line(int argc, const char* const* argv);
 
-// An argument as a shell takes it, in single quotes where it needs them.
-std::string shell_word(const std::string& text);
-
 // "HH:MM:SS", "MM:SS" or "D-HH:MM:SS" in seconds. Throws InputError.
 double parse_walltime(const std::string& text);
 

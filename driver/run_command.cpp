@@ -4,6 +4,7 @@
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
 #include "core/on_first_rank.hpp"
+#include "core/shell_word.hpp"
 #include "dem/dry_grains.hpp"
 #include "dem/model_fluid_field.hpp"
 #include "driver/bed_archive.hpp"
@@ -158,7 +159,7 @@ void print_header(const Case& c, RunIdentity& identity, const System& system, co
   log.line(fmt::format("writing {}", places.folder.path().string()));
   if (const double strokes = loop::seconds_between_strokes(); strokes > 0.0)
     log.line(fmt::format("to stop early: thalweg stop {} (after Ctrl-C or SIGTERM mpirun leaves only {:.2g} s to save)",
-                         places.folder.path().string(), 2.0 * strokes));
+                         shell_word(places.folder.path().string()), 2.0 * strokes));
   if (!c.grains.empty()) log.line("reference grain: " + reference_text(c));
   if (bandwidth > 0.0) {
     const double bytes = bytes_per_cell_update(c.fluid.precision == coupling::Precision::single ? 4 : 8);

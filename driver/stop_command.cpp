@@ -1,7 +1,7 @@
 #include "driver/stop_command.hpp"
 
 #include "core/error.hpp"
-#include "driver/command_line.hpp"
+#include "core/shell_word.hpp"
 #include "driver/info_report.hpp"
 #include "io/atomic_file.hpp"
 #include "io/folder_lock.hpp"

@@ -1,6 +1,7 @@
 #include "io/run_folder.hpp"
 
 #include "core/error.hpp"
+#include "core/shell_word.hpp"
 #include "io/atomic_file.hpp"
 #include "io/folder_lock.hpp"
 #include "io/record_file.hpp"
@@ -89,7 +90,7 @@ void RunFolder::check_new(bool overwrite) const {
     throw InputError(
         fmt::format("{}: the folder holds a run already; choose another with --out, continue it with "
                     "--restart {}, or replace it with --overwrite.",
-                    path_.string(), path_.string()));
+                    path_.string(), shell_word(path_.string())));
 }
 
 void RunFolder::check_writable() const {

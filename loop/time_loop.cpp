@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
+#include "core/shell_word.hpp"
 #include "core/sum_range.hpp"
 #include "loop/progress.hpp"
 #include "loop/stop_request.hpp"
@@ -229,7 +230,7 @@ void TimeLoop::checkpoint() {
     log_.line(
         fmt::format("warning: this checkpoint took {:.2g} s, and mpirun kills the ranks {:.2g} s after Ctrl-C or "
                     "SIGTERM: stop this run with thalweg stop {}, with SIGUSR1 or SIGUSR2 to mpirun, or by --walltime",
-                    seconds, left, plan_.stop_file.parent_path().string()));
+                    seconds, left, shell_word(plan_.stop_file.parent_path().string())));
   saved_step_ = system_.step();
   saved_at_ = seconds_since(begin_);
   longest_checkpoint_ = std::max(longest_checkpoint_, seconds);

@@ -1,6 +1,7 @@
 #include "driver/command_line.hpp"
 
 #include "core/error.hpp"
+#include "core/shell_word.hpp"
 
 #include <gtest/gtest.h>
 

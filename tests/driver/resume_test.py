@@ -5,13 +5,15 @@ going.
 Called by ctest: resume_test.py THALWEG MPIEXEC [unittest arguments]
 """
 import json
+import shlex
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 import program
-from program import SLIDING_GRAINS, ProgramTest, contents_below, files_below
+from program import SLIDING_GRAINS, THALWEG, ProgramTest, contents_below, files_below
 
 ASKED_TO_STOP = 4   # exit code
 
@@ -139,6 +141,19 @@ output: {series: {every: 0.001}, checkpoint: {every: 0.005, keep: 2}}
         self.assertTrue(self.summary("run")["finished"])
         self.assertIn("run has ended", self.run_well("stop", "run").stdout)
         self.assertFalse((self.folder / "run/stop").exists())
+
+    def test_advice_can_be_pasted_whatever_the_name_of_the_folder(self):
+        folder = "tau[0.05] of bed, 'fein' ü"
+        words = shlex.quote(folder)
+        first = self.run_well("run", self.case, "--out", folder, "--until", "0.01", ranks=2).stdout
+        advice = [line for line in first.splitlines() if "thalweg stop" in line][0]
+        self.assertEqual(shlex.split(advice.split("to stop early: ")[1].split(" (after")[0]), ["thalweg", "stop", folder])
+        self.assert_refused("run", self.case, "--out", folder, words=["continue it with --restart 'tau[0.05] of bed, '\\''fein'\\'' "])
+        self.assertEqual(subprocess.run(f"{THALWEG} run {self.case} --restart {words}", shell=True, cwd=self.folder,
+                                        stdout=subprocess.DEVNULL).returncode, 0)
+        sweep = self.folder / "my sweep.yaml"
+        sweep.write_text("case: case.yaml\nvary: {}\n")
+        self.assert_refused("run", sweep, words=[f"thalweg sweep '{sweep}' makes"])
 
     def test_who_restarts_by_hand_means_it(self):
         self.unfinished()

@@ -1,0 +1,11 @@
+// Advice that can be pasted.
+#pragma once
+
+#include <string>
+
+namespace thalweg {
+
+// An argument as a shell takes it, in single quotes where it needs them.
+std::string shell_word(const std::string& text);
+
+}  // namespace thalweg
