@@ -4,6 +4,8 @@
 #include "core/mpi_session.hpp"
 #include "core/on_all_ranks.hpp"
 
+#include <algorithm>
+#include <cstdint>
 #include <string>
 
 namespace thalweg {
@@ -43,6 +45,19 @@ void on_first_rank(MPI_Comm communicator, const std::function<void()>& work) {
   std::string message;
   const int outcome = rank_of(communicator) == 0 ? outcome_of(work, message) : well;
   throw_what_happened_on(0, communicator, outcome, message);
+}
+
+std::string told_by_first_rank(MPI_Comm communicator, const std::function<std::string()>& work) {
+  if (communicator == MPI_COMM_NULL) return work();
+  std::string text;
+  on_first_rank(communicator, [&] { text = work(); });
+  std::uint64_t size = text.size();
+  MPI_Bcast(&size, 1, MPI_UINT64_T, 0, communicator);
+  text.resize(size);
+  constexpr std::uint64_t at_once = std::uint64_t{1} << 30;  // MPI counts in int
+  for (std::uint64_t done = 0; done < size; done += at_once)
+    MPI_Bcast(text.data() + done, static_cast<int>(std::min(at_once, size - done)), MPI_CHAR, 0, communicator);
+  return text;
 }
 
 void on_all_ranks(MPI_Comm communicator, const std::function<void()>& work) {

@@ -1,6 +1,7 @@
 #include "driver/bed_placement.hpp"
 
 #include "core/error.hpp"
+#include "core/on_first_rank.hpp"
 #include "dem/population_bed.hpp"
 #include "driver/case_checks.hpp"
 #include "driver/grain_setup.hpp"
@@ -21,12 +22,13 @@ std::filesystem::path absolute_path(const std::string& file, const io::YamlDocum
 
 Bed read_bed(const std::filesystem::path& path, const io::YamlDocument& document, const std::string& key,
              const Ranks& ranks) {
-  ranks.on_all([&] {
+  const auto check = [&] {
     if (std::filesystem::is_regular_file(path)) return;
     throw document.error(key, fmt::format("there is no file {}; give the path of a bed file relative to the case file, "
                                           "for example run/bed.h5 as thalweg run leaves it",
                                           path.string()));
-  });
+  };
+  ranks.alone() ? check() : on_first_rank(ranks.communicator(), check);
   try {
     return io::read_bed_file(path, ranks);
   } catch (const InputError& error) {

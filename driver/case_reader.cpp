@@ -90,7 +90,8 @@ constexpr double steps_per_contact = 50.0;  // dry grains, where the user gives 
 
 Case read_case(const std::filesystem::path& path, const std::vector<std::string>& overrides, const KnownBeds& known,
                MPI_Comm communicator) {
-  io::YamlDocument document(path, overrides);
+  const Ranks ranks(communicator);
+  io::YamlDocument document(path, overrides, ranks);
   if (document.find("case") && !document.find("system"))
     throw InputError(fmt::format("{}: this is a sweep, not a case: thalweg sweep {} makes its runs.", path.string(),
                                  shell_word(path.string())));
@@ -102,7 +103,7 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
     check_column(c, document);
     fill_in_column(c);
   }
-  fill_in_grains(c, document, known, Ranks(communicator));
+  fill_in_grains(c, document, known, ranks);
   if (has_fluid(c)) c.fluid.fill_in_models();
   if (has_fluid(c) && !c.fluid.bulk_relaxation_time) c.fluid.bulk_relaxation_time = bulk_relaxation_time_for(c);
   if (has_grains(c.system)) {
@@ -114,7 +115,7 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
   for (std::optional<std::string>* source : {&c.initial.from.run, &c.initial.from.grains, &c.initial.from.fluid})
     if (*source && !(*source)->empty())
       *source = (std::filesystem::absolute(path).parent_path() / **source).lexically_normal().string();
-  fill_in_surfaces(c, document);
+  fill_in_surfaces(c, document, ranks);
   check_case(c, document);
   return c;
 }

@@ -16,8 +16,8 @@ namespace thalweg::driver {
 // Reads and checks a case. overrides: texts of the form "key.sub=VALUE" (items of a list by index: grains.0.count=10)
 // that replace or add to what the file says. Throws InputError: one sentence with file and line (or the override), key,
 // value, and what would be right. Writes nothing. known: beds that need not be read from their files. communicator: of
-// the ranks that read the rows of beds together, each its share, and all throw; null: this process alone, perhaps
-// without MPI. Collective.
+// the ranks that read it together: the first reads the case and the surfaces it names for all, each its share of the
+// rows of beds, and all throw; null: this process alone, perhaps without MPI. Collective.
 Case read_case(const std::filesystem::path& path, const std::vector<std::string>& overrides = {},
                const KnownBeds& known = {}, MPI_Comm communicator = MPI_COMM_NULL);
 

@@ -1,6 +1,7 @@
 #include "driver/initial_state.hpp"
 
 #include "core/error.hpp"
+#include "core/on_first_rank.hpp"
 #include "core/row_range.hpp"
 #include "dem/population_rows.hpp"
 #include "io/hdf5_archive.hpp"
@@ -15,13 +16,15 @@ namespace thalweg::driver {
 
 namespace {
 
-// Does something with the source of a field, if there is one, so that an InputError names its key.
+// Does something with the source of a field, if there is one, so that an InputError names its key. The first rank looks
+// which checkpoint that is.
 template <typename Work>
-void about_source(const Case& c, InitialField field, Work&& work) {
+void about_source(const Case& c, InitialField field, MPI_Comm communicator, Work&& work) {
   const InitialSource source = c.initial.source_of(field);
   if (source.path.empty()) return;
   try {
-    work(io::checkpoint_at(source.path));
+    work(std::filesystem::path(
+        told_by_first_rank(communicator, [&] { return io::checkpoint_at(source.path).string(); })));
   } catch (const InputError& error) {
     std::string reason = error.what();
     if (const std::string again = source.path + ": "; reason.starts_with(again)) reason.erase(0, again.size());
@@ -113,22 +116,22 @@ void refuse_other_grains(const Case& c, const std::filesystem::path& path, const
 
 void check_initial_sources(const Case& c, const Ranks& ranks) {
   for (const InitialField field : {InitialField::grains, InitialField::fluid})
-    about_source(c, field, [&](const std::filesystem::path& path) {
+    about_source(c, field, ranks.communicator(), [&](const std::filesystem::path& path) {
       ranks.on_all([&] { refuse_state_without(field, io::Hdf5Reader(path), path); });
       if (field == InitialField::grains) refuse_other_grains(c, path, ranks);
     });
 }
 
-std::filesystem::path initial_grains(const Case& c) {
+std::filesystem::path initial_grains(const Case& c, MPI_Comm communicator) {
   std::filesystem::path state;
-  about_source(c, InitialField::grains, [&](const std::filesystem::path& path) { state = path; });
+  about_source(c, InitialField::grains, communicator, [&](const std::filesystem::path& path) { state = path; });
   return state;
 }
 
 void take_initial_fields(MPI_Comm communicator, const Case& c, System& system) {
   // The fluid last: what it is taken for depends on where the grains are.
   for (const InitialField field : {InitialField::grains, InitialField::fluid})
-    about_source(c, field, [&](const std::filesystem::path& path) {
+    about_source(c, field, communicator, [&](const std::filesystem::path& path) {
       io::Hdf5Reader archive(communicator, path);
       refuse_state_without(field, archive, path);
       const double spacing = archive.real_attribute("run/spacing");

@@ -16,8 +16,8 @@ namespace thalweg::driver {
 // case together, which all throw. Collective.
 void check_initial_sources(const Case& c, const Ranks& ranks = {});
 
-// The state that the grains of a run come from; empty: the case places them. Any process may ask alone.
-std::filesystem::path initial_grains(const Case& c);
+// The state that the grains of a run come from; empty: the case places them. Collective.
+std::filesystem::path initial_grains(const Case& c, MPI_Comm communicator);
 
 // Grains and fluid of the system from where the case says. Throws InputError where they do not fit. Collective.
 void take_initial_fields(MPI_Comm communicator, const Case& c, System& system);

@@ -24,6 +24,7 @@
 #include "driver/resume.hpp"
 #include "driver/run_facts.hpp"
 #include "driver/run_output.hpp"
+#include "driver/run_places.hpp"
 #include "driver/summary.hpp"
 #include "driver/version.hpp"
 #include "driver/watch_rules.hpp"
@@ -49,37 +50,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Where a run starts and where it writes.
-struct Places {
-  std::vector<fs::path> checkpoints;  // to go on from, the best first; none: from the start
-  fs::path origin;                    // the run folder they lie in; empty: none
-  io::RunFolder folder;
-  bool same_folder = false;  // the checkpoints are the folder's own: its series go on
-};
-
-// The run folder a checkpoint lies in; empty if it lies anywhere else.
-fs::path run_folder_of(const fs::path& checkpoint) {
-  const fs::path checkpoints = fs::absolute(checkpoint).lexically_normal().parent_path();
-  const io::RunFolder folder(checkpoints.parent_path());
-  return folder.is_run_folder() && folder.checkpoints() == checkpoints ? folder.path() : fs::path();
-}
-
-fs::path folder_beside(const fs::path& case_file) { return case_file.parent_path() / "run"; }
-
-Places places_of(const Command& command) {
-  std::vector<fs::path> checkpoints;
-  fs::path origin;
-  if (!command.restart.empty()) {
-    checkpoints = io::checkpoints_at(command.restart);
-    origin = run_folder_of(checkpoints.front());
-  }
-  fs::path out = command.out;
-  if (out.empty()) out = origin.empty() ? folder_beside(command.path) : origin;
-  std::error_code ignored;
-  const bool same = !origin.empty() && fs::equivalent(out, origin, ignored);
-  return {checkpoints, origin, io::RunFolder(out), same};
-}
-
 std::vector<std::string> settings_of(const Command& command) {
   std::vector<std::string> settings = command.settings;
   if (command.until) settings.push_back(fmt::format("run.until={}", *command.until));
@@ -90,7 +60,7 @@ std::vector<std::string> settings_of(const Command& command) {
 // lock: of the folder, where there is a run that is not finished. Returns the outcome where there is nothing to run.
 std::optional<Outcome> resume(Command& command, std::optional<io::FolderLock>& lock, MPI_Comm communicator,
                               loop::Log& log) {
-  const io::RunFolder folder(command.out.empty() ? folder_beside(command.path) : fs::path(command.out));
+  const io::RunFolder folder(folder_without_restart(command));
   const std::string name = folder.path().string();
   io::FolderLock taken;
   int found = 0;
@@ -131,10 +101,11 @@ struct Beginning {
 };
 
 // Throws InputError where the case is not one with which that run can go on.
-std::vector<CaseChange> changes_since(const Places& places, const Case& c) {
+std::vector<CaseChange> changes_since(const Places& places, const Case& c, MPI_Comm communicator) {
   if (places.origin.empty()) return {};
-  const fs::path before = io::RunFolder(places.origin).case_of(places.checkpoints.front());
-  std::vector<CaseChange> changes = case_changes(io::read_text(before), resolved_yaml(c));
+  const std::string before = told_by_first_rank(
+      communicator, [&] { return io::read_text(io::RunFolder(places.origin).case_of(places.checkpoints.front())); });
+  std::vector<CaseChange> changes = case_changes(before, resolved_yaml(c));
   refuse_changes_of_state(changes, !has_fluid(c));
   return changes;
 }
@@ -307,11 +278,11 @@ Outcome run_case(Command command, MPI_Comm communicator, loop::WallClock::time_p
   std::optional<io::FolderLock> lock;
   if (command.resume)
     if (const std::optional<Outcome> outcome = resume(command, lock, communicator, log)) return *outcome;
-  Places places = places_of(command);
+  Places places = places_of(command, communicator);
   if (places.same_folder &&
       !lock) {  // whoever still writes there may save once more: checkpoints are looked for under the lock
     lock = lock_folder(places, communicator);
-    places = places_of(command);
+    places = places_of(command, communicator);
   }
   const Case c = read_case(command.path, settings_of(command), beds_of(places.checkpoints), communicator);
   on_first_rank(communicator, [&] {
@@ -319,7 +290,7 @@ Outcome run_case(Command command, MPI_Comm communicator, loop::WallClock::time_p
     places.folder.check_writable();
   });
   Beginning beginning;
-  beginning.changes = changes_since(places, c);
+  beginning.changes = changes_since(places, c, communicator);
   const Index3 layout = choose_layout(c, size_of(communicator), command.layout);
   const bool restarts = !places.checkpoints.empty();
   if (!restarts) about_case(command.path, [&] { check_initial_sources(c, Ranks(communicator)); });
@@ -327,7 +298,7 @@ Outcome run_case(Command command, MPI_Comm communicator, loop::WallClock::time_p
   about_case(command.path, [&] { refuse_without_memory(c, communicator, layout); });
   const double bandwidth = has_fluid(c) ? measure_bandwidth(communicator) : 0.0;  // while there is room for its array
   forget_largest_memory();
-  const fs::path state = restarts ? places.checkpoints.front() : initial_grains(c);
+  const fs::path state = restarts ? places.checkpoints.front() : initial_grains(c, communicator);
   const Decomposition cuts = about_case(command.path, [&] { return cuts_of_run(c, communicator, layout, state); });
   const std::unique_ptr<System> system =
       about_case(command.path, [&] { return build_system(c, communicator, cuts, start); });

@@ -51,13 +51,13 @@ TriangleMesh sphere_surface(const SphereCase& sphere) {
 
 }  // namespace
 
-void fill_in_surfaces(Case& c, const io::YamlDocument& document) {
+void fill_in_surfaces(Case& c, const io::YamlDocument& document, const Ranks& ranks) {
   for (std::size_t n = 0; n < c.solids.size(); ++n) {
     SolidCase& solid = c.solids[n];
     if (solid.stl.empty()) continue;
     solid.stl = (std::filesystem::absolute(document.path()).parent_path() / solid.stl).lexically_normal().string();
     try {
-      solid.surface = io::read_stl(solid.stl);
+      solid.surface = io::read_stl(solid.stl, ranks);
     } catch (const InputError& error) {
       std::string reason = error.what();
       if (reason.ends_with('.')) reason.pop_back();

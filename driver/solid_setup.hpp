@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bodies/solid_shape.hpp"
+#include "core/ranks.hpp"
 #include "core/triangle_mesh.hpp"
 #include "dem/prescribed_motion.hpp"
 #include "driver/case.hpp"
@@ -12,8 +13,8 @@
 namespace thalweg::driver {
 
 // Reads the surfaces of the solids that have an STL file. Throws InputError with the place in the case, and that in the
-// file, where one cannot be read or is not closed.
-void fill_in_surfaces(Case& c, const io::YamlDocument& document);
+// file, where one cannot be read or is not closed. Collective.
+void fill_in_surfaces(Case& c, const io::YamlDocument& document, const Ranks& ranks);
 
 // From the lowest to the highest coordinates of a solid whose surface has been read, m.
 bodies::Extent extent_of(const SolidCase& solid);

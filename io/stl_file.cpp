@@ -1,6 +1,7 @@
 #include "io/stl_file.hpp"
 
 #include "core/error.hpp"
+#include "core/on_first_rank.hpp"
 #include "io/atomic_file.hpp"
 
 #include <fmt/format.h>
@@ -204,12 +205,14 @@ private:
 
 }  // namespace
 
-TriangleMesh read_stl(const std::filesystem::path& path) {
+TriangleMesh read_stl(const std::filesystem::path& path, const Ranks& ranks) {
   const std::string name = path.string();
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored))
-    throw InputError(fmt::format("{}: there is no such file; give an STL file.", name));
-  const std::string bytes = read_text(path);
+  const std::string bytes = told_by_first_rank(ranks.communicator(), [&] {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored))
+      throw InputError(fmt::format("{}: there is no such file; give an STL file.", name));
+    return read_text(path);
+  });
   MeshOfFacets facets;
   if (is_binary(bytes))  // whatever its title says
     read_binary(name, bytes, facets);

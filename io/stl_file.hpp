@@ -5,6 +5,7 @@
 // says.
 #pragma once
 
+#include "core/ranks.hpp"
 #include "core/triangle_mesh.hpp"
 
 #include <filesystem>
@@ -13,7 +14,7 @@ namespace thalweg::io {
 
 // The surface in the units of the file, corners at the same place joined, wound outwards. Throws InputError, with the
 // line of a text file, where there is no such file, it is not STL, is cut off, has a corner that is not finite, or the
-// surface is not closed.
-TriangleMesh read_stl(const std::filesystem::path& path);
+// surface is not closed. The first of the ranks reads the file for all. Collective.
+TriangleMesh read_stl(const std::filesystem::path& path, const Ranks& ranks = {});
 
 }  // namespace thalweg::io

@@ -1,5 +1,6 @@
 #include "io/yaml_document.hpp"
 
+#include "core/on_first_rank.hpp"
 #include "io/atomic_file.hpp"
 
 #include <fmt/format.h>
@@ -145,17 +146,22 @@ YamlNode parsed_yaml(const std::string& text, const std::string& name) {
       text, [&name](const YAML::Mark& mark) { return fmt::format("{}:{}", name, mark.line + 1); }, name + ":1", "");
 }
 
-YamlDocument::YamlDocument(const std::filesystem::path& path, const std::vector<std::string>& overrides) : path_(path) {
+YamlDocument::YamlDocument(const std::filesystem::path& path, const std::vector<std::string>& overrides,
+                           const Ranks& ranks)
+    : path_(path) {
   const std::string name = path.string();
   const auto place_of = [&](const YAML::Mark& mark) { return fmt::format("{}:{}", name, mark.line + 1); };
-  if (std::filesystem::is_directory(path))
-    throw InputError(fmt::format("{}: this is a folder: give the case file itself, for example {}.", name,
-                                 (path / "case.yaml").string()));
-  root_ = parsed(read_text(path), place_of, name + ":1", "");
+  const std::string text = told_by_first_rank(ranks.communicator(), [&] {
+    if (std::filesystem::is_directory(path))
+      throw InputError(fmt::format("{}: this is a folder: give the case file itself, for example {}.", name,
+                                   (path / "case.yaml").string()));
+    return read_text(path);
+  });
+  root_ = parsed(text, place_of, name + ":1", "");
   if (root_.kind == YamlNode::Kind::scalar && root_.text.empty()) root_.kind = YamlNode::Kind::section;
   if (root_.kind != YamlNode::Kind::section)
     throw InputError(fmt::format("{}:1: expected keys with values, for example system: resolved.", name));
-  for (const std::string& text : overrides) apply(text);
+  for (const std::string& override_text : overrides) apply(override_text);
 }
 
 void YamlDocument::apply(const std::string& override_text) {

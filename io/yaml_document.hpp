@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/error.hpp"
+#include "core/ranks.hpp"
 
 #include <filesystem>
 #include <string>
@@ -42,10 +43,11 @@ public:
   // An empty document: its errors name no place.
   YamlDocument() = default;
 
-  // Reads a file, then applies the overrides ("key.sub=VALUE", VALUE being YAML itself; list items by index).
+  // Reads a file, on the first of the ranks, then applies the overrides ("key.sub=VALUE", VALUE being YAML itself; list
+  // items by index). Collective.
   // Throws InputError: missing file, YAML syntax, duplicate key, more than one document, aliases that multiply to more
   // than a million values, an override that names no key.
-  YamlDocument(const std::filesystem::path& path, const std::vector<std::string>& overrides);
+  YamlDocument(const std::filesystem::path& path, const std::vector<std::string>& overrides, const Ranks& ranks = {});
 
   // Adds the values of another tree, section by section, where the document has none of the same key, no override has
   // taken it out, and it is not one of `without` or inside it.

@@ -35,6 +35,19 @@ TEST(OnFirstRank, WorksOnceAndTellsEveryRankOfItsErrors) {
   }
 }
 
+TEST(OnFirstRank, TellsTheOthersWhatItHasFound) {
+  int calls = 0;
+  const std::string found = told_by_first_rank(world, [&] {
+    ++calls;
+    return std::string("a\0b\n", 4) + std::to_string(rank_of(world));
+  });
+  EXPECT_EQ(found, std::string("a\0b\n0", 5));
+  EXPECT_EQ(calls, rank_of(world) == 0 ? 1 : 0);
+  EXPECT_EQ(told_by_first_rank(world, [] { return std::string(); }), "");
+  EXPECT_EQ(told_by_first_rank(MPI_COMM_NULL, [] { return std::string("alone"); }), "alone");
+  EXPECT_THROW(told_by_first_rank(world, []() -> std::string { throw InputError("gone"); }), InputError);
+}
+
 TEST(OnAllRanks, TellsEveryRankOfTheFirstError) {
   int calls = 0;
   on_all_ranks(world, [&] { ++calls; });
