@@ -323,6 +323,9 @@ Outcome run_case(Command command, MPI_Comm communicator, loop::WallClock::time_p
   output.begin(log);
   loop::LoopPlan plan;
   plan.until = c.run.until;
+  if (!lock->keeps_others_out())
+    log.line(fmt::format("warning: the file system of {} has no locks: see to it that no second run writes there",
+                         places.folder.path().string()));
   set_end(c, plan);
   plan.watch = watch_rules(c);
   plan.out_of_bounds = c.run.watchdog;

@@ -1,6 +1,7 @@
 #include "io/folder_lock.hpp"
 
 #include "core/error.hpp"
+#include "core/shell_word.hpp"
 #include "io/atomic_file.hpp"
 #include "io/interrupted_call.hpp"
 
@@ -15,6 +16,7 @@
 #include <cerrno>
 #include <chrono>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -33,11 +35,28 @@ bool takes_lock(int file) {
   }
 }
 
-// Who holds the lock, for somebody who finds it taken.
-std::string name_of_this_process() {
+std::string name_of_this_host() {
   std::array<char, 256> host{};
   ::gethostname(host.data(), host.size() - 1);
-  return fmt::format("process {} on {}\n", ::getpid(), host.data());
+  return host.data();
+}
+
+constexpr std::string_view before_host = " on ";
+
+// Who holds the lock, for somebody who finds it taken.
+std::string name_of_this_process() {
+  return fmt::format("process {}{}{}\n", ::getpid(), before_host, name_of_this_host());
+}
+
+// A lock on a network file system outlives a node that has crashed, until that node is started again. Empty where the
+// holder is on this node.
+std::string way_out(const std::string& holder, const std::filesystem::path& file) {
+  const std::size_t at = holder.find(before_host);
+  if (at == std::string::npos) return {};
+  const std::string host = holder.substr(at + before_host.size());
+  if (host == name_of_this_host()) return {};
+  return fmt::format("; if {} is down, so that nothing can be writing from there, remove its lock: rm {}", host,
+                     shell_word(file.string()));
 }
 
 std::string first_line_of(int file) {
@@ -61,8 +80,10 @@ FolderLock::FolderLock(const std::filesystem::path& folder) {
     ::close(std::exchange(file_, -1));
     throw InputError(
         fmt::format("{}: a run is writing there now ({}); wait for its end, stop it with thalweg stop {}, "
-                    "or choose another folder with --out.",
-                    folder.string(), holder, folder.string()));
+                    "or choose another folder with --out{}.",
+                    folder.string(), holder, shell_word(folder.string()), way_out(holder, folder / file_name)));
+  } else {
+    without_locks_ = true;
   }
 }
 
@@ -78,10 +99,12 @@ std::optional<bool> FolderLock::is_held(const std::filesystem::path& folder) {
   return held;
 }
 
-FolderLock::FolderLock(FolderLock&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
+FolderLock::FolderLock(FolderLock&& other) noexcept
+    : file_(std::exchange(other.file_, -1)), without_locks_(std::exchange(other.without_locks_, false)) {}
 
 FolderLock& FolderLock::operator=(FolderLock&& other) noexcept {
   std::swap(file_, other.file_);
+  std::swap(without_locks_, other.without_locks_);
   return *this;
 }
 

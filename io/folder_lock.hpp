@@ -13,8 +13,11 @@ public:
   FolderLock() = default;  // holds nothing
 
   // Makes the folder where it is missing. Throws InputError where another process holds its lock for three seconds and
-  // more, and RunError where the folder cannot be made. File systems without locks lock nothing.
+  // more, and RunError where the folder cannot be made.
   explicit FolderLock(const std::filesystem::path& folder);
+
+  // False where the file system has no locks, so that nothing keeps others out.
+  bool keeps_others_out() const { return !without_locks_; }
 
   FolderLock(FolderLock&& other) noexcept;
   FolderLock& operator=(FolderLock&& other) noexcept;
@@ -28,6 +31,7 @@ public:
 
 private:
   int file_ = -1;
+  bool without_locks_ = false;
 };
 
 }  // namespace thalweg::io

@@ -236,12 +236,20 @@ TEST_F(RunFolderTest, ASecondRunIsKeptOut) {
     EXPECT_EQ(FolderLock::is_held(path), std::optional(true));
     const std::string message = message_of<InputError>([&] { FolderLock second(path); });
     EXPECT_NE(message.find("a run is writing there now (process "), std::string::npos) << message;
+    EXPECT_EQ(message.find("rm "), std::string::npos) << message;  // whoever holds it is here
+    put(path / FolderLock::file_name, "process 17 on node-that-is-down\n");
+    EXPECT_NE(
+        message_of<InputError>([&] { FolderLock second(path); })
+            .find("choose another folder with --out; if node-that-is-down is down, so that nothing can be writing from "
+                  "there, remove its lock: rm " +
+                  (path / FolderLock::file_name).string() + "."),
+        std::string::npos);
     FolderLock moved;
     moved = FolderLock(path.parent_path());
     EXPECT_THROW(FolderLock(path.parent_path()), InputError);
   }
   EXPECT_EQ(FolderLock::is_held(path), std::optional(false));
-  EXPECT_NO_THROW(FolderLock{path});
+  EXPECT_TRUE(FolderLock{path}.keeps_others_out());
   fs::remove(path.parent_path() / FolderLock::file_name);
   RunFolder(path).create(false);  // the lock makes it no folder that holds something
 }
