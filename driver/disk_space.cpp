@@ -69,15 +69,10 @@ double grain_frames(const Case& c) {
 }
 
 double checkpoints(const Case& c) {
-  const Index3 n = cells_of(c.domain);
-  const double lattice = has_fluid(c) ? static_cast<double>(n[0]) * n[1] * n[2] * 19.0 * bytes_per_value(c) : 0.0;
-  // State and loads of a grain, and three contacts with their springs.
-  constexpr double grain_bytes = 900.0;
-  const double one = lattice + static_cast<double>(grain_count(c)) * grain_bytes;
   const io::CheckpointOutputKeys& keys = c.output.checkpoint;
   const double most = static_cast<double>(keys.keep) + 1.0;
   const double written = keys.every > 0.0 ? std::ceil(c.run.until / keys.every) : keys.every_wall > 0.0 ? most : 1.0;
-  return one * std::min(written, most);
+  return bytes_of_checkpoint(c) * std::min(written, most);
 }
 
 // tracks.h5 and probes.h5 (docs/input.md).
@@ -98,6 +93,14 @@ double records(const Case& c) {
 }
 
 }  // namespace
+
+double bytes_of_checkpoint(const Case& c) {
+  const Index3 n = cells_of(c.domain);
+  const double lattice = has_fluid(c) ? static_cast<double>(n[0]) * n[1] * n[2] * 19.0 * bytes_per_value(c) : 0.0;
+  // State and loads of a grain, and three contacts with their springs.
+  constexpr double grain_bytes = 900.0;
+  return lattice + static_cast<double>(grain_count(c)) * grain_bytes;
+}
 
 std::string bytes_text(double bytes) {
   if (bytes >= 1e12) return fmt::format("{:.3g} TB", bytes * 1e-12);

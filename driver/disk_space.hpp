@@ -16,6 +16,9 @@ struct DiskSpace {
 };
 DiskSpace disk_space(const Case& c);
 
+// About, of one.
+double bytes_of_checkpoint(const Case& c);
+
 // The line of the report; free: bytes free on the disk.
 std::string disk_line(const DiskSpace& space, double free);
 

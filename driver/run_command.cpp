@@ -253,6 +253,9 @@ void set_end(const Case& c, loop::LoopPlan& plan) {
   }
 }
 
+// Bytes/s that a disk takes which is no faster than it must be, or is shared with many.
+constexpr double slow_disk = 1e8;
+
 Outcome outcome_of(const loop::LoopRecord& record) {
   if (record.finished) return Outcome::finished;
   return record.asked ? Outcome::asked_to_stop : Outcome::interrupted;
@@ -320,17 +323,18 @@ Outcome run_case(Command command, MPI_Comm communicator, loop::WallClock::time_p
   RunIdentity identity{c.name, name_of(c.system), command.line, c.run.until, layout, size_of(communicator)};
   if (!c.grains.empty()) identity.reference = reference_grain(c);
   print_header(c, identity, *system, places, beginning, bandwidth, communicator, log);
-  output.begin(log);
-  loop::LoopPlan plan;
-  plan.until = c.run.until;
   if (!lock->keeps_others_out())
     log.line(fmt::format("warning: the file system of {} has no locks: see to it that no second run writes there",
                          places.folder.path().string()));
+  output.begin(log);
+  loop::LoopPlan plan;
+  plan.until = c.run.until;
   set_end(c, plan);
   plan.watch = watch_rules(c);
   plan.out_of_bounds = c.run.watchdog;
   plan.walltime = command.walltime;
   plan.started = started;
+  plan.checkpoint_guess = bytes_of_checkpoint(c) / slow_disk;
   plan.stop_file = places.folder.stop();
   plan.between_strokes = loop::seconds_between_strokes();
   plan.largest = beginning.accounts.largest;

@@ -247,14 +247,27 @@ std::int64_t TimeLoop::steps_to_next_decision(double now) const {
                                   std::min(2 * done, most_steps_between_decisions));
 }
 
+// s of the wall time, less what `checkpoints` (s) and the steps up to the decision after this one take.
+double TimeLoop::time_left(double checkpoints) const {
+  if (plan_.walltime <= 0.0) return std::numeric_limits<double>::infinity();
+  const double now = seconds_since(begin_);
+  const double reserve = checkpoints + std::min(60.0, 0.05 * plan_.walltime) +
+                         2.0 * seconds_per_step(now) * static_cast<double>(steps_to_next_decision(now));
+  return plan_.walltime - seconds_since(plan_.started) - reserve;
+}
+
 // Of rank 0, by the clock and the file.
 std::int64_t TimeLoop::own_decision() {
-  const double now = seconds_since(begin_);
-  const double reserve = 3.0 * longest_checkpoint_ + std::min(60.0, 0.05 * plan_.walltime) +
-                         2.0 * seconds_per_step(now) * static_cast<double>(steps_to_next_decision(now));
   if (was_asked_to_stop(plan_.stop_file)) return static_cast<int>(Decision::asked);
-  const bool is_up = plan_.walltime > 0.0 && seconds_since(plan_.started) + reserve > plan_.walltime;
+  const bool is_up = time_left(3.0 * longest_checkpoint_) < 0.0;
   return static_cast<int>(is_up ? Decision::wall_time_is_up : Decision::go_on);
+}
+
+// Of rank 0. What the first checkpoint takes is not known before it is written: then there must be time for it and for
+// the last one.
+bool TimeLoop::wants_checkpoint(double now) const {
+  if (plan_.checkpoint_wall > 0.0 && now - saved_at_ >= plan_.checkpoint_wall) return true;
+  return saved_step_ < 0 && time_left(2.0 * plan_.checkpoint_guess) < 0.0;
 }
 
 TimeLoop::Decision TimeLoop::decide_together() {
@@ -268,7 +281,7 @@ TimeLoop::Decision TimeLoop::decide_together() {
     votes[decision] = own_decision();
     votes[steps] = steps_to_next_decision(now);
     votes[print] = now - printed_at_ >= seconds_to_next_line(printed_at_) ? 1 : 0;
-    votes[save] = plan_.checkpoint_wall > 0.0 && now - saved_at_ >= plan_.checkpoint_wall ? 1 : 0;
+    votes[save] = wants_checkpoint(now) ? 1 : 0;
     decided_at_ = now;
     decided_step_ = system_.step();
   }

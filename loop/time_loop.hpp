@@ -81,8 +81,11 @@ struct LoopPlan {
   Schedule series;                                   // when observers measure and a row of figures is written
   Schedule checkpoint;                               // a last one is written in any case
   double checkpoint_wall = 0.0;                      // s of wall time since the last one; 0: only as scheduled
-  SeriesRow write_row;                               // none: not written
-  WriteCheckpoint write_checkpoint;                  // none: not written
+  // s that a checkpoint takes, at the worst, as long as none has been timed: with a wall time, the first is written
+  // while twice that is left.
+  double checkpoint_guess = 0.0;
+  SeriesRow write_row;               // none: not written
+  WriteCheckpoint write_checkpoint;  // none: not written
   std::vector<OutputTask> outputs;
 };
 
@@ -125,6 +128,8 @@ private:
   bool has_enough();
   void write_what_is_due();
   void checkpoint();
+  double time_left(double checkpoints) const;
+  bool wants_checkpoint(double now) const;
   std::int64_t own_decision();
   std::int64_t steps_to_next_decision(double now) const;
   double seconds_per_step(double now) const;

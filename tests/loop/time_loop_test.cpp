@@ -320,6 +320,29 @@ TEST(TimeLoop, StopsAtTheSameStepEverywhereWhenTheWallTimeIsUp) {
   EXPECT_EQ(sum_over_ranks(world, record.last_step), record.last_step * size_of(world));
 }
 
+// A checkpoint that takes a fifth of the wall time would be too late where none has been timed before; a guess that is
+// too large costs one checkpoint more and ends nothing early.
+TEST(TimeLoop, WritesAFirstCheckpointInTimeToKnowHowLongTheLastOneTakes) {
+  for (const double guess : {1.0, 1000.0}) {
+    Bench bench(1e9);
+    bench.plan.checkpoint = bench.plan.series = Schedule();
+    bench.plan.outputs.clear();
+    bench.plan.walltime = 3.0;
+    bench.plan.checkpoint_guess = guess;
+    bench.plan.started = WallClock::now();
+    bench.system.on_advance = [](std::int64_t) { std::this_thread::sleep_for(std::chrono::microseconds(200)); };
+    bench.plan.write_checkpoint = [&bench](const LoopRecord&) {
+      bench.checkpoints.push_back(bench.system.step());
+      std::this_thread::sleep_for(std::chrono::milliseconds(400));
+      return std::uint64_t{0};
+    };
+    const LoopRecord& record = bench.run().record();
+    EXPECT_LT(std::chrono::duration<double>(WallClock::now() - bench.plan.started).count(), bench.plan.walltime);
+    EXPECT_GT(record.wall_seconds, 1.2);
+    EXPECT_EQ(bench.checkpoints.size(), 2u);
+  }
+}
+
 TEST(TimeLoop, StopsEverywhereWhenOneRankReceivesASignal) {
   Bench bench(1e9);
   bench.plan.checkpoint = Schedule();
