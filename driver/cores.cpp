@@ -1,37 +1,54 @@
 #include "driver/cores.hpp"
 
 #include "core/mpi_session.hpp"
+#include "driver/control_groups.hpp"
 
 #include <fmt/format.h>
 
 #include <sched.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
+#include <bit>
+#include <cerrno>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
+#include <thread>
+#include <vector>
 
 namespace thalweg::driver {
 
 namespace {
 
+using CoreSet = std::vector<std::uint64_t>;  // a bit for each core of the machine
+
+// Those that the scheduler gives this process. The system refuses a set that is too small for the machine's cores.
+CoreSet own_cores() {
+  constexpr std::size_t least = 16, most = 1 << 14;  // for 1024 cores, and for a million
+  for (std::size_t words = least; words <= most; words *= 2) {
+    CoreSet cores(words);
+    if (sched_getaffinity(0, words * sizeof(cores[0]), reinterpret_cast<cpu_set_t*>(cores.data())) == 0) return cores;
+    if (errno != EINVAL) break;
+  }
+  return CoreSet(least);
+}
+
+// By the quota as well; as many as the machine has where the system does not tell.
+int count_of(const CoreSet& set) {
+  int cores = 0;
+  for (const std::uint64_t word : set) cores += std::popcount(word);
+  if (cores == 0) cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  return std::min(cores, limits_of_groups().cores.value_or(cores));
+}
+
 // Cores that any rank of the node may use: each rank may have been given its own.
 int cores_of(MPI_Comm node) {
-  cpu_set_t mine;
-  CPU_ZERO(&mine);
-  sched_getaffinity(0, sizeof(mine), &mine);
-  std::array<std::uint64_t, sizeof(cpu_set_t) / sizeof(std::uint64_t)> bits{};
-  std::memcpy(bits.data(), &mine, sizeof(mine));
-  MPI_Allreduce(MPI_IN_PLACE, bits.data(), static_cast<int>(bits.size()), MPI_UINT64_T, MPI_BOR, node);
-  int cores = 0;
-  for (const std::uint64_t word : bits) cores += __builtin_popcountll(word);
-  std::ifstream file("/sys/fs/cgroup/cpu.max");
-  std::string quota;
-  if (std::getline(file, quota)) cores = std::min(cores, cores_by_quota(quota).value_or(cores));
-  return cores;
+  CoreSet set = own_cores();
+  std::uint64_t words = set.size();
+  MPI_Allreduce(MPI_IN_PLACE, &words, 1, MPI_UINT64_T, MPI_MAX, node);
+  set.resize(words);
+  MPI_Allreduce(MPI_IN_PLACE, set.data(), static_cast<int>(words), MPI_UINT64_T, MPI_BOR, node);
+  return count_of(set);
 }
 
 // As the user tells Open MPI, or as it tells its ranks where it has noticed too many of them itself.
@@ -43,14 +60,7 @@ bool waiting_ranks_yield() {
 
 }  // namespace
 
-std::optional<int> cores_by_quota(const std::string& cpu_max) {
-  long quota = 0, period = 0;
-  const char* end = cpu_max.data() + cpu_max.size();
-  const auto first = std::from_chars(cpu_max.data(), end, quota);
-  if (first.ec != std::errc() || first.ptr == end) return std::nullopt;  // "max 100000"
-  if (std::from_chars(first.ptr + 1, end, period).ec != std::errc() || period <= 0) return std::nullopt;
-  return std::max(1, static_cast<int>(quota / period));
-}
+int available_cores() { return count_of(own_cores()); }
 
 std::string crowding_warning(MPI_Comm communicator) {
   MPI_Comm node = MPI_COMM_NULL;

@@ -4,18 +4,16 @@
 
 #include <mpi.h>
 
-#include <optional>
 #include <string>
 
 namespace thalweg::driver {
 
-// The whole cores that the text of a cgroup's cpu.max grants, e.g. "150000 100000": 1; at least 1, none if it sets no
-// limit.
-std::optional<int> cores_by_quota(const std::string& cpu_max);
+// That this process may use, by the scheduler's set and the quota of its container and job. Needs no MPI.
+int available_cores();
 
 // A warning with what to do about it if ranks of this communicator outnumber the cores of their node, by the
-// scheduler's set and the container's quota, and do not yield; empty otherwise. On the first rank, of the most crowded
-// node. Collective.
+// scheduler's set and the quota of container and job, and do not yield; empty otherwise. On the first rank, of the most
+// crowded node. Collective.
 std::string crowding_warning(MPI_Comm communicator);
 
 }  // namespace thalweg::driver

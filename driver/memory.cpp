@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
 #include "driver/build_system.hpp"
+#include "driver/control_groups.hpp"
 #include "driver/disk_space.hpp"
 #include "driver/rank_cost.hpp"
 #include "driver/run_cost.hpp"
@@ -12,10 +13,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
-#include <limits>
 
 namespace thalweg::driver {
 
@@ -23,31 +22,24 @@ namespace {
 
 constexpr double usable = 0.9;  // of a node; the rest is the system's
 
-// Bytes, as the system counts them; 0 where it does not say.
-double largest_memory_of_this_process() {
-  std::ifstream status("/proc/self/status");
+// What a file of /proc has after a word; 0 where it does not say.
+double kibibytes_in(const char* file, const char* name) {
+  std::ifstream status(file);
   for (std::string word; status >> word;)
-    if (double kibibytes = 0.0; word == "VmHWM:" && status >> kibibytes) return 1024.0 * kibibytes;
+    if (double kibibytes = 0.0; word == name && status >> kibibytes) return kibibytes;
   return 0.0;
 }
 
 }  // namespace
 
-double memory_by_quota(const std::string& memory_max) {
-  double bytes = 0.0;
-  const char* end = memory_max.data() + memory_max.size();
-  const bool is_number = std::from_chars(memory_max.data(), end, bytes).ec == std::errc();
-  return is_number && bytes > 0.0 ? bytes : std::numeric_limits<double>::infinity();
+double memory_of_this_node() {
+  const double bytes = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+  return std::min(bytes, limits_of_groups().memory);
 }
 
-double memory_of_this_node() {
-  double bytes = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
-  for (const char* name : {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
-    std::ifstream file(name);
-    std::string limit;
-    if (std::getline(file, limit)) bytes = std::min(bytes, memory_by_quota(limit));
-  }
-  return bytes;
+double free_memory_for_runs() {
+  const double free = 1024.0 * kibibytes_in("/proc/meminfo", "MemAvailable:"), there = memory_of_this_node();
+  return usable * (free > 0.0 ? std::min(free, there) : there);
 }
 
 double memory_on_one_rank(const Case& c) {
@@ -95,7 +87,7 @@ void refuse_without_memory(const Case& c, MPI_Comm communicator, const Index3& l
 void forget_largest_memory() { std::ofstream("/proc/self/clear_refs") << 5; }  // proc(5)
 
 MemoryUse memory_use(MPI_Comm communicator) {
-  const double mine = largest_memory_of_this_process();
+  const double mine = 1024.0 * kibibytes_in("/proc/self/status", "VmHWM:");
   return {sum_over_ranks(communicator, mine), max_over_ranks(communicator, mine)};
 }
 

@@ -9,11 +9,11 @@
 
 namespace thalweg::driver {
 
-// What the text of a cgroup's memory.max grants, bytes; infinity if it sets no limit ("max") or is none.
-double memory_by_quota(const std::string& memory_max);
-
-// Of this node, within the limit of the container, bytes.
+// Of this node, within the limits of container and job, bytes.
 double memory_of_this_node();
+
+// Of that, what runs that are started now can have, bytes.
+double free_memory_for_runs();
 
 // What a case takes on one rank, bytes.
 double memory_on_one_rank(const Case& c);

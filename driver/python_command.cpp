@@ -1,5 +1,10 @@
 #include "driver/python_command.hpp"
 
+#include "driver/cores.hpp"
+#include "driver/memory.hpp"
+
+#include <fmt/format.h>
+
 #include <unistd.h>
 
 #include <cerrno>
@@ -39,6 +44,9 @@ int run_python_command(int argc, char** argv) {
   if (const char* more = std::getenv("PYTHONPATH"); more && *more) path.append(":").append(more);
   setenv("PYTHONPATH", path.c_str(), 1);
   if (!program.empty()) setenv("THALWEG_PROGRAM", program.c_str(), 1);
+  // What runs can have of this machine (sweep/machine.py).
+  setenv("THALWEG_CORES", std::to_string(available_cores()).c_str(), 1);
+  setenv("THALWEG_MEMORY", fmt::format("{:.0f}", free_memory_for_runs()).c_str(), 1);
   std::string module_flag = "-m", module = "thalweg";
   std::vector<char*> arguments = {interpreter.data(), module_flag.data(), module.data()};
   arguments.insert(arguments.end(), argv + 1, argv + argc);

@@ -7,8 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 namespace thalweg::driver::memory_test {
 namespace {
 
@@ -36,11 +34,10 @@ TEST(Memory, ReportSaysWhatIsNotThere) {
   EXPECT_TRUE(contains(memory_line(95e9, 24e9), ": more than the 24 GB of this machine"));
 }
 
-TEST(Memory, KnowsTheLimitsOfContainers) {
-  EXPECT_EQ(memory_by_quota("8589934592"), 8589934592.0);
-  EXPECT_TRUE(std::isinf(memory_by_quota("max")));
-  EXPECT_TRUE(std::isinf(memory_by_quota("")));
+TEST(Memory, OfThisNode) {
   EXPECT_GT(memory_of_this_node(), 1e8);
+  EXPECT_GT(free_memory_for_runs(), 1e7);
+  EXPECT_LT(free_memory_for_runs(), memory_of_this_node());
 }
 
 // At least 19 single-precision values a cell beside the program, and not more than twice that with flags and the links
