@@ -122,7 +122,7 @@ class Sweep(ProgramTest):
         time.sleep(0.5)
         os.kill(going.pid, signal.SIGTERM)
         said, _ = going.communicate(timeout=60)
-        self.assertEqual(going.returncode, 0)
+        self.assertEqual(going.returncode, 3)   # as thalweg run says
         self.assertIn("the same command goes on", said)
         self.assertEqual([row["state"] for row in self.table("sweep/runs.csv")], ["begun", "waiting", "waiting"])
         self.assertTrue((self.folder / "sweep/runs/slope_0.5/checkpoints/latest").exists())
@@ -173,6 +173,62 @@ class Sweep(ProgramTest):
         self.write("set: {contact.wall_friction: 0.3}\n" + bisect)
         self.run_well("sweep", sweep)
         self.assertEqual([row["state"] for row in self.table("sweep/thresholds.csv")], ["found"])
+
+    def test_a_task_of_an_array_job_says_that_it_was_stopped(self):
+        sweep = self.write("set: {run.until: 100.0}\nvary: {gravity.slope: [0.5, 0.6]}\n")
+        going = subprocess.Popen([THALWEG, "sweep", sweep, "--task", "0"], cwd=self.folder, stdout=subprocess.DEVNULL)
+        self.wait_for_log("sweep/runs/slope_0.5", going)
+        going.send_signal(signal.SIGTERM)
+        self.assertEqual(going.wait(60), 3)
+
+    def wait_for_log(self, run, process):
+        deadline = time.monotonic() + 60.0
+        while not (self.folder / run / "run.log").exists() and time.monotonic() < deadline and process.poll() is None:
+            time.sleep(0.02)
+
+    def test_folders_of_any_name_and_a_launcher_of_ones_own(self):
+        folder = self.folder / "tau[0.05] of bed*, fein ü"
+        folder.mkdir()
+        (folder / "case.yaml").write_text(self.CASE)
+        (folder / "some runs.yaml").write_text("case: case.yaml\nset: {run.until: 0.03}\nranks: 2\n"
+                                               "vary: {gravity.slope: [0.5], name: ['it''s [a], b']}\n")
+        launcher = self.folder / "my launcher"
+        launcher.write_text(f'#!/bin/sh\necho "$*" > "{self.folder}/launched"\nshift\nexec "{program.MPIEXEC}" "$@"\n')
+        launcher.chmod(0o755)
+        run = folder / "some runs/runs/slope_0.5-name_it_s__a___b"
+        for _ in range(2):
+            result = subprocess.run([THALWEG, "sweep", folder / "some runs.yaml"], capture_output=True, text=True, cwd=self.folder,
+                                    env=os.environ | {"THALWEG_LAUNCH": f"'{launcher}' --mpi=pmix"}, timeout=120)
+            self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+            self.assertTrue((self.folder / "launched").read_text().startswith(f"--mpi=pmix -n 2 {THALWEG} run "))
+            self.assertTrue(json.loads((run / "summary.json").read_text())["finished"])
+            (run / "summary.json").unlink()   # as after a kill
+        self.assertIn("going on from", run.with_name(run.name + ".txt").read_text())
+
+    def test_the_program_tells_what_the_machine_has(self):
+        teller = self.folder / "teller"
+        teller.write_text('#!/bin/sh\necho "$THALWEG_CORES $THALWEG_MEMORY"\n')
+        teller.chmod(0o755)
+        own = sorted(os.sched_getaffinity(0))
+        for cores in {1, min(2, len(own))}:
+            said = subprocess.run([THALWEG, "sweep"], env=os.environ | {"THALWEG_PYTHON": str(teller)}, capture_output=True, text=True,
+                                  preexec_fn=lambda: os.sched_setaffinity(0, own[:cores])).stdout.split()
+            self.assertEqual(int(said[0]), cores)
+            self.assertGreater(float(said[1]), 1e7)
+
+    def test_no_more_runs_at_a_time_than_there_is_memory_for(self):
+        sweep = self.write("set: {run.until: 0.01}\nvary: {contact.wall_friction: [0.2, 0.3, 0.4]}\n")
+        said = self.run_well("check", self.case).stdout
+        amount, unit = said[said.index("memory "):].split()[2:4]
+        needed = float(amount) * {"MB": 1e6, "GB": 1e9}[unit]
+        package = Path(__file__).resolve().parents[2] / "python"
+        result = subprocess.run([sys.executable, "-m", "thalweg", "sweep", sweep], cwd=self.folder, capture_output=True, text=True, timeout=120,
+                                env=os.environ | {"PYTHONPATH": str(package), "THALWEG_PROGRAM": THALWEG, "THALWEG_CORES": "3",
+                                                  "THALWEG_MEMORY": f"{1.9 * needed:.0f}"})
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn(f"1 run at a time, though there are cores for 3: each takes about {needed / 1e9:.3g} GB", result.stdout)
+        self.assertNotIn("2 going", result.stdout)
+        self.assertIn("3 of 3 runs done", result.stdout)
 
     def test_tasks_of_an_array_job_and_their_tables(self):
         sweep = self.write("set: {run.until: 0.01}\nvary: {contact.wall_friction: [0.2, 0.3]}\n")

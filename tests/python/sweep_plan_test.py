@@ -8,10 +8,12 @@ import math
 import os
 import tempfile
 import unittest
+import unittest.mock
 from pathlib import Path
 
+import h5py
 import made_up_folder   # noqa: F401  finds the package
-from thalweg.sweep import command, tables
+from thalweg.sweep import command, machine, tables
 from thalweg.sweep.inputs import SweepError, inputs_of, named_files
 from thalweg.sweep.plan import plan_of
 from thalweg.sweep.runner import Runner
@@ -56,6 +58,16 @@ class Points(Folder):
         self.assertEqual(name_of({"gravity.slope": 1e-3, "name": "a/b"}, ["gravity.slope", "name"]),
                          "slope_0.001-name_a_b")
 
+    def test_a_name_too_long_for_a_folder_is_cut_off(self):
+        keys = ["grains.0.placement.positions", "ü"]
+        long = [{keys[0]: [[0.1 * n, 0.2, 0.3] for n in range(60)], keys[1]: end} for end in (1, 2)]
+        names = [name_of(settings, keys) for settings in long]
+        self.assertNotEqual(*names)
+        self.assertEqual(names[0][:100], names[1][:100])
+        self.assertEqual(name_of({"ü": "ü" * 200}, ["ü"])[:10], "ü_üüüüüüüü")
+        for name in names + [name_of({"ü": "ü" * 200}, ["ü"]), name_of({"ab": "ü" * 200}, ["ab"])]:
+            (self.folder / f"{name}.{'h' * 64}.1234567.partial").write_text("")   # 255 bytes at most
+
     def test_what_changes_together_is_named_by_its_first_key(self):
         plan = self.plan(vary={"a": [1, 2]}, together=[{"b": 1, "c": [1, 2]}, {"b": 2, "c": [3, 4]}])
         self.assertEqual((plan.keys, plan.naming_keys), (["a", "b", "c"], ["a", "b"]))
@@ -96,6 +108,32 @@ class Points(Folder):
         other = self.folder / "other.stl"
         other.write_text("solid")
         self.assertEqual(set(inputs_of(case, {"obstacles.0.stl": "other.stl"})["files"]), {"bed.h5", "begun", "other.stl"})
+
+    def test_of_a_run_to_begin_from_only_the_latest_checkpoint_counts(self):
+        case, begun = self.folder / "case.yaml", self.folder / "begun/checkpoints"
+        case.write_text("system: grains\ninitial: {from: begun}\n")
+        begun.mkdir(parents=True)
+        for step in (9, 10, 11):
+            (begun / f"step_{step}.h5").write_text(f"{step}")
+        (begun / "latest").write_text("step_10.h5\n")
+        at_10 = inputs_of(case, {})
+        (begun / "step_9.h5").unlink()
+        (begun / "step_11.h5").write_text("other")
+        self.assertEqual(inputs_of(case, {}), at_10)
+        (begun / "latest").unlink()
+        self.assertNotEqual(inputs_of(case, {}), at_10)
+        # What a checkpoint says of its data is enough: the data are not read.
+        seen = []
+        for checksum, time in ((1, 0.5), (2, 0.5), (2, 0.6)):
+            with h5py.File(begun / "step_11.h5", "w") as file:
+                file.create_group("run").attrs["time"] = time
+                file["grains/radius"] = [0.1, 0.2]
+                file["grains/radius"].attrs["checksum"] = checksum
+            seen.append(json.dumps(inputs_of(case, {})))
+        self.assertEqual(len(set(seen)), 3)
+        with h5py.File(begun / "step_11.h5", "r+") as file:
+            file["grains/radius"][0] = 0.3
+        self.assertEqual(json.dumps(inputs_of(case, {})), seen[-1])
 
     def test_what_cannot_be_meant_is_refused_with_its_key(self):
         for content, words in (({"very": 1}, "very is not a key here"),
@@ -255,6 +293,30 @@ class TwoSweepsOfAFolder(Folder):
         here.release()
         self.assertIsNone(there.start(str(program)))
         self.assertEqual(there.state, FAILED)
+
+
+class Machine(unittest.TestCase):
+    def runs_at_a_time(self, cores, memory, ranks, needed):
+        said = io.StringIO()
+        with unittest.mock.patch.dict(os.environ, THALWEG_CORES=str(cores), THALWEG_MEMORY=str(memory)), contextlib.redirect_stdout(said):
+            return machine.runs_at_a_time(ranks, needed), said.getvalue()
+
+    def test_as_many_runs_as_cores_and_memory_allow(self):
+        self.assertEqual(self.runs_at_a_time(8, 64e9, 1, 1e9), (8, ""))
+        self.assertEqual(self.runs_at_a_time(8, 64e9, 3, 1e9), (2, ""))
+        self.assertEqual(self.runs_at_a_time(2, 64e9, 4, 0.0), (1, ""))
+        self.assertEqual(self.runs_at_a_time(8, 25e9, 1, 10e9), (2, "2 runs at a time, though there are cores for 8: each takes about "
+                                                                "10 GB of memory, and 25 GB are free (--jobs overrides this)\n"))
+        self.assertEqual(self.runs_at_a_time(8, 5e9, 2, 10e9)[0], 1)
+
+    def test_memory_by_what_check_prints(self):
+        self.assertEqual(machine.memory_needed("steps 7\nmemory     about 120 MB on one rank\n"), 120e6)
+        self.assertEqual(machine.memory_needed("memory     about 1.5 TB on one rank: more than the 24 GB of this machine"), 1.5e12)
+        self.assertEqual(machine.memory_needed("thalweg: no memory about"), 0.0)
+
+    def test_without_the_program_jobs_must_be_given(self):
+        with unittest.mock.patch.dict(os.environ, clear=True), self.assertRaisesRegex(SweepError, "THALWEG_CORES.*--jobs"):
+            machine.runs_at_a_time(1, 0.0)
 
 
 class Slurm(Folder):

@@ -7,30 +7,29 @@ import sys
 from pathlib import Path
 
 from thalweg.run import read_case
+from thalweg.sweep.machine import memory_needed, runs_at_a_time
 from thalweg.sweep.plan import SweepError, figure_of, read_plan
 from thalweg.sweep.runner import Runner
-from thalweg.sweep.runs import DONE, FAILED, name_of
+from thalweg.sweep.runs import DONE, FAILED, check_command, name_of
 from thalweg.sweep.tables import those_without_dimension, units_of_keys, write_tables
 from thalweg.sweep.tasks import known_runs, tasks_of
+
+STOPPED = 3   # exit code of thalweg run
 
 
 def add_to(commands):
     sweep = commands.add_parser(
-        "sweep", description="Run a case with many values of its keys, as many runs at a time as there are cores. The same "
+        "sweep", description="Run a case with many values of its keys, as many runs at a time as there are cores and memory for. The same "
                              "command goes on where it was stopped or killed; finished runs are not repeated.")
     sweep.add_argument("sweep", type=Path, metavar="SWEEP.yaml", help="Which runs there are (docs/sweep.md)")
     sweep.add_argument("--out", type=Path, metavar="FOLDER",
                        help="Where runs and tables go (default: named after the file, beside it)")
-    sweep.add_argument("--jobs", type=int, metavar="N", help="Runs at a time (default: one a core, or a core a rank)")
+    sweep.add_argument("--jobs", type=int, metavar="N", help="Runs at a time (default: a core a rank, as far as the memory goes)")
     sweep.add_argument("--retry", action="store_true", help="Run those again that have failed")
     sweep.add_argument("--dry-run", action="store_true", help="Print the runs, or the bisections, and stop")
     sweep.add_argument("--task", type=int, metavar="N", help="Only run (or bisection) N of the dry run, from 0 on")
     sweep.add_argument("--tables", action="store_true", help="Only write the tables of what there is")
     sweep.add_argument("--slurm", action="store_true", help="Print a Slurm array job with a task for each run or bisection")
-
-
-def available_cores():
-    return len(os.sched_getaffinity(0))
 
 
 def program():
@@ -43,18 +42,24 @@ def program():
 def units_of(plan):
     """Of the keys of the case."""
     system = str(read_case(plan.case).get("system", "resolved"))
-    said = subprocess.run([program(), "defaults", system], capture_output=True, text=True)
+    said = asked([program(), "defaults", system])
     units = units_of_keys(said.stdout) if said.returncode == 0 else {}
     return those_without_dimension(units) if plan.in_grain_units else units
 
 
-def refuse_impossible(tasks):
-    """Before anything is run: a misspelt key would only make every run fail. A value that a run cannot have is that run's."""
-    known = [run for task in tasks for run in task.runs]   # a bisection chooses its own as it goes
-    ends = known[:1] + known[1:][-1:]
-    said = [subprocess.run(run.check_command(program()), capture_output=True, text=True) for run in ends]
-    if said and all(check.returncode == 2 for check in said):
+def asked(command):
+    return subprocess.run(command, capture_output=True, encoding="utf-8", errors="replace")
+
+
+def refuse_impossible(plan, tasks):
+    """Before anything is run: a misspelt key would only make every run fail. A value that a run cannot have is that run's. Returns
+    the memory that a run takes, the most of those looked at, in bytes."""
+    ends = [settings for task in (tasks[:1] + tasks[1:][-1:]) for settings in task.ends()]
+    said = [asked(check_command(program(), plan.case, settings)) for settings in ends]
+    # A bisection chooses its runs as it goes on.
+    if said and not plan.bisections and all(check.returncode == 2 for check in said):
         raise SweepError(f"neither the first nor the last run can be set up: {said[0].stderr.strip().removeprefix('thalweg: ')}")
+    return max((memory_needed(check.stdout) for check in said), default=0.0)
 
 
 def describe(task, keys):
@@ -80,7 +85,7 @@ exec {command} sweep {file} --out {out} --task "$SLURM_ARRAY_TASK_ID" --jobs {jo
 
 
 def sweep(wanted):
-    """Exit code 0: all done, or stopped in good order; 1: some runs have failed; 2 comes with a SweepError."""
+    """Exit code 0: all done; 1: some runs have failed; 3: stopped in good order, as thalweg run says; 2 comes with a SweepError."""
     plan = read_plan(wanted.sweep)
     folder = wanted.out or wanted.sweep.with_suffix("")
     if wanted.jobs is not None and wanted.jobs < 1:
@@ -102,17 +107,16 @@ def sweep(wanted):
         tasks = [tasks[wanted.task]]
     if wanted.tables:
         return written(plan, tasks, units_of(plan), folder)
-    jobs = wanted.jobs or max(1, available_cores() // plan.ranks)
     units = units_of(plan)
-    refuse_impossible(tasks)
+    needed = refuse_impossible(plan, tasks)
+    jobs = wanted.jobs or runs_at_a_time(plan.ranks, needed)
     runner = Runner(plan, tasks, units, program(), folder, jobs, wanted.retry, wanted.task is None)
     finished = runner.work()
-    if wanted.task is None:
-        code = written(plan, tasks, units, folder)
-        if not finished:
-            print("stopped; the same command goes on")
-        return code if finished else 0
-    return int(any(run.state == FAILED for task in tasks for run in task.runs))
+    code = written(plan, tasks, units, folder) if wanted.task is None else 0
+    if not finished:
+        print("stopped; the same command goes on")
+        return STOPPED
+    return code or int(any(run.state == FAILED for task in tasks for run in task.runs))
 
 
 def written(plan, tasks, units, folder):

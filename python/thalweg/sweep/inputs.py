@@ -3,7 +3,9 @@ different things do not belong in one table."""
 import functools
 import hashlib
 import json
+import re
 
+import h5py
 import yaml
 
 from thalweg.errors import RunFolderError
@@ -61,11 +63,40 @@ def digest_of(content):
 
 
 def digest_of_file(path):
-    """Of the bytes of a file; of a run folder: of its checkpoints."""
-    if path.is_dir():
-        return digest_of(sorted((file.name, digest_of_bytes(file, state_of(file))) for file in path.glob("checkpoints/*")
-                                if file.is_file()))
-    return digest_of_bytes(path, state_of(path))
+    """Of the bytes of a file; of a run folder: of the checkpoint that a run would begin from."""
+    if not path.is_dir():
+        return digest_of_bytes(path, state_of(path))
+    checkpoint = latest_checkpoint_in(path)
+    return digest_of([checkpoint.name, digest_of_checkpoint(checkpoint, state_of(checkpoint))] if checkpoint else [])
+
+
+def latest_checkpoint_in(run):
+    """As the program chooses it (io/run_folder.hpp): the one that `latest` names, else that of the last step; None: there is none."""
+    steps = {int(match[1]): file for file in run.glob("checkpoints/step_*.h5") if (match := re.fullmatch(r"step_(\d+)\.h5", file.name))}
+    try:
+        named = run / "checkpoints" / (run / "checkpoints/latest").read_text(encoding="utf-8").strip()
+    except OSError:
+        named = None
+    return named if named in steps.values() else steps.get(max(steps, default=None))
+
+
+@functools.lru_cache(maxsize=None)
+def digest_of_checkpoint(path, state):
+    """By the checksums that it holds of its data, which need not be read: it may be as large as the memory of many nodes."""
+    seen = []
+
+    def look(name, item):
+        if isinstance(item, h5py.Dataset):
+            seen.append((name, item.shape, str(item.dtype), int(item.attrs["checksum"])))
+        elif name == "run":
+            seen.append((name, sorted((key, str(value)) for key, value in item.attrs.items())))
+
+    try:
+        with h5py.File(path) as file:
+            file.visititems(look)
+    except (OSError, KeyError):   # no HDF5 file, or without checksums
+        return digest_of_bytes(path, state)
+    return digest_of(seen)
 
 
 @functools.lru_cache(maxsize=None)

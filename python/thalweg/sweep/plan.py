@@ -118,7 +118,7 @@ def figure_of(summary, path):
 def read_plan(path):
     path = Path(path)
     try:
-        content = yaml.load(path.read_text(), CaseLoader)
+        content = yaml.load(path.read_text(encoding="utf-8"), CaseLoader)
     except OSError as error:
         raise SweepError(f"{path}: {error.strerror}.") from None
     except UnicodeDecodeError:

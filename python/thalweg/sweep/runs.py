@@ -6,8 +6,10 @@ runs/NAME.txt    what the program said; locked while the run is going and until 
 """
 import ctypes
 import fcntl
+import hashlib
 import json
 import os
+import shlex
 import signal
 import socket
 import subprocess
@@ -15,6 +17,7 @@ from pathlib import Path
 
 from thalweg.sweep.inputs import SweepError, inputs_of
 
+LONGEST_NAME = 150   # bytes: of the 255 that file systems allow, the rest is for the endings of the files beside the run folder
 WAITING, DONE, FAILED, BEGUN = "waiting", "done", "failed", "begun"
 STOPPED = (3, 4)   # exit codes of thalweg run: by a signal or the wall time, and by thalweg stop
 
@@ -46,7 +49,7 @@ class SweepRun:
 
     def read_note(self):
         try:
-            return json.loads(self.note.read_text())
+            return json.loads(self.note.read_text(encoding="utf-8"))
         except FileNotFoundError:
             if self.folder.exists():
                 raise SweepError(f"{self.note}, which says what {self.folder} was run with, is missing; give another --out, or "
@@ -59,7 +62,7 @@ class SweepRun:
     def read_summary(self):
         """None also where a crash of the machine has left half of it: the run then goes on from its checkpoint."""
         try:
-            return json.loads((self.folder / "summary.json").read_text())
+            return json.loads((self.folder / "summary.json").read_text(encoding="utf-8"))
         except (FileNotFoundError, ValueError):
             return None
 
@@ -89,15 +92,9 @@ class SweepRun:
         return str(self.summary["version"]) if self.summary else ""
 
     def command(self, program):
-        arguments = ["run", str(self.case), "--out", str(self.folder), "--resume"] + self.set_options()
-        launcher = ["mpirun", "-n", str(self.ranks)] if self.ranks > 1 else []
+        arguments = ["run", str(self.case), f"--out={self.folder}", "--resume"] + set_options(self.settings)
+        launcher = shlex.split(os.environ.get("THALWEG_LAUNCH", "mpirun")) + ["-n", str(self.ranks)] if self.ranks > 1 else []
         return launcher + [program] + arguments
-
-    def check_command(self, program):
-        return [program, "check", str(self.case)] + self.set_options()
-
-    def set_options(self):
-        return [word for key, value in self.settings.items() for word in ("--set", f"{key}={json.dumps(value)}")]
 
     def start(self, program):
         """The process of the run, which saves its state and stops at SIGUSR1 and when the sweep is killed; None while another
@@ -137,12 +134,20 @@ class SweepRun:
         replace_text(self.note, json.dumps(self.inputs | {"failure": failure}, indent=1) + "\n")
 
 
+def check_command(program, case, settings):
+    return [program, "check", str(case)] + set_options(settings)
+
+
+def set_options(settings):
+    return [word for key, value in settings.items() for word in ("--set", f"{key}={json.dumps(value)}")]
+
+
 def names_in(folder):
     """The names of the runs that a folder has, by their inputs as text."""
     names = {}
     for note in sorted(folder.glob("*.json")):
         try:
-            inputs = json.loads(note.read_text())
+            inputs = json.loads(note.read_text(encoding="utf-8"))
             inputs.pop("failure", None)
         except (OSError, ValueError, AttributeError):
             continue   # its own run says what is wrong with it
@@ -183,7 +188,7 @@ def die_with_parent():
 
 def complaint_in(path):
     """What the program complained of, one sentence; None if it did not."""
-    lines = [line for line in Path(path).read_text(errors="replace").splitlines() if line.startswith("thalweg: ")]
+    lines = [line for line in Path(path).read_text(encoding="utf-8", errors="replace").splitlines() if line.startswith("thalweg: ")]
     return lines[-1].removeprefix("thalweg: ") if lines else None
 
 
@@ -200,11 +205,17 @@ def short_keys(keys):
 
 
 def name_of(settings, keys):
-    """The name of the run that sets these keys, in their order: slope_0.05-seed_1."""
+    """The name of the run that sets these keys, in their order: slope_0.05-seed_1. A long one is cut off, and a digest tells it from
+    others that begin alike."""
     short = short_keys(keys)
     parts = []
     for key in keys:
         value = settings.get(key)
         text = str(value) if isinstance(value, (int, float, str)) else json.dumps(value)
         parts.append(f"{short[key]}_{''.join(c if c.isalnum() or c in '.+-' else '_' for c in text)}")
-    return "-".join(parts) or "run"
+    name = "-".join(parts) or "run"
+    encoded = name.encode()
+    if len(encoded) <= LONGEST_NAME:
+        return name
+    digest = hashlib.sha256(encoded).hexdigest()[:12]
+    return f"{encoded[:LONGEST_NAME - len(digest) - 1].decode(errors='ignore')}-{digest}"

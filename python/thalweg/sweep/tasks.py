@@ -14,6 +14,10 @@ class PointTask:
         self.run = SweepRun(folder, name_of(self.settings, plan.naming_keys), plan, self.settings, kept)
         self.runs = [self.run]
 
+    def ends(self):
+        """Settings from one end of what its runs may set to the other."""
+        return [self.settings]
+
     def wanted(self):
         return [self.run] if self.run.is_open else []
 
@@ -37,6 +41,10 @@ class BisectionTask:
     @property
     def runs(self):
         return [run for runs in self.known.values() for run in runs]
+
+    def ends(self):
+        return [self.settings | {self.search.key: value} | self.search.repetitions[0]
+                for value in (self.search.lower, self.search.upper)]
 
     def runs_at(self, value):
         if value not in self.known:

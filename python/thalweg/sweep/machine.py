@@ -1,0 +1,32 @@
+"""How many runs fit on this machine at a time. What there is comes from the program that has started this one, which knows the
+scheduler's set of cores and the limits of container and job (driver/python_command.cpp)."""
+import os
+import re
+
+from thalweg.sweep.inputs import SweepError
+
+BYTES = {"MB": 1e6, "GB": 1e9, "TB": 1e12}
+
+
+def told(name):
+    try:
+        return float(os.environ[name])
+    except (KeyError, ValueError):
+        raise SweepError(f"{name} does not say what this machine has; start this as `thalweg sweep`, or give --jobs.") from None
+
+
+def memory_needed(report):
+    """By what `thalweg check` has printed, bytes; 0 if it does not say."""
+    found = re.search(r"^memory +about ([0-9.e+]+) (MB|GB|TB) on one rank", report, re.MULTILINE)
+    return float(found[1]) * BYTES[found[2]] if found else 0.0
+
+
+def runs_at_a_time(ranks, needed):
+    """ranks: of a run; needed: its memory, bytes. Says so where the memory is what allows fewer than the cores do."""
+    by_cores = max(1, int(told("THALWEG_CORES")) // ranks)
+    there = told("THALWEG_MEMORY")
+    by_memory = max(1, int(there // needed)) if needed > 0.0 else by_cores
+    if by_memory < by_cores:
+        print(f"{by_memory} run{'s' if by_memory > 1 else ''} at a time, though there are cores for {by_cores}: each takes about "
+              f"{needed / 1e9:.3g} GB of memory, and {there / 1e9:.3g} GB are free (--jobs overrides this)", flush=True)
+    return min(by_cores, by_memory)
