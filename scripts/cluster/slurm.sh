@@ -3,10 +3,13 @@
 #
 #   sbatch scripts/cluster/slurm.sh CASE.yaml RUN_FOLDER      (from the folder of Thalweg)
 #
-# Adapt the #SBATCH lines (or give them to sbatch) and, with another --time, THALWEG_WALLTIME. The program saves its
-# state and stops in good order before its --walltime; the next turn goes on from there, and the result has the same bits
-# as a run that was never interrupted, whatever the number of ranks of each turn. thalweg stop RUN_FOLDER ends it all, also while
-# the job waits in the queue, and so does scancel; the same sbatch goes on.
+# Adapt the #SBATCH lines, or give them to sbatch. The program asks Slurm how long the job may take, saves its state and stops
+# in good order before that; the next turn goes on from there, and the result has the same bits as a run that was never
+# interrupted, whatever the number of ranks of each turn. thalweg stop RUN_FOLDER ends it all, also while the job waits in the
+# queue, and so does scancel; the same sbatch goes on.
+#
+# THALWEG_LAUNCH=srun         what starts the ranks, with its options (mpirun)
+# THALWEG_WALLTIME=HH:MM:SS   how long a turn may take, instead of Slurm's word less a twentieth or ten minutes
 #SBATCH --job-name=thalweg
 #SBATCH --nodes=1
 #SBATCH --ntasks-per-node=64
@@ -19,10 +22,20 @@ set -euo pipefail
 
 case_file=${1:?usage: sbatch slurm.sh CASE.yaml RUN_FOLDER}
 folder=${2:?usage: sbatch slurm.sh CASE.yaml RUN_FOLDER}
-walltime=${THALWEG_WALLTIME:-23:50:00}   # ten minutes before --time
-
 source "${THALWEG_SCRIPTS:-scripts/cluster}/turn.sh"
+
+# s until the job's time is up; nothing where it has no limit.
+seconds_left() {
+  if [[ -n ${SLURM_JOB_END_TIME:-} ]]; then
+    local left=$((SLURM_JOB_END_TIME - $(date +%s)))
+    echo $((left > 0 ? left : 0))
+  else
+    seconds_of "$(squeue --noheader --jobs "$SLURM_JOB_ID" --format %L 2>/dev/null | tr -d ' ' || true)"
+  fi
+}
+
+seconds=$(seconds_for_turn "$(seconds_left)")
 status=0
-one_turn "$case_file" "$folder" "$walltime" || status=$?
+one_turn "$case_file" "$folder" "$seconds" || status=$?
 ((status == 3)) || exit "$status"
 scontrol requeue "$SLURM_JOB_ID"
