@@ -214,6 +214,10 @@ class Sweep(ProgramTest):
             said = subprocess.run([THALWEG, "sweep"], env=os.environ | {"THALWEG_PYTHON": str(teller)}, capture_output=True, text=True,
                                   preexec_fn=lambda: os.sched_setaffinity(0, own[:cores])).stdout.split()
             self.assertEqual(int(said[0]), cores)
+            scripts = Path(__file__).resolve().parents[2] / "scripts"
+            by_script = subprocess.run(["bash", "-euc", f"source {scripts}/mpi_environment; available_cores"], capture_output=True,
+                                       text=True, preexec_fn=lambda: os.sched_setaffinity(0, own[:cores])).stdout
+            self.assertEqual(int(by_script), cores)
             self.assertGreater(float(said[1]), 1e7)
 
     def test_no_more_runs_at_a_time_than_there_is_memory_for(self):

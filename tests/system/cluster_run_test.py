@@ -247,6 +247,8 @@ class Pbs(Turns):
         self.qstat = """Job Id: 17.server
     Job_Name = thalweg
     queue = batch
+    group_list = hydro
+    project = sand
     Resource_List.nodect = 4
     Resource_List.nodes = 4:ppn=64
     Resource_List.walltime = {walltime}
@@ -255,7 +257,7 @@ class Pbs(Turns):
         said = process.communicate(timeout=60)[0]
         self.assertEqual(process.returncode, 0, said)
         self.assertEqual(json.loads(self.asked.read_text())["options"],
-                         ["-q", "batch", "-N", "thalweg", "-l", "nodes=4:ppn=64", "-l", "walltime=01:00:00"])
+                         ["-q", "batch", "-P", "sand", "-N", "thalweg", "-W", "group_list=hydro", "-l", "nodes=4:ppn=64", "-l", "walltime=01:00:00"])
 
     def test_term_at_the_end_of_the_job_wants_another_turn(self):
         """PBS sends it then, and with qdel: a program that has not saved in time, as this one is held up, goes on in the next turn."""
