@@ -181,6 +181,31 @@ class Sweep(ProgramTest):
         going.send_signal(signal.SIGTERM)
         self.assertEqual(going.wait(60), 3)
 
+    def test_a_task_of_an_array_job_goes_back_into_the_queue_when_its_time_is_up(self):
+        sweep = self.write("set: {run.until: 1.5}\nvary: {gravity.slope: [0.5, 0.6]}\n")
+        job, asked, commands = self.folder / "job.sh", self.folder / "asked", self.folder / "commands"
+        job.write_text(self.run_well("sweep", sweep, "--slurm").stdout)
+        commands.mkdir()
+        (commands / "scontrol").write_text(f'#!/bin/sh\necho "$*" >> "{asked}"\n')
+        (commands / "scontrol").chmod(0o755)
+        environment = os.environ | {"PATH": f"{commands}:{os.environ['PATH']}", "SLURM_ARRAY_TASK_ID": "1", "SLURM_JOB_ID": "17"}
+        for sent, code, queued in ((signal.SIGUSR1, 0, True), (signal.SIGTERM, -signal.SIGTERM, False), (None, 0, False)):
+            (self.folder / "sweep/runs/slope_0.6/run.log").unlink(missing_ok=True)
+            task = subprocess.Popen(["bash", job], cwd=self.folder, env=environment, stdout=subprocess.DEVNULL, start_new_session=True)
+            if sent is not None:
+                self.wait_for_log("sweep/runs/slope_0.6", task)
+            if sent == signal.SIGTERM:   # as scancel does to all processes of a job
+                os.killpg(task.pid, sent)
+            elif sent is not None:
+                task.send_signal(sent)
+            self.assertEqual(task.wait(60), code)
+            self.assertEqual(asked.exists(), queued)
+            if queued:
+                self.assertEqual(asked.read_text(), "requeue 17\n")
+                asked.unlink()
+        self.run_well("sweep", sweep, "--tables")
+        self.assertEqual([row["state"] for row in self.table("sweep/runs.csv")], ["waiting", "done"])
+
     def wait_for_log(self, run, process):
         deadline = time.monotonic() + 60.0
         while not (self.folder / run / "run.log").exists() and time.monotonic() < deadline and process.poll() is None:
@@ -239,7 +264,7 @@ class Sweep(ProgramTest):
         job = self.run_well("sweep", sweep, "--slurm").stdout
         self.assertIn("--array=0-1", job)
         self.assertNotIn("--retry", job)
-        self.assertIn("--jobs 1 --retry\n", self.run_well("sweep", sweep, "--slurm", "--retry").stdout)
+        self.assertIn("--jobs 1 --retry &\n", self.run_well("sweep", sweep, "--slurm", "--retry").stdout)
         self.assertIn("contact.wall_friction = 0.3: waiting", self.run_well("sweep", sweep, "--dry-run").stdout)
         self.run_well("sweep", sweep, "--task", "1")
         self.run_well("sweep", sweep, "--tables")

@@ -328,7 +328,7 @@ class Slurm(Folder):
         self.assertIn("--ntasks=8\n", job)
         self.assertIn("--array=0-9\n", job)
         self.assertIn("/my sweep.yaml' --out", job)
-        self.assertIn("--jobs 2\n", job)
+        self.assertIn("--jobs 2 &\n", job)
 
 
 class Units(unittest.TestCase):

@@ -67,7 +67,8 @@ def describe(task, keys):
 
 
 def slurm_job(wanted, count, ranks, folder):
-    """An array of `count` tasks, each with as many runs at a time as --jobs says, of `ranks` ranks."""
+    """An array of `count` tasks, each with as many runs at a time as --jobs says, of `ranks` ranks. A task whose time is nearly up
+    stops its runs and puts itself back into the queue; one that is cancelled does not."""
     jobs = wanted.jobs or 1
     file, out, command = (shlex.quote(str(path)) for path in (wanted.sweep.resolve(), folder.resolve(), program()))
     return f"""#!/usr/bin/env bash
@@ -77,10 +78,20 @@ def slurm_job(wanted, count, ranks, folder):
 #SBATCH --cpus-per-task=1
 #SBATCH --nodes=1
 #SBATCH --time=24:00:00
-#SBATCH --signal=B:TERM@300
+#SBATCH --signal=B:USR1@300
 #SBATCH --requeue
+#SBATCH --open-mode=append
 # Made by thalweg sweep --slurm. Afterwards, for the tables: thalweg sweep {file} --out {out} --tables
-exec {command} sweep {file} --out {out} --task "$SLURM_ARRAY_TASK_ID" --jobs {jobs}{" --retry" if wanted.retry else ""}
+{command} sweep {file} --out {out} --task "$SLURM_ARRAY_TASK_ID" --jobs {jobs}{" --retry" if wanted.retry else ""} &
+sweep=$! status=0 ending=
+trap 'ending=1; kill -TERM $sweep' USR1   # the time is nearly up
+wait $sweep || status=$?
+if [[ -n $ending ]]; then
+  status=0
+  wait $sweep || status=$?
+  ((status != {STOPPED})) || exec scontrol requeue "$SLURM_JOB_ID"
+fi
+exit $status
 """
 
 
