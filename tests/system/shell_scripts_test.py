@@ -47,6 +47,28 @@ class Words(unittest.TestCase):
                     self.assertFalse(self.trace.exists())
 
 
+# As APT 3 does with the file it reports its progress to: whoever writes there is told that there is no room, instead of waiting.
+APT = """#!/usr/bin/env python3
+import os, re, sys
+os.set_blocking(int(re.search("APT::Status-Fd=([0-9]+)", " ".join(sys.argv))[1]), False)
+text = b"Unpacking something ...\\n" * 4000
+while text:
+    text = text[os.write(1, text):]
+"""
+
+
+class Setup(unittest.TestCase):
+    def test_messages_of_packages_wait_until_there_is_room(self):
+        with tempfile.TemporaryDirectory() as name:
+            for program, text in {"apt-get": APT, "dpkg-query": "#!/bin/sh\nexit 1\n", "sudo": '#!/bin/sh\nshift\nexec "$@"\n'}.items():
+                (pathlib.Path(name) / program).write_text(text)
+                (pathlib.Path(name) / program).chmod(0o755)
+            result = subprocess.run([ROOT / "scripts/setup"], capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=120,
+                                    env=os.environ | {"PATH": f"{name}:{os.environ['PATH']}"})
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertIn("== Installing packages", result.stdout)
+
+
 class Stages(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
