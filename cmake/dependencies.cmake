@@ -1,4 +1,5 @@
-# Third-party libraries, all from the distribution's packages; the minimum versions are those of Debian 12.
+# Third-party libraries, all from the distribution's packages; the minimum versions are those of Debian 12. What newer ones have been
+# tried is in docs/installing.md.
 set(MPI_CXX_SKIP_MPICXX ON)
 find_package(MPI 3.1 REQUIRED COMPONENTS C CXX)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
@@ -16,10 +17,18 @@ find_package(fmt 9.0 REQUIRED)
 find_package(CLI11 2.1 REQUIRED)
 find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore IOCore)
 
-# Debian's own interpreter where there is one, since scripts/setup installs the packages for that.
-find_program(THALWEG_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH
-             DOC "Python with numpy, h5py and PyYAML, of thalweg analyze; of the tests too, with matplotlib and VTK")
-find_program(THALWEG_PYTHON python3)
+# The first Python on the path that has what is needed, else the first: it says what it lacks when it is used. /usr/bin is looked at
+# last where it is not on the path.
+function(thalweg_has_modules result python)
+  execute_process(COMMAND ${python} -c "import ${THALWEG_PYTHON_MODULES}" RESULT_VARIABLE lacking OUTPUT_QUIET ERROR_QUIET)
+  if(lacking)
+    set(${result} FALSE PARENT_SCOPE)
+  endif()
+endfunction()
+foreach(THALWEG_PYTHON_MODULES "h5py, numpy, yaml, matplotlib, vtkmodules" "h5py, numpy, yaml" "sys")
+  find_program(THALWEG_PYTHON python3 VALIDATOR thalweg_has_modules
+               DOC "Python with numpy, h5py and PyYAML, of thalweg analyze; of the tests too, with matplotlib and VTK")
+endforeach()
 if(NOT THALWEG_PYTHON AND THALWEG_BUILD_TESTS)
   message(FATAL_ERROR "The tests need Python 3: install it, name it with -DTHALWEG_PYTHON=..., or leave them out with "
                       "-DTHALWEG_BUILD_TESTS=OFF")

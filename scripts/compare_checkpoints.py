@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Compares two checkpoints bit by bit: every dataset and every attribute.
 
     compare_checkpoints.py FIRST SECOND [--ignore PATH]...
@@ -10,6 +10,9 @@ Exit code 0: the same bits; 1: different; 2: cannot be compared (a file is missi
 import argparse
 import pathlib
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
+import thalweg_python
 
 import h5py
 import numpy as np
@@ -23,7 +26,7 @@ def checkpoint_at(path):
         latest = path / "checkpoints" / "latest"
         if not latest.exists():
             raise OSError(f"{path}: the folder has no checkpoint ({latest} is missing)")
-        return latest.parent / latest.read_text().strip()
+        return latest.parent / latest.read_text(encoding="utf-8").strip()
     return path
 
 

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """A picture of a run in three dimensions: the grains by radius, coloured by speed, in front of a slice of the flow.
 
     picture.py RUN_FOLDER [--out FILE] [--time SECONDS] [--from X Y Z] [--size WIDTH HEIGHT]
@@ -14,6 +14,9 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
+import thalweg_python
 
 import matplotlib
 import numpy as np
@@ -31,7 +34,6 @@ from vtkmodules.vtkRenderingCore import (vtkActor, vtkDataSetMapper, vtkGlyph3DM
                                          vtkRenderer, vtkRenderWindow, vtkTextActor, vtkWindowToImageFilter)
 
 matplotlib.use("Agg")
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
 import thalweg
 from thalweg import drawing
 

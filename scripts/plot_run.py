@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Draws a run: bed.png (side view of the grains in front of the flow), transport_rate.png (q* against time) and profiles.png.
 
     plot_run.py RUN_FOLDER [--out FOLDER] [--time SECONDS] [--movie FILE]
@@ -17,13 +17,15 @@ import math
 import pathlib
 import sys
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
+import thalweg_python
+
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
 import thalweg
 from thalweg import drawing, film, height_profiles, transport
 from thalweg.means import running_mean

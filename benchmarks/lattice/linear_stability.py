@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Growth rates of small disturbances on the lattice: linear_stability.py
 
 Two flows: plane Couette flow between half-link walls eight cells apart, the upper moving at 0.1 cells per step, and a
@@ -6,6 +6,12 @@ uniform stream at the same velocity without walls. The step (collision, streamin
 the largest eigenvalue over all wave numbers, minus one, is the growth per step (positive: unstable). The matrices are written
 out from the definitions of the collisions, independently of the library.
 """
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
+import thalweg_python
+
 import numpy as np
 
 C = np.array([[0, 0, 0]] + [[s * (a == b) for b in range(3)] for a in range(3) for s in (1, -1)] +

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Compares the discharge of the hopper with Beverloo's law: check.py [RUN] [--orifice DIAMETER] [--figure FILE]
 
 RUN: default run/hopper. Beverloo, Leniger and van de Velde (1961): W = C rho_b sqrt(g) (D - k d)^(5/2), C = 0.58, with k = 1.4 of
@@ -9,12 +9,14 @@ import argparse
 import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
+import thalweg_python
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 import thalweg
 from hopper import BIN, BOTTOM
 

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Writes the surfaces of the hopper: hopper.py [--orifice DIAMETER] [--facets N]
 
 hopper.stl is a cylindrical bin with a flat bottom and a round orifice in its middle, plug.stl a disk that closes it. In metres.
@@ -10,6 +10,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "python"))
+import thalweg_python
 from thalweg.stl import write_stl
 
 BIN, WALL, BOTTOM, TOP = 0.050, 0.003, 0.060, 0.295   # m: inner diameter, thickness, heights of the bottom's upper side and the rim

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Makes a copy of the documentation from which mkdocs builds the site (scripts/docs).
 
     stage.py FOLDER THALWEG      into this folder, with the keys that this program prints

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Means over the height of a bed, as fig. 7(a) of Zhang et al. (2022): bed_profiles.py RUN_FOLDER [options]
 
 Reads profiles.h5 (analysis.grain_profiles, and analysis.fluid_statistics where it is there) and, for the stress of the fluid on
@@ -11,10 +11,12 @@ import argparse
 import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+import thalweg_python
+
 import matplotlib
 matplotlib.use("Agg")
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import thalweg
 from thalweg import height_profiles
 

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """A film of the side view: movie.py RUN_FOLDER [--out FILE] [--from S] [--to S] [--every S] [--rate N]
 
 FILE ends in .gif, or in .mp4 where ffmpeg is installed; a folder takes numbered images instead. The scales of the colours
@@ -8,11 +8,13 @@ import argparse
 import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+import thalweg_python
+
 import matplotlib
 matplotlib.use("Agg")
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import thalweg
 from thalweg import film
 

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """q* against the Shields number, as fig. 3(a) of Zhang et al. (2022): transport_relation.py [RUN_FOLDER...] [options]
 
 Draws their printed points (bars: standard deviation of q* over the last 10 s), relations of the literature and the given
@@ -9,12 +9,14 @@ import argparse
 import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+import thalweg_python
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import thalweg
 from thalweg import bed, literature
 from thalweg.tables import merged_rows

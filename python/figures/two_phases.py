@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """A resolved bed beside the two-phase continuum, as figs. 8, 10(b) and 11 of Zhang et al. (2022):
 two_phases.py RUN_FOLDER [CONTINUUM_FOLDER] [options]
 
@@ -12,10 +12,12 @@ import math
 import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+import thalweg_python
+
 import matplotlib
 matplotlib.use("Agg")
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import thalweg
 from thalweg import bed, two_phases
 

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Profiles of the grains a camera sees, as fig. 5(e, f) of Zhang et al. (2022): visible_grains.py RUN_FOLDER... [options]
 
 Areal fraction, velocity along x and temperature over the height from the surface of static pixels; thalweg.side_view and
@@ -8,12 +8,14 @@ import argparse
 import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+import thalweg_python
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import thalweg
 from thalweg.visible_profiles import visible_profiles
 

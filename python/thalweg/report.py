@@ -41,7 +41,7 @@ class Report:
         """summary.json with the numbers (SI units) and a table for each profile. Returns the files."""
         folder.mkdir(parents=True, exist_ok=True)
         files = [folder / "summary.json"]
-        files[0].write_text(json.dumps(without_nan(self.numbers), indent=2, allow_nan=False) + "\n")
+        files[0].write_text(json.dumps(without_nan(self.numbers), indent=2, allow_nan=False) + "\n", encoding="utf-8")
         for name, columns in self.profiles.items():
             files.append(folder / f"{name}.csv")
             write_columns(files[-1], columns)

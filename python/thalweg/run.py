@@ -25,7 +25,7 @@ CaseLoader.add_implicit_resolver("tag:yaml.org,2002:float", re.compile(r"^[-+]?(
 
 def read_case(path):
     """A case file as a dictionary."""
-    return yaml.load(Path(path).read_text(), CaseLoader)
+    return yaml.load(Path(path).read_text(encoding="utf-8"), CaseLoader)
 
 
 def face_type(boundary):
@@ -123,7 +123,7 @@ class Run:
         """summary.json as a dictionary, or None while the run is going."""
         path = self.folder / "summary.json"
         try:
-            return json.loads(path.read_text()) if path.exists() else None
+            return json.loads(path.read_text(encoding="utf-8")) if path.exists() else None
         except ValueError:
             raise RunFolderError(f"{path} is damaged; thalweg run ... --restart {self.folder} writes it again.") from None
 
@@ -139,7 +139,7 @@ class Run:
     def latest_checkpoint(self):
         """Path of the newest checkpoint, an HDF5 file; None before the first."""
         latest = self.folder / "checkpoints" / "latest"
-        return latest.parent / latest.read_text().strip() if latest.exists() else None
+        return latest.parent / latest.read_text(encoding="utf-8").strip() if latest.exists() else None
 
     def averaged_from(self, observer):
         """Time (s) at which the means of an observer begin: as the run said at its end, which is later than the key in the case

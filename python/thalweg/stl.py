@@ -10,4 +10,4 @@ def write_stl(path, triangles):
         lines += ["facet normal 0 0 0", "outer loop"]
         lines += ["vertex {:.7g} {:.7g} {:.7g}".format(*corner) for corner in corners]
         lines += ["endloop", "endfacet"]
-    Path(path).write_text("\n".join(lines + [f"endsolid {name}", ""]))
+    Path(path).write_text("\n".join(lines + [f"endsolid {name}", ""]), encoding="utf-8")

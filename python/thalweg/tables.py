@@ -13,7 +13,7 @@ HEADING = re.compile(r"\s*(.*?)\s*(?:\[(.*)\])?\s*$")
 
 def read_rows(path):
     """Rows of a table as dictionaries of text by heading; lines that begin with # are comments."""
-    with open(path, newline="") as file:
+    with open(path, newline="", encoding="utf-8") as file:
         return list(csv.DictReader(line for line in file if not line.startswith("#")))
 
 
@@ -40,7 +40,7 @@ def read_series(path):
     line is there."""
     if not path.exists():
         raise RunFolderError(f"{path}: there is no such file; is this the folder of a run?")
-    text = path.read_text()
+    text = path.read_text(encoding="utf-8")
     lines = [line for line in text[:text.rfind("\n") + 1].splitlines() if not line.startswith("#")]
     rows = list(csv.reader(lines))
     if len(rows) < 2:

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """The run (C++) and its reader (Python) find the same mean, error and trend in the same series.
 
 Called by ctest: same_means_test.py SERIES_MEANS [unittest arguments]; that program writes what the run finds in the numbers of

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Finds dead links in the Markdown files of the repository.
 
     check_links.py [ROOT]      of the repository (default: the one this file is in)

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Every remedy that `thalweg check` prints, pasted as it is printed: the case is accepted, the warning is gone, no other is new,
 and what the remedy does not name is as it was.
 

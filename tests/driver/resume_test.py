@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """`thalweg run --resume`, which begins a run or goes on with it by what the folder holds, and `thalweg stop` of a run that is not
 going.
 

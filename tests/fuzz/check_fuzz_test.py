@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Cases as people mistype them: `thalweg check` of mutations of every shipped case either reports or refuses in one sentence.
 
 Called by ctest: check_fuzz_test.py THALWEG NUMBER_OF_MUTATIONS [SEED]. A mutation changes one key (mutations.py). No crash, no

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Cases as people mistype them: `thalweg check` and `thalweg run` are of one opinion about every mutation of small cases.
 
 Called by ctest: run_fuzz_test.py THALWEG NUMBER_OF_MUTATIONS [SEED]. The mutations are those of check_fuzz_test.py. A case

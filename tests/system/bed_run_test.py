@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Beds: poured until at rest, written to a file, and read by other cases.
 
 Called by ctest: bed_run_test.py THALWEG MPIEXEC [unittest arguments]

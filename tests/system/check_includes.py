@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Checks that the modules depend on each other only as docs/architecture.md says.
 
     check_includes.py [ROOT]      of the repository (default: the one this file is in)

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Clumps from the case file to the bed file and back, in pictures, and in what is measured.
 
 Called by ctest: clump_run_test.py THALWEG MPIEXEC [unittest arguments]

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """The job scripts of scripts/cluster under a stand-in for the queue, which interrupts a run in every way there is.
 
 Called by ctest: cluster_run_test.py THALWEG MPIEXEC [unittest arguments]. Commands of the queue and launchers are small scripts

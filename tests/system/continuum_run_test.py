@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """A column of the continuum: steady by the stated test, its files, the same bits on any ranks and after a restart, refusals.
 
 Called by ctest: continuum_run_test.py THALWEG MPIEXEC [unittest arguments]

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Checkpoints that are damaged: a run goes on from the newest that is whole, to the same bits, and says so.
 
 Called by ctest: damage_run_test.py THALWEG MPIEXEC [unittest arguments]

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Starts of grains in a whole run: the same events on any ranks and after a restart, a run that does not notice, and torques
 about the hinge that are those of the forces.
 

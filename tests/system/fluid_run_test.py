@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """A fluid alone, from the case file to the last checkpoint.
 
 Called by ctest: fluid_run_test.py THALWEG MPIEXEC [unittest arguments]

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Runs whose disk is full, or whose folder cannot be written: what they say, how they end, and what is left.
 
 Called by ctest: full_disk_run_test.py THALWEG MPIEXEC [unittest arguments]. The full disk is a small file system in memory,

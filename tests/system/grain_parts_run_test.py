@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Further series of frames of the grains: what they show, the same bytes on any ranks, and what is refused.
 
 Called by ctest: grain_parts_run_test.py THALWEG MPIEXEC [unittest arguments]

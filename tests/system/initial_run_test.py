@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Grains of another run as a start: the same as if that run had gone on.
 
 Called by ctest: initial_run_test.py THALWEG MPIEXEC [unittest arguments]

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """A run on two ranks that is killed again and again, and goes on each time on other ranks, to the same bits.
 
 Called by ctest: kill_run_test.py THALWEG MPIEXEC NUMBER_OF_KILLS [SEED]. SIGKILL to mpirun and its ranks at once, as when a

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """The same bits on 1, 16, 27 and 64 ranks, many more than there are cores, and across a restart on other ranks.
 
 Called by ctest: many_ranks_run_test.py THALWEG MPIEXEC [unittest arguments]

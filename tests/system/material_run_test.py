@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Materials and sizes of populations, from the case file to what becomes of the grains.
 
 Called by ctest: material_run_test.py THALWEG MPIEXEC [unittest arguments]

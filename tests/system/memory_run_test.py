@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Runs of 1e5 steps, in which the memory of the program may not grow.
 
 Called by ctest: memory_run_test.py THALWEG MPIEXEC [unittest arguments]. The resident set of the only process is looked at

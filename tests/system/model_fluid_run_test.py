@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Grains under the prescribed force of a model fluid: the same bits on any ranks and after a restart, motion that stops or
 goes on, refusals.
 

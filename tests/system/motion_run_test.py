@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Walls and rigid populations that move, from the case file to the forces on them.
 
 Called by ctest: motion_run_test.py THALWEG MPIEXEC [unittest arguments]

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Observers of transport and of the bed's surface in a whole run: same bits on any ranks, same means after a restart, and
 a run that does not notice them.
 

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """A bed around a sill of overlapping fixed spheres: check, the run and analyze have one height of it.
 
 Called by ctest: obstacle_run_test.py THALWEG MPIEXEC [unittest arguments]

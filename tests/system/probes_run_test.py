@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Probes of the fluid in a whole run: what the pictures show, the same file on any ranks, no row twice after a restart.
 
 Called by ctest: probes_run_test.py THALWEG MPIEXEC [unittest arguments]

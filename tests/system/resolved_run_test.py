@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Grains in a resolved flow, from the case file to the last checkpoint.
 
 Called by ctest: resolved_run_test.py THALWEG MPIEXEC [unittest arguments]

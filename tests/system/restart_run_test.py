@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Runs that go on: with which case, what may differ from before, and what is kept of that.
 
 Called by ctest: restart_run_test.py THALWEG MPIEXEC [unittest arguments]

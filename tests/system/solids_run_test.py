@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Grains and solids in one case, with water and without.
 
 Called by ctest: solids_run_test.py THALWEG MPIEXEC [unittest arguments]

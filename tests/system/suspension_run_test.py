@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Grains that settle in a periodic box, their weight carried by a mean pressure gradient, and how many of them a solid
 fraction makes.
 

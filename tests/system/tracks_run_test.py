@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Tracks of single grains in a whole run: the same file on any ranks, no row twice after a restart, and a run that does not
 notice them.
 

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """The tutorials: `thalweg check` has nothing to warn of, every case starts, every sweep can be listed, and the checks tell a
 run that is as it should be from one that is not there.
 

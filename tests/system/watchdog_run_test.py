@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Runs that go wrong, and what the program says of them.
 
 Called by ctest: watchdog_run_test.py THALWEG MPIEXEC [unittest arguments]

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Drift of the grains and residual flow in a bed at rest: compare.py RUN [--from SECONDS] [--flowing]
 
 With --flowing the bed is under flowing water: the speeds of its grains.
@@ -7,9 +7,11 @@ import argparse
 import pathlib
 import sys
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "python"))
+import thalweg_python
+
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "python"))
 import thalweg
 
 DIAMETER, SETTLING_SPEED = 5.0e-3, 0.336  # m; m/s, Schiller and Naumann 1935

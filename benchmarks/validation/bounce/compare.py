@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Restitution of spheres that rebound in a liquid: compare.py RUN_FOLDER... [--figure FILE]
 
 Up to three impacts of a run above the Stokes number 8 count. The impact velocity is the largest since the last impact; the
@@ -11,11 +11,13 @@ import math
 import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import thalweg_python
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 import thalweg
 from thalweg.frames import trajectory
 from thalweg.rebound import impacts, settling_time

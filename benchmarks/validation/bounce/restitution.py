@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Prints the options of `thalweg run case.yaml` for an impact at a Stokes number: restitution.py ST [CELLS_A_DIAMETER [STEPS]]
 
 The sphere falls at its terminal velocity V by Schiller and Naumann's drag; the viscosity is the one for which
@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import thalweg_python
 from thalweg.literature import settling_speed
 
 DIAMETER, SOLID, FLUID, GRAVITY = 6.0e-3, 7800.0, 950.0, 9.81

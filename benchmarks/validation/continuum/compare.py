@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Figure 10 of Zhang et al. (2022): q* against the Shields number of the columns of a sweep, and profiles of a column.
 
     compare.py POINTS GRIDS [RESOLVED...]
@@ -12,14 +12,16 @@ import csv
 import sys
 from pathlib import Path
 
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[2] / "python"))
+import thalweg_python
+
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[2] / "python"))
 import thalweg
 from thalweg import literature
 from thalweg.tables import read_rows
@@ -29,7 +31,7 @@ DIAMETER = 5e-3
 
 
 def table(path):
-    with open(path, newline="") as file:
+    with open(path, newline="", encoding="utf-8") as file:
         return [{name.split(" [")[0]: value for name, value in row.items()} for row in csv.DictReader(file)]
 
 
@@ -99,7 +101,7 @@ def main(points_folder, grids_folder, *resolved_folders):
     figure.tight_layout()
     figure.savefig(HERE / "continuum.png", dpi=110)
     header = ("slope", "shields_number", "reference", "streamwise", "total", "streamwise_off_%", "total_off_%")
-    with open(HERE / "continuum.csv", "w", newline="") as file:
+    with open(HERE / "continuum.csv", "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(header)
         writer.writerows([[f"{value:.4g}" for value in row] for row in rows])

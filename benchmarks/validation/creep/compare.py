@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Figure 11 of Zhang et al. (2022): the velocity of grains that creep below the surface of a bed.
 
     compare.py POINTS        folder of `thalweg sweep points.yaml`
@@ -9,13 +9,15 @@ import csv
 import sys
 from pathlib import Path
 
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[2] / "python"))
+import thalweg_python
+
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[2] / "python"))
 import thalweg
 
 DIAMETER, BOUND = 5e-3, 0.02
@@ -38,7 +40,7 @@ def main(folder):
     figure.tight_layout()
     figure.savefig(HERE / "creep.png", dpi=110)
     header = ("shields_number", "e_fold_d", "e_fold_reference_d", "decade_d", "decade_reference_d")
-    with open(HERE / "creep.csv", "w", newline="") as file:
+    with open(HERE / "creep.csv", "w", newline="", encoding="utf-8") as file:
         csv.writer(file).writerows([header, *([f"{value:.4g}" for value in row] for row in rows)])
     print(header)
     for row in rows:

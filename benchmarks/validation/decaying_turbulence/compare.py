@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Grid turbulence of Comte-Bellot and Corrsin (1971) by large-eddy simulation: compare.py PROGRAM [--figure FILE]
 
 Makes a random solenoidal field with the spectrum measured at t U_0/M = 42, and its pressure; PROGRAM
@@ -12,12 +12,14 @@ import sys
 import tempfile
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import thalweg_python
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 from thalweg.tables import read_rows
 
 ACCEPTED = 0.10

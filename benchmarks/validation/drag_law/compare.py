@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Drag on random arrays of spheres compared with published drag laws: compare.py [RUN...] [--table FILE] [--figure FILE]
 
 RUN: folders of runs of drag_law.yaml; each becomes a row of the table (rows of other runs stay). F is the force on a sphere
@@ -9,13 +9,15 @@ of each setting with its standard error, Beetstra et al. (2007) and Tenneti et a
 import sys
 from pathlib import Path
 
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[2] / "python"))
+import thalweg_python
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[2] / "python"))
 from thalweg.comparison import compared_rows
 from thalweg.literature import beetstra_drag, tenneti_drag
 from thalweg.random_array import RandomArray

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """q* of the flume against time: compare.py RUN_FOLDER... [--figure FILE] [--table FILE]
 
 Draws means over half a second, and the mean and the deviation that Zhang et al. (2022) print at the Shields number 0.028.
@@ -9,12 +9,14 @@ import argparse
 import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import thalweg_python
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 import thalweg
 from thalweg import literature
 from thalweg.drawing import colour_of

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """q* of the flume against the speed of its water: water_speed.py RUN_FOLDER... [--figure FILE] [--table FILE]
 
 Each point is a mean over the time in which the fluid was averaged (analysis.fluid_statistics.from): q* with its standard error,
@@ -10,11 +10,13 @@ import argparse
 import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import thalweg_python
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 import thalweg
 from thalweg import bed, literature, water
 from thalweg.drawing import colour_of

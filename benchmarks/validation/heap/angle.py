@@ -1,12 +1,14 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Angle of repose of heaps on a plate: angle.py RUN [RUN ...] [--figure FILE]"""
 import argparse
 import pathlib
 import sys
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "python"))
+import thalweg_python
+
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "python"))
 from thalweg.run import read_bed
 
 PLATE = (0.006, 0.046)  # m: its ends; the crest is half-way between

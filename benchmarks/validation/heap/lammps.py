@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """The heap of case.yaml in LAMMPS, from the same bed: lammps.py BED FOLDER. The program is lmp, or what LMP names.
 
 LAMMPS's pair_style granular has the same springs. Its rolling model also has a spring, a dashpot and a limit (sds); its
@@ -11,10 +11,12 @@ import pathlib
 import subprocess
 import sys
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "python"))
+import thalweg_python
+
 import h5py
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "python"))
 from thalweg.run import read_bed
 
 STIFFNESS, TANGENTIAL, DENSITY, RADIUS = 200.0, 57.14, 2500.0, 0.5e-3
@@ -68,7 +70,7 @@ def write_data(file, place, radius, density, smooth):
     lines += [f"0 {size} {axis}lo {axis}hi" for axis, size in zip("xyz", BOX)] + ["", "Atoms", ""]
     lines += [f"{n + 1} {2 if glued[n] else 1} {2 * radius[n]:.17g} {density[n]:.17g} {x:.17g} {y:.17g} {z:.17g}"
               for n, (x, y, z) in enumerate(place)]
-    file.write_text("\n".join(lines) + "\n")
+    file.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def main():
@@ -88,7 +90,7 @@ def main():
     grains = law(0.97, arguments.friction, arguments.rolling_friction, 0.5, 0.5)
     walls = "granular " + law(0.82, arguments.wall_friction, arguments.wall_rolling_friction, 1.0, 1.0)
     values = dict(globals(), grains=grains, walls=walls, below=TOP - 1e-3)
-    (arguments.folder / "in.heap").write_text(INPUT.format(**values))
+    (arguments.folder / "in.heap").write_text(INPUT.format(**values), encoding="utf-8")
     subprocess.run([os.environ.get("LMP", "lmp"), "-in", "in.heap"], cwd=arguments.folder, check=True)
     end = np.loadtxt(arguments.folder / "end.txt", skiprows=9)
     with h5py.File(arguments.folder / "bed.h5", "w") as file:

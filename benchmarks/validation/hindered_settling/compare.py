@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Settling velocity of suspensions against solid fraction, compared with Richardson and Zaki (1954):
 compare.py [RUN...] [--table FILE] [--figure FILE]
 
@@ -11,13 +11,15 @@ pass or fail of the corrected exponent. Exit code 0 if all pass.
 import sys
 from pathlib import Path
 
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[2] / "python"))
+import thalweg_python
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[2] / "python"))
 from thalweg import Run, mean_with_error
 from thalweg.comparison import compared_rows
 from thalweg.literature import settling_speed

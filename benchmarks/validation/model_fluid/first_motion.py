@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """First motions of settled beds as links of a chain, beside Clark et al. (2017), section III F.
 
 Reads the tables runs.csv of the sweeps first_motion*.yaml, which are kept here under the names of the sweeps, and the
@@ -20,6 +20,10 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[2] / "python"))
+import thalweg_python
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
@@ -27,8 +31,6 @@ import numpy as np
 from matplotlib.ticker import FormatStrFormatter
 from scipy.optimize import minimize
 
-HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[2] / "python"))
 from thresholds import runs, thresholds
 
 ACCEPTED = 0.3   # of alpha

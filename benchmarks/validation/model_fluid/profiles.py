@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Profiles of beds in motion beside figure 6 of Clark et al. (2017): profiles.py [RUN...] [--table FILE] [--figure FILE]
 
 RUN: folders of runs of profiles.yaml, whose profiles go into the table (one row a run and height; those of other runs in it stay).
@@ -11,13 +11,15 @@ The velocity of the fluid at a grain follows from the fluid force on it, and the
 import sys
 from pathlib import Path
 
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[2] / "python"))
+import thalweg_python
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[2] / "python"))
 from thalweg import Run
 from thalweg.comparison import compared_rows
 from thalweg.tables import HEADING

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Thresholds of motion beside Clark et al. (2017): thresholds.py [--figure FILE]
 
 Reads the tables thresholds.csv of the sweeps shields_curve.yaml, linear_drag.yaml, lift.yaml, inertia.yaml, friction.yaml and
@@ -10,13 +10,15 @@ import argparse
 import sys
 from pathlib import Path
 
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[2] / "python"))
+import thalweg_python
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[2] / "python"))
 from thalweg.tables import HEADING, read_rows
 
 LOW, HIGH = 0.28, 0.11                       # section III B: the plateaus at Re_* << 1 and Re_* >> 1

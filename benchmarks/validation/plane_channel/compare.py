@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Mean velocity of a plane channel against Moser, Kim and Mansour (1999): compare.py [--figure FILE] PROFILE.csv ...
 
 Takes profiles written by bin/turbulent_channel, interpolates them (cubic, the wall at rest included) to the y+ of the
@@ -8,11 +8,13 @@ import argparse
 import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import thalweg_python
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 from thalweg.tables import read_rows
 
 ACCEPTED = 3.0

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Rebounds of glass spheres in water: compare.py RUN_FOLDER... [--figure FILE]
 
 Prints for the first impact of every run: duration of the contact in fluid steps, velocity and Stokes number of the impact,
@@ -10,11 +10,13 @@ import math
 import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import thalweg_python
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 import thalweg
 from thalweg.frames import trajectory
 from thalweg.rebound import impacts, settling_time

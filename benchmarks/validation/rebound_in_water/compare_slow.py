@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Slow rebounds of glass spheres in water, without gravity: compare_slow.py RUN_FOLDER...
 
 Prints for every run the speed at a gap of a tenth of a diameter, the Stokes number of the two bodies there,
@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import thalweg_python
 import thalweg
 from thalweg.frames import trajectory
 

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Compares the torque on a rotating sphere with Stokes' 8 pi eta R^3 Omega: compare.py RUN_FOLDER... [--figure FILE]
 
 Takes the torque from the last checkpoint of every run, divides it by Stokes' in the periodic box, prints the difference
@@ -9,12 +9,14 @@ import math
 import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import thalweg_python
+
 import h5py
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 import thalweg
 
 ACCEPTED = 0.03

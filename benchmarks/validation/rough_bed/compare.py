@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Mean velocity over a rough bed compared with direct simulations: compare.py [RUN...] [--table FILE] [--figure FILE]
 
 RUN: folders of runs of the case of tutorial 5; each becomes a row of the table (rows of other runs stay). The mean velocity is that
@@ -7,13 +7,15 @@ of the last third of the run. Prints it next to that of Mazzuoli and Uhlmann (20
 import sys
 from pathlib import Path
 
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[2] / "python"))
+import thalweg_python
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[2] / "python"))
 from thalweg import Run
 from thalweg.comparison import compared_rows
 from thalweg.literature import SPHERE_CHANNEL_MEAN

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Speed of seepage through dense random arrays compared with published drag laws: compare.py [RUN...] [--table FILE] [--figure FILE]
 
 RUN: folders of runs of seepage.yaml; each becomes a row of the table (rows of other runs stay). The speed is the superficial
@@ -9,14 +9,16 @@ of each setting, and pass or fail. Exit code 0 if all pass.
 import sys
 from pathlib import Path
 
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[2] / "python"))
+import thalweg_python
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from scipy.optimize import brentq
 
-HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[2] / "python"))
 from thalweg.comparison import compared_rows
 from thalweg.literature import beetstra_drag, tenneti_drag
 from thalweg.random_array import RandomArray

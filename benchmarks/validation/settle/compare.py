@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Compares settling runs with ten Cate et al. 2002: compare.py E1=RUN_FOLDER [E2=RUN_FOLDER] [--figure FILE]
 
 Prints for every run the largest settling velocity, the measured one, their difference, and pass or fail (2 %); draws
@@ -8,11 +8,13 @@ import argparse
 import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import thalweg_python
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 import thalweg
 from thalweg.frames import trajectory
 from thalweg.tables import read_rows

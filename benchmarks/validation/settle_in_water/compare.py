@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Compares spheres settling in water with Schiller and Naumann: compare.py RUN_FOLDER... [--figure FILE]
 
 The terminal velocity is the mean over the fall from the tenth diameter to three diameters above the floor. Prints it, the
@@ -8,11 +8,13 @@ import argparse
 import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import thalweg_python
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 import thalweg
 from thalweg.frames import trajectory
 from thalweg.tables import read_rows

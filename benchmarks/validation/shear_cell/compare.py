@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Rheology of the shear cell and the flow rule of Zhang et al. (2022): compare.py [RUN...] [--table FILE] [--figure FILE]
 
 RUN: folders of runs of shear_cell.yaml or others of the same case; each becomes a row of the table (rows of other runs stay). All
@@ -9,13 +9,15 @@ and Boyer et al. (2011), how much the stress differs over the height, and pass o
 import sys
 from pathlib import Path
 
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[2] / "python"))
+import thalweg_python
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[2] / "python"))
 from thalweg import Run, mean_with_error
 from thalweg.comparison import compared_rows
 from thalweg.rheology import flow_state, mixed_fraction, mixed_friction, solid_stress

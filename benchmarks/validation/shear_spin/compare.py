@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Compares the spin of a free sphere in simple shear with half the shear rate: compare.py RUN_FOLDER... [--figure FILE]
 
 Prints the spin over the shear rate at the end of every run, the reference, their difference, and pass or fail (3 %); draws
@@ -8,11 +8,13 @@ import argparse
 import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import thalweg_python
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 import thalweg
 
 ACCEPTED = 0.03

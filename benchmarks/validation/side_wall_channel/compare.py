@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Profiles of the side-wall channel against the law of the wall: compare.py [--figure FILE] PROFILE.csv ...
 
 Prints for every profile (output of bin/turbulent_channel) the difference from u+ = ln(y+)/0.41 + 5 in the first cell and
@@ -8,11 +8,13 @@ import argparse
 import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import thalweg_python
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 from thalweg.tables import read_rows
 from thalweg.water import logarithmic_law as law
 

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Compares the drag on simple cubic arrays with Zick and Homsy: compare.py DRAG_CSV... [--figure FILE]
 
 Takes the tables that run.py writes, prints for every link rule, solid fraction and diameter the mean drag over the
@@ -9,11 +9,11 @@ import argparse
 import sys
 from pathlib import Path
 
+from arrays import reference_drags
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
-
-from arrays import reference_drags
 
 from thalweg.tables import read_rows
 

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Drag on dense arrays at ten cells per diameter: dense.py THALWEG OUTPUT_FOLDER [--collision bgk] [--tau 0.6 1 1.5]
 
 Runs arrays of five solid fractions, up to that of touching spheres, with both link rules and several relaxation times,
@@ -36,7 +36,7 @@ def run_missing(thalweg, table, collision, taus):
                         continue
                     values |= {"coupling.links": links, "fluid.collision": collision}
                     drag = run_array(thalweg, table.parent / "_".join(name + (str(number),)), until, values)
-                    with open(table, "a") as file:
+                    with open(table, "a", encoding="utf-8") as file:
                         file.write(f"{','.join(name)},{diameter:.4f},{number},{drag:.5f}\n")
 
 
@@ -68,7 +68,7 @@ def main():
     arguments.output.mkdir(parents=True, exist_ok=True)
     table = arguments.output / "dense.csv"
     if not table.exists():
-        table.write_text(",".join(HEADINGS) + "\n")
+        table.write_text(",".join(HEADINGS) + "\n", encoding="utf-8")
     run_missing(arguments.thalweg, table, arguments.collision, arguments.tau)
     return 0 if report(table) else 1
 

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Runs the arrays of both solid fractions at all resolutions: run.py THALWEG OUTPUT_FOLDER [LINKS...]
 
 LINKS: kinds of coupling.links, bouzidi if none is given. Every array is run with the spheres at a few positions relative
@@ -19,7 +19,7 @@ def main():
     output.mkdir(parents=True, exist_ok=True)
     table = output / "drag.csv"
     if not table.exists():
-        table.write_text("links,solid_fraction [1],diameter [cells],place,drag [1]\n")
+        table.write_text("links,solid_fraction [1],diameter [cells],place,drag [1]\n", encoding="utf-8")
     for links in sys.argv[3:] or ["bouzidi"]:
         for fraction in (0.027, 0.216):
             for cells in CELLS:
@@ -30,7 +30,7 @@ def main():
                         continue
                     values["coupling.links"] = links
                     drag = run_array(thalweg, output / f"{links}_{fraction}_{cells}_{number}", until, values)
-                    with open(table, "a") as file:
+                    with open(table, "a", encoding="utf-8") as file:
                         file.write(f"{links},{fraction},{diameter:.4f},{number},{drag:.5f}\n")
 
 

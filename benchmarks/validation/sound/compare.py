@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Sound on the lattice against theory: compare.py waves WAVES.CSV [--figure FILE]
 The column released from rest:          compare.py column RUN_FOLDER... [--figure FILE] [--table FILE]
 
@@ -11,12 +11,14 @@ import argparse
 import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import thalweg_python
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 import thalweg
 from thalweg.tables import read_rows
 
@@ -98,7 +100,7 @@ def compare_column(runs, figure, table):
     plt.tight_layout()
     plt.savefig(figure, dpi=110)
     if table:
-        with open(table, "w") as file:
+        with open(table, "w", encoding="utf-8") as file:
             file.write(",".join(columns) + "\n")
             for row in list(zip(*columns.values()))[::4]:
                 file.write(",".join(f"{value:.5g}" for value in row) + "\n")

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Whether a flume conserves its water and its bed comes to rest: compare.py RUN_FOLDER [--before FILE] [--figure FILE]
 
 From 2 s on, prints and judges
@@ -13,12 +13,14 @@ import csv
 import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import thalweg_python
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 import thalweg
 from thalweg.tables import read_series
 
@@ -88,7 +90,7 @@ def main():
     print("pass" if passed else "FAIL")
     draw(arguments, here, before, inside)
     if arguments.table:
-        with open(arguments.table, "w", newline="") as file:
+        with open(arguments.table, "w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file)
             writer.writerow(["time [s]", *(f"{name} [1]" for name in COLUMNS[1:])])
             writer.writerows([f"{value:.6g}" for value in row] for row in here[:, ::5].T)

@@ -1,9 +1,10 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Checks both beds of tutorial 1: at rest, hardly overlapping, and as dense as such beds are."""
 import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import thalweg_python
 from thalweg import Run
 from thalweg.checks import check_main
 

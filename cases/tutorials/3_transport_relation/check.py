@@ -1,11 +1,13 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Checks the transport rates of tutorial 3 and compares them with those of the whole flume."""
 import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import thalweg_python
+
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 from thalweg.checks import check_main
 from thalweg.literature import FLUME_POINTS
 from thalweg.run import runs_of_sweep

@@ -1,11 +1,13 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Compares the settling speeds of tutorial 4 with Schiller and Naumann."""
 import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import thalweg_python
+
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 from thalweg.checks import check_main
 from thalweg.frames import trajectory
 from thalweg.literature import settling_speed

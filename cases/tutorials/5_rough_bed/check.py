@@ -1,14 +1,16 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Compares the water over the rough bed of tutorial 5 with direct numerical simulations, and its stresses with its weight."""
 import sys
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
+import thalweg_python
 
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 from thalweg import Run
 from thalweg.checks import check_main
 from thalweg.literature import SPHERE_CHANNEL_MEAN

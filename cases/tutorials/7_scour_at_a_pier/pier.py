@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Writes pier.stl: an upright cylinder of 12.5 mm, 30 mm behind the upstream end of the box, in its middle. In metres."""
 import math
 import sys
@@ -6,6 +6,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[2] / "python"))
+import thalweg_python
 from thalweg.stl import write_stl
 
 RADIUS, LOW, HIGH, X, Y, FACETS = 6.25e-3, -2e-3, 55e-3, 30e-3, 25e-3, 48

@@ -106,7 +106,7 @@ class SweepRun:
         self.folder.parent.mkdir(parents=True, exist_ok=True)
         # Several runs beside each other must not all be bound to the first core.
         environment = os.environ | {"OMPI_MCA_hwloc_base_binding_policy": "none"}
-        self.lock = open(self.output, "a")   # kept by the process as well, which inherits the file
+        self.lock = open(self.output, "a", encoding="utf-8")   # kept by the process as well, which inherits the file
         free = locked(self.lock)
         self.look()   # another sweep may have finished it
         if not free or not self.is_open:
@@ -188,7 +188,8 @@ def die_with_parent():
 
 def complaint_in(path):
     """What the program complained of, one sentence; None if it did not."""
-    lines = [line for line in Path(path).read_text(encoding="utf-8", errors="replace").splitlines() if line.startswith("thalweg: ")]
+    lines = [line for line in Path(path).read_text(encoding="utf-8", errors="replace").splitlines()
+             if line.startswith("thalweg: ")]
     return lines[-1].removeprefix("thalweg: ") if lines else None
 
 
