@@ -117,10 +117,20 @@ def long_run_variance(distances, fitted, round_off):
     return total, min(float(count), count * variance / total + fitted)
 
 
+def numbers(values):
+    """The values as an array. ValueError if one is not finite: what stands for "not measured" would make the mean the same."""
+    values = np.asarray(values, float)
+    lacking = np.count_nonzero(~np.isfinite(values))
+    if lacking:
+        raise ValueError(f"{lacking} of {len(values)} values are not finite; leave them out: values[np.isfinite(values)]")
+    return values
+
+
 def mean_with_error(values):
     """Mean of a stationary series at equal intervals, with its standard error, from the long-run variance of its batches. Of a
-    series that is worth fewer than 20 independent values the error is an underestimate: see Mean.error_holds."""
-    values = np.asarray(values, float)
+    series that is worth fewer than 20 independent values the error is an underestimate: see Mean.error_holds. ValueError if
+    there are no values, or one is not finite."""
+    values = numbers(values)
     count = len(values)
     if count == 0:
         raise ValueError("the mean of no values")
@@ -142,7 +152,7 @@ def steadiness(values):
     The slope has the variance that the long-run variance of the values about the line gives it (Santer et al., J. Geophys. Res.
     105 (2000) 7337, who take the number of independent values from the first lag alone).
     """
-    values = np.asarray(values, float)
+    values = numbers(values)
     batches, _ = in_batches(values)
     count = len(batches)
     if count < 3:

@@ -37,8 +37,9 @@ def transport(run, start=None, stop=None):
     time, rate = bed.transport_rate(run, start, np.inf if stop is None else stop, column)
     moving = None
     if "moving_grains" in run.series:
-        counts = mean_with_error(run.series["moving_grains"][bed.rows_between(run, time[0], time[-1])])
-        moving = (counts.mean, counts.error)
+        counts = run.series["moving_grains"][bed.rows_between(run, time[0], time[-1])]
+        counts = counts[np.isfinite(counts)]
+        moving = mean_with_error(counts)[:2] if len(counts) else None
     return Transport(float(time[0]), float(time[-1]), len(time), mean_with_error(rate), steadiness(rate), moving,
                      *symbol_and_unit(column))
 

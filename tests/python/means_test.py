@@ -93,6 +93,10 @@ class MeanWithError(unittest.TestCase):
     def test_special_series(self):
         self.assertEqual(thalweg.mean_with_error(np.full(7, 0.3)).error, 0.0)
         self.assertTrue(np.isnan(thalweg.mean_with_error([1.0]).error))
+        for of in (thalweg.mean_with_error, thalweg.steadiness):
+            for gap in (np.nan, np.inf):
+                with self.assertRaisesRegex(ValueError, "1 of 4 values"):
+                    of([1.0, 2.0, gap, 3.0])
         with self.assertRaises(ValueError):
             thalweg.mean_with_error([])
 

@@ -66,6 +66,15 @@ class Report(made_up.MadeUpFolder):
         self.assertAlmostEqual(volume / (480 * np.pi / 6 * D**3), 1.0, 6)
         self.assertEqual(layers.units["velocity_x"], "m/s")
 
+    def test_rows_without_a_number_do_not_count(self):
+        rows = [f"{t:.6g},{q},{n}" for t, q, n in zip(np.arange(0.0, 4.005, 0.01), self.rate, [4, 6] * 201)]
+        rows[250], rows[300] = "2.5,nan,nan", "3,0.1,nan"
+        (self.folder / "series.csv").write_text("time [s],q_star [1],moving_grains [1]\n" + "\n".join(rows) + "\n")
+        numbers = report_of(thalweg.Run(self.folder), 2.0, 4.0).numbers
+        self.assertEqual(numbers["q_star"]["measurements"], 200)
+        self.assertAlmostEqual(numbers["q_star"]["mean"], 0.1, 4)
+        self.assertAlmostEqual(numbers["moving_grains"]["mean"], 5.0, 1)
+
     def test_what_is_no_number_is_null(self):
         report = report_of(thalweg.Run(self.folder), 2.0, 4.0)
         report.numbers["one_row"] = {"error": float("nan"), "steps": [np.float64("inf"), 1.5], "steady": None}
