@@ -416,13 +416,15 @@ std::string Hdf5Reader::text_attribute(const std::string& path) const {
 
 std::vector<Hdf5Reader::Entry> Hdf5Reader::datasets() const {
   std::vector<std::string> names;
-  H5Ovisit_by_name(
-      file_->file, "/", H5_INDEX_NAME, H5_ITER_INC,
-      [](hid_t, const char* name, const H5O_info_t* info, void* list) -> herr_t {
-        if (info->type == H5O_TYPE_DATASET) static_cast<std::vector<std::string>*>(list)->emplace_back(name);
-        return 0;
-      },
-      &names, H5P_DEFAULT);
+  const auto note = [](hid_t, const char* name, const auto* info, void* list) -> herr_t {
+    if (info->type == H5O_TYPE_DATASET) static_cast<std::vector<std::string>*>(list)->emplace_back(name);
+    return 0;
+  };
+#if H5_VERSION_GE(1, 12, 0)
+  H5Ovisit3(file_->file, H5_INDEX_NAME, H5_ITER_INC, note, &names, H5O_INFO_BASIC);
+#else
+  H5Ovisit(file_->file, H5_INDEX_NAME, H5_ITER_INC, note, &names);
+#endif
   std::vector<Entry> entries;
   for (const std::string& name : names) {
     const Handle dataset = file_->dataset(name);
