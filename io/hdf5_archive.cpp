@@ -4,7 +4,6 @@
 #include "core/mpi_session.hpp"
 #include "io/atomic_file.hpp"
 #include "io/checksum.hpp"
-#include "io/diverted_file.hpp"
 #include "io/hdf5_handle.hpp"
 
 #include <fmt/format.h>
@@ -18,6 +17,13 @@
 
 namespace thalweg::io {
 namespace {
+
+// Files that are given up stay open. HDF5 would close them at the end of the program, or when MPI ends if it began
+// after MPI.
+[[maybe_unused]] const bool leaves_files_open = [] {
+  H5dont_atexit();
+  return H5open() >= 0;
+}();
 
 // In the file every number is little-endian and of fixed size; in memory it is what this machine uses.
 template <typename Number>
@@ -112,16 +118,14 @@ struct Hdf5Writer::File {
   MPI_Comm communicator;
   std::filesystem::path path, partial;
   Handle file;
-  bool failed_everywhere = false;  // every rank knows that writing failed, so closing together is safe
-  std::uint64_t data_end = 0;      // bytes: end of the last dataset so far
-  std::uint64_t tables = 2048;     // bytes: more than the superblock, headers, names and attributes so far
+  std::uint64_t data_end = 0;   // bytes: end of the last dataset so far
+  std::uint64_t tables = 2048;  // bytes: more than the superblock, headers, names and attributes so far
 
   // Every rank learns whether all went well.
   void agree(bool good) {
-    if (!any_rank(communicator, !good)) return;
-    failed_everywhere = true;
-    throw RunError(fmt::format("{}: cannot write the file; is the disk full or the folder missing or write-protected?",
-                               path.string()));
+    if (any_rank(communicator, !good))
+      throw RunError(fmt::format(
+          "{}: cannot write the file; is the disk full or the folder missing or write-protected?", path.string()));
   }
 
   // Opens a group, or a dataset whose attributes are meant, creating groups where they are missing.
@@ -203,22 +207,15 @@ Hdf5Writer::Hdf5Writer(MPI_Comm communicator, const std::filesystem::path& path)
   file_->agree(file_->file.good());
 }
 
+// A file that is given up is never closed: closing is collective, and another rank's exception may be on its way; and
+// HDF5 cannot recover from a close that fails, as on a full disk.
 Hdf5Writer::~Hdf5Writer() {
   if (!file_->file.good()) return;
-  // Closing is collective. While another rank's exception may be on its way, it could wait for ever: leave the file to
-  // the end of the program then.
-  if (std::uncaught_exceptions() > 0 && !file_->failed_everywhere) {
-    file_->file.release();
-    return;
-  }
-  // HDF5 cannot recover from a close that fails, and on a full disk it would, even where the room is given back: its
-  // tables need more pages than the file had.
+  file_->file.release();
+  if (rank_of(file_->communicator) != 0) return;
   std::error_code ignored;
-  if (rank_of(file_->communicator) == 0) std::filesystem::resize_file(file_->partial, 0, ignored);
-  divert_to_memory(file_->partial);
-  MPI_Barrier(file_->communicator);
-  file_->file.reset();
-  if (rank_of(file_->communicator) == 0) std::filesystem::remove(file_->partial, ignored);
+  std::filesystem::resize_file(file_->partial, 0, ignored);  // gives back the room, which an open file would keep
+  std::filesystem::remove(file_->partial, ignored);
 }
 
 void Hdf5Writer::write(const std::string& path, std::span<const double> values, const ArrayBox& box) {
