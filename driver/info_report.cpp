@@ -12,6 +12,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <fstream>
 #include <optional>
 
 namespace thalweg::driver {
@@ -76,8 +77,15 @@ void add_summary(const YAML::Node& summary, Lines& lines) {
       add_group(entry.second, name, summary["units"], lines);
 }
 
+// The last line of a file that may be long, of which only the end is read; empty if it cannot be read.
 std::string last_line(const fs::path& file) {
-  std::string text = io::read_text(file);
+  constexpr std::streamoff most_bytes = 1 << 16;
+  std::ifstream stream(file, std::ios::binary | std::ios::ate);
+  const std::streamoff size = stream.tellg();
+  if (size <= 0) return {};
+  std::string text(static_cast<std::size_t>(std::min(size, most_bytes)), '\0');
+  stream.seekg(-static_cast<std::streamoff>(text.size()), std::ios::end);
+  if (!stream.read(text.data(), static_cast<std::streamsize>(text.size()))) return {};
   while (!text.empty() && text.back() == '\n') text.pop_back();
   return text.substr(text.find_last_of('\n') + 1);
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace thalweg::loop {
@@ -14,6 +15,8 @@ std::string clock_text(double seconds) {
   if (minutes > 0) return fmt::format("{}:{:02}", minutes, whole % 60);
   return fmt::format("{} s", whole);
 }
+
+double seconds_to_next_line(double now) { return std::clamp(now / 3.0, 1.0, 600.0); }
 
 std::string progress_line(const ProgressState& state) {
   std::string line = fmt::format(

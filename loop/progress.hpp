@@ -24,6 +24,10 @@ struct ProgressState {
 // last: "warning: mean_density_deviation -0.0031".
 std::string progress_line(const ProgressState& state);
 
+// s of wall time from a progress line at `now` s after the begin of the run to the next: often at first, when somebody
+// is watching, and a few hundred lines in a run of days.
+double seconds_to_next_line(double now);
+
 // "59 s", "12:03" (minutes and seconds), "3:04:05", "2 d 03:04" (hours and minutes).
 std::string clock_text(double seconds);
 

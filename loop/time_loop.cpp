@@ -25,10 +25,6 @@ constexpr double seconds_a_stroke_may_be_late = 0.5;
 constexpr double most_of_the_time = 0.7;  // share of the time after a signal that a checkpoint may take
 constexpr std::int64_t most_steps_between_decisions = 100000;
 
-// s until the next progress line, after one at `now` s: often at first, when somebody is watching, and a few hundred
-// lines in a run of days.
-double seconds_to_next_line(double now) { return std::clamp(now / 3.0, 1.0, 600.0); }
-
 double seconds_since(WallClock::time_point start) {
   return std::chrono::duration<double>(WallClock::now() - start).count();
 }

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """The program as its user meets it: exit codes, messages, files, signals, restarts.
 
 Called by ctest: program_test.py THALWEG MPIEXEC [unittest arguments]
@@ -254,6 +254,20 @@ class Running(DryGrains):
         self.assertIn("finished", self.run_well("info", run).stdout)
         self.assertIn("step 50", self.run_well("info", self.last_checkpoint("run")).stdout)
         self.assert_refused("info", self.case, words=["case.yaml"])
+
+    def test_info_reads_only_the_end_of_a_long_log(self):
+        self.run_well("run", self.case, "--until", "0.01")
+        with open(self.folder / "run/run.log", "r+b") as log:
+            log.truncate(2**31)   # takes no room on the disk, and would take it in memory
+            log.seek(0, os.SEEK_END)
+            log.write(b"\nnow\n")
+        process = subprocess.Popen(self.command(["info", "run"], 0), cwd=self.folder, stdout=subprocess.PIPE, text=True)
+        with process.stdout:
+            self.assertIn("last line   now\n", process.stdout.read())
+        _, status, used = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        self.assertEqual(process.returncode, 0)
+        self.assertLess(used.ru_maxrss, 2**20)   # KiB
 
     def test_the_case_as_run_runs_again_with_the_same_bits(self):
         self.run_well("run", self.case, "--out", "a", "--until", "0.01", "--set", "analysis.transport_rate.from=0.004")

@@ -23,6 +23,20 @@ TEST(Progress, LeavesOutWhatIsNotThere) {
   EXPECT_EQ(progress_line(state), "t 0         of 0.5 s    0 %  left ?           1e+05 steps/s");
 }
 
+// What a batch job leaves in run.log: a line a second while somebody may be watching, and few in a run of a week.
+TEST(Progress, LinesOfALongRunAreFew) {
+  EXPECT_EQ(seconds_to_next_line(0.0), 1.0);
+  EXPECT_EQ(seconds_to_next_line(1e6), 600.0);
+  const double week = 7 * 86400.0;
+  int lines = 0, in_first_minute = 0;
+  for (double now = 0.0; now < week; now += seconds_to_next_line(now)) {
+    ++lines;
+    if (now < 60.0) ++in_first_minute;
+  }
+  EXPECT_GE(in_first_minute, 10);
+  EXPECT_LT(lines, 1100);  // 1008 intervals of ten minutes, and those of the first half-hour
+}
+
 TEST(Progress, ClockTexts) {
   EXPECT_EQ(clock_text(0.2), "0 s");
   EXPECT_EQ(clock_text(59.4), "59 s");
