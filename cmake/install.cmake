@@ -6,10 +6,16 @@ set(thalweg_config_folder ${CMAKE_INSTALL_LIBDIR}/cmake/thalweg)
 set(thalweg_data_folder ${CMAKE_INSTALL_DATADIR}/thalweg)
 
 install(TARGETS thalweg RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(DIRECTORY python cases DESTINATION ${thalweg_data_folder}
-        PATTERN "__pycache__" EXCLUDE PATTERN "run" EXCLUDE)   # run: where thalweg run writes beside a case
-install(FILES scripts/plot_run.py scripts/picture.py DESTINATION ${thalweg_data_folder}/scripts
-        PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+install(DIRECTORY python DESTINATION ${thalweg_data_folder} PATTERN "__pycache__" EXCLUDE
+        PATTERN "build" EXCLUDE PATTERN "*.egg-info" EXCLUDE)   # of pip
+install(CODE "set(FROM \"${PROJECT_SOURCE_DIR}/cases\")
+set(TO \"\${CMAKE_INSTALL_PREFIX}/${thalweg_data_folder}/cases\")
+include(\"${PROJECT_SOURCE_DIR}/cmake/install_cases.cmake\")")
+install(PROGRAMS scripts/plot_run.py scripts/picture.py scripts/paraview_view.py scripts/compare_checkpoints.py
+        DESTINATION ${thalweg_data_folder}/scripts)
+install(FILES scripts/mpi_environment DESTINATION ${thalweg_data_folder}/scripts)   # to be sourced
+install(PROGRAMS scripts/cluster/slurm.sh scripts/cluster/pbs.sh scripts/cluster/turn.sh
+        DESTINATION ${thalweg_data_folder}/scripts/cluster)
 
 # io needs VTK, HDF5 and yaml-cpp, which not every program has to have.
 install(TARGETS thalweg_compile_options thalweg_core thalweg_lbm thalweg_bodies thalweg_dem thalweg_coupling thalweg_continuum thalweg_analysis thalweg_loop

@@ -25,11 +25,12 @@ static fs::path this_program() {
   return fs::read_symlink("/proc/self/exe", unknown);
 }
 
-// The Python package beside the installed program, PREFIX/share/thalweg/python, else that of the source tree.
-static std::string python_package(const fs::path& program) {
+// The Python package of this program: that of the source tree where it has not left its build folder, else
+// PREFIX/share/thalweg/python beside PREFIX/bin.
+static fs::path python_package(const fs::path& program) {
   std::error_code unknown;
-  const fs::path installed = program.parent_path().parent_path() / "share/thalweg/python";
-  return !program.empty() && fs::exists(installed / "thalweg", unknown) ? installed.string() : THALWEG_PYTHON_PACKAGE;
+  if (program.empty() || fs::equivalent(program, THALWEG_BUILT_PROGRAM, unknown)) return THALWEG_PYTHON_PACKAGE;
+  return program.parent_path().parent_path() / "share/thalweg/python";
 }
 
 bool is_python_command(int argc, const char* const* argv) {
@@ -41,6 +42,14 @@ int run_python_command(int argc, char** argv) {
   const char* named = std::getenv("THALWEG_PYTHON");
   std::string interpreter = named ? named : THALWEG_PYTHON;
   std::string path = python_package(program);
+  std::error_code unknown;
+  if (!fs::exists(path + "/thalweg", unknown)) {
+    std::fprintf(stderr,
+                 "thalweg: %s needs the program's Python package, and there is none in %s; install the program with "
+                 "cmake --install, or link to bin/thalweg of the installation instead of copying it.\n",
+                 argv[1], path.c_str());
+    return 2;
+  }
   if (const char* more = std::getenv("PYTHONPATH"); more && *more) path.append(":").append(more);
   setenv("PYTHONPATH", path.c_str(), 1);
   if (!program.empty()) setenv("THALWEG_PROGRAM", program.c_str(), 1);

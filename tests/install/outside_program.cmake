@@ -1,5 +1,5 @@
 # Installs into a new folder, builds examples/channel against it and runs it; also runs the installed program. Variables: BUILD,
-# SOURCE, WORK (folders), COMPILER, LAUNCHER (mpiexec and its option for the number of ranks).
+# SOURCE, WORK (folders), COMPILER, PYTHON, LAUNCHER (mpiexec and its option for the number of ranks).
 file(REMOVE_RECURSE ${WORK})
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE failed OUTPUT_VARIABLE said ERROR_VARIABLE said)
@@ -17,6 +17,39 @@ run(${WORK}/prefix/bin/thalweg defaults)
 execute_process(COMMAND ${WORK}/prefix/bin/thalweg analyze ${WORK} ERROR_VARIABLE said OUTPUT_QUIET)
 if(NOT said MATCHES "there is no case.yaml in it")
   message(FATAL_ERROR "thalweg analyze: ${said}")
+endif()
+# Without that package it does not take the one of the source tree, which may be of another version.
+file(COPY ${WORK}/prefix/bin/thalweg DESTINATION ${WORK}/alone/bin)
+execute_process(COMMAND ${WORK}/alone/bin/thalweg analyze ${WORK} RESULT_VARIABLE code ERROR_VARIABLE said OUTPUT_QUIET)
+if(NOT code EQUAL 2 OR NOT said MATCHES "there is none in ${WORK}/alone/share/thalweg/python")
+  message(FATAL_ERROR "thalweg analyze without its package: ${code} ${said}")
+endif()
+# What the documentation names is there; the scripts find the package.
+foreach(script plot_run.py picture.py paraview_view.py compare_checkpoints.py mpi_environment cluster/slurm.sh cluster/pbs.sh
+               cluster/turn.sh)
+  if(NOT EXISTS ${WORK}/prefix/share/thalweg/scripts/${script})
+    message(FATAL_ERROR "scripts/${script} is not installed")
+  endif()
+endforeach()
+run(${PYTHON} -B ${WORK}/prefix/share/thalweg/scripts/plot_run.py --help)
+run(${PYTHON} -B ${WORK}/prefix/share/thalweg/scripts/compare_checkpoints.py --help)
+run(${WORK}/prefix/bin/thalweg check ${WORK}/prefix/share/thalweg/cases/quickstart/case.yaml)
+# Cases are copied with the files beside them, and without what runs and sweeps have left in folders below.
+set(FROM ${WORK}/made_up/cases)
+foreach(file README.md a/README.md a/case.yaml b/deep/README.md b/deep/check.py a/run/case.yaml a/run/run.log a/run/grains/0.vtp
+             a/slopes/runs.csv a/slopes/runs/slope_1/run.log mine/case.yaml a/__pycache__/check.pyc)
+  file(WRITE ${FROM}/${file} "")
+endforeach()
+set(TO ${WORK}/made_up/installed)
+include(${SOURCE}/cmake/install_cases.cmake)
+file(GLOB_RECURSE copied RELATIVE ${TO} ${TO}/*)
+list(SORT copied)
+if(NOT copied STREQUAL "README.md;a/README.md;a/case.yaml;b/deep/README.md;b/deep/check.py")
+  message(FATAL_ERROR "cases that were copied: ${copied}")
+endif()
+file(GLOB_RECURSE logs ${WORK}/prefix/share/thalweg/*/run.log ${WORK}/prefix/share/thalweg/*.pyc)
+if(logs)
+  message(FATAL_ERROR "installed, and nobody's to install: ${logs}")
 endif()
 # Nothing of the source tree is needed: no file that was installed names it.
 file(GLOB configs ${WORK}/prefix/lib*/cmake/thalweg/*.cmake ${WORK}/prefix/lib/*/cmake/thalweg/*.cmake)
