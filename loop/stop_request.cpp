@@ -15,7 +15,8 @@ volatile std::sig_atomic_t continued = 0;
 extern "C" void note_signal(int signal) { received = signal; }
 extern "C" void note_continuation(int) { continued = 1; }
 
-constexpr double default_sigkill_timeout = 1.0;  // s, Open MPI 4
+constexpr double default_sigkill_timeout = 1.0;    // s, Open MPI 4
+constexpr double sigkill_timeout_of_prrte = 0.25;  // s, Open MPI 5.0, which takes no other value
 
 }  // namespace
 
@@ -41,6 +42,7 @@ int received_stop_signal() { return received; }
 
 double seconds_between_strokes() {
   if (std::getenv("OMPI_COMM_WORLD_RANK") == nullptr) return 0.0;
+  if (std::getenv("PRTE_LAUNCHED") != nullptr) return sigkill_timeout_of_prrte;
   const char* given = std::getenv("OMPI_MCA_odls_base_sigkill_timeout");
   const double seconds = given == nullptr ? 0.0 : std::atof(given);
   return seconds > 0.0 ? seconds : default_sigkill_timeout;

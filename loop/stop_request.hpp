@@ -15,8 +15,8 @@ void listen_for_stop_signals();
 int received_stop_signal();
 
 // Open MPI's mpirun answers SIGTERM and Ctrl-C in three strokes: SIGCONT to every rank at once, SIGTERM after its
-// odls_base_sigkill_timeout, SIGKILL after the same again. The time between two strokes in s; 0: this process was not
-// started by it.
+// odls_base_sigkill_timeout (Open MPI 5: a quarter of a second), SIGKILL after the same again. The time between two
+// strokes in s; 0: this process was not started by it.
 double seconds_between_strokes();
 
 // Whether a first stroke has come since the last call. (A suspended run that is resumed gets the same signal.)

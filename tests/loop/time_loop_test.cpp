@@ -383,7 +383,10 @@ TEST(TimeLoop, ARequestToStopCountsMoreThanASignal) {
 // Open MPI's mpirun kills in three strokes, SIGCONT, SIGTERM, SIGKILL; the first of them saves.
 class Strokes : public testing::Test {
 protected:
-  Strokes() { setenv("OMPI_COMM_WORLD_RANK", std::to_string(rank_of(world)).c_str(), 1); }  // also without mpirun
+  Strokes() {
+    setenv("OMPI_COMM_WORLD_RANK", std::to_string(rank_of(world)).c_str(), 1);  // also without mpirun
+    unsetenv("PRTE_LAUNCHED");                                                  // and with that of Open MPI 5
+  }
 };
 
 TEST_F(Strokes, AreASecondApartUnlessMpirunIsToldOtherwise) {
@@ -391,6 +394,9 @@ TEST_F(Strokes, AreASecondApartUnlessMpirunIsToldOtherwise) {
   EXPECT_EQ(seconds_between_strokes(), 1.0);
   setenv("OMPI_MCA_odls_base_sigkill_timeout", "7", 1);
   EXPECT_EQ(seconds_between_strokes(), 7.0);
+  setenv("PRTE_LAUNCHED", "1", 1);  // Open MPI 5 is not to be told
+  EXPECT_EQ(seconds_between_strokes(), 0.25);
+  unsetenv("PRTE_LAUNCHED");
   unsetenv("OMPI_MCA_odls_base_sigkill_timeout");
 }
 

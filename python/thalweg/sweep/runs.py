@@ -105,7 +105,7 @@ class SweepRun:
                              "the old one. Change it back and start the same command again, or give another --out.")
         self.folder.parent.mkdir(parents=True, exist_ok=True)
         # Several runs beside each other must not all be bound to the first core.
-        environment = os.environ | {"OMPI_MCA_hwloc_base_binding_policy": "none"}
+        environment = os.environ | {"OMPI_MCA_hwloc_base_binding_policy": "none", "PRTE_MCA_hwloc_default_binding_policy": "none"}
         self.lock = open(self.output, "a", encoding="utf-8")   # kept by the process as well, which inherits the file
         free = locked(self.lock)
         self.look()   # another sweep may have finished it
