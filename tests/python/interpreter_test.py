@@ -54,7 +54,7 @@ class Interpreter(unittest.TestCase):
                 continue
             with self.subTest(script=script):
                 said = subprocess.run([sys.executable, "-B", script, "--help"], capture_output=True, encoding="utf-8", cwd=empty)
-                self.assertEqual((said.returncode, said.stderr), (0, ""))
+                self.assertEqual(said.returncode, 0, said.stderr)
                 self.assertIn(text.split('"""')[1].split()[0], said.stdout)
         self.assertEqual(list(empty.iterdir()), [])
 
