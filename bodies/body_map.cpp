@@ -138,12 +138,13 @@ void BodyMap::remove(int slot) {
 }
 
 void BodyMap::place(int slot, const Vec3& centre) {
-  const double reach = body(slot).radius;
+  const Vec3 reach = Vec3::Constant(body(slot).radius);
   const Vec3 old = body(slot).centre;
   body(slot).centre = centre;
   const bool was_here = old.x() > nowhere, is_here = centre.x() > nowhere;
   if (was_here && is_here && (centre - old).squaredNorm() < 1.0) {
-    turn_cells(slot, centre, reach + 1.0, old, centre);
+    // Which cells are near the edge of both spheres is decided as if they were a little larger.
+    turn_cells(slot, centre, reach + (centre - old).cwiseAbs() + Vec3::Constant(1e-6), old, centre);
   } else {
     if (was_here) turn_cells(slot, old, reach, old, centre);
     if (is_here) turn_cells(slot, centre, reach, old, centre);
@@ -152,10 +153,10 @@ void BodyMap::place(int slot, const Vec3& centre) {
 
 // Only cells that are inside at one of the two places and not at the other can change hands; what the grain holds or
 // claims of the others stays.
-void BodyMap::turn_cells(int slot, const Vec3& middle, double half_width, const Vec3& old, const Vec3& now) {
+void BodyMap::turn_cells(int slot, const Vec3& middle, const Vec3& half_width, const Vec3& old, const Vec3& now) {
   for (int a = 0; a < 3; ++a) {
-    local_cells_.along(a, middle[a], half_width, old[a], layers, before_[a]);
-    local_cells_.along(a, middle[a], half_width, now[a], layers, after_[a]);
+    local_cells_.along(a, middle[a], half_width[a], old[a], layers, before_[a]);
+    local_cells_.along(a, middle[a], half_width[a], now[a], layers, after_[a]);
   }
   const auto offset = [](const LocalCell& place) { return place.offset; };
   x_before_.resize(before_[0].size());

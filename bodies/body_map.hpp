@@ -59,9 +59,9 @@ private:
   static constexpr int layers = 2;         // around the block
 
   MappedBody& body(int slot) { return bodies_[static_cast<std::size_t>(slot)]; }
-  // Claims or gives up the cells within `half_width` of `middle` that are inside the body at only one of the two
-  // places of its centre.
-  void turn_cells(int slot, const Vec3& middle, double half_width, const Vec3& old, const Vec3& now);
+  // Claims or gives up the cells within `half_width` of `middle` along each axis that are inside the body at only one
+  // of the two places of its centre.
+  void turn_cells(int slot, const Vec3& middle, const Vec3& half_width, const Vec3& old, const Vec3& now);
   void turn_row(int slot, int y, int z, const Sphere::Chord& before, const Sphere::Chord& after);
   void assign(const Index3& local, std::ptrdiff_t cell, std::int32_t slot);
   void withdraw(int slot, std::ptrdiff_t cell);

@@ -36,7 +36,7 @@ public:
         const int local = g + image * cells - block_.lower[axis];
         if (local < -ghosts || local >= n + ghosts) continue;
         // From the cell's coordinate inside the box, so that the bits do not depend on which image was asked for.
-        const int wrapped = periodic ? (g % cells + cells) % cells : g;
+        const int wrapped = g >= 0 && g < cells ? g : (g % cells + cells) % cells;
         double offset = wrapped + 0.5 - reference;
         if (periodic) {
           if (offset > 0.5 * cells)
