@@ -7,9 +7,10 @@ namespace thalweg::dem {
 
 namespace {
 
-// Of slabs that divide one axis of the box, the one a coordinate lies in.
+// Of slabs that divide one axis of the box, the one a coordinate lies in; the first where it is not a number.
 int slab_of(double coordinate, double size, int slabs) {
-  return static_cast<int>(std::clamp(coordinate / size * slabs, 0.0, static_cast<double>(slabs - 1)));
+  const double place = coordinate / size * slabs;
+  return place > 0.0 ? static_cast<int>(std::min(place, static_cast<double>(slabs - 1))) : 0;
 }
 
 }  // namespace

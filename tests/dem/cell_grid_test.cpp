@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 #include <set>
 #include <utility>
@@ -76,6 +77,24 @@ TEST(CellGrid, FindsAllPairsAcrossPeriodicFaces) {
 TEST(CellGrid, PointsBeyondAFaceCountToItsCells) {
   const PeriodicBox box{Vec3(10.0, 10.0, 10.0), {true, true, false}};
   expect_all_pairs(box, 1.0, cloud(200, Vec3(4, 4, -1), Vec3(6, 6, 1), box, 1));
+}
+
+// A position that has blown up is somebody else's to report; the pairs of the other points are found.
+TEST(CellGrid, TakesPointsThatAreNotNumbers) {
+  const PeriodicBox box{Vec3(10.0, 10.0, 10.0), {true, true, false}};
+  std::vector<Vec3> points = cloud(100, Vec3(0, 0, 0), Vec3(4, 4, 4), box, 1);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (const double value : {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity})
+    points.push_back(Vec3(value, 1.0, value));
+  const CellGrid grid(box, 1.0, points);
+  std::set<Pair> visited;
+  grid.for_each_near_pair([&](std::uint32_t m, std::uint32_t n) {
+    const auto [low, high] = std::minmax(grid.order()[m], grid.order()[n]);
+    visited.insert({low, high});
+  });
+  for (std::uint32_t a = 0; a < 100; ++a)
+    for (std::uint32_t b = a + 1; b < 100; ++b)
+      EXPECT_TRUE(distance_between(points[a], points[b], box) >= 1.0 || visited.contains({a, b})) << a << " and " << b;
 }
 
 // The work depends on the points, not on how large the box is of which a rank has a block.
