@@ -6,6 +6,7 @@
 #include "lbm/equilibrium.hpp"
 #include "lbm/fluid_survey.hpp"
 #include "lbm/for_each_cell.hpp"
+#include "lbm/mean_momentum.hpp"
 
 #include <fmt/format.h>
 
@@ -106,10 +107,7 @@ void Fluid<Real>::control_flow(const FlowTarget& target) {
 template <typename Real>
 void Fluid<Real>::update_force() {
   const int axis = control_->target().axis;
-  if (control_->due()) {
-    const FluidTotals sums = totals();
-    control_->update(sums.momentum[axis] / static_cast<double>(sums.cells) - 0.5 * carried_force_[axis]);
-  }
+  if (control_->due()) control_->update(mean_momentum(*this, axis) - 0.5 * carried_force_[axis]);
   parameters_.force[axis] = control_->force();
 }
 

@@ -1,12 +1,11 @@
 #include "lbm/fluid_survey.hpp"
 
 #include "core/wide_sums_over_ranks.hpp"
-#include "lbm/sweep.hpp"
+#include "lbm/fluid_packs.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <experimental/simd>
 #include <limits>
 
 namespace thalweg::lbm {
@@ -15,12 +14,8 @@ namespace {
 
 namespace stdx = std::experimental;
 
-using Pack = stdx::native_simd<double>;
-using Mask = Pack::mask_type;
-constexpr int fraction_bits = 36;
-using CellSum = FixedPoint<fraction_bits>;
-
-constexpr int width = static_cast<int>(Pack::size());
+using Pack = FluidPacks<float>::Pack;
+using Mask = FluidPacks<float>::Mask;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::int64_t nowhere = std::numeric_limits<std::int64_t>::max();
 
@@ -29,10 +24,8 @@ struct CellPack {
   Mask fluid, broken;
 };
 
-// What a stretch of a row adds up to, lane by lane. Terms are whole numbers below 2^43 in size, so that those of a
-// whole stretch, below 2^52 in all, add up in double precision without rounding.
+// What a stretch of a row adds up to, lane by lane.
 struct Lanes {
-  static constexpr int most_packs = 512 / width;
   Pack mass = 0.0, momentum[3] = {0.0, 0.0, 0.0};  // multiples of 2^-36
   Pack x_sum = 0.0, fluid = 0.0, fast = 0.0, broken = 0.0;
   Pack lowest = infinity, highest = -infinity, fastest = -infinity;  // the last one squared
@@ -48,38 +41,22 @@ struct RowExtreme {
   }
 };
 
-[[gnu::always_inline]] inline Pack rounded(const Pack& value) {
-  return ((value + CellSum::rounding_shift) - CellSum::rounding_shift) * CellSum::scale;
-}
-
-[[gnu::always_inline]] inline Pack where_else(const Mask& mask, const Pack& value, double otherwise) {
-  Pack result = otherwise;
-  where(mask, result) = value;
-  return result;
-}
-
-std::int64_t total(const Pack& lanes) { return static_cast<std::int64_t>(stdx::reduce(lanes)); }
-
 template <typename Real>
 class Survey {
 public:
-  explicit Survey(const Fluid<Real>& fluid)
-      : fluid_(fluid),
-        indexing_(fluid.indexing()),
-        slots_(fluid.populations().sent()),
-        lane_([](int lane) { return static_cast<double>(lane); }) {
+  explicit Survey(const Fluid<Real>& fluid) : fluid_(fluid), packs_(fluid), slots_(fluid.populations().sent()) {
     for (int a = 0; a < 3; ++a) half_force_[a] = 0.5 * fluid.carried_force()[a];
   }
 
   FluidSurvey run() {
-    const Index3& n = indexing_.size();
+    const Index3& n = fluid_.indexing().size();
     for (int z = 0; z < n[2]; ++z)
       for (int y = 0; y < n[1]; ++y) {
         Lanes lanes;
         int packs = 0;
         for_each_pack(
             y, z, [&](int x, const CellPack& cells) __attribute__((always_inline)) {
-              if (packs++ == Lanes::most_packs) {
+              if (packs++ == Packs::most_packs) {
                 add_row(lanes, y, z);
                 lanes = {};
                 packs = 1;
@@ -92,25 +69,15 @@ public:
   }
 
 private:
+  using Packs = FluidPacks<Real>;
+
   // Calls visit(x of the first cell, cells) for every pack of doubles of a row that may hold fluid.
   template <typename Visit>
   [[gnu::always_inline]] void for_each_pack(int y, int z, Visit visit) const {
-    constexpr std::ptrdiff_t ahead = prefetch_bytes / static_cast<std::ptrdiff_t>(sizeof(Real));
-    const std::uint8_t* fluid_in_pack = fluid_.cells().fluid_in_packs(y, z);
-    const std::ptrdiff_t row = indexing_.index(0, y, z);
-    const int pack = indexing_.pack();
-    for (int p = 0; p < indexing_.packs_per_row(); ++p) {
-      if (fluid_in_pack[p] == 0) continue;
-#pragma GCC unroll 19
-      for (int i = 0; i < D3Q19::directions; ++i) __builtin_prefetch(slots_[i] + row + p * pack + ahead);
-      for (int x = p * pack; x < (p + 1) * pack; x += width)
-        visit(x, look(row + x, fluid_in_pack[p] == pack ? Mask(true) : fluid_lanes(row, x)));
-    }
-  }
-
-  Mask fluid_lanes(std::ptrdiff_t row, int x) const {
-    const Pack body(fluid_.cells().bodies() + row + x, stdx::element_aligned);
-    return body == static_cast<double>(CellMap::fluid) && lane_ < static_cast<double>(indexing_.size()[0] - x);
+    packs_.for_each(
+        y, z, slots_, [&](int x, std::ptrdiff_t cell, const Mask& fluid) __attribute__((always_inline)) {
+          visit(x, look(cell, fluid));
+        });
   }
 
   [[gnu::always_inline]] CellPack look(std::ptrdiff_t cell, const Mask& fluid) const {
@@ -141,25 +108,25 @@ private:
 
   [[gnu::always_inline]] void add(Lanes& lanes, const CellPack& c, int x) const {
     const Mask good = c.fluid && !c.broken;
-    lanes.mass += where_else(good, rounded(c.deviation), 0.0);
-    for (int a = 0; a < 3; ++a) lanes.momentum[a] += where_else(good, rounded(c.momentum[a]), 0.0);
-    lanes.x_sum += where_else(c.fluid, lane_ + static_cast<double>(x), 0.0);
-    lanes.fluid += where_else(c.fluid, Pack(1.0), 0.0);
-    lanes.fast += where_else(good && c.speed_squared > FluidSurvey::fast * FluidSurvey::fast, Pack(1.0), 0.0);
-    lanes.broken += where_else(c.broken, Pack(1.0), 0.0);
-    lanes.lowest = stdx::min(lanes.lowest, where_else(good, c.deviation, infinity));
-    lanes.highest = stdx::max(lanes.highest, where_else(good, c.deviation, -infinity));
-    lanes.fastest = stdx::max(lanes.fastest, where_else(good, c.speed_squared, -infinity));
+    lanes.mass += Packs::where_else(good, Packs::rounded(c.deviation), 0.0);
+    for (int a = 0; a < 3; ++a) lanes.momentum[a] += Packs::where_else(good, Packs::rounded(c.momentum[a]), 0.0);
+    lanes.x_sum += Packs::where_else(c.fluid, packs_.lane() + static_cast<double>(x), 0.0);
+    lanes.fluid += Packs::where_else(c.fluid, Pack(1.0), 0.0);
+    lanes.fast += Packs::where_else(good && c.speed_squared > FluidSurvey::fast * FluidSurvey::fast, Pack(1.0), 0.0);
+    lanes.broken += Packs::where_else(c.broken, Pack(1.0), 0.0);
+    lanes.lowest = stdx::min(lanes.lowest, Packs::where_else(good, c.deviation, infinity));
+    lanes.highest = stdx::max(lanes.highest, Packs::where_else(good, c.deviation, -infinity));
+    lanes.fastest = stdx::max(lanes.fastest, Packs::where_else(good, c.speed_squared, -infinity));
   }
 
   void add_row(const Lanes& lanes, int y, int z) {
     const Index3 &lower = fluid_.block().lower, &cells = fluid_.decomposition().cells();
-    sums_[0].add(total(lanes.mass));
-    for (int a = 0; a < 3; ++a) sums_[1 + a].add(total(lanes.momentum[a]));
-    const std::int64_t count = total(lanes.fluid), broken = total(lanes.broken);
-    const std::int64_t twice_x = 2 * total(lanes.x_sum) + count * (2 * lower[0] + 1 - cells[0]);
+    sums_[0].add(Packs::total(lanes.mass));
+    for (int a = 0; a < 3; ++a) sums_[1 + a].add(Packs::total(lanes.momentum[a]));
+    const std::int64_t count = Packs::total(lanes.fluid), broken = Packs::total(lanes.broken);
+    const std::int64_t twice_x = 2 * Packs::total(lanes.x_sum) + count * (2 * lower[0] + 1 - cells[0]);
     counts_[fluid_cells] += count;
-    counts_[fast_cells] += total(lanes.fast);
+    counts_[fast_cells] += Packs::total(lanes.fast);
     counts_[broken_cells] += broken;
     counts_[lever_x] += twice_x;
     counts_[lever_y] += count * (2 * (lower[1] + y) + 1 - cells[1]);
@@ -227,15 +194,14 @@ private:
     return s;
   }
 
-  double sum(int s) const { return sums_[s].to_double(fraction_bits); }
+  double sum(int s) const { return sums_[s].to_double(Packs::fraction_bits); }
 
   enum Count { fluid_cells, fast_cells, broken_cells, lever_x, lever_y, lever_z, counts };  // levers: half cells
   enum Extreme { lowest, highest, fastest, first_broken, extremes };  // negative where the largest is meant
 
   const Fluid<Real>& fluid_;
-  const CellIndexing& indexing_;
+  FluidPacks<Real> packs_;
   std::array<const Real*, D3Q19::directions> slots_;  // Populations::sent()
-  Pack lane_;
   double half_force_[3];
   std::array<WideSum, 4> sums_{};  // mass, momentum
   std::array<std::int64_t, counts> counts_{};

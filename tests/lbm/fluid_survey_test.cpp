@@ -3,6 +3,7 @@
 
 #include "core/mpi_session.hpp"
 #include "core/wide_sums_over_ranks.hpp"
+#include "lbm/mean_momentum.hpp"
 
 #include <gtest/gtest.h>
 
@@ -116,6 +117,8 @@ void compare_to_plain_loops(const Boxes<Real>& boxes) {
   const FluidSurvey survey = survey_of(boxes.shared), loops = plain(boxes.alone);
   expect_same(survey, survey_of(boxes.alone));
   const auto n = static_cast<double>(loops.totals.cells);
+  for (int axis = 0; axis < 3; ++axis)
+    EXPECT_EQ(mean_momentum(boxes.shared, axis), survey.totals.momentum[axis] / n);
   // Every cell is rounded to a multiple of 2^-36; the loops' own round-off is smaller.
   EXPECT_NEAR(survey.totals.mass_deviation, loops.totals.mass_deviation, n * 0x1p-37 + 1e-12);
   EXPECT_LT((survey.totals.momentum - loops.totals.momentum).cwiseAbs().maxCoeff(), n * 0x1p-37 + 1e-12);
@@ -178,6 +181,7 @@ void break_cells() {
     const FluidSurvey healthy = survey_of(boxes.shared);
     boxes.set(buried, no_number);
     expect_same(survey_of(boxes.shared), healthy);  // nobody reads what is in a solid cell
+    EXPECT_TRUE(std::isfinite(mean_momentum(boxes.shared, 2)));
 
     for (const double value : {no_number, HUGE_VAL, -HUGE_VAL, 1e9, -1e9}) {
       boxes.set(first, no_number);
@@ -186,6 +190,7 @@ void break_cells() {
       EXPECT_EQ(survey.broken_cells, 2) << value;
       EXPECT_EQ(survey.totals.cells, healthy.totals.cells);
       EXPECT_TRUE(std::isnan(survey.totals.mass_deviation) && survey.totals.momentum.array().isNaN().all());
+      EXPECT_TRUE(std::isnan(mean_momentum(boxes.shared, 2)));
       for (const CellExtreme* e : {&survey.lowest, &survey.highest, &survey.fastest}) {
         EXPECT_TRUE(std::isinf(e->value));
         EXPECT_EQ(e->cell, first);  // the lower of the two
