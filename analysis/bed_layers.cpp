@@ -2,12 +2,10 @@
 
 #include "analysis/sphere_in_layer.hpp"
 #include "analysis/union_of_spheres.hpp"
-#include "core/order_free_sum.hpp"
 #include "core/ranks.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 namespace thalweg::analysis {
@@ -59,10 +57,18 @@ std::vector<double> BedLayers::obstacles_below(const Snapshot& snapshot) const {
 }
 
 std::vector<double> BedLayers::grains_below(const Snapshot& snapshot) const {
-  const GrainView& grains = snapshot.grains;
-  const std::map<GlobalId, double> shares = shares_of_members(grains);
-  std::vector<int> layer_of_row;
-  std::vector<double> volumes;
+  const std::vector<double> in_layer = order_free_sums_by_bin(
+      communicator_, layers_, 1, [&, shares = shares_of_members(snapshot.grains)](const TermTaker& take) {
+        give_volumes(snapshot.grains, shares, take);
+      });
+  std::vector<double> below{0.0};
+  for (const double volume : in_layer) below.push_back(below.back() + volume);
+  return below;
+}
+
+// The volume of each grain in each layer.
+void BedLayers::give_volumes(const GrainView& grains, const std::map<GlobalId, double>& shares,
+                             const TermTaker& take) const {
   for (std::size_t i = 0; i < grains.id.size(); ++i) {
     if (is_obstacle(grains.id[i])) continue;
     const double radius = grains.radius[i], foot = grains.position[i].z() - radius;
@@ -73,14 +79,10 @@ std::vector<double> BedLayers::grains_below(const Snapshot& snapshot) const {
       // What a wall overlaps belongs to the layer at the wall, so that no volume is lost.
       const double lower = layer == 0 ? 0.0 : layer * thickness_ - foot;
       const double upper = layer == layers_ - 1 ? 2.0 * radius : (layer + 1) * thickness_ - foot;
-      layer_of_row.push_back(layer);
-      volumes.push_back(share * volume_between(radius, grains.disk_thickness, lower, upper));
+      const double volume = share * volume_between(radius, grains.disk_thickness, lower, upper);
+      take(layer, {&volume, 1});
     }
   }
-  const std::vector<double> in_layer = order_free_sums_by_bin(communicator_, layer_of_row, layers_, volumes, 1);
-  std::vector<double> below{0.0};
-  for (const double volume : in_layer) below.push_back(below.back() + volume);
-  return below;
 }
 
 }  // namespace thalweg::analysis

@@ -2,11 +2,13 @@
 #pragma once
 
 #include "analysis/bed_height.hpp"
+#include "core/order_free_sum.hpp"
 #include "core/periodic_box.hpp"
 #include "core/snapshot.hpp"
 
 #include <mpi.h>
 
+#include <map>
 #include <vector>
 
 namespace thalweg::analysis {
@@ -28,6 +30,7 @@ public:
 private:
   bool is_obstacle(GlobalId id) const;
   std::vector<double> grains_below(const Snapshot& snapshot) const;
+  void give_volumes(const GrainView& grains, const std::map<GlobalId, double>& shares, const TermTaker& take) const;
   std::vector<double> obstacles_below(const Snapshot& snapshot) const;
 
   MPI_Comm communicator_;

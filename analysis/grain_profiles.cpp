@@ -4,16 +4,14 @@
 #include "analysis/tensor_names.hpp"
 #include "core/contact_stress.hpp"
 #include "core/mpi_session.hpp"
-#include "core/order_free_sum.hpp"
 #include "core/symmetric_pairs.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
 namespace thalweg::analysis {
-
-namespace {
 
 // A grain as the sums take it. The members of a clump share its volume, mass and contact moment as their own volumes
 // are to each other, and move with its centre, so that its parts add up to the clump.
@@ -24,32 +22,37 @@ struct WeightedBody {
   Mat3 moment = Mat3::Zero();       // N m, sum over contacts of F_a r_b, rows a, columns b
 };
 
-// In the order of the grains; the arms r of the snapshot are from the centre of the grain or of the clump.
-std::vector<WeightedBody> weighted_bodies(const Snapshot& snapshot) {
-  const GrainView& grains = snapshot.grains;
-  const std::vector<Mat3> moments = contact_moments(snapshot);
-  std::vector<WeightedBody> result(grains.id.size());
-  for (std::size_t i = 0; i < result.size(); ++i) {
-    const double volume = volume_of(grains.radius[i], grains.disk_thickness);
-    result[i] = {volume, volume, grains.mass[i], grains.velocity[i], moments[i]};
-  }
-  std::map<GlobalId, WeightedBody> sums;
-  for (std::size_t i = 0; i < result.size(); ++i)
-    if (grains.is_member(i)) {
-      WeightedBody& sum = sums[grains.clump[i]];
-      sum.spheres += result[i].spheres;
-      sum.moment += result[i].moment;
+namespace {
+
+class WeightedBodies {
+public:
+  // The arms r of the snapshot are from the centre of the grain or of the clump.
+  explicit WeightedBodies(const Snapshot& snapshot) : grains_(snapshot.grains), moments_(contact_moments(snapshot)) {
+    for (std::size_t i = 0; i < moments_.size(); ++i)
+      if (grains_.is_member(i)) {
+        WeightedBody& clump = clumps_[grains_.clump[i]];
+        clump.spheres += volume_of(grains_.radius[i], grains_.disk_thickness);
+        clump.moment += moments_[i];
+      }
+    for (const ClumpState& state : grains_.clumps) {  // owned here, and so are their members
+      WeightedBody& clump = clumps_.at(state.id);
+      clump.volume = state.volume;
+      clump.mass = state.mass;
+      clump.velocity = state.velocity;
     }
-  for (const ClumpState& clump : grains.clumps) {  // owned here, and so are their members
-    WeightedBody& sum = sums.at(clump.id);
-    sum.volume = clump.volume;
-    sum.mass = clump.mass;
-    sum.velocity = clump.velocity;
   }
-  for (std::size_t i = 0; i < result.size(); ++i)
-    if (grains.is_member(i)) result[i] = sums.at(grains.clump[i]);
-  return result;
-}
+
+  WeightedBody operator[](std::size_t i) const {
+    if (grains_.is_member(i)) return clumps_.at(grains_.clump[i]);
+    const double volume = volume_of(grains_.radius[i], grains_.disk_thickness);
+    return {volume, volume, grains_.mass[i], grains_.velocity[i], moments_[i]};
+  }
+
+private:
+  const GrainView& grains_;
+  std::vector<Mat3> moments_;
+  std::map<GlobalId, WeightedBody> clumps_;
+};
 
 }  // namespace
 
@@ -68,33 +71,33 @@ void GrainProfiles::observe(const Snapshot& snapshot) {
   if (snapshot.step <= counted_step_ || snapshot.time < keys_.from * (1.0 - 1e-12)) return;
   counted_step_ = snapshot.step;
   ++measurements_;
-  const GrainView& grains = snapshot.grains;
-  const std::vector<WeightedBody> bodies = weighted_bodies(snapshot);
-  std::vector<int> layer_of_row;
-  std::vector<double> terms;
-  for (std::size_t i = 0; i < grains.id.size(); ++i) {
-    const double radius = grains.radius[i], bottom = grains.position[i][2] - radius;
-    const WeightedBody& body = bodies[i];
-    const Vec3& v = body.velocity;
-    const int first = static_cast<int>(std::floor(bottom / thickness_));
-    const int last = static_cast<int>(std::floor((bottom + 2.0 * radius) / thickness_));
-    for (int layer = first; layer <= last; ++layer) {
-      const int inside = box_.periodic[2] ? (layer % layers_ + layers_) % layers_ : layer;
-      if (inside < 0 || inside >= layers_) continue;
-      const double part =
-          volume_between(radius, grains.disk_thickness, layer * thickness_ - bottom, (layer + 1) * thickness_ - bottom);
-      const double share = part / body.spheres, m = share * body.mass;
-      const double inside_it = grains.is_member(i) ? share * body.volume : part;
-      layer_of_row.push_back(inside);
-      terms.insert(terms.end(), {inside_it, m, m * v[0], m * v[1], m * v[2]});
-      for (const auto& [a, b] : symmetric_pairs) terms.push_back(m * v[a] * v[b]);
-      terms.insert(terms.end(), {inside_it * v[0], inside_it * v[1], inside_it * v[2]});
-      for (int a = 0; a < 3; ++a)
-        for (int b = 0; b < 3; ++b) terms.push_back(share * body.moment(a, b));
-    }
-  }
-  const std::vector<double> sums = order_free_sums_by_bin(communicator_, layer_of_row, layers_, terms, quantities);
+  const std::vector<double> sums = order_free_sums_by_bin(
+      communicator_, layers_, quantities, [this, &snapshot, bodies = WeightedBodies(snapshot)](const TermTaker& take) {
+        for (std::size_t i = 0; i < snapshot.grains.id.size(); ++i) give_parts(snapshot.grains, i, bodies[i], take);
+      });
   for (std::size_t s = 0; s < sums.size(); ++s) sums_[s] += sums[s];
+}
+
+// The quantities of the part of grain i in each layer.
+void GrainProfiles::give_parts(const GrainView& grains, std::size_t i, const WeightedBody& body,
+                               const TermTaker& take) const {
+  const double radius = grains.radius[i], bottom = grains.position[i][2] - radius;
+  const Vec3& v = body.velocity;
+  const int first = static_cast<int>(std::floor(bottom / thickness_));
+  const int last = static_cast<int>(std::floor((bottom + 2.0 * radius) / thickness_));
+  for (int layer = first; layer <= last; ++layer) {
+    const int inside = box_.periodic[2] ? (layer % layers_ + layers_) % layers_ : layer;
+    if (inside < 0 || inside >= layers_) continue;
+    const double part =
+        volume_between(radius, grains.disk_thickness, layer * thickness_ - bottom, (layer + 1) * thickness_ - bottom);
+    const double share = part / body.spheres, m = share * body.mass;
+    const double inside_it = grains.is_member(i) ? share * body.volume : part;
+    std::array<double, quantities> row{inside_it, m, m * v[0], m * v[1], m * v[2]};
+    for (std::size_t p = 0; p < 6; ++p) row[product + p] = m * v[symmetric_pairs[p][0]] * v[symmetric_pairs[p][1]];
+    for (int a = 0; a < 3; ++a) row[flux + a] = inside_it * v[a];
+    for (int k = 0; k < 9; ++k) row[contact + k] = share * body.moment(k / 3, k % 3);
+    take(inside, row);
+  }
 }
 
 std::vector<Figure> GrainProfiles::results() const {

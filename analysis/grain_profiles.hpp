@@ -21,6 +21,7 @@
 #pragma once
 
 #include "analysis/observer_keys.hpp"
+#include "core/order_free_sum.hpp"
 
 #include <mpi.h>
 
@@ -43,6 +44,8 @@ struct GrainProfilesKeys {
 void describe(SectionVisitor& visit, GrainProfilesKeys& keys);
 std::unique_ptr<Observer> make_observer(const GrainProfilesKeys& keys, const RunFacts& run,
                                         const RunningSystem& system);
+
+struct WeightedBody;
 
 class GrainProfiles : public Observer {
 public:
@@ -68,6 +71,8 @@ public:
 private:
   // Columns of a layer.
   enum Quantity { volume, mass = 1, momentum = 2, product = 5, flux = 11, contact = 14, quantities = 23 };
+
+  void give_parts(const GrainView& grains, std::size_t i, const WeightedBody& body, const TermTaker& take) const;
 
   MPI_Comm communicator_;
   PeriodicBox box_;

@@ -3,7 +3,6 @@
 
 #include "analysis/sphere_in_layer.hpp"
 #include "core/contact_stress.hpp"
-#include "core/order_free_sum.hpp"
 #include "core/symmetric_pairs.hpp"
 #include "core/whole_dataset.hpp"
 
@@ -65,12 +64,17 @@ void StressBalance::add_fluid(const MomentumBook& book) {
 }
 
 void StressBalance::add_grains(const Snapshot& snapshot) {
+  if (snapshot.grains.global_count == 0) return;
+  const Moments moments{contact_moments(snapshot), lubrication_moments(snapshot)};
+  const std::vector<double> sums =
+      order_free_sums_by_bin(communicator_, layers_.count(), grain_columns,
+                             [&](const TermTaker& take) { give_parts(snapshot, moments, take); });
+  for (std::size_t s = 0; s < sums.size(); ++s) grains_[s] += sums[s];
+}
+
+// A row of grain_columns of each grain's part in each layer.
+void StressBalance::give_parts(const Snapshot& snapshot, const Moments& moments, const TermTaker& take) const {
   const GrainView& grains = snapshot.grains;
-  if (grains.global_count == 0) return;
-  const std::vector<Mat3> contact_moments_of = contact_moments(snapshot),
-                          lubrication_moments_of = lubrication_moments(snapshot);
-  std::vector<int> layer_of_row;
-  std::vector<double> terms;
   for (std::size_t i = 0; i < grains.id.size(); ++i) {
     const double radius = grains.radius[i], lowest = grains.position[i][2] - radius, whole = volume_of(radius, 0.0);
     const Vec3 &v = grains.velocity[i], &by_fluid = grains.fluid_force[i], &by_contacts = grains.contact_force[i];
@@ -82,19 +86,17 @@ void StressBalance::add_grains(const Snapshot& snapshot) {
       const double from = layers_.bottom(layer) - lowest, to = from + layers_.height(layer);
       const double part = volume_between(radius, 0.0, from, to), share = part / whole, m = share * grains.mass[i];
       const double lever = (sphere_moment_below(radius, to) - sphere_moment_below(radius, from) - from * part) / whole;
-      layer_of_row.push_back(layer);
-      terms.insert(terms.end(), {part, m, m * v[0], m * v[1], m * v[2]});
-      for (const auto& [a, b] : symmetric_pairs) terms.push_back(m * v[a] * v[b]);
-      for (const Mat3* moment : {&contact_moments_of[i], &of_fluid, &lubrication_moments_of[i]})
-        for (int k = 0; k < 9; ++k) terms.push_back(share * (*moment)(k / 3, k % 3));
-      terms.insert(terms.end(), {share * by_fluid[0], share * by_fluid[1], share * by_fluid[2], share * by_contacts[0],
-                                 share * outer});
-      terms.insert(terms.end(), {lever * by_fluid[0], lever * by_contacts[0], lever * outer});
+      std::array<double, grain_columns> row{part, m, m * v[0], m * v[1], m * v[2]};
+      double* term = row.data() + momentum_flux;
+      for (const auto& [a, b] : symmetric_pairs) *term++ = m * v[a] * v[b];
+      for (const Mat3* moment : {&moments.contacts[i], &of_fluid, &moments.lubrication[i]})
+        for (int k = 0; k < 9; ++k) *term++ = share * (*moment)(k / 3, k % 3);
+      for (const double value : {share * by_fluid[0], share * by_fluid[1], share * by_fluid[2], share * by_contacts[0],
+                                 share * outer, lever * by_fluid[0], lever * by_contacts[0], lever * outer})
+        *term++ = value;
+      take(layer, row);
     }
   }
-  const std::vector<double> sums =
-      order_free_sums_by_bin(communicator_, layer_of_row, layers_.count(), terms, grain_columns);
-  for (std::size_t s = 0; s < sums.size(); ++s) grains_[s] += sums[s];
 }
 
 // Walls by the height at which they act, of which the floor's is 0; the top has a row of its own after the layers.
@@ -102,17 +104,17 @@ void StressBalance::add_grains_at_walls(const Snapshot& snapshot) {
   const GrainView& grains = snapshot.grains;
   if (grains.global_count == 0) return;
   const double top = n_[2] * spacing_;
-  std::vector<int> layer_of_row;
-  std::vector<double> terms;
-  snapshot.contacts->for_each_wall_force([&](std::size_t grain, const ContactEnd& end) {
-    const Vec3& towards = end.to_partner;
-    const double height = std::clamp(grains.position[grain].z() + end.arm.z(), 0.0, top);
-    const bool of_top = towards.z() > std::hypot(towards.x(), towards.y()) && height > top - 1e-6 * spacing_;
-    const int layer = layers_.at(height);
-    layer_of_row.push_back(of_top ? layers_.count() : layer);
-    terms.insert(terms.end(), {end.force.x(), end.force.x() * (height - layers_.bottom(layer))});
-  });
-  const std::vector<double> sums = order_free_sums_by_bin(communicator_, layer_of_row, layers_.count() + 1, terms, 2);
+  const auto give_forces = [&](const TermTaker& take) {
+    snapshot.contacts->for_each_wall_force([&](std::size_t grain, const ContactEnd& end) {
+      const Vec3& towards = end.to_partner;
+      const double height = std::clamp(grains.position[grain].z() + end.arm.z(), 0.0, top);
+      const bool of_top = towards.z() > std::hypot(towards.x(), towards.y()) && height > top - 1e-6 * spacing_;
+      const int layer = layers_.at(height);
+      take(of_top ? layers_.count() : layer,
+           std::array{end.force.x(), end.force.x() * (height - layers_.bottom(layer))});
+    });
+  };
+  const std::vector<double> sums = order_free_sums_by_bin(communicator_, layers_.count() + 1, 2, give_forces);
   for (std::size_t s = 0; s < sums.size(); ++s) held_up_[s] += sums[s];
 }
 

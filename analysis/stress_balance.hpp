@@ -26,6 +26,7 @@
 
 #include "analysis/cell_layers.hpp"
 #include "analysis/observer_keys.hpp"
+#include "core/order_free_sum.hpp"
 
 #include <mpi.h>
 
@@ -115,6 +116,9 @@ private:
   };
   using Tensor = std::array<double, 6>;  // xx, yy, zz, xy, xz, yz
   struct LayerMeans;
+  struct Moments {  // N m, of each grain
+    std::vector<Mat3> contacts, lubrication;
+  };
   struct Difference {
     double share = 0.0;  // of the bed stress
     int layer = 0;
@@ -122,6 +126,7 @@ private:
 
   void add_fluid(const MomentumBook& book);
   void add_grains(const Snapshot& snapshot);
+  void give_parts(const Snapshot& snapshot, const Moments& moments, const TermTaker& take) const;
   void add_grains_at_walls(const Snapshot& snapshot);
   std::array<double, fluid_columns> fluid_of(int layer) const;
   LayerMeans means_of(int layer) const;

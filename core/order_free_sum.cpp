@@ -23,33 +23,38 @@ int shift_for(double largest, std::int64_t terms) {
 }  // namespace
 
 std::vector<double> order_free_sums(MPI_Comm communicator, std::span<const double> terms, std::size_t columns) {
-  const std::vector<int> all_in_one(columns == 0 ? 0 : terms.size() / columns, 0);
-  return order_free_sums_by_bin(communicator, all_in_one, 1, terms, columns);
+  const std::size_t rows = columns == 0 ? 0 : terms.size() / columns;
+  return order_free_sums_by_bin(communicator, 1, columns, [&](const TermTaker& take) {
+    for (std::size_t row = 0; row < rows; ++row) take(0, terms.subspan(row * columns, columns));
+  });
 }
 
-std::vector<double> order_free_sums_by_bin(MPI_Comm communicator, std::span<const int> bin_of_row, int bins,
-                                           std::span<const double> terms, std::size_t columns) {
-  const std::size_t rows = bin_of_row.size();
+std::vector<double> order_free_sums_by_bin(MPI_Comm communicator, int bins, std::size_t columns,
+                                           const std::function<void(const TermTaker&)>& rows) {
   // One reduction for the largest term of every column; infinity stands for anything not finite.
   std::vector<double> largest(columns, 0.0);
-  for (std::size_t row = 0; row < rows; ++row)
+  std::int64_t rows_here = 0;
+  rows([&](int, std::span<const double> row) {
+    ++rows_here;
     for (std::size_t c = 0; c < columns; ++c) {
-      const double size = std::abs(terms[row * columns + c]);
+      const double size = std::abs(row[c]);
       largest[c] = std::isfinite(size) ? std::max(largest[c], size) : std::numeric_limits<double>::infinity();
     }
+  });
   MPI_Allreduce(MPI_IN_PLACE, largest.data(), static_cast<int>(columns), MPI_DOUBLE, MPI_MAX, communicator);
-  const std::int64_t all_rows = sum_over_ranks(communicator, static_cast<std::int64_t>(rows));
+  const std::int64_t all_rows = sum_over_ranks(communicator, rows_here);
 
   const std::size_t entries = columns * static_cast<std::size_t>(bins);
   std::vector<std::int64_t> sums(entries, 0);
   std::vector<int> shift(columns, 0);
-  for (std::size_t c = 0; c < columns; ++c) {
-    if (largest[c] == 0.0 || std::isinf(largest[c])) continue;
-    shift[c] = shift_for(largest[c], all_rows);
-    for (std::size_t row = 0; row < rows; ++row)
-      sums[static_cast<std::size_t>(bin_of_row[row]) * columns + c] +=
-          std::llrint(std::ldexp(terms[row * columns + c], shift[c]));
-  }
+  const auto has_sum = [&](std::size_t c) { return largest[c] != 0.0 && !std::isinf(largest[c]); };
+  for (std::size_t c = 0; c < columns; ++c)
+    if (has_sum(c)) shift[c] = shift_for(largest[c], all_rows);
+  rows([&](int bin, std::span<const double> row) {
+    std::int64_t* sum = sums.data() + static_cast<std::size_t>(bin) * columns;
+    for (std::size_t c = 0; c < columns; ++c)
+      if (has_sum(c)) sum[c] += std::llrint(std::ldexp(row[c], shift[c]));
+  });
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(entries), MPI_INT64_T, MPI_SUM, communicator);
 
   std::vector<double> result(entries, 0.0);

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
+
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -53,6 +56,51 @@ TEST(OrderFreeSum, OfNothingIsZeroAndOfNonsenseIsNotANumber) {
   const std::vector<double> sums = order_free_sums(world, mine, 2);
   EXPECT_TRUE(std::isnan(sums[0]));
   EXPECT_EQ(sums[1], size_of(world));
+}
+
+// Rows of a bin are those of one sum: small integers times a power of two, which are summed without any rounding.
+TEST(OrderFreeSum, OfBinsHoldsTheRowsOfEach) {
+  constexpr int bins = 5, rows = 1000;
+  std::array<std::array<std::int64_t, 2>, bins> exact{};
+  for (int i = 0; i < rows; ++i) {
+    exact[static_cast<std::size_t>(i * i % bins)][0] += i - 300;
+    exact[static_cast<std::size_t>(i * i % bins)][1] += 7 * i;
+  }
+  const std::vector<double> sums = order_free_sums_by_bin(world, bins, 2, [&](const TermTaker& take) {
+    for (int i = rank_of(world); i < rows; i += size_of(world))
+      take(i * i % bins, std::array{0.125 * (i - 300), 7e3 * i});
+  });
+  ASSERT_EQ(sums.size(), 2u * bins);
+  for (std::size_t bin = 0; bin < bins; ++bin) {
+    EXPECT_EQ(sums[2 * bin], 0.125 * static_cast<double>(exact[bin][0]));
+    EXPECT_EQ(sums[2 * bin + 1], 1e3 * static_cast<double>(exact[bin][1]));
+  }
+}
+
+TEST(OrderFreeSum, OfBinsHasTheSameBitsHoweverTheRowsAreDealtOut) {
+  const auto sums_of = [](MPI_Comm communicator) {
+    return order_free_sums_by_bin(communicator, 3, 1, [&](const TermTaker& take) {
+      for (int i = 999 - rank_of(communicator); i >= 0; i -= size_of(communicator))
+        take(i % 3, std::array{awkward_term(i)});
+    });
+  };
+  EXPECT_EQ(sums_of(world), sums_of(MPI_COMM_SELF));
+}
+
+// Two million rows of 46 values would take 736 MB.
+TEST(OrderFreeSum, KeepsNoRows) {
+  const auto peak_kilobytes = [] {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss;
+  };
+  const long before = peak_kilobytes();
+  const std::array<double, 46> row{1.0};
+  const std::vector<double> sums = order_free_sums_by_bin(world, 10, 46, [&](const TermTaker& take) {
+    for (int i = 0; i < 2'000'000; ++i) take(i % 10, row);
+  });
+  EXPECT_EQ(sums[0], 2e5 * size_of(world));
+  EXPECT_LT(peak_kilobytes() - before, 10'000);
 }
 
 }  // namespace
