@@ -1,6 +1,7 @@
 #include "analysis/entrainment.hpp"
 
 #include "core/mpi_session.hpp"
+#include "core/ranks.hpp"
 
 #include <fmt/format.h>
 
@@ -8,22 +9,6 @@
 #include <cmath>
 
 namespace thalweg::analysis {
-
-namespace {
-
-// Every rank gets the rows of all, in the order of ranks.
-template <typename Row>
-std::vector<Row> shared_by_all(MPI_Comm communicator, const std::vector<Row>& rows) {
-  std::vector<Row> copies;
-  std::vector<int> to;
-  for (int rank = 0; rank < size_of(communicator); ++rank) {
-    copies.insert(copies.end(), rows.begin(), rows.end());
-    to.insert(to.end(), rows.size(), rank);
-  }
-  return exchange_rows(communicator, copies, to);
-}
-
-}  // namespace
 
 Entrainment::Entrainment(MPI_Comm communicator, const PeriodicBox& box, EntrainmentSettings settings)
     : communicator_(communicator),
@@ -37,7 +22,6 @@ void Entrainment::observe(const Snapshot& snapshot) {
   if (!homes_) {
     homes_.emplace(communicator_, snapshot.grains.global_count);
     memory_.assign(homes_->size(), {});
-    watched_.assign(static_cast<std::size_t>(homes_->count()), 0);
   }
   const bool due = settings_.grains.empty() && snapshot.step - chosen_step_ >= settings_.refresh_steps;
   if (chosen_step_ < 0 || due) choose(snapshot);
@@ -46,22 +30,33 @@ void Entrainment::observe(const Snapshot& snapshot) {
 
 void Entrainment::choose(const Snapshot& snapshot) {
   chosen_step_ = snapshot.step;
-  if (!settings_.grains.empty()) return watch(settings_.grains);
-  const double lowest = layers_.bed(snapshot).height - settings_.diameter;
-  std::vector<GlobalId> chosen;
-  for (std::size_t n = 0; n < snapshot.grains.id.size(); ++n)
-    if (snapshot.grains.position[n].z() > lowest && !is_held(settings_.held, snapshot.grains.id[n]))
-      chosen.push_back(snapshot.grains.id[n]);
-  watch(shared_by_all(communicator_, chosen));
+  const GrainView& grains = snapshot.grains;
+  std::vector<char> chosen(grains.id.size(), 0);
+  if (settings_.grains.empty()) {
+    const double lowest = layers_.bed(snapshot).height - settings_.diameter;
+    for (std::size_t n = 0; n < chosen.size(); ++n)
+      chosen[n] = grains.position[n].z() > lowest && !is_held(settings_.held, grains.id[n]);
+  } else {
+    for (std::size_t n = 0; n < chosen.size(); ++n)
+      chosen[n] = std::binary_search(settings_.grains.begin(), settings_.grains.end(), grains.id[n]);
+  }
+  watch(grains.id, std::move(chosen));
 }
 
-// chosen: the same on every rank. Grains watched before are remembered on.
-void Entrainment::watch(const std::vector<GlobalId>& chosen) {
-  std::fill(watched_.begin(), watched_.end(), 0);
-  for (const GlobalId id : chosen) watched_[static_cast<std::size_t>(id)] = 1;
-  watched_count_ = static_cast<std::int64_t>(chosen.size());
+// ids: of the grains here. Grains watched before are remembered on.
+void Entrainment::watch(std::span<const GlobalId> ids, std::vector<char> chosen) {
+  struct Watched {
+    GlobalId id;
+  };
+  std::vector<Watched> rows;
+  for (std::size_t n = 0; n < ids.size(); ++n)
+    if (chosen[n] != 0) rows.push_back({ids[n]});
+  watched_count_ = sum_over_ranks(communicator_, static_cast<std::int64_t>(rows.size()));
+  watched_here_.set(ids, std::move(chosen));
+  std::vector<char> at_home(memory_.size(), 0);
+  for (const Watched& row : homes_->bring_home(rows)) at_home[homes_->place_of(row.id)] = 1;
   for (std::size_t m = 0; m < memory_.size(); ++m) {
-    const bool watched = watched_[static_cast<std::size_t>(homes_->begin()) + m] != 0;
+    const bool watched = at_home[m] != 0;
     if (watched != memory_[m].watched) memory_[m] = Memory{};
     memory_[m].watched = watched;
   }
@@ -71,14 +66,12 @@ void Entrainment::watch(const std::vector<GlobalId>& chosen) {
 // ascending.
 std::vector<GlobalId> Entrainment::take_samples(const Snapshot& snapshot) {
   const GrainView& grains = snapshot.grains;
-  std::vector<char> chosen(grains.id.size(), 0);
+  const std::vector<char>& chosen = watched_here_.flags(
+      communicator_, grains.id, *homes_, [this](GlobalId id) { return memory_[homes_->place_of(id)].watched; });
   std::vector<Seen> seen;
   std::vector<TouchRow> touches;
-  for (std::size_t n = 0; n < chosen.size(); ++n) {
-    if (watched_[static_cast<std::size_t>(grains.id[n])] == 0) continue;
-    chosen[n] = 1;
-    seen.push_back({grains.id[n], grains.radius[n], grains.mass[n], record_of(grains, n)});
-  }
+  for (std::size_t n = 0; n < chosen.size(); ++n)
+    if (chosen[n] != 0) seen.push_back({grains.id[n], grains.radius[n], grains.mass[n], record_of(grains, n)});
   if (snapshot.contacts)
     snapshot.contacts->for_each_contact_of(chosen, [&](std::size_t n, const ContactEnd& end) {
       touches.push_back(row_of(grains.id[n], {end.partner, end.arm, end.force, end.to_partner.norm()}));
@@ -149,7 +142,7 @@ void Entrainment::count(const std::vector<GlobalId>& started, double time) {
   }
   const std::vector<GrainRing> rings = rings_on_first_rank(started);
   std::size_t number = 0;
-  for (const Start& start : shared_by_all(communicator_, starts_here)) {
+  for (const Start& start : Ranks(communicator_).gathered(std::move(starts_here))) {
     ++events_;
     if (std::isfinite(start.share)) {
       ++shares_;

@@ -10,7 +10,7 @@
 // for events with a hinge and a torque of the fluid that pushes the way the grain went. Events count as independent:
 // the error of the mean share is its deviation over sqrt(events).
 //
-// What is remembered lies at the home of the grain's id (home_by_id.hpp).
+// What is remembered, and which grains are watched, lies at the home of the grain's id (home_by_id.hpp).
 #pragma once
 
 #include "analysis/bed_layers.hpp"
@@ -19,6 +19,7 @@
 #include "analysis/home_by_id.hpp"
 #include "analysis/observer_keys.hpp"
 #include "analysis/saved_settings.hpp"
+#include "analysis/watched_here.hpp"
 
 #include <optional>
 #include <span>
@@ -115,7 +116,7 @@ private:
 
   Shares shares() const;
   void choose(const Snapshot& snapshot);
-  void watch(const std::vector<GlobalId>& chosen);
+  void watch(std::span<const GlobalId> ids, std::vector<char> chosen);
   std::vector<GlobalId> take_samples(const Snapshot& snapshot);
   void remember(Memory& memory, const Seen& seen, double time) const;
   bool starts(Memory& memory) const;
@@ -130,9 +131,9 @@ private:
   EntrainmentSettings settings_;
   BedLayers layers_;
   std::optional<HomeById> homes_;  // from the first measurement on
-  std::vector<char> watched_;      // by id, on every rank
-  std::int64_t watched_count_ = 0;
-  std::vector<Memory> memory_;  // of the ids whose home is here
+  WatchedHere watched_here_;
+  std::int64_t watched_count_ = 0;  // over all ranks
+  std::vector<Memory> memory_;      // of the ids whose home is here
   std::int64_t seen_step_ = -1, chosen_step_ = -1;
   std::int64_t events_ = 0, shares_ = 0;               // over all ranks
   double sum_of_shares_ = 0.0, sum_of_squares_ = 0.0;  // likewise

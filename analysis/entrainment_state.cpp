@@ -80,20 +80,20 @@ bool Entrainment::load(ArchiveReader& archive) {
   memory_.assign(homes_->size(), {});
   std::vector<double> rows(memory_.size() * memory_columns);
   archive.read("entrainment/grains", std::span<double>(rows), homes_->box(memory_columns));
-  // Every rank knows all that are watched.
-  std::vector<int> watched(static_cast<std::size_t>(homes_->count()), 0);
-  for (std::size_t m = 0; m < memory_.size(); ++m)
-    watched[static_cast<std::size_t>(homes_->begin()) + m] = rows[m * memory_columns] != 0.0 ? 1 : 0;
-  MPI_Allreduce(MPI_IN_PLACE, watched.data(), static_cast<int>(watched.size()), MPI_INT, MPI_MAX, communicator_);
-  std::vector<GlobalId> chosen;
-  for (std::size_t id = 0; id < watched.size(); ++id)
-    if (watched[id] != 0) chosen.push_back(static_cast<GlobalId>(id));
-  if (!settings_.grains.empty() && chosen != settings_.grains) {
+  std::int64_t watched = 0;
+  bool as_listed = true;
+  for (std::size_t m = 0; m < memory_.size(); ++m) {
+    const GlobalId id = homes_->begin() + static_cast<GlobalId>(m);
+    memory_[m].watched = rows[m * memory_columns] != 0.0;
+    watched += memory_[m].watched ? 1 : 0;
+    as_listed &= memory_[m].watched == std::binary_search(settings_.grains.begin(), settings_.grains.end(), id);
+  }
+  if (!settings_.grains.empty() && any_rank(communicator_, !as_listed)) {
     homes_.reset();
     return false;
   }
-  watched_.assign(watched.size(), 0);
-  watch(chosen);
+  watched_count_ = sum_over_ranks(communicator_, watched);
+  watched_here_ = {};
   restore_rings(archive, rows);
   seen_step_ = archive.integer_attribute("entrainment/seen_step");
   chosen_step_ = archive.integer_attribute("entrainment/chosen_step");

@@ -9,6 +9,8 @@
 #include "core/types.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 namespace thalweg::analysis {
@@ -35,6 +37,35 @@ public:
     home.reserve(rows.size());
     for (const Row& row : rows) home.push_back(static_cast<int>(row.id / share_));
     return exchange_rows(communicator_, rows, home);
+  }
+
+  // What homes answer to questions about these ids, in their order: answer(id) is called at the home of the id. Answers
+  // are trivially copyable. Collective.
+  template <typename Answer>
+  auto ask(std::span<const GlobalId> ids, const Answer& answer) const {
+    using Value = decltype(answer(GlobalId{}));
+    struct Question {
+      GlobalId id;
+      std::int64_t place;  // among the ids
+      int rank;            // that asks
+    };
+    struct Reply {
+      std::int64_t place;
+      Value value;
+    };
+    std::vector<Question> questions;
+    for (const GlobalId id : ids)
+      questions.push_back({id, static_cast<std::int64_t>(questions.size()), thalweg::rank_of(communicator_)});
+    std::vector<Reply> replies;
+    std::vector<int> to;
+    for (const Question& question : bring_home(questions)) {
+      replies.push_back({question.place, answer(question.id)});
+      to.push_back(question.rank);
+    }
+    std::vector<Value> values(ids.size());
+    for (const Reply& reply : exchange_rows(communicator_, replies, to))
+      values[static_cast<std::size_t>(reply.place)] = reply.value;
+    return values;
   }
 
   // This rank's part of an array with `columns` numbers for each id.
