@@ -3,6 +3,8 @@
 #include "core/mpi_session.hpp"
 #include "core/whole_dataset.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -109,6 +111,14 @@ void check(const TracksKeys& keys, const RunFacts& run) {
   require_ids(run, keys.grains);
   if (!keys.grains.empty() && keys.one_in != 1)
     throw KeyError("one_in", "analysis.tracks.grains names the grains already; give one of them");
+  const std::int64_t all = run.grains->count();
+  const std::int64_t recorded =
+      keys.grains.empty() ? (all + keys.one_in - 1) / keys.one_in : static_cast<std::int64_t>(keys.grains.size());
+  if (recorded > TracksKeys::most_grains)
+    throw KeyError("", fmt::format("it would record {} grains, and one rank can gather {}; name fewer in grains, give "
+                                   "one_in: {}, or take all grains from output.grains",
+                                   recorded, TracksKeys::most_grains,
+                                   (all + TracksKeys::most_grains - 1) / TracksKeys::most_grains));
 }
 
 std::unique_ptr<Observer> make_observer(const TracksKeys& keys, const RunFacts& run, const RunningSystem& system) {

@@ -108,5 +108,28 @@ TEST(Tracks, GoOnAfterARestartOnAnyRanks) {
   }
 }
 
+TEST(Tracks, AreRefusedOfMoreGrainsThanOneRankGathers) {
+  constexpr std::int64_t most = TracksKeys::most_grains;
+  const auto facts_of = [](GlobalId count) {
+    RunFacts run;
+    run.grains.emplace();
+    run.grains->populations.push_back({.name = "all", .first = 0, .end = count});
+    return run;
+  };
+  EXPECT_NO_THROW(check(TracksKeys{}, facts_of(most)));
+  EXPECT_NO_THROW(check(TracksKeys{{}, 3}, facts_of(3 * most)));
+  EXPECT_NO_THROW(check(TracksKeys{{5, 7 * most}}, facts_of(100 * most)));
+  EXPECT_THROW(check(TracksKeys{{}, 3}, facts_of(3 * most + 1)), KeyError);
+  std::string message;
+  try {
+    check(TracksKeys{}, facts_of(738'304));
+  } catch (const KeyError& error) {
+    message = error.what();
+  }
+  EXPECT_NE(message.find("738304 grains"), std::string::npos) << message;
+  EXPECT_NE(message.find("one_in: 37"), std::string::npos) << message;
+  EXPECT_NO_THROW(check(TracksKeys{{}, 37}, facts_of(738'304)));  // the remedy
+}
+
 }  // namespace
 }  // namespace thalweg::analysis::tracks_test
