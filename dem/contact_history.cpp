@@ -1,6 +1,6 @@
 #include "dem/contact_history.hpp"
 
-#include "core/mpi_session.hpp"
+#include "core/wide_rows.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -30,12 +30,9 @@ void ContactHistories::sort() {
 }
 
 ContactHistories ContactHistories::exchanged(MPI_Comm communicator, const std::vector<int>& destination) const {
-  std::vector<int> each;
-  each.reserve(values_.size());
-  for (const int to : destination) each.insert(each.end(), width_, to);
   ContactHistories arrived(width_);
   arrived.keys_ = exchange_rows(communicator, keys_, destination);
-  arrived.values_ = exchange_rows(communicator, values_, each);
+  arrived.values_ = exchange_wide_rows(communicator, values_, width_, destination);
   return arrived;
 }
 

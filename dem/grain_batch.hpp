@@ -42,4 +42,8 @@ void replace_owned(GrainStore& store, const GrainBatch& batch);
 GrainBatch exchange_grains(MPI_Comm communicator, GrainBatch batch, const std::vector<int>& destination,
                            int attached_width);
 
+// Moves the owned grains to their owners: only those that leave are sent. The store's grains stay sorted by id; no
+// ghosts. owner: a rank for each owned grain. Collective.
+void move_grains(MPI_Comm communicator, GrainStore& store, const std::vector<int>& owner);
+
 }  // namespace thalweg::dem

@@ -308,9 +308,12 @@ void GrainDynamics::migrate(ContactHistories& histories) {
         leaving.add(histories.key(n), histories.values(n));
         destination.push_back(to);
       }
-  histories.add(leaving.exchanged(communicator_, destination));
-  histories.sort();
-  replace_owned(store_, exchange_grains(communicator_, owned_grains(store_), owner, store_.attached_width));
+  const ContactHistories arrived = leaving.exchanged(communicator_, destination);
+  if (arrived.size() > 0) {
+    histories.add(arrived);
+    histories.sort();
+  }
+  move_grains(communicator_, store_, owner);
   if (clump_count_ > 0) clumps_.migrate(decomposition_, communicator_);
 }
 

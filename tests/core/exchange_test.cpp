@@ -1,5 +1,6 @@
 #include "core/mpi_session.hpp"
 #include "core/packed_exchange.hpp"
+#include "core/wide_rows.hpp"
 
 #include <gtest/gtest.h>
 
@@ -27,6 +28,24 @@ TEST(ExchangeRows, DeliversInOrderOfTheSendingRank) {
     EXPECT_EQ(received[i].from, i / 3);
     EXPECT_EQ(received[i].serial, i % 3);
   }
+}
+
+// Row n of a rank is three values, to rank (rank + n) mod ranks; the last has none where there are several.
+TEST(ExchangeWideRows, DeliversWholeRowsInOrderOfTheSendingRank) {
+  const int rank = rank_of(MPI_COMM_WORLD), ranks = size_of(MPI_COMM_WORLD);
+  const auto rows_of = [ranks](int from) { return ranks > 1 && from == ranks - 1 ? 0 : 2 * ranks + 1; };
+  std::vector<double> values;
+  std::vector<int> destination;
+  for (int n = 0; n < rows_of(rank); ++n) {
+    values.insert(values.end(), {1.0 * rank, 1.0 * n, 0.5});
+    destination.push_back((rank + n) % ranks);
+  }
+  std::vector<double> expected;
+  for (int from = 0; from < ranks; ++from)
+    for (int n = 0; n < rows_of(from); ++n)
+      if ((from + n) % ranks == rank) expected.insert(expected.end(), {1.0 * from, 1.0 * n, 0.5});
+  EXPECT_EQ(exchange_wide_rows(MPI_COMM_WORLD, values, 3, destination), expected);
+  EXPECT_TRUE(exchange_wide_rows(MPI_COMM_WORLD, std::vector<double>{}, 0, destination).empty());
 }
 
 // Many exchanges in a row with nothing between them, each rank with other partners in each and some with none, so that
