@@ -72,7 +72,7 @@ void GrainBodies<Real>::take_loads() {
   collect();
   apply();
   settle_masses();
-  grains_.refresh_ghost_attached();
+  grains_.refresh_ghost_attached(GrainExchange<double>::first_shared, GrainExchange<double>::shared);
   show_stresses();
 }
 

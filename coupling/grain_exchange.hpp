@@ -22,6 +22,9 @@ public:
   explicit GrainExchange(std::span<Number> columns) : columns_(columns) {}
 
   static constexpr int width = 24, width_with_stress = 42;  // columns
+  // What other ranks need of a grain in every step: what its links return, and the fluid around it. (They follow its
+  // link_position by themselves.)
+  static constexpr std::size_t first_shared = 18, shared = 5;
 
   Vector link_position() const { return vector(0); }  // the place its cells stand for, m
   Vector last_force() const { return vector(3); }     // of the last exchange, N

@@ -1,7 +1,7 @@
 #include "dem/ghost_exchange.hpp"
 
-#include "core/mpi_session.hpp"
 #include "core/sum_range.hpp"
+#include "core/wide_rows.hpp"
 #include "dem/grain_batch.hpp"
 
 #include <algorithm>
@@ -55,10 +55,10 @@ GhostExchange::GhostExchange(const Decomposition& decomposition, MPI_Comm commun
 void GhostExchange::build(GrainStore& store) {
   store.drop_ghosts();
   neighbours_.clear();
-  values_ready_ = false;
+  values_ready_ = attached_ready_ = false;
   std::vector<GhostRow> rows;
   std::vector<double> columns;
-  std::vector<int> row_to, column_to;
+  std::vector<int> row_to;
   for (const int rank : candidates_) {
     Neighbour neighbour{rank, {}, {}};
     for (std::size_t s = 0; s < store.owned; ++s) {
@@ -74,7 +74,6 @@ void GhostExchange::build(GrainStore& store) {
                       rank_of(communicator_)});
       row_to.push_back(rank);
       for (const double value : store.attached_of(s)) columns.push_back(value);
-      column_to.insert(column_to.end(), store.attached_width, rank);
     }
     neighbours_.push_back(std::move(neighbour));
   }
@@ -95,11 +94,10 @@ void GhostExchange::build(GrainStore& store) {
   motion_ = PackedExchange(communicator_, messages(neighbours_, motion_tag, sizeof(MotionRow)));
   follows_ = false;
   if (store.attached_width > 0) {
-    const std::vector<double> ghost_columns = exchange_rows(communicator_, columns, column_to);
+    const std::vector<double> ghost_columns =
+        exchange_wide_rows(communicator_, std::move(columns), store.attached_width, row_to);
     std::copy(ghost_columns.begin(), ghost_columns.end(),
               store.attached.begin() + static_cast<std::ptrdiff_t>(store.owned * store.attached_width));
-    attached_ =
-        PackedExchange(communicator_, messages(neighbours_, attached_tag, sizeof(double) * store.attached_width));
   }
 }
 
@@ -184,19 +182,22 @@ void GhostExchange::refresh(MovingGrains& grains) {
       });
 }
 
-void GhostExchange::refresh_attached(GrainStore& store) {
-  if (store.attached_width == 0) return;
+void GhostExchange::refresh_attached(GrainStore& store, std::size_t first, std::size_t count) {
+  if (!attached_ready_) {
+    attached_ = PackedExchange(communicator_, messages(neighbours_, attached_tag, sizeof(double) * count));
+    attached_ready_ = true;
+  }
   for (std::size_t n = 0; n < neighbours_.size(); ++n) {
     auto* value = attached_.send_buffer<double>(n);
     for (const std::uint32_t s : neighbours_[n].send)
-      for (const double column : store.attached_of(s)) *value++ = column;
+      for (const double column : store.attached_of(s).subspan(first, count)) *value++ = column;
   }
   attached_.start();
   attached_.finish();
   for (std::size_t n = 0; n < neighbours_.size(); ++n) {
     const auto* value = attached_.receive_buffer<double>(n);
     for (const std::uint32_t s : neighbours_[n].ghosts)
-      for (double& column : store.attached_of(s)) column = *value++;
+      for (double& column : store.attached_of(s).subspan(first, count)) column = *value++;
   }
 }
 

@@ -36,8 +36,9 @@ public:
   void refresh(GrainStore& store);
   void refresh(MovingGrains& grains);
 
-  // Brings the ghosts' attached columns up to date.
-  void refresh_attached(GrainStore& store);
+  // Brings some of the ghosts' attached columns up to date: `count` of them from `first` on. count must always be the
+  // same.
+  void refresh_attached(GrainStore& store, std::size_t first, std::size_t count);
 
   // Adds the entries that ranks have in `values` for their ghosts to the owners' entries: `width` integers per grain of
   // the store, so that the sums depend on no order. Entries of ghosts stay as they are. width must always be the same.
@@ -63,8 +64,9 @@ private:
   std::vector<Neighbour> neighbours_;  // ranks grains are sent to or received from; ghosts side by side
   std::vector<Neighbour> followed_;    // the same without what refresh(MovingGrains&) leaves out, where it does
   PackedExchange motion_, followed_motion_, attached_, values_;
-  bool follows_ = false;       // whether follow() has been called for the present ghosts
-  bool values_ready_ = false;  // values_ fits the present ghosts
+  bool follows_ = false;         // whether follow() has been called for the present ghosts
+  bool values_ready_ = false;    // values_ fits the present ghosts
+  bool attached_ready_ = false;  // attached_ fits them
 };
 
 }  // namespace thalweg::dem

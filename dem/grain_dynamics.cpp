@@ -467,6 +467,8 @@ void GrainDynamics::refresh_ghosts() {
   ghosts_.refresh(store_);
 }
 
-void GrainDynamics::refresh_ghost_attached() { ghosts_.refresh_attached(store_); }
+void GrainDynamics::refresh_ghost_attached(std::size_t first, std::size_t count) {
+  ghosts_.refresh_attached(store_, first, count);
+}
 
 }  // namespace thalweg::dem

@@ -128,7 +128,9 @@ public:
 
   // After the sub-steps: wraps positions and gives ghosts the final velocities of their owners. Collective.
   void refresh_ghosts();
-  void refresh_ghost_attached();  // the attached columns of ghosts, if the caller changed those of owned grains
+  // The attached columns first ... first + count - 1 of ghosts, if the caller changed those of owned grains; count must
+  // always be the same.
+  void refresh_ghost_attached(std::size_t first, std::size_t count);
 
   // Adds what every rank has for its ghosts in `values` (width integers a grain of the store) to the owners' entries:
   // sums of loads over ranks, exact in any order. Collective.

@@ -17,12 +17,13 @@ namespace {
 // What crosses a face between blocks for each of its cells, and an edge: populations.
 constexpr double populations_of_face = 5.0, populations_of_edge = 1.0;
 // Of a ghost in a sub-step (position, velocity, spin), and once a step: the sums of its links on their way to the owner
-// (force, torque, mass, pressure, LinkSums), and what it keeps of the exchange on the way back.
+// (force, torque, mass, pressure, LinkSums), and what they make of it on the way back.
 constexpr double motion_bytes = 9 * 8.0;
 // Of the ghosts, those that may touch a grain of the rank and are sent in sub-steps: in a wide bed 0.78 on 2 ranks, 0.6
 // on 32, 0.5 on 256 (docs/scaling.md).
 constexpr double touching_ghosts = 0.6;
-constexpr double sums_bytes = (8 + bodies::LinkSums::size) * 8.0, moment_bytes = 9 * 8.0;
+constexpr double sums_bytes = (8 + bodies::LinkSums::size) * 8.0, moment_bytes = 9 * 8.0,
+                 shared_bytes = coupling::GrainExchange<double>::shared * 8.0;
 // The run's decision to go on, and the largest speed of a grain; and about one a step where lists are made anew.
 constexpr double reductions = 2.0;
 
@@ -168,14 +169,12 @@ RankWork work_of(const Case& c, const GrainsOfCase& grains, const Decomposition&
   work.memory = std::max(work.memory, bytes_of_program() + bytes_of_placing(c, decomposition.ranks()));
   if (decomposition.ranks() == 1) return work;
   const double beside = neighbours(decomposition, rank, [](int axes) { return axes > 0; });
-  const double attached = measures_grain_stress(c) ? coupling::GrainExchange<double>::width_with_stress
-                                                   : coupling::GrainExchange<double>::width;
   work.messages += beside * (sub_steps + 1.0);
   work.bytes += work.ghosts * (touching_ghosts * sub_steps + 1.0) * motion_bytes;
   work.rounds += sub_steps + 1.0;
   if (!has_fluid(c)) return work;
   work.messages += 2.0 * beside;
-  work.bytes += work.ghosts * (sums_bytes + (measures_grain_stress(c) ? moment_bytes : 0.0) + 8.0 * attached);
+  work.bytes += work.ghosts * (sums_bytes + (measures_grain_stress(c) ? moment_bytes : 0.0) + shared_bytes);
   work.rounds += 2.0;
   return work;
 }
