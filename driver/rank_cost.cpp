@@ -17,12 +17,13 @@ namespace {
 // What crosses a face between blocks for each of its cells, and an edge: populations.
 constexpr double populations_of_face = 5.0, populations_of_edge = 1.0;
 // Of a ghost in a sub-step (position, velocity, spin), and once a step: the sums of its links on their way to the owner
-// (force, torque, mass, pressure, LinkSums), and what they make of it on the way back.
+// (force, torque, mass, pressure, LinkSums; of stresses moments and what solids hide), and what the owner makes of it
+// on the way back.
 constexpr double motion_bytes = 9 * 8.0;
 // Of the ghosts, those that may touch a grain of the rank and are sent in sub-steps: in a wide bed 0.78 on 2 ranks, 0.6
 // on 32, 0.5 on 256 (docs/scaling.md).
 constexpr double touching_ghosts = 0.6;
-constexpr double sums_bytes = (8 + bodies::LinkSums::size) * 8.0, moment_bytes = 9 * 8.0,
+constexpr double sums_bytes = (8 + bodies::LinkSums::size) * 8.0, moment_bytes = (9 + 3) * 8.0,
                  shared_bytes = coupling::GrainExchange<double>::shared * 8.0;
 // The run's decision to go on, and the largest speed of a grain; and about one a step where lists are made anew.
 constexpr double reductions = 2.0;
