@@ -167,7 +167,7 @@ ContactList find_contacts(const GrainStore& store, const Surroundings& around, c
                           double range, double largest_radius) {
   ContactList list;
   constexpr double near_share = 0.03;  // of the range
-  list.near = NearPairs(near_share * range);
+  list.near = list.near_surfaces = NearPairs(near_share * range);
   std::vector<ContactBodies> bodies;
   for (const Candidate& p : find_pairs(store, around.box, range, largest_radius)) {
     list.pairs.push_back({p.first, p.second, store.radius[p.first] + store.radius[p.second]});

@@ -65,10 +65,20 @@ struct ContactList {
   std::vector<PairContact> pairs;
   ContactRows pair_rows;
   NearPairs near;                  // of the pairs; kept by evaluate_contacts()
+  NearPairs near_surfaces;         // the same for lubrication; kept by add_lubrication()
   std::vector<WallContact> walls;  // of owned grains, sorted by id, then from the last wall to the first
   ContactRows wall_rows;
   std::vector<NearSolid> solids;
   ContactRows solid_rows;  // touches_per_solid for each of these
+
+  void grains_moved(double distance) {  // m, at most, since the last call
+    near.grains_moved(distance);
+    near_surfaces.grains_moved(distance);
+  }
+  void forget_near_pairs() {
+    near.forget();
+    near_surfaces.forget();
+  }
 };
 
 // Where the contacts with walls and solids are among the ids of partners: -1 - w for wall w, and behind the walls -1 -

@@ -428,7 +428,7 @@ void GrainDynamics::advance_by_verlet(int sub_steps) {
     // Forces see velocities of the middle of the step, so those of what is prescribed are taken there as well.
     place_prescribed(time(), time() - 0.5 * dt);
     timed(messages_phase_, [&] { ghosts_.refresh(moving_); });
-    list_.near.grains_moved(dt * moving_.speed_bound(!clumps_.empty() || !parameters_.assemblies.empty()));
+    list_.grains_moved(dt * moving_.speed_bound(!clumps_.empty() || !parameters_.assemblies.empty()));
     evaluate_forces(dt);
     if (s + 1 == sub_steps) break;
     timed(motion_phase_, [&] {
@@ -453,7 +453,7 @@ void GrainDynamics::advance_by_gear(int sub_steps) {
     ++steps_done_;
     place_prescribed(time(), time());
     timed(messages_phase_, [&] { ghosts_.refresh(moving_); });
-    list_.near.forget();  // a prediction moves by more than its velocity
+    list_.forget_near_pairs();  // a prediction moves by more than its velocity
     evaluate_forces(dt);
     timed(motion_phase_, [&] { gear_.correct(moving_); });
   }

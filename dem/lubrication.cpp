@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "dem/material.hpp"
+#include "dem/minimum_image.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -91,6 +92,19 @@ void add_to_pair(MovingGrain& first, MovingGrain& second, const Vec3& separation
   second.torque += near->second_arm * turn - couple;
 }
 
+// Finds the pairs between which the force may act before the list is searched again. reach: m.
+void look_for_near_surfaces(const MovingGrains& grains, ContactList& list, double reach, const MinimumImage& image) {
+  list.near_surfaces.begin();
+  const double range = reach + list.near_surfaces.margin();
+  for (std::size_t p = 0; p < list.pairs.size(); ++p) {
+    const PairContact& c = list.pairs[p];
+    const Row d = image(grains[c.first].position - grains[c.second].position), square = d * d;
+    const double limit = c.reach + range;
+    if (square[0] + square[1] + square[2] < limit * limit)
+      list.near_surfaces.add({c.first, c.second, static_cast<std::uint32_t>(p)});
+  }
+}
+
 void add_to_grain(MovingGrain& grain, const NearSurfaces& near) {
   grain.force += row_of(near.load.force);
   grain.torque += row_of(near.first_arm * near.load.force.cross(near.normal) + near.load.couple);
@@ -173,9 +187,10 @@ void check(const LubricationParameters& parameters, double largest_radius, doubl
                   time_step, longest, parameters.minimum_gap * time_step / longest));
 }
 
-void add_lubrication(MovingGrains& grains, const ContactList& list, const Surroundings& around,
+void add_lubrication(MovingGrains& grains, ContactList& list, const Surroundings& around,
                      const LubricationParameters& parameters) {
-  for (const PairContact& c : list.pairs) {
+  if (list.near_surfaces.stale()) look_for_near_surfaces(grains, list, parameters.reach(), MinimumImage(around.box));
+  for (const NearPair& c : list.near_surfaces.pairs()) {
     MovingGrain &first = grains[c.first], &second = grains[c.second];
     add_to_pair(first, second, around.box.difference(vector_of(first.position), vector_of(second.position)),
                 parameters);

@@ -62,8 +62,8 @@ void check(const LubricationParameters& parameters, double largest_radius, doubl
 
 // Adds these forces and torques for all pairs, walls and solids of the list whose gap is below the cut-offs. Surfaces
 // that touch feel their contact law alone. The edge of a solid counts as the plane across the line from it to the
-// grain. Sums run in the order of the list.
-void add_lubrication(MovingGrains& grains, const ContactList& list, const Surroundings& around,
+// grain. Sums run in the order of the list, of whose pairs only the near ones are looked at (near_pairs.hpp).
+void add_lubrication(MovingGrains& grains, ContactList& list, const Surroundings& around,
                      const LubricationParameters& parameters);
 
 // Calls visit(slot, arm, force) for every such force on every owned grain, in the order of the list, pairs first: m

@@ -1,11 +1,11 @@
 // Which pairs of a contact list are so near that their law may act soon: a list within the list. In a bed at rest
 // nearly all of them do touch, so that a sub-step need not look at the others of the skin.
 //
-// A pair is near if its gap is below the range of the law (contact_law.hpp) plus a margin. Two grains close a gap by at
-// most the sum of what both move, so while no grain has moved by more than half the margin since the pairs were looked
-// at, the law cannot act in the others. The motion is bounded by the largest speed of every sub-step times its length;
-// a third is kept in reserve for members of rigid bodies, which turn within a step. Leaving out a pair in which the law
-// does not act changes no bit.
+// A pair is near if its gap is below the range of the law (contact_law.hpp, or of lubrication.hpp) plus a margin. Two
+// grains close a gap by at most the sum of what both move, so while no grain has moved by more than half the margin
+// since the pairs were looked at, the law cannot act in the others. The motion is bounded by the largest speed of every
+// sub-step times its length; a third is kept in reserve for members of rigid bodies, which turn within a step. Leaving
+// out a pair in which the law does not act changes no bit.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,8 @@
 // The law of dem/lubrication.hpp against the leading terms as Jeffrey and Onishi 1984 and Goldman, Cox and Brenner 1967
 // give them, and what no such force may do: feel a common motion, or create momentum or angular momentum.
 #include "dem/lubrication.hpp"
+
+#include "core/counter_random.hpp"
 #include "tests/dem/grain_cases.hpp"
 
 #include <gtest/gtest.h>
@@ -204,6 +206,44 @@ TEST(Lubrication, SlowsASphereOnItsWayToAWallAsThePathSays) {
     for (const Vec3& force : grains.wall_forces()) on_walls += force.z();
     ASSERT_NEAR(on_walls, slope * grains.store().velocity[0].z(), 1e-9 * slope * speed) << "gap " << h;
   }
+}
+
+// A cloud that drifts and spreads, its list of near pairs kept from step to step, against one that looks at all pairs
+// in every step; across periodic faces.
+TEST(Lubrication, OfNearPairsIsThatOfAllPairs) {
+  const PeriodicBox box{Vec3(0.02, 0.02, 0.02), {true, true, true}};
+  GrainStore store;
+  for (int n = 0; n < 60; ++n) {
+    const auto draw = [n](std::uint64_t k) { return uniform_random(5, static_cast<std::uint64_t>(n), k); };
+    store.append(n, 1e-3 + 5e-4 * draw(0), 1e-5, Motion::free, 0.02 * Vec3(draw(1), draw(2), draw(3)));
+    store.velocity.back() = 0.1 * Vec3(draw(4) - 0.5, draw(5) - 0.5, draw(6) - 0.5);
+    store.angular_velocity.back() = Vec3(draw(7), draw(8), draw(9));
+  }
+  ContactList kept;
+  kept.near_surfaces = NearPairs(1e-4);
+  for (std::uint32_t i = 0; i < 60; ++i)
+    for (std::uint32_t j = i + 1; j < 60; ++j) kept.pairs.push_back({i, j, store.radius[i] + store.radius[j]});
+  const double dt = 5e-5, fastest = 0.1 * std::sqrt(0.75);  // s, m/s: each moves less than 4.4e-6 m in a step
+  bool any_near = false, any_far = false;
+  for (int step = 0; step < 100; ++step) {
+    MovingGrains by_near, by_all;
+    by_near.load(store, {});
+    by_all.load(store, {});
+    ContactList whole = kept;
+    whole.near_surfaces = NearPairs(1.0);  // all are near
+    add_lubrication(by_near, kept, {box, {}, {}, {}}, parameters());
+    add_lubrication(by_all, whole, {box, {}, {}, {}}, parameters());
+    ASSERT_EQ(whole.near_surfaces.pairs().size(), kept.pairs.size());
+    any_far = any_far || kept.near_surfaces.pairs().size() < kept.pairs.size();
+    for (std::size_t n = 0; n < 60; ++n) {
+      ASSERT_EQ(vector_of(by_near[n].force), vector_of(by_all[n].force)) << step;
+      ASSERT_EQ(vector_of(by_near[n].torque), vector_of(by_all[n].torque)) << step;
+      any_near = any_near || !vector_of(by_near[n].force).isZero(0.0);
+      store.position[n] = box.wrapped(store.position[n] + dt * store.velocity[n]);
+    }
+    kept.grains_moved(dt * fastest);
+  }
+  EXPECT_TRUE(any_near && any_far);
 }
 
 }  // namespace
