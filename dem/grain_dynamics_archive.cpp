@@ -142,7 +142,9 @@ std::vector<ClumpRow> read_clumps(ArchiveReader& archive, const std::string& gro
 // Attached columns of a saved grain.
 int saved_width(const ArchiveReader& archive, const std::string& group) {
   const std::string name = group + "/attached";
-  return archive.has(name) ? static_cast<int>(archive.shape(name).at(1)) : 0;
+  if (!archive.has(name)) return 0;
+  const std::vector<std::uint64_t> shape = archive.shape(name);
+  return shape.size() < 2 ? 1 : static_cast<int>(shape[1]);
 }
 
 // Whether the saved columns are those of a run like this one: as many of the system, and with those of the integrator

@@ -1,6 +1,7 @@
 #include "driver/bed_archive.hpp"
 
 #include "core/row_range.hpp"
+#include "driver/checkpoint_file.hpp"
 #include "io/bed_file.hpp"
 #include "io/hdf5_archive.hpp"
 
@@ -39,6 +40,7 @@ void save_bed(ArchiveWriter& archive, MPI_Comm communicator, const std::string& 
 
 std::optional<Bed> load_bed(io::Hdf5Reader& file, const std::string& group, const Ranks& ranks) {
   if (!file.has(group + "/radius")) return std::nullopt;
+  require_checksums(file);
   const auto rows = static_cast<std::int64_t>(file.shape(group + "/radius").at(0));
   const RowRange share = io::share_of_bed(file, group + "/clump", rows, ranks);
   const auto radius = io::read_column<double>(file, group + "/radius", share);

@@ -16,10 +16,6 @@
 namespace thalweg::driver {
 namespace {
 
-std::filesystem::path absolute_path(const std::string& file, const io::YamlDocument& document) {
-  return std::filesystem::absolute(document.path().parent_path() / file).lexically_normal();
-}
-
 Bed read_bed(const std::filesystem::path& path, const io::YamlDocument& document, const std::string& key,
              const Ranks& ranks) {
   const auto check = [&] {
@@ -52,10 +48,9 @@ void fill_in_grains(Case& c, const io::YamlDocument& document, const KnownBeds& 
     if (!document.find(key + ".placement.seed")) c.grains[n].placement.seed = static_cast<std::int64_t>(n) + 1;
     std::optional<Bed> bed;
     if (std::optional<std::string>& file = c.grains[n].placement.file) {
-      const std::filesystem::path path = absolute_path(*file, document);
-      file = path.string();
+      file = document.path_beside(*file, key + ".placement.file");
       if (known) bed = known(c, n, ranks);
-      if (!bed) bed = read_bed(path, document, key + ".placement.file", ranks);
+      if (!bed) bed = read_bed(*file, document, key + ".placement.file", ranks);
     }
     at_place(document, key, [&] {
       complete(c.grains[n], c.disks ? c.disks->thickness : 0.0, std::move(bed), box, c.analysis.reference_diameter,

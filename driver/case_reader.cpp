@@ -113,8 +113,7 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
   if (!has_fluid(c) && !c.run.time_step)
     c.run.time_step = std::min(shortest_contact(c) / steps_per_contact, longest_contact_step(c));
   for (std::optional<std::string>* source : {&c.initial.from.run, &c.initial.from.grains, &c.initial.from.fluid})
-    if (*source && !(*source)->empty())
-      *source = (std::filesystem::absolute(path).parent_path() / **source).lexically_normal().string();
+    if (*source && !(*source)->empty()) *source = document.path_beside(**source, "initial.from");
   fill_in_surfaces(c, document, ranks);
   check_case(c, document);
   return c;

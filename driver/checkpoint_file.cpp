@@ -7,9 +7,11 @@
 #include "driver/case_changes.hpp"
 #include "driver/case_reader.hpp"
 #include "driver/version.hpp"
-#include "io/hdf5_archive.hpp"
 
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
 
 namespace thalweg::driver {
 
@@ -24,10 +26,22 @@ constexpr std::size_t part_size = 32000;  // bytes
 
 std::string kept_part(std::size_t n) { return fmt::format("kept_case/part_{}", n); }
 
+// Each of whole characters.
+std::vector<std::string> parts_of(const std::string& text) {
+  const auto goes_on = [&](std::size_t at) { return (static_cast<unsigned char>(text[at]) & 0xC0U) == 0x80U; };
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0, end = 0; begin < text.size(); begin = end) {
+    end = std::min(begin + part_size, text.size());
+    while (end < text.size() && end > begin + 1 && goes_on(end)) --end;
+    parts.push_back(text.substr(begin, end - begin));
+  }
+  return parts;
+}
+
 void save_kept_case(ArchiveWriter& archive, const std::string& text) {
-  const std::size_t parts = (text.size() + part_size - 1) / part_size;
-  archive.attribute("kept_case/parts", static_cast<std::int64_t>(parts));
-  for (std::size_t n = 0; n < parts; ++n) archive.attribute(kept_part(n), text.substr(n * part_size, part_size));
+  const std::vector<std::string> parts = parts_of(text);
+  archive.attribute("kept_case/parts", static_cast<std::int64_t>(parts.size()));
+  for (std::size_t n = 0; n < parts.size(); ++n) archive.attribute(kept_part(n), parts[n]);
 }
 
 std::string load_kept_case(const ArchiveReader& archive) {
@@ -56,22 +70,29 @@ void refuse_other_case(const ArchiveReader& archive, const Case& c) {
   refuse_changes_of_state(state_changes(load_kept_case(archive), resolved_yaml(c), dry), dry);
 }
 
-// What does not fit names the file.
-void load_system(System& system, ArchiveReader& archive, const std::filesystem::path& path, const Case& c) {
+// What does not fit names the file; where data have fewer values than belong to them, it is damaged.
+template <typename Work>
+void about_file(const std::filesystem::path& path, Work&& work) {
   try {
-    refuse_other_spacing(archive, c);
-    refuse_other_case(archive, c);
-    system.load(archive);
+    work();
   } catch (const io::DamagedFile&) {
     throw;
   } catch (const InputError& error) {
     const std::string reason = error.what();
     if (reason.starts_with(path.string())) throw;
     throw InputError(fmt::format("{}: {}", path.string(), reason));
+  } catch (const std::out_of_range&) {
+    throw io::DamagedFile(fmt::format(
+        "{}: some of its data have fewer values than belong to them, the file is damaged; take an earlier checkpoint.",
+        path.string()));
   }
 }
 
 }  // namespace
+
+void require_checksums(io::Hdf5Reader& checkpoint) {
+  if (checkpoint.has("run/format")) checkpoint.require_checksums();
+}
 
 std::string kept_case_of(const Case& c) { return state_of_case(resolved_yaml(c), !has_fluid(c)); }
 
@@ -99,6 +120,7 @@ Accounts read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path
   io::Hdf5Reader archive(communicator, path);
   if (!archive.has("run/system"))
     throw InputError(fmt::format("{} is an HDF5 file but not a checkpoint of this program.", path.string()));
+  require_checksums(archive);
   if (const std::int64_t format = archive.has("run/format") ? archive.integer_attribute("run/format") : 1;
       format > checkpoint_format)
     throw InputError(fmt::format(
@@ -109,8 +131,14 @@ Accounts read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path
   if (saved != name_of(c.system))
     throw InputError(fmt::format("{} holds a run with system: {}, but this case has system: {}.", path.string(), saved,
                                  name_of(c.system)));
-  load_system(system, archive, path, c);
-  return Accounts::load(archive, system, observers, c.output.series.every);
+  Accounts accounts;
+  about_file(path, [&] {
+    refuse_other_spacing(archive, c);
+    refuse_other_case(archive, c);
+    system.load(archive);
+    accounts = Accounts::load(archive, system, observers, c.output.series.every);
+  });
+  return accounts;
 }
 
 std::filesystem::path read_first_whole_checkpoint(MPI_Comm communicator,

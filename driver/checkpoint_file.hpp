@@ -5,6 +5,7 @@
 #include "core/system.hpp"
 #include "driver/accounts.hpp"
 #include "driver/case.hpp"
+#include "io/hdf5_archive.hpp"
 
 #include <mpi.h>
 
@@ -21,6 +22,10 @@ namespace thalweg::driver {
 void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c,
                            const std::string& kept_case, const System& system, const Observers& observers,
                            const Accounts& accounts);
+
+// Lets a checkpoint be read only where its data have the checksums that it was written with. (Those from before the
+// formats had numbers may have none.)
+void require_checksums(io::Hdf5Reader& checkpoint);
 
 // Those keys and their values. Takes as long as writing the case.
 std::string kept_case_of(const Case& c);

@@ -4,6 +4,7 @@
 #include "core/on_first_rank.hpp"
 #include "core/row_range.hpp"
 #include "dem/population_rows.hpp"
+#include "driver/checkpoint_file.hpp"
 #include "io/hdf5_archive.hpp"
 #include "io/run_folder.hpp"
 
@@ -42,7 +43,7 @@ void refuse_state_without(InitialField field, const io::Hdf5Reader& archive, con
 // Rounding of a density or diameter on its way through files.
 constexpr double same_grain = 1e-9;
 
-bool differ(double one, double other) { return std::abs(one - other) > same_grain * std::abs(other); }
+bool differ(double one, double other) { return !(std::abs(one - other) <= same_grain * std::abs(other)); }
 
 // What the state has of some of its grains, one row each.
 struct SavedGrains {
@@ -134,6 +135,7 @@ void take_initial_fields(MPI_Comm communicator, const Case& c, System& system) {
     about_source(c, field, communicator, [&](const std::filesystem::path& path) {
       io::Hdf5Reader archive(communicator, path);
       refuse_state_without(field, archive, path);
+      require_checksums(archive);
       const double spacing = archive.real_attribute("run/spacing");
       if (field == InitialField::grains)
         system.take_grains(archive, spacing);

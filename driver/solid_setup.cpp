@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <numbers>
 #include <string>
 
@@ -55,13 +54,14 @@ void fill_in_surfaces(Case& c, const io::YamlDocument& document, const Ranks& ra
   for (std::size_t n = 0; n < c.solids.size(); ++n) {
     SolidCase& solid = c.solids[n];
     if (solid.stl.empty()) continue;
-    solid.stl = (std::filesystem::absolute(document.path()).parent_path() / solid.stl).lexically_normal().string();
+    const std::string key = fmt::format("solids.{}.stl", n);
+    solid.stl = document.path_beside(solid.stl, key);
     try {
       solid.surface = io::read_stl(solid.stl, ranks);
     } catch (const InputError& error) {
       std::string reason = error.what();
       if (reason.ends_with('.')) reason.pop_back();
-      throw document.error(fmt::format("solids.{}.stl", n), reason);
+      throw document.error(key, reason);
     }
     for (Vec3& point : solid.surface.points) point = point * solid.scale + solid.translate;
   }

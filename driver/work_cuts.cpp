@@ -41,8 +41,11 @@ Profile profile_of_cells(const Index3& cells) {
 // Shares work out evenly between two places (m) along an axis.
 void add(double work, double lower, double upper, const Decomposition& box, int axis, Profile& profile) {
   const int last = box.cells()[axis] - 1;
-  const int first_cell = std::clamp(static_cast<int>(std::floor(lower / box.spacing())), 0, last);
-  const int last_cell = std::clamp(static_cast<int>(std::floor(upper / box.spacing())), first_cell, last);
+  const auto cell_at = [&](double place, int first) {
+    return static_cast<int>(std::clamp(std::floor(place / box.spacing()), static_cast<double>(first), 1.0 * last));
+  };
+  if (!(lower <= upper)) return;  // of a state that is damaged: reading it will say so
+  const int first_cell = cell_at(lower, 0), last_cell = cell_at(upper, first_cell);
   const auto each = static_cast<std::int64_t>(work / (last_cell - first_cell + 1));
   for (int k = first_cell; k <= last_cell; ++k) profile[axis][static_cast<std::size_t>(k)] += each;
 }

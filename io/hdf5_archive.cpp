@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/mpi_session.hpp"
+#include "core/utf8.hpp"
 #include "io/atomic_file.hpp"
 #include "io/checksum.hpp"
 #include "io/hdf5_handle.hpp"
@@ -235,9 +236,10 @@ void Hdf5Writer::attribute(const std::string& path, std::int64_t value) {
 }
 void Hdf5Writer::attribute(const std::string& path, const std::string& value) {
   const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-  H5Tset_size(type, value.size() + 1);  // a fixed length, with the closing zero: variable lengths live in a heap
+  const std::string text = as_utf8(value);
+  H5Tset_size(type, text.size() + 1);  // a fixed length, with the closing zero: variable lengths live in a heap
   H5Tset_cset(type, H5T_CSET_UTF8);
-  file_->attribute(path, type, type, value.c_str());
+  file_->attribute(path, type, type, text.c_str());
 }
 
 void Hdf5Writer::close() {
@@ -256,6 +258,7 @@ struct Hdf5Reader::File {
   MPI_Comm communicator;  // MPI_COMM_NULL: this process alone, perhaps without MPI
   std::filesystem::path path;
   Handle file;
+  bool needs_checksums = false;
 
   bool alone() const { return communicator == MPI_COMM_NULL; }
   bool any(bool mine) const { return alone() ? mine : any_rank(communicator, mine); }
@@ -277,7 +280,7 @@ struct Hdf5Reader::File {
     if (outcome == well) file = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
     if (any(!file.good()))
       throw DamagedFile(
-          fmt::format("{}: this is not an HDF5 file or it is damaged; give a checkpoint.", path.string()));
+          fmt::format("{}: this is not an HDF5 file or it is damaged; give one that a run has written.", path.string()));
   }
 
   InputError error(const std::string& name, const std::string& what) const {
@@ -311,6 +314,16 @@ struct Hdf5Reader::File {
     return found;
   }
 
+  std::vector<std::uint64_t> shape(const std::string& name) const {
+    const Handle found = dataset(name);
+    const std::vector<hsize_t> extents = extents_of(found);
+    if (extents.empty()) throw error(name, "the file holds a single value, and rows of values are needed");
+    if (!has_its_values(found))
+      throw damaged(name, fmt::format("the file announces {} values and does not hold so many",
+                                      shown({extents.begin(), extents.end()})));
+    return {extents.begin(), extents.end()};
+  }
+
   template <typename Number>
   void read(const std::string& name, std::span<Number> values, const ArrayBox& box) const {
     check_box(name, box, values.size());
@@ -321,15 +334,18 @@ struct Hdf5Reader::File {
     const std::vector<hsize_t> extents = extents_of(found);
     const std::vector<std::uint64_t> stored(extents.begin(), extents.end());
     if (stored != box.global_shape)
-      throw error(name,
-                  fmt::format("the file holds {} values, but {} are needed", shown(stored), shown(box.global_shape)));
+      throw error(name, fmt::format("the file holds {} values, but {} are needed", stored.empty() ? "1" : shown(stored),
+                                    shown(box.global_shape)));
     if (volume(stored) == 0) return;
     const Selection selection(box);
     const Handle transfer = alone() ? Handle(H5Pcreate(H5P_DATASET_XFER), H5Pclose) : collective_transfer();
     const bool good =
         H5Dread(found, Stored<Number>::memory(), selection.memory, selection.file, transfer, values.data()) >= 0;
     if (any(!good)) throw damaged(name, "the data cannot be read");
-    if (has_attribute(name + "/" + checksum_name)) verify(name, checksum(std::span<const Number>(values), box), box);
+    if (has_attribute(name + "/" + checksum_name))
+      verify(name, checksum(std::span<const Number>(values), box), box);
+    else if (needs_checksums)
+      throw damaged(name, "the data have no checksum");
   }
 
   // mine: the checksum of what this rank has read.
@@ -347,7 +363,8 @@ struct Hdf5Reader::File {
 
   DamagedFile damaged(const std::string& name, const std::string& what) const {
     return DamagedFile(
-        fmt::format("{}: {}: {}, the file is damaged; take an earlier checkpoint.", path.string(), name, what));
+        fmt::format("{}: {}: {}, the file is damaged; take an earlier checkpoint, or write the file again.",
+                    path.string(), name, what));
   }
 
   Handle attribute(const std::string& name) const {
@@ -370,7 +387,7 @@ struct Hdf5Reader::File {
 Hdf5Reader::Hdf5Reader(const std::filesystem::path& path) : Hdf5Reader(MPI_COMM_NULL, path) {}
 
 Hdf5Reader::Hdf5Reader(MPI_Comm communicator, const std::filesystem::path& path)
-    : file_(std::make_unique<File>(File{communicator, path, {}})) {
+    : file_(std::make_unique<File>(File{communicator, path, {}, false})) {
   file_->open();
 }
 
@@ -379,11 +396,12 @@ Hdf5Reader::~Hdf5Reader() {
   if (!file_->alone() && std::uncaught_exceptions() > 0) file_->file.release();
 }
 
+void Hdf5Reader::require_checksums() { file_->needs_checksums = true; }
+
 bool Hdf5Reader::has(const std::string& path) const { return file_->has_link(path) || file_->has_attribute(path); }
 
 std::vector<std::uint64_t> Hdf5Reader::shape(const std::string& path) const {
-  const std::vector<hsize_t> extents = extents_of(file_->dataset(path));
-  return {extents.begin(), extents.end()};
+  return file_->shape(path);
 }
 
 void Hdf5Reader::read(const std::string& path, std::span<double> values, const ArrayBox& box) {
@@ -426,7 +444,8 @@ std::vector<Hdf5Reader::Entry> Hdf5Reader::datasets() const {
   for (const std::string& name : names) {
     const Handle dataset = file_->dataset(name);
     const Handle type(H5Dget_type(dataset), H5Tclose);
-    entries.push_back({name, name_of_type(type), shape(name)});
+    const std::vector<hsize_t> extents = extents_of(dataset);
+    entries.push_back({name, name_of_type(type), {extents.begin(), extents.end()}});
   }
   return entries;
 }

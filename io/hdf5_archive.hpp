@@ -55,6 +55,8 @@ public:
 // all of it, and its checksum is another one; parts of a dataset are not checked. The constructor and read() are
 // collective; any rank alone may call the rest. Without a communicator the file is read by this process alone, also
 // where there is no MPI.
+//
+// shape() has at least one number, and the file has room for so many values: else it throws InputError or DamagedFile.
 class Hdf5Reader final : public ArchiveReader {
 public:
   explicit Hdf5Reader(const std::filesystem::path& path);
@@ -62,6 +64,9 @@ public:
   ~Hdf5Reader() override;
   Hdf5Reader(const Hdf5Reader&) = delete;
   Hdf5Reader& operator=(const Hdf5Reader&) = delete;
+
+  // From now on data without a checksum are damaged.
+  void require_checksums();
 
   bool has(const std::string& path) const override;  // a dataset or an attribute
   std::vector<std::uint64_t> shape(const std::string& path) const override;

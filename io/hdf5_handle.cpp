@@ -42,4 +42,13 @@ std::vector<hsize_t> extents_of(hid_t dataset) {
   return extents;
 }
 
+bool has_its_values(hid_t dataset) {
+  constexpr double most_compressed = 1032.0;  // what deflate makes of zeros
+  const Handle creation(H5Dget_create_plist(dataset), H5Pclose), type(H5Dget_type(dataset), H5Tclose);
+  auto bytes = static_cast<double>(H5Tget_size(type));
+  for (const hsize_t extent : extents_of(dataset)) bytes *= static_cast<double>(extent);
+  const double stored = static_cast<double>(H5Dget_storage_size(dataset));
+  return bytes <= stored * (H5Pget_nfilters(creation) > 0 ? most_compressed : 1.0);
+}
+
 }  // namespace thalweg::io

@@ -53,4 +53,8 @@ Handle lone_access();
 // Rows, columns, ... of a dataset; none if it cannot be asked.
 std::vector<hsize_t> extents_of(hid_t dataset);
 
+// Whether the file has room for as many values as the dataset claims: its dimensions are only numbers, which a damaged
+// file may have at will, and which must not be allocated unseen.
+bool has_its_values(hid_t dataset);
+
 }  // namespace thalweg::io

@@ -1,5 +1,6 @@
 #include "io/json_object.hpp"
 
+#include "core/utf8.hpp"
 #include "io/atomic_file.hpp"
 
 #include <fmt/format.h>
@@ -14,7 +15,7 @@ std::string number(double value) { return std::isfinite(value) ? fmt::format("{}
 
 std::string json_text(const std::string& text) {
   std::string result = "\"";
-  for (const char c : text) {
+  for (const char c : as_utf8(text)) {
     if (c == '"' || c == '\\')
       result += fmt::format("\\{}", c);
     else if (static_cast<unsigned char>(c) < 0x20)

@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/shell_word.hpp"
+#include "core/utf8.hpp"
 #include "io/atomic_file.hpp"
 #include "io/folder_lock.hpp"
 #include "io/record_file.hpp"
@@ -132,7 +133,7 @@ void RunFolder::write_case(const std::string& comment_lines, const std::string& 
   std::size_t start = 0;
   while (start < comment_lines.size()) {
     const std::size_t end = std::min(comment_lines.find('\n', start), comment_lines.size());
-    text += "# " + comment_lines.substr(start, end - start) + "\n";
+    text += "# " + as_utf8(comment_lines.substr(start, end - start)) + "\n";
     start = end + 1;
   }
   write_text_atomically(case_file(), text + yaml);

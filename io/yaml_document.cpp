@@ -1,6 +1,7 @@
 #include "io/yaml_document.hpp"
 
 #include "core/on_first_rank.hpp"
+#include "core/utf8.hpp"
 #include "io/atomic_file.hpp"
 
 #include <fmt/format.h>
@@ -10,6 +11,8 @@
 #include <charconv>
 #include <cmath>
 #include <functional>
+#include <map>
+#include <string_view>
 
 namespace thalweg::io {
 namespace {
@@ -44,15 +47,16 @@ YamlNode converted(const YAML::Node& node, const std::string& place, const std::
   result.place = place;
   if (node.IsMap()) {
     result.kind = YamlNode::Kind::section;
+    std::map<std::string, std::string> known;  // keys, and where they are given
     for (const auto& entry : node) {
       const std::string here = place_of(entry.first.Mark());
       if (!entry.first.IsScalar())
         throw InputError(fmt::format("{}: {}: a key must be a single word.", here, key_path));
       const std::string key = entry.first.Scalar();
       const std::string path = joined_key(key_path, key);
-      if (const YamlNode* first = result.find(key))
+      if (const auto [first, is_new] = known.emplace(key, here); !is_new)
         throw InputError(fmt::format("{}: {}: the key is given twice (first at {}); remove one of the two.", here, path,
-                                     first->place));
+                                     first->second));
       result.entries.push_back({key, converted(entry.second, here, path, place_of, depth + 1, count)});
     }
   } else if (node.IsSequence()) {
@@ -64,12 +68,36 @@ YamlNode converted(const YAML::Node& node, const std::string& place, const std::
   } else {
     result.kind = YamlNode::Kind::scalar;
     if (node.IsScalar()) result.text = node.Scalar();
+    if (result.text.find('\0') != std::string::npos)
+      throw InputError(fmt::format("{}: {}: a text must not have a zero character.", place, key_path));
   }
   return result;
 }
 
+bool is_control(char c) {
+  const auto code = static_cast<unsigned char>(c);
+  return (code < 0x20 && c != '\t' && c != '\n' && c != '\r') || code == 0x7F;
+}
+
+// What YAML does not allow in a text, and its parser might take for the end of the file.
+void refuse_odd_bytes(std::string_view text, const PlaceOf& place_of) {
+  const auto place_at = [&](std::size_t at) {
+    YAML::Mark mark;
+    mark.line = static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+    return place_of(mark);
+  };
+  if (const std::size_t at = first_not_utf8(text); at < text.size())
+    throw InputError(fmt::format("{}: the byte {:#04x} here is not UTF-8; save the text as UTF-8.", place_at(at),
+                                 static_cast<unsigned char>(text[at])));
+  if (const auto odd = std::find_if(text.begin(), text.end(), is_control); odd != text.end())
+    throw InputError(fmt::format("{}: a control character, {:#04x}, stands here; remove it, or save the file as text.",
+                                 place_at(static_cast<std::size_t>(odd - text.begin())),
+                                 static_cast<unsigned char>(*odd)));
+}
+
 YamlNode parsed(const std::string& text, const PlaceOf& place_of, const std::string& whole_place,
                 const std::string& key_path) {
+  refuse_odd_bytes(text, place_of);
   try {
     const std::vector<YAML::Node> documents = YAML::LoadAll(text);
     for (std::size_t n = 1; n < documents.size(); ++n)
@@ -245,6 +273,14 @@ void YamlDocument::lay_beneath(YamlNode& section, const YamlNode& other, const s
       keys.added.push_back(fmt::format("{}: {}", path, value.text));
     }
   }
+}
+
+std::string YamlDocument::path_beside(const std::string& file, const std::string& key_path) const {
+  std::string path = (std::filesystem::absolute(path_).parent_path() / file).lexically_normal().string();
+  if (!is_utf8(path))
+    throw error(key_path, fmt::format("the name of a folder in {} is not UTF-8, and case.yaml must be; rename the folder",
+                                      as_utf8(path)));
+  return path;
 }
 
 const YamlNode* YamlDocument::find(const std::string& key_path) const {

@@ -45,8 +45,8 @@ public:
 
   // Reads a file, on the first of the ranks, then applies the overrides ("key.sub=VALUE", VALUE being YAML itself; list
   // items by index). Collective.
-  // Throws InputError: missing file, YAML syntax, duplicate key, more than one document, aliases that multiply to more
-  // than a million values, an override that names no key.
+  // Throws InputError: missing file, not UTF-8, control characters, YAML syntax, duplicate key, more than one document,
+  // aliases that multiply to more than a million values, an override that names no key.
   YamlDocument(const std::filesystem::path& path, const std::vector<std::string>& overrides, const Ranks& ranks = {});
 
   // Adds the values of another tree, section by section, where the document has none of the same key, no override has
@@ -55,6 +55,9 @@ public:
 
   const YamlNode& root() const { return root_; }
   const std::filesystem::path& path() const { return path_; }
+
+  // The absolute path of a file that a key gives relative to the document. Throws InputError where it is not UTF-8.
+  std::string path_beside(const std::string& file, const std::string& key_path) const;
 
   // The value at "fluid.density" or "grains.0.count"; null if there is none.
   const YamlNode* find(const std::string& key_path) const;

@@ -1,6 +1,7 @@
 #include "loop/log.hpp"
 
 #include "core/error.hpp"
+#include "core/utf8.hpp"
 
 #include <fmt/format.h>
 
@@ -25,10 +26,11 @@ void Log::line(const std::string& text) {
 
 void Log::file_line(const std::string& text) {
   if (!prints_) return;
+  const std::string line = as_utf8(text) + '\n';
   if (file_.is_open())
-    file_ << text << '\n' << std::flush;
+    file_ << line << std::flush;
   else
-    before_file_ += text + '\n';
+    before_file_ += line;
 }
 
 }  // namespace thalweg::loop
