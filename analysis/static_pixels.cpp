@@ -1,5 +1,7 @@
 #include "analysis/static_pixels.hpp"
 
+#include "core/mpi_count.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -92,7 +94,7 @@ void StaticPixels::finish() {
       std::int64_t& top = highest[static_cast<std::size_t>(column)];
       top = std::max<std::int64_t>(top, rows.highest);
     }
-  MPI_Allreduce(MPI_IN_PLACE, highest.data(), static_cast<int>(columns_), MPI_INT64_T, MPI_MAX, communicator_);
+  MPI_Allreduce(MPI_IN_PLACE, highest.data(), mpi_count(columns_), MPI_INT64_T, MPI_MAX, communicator_);
   surface_.clear();
   for (const std::int64_t row : highest) surface_.push_back(static_cast<double>(row + 1) * height_);
 }

@@ -1,5 +1,6 @@
 #include "core/ghosted_field.hpp"
 
+#include "core/mpi_count.hpp"
 #include "core/mpi_session.hpp"
 
 #include <algorithm>
@@ -73,9 +74,9 @@ void GhostedField::exchange() {
       const int receiver = decomposition_.rank_at(to), sender = decomposition_.rank_at(from);
       const std::vector<double> sent = packed(side < 0 ? slab(axis, 0, width_) : slab(axis, n - width_, n));
       std::vector<double> received(sent.size());
-      MPI_Sendrecv(sent.data(), static_cast<int>(sent.size()), MPI_DOUBLE, receiver < 0 ? MPI_PROC_NULL : receiver, 0,
-                   received.data(), static_cast<int>(received.size()), MPI_DOUBLE, sender < 0 ? MPI_PROC_NULL : sender,
-                   0, communicator_, MPI_STATUS_IGNORE);
+      MPI_Sendrecv(sent.data(), mpi_count(sent.size()), MPI_DOUBLE, receiver < 0 ? MPI_PROC_NULL : receiver, 0,
+                   received.data(), mpi_count(received.size()), MPI_DOUBLE, sender < 0 ? MPI_PROC_NULL : sender, 0,
+                   communicator_, MPI_STATUS_IGNORE);
       if (sender >= 0) unpack(side < 0 ? slab(axis, n, n + width_) : slab(axis, -width_, 0), received);
     }
   }

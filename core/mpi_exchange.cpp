@@ -1,3 +1,4 @@
+#include "core/mpi_count.hpp"
 #include "core/mpi_session.hpp"
 
 #include <algorithm>
@@ -125,12 +126,11 @@ void exchange_parcels(MPI_Comm communicator, const std::vector<Parcel>& parcels,
     if (sender.rank == self)
       std::memcpy(next, rows + sender.first * row_size, sender.count * row_size);
     else
-      MPI_Irecv(next, static_cast<int>(sender.count), row, sender.rank, tags.rows, communicator,
-                &requests.emplace_back());
+      MPI_Irecv(next, mpi_count(sender.count), row, sender.rank, tags.rows, communicator, &requests.emplace_back());
     next += sender.count * row_size;
   }
   for (const Parcel& parcel : elsewhere)
-    MPI_Isend(rows + parcel.first * row_size, static_cast<int>(parcel.count), row, parcel.rank, tags.rows, communicator,
+    MPI_Isend(rows + parcel.first * row_size, mpi_count(parcel.count), row, parcel.rank, tags.rows, communicator,
               &requests.emplace_back());
   MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
   MPI_Type_free(&row);

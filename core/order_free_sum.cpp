@@ -1,5 +1,6 @@
 #include "core/order_free_sum.hpp"
 
+#include "core/mpi_count.hpp"
 #include "core/mpi_session.hpp"
 
 #include <algorithm>
@@ -55,7 +56,7 @@ std::vector<double> order_free_sums_by_bin(MPI_Comm communicator, int bins, std:
     for (std::size_t c = 0; c < columns; ++c)
       if (has_sum(c)) sum[c] += std::llrint(std::ldexp(row[c], shift[c]));
   });
-  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(entries), MPI_INT64_T, MPI_SUM, communicator);
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), mpi_count(entries), MPI_INT64_T, MPI_SUM, communicator);
 
   std::vector<double> result(entries, 0.0);
   for (std::size_t e = 0; e < entries; ++e) {

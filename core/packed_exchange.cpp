@@ -1,5 +1,7 @@
 #include "core/packed_exchange.hpp"
 
+#include "core/mpi_count.hpp"
+
 #include <utility>
 
 namespace thalweg {
@@ -10,9 +12,9 @@ PackedExchange::PackedExchange(MPI_Comm communicator, const std::vector<Neighbou
     const Neighbour& to = neighbours[n];
     send_[n].resize(to.send_bytes);
     receive_[n].resize(to.receive_bytes);
-    MPI_Recv_init(receive_[n].data(), static_cast<int>(to.receive_bytes), MPI_BYTE, to.rank, to.receive_tag,
-                  communicator, &requests_[2 * n]);
-    MPI_Send_init(send_[n].data(), static_cast<int>(to.send_bytes), MPI_BYTE, to.rank, to.send_tag, communicator,
+    MPI_Recv_init(receive_[n].data(), mpi_count(to.receive_bytes), MPI_BYTE, to.rank, to.receive_tag, communicator,
+                  &requests_[2 * n]);
+    MPI_Send_init(send_[n].data(), mpi_count(to.send_bytes), MPI_BYTE, to.rank, to.send_tag, communicator,
                   &requests_[2 * n + 1]);
   }
 }

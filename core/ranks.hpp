@@ -1,6 +1,7 @@
 // Processes that work together: the ranks of a communicator, or one process alone, perhaps without MPI.
 #pragma once
 
+#include "core/mpi_count.hpp"
 #include "core/mpi_session.hpp"
 #include "core/on_all_ranks.hpp"
 #include "core/row_range.hpp"
@@ -60,15 +61,21 @@ template <typename Row>
 std::vector<Row> Ranks::gathered(std::vector<Row> mine) const {
   static_assert(std::is_trivially_copyable_v<Row>);
   if (alone()) return mine;
-  std::vector<int> counts(static_cast<std::size_t>(count())), starts(counts.size(), 0);
-  const auto held = static_cast<int>(mine.size());
-  MPI_Allgather(&held, 1, MPI_INT, counts.data(), 1, MPI_INT, communicator_);
-  for (std::size_t rank = 1; rank < counts.size(); ++rank) starts[rank] = starts[rank - 1] + counts[rank - 1];
-  std::vector<Row> all(static_cast<std::size_t>(starts.back() + counts.back()));
+  std::vector<std::int64_t> held(static_cast<std::size_t>(count()));
+  const auto own = static_cast<std::int64_t>(mine.size());
+  MPI_Allgather(&own, 1, MPI_INT64_T, held.data(), 1, MPI_INT64_T, communicator_);
+  std::vector<int> counts, starts;
+  std::int64_t sum = 0;
+  for (const std::int64_t rows : held) {
+    starts.push_back(mpi_count(sum));
+    counts.push_back(mpi_count(rows));
+    sum += rows;
+  }
+  std::vector<Row> all(static_cast<std::size_t>(mpi_count(sum)));
   MPI_Datatype row = MPI_DATATYPE_NULL;
   MPI_Type_contiguous(sizeof(Row), MPI_BYTE, &row);
   MPI_Type_commit(&row);
-  MPI_Allgatherv(mine.data(), held, row, all.data(), counts.data(), starts.data(), row, communicator_);
+  MPI_Allgatherv(mine.data(), mpi_count(own), row, all.data(), counts.data(), starts.data(), row, communicator_);
   MPI_Type_free(&row);
   return all;
 }

@@ -74,6 +74,8 @@ void check_row(const BedGrain& row, const GrainSeed& first, const PeriodicBox& b
   seed.radius = row.radius;
   seed.density = row.density;
   seed.position = row.position;
+  seed.velocity = row.velocity;
+  seed.angular_velocity = row.angular_velocity;
   seed.thickness = first.thickness;
   check_alone(seed, box, {}, 0.0);
   check_disk(seed, first);
@@ -132,10 +134,25 @@ void take_shape(Population& population) {
   }
 }
 
+// The key that the number of grains follows from.
+const char* wanted_by(const Population& population) {
+  if (population.solid_fraction) return "solid_fraction";
+  if (!population.fill) return "count";
+  return population.fill->depth ? "fill.depth" : "fill.layers";
+}
+
+// Every rank draws the sizes of all grains: 58 bytes each while it does.
+constexpr std::int64_t most_drawn = 100000000;
+
 // Shape and sizes, once the number of grains is known.
 void take_sizes(Population& population) {
   if (population.shape) take_shape(population);
   if (!population.sizes.given()) return;
+  if (population.count > most_drawn)
+    throw KeyError(wanted_by(population),
+                   fmt::format("sizes are drawn for at most {} grains, since every rank has those of all, and here are "
+                               "{}; give fewer grains, or one diameter",
+                               most_drawn, population.count));
   const bool disks = population.thickness > 0.0;
   population.diameters = sampled_diameters(population.sizes, population.count, population.placement.seed, disks);
   population.diameter = median_by_mass(counted(population.diameters), disks);
@@ -147,11 +164,6 @@ Vec3 room_for(const Population& population, const PeriodicBox& box) {
   Vec3 extent = region ? Vec3(region->upper - region->lower) : box.size;
   if (population.thickness > 0.0) extent[1] = population.thickness;
   return extent;
-}
-
-const char* wanted_by(const Population& population) {
-  if (population.solid_fraction) return "solid_fraction";
-  return population.fill->depth ? "fill.depth" : "fill.layers";
 }
 
 // What the grains of a solid fraction or a fill occupy; m^3. layer: m.

@@ -49,9 +49,10 @@ Index3 choose_layout(const Case& c, int ranks, const std::optional<Index3>& requ
     return {1, 1, 1};
   }
   const Index3 layout = requested ? *requested : Decomposition::best_layout(cells_of(c.domain), ranks);
-  if (layout[0] * layout[1] * layout[2] != ranks)
-    throw InputError(fmt::format("--layout {},{},{} needs {} rank(s), but the program runs on {}.", layout[0],
-                                 layout[1], layout[2], layout[0] * layout[1] * layout[2], ranks));
+  const double needed = 1.0 * layout[0] * layout[1] * layout[2];
+  if (needed != ranks)
+    throw InputError(fmt::format("--layout {},{},{} needs {:.15g} rank(s), but the program runs on {}.", layout[0],
+                                 layout[1], layout[2], needed, ranks));
   return layout;
 }
 

@@ -207,6 +207,27 @@ Warnings large_solids(const Case& c) {
   return found;
 }
 
+// Such a solid does nothing, unless it moves into the box.
+Warnings absent_solids(const Case& c) {
+  Warnings found;
+  for (std::size_t n = 0; n < c.solids.size(); ++n) {
+    if (c.solids[n].motion) continue;
+    const bodies::Extent extent = extent_of(c.solids[n]);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (periodic_axes(c.domain)[static_cast<std::size_t>(axis)]) continue;
+      if (extent.upper[axis] > 0.0 && extent.lower[axis] < c.domain.size[axis]) continue;
+      found.push_back(fmt::format(
+          "The solid solids.{} lies outside the box, from {:.4g} to {:.4g} m along {} where the box reaches "
+          "from 0 to {:g} m, and does nothing: consider {}.",
+          n, extent.lower[axis], extent.upper[axis], axis_name[axis], c.domain.size[axis],
+          c.solids[n].sphere ? fmt::format("another solids.{}.sphere.centre in m", n)
+                             : fmt::format("solids.{0}.translate in m, or another solids.{0}.scale", n)));
+      break;
+    }
+  }
+  return found;
+}
+
 // Fewer cells than this across a grain do not resolve the flow around it.
 constexpr double barely_resolved = 5.0;
 
@@ -294,7 +315,8 @@ const std::vector<WarningRule> case_rules{observer_warnings,
                                           with_fluid<unmapped_relaxation>,
                                           with_fluid<bulk_relaxation>,
                                           with_fluid<laminar_flow>,
-                                          with_fluid<large_solids>,
+                                          large_solids,
+                                          absent_solids,
                                           with_fluid<coarse_cells>,
                                           with_fluid<floating_grains>,
                                           with_fluid<inexact_links>};

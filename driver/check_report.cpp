@@ -227,6 +227,9 @@ void add_cost(const Case& c, double bandwidth, Lines& lines) {
   if (cost.grain_steps > 0.0) work += fmt::format(", {:.3g} grain-steps", cost.grain_steps);
   lines.push_back(work);
   lines.push_back(memory_line(memory_on_one_rank(c), memory_of_this_node()));
+  if (!can_be_placed_here(c))
+    lines.push_back(
+        "           too many grains to be placed here: whether there is room for them the run will find out");
   lines.push_back(disk_line(disk_space(c), free_in_this_folder()));
   lines.push_back(fmt::format(
       "time       about {} on one core like this one ({:.3g} GB/s), within a third; --ranks N,N,... measures, and "
@@ -260,12 +263,18 @@ LightestGrains lightest_taken_grains(const Case& c, const dem::GrainParameters& 
   return lightest;
 }
 
+// Whether this machine has the memory to put the grains into their places. A run on more nodes may have it.
+bool can_be_placed_here(const Case& c) {
+  return c.grains.empty() || memory_on_one_rank(c) <= usable_memory_of_this_node();
+}
+
 // What dem would refuse when the run starts.
 void refuse_impossible_grains(const Case& c) {
   if (c.grains.empty()) return;
   const PeriodicBox box{c.domain.size, periodic_axes(c.domain)};
   const dem::GrainParameters parameters = grain_parameters(c, box);
   dem::check(parameters.contact);
+  if (!can_be_placed_here(c)) return;  // the report says so
   const LightestGrains lightest = c.initial.takes(InitialField::grains) ? lightest_taken_grains(c, parameters)
                                                                         : check_placed_grains(c, box, parameters);
   dem::check_time_step(parameters, lightest, grain_count(c));

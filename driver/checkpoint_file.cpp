@@ -27,7 +27,7 @@ constexpr std::size_t part_size = 32000;  // bytes
 std::string kept_part(std::size_t n) { return fmt::format("kept_case/part_{}", n); }
 
 // Each of whole characters.
-std::vector<std::string> parts_of(const std::string& text) {
+std::vector<std::string> kept_parts(const std::string& text) {
   const auto goes_on = [&](std::size_t at) { return (static_cast<unsigned char>(text[at]) & 0xC0U) == 0x80U; };
   std::vector<std::string> parts;
   for (std::size_t begin = 0, end = 0; begin < text.size(); begin = end) {
@@ -39,7 +39,7 @@ std::vector<std::string> parts_of(const std::string& text) {
 }
 
 void save_kept_case(ArchiveWriter& archive, const std::string& text) {
-  const std::vector<std::string> parts = parts_of(text);
+  const std::vector<std::string> parts = kept_parts(text);
   archive.attribute("kept_case/parts", static_cast<std::int64_t>(parts.size()));
   for (std::size_t n = 0; n < parts.size(); ++n) archive.attribute(kept_part(n), parts[n]);
 }

@@ -177,6 +177,12 @@ void check_that_grains_fit(const Case& c, const io::YamlDocument& document) {
 }
 
 void check_grains(const Case& c, const io::YamlDocument& document) {
+  constexpr std::int64_t most_sub_steps = 1000000;
+  if (c.coupling.grain_steps_per_fluid_step > most_sub_steps)
+    throw document.error(sub_steps_key,
+                         fmt::format("at most {} steps of the grains fit in one of the fluid; give fewer, "
+                                     "or auto",
+                                     most_sub_steps));
   check_disks(c, document);
   check_walls(c, document);
   check_populations(c, document);

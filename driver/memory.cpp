@@ -42,6 +42,8 @@ double free_memory_for_runs() {
   return usable * (free > 0.0 ? std::min(free, there) : there);
 }
 
+double usable_memory_of_this_node() { return usable * memory_of_this_node(); }
+
 double memory_on_one_rank(const Case& c) {
   if (c.system == SystemKind::continuum) return bytes_of_program();
   return rank_work(c, decomposition_of(c, {1, 1, 1}), 0).memory;

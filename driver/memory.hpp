@@ -15,6 +15,9 @@ double memory_of_this_node();
 // Of that, what runs that are started now can have, bytes.
 double free_memory_for_runs();
 
+// The part of it that is a run's; the rest is the system's.
+double usable_memory_of_this_node();
+
 // What a case takes on one rank, bytes.
 double memory_on_one_rank(const Case& c);
 

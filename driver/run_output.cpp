@@ -9,6 +9,7 @@
 #include "io/profile_file.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace thalweg::driver {
@@ -163,7 +164,8 @@ std::uint64_t RunOutput::write_checkpoint(const loop::LoopRecord& record) {
                         {record.largest, record.largest_from, since_});
   std::uint64_t bytes = 0;
   on_first_rank(communicator_, [&] {
-    folder_.rotate_checkpoints(system_.step(), static_cast<int>(case_.output.checkpoint.keep));
+    folder_.rotate_checkpoints(system_.step(), static_cast<int>(std::min<std::int64_t>(
+                                                   case_.output.checkpoint.keep, std::numeric_limits<int>::max())));
     std::error_code ignored;
     bytes = std::filesystem::file_size(path, ignored);
   });

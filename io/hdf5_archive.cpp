@@ -279,8 +279,8 @@ struct Hdf5Reader::File {
     const Handle access = alone() ? lone_access() : mpi_access(communicator, path);
     if (outcome == well) file = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
     if (any(!file.good()))
-      throw DamagedFile(
-          fmt::format("{}: this is not an HDF5 file or it is damaged; give one that a run has written.", path.string()));
+      throw DamagedFile(fmt::format("{}: this is not an HDF5 file or it is damaged; give one that a run has written.",
+                                    path.string()));
   }
 
   InputError error(const std::string& name, const std::string& what) const {
@@ -400,9 +400,7 @@ void Hdf5Reader::require_checksums() { file_->needs_checksums = true; }
 
 bool Hdf5Reader::has(const std::string& path) const { return file_->has_link(path) || file_->has_attribute(path); }
 
-std::vector<std::uint64_t> Hdf5Reader::shape(const std::string& path) const {
-  return file_->shape(path);
-}
+std::vector<std::uint64_t> Hdf5Reader::shape(const std::string& path) const { return file_->shape(path); }
 
 void Hdf5Reader::read(const std::string& path, std::span<double> values, const ArrayBox& box) {
   file_->read(path, values, box);

@@ -1,5 +1,6 @@
 #include "io/region_order.hpp"
 
+#include "core/mpi_count.hpp"
 #include "core/mpi_session.hpp"
 
 #include <algorithm>
@@ -19,6 +20,12 @@ void for_each_row(const Block& block, const Block& region, Visit visit) {
       const std::int64_t first = region.place_of({block.lower[0], j, k});
       visit(first, first + length);
     }
+}
+
+// As MPI takes them, also their sum, where the last one ends.
+std::vector<int> mpi_counts(const std::vector<std::int64_t>& cells) {
+  mpi_count(std::accumulate(cells.begin(), cells.end(), std::int64_t{0}));
+  return {cells.begin(), cells.end()};
 }
 
 std::vector<int> starts_of(const std::vector<int>& counts) {
@@ -41,18 +48,18 @@ RegionOrder::RegionOrder(MPI_Comm communicator, std::vector<Block> parts, const 
 // Of this rank's part of the region. Its rows lie in the order of the file, so what goes to one rank lies together.
 std::vector<int> RegionOrder::cells_to_ranks() const {
   const int ranks = size_of(communicator_);
-  std::vector<int> cells(static_cast<std::size_t>(ranks), 0);
+  std::vector<std::int64_t> cells(static_cast<std::size_t>(ranks), 0);
   int to = 0;
   for_each_row(parts_[static_cast<std::size_t>(rank_of(communicator_))], region_,
                [&](std::int64_t first, std::int64_t last) {
                  while (first < last) {
                    while (share_.rows_of(to).last <= first) ++to;
                    const std::int64_t end = std::min(last, share_.rows_of(to).last);
-                   cells[static_cast<std::size_t>(to)] += static_cast<int>(end - first);
+                   cells[static_cast<std::size_t>(to)] += end - first;
                    first = end;
                  }
                });
-  return cells;
+  return mpi_counts(cells);
 }
 
 // Calls visit(first, last) for what a rank sends here, in the order in which it does.
@@ -72,11 +79,11 @@ void RegionOrder::for_each_row_from(int rank, Visit visit) const {
 }
 
 std::vector<int> RegionOrder::cells_from_ranks() const {
-  std::vector<int> cells(parts_.size(), 0);
+  std::vector<std::int64_t> cells(parts_.size(), 0);
   for (std::size_t rank = 0; rank < cells.size(); ++rank)
     for_each_row_from(static_cast<int>(rank),
-                      [&](std::int64_t first, std::int64_t last) { cells[rank] += static_cast<int>(last - first); });
-  return cells;
+                      [&](std::int64_t first, std::int64_t last) { cells[rank] += last - first; });
+  return mpi_counts(cells);
 }
 
 template <typename Number>

@@ -211,7 +211,12 @@ TriangleMesh read_stl(const std::filesystem::path& path, const Ranks& ranks) {
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(path, ignored))
       throw InputError(fmt::format("{}: there is no such file; give an STL file.", name));
-    return read_text(path);
+    std::string text = read_text(path);
+    constexpr std::size_t largest = (std::size_t{1} << 31) - 1;  // bytes, of one message to the other ranks
+    if (text.size() > largest)
+      throw InputError(fmt::format("{}: the file has {} bytes, and no more than {} are read; give a coarser surface.",
+                                   name, text.size(), largest));
+    return text;
   });
   MeshOfFacets facets;
   if (is_binary(bytes))  // whatever its title says
@@ -226,7 +231,13 @@ TriangleMesh read_stl(const std::filesystem::path& path, const Ranks& ranks) {
   const std::string open = what_is_open(mesh);
   if (!open.empty())
     throw InputError(fmt::format("{}: the surface is not closed: {}; repair it where it was made.", name, open));
-  if (signed_volume(mesh) < 0.0) turn_inside_out(mesh);
+  const double volume = signed_volume(mesh);
+  double reach = 0.0;  // from the origin
+  for (const Vec3& point : mesh.points) reach = std::max(reach, point.norm());
+  constexpr double rounding = 1e-14;  // of the volume of a surface, over that of its reach
+  if (!(std::abs(volume) > rounding * reach * reach * reach))
+    throw InputError(fmt::format("{}: the surface is flat and encloses no volume; repair it where it was made.", name));
+  if (volume < 0.0) turn_inside_out(mesh);
   return std::move(mesh);
 }
 

@@ -74,6 +74,13 @@ YamlNode converted(const YAML::Node& node, const std::string& place, const std::
   return result;
 }
 
+// A lone carriage return would be part of a word.
+std::size_t lone_return(std::string_view text) {
+  std::size_t at = text.find('\r');
+  while (at != std::string_view::npos && text.substr(at + 1, 1) == "\n") at = text.find('\r', at + 1);
+  return at;
+}
+
 bool is_control(char c) {
   const auto code = static_cast<unsigned char>(c);
   return (code < 0x20 && c != '\t' && c != '\n' && c != '\r') || code == 0x7F;
@@ -89,6 +96,11 @@ void refuse_odd_bytes(std::string_view text, const PlaceOf& place_of) {
   if (const std::size_t at = first_not_utf8(text); at < text.size())
     throw InputError(fmt::format("{}: the byte {:#04x} here is not UTF-8; save the text as UTF-8.", place_at(at),
                                  static_cast<unsigned char>(text[at])));
+  if (const std::size_t at = lone_return(text); at != std::string_view::npos)
+    throw InputError(
+        fmt::format("{}: a carriage return without a line feed stands here or below; save the text with "
+                    "the line ends of Unix or Windows.",
+                    place_at(at)));
   if (const auto odd = std::find_if(text.begin(), text.end(), is_control); odd != text.end())
     throw InputError(fmt::format("{}: a control character, {:#04x}, stands here; remove it, or save the file as text.",
                                  place_at(static_cast<std::size_t>(odd - text.begin())),
@@ -278,8 +290,9 @@ void YamlDocument::lay_beneath(YamlNode& section, const YamlNode& other, const s
 std::string YamlDocument::path_beside(const std::string& file, const std::string& key_path) const {
   std::string path = (std::filesystem::absolute(path_).parent_path() / file).lexically_normal().string();
   if (!is_utf8(path))
-    throw error(key_path, fmt::format("the name of a folder in {} is not UTF-8, and case.yaml must be; rename the folder",
-                                      as_utf8(path)));
+    throw error(key_path,
+                fmt::format("the name of a folder in {} is not UTF-8, and case.yaml must be; rename the folder",
+                            as_utf8(path)));
   return path;
 }
 

@@ -1,31 +1,17 @@
 """A run folder."""
 import json
-import re
 from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
 
 import h5py
 import numpy as np
-import yaml
 
+from thalweg.case_file import read_case
 from thalweg.columns import Columns
 from thalweg.errors import RunFolderError
 from thalweg.frames import FluidFrame, Frames, GrainFrame, GrainPartFrame, SolidFrame
 from thalweg.tables import read_series
-
-
-class CaseLoader(yaml.SafeLoader):
-    """YAML 1.1 takes 1e-06 for text, YAML 1.2 and Thalweg for a number."""
-
-
-CaseLoader.add_implicit_resolver("tag:yaml.org,2002:float", re.compile(r"^[-+]?(\d+\.?\d*|\.\d+)[eE][-+]?\d+$"),
-                                 list("-+.0123456789"))
-
-
-def read_case(path):
-    """A case file as a dictionary."""
-    return yaml.load(Path(path).read_text(encoding="utf-8"), CaseLoader)
 
 
 def face_type(boundary):

@@ -9,7 +9,7 @@ import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "python"))
-from thalweg.run import CaseLoader
+from thalweg.case_file import CaseLoader
 
 BYTES = 6 << 30   # a check measures the memory with 256 MiB
 

@@ -31,6 +31,10 @@ TEST(JsonObject, OnOneLine) {
             "\"wall_seconds\": {\"fluid\": 1.5, \"grains\": 0.25}, \"list\": [0.1, -2e-30], \"none\": {}}");
 }
 
+TEST(JsonObject, BytesThatAreNotUtf8AreReplaced) {
+  EXPECT_EQ(JsonObject().set("r\xFCn", "caf\xE9").line(), "{\"r\xEF\xBF\xBDn\": \"caf\xEF\xBF\xBD\"}");
+}
+
 TEST(JsonObject, Indented) {
   JsonObject outer;
   JsonObject middle;

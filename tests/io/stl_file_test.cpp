@@ -162,6 +162,13 @@ TEST(StlFile, ComplaintsAboutTextHaveTheLine) {
             ": the surface is not closed: 3 edges belong to one triangle only; repair it where it was made.");
 }
 
+// Two triangles, back to back: closed, and nothing inside; away from the origin, where volumes are rounded.
+TEST(StlFile, AFlatSurfaceIsRefused) {
+  const Corner a{10.1F, 20.2F, 5.3F}, b{11.7F, 20.2F, 5.3F}, c{10.1F, 22.9F, 6.1F};
+  EXPECT_EQ(complaint(binary_of({{a, b, c}, {a, c, b}}, 2)),
+            ": the surface is flat and encloses no volume; repair it where it was made.");
+}
+
 TEST(StlFile, OtherFilesAreRefused) {
   for (const char* other : {"", "v 0 0 0\nf 1 2 3\n", "no geometry at all\n"})
     EXPECT_EQ(

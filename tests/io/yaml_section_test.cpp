@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+
 namespace thalweg::io::yaml_section_test {
 
 enum class Colour { red, green };
@@ -274,6 +276,18 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"second_document", minimal + "---\n# nothing\nnonsense: 1\n", "",
             "FILE:5: a second document begins here, after a line ---, and would be ignored; remove that line, or what "
             "follows it."},
+        Bad{"latin_1", minimal + "name: caf\xE9\n", "",
+            "FILE:3: the byte 0xe9 here is not UTF-8; save the text as UTF-8."},
+        Bad{"latin_1_in_an_override", minimal, "name=caf\xE9",
+            "--set name=caf\xE9: the byte 0xe9 here is not UTF-8; save the text as UTF-8."},
+        Bad{"end_of_transmission", minimal + "seats: 3\n\x04\nseats: nonsense\n", "",
+            "FILE:4: a control character, 0x04, stands here; remove it, or save the file as text."},
+        Bad{"zero", minimal + std::string("name: a\0b\n", 10), "",
+            "FILE:3: a control character, 0x00, stands here; remove it, or save the file as text."},
+        Bad{"escaped_zero", minimal + "name: \"a\\0b\"\n", "", "FILE:3: name: a text must not have a zero character."},
+        Bad{"old_macintosh", "paint: red\rlength: 2\r", "",
+            "FILE:1: a carriage return without a line feed stands here or below; save the text with the line ends of "
+            "Unix or Windows."},
         Bad{"no_sections_at_all", "just words\n", "",
             "FILE:1: expected keys with values, for example system: resolved."}),
     [](const auto& bad) { return bad.param.name; });
@@ -286,6 +300,20 @@ TEST(YamlSection, SyntaxErrorsHaveALine) {
 TEST(YamlSection, ADocumentMayBeMarkedAsOne) {
   for (const std::string& text : {"---\n" + minimal, "# words\n---\n" + minimal + "...\n", minimal + "---\n"})
     EXPECT_EQ(read(text).length, 2.5) << text;
+}
+
+TEST(YamlSection, LineEndsOfWindowsAndAByteOrderMarkMeanNothing) {
+  EXPECT_EQ(read("\xEF\xBB\xBFpaint: red\r\nlength: 2.5\r\n").length, 2.5);
+}
+
+// A hundred thousand keys are compared with each other in less than 1e10 steps.
+TEST(YamlSection, ManyKeysAreLookedThroughQuickly) {
+  std::string text;
+  for (int n = 0; n < 100000; ++n) text += fmt::format("key_{}: 1\n", n);
+  const auto begin = std::chrono::steady_clock::now();
+  const std::string message = message_of<InputError>([&] { read(text + "key_7: 1\n"); });
+  EXPECT_NE(message.find(":100001: key_7: the key is given twice"), std::string::npos) << message;
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
 }
 
 // Seven levels of ten aliases each: 330 bytes that stand for ten million values.

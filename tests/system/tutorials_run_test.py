@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests/support"), str(ROOT / "python")]
 import program
 from program import ProgramTest
-from thalweg.run import read_case
+from thalweg.case_file import read_case
 
 TUTORIALS = "cases/tutorials"
 STEPS = 20

@@ -6,7 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from thalweg.run import read_case
+from thalweg.case_file import read_case
 from thalweg.sweep.machine import memory_needed, runs_at_a_time
 from thalweg.sweep.plan import SweepError, figure_of, read_plan
 from thalweg.sweep.runner import Runner

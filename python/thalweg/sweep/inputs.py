@@ -8,8 +8,8 @@ import re
 import h5py
 import yaml
 
+from thalweg.case_file import read_case
 from thalweg.errors import RunFolderError
-from thalweg.run import read_case
 
 # Of a case, the last word, or two, of a key that names a bed file, a surface, a run folder or a checkpoint.
 FILE_KEYS = {"file", "stl", "from", "run", "from.grains", "from.fluid"}

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import yaml
 
-from thalweg.run import CaseLoader
+from thalweg.case_file import CaseLoader
 from thalweg.sweep.inputs import SweepError, content_of, state_of
 
 KEYS = {"case", "set", "vary", "together", "bisect", "ranks", "columns"}

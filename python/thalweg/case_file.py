@@ -1,0 +1,61 @@
+"""Case files and sweeps as the solver reads them: io/yaml_document.hpp and io/section_reader.hpp.
+
+Words are numbers where they are decimal, as in YAML 1.2: 010 is ten and 1e-3 a number; 1:30, 0x10, 1_000, no and 2026-01-01 are
+texts, which YAML 1.1 takes for other things. Tags (!!int) and merge keys (<<) mean nothing, and a key given twice is an error.
+"""
+import math
+import re
+from pathlib import Path
+
+import yaml
+
+PREFIX = "tag:yaml.org,2002:"
+
+
+class CaseLoader(yaml.SafeLoader):
+    """For yaml.load()."""
+    yaml_implicit_resolvers = {}   # in place of those of YAML 1.1
+
+    def compose_scalar_node(self, anchor):
+        event = self.peek_event()
+        if event.tag not in (None, "!"):
+            event.tag = PREFIX + "str"
+        return super().compose_scalar_node(anchor)
+
+    def compose_sequence_node(self, anchor):
+        self.peek_event().tag = None
+        return super().compose_sequence_node(anchor)
+
+    def compose_mapping_node(self, anchor):
+        self.peek_event().tag = None
+        return super().compose_mapping_node(anchor)
+
+    def construct_mapping(self, node, deep=False):
+        known = {}
+        for key, _ in node.value:
+            if key.value in known and isinstance(key, yaml.ScalarNode):
+                raise yaml.constructor.ConstructorError(None, None, f"the key {key.value} is given twice", key.start_mark)
+            if isinstance(key, yaml.ScalarNode):
+                known[key.value] = key
+        return super().construct_mapping(node, deep)
+
+    def construct_number(self, node):
+        """A text where a double has no such number, as the solver then refuses it."""
+        word = node.value
+        number = float(word)
+        underflow = number == 0.0 and re.search("[1-9]", re.split("[eE]", word)[0])
+        if math.isinf(number) or underflow:
+            return word
+        return int(word) if re.fullmatch(r"[-+]?\d+", word) else number
+
+
+CaseLoader.add_implicit_resolver(PREFIX + "null", re.compile(r"^(~|null|Null|NULL|)$"), ["~", "n", "N", ""])
+CaseLoader.add_implicit_resolver(PREFIX + "bool", re.compile(r"^(true|false)$"), list("tf"))
+CaseLoader.add_implicit_resolver(PREFIX + "float", re.compile(r"^[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$"),
+                                 list("-+.0123456789"))
+CaseLoader.add_constructor(PREFIX + "float", CaseLoader.construct_number)
+
+
+def read_case(path):
+    """A case file as a dictionary."""
+    return yaml.load(Path(path).read_text(encoding="utf-8"), CaseLoader)
