@@ -220,6 +220,11 @@ double free_in_this_folder() {
   return unknown ? std::numeric_limits<double>::infinity() : static_cast<double>(space.available);
 }
 
+// Whether this machine has the memory to put the grains into their places. A run on more nodes may have it.
+bool can_be_placed_here(const Case& c) {
+  return c.grains.empty() || memory_on_one_rank(c) <= usable_memory_of_this_node();
+}
+
 void add_cost(const Case& c, double bandwidth, Lines& lines) {
   const Cost cost = cost_of(c, bandwidth);
   std::string work = fmt::format("work       {:.0f} steps to {:g} s", cost.steps, c.run.until);
@@ -261,11 +266,6 @@ LightestGrains lightest_taken_grains(const Case& c, const dem::GrainParameters& 
       if (!dem::holds_translation(row.motion))
         lightest[static_cast<std::size_t>(row.material)].include(row.contact_mass, row.radius);
   return lightest;
-}
-
-// Whether this machine has the memory to put the grains into their places. A run on more nodes may have it.
-bool can_be_placed_here(const Case& c) {
-  return c.grains.empty() || memory_on_one_rank(c) <= usable_memory_of_this_node();
 }
 
 // What dem would refuse when the run starts.

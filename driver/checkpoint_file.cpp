@@ -70,7 +70,7 @@ void refuse_other_case(const ArchiveReader& archive, const Case& c) {
   refuse_changes_of_state(state_changes(load_kept_case(archive), resolved_yaml(c), dry), dry);
 }
 
-// What does not fit names the file; where data have fewer values than belong to them, it is damaged.
+// What does not fit names the file; where data have another shape than belongs to them, it is damaged.
 template <typename Work>
 void about_file(const std::filesystem::path& path, Work&& work) {
   try {
@@ -81,9 +81,10 @@ void about_file(const std::filesystem::path& path, Work&& work) {
     const std::string reason = error.what();
     if (reason.starts_with(path.string())) throw;
     throw InputError(fmt::format("{}: {}", path.string(), reason));
-  } catch (const std::out_of_range&) {
+  } catch (const std::logic_error&) {  // of a vector or an archive
     throw io::DamagedFile(fmt::format(
-        "{}: some of its data have fewer values than belong to them, the file is damaged; take an earlier checkpoint.",
+        "{}: some of its data have another shape than belongs to them, the file is damaged; take an earlier "
+        "checkpoint.",
         path.string()));
   }
 }

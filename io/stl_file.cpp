@@ -212,7 +212,7 @@ TriangleMesh read_stl(const std::filesystem::path& path, const Ranks& ranks) {
     if (!std::filesystem::is_regular_file(path, ignored))
       throw InputError(fmt::format("{}: there is no such file; give an STL file.", name));
     std::string text = read_text(path);
-    constexpr std::size_t largest = (std::size_t{1} << 31) - 1;  // bytes, of one message to the other ranks
+    constexpr std::size_t largest = std::size_t{1} << 34;  // bytes, of less than 2^31 corners
     if (text.size() > largest)
       throw InputError(fmt::format("{}: the file has {} bytes, and no more than {} are read; give a coarser surface.",
                                    name, text.size(), largest));

@@ -3,6 +3,7 @@
 Words are numbers where they are decimal, as in YAML 1.2: 010 is ten and 1e-3 a number; 1:30, 0x10, 1_000, no and 2026-01-01 are
 texts, which YAML 1.1 takes for other things. Tags (!!int) and merge keys (<<) mean nothing, and a key given twice is an error.
 """
+import json
 import math
 import re
 from pathlib import Path
@@ -53,7 +54,36 @@ CaseLoader.add_implicit_resolver(PREFIX + "null", re.compile(r"^(~|null|Null|NUL
 CaseLoader.add_implicit_resolver(PREFIX + "bool", re.compile(r"^(true|false)$"), list("tf"))
 CaseLoader.add_implicit_resolver(PREFIX + "float", re.compile(r"^[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$"),
                                  list("-+.0123456789"))
-CaseLoader.add_constructor(PREFIX + "float", CaseLoader.construct_number)
+CaseLoader.add_constructor(PREFIX + "float", lambda loader, node: loader.construct_number(node))
+
+
+class Whole(int):
+    """A number with its `word` in the file, which a text would be: a folder may be called 010."""
+
+
+class Real(float):
+    """The same."""
+
+
+class WordLoader(CaseLoader):
+    """As CaseLoader, but numbers know their words."""
+
+    def construct_number(self, node):
+        value = super().construct_number(node)
+        if isinstance(value, str):
+            return value
+        number = Whole(value) if isinstance(value, int) else Real(value)
+        number.word = node.value
+        return number
+
+
+def setting_of(value):
+    """A value as `thalweg run --set KEY=VALUE` takes it: JSON, and numbers by their words."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{json.dumps(key)}: {setting_of(inner)}" for key, inner in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(setting_of(inner) for inner in value) + "]"
+    return getattr(value, "word", None) or json.dumps(value)
 
 
 def read_case(path):

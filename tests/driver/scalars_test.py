@@ -6,7 +6,6 @@ A sweep reads values by python/thalweg/case_file.py and hands them to the progra
 number, a real number and a truth value, once in the case file and once as a sweep hands it over: the program must refuse both or
 make the same of them, as the case.yaml of the run shows.
 """
-import json
 import sys
 import unittest
 from pathlib import Path
@@ -17,7 +16,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 import program
 from program import ProgramTest
-from thalweg.case_file import CaseLoader
+from thalweg.case_file import CaseLoader, WordLoader, setting_of
 
 CASE = """
 system: grains
@@ -62,12 +61,12 @@ class Scalars(ProgramTest):
             for word in words:
                 with self.subTest(key=key, word=word):
                     line = here.split(":")[0] + ": " + word
-                    value = yaml.load(line, CaseLoader)[here.split(":")[0]]
+                    value = yaml.load(line, WordLoader)[here.split(":")[0]]
                     if value is None:   # null takes a key out of the case, in a sweep as on the command line
                         self.assertIn(word, ("null", "~", "Null"))
                         continue
                     direct = self.outcome(number, CASE.replace(here, line))
-                    swept = self.outcome(number + 1, CASE, "--set", f"{key}={json.dumps(value)}")
+                    swept = self.outcome(number + 1, CASE, "--set", f"{key}={setting_of(value)}")
                     self.assertEqual(direct, swept)
                     number, taken = number + 2, taken + (direct is not None)
         self.assertGreater(taken, 25)

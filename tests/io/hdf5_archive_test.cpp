@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include <fcntl.h>
-#include <hdf5.h>
 #include <semaphore.h>
 #include <sys/resource.h>
 #include <chrono>
@@ -222,59 +221,6 @@ TEST(Hdf5Archive, AFileCutShortIsRefused) {
     EXPECT_FALSE(reads_what_was_written(folder / "short.h5")) << length;
     MPI_Barrier(MPI_COMM_WORLD);
   }
-}
-
-// Made by HDF5 itself, as another program would.
-void put_dataset(const std::filesystem::path& path, int rank, const std::vector<hsize_t>& shape, bool written) {
-  const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-  const hid_t space = rank == 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(rank, shape.data(), nullptr);
-  const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
-  const std::vector<hsize_t> chunk(shape.size(), 2);
-  if (!written) H5Pset_chunk(creation, rank, chunk.data());
-  const hid_t dataset = H5Dcreate2(file, "radius", H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT);
-  const std::vector<double> values(16, 1.0);
-  if (written) H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
-  H5Dclose(dataset);
-  H5Pclose(creation);
-  H5Sclose(space);
-  H5Fclose(file);
-}
-
-TEST(Hdf5Archive, WhatAFileOnlyAnnouncesIsRefused) {
-  const ScratchFolder folder;
-  if (rank_of(MPI_COMM_WORLD) == 0) {
-    put_dataset(folder / "scalar.h5", 0, {}, true);
-    put_dataset(folder / "huge.h5", 2, {hsize_t{1} << 60, 3}, false);
-    put_dataset(folder / "good.h5", 1, {4}, true);
-  }
-  MPI_Barrier(MPI_COMM_WORLD);
-  const auto complaint = [&](const char* name) {
-    Hdf5Reader reader(MPI_COMM_WORLD, folder / name);
-    return message_of<InputError>([&] { reader.shape("radius"); });
-  };
-  EXPECT_NE(complaint("scalar.h5").find("scalar.h5: radius: the file holds a single value, and rows of values are needed"),
-            std::string::npos);
-  EXPECT_NE(complaint("huge.h5").find("huge.h5: radius: the file announces 1152921504606846976 x 3 values and does not "
-                                      "hold so many, the file is damaged"),
-            std::string::npos);
-  EXPECT_EQ(complaint("good.h5"), "");
-}
-
-TEST(Hdf5Archive, ChecksumsCanBeDemanded) {
-  const ScratchFolder folder;
-  write_all(MPI_COMM_WORLD, folder / "state.h5");
-  if (rank_of(MPI_COMM_WORLD) == 0) put_dataset(folder / "other.h5", 1, {4}, true);
-  MPI_Barrier(MPI_COMM_WORLD);
-  Hdf5Reader ours(MPI_COMM_WORLD, folder / "state.h5"), others(MPI_COMM_WORLD, folder / "other.h5");
-  ours.require_checksums();
-  expect_what_was_written(ours);
-  std::vector<double> four(4);
-  const ArrayBox row{{4}, {0}, {4}};
-  others.read("radius", std::span<double>(four), row);
-  others.require_checksums();
-  EXPECT_NE(message_of<DamagedFile>([&] { others.read("radius", std::span<double>(four), row); })
-                .find("radius: the data have no checksum"),
-            std::string::npos);
 }
 
 // Boxes that overlap are as many values as the dataset has, but not the dataset.

@@ -54,8 +54,8 @@ class ProgramTest(unittest.TestCase):
         return parallel + [THALWEG] + [str(a) for a in arguments]
 
     def thalweg(self, *arguments, ranks=0):
-        return subprocess.run(self.command(arguments, ranks), capture_output=True, text=True, timeout=120,
-                              cwd=self.folder)
+        return subprocess.run(self.command(arguments, ranks), capture_output=True, text=True, errors="surrogateescape",
+                              timeout=120, cwd=self.folder)
 
     def run_well(self, *arguments, ranks=0):
         result = self.thalweg(*arguments, ranks=ranks)

@@ -36,7 +36,8 @@ def named_files(content, key=""):
         return {name for value in content for name in named_files(value, key)}
     words = key.split(".")
     is_file = words[-1] in FILE_KEYS or ".".join(words[-2:]) in FILE_KEYS
-    return {content} if is_file and isinstance(content, str) and content else set()
+    name = getattr(content, "word", content)
+    return {name} if is_file and isinstance(name, str) and name else set()
 
 
 def state_of(path):

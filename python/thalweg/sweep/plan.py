@@ -10,7 +10,7 @@ from pathlib import Path
 
 import yaml
 
-from thalweg.case_file import CaseLoader
+from thalweg.case_file import WordLoader
 from thalweg.sweep.inputs import SweepError, content_of, state_of
 
 KEYS = {"case", "set", "vary", "together", "bisect", "ranks", "columns"}
@@ -118,7 +118,7 @@ def figure_of(summary, path):
 def read_plan(path):
     path = Path(path)
     try:
-        content = yaml.load(path.read_text(encoding="utf-8"), CaseLoader)
+        content = yaml.load(path.read_text(encoding="utf-8"), WordLoader)
     except OSError as error:
         raise SweepError(f"{path}: {error.strerror}.") from None
     except UnicodeDecodeError:

@@ -15,6 +15,7 @@ import socket
 import subprocess
 from pathlib import Path
 
+from thalweg.case_file import setting_of
 from thalweg.sweep.inputs import SweepError, inputs_of
 
 LONGEST_NAME = 150   # bytes: of the 255 that file systems allow, the rest is for the endings of the files beside the run folder
@@ -139,7 +140,7 @@ def check_command(program, case, settings):
 
 
 def set_options(settings):
-    return [word for key, value in settings.items() for word in ("--set", f"{key}={json.dumps(value)}")]
+    return [word for key, value in settings.items() for word in ("--set", f"{key}={setting_of(value)}")]
 
 
 def names_in(folder):
