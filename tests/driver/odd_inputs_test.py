@@ -44,7 +44,7 @@ class OddNames(ProgramTest):
         odd = os.fsdecode(b"r\xfcn")   # Latin-1, as old disks have it
         self.run_well("run", "case.yaml", "--out", odd)
         texts = {name: (self.folder / odd / name).read_bytes().decode("utf-8") for name in ("summary.json", "case.yaml", "run.log")}
-        self.assertIn("--out r\ufffdn", json.loads(texts["summary.json"])["command"])
+        self.assertIn("r\ufffdn", json.loads(texts["summary.json"])["command"])
         self.assertIn("r\ufffdn", texts["run.log"])
         self.run_well("run", "case.yaml", "--restart", odd, "--until", "2.0e-3")
         self.run_well("info", odd)
