@@ -48,6 +48,14 @@ def exchanged(dataset):
     return damage
 
 
+def without_checksum(dataset):
+    """As another program would write it."""
+    def damage(path):
+        with h5py.File(path, "r+") as file:
+            del file[dataset].attrs["checksum"]
+    return damage
+
+
 class DamageRun(ProgramTest):
     CASE = SLIDING_GRAINS + """
 run: {until: 0.2, time_step: 1.0e-5}
@@ -62,6 +70,7 @@ output: {series: {every: 0.01}, checkpoint: {every: 0.05, keep: 2}}
         "zeros at the beginning": lost_block(0.0), "zeros in the middle": lost_block(0.4),
         "zeros late": lost_block(0.7), "two grains exchanged": exchanged("grains/position"),
         "two velocities exchanged": exchanged("grains/velocity"),
+        "positions without a checksum": without_checksum("grains/position"),
         "a text": lambda path: path.write_text("state"),
     }
 
