@@ -26,6 +26,8 @@ gravity: {{magnitude: 9.8}}
 grains: [{{count: 2, diameter: 4.0e-3, density: 2550, placement: {{pattern: random, seed: 1}}}}]
 contact: {{normal_stiffness: 20000, restitution: 0.5, friction: 0.3}}
 run: {{until: 1.0e-3, time_step: 5.0e-6}}
+output: {{series: {{every: 2.5e-4}}}}
+analysis: {{transport_rate: {{}}}}
 """
 SURFACE = f"""
 system: fluid
