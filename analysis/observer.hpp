@@ -44,7 +44,7 @@ public:
   // The same in words, for the log at the end of the run: one sentence each.
   virtual std::vector<std::string> remarks() const { return {}; }
 
-  // True if it has a file of its own in the run folder, NAME.h5, to which take_records() is added.
+  // True if it has a folder of its own in the run folder, NAME, to which take_records() is added.
   virtual bool has_records() const { return false; }
   // What it has recorded since the last call: on rank 0, empty elsewhere. Called before every save().
   virtual Records take_records() { return {}; }

@@ -75,7 +75,7 @@ double checkpoints(const Case& c) {
   return bytes_of_checkpoint(c) * std::min(written, most);
 }
 
-// tracks.h5 and probes.h5 (docs/input.md).
+// Tracks and probes (docs/input.md).
 double records(const Case& c) {
   double bytes = 0.0;
   if (const auto& tracks = c.analysis.observers.of<analysis::TracksKeys>()) {

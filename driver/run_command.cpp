@@ -326,7 +326,7 @@ Outcome run_case(Command command, MPI_Comm communicator, loop::WallClock::time_p
   if (!lock->keeps_others_out())
     log.line(fmt::format("warning: the file system of {} has no locks: see to it that no second run writes there",
                          places.folder.path().string()));
-  output.begin(log);
+  output.begin();
   loop::LoopPlan plan;
   plan.until = c.run.until;
   set_end(c, plan);

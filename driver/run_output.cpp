@@ -46,13 +46,15 @@ RunOutput::RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& 
     io::SeriesTable::check_columns(communicator, folder.series(), columns_);
   for (const auto& observer : observers) {
     if (!observer->has_records()) continue;
-    records_.push_back({observer.get(), io::RecordFile(communicator, folder.records(observer->name()), continue_from),
+    const auto step = continue_from ? std::optional(system.step()) : std::nullopt;
+    records_.push_back({observer.get(), io::RecordParts(communicator, folder.records(observer->name()), step),
                         observer->take_records()});
-    records_.back().file.check(records_.back().first);
+    records_.back().parts.check(records_.back().first);
   }
 }
 
-void RunOutput::begin(loop::Log& log) {
+void RunOutput::begin() {
+  if (continue_from_) drop_what_is_later();
   const Snapshot snapshot = system_.snapshot();
   if (snapshot.grains.global_count > 0) {
     add_grains(folder_.path(), "grains", case_.output.grains, {});
@@ -65,10 +67,7 @@ void RunOutput::begin(loop::Log& log) {
       add_fluid(folder_.fluid_parts(), part.name, part);
   }
   begin_solids();
-  for (ObserverRecords& records : records_) {
-    records.file.add(std::exchange(records.first, {}));
-    if (!records.file.warning().empty()) log.line("warning: " + records.file.warning());
-  }
+  for (ObserverRecords& records : records_) records.parts.begin(std::exchange(records.first, {}), system_.step());
   if (case_.output.series.every > 0.0)
     series_ = std::make_unique<io::SeriesTable>(communicator_, folder_.series(), columns_, continue_from_);
 }
@@ -128,7 +127,7 @@ void RunOutput::add_to(loop::LoopPlan& plan) {
   // With the looks at the system's health, so that nothing is written of a state that is broken.
   if (!records_.empty())
     plan.outputs.push_back({"records", Schedule(loop::TimeLoop::steps_between_health_checks * time_step, time_step),
-                            [this](const Snapshot&) { write_records(); }});
+                            [this](const Snapshot&) { add_records(); }});
 }
 
 void RunOutput::write_row(double time, const std::vector<Figure>& measured) {
@@ -150,15 +149,32 @@ void RunOutput::write_profiles() {
   if (!groups.empty()) io::write_profiles(communicator_, folder_.profiles(), system_.time(), groups);
 }
 
-void RunOutput::write_records() {
-  for (ObserverRecords& records : records_) records.file.add(records.observer->take_records());
+void RunOutput::add_records() {
+  for (ObserverRecords& records : records_) records.parts.add(records.observer->take_records(), system_.step());
+}
+
+// Also of frames and records that the run no longer writes: they are of the course that it has left.
+void RunOutput::drop_what_is_later() const {
+  on_first_rank(communicator_, [&] {
+    for (const std::string& name : io::RunFolder::names_of_records())
+      io::drop_parts_after(folder_.records(name), system_.step());
+  });
+  for (const auto& folder : {folder_.path(), folder_.grain_parts(), folder_.fluid_parts()})
+    io::take_up_indices(communicator_, folder, *continue_from_);
+}
+
+// A restart counts on what lies beside the checkpoint.
+void RunOutput::put_on_disk() {
+  for (auto& [every, series] : grains_) series.put_on_disk();
+  for (auto& [every, series] : fluid_) series.put_on_disk();
+  if (solids_) solids_->put_on_disk();
+  for (ObserverRecords& records : records_) records.parts.write(system_.step());
+  if (series_) series_->put_on_disk();
 }
 
 std::uint64_t RunOutput::write_checkpoint(const loop::LoopRecord& record) {
-  write_records();
-  // A restart counts on what lies beside the checkpoint.
-  for (ObserverRecords& records : records_) records.file.put_on_disk();
-  if (series_) series_->put_on_disk();
+  add_records();
+  put_on_disk();
   const std::filesystem::path path = folder_.checkpoint(system_.step());
   write_checkpoint_file(communicator_, path, case_, kept_case_, system_, observers_,
                         {record.largest, record.largest_from, since_});

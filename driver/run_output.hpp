@@ -7,11 +7,10 @@
 #include "driver/case.hpp"
 #include "io/fluid_series.hpp"
 #include "io/grain_series.hpp"
-#include "io/record_file.hpp"
+#include "io/record_parts.hpp"
 #include "io/run_folder.hpp"
 #include "io/series_table.hpp"
 #include "io/solid_series.hpp"
-#include "loop/log.hpp"
 #include "loop/time_loop.hpp"
 
 #include <mpi.h>
@@ -35,8 +34,9 @@ public:
             const Observers& observers, const std::vector<Figure>& row, std::map<std::string, double> since,
             std::optional<double> continue_from);
 
-  // Begins the files, or takes them up, and warns of those that are damaged. Collective; the first of all calls.
-  void begin(loop::Log& log);
+  // Begins the files, or takes them up: what is later than the state the run goes on from is removed. Collective; the
+  // first of all calls.
+  void begin();
 
   // Schedules and actions for the time loop; they refer to this object.
   void add_to(loop::LoopPlan& plan);
@@ -50,7 +50,9 @@ private:
   void write_row(double time, const std::vector<Figure>& measured);
   std::uint64_t write_checkpoint(const loop::LoopRecord& record);  // bytes, on the first rank
   void write_profiles();
-  void write_records();
+  void add_records();
+  void put_on_disk();
+  void drop_what_is_later() const;
 
   MPI_Comm communicator_;
   const Case& case_;
@@ -58,7 +60,7 @@ private:
   const System& system_;
   const Observers& observers_;
   std::map<std::string, double> since_;
-  std::optional<double> continue_from_;
+  std::optional<double> continue_from_;                     // the time of the system's state, s
   std::string kept_case_;                                   // for checkpoints
   std::vector<Figure> constants_;                           // of the run, in every row of the series
   std::vector<io::SeriesTable::Column> columns_;            // of the series
@@ -68,7 +70,7 @@ private:
   std::optional<io::SolidSeries> solids_;                   // where there are frames of grains or fluid
   struct ObserverRecords {
     analysis::Observer* observer;
-    io::RecordFile file;
+    io::RecordParts parts;
     Records first;  // until begin() writes them
   };
   std::vector<ObserverRecords> records_;

@@ -107,8 +107,13 @@ bool fill_with_zeros(const std::filesystem::path& path, std::uint64_t offset, st
 
 void make_folder(const std::filesystem::path& path) {
   std::error_code error;
+  std::vector<std::filesystem::path> changed;
+  for (auto missing = std::filesystem::absolute(path); !std::filesystem::exists(missing, error);
+       missing = missing.parent_path())
+    changed.push_back(missing.parent_path());
   std::filesystem::create_directories(path, error);
   if (error) throw RunError(fmt::format("{}: cannot create the folder: {}.", path.string(), error.message()));
+  for (const auto& folder : changed) sync(folder);  // one that cannot be read cannot be waited for
 }
 
 std::string read_text(const std::filesystem::path& path) {

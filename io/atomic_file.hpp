@@ -13,7 +13,7 @@ void write_text_atomically(const std::filesystem::path& path, const std::string&
 // The same, and it outlasts a loss of power once this returns.
 void write_text_durably(const std::filesystem::path& path, const std::string& text);
 
-// Waits until the data of a file are on the disk. False if that fails.
+// Waits until the data of a file, or the names in a folder, are on the disk. False if that fails.
 bool put_on_disk(const std::filesystem::path& path);
 
 // Waits until the data of `from` are on the disk, then renames it to `to` and waits for the folder. False if that
@@ -38,7 +38,7 @@ bool reserve_on_disk(const std::filesystem::path& path, std::uint64_t offset, st
 // Writes `bytes` zeros from `offset` on and waits until they are on the disk; false if that fails.
 bool fill_with_zeros(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t bytes);
 
-// Creates a folder and its parents if they are missing. Throws RunError.
+// Creates a folder and its parents if they are missing; their names outlast a loss of power. Throws RunError.
 void make_folder(const std::filesystem::path& path);
 
 // The whole file. Throws InputError if it cannot be read.

@@ -81,7 +81,7 @@ FluidSeries::FluidSeries(MPI_Comm communicator, const std::filesystem::path& fol
       region_(std::move(region)),
       fields_(std::move(fields)),
       precision_(precision),
-      index_(folder / (name_ + ".pvd"), continue_from) {}
+      index_(communicator, folder / (name_ + ".pvd"), continue_from) {}
 
 void FluidSeries::write(const Snapshot& snapshot) {
   if (!snapshot.fluid) return;
@@ -111,11 +111,11 @@ void FluidSeries::write(const Snapshot& snapshot) {
   const std::string extent = extent_text(cells.coarse);
   const Vec3 &origin = cells.origin, &spacing = cells.coarse_spacing;
   on_first_rank(communicator_, [&] { make_folder(folder_ / name_); });
-  picture.write(folder_ / file, "ImageData",
+  picture.write(folder_ / file, snapshot.time, "ImageData",
                 fmt::format(" WholeExtent=\"{}\" Origin=\"{} {} {}\" Spacing=\"{} {} {}\"", extent, origin[0],
                             origin[1], origin[2], spacing[0], spacing[1], spacing[2]),
                 fmt::format(" Extent=\"{}\"", extent));
-  on_first_rank(communicator_, [&] { index_.add(snapshot.time, file); });
+  index_.add(snapshot.time, file);
 }
 
 }  // namespace thalweg::io

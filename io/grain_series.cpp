@@ -159,7 +159,7 @@ GrainSeries::GrainSeries(MPI_Comm communicator, const std::filesystem::path& fol
       selection_(std::move(selection), population_ends),
       fields_(std::move(fields)),
       population_ends_(std::move(population_ends)),
-      index_(folder / (name_ + ".pvd"), continue_from) {}
+      index_(communicator, folder / (name_ + ".pvd"), continue_from) {}
 
 // In the order of the arrays.
 std::vector<NamedChoice<GrainField>> GrainSeries::fields_in(const Snapshot& snapshot) const {
@@ -194,11 +194,11 @@ void GrainSeries::write(const Snapshot& snapshot) {
 
   const auto file = std::filesystem::path(name_) / fmt::format("{}_{:09d}.vtp", name_, snapshot.step);
   on_first_rank(communicator_, [&] { make_folder(folder_ / name_); });
-  picture.write(folder_ / file, "PolyData", "",
+  picture.write(folder_ / file, snapshot.time, "PolyData", "",
                 fmt::format(" NumberOfPoints=\"{0}\" NumberOfVerts=\"{0}\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
                             "NumberOfPolys=\"0\"",
                             places.count));
-  on_first_rank(communicator_, [&] { index_.add(snapshot.time, file); });
+  index_.add(snapshot.time, file);
 }
 
 }  // namespace thalweg::io

@@ -23,12 +23,15 @@ namespace thalweg::io {
 class GrainSeries {
 public:
   // fields: empty: all there are. continue_from: simulated time (s) at which a restarted run takes up an existing
-  // series; later frames leave the index. Empty: a new series.
+  // series; later frames are removed. Empty: a new series.
   GrainSeries(MPI_Comm communicator, const std::filesystem::path& folder, std::string name,
               GrainSelectionKeys selection, std::vector<GrainField> fields, PopulationEnds population_ends,
               std::optional<double> continue_from = std::nullopt);
 
   void write(const Snapshot& snapshot);
+
+  // What has been written outlasts a loss of power once this returns: before a checkpoint that counts on it.
+  void put_on_disk() { index_.put_on_disk(); }
 
 private:
   std::vector<NamedChoice<GrainField>> fields_in(const Snapshot& snapshot) const;

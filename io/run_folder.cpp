@@ -5,7 +5,6 @@
 #include "core/utf8.hpp"
 #include "io/atomic_file.hpp"
 #include "io/folder_lock.hpp"
-#include "io/record_file.hpp"
 
 #include <fmt/format.h>
 
@@ -25,15 +24,17 @@ namespace thalweg::io {
 namespace fs = std::filesystem;
 namespace {
 
-// All a run writes, and thalweg analyze; --overwrite removes these and nothing else.
-constexpr std::array run_contents{"case.yaml",    "series.csv",     "profiles.h5", "probes.h5", "tracks.h5",
-                                  "grains.pvd",   "entrainment.h5", "fluid.pvd",   "grains",    "fluid",
-                                  "fluid_parts",  "grain_parts",    "checkpoints", "bed.h5",    "run.log",
-                                  "summary.json", "analysis",       "stop"};
+// All a run writes, and thalweg analyze; --overwrite removes these and nothing else. Records were files in older
+// versions.
+constexpr std::array run_contents{"case.yaml",    "series.csv",  "profiles.h5", "probes",         "tracks",
+                                  "entrainment",  "probes.h5",   "tracks.h5",   "entrainment.h5", "grains.pvd",
+                                  "fluid.pvd",    "solids.pvd",  "grains",      "fluid",          "solids",
+                                  "fluid_parts",  "grain_parts", "checkpoints", "bed.h5",         "run.log",
+                                  "summary.json", "analysis",    "stop"};
 // Of these, what a run that goes on changes in its place: folders, and files that are not replaced as a whole.
-constexpr std::array added_to{"checkpoints", "grains",    "fluid",     "fluid_parts",   "grain_parts",
-                              "run.log",     "probes.h5", "tracks.h5", "entrainment.h5"};
-constexpr std::array records{"probes", "tracks", "entrainment"};
+constexpr std::array added_to{"checkpoints", "grains",    "fluid",     "solids", "fluid_parts",
+                              "grain_parts", "run.log",   "probes",    "tracks", "entrainment",
+                              "grains.pvd",  "fluid.pvd", "solids.pvd"};
 constexpr const char* latest_name = "latest";
 constexpr const char* unfinished_case = "case.yaml.partial";
 constexpr const char* kept_case = "case_until_step_";
@@ -50,13 +51,6 @@ std::optional<std::int64_t> step_between(const std::string& name, std::string_vi
 
 std::optional<std::int64_t> step_of_checkpoint(const std::string& name) { return step_between(name, "step_", ".h5"); }
 
-// Of a file of records that a restart has moved out of its way.
-bool is_damaged_record(const std::string& name) {
-  return std::any_of(records.begin(), records.end(), [&name](const char* record) {
-    return step_between(name, std::string(record) + RecordFile::damaged_mark, ".h5").has_value();
-  });
-}
-
 // Empty if this process may change the file, or add to the folder.
 std::string why_not_writable(const fs::path& path) {
   const int mode = fs::is_directory(path) ? W_OK | X_OK : W_OK;
@@ -64,6 +58,8 @@ std::string why_not_writable(const fs::path& path) {
 }
 
 }  // namespace
+
+std::vector<std::string> RunFolder::names_of_records() { return {"probes", "tracks", "entrainment"}; }
 
 bool RunFolder::is_run_folder() const {
   std::error_code ignored;
@@ -115,9 +111,7 @@ void RunFolder::create(bool overwrite) const {
   make_folder(path_);
   std::vector<fs::path> old;
   for (const auto& entry : fs::directory_iterator(path_))
-    if (const std::string name = entry.path().filename().string();
-        name.starts_with(kept_case) || is_damaged_record(name))
-      old.push_back(entry.path());
+    if (entry.path().filename().string().starts_with(kept_case)) old.push_back(entry.path());
   // case.yaml, by which the folder is known, goes last, and what would show that there have been checkpoints before
   // them: an interrupted removal can be taken up again.
   for (auto name = run_contents.rbegin(); name != run_contents.rend(); ++name) old.push_back(path_ / *name);
@@ -136,7 +130,7 @@ void RunFolder::write_case(const std::string& comment_lines, const std::string& 
     text += "# " + as_utf8(comment_lines.substr(start, end - start)) + "\n";
     start = end + 1;
   }
-  write_text_atomically(case_file(), text + yaml);
+  write_text_durably(case_file(), text + yaml);
 }
 
 void RunFolder::go_on_from(std::int64_t step) const {
@@ -159,7 +153,7 @@ fs::path RunFolder::named_latest() const {
 void RunFolder::keep_case(std::int64_t step) const {
   const fs::path kept = path_ / fmt::format("{}{}.yaml", kept_case, step), own = case_of(checkpoint(step));
   std::error_code ignored;
-  if (own != kept && fs::is_regular_file(own, ignored)) write_text_atomically(kept, read_text(own));
+  if (own != kept && fs::is_regular_file(own, ignored)) write_text_durably(kept, read_text(own));
 }
 
 fs::path RunFolder::case_of(const fs::path& checkpoint) const {

@@ -47,7 +47,8 @@ public:
   std::filesystem::path log() const { return path_ / "run.log"; }
   std::filesystem::path series() const { return path_ / "series.csv"; }
   std::filesystem::path profiles() const { return path_ / "profiles.h5"; }
-  std::filesystem::path records(const std::string& observer) const { return path_ / (observer + ".h5"); }
+  static std::vector<std::string> names_of_records();  // of the observers that have some
+  std::filesystem::path records(const std::string& observer) const { return path_ / observer; }  // a folder
   std::filesystem::path bed() const { return path_ / "bed.h5"; }
   std::filesystem::path fluid_parts() const { return path_ / "fluid_parts"; }
   std::filesystem::path grain_parts() const { return path_ / "grain_parts"; }

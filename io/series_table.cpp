@@ -81,7 +81,7 @@ SeriesTable::SeriesTable(MPI_Comm communicator, std::filesystem::path path, std:
       refuse_other_columns(path_, text, header);
       if (!text.empty()) rows = kept_rows(text, header.size(), *continue_from);
     }
-    write_text_atomically(path_, header + rows);
+    write_text_durably(path_, header + rows);
     file_.open(path_, std::ios::binary | std::ios::app);
     if (!file_) throw RunError(cannot_write_series(path_));
   });

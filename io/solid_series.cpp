@@ -32,7 +32,7 @@ Polygons joined(const std::vector<TriangleMesh>& solids) {
   return all;
 }
 
-void write_polygons(const Polygons& all, const std::filesystem::path& path) {
+void write_polygons(const Polygons& all, double time, const std::filesystem::path& path) {
   const auto points = static_cast<std::int64_t>(all.points.size() / 3),
              triangles = static_cast<std::int64_t>(all.ends.size());
   VtkXmlFile picture(MPI_COMM_SELF, triangles);
@@ -43,7 +43,7 @@ void write_polygons(const Polygons& all, const std::filesystem::path& path) {
   picture.add("Polys", "connectivity", 1, all.corners);
   picture.set_rows(triangles);
   picture.add("Polys", "offsets", 1, all.ends);
-  picture.write(path, "PolyData", "",
+  picture.write(path, time, "PolyData", "",
                 fmt::format(" NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
                             "NumberOfPolys=\"{}\"",
                             points, triangles));
@@ -53,15 +53,17 @@ void write_polygons(const Polygons& all, const std::filesystem::path& path) {
 
 SolidSeries::SolidSeries(MPI_Comm communicator, const std::filesystem::path& folder,
                          std::optional<double> continue_from)
-    : communicator_(communicator), folder_(folder), index_(folder / fmt::format("{}.pvd", name), continue_from) {}
+    : communicator_(communicator),
+      folder_(folder),
+      index_(communicator, folder / fmt::format("{}.pvd", name), continue_from) {}
 
 void SolidSeries::write(double time, std::int64_t step, const std::vector<TriangleMesh>& solids) {
+  const auto file = std::filesystem::path(name) / fmt::format("{}_{:09d}.vtp", name, step);
   on_first_rank(communicator_, [&] {
-    const auto file = std::filesystem::path(name) / fmt::format("{}_{:09d}.vtp", name, step);
     make_folder(folder_ / name);
-    write_polygons(joined(solids), folder_ / file);
-    index_.add(time, file);
+    write_polygons(joined(solids), time, folder_ / file);
   });
+  index_.add(time, file);
 }
 
 }  // namespace thalweg::io

@@ -25,6 +25,9 @@ public:
   // solids: in m, where they are at this time (s); looked at on the first rank.
   void write(double time, std::int64_t step, const std::vector<TriangleMesh>& solids);
 
+  // As for GrainSeries.
+  void put_on_disk() { index_.put_on_disk(); }
+
 private:
   MPI_Comm communicator_;
   std::filesystem::path folder_;

@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <charconv>
+#include <fstream>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -20,6 +22,8 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the files say so");
 
 constexpr std::int64_t rows_per_block = 4096;  // 16 kB of the smallest numbers
+constexpr std::string_view head_of_time =
+    "<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">";
 constexpr const char* footer = "\n  </AppendedData>\n</VTKFile>\n";
 
 template <typename Number>
@@ -109,14 +113,15 @@ std::vector<VtkXmlFile::Place> VtkXmlFile::places(std::uint64_t& total) const {
   return result;
 }
 
-void VtkXmlFile::write(const std::filesystem::path& path, const std::string& type, const std::string& attributes,
-                       const std::string& piece_attributes) const {
+void VtkXmlFile::write(const std::filesystem::path& path, double time, const std::string& type,
+                       const std::string& attributes, const std::string& piece_attributes) const {
   std::uint64_t appended = 0;
   const std::vector<Place> at = places(appended);
   std::string text = fmt::format(
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"{0}\" version=\"1.0\" byte_order=\"LittleEndian\" "
-      "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n  <{0}{1}>\n    <Piece{2}>\n",
-      type, attributes, piece_attributes);
+      "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n  <{0}{1}>\n    <FieldData>\n      {2}{3}"
+      "</DataArray>\n    </FieldData>\n    <Piece{4}>\n",
+      type, attributes, head_of_time, time, piece_attributes);
   for (std::size_t n = 0; n < arrays_.size(); ++n) {
     const std::string& section = arrays_[n].section;
     if (n == 0 || arrays_[n - 1].section != section) text += fmt::format("      <{}>\n", section);
@@ -142,6 +147,19 @@ void VtkXmlFile::write(const std::filesystem::path& path, const std::string& typ
   SharedFile file(communicator_, path, text.size() + appended + end.size());
   file.write(pieces);
   file.close();
+}
+
+std::optional<double> VtkXmlFile::time_in(const std::filesystem::path& path) {
+  std::string head(2048, '\0');  // more than what stands before the time
+  std::ifstream file(path, std::ios::binary);
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  const std::size_t found = head.find(head_of_time);
+  if (found == std::string::npos) return std::nullopt;
+  double time = 0.0;
+  const char* end = head.data() + head.size();
+  const auto parsed = std::from_chars(head.data() + found + head_of_time.size(), end, time);
+  return parsed.ec == std::errc() && parsed.ptr != end && *parsed.ptr == '<' ? std::optional(time) : std::nullopt;
 }
 
 }  // namespace thalweg::io

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,10 +35,14 @@ public:
   void add(const std::string& section, const std::string& name, int components, std::span<const std::int64_t> values);
   void add(const std::string& section, const std::string& name, int components, std::span<const std::int32_t> values);
 
-  // Writes the file: a data set of this type ("PolyData", "ImageData") of one piece, with the attributes of either.
-  // Collective; throws RunError on every rank.
-  void write(const std::filesystem::path& path, const std::string& type, const std::string& attributes,
+  // Writes the file: a data set of this type ("PolyData", "ImageData") of one piece, with the attributes of either, and
+  // its time (s) as the field data TimeValue, from which VTK's readers take it. Collective; throws RunError on every
+  // rank.
+  void write(const std::filesystem::path& path, double time, const std::string& type, const std::string& attributes,
              const std::string& piece_attributes) const;
+
+  // The time (s) of a file; empty: it has none, or is no such file.
+  static std::optional<double> time_in(const std::filesystem::path& path);
 
 private:
   struct Array {

@@ -16,12 +16,12 @@ def chosen_frames(run, start=-np.inf, stop=np.inf, every=0.0):
     frames, found, due = shown.between(start, stop), [], -np.inf
     for k, time in enumerate(frames.times):
         if time >= due - 1e-9:
-            found.append(frames[k])
+            found.append(k)
             due = time + every
     if not found:
         where = "in this time" if len(shown) else f"(output.{kind}.every in the case)"
         raise RunFolderError(f"{run.folder}: there is no frame of the {kind} {where}.")
-    return found
+    return frames.chosen(found)
 
 
 def fluid_behind(run, frame):
@@ -32,7 +32,7 @@ def fluid_behind(run, frame):
 def scales(run, frames):
     """Ends of the scales (m/s) of grains and fluid that a dozen of the frames call for; None for what is not there."""
     some = frames[::max(1, len(frames) // 12)]
-    layers = [drawing.fluid_slice(fluid) for fluid in (fluid_behind(run, frame) for frame in some) if fluid]
+    layers = (drawing.fluid_slice(fluid) for fluid in (fluid_behind(run, frame) for frame in some) if fluid)
     flow = max((layer[0].max() for layer in layers if layer), default=None)
     if not len(run.grains):
         return None, flow
@@ -59,8 +59,8 @@ def images(run, frames, width):
 
 def write_gif(pictures, path, rate):
     from PIL import Image
-    first, *rest = [Image.fromarray(picture).quantize(128) for picture in pictures]
-    first.save(path, save_all=True, append_images=rest, duration=1000.0 / rate, loop=0)
+    quantized = (Image.fromarray(picture).quantize(128) for picture in pictures)
+    next(quantized).save(path, save_all=True, append_images=quantized, duration=1000.0 / rate, loop=0)
 
 
 def write_mp4(pictures, path, rate):

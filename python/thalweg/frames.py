@@ -113,7 +113,8 @@ class SolidFrame:
 
 
 class Frames(Sequence):
-    """The frames of a .pvd index in their order; `times` in s. A slice is a series as well."""
+    """The frames of a .pvd index in their order; `times` in s. A slice is a series as well. Each frame is made, and reads its
+    file, anew whenever it is asked for, so that a loop over many holds one."""
 
     def __init__(self, entries, kind):
         self._entries, self._kind = entries, kind
@@ -136,6 +137,10 @@ class Frames(Sequence):
         if not self._entries:
             return None
         return self[-1 if time is None else int(np.argmin(np.abs(self.times - time)))]
+
+    def chosen(self, places):
+        """The frames at these places, as a series."""
+        return Frames([self._entries[k] for k in places], self._kind)
 
     def between(self, start=-np.inf, stop=np.inf):
         """The frames of start <= time <= stop (s), to a billionth of a second."""

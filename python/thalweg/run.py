@@ -1,16 +1,15 @@
 """A run folder."""
 import json
-from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
 
-import h5py
 import numpy as np
 
 from thalweg.case_file import read_case
-from thalweg.columns import Columns
 from thalweg.errors import RunFolderError
 from thalweg.frames import FluidFrame, Frames, GrainFrame, GrainPartFrame, SolidFrame
+from thalweg.hdf5 import columns_of, opened
+from thalweg.records import Events, Probes, Records, parts_of
 from thalweg.tables import read_series
 
 
@@ -77,26 +76,24 @@ class Run:
     @cached_property
     def tracks(self):
         """Tracks of single grains (`analysis.tracks`): `id`, `time` and arrays [time, grain, axis], of which `position` goes on
-        where a grain leaves a periodic box; None where there are none."""
-        path = self.folder / "tracks.h5"
-        if not path.exists():
-            return None
-        with opened(path) as file:
-            return columns_of(file)
+        where a grain leaves a periodic box, each read when it is asked for; None where there are none."""
+        parts = parts_of(self.folder, "tracks")
+        return parts and Records(parts)
 
     @cached_property
     def probes(self):
         """Velocity (m/s) [time, point, axis] and pressure (Pa) [time, point] of the fluid at high rate (`analysis.probes`), with
-        `time` (s) and `position` (m) [point, axis], the centres of the cells; None where there are none."""
-        path = self.folder / "probes.h5"
-        if not path.exists():
-            return None
-        with opened(path) as file:
-            columns = columns_of(file)
-        cells = np.column_stack([columns[f"cell_{axis}"] for axis in "xyz"])
-        spacing = float(self.case["domain"]["spacing"])
-        return Columns({"position": (cells + 0.5) * spacing, **columns}, {**columns.units, "position": "m"},
-                       columns.components)
+        `time` (s) and `position` (m) [point, axis], the centres of the cells, each read when it is asked for; None where there
+        are none."""
+        parts = parts_of(self.folder, "probes")
+        return parts and Probes(parts, float(self.case["domain"]["spacing"]))
+
+    @cached_property
+    def entrainment(self):
+        """Events at which grains started to move (`analysis.entrainment`) by name, each with its arrays and, as `attributes`, its
+        single numbers; None where they are not looked for."""
+        parts = parts_of(self.folder, "entrainment")
+        return parts and Events(parts)
 
     @cached_property
     def bed(self):
@@ -243,31 +240,7 @@ def runs_of_sweep(folder):
     return found
 
 
-@contextmanager
-def opened(path):
-    """An HDF5 file for reading; RunFolderError where it cannot be read."""
-    try:
-        with h5py.File(path) as file:
-            yield file
-    except (OSError, RuntimeError, KeyError):   # h5py raises any of them
-        raise RunFolderError(f"{path} cannot be read: it is being written at this moment, or a kill has damaged it; try again, or "
-                             "restart the run, which writes a new one.") from None
-
-
-def columns_of(group):
-    """The arrays of an HDF5 group with their units and components."""
-    arrays = {name: data[()] for name, data in group.items()}
-    units = {name: text(data.attrs.get("unit", "1")) for name, data in group.items()}
-    components = {name: text(data.attrs["components"]).split() for name, data in group.items()
-                  if "components" in data.attrs}
-    return Columns(arrays, units, components)
-
-
 def read_bed(path):
     """The grains in a bed.h5: position, radius and what else is there, one row a grain."""
     with opened(path) as file:
         return columns_of(file["grains"])
-
-
-def text(value):
-    return value.decode() if isinstance(value, bytes) else str(value)

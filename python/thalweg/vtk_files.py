@@ -4,6 +4,7 @@ Arrays lie in one appended section, raw or in base64, in blocks compressed by zl
 bits: the format of the VTK User's Guide, "VTK XML formats", as Thalweg and VTK's own writers make it.
 """
 import base64
+import mmap
 import xml.etree.ElementTree as xml
 import zlib
 
@@ -16,47 +17,59 @@ TYPES = {"Int8": "i1", "UInt8": "u1", "Int32": "i4", "UInt32": "u4", "Int64": "i
 
 
 class Appended:
-    """The appended section of a file: bytes by offset."""
+    """The appended section of a file: bytes by offset. data: the file, of which only what is asked for is read; start: of the
+    section."""
 
-    def __init__(self, data, encoded, header_type, compressed):
-        self.data, self.encoded, self.compressed = data, encoded, compressed
+    def __init__(self, data, start, encoded, header_type, compressed):
+        self.data, self.start, self.encoded, self.compressed = data, start, encoded, compressed
         self.word = np.dtype("<" + TYPES[header_type])
 
     def _piece(self, start, size):
         """`size` bytes that begin at `start`, and where the next piece begins; in base64 every piece has its own end."""
+        at = self.start + start
         if not self.encoded:
-            return self.data[start:start + size], start + size
+            return self.data[at:at + size], start + size
         length = (size + 2) // 3 * 4
-        return base64.b64decode(self.data[start:start + length])[:size], start + length
+        return base64.b64decode(self.data[at:at + length])[:size], start + length
 
     def bytes_at(self, offset):
         word = self.word.itemsize
         if not self.compressed:
             size = int(np.frombuffer(self._piece(offset, word)[0], self.word)[0])
             return self._piece(offset, word + size)[0][word:]
-        blocks = int(np.frombuffer(self._piece(offset, 3 * word)[0], self.word)[0])
+        blocks, block, last = (int(n) for n in np.frombuffer(self._piece(offset, 3 * word)[0], self.word))
         header, start = self._piece(offset, (3 + blocks) * word)
         sizes = np.frombuffer(header, self.word)[3:].astype(int)
-        joined, _ = self._piece(start, int(sizes.sum()))
-        ends = np.cumsum(sizes)
-        return b"".join(zlib.decompress(joined[end - size:end]) for size, end in zip(sizes, ends))
+        whole = bytearray(blocks * block - (block - last if last else 0))
+        if self.encoded:   # all blocks are one piece
+            data, at = self._piece(start, int(sizes.sum()))[0], 0
+        else:
+            data, at = self.data, self.start + start
+        for n, size in enumerate(sizes):
+            values = zlib.decompress(data[at:at + size])
+            whole[n * block:n * block + len(values)] = values
+            at += size
+        return whole
 
 
 def open_file(path):
     """The XML tree of a file and its appended section (None without one)."""
     if not path.exists():
         raise RunFolderError(f"{path}: the frame its index names does not exist.")
-    content = path.read_bytes()
+    if path.stat().st_size == 0:
+        raise RunFolderError(f"{path}: the file is empty.")
+    with path.open("rb") as file:
+        content = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
     mark = content.find(b"<AppendedData")
     if mark < 0:
-        return xml.fromstring(content), None
+        return xml.fromstring(content[:]), None
     root = xml.fromstring(content[:mark] + b"</VTKFile>")
-    start = content.index(b"_", mark) + 1
+    start = content.find(b"_", mark) + 1
     encoded = b'encoding="base64"' in content[mark:start]
     compressor = root.get("compressor")
     if compressor not in (None, "vtkZLibDataCompressor"):
         raise RunFolderError(f"{path}: its arrays are compressed by {compressor}, only vtkZLibDataCompressor is read.")
-    return root, Appended(content[start:], encoded, root.get("header_type", "UInt32"), compressor is not None)
+    return root, Appended(content, start, encoded, root.get("header_type", "UInt32"), compressor is not None)
 
 
 def arrays_in(section, appended, path):
@@ -110,6 +123,8 @@ def read_image(path):
         else:
             inside = read_image(path.parent / piece.get("Source"))[2]
         place = tuple(slice(*(extent[axis] - whole[axis, 0])) for axis in (2, 1, 0))
+        if np.array_equal(extent, whole):
+            return corner, spacing, inside
         for name, values in inside.items():
             shape = (*(whole[:, 1] - whole[:, 0])[::-1], *values.shape[3:])
             arrays.setdefault(name, np.zeros(shape, values.dtype))[place] = values
@@ -120,4 +135,12 @@ def read_index(path):
     """(time in s, path) of every entry of a .pvd index; none if there is no index yet."""
     if not path.exists():
         return []
-    return [(float(e.get("timestep")), path.parent / e.get("file")) for e in xml.parse(path).iter("DataSet")]
+    content = path.read_bytes()
+    try:
+        root = xml.fromstring(content)
+    except xml.ParseError:   # the run is appending a frame, or has been killed while it did
+        try:
+            root = xml.fromstring(content[:content.rfind(b"/>") + 2] + b"</Collection></VTKFile>")
+        except xml.ParseError:
+            raise RunFolderError(f"{path} is damaged; a restart of the run makes it again from the frames.") from None
+    return [(float(e.get("timestep")), path.parent / e.get("file")) for e in root.iter("DataSet")]

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Damaged files: cases, surfaces, beds, checkpoints, records and what else a restart reads.
 
 Called by ctest: files_fuzz_test.py THALWEG NUMBER [SEED]. Each of NUMBER damaged files (damage.py) is given to the program, which

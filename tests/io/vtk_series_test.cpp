@@ -207,13 +207,89 @@ TEST(VtkSeries, WritesAnInterruptedAndContinuedSeries) {
   pictures.write(0, std::nullopt);
   pictures.write(2, 0.0);
   pictures.write(9, 0.5);  // the run then stops, and is continued from a checkpoint at 0.5 s:
-  pictures.write(7, 0.5);  // the picture at 0.9 s leaves the index
+  pictures.write(7, 0.5);  // the picture at 0.9 s is removed
   if (rank_of(MPI_COMM_WORLD) != 0) return;
-  const PvdIndex index(folder / "wet/grains.pvd", 100.0);
+  const PvdIndex index(MPI_COMM_SELF, folder / "wet/grains.pvd", 100.0);
   ASSERT_EQ(index.entries().size(), 3u);
   EXPECT_EQ(index.entries()[1].time, 0.1 * 2.0);  // the same bits as written
   EXPECT_EQ(index.entries()[2].file, "grains/grains_000000007.vtp");
   EXPECT_FALSE(std::filesystem::exists(folder / "without_fluid/fluid.pvd"));
+}
+
+// Solids at 0, 0.1, ..., 0.9 s.
+void write_frames(const std::filesystem::path& folder) {
+  SolidSeries series(MPI_COMM_WORLD, folder);
+  const TriangleMesh one{{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}}, {{0, 1, 2}}};
+  for (int step = 0; step < 10; ++step) series.write(0.1 * step, step, {one});
+  series.put_on_disk();
+}
+
+// Appending leaves the same file as writing it at once, valid XML at its end.
+TEST(PvdIndex, IsTheSameAppendedAsTakenUp) {
+  const ScratchFolder folder;
+  write_frames(folder.path());
+  const std::string appended = contents(folder / "solids.pvd");
+  MPI_Barrier(MPI_COMM_WORLD);
+  EXPECT_TRUE(appended.ends_with("file=\"solids/solids_000000009.vtp\"/>\n  </Collection>\n</VTKFile>\n"));
+  PvdIndex again(MPI_COMM_WORLD, folder / "solids.pvd", 0.9);
+  EXPECT_EQ(contents(folder / "solids.pvd"), appended);
+}
+
+// Cut anywhere, as by a kill within a write, or gone: a restart makes it from the frames.
+TEST(PvdIndex, IsRestoredFromTheFrames) {
+  const ScratchFolder folder;
+  write_frames(folder.path());
+  const auto path = folder / "solids.pvd";
+  const std::string whole = contents(path);
+  const bool first = rank_of(MPI_COMM_WORLD) == 0;
+  const auto expect_restored = [&](const std::string& damaged) {
+    MPI_Barrier(MPI_COMM_WORLD);
+    if (first) testing::put(path, damaged);
+    PvdIndex(MPI_COMM_WORLD, path, 1.0);
+    EXPECT_EQ(contents(path), whole) << damaged;
+  };
+  for (std::size_t size = 0; size < whole.size(); size += 37) expect_restored(whole.substr(0, size));
+  std::string hole = whole;
+  hole.replace(300, 200, 200, ' ');
+  expect_restored(hole);
+  expect_restored(whole.substr(0, 400) + whole.substr(whole.size() - 30));  // the tail behind half an entry
+  MPI_Barrier(MPI_COMM_WORLD);
+  if (first) std::filesystem::remove(path);
+  PvdIndex(MPI_COMM_WORLD, path, 1.0);
+  EXPECT_EQ(contents(path), whole);
+}
+
+TEST(PvdIndex, DropsLaterFramesAndUnfinishedOnes) {
+  const ScratchFolder folder;
+  write_frames(folder.path());
+  if (rank_of(MPI_COMM_WORLD) == 0) {
+    std::filesystem::remove(folder / "solids.pvd");  // the frames themselves know
+    testing::put(folder / "solids/solids_000000010.vtp.partial", "half");
+    testing::put(folder / "solids/mine.vtp", "somebody else's");
+  }
+  PvdIndex index(MPI_COMM_WORLD, folder / "solids.pvd", 0.4);
+  if (rank_of(MPI_COMM_WORLD) == 0) {
+    EXPECT_EQ(index.entries().size(), 5u);
+    EXPECT_TRUE(std::filesystem::exists(folder / "solids/solids_000000004.vtp"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "solids/solids_000000005.vtp"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "solids/solids_000000010.vtp.partial"));
+    EXPECT_TRUE(std::filesystem::exists(folder / "solids/mine.vtp"));
+  }
+}
+
+// Somebody has changed or removed it meanwhile.
+TEST(PvdIndex, IsWrittenAnewWhereItIsNotWhatItWas) {
+  const ScratchFolder folder;
+  PvdIndex index(MPI_COMM_WORLD, folder / "solids.pvd", std::nullopt);
+  for (int step = 0; step < 3; ++step) {
+    index.add(0.1 * step, "solids/a.vtp");
+    MPI_Barrier(MPI_COMM_WORLD);
+    if (rank_of(MPI_COMM_WORLD) == 0 && step == 0) testing::put(folder / "solids.pvd", "changed");
+    if (rank_of(MPI_COMM_WORLD) == 0 && step == 1) std::filesystem::remove(folder / "solids.pvd");
+    MPI_Barrier(MPI_COMM_WORLD);
+  }
+  const std::string text = contents(folder / "solids.pvd");
+  for (const char* time : {"\"0\"", "\"0.1\"", "\"0.2\""}) EXPECT_NE(text.find(time), std::string::npos) << text;
 }
 
 TEST(VtkSeries, AFolderThatCannotBeWrittenIsARunErrorOnEveryRank) {

@@ -1,4 +1,5 @@
 """A run folder read into numpy: every kind of file, finished or half written."""
+import tracemalloc
 import unittest
 
 import h5py
@@ -6,6 +7,7 @@ import numpy as np
 
 import made_up_folder as made_up
 import thalweg
+from thalweg import film
 from thalweg.vtk_files import read_image, read_points
 
 
@@ -30,6 +32,17 @@ def wide_headers(writer):
 
 def small_blocks(writer):
     writer.SetBlockSize(4096)   # many blocks an array
+
+
+
+def peak_of(call):
+    """The most memory (bytes) of Python's and numpy's objects that a call takes at a time, and what it returns."""
+    tracemalloc.start()
+    try:
+        result = call()
+        return tracemalloc.get_traced_memory()[1], result
+    finally:
+        tracemalloc.stop()
 
 
 class VtkFiles(made_up.MadeUpFolder):
@@ -169,18 +182,91 @@ class RunFolder(made_up.MadeUpFolder):
         with self.assertRaisesRegex(thalweg.RunFolderError, "no case.yaml"):
             thalweg.Run(self.folder / "grains")
 
-    def test_tracks(self):
-        self.assertIsNone(thalweg.Run(self.folder).tracks)
-        places = np.arange(24.0).reshape(4, 2, 3)
-        with h5py.File(self.folder / "tracks.h5", "w") as file:
-            for name, values, unit in (("id", np.array([3, 17]), "1"), ("time", np.arange(4.0), "s"), ("position", places, "m")):
+    def write_part(self, path, times, places):
+        """A file of the tracks of grains 3 and 17."""
+        path.parent.mkdir(exist_ok=True)
+        with h5py.File(path, "w") as file:
+            for name, values, unit in (("id", np.array([3, 17]), "1"), ("time", np.array(times, float), "s"),
+                                       ("position", np.array(places, float), "m"), ("velocity", -np.array(places, float), "m/s")):
                 file.create_dataset(name, data=values).attrs["unit"] = unit
             file["position"].attrs["components"] = "x y z"
+
+    def test_tracks(self):
+        """Parts in the order of their numbers, behind the single file of an older version, of which a restart has outdated a row."""
+        self.assertIsNone(thalweg.Run(self.folder).tracks)
+        places = np.arange(90.0).reshape(15, 2, 3)
+        self.write_part(self.folder / "tracks/part_000000000.h5", [], np.zeros((0, 2, 3)))
+        self.write_part(self.folder / "tracks/part_000000009.h5", np.arange(3, 9), places[3:9])
+        self.write_part(self.folder / "tracks/part_1000000000.h5", np.arange(9, 15), places[9:])
+        self.assertEqual(len(thalweg.Run(self.folder).tracks["time"]), 12)
+        self.write_part(self.folder / "tracks.h5", np.arange(4), np.append(places[:3], [[[7, 7, 7]] * 2], 0))
         tracks = thalweg.Run(self.folder).tracks
         np.testing.assert_array_equal(tracks["id"], (3, 17))
-        np.testing.assert_array_equal(tracks["position"][:, 1], places[:, 1])
-        self.assertEqual(tracks.units, {"id": "1", "time": "s", "position": "m"})
-        self.assertEqual(tracks.components["position"], ["x", "y", "z"])
+        np.testing.assert_array_equal(tracks["time"], np.arange(15))
+        np.testing.assert_array_equal(tracks["position"], places)
+        np.testing.assert_array_equal(dict(tracks)["velocity"], -places)
+        self.assertEqual(tracks.units, {"id": "1", "time": "s", "position": "m", "velocity": "m/s"})
+        self.assertEqual(tracks.components, {"position": ["x", "y", "z"]})
+        self.assertIn("position [m] (15, 2, 3)", repr(tracks))
+        self.assertNotIn("force", tracks)
+        (self.folder / "tracks/part_000000009.h5").write_bytes(b"damaged")
+        with self.assertRaisesRegex(thalweg.RunFolderError, "part_000000009.h5 cannot be read: a restart has replaced it"):
+            thalweg.Run(self.folder).tracks
+
+    def test_of_tracks_only_what_is_asked_for_is_read(self):
+        for part in range(20):
+            self.write_part(self.folder / f"tracks/part_{part}.h5", 1000 * part + np.arange(1000), np.zeros((1000, 2, 3)))
+        peak, tracks = peak_of(lambda: thalweg.Run(self.folder).tracks)
+        self.assertLess(peak, 1e6)   # the times are 160 kB
+        peak, position = peak_of(lambda: tracks["position"])
+        self.assertEqual(position.nbytes, 960000)
+        self.assertLess(peak, 1.3 * position.nbytes)   # it, and a part
+
+    def test_entrainment(self):
+        self.assertIsNone(thalweg.Run(self.folder).entrainment)
+        (self.folder / "entrainment").mkdir()
+        for part, events in ((0, ()), (5, ((8, 0.4), (9, 0.1))), (9, ((8, 0.7), (9, 0.8)))):   # the last part watched otherwise
+            with h5py.File(self.folder / f"entrainment/part_{part}.h5", "w") as file:
+                for number, time in events:
+                    group = file.create_group(f"event_00000{number}")
+                    group.attrs["time"], group.attrs["time_unit"] = time, "s"
+                    group.create_dataset("fluid_force", data=[time, 2 * time]).attrs["unit"] = "N"
+        events = thalweg.Run(self.folder).entrainment
+        self.assertEqual([(name, event.attributes) for name, event in events.items()],
+                         [("event_000009", {"time": 0.1}), ("event_000008", {"time": 0.4}), ("event_000010", {"time": 0.7}),
+                          ("event_000011", {"time": 0.8})])
+        np.testing.assert_array_equal(events["event_000011"]["fluid_force"], (0.8, 1.6))
+        self.assertEqual(events["event_000011"].units, {"fluid_force": "N"})
+
+    def test_an_index_whose_end_is_being_written(self):
+        self.write_frames((0.0, 0.1, 0.2), np.zeros((3, 2, 3)))
+        path = self.folder / "grains.pvd"
+        whole = path.read_text()
+        for torn in (whole[:-30], whole[:whole.rindex("grains_2")], whole[:whole.rindex("grains_2")] + "ion></VTKFile>"):
+            path.write_text(torn)
+            self.assertEqual(list(thalweg.Run(self.folder).grains.times), [0.0, 0.1, 0.2][:torn.count("/>")])
+        path.write_text(whole[:40] + "<" + whole[40:])
+        with self.assertRaisesRegex(thalweg.RunFolderError, "grains.pvd is damaged; a restart"):
+            thalweg.Run(self.folder).grains
+
+    def test_a_frame_is_not_held_twice(self):
+        values = np.random.default_rng(1).random((60, 50, 40))
+        made_up.write_image(self.folder / "fluid/a.vti", (0, 40, 0, 50, 0, 60), 1e-3, {"pressure": values, "density": values}, raw)
+        peak, image = peak_of(lambda: read_image(self.folder / "fluid/a.vti"))
+        np.testing.assert_array_equal(image[2]["pressure"], values)
+        self.assertLess(peak, 2.5 * values.nbytes)   # two arrays, and a block on its way into them
+
+    def test_a_film_holds_one_frame_at_a_time(self):
+        def look_at_all(count):
+            run = thalweg.Run(self.folder)
+            frames = film.chosen_frames(run, stop=0.1 * count - 0.05)
+            film.scales(run, frames)   # of a dozen of them
+            return sum(len(frame.velocity) == len(places) for frame in frames)
+        places = np.random.default_rng(1).random((2000, 3))
+        self.write_frames(0.1 * np.arange(96), 96 * [places], velocity=96 * [places])
+        few, many = (peak_of(lambda: look_at_all(count)) for count in (24, 96))
+        self.assertEqual((few[1], many[1]), (24, 96))
+        self.assertLess(many[0], few[0] + 3 * places.nbytes)   # of 72 frames more
 
     def test_frames_of_grains(self):
         places = np.arange(18.0).reshape(3, 2, 3)

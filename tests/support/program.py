@@ -41,6 +41,7 @@ def contents_below(folder):
 
 class ProgramTest(unittest.TestCase):
     CASE = ""   # text of case.yaml; subclasses give theirs
+    TIMEOUT = 120   # s, of one run
 
     def setUp(self):
         holder = tempfile.TemporaryDirectory()
@@ -55,7 +56,7 @@ class ProgramTest(unittest.TestCase):
 
     def thalweg(self, *arguments, ranks=0):
         return subprocess.run(self.command(arguments, ranks), capture_output=True, text=True, errors="surrogateescape",
-                              timeout=120, cwd=self.folder)
+                              timeout=self.TIMEOUT, cwd=self.folder)
 
     def run_well(self, *arguments, ranks=0):
         result = self.thalweg(*arguments, ranks=ranks)

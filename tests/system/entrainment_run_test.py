@@ -7,11 +7,12 @@ Called by ctest: entrainment_run_test.py THALWEG MPIEXEC [unittest arguments]
 import sys
 from pathlib import Path
 
-import h5py
 import numpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 import program
+import thalweg
 from program import ProgramTest
 
 D, DX = 4.8e-3, 0.8e-3   # m
@@ -55,8 +56,10 @@ analysis:
 
     def events(self, run):
         """By name: attributes and arrays."""
-        with h5py.File(self.folder / run / "entrainment.h5") as file:
-            return {name: (dict(group.attrs), {key: data[()] for key, data in group.items()}) for name, group in file.items()}
+        return {name: (event.attributes, dict(event)) for name, event in thalweg.Run(self.folder / run).entrainment.items()}
+
+    def files_of(self, run):
+        return {path.name: path.read_bytes() for pattern in ("entrainment/*", "series.csv") for path in (self.folder / run).glob(pattern)}
 
     def assert_same_events(self, a, b):
         self.assertEqual(list(self.events(a)), list(self.events(b)))
@@ -75,8 +78,7 @@ analysis:
         self.assertGreaterEqual(len(events), 2)   # both proud grains
         for ranks in (2, 4):
             self.run_well("run", self.case, "--out", f"on_{ranks}", ranks=ranks)
-            for name in ("entrainment.h5", "series.csv"):
-                self.assertEqual((self.folder / f"on_{ranks}" / name).read_bytes(), (self.folder / "one" / name).read_bytes())
+            self.assertEqual(self.files_of(f"on_{ranks}"), self.files_of("one"))
             self.assertEqual(self.last_checkpoint(f"on_{ranks}").read_bytes(), self.last_checkpoint("one").read_bytes())
             self.assertEqual(self.summary(f"on_{ranks}")["entrainment"], self.summary("one")["entrainment"])
         for out, step in (("one", 600), ("on_2", 1200)):   # what comes later once more, in the same folder: no event twice

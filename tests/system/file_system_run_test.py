@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """File systems as clusters have them: nodes that do not see yet what others have written, and one without locks.
 
 Called by ctest: file_system_run_test.py THALWEG MPIEXEC LIBRARY [unittest arguments]; the library makes such a file system

@@ -2,8 +2,9 @@
 """A run on two ranks that is killed again and again, and goes on each time on other ranks, to the same bits.
 
 Called by ctest: kill_run_test.py THALWEG MPIEXEC NUMBER_OF_KILLS [SEED]. SIGKILL to mpirun and its ranks at once, as when a
-node fails: every second time at a random moment, else within the writing of a checkpoint, as soon as its unfinished file
-is seen and a random moment later. The run writes a checkpoint every few steps, and series, frames and tracks beside it.
+node fails: every fourth time at a random moment, else within the writing of a checkpoint, of a part of the records or of a
+frame, as soon as its unfinished file is seen and a random moment later. The run writes a checkpoint every few steps, and
+whatever a run can write beside it; in the end every file must be that of a run that was never killed.
 """
 import os
 import random
@@ -20,6 +21,7 @@ del sys.argv[3:]
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 import program
+import numpy
 import thalweg
 from program import ProgramTest
 
@@ -41,11 +43,23 @@ output:
   series: {every: 0.001}
   grains: {every: 0.002}
   fluid: {every: 0.004, fields: [velocity]}
-  checkpoint: {every: 0.001, keep: 2}
-analysis: {transport_rate: {}, tracks: {grains: [0, 3], every: 2.0e-4}}
+  grain_parts: [{name: some, ids: [1, 2], every: 0.003}]
+  fluid_parts: [{name: bottom, plane: {axis: z, at: 0.001}, fields: [pressure], every: 0.003}]
+  checkpoint: {every: 0.002, keep: 2}
+analysis:
+  transport_rate: {}
+  fluid_statistics: {every: 1.0e-3}
+  tracks: {grains: [0, 3], every: 2.0e-4}
+  probes: {points: [[0.01, 0.01, 0.01]], every: 3.0e-4}
+  entrainment: {grains: [0, 1, 2, 3, 4, 5], rest_time: 1.0e-4, displacement: 0.01, memory: 2.0e-3}
 """
-    RANKS = (1, 2, 4)
-    STEPS_A_KILL = 120    # so that the end is not there before the last kill
+    RANKS = (1, 4)   # that go on; the first part of the run has 2
+    # What tells of the runs rather than of their results: times of day, commands, the earlier cases.
+    OF_RUNS = ("run.log", "summary.json", "case.yaml", "case_until_step_*.yaml", ".lock")
+    UNFINISHED = {"checkpoint": ("checkpoints",), "records": ("tracks", "probes", "entrainment"),
+                  "frame": ("grains", "fluid", "grain_parts/some", "fluid_parts/bottom")}
+    STEPS_A_KILL = 80    # so that the end is not there before the last kill
+    TIMEOUT = 120 + 20 * KILLS
 
     def setUp(self):
         super().setUp()
@@ -85,41 +99,54 @@ analysis: {transport_rate: {}, tracks: {grains: [0, 3], every: 2.0e-4}}
             time.sleep(0.0005)
         return False
 
-    def unfinished(self):
-        return list((self.folder / "run/checkpoints").glob("*.partial"))
+    def unfinished(self, kind):
+        return [path for folder in self.UNFINISHED[kind] for path in (self.folder / "run" / folder).glob("*.partial")]
 
     def step(self):
         steps = [int(re.search(r"\d+", path.name)[0]) for path in (self.folder / "run/checkpoints").glob("step_*.h5")]
         return max(steps, default=0)
 
-    def assert_same_pictures(self, run, other):
-        """The same frames at the same times, and no frame that only one has."""
-        for pattern in ("*.pvd", "grains/*", "fluid/*"):
-            found = [{path.name: path.read_bytes() for path in (self.folder / out).glob(pattern)} for out in (run, other)]
-            self.assertEqual(list(found[0]), list(found[1]))
-            self.assertTrue(found[0] and found[0] == found[1], pattern)
+    def results_of(self, run):
+        """Bytes of all files by their places in the folder."""
+        paths = [path for path in (self.folder / run).rglob("*") if path.is_file()]
+        return {str(path.relative_to(self.folder / run)): path.read_bytes() for path in paths
+                if not any(path.match(pattern) for pattern in self.OF_RUNS)}
 
-    def assert_same_tracks(self, run, other):
-        """Of a file that a kill has damaged the rows before the restart are in the one that was set aside."""
-        found, expected = (thalweg.Run(self.folder / out).tracks for out in (run, other))
-        rows = len(found["time"])
-        if not list((self.folder / run).glob("tracks.damaged_*.h5")):
-            self.assertEqual(rows, len(expected["time"]))
-        for name in ("time", "position", "velocity"):
-            self.assertEqual(found[name].tobytes(), expected[name][len(expected["time"]) - rows:].tobytes(), name)
+    def assert_same_results(self, run, other):
+        found, expected = self.results_of(run), self.results_of(other)
+        self.assertEqual(sorted(found), sorted(expected))
+        self.assertEqual([name for name in found if found[name] != expected[name]], [])
+        for kind in ("series.csv", "profiles.h5", "grains.pvd", "fluid.pvd", "grains/", "fluid/", "grain_parts/some/",
+                     "fluid_parts/bottom/", "tracks/part", "probes/part", "entrainment/part", "checkpoints/step", "bed.h5"):
+            self.assertTrue(any(name.startswith(kind) for name in found), kind)
+        self.assertGreaterEqual(len(thalweg.Run(self.folder / run).entrainment), 3)
+
+    def assert_same_rest(self, run, other, begin):
+        """Of a run that went on in a folder of its own: what it recorded after that time."""
+        for records in ("tracks", "probes"):
+            found, expected = (getattr(thalweg.Run(self.folder / out), records) for out in (run, other))
+            late = expected["time"] > begin + 1e-9
+            for name in set(found) - {"id", "cell_x", "cell_y", "cell_z"} - {"position"} * (records == "probes"):
+                numpy.testing.assert_array_equal(found[name], expected[name][late], f"{run}: {records} {name}")
+
+    def wait_for(self, kind, process, before):
+        """Until a file of this kind is being written, by a run that has got on; returns the ranks."""
+        self.wait_until(lambda: self.step() > before, process, 60)
+        ranks = self.processes()
+        self.wait_until(lambda: self.unfinished(kind), process, 60)   # it is there from its first byte to the last
+        time.sleep(self.chance.uniform(0.0, 0.004))
+        return ranks
 
     def test_same_bits_after_any_kill(self):
-        kills, within, goes_on = 0, 0, 0
+        kills, within, goes_on = 0, dict.fromkeys(self.UNFINISHED, 0), 0
         for number in range(KILLS):
             before = self.step()
-            process = self.begin(self.chance.choice(self.RANKS))
+            process = self.begin(2 if number == 0 else self.chance.choice(self.RANKS))
             self.addCleanup(process.stderr.close)
+            kind = (*self.UNFINISHED, None)[number % 4]
             ranks = []
-            if number % 2 == 0:   # within a checkpoint: its file is there from its first byte to the last
-                self.wait_until(lambda: self.step() > before, process, 60)   # the run gets on
-                ranks = self.processes()
-                self.wait_until(self.unfinished, process, 60)
-                time.sleep(self.chance.uniform(0.0, 0.004))
+            if kind:
+                ranks = self.wait_for(kind, process, before)
             else:
                 time.sleep(self.chance.uniform(0.0, 1.5))
             if process.poll() is not None:
@@ -127,22 +154,21 @@ analysis: {transport_rate: {}, tracks: {grains: [0, 3], every: 2.0e-4}}
                 break
             self.kill(process, ranks)
             kills += 1
-            within += bool(self.unfinished())
+            for kind in within:
+                within[kind] += bool(self.unfinished(kind))
             goes_on += self.step() > before
-        print(f"{kills} kills, {within} with an unfinished file, {goes_on} after new checkpoints; at step {self.step()}")
+        print(f"{kills} kills, with unfinished files: {within}; {goes_on} after new checkpoints; at step {self.step()}")
         self.assertGreaterEqual(kills, 3 * KILLS // 4)   # the end was not there much sooner
-        self.assertGreater(within, KILLS // 8)
+        self.assertGreater(sum(within.values()), KILLS // 8)
+        begin = self.step() * 1e-4
         for ranks in self.RANKS:   # also each of the ways to the end
             self.run_well("run", self.case, "--restart", "run", "--out", f"end_{ranks}", ranks=ranks)
         self.run_well("run", self.case, "--restart", "run")
         self.run_well("run", self.case, "--out", "straight", ranks=2)
-        straight = self.last_checkpoint("straight").read_bytes()
-        for end in ("run",) + tuple(f"end_{ranks}" for ranks in self.RANKS):
-            self.assertEqual(self.last_checkpoint(end).read_bytes(), straight, end)
-        self.assertEqual((self.folder / "run/series.csv").read_text(), (self.folder / "straight/series.csv").read_text())
-        self.assert_same_pictures("run", "straight")
-        self.assert_same_tracks("run", "straight")
-        self.assertEqual(self.unfinished(), [])
+        self.assert_same_results("run", "straight")
+        for ranks in self.RANKS:
+            self.assertEqual(self.last_checkpoint(f"end_{ranks}").read_bytes(), self.last_checkpoint("straight").read_bytes())
+            self.assert_same_rest(f"end_{ranks}", "straight", begin)
 
 
 if __name__ == "__main__":

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Tracks of single grains in a whole run: the same file on any ranks, no row twice after a restart, and a run that does not
+"""Tracks of single grains in a whole run: the same files on any ranks, no row twice after a restart, and a run that does not
 notice them.
 
 Called by ctest: tracks_run_test.py THALWEG MPIEXEC [unittest arguments]
 """
+import shutil
 import sys
 from pathlib import Path
 
@@ -44,6 +45,10 @@ analysis:
     def tracks(self, run):
         return thalweg.Run(self.folder / run).tracks
 
+    def files_of(self, run):
+        """Bytes of the parts of the tracks and of the series, by name."""
+        return {path.name: path.read_bytes() for pattern in ("tracks/*", "series.csv") for path in (self.folder / run).glob(pattern)}
+
     def assert_same_tracks(self, a, b):
         for name, values in self.tracks(a).items():
             self.assertEqual(values.tobytes(), self.tracks(b)[name].tobytes(), name)
@@ -52,8 +57,7 @@ analysis:
         self.run_well("run", self.case, "--out", "one")
         for ranks in (2, 4):
             self.run_well("run", self.case, "--out", f"on_{ranks}", ranks=ranks)
-            for name in ("tracks.h5", "series.csv"):
-                self.assertEqual((self.folder / f"on_{ranks}" / name).read_bytes(), (self.folder / "one" / name).read_bytes())
+            self.assertEqual(self.files_of(f"on_{ranks}"), self.files_of("one"))
             self.assertEqual(self.last_checkpoint(f"on_{ranks}").read_bytes(), self.last_checkpoint("one").read_bytes())
         tracks, run = self.tracks("one"), thalweg.Run(self.folder / "one")
         numpy.testing.assert_array_equal(tracks["id"], (1, 6))
@@ -86,30 +90,34 @@ analysis:
         self.assertEqual(others.returncode, 2, others.stderr)
         self.assertIn("its id is not that of this run", others.stderr)
 
-    def test_a_file_that_a_kill_has_damaged_is_set_aside(self):
-        self.run_well("run", self.case, "--out", "straight")
-        state, late = self.last_checkpoint("straight").read_bytes(), self.tracks("straight")["time"] > 0.02
-        self.run_well("run", self.case, "--out", "run", "--until", "0.035")
-        whole = (self.folder / "run/tracks.h5").read_bytes()
-        damaged = (whole[:len(whole) // 2], b"", whole[:60] + b"\xa5" * 200 + whole[260:])
-        half_way = self.folder / "run/checkpoints/step_200.h5"
-        for number, content in enumerate(damaged, 1):
-            (self.folder / "run/tracks.h5").write_bytes(content)
-            with self.assertRaisesRegex(thalweg.RunFolderError, "tracks.h5 cannot be read: it is being written at this moment, or"):
-                self.tracks("run")
-            said = self.run_well("run", self.case, "--out", "run", "--restart", half_way, ranks=number % 3).stdout
-            warning = f"warning: run/tracks.h5 is damaged, as by a kill while it was being written, and cannot be continued: it is " \
-                      f"kept as tracks.damaged_{number}.h5, and a new file begins at 0.02 s"
-            self.assertIn(warning, said)
-            self.assertIn(warning, (self.folder / "run/run.log").read_text())
-            self.assertEqual((self.folder / f"run/tracks.damaged_{number}.h5").read_bytes(), content)
-            numpy.testing.assert_array_equal(self.tracks("run")["position"], self.tracks("straight")["position"][late])
-            self.assertEqual(self.last_checkpoint("run").read_bytes(), state)
-        for number, content in enumerate(damaged, 1):   # none has been overwritten by a later one
-            self.assertEqual((self.folder / f"run/tracks.damaged_{number}.h5").read_bytes(), content)
-        (self.folder / "run/mine.damaged_1.h5").write_text("not a run's")
-        self.run_well("run", self.case, "--out", "run", "--overwrite", "--until", "0.001")
-        self.assertEqual([path.name for path in (self.folder / "run").glob("*damaged*")], ["mine.damaged_1.h5"])
+    def test_a_restart_needs_no_part_after_its_checkpoint(self):
+        """As a kill or a loss of power leaves them: gone, empty, unfinished."""
+        self.run_well("run", self.case, "--out", "straight", "--set", "output.checkpoint.every=0.01")
+        self.assertEqual(sorted(self.files_of("straight")), [f"part_{step:09d}.h5" for step in (0, 100, 200, 300, 400)] + ["series.csv"])
+        shutil.copytree(self.folder / "straight", self.folder / "run")
+        parts = self.folder / "run/tracks"
+        (parts / "part_000000300.h5").write_bytes(b"")
+        (parts / "part_000000400.h5").rename(parts / "part_000000400.h5.partial")
+        self.run_well("run", self.case, "--restart", self.folder / "run/checkpoints/step_200.h5", "--set",
+                      "output.checkpoint.every=0.01", ranks=2)
+        self.assertEqual(self.files_of("run"), self.files_of("straight"))
+
+    def test_records_that_are_no_longer_wanted_do_not_outlive_their_course(self):
+        """A restart that goes back without the tracks, and one that takes them up again: none of the course that was left."""
+        self.run_well("run", self.case, "--out", "run", "--until", "0.03")
+        self.run_well("run", self.case, "--restart", self.folder / "run/checkpoints/step_200.h5", "--out", "run", "--set", "analysis={}",
+                      "--set", "output.grains.every=0", "--until", "0.022")
+        self.assertLessEqual(self.tracks("run")["time"].max(), 0.02)
+        self.assertEqual(list(thalweg.Run(self.folder / "run").grains.times), [0.0, 0.01, 0.02])
+        self.assertEqual(len(list((self.folder / "run/grains").iterdir())), 3)
+
+    def test_overwrite_begins_anew(self):
+        self.run_well("run", self.case, "--out", "straight", "--until", "0.01")
+        self.run_well("run", self.case, "--out", "run", "--until", "0.02")
+        (self.folder / "run/tracks.h5").write_text("of an older version")
+        self.run_well("run", self.case, "--out", "run", "--until", "0.01", "--overwrite")
+        self.assertEqual(self.files_of("run"), self.files_of("straight"))
+        self.assertFalse((self.folder / "run/tracks.h5").exists())
 
     def test_the_run_does_not_notice(self):
         self.run_well("run", self.case, "--out", "watched", "--until", "0.01", "--set", "analysis.tracks.every=1.0e-4")
