@@ -30,7 +30,7 @@ namespace thalweg::analysis {
 struct EntrainmentKeys {
   static constexpr const char* section = "entrainment";
   static constexpr const char* meaning =
-      "forces on grains that start to move and torques about the hinge they roll over, in entrainment";
+      "forces on grains that start to move and torques about the hinge they roll over, in entrainment/";
   static constexpr Needs needs = Needs::both;
   std::vector<GlobalId> grains;  // ids; empty: free grains above the bed height less one diameter
   double from = 0.0;             // s

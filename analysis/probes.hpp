@@ -20,7 +20,7 @@ struct ProbeLine {
 struct ProbesKeys {
   static constexpr const char* section = "probes";
   static constexpr const char* meaning =
-      "velocity and pressure of the fluid at points and along lines at short intervals, in probes";
+      "velocity and pressure of the fluid at points and along lines at short intervals, in probes/";
   static constexpr Needs needs = Needs::fluid;
   std::vector<Vec3> points;  // m
   std::vector<ProbeLine> lines;

@@ -17,7 +17,7 @@ namespace thalweg::analysis {
 
 struct TracksKeys {
   static constexpr const char* section = "tracks";
-  static constexpr const char* meaning = "positions, motion and forces of chosen grains at short intervals, in tracks";
+  static constexpr const char* meaning = "positions, motion and forces of chosen grains at short intervals, in tracks/";
   static constexpr Needs needs = Needs::grains;
   // All that is recorded passes through rank 0, which holds up to 100 measurements: 14.4 kB a grain.
   static constexpr std::int64_t most_grains = 20'000;
