@@ -158,7 +158,8 @@ void take_up_indices(MPI_Comm communicator, const fs::path& folder, double conti
     std::vector<fs::path> found;
     std::error_code ignored;
     for (const auto& entry : fs::directory_iterator(folder, ignored))
-      if (entry.path().extension() == ".pvd") found.push_back(entry.path());
+      if (entry.path().extension() == ".pvd" && fs::is_directory(folder / entry.path().stem(), ignored))
+        found.push_back(entry.path());
     for (const fs::path& path : found) PvdIndex(MPI_COMM_SELF, path, continue_from);
   });
 }

@@ -48,8 +48,8 @@ private:
   std::vector<std::filesystem::path> new_files_;  // since put_on_disk()
 };
 
-// Takes up every index in a folder as a run does that goes on from this time (s). Collective; throws RunError on every
-// rank.
+// Takes up every index in a folder that has frames as a run does that goes on from this time (s). Collective; throws
+// RunError on every rank.
 void take_up_indices(MPI_Comm communicator, const std::filesystem::path& folder, double continue_from);
 
 }  // namespace thalweg::io

@@ -277,6 +277,17 @@ TEST(PvdIndex, DropsLaterFramesAndUnfinishedOnes) {
   }
 }
 
+TEST(PvdIndex, OfSomebodyElseIsLeftAlone) {
+  const ScratchFolder folder;
+  write_frames(folder.path());
+  const std::string mine = "<DataSet timestep=\"9\" group=\"a\" file=\"solids/solids_000000009.vtp\"/>";
+  if (rank_of(MPI_COMM_WORLD) == 0) testing::put(folder / "mine.pvd", mine);
+  MPI_Barrier(MPI_COMM_WORLD);
+  take_up_indices(MPI_COMM_WORLD, folder.path(), 0.2);
+  EXPECT_EQ(contents(folder / "mine.pvd"), mine);
+  EXPECT_FALSE(std::filesystem::exists(folder / "solids/solids_000000003.vtp"));
+}
+
 // Somebody has changed or removed it meanwhile.
 TEST(PvdIndex, IsWrittenAnewWhereItIsNotWhatItWas) {
   const ScratchFolder folder;
