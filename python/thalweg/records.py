@@ -22,17 +22,16 @@ class Records(Mapping):
 
     def __init__(self, paths):
         self._paths, self._read = paths, {}
-        times, self.units, self.components, self._shapes, self._rows = [], {}, {}, {}, set()
-        for path in paths:
-            with opened(path) as file:
-                times.append(file["time"][()])
-                for name, data in file.items():
-                    if isinstance(data, h5py.Dataset):
-                        self.units[name], self._shapes[name] = unit_of(data), data.shape
-                        if data.dtype.kind == "f":   # what is the same throughout are whole numbers
-                            self._rows.add(name)
-                        if "components" in data.attrs:
-                            self.components[name] = components_of(data)
+        self.units, self.components, self._shapes, self._rows = {}, {}, {}, set()
+        with opened(paths[-1]) as file:   # as in every part
+            for name, data in file.items():
+                if isinstance(data, h5py.Dataset):
+                    self.units[name], self._shapes[name] = unit_of(data), data.shape
+                    if data.dtype.kind == "f":   # what is the same throughout are whole numbers
+                        self._rows.add(name)
+                    if "components" in data.attrs:
+                        self.components[name] = components_of(data)
+        times = [self._array(path, "time") for path in paths]
         # A part begins where the run has gone on, and outdates what an earlier one has from there on.
         self._kept, begin = [], np.inf
         for time in reversed(times):
