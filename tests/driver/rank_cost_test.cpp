@@ -55,7 +55,7 @@ TEST(RankCost, CountsMessagesAndBytes) {
   EXPECT_NEAR(work.ghosts, 1000.0 * 2.0 * 1.1 * 5e-3 / 0.120, 1e-9);
   // Two faces of five populations. Towards the edges along y lies the same rank, with one population each.
   const double halo = 4.0 * (2.0 * 5.0 * 80.0 * 212.0 + 4.0 * 212.0 + 4.0 * 80.0 - 2.0 * 80.0 * 2.0);
-  const double grains = work.ghosts * 8.0 * ((0.6 * 50.0 + 1.0) * 9.0 + 18.0 + 24.0);  // six of ten in sub-steps
+  const double grains = work.ghosts * 8.0 * ((0.6 * 50.0 + 1.0) * 9.0 + 18.0 + 5.0);  // six of ten in sub-steps
   EXPECT_NEAR(work.bytes, halo + grains, 0.01 * halo);
   work = rank_work(c, decomposition_of(c, {4, 2, 1}), 5);
   // Along x two ranks, along y one, and the two at the corners in plan.
