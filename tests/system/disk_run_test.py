@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """What lies beside a checkpoint is on the disk before the checkpoint gets its name, as a loss of power would show.
 
 Called by ctest: disk_run_test.py THALWEG MPIEXEC LIBRARY. LIBRARY (order_of_writes.cpp) is preloaded and says what the program

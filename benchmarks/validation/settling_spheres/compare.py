@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Compares settling spheres with Uhlmann and Dusek (2014): compare.py [RUN...] [--table FILE] [--figure FILE]
 
 RUN: folders of runs by run.py; each becomes a row of the table (rows of other runs stay), and the figure shows their
@@ -13,13 +13,15 @@ vertical velocity deviates by less than 0.01 u_ref from its mean (root mean squa
 import sys
 from pathlib import Path
 
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[2] / "python"))
+import thalweg_python
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[2] / "python"))
 from thalweg import Run
 from thalweg.comparison import compared_rows
 from thalweg.means import mean_with_error

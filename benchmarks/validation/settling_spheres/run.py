@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Runs a sphere that settles through liquid at rest: run.py GALILEO CELLS HEIGHT --out FOLDER [options] [further
 arguments]
 

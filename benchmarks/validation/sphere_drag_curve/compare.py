@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Drag coefficients of single spheres compared with the standard drag curve: compare.py [RUN...] [--table FILE]
 [--figure FILE]
 
@@ -11,13 +11,15 @@ and pass or fail (10 %) for 20 cells. Exit code 0 if all that have a bound pass.
 import sys
 from pathlib import Path
 
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[2] / "python"))
+import thalweg_python
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[2] / "python"))
 from thalweg import Run
 from thalweg.comparison import compared_rows
 from thalweg.means import mean_with_error

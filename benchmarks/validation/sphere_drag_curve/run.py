@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 """Runs a sphere that is towed through water at rest, or falls: run.py towed|falling REYNOLDS CELLS --out FOLDER
 [options]
 
