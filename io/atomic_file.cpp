@@ -67,6 +67,10 @@ void rename_into_place(const std::filesystem::path& from, const std::filesystem:
   if (error) throw RunError(fmt::format("{}: cannot write the file: {}.", to.string(), error.message()));
 }
 
+bool is_left_by_a_kill(const std::filesystem::path& path) {
+  return path.filename().string().find(".partial") != std::string::npos;
+}
+
 bool create_file(const std::filesystem::path& path) {
   const int file = opened(path, O_CREAT | O_TRUNC | O_WRONLY);
   if (file < 0) return false;

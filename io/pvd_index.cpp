@@ -102,7 +102,7 @@ void PvdIndex::take_up(double until) {
     const std::string file = (name / frame.filename()).generic_string();
     const auto known = listed.find(file);
     const std::optional<double> time = known != listed.end() ? known->second : VtkXmlFile::time_in(frame);
-    if (frame.extension() == ".partial" || (time && *time > until))
+    if (is_left_by_a_kill(frame) || (time && *time > until))
       later.push_back(frame);
     else if (time && known == listed.end())
       entries_.push_back({*time, file});

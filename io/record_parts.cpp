@@ -116,8 +116,9 @@ void drop_parts_after(const fs::path& folder, std::int64_t step) {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     const fs::path& path = entry.path();
-    const auto part = step_of_part((path.extension() == ".partial" ? path.stem() : path.filename()).string());
-    if (part && (*part > step || path.extension() == ".partial")) dropped.push_back(path);
+    const std::string name = path.filename().string();
+    const auto part = step_of_part(name.substr(0, name.find(".partial")));
+    if (part && (*part > step || is_left_by_a_kill(path))) dropped.push_back(path);
   }
   for (const fs::path& path : dropped)
     if (!fs::remove(path, error) && error)

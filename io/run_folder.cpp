@@ -187,11 +187,14 @@ void RunFolder::rotate_checkpoints(std::int64_t step, int keep) const {
   for (const std::int64_t found : steps_of_checkpoints())
     if (found > step || kept++ >= std::max(keep, 1)) superfluous.push_back(checkpoint(found));
   for (const auto& entry : fs::directory_iterator(checkpoints()))
-    if (entry.path().extension() == ".partial") superfluous.push_back(entry.path());
-  for (const auto& entry : fs::directory_iterator(path_))
-    if (const auto until = step_between(entry.path().filename().string(), kept_case, ".yaml");
-        until && (*until > step || (*until == step && anew)))
-      superfluous.push_back(entry.path());
+    if (is_left_by_a_kill(entry.path())) superfluous.push_back(entry.path());
+  for (const auto& entry : fs::directory_iterator(path_)) {
+    const std::string name = entry.path().filename().string();
+    const auto until = step_between(name, kept_case, ".yaml");
+    const bool unfinished = is_left_by_a_kill(name) && (name.starts_with(profiles().filename().string()) ||
+                                                        name.starts_with(bed().filename().string()));
+    if (unfinished || (until && (*until > step || (*until == step && anew)))) superfluous.push_back(entry.path());
+  }
   for (const fs::path& file : superfluous) {
     std::error_code error;
     fs::remove(file, error);

@@ -106,6 +106,7 @@ TEST(RecordParts, AreDroppedByARestartWhereTheyAreLater) {
   if (rank_of(MPI_COMM_WORLD) == 0) {
     put(folder / "tracks/part_000000012.h5", "damaged");  // it is not looked into
     put(folder / "tracks/part_000000003.h5.partial", "of a kill");
+    put(folder / "tracks/part_000000003.h5.partial.locktest.0", "of a kill");
     put(folder / "tracks/notes.txt", "somebody else's");
   }
   MPI_Barrier(MPI_COMM_WORLD);

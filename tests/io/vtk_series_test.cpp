@@ -265,6 +265,7 @@ TEST(PvdIndex, DropsLaterFramesAndUnfinishedOnes) {
   if (rank_of(MPI_COMM_WORLD) == 0) {
     std::filesystem::remove(folder / "solids.pvd");  // the frames themselves know
     testing::put(folder / "solids/solids_000000010.vtp.partial", "half");
+    testing::put(folder / "solids/solids_000000010.vtp.partial.locktest.1", "of MPI-IO");
     testing::put(folder / "solids/mine.vtp", "somebody else's");
   }
   PvdIndex index(MPI_COMM_WORLD, folder / "solids.pvd", 0.4);
@@ -273,6 +274,7 @@ TEST(PvdIndex, DropsLaterFramesAndUnfinishedOnes) {
     EXPECT_TRUE(std::filesystem::exists(folder / "solids/solids_000000004.vtp"));
     EXPECT_FALSE(std::filesystem::exists(folder / "solids/solids_000000005.vtp"));
     EXPECT_FALSE(std::filesystem::exists(folder / "solids/solids_000000010.vtp.partial"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "solids/solids_000000010.vtp.partial.locktest.1"));
     EXPECT_TRUE(std::filesystem::exists(folder / "solids/mine.vtp"));
   }
 }
