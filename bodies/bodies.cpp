@@ -1,8 +1,8 @@
 #include "bodies/bodies.hpp"
 
-#include "core/error.hpp"
-#include "core/mpi_session.hpp"
-#include "core/on_all_ranks.hpp"
+#include "core/base/error.hpp"
+#include "core/parallel/mpi_session.hpp"
+#include "core/parallel/on_all_ranks.hpp"
 
 #include <fmt/format.h>
 

@@ -14,18 +14,18 @@
 //   body(slot)               the sums of this rank
 #pragma once
 
-#include "bodies/body_map.hpp"
-#include "bodies/body_options.hpp"
-#include "bodies/hidden_links.hpp"
-#include "bodies/hydrostatic.hpp"
-#include "bodies/link_builder.hpp"
-#include "bodies/link_pass.hpp"
-#include "bodies/link_table.hpp"
+#include "bodies/links/hidden_links.hpp"
+#include "bodies/links/link_builder.hpp"
+#include "bodies/links/link_pass.hpp"
+#include "bodies/links/solids.hpp"
+#include "bodies/map/body_map.hpp"
+#include "bodies/map/body_options.hpp"
+#include "bodies/map/hydrostatic.hpp"
+#include "bodies/map/link_table.hpp"
 #include "bodies/mass_return.hpp"
 #include "bodies/refill.hpp"
-#include "bodies/solids.hpp"
-#include "core/phase_timer.hpp"
-#include "lbm/fluid.hpp"
+#include "core/base/phase_timer.hpp"
+#include "lbm/fluid/fluid.hpp"
 
 #include <array>
 #include <vector>

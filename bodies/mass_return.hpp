@@ -11,7 +11,7 @@
 // hidden, where the fluid would be squeezed out. Lattice units.
 #pragma once
 
-#include "bodies/link_table.hpp"
+#include "bodies/map/link_table.hpp"
 
 namespace thalweg::bodies {
 

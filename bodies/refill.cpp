@@ -1,8 +1,8 @@
 #include "bodies/refill.hpp"
 
-#include "bodies/lattice_vectors.hpp"
-#include "core/mpi_session.hpp"
-#include "lbm/equilibrium.hpp"
+#include "bodies/map/lattice_vectors.hpp"
+#include "core/parallel/mpi_session.hpp"
+#include "lbm/lattice/equilibrium.hpp"
 
 #include <algorithm>
 #include <map>

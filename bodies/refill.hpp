@@ -8,11 +8,11 @@
 // layer too, so both sides know without asking who sends what; sums are exact, so the result is the same on any ranks.
 #pragma once
 
-#include "bodies/body_map.hpp"
-#include "bodies/hydrostatic.hpp"
-#include "core/decomposition.hpp"
-#include "core/fixed_point.hpp"
-#include "lbm/fluid.hpp"
+#include "bodies/map/body_map.hpp"
+#include "bodies/map/hydrostatic.hpp"
+#include "core/parallel/decomposition.hpp"
+#include "core/sums/fixed_point.hpp"
+#include "lbm/fluid/fluid.hpp"
 
 #include <mpi.h>
 

@@ -1,4 +1,4 @@
-# cmake --install: the program with its Python package and cases, and the libraries as thalweg::core, lbm, bodies, dem, coupling, continuum,
+# cmake --install: the program with its Python package and cases, and the libraries as thalweg::core, lbm, bodies, dem, beds, model_fluid, coupling, continuum,
 # analysis, loop and io for find_package(thalweg). Included when all of them are there.
 include(CMakePackageConfigHelpers)
 
@@ -18,13 +18,13 @@ install(PROGRAMS scripts/cluster/slurm.sh scripts/cluster/pbs.sh scripts/cluster
         DESTINATION ${thalweg_data_folder}/scripts/cluster)
 
 # io needs VTK, HDF5 and yaml-cpp, which not every program has to have.
-install(TARGETS thalweg_compile_options thalweg_core thalweg_lbm thalweg_bodies thalweg_dem thalweg_coupling thalweg_continuum thalweg_analysis thalweg_loop
+install(TARGETS thalweg_compile_options thalweg_core thalweg_lbm thalweg_bodies thalweg_dem thalweg_beds thalweg_model_fluid thalweg_coupling thalweg_continuum thalweg_analysis thalweg_loop
         EXPORT thalweg_libraries ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS thalweg_io EXPORT thalweg_io ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 foreach(set libraries io)
   install(EXPORT thalweg_${set} NAMESPACE thalweg:: FILE thalweg-${set}.cmake DESTINATION ${thalweg_config_folder})
 endforeach()
-foreach(module core lbm bodies dem coupling continuum analysis loop io)
+foreach(module core lbm bodies dem beds model_fluid coupling continuum analysis loop io)
   install(DIRECTORY ${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/thalweg
           FILES_MATCHING PATTERN "*.hpp" PATTERN "*.ipp")
 endforeach()

@@ -1,6 +1,6 @@
 #include "continuum/column_keys.hpp"
 
-#include "core/key_error.hpp"
+#include "core/keys/key_error.hpp"
 
 #include <algorithm>
 #include <cmath>

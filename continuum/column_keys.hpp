@@ -3,7 +3,7 @@
 #pragma once
 
 #include "continuum/continuum_system.hpp"
-#include "core/section_visitor.hpp"
+#include "core/keys/section_visitor.hpp"
 
 #include <cstdint>
 #include <optional>

@@ -1,9 +1,9 @@
 #include "continuum/continuum_system.hpp"
 
-#include "core/error.hpp"
-#include "core/mpi_session.hpp"
-#include "core/round_off.hpp"
-#include "core/same_time_step.hpp"
+#include "core/base/error.hpp"
+#include "core/base/round_off.hpp"
+#include "core/parallel/mpi_session.hpp"
+#include "core/state/same_time_step.hpp"
 
 #include <fmt/format.h>
 

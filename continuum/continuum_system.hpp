@@ -5,8 +5,8 @@
 #include "continuum/column_equations.hpp"
 #include "continuum/granular_fluidity.hpp"
 #include "continuum/stiff_integrator.hpp"
-#include "core/decomposition.hpp"
-#include "core/system.hpp"
+#include "core/parallel/decomposition.hpp"
+#include "core/state/system.hpp"
 
 #include <mpi.h>
 

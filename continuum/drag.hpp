@@ -10,7 +10,7 @@
 #pragma once
 
 #include "continuum/mixture.hpp"
-#include "core/named_choice.hpp"
+#include "core/keys/named_choice.hpp"
 
 #include <vector>
 

@@ -1,6 +1,6 @@
 #include "continuum/granular_fluidity.hpp"
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/SparseLU>

@@ -1,6 +1,6 @@
 #include "continuum/stiff_integrator.hpp"
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
 #include <cvode/cvode.h>
 #include <fmt/format.h>

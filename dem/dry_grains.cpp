@@ -1,7 +1,7 @@
 #include "dem/dry_grains.hpp"
 
-#include "core/same_time_step.hpp"
-#include "dem/grain_volume.hpp"
+#include "core/state/same_time_step.hpp"
+#include "dem/motion/grain_volume.hpp"
 
 #include <fmt/format.h>
 

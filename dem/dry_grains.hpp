@@ -4,9 +4,9 @@
 // One step is as many sub-steps as its parameters say, as in a fluid.
 #pragma once
 
-#include "core/system.hpp"
+#include "core/state/system.hpp"
+#include "dem/clumps/clump_seed.hpp"
 #include "dem/grain_dynamics.hpp"
-#include "dem/population_seeds.hpp"
 
 #include <mpi.h>
 

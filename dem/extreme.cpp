@@ -1,6 +1,6 @@
 #include "dem/extreme.hpp"
 
-#include "core/mpi_session.hpp"
+#include "core/parallel/mpi_session.hpp"
 
 #include <tuple>
 

@@ -1,8 +1,8 @@
 // The grain, or the pair of grains, with the largest value of something: looked for on every rank, agreed by all.
 #pragma once
 
-#include "core/place.hpp"
-#include "core/types.hpp"
+#include "core/base/types.hpp"
+#include "core/state/place.hpp"
 
 #include <mpi.h>
 

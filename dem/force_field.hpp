@@ -1,11 +1,11 @@
 // A force on every grain or clump, by its position and motion, evaluated with the contacts in every sub-step.
 #pragma once
 
-#include "core/archive.hpp"
-#include "core/system.hpp"
-#include "dem/clumps.hpp"
-#include "dem/grain_store.hpp"
-#include "dem/moving_grains.hpp"
+#include "core/base/archive.hpp"
+#include "core/state/system.hpp"
+#include "dem/clumps/clumps.hpp"
+#include "dem/motion/grain_store.hpp"
+#include "dem/motion/moving_grains.hpp"
 
 #include <span>
 #include <vector>

@@ -1,13 +1,13 @@
 #include "dem/grain_dynamics.hpp"
 
-#include "core/error.hpp"
-#include "core/mpi_session.hpp"
-#include "core/on_all_ranks.hpp"
-#include "dem/contact_forces.hpp"
-#include "dem/grain_balance.hpp"
-#include "dem/grain_start.hpp"
-#include "dem/grain_volume.hpp"
+#include "core/base/error.hpp"
+#include "core/parallel/mpi_session.hpp"
+#include "core/parallel/on_all_ranks.hpp"
+#include "dem/contact/contact_forces.hpp"
 #include "dem/grain_watch.hpp"
+#include "dem/motion/grain_volume.hpp"
+#include "dem/ranks/grain_balance.hpp"
+#include "dem/ranks/grain_start.hpp"
 
 #include <fmt/format.h>
 

@@ -5,13 +5,13 @@
 // friction contact_rolling; and so on. Where there are clumps also, of each grain, clump (its clump's id, or -1) and
 // offset, and one row a clump, sorted by id: clump_id, clump_members, clump_motion, clump_mass and so on with the names
 // of struct ClumpRow.
-#include "core/error.hpp"
-#include "core/mpi_session.hpp"
-#include "core/row_range.hpp"
-#include "dem/contact_archive.hpp"
-#include "dem/grain_batch.hpp"
+#include "core/base/error.hpp"
+#include "core/parallel/mpi_session.hpp"
+#include "core/parallel/row_range.hpp"
+#include "dem/contact/contact_archive.hpp"
 #include "dem/grain_dynamics.hpp"
 #include "dem/grain_space.hpp"
+#include "dem/ranks/grain_batch.hpp"
 
 #include <fmt/format.h>
 

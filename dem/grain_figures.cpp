@@ -1,7 +1,7 @@
 // Figures of the state of all grains: GrainDynamics looked at, never changed.
-#include "core/mpi_session.hpp"
-#include "core/order_free_sum.hpp"
-#include "dem/contact_forces.hpp"
+#include "core/parallel/mpi_session.hpp"
+#include "core/sums/order_free_sum.hpp"
+#include "dem/contact/contact_forces.hpp"
 #include "dem/extreme.hpp"
 #include "dem/grain_dynamics.hpp"
 

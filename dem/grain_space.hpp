@@ -1,8 +1,8 @@
 // Where grains may be: the box, and what walls that have moved add to it or take from it.
 #pragma once
 
-#include "core/periodic_box.hpp"
-#include "dem/walls.hpp"
+#include "core/geometry/periodic_box.hpp"
+#include "dem/motion/walls.hpp"
 
 #include <algorithm>
 #include <span>

@@ -1,7 +1,7 @@
 #include "dem/grain_watch.hpp"
 
-#include "core/error.hpp"
-#include "core/mpi_session.hpp"
+#include "core/base/error.hpp"
+#include "core/parallel/mpi_session.hpp"
 
 #include <fmt/format.h>
 

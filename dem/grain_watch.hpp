@@ -2,9 +2,9 @@
 // the grain's id, place and speed than a wrong number.
 #pragma once
 
-#include "core/periodic_box.hpp"
+#include "core/geometry/periodic_box.hpp"
 #include "dem/grain_space.hpp"
-#include "dem/grain_store.hpp"
+#include "dem/motion/grain_store.hpp"
 
 #include <mpi.h>
 

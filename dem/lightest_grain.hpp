@@ -1,7 +1,7 @@
 // The grains whose contacts are shortest, which the time step of a run must resolve.
 #pragma once
 
-#include "core/mpi_session.hpp"
+#include "core/parallel/mpi_session.hpp"
 
 #include <algorithm>
 #include <limits>

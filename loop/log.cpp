@@ -1,7 +1,7 @@
 #include "loop/log.hpp"
 
-#include "core/error.hpp"
-#include "core/utf8.hpp"
+#include "core/base/error.hpp"
+#include "core/base/utf8.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "loop/phase_shares.hpp"
 
-#include "core/mpi_session.hpp"
+#include "core/parallel/mpi_session.hpp"
 
 #include <fmt/format.h>
 

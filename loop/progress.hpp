@@ -1,7 +1,7 @@
 // The line a person watches while a run goes on: once a second at first, every ten minutes after an hour.
 #pragma once
 
-#include "core/system.hpp"
+#include "core/state/system.hpp"
 
 #include <string>
 #include <vector>

@@ -1,9 +1,9 @@
 #include "loop/time_loop.hpp"
 
-#include "core/error.hpp"
-#include "core/mpi_session.hpp"
-#include "core/shell_word.hpp"
-#include "core/sum_range.hpp"
+#include "core/base/error.hpp"
+#include "core/base/shell_word.hpp"
+#include "core/parallel/mpi_session.hpp"
+#include "core/sums/sum_range.hpp"
 #include "loop/progress.hpp"
 #include "loop/stop_request.hpp"
 

@@ -6,9 +6,9 @@
 // when to look: a progress line shows the figures of the latest look.
 #pragma once
 
-#include "analysis/observer.hpp"
-#include "core/schedule.hpp"
-#include "core/system.hpp"
+#include "analysis/observer/observer.hpp"
+#include "core/base/schedule.hpp"
+#include "core/state/system.hpp"
 #include "loop/log.hpp"
 #include "loop/watchdog.hpp"
 
@@ -111,7 +111,7 @@ public:
   const LoopRecord& record() const { return record_; }
   PhaseTimer& timer() { return timer_; }  // phases outside System::advance()
 
-  // A look costs less than a step (lbm/fluid_survey.hpp), so that these take less than 1 % of the time.
+  // A look costs less than a step (lbm/fluid/fluid_survey.hpp), so that these take less than 1 % of the time.
   static constexpr std::int64_t steps_between_health_checks = 100;
 
 private:

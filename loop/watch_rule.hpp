@@ -2,7 +2,7 @@
 // run stops.
 #pragma once
 
-#include "core/system.hpp"
+#include "core/state/system.hpp"
 
 #include <cmath>
 #include <functional>

@@ -1,6 +1,6 @@
 #include "loop/watchdog.hpp"
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "loop/progress.hpp"
 #include "loop/whereabouts.hpp"
 

@@ -5,7 +5,7 @@
 // the run ends. A figure that is not a finite number ends it in any case.
 #pragma once
 
-#include "core/system.hpp"
+#include "core/state/system.hpp"
 #include "loop/out_of_bounds.hpp"
 #include "loop/watch_rule.hpp"
 

@@ -1,6 +1,6 @@
 #include "loop/whereabouts.hpp"
 
-#include "core/ranks.hpp"
+#include "core/parallel/ranks.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 // A place in words, with what is around it.
 #pragma once
 
-#include "core/place.hpp"
-#include "core/snapshot.hpp"
+#include "core/state/place.hpp"
+#include "core/state/snapshot.hpp"
 
 #include <mpi.h>
 

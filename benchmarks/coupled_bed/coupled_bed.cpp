@@ -9,11 +9,11 @@
 // water flows over them, 500 steps (--flow) before the timing begins, with 50 DEM sub-steps a step. Printed for single
 // and double storage: milliseconds a step by phase, MLUPS over all cells, links and contacts a grain, nanoseconds a
 // link, and the ratio to the pure lattice sweep over the same box in the same run. The last line is the same as JSON.
-#include "core/mpi_session.hpp"
-#include "coupling/lattice_system.hpp"
-#include "dem/packing.hpp"
-#include "dem/walls.hpp"
-#include "io/json_object.hpp"
+#include "beds/packing/packing.hpp"
+#include "core/parallel/mpi_session.hpp"
+#include "coupling/system/lattice_system.hpp"
+#include "dem/motion/walls.hpp"
+#include "io/files/json_object.hpp"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -71,9 +71,9 @@ dem::GrainParameters grain_parameters(const Box& box, const Decomposition& decom
 // The grains after sinking to the floor for 0.6 s, losing most of their energy in every contact.
 std::vector<dem::GrainSeed> settled(const Box& box, const Decomposition& decomposition) {
   std::vector<dem::GrainSeed> seeds;
-  const dem::Region region = dem::whole(decomposition.box());
+  const beds::Region region = beds::whole(decomposition.box());
   for (const Vec3& position :
-       dem::uniform_packing(decomposition.box(), region, box.grains, 0.5 * box.diameter, 0.0, 1)) {
+       beds::uniform_packing(decomposition.box(), region, box.grains, 0.5 * box.diameter, 0.0, 1)) {
     dem::GrainSeed seed;
     seed.id = static_cast<GlobalId>(seeds.size());
     seed.radius = 0.5 * box.diameter;

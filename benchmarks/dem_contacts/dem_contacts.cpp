@@ -4,7 +4,7 @@
 //
 // The machine may be shared, so each figure is the fastest of several stretches. The last line is JSON.
 #include "benchmarks/dem_contacts/settled_bed.hpp"
-#include "core/mpi_session.hpp"
+#include "core/parallel/mpi_session.hpp"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

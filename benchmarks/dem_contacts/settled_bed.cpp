@@ -1,8 +1,8 @@
 #include "benchmarks/dem_contacts/settled_bed.hpp"
 
-#include "core/mpi_session.hpp"
-#include "dem/packing.hpp"
-#include "dem/random_packing.hpp"
+#include "beds/packing/packing.hpp"
+#include "beds/packing/random_packing.hpp"
+#include "core/parallel/mpi_session.hpp"
 
 #include <algorithm>
 
@@ -72,7 +72,7 @@ std::vector<dem::GrainSeed> settle_tile(MPI_Comm communicator) {
   const PeriodicBox box = decomposition.box();
   const std::vector<double> radii(tile_grains, 0.5 * diameter);
   std::vector<dem::GrainSeed> seeds;
-  for (const Vec3& place : dem::random_packing(box, dem::whole(box), radii, 0.0, 1))
+  for (const Vec3& place : beds::random_packing(box, beds::whole(box), radii, 0.0, 1))
     seeds.push_back(glass_sphere(static_cast<GlobalId>(seeds.size()), place));
   dem::GrainParameters p = bed_parameters(0.3, box);
   p.time_step = 9e-6;

@@ -2,7 +2,7 @@
 // any number of ranks and on any machine with the same arithmetic.
 #pragma once
 
-#include "core/decomposition.hpp"
+#include "core/parallel/decomposition.hpp"
 #include "dem/grain_dynamics.hpp"
 
 #include <mpi.h>

@@ -1,6 +1,6 @@
 #include "benchmarks/lattice/bandwidth.hpp"
 
-#include "core/mpi_session.hpp"
+#include "core/parallel/mpi_session.hpp"
 
 #include <algorithm>
 

@@ -10,8 +10,8 @@
 // pad) and as the system counts it. The best of many short runs counts, because whatever else the machine does can only
 // make a run slower. Ends with one line of JSON.
 #include "benchmarks/lattice/bandwidth.hpp"
-#include "core/mpi_session.hpp"
-#include "lbm/fluid.hpp"
+#include "core/parallel/mpi_session.hpp"
+#include "lbm/fluid/fluid.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -12,8 +12,8 @@
 // The last two are stable if the part of the velocity that alternates from one cell to the next along x did not grow:
 // viscosity damps it first of all, and no flow that the lattice resolves has any. Where it grows, eddies may still hold
 // it; a last table says at what level. Prints tables in Markdown.
-#include "core/mpi_session.hpp"
-#include "lbm/fluid.hpp"
+#include "core/parallel/mpi_session.hpp"
+#include "lbm/fluid/fluid.hpp"
 
 #include <fmt/format.h>
 

@@ -3,8 +3,8 @@
 //   u(z) = F/(2 nu) z (h - z),
 //
 // which trt meets to round-off once the flow is steady. Runs on any number of MPI ranks. Lattice units.
-#include "core/mpi_session.hpp"
-#include "lbm/fluid.hpp"
+#include "core/parallel/mpi_session.hpp"
+#include "lbm/fluid/fluid.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-"""Case files and sweeps as the solver reads them: io/yaml_document.hpp and io/section_reader.hpp.
+"""Case files and sweeps as the solver reads them: io/text/yaml_document.hpp and io/text/section_reader.hpp.
 
 Words are numbers where they are decimal, as in YAML 1.2: 010 is ten and 1e-3 a number; 1:30, 0x10, 1_000, no and 2026-01-01 are
 texts, which YAML 1.1 takes for other things. Tags (!!int) and merge keys (<<) mean nothing, and a key given twice is an error.

@@ -1,6 +1,6 @@
 """Obstacles: grains that are none of the bed but stand in it, such as a sill, a pier or a boulder.
 
-As the program has them (driver/obstacles.hpp): of the grains that are fixed and placed by positions, those that overlap another
+As the program has them (driver/estimate/obstacles.hpp): of the grains that are fixed and placed by positions, those that overlap another
 one by more than a twentieth of the smaller diameter, and those at least twice as large as the largest free grain. A place where
 several overlap counts once, and the bed is what is left, in the room that they leave. (The program knows those that move as
 prescribed as well; frames with clumps are left to it.)

@@ -1,8 +1,8 @@
 // A stress balance of a small resolved system, for tests.
 #pragma once
 
-#include "analysis/stress_balance.hpp"
-#include "core/mpi_session.hpp"
+#include "analysis/observers/stress_balance.hpp"
+#include "core/parallel/mpi_session.hpp"
 #include "tests/coupling/water_box.hpp"
 
 #include <cmath>

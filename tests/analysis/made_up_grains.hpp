@@ -1,8 +1,8 @@
 // Grains whose state follows from their id alone, dealt out to the ranks so that each rank holds another order of them.
 #pragma once
 
-#include "core/mpi_session.hpp"
-#include "core/snapshot.hpp"
+#include "core/parallel/mpi_session.hpp"
+#include "core/state/snapshot.hpp"
 
 #include <cmath>
 #include <functional>

@@ -1,7 +1,7 @@
 // A series of random numbers with a known memory.
 #pragma once
 
-#include "core/counter_random.hpp"
+#include "core/base/counter_random.hpp"
 
 #include <cmath>
 #include <numbers>

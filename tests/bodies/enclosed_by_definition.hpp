@@ -1,8 +1,8 @@
 // What it means that a fluid cell is enclosed, in the plainest words.
 #pragma once
 
-#include "core/types.hpp"
-#include "lbm/d3q19.hpp"
+#include "core/base/types.hpp"
+#include "lbm/lattice/d3q19.hpp"
 
 #include <vector>
 

@@ -1,6 +1,6 @@
 #include "bodies/mass_return.hpp"
 
-#include "bodies/lattice_vectors.hpp"
+#include "bodies/map/lattice_vectors.hpp"
 
 #include <gtest/gtest.h>
 

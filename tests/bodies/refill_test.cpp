@@ -1,10 +1,10 @@
 // What a cell that a grain has uncovered is filled with, in a fluid whose populations are known.
 #include "bodies/refill.hpp"
 
-#include "bodies/body_map.hpp"
-#include "bodies/link_builder.hpp"
-#include "core/mpi_session.hpp"
-#include "lbm/equilibrium.hpp"
+#include "bodies/links/link_builder.hpp"
+#include "bodies/map/body_map.hpp"
+#include "core/parallel/mpi_session.hpp"
+#include "lbm/lattice/equilibrium.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // What the integrator says when it gets no further.
 #include "continuum/stiff_integrator.hpp"
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
 #include <gtest/gtest.h>
 

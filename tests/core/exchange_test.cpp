@@ -1,6 +1,6 @@
-#include "core/mpi_session.hpp"
-#include "core/packed_exchange.hpp"
-#include "core/wide_rows.hpp"
+#include "core/parallel/mpi_session.hpp"
+#include "core/parallel/packed_exchange.hpp"
+#include "core/parallel/wide_rows.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "core/error.hpp"
-#include "core/failure_barrier.hpp"
-#include "core/mpi_session.hpp"
-#include "core/on_all_ranks.hpp"
-#include "core/on_first_rank.hpp"
+#include "core/base/error.hpp"
+#include "core/parallel/failure_barrier.hpp"
+#include "core/parallel/mpi_session.hpp"
+#include "core/parallel/on_all_ranks.hpp"
+#include "core/parallel/on_first_rank.hpp"
 
 #include <gtest/gtest.h>
 

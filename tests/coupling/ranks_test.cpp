@@ -2,7 +2,7 @@
 // alone as well, and compares its own block and grains. Grains cross rank borders and periodic faces all the time.
 #include "tests/coupling/water_box.hpp"
 
-#include "core/mpi_session.hpp"
+#include "core/parallel/mpi_session.hpp"
 #include "tests/support/meshes.hpp"
 
 #include <gtest/gtest.h>

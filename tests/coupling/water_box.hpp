@@ -1,8 +1,8 @@
 // A small resolved system for tests: 5 mm glass spheres in water or a thicker fluid, 6 to 8 cells a diameter.
 #pragma once
 
-#include "coupling/lattice_system.hpp"
-#include "dem/walls.hpp"
+#include "coupling/system/lattice_system.hpp"
+#include "dem/motion/walls.hpp"
 
 #include <memory>
 #include <optional>
@@ -125,7 +125,7 @@ std::unique_ptr<LatticeSystem<Real>> make_system(const WaterBox& box, MPI_Comm c
   double largest = 0.0;
   for (const dem::GrainSeed& seed : box.seeds) largest = std::max(largest, seed.radius);
   for (const dem::ClumpSeed& clump : box.clumps)
-    for (const dem::Sphere& member : clump.shape->members) largest = std::max(largest, member.radius);
+    for (const dem::PlacedSphere& member : clump.shape->members) largest = std::max(largest, member.radius);
   g.skin = largest > 0.0 ? 0.2 * largest : box.spacing;
   g.ghost_width = LatticeSystem<Real>::ghost_reach(largest, box.spacing);
   if (box.lubrication) {
@@ -152,7 +152,7 @@ inline dem::GrainSeed glass_sphere(GlobalId id, const Vec3& position, const Vec3
   return seed;
 }
 
-inline dem::ClumpSeed glass_clump(GlobalId id, const std::vector<dem::Sphere>& members, const Vec3& position,
+inline dem::ClumpSeed glass_clump(GlobalId id, const std::vector<dem::PlacedSphere>& members, const Vec3& position,
                                   const Vec3& velocity = Vec3::Zero(), const Vec3& angular_velocity = Vec3::Zero()) {
   dem::ClumpSeed seed;
   seed.id = id;
@@ -165,7 +165,7 @@ inline dem::ClumpSeed glass_clump(GlobalId id, const std::vector<dem::Sphere>& m
 }
 
 // Three spheres of 4.4, 3.6 and 4 mm that overlap, none of them in a row.
-inline std::vector<dem::Sphere> pebble() {
+inline std::vector<dem::PlacedSphere> pebble() {
   return {{{0, 0, 0}, 2.2e-3}, {{2.4e-3, 0.3e-3, 0.2e-3}, 1.8e-3}, {{-0.5e-3, 2.0e-3, 0.8e-3}, 2.0e-3}};
 }
 

@@ -1,8 +1,8 @@
 // What the tests of clumps share: shapes, seeds, angular momentum.
 #pragma once
 
-#include "core/counter_random.hpp"
-#include "dem/clump_seed.hpp"
+#include "core/base/counter_random.hpp"
+#include "dem/clumps/clump_seed.hpp"
 #include "tests/dem/grain_cases.hpp"
 
 #include <memory>
@@ -10,7 +10,7 @@
 
 namespace thalweg::dem::test {
 
-inline std::shared_ptr<const ClumpShape> shape_of(const std::vector<Sphere>& members, double thickness = 0.0) {
+inline std::shared_ptr<const ClumpShape> shape_of(const std::vector<PlacedSphere>& members, double thickness = 0.0) {
   return std::make_shared<const ClumpShape>(clump_shape(members, thickness));
 }
 

@@ -1,7 +1,7 @@
 // What the tests of the grains share: the contact parameters of 5 mm glass spheres, boxes, and a step.
 #pragma once
 
-#include "core/mpi_session.hpp"
+#include "core/parallel/mpi_session.hpp"
 #include "dem/grain_dynamics.hpp"
 
 namespace thalweg::dem::test {

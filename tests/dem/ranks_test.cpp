@@ -1,8 +1,8 @@
 // The same bits on any number of ranks, in any layout, and after saving and loading: the saved state (everything the
 // next step depends on) of a run on all ranks is compared with that of a run each rank does alone.
-#include "core/counter_random.hpp"
-#include "dem/packing.hpp"
-#include "dem/random_packing.hpp"
+#include "beds/packing/packing.hpp"
+#include "beds/packing/random_packing.hpp"
+#include "core/base/counter_random.hpp"
 #include "tests/dem/clump_cases.hpp"
 #include "tests/support/memory_archive.hpp"
 #include "tests/support/meshes.hpp"
@@ -51,7 +51,7 @@ Cloud cloud(const Case& c) {
   std::vector<double> radii;
   for (int i = 0; i < c.grains; ++i)
     radii.push_back(is_clump(i) ? shape_for(i)->bounding_radius : 1.6e-3 + 0.9e-3 * uniform_random(1, i, 0));
-  const std::vector<Vec3> places = random_packing(box, whole(box), radii, 1e-5, 4);
+  const std::vector<Vec3> places = beds::random_packing(box, beds::whole(box), radii, 1e-5, 4);
   Cloud all;
   GlobalId id = 0;
   for (int i = 0; i < c.grains; ++i) {

@@ -1,5 +1,5 @@
 // What is refused at the start and what stops a run, on every rank alike.
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "tests/dem/grain_cases.hpp"
 
 #include <gtest/gtest.h>

@@ -1,10 +1,10 @@
 // Bed files that ranks read together, each its share: what follows from all rows, grains and refusals are those of one
 // process that reads the whole.
-#include "core/error.hpp"
-#include "driver/bed_archive.hpp"
-#include "driver/case_reader.hpp"
-#include "driver/grain_setup.hpp"
-#include "io/hdf5_archive.hpp"
+#include "core/base/error.hpp"
+#include "driver/case/grain_setup.hpp"
+#include "driver/input/case_reader.hpp"
+#include "driver/setup/bed_archive.hpp"
+#include "io/hdf5/hdf5_archive.hpp"
 #include "tests/io/scratch_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -134,7 +134,7 @@ TEST_F(BedShare, HasTheFiguresOfTheWhole) {
   ASSERT_EQ(rows[318].clump, rows[317].clump);  // cut by two even shares
   write(rows);
   const Case whole = read_whole(), together = read_together();
-  const dem::Population &all = whole.grains[1], &bed = together.grains[1];
+  const beds::Population &all = whole.grains[1], &bed = together.grains[1];
   EXPECT_EQ(bed.figures, all.figures);
   EXPECT_EQ(bed.clumps, all.clumps);
   EXPECT_EQ(bed.count, 382);

@@ -1,7 +1,7 @@
 // The example case of the tests of the reader, and how they read one.
 #pragma once
 
-#include "driver/case_reader.hpp"
+#include "driver/input/case_reader.hpp"
 #include "tests/io/scratch_folder.hpp"
 
 #include <string>

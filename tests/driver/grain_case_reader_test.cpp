@@ -1,6 +1,6 @@
 // Case files of grains: sizes, materials, dry grains.
-#include "core/error.hpp"
-#include "driver/case_reader.hpp"
+#include "core/base/error.hpp"
+#include "driver/input/case_reader.hpp"
 #include "tests/driver/case_texts.hpp"
 
 #include <gtest/gtest.h>
@@ -140,10 +140,10 @@ TEST(GrainCaseReader, SizesAreGivenByMass) {
     EXPECT_FALSE(std::is_sorted(d.begin(), d.end()));
     const auto mass_finer = [&](double than) {
       double sum = 0.0;
-      for (const double diameter : d) sum += diameter <= than ? dem::sphere_volume(diameter) : 0.0;
+      for (const double diameter : d) sum += diameter <= than ? beds::sphere_volume(diameter) : 0.0;
       return sum;
     };
-    const double grain = dem::sphere_volume(c.grains[0].largest_diameter());
+    const double grain = beds::sphere_volume(c.grains[0].largest_diameter());
     EXPECT_NEAR(mass_finer(4e-3), 0.16 * c.grains[0].volume(), grain);
     EXPECT_NEAR(mass_finer(5e-3), 0.5 * c.grains[0].volume(), grain);
     EXPECT_NEAR(mass_finer(c.grains[0].diameter), 0.5 * c.grains[0].volume(), grain);

@@ -1,7 +1,7 @@
 // Populations whose number follows from the depth of their settled bed.
-#include "core/error.hpp"
-#include "dem/grain_sizes.hpp"
-#include "driver/case_reader.hpp"
+#include "beds/sizes/grain_sizes.hpp"
+#include "core/base/error.hpp"
+#include "driver/input/case_reader.hpp"
 #include "tests/driver/case_texts.hpp"
 
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ TEST(GrainFill, MixedSizesFillTheSameDepth) {
       "grains.0.diameter={distribution: lognormal, median: 4.0e-3, geometric_deviation: 1.3, minimum: 3e-3, maximum: "
       "6e-3}";
   const Case deep = read({sizes, "grains.0.fill={depth: 0.02}"}), layers = read({sizes, "grains.0.fill={layers: 4}"});
-  const double floor = 0.06 * 0.0105, largest = dem::sphere_volume(6e-3);
+  const double floor = 0.06 * 0.0105, largest = beds::sphere_volume(6e-3);
   EXPECT_NEAR(deep.grains[0].volume(), 0.6 * 0.02 * floor, largest);
   EXPECT_NEAR(layers.grains[0].volume(), 0.6 * 4.0 * layers.grains[0].diameter * floor, largest);
 }

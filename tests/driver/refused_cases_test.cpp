@@ -1,6 +1,6 @@
 // Case files with a mistake: a table of bad input with what the user reads about it.
-#include "core/error.hpp"
-#include "driver/case_reader.hpp"
+#include "core/base/error.hpp"
+#include "driver/input/case_reader.hpp"
 #include "tests/driver/case_texts.hpp"
 
 #include <gtest/gtest.h>

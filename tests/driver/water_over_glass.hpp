@@ -1,7 +1,7 @@
 // A case that tests of the report share.
 #pragma once
 
-#include "driver/case.hpp"
+#include "driver/case/case.hpp"
 
 #include <numbers>
 
@@ -16,7 +16,7 @@ inline Case water_over_glass(double d, double slope, double depth, double width,
   c.fluid.time_step = 2e-5;
   c.gravity.magnitude = 9.8;
   c.gravity.slope = slope;
-  dem::Population grains;
+  beds::Population grains;
   grains.count = 1000;
   grains.diameter = d;
   grains.density = 2550.0;

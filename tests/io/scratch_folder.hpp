@@ -1,7 +1,7 @@
 // An empty folder of the running test's own, under the folder the tests run in; removed at the end if the test passed.
 #pragma once
 
-#include "core/mpi_session.hpp"
+#include "core/parallel/mpi_session.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // Writes both ParaView series, interrupted and continued, into vtk_<ranks>/ beside the test; check_vtk_series.py then
 // opens them with VTK's own readers. Here: what the index files keep, and the errors.
-#include "core/error.hpp"
-#include "core/mpi_session.hpp"
-#include "io/fluid_series.hpp"
-#include "io/grain_series.hpp"
-#include "io/solid_series.hpp"
+#include "core/base/error.hpp"
+#include "core/parallel/mpi_session.hpp"
+#include "io/vtk/fluid_series.hpp"
+#include "io/vtk/grain_series.hpp"
+#include "io/vtk/solid_series.hpp"
 #include "tests/io/scratch_folder.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // One description of the keys: read, written, documented; and every complaint as one sentence that says where.
-#include "core/error.hpp"
-#include "io/section_reader.hpp"
-#include "io/section_writer.hpp"
+#include "core/base/error.hpp"
+#include "io/text/section_reader.hpp"
+#include "io/text/section_writer.hpp"
 #include "tests/io/scratch_folder.hpp"
 
 #include <fmt/format.h>

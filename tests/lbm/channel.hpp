@@ -1,7 +1,7 @@
 // Flow between two walls, uniform along them, run for so many steps: what the tests of walls look at.
 #pragma once
 
-#include "lbm/fluid.hpp"
+#include "lbm/fluid/fluid.hpp"
 
 #include <vector>
 

@@ -2,9 +2,9 @@
 // collision; and cells to try them on.
 #pragma once
 
-#include "lbm/collision_parameters.hpp"
-#include "lbm/d3q19.hpp"
-#include "lbm/equilibrium.hpp"
+#include "lbm/collision/collision_parameters.hpp"
+#include "lbm/lattice/d3q19.hpp"
+#include "lbm/lattice/equilibrium.hpp"
 
 #include <Eigen/Core>
 #include <Eigen/LU>

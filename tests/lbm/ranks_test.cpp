@@ -1,7 +1,7 @@
 // The fluid has the same bits on any number of ranks, however the box is cut: every rank runs the whole box alone as
 // well and compares its own block.
-#include "core/mpi_session.hpp"
-#include "lbm/fluid.hpp"
+#include "core/parallel/mpi_session.hpp"
+#include "lbm/fluid/fluid.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // A system that goes nowhere, for the tests of the watchdog.
 #pragma once
 
-#include "core/error.hpp"
-#include "core/mpi_session.hpp"
+#include "core/base/error.hpp"
+#include "core/parallel/mpi_session.hpp"
 #include "loop/watchdog.hpp"
 
 #include <gtest/gtest.h>

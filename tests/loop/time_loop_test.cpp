@@ -1,8 +1,8 @@
 #include "loop/time_loop.hpp"
 
-#include "core/error.hpp"
-#include "core/mpi_session.hpp"
-#include "core/sum_range.hpp"
+#include "core/base/error.hpp"
+#include "core/parallel/mpi_session.hpp"
+#include "core/sums/sum_range.hpp"
 #include "loop/phase_shares.hpp"
 #include "loop/stop_request.hpp"
 

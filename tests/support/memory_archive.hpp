@@ -2,9 +2,9 @@
 // can be read back on any other communicator, and compared bit by bit with the archive of a run on other ranks.
 #pragma once
 
-#include "core/archive.hpp"
-#include "core/error.hpp"
-#include "core/mpi_session.hpp"
+#include "core/base/archive.hpp"
+#include "core/base/error.hpp"
+#include "core/parallel/mpi_session.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 // Closed surfaces of triangles, wound outwards.
 #pragma once
 
-#include "core/triangle_mesh.hpp"
-#include "core/types.hpp"
+#include "core/base/types.hpp"
+#include "core/geometry/triangle_mesh.hpp"
 
 #include <cmath>
 #include <functional>

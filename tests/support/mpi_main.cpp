@@ -1,5 +1,5 @@
 // main() of every test executable: GoogleTest under MPI. Only rank 0 reports passes; a failure on any rank fails all.
-#include "core/mpi_session.hpp"
+#include "core/parallel/mpi_session.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,6 +4,8 @@
     check_includes.py [ROOT]      of the repository (default: the one this file is in)
 
 - A module includes, and its CMake target links, only the modules it may depend on; only tests use driver.
+- A room (a folder of a module) includes only itself and the rooms before it; a module's own folder comes after its rooms.
+- No room has more than MOST_FILES files.
 - VTK and HDF5 appear only in io, and a header of io that shows them is not included from elsewhere; yaml-cpp appears
   only in io and driver.
 - Includes are written from the repository root, and what they name exists.
@@ -21,13 +23,32 @@ MODULES = {
     "lbm": {"core", "lbm"},
     "bodies": {"core", "lbm", "bodies"},
     "dem": {"core", "dem"},
+    "beds": {"core", "dem", "beds"},
+    "model_fluid": {"core", "dem", "model_fluid"},
     "continuum": {"core", "continuum"},
     "analysis": {"core", "analysis"},
     "io": {"core", "io"},
-    "coupling": {"core", "lbm", "bodies", "dem", "continuum", "coupling"},
+    "coupling": {"core", "lbm", "bodies", "dem", "coupling"},
     "loop": {"core", "analysis", "loop"},
-    "driver": {"core", "lbm", "bodies", "dem", "continuum", "analysis", "io", "coupling", "loop", "driver"},
+    "driver": {"core", "lbm", "bodies", "dem", "beds", "model_fluid", "continuum", "analysis", "io", "coupling", "loop",
+               "driver"},
 }
+# The rooms of each module, from the ground floor up.
+ROOMS = {
+    "core": ("base", "geometry", "keys", "parallel", "state", "sums"),
+    "lbm": ("lattice", "collision", "walls", "fluid"),
+    "bodies": ("map", "links"),
+    "dem": ("laws", "motion", "clumps", "contact", "ranks"),
+    "beds": ("packing", "sizes", "population", "files"),
+    "model_fluid": (),
+    "coupling": ("loads", "keys", "system"),
+    "continuum": (),
+    "analysis": ("observer", "tools", "observers"),
+    "io": ("files", "text", "vtk", "hdf5", "folder"),
+    "loop": (),
+    "driver": ("case", "estimate", "input", "setup", "cost", "execution", "plan", "cli"),
+}
+MOST_FILES = 28   # of one room: more cannot be drawn from memory
 # Files with a list of the modules, and the modules that it need not have.
 LISTS = {
     "CMakeLists.txt": set(),
@@ -67,8 +88,8 @@ def files_of(root):
 
 def headers_that_show_vtk_or_hdf5(root):
     """The headers of io that include VTK or HDF5, directly or through another header of io."""
-    includes = {f"io/{path.name}": [name for _, name in INCLUDE.findall(path.read_text())]
-                for path in (root / "io").glob("*.hpp")}
+    includes = {path.relative_to(root).as_posix(): [name for _, name in INCLUDE.findall(path.read_text())]
+                for path in (root / "io").rglob("*.hpp")}
     shown = set()
     while True:
         more = {header for header, names in includes.items()
@@ -76,6 +97,36 @@ def headers_that_show_vtk_or_hdf5(root):
         if more == shown:
             return shown
         shown = more
+
+
+def room_of(relative):
+    """The room of a file of a module; empty: the module's own folder."""
+    return relative.parts[1] if len(relative.parts) > 2 else ""
+
+
+def check_floors(relative, name):
+    """What is wrong with an include of a file of the same module, or None."""
+    module = relative.parts[0]
+    floors = ROOMS[module] + ("",)
+    here, there = room_of(relative), room_of(pathlib.PurePosixPath(name))
+    if here in floors and there in floors and floors.index(there) > floors.index(here):
+        return f'{module}/{here} must not include "{name}": {there or "the folder of " + module} comes after it'
+    return None
+
+
+def check_rooms(root):
+    """(file, line, what) of every folder of a module that is no room, or has too many files."""
+    for module, rooms in ROOMS.items():
+        if not (root / module).is_dir():
+            continue
+        folders = {path.parent for path in (root / module).rglob("*") if path.suffix in SOURCE_SUFFIXES}
+        for folder in sorted(folders):
+            relative = folder.relative_to(root)
+            if relative.parts[1:] and (len(relative.parts) > 2 or relative.parts[1] not in rooms):
+                yield relative, 1, f"check_includes.py does not know this room of {module}"
+            files = sum(path.suffix in SOURCE_SUFFIXES for path in folder.iterdir())
+            if files > MOST_FILES:
+                yield relative, 1, f"{files} files in one room; no room has more than {MOST_FILES}"
 
 
 def check_quoted(root, relative, name, private):
@@ -88,6 +139,10 @@ def check_quoted(root, relative, name, private):
     if module in MODULES and target not in MODULES[module]:
         allowed = ", ".join(sorted(MODULES[module] - {module})) or "no other"
         return f'{module} must not include "{name}": it may depend on {allowed}'
+    if module in MODULES and target == module:
+        wrong = check_floors(relative, name)
+        if wrong:
+            return wrong
     if name in private and module_of(relative) != "io":
         return f'"{name}" shows VTK or HDF5, which are private to io'
     if target == "driver" and not relative.as_posix().startswith(USERS_OF_DRIVER):
@@ -143,6 +198,7 @@ def violations(root):
     """(file, line, what) of everything that is wrong."""
     private = headers_that_show_vtk_or_hdf5(root)
     yield from check_lists(root)
+    yield from check_rooms(root)
     for path, relative in files_of(root):
         if path.suffix not in TEXT_SUFFIXES:
             continue

@@ -5,9 +5,9 @@
 //
 // FILE: float32, N^3 values (x fastest) each of rho - 1, u, v, w in lattice units. Writes u, v, w in the same way to
 // FILE.N1, FILE.N2, ... after so many steps. E is tau - 1/2. One rank.
-#include "core/error.hpp"
-#include "core/mpi_session.hpp"
-#include "lbm/fluid.hpp"
+#include "core/base/error.hpp"
+#include "core/parallel/mpi_session.hpp"
+#include "lbm/fluid/fluid.hpp"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

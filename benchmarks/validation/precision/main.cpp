@@ -8,11 +8,11 @@
 //            velocity, and of the velocity field.
 // No faster than 0.05: at a relaxation time of 0.503 bgk is unstable at walls beyond that (docs/stability.md).
 // Differences are divided by the largest velocity, or by the force in double. Prints a table in Markdown.
-#include "bodies/body_map.hpp"
-#include "bodies/link_builder.hpp"
-#include "bodies/link_pass.hpp"
-#include "core/mpi_session.hpp"
-#include "lbm/fluid.hpp"
+#include "bodies/links/link_builder.hpp"
+#include "bodies/links/link_pass.hpp"
+#include "bodies/map/body_map.hpp"
+#include "core/parallel/mpi_session.hpp"
+#include "lbm/fluid/fluid.hpp"
 
 #include <fmt/format.h>
 

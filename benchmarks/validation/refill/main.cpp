@@ -14,8 +14,8 @@
 // of the force is given over the mean drag, of the torque over drag times radius, in two measures: the root mean square
 // of the change from one exchange to the next, and that of what is left of the load that the grains feel when its mean
 // over the time of crossing a cell is subtracted. Prints a table in Markdown.
-#include "core/mpi_session.hpp"
-#include "coupling/lattice_system.hpp"
+#include "core/parallel/mpi_session.hpp"
+#include "coupling/system/lattice_system.hpp"
 
 #include <fmt/format.h>
 

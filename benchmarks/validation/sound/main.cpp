@@ -3,8 +3,8 @@
 // A density wave of amplitude 1e-6 begins at rest. Its amplitude a(t) obeys a(t + m) = p a(t) - q a(t - m), p = 2
 // e^{-gm} cos(wm), q = e^{-2gm}: least squares over two periods, after three in which the modes that relax die, give
 // the damping g (1/steps) and the speed w/k (cells a step). Prints CSV in lattice units; compare.py has the theory.
-#include "core/mpi_session.hpp"
-#include "lbm/fluid.hpp"
+#include "core/parallel/mpi_session.hpp"
+#include "lbm/fluid/fluid.hpp"
 
 #include <fmt/format.h>
 

@@ -6,10 +6,10 @@
 // the friction velocity u_tau by the balance of forces. Starts from Reichardt's mean profile with large vortices, or
 // goes on from its own checkpoint. Prints a line now and then; leaves the profile in wall units in a CSV file.
 #include "benchmarks/validation/turbulent_channel/plane_statistics.hpp"
-#include "core/error.hpp"
-#include "core/mpi_session.hpp"
-#include "io/hdf5_archive.hpp"
-#include "lbm/fluid_survey.hpp"
+#include "core/base/error.hpp"
+#include "core/parallel/mpi_session.hpp"
+#include "io/hdf5/hdf5_archive.hpp"
+#include "lbm/fluid/fluid_survey.hpp"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

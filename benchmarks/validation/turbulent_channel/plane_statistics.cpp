@@ -1,8 +1,8 @@
 #include "benchmarks/validation/turbulent_channel/plane_statistics.hpp"
 
-#include "core/error.hpp"
-#include "core/fixed_point.hpp"
-#include "core/mpi_session.hpp"
+#include "core/base/error.hpp"
+#include "core/parallel/mpi_session.hpp"
+#include "core/sums/fixed_point.hpp"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
 // Means over planes parallel to the plates of a channel (normal z), and over time.
 #pragma once
 
-#include "core/archive.hpp"
-#include "core/decomposition.hpp"
-#include "lbm/fluid.hpp"
+#include "core/base/archive.hpp"
+#include "core/parallel/decomposition.hpp"
+#include "lbm/fluid/fluid.hpp"
 
 #include <string>
 #include <vector>

@@ -72,7 +72,7 @@ def digest_of_file(path):
 
 
 def latest_checkpoint_in(run):
-    """As the program chooses it (io/run_folder.hpp): the one that `latest` names, else that of the last step; None: there is none."""
+    """As the program chooses it (io/folder/run_folder.hpp): the one that `latest` names, else that of the last step; None: there is none."""
     steps = {int(match[1]): file for file in run.glob("checkpoints/step_*.h5") if (match := re.fullmatch(r"step_(\d+)\.h5", file.name))}
     try:
         named = run / "checkpoints" / (run / "checkpoints/latest").read_text(encoding="utf-8").strip()

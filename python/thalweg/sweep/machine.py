@@ -1,5 +1,5 @@
 """How many runs fit on this machine at a time. What there is comes from the program that has started this one, which knows the
-scheduler's set of cores and the limits of container and job (driver/python_command.cpp)."""
+scheduler's set of cores and the limits of container and job (driver/cli/python_command.cpp)."""
 import os
 import re
 

@@ -1,0 +1,43 @@
+// What a case says about an observer: a section of `analysis`, as a struct of plain values with their defaults and
+//
+//   static constexpr const char* section;   its key in the case file, and the observer's name
+//   static constexpr const char* meaning;   for the documentation
+//   static constexpr Needs needs;           the systems that have it
+//
+// and in the namespace of the observer
+//
+//   void describe(SectionVisitor& visit, Keys& keys);                             (core/keys/section_visitor.hpp)
+//   std::unique_ptr<Observer> make_observer(const Keys& keys, const RunFacts& run, const RunningSystem& system);
+//
+// and, where there is something to refuse or to warn of,
+//
+//   void check(const Keys& keys, const RunFacts& run);                            throws KeyError
+//   std::optional<std::string> warning(const Keys& keys, const RunFacts& run);    a sentence
+//
+// A new observer becomes known to the program by a line in observer_list.hpp.
+#pragma once
+
+#include "analysis/observer/observer.hpp"
+#include "analysis/observer/run_facts.hpp"
+#include "core/keys/key_error.hpp"
+#include "core/keys/section_visitor.hpp"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace thalweg::analysis {
+
+enum class Needs { grains, fluid, both };
+
+// The keys of means.
+void describe_from(SectionVisitor& visit, double& from);
+void describe_every(SectionVisitor& visit, double& every);
+
+// Throw KeyError with a remedy. what: a verb for the message, "measure".
+void require_grains(const RunFacts& run, const std::string& what);
+void require_ids(const RunFacts& run, const std::vector<GlobalId>& ids);  // key grains: each is there, and named once
+void require_full_gravity_from(const RunFacts& run, double from);         // run.ramp is over then
+
+}  // namespace thalweg::analysis

@@ -1,0 +1,84 @@
+// What an observer may know of the run it measures, besides the snapshots: facts of the case, in SI units.
+#pragma once
+
+#include "core/base/types.hpp"
+#include "core/geometry/periodic_box.hpp"
+#include "core/parallel/decomposition.hpp"
+
+#include <mpi.h>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace thalweg::analysis {
+
+struct FluidFacts {
+  double density = 0.0;              // kg/m^3
+  double kinematic_viscosity = 0.0;  // m^2/s
+  double velocity_unit = 0.0;        // m/s of one cell a step
+  bool steered = false;              // its mean velocity is prescribed, so that no slope drives it
+  int side_walls = 0;                // of those across y, how many hold the flow back: 0 to 2
+  bool top_drags = false;            // the face z_high exchanges shear with the flow
+  bool top_moves = false;            // and moves along x
+};
+
+// Of a model fluid (model_fluid/model_fluid.hpp).
+struct ModelFluidFacts {
+  double speed = 0.0;    // m/s, v_0, of the first Shields number
+  double gravity = 0.0;  // m/s^2, reduced
+};
+
+// Grains of a case that belong together, with the ids first ... end - 1.
+struct Population {
+  std::string name;  // of its columns
+  GlobalId first = 0, end = 0;
+  std::function<Vec3(double time)> pivot;  // m, of its torque at a time (s)
+  bool held = false;                       // moves as prescribed, or not at all
+  bool clumps = false;
+};
+
+struct HeldGrains {
+  GlobalId first = 0, end = 0;  // ids from `first` to one before `end`
+};
+bool is_held(const std::vector<HeldGrains>& held, GlobalId id);
+
+struct GrainFacts {
+  std::vector<Population> populations;
+  double reference_diameter = 0.0;  // m, d of q* and the Shields number
+  double reference_density = 0.0;   // kg/m^3
+  double smallest_diameter = 0.0;   // m, of spheres and members of clumps
+  double largest_diameter = 0.0;    // m
+  double disk_thickness = 0.0;      // m; 0: spheres
+  // Ids, ascending, of spheres that are no grains of the bed but stand in it: a sill, a pier, a boulder.
+  std::vector<GlobalId> obstacles = {};
+
+  using Force = std::function<Vec3(double mass, double radius)>;  // N, on a sphere (kg, m)
+  Force body_force = {};                                          // in a fluid only, as the next two
+  Force submerged_weight = {};
+  Force buoyancy = {};  // that part of it which is in the fluid's load
+
+  GlobalId count() const { return populations.empty() ? 0 : populations.back().end; }  // of ids
+  std::vector<HeldGrains> held() const;
+  bool any_clumps() const;
+};
+
+struct RunFacts {
+  PeriodicBox box;
+  double until = 0.0;           // s, the end of the run
+  double ramp = 0.0;            // s in which gravity rises
+  Vec3 gravity = Vec3::Zero();  // m/s^2
+  std::optional<FluidFacts> fluid;
+  std::optional<ModelFluidFacts> model_fluid;
+  std::optional<GrainFacts> grains;
+};
+
+// The system an observer is made for.
+struct RunningSystem {
+  MPI_Comm communicator;
+  const Decomposition& decomposition;
+  double time_step;  // s
+};
+
+}  // namespace thalweg::analysis

@@ -1,0 +1,219 @@
+#include "analysis/observers/bed_surface.hpp"
+
+#include "core/state/whole_dataset.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+namespace thalweg::analysis {
+
+namespace {
+
+const std::string static_height = "static_bed_height";
+
+// Of the columns that have a static pixel; not a number where none has.
+double mean_height(const std::vector<double>& surface) {
+  const auto columns = static_cast<double>(std::count_if(surface.begin(), surface.end(), StaticPixels::is_static));
+  return std::accumulate(surface.begin(), surface.end(), 0.0) / columns;
+}
+
+// The mean of each column over the pictures that show a static pixel in it; 0 where none does.
+std::vector<double> means_of(const std::vector<double>& sums, const std::vector<double>& counts) {
+  std::vector<double> means;
+  for (std::size_t c = 0; c < sums.size(); ++c) means.push_back(sums[c] / std::max(1.0, counts[c]));
+  return means;
+}
+
+}  // namespace
+
+BedSurface::BedSurface(MPI_Comm communicator, const PeriodicBox& box, const BedSurfaceKeys& keys, double diameter,
+                       const std::optional<BedFlow>& flow, double disk_thickness, std::vector<GlobalId> obstacles)
+    : communicator_(communicator),
+      box_(box),
+      keys_(keys),
+      flow_(flow),
+      diameter_(diameter),
+      layers_(communicator, box, keys.layer.value_or(diameter), disk_thickness, std::move(obstacles)),
+      pixels_(communicator, box, keys.pixel.value_or(diameter / 25.0), keys.static_time),
+      surface_sums_(static_cast<std::size_t>(pixels_.columns()), 0.0),
+      surface_counts_(surface_sums_) {
+  sums_.assign(figures().size(), 0.0);
+}
+
+void BedSurface::observe(const Snapshot& snapshot) {
+  // A run that goes on from a checkpoint looks once more at the state the checkpoint holds.
+  const bool again = snapshot.step <= seen_step_;
+  measure(snapshot);
+  if (again) return;
+  seen_step_ = snapshot.step;
+  const double from = keys_.from * (1.0 - 1e-12);
+  if (pixels_.look(snapshot) && pixels_.begun() >= from) {
+    ++pictures_;
+    for (std::size_t c = 0; c < surface_sums_.size(); ++c) {
+      surface_sums_[c] += pixels_.surface()[c];
+      surface_counts_[c] += StaticPixels::is_static(pixels_.surface()[c]) ? 1.0 : 0.0;
+    }
+  }
+  if (snapshot.time < from) return;
+  ++measurements_;
+  std::size_t n = 0;
+  for (const Figure& figure : figures())
+    if (figure.name != static_height) sums_[n++] += figure.value;
+  sums_[n] += bulk_;
+}
+
+void BedSurface::measure(const Snapshot& snapshot) {
+  const BedLayers::Bed bed = layers_.bed(snapshot);
+  bulk_ = bed.solid_fraction;
+  bed_height_ = bed.height;
+  if (!flow_ || flow_->shields_stress <= 0.0) return;
+  bed_stress_ = flow_->driving_stress * hydraulic_radius();
+  if (!flow_->measured || snapshot.fluid == nullptr) return;
+  const FluidSource::Drive drive = snapshot.fluid->drive();
+  const double on_top = -drive.on_top.x() / (box_.size.x() * box_.size.y());
+  const double width = layers_.width();
+  bed_stress_ = (drive.body_force.x() * flow_depth() + on_top) * width / (width + flow_->side_walls * flow_depth());
+}
+
+double BedSurface::flow_depth() const { return box_.size.z() - bed_height_; }
+
+double BedSurface::hydraulic_radius() const {
+  return flow_depth() * layers_.width() / (layers_.width() + flow_->side_walls * flow_depth());
+}
+
+std::vector<Figure> BedSurface::figures() const {
+  std::vector<Figure> figures{{"bed_height", "m", bed_height_}, {static_height, "m", mean_height(pixels_.surface())}};
+  if (!flow_) return figures;
+  figures.push_back({"flow_depth", "m", flow_depth()});
+  figures.push_back({"hydraulic_radius", "m", hydraulic_radius()});
+  if (flow_->shields_stress <= 0.0) return figures;
+  figures.push_back({"bed_stress", "Pa", bed_stress_});
+  figures.push_back({"shields_number", "1", bed_stress_ / flow_->shields_stress});
+  return figures;
+}
+
+std::vector<Figure> BedSurface::results() const {
+  const double count = static_cast<double>(measurements_);  // means of nothing are not a number
+  std::vector<Figure> results;
+  std::size_t n = 0;
+  for (const Figure& figure : figures())
+    if (figure.name != static_height) results.push_back({figure.name + "_mean", figure.unit, sums_[n++] / count});
+  results.push_back({"bulk_solid_fraction_mean", "1", sums_[n] / count});
+  const double pictures = static_cast<double>(pictures_);
+  results.push_back({static_height + "_mean", "m", mean_height(means_of(surface_sums_, surface_counts_))});
+  results.push_back({"static_share_mean", "1",
+                     std::accumulate(surface_counts_.begin(), surface_counts_.end(), 0.0) /
+                         (pictures * static_cast<double>(surface_counts_.size()))});
+  results.push_back({"mean_from", "s", keys_.from});
+  results.push_back({"measurements", "1", static_cast<double>(measurements_)});
+  results.push_back({"static_pictures", "1", pictures});
+  return results;
+}
+
+std::vector<Profile> BedSurface::profiles() const {
+  const std::vector<std::uint64_t> shape{surface_sums_.size()};
+  Profile x{"x", "m", {}, shape, {}}, mean{"static_surface", "m", {}, shape, {}};
+  Profile latest{"latest_static_surface", "m", {}, shape, pixels_.surface()};
+  latest.values.resize(surface_sums_.size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t c = 0; c < surface_sums_.size(); ++c) {
+    x.values.push_back((static_cast<double>(c) + 0.5) * pixels_.column_width());
+    mean.values.push_back(surface_sums_[c] / surface_counts_[c]);
+  }
+  return {x, mean, latest};
+}
+
+SavedSettings BedSurface::settings() const {
+  return {{"layer", keys_.layer.value_or(diameter_)},
+          {"static_time", keys_.static_time},
+          {"shields_stress", flow_ ? flow_->shields_stress : 0.0}};
+}
+
+void BedSurface::save(ArchiveWriter& archive) const {
+  archive.attribute("bed_surface/mean_from", keys_.from);
+  save_settings(archive, "bed_surface", settings());
+  archive.attribute("bed_surface/seen_step", seen_step_);
+  archive.attribute("bed_surface/measurements", measurements_);
+  archive.attribute("bed_surface/pictures", pictures_);
+  archive.attribute("bed_surface/latest_bed_height", bed_height_);  // a row of the series may come before the next
+  archive.attribute("bed_surface/latest_bulk", bulk_);
+  archive.attribute("bed_surface/latest_bed_stress", bed_stress_);
+  const auto write = [&](const std::string& path, const std::vector<double>& values) {
+    write_whole(archive, communicator_, path, std::span<const double>(values), {values.size()});
+  };
+  write("bed_surface/sums", sums_);
+  write("bed_surface/surface_sums", surface_sums_);
+  write("bed_surface/surface_counts", surface_counts_);
+  pixels_.save(archive, "bed_surface");
+}
+
+bool BedSurface::load(ArchiveReader& archive) {
+  if (!archive.has("bed_surface/mean_from") || archive.real_attribute("bed_surface/mean_from") != keys_.from ||
+      archive.shape("bed_surface/sums") != std::vector<std::uint64_t>{sums_.size()} ||
+      !archive.has("bed_surface/surface_counts") ||
+      archive.shape("bed_surface/surface_counts") != std::vector<std::uint64_t>{surface_counts_.size()})
+    return false;
+  if (!were_saved_with(archive, "bed_surface", settings())) return false;
+  seen_step_ = archive.integer_attribute("bed_surface/seen_step");
+  measurements_ = archive.integer_attribute("bed_surface/measurements");
+  pictures_ = archive.integer_attribute("bed_surface/pictures");
+  bed_height_ = archive.real_attribute("bed_surface/latest_bed_height");
+  bulk_ = archive.real_attribute("bed_surface/latest_bulk");
+  if (archive.has("bed_surface/latest_bed_stress"))  // older checkpoints have none
+    bed_stress_ = archive.real_attribute("bed_surface/latest_bed_stress");
+  const auto read = [&](const std::string& path, std::vector<double>& values) {
+    archive.read(path, std::span<double>(values), {{values.size()}, {0}, {values.size()}});
+  };
+  read("bed_surface/sums", sums_);
+  read("bed_surface/surface_sums", surface_sums_);
+  read("bed_surface/surface_counts", surface_counts_);
+  pixels_.load(archive, "bed_surface");
+  return true;
+}
+
+void describe(SectionVisitor& visit, BedSurfaceKeys& keys) {
+  describe_from(visit, keys.from);
+  describe_every(visit, keys.every);
+  visit.real("layer", keys.layer,
+             {.unit = "m",
+              .meaning = "height over which the solid fraction is averaged; default: the reference diameter",
+              .above = 0.0,
+              .example = 5e-3});
+  visit.real("pixel", keys.pixel,
+             {.unit = "m",
+              .meaning = "side of a pixel of the side view; default: 1/25 of the reference diameter",
+              .above = 0.0,
+              .example = 2e-4});
+  visit.real("static_time", keys.static_time,
+             {.unit = "s", .meaning = "a pixel is static after one grain has covered it for this long", .above = 0.0});
+}
+
+void check(const BedSurfaceKeys&, const RunFacts& run) {
+  require_grains(run, "measure");
+  if (run.box.periodic[2])
+    throw KeyError("",
+                   "a bed has a height above a bottom, and here z is periodic; remove the section or give "
+                   "domain.boundaries a bottom and a top, for example no_slip and free_slip");
+}
+
+std::optional<BedFlow> bed_flow(const RunFacts& run) {
+  if (!run.fluid) return std::nullopt;
+  BedFlow flow;
+  flow.side_walls = run.fluid->side_walls;
+  const bool by_slope = run.gravity.x() > 0.0 && run.gravity.z() < 0.0 && run.box.periodic[0] && !run.fluid->steered;
+  if (!by_slope && !run.fluid->steered && !run.fluid->top_moves) return flow;
+  flow.shields_stress =
+      (run.grains->reference_density - run.fluid->density) * run.gravity.norm() * run.grains->reference_diameter;
+  flow.driving_stress = run.fluid->density * run.gravity.x();
+  flow.measured = run.fluid->steered || run.fluid->top_drags;
+  return flow;
+}
+
+std::unique_ptr<Observer> make_observer(const BedSurfaceKeys& keys, const RunFacts& run, const RunningSystem& system) {
+  return std::make_unique<BedSurface>(system.communicator, run.box, keys, run.grains->reference_diameter, bed_flow(run),
+                                      run.grains->disk_thickness, run.grains->obstacles);
+}
+
+}  // namespace thalweg::analysis

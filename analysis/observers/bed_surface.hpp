@@ -1,0 +1,104 @@
+// Where the bed ends and the flow begins, and the stress that follows from it.
+//
+//   bed height        half of the bulk solid fraction (bed_height.hpp), and the mean of the surface of static pixels
+//                     (static_pixels.hpp)
+//   flow depth        H   = height of the box - bed height, that of the solid fraction
+//   hydraulic radius  R_h = H W / (W + n H)                n: side walls that hold the flow back, 0 to 2
+//   bed stress        tau_b = f R_h                        Pa, of a flow that is steady (Zhang et al. 2022)
+//                     f     = rho_f g_x                    N/m^3, g_x: g times the sine of the slope
+//   Shields number    tau*  = tau_b / ((rho_s - rho_f) g d)
+//
+// Where the mean velocity is controlled, f is the body force that does so, as it is then; where the top of the box
+// drives the flow, or holds it back, its measured stress tau_top (Pa, on the fluid, along x) is included:
+//   tau_b = (f H + tau_top) W / (W + n H)
+#pragma once
+
+#include "analysis/observer/observer_keys.hpp"
+#include "analysis/tools/bed_layers.hpp"
+#include "analysis/tools/saved_settings.hpp"
+#include "analysis/tools/static_pixels.hpp"
+
+#include <mpi.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace thalweg::analysis {
+
+struct BedSurfaceKeys {
+  static constexpr const char* section = "bed_surface";
+  static constexpr const char* meaning =
+      "height of the bed by solid fraction and by static pixels; depth, bed stress and Shields number of the flow "
+      "above "
+      "it";
+  static constexpr Needs needs = Needs::grains;
+  double from = 0.0;                 // s: the means begin here
+  double every = 0.01;               // s: between measurements and looks at the pixels
+  std::optional<double> layer = {};  // m: over which the solid fraction is averaged; d where not given
+  std::optional<double> pixel = {};  // m; d/25 where not given
+  double static_time = 0.5;          // s: a pixel covered by one grain for so long is static
+  bool operator==(const BedSurfaceKeys&) const = default;
+};
+void describe(SectionVisitor& visit, BedSurfaceKeys& keys);
+void check(const BedSurfaceKeys& keys, const RunFacts& run);
+std::unique_ptr<Observer> make_observer(const BedSurfaceKeys& keys, const RunFacts& run, const RunningSystem& system);
+
+// The flow over the bed; none for dry grains.
+struct BedFlow {
+  int side_walls = 0;           // that hold the flow back
+  double driving_stress = 0.0;  // Pa/m: rho_f g_x
+  double shields_stress = 0.0;  // Pa: (rho_s - rho_f) g d; 0: nothing drives the flow, and no stress is shown
+  bool measured = false;        // force and stress at the top are those of the moment (FluidSource::drive())
+};
+
+class BedSurface : public Observer {
+public:
+  // diameter: m, that stands for all grains. disk_thickness: m, 0: spheres. obstacles: as BedLayers has them. The box
+  // must end in walls along z.
+  BedSurface(MPI_Comm communicator, const PeriodicBox& box, const BedSurfaceKeys& keys, double diameter,
+             const std::optional<BedFlow>& flow, double disk_thickness, std::vector<GlobalId> obstacles = {});
+
+  std::string name() const override { return "bed_surface"; }
+  double every() const override { return keys_.every; }
+  void observe(const Snapshot& snapshot) override;  // a step seen before does not count again
+
+  // bed_height (m), static_bed_height (m, mean of the columns that have a static pixel; not a number before the first
+  // static_time is over); over a bed in a fluid flow_depth (m), hydraulic_radius (m), and where a slope, a steering
+  // force or a moving top drives the flow bed_stress (Pa), shields_number (1).
+  std::vector<Figure> figures() const override;
+
+  // The means of all of these (with _mean), bulk_solid_fraction_mean, static_share_mean (1: columns with a static
+  // pixel), mean_from (s), measurements, static_pictures.
+  std::vector<Figure> results() const override;
+
+  // x (m, middle of the column), static_surface (m: mean over the pictures in which the column has a static pixel),
+  // latest_static_surface (m).
+  std::vector<Profile> profiles() const override;
+
+  void save(ArchiveWriter& archive) const override;
+  // Takes the sums over only if they were begun at the same `from`, with the same settings.
+  bool load(ArchiveReader& archive) override;
+
+private:
+  void measure(const Snapshot& snapshot);
+  double flow_depth() const;        // m
+  double hydraulic_radius() const;  // m
+  SavedSettings settings() const;
+
+  MPI_Comm communicator_;
+  PeriodicBox box_;
+  BedSurfaceKeys keys_;
+  std::optional<BedFlow> flow_;
+  double diameter_;  // m
+  BedLayers layers_;
+  double bed_height_ = 0.0, bulk_ = 0.0, bed_stress_ = 0.0;  // m, 1, Pa: latest
+  StaticPixels pixels_;
+  std::int64_t seen_step_ = -1, measurements_ = 0, pictures_ = 0;
+  std::vector<double> sums_;            // of the figures but static_bed_height, and of the bulk's solid fraction
+  std::vector<double> surface_sums_;    // m, of each column
+  std::vector<double> surface_counts_;  // of each column: pictures in which it has a static pixel
+};
+
+}  // namespace thalweg::analysis

@@ -1,0 +1,59 @@
+// What a case says about Entrainment, and the settings that follow from it.
+#include "analysis/observers/entrainment.hpp"
+#include "analysis/observers/transport_rate.hpp"
+#include "core/base/schedule.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace thalweg::analysis {
+
+void describe(SectionVisitor& visit, EntrainmentKeys& keys) {
+  visit.integer_list("grains", keys.grains,
+                     {.meaning = "ids of the grains, in the order of the populations from 0; else the free ones whose "
+                                 "centre is above the bed's height less one reference diameter",
+                      .at_least = 0,
+                      .example = 0});
+  visit.real("from", keys.from, {.unit = "s", .meaning = "start of the observation", .at_least = 0.0});
+  visit.real("memory", keys.memory,
+             {.unit = "s", .meaning = "time before entrainment that is recorded for each grain", .above = 0.0});
+  visit.real("every", keys.every, {.unit = "s", .meaning = "between recorded states; 0: every step", .at_least = 0.0});
+  visit.real("refresh", keys.refresh,
+             {.unit = "s", .meaning = "between two selections of the surface grains", .above = 0.0});
+  visit.real("displacement", keys.displacement,
+             {.unit = "1",
+              .meaning = "a grain counts as entrained this many of its diameters away from its rest position",
+              .above = 0.0});
+  visit.real("rest_time", keys.rest_time,
+             {.unit = "s",
+              .meaning = "a grain is at rest after it has been slower than 1 % of sqrt((s - 1) g d) for this long",
+              .at_least = 0.0});
+}
+
+void check(const EntrainmentKeys& keys, const RunFacts& run) {
+  require_ids(run, keys.grains);
+  if (run.grains->any_clumps())
+    throw KeyError("", "it knows grains that are single spheres, and there are clumps; remove the section");
+  if (keys.grains.empty() && run.box.periodic[2])
+    throw KeyError("",
+                   "a bed has a height above a bottom, and here z is periodic; name the grains, or give "
+                   "domain.boundaries bottom and top");
+  require_full_gravity_from(run, keys.from);
+}
+
+std::unique_ptr<Observer> make_observer(const EntrainmentKeys& keys, const RunFacts& run, const RunningSystem& system) {
+  EntrainmentSettings settings;
+  static_cast<EntrainmentKeys&>(settings) = keys;
+  std::sort(settings.grains.begin(), settings.grains.end());
+  settings.interval = std::max(keys.every, system.time_step);
+  settings.refresh_steps = Schedule(keys.refresh, system.time_step).interval();
+  settings.window = settings.diameter = run.grains->reference_diameter;
+  settings.moving_speed = transport_scales(run).moving_speed();
+  settings.held = run.grains->held();
+  settings.obstacles = run.grains->obstacles;
+  settings.weight = run.grains->submerged_weight;
+  settings.buoyancy = run.grains->buoyancy;
+  return std::make_unique<Entrainment>(system.communicator, run.box, std::move(settings));
+}
+
+}  // namespace thalweg::analysis

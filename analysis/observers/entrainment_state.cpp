@@ -1,0 +1,139 @@
+// What Entrainment remembers, in a checkpoint: one row for every id, and the samples and touches of all rings, one
+// after the other in the order of ids.
+#include "analysis/observers/entrainment.hpp"
+#include "core/parallel/mpi_session.hpp"
+
+#include <algorithm>
+
+namespace thalweg::analysis {
+
+namespace {
+
+// This rank's rows among those of all, which lie in the order of ranks. Collective.
+ArrayBox box_of_rows(MPI_Comm communicator, std::int64_t rows, std::uint64_t columns) {
+  std::int64_t before = 0;
+  MPI_Exscan(&rows, &before, 1, MPI_INT64_T, MPI_SUM, communicator);
+  if (rank_of(communicator) == 0) before = 0;
+  const auto all = static_cast<std::uint64_t>(sum_over_ranks(communicator, rows));
+  return {{all, columns}, {static_cast<std::uint64_t>(before), 0}, {static_cast<std::uint64_t>(rows), columns}};
+}
+
+std::vector<double> read_rows(ArchiveReader& archive, MPI_Comm communicator, const std::string& path, std::int64_t rows,
+                              std::uint64_t columns) {
+  const ArrayBox box = box_of_rows(communicator, rows, columns);
+  std::vector<double> values(static_cast<std::size_t>(rows) * columns);
+  archive.read(path, std::span<double>(values), box);
+  return values;
+}
+
+}  // namespace
+
+std::vector<double> Entrainment::rows_of_memory() const {
+  std::vector<double> rows;
+  for (const Memory& m : memory_)
+    rows.insert(rows.end(), {m.watched ? 1.0 : 0.0, static_cast<double>(m.phase), m.radius, m.mass, m.quiet_since,
+                             m.rest.x(), m.rest.y(), m.rest.z(), static_cast<double>(m.ring.size())});
+  return rows;
+}
+
+SavedSettings Entrainment::definitions() const {
+  return {
+      {"from", settings_.from},           {"interval", settings_.interval}, {"displacement", settings_.displacement},
+      {"rest_time", settings_.rest_time}, {"diameter", settings_.diameter}, {"moving_speed", settings_.moving_speed}};
+}
+
+void Entrainment::save(ArchiveWriter& archive) const {
+  save_settings(archive, "entrainment", definitions());
+  archive.attribute("entrainment/seen_step", seen_step_);
+  archive.attribute("entrainment/chosen_step", chosen_step_);
+  archive.attribute("entrainment/events", events_);
+  archive.attribute("entrainment/shares", shares_);
+  archive.attribute("entrainment/sum_of_shares", sum_of_shares_);
+  archive.attribute("entrainment/sum_of_squares", sum_of_squares_);
+  if (!homes_) return;
+  archive.write("entrainment/grains", std::span<const double>(rows_of_memory()), homes_->box(memory_columns));
+  std::vector<SampleRow> samples;
+  std::vector<TouchRow> touches;
+  for (const Memory& m : memory_) add_rows(0, m.ring, samples, touches);
+  std::vector<double> values;
+  for (const SampleRow& row : samples) {
+    values.push_back(row.time);
+    values.insert(values.end(), row.record.values.begin(), row.record.values.end());
+    values.push_back(static_cast<double>(row.touches));
+  }
+  archive.write("entrainment/samples", std::span<const double>(values),
+                box_of_rows(communicator_, static_cast<std::int64_t>(samples.size()), sample_columns));
+  values.clear();
+  for (const TouchRow& row : touches) {
+    values.push_back(static_cast<double>(row.partner));
+    values.insert(values.end(), row.values.begin(), row.values.end());
+  }
+  archive.write("entrainment/touches", std::span<const double>(values),
+                box_of_rows(communicator_, static_cast<std::int64_t>(touches.size()), touch_columns));
+}
+
+bool Entrainment::load(ArchiveReader& archive) {
+  if (!archive.has("entrainment/seen_step")) return false;
+  if (!archive.has("entrainment/grains")) return true;  // before the first measurement
+  if (!were_saved_with(archive, "entrainment", definitions())) return false;
+  homes_.emplace(communicator_, static_cast<GlobalId>(archive.shape("entrainment/grains")[0]));
+  memory_.assign(homes_->size(), {});
+  std::vector<double> rows(memory_.size() * memory_columns);
+  archive.read("entrainment/grains", std::span<double>(rows), homes_->box(memory_columns));
+  std::int64_t watched = 0;
+  bool as_listed = true;
+  for (std::size_t m = 0; m < memory_.size(); ++m) {
+    const GlobalId id = homes_->begin() + static_cast<GlobalId>(m);
+    memory_[m].watched = rows[m * memory_columns] != 0.0;
+    watched += memory_[m].watched ? 1 : 0;
+    as_listed &= memory_[m].watched == std::binary_search(settings_.grains.begin(), settings_.grains.end(), id);
+  }
+  if (!settings_.grains.empty() && any_rank(communicator_, !as_listed)) {
+    homes_.reset();
+    return false;
+  }
+  watched_count_ = sum_over_ranks(communicator_, watched);
+  watched_here_ = {};
+  restore_rings(archive, rows);
+  seen_step_ = archive.integer_attribute("entrainment/seen_step");
+  chosen_step_ = archive.integer_attribute("entrainment/chosen_step");
+  events_ = archive.integer_attribute("entrainment/events");
+  shares_ = archive.integer_attribute("entrainment/shares");
+  sum_of_shares_ = archive.real_attribute("entrainment/sum_of_shares");
+  sum_of_squares_ = archive.real_attribute("entrainment/sum_of_squares");
+  return true;
+}
+
+void Entrainment::restore_rings(ArchiveReader& archive, std::span<const double> rows) {
+  std::int64_t sample_count = 0, touch_count = 0;
+  for (std::size_t m = 0; m < memory_.size(); ++m)
+    sample_count += static_cast<std::int64_t>(rows[m * memory_columns + 8]);
+  const auto samples = read_rows(archive, communicator_, "entrainment/samples", sample_count, sample_columns);
+  for (std::size_t n = 0; n < samples.size(); n += sample_columns)
+    touch_count += static_cast<std::int64_t>(samples[n + sample_columns - 1]);
+  const auto values = read_rows(archive, communicator_, "entrainment/touches", touch_count, touch_columns);
+  std::vector<TouchRow> touches;
+  for (std::size_t n = 0; n < values.size(); n += touch_columns) {
+    touches.push_back({0, static_cast<GlobalId>(values[n]), {}});
+    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(n) + 1, touch_columns - 1, touches.back().values.begin());
+  }
+  auto next = touches.cbegin();
+  const double* sample = samples.data();
+  for (std::size_t m = 0; m < memory_.size(); ++m) {
+    const double* row = rows.data() + m * memory_columns;
+    Memory& memory = memory_[m];
+    memory.phase = static_cast<Phase>(static_cast<int>(row[1]));
+    memory.radius = row[2];
+    memory.mass = row[3];
+    memory.quiet_since = row[4];
+    memory.rest = Vec3(row[5], row[6], row[7]);
+    for (auto left = static_cast<std::int64_t>(row[8]); left > 0; --left, sample += sample_columns) {
+      SampleRow one{0, sample[0], {}, static_cast<std::int64_t>(sample[sample_columns - 1])};
+      one.record.id = homes_->begin() + static_cast<GlobalId>(m);
+      std::copy_n(sample + 1, one.record.values.size(), one.record.values.begin());
+      memory.ring.push_back(sample_of(one, next));
+    }
+  }
+}
+
+}  // namespace thalweg::analysis

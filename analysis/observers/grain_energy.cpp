@@ -1,0 +1,35 @@
+#include "analysis/observers/grain_energy.hpp"
+
+#include "core/sums/order_free_sum.hpp"
+
+namespace thalweg::analysis {
+
+void GrainEnergy::observe(const Snapshot& snapshot) {
+  const GrainView& grains = snapshot.grains;
+  constexpr std::size_t columns = 4;
+  std::vector<double> terms;
+  terms.reserve(grains.id.size() * columns);
+  const auto add = [&terms](double energy, double mass, const Vec3& velocity) {
+    terms.insert(terms.end(), {energy, mass * velocity[0], mass * velocity[1], mass * velocity[2]});
+  };
+  for (std::size_t i = 0; i < grains.id.size(); ++i) {
+    if (grains.is_member(i)) continue;
+    const double mass = grains.mass[i];
+    const double inertia = (grains.disk_thickness > 0.0 ? 0.5 : 0.4) * mass * grains.radius[i] * grains.radius[i];
+    add(0.5 * mass * grains.velocity[i].squaredNorm() + 0.5 * inertia * grains.angular_velocity[i].squaredNorm(), mass,
+        grains.velocity[i]);
+  }
+  for (const ClumpState& clump : grains.clumps) add(clump.kinetic_energy, clump.mass, clump.velocity);
+  const std::vector<double> sums = order_free_sums(communicator_, terms, columns);
+  energy_ = sums[0];
+  momentum_ = Vec3(sums[1], sums[2], sums[3]);
+}
+
+std::vector<Figure> GrainEnergy::figures() const {
+  return {{"grain_kinetic_energy", "J", energy_},
+          {"grain_momentum_x", "kg m/s", momentum_.x()},
+          {"grain_momentum_y", "kg m/s", momentum_.y()},
+          {"grain_momentum_z", "kg m/s", momentum_.z()}};
+}
+
+}  // namespace thalweg::analysis

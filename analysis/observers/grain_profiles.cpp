@@ -1,0 +1,177 @@
+#include "analysis/observers/grain_profiles.hpp"
+
+#include "analysis/tools/sphere_in_layer.hpp"
+#include "analysis/tools/tensor_names.hpp"
+#include "core/geometry/symmetric_pairs.hpp"
+#include "core/parallel/mpi_session.hpp"
+#include "core/state/contact_stress.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+namespace thalweg::analysis {
+
+// A grain as the sums take it. The members of a clump share its volume, mass and contact moment as their own volumes
+// are to each other, and move with its centre, so that its parts add up to the clump.
+struct WeightedBody {
+  double spheres = 0.0;             // m^3, of all spheres that share what follows: one, or the members
+  double volume = 0.0, mass = 0.0;  // m^3, kg
+  Vec3 velocity = Vec3::Zero();     // m/s
+  Mat3 moment = Mat3::Zero();       // N m, sum over contacts of F_a r_b, rows a, columns b
+};
+
+namespace {
+
+class WeightedBodies {
+public:
+  // The arms r of the snapshot are from the centre of the grain or of the clump.
+  explicit WeightedBodies(const Snapshot& snapshot) : grains_(snapshot.grains), moments_(contact_moments(snapshot)) {
+    for (std::size_t i = 0; i < moments_.size(); ++i)
+      if (grains_.is_member(i)) {
+        WeightedBody& clump = clumps_[grains_.clump[i]];
+        clump.spheres += volume_of(grains_.radius[i], grains_.disk_thickness);
+        clump.moment += moments_[i];
+      }
+    for (const ClumpState& state : grains_.clumps) {  // owned here, and so are their members
+      WeightedBody& clump = clumps_.at(state.id);
+      clump.volume = state.volume;
+      clump.mass = state.mass;
+      clump.velocity = state.velocity;
+    }
+  }
+
+  WeightedBody operator[](std::size_t i) const {
+    if (grains_.is_member(i)) return clumps_.at(grains_.clump[i]);
+    const double volume = volume_of(grains_.radius[i], grains_.disk_thickness);
+    return {volume, volume, grains_.mass[i], grains_.velocity[i], moments_[i]};
+  }
+
+private:
+  const GrainView& grains_;
+  std::vector<Mat3> moments_;
+  std::map<GlobalId, WeightedBody> clumps_;
+};
+
+}  // namespace
+
+GrainProfiles::GrainProfiles(MPI_Comm communicator, const Decomposition& decomposition, double layer,
+                             const GrainProfilesKeys& keys, double disk_thickness)
+    : communicator_(communicator),
+      box_(decomposition.box()),
+      width_(disk_thickness > 0.0 ? disk_thickness : box_.size[1]),
+      layers_(std::max(1, static_cast<int>(std::lround(box_.size[2] / keys.layer.value_or(layer))))),
+      thickness_(box_.size[2] / layers_),
+      keys_(keys),
+      sums_(static_cast<std::size_t>(layers_) * quantities, 0.0) {}
+
+void GrainProfiles::observe(const Snapshot& snapshot) {
+  // A step that is due at `from` itself counts, whatever the last bit of its time.
+  if (snapshot.step <= counted_step_ || snapshot.time < keys_.from * (1.0 - 1e-12)) return;
+  counted_step_ = snapshot.step;
+  ++measurements_;
+  const std::vector<double> sums = order_free_sums_by_bin(
+      communicator_, layers_, quantities, [this, &snapshot, bodies = WeightedBodies(snapshot)](const TermTaker& take) {
+        for (std::size_t i = 0; i < snapshot.grains.id.size(); ++i) give_parts(snapshot.grains, i, bodies[i], take);
+      });
+  for (std::size_t s = 0; s < sums.size(); ++s) sums_[s] += sums[s];
+}
+
+// The quantities of the part of grain i in each layer.
+void GrainProfiles::give_parts(const GrainView& grains, std::size_t i, const WeightedBody& body,
+                               const TermTaker& take) const {
+  const double radius = grains.radius[i], bottom = grains.position[i][2] - radius;
+  const Vec3& v = body.velocity;
+  const int first = static_cast<int>(std::floor(bottom / thickness_));
+  const int last = static_cast<int>(std::floor((bottom + 2.0 * radius) / thickness_));
+  for (int layer = first; layer <= last; ++layer) {
+    const int inside = box_.periodic[2] ? (layer % layers_ + layers_) % layers_ : layer;
+    if (inside < 0 || inside >= layers_) continue;
+    const double part =
+        volume_between(radius, grains.disk_thickness, layer * thickness_ - bottom, (layer + 1) * thickness_ - bottom);
+    const double share = part / body.spheres, m = share * body.mass;
+    const double inside_it = grains.is_member(i) ? share * body.volume : part;
+    std::array<double, quantities> row{inside_it, m, m * v[0], m * v[1], m * v[2]};
+    for (std::size_t p = 0; p < 6; ++p) row[product + p] = m * v[symmetric_pairs[p][0]] * v[symmetric_pairs[p][1]];
+    for (int a = 0; a < 3; ++a) row[flux + a] = inside_it * v[a];
+    for (int k = 0; k < 9; ++k) row[contact + k] = share * body.moment(k / 3, k % 3);
+    take(inside, row);
+  }
+}
+
+std::vector<Figure> GrainProfiles::results() const {
+  return {{"mean_from", "s", keys_.from}, {"measurements", "1", static_cast<double>(measurements_)}};
+}
+
+std::vector<Profile> GrainProfiles::profiles() const {
+  const auto n = static_cast<std::uint64_t>(layers_);
+  Profile z{"z", "m", {}, {n}, {}}, fraction{"solid_fraction", "1", {}, {n}, {}};
+  Profile velocity{"velocity", "m/s", vector_names, {n, 3}, {}}, volume_flux{"flux", "m/s", vector_names, {n, 3}, {}};
+  Profile temperature{"granular_temperature", "m^2/s^2", {}, {n}, {}};
+  Profile contact_stress{"contact_stress", "Pa", tensor_names, {n, 9}, {}};
+  Profile kinetic_stress{"kinetic_stress", "Pa", symmetric_names, {n, 6}, {}};
+  // Of all measurements together.
+  const double room =
+      box_.size[0] * width_ * thickness_ * static_cast<double>(std::max<std::int64_t>(1, measurements_));
+  for (int layer = 0; layer < layers_; ++layer) {
+    const double* sum = sums_.data() + static_cast<std::size_t>(layer) * quantities;
+    z.values.push_back((layer + 0.5) * thickness_);
+    fraction.values.push_back(sum[volume] / room);
+    Vec3 u = Vec3::Zero();
+    double square = 0.0;
+    if (sum[mass] > 0.0) {
+      u = Vec3(sum + momentum) / sum[mass];
+      square = (sum[product] + sum[product + 1] + sum[product + 2]) / sum[mass];
+    }
+    temperature.values.push_back(std::max(0.0, (square - u.squaredNorm()) / 3.0));
+    for (int a = 0; a < 3; ++a) velocity.values.push_back(u[a]);
+    for (int a = 0; a < 3; ++a) volume_flux.values.push_back(sum[flux + a] / room);
+    for (int c = 0; c < 9; ++c) contact_stress.values.push_back(sum[contact + c] / room);
+    for (int p = 0; p < 6; ++p)
+      kinetic_stress.values.push_back(
+          -(sum[product + p] - sum[mass] * u[symmetric_pairs[p][0]] * u[symmetric_pairs[p][1]]) / room);
+  }
+  return {z, fraction, velocity, volume_flux, temperature, contact_stress, kinetic_stress};
+}
+
+void GrainProfiles::save(ArchiveWriter& archive) const {
+  archive.attribute("grain_profiles/mean_from", keys_.from);
+  archive.attribute("grain_profiles/measurements", measurements_);
+  archive.attribute("grain_profiles/counted_step", counted_step_);
+  const bool first = rank_of(communicator_) == 0;
+  const std::vector<std::uint64_t> shape{static_cast<std::uint64_t>(layers_), quantities}, nothing(2, 0);
+  const std::vector<double> none;
+  archive.write("grain_profiles/sums", std::span<const double>(first ? sums_ : none),
+                {shape, nothing, first ? shape : nothing});
+}
+
+bool GrainProfiles::load(ArchiveReader& archive) {
+  const std::vector<std::uint64_t> shape{static_cast<std::uint64_t>(layers_), quantities};
+  if (!archive.has("grain_profiles/mean_from") || archive.real_attribute("grain_profiles/mean_from") != keys_.from ||
+      archive.shape("grain_profiles/sums") != shape)
+    return false;
+  measurements_ = archive.integer_attribute("grain_profiles/measurements");
+  counted_step_ = archive.integer_attribute("grain_profiles/counted_step");
+  archive.read("grain_profiles/sums", std::span<double>(sums_), {shape, {0, 0}, shape});
+  return true;
+}
+
+void describe(SectionVisitor& visit, GrainProfilesKeys& keys) {
+  describe_from(visit, keys.from);
+  describe_every(visit, keys.every);
+  visit.real("layer", keys.layer,
+             {.unit = "m",
+              .meaning = "height of a layer, adjusted so that a whole number of them fills the box; default: half the "
+                         "largest diameter",
+              .above = 0.0,
+              .example = 2.5e-3});
+}
+
+std::unique_ptr<Observer> make_observer(const GrainProfilesKeys& keys, const RunFacts& run,
+                                        const RunningSystem& system) {
+  return std::make_unique<GrainProfiles>(system.communicator, system.decomposition, 0.5 * run.grains->largest_diameter,
+                                         keys, run.grains->disk_thickness);
+}
+
+}  // namespace thalweg::analysis

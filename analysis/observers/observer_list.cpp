@@ -1,0 +1,44 @@
+#include "analysis/observers/observer_list.hpp"
+
+#include "analysis/observers/grain_energy.hpp"
+
+namespace thalweg::analysis {
+
+void check(const RequestedObservers& requested, const RunFacts& run) {
+  requested.for_each([&](const auto& keys) {
+    using Keys = std::decay_t<decltype(*keys)>;
+    if constexpr (requires { check(*keys, run); }) {
+      if (!keys) return;
+      try {
+        check(*keys, run);
+      } catch (const KeyError& error) {
+        throw KeyError(Keys::section + (error.key.empty() ? "" : "." + error.key), error.what());
+      }
+    }
+  });
+}
+
+std::vector<std::string> warnings(const RequestedObservers& requested, const RunFacts& run) {
+  std::vector<std::string> found;
+  requested.for_each([&](const auto& keys) {
+    if constexpr (requires { warning(*keys, run); }) {
+      const std::optional<std::string> sentence = keys ? warning(*keys, run) : std::nullopt;
+      if (sentence) found.push_back(*sentence);
+    }
+  });
+  return found;
+}
+
+std::vector<std::unique_ptr<Observer>> make_observers(const RequestedObservers& requested, const RunFacts& run,
+                                                      const RunningSystem& system) {
+  std::vector<std::unique_ptr<Observer>> observers;
+  requested.for_each([&](const auto& keys) {
+    using Keys = std::decay_t<decltype(*keys)>;
+    const bool possible = (Keys::needs == Needs::fluid || run.grains) && (Keys::needs == Needs::grains || run.fluid);
+    if (keys && possible) observers.push_back(make_observer(*keys, run, system));
+  });
+  if (run.grains) observers.push_back(std::make_unique<GrainEnergy>(system.communicator));
+  return observers;
+}
+
+}  // namespace thalweg::analysis

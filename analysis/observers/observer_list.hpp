@@ -1,0 +1,61 @@
+// All observers that a case can ask for, in the order of their columns in series.csv. A new one is a line here.
+#pragma once
+
+#include "analysis/observers/bed_surface.hpp"
+#include "analysis/observers/entrainment.hpp"
+#include "analysis/observers/fluid_statistics.hpp"
+#include "analysis/observers/grain_profiles.hpp"
+#include "analysis/observers/population_loads.hpp"
+#include "analysis/observers/probes.hpp"
+#include "analysis/observers/stress_balance.hpp"
+#include "analysis/observers/tracks.hpp"
+#include "analysis/observers/transport_rate.hpp"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace thalweg::analysis {
+
+// The observers of a case: the keys of each; none: it is not asked for.
+class RequestedObservers {
+public:
+  template <typename Keys>
+  std::optional<Keys>& of() {
+    return std::get<std::optional<Keys>>(all_);
+  }
+  template <typename Keys>
+  const std::optional<Keys>& of() const {
+    return std::get<std::optional<Keys>>(all_);
+  }
+
+  // Calls f(keys) with the optional keys of every observer there is.
+  void for_each(const auto& f) {
+    std::apply([&](auto&... keys) { (f(keys), ...); }, all_);
+  }
+  void for_each(const auto& f) const {
+    std::apply([&](const auto&... keys) { (f(keys), ...); }, all_);
+  }
+
+  bool operator==(const RequestedObservers&) const = default;
+
+private:
+  std::tuple<std::optional<FluidStatisticsKeys>, std::optional<ProbesKeys>, std::optional<TransportRateKeys>,
+             std::optional<BedSurfaceKeys>, std::optional<GrainProfilesKeys>, std::optional<StressBalanceKeys>,
+             std::optional<PopulationLoadsKeys>, std::optional<TracksKeys>, std::optional<EntrainmentKeys>>
+      all_;
+};
+
+// Throws KeyError, with the key from `analysis` on, where one asks for what the run does not have.
+void check(const RequestedObservers& requested, const RunFacts& run);
+
+// The warnings of all requested observers, whole sentences.
+std::vector<std::string> warnings(const RequestedObservers& requested, const RunFacts& run);
+
+// The requested ones, as far as the run has what they look at, and those that every run has.
+std::vector<std::unique_ptr<Observer>> make_observers(const RequestedObservers& requested, const RunFacts& run,
+                                                      const RunningSystem& system);
+
+}  // namespace thalweg::analysis

@@ -1,0 +1,53 @@
+// Force and torque on the grains of a population together: what a bumpy wall, a plate, a drum or a bed carries.
+//
+//   F = sum of F_i,   T = sum of (x_i - x_p) x F_i + T_i,   of contacts and of the fluid apart
+//
+// over its grains i, x_p the pivot; x_i - x_p is the shortest way in a periodic box. Contact forces are those at the
+// end of the step, fluid forces those applied during it. Forces between grains of the population cancel. Summed with
+// the same bits on any number of ranks.
+#pragma once
+
+#include "analysis/observer/observer_keys.hpp"
+#include "core/geometry/periodic_box.hpp"
+
+#include <mpi.h>
+
+#include <string>
+#include <vector>
+
+namespace thalweg::analysis {
+
+struct PopulationLoadsKeys {
+  static constexpr const char* section = "population_loads";
+  static constexpr const char* meaning = "force and torque on each population of grains, in series.csv; no keys: {}";
+  static constexpr Needs needs = Needs::grains;
+  bool operator==(const PopulationLoadsKeys&) const = default;
+};
+void describe(SectionVisitor& visit, PopulationLoadsKeys& keys);
+std::unique_ptr<Observer> make_observer(const PopulationLoadsKeys& keys, const RunFacts& run,
+                                        const RunningSystem& system);
+
+class PopulationLoads : public Observer {
+public:
+  // with_fluid: fluid forces, too.
+  PopulationLoads(MPI_Comm communicator, const PeriodicBox& box, std::vector<Population> populations, bool with_fluid);
+
+  std::string name() const override { return "population_loads"; }
+  void observe(const Snapshot& snapshot) override;
+
+  // For each population NAME_contact_force_x, _y, _z (N), NAME_contact_torque_x, ... (N m), and NAME_fluid_force_x,
+  // NAME_fluid_torque_x, ...
+  std::vector<Figure> figures() const override { return figures_; }
+
+  void save(ArchiveWriter&) const override {}  // nothing is remembered between measurements
+  bool load(ArchiveReader&) override { return true; }
+
+private:
+  MPI_Comm communicator_;
+  PeriodicBox box_;
+  std::vector<Population> populations_;
+  bool with_fluid_;
+  std::vector<Figure> figures_;
+};
+
+}  // namespace thalweg::analysis

@@ -1,0 +1,187 @@
+// Sums of the stress balance and their state; what they come to is in stress_profiles.cpp.
+#include "analysis/observers/stress_balance.hpp"
+
+#include "analysis/tools/sphere_in_layer.hpp"
+#include "core/geometry/symmetric_pairs.hpp"
+#include "core/state/contact_stress.hpp"
+#include "core/state/whole_dataset.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace thalweg::analysis {
+
+StressBalance::StressBalance(MPI_Comm communicator, const Decomposition& decomposition, double layer,
+                             const StressBalanceKeys& keys, const BalanceScales& scales, std::vector<HeldGrains> held)
+    : communicator_(communicator),
+      n_(decomposition.cells()),
+      spacing_(decomposition.spacing()),
+      side_walls_(!decomposition.periodic()[0] || !decomposition.periodic()[1]),
+      layers_(n_[2], spacing_, keys.layer.value_or(layer)),
+      keys_(keys),
+      scales_(scales),
+      held_(std::move(held)),
+      fluid_(static_cast<std::size_t>(n_[2]) * fluid_columns, 0.0),
+      grains_(static_cast<std::size_t>(layers_.count()) * grain_columns, 0.0),
+      given_(static_cast<std::size_t>(2 * n_[2] + 1), 0.0),
+      sides_(given_.size(), 0.0),
+      held_up_(static_cast<std::size_t>(2 * layers_.count() + 2), 0.0),
+      driving_(static_cast<std::size_t>(n_[2] + 1), 0.0) {
+  if (decomposition.periodic()[2]) throw std::logic_error("a stress balance needs a top and a bottom");
+}
+
+void StressBalance::observe(const Snapshot& snapshot) {
+  // A step that is due at `from` itself counts, whatever the last bit of its time.
+  if (!snapshot.momentum || snapshot.step <= counted_step_ || snapshot.time < keys_.from * (1.0 - 1e-12)) return;
+  counted_step_ = snapshot.step;
+  ++measurements_;
+  add_fluid(*snapshot.momentum);
+  add_grains(snapshot);
+  add_grains_at_walls(snapshot);
+}
+
+void StressBalance::add_fluid(const MomentumBook& book) {
+  for (std::size_t z = 0; z < book.planes.size(); ++z) {
+    const PlaneMomentum& plane = book.planes[z];
+    double* sums = fluid_.data() + z * fluid_columns;
+    const auto cells_here = static_cast<double>(plane.cells);
+    sums[cells] += cells_here;
+    sums[density] += plane.density;
+    for (int a = 0; a < 3; ++a) sums[flow + a] += plane.flow[a];
+    for (std::size_t p = 0; p < 6; ++p) {
+      sums[flow_flux + p] += plane.flow_flux[p];
+      sums[viscous + p] += plane.viscous[p];
+      sums[subgrid + p] += plane.subgrid[p];
+    }
+    driving_[z] += book.driving.x() * cells_here;
+  }
+  driving_.back() += book.on_top.x();
+  for (std::size_t h = 0; h < given_.size(); ++h) {
+    given_[h] += book.on_grains[h].x();
+    sides_[h] += book.on_sides[h].x();
+  }
+}
+
+void StressBalance::add_grains(const Snapshot& snapshot) {
+  if (snapshot.grains.global_count == 0) return;
+  const Moments moments{contact_moments(snapshot), lubrication_moments(snapshot)};
+  const std::vector<double> sums =
+      order_free_sums_by_bin(communicator_, layers_.count(), grain_columns,
+                             [&](const TermTaker& take) { give_parts(snapshot, moments, take); });
+  for (std::size_t s = 0; s < sums.size(); ++s) grains_[s] += sums[s];
+}
+
+// A row of grain_columns of each grain's part in each layer.
+void StressBalance::give_parts(const Snapshot& snapshot, const Moments& moments, const TermTaker& take) const {
+  const GrainView& grains = snapshot.grains;
+  for (std::size_t i = 0; i < grains.id.size(); ++i) {
+    const double radius = grains.radius[i], lowest = grains.position[i][2] - radius, whole = volume_of(radius, 0.0);
+    const Vec3 &v = grains.velocity[i], &by_fluid = grains.fluid_force[i], &by_contacts = grains.contact_force[i];
+    const Mat3 of_fluid = grains.fluid_stress.empty() ? Mat3(Mat3::Zero()) : Mat3(whole * grains.fluid_stress[i]);
+    const double outer = is_held(held_, grains.id[i]) ? -(by_fluid.x() + by_contacts.x())
+                                                      : scales_.body_force(grains.mass[i], radius).x() +
+                                                            whole * snapshot.momentum->driving_of_grains.x();
+    for (int layer = layers_.at(lowest); layer <= layers_.at(lowest + 2.0 * radius); ++layer) {
+      const double from = layers_.bottom(layer) - lowest, to = from + layers_.height(layer);
+      const double part = volume_between(radius, 0.0, from, to), share = part / whole, m = share * grains.mass[i];
+      const double lever = (sphere_moment_below(radius, to) - sphere_moment_below(radius, from) - from * part) / whole;
+      std::array<double, grain_columns> row{part, m, m * v[0], m * v[1], m * v[2]};
+      double* term = row.data() + momentum_flux;
+      for (const auto& [a, b] : symmetric_pairs) *term++ = m * v[a] * v[b];
+      for (const Mat3* moment : {&moments.contacts[i], &of_fluid, &moments.lubrication[i]})
+        for (int k = 0; k < 9; ++k) *term++ = share * (*moment)(k / 3, k % 3);
+      for (const double value : {share * by_fluid[0], share * by_fluid[1], share * by_fluid[2], share * by_contacts[0],
+                                 share * outer, lever * by_fluid[0], lever * by_contacts[0], lever * outer})
+        *term++ = value;
+      take(layer, row);
+    }
+  }
+}
+
+// Walls by the height at which they act, of which the floor's is 0; the top has a row of its own after the layers.
+void StressBalance::add_grains_at_walls(const Snapshot& snapshot) {
+  const GrainView& grains = snapshot.grains;
+  if (grains.global_count == 0) return;
+  const double top = n_[2] * spacing_;
+  const auto give_forces = [&](const TermTaker& take) {
+    snapshot.contacts->for_each_wall_force([&](std::size_t grain, const ContactEnd& end) {
+      const Vec3& towards = end.to_partner;
+      const double height = std::clamp(grains.position[grain].z() + end.arm.z(), 0.0, top);
+      const bool of_top = towards.z() > std::hypot(towards.x(), towards.y()) && height > top - 1e-6 * spacing_;
+      const int layer = layers_.at(height);
+      take(of_top ? layers_.count() : layer,
+           std::array{end.force.x(), end.force.x() * (height - layers_.bottom(layer))});
+    });
+  };
+  const std::vector<double> sums = order_free_sums_by_bin(communicator_, layers_.count() + 1, 2, give_forces);
+  for (std::size_t s = 0; s < sums.size(); ++s) held_up_[s] += sums[s];
+}
+
+std::size_t StressBalance::stored_size() const {
+  std::size_t size = 0;
+  for (const auto sums : stored) size += (this->*sums).size();
+  return size;
+}
+
+void StressBalance::save(ArchiveWriter& archive) const {
+  archive.attribute("stress_balance/mean_from", keys_.from);
+  archive.attribute("stress_balance/measurements", measurements_);
+  archive.attribute("stress_balance/counted_step", counted_step_);
+  archive.attribute("stress_balance/layers", static_cast<std::int64_t>(layers_.count()));
+  std::vector<double> all;
+  for (const auto sums : stored) all.insert(all.end(), (this->*sums).begin(), (this->*sums).end());
+  write_whole(archive, communicator_, "stress_balance/sums", std::span<const double>(all), {stored_size()});
+}
+
+bool StressBalance::load(ArchiveReader& archive) {
+  const std::vector<std::uint64_t> shape{stored_size()};
+  if (!archive.has("stress_balance/mean_from") || archive.real_attribute("stress_balance/mean_from") != keys_.from ||
+      archive.integer_attribute("stress_balance/layers") != layers_.count() ||
+      archive.shape("stress_balance/sums") != shape)
+    return false;
+  measurements_ = archive.integer_attribute("stress_balance/measurements");
+  counted_step_ = archive.integer_attribute("stress_balance/counted_step");
+  std::vector<double> all(stored_size());
+  archive.read("stress_balance/sums", std::span<double>(all), {shape, {0}, shape});
+  auto next = all.begin();
+  for (const auto sums : stored) {
+    std::copy_n(next, (this->*sums).size(), (this->*sums).begin());
+    next += static_cast<std::ptrdiff_t>((this->*sums).size());
+  }
+  return true;
+}
+
+void describe(SectionVisitor& visit, StressBalanceKeys& keys) {
+  describe_from(visit, keys.from);
+  describe_every(visit, keys.every);
+  visit.real("layer", keys.layer,
+             {.unit = "m",
+              .meaning = "height of a layer, rounded to whole cells; default: a quarter of the smallest diameter",
+              .above = 0.0,
+              .example = 1.25e-3});
+}
+
+void check(const StressBalanceKeys& keys, const RunFacts& run) {
+  require_grains(run, "share the stress");
+  if (run.box.periodic[2])
+    throw KeyError("",
+                   "stress is summed from the top down, and z is periodic; remove the section or give "
+                   "domain.boundaries bottom and top");
+  if (run.grains->any_clumps())
+    throw KeyError("",
+                   "it knows grains that are single spheres, and there are clumps; remove the section or "
+                   "use grain_profiles");
+  require_full_gravity_from(run, keys.from);
+}
+
+std::unique_ptr<Observer> make_observer(const StressBalanceKeys& keys, const RunFacts& run,
+                                        const RunningSystem& system) {
+  const BalanceScales scales{run.fluid->density, run.fluid->density * run.fluid->kinematic_viscosity,
+                             run.grains->reference_diameter, run.grains->body_force,
+                             run.fluid->velocity_unit / std::sqrt(3.0)};
+  return std::make_unique<StressBalance>(system.communicator, system.decomposition,
+                                         0.25 * run.grains->smallest_diameter, keys, scales, run.grains->held());
+}
+
+}  // namespace thalweg::analysis

@@ -1,0 +1,132 @@
+#include "analysis/observers/tracks.hpp"
+
+#include "core/parallel/mpi_session.hpp"
+#include "core/state/whole_dataset.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace thalweg::analysis {
+
+Tracks::Tracks(MPI_Comm communicator, std::vector<GlobalId> grains, double every)
+    : communicator_(communicator), grains_(std::move(grains)), every_(every), since_(GrainRecord::quantities) {}
+
+void Tracks::observe(const Snapshot& snapshot) {
+  if (snapshot.step <= seen_step_) return;
+  seen_step_ = snapshot.step;
+  ++measurements_;
+  std::vector<GrainRecord> records;
+  for (std::size_t n = 0; n < snapshot.grains.id.size(); ++n)
+    if (std::binary_search(grains_.begin(), grains_.end(), snapshot.grains.id[n]))
+      records.push_back(record_of(snapshot.grains, n));
+  records = exchange_rows(communicator_, records, std::vector<int>(records.size(), 0));
+  std::sort(records.begin(), records.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+  if (rank_of(communicator_) == 0) {
+    if (!last_.empty())
+      for (std::size_t n = 0; n < records.size(); ++n)
+        go_on(records[n], last_[n], snapshot.time - last_time_, snapshot.decomposition->box());
+    times_.push_back(snapshot.time);
+    for (const GrainRecord& record : records)
+      for (std::size_t v = 0; v < record.values.size(); ++v) since_[v / 3].push_back(record.values[v]);
+    last_ = std::move(records);
+  }
+  last_time_ = snapshot.time;
+}
+
+void Tracks::go_on(GrainRecord& record, const GrainRecord& last, double interval, const PeriodicBox& box) const {
+  Vec3 position = record[GrainRecord::position];
+  const Vec3 mean_velocity = 0.5 * (last[GrainRecord::velocity] + record[GrainRecord::velocity]);
+  const Vec3 expected = last[GrainRecord::position] + mean_velocity * interval;
+  for (int axis = 0; axis < 3; ++axis)
+    if (box.periodic[static_cast<std::size_t>(axis)])
+      position[axis] += box.size[axis] * std::round((expected[axis] - position[axis]) / box.size[axis]);
+  record.set(GrainRecord::position, position);
+}
+
+std::vector<Figure> Tracks::results() const {
+  return {{"tracked_grains", "1", static_cast<double>(grains_.size())},
+          {"track_measurements", "1", static_cast<double>(measurements_)}};
+}
+
+Records Tracks::take_records() {
+  Records records;
+  if (rank_of(communicator_) != 0) return records;
+  records.fixed = {{"id", grains_}};
+  const std::uint64_t times = times_.size();
+  records.rows.push_back({"time", "s", {}, {times}, std::move(times_)});
+  times_.clear();
+  for (std::size_t q = 0; q < since_.size(); ++q) {
+    const auto& [name, unit] = recorded_quantities[q];
+    records.rows.push_back({name, unit, {"x", "y", "z"}, {times, grains_.size(), 3}, std::move(since_[q])});
+    since_[q].clear();
+  }
+  return records;
+}
+
+void Tracks::save(ArchiveWriter& archive) const {
+  archive.attribute("tracks/seen_step", seen_step_);
+  archive.attribute("tracks/measurements", measurements_);
+  archive.attribute("tracks/last_time", last_time_);
+  const std::uint64_t columns = std::tuple_size_v<decltype(GrainRecord::values)>;
+  std::vector<double> values;
+  for (const GrainRecord& record : last_) values.insert(values.end(), record.values.begin(), record.values.end());
+  write_whole(archive, communicator_, "tracks/id", std::span<const std::int64_t>(grains_), {grains_.size()});
+  write_whole(archive, communicator_, "tracks/last", std::span<const double>(values),
+              {measurements_ > 0 ? grains_.size() : 0, columns});
+}
+
+bool Tracks::load(ArchiveReader& archive) {
+  if (!archive.has("tracks/id") || archive.shape("tracks/id").at(0) != grains_.size()) return false;
+  std::vector<std::int64_t> grains(grains_.size());
+  archive.read("tracks/id", std::span<std::int64_t>(grains), {{grains.size()}, {0}, {grains.size()}});
+  if (grains != grains_) return false;
+  seen_step_ = archive.integer_attribute("tracks/seen_step");
+  measurements_ = archive.integer_attribute("tracks/measurements");
+  last_time_ = archive.real_attribute("tracks/last_time");
+  const std::vector<std::uint64_t> shape = archive.shape("tracks/last");
+  std::vector<double> values(shape.at(0) * shape.at(1));
+  archive.read("tracks/last", std::span<double>(values), {shape, {0, 0}, shape});
+  if (rank_of(communicator_) != 0) return true;
+  last_.assign(shape[0], {});
+  for (std::size_t n = 0; n < last_.size(); ++n) {
+    last_[n].id = grains_[n];
+    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(n * shape[1]), shape[1], last_[n].values.begin());
+  }
+  return true;
+}
+
+void describe(SectionVisitor& visit, TracksKeys& keys) {
+  visit.integer_list("grains", keys.grains,
+                     {.meaning = "ids of the grains, in the order of the populations from 0; else every one_in-th",
+                      .at_least = 0,
+                      .example = 0});
+  visit.integer("one_in", keys.one_in,
+                {.meaning = "grains 0, one_in, 2 one_in, ... where no ids are given", .at_least = 1});
+  describe_every(visit, keys.every);
+}
+
+void check(const TracksKeys& keys, const RunFacts& run) {
+  require_ids(run, keys.grains);
+  if (!keys.grains.empty() && keys.one_in != 1)
+    throw KeyError("one_in", "analysis.tracks.grains names the grains already; give one of them");
+  const std::int64_t all = run.grains->count();
+  const std::int64_t recorded =
+      keys.grains.empty() ? (all + keys.one_in - 1) / keys.one_in : static_cast<std::int64_t>(keys.grains.size());
+  if (recorded > TracksKeys::most_grains)
+    throw KeyError("", fmt::format("it would record {} grains, and one rank can gather {}; name fewer in grains, give "
+                                   "one_in: {}, or take all grains from output.grains",
+                                   recorded, TracksKeys::most_grains,
+                                   (all + TracksKeys::most_grains - 1) / TracksKeys::most_grains));
+}
+
+std::unique_ptr<Observer> make_observer(const TracksKeys& keys, const RunFacts& run, const RunningSystem& system) {
+  std::vector<GlobalId> ids = keys.grains;
+  std::sort(ids.begin(), ids.end());
+  if (ids.empty())
+    for (GlobalId id = 0; id < run.grains->count(); id += keys.one_in) ids.push_back(id);
+  return std::make_unique<Tracks>(system.communicator, std::move(ids), keys.every);
+}
+
+}  // namespace thalweg::analysis

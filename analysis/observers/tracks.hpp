@@ -1,0 +1,67 @@
+// The tracks of chosen grains: where they are, how they move and turn, and what acts on them, at short intervals.
+//
+// Positions continue across the faces of a periodic box: from one measurement to the next a grain has gone to the image
+// that lies nearest to where the mean of its two velocities would have taken it, which is right as long as its speed
+// changes by less than a box in an interval. A member of a clump is recorded as the sphere it is.
+#pragma once
+
+#include "analysis/observer/observer_keys.hpp"
+#include "analysis/tools/grain_record.hpp"
+#include "core/geometry/periodic_box.hpp"
+
+#include <mpi.h>
+
+#include <vector>
+
+namespace thalweg::analysis {
+
+struct TracksKeys {
+  static constexpr const char* section = "tracks";
+  static constexpr const char* meaning = "positions, motion and forces of chosen grains at short intervals, in tracks/";
+  static constexpr Needs needs = Needs::grains;
+  // All that is recorded passes through rank 0, which holds up to 100 measurements: 14.4 kB a grain.
+  static constexpr std::int64_t most_grains = 20'000;
+  std::vector<GlobalId> grains;  // ids; empty: every one_in-th grain
+  std::int64_t one_in = 1;
+  double every = 1e-3;  // s
+  bool operator==(const TracksKeys&) const = default;
+};
+void describe(SectionVisitor& visit, TracksKeys& keys);
+void check(const TracksKeys& keys, const RunFacts& run);
+std::unique_ptr<Observer> make_observer(const TracksKeys& keys, const RunFacts& run, const RunningSystem& system);
+
+class Tracks : public Observer {
+public:
+  // grains: ids, ascending, each once. every: s, between measurements.
+  Tracks(MPI_Comm communicator, std::vector<GlobalId> grains, double every);
+
+  std::string name() const override { return "tracks"; }
+  double every() const override { return every_; }
+  bool in_passing() const override { return true; }
+  void observe(const Snapshot& snapshot) override;  // a step seen before does not count again
+
+  std::vector<Figure> figures() const override { return {}; }
+  // tracked_grains, track_measurements (1).
+  std::vector<Figure> results() const override;
+
+  // Fixed: id. Rows: time (s), [time] and of each grain in the order of ids, [time, grain, axis]: those of GrainRecord.
+  bool has_records() const override { return true; }
+  Records take_records() override;
+
+  void save(ArchiveWriter& archive) const override;
+  bool load(ArchiveReader& archive) override;  // begins anew where the archive has other grains
+
+private:
+  void go_on(GrainRecord& record, const GrainRecord& last, double interval, const PeriodicBox& box) const;
+
+  MPI_Comm communicator_;
+  std::vector<GlobalId> grains_;
+  double every_;
+  std::int64_t seen_step_ = -1, measurements_ = 0;
+  double last_time_ = 0.0;                  // s
+  std::vector<GrainRecord> last_;           // on rank 0, at the latest measurement
+  std::vector<double> times_;               // s, since take_records(); on rank 0
+  std::vector<std::vector<double>> since_;  // the same of each quantity
+};
+
+}  // namespace thalweg::analysis

@@ -1,0 +1,285 @@
+#include "analysis/observers/transport_rate.hpp"
+
+#include "core/parallel/mpi_session.hpp"
+#include "core/state/whole_dataset.hpp"
+#include "core/sums/order_free_sum.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace thalweg::analysis {
+
+namespace {
+
+constexpr double share_that_counts_as_moving = 0.01;
+
+// Of velocities, in fall speeds: water over a bed of sand or gravel seldom carries a grain faster than ten.
+constexpr double slowest = -5.0, fastest = 15.0;
+constexpr int velocity_bins = 200;
+
+// What all ranks hold alike.
+template <typename T>
+void write_once(ArchiveWriter& archive, MPI_Comm communicator, const std::string& path, const std::vector<T>& values) {
+  write_whole(archive, communicator, path, std::span<const T>(values), {values.size()});
+}
+
+template <typename T>
+std::vector<T> read_all(ArchiveReader& archive, const std::string& path) {
+  const std::vector<std::uint64_t> shape = archive.shape(path);
+  std::vector<T> values(shape.at(0));
+  archive.read(path, std::span<T>(values), {shape, {0}, shape});
+  return values;
+}
+
+}  // namespace
+
+double TransportScales::weight() const {
+  return (fluid_density > 0.0 ? std::abs(grain_density / fluid_density - 1.0) : 1.0) * gravity;
+}
+
+double TransportScales::flux() const { return std::sqrt(weight() * grain_diameter) * grain_diameter; }
+
+double TransportScales::fall_speed() const { return flux() > 0.0 ? flux() / grain_diameter : 1.0; }
+
+double TransportScales::moving_speed() const {
+  if (model_fluid_speed > 0.0) return share_that_counts_as_moving * model_fluid_speed;
+  double speed = flux() / grain_diameter;
+  if (kinematic_viscosity > 0.0)
+    speed = std::min(speed, weight() * grain_diameter * grain_diameter / (18.0 * kinematic_viscosity));
+  return share_that_counts_as_moving * speed;
+}
+
+TransportRate::TransportRate(MPI_Comm communicator, const TransportScales& scales, const TransportRateKeys& keys)
+    : communicator_(communicator),
+      scales_(scales),
+      keys_(keys),
+      moving_speed_(keys.moving_speed.value_or(scales.moving_speed())),
+      velocities_{Histogram::linear(slowest * scales.fall_speed(), fastest * scales.fall_speed(), velocity_bins),
+                  Histogram::linear(slowest * scales.fall_speed(), fastest * scales.fall_speed(), velocity_bins),
+                  Histogram::linear(slowest * scales.fall_speed(), fastest * scales.fall_speed(), velocity_bins)},
+      hops_(communicator, scales.grain_diameter, scales.grain_diameter / scales.fall_speed(), moving_speed_) {}
+
+void TransportRate::observe(const Snapshot& snapshot) {
+  const std::vector<Body> bodies = free_bodies_of(snapshot.grains);
+  measure(snapshot, bodies);
+  // from may be a rounded multiple of the time step: a measurement at that very step counts.
+  const bool counts = snapshot.time >= keys_.from * (1.0 - 1e-12);
+  // A state seen twice, as when a run goes on from a checkpoint, does not change the hops.
+  hops_.observe(snapshot.time, snapshot.decomposition->box(), snapshot.grains.global_count, bodies, counts);
+  if (!counts || snapshot.step <= counted_step_) return;
+  if (q_s_.count() == 0) first_time_ = snapshot.time;
+  counted_step_ = snapshot.step;
+  last_time_ = snapshot.time;
+  q_s_.add(latest_.q_s);
+  moving_.add(static_cast<double>(latest_.moving));
+  sum_of_shares_ += latest_.share();
+  sum_of_activity_ += latest_.activity;
+  count_velocities(bodies);
+}
+
+void TransportRate::measure(const Snapshot& snapshot, const std::vector<Body>& bodies) {
+  std::vector<double> terms;
+  std::int64_t moving = 0;
+  double largest_squared = 0.0;
+  for (const Body& body : bodies) {
+    const double speed_squared = body.velocity.squaredNorm();
+    const bool moves = speed_squared > moving_speed_ * moving_speed_;
+    terms.insert(terms.end(), {body.volume * body.velocity.x(), moves ? body.volume : 0.0});
+    if (moves) ++moving;
+    largest_squared = std::max(largest_squared, speed_squared);
+  }
+  const Vec3 size = snapshot.decomposition->box().size;
+  const double width = snapshot.grains.disk_thickness > 0.0 ? snapshot.grains.disk_thickness : size.y();
+  const std::vector<double> sums = order_free_sums(communicator_, terms, 2);
+  latest_.q_s = sums[0] / (size.x() * width);
+  latest_.activity = sums[1] / (size.x() * width);
+  latest_.moving = sum_over_ranks(communicator_, moving);
+  latest_.grains = sum_over_ranks(communicator_, static_cast<std::int64_t>(bodies.size()));
+  latest_.largest_speed = std::sqrt(max_over_ranks(communicator_, largest_squared));
+}
+
+void TransportRate::count_velocities(const std::vector<Body>& bodies) {
+  const std::size_t cells = velocities_[0].counts().size();
+  std::vector<std::int64_t> counts(3 * cells, 0);
+  for (const Body& body : bodies)
+    if (body.velocity.squaredNorm() > moving_speed_ * moving_speed_)
+      for (std::size_t a = 0; a < 3; ++a) ++counts[a * cells + velocities_[a].bin_of(body.velocity[a])];
+  MPI_Allreduce(MPI_IN_PLACE, counts.data(), static_cast<int>(counts.size()), MPI_INT64_T, MPI_SUM, communicator_);
+  for (std::size_t c = 0; c < counts.size(); ++c) velocities_[c / cells].counts()[c % cells] += counts[c];
+}
+
+std::vector<Figure> TransportRate::figures() const {
+  std::vector<Figure> figures{{"q_s", "m^2/s", latest_.q_s}};
+  if (scales_.have_q_star()) figures.push_back({"q_star", "1", latest_.q_s / scales_.flux()});
+  figures.push_back({"moving_grains", "1", static_cast<double>(latest_.moving)});
+  figures.push_back({"moving_share", "1", latest_.share()});
+  figures.push_back({"activity", "m", latest_.activity});
+  figures.push_back({"largest_grain_speed", "m/s", latest_.largest_speed});
+  return figures;
+}
+
+double TransportRate::interval() const {
+  return q_s_.count() > 1 ? (last_time_ - first_time_) / static_cast<double>(q_s_.count() - 1) : 0.0;
+}
+
+std::vector<Figure> TransportRate::results() const {
+  const CorrelatedMean::Error error = q_s_.error();
+  const TrendVerdict verdict = trend_of(q_s_);
+  const double values = static_cast<double>(std::max<std::int64_t>(1, q_s_.count()));
+  std::vector<Figure> results{{"q_s_mean", "m^2/s", q_s_.mean()},
+                              {"q_s_deviation", "m^2/s", q_s_.deviation()},
+                              {"q_s_error", "m^2/s", error.of_mean},
+                              {"q_s_independent", "1", error.independent},
+                              {"q_s_error_holds", "1", error.holds() ? 1.0 : 0.0},
+                              {"q_s_correlation_time", "s", 0.5 * values / error.independent * interval()},
+                              {"q_s_drift", "m^2/s", verdict.drift},
+                              {"q_s_drift_error", "m^2/s", verdict.error},
+                              {"steady", "1", verdict.as_number()}};
+  if (scales_.have_q_star()) {
+    results.push_back({"q_star_mean", "1", q_s_.mean() / scales_.flux()});
+    results.push_back({"q_star_deviation", "1", q_s_.deviation() / scales_.flux()});
+    results.push_back({"q_star_error", "1", error.of_mean / scales_.flux()});
+    results.push_back({"q_star_drift", "1", verdict.drift / scales_.flux()});
+    results.push_back({"q_star_drift_error", "1", verdict.error / scales_.flux()});
+  }
+  results.push_back({"moving_grains_mean", "1", moving_.mean()});
+  results.push_back({"moving_grains_error", "1", moving_.error().of_mean});
+  results.push_back({"moving_share_mean", "1", sum_of_shares_ / values});
+  results.push_back({"activity_mean", "m", sum_of_activity_ / values});
+  for (const Figure& of_hops : hops_.results()) results.push_back(of_hops);
+  results.push_back({"measured_from", "s", first_time_});
+  results.push_back({"measured_until", "s", last_time_});
+  if (q_s_.count() == 0) forget_values(results);
+  results.push_back({"reference_diameter", "m", scales_.grain_diameter});
+  results.push_back({"reference_density", "kg/m^3", scales_.grain_density});
+  results.push_back({"moving_speed", "m/s", moving_speed_});
+  results.push_back({"mean_from", "s", keys_.from});
+  results.push_back({"measurements", "1", static_cast<double>(q_s_.count())});
+  for (const Figure& latest : figures()) results.push_back(latest);
+  return results;
+}
+
+std::vector<std::string> TransportRate::remarks() const {
+  if (q_s_.count() == 0) return {};
+  const CorrelatedMean::Error error = q_s_.error();
+  const double unit = scales_.have_q_star() ? scales_.flux() : 1.0;
+  return {fmt::format("transport: {} = {:.4g} +- {:.2g}{}, deviation {:.2g}, from {:.4g} to {:.4g} s ({} measurements "
+                      "worth {:.3g} independent ones{})",
+                      scales_.have_q_star() ? "q*" : "q_s", q_s_.mean() / unit, error.of_mean / unit,
+                      scales_.have_q_star() ? "" : " m^2/s", q_s_.deviation() / unit, first_time_, last_time_,
+                      q_s_.count(), error.independent, error.holds() ? "" : ": too few, the error is larger"),
+          fmt::format("transport: {}", trend_of(q_s_).sentence(unit))};
+}
+
+std::vector<Profile> TransportRate::profiles() const {
+  const std::span<const double> edges = velocities_[0].edges();
+  Profile edge{"velocity_edges", "m/s", {}, {edges.size()}, {edges.begin(), edges.end()}};
+  Profile density{"velocity_density", "s/m", {"x", "y", "z"}, {edges.size() - 1, 3}, {}};
+  for (std::size_t b = 1; b < edges.size(); ++b)
+    for (const Histogram& velocity : velocities_) {
+      const auto all = static_cast<double>(std::max<std::int64_t>(1, velocity.total()));
+      density.values.push_back(static_cast<double>(velocity.counts()[b]) / (all * (edges[b] - edges[b - 1])));
+    }
+  std::vector<Profile> profiles{edge, density};
+  for (Profile& of_hops : hops_.profiles()) profiles.push_back(std::move(of_hops));
+  return profiles;
+}
+
+// The latest measurement too: a row of the series may come before the next.
+std::vector<double> TransportRate::sums() const {
+  return {first_time_,
+          last_time_,
+          sum_of_shares_,
+          sum_of_activity_,
+          latest_.q_s,
+          latest_.activity,
+          static_cast<double>(latest_.moving),
+          static_cast<double>(latest_.grains),
+          latest_.largest_speed};
+}
+
+SavedSettings TransportRate::settings() const {
+  return {{"moving_speed", moving_speed_}, {"grain_diameter", scales_.grain_diameter}};
+}
+
+void TransportRate::save(ArchiveWriter& archive) const {
+  archive.attribute("transport_rate/mean_from", keys_.from);
+  save_settings(archive, "transport_rate", settings());
+  archive.attribute("transport_rate/counted_step", counted_step_);
+  write_once(archive, communicator_, "transport_rate/sums", sums());
+  write_once(archive, communicator_, "transport_rate/q_s_batches", q_s_.state());
+  write_once(archive, communicator_, "transport_rate/moving_batches", moving_.state());
+  std::vector<std::int64_t> counts;
+  for (const Histogram& velocity : velocities_)
+    counts.insert(counts.end(), velocity.counts().begin(), velocity.counts().end());
+  write_once(archive, communicator_, "transport_rate/velocity_counts", counts);
+  hops_.save(archive, "transport_rate");
+}
+
+bool TransportRate::load(ArchiveReader& archive) {
+  const std::size_t cells = velocities_[0].counts().size();
+  const std::vector<std::uint64_t> shape{3 * cells};
+  if (!archive.has("transport_rate/mean_from") || archive.real_attribute("transport_rate/mean_from") != keys_.from ||
+      !were_saved_with(archive, "transport_rate", settings()) || !archive.has("transport_rate/velocity_counts") ||
+      !archive.has("transport_rate/q_s_batches") || archive.shape("transport_rate/velocity_counts") != shape)
+    return false;
+  counted_step_ = archive.integer_attribute("transport_rate/counted_step");
+  const auto sums = read_all<double>(archive, "transport_rate/sums");
+  first_time_ = sums.at(0);
+  last_time_ = sums.at(1);
+  sum_of_shares_ = sums.at(2);
+  sum_of_activity_ = sums.at(3);
+  latest_ = {sums.at(4), sums.at(5), std::llround(sums.at(6)), std::llround(sums.at(7)), sums.at(8)};
+  q_s_.restore(read_all<double>(archive, "transport_rate/q_s_batches"));
+  moving_.restore(read_all<double>(archive, "transport_rate/moving_batches"));
+  const auto counts = read_all<std::int64_t>(archive, "transport_rate/velocity_counts");
+  for (std::size_t c = 0; c < counts.size(); ++c) velocities_[c / cells].counts()[c % cells] = counts[c];
+  hops_.load(archive, "transport_rate");
+  return true;
+}
+
+void describe(SectionVisitor& visit, TransportRateKeys& keys) {
+  visit.real("from", keys.from,
+             {.unit = "s", .meaning = "start of the means, hops and distributions", .at_least = 0.0});
+  visit.real("every", keys.every,
+             {.unit = "s", .meaning = "between measurements; 0: with the rows of series.csv", .at_least = 0.0});
+  visit.real(
+      "moving_speed", keys.moving_speed,
+      {.unit = "m/s",
+       .meaning = "faster grains are moving; default: 1 % of the lower of sqrt((s - 1) g d) and Stokes' settling "
+                  "speed, of sqrt(g d) without a fluid, of v_0 in a model fluid",
+       .at_least = 0.0,
+       .example = 1e-3});
+}
+
+void check(const TransportRateKeys&, const RunFacts& run) { require_grains(run, "measure"); }
+
+std::optional<std::string> warning(const TransportRateKeys& keys, const RunFacts& run) {
+  if (keys.from < run.until) return std::nullopt;
+  return fmt::format(
+      "The mean transport rate begins at {} s, after the end of the run at {} s, so the summary will have "
+      "none: consider analysis.transport_rate.from: {:.2g}.",
+      keys.from, run.until, 0.5 * run.until);
+}
+
+TransportScales transport_scales(const RunFacts& run) {
+  TransportScales scales{run.grains->reference_diameter, run.grains->reference_density, 0.0, run.gravity.norm()};
+  if (run.fluid) {
+    scales.fluid_density = run.fluid->density;
+    scales.kinematic_viscosity = run.fluid->kinematic_viscosity;
+  }
+  if (run.model_fluid) {
+    scales.gravity = run.model_fluid->gravity;
+    scales.model_fluid_speed = run.model_fluid->speed;
+  }
+  return scales;
+}
+
+std::unique_ptr<Observer> make_observer(const TransportRateKeys& keys, const RunFacts& run,
+                                        const RunningSystem& system) {
+  return std::make_unique<TransportRate>(system.communicator, transport_scales(run), keys);
+}
+
+}  // namespace thalweg::analysis

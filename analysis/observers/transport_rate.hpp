@@ -1,0 +1,120 @@
+// How much sediment moves.
+//
+//   q_s = sum over grains of V v_x / (L W)              volume flux per unit width, m^2/s
+//   q*  = q_s / sqrt((s - 1) g d^3),  s = rho_s/rho_f   the same without dimension
+//   activity = sum over moving grains of V / (L W)      m (Furbish et al., J. Geophys. Res. 117 (2012) F03031)
+//
+// V volume of a grain, v_x its streamwise velocity, L and W length and width of the domain (Zhang et al. 2022: all
+// grains of the whole domain count). Grains whose velocity is held, at rest or moving, are no sediment and count
+// nowhere. Without a fluid s has no meaning and q* is left out. A clump is one grain.
+//
+// The mean of q_s comes with its error (correlated_mean.hpp) and a test of whether it drifts (trend_test.hpp); moving
+// grains with the distribution of their velocities (histogram.hpp) and their hops (hops.hpp).
+#pragma once
+
+#include "analysis/observer/observer_keys.hpp"
+#include "analysis/tools/correlated_mean.hpp"
+#include "analysis/tools/histogram.hpp"
+#include "analysis/tools/hops.hpp"
+#include "analysis/tools/saved_settings.hpp"
+#include "analysis/tools/trend_test.hpp"
+
+#include <mpi.h>
+
+#include <array>
+#include <cstdint>
+
+namespace thalweg::analysis {
+
+struct TransportScales {
+  double grain_diameter;             // m, of the reference grain
+  double grain_density;              // kg/m^3, of the reference grain
+  double fluid_density = 0.0;        // kg/m^3; 0: dry grains
+  double gravity = 0.0;              // m/s^2, magnitude; in a model fluid the reduced one
+  double kinematic_viscosity = 0.0;  // m^2/s; 0: no fluid that has one
+  double model_fluid_speed = 0.0;    // m/s, v_0 of a model fluid
+
+  double weight() const;      // m/s^2, |s - 1| g; without a fluid g
+  double flux() const;        // sqrt(|s - 1| g d^3), m^2/s; without a fluid sqrt(g d^3)
+  double fall_speed() const;  // m/s: sqrt(|s - 1| g d), without a fluid sqrt(g d); 1 m/s where that is zero
+  // m/s: 1 % of the lower of sqrt(|s - 1| g d) and Stokes' settling speed |s - 1| g d^2/(18 nu); without a fluid of
+  // sqrt(g d), in a model fluid of v_0.
+  double moving_speed() const;
+  bool have_q_star() const { return fluid_density > 0.0 && flux() > 0.0; }
+};
+TransportScales transport_scales(const RunFacts& run);  // of a run with grains
+
+struct TransportRateKeys {
+  static constexpr const char* section = "transport_rate";
+  static constexpr const char* meaning =
+      "transport rate q and q* along x with its error; number, speed and hop length of the moving grains";
+  static constexpr Needs needs = Needs::grains;
+  double from = 0.0;                        // s: means, hops and distributions begin here
+  double every = 0.0;                       // s: between measurements; 0: with the rows of the series
+  std::optional<double> moving_speed = {};  // m/s, above which a grain moves; default: that of TransportScales
+  bool operator==(const TransportRateKeys&) const = default;
+};
+void describe(SectionVisitor& visit, TransportRateKeys& keys);
+void check(const TransportRateKeys& keys, const RunFacts& run);
+std::optional<std::string> warning(const TransportRateKeys& keys, const RunFacts& run);
+std::unique_ptr<Observer> make_observer(const TransportRateKeys& keys, const RunFacts& run,
+                                        const RunningSystem& system);
+
+class TransportRate : public Observer {
+public:
+  TransportRate(MPI_Comm communicator, const TransportScales& scales, const TransportRateKeys& keys);
+
+  std::string name() const override { return "transport_rate"; }
+  double every() const override { return keys_.every; }
+  void observe(const Snapshot& snapshot) override;  // a step seen before does not count again in the means
+
+  // q_s (m^2/s), q_star (1; only in a fluid), moving_grains (1: faster than moving_speed), moving_share (1: of all
+  // free grains), activity (m), largest_grain_speed (m/s).
+  std::vector<Figure> figures() const override;
+
+  // q_s_mean, q_s_deviation (standard deviation of the measurements), q_s_error (standard error of the mean),
+  // q_s_independent (values that the measurements are worth), q_s_error_holds (1, or 0: the run is too short for it,
+  // and it is more), q_s_correlation_time (s, integrated), q_s_drift and q_s_drift_error (m^2/s, over the whole time),
+  // steady (1: it is, 0: it drifts, -1: too few values to tell, -2:
+  // half of the mean may be hidden); in a fluid q_star_mean, _deviation, _error, _drift,
+  // _drift_error; moving_grains_mean and _error, moving_share_mean, activity_mean; those of Hops; reference_diameter,
+  // reference_density, moving_speed, mean_from (s), measured_from and measured_until (s: first and last measurement
+  // that counts), measurements; then the latest figures. Means are not a number as long as nothing was measured.
+  std::vector<Figure> results() const override;
+  std::vector<std::string> remarks() const override;  // the mean, its error and whether it is steady
+
+  // velocity_edges (m/s), velocity_density (s/m: of x, y, z of moving grains, times the width of a bin the share of all
+  // velocities that were in it); those of Hops.
+  std::vector<Profile> profiles() const override;
+
+  void save(ArchiveWriter& archive) const override;
+  bool load(ArchiveReader& archive) override;  // takes the sums over only if they were begun at the same `from`
+
+private:
+  struct Latest {
+    double q_s = 0.0;       // m^2/s
+    double activity = 0.0;  // m
+    std::int64_t moving = 0, grains = 0;
+    double largest_speed = 0.0;  // m/s
+    double share() const { return grains > 0 ? static_cast<double>(moving) / static_cast<double>(grains) : 0.0; }
+  };
+  void measure(const Snapshot& snapshot, const std::vector<Body>& bodies);
+  void count_velocities(const std::vector<Body>& bodies);
+  SavedSettings settings() const;
+  std::vector<double> sums() const;  // for a checkpoint: what is not elsewhere
+  double interval() const;           // s, between measurements that count
+
+  MPI_Comm communicator_;
+  TransportScales scales_;
+  TransportRateKeys keys_;
+  double moving_speed_;  // m/s
+  Latest latest_;
+  std::int64_t counted_step_ = -1;             // of the latest measurement that counts
+  double first_time_ = 0.0, last_time_ = 0.0;  // s, of the first and the latest of those
+  double sum_of_shares_ = 0.0, sum_of_activity_ = 0.0;
+  CorrelatedMean q_s_, moving_;
+  std::array<Histogram, 3> velocities_;  // of moving grains, over all ranks, on every rank
+  Hops hops_;
+};
+
+}  // namespace thalweg::analysis

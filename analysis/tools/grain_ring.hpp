@@ -1,0 +1,68 @@
+// What is remembered of a watched grain: its latest states, each with its contacts.
+#pragma once
+
+#include "analysis/tools/grain_record.hpp"
+
+#include <deque>
+#include <vector>
+
+namespace thalweg::analysis {
+
+// A contact of a grain, as it feels it.
+struct Touch {
+  GlobalId partner;  // the other grain; -1 - w for wall w
+  Vec3 arm;          // m, from the grain's centre to the contact
+  Vec3 force;        // N, on the grain
+  double distance;   // m, from the grain's centre to the partner's; of a wall, to the wall
+
+  bool loaded() const { return force.dot(arm) < 0.0; }  // it presses the grain
+  Vec3 partner_position(const Vec3& centre) const { return centre + arm * (distance / arm.norm()); }
+};
+
+struct GrainSample {
+  double time;         // s
+  GrainRecord record;  // its positions go on where the grain leaves a periodic box
+  std::vector<Touch> touches;
+
+  Vec3 operator[](GrainRecord::Quantity q) const { return record[q]; }
+};
+
+using GrainRing = std::deque<GrainSample>;  // oldest first
+
+// The same as rows that can be sent from rank to rank: touches lie one after the other, as many as their samples say.
+struct TouchRow {
+  GlobalId id, partner;          // of the grain, of what it touches
+  std::array<double, 7> values;  // arm, force, distance
+};
+struct SampleRow {
+  GlobalId id;
+  double time;  // s
+  GrainRecord record;
+  std::int64_t touches;
+};
+
+inline TouchRow row_of(GlobalId id, const Touch& t) {
+  return {id, t.partner, {t.arm.x(), t.arm.y(), t.arm.z(), t.force.x(), t.force.y(), t.force.z(), t.distance}};
+}
+inline Touch touch_of(const TouchRow& row) {
+  const auto& v = row.values;
+  return {row.partner, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}, v[6]};
+}
+
+// Adds the rows of a grain's ring behind those there are.
+inline void add_rows(GlobalId id, const GrainRing& ring, std::vector<SampleRow>& samples,
+                     std::vector<TouchRow>& touches) {
+  for (const GrainSample& sample : ring) {
+    samples.push_back({id, sample.time, sample.record, static_cast<std::int64_t>(sample.touches.size())});
+    for (const Touch& touch : sample.touches) touches.push_back(row_of(id, touch));
+  }
+}
+
+// One sample again; `next` goes on to the touches of the next.
+inline GrainSample sample_of(const SampleRow& row, std::vector<TouchRow>::const_iterator& next) {
+  GrainSample sample{row.time, row.record, {}};
+  for (std::int64_t n = 0; n < row.touches; ++n) sample.touches.push_back(touch_of(*next++));
+  return sample;
+}
+
+}  // namespace thalweg::analysis

@@ -1,0 +1,156 @@
+#include "analysis/tools/hops.hpp"
+
+#include "analysis/tools/sphere_in_layer.hpp"
+#include "core/state/whole_dataset.hpp"
+#include "core/sums/order_free_sum.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace thalweg::analysis {
+
+namespace {
+
+// In units of length and time. Grains that only jiggle in their places make hops of a thousandth of a diameter.
+constexpr double shortest = 1e-4, longest = 1e3;
+constexpr int bins = 140;  // 20 a decade
+
+}  // namespace
+
+std::vector<Body> free_bodies_of(const GrainView& grains) {
+  std::vector<Body> bodies;
+  for (std::size_t i = 0; i < grains.id.size(); ++i)
+    if (!grains.is_member(i) && !grains.velocity_is_held(i))
+      bodies.push_back(
+          {grains.id[i], volume_of(grains.radius[i], grains.disk_thickness), grains.position[i], grains.velocity[i]});
+  for (const ClumpState& clump : grains.clumps)
+    if (!clump.velocity_is_held) bodies.push_back({clump.id, clump.volume, clump.position, clump.velocity});
+  return bodies;
+}
+
+Hops::Hops(MPI_Comm communicator, double length, double time, double moving_speed)
+    : communicator_(communicator),
+      moving_speed_(moving_speed),
+      lengths_(Histogram::geometric(shortest * length, longest * length, bins)),
+      times_(Histogram::geometric(shortest * time, longest * time, bins)) {}
+
+void Hops::observe(double time, const PeriodicBox& box, GlobalId id_count, const std::vector<Body>& bodies,
+                   bool counts) {
+  if (!homes_ || homes_->count() != id_count) {
+    homes_.emplace(communicator_, id_count);
+    memory_.assign(homes_->size(), {});
+  }
+  std::vector<Sighting> sightings;
+  for (const Body& body : bodies) {
+    const bool moves = body.velocity.squaredNorm() > moving_speed_ * moving_speed_;
+    sightings.push_back({body.id, body.position.x(), body.velocity.x(), moves ? 1.0 : 0.0});
+  }
+  std::vector<double> ended;
+  for (const Sighting& seen : homes_->bring_home(sightings))
+    follow(memory_[homes_->place_of(seen.id)], seen, time, box, counts, ended);
+  last_time_ = time;
+  take_in(ended);
+}
+
+void Hops::follow(Memory& memory, const Sighting& seen, double time, const PeriodicBox& box, bool counts,
+                  std::vector<double>& ended) const {
+  const bool moves = seen.moves != 0.0, known = memory.phase != unseen;
+  double way = 0.0;
+  if (known) {
+    const double expected = 0.5 * (memory.v_x + seen.v_x) * (time - last_time_);
+    way = seen.x - memory.x;
+    if (box.periodic[0]) way -= box.size[0] * std::round((way - expected) / box.size[0]);
+  }
+  if (memory.phase == hopping || memory.phase == hopping_uncounted) {
+    memory.length += way;
+    if (!moves && memory.phase == hopping) ended.insert(ended.end(), {memory.length, time - memory.begin});
+    if (!moves) memory.phase = at_rest;
+  } else if (moves) {
+    memory.phase = known && counts ? hopping : hopping_uncounted;
+    memory.begin = time;
+    memory.length = way;
+  } else {
+    memory.phase = at_rest;
+  }
+  memory.x = seen.x;
+  memory.v_x = seen.v_x;
+}
+
+// ended: length and time of each hop that has ended at a home here.
+void Hops::take_in(const std::vector<double>& ended) {
+  const std::size_t cells = lengths_.counts().size();
+  std::vector<std::int64_t> counts(2 * cells, 0);
+  for (std::size_t n = 0; n < ended.size(); n += 2) {
+    ++counts[lengths_.bin_of(ended[n])];
+    ++counts[cells + times_.bin_of(ended[n + 1])];
+  }
+  MPI_Allreduce(MPI_IN_PLACE, counts.data(), static_cast<int>(counts.size()), MPI_INT64_T, MPI_SUM, communicator_);
+  for (std::size_t b = 0; b < cells; ++b) {
+    lengths_.counts()[b] += counts[b];
+    times_.counts()[b] += counts[cells + b];
+  }
+  const std::vector<double> sums = order_free_sums(communicator_, ended, 2);
+  sum_of_lengths_ += sums[0];
+  sum_of_times_ += sums[1];
+}
+
+std::vector<Figure> Hops::results() const {
+  const auto count = static_cast<double>(lengths_.total());
+  const auto of_hops = [count](double value) { return count > 0.0 ? value : std::nan(""); };
+  return {{"hops", "1", count},
+          {"hop_length_mean", "m", of_hops(sum_of_lengths_ / count)},
+          {"hop_length_10", "m", of_hops(lengths_.quantile(0.1))},
+          {"hop_length_50", "m", of_hops(lengths_.quantile(0.5))},
+          {"hop_length_90", "m", of_hops(lengths_.quantile(0.9))},
+          {"hop_time_mean", "s", of_hops(sum_of_times_ / count)},
+          {"hop_time_10", "s", of_hops(times_.quantile(0.1))},
+          {"hop_time_50", "s", of_hops(times_.quantile(0.5))},
+          {"hop_time_90", "s", of_hops(times_.quantile(0.9))}};
+}
+
+std::vector<Profile> Hops::profiles() const {
+  const auto values = [](auto numbers) { return std::vector<double>(numbers.begin(), numbers.end()); };
+  std::vector<Profile> profiles{{"hop_length_edges", "m", {}, {}, values(lengths_.edges())},
+                                {"hop_length_count", "1", {}, {}, values(lengths_.counts())},
+                                {"hop_time_edges", "s", {}, {}, values(times_.edges())},
+                                {"hop_time_count", "1", {}, {}, values(times_.counts())}};
+  for (Profile& profile : profiles) profile.shape = {profile.values.size()};
+  return profiles;
+}
+
+void Hops::save(ArchiveWriter& archive, const std::string& group) const {
+  archive.attribute(group + "/hops_last_time", last_time_);
+  archive.attribute(group + "/hops_sum_of_lengths", sum_of_lengths_);
+  archive.attribute(group + "/hops_sum_of_times", sum_of_times_);
+  std::vector<std::int64_t> counts(lengths_.counts().begin(), lengths_.counts().end());
+  counts.insert(counts.end(), times_.counts().begin(), times_.counts().end());
+  write_whole(archive, communicator_, group + "/hops_counts", std::span<const std::int64_t>(counts), {counts.size()});
+  if (!homes_) return;
+  std::vector<double> rows;
+  for (const Memory& m : memory_)
+    rows.insert(rows.end(), {static_cast<double>(m.phase), m.x, m.v_x, m.begin, m.length});
+  archive.write(group + "/hops_of_grains", std::span<const double>(rows), homes_->box(columns));
+}
+
+void Hops::load(ArchiveReader& archive, const std::string& group) {
+  const std::size_t cells = lengths_.counts().size();
+  const std::vector<std::uint64_t> shape{2 * cells};
+  if (!archive.has(group + "/hops_of_grains") || archive.shape(group + "/hops_counts") != shape) return;
+  last_time_ = archive.real_attribute(group + "/hops_last_time");
+  sum_of_lengths_ = archive.real_attribute(group + "/hops_sum_of_lengths");
+  sum_of_times_ = archive.real_attribute(group + "/hops_sum_of_times");
+  std::vector<std::int64_t> counts(2 * cells);
+  archive.read(group + "/hops_counts", std::span<std::int64_t>(counts), {shape, {0}, shape});
+  std::copy(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(cells), lengths_.counts().begin());
+  std::copy(counts.begin() + static_cast<std::ptrdiff_t>(cells), counts.end(), times_.counts().begin());
+  homes_.emplace(communicator_, static_cast<GlobalId>(archive.shape(group + "/hops_of_grains")[0]));
+  memory_.assign(homes_->size(), {});
+  std::vector<double> rows(memory_.size() * columns);
+  archive.read(group + "/hops_of_grains", std::span<double>(rows), homes_->box(columns));
+  for (std::size_t m = 0; m < memory_.size(); ++m) {
+    const double* row = rows.data() + m * columns;
+    memory_[m] = {static_cast<Phase>(static_cast<int>(row[0])), row[1], row[2], row[3], row[4]};
+  }
+}
+
+}  // namespace thalweg::analysis

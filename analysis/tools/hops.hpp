@@ -1,0 +1,84 @@
+// Hops: how far and how long grains move between two rests.
+//
+// A grain moves where its speed exceeds a threshold. A hop begins with the first measurement that finds a grain moving
+// and ends with the first that finds it at rest again. Its time is that between these two, in error by less than the
+// interval between measurements, and by nothing on average; a hop shorter than the interval may be missed. Its length
+// is the way along x from the last measurement before it to the one that ends it, so that all of the way counts except
+// for what a grain creeps below the threshold. Hops that were under way when measuring began are not counted, nor those
+// that have not ended.
+//
+// Between two measurements a grain is taken to have gone to that periodic image of its new place which lies nearest to
+// where the mean of its two velocities would have taken it.
+#pragma once
+
+#include "analysis/observer/observer.hpp"
+#include "analysis/tools/histogram.hpp"
+#include "analysis/tools/home_by_id.hpp"
+#include "core/geometry/periodic_box.hpp"
+
+#include <mpi.h>
+
+#include <optional>
+
+namespace thalweg::analysis {
+
+// A grain or a clump as transport sees it.
+struct Body {
+  GlobalId id;    // of a clump: that of its first member
+  double volume;  // m^3
+  Vec3 position;  // m, inside the box
+  Vec3 velocity;  // m/s
+};
+
+// The bodies owned by this rank that are free to move, of which a clump is one.
+std::vector<Body> free_bodies_of(const GrainView& grains);
+
+class Hops {
+public:
+  // length, time: the units of the histograms' edges (m, s), e.g. a diameter and the time to fall by it.
+  // moving_speed: the threshold, m/s.
+  Hops(MPI_Comm communicator, double length, double time, double moving_speed);
+
+  // id_count: of all ids, also those of members of clumps. counts: hops that begin now count. Collective.
+  void observe(double time, const PeriodicBox& box, GlobalId id_count, const std::vector<Body>& bodies, bool counts);
+
+  // hops (1: that have ended), hop_length_mean, hop_length_10, _50, _90 (m: quantiles in per cent, from the histogram),
+  // hop_time_mean, hop_time_10, _50, _90 (s). Not a number as long as there was none.
+  std::vector<Figure> results() const;
+
+  // hop_length_edges (m), hop_time_edges (s), hop_length_count, hop_time_count (1: one more than there are edges, the
+  // first and the last for what lies outside; hops against the stream are in the first, too).
+  std::vector<Profile> profiles() const;
+
+  void save(ArchiveWriter& archive, const std::string& group) const;  // collective
+  void load(ArchiveReader& archive, const std::string& group);        // does nothing where there is nothing that fits
+
+private:
+  enum Phase { unseen, at_rest, hopping, hopping_uncounted };
+  // What is remembered of a body, at its home.
+  struct Memory {
+    Phase phase = unseen;
+    double x = 0.0, v_x = 0.0;  // m, m/s: at the latest measurement
+    double begin = 0.0;         // s, of the hop
+    double length = 0.0;        // m, so far
+  };
+  static constexpr std::uint64_t columns = 5;
+
+  struct Sighting {
+    GlobalId id;
+    double x, v_x, moves;
+  };
+  void follow(Memory& memory, const Sighting& seen, double time, const PeriodicBox& box, bool counts,
+              std::vector<double>& ended) const;
+  void take_in(const std::vector<double>& ended);
+
+  MPI_Comm communicator_;
+  double moving_speed_;
+  std::optional<HomeById> homes_;                     // from the first measurement on
+  std::vector<Memory> memory_;                        // of the ids whose home is here
+  double last_time_ = 0.0;                            // s, of the latest measurement
+  Histogram lengths_, times_;                         // over all ranks, on every rank
+  double sum_of_lengths_ = 0.0, sum_of_times_ = 0.0;  // m, s
+};
+
+}  // namespace thalweg::analysis

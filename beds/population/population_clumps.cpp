@@ -1,0 +1,104 @@
+#include "beds/population/population_clumps.hpp"
+
+#include "core/base/counter_random.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace thalweg::beds {
+namespace {
+
+// The draws of counter_random.hpp that orientations use; placements use small numbers, sizes 2^40.
+constexpr std::uint64_t first_orientation_draw = std::uint64_t{1} << 41;
+
+constexpr double turn = 2.0 * std::numbers::pi;
+
+}  // namespace
+
+std::shared_ptr<const dem::ClumpShape> clump_shape_of(const Population& population) {
+  std::vector<dem::PlacedSphere> members;
+  for (const MemberKeys& member : population.shape->clump) members.push_back({member.position, 0.5 * member.diameter});
+  return std::make_shared<const dem::ClumpShape>(clump_shape(members, population.thickness));
+}
+
+dem::Quaternion orientation_of(const Population& population, std::size_t grain) {
+  if (population.orientation) {
+    const Vec3 axis = population.orientation->axis.normalized();
+    const double half = 0.5 * population.orientation->angle, s = std::sin(half);
+    return dem::normalised({std::cos(half), s * axis[0], s * axis[1], s * axis[2]});
+  }
+  const auto draw = [&](std::uint64_t n) {
+    return uniform_random(static_cast<std::uint64_t>(population.placement.seed), grain, first_orientation_draw + n);
+  };
+  if (population.thickness > 0.0) {
+    const double half = 0.5 * turn * draw(0);
+    return dem::normalised({std::cos(half), 0.0, std::sin(half), 0.0});
+  }
+  const double u = draw(0), inner = std::sqrt(1.0 - u), outer = std::sqrt(u), a = turn * draw(1), b = turn * draw(2);
+  return dem::normalised({outer * std::cos(b), inner * std::sin(a), inner * std::cos(a), outer * std::sin(b)});
+}
+
+std::vector<std::span<const BedGrain>> bodies_of(std::span<const BedGrain> rows) {
+  std::vector<std::span<const BedGrain>> bodies;
+  for (std::size_t first = 0; first < rows.size();) {
+    std::size_t end = first + 1;
+    while (end < rows.size() && rows[first].clump >= 0 && rows[end].clump == rows[first].clump) ++end;
+    bodies.push_back(rows.subspan(first, end - first));
+    first = end;
+  }
+  return bodies;
+}
+
+namespace {
+
+// From the first member to each (m). A clump may be longer than half a periodic axis, so that the nearest image of the
+// first is not the right one: the way goes from member to near member, each time to the pair that is nearest.
+std::vector<Vec3> places_from_first(std::span<const BedGrain> rows, const PeriodicBox& box) {
+  std::vector<Vec3> places(rows.size(), Vec3::Zero());
+  std::vector<std::size_t> found{0}, left;
+  for (std::size_t n = 1; n < rows.size(); ++n) left.push_back(n);
+  while (!left.empty()) {
+    std::size_t from = 0, next = 0;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const std::size_t known : found)
+      for (std::size_t n = 0; n < left.size(); ++n) {
+        const double distance = box.difference(rows[left[n]].position, rows[known].position).norm();
+        if (distance < nearest) nearest = distance, from = known, next = n;
+      }
+    const std::size_t member = left[next];
+    const Vec3 by_way = places[from] + box.difference(rows[member].position, rows[from].position);
+    places[member] = box.difference(rows[member].position, rows.front().position);  // the same but for whole boxes
+    for (int axis = 0; axis < 3; ++axis)
+      if (box.periodic[static_cast<std::size_t>(axis)])
+        places[member][axis] += box.size[axis] * std::round((by_way[axis] - places[member][axis]) / box.size[axis]);
+    found.push_back(member);
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(next));
+  }
+  return places;
+}
+
+}  // namespace
+
+dem::ClumpSeed clump_from(std::span<const BedGrain> rows, const PeriodicBox& box, double thickness) {
+  const BedGrain& first = rows.front();
+  std::vector<dem::PlacedSphere> members;
+  for (const Vec3& place : places_from_first(rows, box)) members.push_back({place, rows[members.size()].radius});
+  dem::ClumpSeed clump;
+  clump.shape = std::make_shared<const dem::ClumpShape>(clump_shape(members, thickness));
+  clump.density = first.density;
+  clump.position = box.wrapped(first.position + clump.shape->centre);
+  clump.velocity = first.velocity + first.angular_velocity.cross(clump.shape->centre);
+  clump.angular_velocity = first.angular_velocity;
+  return clump;
+}
+
+ClumpFigures figures_of(const dem::ClumpShape& shape, double density, std::int64_t count) {
+  return {count, static_cast<double>(count) * shape.volume, shape.least_contact_mass(density),
+          2.0 * shape.bounding_radius};
+}
+
+}  // namespace thalweg::beds

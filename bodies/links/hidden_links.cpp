@@ -1,0 +1,116 @@
+#include "bodies/links/hidden_links.hpp"
+
+#include <algorithm>
+
+namespace thalweg::bodies {
+
+using lbm::CellMap;
+using lbm::D3Q19;
+
+HiddenLinks::HiddenLinks(const Decomposition& decomposition, const Block& block, const CellMap& cells,
+                         const Hydrostatic& rest)
+    : decomposition_(decomposition),
+      block_(block),
+      local_cells_(decomposition, block),
+      cells_(cells),
+      rest_(rest),
+      box_(decomposition.cell_box()) {}
+
+std::size_t HiddenLinks::count() const {
+  std::size_t total = 0;
+  for (const std::vector<Link>& links : links_) total += links.size();
+  return total;
+}
+
+void HiddenLinks::update(const BodyMap& map) {
+  if (rest_.none()) return;
+  links_.resize(map.bodies().size());
+  is_stale_.resize(map.bodies().size(), 0);
+  for (const CellChange& change : map.changes()) {
+    mark(change.before);
+    mark(change.now);
+    mark_around(change.cell);
+  }
+  std::sort(stale_.begin(), stale_.end());
+  for (const int slot : stale_) {
+    rebuild(slot, map.bodies());
+    is_stale_[static_cast<std::size_t>(slot)] = 0;
+  }
+  stale_.clear();
+}
+
+void HiddenLinks::mark(std::int32_t slot) {
+  if (slot == CellMap::fluid || is_stale_[static_cast<std::size_t>(slot)]) return;
+  is_stale_[static_cast<std::size_t>(slot)] = 1;
+  stale_.push_back(slot);
+}
+
+void HiddenLinks::mark_around(const Index3& local) {
+  const Index3& n = cells_.indexing().size();
+  for (int i = 1; i < D3Q19::directions; ++i) {
+    Index3 at;
+    bool in_memory = true;
+    for (int a = 0; a < 3; ++a) {
+      at[a] = local[a] + D3Q19::c[i][a];
+      in_memory = in_memory && at[a] >= -1 && at[a] <= n[a];
+    }
+    if (in_memory) mark(cells_.body(cells_.indexing().index(at[0], at[1], at[2])));
+  }
+}
+
+void HiddenLinks::rebuild(int slot, const std::vector<MappedBody>& grains) {
+  const MappedBody& grain = grains[static_cast<std::size_t>(slot)];
+  links_[static_cast<std::size_t>(slot)].clear();
+  if (grain.id < 0) return;
+  for (int a = 0; a < 3; ++a) local_cells_.along(a, grain.centre[a], grain.radius, grain.centre[a], 0, places_[a]);
+  for (const LocalCell& z : places_[2])
+    for (const LocalCell& y : places_[1])
+      for (const LocalCell& x : places_[0]) {
+        const Index3 local{x.local, y.local, z.local};
+        if (cells_.body(cells_.indexing().index(local[0], local[1], local[2])) == slot)
+          find_at_cell(slot, local, grains);
+      }
+}
+
+void HiddenLinks::find_at_cell(int slot, const Index3& local, const std::vector<MappedBody>& grains) {
+  const GlobalId clump = grains[static_cast<std::size_t>(slot)].clump;
+  const std::ptrdiff_t cell = cells_.indexing().index(local[0], local[1], local[2]);
+  for (int i = 1; i < D3Q19::directions; ++i) {
+    bool beyond_wall = false;
+    Vec3 from;
+    for (int a = 0; a < 3; ++a) {
+      const int global = block_.lower[a] + local[a] - D3Q19::c[i][a];
+      from[a] = global + 0.5;
+      beyond_wall =
+          beyond_wall || (!decomposition_.periodic()[a] && (global < 0 || global >= decomposition_.cells()[a]));
+    }
+    const std::int32_t other = beyond_wall ? CellMap::fluid : cells_.body(cell - cells_.indexing().offset(i));
+    const bool same_body = clump >= 0 && other >= 0 && grains[static_cast<std::size_t>(other)].clump == clump;
+    if (other != slot && !same_body && (other != CellMap::fluid || beyond_wall))
+      links_[static_cast<std::size_t>(slot)].push_back({i, from});
+  }
+}
+
+void HiddenLinks::add(const Link& link, const Vec3& from, double distance, LinkBody& body, FixedTensor* moments) const {
+  const Vec3 c = velocity_of(link.direction), arm = from + distance * c;
+  const double weight = D3Q19::weight(link.direction), density = rest_.deviation(link.from + distance * c);
+  const Vec3 momentum = (2.0 * weight * density) * c;
+  body.force += FixedVec3::from(momentum);
+  body.torque += FixedVec3::from(arm.cross(momentum));
+  if (moments) moments->add(momentum, arm);
+}
+
+// Where grains overlap, x_f can be inside this one, too. A line that just misses the surface, because the cells are
+// those of a place a little apart, meets it where it is nearest to the centre.
+void HiddenLinks::apply(std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments) const {
+  for (std::size_t slot = 0; slot < links_.size(); ++slot)
+    for (const Link& link : links_[slot]) {
+      const Vec3 c = velocity_of(link.direction), from = box_.difference(link.from, bodies[slot].centre);
+      const Sphere sphere{bodies[slot].radius};
+      double met = 0.0;
+      if (!sphere.holds(from)) met = sphere.crossing(from, c).value_or(-c.dot(from) / c.squaredNorm());
+      add(link, from, std::clamp(met, 0.0, 1.0), bodies[slot], moments ? &(*moments)[slot] : nullptr);
+    }
+}
+
+}  // namespace thalweg::bodies

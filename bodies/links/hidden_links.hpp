@@ -1,0 +1,64 @@
+// Links without a fluid cell: where another grain or a wall of the box hides a patch of a grain's surface from the
+// fluid.
+//
+// A lattice line enters a cell of grain p from a cell x_f that grain q covers, or that is beyond a wall. No population
+// runs there, but a fluid between the two would press. The exchange counts populations less their weight
+// (link_pass.hpp), so that the reference pressure needs no such links. What is left under full gravity is the
+// hydrostatic density above the reference, rho_g - 1 on the surface: momentum 2 w_i (rho_g - 1) c_i, without which a
+// grain that touches others or the floor would lose part of its buoyancy. There is no surface between members of one
+// clump, and so no such link. Lattice units.
+#pragma once
+
+#include "bodies/map/body_map.hpp"
+#include "bodies/map/hydrostatic.hpp"
+#include "bodies/map/lattice_vectors.hpp"
+#include "bodies/map/link_table.hpp"
+#include "bodies/map/local_cells.hpp"
+#include "core/geometry/sphere.hpp"
+#include "core/parallel/decomposition.hpp"
+#include "lbm/lattice/cell_map.hpp"
+
+#include <vector>
+
+namespace thalweg::bodies {
+
+class HiddenLinks {
+public:
+  HiddenLinks(const Decomposition& decomposition, const Block& block, const lbm::CellMap& cells,
+              const Hydrostatic& rest);
+
+  // Finds anew the hidden links around cells that changed hands since the last call; does nothing where the density at
+  // rest is the same everywhere. A link belongs to the rank that owns its solid cell.
+  void update(const BodyMap& map);
+
+  // Adds the momentum of all hidden links to their bodies, and sum F_a x_b to moments, where given.
+  void apply(std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments) const;
+
+  std::size_t count() const;
+
+private:
+  struct Link {
+    int direction;  // into the grain
+    Vec3 from;      // x_f, global
+  };
+
+  void mark(std::int32_t slot);
+  void mark_around(const Index3& local);
+  void rebuild(int slot, const std::vector<MappedBody>& grains);
+  void find_at_cell(int slot, const Index3& local, const std::vector<MappedBody>& grains);
+  // from: x_f from the body's centre; moments: of the body, null: not measured.
+  void add(const Link& link, const Vec3& from, double distance, LinkBody& body, FixedTensor* moments) const;
+
+  const Decomposition& decomposition_;
+  Block block_;
+  LocalCells local_cells_;
+  const lbm::CellMap& cells_;
+  Hydrostatic rest_;
+  PeriodicBox box_;                       // cells
+  std::vector<std::vector<Link>> links_;  // by slot
+  std::vector<int> stale_;                // slots to look at anew
+  std::vector<char> is_stale_;            // by slot
+  std::vector<LocalCell> places_[3];      // scratch
+};
+
+}  // namespace thalweg::bodies

@@ -1,0 +1,34 @@
+// What an observer records for a file of its own that grows while the run goes on: arrays that get longer, and events,
+// each with arrays of its own.
+#pragma once
+
+#include "core/state/profile.hpp"
+#include "core/state/system.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace thalweg {
+
+// Whole numbers without a unit, e.g. ids.
+struct WholeNumbers {
+  std::string name;
+  std::vector<std::int64_t> values;
+};
+
+struct Event {
+  std::string name;  // of its group; unique
+  double time;       // s
+  std::vector<Figure> figures;
+  std::vector<WholeNumbers> numbers;
+  std::vector<Profile> arrays;
+};
+
+struct Records {
+  std::vector<WholeNumbers> fixed;  // the same from the first to the last time of a run
+  std::vector<Profile> rows;        // new rows: the first dimension is that of time; `time` (s) is one of them
+  std::vector<Event> events;        // new ones, in order of time
+};
+
+}  // namespace thalweg

@@ -1,0 +1,11 @@
+// A state belongs to the time step it was made with.
+#pragma once
+
+#include "core/base/archive.hpp"
+
+namespace thalweg {
+
+// Throws InputError if the state in the archive was made with another time step (s) than this one.
+void require_same_time_step(ArchiveReader& archive, double time_step);
+
+}  // namespace thalweg

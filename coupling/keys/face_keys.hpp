@@ -1,0 +1,41 @@
+// How a case describes a face of the box, in SI units, and what that is on the lattice.
+#pragma once
+
+#include "core/base/units.hpp"
+#include "core/keys/section_visitor.hpp"
+#include "dem/motion/motion_keys.hpp"
+#include "lbm/walls/boundary.hpp"
+
+#include <array>
+#include <optional>
+
+namespace thalweg::coupling {
+
+struct FaceKeys {
+  lbm::FaceType type = lbm::FaceType::no_slip;
+  double coefficient = lbm::derived_slip_coefficient;  // slip law of the wall: U+ at the wall
+  bool of_first_cell = false;                          // slip law of the wall: lbm::slip_coefficient_at instead
+  double slip_length = 0.0;                            // m, navier_slip
+  Vec3 velocity = Vec3::Zero();                        // m/s, moving and velocity_inlet
+  double pressure = 0.0;                               // Pa above the reference, pressure_outlet
+  std::optional<dem::Oscillation> oscillation = {};    // moving; dry grains only
+
+  // Whether it is a wall that the boundary layer of a smooth one stands on.
+  bool obeys_the_law_of_the_wall() const {
+    return type == lbm::FaceType::law_of_the_wall || type == lbm::FaceType::slip_law_of_the_wall;
+  }
+  // Whether it exerts shear on a flow along it.
+  bool drags() const {
+    return type == lbm::FaceType::no_slip || type == lbm::FaceType::moving || type == lbm::FaceType::navier_slip ||
+           obeys_the_law_of_the_wall();
+  }
+  bool has_velocity() const { return type == lbm::FaceType::moving || type == lbm::FaceType::velocity_inlet; }
+  bool operator==(const FaceKeys& other) const;  // what the type does not use does not count
+};
+
+void describe(SectionVisitor& visit, FaceKeys& face);
+
+// In the order of lbm::FaceConditions.
+lbm::FaceConditions conditions_of(const std::array<FaceKeys, 6>& faces, const Units& units);
+
+}  // namespace thalweg::coupling

@@ -1,0 +1,48 @@
+// How a case describes the fluid, in SI units.
+#pragma once
+
+#include "core/keys/section_visitor.hpp"
+#include "lbm/collision/collision_parameters.hpp"
+
+#include <optional>
+
+namespace thalweg::coupling {
+
+enum class Precision { single, double_ };
+
+// A mean velocity of the fluid that the body force is steered to, in place of gravity along that axis. The force is
+// that of a mean pressure gradient (with the fluid's weight along the axis, which it carries as well).
+struct FlowTargetKeys {
+  double velocity = 0.0;       // m/s, along x
+  double response_time = 0.0;  // s
+  bool on_grains = true;       // grains feel the pressure gradient, too; else the force acts on the fluid alone
+  bool operator==(const FlowTargetKeys&) const = default;
+};
+
+struct FluidKeys {
+  double density = 0.0;                            // kg/m^3
+  double kinematic_viscosity = 0.0;                // m^2/s
+  std::optional<lbm::SubgridModel> subgrid_model;  // read as smagorinsky with its constant, else qr
+  std::optional<double> smagorinsky_constant;      // 1
+  std::optional<double> time_step;                 // s; else from the two velocities
+  std::optional<double> maximum_lattice_velocity;  // cells per step
+  std::optional<double> expected_velocity;         // m/s, the largest
+  lbm::CollisionModel collision = lbm::CollisionModel::trt_at_bodies;
+  std::optional<double> magic_parameter;  // of trt and trt_at_bodies; else lbm::usual_magic_parameter()
+  // 1, of the trace of the stress; 0: as the shear's. Read as 1 with grains, bgk or trt_at_bodies and a subgrid model,
+  // else 0.
+  std::optional<double> bulk_relaxation_time;
+  Precision precision = Precision::single;
+  std::optional<FlowTargetKeys> mean_velocity;
+  bool operator==(const FluidKeys&) const = default;
+
+  lbm::Subgrid subgrid() const;
+  // Writes out what follows from other keys, so that a case that is kept means the same later: the subgrid model and
+  // its constant, and the magic parameter.
+  void fill_in_models();
+  double magic() const { return magic_parameter.value_or(lbm::usual_magic_parameter(collision)); }
+};
+
+void describe(SectionVisitor& visit, FluidKeys& fluid);
+
+}  // namespace thalweg::coupling

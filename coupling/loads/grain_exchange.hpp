@@ -1,0 +1,61 @@
+// What a grain keeps of its exchange with the fluid from one step to the next: named and typed, in the columns of plain
+// numbers that dem carries with the grain (dem/motion/grain_store.hpp). Number: double, or const double for reading.
+#pragma once
+
+#include "core/base/types.hpp"
+
+#include <span>
+#include <type_traits>
+
+namespace thalweg::coupling {
+
+template <typename Number>
+class GrainExchange {
+  template <typename Value>
+  using Of = std::conditional_t<std::is_const_v<Number>, const Value, Value>;
+  using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+public:
+  using Vector = Eigen::Map<Of<Vec3>>;
+  using Tensor = Eigen::Map<Of<RowMajor>>;
+
+  explicit GrainExchange(std::span<Number> columns) : columns_(columns) {}
+
+  static constexpr int width = 24, width_with_stress = 42;  // columns
+  // What other ranks need of a grain in every step: what its links return, and the fluid around it. (They follow its
+  // link_position by themselves.)
+  static constexpr std::size_t first_shared = 18, shared = 5;
+
+  Vector link_position() const { return vector(0); }  // the place its cells stand for, m
+  Vector last_force() const { return vector(3); }     // of the last exchange, N
+  Vector last_torque() const { return vector(6); }    // N m
+  Vector earlier_force() const { return vector(9); }  // of the one before
+  Vector earlier_torque() const { return vector(12); }
+
+  // How many exchanges there have been (2: or more).
+  int exchanges() const { return static_cast<int>(columns_[15]); }
+  void set_exchanges(int count) const { columns_[15] = count; }
+
+  // Lattice units. Of a clump, owed_mass, mean_loss and wanted_return are in its first member's.
+  Number& owed_mass() const { return columns_[16]; }         // to the fluid
+  Number& mean_loss() const { return columns_[17]; }         // of mass a step
+  Number& returned_density() const { return columns_[18]; }  // what the links return in the coming step:
+  Vector returned_slope() const { return vector(19); }       // mass_return.hpp
+  Number& surrounding() const { return columns_[22]; }       // rho - rho_rest of the fluid around the grain
+  Number& wanted_return() const { return columns_[23]; }     // of mass; the links return the mean of the last two
+  void forget_lattice_units() const {
+    for (Number& value : columns_.subspan(16, 8)) value = 0.0;
+  }
+
+  // Only where asked for, Pa: of the last exchange, and the mean of the last two.
+  Tensor last_stress() const { return tensor(24); }
+  Tensor mean_stress() const { return tensor(33); }
+
+private:
+  Vector vector(std::size_t first) const { return Vector(columns_.data() + first); }
+  Tensor tensor(std::size_t first) const { return Tensor(columns_.data() + first); }
+
+  std::span<Number> columns_;
+};
+
+}  // namespace thalweg::coupling

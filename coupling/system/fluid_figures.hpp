@@ -1,0 +1,30 @@
+// What a survey of the lattice says about the health of a fluid, as figures in the units of a run.
+#pragma once
+
+#include "core/base/units.hpp"
+#include "core/state/place.hpp"
+#include "core/state/system.hpp"
+#include "lbm/fluid/fluid_survey.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace thalweg::coupling {
+
+// largest_lattice_velocity (1) and largest_fluid_speed (m/s); infinite where a cell is broken.
+std::vector<Figure> speed_figures(const lbm::FluidSurvey& survey, const Units& units);
+
+// Appends smallest_density_deviation and largest_density_deviation (of rho/rho_0 - 1, with the hydrostatic part of full
+// gravity), and fast_cell_fraction: the share of fluid cells with a lattice velocity above FluidSurvey::fast (all 1).
+void add_extremes(const lbm::FluidSurvey& survey, std::vector<Figure>& figures);
+
+// Appends fluid_momentum_x, _y, _z (kg m/s). force: lattice units, on a cell; half of it is in the survey's sums
+// already, which are those after the collision.
+void add_momentum(const lbm::FluidSurvey& survey, const Vec3& force, const Units& units, std::vector<Figure>& figures);
+
+// Where the survey found the extreme value of a figure: largest_lattice_velocity, those of add_extremes(); where cells
+// are broken, the first of them for any name. Empty for other names.
+std::optional<Place> place_in_fluid(const lbm::FluidSurvey& survey, const Units& units, const std::string& figure);
+
+}  // namespace thalweg::coupling

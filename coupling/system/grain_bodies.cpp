@@ -1,0 +1,275 @@
+#include "coupling/system/grain_bodies.hpp"
+
+#include "bodies/mass_return.hpp"
+#include "core/base/error.hpp"
+#include "core/geometry/sphere.hpp"
+#include "core/sums/wide_sums_over_ranks.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace thalweg::coupling {
+
+namespace {
+
+constexpr double link_tolerance = 1e-3;  // cells a grain may move before the cells of its body follow
+
+}  // namespace
+
+template <typename Real>
+GrainBodies<Real>::GrainBodies(MPI_Comm communicator, dem::GrainDynamics& grains, bodies::Bodies<Real>& bodies,
+                               const PeriodicBox& box, const Units& units, LoadRule load, bool with_stress)
+    : communicator_(communicator),
+      grains_(grains),
+      bodies_(bodies),
+      box_(box),
+      units_(units),
+      load_(load),
+      light_load_{units.density, units.spacing},
+      with_stress_(with_stress) {}
+
+template <typename Real>
+void GrainBodies<Real>::begin_where_grains_are() {
+  const dem::GrainStore& store = grains_.store();
+  for (std::size_t g = 0; g < store.total(); ++g)
+    if (exchange_of(g).exchanges() == 0) exchange_of(g).link_position() = store.position[g];
+}
+
+template <typename Real>
+void GrainBodies<Real>::place_at_start() {
+  bodies_.remove_all();
+  bodies_.begin_step();
+  synchronise_slots();
+  bodies_.template check_count<InputError>(communicator_);
+  update_motions();
+  bodies_.settle_at_start();
+  show_stresses();
+}
+
+template <typename Real>
+void GrainBodies<Real>::set_surroundings(double deviation) {
+  for (std::size_t g = 0; g < grains_.store().total(); ++g)
+    if (exchange_of(g).exchanges() == 0) exchange_of(g).surrounding() = deviation;
+}
+
+template <typename Real>
+void GrainBodies<Real>::forget_lattice_units() {
+  for (std::size_t g = 0; g < grains_.store().total(); ++g) exchange_of(g).forget_lattice_units();
+}
+
+template <typename Real>
+void GrainBodies<Real>::move_bodies(bool slots_changed) {
+  if (slots_changed) {
+    synchronise_slots();
+    bodies_.template check_count<RunError>(communicator_);
+  }
+  update_motions();
+  update_cells();
+}
+
+template <typename Real>
+void GrainBodies<Real>::take_loads() {
+  collect();
+  apply();
+  settle_masses();
+  grains_.refresh_ghost_attached(GrainExchange<double>::first_shared, GrainExchange<double>::shared);
+  show_stresses();
+}
+
+// Bodies for the grains that are in reach of this rank, and no others.
+template <typename Real>
+void GrainBodies<Real>::synchronise_slots() {
+  const dem::GrainStore& store = grains_.store();
+  std::vector<char> present(bodies_.mapped().size(), 0);
+  slot_.resize(store.total());
+  for (std::size_t g = 0; g < store.total(); ++g) {
+    slot_[g] = bodies_.slot_of(store.id[g]);
+    if (slot_[g] >= 0) present[static_cast<std::size_t>(slot_[g])] = 1;
+  }
+  for (std::size_t slot = 0; slot < present.size(); ++slot)
+    if (!present[slot] && bodies_.mapped()[slot].id >= 0) bodies_.remove(static_cast<int>(slot));
+  for (std::size_t g = 0; g < store.total(); ++g)
+    if (slot_[g] < 0)
+      slot_[g] = bodies_.add(store.id[g], store.radius[g] / units_.spacing, store.clump[g],
+                             lattice_position(exchange_of(g).link_position()));
+}
+
+template <typename Real>
+void GrainBodies<Real>::update_motions() {
+  const dem::GrainStore& store = grains_.store();
+  for (std::size_t g = 0; g < store.total(); ++g) {
+    const GrainExchange<double> kept = exchange_of(g);
+    bodies_.move(slot_[g], {lattice_position(store.position[g]), store.velocity[g] / units_.velocity(),
+                            store.angular_velocity[g] * units_.time_step, kept.returned_density(),
+                            kept.returned_slope(), kept.surrounding()});
+  }
+}
+
+// Cells follow a grain once it has moved by the tolerance; links know its place exactly all the same. Ghosts follow the
+// same rule from the same numbers as their owners, so every rank moves a grain's cells in the same step.
+template <typename Real>
+void GrainBodies<Real>::update_cells() {
+  dem::GrainStore& store = grains_.store();
+  const double tolerance = link_tolerance * units_.spacing;
+  for (std::size_t g = 0; g < store.total(); ++g) {
+    const GrainExchange<double> kept = exchange_of(g);
+    const Vec3 moved = box_.difference(store.position[g], kept.link_position());
+    if (moved.squaredNorm() <= tolerance * tolerance) continue;
+    kept.link_position() = store.position[g];
+    bodies_.place(slot_[g], lattice_position(store.position[g]));
+  }
+}
+
+template <typename Real>
+void GrainBodies<Real>::collect() {
+  const std::size_t count = grains_.store().total();
+  const int width = sums_per_grain();
+  exchanged_.resize(static_cast<std::size_t>(width) * count);
+  std::vector<std::array<std::int64_t, hidden_sums>> hidden;
+  if (with_stress_) hidden = bodies_.hidden_by_solids();
+  for (std::size_t g = 0; g < count; ++g) {
+    const bodies::LinkBody& body = bodies_.body(slot_[g]);
+    const std::int64_t sums[8] = {body.force.x,  body.force.y,  body.force.z, body.torque.x,
+                                  body.torque.y, body.torque.z, body.mass,    body.pressure};
+    auto into = std::copy(sums, sums + 8, exchanged_.begin() + static_cast<std::ptrdiff_t>(width * g));
+    const bodies::LinkSums& link_sums = bodies_.link_sums(slot_[g]);
+    into = std::copy(link_sums.sums.begin(), link_sums.sums.end(), into);
+    if (with_stress_) {
+      const FixedTensor& moments = bodies_.moments(slot_[g]);
+      into = std::copy(moments.sums.begin(), moments.sums.end(), into);
+      std::copy_n(hidden[static_cast<std::size_t>(slot_[g])].begin(), hidden_sums, into);
+    }
+  }
+  grains_.add_ghost_values(exchanged_, width);
+}
+
+template <typename Real>
+void GrainBodies<Real>::apply() {
+  for (std::size_t g = 0; g < grains_.store().owned; ++g) {
+    const std::int64_t* sums = &exchanged_[sums_per_grain() * g];
+    const Vec3 force = FixedVec3{sums[0], sums[1], sums[2]}.to_vec3() * units_.force();
+    const Vec3 torque = FixedVec3{sums[3], sums[4], sums[5]}.to_vec3() * units_.torque();
+    const GrainExchange<double> kept = exchange_of(g);
+    set_load(g, force, torque);
+    kept.earlier_force() = kept.last_force();
+    kept.earlier_torque() = kept.last_torque();
+    kept.last_force() = force;
+    kept.last_torque() = torque;
+    if (with_stress_) apply_stress(g);
+    kept.set_exchanges(std::min(kept.exchanges() + 1, 2));
+  }
+}
+
+template <typename Real>
+bodies::LinkSums GrainBodies<Real>::link_sums_of(std::size_t grain) const {
+  bodies::LinkSums links;
+  std::copy_n(&exchanged_[sums_per_grain() * grain + plain_sums - bodies::LinkSums::size], bodies::LinkSums::size,
+              links.sums.begin());
+  return links;
+}
+
+// Of a grain, or of all members of a clump, in slots from `first` on.
+template <typename Real>
+void GrainBodies<Real>::settle_mass(std::size_t first, std::size_t count) {
+  bodies::LinkSums links;
+  std::int64_t sum = 0;
+  double came_back = 0.0;
+  for (std::size_t g = first; g < first + count; ++g) {
+    const bodies::LinkSums of_grain = link_sums_of(g);
+    const bodies::LinkBody& body = bodies_.body(slot_[g]);
+    const std::int64_t* sums = &exchanged_[sums_per_grain() * g + 6];
+    links += of_grain;
+    sum = exact_sum(sum, sums[0]);
+    came_back += bodies::MassReturn{body.returned, body.returned_slope}.mass(of_grain);
+    // A grain without links has no fluid around it: what was there last stays.
+    if (of_grain.weight() > 0.0) exchange_of(g).surrounding() = LatticeFixed::to_double(sums[1]) / of_grain.weight();
+  }
+  const GrainExchange<double> account = exchange_of(first);
+  bodies::MassDebt debt{account.owed_mass(), account.mean_loss(), account.wanted_return()};
+  const bodies::MassReturn next = debt.settle(LatticeFixed::to_double(sum), came_back, links);
+  account.owed_mass() = debt.owed;
+  account.mean_loss() = debt.mean_loss;
+  account.wanted_return() = debt.wanted;
+  for (std::size_t g = first; g < first + count; ++g) {
+    exchange_of(g).returned_density() = next.density;
+    exchange_of(g).returned_slope() = next.slope;
+  }
+}
+
+template <typename Real>
+void GrainBodies<Real>::settle_masses() {
+  const dem::GrainStore& store = grains_.store();
+  for (std::size_t g = 0; g < store.owned; ++g)
+    if (store.clump[g] < 0) settle_mass(g, 1);
+  const dem::Clumps& clumps = grains_.clumps();
+  for (std::size_t n = 0; n < clumps.size(); ++n)
+    settle_mass(clumps.first_slot(n), static_cast<std::size_t>(clumps[n].members));
+}
+
+// Multiples of 2^-44, whose sum in any order is exact. A grain may owe more than a term of LatticeFixed holds: a large
+// clump that closes a gap covers thousands of cells in a few steps, and returns their mass as slowly as its links
+// allow.
+template <typename Real>
+double GrainBodies<Real>::mass_owed() const {
+  WideSum owed;
+  for (std::size_t g = 0; g < grains_.store().owned; ++g)
+    owed.add(WideSum::from(exchange_of(g).owed_mass(), LatticeFixed::bits));
+  sum_over_ranks(communicator_, {&owed, 1});
+  return owed.to_double(LatticeFixed::bits);
+}
+
+// sum F_a x_b of what the fluid presses where solids hide the grain, F = 2 D h, x on the surface against h; lattice
+// units (bodies/map/hidden_patches.hpp).
+template <typename Real>
+Mat3 GrainBodies<Real>::moment_hidden_by_solids(std::size_t grain) const {
+  const std::int64_t* sums = &exchanged_[sums_per_grain() * grain + plain_sums + moment_sums];
+  const Vec3 h = Vec3(static_cast<double>(sums[0]), static_cast<double>(sums[1]), static_cast<double>(sums[2])) / 36.0;
+  if (h.isZero(0.0)) return Mat3::Zero();
+  const double excess = exchange_of(grain).surrounding() - bodies_.reference_density();
+  const double radius = grains_.store().radius[grain] / units_.spacing;
+  return -2.0 * excess * radius / h.norm() * (h * h.transpose());
+}
+
+// sigma_ab = (1/V) sum F_a x_b over the surface (Zhang et al. 2022, eq. 13), the mean of two exchanges.
+template <typename Real>
+void GrainBodies<Real>::apply_stress(std::size_t grain) {
+  const double volume = Sphere{grains_.store().radius[grain]}.volume();
+  FixedTensor sums;
+  std::copy_n(&exchanged_[sums_per_grain() * grain + plain_sums], sums.sums.size(), sums.sums.begin());
+  const Mat3 stress = (sums.to_mat3() + moment_hidden_by_solids(grain)) * (units_.torque() / volume);
+  const GrainExchange<double> kept = exchange_of(grain);
+  kept.mean_stress() = 0.5 * (stress + kept.last_stress());
+  kept.last_stress() = stress;
+}
+
+template <typename Real>
+void GrainBodies<Real>::show_stresses() {
+  if (!with_stress_) return;
+  stresses_.resize(grains_.store().owned);
+  for (std::size_t g = 0; g < stresses_.size(); ++g) stresses_[g] = exchange_of(g).mean_stress();
+}
+
+// From this exchange and those before it. Of a light grain, the store has what the grain got in the step before.
+template <typename Real>
+void GrainBodies<Real>::set_load(std::size_t grain, const Vec3& force, const Vec3& torque) {
+  dem::GrainStore& store = grains_.store();
+  const GrainExchange<const double> kept = std::as_const(*this).exchange_of(grain);
+  const double mass = store.mass[grain], radius = grains_.volume_radius(grain);
+  if (dem::holds_translation(store.motion[grain]) || !light_load_.concerns(mass, radius)) {
+    store.load_force[grain] = load_of(load_, force, kept.last_force(), kept.earlier_force());
+    store.load_torque[grain] = load_of(load_, torque, kept.last_torque(), kept.earlier_torque());
+    return;
+  }
+  const double share = light_load_.share(mass, radius);
+  const Vec3 body = grains_.body_force(grain);
+  const Vec3 before = kept.exchanges() == 0 ? Vec3::Zero() : Vec3(store.load_force[grain] + body);
+  const Vec3 mean = load_of(LoadRule::mean, force, kept.last_force(), kept.earlier_force());
+  store.load_force[grain] = LightLoad::filtered(before, mean + body, share) - body;
+  store.load_torque[grain] = LightLoad::filtered(
+      store.load_torque[grain], load_of(LoadRule::mean, torque, kept.last_torque(), kept.earlier_torque()), share);
+}
+
+template class GrainBodies<float>;
+template class GrainBodies<double>;
+
+}  // namespace thalweg::coupling

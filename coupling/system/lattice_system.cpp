@@ -1,0 +1,425 @@
+#include "coupling/system/lattice_system.hpp"
+
+#include "core/parallel/mpi_session.hpp"
+#include "core/state/same_time_step.hpp"
+#include "coupling/loads/momentum_book.hpp"
+#include "coupling/system/fluid_figures.hpp"
+#include "coupling/system/fluid_mass.hpp"
+#include "coupling/system/fluid_sample.hpp"
+#include "coupling/system/taken_fluid.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace thalweg::coupling {
+
+namespace {
+
+std::vector<bodies::Solid> with_motions(const std::vector<bodies::SolidShape>& shapes,
+                                        const std::vector<dem::PrescribedMotion>& motions) {
+  std::vector<bodies::Solid> solids;
+  for (std::size_t s = 0; s < shapes.size(); ++s)
+    solids.push_back({shapes[s], s < motions.size() && motions[s].moves()});
+  return solids;
+}
+
+}  // namespace
+
+template <typename Real>
+LatticeSystem<Real>::LatticeSystem(std::unique_ptr<Decomposition> decomposition, MPI_Comm communicator,
+                                   const LatticeParameters& parameters, std::unique_ptr<dem::GrainDynamics> grains,
+                                   const std::vector<bodies::SolidShape>& solids)
+    : decomposition_(std::move(decomposition)),
+      communicator_(communicator),
+      parameters_(parameters),
+      fluid_(*decomposition_, communicator, parameters.collision, parameters.faces),
+      rest_(rest_state(parameters, *decomposition_)),
+      bodies_(*decomposition_, communicator, fluid_, parameters.bodies, rest_,
+              with_motions(solids, parameters.solid_motions)),
+      solid_bodies_(communicator, bodies_, parameters.units, parameters.solid_motions),
+      grains_(std::move(grains)),
+      mass_(communicator) {
+  name_phases();
+  if (has_bodies()) bodies_.check_block(communicator);
+  if (parameters_.flow_target) fluid_.control_flow(*parameters_.flow_target);
+  set_gravity_of(step_);
+  fluid_.carry_force();
+  initialise(fluid_, parameters_, rest_);
+  if (grains_) {
+    grain_bodies_.emplace(communicator, *grains_, bodies_, decomposition_->box(), parameters_.units, parameters_.load,
+                          parameters_.bodies.moments);
+    grain_bodies_->begin_where_grains_are();
+    grain_bodies_->place_at_start();
+    open_account();
+  }
+}
+
+template <typename Real>
+void LatticeSystem<Real>::name_phases() {
+  if (!has_bodies()) {
+    phases_.lattice = timer_.phase("lattice");
+    return;
+  }
+  if (any_moves()) {
+    phases_.map = timer_.phase(grains_ ? "grain map" : "solid map");
+    phases_.refill = timer_.phase("refill");
+  }
+  phases_.halo = timer_.phase("halo");
+  phases_.walls = timer_.phase("walls");
+  phases_.links = timer_.phase("links");
+  phases_.sweep = timer_.phase("sweep");
+  if (grains_) {
+    phases_.loads = timer_.phase("loads");
+    phases_.grains = timer_.phase("grains");
+  }
+}
+
+// Of the fluid and of the grains, in the step of this number, from 1.
+template <typename Real>
+void LatticeSystem<Real>::set_gravity_of(std::int64_t step) {
+  set_gravity(fluid_, parameters_, step);
+  if (grains_ && parameters_.ramp > 0.0) grains_->set_body_force_factor(gravity_factor(parameters_, step));
+}
+
+// N/m^3: the pressure gradient that holds the mean velocity, as the last step had it on the fluid.
+template <typename Real>
+Vec3 LatticeSystem<Real>::held_force_on_grains() const {
+  Vec3 force = Vec3::Zero();
+  if (!parameters_.target_moves_grains) return force;
+  const int axis = parameters_.flow_target->axis;
+  force[axis] = fluid_.parameters().force[axis] * parameters_.units.density * parameters_.units.acceleration();
+  return force;
+}
+
+template <typename Real>
+void LatticeSystem<Real>::advance() {
+  if (has_bodies()) {
+    momentum_.reset();
+    solid_bodies_.forget_loaded();
+    move_bodies();
+    set_gravity_of(step_ + 1);
+    exchange_behind_links();
+    if (booking_) write_momentum_book();
+    bodies_.sweep(timer_, phases_.sweep, phases_.links);
+    solid_bodies_.settle_masses();
+    if (grains_) take_loads();
+    if (grains_) advance_grains();
+  } else {
+    set_gravity_of(step_ + 1);
+    const auto scope = timer_.measure(phases_.lattice);
+    fluid_.advance();
+  }
+  ++step_;
+  keep_mass();
+}
+
+// Of solids that move, where the last step had them.
+template <typename Real>
+void LatticeSystem<Real>::place_solids_again() {
+  if (!solid_bodies_.any_moves() || step_ == 0) return;
+  bodies_.begin_step();
+  solid_bodies_.move(static_cast<double>(step_ - 1) * time_step());
+  bodies_.settle_at_start();
+}
+
+template <typename Real>
+double LatticeSystem<Real>::mass_owed() const {
+  return solid_bodies_.mass_owed() + (grains_ ? grain_bodies_->mass_owed() : 0.0);
+}
+
+template <typename Real>
+void LatticeSystem<Real>::move_bodies() {
+  if (!any_moves()) {
+    bodies_.begin_step();
+    return;
+  }
+  bool slots_changed = false;
+  if (grains_) {
+    const auto scope = timer_.measure(phases_.grains);
+    slots_changed = grains_->prepare();
+  }
+  {
+    const auto scope = timer_.measure(phases_.map);
+    bodies_.begin_step(booking_);
+    solid_bodies_.move(time());
+    if (grains_) grain_bodies_->move_bodies(slots_changed);
+    bodies_.settle();
+  }
+  const auto scope = timer_.measure(phases_.refill);
+  bodies_.refill();
+}
+
+// Links follow from the map of the cells alone, so they are rebuilt while the halo is on its way.
+template <typename Real>
+void LatticeSystem<Real>::exchange_behind_links() {
+  {
+    const auto scope = timer_.measure(phases_.halo);
+    fluid_.start_halo_exchange();
+  }
+  if (any_moves()) {
+    const auto scope = timer_.measure(phases_.map);
+    bodies_.update_links();
+  }
+  {
+    const auto scope = timer_.measure(phases_.halo);
+    fluid_.finish_halo_exchange();
+  }
+  const auto scope = timer_.measure(phases_.walls);
+  fluid_.apply_walls();
+}
+
+template <typename Real>
+void LatticeSystem<Real>::write_momentum_book() {
+  momentum_ = book_of(fluid_, parameters_.units, bodies_.reference_density(), bodies_.momentum_by_height());
+  momentum_->driving_of_grains = held_force_on_grains();
+  booking_ = false;
+}
+
+template <typename Real>
+void LatticeSystem<Real>::take_loads() {
+  const auto scope = timer_.measure(phases_.loads);
+  const bodies::ExchangeTotals& totals = bodies_.step_totals();
+  mass_.book(MassAccount::links, totals.link_mass);
+  mass_.book(MassAccount::uncovered, totals.refilled_mass);
+  mass_.book(MassAccount::covered, totals.covered_mass);
+  grain_bodies_->take_loads();
+}
+
+template <typename Real>
+void LatticeSystem<Real>::advance_grains() {
+  const auto scope = timer_.measure(phases_.grains);
+  grains_->set_force_density(held_force_on_grains());
+  grains_->advance(parameters_.sub_steps);
+  grains_->refresh_ghosts();
+}
+
+// At the start of a run, from whatever state: the mass that is there, and what the grains bring along as owed, is to be
+// kept.
+template <typename Real>
+void LatticeSystem<Real>::open_account() {
+  const ExcessMass excess = excess_mass(survey_of(fluid_), rest_);
+  if (!grains_) {
+    start_excess_ = excess.sum;
+    return;
+  }
+  mass_.open(excess.sum, mass_owed());
+  bodies_.set_reference_density(excess.mean());
+  grain_bodies_->set_surroundings(excess.mean());
+}
+
+// What no body owes: round-off, walls and solids that do not conserve mass. At the end of a step, so that a checkpoint
+// has it.
+template <typename Real>
+void LatticeSystem<Real>::keep_mass() {
+  if (!has_bodies() || !looks_at_mass(step_)) return;
+  const bool is_closed = closed(parameters_.faces);
+  if (!grains_ && !is_closed) return;
+  const ExcessMass excess = excess_mass(survey_of(fluid_), rest_);
+  if (grains_) bodies_.set_reference_density(excess.mean());
+  if (!is_closed) return;
+  const double kept = (grains_ ? mass_.kept() : start_excess_) - mass_owed();
+  const double added = restore_excess(fluid_, excess, kept);
+  if (grains_ && rank_of(communicator_) == 0) mass_.book(MassAccount::corrections, added);
+}
+
+template <typename Real>
+std::int64_t LatticeSystem<Real>::cells() const {
+  const Index3& n = decomposition_->cells();
+  return static_cast<std::int64_t>(n[0]) * n[1] * n[2];
+}
+
+template <typename Real>
+std::int64_t LatticeSystem<Real>::grain_steps_per_step() const {
+  return grains_ ? grains_->global_count() * parameters_.sub_steps : 0;
+}
+
+template <typename Real>
+Snapshot LatticeSystem<Real>::snapshot() const {
+  Snapshot s;
+  s.time = time();
+  s.step = step_;
+  s.decomposition = decomposition_.get();
+  s.fluid = this;
+  if (grains_) show_grains(s);
+  return s;
+}
+
+template <typename Real>
+void LatticeSystem<Real>::show_grains(Snapshot& s) const {
+  const dem::GrainStore& store = grains_->store();
+  const std::size_t n = store.owned;
+  s.contacts = this;
+  s.momentum = momentum_ ? &*momentum_ : nullptr;
+  s.grains.global_count = grains_->global_count();
+  s.grains.id = {store.id.data(), n};
+  s.grains.radius = {store.radius.data(), n};
+  s.grains.mass = {store.mass.data(), n};
+  s.grains.position = {store.position.data(), n};
+  s.grains.velocity = {store.velocity.data(), n};
+  s.grains.angular_velocity = {store.angular_velocity.data(), n};
+  s.grains.fluid_force = {store.load_force.data(), n};
+  s.grains.fluid_torque = {store.load_torque.data(), n};
+  s.grains.fluid_stress = grain_bodies_->stresses();
+  s.grains.contact_force = {store.contact_force.data(), n};
+  s.grains.contact_torque = {store.contact_torque.data(), n};
+  s.grains.motion = grains_->motion();
+  grains_->show_clumps(s.grains);
+}
+
+template <typename Real>
+std::vector<Figure> LatticeSystem<Real>::figures() const {
+  const lbm::FluidSurvey survey = survey_of(fluid_);
+  const ExcessMass excess = excess_mass(survey, rest_);
+  std::vector<Figure> figures = speed_figures(survey, parameters_.units);
+  if (!grains_) add_flow_figures(survey, figures);
+  figures.push_back({"mean_density_deviation", "1", excess.mean()});
+  figures.push_back({"fluid_cells", "1", static_cast<double>(excess.cells)});
+  if (grains_) figures.push_back({"largest_overlap", "diameter", grains_->largest_overlap()});
+  if (grains_ && parameters_.wall_forces) add_wall_forces(figures);
+  add_solid_figures(figures);
+  add_extremes(survey, figures);
+  if (grains_) add_grain_figures(survey, figures);
+  return figures;
+}
+
+template <typename Real>
+void LatticeSystem<Real>::add_flow_figures(const lbm::FluidSurvey& survey, std::vector<Figure>& figures) const {
+  const double cells = static_cast<double>(std::max<std::int64_t>(1, survey.totals.cells));
+  const double force = fluid_.parameters().force.x();
+  const Units& units = parameters_.units;
+  figures.push_back({"mean_velocity_x", "m/s", (survey.totals.momentum.x() / cells - 0.5 * force) * units.velocity()});
+  figures.push_back({"body_force_x", "N/m^3", force * units.density * units.acceleration()});
+}
+
+template <typename Real>
+void LatticeSystem<Real>::add_grain_figures(const lbm::FluidSurvey& survey, std::vector<Figure>& figures) const {
+  figures.push_back({"largest_grain_speed", "m/s", grains_->largest_speed()});
+  const std::vector<Figure> account = mass_.figures(excess_mass(survey, rest_).sum, mass_owed(), parameters_.units);
+  figures.insert(figures.end(), account.begin(), account.end());
+  add_momentum(survey, fluid_.parameters().force, parameters_.units, figures);
+}
+
+template <typename Real>
+void LatticeSystem<Real>::add_solid_figures(std::vector<Figure>& figures) const {
+  if (bodies_.solids() == 0) return;
+  const std::vector<Figure> of_fluid = solid_bodies_.figures();
+  figures.insert(figures.end(), of_fluid.begin(), of_fluid.end());
+  if (!grains_) return;
+  const std::vector<Vec3> of_grains = grains_->wall_forces();
+  for (std::size_t s = 0; s < static_cast<std::size_t>(bodies_.solids()); ++s)
+    add_vector(dem::solid_force_figure(s), "N", of_grains[grains_->walls().size() + s], figures);
+}
+
+// Of the grains at the end of the step; of the fluid what the walls take from it in the step to come.
+template <typename Real>
+void LatticeSystem<Real>::add_wall_forces(std::vector<Figure>& figures) const {
+  const std::vector<Vec3> of_grains = grains_->wall_forces();
+  const std::array<Vec3, 6> of_fluid = fluid_.wall_forces(bodies_.reference_density());
+  std::size_t wall = 0;
+  for (std::size_t face = 0; face < of_fluid.size(); ++face) {
+    if (decomposition_->periodic()[face / 2]) continue;
+    const Vec3 fluid_force = of_fluid[face] * parameters_.units.force();
+    add_vector(fmt::format("wall_force_{}", dem::face_names[face]), "N", of_grains[wall], figures);
+    add_vector(fmt::format("fluid_wall_force_{}", dem::face_names[face]), "N", fluid_force, figures);
+    ++wall;
+  }
+}
+
+template <typename Real>
+std::optional<Place> LatticeSystem<Real>::place_of(const std::string& figure) const {
+  if (grains_ && figure == "largest_overlap") return grains_->place_of_deepest_overlap();
+  if (grains_ && figure == "largest_grain_speed") return grains_->place_of_fastest();
+  return place_in_fluid(survey_of(fluid_), parameters_.units, figure);
+}
+
+template <typename Real>
+FluidFields LatticeSystem<Real>::sample(const std::vector<FluidField>& wanted, const Block& region) const {
+  SampleContext context;
+  context.units = parameters_.units;
+  // A solid n is -2 - n.
+  context.grain_id = [this](std::int32_t slot) {
+    return slot < bodies_.solids() ? -2 - slot
+                                   : static_cast<std::int32_t>(bodies_.mapped()[static_cast<std::size_t>(slot)].id);
+  };
+  if (has_bodies()) context.apply_links = [this] { bodies_.apply_links_on_copies(); };
+  return sample_fields(fluid_, context, wanted, region);
+}
+
+template <typename Real>
+void LatticeSystem<Real>::for_each_velocity(const VelocityVisitor& visit) const {
+  visit_velocities(fluid_, parameters_.units, visit);
+}
+
+template <typename Real>
+std::optional<FluidSource::State> LatticeSystem<Real>::state_in(const Index3& cell) const {
+  return state_of(fluid_, parameters_.units, cell);
+}
+
+template <typename Real>
+FluidSource::Drive LatticeSystem<Real>::drive() const {
+  return drive_of(fluid_, parameters_.units, bodies_.reference_density());
+}
+
+template <typename Real>
+void LatticeSystem<Real>::save(ArchiveWriter& archive) const {
+  archive.attribute("system/step", step_);
+  archive.attribute("system/time_step", time_step());
+  fluid_.save(archive);
+  if (bodies_.solids() > 0) solid_bodies_.save(archive);
+  if (grains_) {
+    grains_->save(archive);
+    mass_.save(archive);
+    archive.attribute("mass/reference", bodies_.reference_density());
+  } else {
+    archive.attribute("mass/start", start_excess_);
+  }
+}
+
+template <typename Real>
+void LatticeSystem<Real>::load(ArchiveReader& archive) {
+  require_same_time_step(archive, time_step());
+  step_ = archive.integer_attribute("system/step");
+  bodies_.remove_all();
+  fluid_.load(archive);
+  if (bodies_.solids() > 0) solid_bodies_.load(archive);
+  place_solids_again();
+  if (grains_) {
+    grains_->load(archive);
+    mass_.load(archive);
+    bodies_.set_reference_density(archive.real_attribute("mass/reference"));
+    grain_bodies_->place_at_start();
+  } else {
+    start_excess_ = archive.real_attribute("mass/start");
+  }
+  set_gravity_of(step_);
+  if (grains_) grains_->set_force_density(held_force_on_grains());
+  fluid_.carry_force();
+}
+
+template <typename Real>
+void LatticeSystem<Real>::take_fluid(ArchiveReader& archive, double spacing) {
+  const double density_unit = coupling::take_fluid(fluid_, archive, spacing, parameters_);
+  open_account();
+  // As the run that is taken over would go on.
+  if (grains_ && archive.has("mass/reference"))
+    bodies_.set_reference_density(density_unit * archive.real_attribute("mass/reference"));
+}
+
+// Grains of a resolved run keep the places their links were cut at, others begin where they are. What is in lattice
+// units begins anew on another lattice.
+template <typename Real>
+void LatticeSystem<Real>::take_grains(ArchiveReader& archive, double spacing) {
+  bodies_.remove_all();
+  grains_->take(archive);
+  grain_bodies_->begin_where_grains_are();
+  if (spacing != parameters_.units.spacing || archive.real_attribute("system/time_step") != time_step())
+    grain_bodies_->forget_lattice_units();
+  grain_bodies_->place_at_start();
+  open_account();
+}
+
+template class LatticeSystem<float>;
+template class LatticeSystem<double>;
+
+}  // namespace thalweg::coupling

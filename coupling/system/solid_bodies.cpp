@@ -1,0 +1,170 @@
+#include "coupling/system/solid_bodies.hpp"
+
+#include "core/base/error.hpp"
+#include "core/state/whole_dataset.hpp"
+#include "core/sums/wide_sums_over_ranks.hpp"
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+
+namespace thalweg::coupling {
+
+namespace {
+
+// Vectors of 64-bit sums, one after the other, over all ranks.
+std::vector<std::int64_t> over_ranks(MPI_Comm communicator, std::vector<std::int64_t> sums) {
+  const std::vector<WideSum> totals = wide_sums_over_ranks(communicator, sums);
+  std::transform(totals.begin(), totals.end(), sums.begin(), [](const WideSum& total) { return total.narrowed(); });
+  return sums;
+}
+
+void append(const FixedVec3& sum, std::vector<std::int64_t>& sums) { sums.insert(sums.end(), {sum.x, sum.y, sum.z}); }
+
+}  // namespace
+
+template <typename Real>
+SolidBodies<Real>::SolidBodies(MPI_Comm communicator, bodies::Bodies<Real>& bodies, const Units& units,
+                               const std::vector<dem::PrescribedMotion>& motions)
+    : communicator_(communicator), bodies_(bodies), units_(units) {
+  for (std::size_t s = 0; s < motions.size(); ++s) {
+    const dem::PrescribedMotion& motion = motions[s];
+    if (!motion.moves()) continue;
+    const int solid = static_cast<int>(s);
+    const Vec3 pivot = motion.turns() ? Vec3(motion.centre / units.spacing) : bodies.body(solid).centre;
+    moving_.push_back({solid, motion, pivot, {}, {}});
+  }
+}
+
+template <typename Real>
+void SolidBodies<Real>::move(double time) {
+  for (const Moving& m : moving_) {
+    bodies::SolidMotion motion;
+    motion.place = {m.pivot, m.pivot + m.motion.displacement(time) / units_.spacing, m.motion.turn(time)};
+    motion.velocity = m.motion.velocity_of(m.motion.centre, time) / units_.velocity();
+    motion.angular_velocity = m.motion.spin() * units_.time_step;
+    motion.returned = m.returned;
+    bodies_.move_solid(m.solid, motion);
+  }
+}
+
+template <typename Real>
+void SolidBodies<Real>::settle_masses() {
+  if (!any_moves()) return;
+  constexpr std::size_t width = 1 + bodies::LinkSums::size;
+  std::vector<std::int64_t> sums;
+  for (const Moving& m : moving_) {
+    const bodies::LinkSums& links = bodies_.link_sums(m.solid);
+    sums.push_back(bodies_.body(m.solid).mass);
+    sums.insert(sums.end(), links.sums.begin(), links.sums.end());
+  }
+  sums = over_ranks(communicator_, std::move(sums));
+  for (std::size_t k = 0; k < moving_.size(); ++k) {
+    Moving& m = moving_[k];
+    bodies::LinkSums links;
+    std::copy_n(&sums[width * k + 1], links.sums.size(), links.sums.begin());
+    m.returned = m.debt.settle(LatticeFixed::to_double(sums[width * k]), m.returned.mass(links), links);
+  }
+}
+
+template <typename Real>
+double SolidBodies<Real>::mass_owed() const {
+  double owed = 0.0;
+  for (const Moving& m : moving_) owed += m.debt.owed;
+  return owed;
+}
+
+template <typename Real>
+std::vector<std::int64_t> SolidBodies<Real>::sums() const {
+  if (!loaded_.empty()) return loaded_;
+  std::vector<std::int64_t> sums;
+  for (int s = 0; s < bodies_.solids(); ++s) append(bodies_.body(s).force, sums);
+  for (int s = 0; s < bodies_.solids(); ++s) append(bodies_.body(s).torque, sums);
+  return over_ranks(communicator_, std::move(sums));
+}
+
+template <typename Real>
+typename SolidBodies<Real>::Loads SolidBodies<Real>::loads() const {
+  const std::vector<std::int64_t> all = sums();
+  const std::size_t solids = all.size() / 6;
+  Loads loads;
+  for (std::size_t k = 0; k < 2 * solids; ++k)
+    (k < solids ? loads.forces : loads.torques)
+        .push_back(FixedVec3{all[3 * k], all[3 * k + 1], all[3 * k + 2]}.to_vec3());
+  return loads;
+}
+
+template <typename Real>
+std::vector<Figure> SolidBodies<Real>::figures() const {
+  const Loads all = loads();
+  std::vector<Figure> figures;
+  for (int s = 0; s < bodies_.solids(); ++s)
+    add_vector(fmt::format("solid_{}_force", s), "N", all.forces[static_cast<std::size_t>(s)] * units_.force(),
+               figures);
+  for (const Moving& m : moving_)
+    if (m.motion.turns())
+      add_vector(fmt::format("solid_{}_torque", m.solid), "N m",
+                 all.torques[static_cast<std::size_t>(m.solid)] * units_.torque(), figures);
+  return figures;
+}
+
+template <typename Real>
+void SolidBodies<Real>::save(ArchiveWriter& archive) const {
+  const std::vector<std::int64_t> all = sums();
+  const std::span<const std::int64_t> values = all;
+  const std::vector<std::uint64_t> shape{values.size() / 6, 3};
+  write_whole(archive, communicator_, "solids/force", values.first(values.size() / 2), shape);
+  if (!any_moves()) return;
+  write_whole(archive, communicator_, "solids/torque", values.last(values.size() / 2), shape);
+  save_debts(archive);
+}
+
+template <typename Real>
+void SolidBodies<Real>::load(ArchiveReader& archive) {
+  const std::uint64_t solids = static_cast<std::uint64_t>(bodies_.solids());
+  const std::vector<std::uint64_t> shape{solids, 3};
+  const auto has = [&](const char* path, const std::vector<std::uint64_t>& wanted) {
+    return archive.has(path) && archive.shape(path) == wanted;
+  };
+  if (!has("solids/force", shape))
+    throw InputError(fmt::format("The checkpoint does not hold {} solids as this case does; keep the list solids.",
+                                 bodies_.solids()));
+  if (any_moves() ? !has("solids/debt", {moving_.size(), debt_width}) : archive.has("solids/debt"))
+    throw InputError(
+        fmt::format("The checkpoint does not hold {} solids that move as this case does; keep their "
+                    "motions.",
+                    moving_.size()));
+  loaded_.assign(6 * solids, 0);
+  const std::span<std::int64_t> values = loaded_;
+  archive.read("solids/force", values.first(3 * solids), {shape, {0, 0}, shape});
+  if (!any_moves()) return;
+  archive.read("solids/torque", values.last(3 * solids), {shape, {0, 0}, shape});
+  load_debts(archive);
+}
+
+template <typename Real>
+void SolidBodies<Real>::save_debts(ArchiveWriter& archive) const {
+  std::vector<double> values;
+  for (const Moving& m : moving_)
+    values.insert(values.end(), {m.debt.owed, m.debt.mean_loss, m.debt.wanted, m.returned.density, m.returned.slope[0],
+                                 m.returned.slope[1], m.returned.slope[2]});
+  write_whole<double>(archive, communicator_, "solids/debt", values, {moving_.size(), debt_width});
+}
+
+template <typename Real>
+void SolidBodies<Real>::load_debts(ArchiveReader& archive) {
+  const std::vector<std::uint64_t> shape{moving_.size(), debt_width};
+  std::vector<double> values(moving_.size() * debt_width);
+  archive.read("solids/debt", std::span<double>(values), {shape, {0, 0}, shape});
+  for (std::size_t k = 0; k < moving_.size(); ++k) {
+    const double* v = &values[debt_width * k];
+    moving_[k].debt = {v[0], v[1], v[2]};
+    moving_[k].returned = {v[3], {v[4], v[5], v[6]}};
+  }
+}
+
+template class SolidBodies<float>;
+template class SolidBodies<double>;
+
+}  // namespace thalweg::coupling

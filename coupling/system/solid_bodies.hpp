@@ -1,0 +1,69 @@
+// Solids in the fluid: where those that move are in each step, what they owe the fluid, and what the fluid exerts on
+// every solid, as reports and checkpoints have it.
+#pragma once
+
+#include "bodies/bodies.hpp"
+#include "core/base/archive.hpp"
+#include "core/base/units.hpp"
+#include "core/state/system.hpp"
+#include "dem/motion/prescribed_motion.hpp"
+
+#include <mpi.h>
+
+#include <vector>
+
+namespace thalweg::coupling {
+
+template <typename Real>
+class SolidBodies {
+public:
+  // motions: SI, of the first solids; the others stand still. The bodies, which must outlive it, have the solids where
+  // they are at the start.
+  SolidBodies(MPI_Comm communicator, bodies::Bodies<Real>& bodies, const Units& units,
+              const std::vector<dem::PrescribedMotion>& motions);
+
+  bool any_moves() const { return !moving_.empty(); }
+
+  // Moves those that move to where they are at a time (s), between begin_step() and settle() of the bodies.
+  void move(double time);
+  // At the end of a step: what those that move have taken from the fluid comes back in the next ones. Collective.
+  void settle_masses();
+  double mass_owed() const;  // to the fluid, lattice units; the same on every rank
+
+  // What the fluid exerted on every solid in the last step, lattice units. Collective.
+  struct Loads {
+    std::vector<Vec3> forces, torques;  // torques: about the point of the axis; zero of solids that do not turn
+  };
+  Loads loads() const;
+  // solid_<n>_force_x, _y, _z (N), and of solids that turn solid_<n>_torque_x, _y, _z (N m). Collective.
+  std::vector<Figure> figures() const;
+
+  void save(ArchiveWriter& archive) const;
+  // Until forget_loaded(), the loads are those of the checkpoint. Throws InputError where the archive does not hold as
+  // many solids, or as many that move.
+  void load(ArchiveReader& archive);
+  void forget_loaded() { loaded_.clear(); }
+
+private:
+  struct Moving {
+    int solid;
+    dem::PrescribedMotion motion;
+    Vec3 pivot;  // lattice units
+    bodies::MassDebt debt;
+    bodies::MassReturn returned;
+  };
+
+  static constexpr std::uint64_t debt_width = 7;  // numbers that a checkpoint keeps of each that moves
+
+  std::vector<std::int64_t> sums() const;  // over all ranks: forces, then torques
+  void save_debts(ArchiveWriter& archive) const;
+  void load_debts(ArchiveReader& archive);
+
+  MPI_Comm communicator_;
+  bodies::Bodies<Real>& bodies_;
+  Units units_;
+  std::vector<Moving> moving_;
+  std::vector<std::int64_t> loaded_;
+};
+
+}  // namespace thalweg::coupling

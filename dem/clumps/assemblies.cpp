@@ -1,0 +1,98 @@
+#include "dem/clumps/assemblies.hpp"
+
+#include "core/base/error.hpp"
+#include "core/parallel/mpi_session.hpp"
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+namespace thalweg::dem {
+
+Assemblies::Assemblies(const std::vector<PrescribedMotion>& motions, std::span<const GrainSeed> seeds)
+    : motions_(motions) {
+  for (const PrescribedMotion& motion : motions_) check(motion);
+  for (const GrainSeed& seed : seeds) {
+    if (seed.assembly < 0) continue;
+    if (seed.assembly >= static_cast<int>(motions_.size()))
+      throw InputError(
+          fmt::format("Grain {} is of assembly {}, but there are {}.", seed.id, seed.assembly, motions_.size()));
+    if (seed.motion != Motion::fixed)
+      throw InputError(fmt::format("Grain {} is of an assembly but not fixed; fix it.", seed.id));
+    members_.push_back({seed.id, seed.assembly, seed.position});
+  }
+  std::sort(members_.begin(), members_.end(), [](const Member& a, const Member& b) { return a.id < b.id; });
+  find_largest_speed();
+}
+
+void Assemblies::find_largest_speed() {
+  largest_speed_ = 0.0;
+  for (const Member& member : members_) {
+    const PrescribedMotion& motion = motions_[static_cast<std::size_t>(member.assembly)];
+    const double distance = motion.axis.cross(member.at_start - motion.centre).norm();
+    largest_speed_ = std::max(largest_speed_, motion.largest_speed(distance));
+  }
+}
+
+void Assemblies::find(const GrainStore& store) {
+  owned_.clear();
+  auto member = members_.begin();
+  for (std::size_t s = 0; s < store.owned && member != members_.end(); ++s) {  // both sorted by id
+    while (member != members_.end() && member->id < store.id[s]) ++member;
+    if (member != members_.end() && member->id == store.id[s])
+      owned_.push_back({static_cast<std::uint32_t>(s), static_cast<std::size_t>(member - members_.begin())});
+  }
+}
+
+void Assemblies::place(MovingGrains& grains, const PeriodicBox& box, double time, double time_of_velocity) const {
+  for (const OwnedMember& owned : owned_) {
+    const Member& member = members_[owned.member];
+    const PrescribedMotion& motion = motions_[static_cast<std::size_t>(member.assembly)];
+    MovingGrain& grain = grains[owned.slot];
+    grain.position = row_of(box.wrapped_from_afar(motion.place(member.at_start, time)), grain.position[3]);
+    grain.velocity = row_of(motion.velocity_of(member.at_start, time_of_velocity));
+    grain.spin = row_of(motion.spin());
+  }
+}
+
+void Assemblies::save(ArchiveWriter& archive, const std::string& group, MPI_Comm communicator) const {
+  if (motions_.empty()) return;
+  std::vector<std::int64_t> numbers;
+  std::vector<double> places;
+  const bool first = rank_of(communicator) == 0;
+  if (first)
+    for (const Member& member : members_) {
+      numbers.insert(numbers.end(), {member.id, member.assembly});
+      places.insert(places.end(), member.at_start.data(), member.at_start.data() + 3);
+    }
+  const auto rows = static_cast<std::uint64_t>(members_.size());
+  const auto box = [&](std::uint64_t columns) {
+    return ArrayBox{{rows, columns}, {0, 0}, {first ? rows : 0, first ? columns : 0}};
+  };
+  archive.write(group + "/assembly_members", numbers, box(2));
+  archive.write(group + "/assembly_places_at_start", places, box(3));
+}
+
+void Assemblies::load(ArchiveReader& archive, const std::string& group) {
+  owned_.clear();
+  if (motions_.empty()) return;
+  if (!archive.has(group + "/assembly_members"))
+    throw InputError("The saved grains have no rigid assemblies, but this case has; the populations must be the same.");
+  const std::uint64_t rows = archive.shape(group + "/assembly_members").at(0);
+  std::vector<std::int64_t> numbers(2 * rows);
+  std::vector<double> places(3 * rows);
+  archive.read(group + "/assembly_members", numbers, {{rows, 2}, {0, 0}, {rows, 2}});
+  archive.read(group + "/assembly_places_at_start", places, {{rows, 3}, {0, 0}, {rows, 3}});
+  members_.clear();
+  for (std::size_t m = 0; m < rows; ++m) {
+    if (numbers[2 * m + 1] >= static_cast<std::int64_t>(motions_.size()))
+      throw InputError(
+          fmt::format("The saved grains are of more rigid assemblies than this case has, {}.", motions_.size()));
+    members_.push_back({numbers[2 * m], numbers[2 * m + 1], Vec3(places.data() + 3 * m)});
+  }
+  find_largest_speed();
+}
+
+}  // namespace thalweg::dem

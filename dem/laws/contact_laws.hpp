@@ -1,0 +1,72 @@
+// All contact laws, and the one place that chooses among them: with_law(choice, time_step, visit) calls visit(law).
+#pragma once
+
+#include "dem/laws/hertz_mindlin.hpp"
+#include "dem/laws/liquid_bridge.hpp"
+#include "dem/laws/rolling_friction.hpp"
+#include "dem/laws/spring_dashpot.hpp"
+#include "dem/laws/surface_law.hpp"
+
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace thalweg::dem {
+
+// The law of all contacts of a kind.
+struct LawChoice {
+  ContactParameters common;       // of any material
+  bool rolling_friction = false;  // whether any of the contacts may have it
+  bool at_surface = false;        // with solids, whose law keeps the normal
+};
+
+// Calls visit(std::type_identity<Springs>()) with what is the same of a law in a liquid and without one.
+template <typename Visitor>
+decltype(auto) with_spring_law(Law law, Visitor&& visit) {
+  if (law == Law::linear) return visit(std::type_identity<SpringDashpot>());
+  return visit(std::type_identity<HertzMindlin>());
+}
+
+// time_step: s, with 0 no spring grows.
+template <typename Visitor>
+decltype(auto) with_law(const LawChoice& choice, double time_step, Visitor&& visit) {
+  const ContactParameters& common = choice.common;
+  const auto and_bridge = [&](const auto& law) -> decltype(auto) {
+    return common.liquid_bridge ? visit(WithLiquidBridge(law, *common.liquid_bridge)) : visit(law);
+  };
+  const auto and_rolling = [&](const auto& law) -> decltype(auto) {
+    return choice.rolling_friction ? and_bridge(WithRollingFriction(law, common)) : and_bridge(law);
+  };
+  const auto in = [&](auto film) -> decltype(auto) {
+    using Film = typename decltype(film)::type;
+    if (common.law == Law::linear) return and_rolling(SpringDashpotFriction<Film>(common, time_step));
+    return and_rolling(HertzMindlinFriction<Film>(common, time_step));
+  };
+  return common.film_viscosity > 0.0 ? in(std::type_identity<ContactFilm>()) : in(std::type_identity<NoFilm>());
+}
+
+// The same of contacts with solids.
+template <typename Visitor>
+decltype(auto) with_surface_law(const LawChoice& choice, double time_step, Visitor&& visit) {
+  return with_law(choice, time_step, [&](const auto& law) -> decltype(auto) { return visit(AtSurface(law)); });
+}
+
+// Whichever the choice is.
+template <typename Visitor>
+decltype(auto) with_either_law(const LawChoice& choice, Visitor&& visit) {
+  return choice.at_surface ? with_surface_law(choice, 0.0, visit) : with_law(choice, 0.0, visit);
+}
+
+// Names and numbers of the doubles that a contact keeps.
+inline std::vector<HistoryPart> history_parts_of(const LawChoice& choice) {
+  return with_either_law(choice, [](const auto& law) {
+    return std::vector<HistoryPart>(law.history_parts.begin(), law.history_parts.end());
+  });
+}
+
+// m, the gap up to which the law may act.
+inline double range_of(const LawChoice& choice) {
+  return with_law(choice, 0.0, [](const auto& law) { return law.range(); });
+}
+
+}  // namespace thalweg::dem

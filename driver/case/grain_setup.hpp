@@ -1,0 +1,26 @@
+// The grains of a case, as dem wants them: the same for dry grains and for grains in a fluid.
+#pragma once
+
+#include "beds/population_seeds.hpp"
+#include "dem/grain_dynamics.hpp"
+#include "driver/case/case.hpp"
+
+#include <mpi.h>
+
+namespace thalweg::driver {
+
+// Where the grains are: the domain, as the case gives its size, or where that is not quite a whole number of cells, as
+// the cells make it. The same on any number of ranks.
+PeriodicBox grain_box(const Case& c);
+
+// Contact law, time step, sub-steps, skin, rigid assemblies, and the walls: a plane with the walls' friction at every
+// non-periodic face, in the order of the case's faces, then those of the section walls. The body force, ghost width and
+// attached columns are left to the caller.
+dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box);
+
+// All grains at the start (beds/population_seeds.hpp), for one process.
+dem::GrainSeeds grain_seeds(const Case& c);
+// Those that this rank begins with: its own and all that may touch them. Collective.
+dem::GrainSeeds grain_seeds(const Case& c, MPI_Comm communicator, const Decomposition& decomposition);
+
+}  // namespace thalweg::driver

@@ -1,0 +1,41 @@
+// The solids of a case, from their files to what coupling wants.
+#pragma once
+
+#include "bodies/map/solid_shape.hpp"
+#include "core/geometry/triangle_mesh.hpp"
+#include "core/parallel/ranks.hpp"
+#include "dem/motion/prescribed_motion.hpp"
+#include "driver/case/case.hpp"
+#include "io/text/yaml_document.hpp"
+
+#include <vector>
+
+namespace thalweg::driver {
+
+// Reads the surfaces of the solids that have an STL file. Throws InputError with the place in the case, and that in the
+// file, where one cannot be read or is not closed. Collective.
+void fill_in_surfaces(Case& c, const io::YamlDocument& document, const Ranks& ranks);
+
+// From the lowest to the highest coordinates of a solid whose surface has been read, m.
+bodies::Extent extent_of(const SolidCase& solid);
+
+// Throws InputError where a solid lies so far from the box, or is so much longer than a periodic box, that it cannot be
+// meant.
+void check_solid_extents(const Case& c, const io::YamlDocument& document);
+
+// In lattice units, at the start, in the order of the case.
+std::vector<bodies::SolidShape> solid_shapes(const Case& c);
+
+// At rest for ever where the case gives none.
+dem::PrescribedMotion motion_of(const SolidCase& solid);
+
+// The surfaces of all solids at a time (s), in m; spheres as triangles.
+std::vector<TriangleMesh> solid_surfaces(const Case& c, double time);
+
+// Of a solid that turns, how far it reaches from the axis, m.
+double reach_from_axis(const SolidCase& solid);
+
+// That no point of a solid exceeds, m/s.
+double largest_speed(const SolidCase& solid);
+
+}  // namespace thalweg::driver

@@ -1,0 +1,200 @@
+#include "driver/cli/command_line.hpp"
+
+#include "core/base/error.hpp"
+#include "core/base/shell_word.hpp"
+#include "driver/setup/version.hpp"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+
+namespace thalweg::driver {
+
+namespace {
+
+constexpr const char* examples = R"(Examples:
+  thalweg check cases/quickstart/case.yaml             what the case means and what it costs
+  thalweg run cases/quickstart/case.yaml --out run/a   run it on one core
+  thalweg run case.yaml --out run/a --resume           begin, or go on after any interruption
+  thalweg check case.yaml --ranks 1,16,64,256          how long it takes on so many ranks (docs/scaling.md)
+  mpirun -n 8 thalweg run case.yaml --walltime 23:50:00 --set fluid.time_step=1e-5
+  mpirun -n 4 thalweg run case.yaml --out run/a --restart run/a --until 60
+  thalweg info run/a                                   how far it has come
+  thalweg info --csv run/* > runs.csv                  the figures of many runs, one row each
+  thalweg stop run/a                                   save and end; --restart goes on
+  thalweg analyze run/a --from 4                       transport, surface and profiles of what it has stored
+  thalweg sweep slopes.yaml                            many runs of one case, into one table (docs/sweep.md)
+  thalweg defaults > all_keys.yaml                     the keys of a case, with default and meaning
+  thalweg defaults coupling.lubrication                one section of it
+
+Exit codes: 0 done; 1 the run failed; 2 the input cannot be run (nothing was written); 3 stopped in good order by a signal
+or --walltime (summary.json says which); 4 the same by thalweg stop. After 3 and 4 --resume goes on from there.)";
+
+// CLI11's own says "not in range 0.000000 to 179769313486231570..." of what is not one.
+CLI::Validator positive_number() {
+  return {[](const std::string& text) {
+            double value = 0.0;
+            return CLI::detail::lexical_cast(text, value) && value > 0.0 ? std::string()
+                                                                         : fmt::format("{} is no number above 0", text);
+          },
+          ""};
+}
+
+constexpr const char* set_help =
+    "Replace one value of the case, e.g. fluid.time_step=1e-5; null takes a key out (repeatable)";
+
+struct Texts {
+  std::string walltime, layout;
+};
+
+void add_run(CLI::App& app, Command& command, Texts& texts) {
+  CLI::App* run = app.add_subcommand("run", "Run a case");
+  run->add_option("CASE.yaml", command.path, "The case")->required();
+  run->add_option("--out", command.out, "Run folder to write (default: the folder run beside the case file)");
+  run->add_option("--set", command.settings, set_help)->allow_extra_args(false)->type_name("KEY.SUB=VALUE");
+  run->add_option("--restart", command.restart, "Go on from a run folder's last checkpoint or from a checkpoint file");
+  run->add_option("--until", command.until, "Simulated time to stop at in s, instead of the case's run.until");
+  run->add_option("--walltime", texts.walltime, "Save and stop in good order before this much wall time has passed")
+      ->type_name("HH:MM:SS");
+  run->add_option("--layout", texts.layout, "Ranks along x, y and z (default: chosen)")->type_name("PX,PY,PZ");
+  run->add_flag("--overwrite", command.overwrite, "Replace an existing run folder");
+  run->add_flag(
+         "--resume", command.resume,
+         "Begin the run, or go on with it from its last checkpoint, by what the run folder holds; a finished one is "
+         "left as it is (for job scripts)")
+      ->excludes("--restart")
+      ->excludes("--overwrite");
+  run->final_callback([&] { command.kind = Command::Kind::run; });
+}
+
+void add_others(CLI::App& app, Command& command) {
+  CLI::App* check = app.add_subcommand("check", "Report what a case implies and what it costs, without running it");
+  check->add_option("CASE.yaml", command.path, "The case")->required();
+  check->add_option("--set", command.settings, set_help)->allow_extra_args(false)->type_name("KEY.SUB=VALUE");
+  check
+      ->add_option("--ranks", command.ranks,
+                   "Plan the run on so many ranks; several numbers, one row each (docs/scaling.md)")
+      ->delimiter(',')
+      ->check(positive_number())
+      ->type_name("N,N,...");
+  check->add_option("--latency", command.network.latency, "Of the network, s until a message has arrived")
+      ->check(positive_number())
+      ->capture_default_str();
+  check->add_option("--bandwidth", command.network.bandwidth, "Of the network, bytes/s of one rank")
+      ->check(positive_number())
+      ->capture_default_str();
+  check->final_callback([&] { command.kind = Command::Kind::check; });
+  CLI::App* defaults = app.add_subcommand("defaults", "Print the keys of a system with default, unit and meaning");
+  defaults->add_option("SYSTEM.SECTION", command.system,
+                       "resolved (default), fluid, grains, model_fluid or continuum; a section, e.g. contact; or both, "
+                       "e.g. grains.contact; or a preset, zhang2022");
+  defaults->final_callback([&] { command.kind = Command::Kind::defaults; });
+  CLI::App* info = app.add_subcommand("info", "Show the contents of a run folder or a checkpoint");
+  info->add_option("PATH", command.runs, "Run folder or checkpoint file; with --csv any number of run folders")
+      ->required();
+  info->add_flag("--csv", command.csv, "A table with one row a run: every figure of the summaries, with its unit");
+  info->final_callback([&] { command.kind = Command::Kind::info; });
+  CLI::App* stop = app.add_subcommand("stop", "Ask a run to save its state and end");
+  stop->add_option("RUN_FOLDER", command.path, "The folder it writes")->required();
+  stop->final_callback([&] { command.kind = Command::Kind::stop; });
+  // For the help alone: python_command.hpp.
+  app.add_subcommand("analyze", "Summarise a run's sediment transport between two times (analyze --help)");
+  app.add_subcommand("sweep", "Run a case with many values of its keys, on all cores (sweep --help)");
+}
+
+// What an option cannot mean, where CLI11 takes it.
+void refuse_nonsense(const CLI::App& app, const Command& command) {
+  if (command.until && !(*command.until > 0.0 && std::isfinite(*command.until)))
+    throw InputError(fmt::format("--until {:g}: give a simulated time in s, above 0.", *command.until));
+  if (command.kind == Command::Kind::run && command.out.empty() && app.get_subcommand("run")->count("--out") > 0)
+    throw InputError("--out is empty: give a folder, or leave it out for the folder run beside the case file.");
+}
+
+void take_info_paths(Command& command) {
+  command.path = command.runs.front();
+  if (command.runs.size() > 1 && !command.csv)
+    throw InputError(
+        fmt::format("info describes one run and not {}: give one path, or --csv for a table with one row a run.",
+                    command.runs.size()));
+}
+
+// CLI11 would only say that a subcommand is missing.
+void refuse_unknown_command(const CLI::App& app, int argc, const char* const* argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  for (const CLI::App* known : app.get_subcommands({}))
+    if (known->get_name() == argv[1]) return;
+  throw InputError(fmt::format(
+      "{} is not a command: there are run, check, analyze, sweep, defaults, info and stop (thalweg --help).", argv[1]));
+}
+
+// CLI11's messages are fragments; users get a whole sentence that says where to look.
+std::string as_sentence(std::string message) {
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  while (!message.empty() && (message.back() == ' ' || message.back() == '.')) message.pop_back();
+  return message + " (thalweg --help shows what is possible).";
+}
+
+}  // namespace
+
+double parse_walltime(const std::string& text) {
+  int days = 0, hours = 0, minutes = 0, seconds = 0, end = 0;
+  const auto matches = [&](const char* format, auto*... fields) {
+    end = 0;
+    return std::sscanf(text.c_str(), format, fields..., &end) == sizeof...(fields) &&
+           end == static_cast<int>(text.size());
+  };
+  const bool understood = matches("%d-%d:%2d:%2d%n", &days, &hours, &minutes, &seconds) ||
+                          (days = 0, matches("%d:%2d:%2d%n", &hours, &minutes, &seconds)) ||
+                          (hours = 0, matches("%d:%2d%n", &minutes, &seconds));
+  const double total = 86400.0 * days + 3600.0 * hours + 60.0 * minutes + seconds;
+  if (!understood || days < 0 || hours < 0 || minutes < 0 || seconds < 0 || seconds > 59 || total <= 0.0)
+    throw InputError(fmt::format("--walltime {} is not a time: write HH:MM:SS, e.g. 23:50:00.", text));
+  return total;
+}
+
+Index3 parse_layout(const std::string& text) {
+  Index3 layout{0, 0, 0};
+  int end = 0;
+  if (std::sscanf(text.c_str(), "%d,%d,%d%n", &layout[0], &layout[1], &layout[2], &end) != 3 ||
+      end != static_cast<int>(text.size()) || layout[0] < 1 || layout[1] < 1 || layout[2] < 1)
+    throw InputError(
+        fmt::format("--layout {} is not a layout: write the numbers of ranks along x, y and z, e.g. 4,2,1.", text));
+  return layout;
+}
+
+CommandLine parse_command_line(int argc, const char* const* argv) {
+  CLI::App app{"Thalweg: particle-resolved flow over a bed of grains", "thalweg"};
+  Command command;
+  Texts texts;
+  app.set_version_flag("--version", "thalweg " + version_text());
+  app.footer(examples);
+  app.require_subcommand(1);
+  app.failure_message(CLI::FailureMessage::simple);
+  add_run(app, command, texts);
+  add_others(app, command);
+  try {
+    refuse_unknown_command(app, argc, argv);
+    app.parse(argc, argv);
+    refuse_nonsense(app, command);
+    if (!texts.walltime.empty()) command.walltime = parse_walltime(texts.walltime);
+    if (command.kind == Command::Kind::info) take_info_paths(command);
+    if (!texts.layout.empty()) command.layout = parse_layout(texts.layout);
+  } catch (const CLI::Success& asked) {
+    std::ostringstream text;
+    app.exit(asked, text, text);
+    std::string shown = text.str();
+    if (shown.empty() || shown.back() != '\n') shown += '\n';
+    return {std::nullopt, shown, 0};
+  } catch (const CLI::ParseError& error) {
+    return {std::nullopt, as_sentence(error.what()), 2};
+  } catch (const InputError& error) {
+    return {std::nullopt, error.what(), 2};
+  }
+  for (int a = 0; a < argc; ++a) command.line += (a == 0 ? "" : " ") + shell_word(argv[a]);
+  return {command, "", 0};
+}
+
+}  // namespace thalweg::driver

@@ -1,0 +1,32 @@
+// `thalweg info`: what a run folder or a checkpoint holds.
+#pragma once
+
+#include "io/folder/run_folder.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace YAML {
+class Node;
+}
+
+namespace thalweg::driver {
+
+// The report, one text a line. Throws InputError where the path is neither. Called by one rank.
+std::vector<std::string> info_report(const std::filesystem::path& path);
+
+// Throws InputError unless it is one.
+void require_run_folder(const io::RunFolder& folder);
+
+// What there is to say of the state of a run that has no summary: "running", "not running: ...", or either where the
+// lock of its folder does not tell.
+std::string state_without_summary(const io::RunFolder& folder);
+
+// summary.json; null where there is none. Throws InputError where it is damaged.
+YAML::Node summary_in(const io::RunFolder& folder);
+
+// The same; null also where a crash has left half of it.
+YAML::Node whole_summary_in(const io::RunFolder& folder);
+
+}  // namespace thalweg::driver

@@ -1,0 +1,59 @@
+#include "driver/cli/resume.hpp"
+
+#include "core/base/error.hpp"
+#include "driver/cli/info_report.hpp"
+#include "io/text/yaml_document.hpp"
+#include "loop/time_loop.hpp"
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include <charconv>
+#include <filesystem>
+#include <limits>
+#include <optional>
+
+namespace thalweg::driver {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Until when a run has been finished, s; nothing of one that has not, or whose summary a crash has left half written.
+std::optional<double> finished_until(const io::RunFolder& folder) {
+  const YAML::Node summary = whole_summary_in(folder);
+  if (!summary.IsMap() || !summary["finished"].as<bool>(false)) return {};
+  return summary["until"].as<double>(-std::numeric_limits<double>::infinity());
+}
+
+bool is_finished(const io::RunFolder& folder, double until) {
+  const std::optional<double> end = finished_until(folder);
+  return end && until <= *end * (1.0 + loop::rounding_of_the_end);
+}
+
+}  // namespace
+
+double wanted_end(const fs::path& case_file, const std::vector<std::string>& settings) {
+  const io::YamlDocument document(case_file, settings);
+  double end = std::numeric_limits<double>::infinity();
+  if (const io::YamlNode* until = document.find("run.until"))
+    std::from_chars(until->text.data(), until->text.data() + until->text.size(), end);
+  return end;
+}
+
+Resumption resumption_of(const io::RunFolder& folder, double until, io::FolderLock& lock) {
+  if (!folder.is_run_folder()) return Resumption::begin;
+  if (is_finished(folder, until)) return Resumption::finished;
+  lock = io::FolderLock(folder.path());
+  if (is_finished(folder, until)) return Resumption::finished;  // by whoever had the lock
+  std::error_code ignored;
+  if (fs::remove(folder.stop(), ignored)) return Resumption::asked_to_stop;
+  if (folder.has_checkpoint()) return Resumption::go_on;
+  if (folder.has_had_checkpoint() || finished_until(folder))
+    throw InputError(fmt::format(
+        "{}: the run in it has not reached {:g} s, and its checkpoints have been removed, so that it cannot go "
+        "on; it is left alone: choose another folder with --out, or replace it with --overwrite.",
+        folder.path().string(), until));
+  return Resumption::begin_again;
+}
+
+}  // namespace thalweg::driver

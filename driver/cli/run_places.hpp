@@ -1,0 +1,27 @@
+// Where a run starts and where it writes.
+#pragma once
+
+#include "driver/cli/command_line.hpp"
+#include "io/folder/run_folder.hpp"
+
+#include <mpi.h>
+
+#include <filesystem>
+#include <vector>
+
+namespace thalweg::driver {
+
+struct Places {
+  std::vector<std::filesystem::path> checkpoints;  // to go on from, the best first; none: from the start
+  std::filesystem::path origin;                    // the run folder they lie in; empty: none
+  io::RunFolder folder;
+  bool same_folder = false;  // the checkpoints are the folder's own: its series go on
+};
+
+// The folder of a run that no other one is the start of: --out, or `run` beside the case.
+std::filesystem::path folder_without_restart(const Command& command);
+
+// What the first rank finds, on every rank. Throws InputError where --restart names nothing to go on from. Collective.
+Places places_of(const Command& command, MPI_Comm communicator);
+
+}  // namespace thalweg::driver

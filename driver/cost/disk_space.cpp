@@ -1,0 +1,129 @@
+#include "driver/cost/disk_space.hpp"
+
+#include "analysis/observers/probes.hpp"
+#include "analysis/observers/tracks.hpp"
+#include "driver/cost/run_cost.hpp"
+#include "driver/input/run_facts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace thalweg::driver {
+
+namespace {
+
+// Times 0, every, 2 every, ... of a run that starts at 0, no more than it has steps; 0 for never.
+double times_in(const Case& c, double every) {
+  return every > 0.0 ? std::floor(c.run.until / std::max(every, step_time(c)) * (1.0 + 1e-9)) + 1.0 : 0.0;
+}
+
+double fluid_frames(const Case& c, const io::FluidOutputKeys& keys) {
+  const double real = keys.precision == io::FieldPrecision::double_ ? 8.0 : 4.0;
+  double bytes = 0.0;
+  for (const FluidField field : keys.fields)
+    bytes += components_of(field) * (field == FluidField::grain_id ? 4.0 : real);
+  const io::ShownCells cells = shown_cells(keys, cells_of(c.domain), c.domain.spacing);
+  return times_in(c, keys.every) * static_cast<double>(cells.coarse.volume()) * bytes;
+}
+
+double fluid_frames(const Case& c) {
+  if (!has_fluid(c)) return 0.0;
+  double bytes = fluid_frames(c, c.output.fluid);
+  for (const io::NamedFluidOutputKeys& part : c.output.fluid_parts) bytes += fluid_frames(c, part);
+  return bytes;
+}
+
+// Of one frame: eight bytes for every number of a grain (io/vtk/grain_series.cpp), which are its place, radius,
+// connectivity and offset, and the fields.
+double bytes_of_a_grain(const Case& c, const std::vector<io::GrainField>& fields) {
+  const io::GrainOutputFacts facts = grain_output_facts(c);
+  int numbers = 3 + 1 + 2;
+  for (const NamedChoice<io::GrainField>& field : io::grain_fields()) {
+    const bool wanted = fields.empty() ? there_is(field.value, facts)
+                                       : std::find(fields.begin(), fields.end(), field.value) != fields.end();
+    if (wanted && field.value != io::GrainField::radius) numbers += components_of(field.value);
+  }
+  return 8.0 * numbers;
+}
+
+// How many grains a part shows, at most: in a box as many of the smallest spheres as can have their centres in it.
+double shown_grains(const Case& c, const io::GrainSelectionKeys& keys) {
+  double count = static_cast<double>(
+      keys.population ? c.grains.at(static_cast<std::size_t>(*keys.population)).row_count() : grain_rows(c));
+  if (!keys.ids.empty()) count = std::min(count, static_cast<double>(keys.ids.size()));
+  if (!keys.box || c.disks || grain_output_facts(c).clumps) return count;
+  const double d = smallest_diameter(c), densest = std::numbers::pi / std::sqrt(18.0);
+  const double room = (keys.box->upper - keys.box->lower + Vec3::Constant(d)).prod();
+  return std::min(count, std::ceil(densest * room / (std::numbers::pi / 6.0 * d * d * d)));
+}
+
+double grain_frames(const Case& c) {
+  const io::GrainOutputKeys& all = c.output.grains;
+  double bytes = times_in(c, all.every) * shown_grains(c, {}) * bytes_of_a_grain(c, all.fields);
+  for (const io::NamedGrainOutputKeys& part : c.output.grain_parts)
+    bytes += times_in(c, part.every) * shown_grains(c, part) * bytes_of_a_grain(c, part.fields);
+  return bytes;
+}
+
+double checkpoints(const Case& c) {
+  const io::CheckpointOutputKeys& keys = c.output.checkpoint;
+  const double most = static_cast<double>(keys.keep) + 1.0;
+  const double written = keys.every > 0.0 ? std::ceil(c.run.until / keys.every) : keys.every_wall > 0.0 ? most : 1.0;
+  return bytes_of_checkpoint(c) * std::min(written, most);
+}
+
+// Tracks and probes (docs/input.md).
+double records(const Case& c) {
+  double bytes = 0.0;
+  if (const auto& tracks = c.analysis.observers.of<analysis::TracksKeys>()) {
+    const double grains = tracks->grains.empty()
+                              ? std::ceil(static_cast<double>(grain_count(c)) / static_cast<double>(tracks->one_in))
+                              : static_cast<double>(tracks->grains.size());
+    bytes += times_in(c, tracks->every) * grains * 144.0;
+  }
+  if (const auto& probes = c.analysis.observers.of<analysis::ProbesKeys>()) {
+    double points = static_cast<double>(probes->points.size());
+    for (const analysis::ProbeLine& line : probes->lines) points += static_cast<double>(line.points);
+    bytes += times_in(c, probes->every) * points * 4.0 * 8.0;
+  }
+  return bytes;
+}
+
+}  // namespace
+
+double bytes_of_checkpoint(const Case& c) {
+  const Index3 n = cells_of(c.domain);
+  const double lattice = has_fluid(c) ? static_cast<double>(n[0]) * n[1] * n[2] * 19.0 * bytes_per_value(c) : 0.0;
+  // State and loads of a grain, and three contacts with their springs.
+  constexpr double grain_bytes = 900.0;
+  return lattice + static_cast<double>(grain_count(c)) * grain_bytes;
+}
+
+std::string bytes_text(double bytes) {
+  if (bytes >= 1e12) return fmt::format("{:.3g} TB", bytes * 1e-12);
+  return bytes < 1e9 ? fmt::format("{:.3g} MB", bytes * 1e-6) : fmt::format("{:.3g} GB", bytes * 1e-9);
+}
+
+DiskSpace disk_space(const Case& c) { return {fluid_frames(c), grain_frames(c), checkpoints(c), records(c)}; }
+
+std::string disk_line(const DiskSpace& space, double free) {
+  std::string line = "disk       at most about " + bytes_text(space.total());
+  if (space.total() > free) line += fmt::format(", more than the {} that are free in this folder", bytes_text(free));
+  line += ":";
+  const std::pair<const char*, double> parts[] = {{"fluid", space.fluid},
+                                                  {"grains", space.grains},
+                                                  {"checkpoints", space.checkpoints},
+                                                  {"probes and tracks", space.records}};
+  const char* separator = " ";
+  for (const auto& [name, bytes] : parts) {
+    if (bytes <= 0.0) continue;
+    line += fmt::format("{}{} {}", separator, name, bytes_text(bytes));
+    separator = ", ";
+  }
+  return line;
+}
+
+}  // namespace thalweg::driver

@@ -1,0 +1,28 @@
+// How much a run writes, before it is begun.
+#pragma once
+
+#include "driver/case/case.hpp"
+
+#include <string>
+
+namespace thalweg::driver {
+
+// Bytes, at the end of the run. VTK files are compressed; what is estimated is without, the most they can take.
+struct DiskSpace {
+  double fluid, grains;  // all frames
+  double checkpoints;    // those kept, and the one being written
+  double records;        // probes and tracks
+  double total() const { return fluid + grains + checkpoints + records; }
+};
+DiskSpace disk_space(const Case& c);
+
+// About, of one.
+double bytes_of_checkpoint(const Case& c);
+
+// The line of the report; free: bytes free on the disk.
+std::string disk_line(const DiskSpace& space, double free);
+
+// "175 MB".
+std::string bytes_text(double bytes);
+
+}  // namespace thalweg::driver

@@ -1,0 +1,89 @@
+#include "driver/cost/run_cost.hpp"
+
+#include "driver/cost/machine.hpp"
+
+#include <cmath>
+
+namespace thalweg::driver {
+
+namespace {
+
+// For the estimate of time, on one core: what sweep, halo, walls and output take, in times the memory traffic of the
+// sweep alone; a link, which computes (s: 8e-9 on AMD Zen 5, 13e-9 on Zen 4, 19e-9 on Intel Sapphire Rapids); and
+// grain-steps (20e6 to 39e6). The flume, the wide bed and the quickstart run within a third of the estimate on either
+// AMD.
+constexpr double cell_cost = 1.8, link_seconds = 12e-9;
+constexpr double grain_steps_per_second = 22e6;
+constexpr double model_fluid_steps_per_second = 4e6;  // all grains moving; three times that where few do
+
+// Bytes: of a process with the libraries it has loaded, MPI's above all; per cell 19 populations, streamed in place,
+// and flags; per link a record; per grain its columns, neighbours, history and its row of a frame. Several ranks have
+// rows twice while they sort them, those of a checkpoint or those of a frame, which have more columns.
+constexpr double program_bytes = 49e6;
+constexpr double flag_bytes = 16.0, link_bytes = 32.0, grain_bytes = 1150.0;
+constexpr double checkpoint_row_bytes = 100.0, frame_row_bytes = 350.0;
+
+double link_count(const Case& c) {
+  double links = 0.0;
+  for (const beds::Population& population : c.grains) {
+    links += static_cast<double>(population.count) * links_of_sphere(population.diameter / c.domain.spacing);
+  }
+  return has_fluid(c) ? links : 0.0;
+}
+
+}  // namespace
+
+double links_of_sphere(double cells_across) { return 15.8 * cells_across * cells_across; }
+
+double bytes_per_value(const Case& c) { return c.fluid.precision == coupling::Precision::single ? 4.0 : 8.0; }
+double bytes_of_cell(const Case& c) { return 19.0 * bytes_per_value(c) + flag_bytes; }
+double bytes_of_program() { return program_bytes; }
+double bytes_of_grain(const Case& c, int ranks) {
+  if (ranks == 1) return grain_bytes;
+  return grain_bytes + (c.output.grains.every > 0.0 ? frame_row_bytes : checkpoint_row_bytes);
+}
+double bytes_of_placing(const Case& c, int ranks) {
+  // In the case, on every rank: a position, and what a diameter takes while the median of all is found; around a rank's
+  // block.
+  constexpr double position = 24.0, diameter = 50.0, random_sphere = 130.0;
+  double bytes = 0.0;
+  for (const beds::Population& population : c.grains) {
+    if (population.from_file()) continue;
+    const auto rows = static_cast<double>(population.row_count());
+    bytes += diameter * static_cast<double>(population.diameters.size());
+    if (!population.placement.positions.empty())
+      bytes += position * rows;
+    else if (population.placement.pattern != beds::PlacementPattern::uniform)
+      bytes += random_sphere * rows / ranks;
+  }
+  return bytes;
+}
+double bytes_of_bed_rows(const Case& c, int ranks) {
+  double rows = 0.0;
+  for (const beds::Population& population : c.grains) rows += static_cast<double>(population.figures.rows);
+  return rows / ranks * sizeof(BedGrain);
+}
+double bytes_of_sizes(const Case& c) {
+  double bytes = 0.0;
+  for (const beds::Population& population : c.grains)
+    bytes += static_cast<double>(population.diameters.size()) * sizeof(double) +
+             static_cast<double>(population.figures.sizes.size()) * sizeof(beds::SizeCount);
+  return bytes;
+}
+double bytes_of_links(const Case& c) { return link_count(c) * link_bytes; }
+
+Cost cost_of(const Case& c, double bandwidth) {
+  const Index3 n = cells_of(c.domain);
+  Cost cost{};
+  cost.cells = has_fluid(c) ? static_cast<double>(n[0]) * n[1] * n[2] : 0.0;
+  cost.steps = std::ceil(c.run.until / step_time(c) * (1.0 - 1e-12));
+  cost.cell_updates = cost.cells * cost.steps;
+  cost.grain_steps = static_cast<double>(grain_count(c) * grain_steps(c)) * cost.steps;
+  const double traffic = cost.cell_updates * cell_cost * bytes_per_cell_update(static_cast<int>(bytes_per_value(c)));
+  cost.core_seconds =
+      traffic / bandwidth + cost.steps * link_count(c) * link_seconds +
+      cost.grain_steps / (c.system == SystemKind::model_fluid ? model_fluid_steps_per_second : grain_steps_per_second);
+  return cost;
+}
+
+}  // namespace thalweg::driver

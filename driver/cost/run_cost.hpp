@@ -1,0 +1,31 @@
+// What a run needs, estimated from its case: work, memory, time on one core.
+#pragma once
+
+#include "driver/case/case.hpp"
+
+namespace thalweg::driver {
+
+struct Cost {
+  double cells;
+  double steps;
+  double cell_updates;
+  double grain_steps;   // grains times sub-steps
+  double core_seconds;  // one core
+};
+// bandwidth: bytes/s of one core's memory (machine.hpp).
+Cost cost_of(const Case& c, double bandwidth);
+
+// Memory, bytes.
+double bytes_per_value(const Case& c);               // a population of a cell
+double bytes_of_program();                           // a process before it has a system
+double bytes_of_cell(const Case& c);                 // a cell of fluid
+double bytes_of_grain(const Case& c, int ranks);     // a grain on one rank or several
+double bytes_of_placing(const Case& c, int ranks);   // what a rank knows of other grains while they are placed
+double bytes_of_bed_rows(const Case& c, int ranks);  // a rank's share of the rows of bed files
+double bytes_of_sizes(const Case& c);                // the different sizes, which every rank has
+double bytes_of_links(const Case& c);                // the links of all grains
+
+// Number of links of a sphere so many cells wide.
+double links_of_sphere(double cells_across);
+
+}  // namespace thalweg::driver

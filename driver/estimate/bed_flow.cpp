@@ -1,0 +1,103 @@
+#include "driver/estimate/bed_flow.hpp"
+
+#include "analysis/tools/bed_height.hpp"
+#include "beds/packing/packing.hpp"
+#include "driver/case/grain_setup.hpp"
+#include "driver/estimate/obstacles.hpp"
+#include "driver/estimate/reference_grain.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace thalweg::driver {
+
+namespace {
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+// m, up to which this volume (m^3, with its pores) fills the room that obstacles leave: A h - O(h).
+double filled_height(double volume, const analysis::VolumeBelow& below) {
+  const auto room = [&](std::size_t k) {
+    return static_cast<double>(k) * below.spacing * below.area - below.obstacle[k];
+  };
+  std::size_t k = 1;
+  while (k + 1 < below.obstacle.size() && room(k) < volume) ++k;
+  const double here = room(k) - room(k - 1), left = volume - room(k - 1);
+  return (static_cast<double>(k - 1) + (here > 0.0 ? left / here : 1.0)) * below.spacing;
+}
+
+double settled_height(const Case& c, const Obstacles& obstacles) {
+  const PeriodicBox box = grain_box(c);
+  const int layers = analysis::thin_layers(box.size.z(), reference_grain(c).diameter);
+  const std::vector<double> filled = analysis::union_below(box, obstacles.spheres, layers);
+  analysis::VolumeBelow below{filled, box.size.z() / layers, box.size.x() * box.size.y()};
+  const double grains = grain_volume(c) - obstacles.volume_of_grains;
+  constexpr double rounding = 1e-9;
+  if (grains <= rounding * obstacles.volume_of_grains)
+    return bulk_solid_fraction(below) < loosest_bed ? 0.0 : bed_height(below, analysis::thin_layers_a_window / 2);
+  below.obstacle = filled;
+  return filled_height(grains / settled_fraction(c), below);
+}
+
+}  // namespace
+
+FlowNumbers flow_numbers(const Case& c) {
+  FlowNumbers flow{nothing, nothing, nothing, nothing, 0, nothing, nothing, nothing, nothing, nothing, nothing};
+  if (!has_fluid(c) || c.grains.empty()) return flow;
+  const Vec3 gravity = gravity_vector(c.gravity);
+  const ReferenceGrain grain = reference_grain(c);
+  const double g = gravity.norm(), d = grain.diameter;
+  flow.density_ratio = grain.density / c.fluid.density;
+  const double excess = flow.density_ratio - 1.0;
+  flow.galileo = std::sqrt(std::abs(excess) * g * d * d * d) / c.fluid.kinematic_viscosity;
+  if (gravity.z() >= 0.0 || excess <= neutral_density || periodic_axes(c.domain)[2]) return flow;
+
+  flow.slope = gravity.x() / -gravity.z();
+  flow.bed_height = settled_height(c);
+  flow.depth = c.domain.size.z() - flow.bed_height;
+  if (flow.depth <= 0.0 || gravity.x() <= 0.0 || !periodic_axes(c.domain)[0] || c.fluid.mean_velocity) return flow;
+  flow.side_walls = side_walls(c);
+  flow.hydraulic_radius = hydraulic_radius(c, flow.depth);
+  flow.shields_depth = gravity.x() * flow.depth / (excess * g * d);
+  flow.shields_hydraulic = gravity.x() * flow.hydraulic_radius / (excess * g * d);
+  flow.friction_velocity = std::sqrt(gravity.x() * flow.hydraulic_radius);
+  flow.particle_reynolds = flow.friction_velocity * d / c.fluid.kinematic_viscosity;
+  return flow;
+}
+
+double slope_for(const FlowNumbers& flow, double shields) {
+  const double sine = std::sin(std::atan(flow.slope)) / flow.shields_hydraulic * shields;
+  return sine < 1.0 ? std::tan(std::asin(sine)) : std::numeric_limits<double>::infinity();
+}
+
+double settled_height(const Case& c) {
+  if (gravity_vector(c.gravity).z() == 0.0) return 0.0;
+  if (const Obstacles obstacles = obstacles_of(c); !obstacles.spheres.empty()) return settled_height(c, obstacles);
+  return grain_volume(c) / (settled_fraction(c) * c.domain.size.x() * c.domain.size.y());
+}
+
+bool drives_flow(const Case& c, int axis) {
+  const auto lets_through = [](const coupling::FaceKeys& face) {
+    return face.type == lbm::FaceType::periodic || lbm::is_open(face.type);
+  };
+  const auto low = static_cast<std::size_t>(2 * axis);
+  return lets_through(c.domain.faces[low]) && lets_through(c.domain.faces[low + 1]);
+}
+
+int side_walls(const Case& c) { return c.domain.faces[y_low].drags() + c.domain.faces[y_high].drags(); }
+
+double hydraulic_radius(const Case& c, double depth) {
+  const double width = c.domain.size.y();
+  const int walls = side_walls(c);
+  return walls == 0 ? depth : depth * width / (walls * depth + width);
+}
+
+double settled_fraction(const Case& c) {
+  const bool between_walls =
+      c.domain.faces[y_low].type != lbm::FaceType::periodic && c.domain.faces[y_high].type != lbm::FaceType::periodic;
+  const bool narrow = !c.grains.empty() && c.domain.size.y() < 3.0 * reference_grain(c).diameter;
+  return between_walls && narrow ? 0.554 : beds::settled_bed;
+}
+
+}  // namespace thalweg::driver

@@ -1,0 +1,57 @@
+// A flow over a bed of grains driven by the slope: depth, Shields number, slope, as far as they follow from the case
+// alone.
+#pragma once
+
+#include "driver/case/case.hpp"
+
+namespace thalweg::driver {
+
+// Grains heavier than the fluid by less than this fraction of its density make no bed: that is rounding.
+inline constexpr double neutral_density = 1e-6;
+
+// Shields number and depth follow Zhang et al. 2022: tau_b = rho_f g_x H far from side walls, rho_f g_x H W/(2 H + W)
+// between two of them, rho_f g_x H W/(H + W) beside one, and tau* = tau_b / ((rho_s - rho_f) g d). g_x is the part of
+// gravity along the bed, g times the sine of its angle. Not a number where a case lacks what a number needs: without a
+// slope down along x, which is periodic, there is no Shields number.
+struct FlowNumbers {
+  double slope;              // tangent of the bed's angle
+  double bed_height;         // m: the grains settled at settled_fraction()
+  double depth;              // m: from there to the top
+  double hydraulic_radius;   // m: H W/(n H + W) beside n side walls
+  int side_walls;            // n, 0 to 2
+  double shields_depth;      // tau* of the depth-slope product
+  double shields_hydraulic;  // tau* of the hydraulic radius
+  double friction_velocity;  // m/s, of shields_hydraulic
+  double particle_reynolds;  // u_tau d / nu
+  double galileo;            // sqrt((s - 1) g d^3) / nu
+  double density_ratio;      // s
+};
+FlowNumbers flow_numbers(const Case& c);
+
+// The slope, a tangent, with which the hydraulic radius R gives the Shields number, the reverse of shields_hydraulic:
+// sin = tau* (s - 1) d / R. Infinite where no slope is steep enough.
+double slope_for(const FlowNumbers& flow, double shields);
+
+// Solid fraction: less is no bed but a suspension, or grains that still fall. Random loose packing has 0.55 (beds
+// between near walls 0.5).
+inline constexpr double loosest_bed = 0.4;
+
+// m, of the grains settled at settled_fraction() in the room that obstacles leave (obstacles.hpp); 0 without gravity
+// across the bed. Where there are only obstacles, their surface as the run measures it, or 0 where they make no bed.
+double settled_height(const Case& c);
+
+// Whether gravity along an axis (0: x, 1: y) drives a flow: between periodic or open faces. Walls carry it as pressure.
+bool drives_flow(const Case& c, int axis);
+
+// How many of the faces across y hold the flow back, 0 to 2.
+int side_walls(const Case& c);
+
+// m, of a flow of this depth (m): H W/(n H + W) beside n such side walls.
+double hydraulic_radius(const Case& c, double depth);
+
+// What part of a settled bed's volume is grain, 1: 0.6 (random loose to close packing is 0.55 to 0.64); 0.554 between
+// faces across y that are not periodic and closer than three diameters, which is that of the 969 grains in the flume of
+// Zhang et al. 2022, 18 diameters high.
+double settled_fraction(const Case& c);
+
+}  // namespace thalweg::driver

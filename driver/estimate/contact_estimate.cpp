@@ -1,0 +1,158 @@
+#include "driver/estimate/contact_estimate.hpp"
+
+#include "beds/population_seeds.hpp"
+#include "dem/laws/material.hpp"
+#include "driver/estimate/bed_flow.hpp"
+#include "driver/estimate/flow_estimate.hpp"
+#include "driver/estimate/reference_grain.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numbers>
+
+namespace thalweg::driver {
+
+namespace {
+
+// kg/m^3, of grains less that of the fluid around them.
+double submerged_density(const Case& c, double density) { return density - (has_fluid(c) ? c.fluid.density : 0.0); }
+
+// Pa, of two bodies of the same material (Hertz).
+double effective_modulus(const dem::ContactParameters& material) {
+  return material.youngs_modulus / (2.0 * (1.0 - material.poisson_ratio * material.poisson_ratio));
+}
+
+// m, under a force (N) and in an impact of an effective mass (kg) at a speed (m/s), of two grains of a diameter (m).
+double overlap_under(const dem::ContactParameters& material, double force, double diameter) {
+  if (material.law == dem::Law::linear) return force / material.normal_stiffness;
+  return std::pow(0.75 * force / (effective_modulus(material) * std::sqrt(0.25 * diameter)), 2.0 / 3.0);
+}
+
+double overlap_in_impact(const dem::ContactParameters& material, double mass, double speed, double diameter) {
+  if (material.law == dem::Law::linear) return speed * std::sqrt(mass / material.normal_stiffness);
+  return std::pow(15.0 * mass * speed * speed / (16.0 * effective_modulus(material) * std::sqrt(0.25 * diameter)), 0.4);
+}
+
+// m/s, of free grains that start towards or past those of another population.
+double given_speed(const Case& c) {
+  double fastest = 0.0;
+  for (const beds::Population& one : c.grains)
+    for (const beds::Population& other : c.grains)
+      if (!one.held() && !other.held()) fastest = std::max(fastest, (one.velocity - other.velocity).norm());
+  return fastest;
+}
+
+// By mass, of spheres or disks of one density; clumps are alike.
+double heaviest_over_lightest(const beds::Population& grains) {
+  return grains.shape
+             ? 1.0
+             : std::pow(grains.largest_diameter() / grains.smallest_diameter(), grains.thickness > 0.0 ? 2 : 3);
+}
+
+double speed_of_a_fall(const Case& c) {
+  if (has_fluid(c)) return settling_velocity(c);
+  const double height = std::max(0.0, c.domain.size.z() - settled_height(c));
+  return periodic_axes(c.domain)[2] ? 0.0 : std::sqrt(2.0 * std::abs(gravity_vector(c.gravity).z()) * height);
+}
+
+double impact_speed(const Case& c) { return std::max(speed_of_a_fall(c), given_speed(c)); }
+
+// Adds those of a population with contacts of this material. height: m, of the settled bed.
+void add_overlaps(const Case& c, const beds::Population& grains, const dem::ContactParameters& material, double height,
+                  Overlaps& found) {
+  const double d = grains.smallest_diameter(), mass = 0.5 * grains.lightest_mass();
+  const double pressure = settled_fraction(c) * std::abs(submerged_density(c, grains.density)) *
+                          std::abs(gravity_vector(c.gravity).z()) * height;
+  if (!periodic_axes(c.domain)[2] && !c.disks)
+    found.under_weight = std::max(found.under_weight, overlap_under(material, pressure * d * d, d) / d);
+  if (!grains.held())
+    found.in_impact = std::max(found.in_impact, overlap_in_impact(material, mass, found.speed, d) / d);
+}
+
+}  // namespace
+
+Overlaps expected_overlaps(const Case& c) {
+  Overlaps found{0.0, 0.0, impact_speed(c)};
+  if (c.grains.empty()) return found;
+  const std::vector<dem::ContactParameters> materials = beds::materials_of(c.contact, c.grains);
+  const double height = settled_height(c);
+  for (std::size_t p = 0; p < c.grains.size(); ++p)
+    add_overlaps(c, c.grains[p], materials[static_cast<std::size_t>(beds::material_of(c.grains, p))], height, found);
+  return found;
+}
+
+// Of overlaps in contacts of 1 N/m: those under weight fall with the stiffness, those in an impact with its root.
+double least_stiffness(const Case& c) {
+  dem::ContactParameters unit = c.contact;
+  unit.normal_stiffness = 1.0;
+  Overlaps found{0.0, 0.0, impact_speed(c)};
+  const double height = settled_height(c);
+  for (const beds::Population& grains : c.grains)
+    if (!grains.contact || !grains.contact->normal_stiffness) add_overlaps(c, grains, unit, height, found);
+  return stiffness_margin *
+         std::max(found.under_weight / deep_under_weight, std::pow(found.in_impact / deep_in_impact, 2));
+}
+
+std::optional<ReboundTimes> rebound_times(const Case& c) {
+  if (!has_fluid(c) || c.grains.empty()) return std::nullopt;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const std::size_t p : free_populations(c)) smallest = std::min(smallest, c.grains[p].smallest_diameter());
+  return ReboundTimes{shortest_contact(c) / fluid_time_step(c),
+                      0.5 * std::numbers::pi * std::sqrt(3.0) * smallest / c.domain.spacing};
+}
+
+std::optional<DryRestitution> dry_restitution(const Case& c) {
+  if (c.grains.empty() || !c.contact.damping) return std::nullopt;
+  const std::vector<dem::ContactParameters> materials = beds::materials_of(c.contact, c.grains);
+  const std::optional<dem::ContactParameters> walls = beds::wall_material_of(c.contact);
+  const auto of = [](const dem::ContactParameters& material, double mass) {
+    const double ratio = *material.damping / (2.0 * std::sqrt(material.normal_stiffness * mass));
+    return dem::restitution_of_damping_ratio(ratio, material.attraction);
+  };
+  DryRestitution found{1.0, 0.0, 1.0, 0.0};
+  for (std::size_t p = 0; p < c.grains.size(); ++p) {
+    const beds::Population& grains = c.grains[p];
+    if (grains.held()) continue;
+    const dem::ContactParameters& own = materials[static_cast<std::size_t>(beds::material_of(c.grains, p))];
+    const double lightest = grains.lightest_mass();
+    for (const double mass : {lightest, lightest * heaviest_over_lightest(grains)}) {
+      const double between = of(own, 0.5 * mass), at_wall = of(walls.value_or(own), mass);
+      found.least = std::min(found.least, between);
+      found.most = std::max(found.most, between);
+      found.least_at_wall = std::min(found.least_at_wall, at_wall);
+      found.most_at_wall = std::max(found.most_at_wall, at_wall);
+    }
+  }
+  if (found.least > found.most) return std::nullopt;
+  return found;
+}
+
+double stress_ratio_at_base(const Case& c) {
+  const Vec3 gravity = gravity_vector(c.gravity);
+  if (c.grains.empty() || side_walls(c) > 0 || periodic_axes(c.domain)[2] || gravity.x() <= 0.0 || gravity.z() >= 0.0)
+    return 0.0;
+  if (c.system == SystemKind::model_fluid || (has_fluid(c) && c.fluid.mean_velocity)) return 0.0;
+  const ReferenceGrain grain = reference_grain(c);
+  const double height = settled_height(c), depth = c.domain.size.z() - height;
+  if (height < 2.0 * grain.diameter || depth < 0.0 || c.disks) return 0.0;
+  const double water = has_fluid(c) ? c.fluid.density : 0.0;
+  const double excess = settled_fraction(c) * (grain.density - water);
+  if (excess <= neutral_density * water) return 0.0;
+  return (water * depth + (water + excess) * height) * gravity.x() / (excess * height * -gravity.z());
+}
+
+double bulk_friction(double friction) {
+  struct Row {
+    double particle, bulk;
+  };
+  constexpr Row table[] = {{0.0, 0.105}, {0.1, 0.268}, {0.3, 0.357}, {0.5, 0.382}, {1.0, 0.405}};
+  for (std::size_t n = 1; n < std::size(table); ++n) {
+    const Row &a = table[n - 1], &b = table[n];
+    if (friction <= b.particle) return a.bulk + (b.bulk - a.bulk) * (friction - a.particle) / (b.particle - a.particle);
+  }
+  return std::end(table)[-1].bulk;
+}
+
+}  // namespace thalweg::driver

@@ -1,0 +1,55 @@
+// What loads do to the grains of a case: how deep they overlap, and whether a bed slides as a whole. Estimates for
+// `thalweg check`.
+#pragma once
+
+#include "driver/case/case.hpp"
+
+#include <optional>
+
+namespace thalweg::driver {
+
+// Overlaps of the softest contact between two grains of a population, over their diameter; 0 without grains.
+struct Overlaps {
+  double under_weight;  // at the base of the settled bed: each grain carries the weight above its own d^2
+  double in_impact;     // of two free grains at `speed`
+  double speed;         // m/s, of a fall, through the fluid or dry from the top of the box onto the bed, or as given
+};
+Overlaps expected_overlaps(const Case& c);
+
+// From where they are large.
+inline constexpr double deep_under_weight = 0.01, deep_in_impact = 0.05;
+
+// By how much a stiffness that is to keep overlaps small exceeds the least.
+inline constexpr double stiffness_margin = 1.02;
+
+// N/m: the normal stiffness of the section contact, of the linear law, with which the overlaps of the populations that
+// have none of their own are smaller, by this margin; 0 where nothing presses.
+double least_stiffness(const Case& c);
+
+// How long the shortest contact lasts, and sound takes around the smallest free grain, in steps of the fluid. A contact
+// that ends before reverses the grain alone, which then loses momentum to the water that moved with it
+// (benchmarks/validation/rebound_in_water). None without grains in a fluid.
+struct ReboundTimes {
+  double contact, around;
+};
+std::optional<ReboundTimes> rebound_times(const Case& c);
+
+// Coefficients of restitution of dry collisions that follow from the damping (kg/s) of a linear contact, whatever the
+// speed: of the lightest and the heaviest two grains of a population that are free, and of one of them with a wall.
+// None where the case gives the restitution itself.
+struct DryRestitution {
+  double least, most, least_at_wall, most_at_wall;
+};
+std::optional<DryRestitution> dry_restitution(const Case& c);
+
+// Shear stress over normal stress between the grains at the base of a settled bed, where gravity along x drives water
+// and grains: with the pores full of water and H of it above,
+//   [rho_f H + (rho_f + phi (rho_s - rho_f)) h] g_x / [phi (rho_s - rho_f) h g_z],
+// and dry g_x/g_z. 0 where nothing drives the bed, where side walls carry it, and for less than two layers.
+double stress_ratio_at_base(const Case& c);
+
+// The ratio that spheres of this friction coefficient hold at most: 0.105 to 0.405, simulations of slow shear by
+// Chialvo, Sun and Sundaresan (2012), table I, linear between its entries.
+double bulk_friction(double friction);
+
+}  // namespace thalweg::driver

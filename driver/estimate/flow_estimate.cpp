@@ -1,0 +1,306 @@
+#include "driver/estimate/flow_estimate.hpp"
+
+#include "driver/case/solid_setup.hpp"
+#include "driver/estimate/bed_flow.hpp"
+#include "driver/estimate/laminar_channel.hpp"
+#include "driver/estimate/obstacles.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace thalweg::driver {
+
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+// Transition: of U R/nu, and of Couette flow V H/nu (Tillmark and Alfredsson 1992: 360 with half of both).
+constexpr double channel_transition = 500.0, couette_transition = 1440.0;
+constexpr double turnovers_to_adapt = 10.0, response_times_to_settle = 9.5;
+
+struct Channel {
+  double depth;       // m, H
+  double reach;       // m, h: of one surface; infinite where neither floor nor top holds the flow
+  double half_width;  // m, to the middle between two side walls, the whole width beside one; infinite without
+  double roughness;   // m, z_0 over grains; 0: a bare floor
+  double viscosity;   // m^2/s
+  double radius;      // m, of the share that the bed has: h, or the hydraulic radius between side walls
+
+  // Of the log law: the reach, without floor and top the half-width; where nothing holds the flow, the depth.
+  double distance() const { return std::isfinite(reach) ? reach : std::isfinite(half_width) ? half_width : depth; }
+  // Where nothing holds the flow, that of a film.
+  LaminarChannel laminar(double acceleration) const {
+    const bool held = std::isfinite(reach) || std::isfinite(half_width);
+    return laminar_channel(acceleration, held ? reach : depth, half_width, viscosity);
+  }
+};
+
+Channel channel_of(const Case& c) {
+  const double width = c.domain.size.y();
+  const int walls = side_walls(c);
+  const bool floor = c.domain.faces[bottom].drags() || (settled_height(c) > 0.0 && !periodic_axes(c.domain)[2]);
+  const int surfaces = floor + c.domain.faces[top].drags();
+  Channel channel{};
+  channel.depth = c.domain.size.z() - settled_height(c);
+  channel.reach = surfaces == 0 ? infinite : channel.depth / surfaces;
+  channel.half_width = walls == 0 ? infinite : width / walls;
+  channel.roughness = largest_diameter(c) / 15.0;
+  channel.viscosity = c.fluid.kinematic_viscosity;
+  channel.radius = surfaces > 0 ? hydraulic_radius(c, channel.reach) : walls > 0 ? width / walls : channel.depth;
+  return channel;
+}
+
+// ln(distance/z_0), at least 1 so that a flow as deep as its roughness has a velocity.
+double log_of(double distance, double friction_velocity, const Channel& channel) {
+  const double zero = channel.roughness > 0.0 ? channel.roughness : channel.viscosity / (9.0 * friction_velocity);
+  return std::max(1.0, std::log(distance / zero));
+}
+
+// The friction velocity u_tau = kappa velocity/logarithms(u_tau), by iteration from a twentieth of the velocity.
+template <typename Law>
+double friction_velocity_of(double velocity, const Law& logarithms) {
+  double friction_velocity = velocity / 20.0;
+  for (int n = 0; n < 50; ++n) friction_velocity = karman * velocity / logarithms(friction_velocity);
+  return friction_velocity;
+}
+
+// Raises the estimate to `speed` (m/s): of a face, the start, or grains, and so of the fluid next to them.
+void consider(FlowEstimate& flow, double speed, FlowCause cause) {
+  if (!(speed > flow.speed)) return;
+  flow.speed = speed;
+  flow.cause = cause;
+}
+
+void consider_start(const Case& c, FlowEstimate& flow) {
+  const coupling::InitialFluidKeys& start = c.initial.fluid;
+  if (start.uniform) consider(flow, start.uniform->norm(), FlowCause::initial_fluid);
+  if (start.linear_profile) consider(flow, start.linear_profile->velocity.norm(), FlowCause::initial_fluid);
+  if (!start.log_profile) return;
+  const double height = (c.domain.size.z() - start.log_profile->bed_height) / start.log_profile->roughness;
+  if (height > 1.0)
+    consider(flow, start.log_profile->shear_velocity / karman * std::log(height), FlowCause::initial_fluid);
+}
+
+// In the time of the run a slope adds no more than g_x times that time to the speed of the start.
+void limit_to_what_the_slope_gives(const Case& c, double along, FlowEstimate& flow) {
+  if (c.initial.takes(InitialField::fluid)) return;
+  FlowEstimate start;
+  consider_start(c, start);
+  const double reached = start.speed + along * c.run.until;
+  flow.still_gaining = reached < flow.speed;
+  flow.speed = std::min(flow.speed, reached);
+}
+
+// Smooth walls on either side: the law of the wall holds over half the width.
+double velocity_between_side_walls(double friction_velocity, const Channel& channel) {
+  const double distance = 9.0 * friction_velocity * std::min(channel.reach, channel.half_width) / channel.viscosity;
+  return distance > std::numbers::e ? friction_velocity / karman * std::log(distance) : infinite;
+}
+
+bool holds_back(const coupling::FaceKeys& face) {
+  return face.type == lbm::FaceType::no_slip || face.obeys_the_law_of_the_wall();
+}
+
+// m/s, u_max of a turbulent flow that this acceleration (m/s^2) drives along the bed.
+double turbulent_velocity(const Case& c, const Channel& channel, double along) {
+  const double between = holds_back(c.domain.faces[y_low]) && holds_back(c.domain.faces[y_high])
+                             ? velocity_between_side_walls(std::sqrt(along * channel.radius), channel)
+                             : infinite;
+  const double over_bed = std::sqrt(along * channel.distance());
+  return std::min(over_bed / karman * log_of(channel.distance(), over_bed, channel), between);
+}
+
+// m/s^2, of gravity along the bed, as far as it drives a flow: walls carry what goes across them.
+double acceleration_along(const Case& c) {
+  const Vec3 gravity = gravity_vector(c.gravity);
+  return std::hypot(drives_flow(c, 0) ? gravity.x() : 0.0, drives_flow(c, 1) ? gravity.y() : 0.0);
+}
+
+struct SlopeFlow {
+  double speed, bulk_velocity, friction_velocity;  // m/s, without end
+  bool laminar;
+  double spin_up;  // s
+};
+
+SlopeFlow developed_flow(const Case& c, const Channel& channel, double along) {
+  const LaminarChannel slow = channel.laminar(along);
+  const double friction_velocity = std::sqrt(along * channel.radius);
+  if (slow.mean * channel.radius / channel.viscosity < channel_transition)
+    return {slow.largest, slow.mean, friction_velocity, true, slow.spin_up};
+  const double speed = turbulent_velocity(c, channel, along);
+  const double bulk = std::max(0.5 * speed, speed - friction_velocity / karman);
+  return {speed, bulk, friction_velocity, false, 2.0 * bulk / along};
+}
+
+FlowEstimate flow_of_slope(const Case& c, const Channel& channel) {
+  FlowEstimate flow;
+  const double along = acceleration_along(c);
+  if (c.fluid.mean_velocity || along == 0.0) return flow;
+  const SlopeFlow developed = developed_flow(c, channel, along);
+  flow.cause = flow.drive = FlowCause::slope;
+  flow.speed = developed.speed;
+  flow.bulk_velocity = developed.bulk_velocity;
+  flow.friction_velocity = developed.friction_velocity;
+  flow.laminar = developed.laminar;
+  flow.spin_up = developed.spin_up;
+  limit_to_what_the_slope_gives(c, along, flow);
+  return flow;
+}
+
+FlowEstimate flow_of_mean_velocity(const Case& c, const Channel& channel) {
+  FlowEstimate flow;
+  if (!c.fluid.mean_velocity || c.fluid.mean_velocity->velocity == 0.0) return flow;
+  const Vec3 size = c.domain.size;
+  const double water = size.x() * size.y() * size.z() - solid_volume(c);
+  const double mean = std::abs(c.fluid.mean_velocity->velocity) * water / (size.x() * size.y() * channel.depth);
+  flow.cause = flow.drive = FlowCause::mean_velocity;
+  flow.bulk_velocity = mean;
+  flow.laminar = mean * channel.radius / channel.viscosity < channel_transition;
+  const LaminarChannel of_unit = channel.laminar(1.0);
+  flow.friction_velocity = flow.laminar
+                               ? std::sqrt(mean / of_unit.mean * channel.radius)
+                               : friction_velocity_of(mean, [&](double friction_velocity) {
+                                   return std::max(1.0, log_of(channel.distance(), friction_velocity, channel) - 1.0);
+                                 });
+  flow.speed = flow.laminar ? mean * of_unit.largest / of_unit.mean : mean + flow.friction_velocity / karman;
+  flow.spin_up = response_times_to_settle * c.fluid.mean_velocity->response_time +
+                 (flow.laminar ? of_unit.spin_up : turnovers_to_adapt * channel.depth / flow.friction_velocity);
+  return flow;
+}
+
+FlowEstimate flow_of_moving_top(const Case& c, const Channel& channel) {
+  FlowEstimate flow;
+  const coupling::FaceKeys& lid = c.domain.faces[top];
+  const double velocity = std::hypot(lid.velocity.x(), lid.velocity.y()), depth = channel.depth;
+  if (lid.type != lbm::FaceType::moving || velocity == 0.0) return flow;
+  flow.cause = flow.drive = FlowCause::moving_face;
+  flow.speed = velocity;
+  flow.bulk_velocity = 0.5 * velocity;
+  flow.laminar = velocity * depth / channel.viscosity < couette_transition;
+  if (flow.laminar) {
+    flow.friction_velocity = std::sqrt(channel.viscosity * velocity / depth);
+    flow.spin_up = 0.3 * depth * depth / channel.viscosity;
+    return flow;
+  }
+  flow.friction_velocity = friction_velocity_of(velocity, [&](double friction_velocity) {
+    return log_of(0.5 * depth, friction_velocity, channel) +
+           std::max(1.0, std::log(4.5 * friction_velocity * depth / channel.viscosity));
+  });
+  flow.spin_up = velocity * depth / (flow.friction_velocity * flow.friction_velocity);
+  return flow;
+}
+
+void consider_faces(const Case& c, const Channel& channel, FlowEstimate& flow) {
+  for (std::size_t face = 0; face < c.domain.faces.size(); ++face) {
+    const coupling::FaceKeys& keys = c.domain.faces[face];
+    if (keys.type == lbm::FaceType::moving) consider(flow, keys.velocity.norm(), FlowCause::moving_face);
+    // All that comes in beside a bed has to flow above it.
+    const double squeezed = face < bottom && channel.depth > 0.0 ? c.domain.size.z() / channel.depth : 1.0;
+    if (keys.type == lbm::FaceType::velocity_inlet) consider(flow, keys.velocity.norm() * squeezed, FlowCause::inlet);
+  }
+}
+
+// The speed that grains of a population are given, m/s.
+double given_speed(const beds::Population& grains) {
+  if (grains.prescribed_velocity) return grains.prescribed_velocity->norm();
+  if (!grains.motion) return grains.fixed ? 0.0 : grains.velocity.norm();
+  return prescribed_motion(*grains.motion).largest_speed(0.0);  // without its rotation
+}
+
+// m/s, of the largest grain of a population.
+double settling_velocity_of(const Case& c, const beds::Population& grains) {
+  return settling_velocity(grains.largest_diameter(), grains.density / c.fluid.density,
+                           gravity_vector(c.gravity).norm(), c.fluid.kinematic_viscosity);
+}
+
+bool starts_from_a_bed(const Case& c, const beds::Population& grains) {
+  return c.initial.takes(InitialField::grains) || grains.from_file();
+}
+
+}  // namespace
+
+const char* words_of(FlowCause cause) {
+  switch (cause) {
+    case FlowCause::none:
+      return "nothing moves it";
+    case FlowCause::slope:
+      return "slope and depth";
+    case FlowCause::mean_velocity:
+      return "the mean velocity over the bed";
+    case FlowCause::moving_face:
+      return "a moving face";
+    case FlowCause::inlet:
+      return "an inlet";
+    case FlowCause::initial_fluid:
+      return "the start";
+    case FlowCause::moving_grains:
+      return "the given speed of grains";
+    case FlowCause::moving_solids:
+      return "the given motion of solids";
+    case FlowCause::settling:
+      return "around grains that fall";
+  }
+  return "";
+}
+
+double settling_velocity(double diameter, double density_ratio, double gravity, double viscosity) {
+  const double weight = std::abs(density_ratio - 1.0) * gravity * diameter;  // 3/4 C_D v^2
+  if (!(weight > 0.0)) return 0.0;
+  const auto resistance = [&](double velocity) {
+    const double reynolds = velocity * diameter / viscosity;
+    const double drag = reynolds < 1000.0 ? 24.0 / reynolds * (1.0 + 0.15 * std::pow(reynolds, 0.687)) : 0.44;
+    return 0.75 * drag * velocity * velocity;
+  };
+  double low = 0.0, high = std::sqrt(weight / (0.75 * 0.3)) + weight * diameter / (18.0 * viscosity);
+  for (int n = 0; n < 100; ++n) {
+    const double middle = 0.5 * (low + high);
+    (resistance(middle) < weight ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+double settling_velocity(const Case& c) {
+  double fastest = 0.0;
+  if (!has_fluid(c)) return fastest;
+  for (const beds::Population& grains : c.grains)
+    if (!grains.held()) fastest = std::max(fastest, settling_velocity_of(c, grains));
+  return fastest;
+}
+
+double estimated_velocity(const Case& c) {
+  if (!has_fluid(c)) return 0.0;
+  const Channel channel = channel_of(c);
+  const double along = acceleration_along(c);
+  return along == 0.0 || channel.depth <= 0.0 ? 0.0 : developed_flow(c, channel, along).speed;
+}
+
+FlowEstimate flow_estimate(const Case& c) {
+  FlowEstimate flow;
+  if (!has_fluid(c)) return flow;
+  const Channel channel = channel_of(c);
+  if (channel.depth > 0.0 && c.domain.faces[bottom].type != lbm::FaceType::periodic) {
+    const FlowEstimate drives[] = {flow_of_slope(c, channel), flow_of_mean_velocity(c, channel),
+                                   flow_of_moving_top(c, channel)};
+    flow = *std::max_element(std::begin(drives), std::end(drives), [](const FlowEstimate& a, const FlowEstimate& b) {
+      return a.friction_velocity < b.friction_velocity;
+    });
+    flow.depth = channel.depth;
+    for (const FlowEstimate& drive : drives) consider(flow, drive.speed, drive.cause);
+  } else if (c.fluid.mean_velocity) {
+    consider(flow, std::abs(c.fluid.mean_velocity->velocity), FlowCause::mean_velocity);
+  } else {
+    consider(flow, estimated_velocity(c), FlowCause::slope);
+  }
+  consider_faces(c, channel, flow);
+  consider_start(c, flow);
+  for (const beds::Population& grains : c.grains) {
+    consider(flow, given_speed(grains), FlowCause::moving_grains);
+    if (!grains.held() && !starts_from_a_bed(c, grains))
+      consider(flow, settling_velocity_of(c, grains), FlowCause::settling);
+  }
+  for (const SolidCase& solid : c.solids) consider(flow, largest_speed(solid), FlowCause::moving_solids);
+  return flow;
+}
+
+}  // namespace thalweg::driver

@@ -1,0 +1,74 @@
+// How fast the fluid of a case gets, what makes it so, and how long that takes: estimates from the case alone, for
+// `thalweg check` and its warnings.
+//
+// A flow along the bed has the depth H from the settled bed to the top. Where the top drags it, each of the two
+// surfaces has half of it: h = H/2, else h = H; R is the hydraulic radius, from h and the side walls. A flow is laminar
+// below U R/nu = 500, that is 2000 with the hydraulic diameter 4 R.
+//
+//   slope           laminar: u_max and U of the channel of h and the width (laminar_channel.hpp)
+//                   turbulent: u_max = (u_tau/kappa) ln(h/z_0), between two side walls at most that of their law;
+//                   at most the start + g_x times the time of the run; u_tau^2 = g_x R
+//   mean velocity   the water above the bed carries it all: U = mean velocity times water/(A H);
+//                   laminar: u_tau and u_max of the same channel
+//                   turbulent: U = (u_tau/kappa) [ln(h/z_0) - 1], u_max = U + u_tau/kappa
+//   moving top      u_max = V, U = V/2; laminar (V H/nu < 1440): u_tau^2 = nu V/H
+//                   turbulent, log laws that meet half-way: V = (u_tau/kappa) [ln(H/(2 z_0)) + ln(9 u_tau H/(2 nu))]
+//
+// z_0: d/15 over grains (equivalent roughness of two diameters), nu/(9 u_tau) over a bare floor. Gravity drives no flow
+// across walls.
+//
+// Time from rest to 95 %: twice the water's momentum over the force, 2 U/g_x under a slope (from dU/dt = g_x (1 -
+// U^2/U_end^2)) and 2 U H/u_tau^2 under a moving top; laminar, by the slowest mode, that of the channel, and
+// 0.3 H^2/nu under a moving top; a held mean velocity 9.5 response times, then ten H/u_tau until the profile has
+// followed.
+#pragma once
+
+#include "driver/case/case.hpp"
+
+namespace thalweg::driver {
+
+enum class FlowCause {
+  none,
+  slope,
+  mean_velocity,
+  moving_face,
+  inlet,
+  initial_fluid,
+  moving_grains,
+  moving_solids,
+  settling
+};
+
+// "slope and depth", ...
+const char* words_of(FlowCause cause);
+
+struct FlowEstimate {
+  double speed = 0.0;                 // m/s, of the fastest fluid; 0: nothing moves it
+  FlowCause cause = FlowCause::none;  // of that speed
+
+  // Of the flow along the bed or a bare floor, that of a slope, a mean velocity or a moving top with the largest
+  // friction velocity. Meaningless without one.
+  FlowCause drive = FlowCause::none;
+  double depth = 0.0;              // m
+  double bulk_velocity = 0.0;      // m/s, mean over the depth
+  double friction_velocity = 0.0;  // m/s
+  bool laminar = false;
+  double spin_up = 0.0;        // s
+  bool still_gaining = false;  // the run ends before a slope can have brought the flow to its speed
+};
+
+// Of a case with a fluid; all 0 without.
+FlowEstimate flow_estimate(const Case& c);
+
+// The speed (m/s) that a flow driven by gravity along the bed can reach, whatever the time of the run. An upper
+// estimate, for warnings. 0 without a fluid or a slope.
+double estimated_velocity(const Case& c);
+
+// m/s, of one sphere in fluid at rest: weight less buoyancy against the drag of Schiller and Naumann (1933), with a
+// drag coefficient of 0.44 above a Reynolds number of 1000. gravity: m/s^2; viscosity: m^2/s. 0 for density ratio 1.
+double settling_velocity(double diameter, double density_ratio, double gravity, double viscosity);
+
+// m/s, of the fastest single grain free to move in the fluid at rest; 0 without any.
+double settling_velocity(const Case& c);
+
+}  // namespace thalweg::driver

@@ -1,0 +1,63 @@
+#include "driver/estimate/grain_weight.hpp"
+
+#include <numbers>
+
+namespace thalweg::driver {
+
+namespace {
+
+double displaced_mass(double fluid_density, double radius) {
+  return fluid_density * 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
+}
+
+}  // namespace
+
+ForceOnGrain submerged_weight(const Case& c) {
+  return [gravity = gravity_vector(c.gravity), density = c.fluid.density](double mass, double radius) {
+    const double displaced = displaced_mass(density, radius);
+    return Vec3(mass * gravity.x(), mass * gravity.y(), (mass - displaced) * gravity.z());
+  };
+}
+
+Vec3 balancing_acceleration(const Case& c) {
+  double excess = 0.0;  // kg
+  for (const beds::Population& grains : c.grains)
+    if (!grains.held()) excess += (grains.density - c.fluid.density) * grains.volume();
+  return -excess / (c.fluid.density * c.domain.size.prod()) * gravity_vector(c.gravity);
+}
+
+namespace {
+
+// That of the mode alone.
+ForceOnGrain weight_by_mode(const Case& c) {
+  const Vec3 gravity = gravity_vector(c.gravity);
+  if (c.gravity.mode == GravityMode::full) return [gravity](double mass, double) { return Vec3(mass * gravity); };
+  if (c.gravity.mode == GravityMode::reduced) return submerged_weight(c);
+  return [gravity, carried = balancing_acceleration(c), density = c.fluid.density](double mass, double radius) {
+    const double displaced = displaced_mass(density, radius);
+    return Vec3((mass - displaced) * gravity + displaced * carried);
+  };
+}
+
+}  // namespace
+
+// The pressure gradient that holds a flow carries the weight of the fluid along x as well; the rest of it is the force
+// on the fluid, which changes from step to step (coupling::FluidParameters::target_moves_grains).
+ForceOnGrain body_force(const Case& c) {
+  const ForceOnGrain weight = weight_by_mode(c);
+  if (!c.fluid.mean_velocity || !c.fluid.mean_velocity->on_grains) return weight;
+  return [weight, along = gravity_vector(c.gravity).x(), density = c.fluid.density](double mass, double radius) {
+    Vec3 force = weight(mass, radius);
+    force.x() = (mass - displaced_mass(density, radius)) * along;
+    return force;
+  };
+}
+
+ForceOnGrain buoyancy_in_load(const Case& c) {
+  if (c.gravity.mode != GravityMode::full) return [](double, double) { return Vec3(Vec3::Zero()); };
+  return [gravity = gravity_vector(c.gravity), density = c.fluid.density](double, double radius) {
+    return Vec3(0.0, 0.0, -displaced_mass(density, radius) * gravity.z());
+  };
+}
+
+}  // namespace thalweg::driver

@@ -1,0 +1,113 @@
+#include "driver/estimate/obstacles.hpp"
+
+#include "beds/population_seeds.hpp"
+#include "driver/case/grain_setup.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace thalweg::driver {
+
+namespace {
+
+constexpr double merged = 0.05;        // diameters of the smaller, of an overlap that makes one body of two grains
+constexpr double as_long_again = 2.0;  // times the longest free grain
+
+// A sphere or clump.
+struct HeldGrain {
+  double volume, extent;                       // m^3, m
+  std::vector<analysis::SphereInBed> spheres;  // one, or its members
+  bool stands = false;                         // is an obstacle
+};
+
+// first: id of the population's first.
+std::vector<HeldGrain> held_grains(const beds::Population& population, const PeriodicBox& box, GlobalId first) {
+  dem::GrainSeeds start = beds::grain_seeds(std::span(&population, 1), beds::PlacingRanks(box));
+  const std::vector<dem::GrainSeed> rows = dem::with_members(std::move(start.grains), start.clumps, box);
+  std::vector<HeldGrain> grains(static_cast<std::size_t>(population.count));
+  const auto members = static_cast<std::size_t>(population.row_count() / std::max<std::int64_t>(1, population.count));
+  for (std::size_t n = 0; n < grains.size(); ++n) {
+    const bool clump = population.shape.has_value();
+    grains[n].volume = clump ? population.volume() / static_cast<double>(population.count)
+                             : population.volume_of(population.diameter_of(n));
+    grains[n].extent = clump ? population.clumps.largest_extent : population.diameter_of(n);
+  }
+  for (const dem::GrainSeed& row : rows)
+    grains[static_cast<std::size_t>(row.id) / members].spheres.push_back(
+        {first + row.id, {row.position.x(), row.position.y(), row.position.z()}, row.radius});
+  return grains;
+}
+
+std::vector<HeldGrain> all_held_grains(const Case& c) {
+  std::vector<HeldGrain> all;
+  GlobalId first = 0;
+  for (const beds::Population& population : c.grains) {
+    if (population.held() && !population.placement.positions.empty())
+      for (HeldGrain& grain : held_grains(population, grain_box(c), first)) all.push_back(std::move(grain));
+    first += population.row_count();
+  }
+  return all;
+}
+
+bool are_merged(const PeriodicBox& box, const analysis::SphereInBed& a, const analysis::SphereInBed& b) {
+  const double reach = a.radius + b.radius - merged * 2.0 * std::min(a.radius, b.radius);
+  const Vec3 apart(a.centre[0] - b.centre[0], a.centre[1] - b.centre[1], a.centre[2] - b.centre[2]);
+  return box.difference(apart, Vec3::Zero()).squaredNorm() < reach * reach;
+}
+
+// Of spheres of different grains that are merged, the grains stand; neighbours are looked for along x.
+void mark_merged(const PeriodicBox& box, std::vector<HeldGrain>& grains) {
+  struct Entry {
+    double x;
+    std::size_t grain;
+    const analysis::SphereInBed* sphere;
+  };
+  std::vector<Entry> along;
+  double largest = 0.0;
+  for (std::size_t g = 0; g < grains.size(); ++g)
+    for (const analysis::SphereInBed& sphere : grains[g].spheres) {
+      largest = std::max(largest, sphere.radius);
+      for (const double image : {-box.size.x(), 0.0})  // one to the left, so that neighbours through the face are met
+        if (image == 0.0 || box.periodic[0]) along.push_back({sphere.centre[0] + image, g, &sphere});
+    }
+  std::sort(along.begin(), along.end(), [](const Entry& a, const Entry& b) { return a.x < b.x; });
+  for (std::size_t n = 0; n < along.size(); ++n)
+    for (std::size_t m = n + 1; m < along.size() && along[m].x - along[n].x < 2.0 * largest; ++m) {
+      HeldGrain &a = grains[along[n].grain], &b = grains[along[m].grain];
+      if (along[n].grain == along[m].grain || (a.stands && b.stands)) continue;
+      if (are_merged(box, *along[n].sphere, *along[m].sphere)) a.stands = b.stands = true;
+    }
+}
+
+double longest_free_grain(const Case& c) {
+  double longest = 0.0;
+  for (const beds::Population& population : c.grains)
+    if (!population.held()) longest = std::max(longest, population.largest_extent());
+  return longest;
+}
+
+}  // namespace
+
+Obstacles obstacles_of(const Case& c) {
+  Obstacles found;
+  if (c.disks) return found;
+  std::vector<HeldGrain> grains = all_held_grains(c);
+  mark_merged(grain_box(c), grains);
+  const double longest = longest_free_grain(c);
+  for (const HeldGrain& grain : grains) {
+    if (!grain.stands && !(longest > 0.0 && grain.extent >= as_long_again * longest)) continue;
+    found.volume_of_grains += grain.volume;
+    found.spheres.insert(found.spheres.end(), grain.spheres.begin(), grain.spheres.end());
+  }
+  return found;
+}
+
+double solid_volume(const Case& c) {
+  const Obstacles obstacles = obstacles_of(c);
+  if (obstacles.spheres.empty()) return grain_volume(c);
+  return grain_volume(c) - obstacles.volume_of_grains +
+         analysis::union_below(grain_box(c), obstacles.spheres, 1).back();
+}
+
+}  // namespace thalweg::driver

@@ -1,0 +1,55 @@
+#include "driver/estimate/reference_grain.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace thalweg::driver {
+namespace {
+
+bool is_free(const beds::Population& population) {
+  return !population.fixed && !population.motion && !population.prescribed_velocity;
+}
+
+std::vector<const beds::Population*> populations_that_count(const Case& c) {
+  std::vector<const beds::Population*> chosen;
+  const bool any_free = std::any_of(c.grains.begin(), c.grains.end(), is_free);
+  for (const beds::Population& population : c.grains)
+    if (is_free(population) || !any_free) chosen.push_back(&population);
+  return chosen;
+}
+
+double mean_density(const std::vector<const beds::Population*>& populations) {
+  const double first = populations.front()->density;
+  double mass = 0.0, volume = 0.0;
+  bool alike = true;  // exactly the density given, then, and not rounded by the division
+  for (const beds::Population* population : populations) {
+    alike = alike && population->density == first;
+    mass += population->density * population->volume();
+    volume += population->volume();
+  }
+  return alike ? first : mass / volume;
+}
+
+}  // namespace
+
+ReferenceGrain reference_grain(const Case& c) {
+  const std::vector<const beds::Population*> populations = populations_that_count(c);
+  const double density = mean_density(populations);
+  if (c.analysis.reference_diameter) return {*c.analysis.reference_diameter, density};
+  std::vector<beds::SizeCount> sizes;
+  for (const beds::Population* population : populations) {
+    const std::vector<beds::SizeCount> more = population->sizes_of_grains();
+    sizes.insert(sizes.end(), more.begin(), more.end());
+  }
+  return {beds::median_by_mass(beds::merged(std::move(sizes)), c.disks.has_value()), density};
+}
+
+std::string reference_text(const Case& c) {
+  const ReferenceGrain grain = reference_grain(c);
+  return fmt::format(
+      "diameter {:.6g} m, density {:.6g} kg/m^3 ({})", grain.diameter, grain.density,
+      c.analysis.reference_diameter ? "analysis.reference_diameter" : "volume median of all free grains");
+}
+
+}  // namespace thalweg::driver

@@ -1,0 +1,42 @@
+#include "driver/execution/final_bed.hpp"
+
+#include "analysis/observers/bed_surface.hpp"
+#include "driver/estimate/bed_flow.hpp"
+#include "driver/input/run_facts.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace thalweg::driver {
+
+std::vector<Figure> final_bed(MPI_Comm communicator, const Case& c, const System& system) {
+  const Snapshot snapshot = system.snapshot();
+  if (snapshot.grains.global_count == 0 || periodic_axes(c.domain)[2]) return {};
+  const auto surface = make_observer(analysis::BedSurfaceKeys{}, run_facts(c),
+                                     {communicator, *snapshot.decomposition, system.time_step()});
+  surface->observe(snapshot);
+  std::vector<Figure> bed;
+  for (const Figure& figure : surface->figures())
+    if (!std::isnan(figure.value)) bed.push_back(figure);  // no pixel is known to be static after one look
+  const double fraction = find_figure(surface->results(), "bulk_solid_fraction_mean").value_or(0.0);
+  bed.insert(bed.begin() + 1, {"porosity", "1", 1.0 - fraction});
+  if (fraction < loosest_bed) bed.resize(2);
+  return bed;
+}
+
+std::string final_bed_text(const std::vector<Figure>& bed) {
+  if (bed.empty()) return {};
+  const auto value = [&bed](const char* name) { return find_figure(bed, name); };
+  if (*value("porosity") > 1.0 - loosest_bed)
+    return fmt::format("no bed at the end: the grains below {:.4g} m have a porosity of {:.3g}", *value("bed_height"),
+                       *value("porosity"));
+  std::string text = fmt::format("bed: {:.4g} m high, porosity {:.3g}", *value("bed_height"), *value("porosity"));
+  if (const auto depth = value("flow_depth")) text += fmt::format("; {:.4g} m of flow above it", *depth);
+  if (const auto stress = value("bed_stress"))
+    text +=
+        fmt::format("; bed stress {:.4g} Pa, Shields number {:.4g}", *stress, value("shields_number").value_or(0.0));
+  return text + " (at the end)";
+}
+
+}  // namespace thalweg::driver

@@ -1,0 +1,23 @@
+// The bed that a run leaves behind, whether or not analysis.bed_surface has followed it.
+#pragma once
+
+#include "core/state/system.hpp"
+#include "driver/case/case.hpp"
+
+#include <mpi.h>
+
+#include <string>
+#include <vector>
+
+namespace thalweg::driver {
+
+// Of the present state, as analysis.bed_surface measures it: bed_height (m), porosity (1, of the lower half of the
+// bed), and under a fluid flow_depth and hydraulic_radius (m) and, where something drives the flow, bed_stress (Pa) and
+// shields_number; of grains too loose to be a bed only the first two. Empty without grains, and where z is periodic.
+// Collective; the same on every rank.
+std::vector<Figure> final_bed(MPI_Comm communicator, const Case& c, const System& system);
+
+// The same in words; empty where there are none.
+std::string final_bed_text(const std::vector<Figure>& bed);
+
+}  // namespace thalweg::driver

@@ -1,0 +1,192 @@
+#include "driver/execution/run_output.hpp"
+
+#include "core/parallel/on_first_rank.hpp"
+#include "driver/case/solid_setup.hpp"
+#include "driver/estimate/reference_grain.hpp"
+#include "driver/input/run_facts.hpp"
+#include "driver/setup/build_system.hpp"
+#include "driver/setup/checkpoint_file.hpp"
+#include "io/hdf5/profile_file.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace thalweg::driver {
+
+// What is in every row of the series.
+static std::vector<Figure> constants_of(const Case& c) {
+  if (c.grains.empty()) return {};
+  const ReferenceGrain reference = reference_grain(c);
+  return {{"reference_diameter", "m", reference.diameter}, {"reference_density", "kg/m^3", reference.density}};
+}
+
+static std::vector<io::SeriesTable::Column> series_columns(const std::vector<Figure>& row,
+                                                           const std::vector<Figure>& constants) {
+  std::vector<io::SeriesTable::Column> columns;
+  for (const auto* figures : {&row, &constants})
+    for (const Figure& figure : *figures) columns.push_back({figure.name, figure.unit});
+  return columns;
+}
+
+RunOutput::RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& folder, const System& system,
+                     const Observers& observers, const std::vector<Figure>& row, std::map<std::string, double> since,
+                     std::optional<double> continue_from)
+    : communicator_(communicator),
+      case_(c),
+      folder_(folder),
+      system_(system),
+      observers_(observers),
+      since_(std::move(since)),
+      continue_from_(continue_from),
+      kept_case_(kept_case_of(c)),
+      constants_(constants_of(c)),
+      columns_(series_columns(row, constants_)) {
+  if (continue_from && c.output.series.every > 0.0)
+    io::SeriesTable::check_columns(communicator, folder.series(), columns_);
+  for (const auto& observer : observers) {
+    if (!observer->has_records()) continue;
+    const auto step = continue_from ? std::optional(system.step()) : std::nullopt;
+    records_.push_back({observer.get(), io::RecordParts(communicator, folder.records(observer->name()), step),
+                        observer->take_records()});
+    records_.back().parts.check(records_.back().first);
+  }
+}
+
+void RunOutput::begin() {
+  if (continue_from_) drop_what_is_later();
+  const Snapshot snapshot = system_.snapshot();
+  if (snapshot.grains.global_count > 0) {
+    add_grains(folder_.path(), "grains", case_.output.grains, {});
+    for (const io::NamedGrainOutputKeys& part : case_.output.grain_parts)
+      add_grains(folder_.grain_parts(), part.name, part, part);
+  }
+  if (snapshot.fluid != nullptr) {
+    add_fluid(folder_.path(), "fluid", case_.output.fluid);
+    for (const io::NamedFluidOutputKeys& part : case_.output.fluid_parts)
+      add_fluid(folder_.fluid_parts(), part.name, part);
+  }
+  begin_solids();
+  for (ObserverRecords& records : records_) records.parts.begin(std::exchange(records.first, {}), system_.step());
+  if (case_.output.series.every > 0.0)
+    series_ = std::make_unique<io::SeriesTable>(communicator_, folder_.series(), columns_, continue_from_);
+}
+
+void RunOutput::add_grains(const std::filesystem::path& folder, const std::string& name,
+                           const io::GrainOutputKeys& keys, const io::GrainSelectionKeys& selection) {
+  if (keys.every > 0.0)
+    grains_.emplace_back(keys.every, io::GrainSeries(communicator_, folder, name, selection, keys.fields,
+                                                     population_ends(case_), continue_from_));
+}
+
+void RunOutput::add_fluid(const std::filesystem::path& folder, const std::string& name,
+                          const io::FluidOutputKeys& keys) {
+  if (keys.every > 0.0)
+    fluid_.emplace_back(
+        keys.every, io::FluidSeries(communicator_, folder, name, keys, keys.fields, keys.precision, continue_from_));
+}
+
+// The time between frames of solids that move, s, so that there is one for each of the grains and of the fluid; 0:
+// none.
+static double solid_frames_every(const Case& c) {
+  const double grains = c.grains.empty() ? 0.0 : c.output.grains.every, fluid = c.output.fluid.every;
+  return grains > 0.0 && fluid > 0.0 ? std::min(grains, fluid) : std::max(grains, fluid);
+}
+
+static bool any_solid_moves(const Case& c) {
+  return std::any_of(c.solids.begin(), c.solids.end(), [](const SolidCase& solid) { return motion_of(solid).moves(); });
+}
+
+// Solids that all stand still have one frame.
+void RunOutput::begin_solids() {
+  if (case_.solids.empty() || !(solid_frames_every(case_) > 0.0)) return;
+  solids_.emplace(communicator_, folder_.path(), continue_from_);
+  if (!continue_from_ && !any_solid_moves(case_)) write_solids(system_.time(), system_.step());
+}
+
+void RunOutput::write_solids(double time, std::int64_t step) {
+  solids_->write(time, step, solid_surfaces(case_, time));
+}
+
+void RunOutput::add_to(loop::LoopPlan& plan) {
+  const double time_step = system_.time_step();
+  plan.series = Schedule(case_.output.series.every, time_step);
+  plan.write_row = [this](double time, std::int64_t, const std::vector<Figure>& row) { write_row(time, row); };
+  plan.checkpoint = Schedule(case_.output.checkpoint.every, time_step);
+  plan.checkpoint_wall = case_.output.checkpoint.every_wall;
+  plan.write_checkpoint = [this](const loop::LoopRecord& record) { return write_checkpoint(record); };
+  for (auto& [every, series] : grains_)
+    plan.outputs.push_back({"grain output", Schedule(every, time_step),
+                            [&written = series](const Snapshot& snapshot) { written.write(snapshot); }});
+  for (auto& [every, series] : fluid_)
+    plan.outputs.push_back({"fluid output", Schedule(every, time_step),
+                            [&written = series](const Snapshot& snapshot) { written.write(snapshot); }});
+  if (solids_ && any_solid_moves(case_))
+    plan.outputs.push_back({"solid output", Schedule(solid_frames_every(case_), time_step),
+                            [this](const Snapshot& snapshot) { write_solids(snapshot.time, snapshot.step); }});
+  // With the looks at the system's health, so that nothing is written of a state that is broken.
+  if (!records_.empty())
+    plan.outputs.push_back({"records", Schedule(loop::TimeLoop::steps_between_health_checks * time_step, time_step),
+                            [this](const Snapshot&) { add_records(); }});
+}
+
+void RunOutput::write_row(double time, const std::vector<Figure>& measured) {
+  std::vector<double> values;
+  for (const auto* figures : {&measured, &std::as_const(constants_)})
+    for (const Figure& figure : *figures) values.push_back(figure.value);
+  series_->append(time, values);
+}
+
+// As often as the state is saved, and at the end.
+void RunOutput::write_profiles() {
+  io::ProfileGroups groups;
+  for (const auto& observer : observers_) {
+    std::vector<Profile> profiles = observer->profiles();
+    if (!profiles.empty()) groups.emplace_back(observer->name(), std::move(profiles));
+  }
+  if (std::vector<Profile> own = system_.profiles(); !own.empty())
+    groups.emplace_back(name_of(case_.system), std::move(own));
+  if (!groups.empty()) io::write_profiles(communicator_, folder_.profiles(), system_.time(), groups);
+}
+
+void RunOutput::add_records() {
+  for (ObserverRecords& records : records_) records.parts.add(records.observer->take_records(), system_.step());
+}
+
+// Also of frames and records that the run no longer writes: they are of the course that it has left.
+void RunOutput::drop_what_is_later() const {
+  on_first_rank(communicator_, [&] {
+    for (const std::string& name : io::RunFolder::names_of_records())
+      io::drop_parts_after(folder_.records(name), system_.step());
+  });
+  for (const auto& folder : {folder_.path(), folder_.grain_parts(), folder_.fluid_parts()})
+    io::take_up_indices(communicator_, folder, *continue_from_);
+}
+
+// A restart counts on what lies beside the checkpoint.
+void RunOutput::put_on_disk() {
+  for (auto& [every, series] : grains_) series.put_on_disk();
+  for (auto& [every, series] : fluid_) series.put_on_disk();
+  if (solids_) solids_->put_on_disk();
+  for (ObserverRecords& records : records_) records.parts.write(system_.step());
+  if (series_) series_->put_on_disk();
+}
+
+std::uint64_t RunOutput::write_checkpoint(const loop::LoopRecord& record) {
+  add_records();
+  put_on_disk();
+  const std::filesystem::path path = folder_.checkpoint(system_.step());
+  write_checkpoint_file(communicator_, path, case_, kept_case_, system_, observers_,
+                        {record.largest, record.largest_from, since_});
+  std::uint64_t bytes = 0;
+  on_first_rank(communicator_, [&] {
+    folder_.rotate_checkpoints(system_.step(), static_cast<int>(std::min<std::int64_t>(
+                                                   case_.output.checkpoint.keep, std::numeric_limits<int>::max())));
+    std::error_code ignored;
+    bytes = std::filesystem::file_size(path, ignored);
+  });
+  write_profiles();
+  return bytes;
+}
+
+}  // namespace thalweg::driver

@@ -1,0 +1,35 @@
+// What a run leaves behind in figures: summary.json for scripts, a table of phases for people.
+#pragma once
+
+#include "driver/cost/memory.hpp"
+#include "driver/estimate/reference_grain.hpp"
+#include "driver/setup/accounts.hpp"
+#include "io/files/json_object.hpp"
+#include "loop/phase_shares.hpp"
+
+#include <mpi.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace thalweg::driver {
+
+// What is known of a run beside its state.
+struct RunIdentity {
+  std::string name, system, command;
+  double until;  // s
+  Index3 layout;
+  int ranks;
+  std::optional<ReferenceGrain> reference = {};  // none without grains
+  double memory_bound_mlups = 0.0;               // what the measured memory bandwidth allows; 0 without a lattice
+  std::optional<MemoryUse> memory = {};          // once it has ended in good order
+  std::int64_t warnings = 0;                     // about the case, printed when the run begins
+};
+
+// summary.json of a run that has ended in whatever way. `bed` (final_bed.hpp) and `phases` may be empty.
+io::JsonObject summary_of(const RunIdentity& identity, const System& system, const loop::LoopRecord& record,
+                          const Observers& observers, const Accounts& accounts, const std::vector<Figure>& bed,
+                          const std::vector<loop::PhaseShare>& phases);
+
+}  // namespace thalweg::driver

@@ -1,0 +1,62 @@
+#include "driver/input/bed_placement.hpp"
+
+#include "beds/files/population_bed.hpp"
+#include "core/base/error.hpp"
+#include "core/parallel/on_first_rank.hpp"
+#include "driver/case/grain_setup.hpp"
+#include "driver/input/case_checks.hpp"
+#include "io/hdf5/bed_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+namespace thalweg::driver {
+namespace {
+
+Bed read_bed(const std::filesystem::path& path, const io::YamlDocument& document, const std::string& key,
+             const Ranks& ranks) {
+  const auto check = [&] {
+    if (std::filesystem::is_regular_file(path)) return;
+    throw document.error(key, fmt::format("there is no file {}; give the path of a bed file relative to the case file, "
+                                          "for example run/bed.h5 as thalweg run leaves it",
+                                          path.string()));
+  };
+  ranks.alone() ? check() : on_first_rank(ranks.communicator(), check);
+  try {
+    return io::read_bed_file(path, ranks);
+  } catch (const InputError& error) {
+    std::string reason = error.what();
+    if (reason.ends_with('.')) reason.pop_back();
+    throw document.error(key, reason);
+  }
+}
+
+}  // namespace
+
+void fill_in_grains(Case& c, const io::YamlDocument& document, const KnownBeds& known, const Ranks& ranks) {
+  const PeriodicBox box = grain_box(c);
+  for (std::size_t n = 0; n < c.grains.size(); ++n) {
+    const std::string key = fmt::format("grains.{}", n);
+    if (std::optional<beds::RegionKeys>& region = c.grains[n].placement.region)
+      for (int axis = 0; axis < 3; ++axis)
+        if (region->upper[axis] <= c.domain.size[axis])
+          region->upper[axis] = std::min(region->upper[axis], box.size[axis]);
+    // Of their own, lest grain n of all of them be put at the same place.
+    if (!document.find(key + ".placement.seed")) c.grains[n].placement.seed = static_cast<std::int64_t>(n) + 1;
+    std::optional<Bed> bed;
+    if (std::optional<std::string>& file = c.grains[n].placement.file) {
+      file = document.path_beside(*file, key + ".placement.file");
+      if (known) bed = known(c, n, ranks);
+      if (!bed) bed = read_bed(*file, document, key + ".placement.file", ranks);
+    }
+    at_place(document, key, [&] {
+      complete(c.grains[n], c.disks ? c.disks->thickness : 0.0, std::move(bed), box, c.analysis.reference_diameter,
+               ranks);
+    });
+  }
+}
+
+}  // namespace thalweg::driver

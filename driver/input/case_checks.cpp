@@ -1,0 +1,301 @@
+#include "driver/input/case_checks.hpp"
+
+#include "core/base/schedule.hpp"
+#include "driver/case/limit_text.hpp"
+#include "driver/case/solid_setup.hpp"
+#include "driver/estimate/grain_weight.hpp"
+#include "driver/input/grain_checks.hpp"
+#include "driver/input/run_facts.hpp"
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+namespace thalweg::driver {
+namespace {
+
+// True Mach number 0.3, beyond which the lattice fluid is compressible: 0.3 / sqrt(3) cells a step.
+constexpr double largest_lattice_velocity = 0.173;
+// A sphere must cover cells wherever it is, or the fluid would not see it at all: half the diagonal of a cell,
+// sqrt(3)/2.
+constexpr double fewest_cells_per_radius = 0.87;
+// A component of the random eddies at the start stays below this many times its root mean square nearly everywhere.
+constexpr double strongest_gust = 4.0;
+constexpr double most_cells_along_axis = 1e6;
+
+void check_whole_cells(const DomainCase& domain, const io::YamlDocument& document) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double cells = domain.size[axis] / domain.spacing;
+    const double whole = std::round(cells);
+    if (cells > most_cells_along_axis)
+      throw document.error("domain.spacing",
+                           fmt::format("the {} m along {} would be {:.3g} cells, more than {:.0f}; give a "
+                                       "larger spacing in m",
+                                       domain.size[axis], axis_name[axis], cells, most_cells_along_axis));
+    if (whole >= 1.0 && std::abs(cells - whole) <= whole_number_tolerance * whole) continue;
+    const double shorter = std::floor(cells) * domain.spacing, longer = std::ceil(cells) * domain.spacing;
+    const std::string sizes =
+        shorter > 0.0 ? fmt::format("{:.9g} or {:.9g} m", shorter, longer) : fmt::format("at least {:.9g} m", longer);
+    throw document.error("domain.size",
+                         fmt::format("the {} m along {} are {:.6g} cells of {} m; make it a whole number of "
+                                     "cells, {}",
+                                     domain.size[axis], axis_name[axis], cells, domain.spacing, sizes));
+  }
+}
+
+void check_resolution(const Case& c, const io::YamlDocument& document) {
+  if (c.grains.empty() || c.system != SystemKind::resolved) return;
+  const double largest = 0.5 * smallest_diameter(c) / fewest_cells_per_radius;
+  if (c.domain.spacing > largest * (1.0 + whole_number_tolerance))
+    throw document.error(
+        "domain.spacing",
+        fmt::format(
+            "the spacing is too coarse for grains of {:.6g} m, which would lie between the "
+            "centres of cells and not be seen; give at most {} m, better domain.spacing: {:.9g}",
+            smallest_diameter(c), at_most_text(largest, 4),
+            spacing_below(c.domain, std::min(largest, smallest_diameter(c) / c.coupling.fewest_cells_per_diameter))));
+}
+
+void check_lattice_velocity(const Case& c, const io::YamlDocument& document, const std::string& key, double velocity) {
+  const double lattice_velocity = velocity / units_of(c).velocity();
+  if (lattice_velocity <= largest_lattice_velocity * (1.0 + whole_number_tolerance)) return;
+  throw document.error(key,
+                       fmt::format("{:.4g} m/s would be {:.3g} cells a step, more than {}; give a fluid.time_step of "
+                                   "at most {} s",
+                                   velocity, lattice_velocity, largest_lattice_velocity,
+                                   at_most_text(largest_lattice_velocity * c.domain.spacing / velocity, 3)));
+}
+
+// A rotation is taken about the nearest image of the axis, so that a solid must not reach across half a periodic box.
+void check_motion_in_fluid(const Case& c, const io::YamlDocument& document, std::size_t n) {
+  const SolidCase& solid = c.solids[n];
+  const std::string key = fmt::format("solids.{}.motion", n);
+  check_lattice_velocity(c, document, key, largest_speed(solid));
+  const dem::PrescribedMotion motion = motion_of(solid);
+  if (!motion.turns()) return;
+  const double reach = reach_from_axis(solid);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!periodic_axes(c.domain)[axis] || std::abs(motion.axis[axis]) == 1.0) continue;
+    if (reach > 0.5 * c.domain.size[axis] - c.domain.spacing)
+      throw document.error(key + ".rotation",
+                           fmt::format("the solid reaches {:.4g} m from its axis and would meet its own image along "
+                                       "{}, where the box is periodic and {:g} m long; give a longer box",
+                                       reach, axis_name[axis], c.domain.size[axis]));
+  }
+}
+
+void check_solids(const Case& c, const io::YamlDocument& document) {
+  for (std::size_t n = 0; n < c.solids.size(); ++n) {
+    const SolidCase& solid = c.solids[n];
+    if (has_fluid(c) && solid.sphere && solid.sphere->radius < fewest_cells_per_radius * c.domain.spacing)
+      throw document.error(fmt::format("solids.{}.sphere.radius", n),
+                           fmt::format("the sphere is smaller than the cells can show; give at least {:.4g} m",
+                                       fewest_cells_per_radius * c.domain.spacing));
+    if (solid.motion && has_fluid(c)) check_motion_in_fluid(c, document, n);
+    if (c.grains.empty() && (solid.friction || solid.rolling_friction))
+      throw document.error(fmt::format("solids.{}.{}", n, solid.friction ? "friction" : "rolling_friction"),
+                           "there are no grains that would feel it; remove it");
+  }
+  check_solid_extents(c, document);
+}
+
+void check_initial_fluid(const Case& c, const io::YamlDocument& document) {
+  if (c.initial.fluid.uniform)
+    check_lattice_velocity(c, document, "initial.fluid.uniform", c.initial.fluid.uniform->norm());
+  if (c.initial.fluid.linear_profile)
+    check_lattice_velocity(c, document, "initial.fluid.linear_profile.velocity",
+                           c.initial.fluid.linear_profile->velocity.norm());
+  if (!c.initial.fluid.log_profile) return;
+  const coupling::LogProfileKeys& profile = *c.initial.fluid.log_profile;
+  const double depth = c.domain.size[2] - profile.bed_height;
+  if (depth > 0.0 && depth <= profile.roughness)
+    throw document.error(
+        "initial.fluid.log_profile.roughness",
+        fmt::format("the profile begins above the water, which is {:.6g} m deep; give a thirtieth of the "
+                    "height of what makes the bed rough, in m",
+                    depth));
+  if (depth <= 0.0)
+    throw document.error(
+        "initial.fluid.log_profile.bed_height",
+        fmt::format("no fluid is left above the bed; give a height in m below {:.6g}", c.domain.size[2]));
+  check_lattice_velocity(
+      c, document, "initial.fluid.log_profile.shear_velocity",
+      profile.shear_velocity * (std::log(depth / profile.roughness) / 0.41 +
+                                (profile.perturbation ? strongest_gust * profile.perturbation->amplitude : 0.0)));
+}
+
+// The largest speed (m/s) that a grain of a rigid population can have anywhere in its region or the box.
+double largest_speed(const Case& c, const beds::Population& grains) {
+  const dem::PrescribedMotion motion = prescribed_motion(*grains.motion);
+  std::vector<Vec3> places = grains.placement.positions;
+  const beds::RegionKeys room = grains.placement.region.value_or(beds::RegionKeys{Vec3::Zero(), c.domain.size});
+  for (int corner = 0; corner < 8 && grains.placement.positions.empty(); ++corner)
+    places.emplace_back((corner & 1 ? room.upper : room.lower)[0], (corner & 2 ? room.upper : room.lower)[1],
+                        (corner & 4 ? room.upper : room.lower)[2]);
+  double distance = 0.0;
+  for (const Vec3& place : places) distance = std::max(distance, motion.axis.cross(place - motion.centre).norm());
+  return motion.largest_speed(distance + 0.5 * grains.largest_diameter());
+}
+
+void check_fluid(const Case& c, const io::YamlDocument& document) {
+  if (!has_fluid(c)) return;
+  const std::string step_key = c.fluid.time_step ? "fluid.time_step" : "fluid.maximum_lattice_velocity";
+  if (!(relaxation_time(c) > 0.5))
+    throw document.error("fluid.kinematic_viscosity",
+                         "the relaxation time of the lattice comes to 1/2, where nothing "
+                         "dissipates; give a larger viscosity in m^2/s or a longer step");
+  if (fluid_time_step(c) > c.run.until)
+    throw document.error(step_key,
+                         fmt::format("the step of {:.4g} s is longer than the run; give a shorter step in s or a "
+                                     "later run.until",
+                                     fluid_time_step(c)));
+  if (c.fluid.expected_velocity)
+    check_lattice_velocity(c, document, "fluid.expected_velocity", *c.fluid.expected_velocity);
+  if (c.fluid.mean_velocity)
+    check_lattice_velocity(c, document, "fluid.mean_velocity.velocity", std::abs(c.fluid.mean_velocity->velocity));
+  if (c.fluid.mean_velocity && c.fluid.mean_velocity->response_time < 100.0 * fluid_time_step(c))
+    throw document.error(
+        "fluid.mean_velocity.response_time",
+        fmt::format("the force is steered every 10 steps and needs ten times as long to answer; give at "
+                    "least {} s",
+                    at_least_text(100.0 * fluid_time_step(c), 3)));
+  for (const coupling::FaceKeys& face : c.domain.faces)
+    if (face.has_velocity()) check_lattice_velocity(c, document, "domain.boundaries", face.velocity.norm());
+  check_initial_fluid(c, document);
+  for (std::size_t n = 0; n < c.grains.size(); ++n) {
+    const beds::Population& grains = c.grains[n];
+    const std::string key = fmt::format("grains.{}.", n);
+    const double radius = 0.5 * grains.largest_extent();
+    check_lattice_velocity(c, document, key + "velocity", grains.velocity.norm());
+    check_lattice_velocity(c, document, key + "angular_velocity", grains.angular_velocity.norm() * radius);
+    if (grains.prescribed_velocity)
+      check_lattice_velocity(c, document, key + "prescribed_velocity", grains.prescribed_velocity->norm());
+    if (grains.prescribed_angular_velocity)
+      check_lattice_velocity(c, document, key + "prescribed_angular_velocity",
+                             grains.prescribed_angular_velocity->norm() * radius);
+    if (grains.motion) check_lattice_velocity(c, document, key + "motion", largest_speed(c, grains));
+  }
+}
+
+void check_balanced_gravity(const Case& c, const io::YamlDocument& document) {
+  const Vec3 gravity = gravity_vector(c.gravity);
+  const std::array<bool, 3> periodic = periodic_axes(c.domain);
+  for (int axis = 0; axis < 3; ++axis)
+    if (gravity[axis] != 0.0 && !periodic[static_cast<std::size_t>(axis)])
+      throw document.error(
+          "gravity.mode",
+          fmt::format("walls across {} would carry the weight that balanced gravity leaves to the fluid; "
+                      "make domain.boundaries.{} periodic, or set mode: reduced",
+                      axis_name[axis], axis_name[axis]));
+  if (c.grains.empty() || balancing_acceleration(c).isZero(0.0))
+    throw document.error("gravity.mode", "there is no weight of free grains to balance; set mode: reduced");
+}
+
+void check_gravity(const Case& c, const io::YamlDocument& document) {
+  const auto any = [&c](lbm::FaceType type) {
+    return std::any_of(c.domain.faces.begin(), c.domain.faces.end(),
+                       [type](const coupling::FaceKeys& f) { return f.type == type; });
+  };
+  if (has_fluid(c) && c.gravity.mode == GravityMode::balanced) check_balanced_gravity(c, document);
+  if (!has_fluid(c) || c.gravity.mode != GravityMode::full) return;
+  if (c.run.ramp > 0.0)
+    throw document.error("run.ramp",
+                         "in full gravity the fluid begins at rest under its whole weight, which leaves nothing to "
+                         "raise; remove the key or set gravity.mode: reduced");
+  if (c.domain.faces[bottom].type == lbm::FaceType::periodic)
+    throw document.error("gravity.mode",
+                         "a box that is periodic along z has no hydrostatic pressure; give domain.boundaries a bottom "
+                         "and a top, or set mode: reduced");
+  if (any(lbm::FaceType::pressure_outlet))
+    throw document.error("gravity.mode",
+                         "an outlet of one pressure contradicts the hydrostatic pressure; set mode: reduced or remove "
+                         "the outlet");
+  if (!c.initial.from.none())
+    throw document.error("gravity.mode",
+                         "full gravity begins with its own hydrostatic pressure; remove initial.from or set mode: "
+                         "reduced");
+}
+
+// Grains bounce off a face through which the water flows, and jam there.
+void check_open_faces(const Case& c, const io::YamlDocument& document) {
+  const auto free = std::find_if(c.grains.begin(), c.grains.end(), [](const auto& grains) { return !grains.held(); });
+  if (!has_fluid(c) || free == c.grains.end()) return;
+  const char* keys[] = {"x_low", "x_high", "y_low", "y_high"};
+  for (std::size_t face = x_low; face <= y_high; ++face) {
+    if (!lbm::is_open(c.domain.faces[face].type)) continue;
+    const std::string axis = axis_name[face / 2], own = fmt::format("domain.boundaries.{}", keys[face]);
+    throw document.error(
+        document.find(own) ? own : "domain.boundaries." + axis,
+        fmt::format(
+            "grains cannot come in or leave where the water does, and would jam at this face; give {0}: periodic "
+            "in place of {0}_low and {0}_high, or hold the grains with grains.{1}.fixed: true",
+            axis, free - c.grains.begin()));
+  }
+}
+
+// Times are multiples of the step in double precision.
+void check_number_of_steps(const Case& c, const io::YamlDocument& document) {
+  const double step = c.system == SystemKind::continuum ? *c.run.time_step : step_time(c);
+  if (c.run.until <= most_countable_steps * step) return;
+  throw document.error("run.until",
+                       fmt::format("the run would take {:.3g} steps of {:.3g} s, more than can be counted; "
+                                   "give a longer {}, or at most {} s",
+                                   c.run.until / step, step, has_fluid(c) ? "fluid.time_step" : "run.time_step",
+                                   at_most_text(most_countable_steps * step, 3)));
+}
+
+void check_model_fluid(const Case& c, const io::YamlDocument& document) {
+  if (c.system != SystemKind::model_fluid) return;
+  const Vec3 gravity = gravity_vector(c.gravity);
+  if (gravity.x() != 0.0 || gravity.y() != 0.0 || !(gravity.z() < 0.0))
+    throw document.error("gravity",
+                         "the model fluid drives the grains, and gravity is downwards; give a magnitude alone");
+  if (c.domain.faces[bottom].type == lbm::FaceType::periodic)
+    throw document.error("domain.boundaries", "the bed needs a floor; give a bottom and a top that are not periodic");
+  const std::array<bool, 3> periodic = periodic_axes(c.domain);
+  if (!periodic[0] || !(c.disks || periodic[1]))
+    throw document.error("domain.boundaries",
+                         "beside a side wall the fluid would flow as where grains are missing; make x and y periodic");
+  if (c.model_fluid.ramp && c.run.until_at_rest)
+    throw document.error(
+        "run.until_at_rest",
+        "a rising Shields number begins where grains are at rest, and the run goes on; remove the section, "
+        "or model_fluid.ramp");
+  at_place(document, "model_fluid", [&] { check(c.model_fluid, mean_grain(c), -gravity.z()); });
+}
+
+void check_observers(const Case& c, const io::YamlDocument& document) {
+  at_place(document, "analysis", [&] { check(c.analysis.observers, run_facts(c)); });
+}
+
+}  // namespace
+
+void check_column(const Case& c, const io::YamlDocument& document) {
+  const Vec3 gravity = gravity_vector(c.gravity);
+  at_place(document, "", [&] { check(c.continuum, gravity.x(), -gravity.z()); });
+}
+
+void check_box(const Case& c, const io::YamlDocument& document) {
+  check_whole_cells(c.domain, document);
+  check_resolution(c, document);
+  check_that_grains_fit(c, document);
+}
+
+void check_case(const Case& c, const io::YamlDocument& document) {
+  check_box(c, document);
+  check_solids(c, document);
+  check_fluid(c, document);
+  check_number_of_steps(c, document);
+  check_gravity(c, document);
+  check_open_faces(c, document);
+  check_grains(c, document);
+  check_model_fluid(c, document);
+  check_observers(c, document);
+  if (has_fluid(c))
+    at_place(document, "output", [&] { check_fluid_output(c.output, c.domain.size, c.domain.spacing); });
+  if (!c.grains.empty()) at_place(document, "output", [&] { check_grain_output(c.output, grain_output_facts(c)); });
+}
+
+}  // namespace thalweg::driver

@@ -1,0 +1,15 @@
+// The part of case_checks.hpp that is about grains.
+#pragma once
+
+#include "driver/case/case.hpp"
+#include "io/text/yaml_document.hpp"
+
+namespace thalweg::driver {
+
+// Whether there is room for the grains in the box and where they are to be placed. Throws InputError.
+void check_that_grains_fit(const Case& c, const io::YamlDocument& document);
+
+// Plates, disks, clumps, materials and the steps a contact takes. Throws InputError.
+void check_grains(const Case& c, const io::YamlDocument& document);
+
+}  // namespace thalweg::driver

@@ -1,0 +1,15 @@
+// From a case to what its observers, and the frames of its grains, may know of it.
+#pragma once
+
+#include "analysis/observer/run_facts.hpp"
+#include "driver/case/case.hpp"
+
+namespace thalweg::driver {
+
+analysis::RunFacts run_facts(const Case& c);
+
+// For the frames of its grains.
+io::PopulationEnds population_ends(const Case& c);
+io::GrainOutputFacts grain_output_facts(const Case& c);
+
+}  // namespace thalweg::driver

@@ -1,0 +1,346 @@
+#include "driver/plan/case_warnings.hpp"
+
+#include "driver/case/axes.hpp"
+#include "driver/case/limit_text.hpp"
+#include "driver/case/solid_setup.hpp"
+#include "driver/estimate/bed_flow.hpp"
+#include "driver/estimate/contact_estimate.hpp"
+#include "driver/estimate/drag_accuracy.hpp"
+#include "driver/estimate/flow_estimate.hpp"
+#include "driver/estimate/stability.hpp"
+#include "driver/input/run_facts.hpp"
+#include "driver/plan/consistent_remedy.hpp"
+#include "driver/plan/contact_warnings.hpp"
+#include "driver/plan/drive_warnings.hpp"
+#include "driver/plan/plan_warnings.hpp"
+#include "driver/plan/remedy.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace thalweg::driver {
+
+namespace {
+
+// The largest velocity expected, cells a step.
+double expected_lattice_velocity(const Case& c) {
+  return c.fluid.expected_velocity.value_or(flow_estimate(c).speed) / units_of(c).velocity();
+}
+
+Warnings fast_flow(const Case& c) {
+  const FlowEstimate flow = flow_estimate(c);
+  const double lattice_velocity = flow.speed / units_of(c).velocity();
+  // The estimate is an upper one: it has to contradict what the user expects, by a quarter.
+  const double expected = c.fluid.expected_velocity.value_or(0.0);
+  if (!(lattice_velocity > 0.1) || flow.speed < 1.25 * expected) return {};
+  const Change remedy = c.fluid.time_step
+                            ? fluid_step_change(c, 0.1 * c.domain.spacing / flow.speed, 2, Rounding::down)
+                            : number_change("fluid.expected_velocity", flow.speed, 2, Rounding::up,
+                                            [](Case& other, double speed) { other.fluid.expected_velocity = speed; });
+  return {
+      {fmt::format(
+           "The flow may reach about {:.2g} m/s ({}), which is {:.2g} cells a step{}; results are accurate below 0.1 "
+           "and the limit is 0.173",
+           flow.speed, words_of(flow.cause), lattice_velocity,
+           expected > 0.0 ? fmt::format(" and {:.2g} times fluid.expected_velocity", flow.speed / expected)
+                          : std::string()),
+       {{{remedy}, {}}},
+       "a shorter step with finer cells"}};
+}
+
+Warnings compression(const Case& c) {
+  const double compression =
+      3.0 * std::abs(gravity_vector(c.gravity).z()) / units_of(c).acceleration() * c.domain.size[2] / c.domain.spacing;
+  if (c.gravity.mode != GravityMode::full || !(compression > 0.05)) return {};
+  const Change step = fluid_step_change(c, fluid_time_step(c) * std::sqrt(0.05 / compression), 2, Rounding::down);
+  const Change mode =
+      word_change("gravity.mode", "reduced", [](Case& other) { other.gravity.mode = GravityMode::reduced; });
+  return {{fmt::format("The weight of the fluid compresses it by {:.2g} % from top to bottom", 100.0 * compression),
+           {{{step}, {}}, {{mode}, {}}}}};
+}
+
+// The constant of another model goes with it.
+Remedy subgrid_changes(const Case& c, const char* word, lbm::SubgridModel model) {
+  Remedy changes{word_change("fluid.subgrid_model", word, [model](Case& other) { other.fluid.subgrid_model = model; })};
+  if (c.fluid.smagorinsky_constant)
+    changes.push_back(word_change("fluid.smagorinsky_constant", "null",
+                                  [](Case& other) { other.fluid.smagorinsky_constant.reset(); }));
+  return changes;
+}
+
+Change collision_change(const char* word, lbm::CollisionModel model) {
+  return word_change("fluid.collision", word, [model](Case& other) { other.fluid.collision = model; });
+}
+
+Change trt_change() { return collision_change("trt", lbm::CollisionModel::trt); }
+
+// Of the relaxation time over 1/2, by the step.
+Change excess_change(const Case& c, double excess, Rounding rounding) {
+  return fluid_step_change(c, fluid_time_step(c) * excess / (relaxation_time(c) - 0.5), 2, rounding);
+}
+
+// From here on both trt and bgk are stable and accurate without a subgrid model.
+constexpr double calm_excess = 0.03;
+
+bool smagorinsky(const Case& c) { return c.fluid.subgrid().model() == lbm::SubgridModel::smagorinsky; }
+
+Warnings unstable_collision(const Case& c) {
+  const double excess = relaxation_time(c) - 0.5, fastest = expected_lattice_velocity(c);
+  const double stable = stable_lattice_velocity(c.fluid.collision, excess);
+  if (c.fluid.subgrid().on() || (stable > 0.0 && fastest <= stable)) return {};
+  return {
+      {fmt::format("The relaxation time is only {:.2g} above 1/2 and there is no subgrid model; the collision "
+                   "chosen was stable there {}",
+                   excess,
+                   stable == 0.0 ? std::string("at no velocity") : fmt::format("up to {:g} cells a step", stable)),
+       {{subgrid_changes(c, "qr", lbm::SubgridModel::qr), {}}, {{excess_change(c, calm_excess, Rounding::up)}, {}}}}};
+}
+
+Warnings long_relaxation(const Case& c) {
+  const double excess = relaxation_time(c) - 0.5;
+  if (excess <= 1.0) return {};
+  return {{fmt::format("The relaxation time, {:.2g}, is so large that walls and grains lose accuracy", excess + 0.5),
+           {{{excess_change(c, 1.0, Rounding::down)}, {}}},
+           "a shorter fluid.time_step"}};
+}
+
+Change bulk_change(double steps) {
+  return exact_change("fluid.bulk_relaxation_time", steps, 3,
+                      [](Case& other, double to) { other.fluid.bulk_relaxation_time = to; });
+}
+
+Warnings bulk_relaxation(const Case& c) {
+  const double bulk = c.fluid.bulk_relaxation_time.value_or(0.0), excess = relaxation_time(c) - 0.5;
+  const bool eddies = c.fluid.subgrid().on();
+  if (!eddies && c.fluid.collision == lbm::CollisionModel::trt && bulk > 0.0 && excess < 0.0299)
+    return {
+        {fmt::format("With a bulk relaxation time of its own and no subgrid model the collision trt is unstable at a "
+                     "relaxation time only {:.2g} above 1/2",
+                     excess),
+         {{{bulk_change(0.0)}, {}}, {{collision_change("bgk", lbm::CollisionModel::bgk)}, {}}}}};
+  // The largest stable stream at tau - 1/2 = 0.003, where the subgrid model brings water (docs/stability.md), to 5 %.
+  const double calm = 0.17 / std::sqrt(bulk), fastest = expected_lattice_velocity(c);
+  if (!lbm::bgk_in_the_open(c.fluid.collision) || bulk <= 1.0 || excess >= 0.003 || fastest <= calm) return {};
+  return {{fmt::format("With a bulk relaxation time of {:g} steps a stream faster than about {:.2g} cells a step grows "
+                       "stripes, and this one may reach {:.2g}",
+                       bulk, calm, fastest),
+           {{{bulk_change(1.0)}, {}}}}};
+}
+
+// The maps of docs/stability.md end there.
+constexpr double least_mapped_excess = 1e-4;
+
+// Finer cells and a step that keep the flow's cells a step, and bring the relaxation time as far above 1/2 as this.
+Remedy finer_cells_and_step(const Case& c, double excess) {
+  constexpr double margin = 0.99;
+  const double finer = margin * c.domain.spacing * (relaxation_time(c) - 0.5) / excess;
+  const Change spacing = spacing_change(c, std::min(finer, c.domain.spacing));
+  const Case after = changed(c, {spacing});
+  if (!c.fluid.time_step) return {spacing};  // the step follows
+  return {spacing,
+          fluid_step_change(after, fluid_time_step(c) * after.domain.spacing / c.domain.spacing, 3, Rounding::down)};
+}
+
+Warnings unmapped_relaxation(const Case& c) {
+  const double excess = relaxation_time(c) - 0.5;
+  if (!c.fluid.subgrid().on() || excess >= least_mapped_excess * (1.0 - 1e-9)) return {};
+  return {{fmt::format("The relaxation time is only {:.2g} above 1/2, and stability has not been tested below {:g} "
+                       "(docs/stability.md)",
+                       excess, least_mapped_excess),
+           {{{excess_change(c, least_mapped_excess, Rounding::up)}, {}},
+            {finer_cells_and_step(c, least_mapped_excess), {}}},
+           "finer cells"}};
+}
+
+Warnings laminar_flow(const Case& c) {
+  const FlowEstimate flow = flow_estimate(c);
+  const double falling = settling_velocity(c) * largest_diameter(c) / c.fluid.kinematic_viscosity;
+  const bool slow_grains = flow.drive == FlowCause::none && falling > 0.0 && falling < 10.0;
+  if (!smagorinsky(c) || !(slow_grains || (flow.drive != FlowCause::none && flow.laminar))) return {};
+  return {
+      {fmt::format("The flow is laminar (Reynolds number {:.3g}) and Smagorinsky's model would add to its viscosity",
+                   slow_grains ? falling : flow.bulk_velocity * flow.depth / c.fluid.kinematic_viscosity),
+       {{subgrid_changes(c, "qr", lbm::SubgridModel::qr), {}}}}};
+}
+
+Change slope_change(const Case& c, double slope) {
+  if (!c.gravity.vector)
+    return number_change("gravity.slope", slope, 2, Rounding::down,
+                         [](Case& other, double to) { other.gravity.slope = to; });
+  const Vec3 gravity = *c.gravity.vector;
+  const std::string along = at_most_text(slope * -gravity.z(), 2);
+  return word_change("gravity.vector", fmt::format("[{}, {:.9g}, {:.9g}]", along, gravity.y(), gravity.z()),
+                     [x = std::stod(along)](Case& other) { other.gravity.vector->x() = x; });
+}
+
+Warnings sliding_bed(const Case& c) {
+  if (c.system != SystemKind::grains && c.system != SystemKind::resolved) return {};
+  const double ratio = stress_ratio_at_base(c), held = bulk_friction(c.contact.friction);
+  if (ratio <= held) return {};
+  const double slope = gravity_vector(c.gravity).x() / -gravity_vector(c.gravity).z() * held / ratio;
+  return {
+      {fmt::format("The slope requires a shear stress of {:.2g} times the normal stress at the base of the bed, and "
+                   "grains of this friction sustain about {:.2g}, so that the bed slides as a whole",
+                   ratio, held),
+       {{{slope_change(c, slope)}, {}}},
+       "a smaller slope"}};
+}
+
+constexpr double suspiciously_long = 10.0;  // boxes; a file in millimetres is a thousand times too large
+
+Warnings large_solids(const Case& c) {
+  Warnings found;
+  for (std::size_t n = 0; n < c.solids.size(); ++n) {
+    const SolidCase& solid = c.solids[n];
+    if (solid.stl.empty()) continue;
+    const bodies::Extent extent = extent_of(solid);
+    const Vec3 boxes = (extent.upper - extent.lower).cwiseQuotient(c.domain.size);
+    int axis = 0;
+    if (boxes.maxCoeff(&axis) <= suspiciously_long) continue;
+    found.push_back(
+        fmt::format("The surface solids.{0} is {1:.4g} m long along {2}, {3:.3g} times the box: if its file is in "
+                    "millimetres, consider solids.{0}.scale: {4:.9g}.",
+                    n, extent.upper[axis] - extent.lower[axis], axis_name[axis], boxes[axis], 1e-3 * solid.scale));
+  }
+  return found;
+}
+
+// Such a solid does nothing, unless it moves into the box.
+Warnings absent_solids(const Case& c) {
+  Warnings found;
+  for (std::size_t n = 0; n < c.solids.size(); ++n) {
+    if (c.solids[n].motion) continue;
+    const bodies::Extent extent = extent_of(c.solids[n]);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (periodic_axes(c.domain)[static_cast<std::size_t>(axis)]) continue;
+      if (extent.upper[axis] > 0.0 && extent.lower[axis] < c.domain.size[axis]) continue;
+      found.push_back(fmt::format(
+          "The solid solids.{} lies outside the box, from {:.4g} to {:.4g} m along {} where the box reaches "
+          "from 0 to {:g} m, and does nothing: consider {}.",
+          n, extent.lower[axis], extent.upper[axis], axis_name[axis], c.domain.size[axis],
+          c.solids[n].sphere ? fmt::format("another solids.{}.sphere.centre in m", n)
+                             : fmt::format("solids.{0}.translate in m, or another solids.{0}.scale", n)));
+      break;
+    }
+  }
+  return found;
+}
+
+// Fewer cells than this across a grain do not resolve the flow around it.
+constexpr double barely_resolved = 5.0;
+
+Warnings coarse_cells(const Case& c) {
+  const double cells = smallest_diameter(c) / c.domain.spacing, fewest = c.coupling.fewest_cells_per_diameter;
+  if (c.grains.empty() || cells >= fewest * (1.0 - whole_number_tolerance)) return {};
+  const Change finer = spacing_change(c, smallest_diameter(c) / fewest);
+  const Case after = changed(c, {finer});
+  const Change step =
+      fluid_step_change(after, fluid_time_step(c) * after.domain.spacing / c.domain.spacing, 3, Rounding::down);
+  const Change accepted =
+      number_change("coupling.fewest_cells_per_diameter", std::floor(10.0 * cells) / 10.0, 6, Rounding::down,
+                    [](Case& other, double to) { other.coupling.fewest_cells_per_diameter = to; });
+  return {{fmt::format("The smallest grain is only {:.2g} cells across{}; its drag is {} (docs/accuracy.md)", cells,
+                       cells < barely_resolved ? ", which does not resolve the flow around it" : "", drag_text(c)),
+           {{c.fluid.time_step ? Remedy{finer, step} : Remedy{finer}, {}}, {{accepted}, "accept it with "}},
+           "finer cells"}};
+}
+
+// Only grains that sink make a bed.
+Warnings floating_grains(const Case& c) {
+  Warnings found;
+  if (gravity_vector(c.gravity).z() >= 0.0 || c.gravity.mode == GravityMode::balanced) return found;
+  for (std::size_t n = 0; n < c.grains.size(); ++n)
+    if (!c.grains[n].held() && c.grains[n].density <= (1.0 + neutral_density) * c.fluid.density)
+      found.push_back(
+          fmt::format("Grains of {:g} kg/m^3 (grains.{}) are no heavier than the fluid of {:g} kg/m^3: they "
+                      "make no bed, and there is no Shields number.",
+                      c.grains[n].density, n, c.fluid.density));
+  return found;
+}
+
+// Drag of dense arrays at ten cells a diameter, without a subgrid model: with bgk 56 % too high at tau - 1/2 = 0.02 and
+// 19 % too low at 0.5; with trt and bouzidi 4 % too low at 0.1 and 15 % at 0.5
+// (benchmarks/validation/simple_cubic_arrays).
+Warnings inexact_links(const Case& c) {
+  const double excess = relaxation_time(c) - 0.5;
+  const bool bgk = c.fluid.collision == lbm::CollisionModel::bgk, trt = lbm::trt_near_bodies(c.fluid.collision),
+             bouzidi = c.coupling.links == bodies::LinkRule::bouzidi;
+  if (c.grains.empty() || smagorinsky(c) || excess < 0.0299) return {};
+  if (!bgk && !(trt && bouzidi && excess > 0.15)) return {};
+  Remedy remedy;
+  if (bgk) remedy.push_back(trt_change());
+  remedy.push_back(
+      word_change("coupling.links", "cli", [](Case& other) { other.coupling.links = bodies::LinkRule::cli; }));
+  return {{fmt::format("In a dense bed with {}, drag depends on the relaxation time and is off by tens of percent",
+                       bgk ? "bgk" : "bouzidi links"),
+           {{remedy, {}}}}};
+}
+
+// A step must be short against what a single grain in the fluid covers: a twentieth of a diameter.
+Warnings fast_model_fluid(const Case& c) {
+  if (c.system != SystemKind::model_fluid) return {};
+  const double fastest = fastest_model_fluid(c), longest = 0.05 * mean_grain(c).diameter / fastest;
+  if (*c.run.time_step <= longest) return {};
+  return {
+      {fmt::format("The fluid around a single grain moves at {:.3g} m/s, which is more than a twentieth of a diameter "
+                   "a step",
+                   fastest),
+       {{{number_change("run.time_step", longest, 2, Rounding::down,
+                        [](Case& other, double step) { other.run.time_step = step; })},
+         {}}}}};
+}
+
+Warnings of_sentences(const std::vector<std::string>& sentences) { return {sentences.begin(), sentences.end()}; }
+
+Warnings observer_warnings(const Case& c) { return of_sentences(warnings(c.analysis.observers, run_facts(c))); }
+Warnings drives(const Case& c) { return of_sentences(drive_warnings(c)); }
+
+template <Warnings (*rule)(const Case&)>
+Warnings with_fluid(const Case& c) {
+  return has_fluid(c) ? rule(c) : Warnings{};
+}
+
+// Of the case, of its plan and of rebounds, in this order.
+const std::vector<WarningRule> case_rules{observer_warnings,
+                                          drives,
+                                          fast_model_fluid,
+                                          overlap_warnings,
+                                          sliding_bed,
+                                          with_fluid<fast_flow>,
+                                          with_fluid<compression>,
+                                          with_fluid<unstable_collision>,
+                                          with_fluid<long_relaxation>,
+                                          with_fluid<unmapped_relaxation>,
+                                          with_fluid<bulk_relaxation>,
+                                          with_fluid<laminar_flow>,
+                                          large_solids,
+                                          absent_solids,
+                                          with_fluid<coarse_cells>,
+                                          with_fluid<floating_grains>,
+                                          with_fluid<inexact_links>};
+
+std::vector<WarningRule> all_rules() {
+  std::vector<WarningRule> rules = case_rules;
+  const std::vector<WarningRule> plan = plan_rules();
+  rules.insert(rules.end(), plan.begin(), plan.end());
+  rules.push_back(rebound_warnings);
+  return rules;
+}
+
+}  // namespace
+
+std::vector<std::string> warnings(const Case& c) {
+  return ConsistentRemedies(c, all_rules()).sentences(0, case_rules.size());
+}
+
+std::vector<std::string> warnings_of_plan(const Case& c) {
+  return ConsistentRemedies(c, all_rules()).sentences(case_rules.size(), all_rules().size() - 1);
+}
+
+std::vector<std::string> remarks_on_rebound(const Case& c) {
+  return ConsistentRemedies(c, all_rules()).sentences(all_rules().size() - 1, all_rules().size());
+}
+
+}  // namespace thalweg::driver

@@ -1,0 +1,15 @@
+// `thalweg check`: what a case means, whether it is resolved and stable, and what it costs.
+#pragma once
+
+#include "driver/case/case.hpp"
+
+#include <string>
+#include <vector>
+
+namespace thalweg::driver {
+
+// The whole report, one text a line. bandwidth: of one core's memory, bytes/s. Throws InputError where the case cannot
+// be run (grains that do not fit, a grain step too long for the contacts).
+std::vector<std::string> check_report(const Case& c, double bandwidth);
+
+}  // namespace thalweg::driver

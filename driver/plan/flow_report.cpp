@@ -1,0 +1,142 @@
+#include "driver/plan/flow_report.hpp"
+
+#include "driver/estimate/bed_flow.hpp"
+#include "driver/estimate/contact_estimate.hpp"
+#include "driver/estimate/drag_accuracy.hpp"
+#include "driver/estimate/flow_estimate.hpp"
+#include "driver/estimate/reference_grain.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace thalweg::driver {
+
+namespace {
+
+using Lines = std::vector<std::string>;
+
+std::string on_lattice(const Case& c, double speed) {
+  const double lattice = speed / units_of(c).velocity();
+  return fmt::format("{:.3g} cells a step, Mach number {:.3g} (good below 0.3)", lattice, lattice * std::sqrt(3.0));
+}
+
+void add_speed(const Case& c, const FlowEstimate& flow, Lines& lines) {
+  if (flow.speed > 0.0)
+    lines.push_back(fmt::format("flow       up to about {:.3g} m/s ({}): {}", flow.speed, words_of(flow.cause),
+                                on_lattice(c, flow.speed)));
+  else
+    lines.push_back("flow       " + std::string(words_of(FlowCause::none)));
+  if (c.fluid.expected_velocity)
+    lines.push_back(fmt::format("expected   {:.3g} m/s by the case: {}", *c.fluid.expected_velocity,
+                                on_lattice(c, *c.fluid.expected_velocity)));
+}
+
+// The times by which a run is to be planned.
+void add_times(const Case& c, const FlowEstimate& flow, Lines& lines) {
+  if (flow.drive == FlowCause::none) return;
+  const double own =
+      flow.laminar ? flow.depth * flow.depth / c.fluid.kinematic_viscosity : flow.depth / flow.friction_velocity;
+  const char* name = flow.laminar ? "H^2/nu" : "H/u*";
+  lines.push_back(fmt::format(
+      "times      {} {:.3g} s, H/U {:.3g} s with U {:.3g} m/s ({}); from rest the flow takes about {:.3g} s; the run "
+      "lasts {:.3g} {}",
+      name, own, flow.depth / flow.bulk_velocity, flow.bulk_velocity, flow.laminar ? "laminar" : "turbulent",
+      flow.spin_up, c.run.until / own, name));
+}
+
+// "no slope" where even a vertical one would not give it.
+std::string slope_text(const FlowNumbers& flow, double shields) {
+  const double slope = slope_for(flow, shields);
+  return fmt::format("{} for {:g}", std::isfinite(slope) ? fmt::format("{:.3g}", slope) : "no slope", shields);
+}
+
+void add_slope(const FlowNumbers& flow, Lines& lines) {
+  lines.push_back(fmt::format("Shields    {:.4g} from depth and slope", flow.shields_depth) +
+                  (flow.side_walls > 0 ? fmt::format("; {:.4g} from the hydraulic radius between the side walls",
+                                                     flow.shields_hydraulic)
+                                       : ""));
+  lines.push_back(fmt::format("slope      is {:.4g} times the Shields number at this depth: {}, {}",
+                              flow.slope / flow.shields_hydraulic, slope_text(flow, 0.03), slope_text(flow, 0.1)));
+  lines.push_back(fmt::format("Reynolds   {:.4g} of a grain at the friction velocity {:.3g} m/s",
+                              flow.particle_reynolds, flow.friction_velocity));
+}
+
+// Of a flow that a mean velocity or a moving top drives.
+void add_other_drive(const Case& c, const FlowEstimate& flow, Lines& lines) {
+  const ReferenceGrain grain = reference_grain(c);
+  const double g = gravity_vector(c.gravity).norm(), excess = grain.density / c.fluid.density - 1.0;
+  if (!(g > 0.0) || excess <= neutral_density || flow.drive == FlowCause::none || flow.drive == FlowCause::slope)
+    return;
+  const double stress = flow.friction_velocity * flow.friction_velocity;
+  lines.push_back(fmt::format("Shields    about {:.4g} by {}, {} flow; the run measures it (analysis.bed_surface)",
+                              stress / (excess * g * grain.diameter), words_of(flow.drive),
+                              flow.laminar ? "laminar" : "turbulent"));
+  lines.push_back(fmt::format("Reynolds   {:.4g} of a grain at the friction velocity {:.3g} m/s",
+                              flow.friction_velocity * grain.diameter / c.fluid.kinematic_viscosity,
+                              flow.friction_velocity));
+}
+
+// Empty where the grains make no bed of at least their diameter.
+std::string bed_text(const Case& c) {
+  if (c.grains.empty() || c.disks || periodic_axes(c.domain)[2] || gravity_vector(c.gravity).z() >= 0.0) return {};
+  if (has_fluid(c) && !std::isfinite(flow_numbers(c).depth)) return {};
+  const double height = settled_height(c), diameter = reference_grain(c).diameter;
+  if (height < diameter) return {};
+  return fmt::format("bed        settles at about {:.3g} m ({:.3g} diameters, solid fraction {:g})", height,
+                     height / diameter, settled_fraction(c));
+}
+
+void add_stress_at_base(const Case& c, Lines& lines) {
+  if (const double ratio = stress_ratio_at_base(c); ratio > 0.0)
+    lines.push_back(fmt::format(
+        "base       of the bed: the slope requires a shear stress of {:.3g} times the normal stress; grains of this "
+        "friction sustain about {:.3g}",
+        ratio, bulk_friction(c.contact.friction)));
+}
+
+}  // namespace
+
+Lines fluid_lines(const Case& c) {
+  Lines lines;
+  if (!has_fluid(c)) return lines;
+  const Units units = units_of(c);
+  lines.push_back(fmt::format("fluid      {:g} kg/m^3, {:g} m^2/s; relaxation time 1/2 + {:.3g}; {:g} s a step",
+                              c.fluid.density, c.fluid.kinematic_viscosity, relaxation_time(c) - 0.5, units.time_step));
+  if (c.fluid.bulk_relaxation_time.value_or(0.0) > 0.0)
+    lines.push_back(
+        fmt::format("sound      damped by a bulk viscosity of {:.3g} m^2/s, {:.3g} times the shear viscosity",
+                    bulk_viscosity(c), bulk_viscosity(c) / c.fluid.kinematic_viscosity));
+  if (c.run.ramp > 0.0)
+    lines.push_back(fmt::format("gravity    rises to its full value during the first {:g} s, {:.3g} steps", c.run.ramp,
+                                c.run.ramp / units.time_step));
+  const FlowEstimate flow = flow_estimate(c);
+  add_speed(c, flow, lines);
+  add_times(c, flow, lines);
+  return lines;
+}
+
+Lines bed_lines(const Case& c) {
+  Lines lines;
+  if (!c.grains.empty()) lines.push_back("reference  " + reference_text(c));
+  const FlowNumbers numbers = flow_numbers(c);
+  if (std::isfinite(numbers.galileo)) {
+    lines.push_back(
+        fmt::format("density    ratio {:.4g}; Galileo number {:.4g}", numbers.density_ratio, numbers.galileo));
+    if (const double falling = settling_velocity(c); falling > 0.0)
+      lines.push_back(fmt::format("fall       of a single grain through the fluid at rest: {:.3g} m/s", falling));
+    if (const std::string drag = drag_text(c); !drag.empty()) lines.push_back("drag       " + drag);
+  }
+  if (const std::string bed = bed_text(c); !bed.empty())
+    lines.push_back(bed + (std::isfinite(numbers.depth)
+                               ? fmt::format(", {:.3g} m of flow above, slope {:g}", numbers.depth, numbers.slope)
+                               : std::string()));
+  if (std::isfinite(numbers.shields_depth))
+    add_slope(numbers, lines);
+  else if (std::isfinite(numbers.depth))
+    add_other_drive(c, flow_estimate(c), lines);
+  add_stress_at_base(c, lines);
+  return lines;
+}
+
+}  // namespace thalweg::driver

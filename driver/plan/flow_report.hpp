@@ -1,0 +1,18 @@
+// What `thalweg check` says of the fluid, of the flow and of the bed under it.
+#pragma once
+
+#include "driver/case/case.hpp"
+
+#include <string>
+#include <vector>
+
+namespace thalweg::driver {
+
+// One text a line; none without a fluid.
+std::vector<std::string> fluid_lines(const Case& c);
+
+// Reference grain, density ratio, bed, Shields number, times and stresses, as far as the case has them; none without
+// grains in a fluid but for the slope of dry grains.
+std::vector<std::string> bed_lines(const Case& c);
+
+}  // namespace thalweg::driver

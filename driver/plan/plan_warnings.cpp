@@ -1,0 +1,100 @@
+#include "driver/plan/plan_warnings.hpp"
+
+#include "driver/case/limit_text.hpp"
+#include "driver/estimate/bed_flow.hpp"
+#include "driver/estimate/flow_estimate.hpp"
+
+#include <fmt/format.h>
+
+namespace thalweg::driver {
+
+namespace {
+
+// Nothing is written more often than once a step.
+Warnings frequent_output(const Case& c) {
+  Warnings found;
+  const double step = step_time(c);
+  const auto look = [&](const std::string& key, double every, const Setter& set) {
+    if (every > 0.0 && every < step * (1.0 - 1e-9))
+      found.push_back(
+          {fmt::format("output.{} = {:g} s is less than a step of {:.3g} s, so that it is written in every step", key,
+                       every, step),
+           {{{number_change("output." + key, step, 3, Rounding::up, set)}, {}}}});
+  };
+  look("series.every", c.output.series.every, [](Case& other, double to) { other.output.series.every = to; });
+  look("fluid.every", c.output.fluid.every, [](Case& other, double to) { other.output.fluid.every = to; });
+  look("grains.every", c.output.grains.every, [](Case& other, double to) { other.output.grains.every = to; });
+  look("checkpoint.every", c.output.checkpoint.every,
+       [](Case& other, double to) { other.output.checkpoint.every = to; });
+  return found;
+}
+
+Change until_change(double least) {
+  return number_change("run.until", least, 2, Rounding::up, [](Case& other, double to) { other.run.until = to; });
+}
+
+Warnings long_ramp(const Case& c) {
+  if (c.run.ramp <= c.run.until) return {};
+  const Change shorter = number_change("run.ramp", 0.5 * c.run.until, 2, Rounding::down,
+                                       [](Case& other, double to) { other.run.ramp = to; });
+  return {{fmt::format("Gravity rises until {:g} s and the run ends at {:g} s", c.run.ramp, c.run.until),
+           {{{shorter}, {}}, {{until_change(2.0 * c.run.ramp)}, {}}}}};
+}
+
+bool starts_developed(const Case& c) {
+  return c.initial.takes(InitialField::fluid) || c.initial.fluid.log_profile || c.initial.fluid.linear_profile;
+}
+
+// The log law that a turbulent flow under a free surface comes to.
+std::vector<Advice> developed_start(const Case& c, const FlowEstimate& flow) {
+  const bool suits = flow.drive == FlowCause::slope || flow.drive == FlowCause::mean_velocity;
+  if (!suits || flow.laminar || c.domain.faces[top].drags() || c.initial.fluid.count() > 0) return {};
+  const double roughness =
+      c.grains.empty() ? c.fluid.kinematic_viscosity / (9.0 * flow.friction_velocity) : largest_diameter(c) / 15.0;
+  const coupling::LogProfileKeys profile{settled_height(c), flow.friction_velocity, roughness, std::nullopt};
+  const std::string text = fmt::format("{{bed_height: {:.3g}, shear_velocity: {:.3g}, roughness: {:.2g}}}",
+                                       profile.bed_height, profile.shear_velocity, profile.roughness);
+  const Change start = word_change("initial.fluid.log_profile", text,
+                                   [profile](Case& other) { other.initial.fluid.log_profile = profile; });
+  return {{{start}, "begin with a developed flow, "}};
+}
+
+Warnings short_run(const Case& c) {
+  const FlowEstimate flow = flow_estimate(c);
+  if (flow.drive == FlowCause::none) return {};
+  if (starts_developed(c)) {
+    const double turnover = flow.laminar ? 0.0 : flow.depth / flow.friction_velocity;
+    if (c.run.until >= turnover) return {};
+    return {{fmt::format("The run ({:g} s) is shorter than one turnover of the largest eddies, H/u* = {:.2g} s",
+                         c.run.until, turnover),
+             {{{until_change(turnover)}, {}}},
+             "a later run.until"}};
+  }
+  if (c.run.until >= flow.spin_up) return {};
+  std::vector<Advice> advice{{{until_change(flow.spin_up)}, {}}};
+  for (const Advice& start : developed_start(c, flow)) advice.push_back(start);
+  return {{fmt::format("The run ({:g} s) is too short for the flow to develop, which takes about {:.2g} s from rest",
+                       c.run.until, flow.spin_up),
+           advice, "a later run.until or a developed start (initial)"}};
+}
+
+Warnings other_start(const Case& c) {
+  const FlowEstimate flow = flow_estimate(c);
+  if (flow.drive == FlowCause::none || !c.initial.fluid.log_profile) return {};
+  const double given = c.initial.fluid.log_profile->shear_velocity, ratio = given / flow.friction_velocity;
+  constexpr double meant_to_be_slow = 0.25;  // in a run that is too short for the flow anyway
+  if ((flow.still_gaining && ratio < meant_to_be_slow) || (ratio >= 0.8 && ratio <= 1.25)) return {};
+  const Change start =
+      exact_change("initial.fluid.log_profile.shear_velocity", flow.friction_velocity, 3,
+                   [](Case& other, double to) { other.initial.fluid.log_profile->shear_velocity = to; });
+  return {{fmt::format("The flow starts with a shear velocity of {:.3g} m/s and is driven ({}) towards {:.3g} m/s",
+                       given, words_of(flow.drive), flow.friction_velocity),
+           {{{start}, {}}},
+           "a start with the shear velocity it is driven towards, and the step that suits it"}};
+}
+
+}  // namespace
+
+std::vector<WarningRule> plan_rules() { return {frequent_output, long_ramp, short_run, other_start}; }
+
+}  // namespace thalweg::driver

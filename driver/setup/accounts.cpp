@@ -1,0 +1,72 @@
+#include "driver/setup/accounts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace thalweg::driver {
+
+namespace {
+
+std::string largest_path(const std::string& figure) { return "largest/" + figure; }
+std::string since_path(const std::string& observer) { return "run/since_" + observer; }
+
+std::string interval_path(const std::string& observer) { return "run/interval_" + observer; }
+
+// s, between its measurements, which go with the rows of the series where it has no interval of its own.
+double interval_of(const analysis::Observer& observer, double series_every) {
+  return observer.every() > 0.0 ? observer.every() : series_every;
+}
+
+// Whether the archive has means of measurements at another interval; this run's cannot be added to them, since all
+// would weigh the same.
+bool has_other_weights(ArchiveReader& archive, const analysis::Observer& observer, double series_every) {
+  const std::string path = interval_path(observer.name());
+  return archive.has(observer.name() + "/mean_from") && archive.has(path) &&
+         archive.real_attribute(path) != interval_of(observer, series_every);
+}
+
+}  // namespace
+
+void Accounts::save(ArchiveWriter& archive, const Observers& observers, double series_every) const {
+  archive.attribute("largest/from", largest_from);
+  for (const Figure& figure : largest)
+    if (std::isfinite(figure.value)) archive.attribute(largest_path(figure.name), figure.value);
+  for (const auto& [observer, time] : since) archive.attribute(since_path(observer), time);
+  for (const auto& observer : observers) {
+    observer->save(archive);
+    archive.attribute(interval_path(observer->name()), interval_of(*observer, series_every));
+  }
+}
+
+Accounts Accounts::load(ArchiveReader& archive, const System& system, Observers& observers, double series_every) {
+  Accounts accounts;
+  accounts.largest_from = archive.has("largest/from") ? archive.real_attribute("largest/from") : system.time();
+  for (Figure figure : system.figures())
+    if (archive.has(largest_path(figure.name))) {
+      figure.value = archive.real_attribute(largest_path(figure.name));
+      accounts.largest.push_back(figure);
+    }
+  for (const auto& observer : observers) {
+    const std::string name = observer->name(), path = since_path(name);
+    if (has_other_weights(archive, *observer, series_every) || !observer->load(archive))
+      accounts.since[name] = system.time();
+    else if (archive.has(path))
+      accounts.since[name] = archive.real_attribute(path);
+  }
+  return accounts;
+}
+
+std::vector<Figure> Accounts::results_of(const analysis::Observer& observer) const {
+  std::vector<Figure> results = observer.results();
+  const auto begun = since.find(observer.name());
+  if (begun == since.end()) return results;
+  const auto from =
+      std::find_if(results.begin(), results.end(), [](const Figure& figure) { return figure.name == "mean_from"; });
+  if (from != results.end())
+    from->value = std::max(from->value, begun->second);
+  else
+    results.push_back({"since", "s", begun->second});
+  return results;
+}
+
+}  // namespace thalweg::driver

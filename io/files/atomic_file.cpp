@@ -1,0 +1,135 @@
+#include "io/files/atomic_file.hpp"
+
+#include "core/base/error.hpp"
+#include "io/files/interrupted_call.hpp"
+
+#include <fmt/format.h>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <vector>
+
+namespace thalweg::io {
+
+namespace {
+
+// Returns the name under which the text stands until it is renamed.
+std::filesystem::path write_partial(const std::filesystem::path& path, const std::string& text) {
+  std::filesystem::path partial = path;
+  partial += ".partial";
+  std::ofstream file(partial, std::ios::binary | std::ios::trunc);
+  file << text;
+  file.close();
+  if (file) return partial;
+  const std::string why = std::strerror(errno);
+  std::error_code ignored;
+  std::filesystem::remove(partial, ignored);  // what is left of a full disk is needed for other files
+  throw RunError(fmt::format("{}: cannot write the file: {}.", path.string(), why));
+}
+
+// fsync() of a file or a folder; some file systems refuse it for a folder.
+bool sync(const std::filesystem::path& path) {
+  const int file = opened(path, O_RDONLY);
+  if (file < 0) return false;
+  const bool synced =
+      repeated_if_interrupted([&] { return ::fsync(file); }) == 0 || errno == EINVAL || errno == ENOTSUP;
+  ::close(file);
+  return synced;
+}
+
+}  // namespace
+
+void write_text_atomically(const std::filesystem::path& path, const std::string& text) {
+  rename_into_place(write_partial(path, text), path);
+}
+
+void write_text_durably(const std::filesystem::path& path, const std::string& text) {
+  if (!put_on_disk(write_partial(path, text), path))
+    throw RunError(fmt::format("{}: cannot write the file: {}.", path.string(), std::strerror(errno)));
+}
+
+bool put_on_disk(const std::filesystem::path& path) { return sync(path); }
+
+bool put_on_disk(const std::filesystem::path& from, const std::filesystem::path& to) {
+  return sync(from) && std::rename(from.c_str(), to.c_str()) == 0 && sync(std::filesystem::absolute(to).parent_path());
+}
+
+void rename_into_place(const std::filesystem::path& from, const std::filesystem::path& to) {
+  std::error_code error;
+  std::filesystem::rename(from, to, error);
+  if (error) throw RunError(fmt::format("{}: cannot write the file: {}.", to.string(), error.message()));
+}
+
+bool is_left_by_a_kill(const std::filesystem::path& path) {
+  return path.filename().string().find(".partial") != std::string::npos;
+}
+
+bool create_file(const std::filesystem::path& path) {
+  const int file = opened(path, O_CREAT | O_TRUNC | O_WRONLY);
+  if (file < 0) return false;
+  ::close(file);
+  return true;
+}
+
+bool can_create(const std::filesystem::path& path) { return create_file(path) && std::remove(path.c_str()) == 0; }
+
+bool reserve_on_disk(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t bytes,
+                     std::uint64_t written_to) {
+  const int file = opened(path, O_RDWR);
+  if (file < 0) return false;
+  const int reserved = repeated_if_interrupted(
+      [&] { return ::fallocate(file, 0, static_cast<off_t>(offset), static_cast<off_t>(bytes)); });
+  const int error = reserved == 0 ? 0 : errno;
+  ::close(file);
+  if (error != EOPNOTSUPP && error != ENOSYS) return error == 0;
+  const std::uint64_t from = std::max(offset, written_to), to = offset + bytes;
+  return from >= to || fill_with_zeros(path, from, to - from);
+}
+
+bool fill_with_zeros(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t bytes) {
+  const int file = opened(path, O_WRONLY);
+  if (file < 0) return false;
+  const std::vector<char> zeros(static_cast<std::size_t>(std::min<std::uint64_t>(bytes, std::uint64_t{1} << 22)), 0);
+  bool good = true;
+  while (good && bytes > 0) {
+    const ssize_t done = repeated_if_interrupted([&] {
+      return ::pwrite(file, zeros.data(), std::min<std::uint64_t>(bytes, zeros.size()), static_cast<off_t>(offset));
+    });
+    good = done > 0;
+    if (good) offset += static_cast<std::uint64_t>(done), bytes -= static_cast<std::uint64_t>(done);
+  }
+  good = good && repeated_if_interrupted([&] { return ::fdatasync(file); }) == 0;
+  return (::close(file) == 0 || errno == EINTR) && good;
+}
+
+void make_folder(const std::filesystem::path& path) {
+  std::error_code error;
+  std::vector<std::filesystem::path> changed;
+  for (auto missing = std::filesystem::absolute(path); !std::filesystem::exists(missing, error);
+       missing = missing.parent_path())
+    changed.push_back(missing.parent_path());
+  std::filesystem::create_directories(path, error);
+  if (error) throw RunError(fmt::format("{}: cannot create the folder: {}.", path.string(), error.message()));
+  for (const auto& folder : changed) sync(folder);  // one that cannot be read cannot be waited for
+}
+
+std::string read_text(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored))
+    throw InputError(fmt::format("{}: there is no such file; check the path.", path.string()));
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  if (!file || std::filesystem::is_directory(path, ignored))
+    throw InputError(fmt::format("{}: cannot read the file: {}.", path.string(), std::strerror(errno)));
+  return text.str();
+}
+
+}  // namespace thalweg::io

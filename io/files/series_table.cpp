@@ -1,0 +1,106 @@
+#include "io/files/series_table.hpp"
+
+#include "core/base/error.hpp"
+#include "core/parallel/mpi_session.hpp"
+#include "core/parallel/on_first_rank.hpp"
+#include "io/files/atomic_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <functional>
+
+namespace thalweg::io {
+namespace {
+
+std::string header_of(const std::vector<SeriesTable::Column>& columns) {
+  std::string header = "time [s]";
+  for (const auto& column : columns) header += fmt::format(",{} [{}]", column.name, column.unit);
+  return header + "\n";
+}
+
+// The rows of an existing file up to a time. A last line without its newline was being written when the run ended.
+std::string kept_rows(const std::string& text, std::size_t start, double continue_from) {
+  std::string rows;
+  while (start < text.size()) {
+    const std::size_t end = text.find('\n', start);
+    if (end == std::string::npos) break;
+    double time = 0.0;
+    const auto parsed = std::from_chars(text.data() + start, text.data() + end, time);
+    if (parsed.ec == std::errc() && time <= continue_from) rows += text.substr(start, end + 1 - start);
+    start = end + 1;
+  }
+  return rows;
+}
+
+std::string cannot_write_series(const std::filesystem::path& path) {
+  return fmt::format("{}: cannot write the series; is the disk full or the folder write-protected?", path.string());
+}
+
+// Throws InputError where the text of a file does not begin with this header; an empty file can be continued.
+void refuse_other_columns(const std::filesystem::path& path, const std::string& text, const std::string& header) {
+  if (text.empty() || text.starts_with(header)) return;
+  throw InputError(
+      fmt::format("{}: the file has other columns than this run writes ({}); restart into another folder "
+                  "with --out.",
+                  path.string(), header.substr(0, header.size() - 1)));
+}
+
+// work: with the file, on rank 0. Anything but an InputError means that it cannot be written.
+void act(MPI_Comm communicator, const std::filesystem::path& path, const std::function<void()>& work) {
+  on_first_rank(communicator, [&] {
+    try {
+      work();
+    } catch (const InputError&) {
+      throw;
+    } catch (const std::runtime_error&) {
+      throw RunError(cannot_write_series(path));
+    }
+  });
+}
+
+}  // namespace
+
+void SeriesTable::check_columns(MPI_Comm communicator, const std::filesystem::path& path,
+                                const std::vector<Column>& columns) {
+  act(communicator, path, [&] {
+    if (std::filesystem::exists(path)) refuse_other_columns(path, read_text(path), header_of(columns));
+  });
+}
+
+SeriesTable::SeriesTable(MPI_Comm communicator, std::filesystem::path path, std::vector<Column> columns,
+                         std::optional<double> continue_from)
+    : communicator_(communicator), path_(std::move(path)), columns_(std::move(columns)) {
+  act(communicator_, path_, [&] {
+    const std::string header = header_of(columns_);
+    std::string rows;
+    if (continue_from && std::filesystem::exists(path_)) {
+      const std::string text = read_text(path_);
+      refuse_other_columns(path_, text, header);
+      if (!text.empty()) rows = kept_rows(text, header.size(), *continue_from);
+    }
+    write_text_durably(path_, header + rows);
+    file_.open(path_, std::ios::binary | std::ios::app);
+    if (!file_) throw RunError(cannot_write_series(path_));
+  });
+}
+
+void SeriesTable::append(double time, std::span<const double> values) {
+  if (rank_of(communicator_) == 0) {
+    std::string row = fmt::format("{}", time);
+    for (const double value : values) row += fmt::format(",{}", value);
+    file_ << row << '\n';
+    file_.flush();
+  }
+  throw_if_failed(rank_of(communicator_) == 0 && !file_);
+}
+
+void SeriesTable::put_on_disk() { throw_if_failed(rank_of(communicator_) == 0 && !io::put_on_disk(path_)); }
+
+void SeriesTable::throw_if_failed(bool failed) const {
+  if (any_rank(communicator_, failed)) throw RunError(cannot_write_series(path_));
+}
+
+}  // namespace thalweg::io

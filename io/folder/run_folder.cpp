@@ -1,0 +1,235 @@
+#include "io/folder/run_folder.hpp"
+
+#include "core/base/error.hpp"
+#include "core/base/shell_word.hpp"
+#include "core/base/utf8.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/folder/folder_lock.hpp"
+
+#include <fmt/format.h>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace thalweg::io {
+namespace fs = std::filesystem;
+namespace {
+
+// All a run writes, and thalweg analyze; --overwrite removes these and nothing else. Records were files in older
+// versions.
+constexpr std::array run_contents{"case.yaml",    "series.csv",  "profiles.h5", "probes",         "tracks",
+                                  "entrainment",  "probes.h5",   "tracks.h5",   "entrainment.h5", "grains.pvd",
+                                  "fluid.pvd",    "solids.pvd",  "grains",      "fluid",          "solids",
+                                  "fluid_parts",  "grain_parts", "checkpoints", "bed.h5",         "run.log",
+                                  "summary.json", "analysis",    "stop"};
+// Of these, what a run that goes on changes in its place: folders, and files that are not replaced as a whole.
+constexpr std::array added_to{"checkpoints", "grains",    "fluid",     "solids", "fluid_parts",
+                              "grain_parts", "run.log",   "probes",    "tracks", "entrainment",
+                              "grains.pvd",  "fluid.pvd", "solids.pvd"};
+constexpr const char* latest_name = "latest";
+constexpr const char* unfinished_case = "case.yaml.partial";
+constexpr const char* kept_case = "case_until_step_";
+
+// The number in the name of a file; none: it is another file.
+std::optional<std::int64_t> step_between(const std::string& name, std::string_view before, std::string_view after) {
+  if (!name.starts_with(before) || !name.ends_with(after)) return std::nullopt;
+  std::int64_t step = 0;
+  const char* end = name.data() + name.size() - after.size();
+  const auto parsed = std::from_chars(name.data() + before.size(), end, step);
+  if (parsed.ec != std::errc() || parsed.ptr != end) return std::nullopt;
+  return step;
+}
+
+std::optional<std::int64_t> step_of_checkpoint(const std::string& name) { return step_between(name, "step_", ".h5"); }
+
+// Empty if this process may change the file, or add to the folder.
+std::string why_not_writable(const fs::path& path) {
+  const int mode = fs::is_directory(path) ? W_OK | X_OK : W_OK;
+  return ::faccessat(AT_FDCWD, path.c_str(), mode, AT_EACCESS) == 0 ? "" : std::strerror(errno);
+}
+
+}  // namespace
+
+std::vector<std::string> RunFolder::names_of_records() { return {"probes", "tracks", "entrainment"}; }
+
+bool RunFolder::is_run_folder() const {
+  std::error_code ignored;
+  return fs::is_regular_file(case_file(), ignored) && read_text(case_file()).starts_with(case_marker);
+}
+
+void RunFolder::check_new(bool overwrite) const {
+  std::error_code ignored;
+  if (!fs::exists(path_, ignored)) return;
+  if (!fs::is_directory(path_, ignored))
+    throw InputError(
+        fmt::format("{}: there is a file of this name; choose another folder with --out.", path_.string()));
+  const bool has_something =
+      std::any_of(fs::directory_iterator(path_), fs::directory_iterator(), [](const auto& entry) {
+        // Of a run that was killed at once.
+        return entry.path().filename() != unfinished_case && entry.path().filename() != FolderLock::file_name;
+      });
+  if (!has_something) return;
+  if (!is_run_folder())
+    throw InputError(
+        fmt::format("{}: the folder holds something that is not a run of Thalweg and is left alone; choose "
+                    "another folder with --out.",
+                    path_.string()));
+  if (!overwrite)
+    throw InputError(
+        fmt::format("{}: the folder holds a run already; choose another with --out, continue it with "
+                    "--restart {}, or replace it with --overwrite.",
+                    path_.string(), shell_word(path_.string())));
+}
+
+void RunFolder::check_writable() const {
+  std::error_code ignored;
+  fs::path above = fs::absolute(path_).lexically_normal();
+  while (!fs::exists(above, ignored) && above.has_relative_path()) above = above.parent_path();
+  if (const std::string why = why_not_writable(above); !why.empty() || !fs::is_directory(above, ignored))
+    throw InputError(fmt::format("{}: cannot {} the folder: {}; choose another one with --out.", path_.string(),
+                                 fs::exists(path_, ignored) ? "write to" : "create",
+                                 why.empty() ? std::strerror(ENOTDIR) : why));
+  for (const char* name : added_to) {
+    const std::string why = fs::exists(path_ / name, ignored) ? why_not_writable(path_ / name) : "";
+    if (!why.empty())
+      throw InputError(fmt::format("{}: cannot write to it: {}; change that or choose another folder with --out.",
+                                   (path_ / name).string(), why));
+  }
+}
+
+void RunFolder::create(bool overwrite) const {
+  check_new(overwrite);
+  make_folder(path_);
+  std::vector<fs::path> old;
+  for (const auto& entry : fs::directory_iterator(path_))
+    if (entry.path().filename().string().starts_with(kept_case)) old.push_back(entry.path());
+  // case.yaml, by which the folder is known, goes last, and what would show that there have been checkpoints before
+  // them: an interrupted removal can be taken up again.
+  for (auto name = run_contents.rbegin(); name != run_contents.rend(); ++name) old.push_back(path_ / *name);
+  for (const fs::path& path : old) {
+    std::error_code error;
+    fs::remove_all(path, error);
+    if (error) throw RunError(fmt::format("{}: cannot remove: {}.", path.string(), error.message()));
+  }
+}
+
+void RunFolder::write_case(const std::string& comment_lines, const std::string& yaml) const {
+  std::string text = std::string(case_marker) + " this is the case as it was run, with every default filled in.\n";
+  std::size_t start = 0;
+  while (start < comment_lines.size()) {
+    const std::size_t end = std::min(comment_lines.find('\n', start), comment_lines.size());
+    text += "# " + as_utf8(comment_lines.substr(start, end - start)) + "\n";
+    start = end + 1;
+  }
+  write_text_durably(case_file(), text + yaml);
+}
+
+void RunFolder::go_on_from(std::int64_t step) const {
+  if (fs::exists(checkpoint(step))) make_latest(step);
+}
+
+void RunFolder::make_latest(std::int64_t step) const {
+  write_text_durably(checkpoints() / latest_name, checkpoint(step).filename().string() + "\n");
+}
+
+fs::path RunFolder::named_latest() const {
+  const fs::path latest = checkpoints() / latest_name;
+  std::error_code ignored;
+  if (!fs::is_regular_file(latest, ignored)) return {};
+  std::string name = read_text(latest);
+  while (!name.empty() && (name.back() == '\n' || name.back() == ' ')) name.pop_back();
+  return checkpoints() / name;
+}
+
+void RunFolder::keep_case(std::int64_t step) const {
+  const fs::path kept = path_ / fmt::format("{}{}.yaml", kept_case, step), own = case_of(checkpoint(step));
+  std::error_code ignored;
+  if (own != kept && fs::is_regular_file(own, ignored)) write_text_durably(kept, read_text(own));
+}
+
+fs::path RunFolder::case_of(const fs::path& checkpoint) const {
+  const std::optional<std::int64_t> step = step_of_checkpoint(checkpoint.filename().string());
+  std::error_code ignored;
+  std::optional<std::int64_t> first;  // of the later steps until which a case was kept
+  for (const auto& entry : fs::directory_iterator(path_, ignored))
+    if (const auto until = step_between(entry.path().filename().string(), kept_case, ".yaml");
+        step && until && *until >= *step && (!first || *until < *first))
+      first = until;
+  return first ? path_ / fmt::format("{}{}.yaml", kept_case, *first) : case_file();
+}
+
+fs::path RunFolder::checkpoint(std::int64_t step) const { return checkpoints() / fmt::format("step_{}.h5", step); }
+
+std::vector<std::int64_t> RunFolder::steps_of_checkpoints() const {
+  std::vector<std::int64_t> steps;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(checkpoints(), ignored))
+    if (const auto found = step_of_checkpoint(entry.path().filename().string())) steps.push_back(*found);
+  std::sort(steps.rbegin(), steps.rend());
+  return steps;
+}
+
+void RunFolder::rotate_checkpoints(std::int64_t step, int keep) const {
+  // Where the run goes on from `step` and has not moved since, the case kept for it is still that of its state.
+  const bool anew = named_latest() != checkpoint(step);
+  make_latest(step);
+  std::vector<fs::path> superfluous;
+  int kept = 0;
+  for (const std::int64_t found : steps_of_checkpoints())
+    if (found > step || kept++ >= std::max(keep, 1)) superfluous.push_back(checkpoint(found));
+  for (const auto& entry : fs::directory_iterator(checkpoints()))
+    if (is_left_by_a_kill(entry.path())) superfluous.push_back(entry.path());
+  for (const auto& entry : fs::directory_iterator(path_)) {
+    const std::string name = entry.path().filename().string();
+    const auto until = step_between(name, kept_case, ".yaml");
+    const bool unfinished = is_left_by_a_kill(name) && (name.starts_with(profiles().filename().string()) ||
+                                                        name.starts_with(bed().filename().string()));
+    if (unfinished || (until && (*until > step || (*until == step && anew)))) superfluous.push_back(entry.path());
+  }
+  for (const fs::path& file : superfluous) {
+    std::error_code error;
+    fs::remove(file, error);
+    if (error) throw RunError(fmt::format("{}: cannot remove: {}.", file.string(), error.message()));
+  }
+}
+
+bool RunFolder::has_had_checkpoint() const {
+  std::error_code ignored;
+  const bool without_folder = fs::exists(log(), ignored) && !fs::exists(checkpoints(), ignored);
+  return has_checkpoint() || fs::exists(checkpoints() / latest_name, ignored) || fs::exists(bed(), ignored) ||
+         without_folder;
+}
+
+std::vector<fs::path> RunFolder::checkpoints_to_try() const {
+  std::vector<fs::path> found;
+  for (const std::int64_t step : steps_of_checkpoints()) found.push_back(checkpoint(step));
+  if (found.empty())
+    throw InputError(
+        fmt::format("{}: the folder has no checkpoint ({}); give the path of a checkpoint or of a run that wrote one.",
+                    path_.string(), (checkpoints() / "step_*.h5").string()));
+  // Later ones than the latest are of a course that a restart has left.
+  const auto named = std::find(found.begin(), found.end(), named_latest());
+  if (named != found.end()) std::rotate(found.begin(), named, found.end());
+  return found;
+}
+
+std::vector<fs::path> checkpoints_at(const fs::path& path) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) return RunFolder(path).checkpoints_to_try();
+  if (fs::exists(path, ignored)) return {path};
+  throw InputError(
+      fmt::format("{}: there is no such file or folder; give a checkpoint, for example "
+                  "run/checkpoints/step_1000.h5, or a run folder.",
+                  path.string()));
+}
+
+}  // namespace thalweg::io

@@ -1,0 +1,54 @@
+#include "io/hdf5/hdf5_handle.hpp"
+
+#include <semaphore.h>
+
+#include <algorithm>
+
+namespace thalweg::io {
+
+namespace {
+
+// Open MPI guards the opening of a file by a semaphore that has the file's name and belongs to the node. A process that
+// is killed at that moment leaves it taken, and everyone who opens a file of this name on this node would wait for
+// ever.
+void forget_semaphore([[maybe_unused]] MPI_Comm communicator, [[maybe_unused]] const std::filesystem::path& file) {
+#ifdef OPEN_MPI
+  sem_unlink(("OMPIO_" + file.filename().string()).c_str());
+  MPI_Barrier(communicator);
+#endif
+}
+
+}  // namespace
+
+Handle mpi_access(MPI_Comm communicator, const std::filesystem::path& file) {
+  forget_semaphore(communicator, file);
+  Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_fapl_mpio(access, communicator, MPI_INFO_NULL);
+  return access;
+}
+
+Handle lone_access() {
+  Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+#if H5_VERSION_GE(1, 10, 7)
+  H5Pset_file_locking(access, false, true);  // as through MPI-IO; not every parallel file system has locks
+#endif
+  return access;
+}
+
+std::vector<hsize_t> extents_of(hid_t dataset) {
+  const Handle space(H5Dget_space(dataset), H5Sclose);
+  std::vector<hsize_t> extents(static_cast<std::size_t>(std::max(0, H5Sget_simple_extent_ndims(space))));
+  if (!extents.empty()) H5Sget_simple_extent_dims(space, extents.data(), nullptr);
+  return extents;
+}
+
+bool has_its_values(hid_t dataset) {
+  constexpr double most_compressed = 1032.0;  // what deflate makes of zeros
+  const Handle creation(H5Dget_create_plist(dataset), H5Pclose), type(H5Dget_type(dataset), H5Tclose);
+  auto bytes = static_cast<double>(H5Tget_size(type));
+  for (const hsize_t extent : extents_of(dataset)) bytes *= static_cast<double>(extent);
+  const double stored = static_cast<double>(H5Dget_storage_size(dataset));
+  return bytes <= stored * (H5Pget_nfilters(creation) > 0 ? most_compressed : 1.0);
+}
+
+}  // namespace thalweg::io

@@ -1,0 +1,36 @@
+#include "lbm/fluid/flow_control.hpp"
+
+#include "core/base/error.hpp"
+
+#include <fmt/format.h>
+
+namespace thalweg::lbm {
+
+FlowControl::FlowControl(const FlowTarget& target) : target_(target) {
+  if (target.interval < 1 || !(target.response_time >= 10.0 * target.interval))
+    throw InputError(
+        fmt::format("The flow control looks every {} steps and responds in {} steps; it needs at least one step "
+                    "and a response time of at least ten intervals.",
+                    target.interval, target.response_time));
+}
+
+void FlowControl::update(double mean_velocity) {
+  const double error = target_.velocity - mean_velocity, t = target_.response_time;
+  integral_ += target_.interval * error;
+  force_ = error / t + integral_ / (4.0 * t * t);
+  countdown_ = target_.interval - 1;
+}
+
+void FlowControl::save(ArchiveWriter& archive) const {
+  archive.attribute("fluid/flow_control_integral", integral_);
+  archive.attribute("fluid/flow_control_force", force_);
+  archive.attribute("fluid/flow_control_countdown", countdown_);
+}
+
+void FlowControl::load(ArchiveReader& archive) {
+  integral_ = archive.real_attribute("fluid/flow_control_integral");
+  force_ = archive.real_attribute("fluid/flow_control_force");
+  countdown_ = archive.integer_attribute("fluid/flow_control_countdown");
+}
+
+}  // namespace thalweg::lbm

@@ -1,0 +1,28 @@
+#include "lbm/lattice/populations.hpp"
+
+namespace thalweg::lbm {
+
+CellIndexing::CellIndexing(const Index3& size, int pack) : size_(size), pack_(pack) {
+  // One pack before the row (its last cell is the ghost), the owned cells in whole packs, one pack after for the
+  // neighbours that the last pack reaches.
+  row_stride_ = static_cast<std::ptrdiff_t>(packs_per_row() + 2) * pack;
+  plane_stride_ = row_stride_ * (size[1] + 2);
+  for (int i = 0; i < D3Q19::directions; ++i)
+    offset_[i] = D3Q19::c[i][0] + D3Q19::c[i][1] * row_stride_ + D3Q19::c[i][2] * plane_stride_;
+}
+
+template <typename Real>
+Populations<Real>::Populations(const CellIndexing& indexing) : indexing_(indexing) {
+  constexpr std::size_t line = 64;                          // bytes in a cache line
+  constexpr std::size_t stagger = 9 * line / sizeof(Real);  // keeps the 19 streams out of each other's cache sets
+  const std::size_t per_line = line / sizeof(Real);
+  stride_ = (indexing.count() + per_line - 1) / per_line * per_line + stagger;
+  // 38 streams over as many distant pages: huge pages keep them all in the TLB.
+  memory_ = in_huge_pages(stride_ * D3Q19::directions, Real(0));
+  for (int i = 0; i < D3Q19::directions; ++i) planes_[i] = memory_.get() + stride_ * i;
+}
+
+template class Populations<float>;
+template class Populations<double>;
+
+}  // namespace thalweg::lbm

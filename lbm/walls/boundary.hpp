@@ -1,0 +1,50 @@
+// What stands at each of the six faces of the domain. Lattice units. The rules themselves: walls.hpp.
+#pragma once
+
+#include "core/base/types.hpp"
+#include "lbm/walls/law_of_the_wall.hpp"
+
+#include <array>
+
+namespace thalweg::lbm {
+
+enum class FaceType {
+  periodic,
+  no_slip,               // half-link bounce-back: the wall is half a cell beyond the last cell centre
+  free_slip,             // half-link specular reflection: no tangential stress, mass conserving
+  moving,                // no slip on a wall that moves in its own plane
+  navier_slip,           // slip velocity = slip length times shear rate
+  law_of_the_wall,       // takes the stress that the law of the wall gives for the velocity near it: wall_stress.hpp
+  slip_law_of_the_wall,  // Navier slip whose slip velocity follows the local friction velocity (Zhang et al. 2022)
+  velocity_inlet,        // fluid of a given velocity enters (or leaves)
+  pressure_outlet        // fluid leaves (or enters) at a given density
+};
+
+// Lets fluid in or out.
+constexpr bool is_open(FaceType type) { return type == FaceType::velocity_inlet || type == FaceType::pressure_outlet; }
+
+// Slip velocity over friction velocity of a slip_law_of_the_wall. Zhang et al. (2022) print 2.35; their own recipe, the
+// tangent of u+ = ln(y+)/0.41 + 5 at y+ = 10.8 taken to the wall, gives 8.36.
+constexpr double derived_slip_coefficient = 8.36;
+
+// The same tangent taken at the centre of the first cell, y_plus away from the wall in wall units, where that is
+// further out than 10.8 and the velocity the cell knows lies on a flatter part of the profile.
+inline double slip_coefficient_at(double y_plus) {
+  return y_plus > 10.8 ? logarithmic_law(y_plus) - 1.0 / karman_constant : derived_slip_coefficient;
+}
+
+struct FaceCondition {
+  FaceType type = FaceType::periodic;
+  double slip_coefficient = derived_slip_coefficient;  // slip_law_of_the_wall
+  bool slip_of_first_cell = false;  // slip_law_of_the_wall: slip_coefficient_at the first cell instead
+  double slip_length = 0.0;         // navier_slip, cells
+  Vec3 velocity = Vec3::Zero();     // moving (in the plane of the face), velocity_inlet
+  double density_deviation = 0.0;   // pressure_outlet: rho - 1
+};
+
+// Faces in the order x low, x high, y low, y high, z low, z high.
+using FaceConditions = std::array<FaceCondition, 6>;
+
+constexpr int face_of(int axis, bool high) { return 2 * axis + (high ? 1 : 0); }
+
+}  // namespace thalweg::lbm

@@ -1,0 +1,204 @@
+// Walls::apply: the rules of walls.hpp, direction by direction, row by row.
+#include "lbm/lattice/face_axes.hpp"
+#include "lbm/walls/walls.hpp"
+
+#include <algorithm>
+
+namespace thalweg::lbm {
+
+namespace {
+
+// Who decides about a population that comes out of an edge: the larger number.
+int precedence(FaceType type) {
+  switch (type) {
+    case FaceType::free_slip:
+      return 0;
+    case FaceType::pressure_outlet:
+      return 1;
+    case FaceType::velocity_inlet:
+      return 2;
+    default:
+      return 3;
+  }
+}
+
+bool has_velocity(FaceType type) { return type == FaceType::moving || type == FaceType::velocity_inlet; }
+
+// Walls that give back what comes to them, bounced back or reflected.
+bool reflects(FaceType type) { return type != FaceType::periodic && !has_velocity(type) && !is_open(type); }
+
+double dot(int direction, const Vec3& v) {
+  return D3Q19::c[direction][0] * v.x() + D3Q19::c[direction][1] * v.y() + D3Q19::c[direction][2] * v.z();
+}
+
+}  // namespace
+
+template <typename Real>
+void Walls<Real>::apply(Populations<Real>& populations, const CellMap& cells) {
+  for (int face = 0; face < 6; ++face)
+    if (present_[face]) apply_face(populations, cells, face);
+}
+
+template <typename Real>
+void Walls<Real>::apply_face(Populations<Real>& populations, const CellMap& cells, int face) {
+  const int axis = face / 2, inward = face % 2 == 0 ? 1 : -1;
+  if (stress_[face]) {
+    stress_[face]->find_layers(cells);
+    if (!swept_) stress_[face]->take_populations(populations, cells, half_force_);
+    stress_[face]->find(cells);
+  }
+  for (int o = 1; o < D3Q19::directions; ++o)
+    if (D3Q19::c[o][axis] == inward) {
+      const Entry entry(indexing_, face, o);
+      for (int v = 0; v < entry.nv; ++v) apply_row(populations, cells, entry, v);
+    }
+}
+
+template <typename Real>
+Walls<Real>::Entry::Entry(const CellIndexing& indexing, int from_face, int along)
+    : face(from_face), direction(along), axis(from_face / 2) {
+  u_axis = first_axis(axis);
+  v_axis = second_axis(axis);
+  nu = indexing.size()[u_axis];
+  nv = indexing.size()[v_axis];
+  cu = D3Q19::c[direction][u_axis];
+  cv = D3Q19::c[direction][v_axis];
+  stride = indexing.stride(u_axis);
+  tangential = cu * stride + cv * indexing.stride(v_axis);
+}
+
+template <typename Real>
+bool Walls<Real>::decides_edge(int face, int other) const {
+  return precedence(faces_[face].type) >= precedence(faces_[other].type);
+}
+
+template <typename Real>
+Real Walls<Real>::with_velocity(const Populations<Real>& populations, int o, std::ptrdiff_t cell,
+                                const Vec3& velocity) const {
+  const double rho = 1.0 + populations.density_deviation(cell);
+  return static_cast<Real>(populations.post_collision(D3Q19::opposite(o), cell) +
+                           6.0 * D3Q19::weight(o) * rho * dot(o, velocity));
+}
+
+template <typename Real>
+Real Walls<Real>::at_pressure(const Populations<Real>& populations, int o, std::ptrdiff_t cell,
+                              double deviation) const {
+  Vec3 momentum = -half_force_;  // a collision leaves the whole force in it; the velocity takes half
+  double density = 1.0;
+  for (int i = 0; i < D3Q19::directions; ++i) {
+    const double f = populations.post_collision(i, cell);
+    density += f;
+    for (int a = 0; a < 3; ++a) momentum[a] += D3Q19::c[i][a] * f;
+  }
+  const Vec3 u = momentum / density;
+  const double cu = dot(o, u);
+  return static_cast<Real>(-static_cast<double>(populations.post_collision(D3Q19::opposite(o), cell)) +
+                           2.0 * D3Q19::weight(o) *
+                               (deviation + (1.0 + deviation) * (4.5 * cu * cu - 1.5 * u.squaredNorm())));
+}
+
+// The common walls, in loops over plain arrays.
+template <typename Real>
+void Walls<Real>::reflect_run(Populations<Real>& populations, const CellMap& cells, const Run& run) const {
+  const int axis = run.face / 2, o = run.direction;
+  const int cu = D3Q19::c[o][first_axis(axis)], cv = D3Q19::c[o][second_axis(axis)];
+  const std::ptrdiff_t stride = run.stride, source = run.first - run.tangential;
+  Real* into = &populations.incoming(o, run.first);
+  const Real* own = &populations.post_collision(D3Q19::opposite(o), run.first);
+  const Real* other = &populations.post_collision(D3Q19::mirror(o, axis), source);
+  const std::int32_t* body = cells.bodies() + source;
+  switch (faces_[run.face].type) {
+    case FaceType::no_slip:
+      for (int u = run.begin; u < run.end; ++u) into[u * stride] = own[u * stride];
+      break;
+    case FaceType::free_slip:
+      for (int u = run.begin; u < run.end; ++u)
+        into[u * stride] = body[u * stride] == CellMap::fluid ? other[u * stride] : own[u * stride];
+      break;
+    case FaceType::law_of_the_wall: {
+      if (cu == 0 && cv == 0) {
+        for (int u = run.begin; u < run.end; ++u) into[u * stride] = own[u * stride];
+        break;
+      }
+      const Real* stress = stress_[run.face]->row(cu != 0 ? 0 : 1, run.v);
+      const Real half = Real(0.5) * static_cast<Real>(cu + cv);  // one of the two is 0
+      for (int u = run.begin; u < run.end; ++u)
+        into[u * stride] = body[u * stride] == CellMap::fluid ? other[u * stride] - half * stress[u] : own[u * stride];
+      break;
+    }
+    default: {
+      const Real* r = bounced_[run.face].row(run.v);
+      const Real* r_source = bounced_[run.face].row(run.v - cv) - cu;
+      for (int u = run.begin; u < run.end; ++u) {
+        const Real mixed = r[u] * own[u * stride] + (Real(1) - r_source[u]) * other[u * stride];
+        into[u * stride] = body[u * stride] == CellMap::fluid ? mixed : own[u * stride];
+      }
+    }
+  }
+}
+
+// The other face if this population comes out of an edge, or -1.
+template <typename Real>
+int Walls<Real>::edge_face(const Entry& e, int u, int v) const {
+  if (e.cu > 0 && u == 0 && present(e.u_axis, false)) return face_of(e.u_axis, false);
+  if (e.cu < 0 && u == e.nu - 1 && present(e.u_axis, true)) return face_of(e.u_axis, true);
+  if (e.cv > 0 && v == 0 && present(e.v_axis, false)) return face_of(e.v_axis, false);
+  if (e.cv < 0 && v == e.nv - 1 && present(e.v_axis, true)) return face_of(e.v_axis, true);
+  return -1;
+}
+
+// What a cell gets out of the edge with another face.
+template <typename Real>
+Real Walls<Real>::from_edge(const Populations<Real>& populations, const Entry& entry, std::ptrdiff_t cell,
+                            int other) const {
+  const FaceCondition& wall = faces_[entry.face];
+  if (wall.type == FaceType::pressure_outlet)
+    return at_pressure(populations, entry.direction, cell, wall.density_deviation);
+  Vec3 velocity = Vec3::Zero();
+  for (const int face : {std::min(entry.face, other), std::max(entry.face, other)})
+    if (has_velocity(faces_[face].type)) velocity += faces_[face].velocity;
+  return with_velocity(populations, entry.direction, cell, velocity);
+}
+
+// What a cell away from edges gets from a wall that does not merely reflect.
+template <typename Real>
+Real Walls<Real>::from_wall(const Populations<Real>& populations, const Entry& entry, std::ptrdiff_t cell) const {
+  const FaceCondition& wall = faces_[entry.face];
+  return has_velocity(wall.type) ? with_velocity(populations, entry.direction, cell, wall.velocity)
+                                 : at_pressure(populations, entry.direction, cell, wall.density_deviation);
+}
+
+// Edges with the faces at the ends of the row, or with the face along the whole of it; the rest is one run.
+template <typename Real>
+void Walls<Real>::apply_row(Populations<Real>& populations, const CellMap& cells, const Entry& e, int v) const {
+  Index3 at{0, 0, 0};
+  at[e.axis] = e.face % 2 == 0 ? 0 : indexing_.size()[e.axis] - 1;
+  at[e.v_axis] = v;
+  const std::ptrdiff_t first = indexing_.index(at[0], at[1], at[2]);
+  const bool row_in_edge =
+      (e.cv > 0 && v == 0 && present(e.v_axis, false)) || (e.cv < 0 && v == e.nv - 1 && present(e.v_axis, true));
+  const int begin = row_in_edge ? e.nu : e.cu > 0 && present(e.u_axis, false) ? 1 : 0;
+  const int end = row_in_edge ? e.nu : e.cu < 0 && present(e.u_axis, true) ? e.nu - 1 : e.nu;
+  const auto edges = [&](int from, int to) {
+    for (int u = from; u < to; ++u) {
+      const std::ptrdiff_t cell = first + u * e.stride;
+      const int other = edge_face(e, u, v);
+      if (decides_edge(e.face, other)) populations.incoming(e.direction, cell) = from_edge(populations, e, cell, other);
+    }
+  };
+  edges(0, begin);
+  edges(end, e.nu);
+  if (reflects(faces_[e.face].type)) {
+    reflect_run(populations, cells, {e.face, e.direction, v, begin, end, first, e.stride, e.tangential});
+    return;
+  }
+  for (int u = begin; u < end; ++u) {
+    const std::ptrdiff_t cell = first + u * e.stride;
+    populations.incoming(e.direction, cell) = from_wall(populations, e, cell);
+  }
+}
+
+template class Walls<float>;
+template class Walls<double>;
+
+}  // namespace thalweg::lbm

@@ -1,0 +1,189 @@
+// Grains that start from their places, as made up: when a start counts, what is remembered of it, on any ranks and
+// after a restart.
+#include "analysis/observers/entrainment.hpp"
+
+#include "core/parallel/decomposition.hpp"
+#include "tests/analysis/made_up_grains.hpp"
+#include "tests/support/memory_archive.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace thalweg::analysis::entrainment_test {
+namespace {
+
+constexpr double dt = 0.01, radius = 0.5, lever = 0.4;
+constexpr GlobalId count = 60;
+
+// Sixty grains in a box of 20 m x 10 m x 5 m, periodic along x and y, in two layers: a bed of 50 below (z = 0.5 m), ten
+// on top (ids 50 to 59, z = 1.4 m). Grain 50 + n leaves its place at 0.305 s + 0.1 n s with 2 m/s along x, for 0.15 s,
+// if n is even; it moves 0.3 m. Each has two loaded contacts at 0.4 m below its centre, one on either side, and the
+// fluid pushes it with 1 N along x and turns it with C_n = 0.1 (1 + n) N m about y: its share is C_n / (0.4 + C_n).
+// Whoever owns a grain changes from step to step.
+class Bed : public ContactSource {
+public:
+  static double couple(GlobalId n) { return 0.1 * static_cast<double>(1 + n); }
+  static double share(GlobalId n) { return couple(n) / (lever + couple(n)); }
+
+  void show(Entrainment& observer, std::int64_t step) {
+    const double time = dt * static_cast<double>(step);
+    for (auto* list : {&position_, &velocity_, &spin_, &force_, &couple_, &contact_}) list->clear();
+    id_.clear();
+    radii_.clear();
+    masses_.clear();
+    for (GlobalId id = count - 1; id >= 0; --id) {
+      if ((id * 7 + step) % size_of(MPI_COMM_WORLD) != rank_of(MPI_COMM_WORLD)) continue;
+      const GlobalId n = id - 50;
+      const double begin = 0.305 + 0.1 * static_cast<double>(n), way = std::clamp(time - begin, 0.0, 0.15) * 2.0;
+      const bool starts = n >= 0 && n % 2 == 0, moves = starts && way > 0.0 && way < 0.3;
+      Vec3 place(n < 0 ? static_cast<double>(id % 10) * 2.0 : 19.8,
+                 n < 0 ? 0.5 + static_cast<double>(id / 10) : static_cast<double>(n) + 0.5, n < 0 ? 0.5 : 1.4);
+      if (starts) place.x() += way;
+      if (place.x() >= 20.0) place.x() -= 20.0;
+      id_.push_back(id);
+      radii_.push_back(radius);
+      masses_.push_back(1.0);
+      position_.push_back(place);
+      velocity_.push_back(moves ? Vec3(2.0, 0.0, 0.0) : Vec3(Vec3::Zero()));
+      spin_.push_back(Vec3::Zero());
+      force_.push_back(Vec3(1.0, 0.0, 0.0));
+      couple_.push_back(Vec3(0.0, couple(n), 0.0));
+      contact_.push_back(Vec3(0.0, 0.0, 2.0));
+    }
+    Snapshot snapshot;
+    snapshot.time = time;
+    snapshot.step = step;
+    snapshot.decomposition = &decomposition_;
+    snapshot.contacts = this;
+    snapshot.grains.global_count = count;
+    snapshot.grains.id = id_;
+    snapshot.grains.radius = radii_;
+    snapshot.grains.mass = masses_;
+    snapshot.grains.position = position_;
+    snapshot.grains.velocity = velocity_;
+    snapshot.grains.angular_velocity = spin_;
+    snapshot.grains.fluid_force = force_;
+    snapshot.grains.fluid_torque = couple_;
+    snapshot.grains.contact_force = contact_;
+    observer.observe(snapshot);
+  }
+
+  void for_each_contact(const ContactVisitor&) const override { FAIL() << "only watched grains are asked for"; }
+  void for_each_contact_of(std::span<const char> chosen, const ContactEndVisitor& visit) const override {
+    for (std::size_t i = 0; i < chosen.size(); ++i)
+      for (const double side : {-0.3, 0.3})
+        if (chosen[i] != 0) visit(i, {{0.0, side, -lever}, {0.0, 0.0, 1.0}, side < 0.0 ? 1 : 2, {0.0, 2 * side, -0.8}});
+  }
+
+  const Decomposition& decomposition() const { return decomposition_; }
+
+private:
+  Decomposition decomposition_{{40, 20, 10}, 0.5, {true, true, false}, {1, 1, 1}};
+  std::vector<GlobalId> id_;
+  std::vector<double> radii_, masses_;
+  std::vector<Vec3> position_, velocity_, spin_, force_, couple_, contact_;
+};
+
+EntrainmentSettings settings(std::vector<GlobalId> grains) {
+  EntrainmentSettings s;
+  s.grains = std::move(grains);
+  s.interval = dt;
+  s.memory = 0.1;
+  s.refresh_steps = 25;
+  s.window = 2.0 * radius;
+  s.diameter = 0.3;  // the bed is one layer, which reaches up to 1 m at most
+  s.rest_time = 0.1;
+  s.moving_speed = 0.01;
+  s.held = {{52, 53}};
+  s.weight = [](double mass, double) { return Vec3(0.0, 0.0, -mass); };
+  s.buoyancy = [](double, double) { return Vec3(Vec3::Zero()); };
+  return s;
+}
+
+const Profile& array_of(const Event& event, const std::string& name) {
+  for (const Profile& array : event.arrays)
+    if (array.name == name) return array;
+  throw std::out_of_range(name);
+}
+
+// Five grains of the top layer move, one of which is held.
+TEST(Entrainment, CountsTheStartsOfTheSurfaceAndMeansTheirShares) {
+  Bed bed;
+  Entrainment observer(MPI_COMM_WORLD, bed.decomposition().box(), settings({}));
+  for (std::int64_t step = 0; step <= 150; ++step) bed.show(observer, step);
+  bed.show(observer, 150);                                         // seen before
+  EXPECT_EQ(value_of(observer.figures(), "watched_grains"), 9.0);  // of 60, not the bed's and not the one that is held
+  EXPECT_EQ(value_of(observer.figures(), "entrainments"), 4.0);
+  double mean = 0.0, squares = 0.0;
+  for (const GlobalId n : {0, 4, 6, 8}) mean += Bed::share(n) / 4.0;
+  for (const GlobalId n : {0, 4, 6, 8}) squares += std::pow(Bed::share(n) - mean, 2);
+  EXPECT_EQ(value_of(observer.results(), "entrainments_with_share"), 4.0);
+  EXPECT_NEAR(value_of(observer.results(), "couple_share_mean"), mean, 1e-14);
+  EXPECT_NEAR(value_of(observer.results(), "couple_share_error"), std::sqrt(squares / 3.0 / 4.0), 1e-7);
+  const Records records = observer.take_records();
+  if (rank_of(MPI_COMM_WORLD) != 0) {
+    EXPECT_TRUE(records.events.empty());
+    return;
+  }
+  ASSERT_EQ(records.events.size(), 4u);
+  const Event& second = records.events[1];
+  EXPECT_EQ(second.name, "event_000002");
+  EXPECT_EQ(second.numbers.at(0).values.at(0), 54);
+  // It starts at 0.705 s and has gone more than 0.1 diameters (0.1 m) after 0.05 s and a sample.
+  EXPECT_NEAR(second.time, 0.76, 1e-12);
+  EXPECT_NEAR(value_of(second.figures, "onset_time"), 0.70, 1e-12);
+  EXPECT_NEAR(value_of(second.figures, "couple_share"), Bed::share(4), 1e-14);
+  EXPECT_TRUE(std::isnan(value_of(second.figures, "largest_torque_ratio")));  // the hinge is below the centre
+  const Profile& time = array_of(second, "time");
+  ASSERT_EQ(time.values.size(), 11u);  // 0.1 s
+  EXPECT_NEAR(time.values.front(), 0.66, 1e-12);
+  EXPECT_NEAR(array_of(second, "position").values[30], 19.8 + 0.11, 1e-12);
+  EXPECT_NEAR(array_of(records.events[3], "position").values[30], 19.91, 1e-12);
+  EXPECT_EQ(array_of(second, "contact_point").shape[0], 22u);
+}
+
+// Grain 58 starts at 1.105 s and goes on beyond the face of the box at 1.205 s; listed grains alone are watched.
+TEST(Entrainment, FollowsListedGrainsBeyondTheBoxAndRestsAnew) {
+  Bed bed;
+  EntrainmentSettings s = settings({3, 58});
+  s.displacement = 0.2;
+  Entrainment observer(MPI_COMM_WORLD, bed.decomposition().box(), s);
+  for (std::int64_t step = 0; step <= 150; ++step) bed.show(observer, step);
+  EXPECT_EQ(value_of(observer.figures(), "watched_grains"), 2.0);
+  EXPECT_EQ(value_of(observer.figures(), "entrainments"), 1.0);
+  const Records records = observer.take_records();
+  if (rank_of(MPI_COMM_WORLD) != 0) return;
+  const std::vector<double>& position = array_of(records.events.at(0), "position").values;
+  EXPECT_NEAR(position[position.size() - 3], 20.01, 1e-12);  // 0.21 m from 19.8 m
+}
+
+TEST(Entrainment, GoesOnAfterARestartWithTheSameBits) {
+  Bed bed;
+  const PeriodicBox box = bed.decomposition().box();
+  Entrainment straight(MPI_COMM_WORLD, box, settings({})), before(MPI_COMM_WORLD, box, settings({})),
+      after(MPI_COMM_WORLD, box, settings({}));
+  for (std::int64_t step = 0; step <= 150; ++step) bed.show(straight, step);
+  for (std::int64_t step = 0; step <= 73; ++step) bed.show(before, step);
+  test::MemoryArchive archive, of_after, of_straight;
+  test::MemoryWriter writer(archive, MPI_COMM_WORLD), a(of_after, MPI_COMM_WORLD), b(of_straight, MPI_COMM_WORLD);
+  before.save(writer);
+  test::MemoryReader reader(archive);
+  after.load(reader);
+  for (std::int64_t step = 73; step <= 150; ++step) bed.show(after, step);
+  after.save(a);
+  straight.save(b);
+  EXPECT_EQ(test::first_difference(of_after, of_straight), "");
+  const Records rest = after.take_records(), whole = straight.take_records(), first = before.take_records();
+  if (rank_of(MPI_COMM_WORLD) != 0) return;
+  EXPECT_EQ(first.events.size(), 1u);
+  ASSERT_EQ(rest.events.size(), 3u);
+  for (std::size_t e = 0; e < 3; ++e) {
+    EXPECT_EQ(rest.events[e].name, whole.events[e + 1].name);
+    for (std::size_t n = 0; n < rest.events[e].arrays.size(); ++n)
+      EXPECT_EQ(rest.events[e].arrays[n].values, whole.events[e + 1].arrays[n].values);
+  }
+}
+
+}  // namespace
+}  // namespace thalweg::analysis::entrainment_test

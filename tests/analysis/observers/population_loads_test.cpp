@@ -1,0 +1,83 @@
+#include "analysis/observers/population_loads.hpp"
+
+#include "tests/analysis/made_up_grains.hpp"
+
+#include <gtest/gtest.h>
+
+namespace thalweg::analysis::population_loads_test {
+namespace {
+
+// Two populations dealt out to the ranks: forces and torques with small whole numbers, so that sums are exact.
+TEST(PopulationLoads, AddsForcesAndTurnsThemAboutThePivot) {
+  const Decomposition decomposition({40, 20, 10}, 0.5, {true, true, false}, {1, 1, 1});  // 20 x 10 x 5 m
+  std::vector<GlobalId> id;
+  std::vector<Vec3> position, force, torque, fluid_force, fluid_torque;
+  const auto add = [&](GlobalId grain, const Vec3& x) {
+    if (grain % size_of(MPI_COMM_WORLD) != rank_of(MPI_COMM_WORLD)) return;
+    id.push_back(grain);
+    position.push_back(x);
+    force.push_back(Vec3(0.0, 0.0, 2.0));
+    torque.push_back(Vec3(0.0, 1.0, 0.0));
+    fluid_force.push_back(Vec3(static_cast<double>(grain), 0.0, 0.0));
+    fluid_torque.push_back(Vec3::Zero());
+  };
+  add(0, Vec3(1.0, 5.0, 2.0));
+  add(1, Vec3(19.0, 5.0, 2.0));  // one metre beyond the face: arm -2 from x = 1
+  add(2, Vec3(4.0, 6.0, 3.0));
+  Snapshot snapshot;
+  snapshot.time = 3.0;
+  snapshot.decomposition = &decomposition;
+  snapshot.grains.global_count = 3;
+  snapshot.grains.id = id;
+  snapshot.grains.position = position;
+  snapshot.grains.contact_force = force;
+  snapshot.grains.contact_torque = torque;
+  snapshot.grains.fluid_force = fluid_force;
+  snapshot.grains.fluid_torque = fluid_torque;
+
+  PopulationLoads loads(MPI_COMM_WORLD, decomposition.box(),
+                        {{"wall", 0, 2, [](double time) { return Vec3(1.0, 5.0, time - 1.0); }},
+                         {"bed", 2, 3, [](double) { return Vec3(4.0, 4.0, 0.0); }}},
+                        true);
+  loads.observe(snapshot);
+  const std::vector<Figure> figures = loads.figures();
+  EXPECT_EQ(figures.size(), 24u);
+  EXPECT_EQ(value_of(figures, "wall_contact_force_z"), 4.0);
+  // Arms 0 and (-2, 0, 0) from the pivot at z = 2: -2 x 2 about y is +4, and one of their own each.
+  EXPECT_EQ(value_of(figures, "wall_contact_torque_y"), 6.0);
+  EXPECT_EQ(value_of(figures, "wall_contact_torque_x"), 0.0);
+  EXPECT_EQ(value_of(figures, "wall_fluid_force_x"), 1.0);
+  EXPECT_EQ(value_of(figures, "wall_fluid_torque_y"), 0.0);
+  EXPECT_EQ(value_of(figures, "bed_contact_torque_x"), 4.0);  // 2 m along y, 2 N up
+  EXPECT_EQ(value_of(figures, "bed_fluid_force_x"), 2.0);
+  EXPECT_EQ(value_of(figures, "bed_fluid_torque_y"), 6.0);  // 3 m up, 2 N along x
+  EXPECT_EQ(value_of(figures, "bed_fluid_torque_z"), -4.0);
+
+  // A pivot that has gone around the box three times is at x = 1 as well.
+  PopulationLoads travelling(MPI_COMM_WORLD, decomposition.box(),
+                             {{"roller", 0, 2, [](double) { return Vec3(61.0, 5.0, 2.0); }}}, true);
+  travelling.observe(snapshot);
+  EXPECT_EQ(value_of(travelling.figures(), "roller_contact_torque_y"), 6.0);
+
+  PopulationLoads dry(MPI_COMM_WORLD, decomposition.box(), {{"wall", 0, 2, [](double) { return Vec3::Zero(); }}},
+                      false);
+  EXPECT_EQ(dry.figures().size(), 6u);
+}
+
+// A model fluid loads grains as water does.
+TEST(PopulationLoads, HasTheLoadOfAModelFluid) {
+  const Decomposition decomposition({40, 20, 10}, 0.5, {true, true, false}, {1, 1, 1});
+  RunFacts run;
+  run.box = decomposition.box();
+  run.grains.emplace();
+  run.grains->populations = {{"bed", 0, 3, [](double) { return Vec3::Zero(); }}};
+  const auto figures = [&] {
+    return make_observer(PopulationLoadsKeys{}, run, {MPI_COMM_WORLD, decomposition, 1e-3})->figures().size();
+  };
+  EXPECT_EQ(figures(), 6u);  // dry: force and torque of contacts
+  run.model_fluid.emplace();
+  EXPECT_EQ(figures(), 12u);
+}
+
+}  // namespace
+}  // namespace thalweg::analysis::population_loads_test

@@ -1,0 +1,103 @@
+#include "analysis/tools/hops.hpp"
+
+#include "tests/analysis/made_up_grains.hpp"
+#include "tests/support/memory_archive.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+namespace thalweg::analysis::hops_test {
+namespace {
+
+const MPI_Comm world = MPI_COMM_WORLD;
+constexpr double interval = 0.125, length = 0.5;  // s, m: what the box is long
+const PeriodicBox box{Vec3(length, 1.0, 1.0), {true, true, false}};
+constexpr GlobalId count = 90;
+
+// Grain id rests until measurement 2 + id % 7, is then found moving at every measurement for 1 + id % 5 of them, and
+// rests again for good. It goes at 3 m/s, which is 3/4 of the box in an interval, and half an interval's way before the
+// first and behind the last of these measurements.
+struct Track {
+  int first, last;
+  explicit Track(GlobalId id) : first(static_cast<int>(2 + id % 7)), last(first + static_cast<int>(id % 5)) {}
+  bool moves(int n) const { return n >= first && n <= last; }
+  double x(GlobalId id, int n) const {
+    const double way = 3.0 * interval * std::clamp(n - first + 0.5, 0.0, last - first + 1.0);
+    const double place = 0.005 * static_cast<double>(id) + way;
+    return place - length * std::floor(place / length);
+  }
+  double way() const { return 3.0 * interval * (last - first + 1); }
+  double time() const { return interval * (last - first + 1); }
+};
+
+void observe(Hops& hops, MPI_Comm communicator, int n, int counts_from) {
+  std::vector<Body> bodies;
+  for (GlobalId id = 0; id < count; ++id) {
+    if ((id * 5 + n) % size_of(communicator) != rank_of(communicator)) continue;  // another owner every time
+    const Track track(id);
+    bodies.push_back({id, 1.0, Vec3(track.x(id, n), 0.0, 0.0), Vec3(track.moves(n) ? 3.0 : 0.0, 0.0, 0.0)});
+  }
+  hops.observe(n * interval, box, count, bodies, n >= counts_from);
+}
+
+test::MemoryArchive saved(const Hops& hops, MPI_Comm communicator) {
+  test::MemoryArchive archive;
+  test::MemoryWriter writer(archive, communicator);
+  hops.save(writer, "transport_rate");
+  return archive;
+}
+
+TEST(Hops, AreFromRestToRestThroughPeriodicFacesAndFromRankToRank) {
+  Hops hops(world, 0.1, 0.1, 0.5);
+  EXPECT_EQ(value_of(hops.results(), "hops"), 0.0);
+  EXPECT_TRUE(std::isnan(value_of(hops.results(), "hop_length_mean")));
+  EXPECT_TRUE(std::isnan(value_of(hops.results(), "hop_time_50")));
+  for (int n = 0; n < 14; ++n) observe(hops, world, n, 0);
+  double ways = 0.0, times = 0.0;
+  for (GlobalId id = 0; id < count; ++id) {
+    ways += Track(id).way();
+    times += Track(id).time();
+  }
+  const std::vector<Figure> results = hops.results();
+  EXPECT_EQ(value_of(results, "hops"), 90.0);
+  EXPECT_NEAR(value_of(results, "hop_length_mean"), ways / 90.0, 1e-12);
+  EXPECT_NEAR(value_of(results, "hop_time_mean"), times / 90.0, 1e-12);
+  // A fifth of the hops each is 1, 2, 3, 4, 5 intervals long. A bin is 10^(1/20) wide, a ratio of 1.122.
+  for (const auto& [name, intervals] : std::map<std::string, double>{{"10", 1.0}, {"50", 3.0}, {"90", 5.0}}) {
+    EXPECT_NEAR(value_of(results, "hop_length_" + name) / (3.0 * interval * intervals), 1.0, 0.123) << name;
+    EXPECT_NEAR(value_of(results, "hop_time_" + name) / (interval * intervals), 1.0, 0.123) << name;
+  }
+}
+
+TEST(Hops, UnderWayAtTheStartDoNotCount) {
+  Hops hops(world, 0.1, 0.1, 0.5), late(world, 0.1, 0.1, 0.5);
+  for (int n = 4; n < 14; ++n) observe(hops, world, n, 4);  // those that began at 2, 3 and 4 are missing
+  for (int n = 0; n < 14; ++n) observe(late, world, n, 5);
+  double begun = 0.0;
+  for (GlobalId id = 0; id < count; ++id)
+    if (Track(id).first >= 5) ++begun;
+  EXPECT_EQ(value_of(hops.results(), "hops"), begun);
+  EXPECT_EQ(value_of(late.results(), "hops"), begun);
+}
+
+TEST(Hops, HaveTheSameBitsOnAnyNumberOfRanksAndAfterARestart) {
+  Hops alone(MPI_COMM_SELF, 0.1, 0.1, 0.5), shared(world, 0.1, 0.1, 0.5), restarted(world, 0.1, 0.1, 0.5);
+  test::MemoryArchive half_way;
+  for (int n = 0; n < 12; ++n) {
+    observe(alone, MPI_COMM_SELF, n, 0);
+    observe(shared, world, n, 0);
+    if (n == 5) half_way = saved(alone, MPI_COMM_SELF);
+  }
+  test::MemoryReader reader(half_way);
+  restarted.load(reader, "transport_rate");
+  for (int n = 5; n < 12; ++n) observe(restarted, world, n, 0);  // 5 is seen again, as a restart does
+  const test::MemoryArchive end = saved(alone, MPI_COMM_SELF);
+  EXPECT_EQ(test::first_difference(end, saved(shared, world)), "");
+  EXPECT_EQ(test::first_difference(end, saved(restarted, world)), "");
+  EXPECT_LT(value_of(shared.results(), "hops"), 90.0);  // some are still under way
+}
+
+}  // namespace
+}  // namespace thalweg::analysis::hops_test

@@ -1,0 +1,57 @@
+// What a run takes of a machine's memory, and the refusal of one that does not fit.
+#include "driver/cost/memory.hpp"
+
+#include "core/base/error.hpp"
+#include "driver/cost/run_cost.hpp"
+#include "tests/driver/water_over_glass.hpp"
+
+#include <gtest/gtest.h>
+
+namespace thalweg::driver::memory_test {
+namespace {
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+std::string refusal(double needed, double on_node, double there) {
+  try {
+    refuse_without_memory(needed, on_node, there);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Memory, IsRefusedWhereTheMachineHasLess) {
+  EXPECT_EQ(refusal(20e9, 20e9, 24e9), "");
+  EXPECT_TRUE(contains(refusal(95e9, 95e9, 24e9),
+                       "takes about 95 GB of memory, and this machine has 24 GB: take at least 5 such nodes"));
+  EXPECT_EQ(refusal(80e9, 20e9, 24e9), "");  // on four nodes
+  EXPECT_TRUE(contains(refusal(80e9, 40e9, 24e9), "80 GB of memory, 40 GB of it on one node, and that has 24 GB"));
+}
+
+TEST(Memory, ReportSaysWhatIsNotThere) {
+  EXPECT_EQ(memory_line(10e9, 24e9), "memory     about 10 GB on one rank");
+  EXPECT_TRUE(contains(memory_line(95e9, 24e9), ": more than the 24 GB of this machine"));
+}
+
+TEST(Memory, OfThisNode) {
+  EXPECT_GT(memory_of_this_node(), 1e8);
+  EXPECT_GT(free_memory_for_runs(), 1e7);
+  EXPECT_LT(free_memory_for_runs(), memory_of_this_node());
+}
+
+// At least 19 single-precision values a cell beside the program, and not more than twice that with flags and the links
+// of 1000 grains; the machine of a test has it.
+TEST(Memory, IsThatOfTheLatticeAboveAll) {
+  Case c = water_over_glass(5e-3, 0.016, 0.0412, 0.040, lbm::FaceType::periodic);
+  c.domain.size = Vec3(0.120, 0.040, 0.106);
+  const double lattice = 240.0 * 80.0 * 212.0 * 19.0 * 4.0;
+  EXPECT_GT(memory_on_one_rank(c), bytes_of_program() + lattice);
+  EXPECT_LT(memory_on_one_rank(c), bytes_of_program() + 2.0 * lattice);
+  EXPECT_NO_THROW(refuse_without_memory(c));
+  c.domain.size = Vec3(12.0, 40.0, 106.0);
+  EXPECT_THROW(refuse_without_memory(c), InputError);
+}
+
+}  // namespace
+}  // namespace thalweg::driver::memory_test

@@ -1,0 +1,110 @@
+// What is planned for many ranks, against counts by hand. tests/system and benchmarks measure the rest.
+#include "driver/cost/rank_cost.hpp"
+
+#include "driver/cost/sample_case.hpp"
+#include "driver/setup/build_system.hpp"
+#include "tests/driver/water_over_glass.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace thalweg::driver::rank_cost_test {
+namespace {
+
+RankWork total(const Case& c, const Index3& layout) {
+  const Decomposition decomposition = decomposition_of(c, layout);
+  RankWork sum;
+  for (int rank = 0; rank < decomposition.ranks(); ++rank) {
+    const RankWork work = rank_work(c, decomposition, rank);
+    sum.cells += work.cells;
+    sum.grains += work.grains;
+    sum.share_of_cells += work.share_of_cells;
+    sum.share_of_grains += work.share_of_grains;
+  }
+  return sum;
+}
+
+TEST(RankCost, SharesOutEverything) {
+  const Case c = wide_bed();
+  for (const Index3& layout : {Index3{1, 1, 1}, Index3{4, 2, 1}, Index3{3, 3, 2}, Index3{1, 1, 7}}) {
+    const RankWork sum = total(c, layout);
+    EXPECT_NEAR(sum.cells, 240.0 * 80.0 * 212.0, 1e-6);
+    EXPECT_NEAR(sum.grains, 1000.0, 1e-9);
+    EXPECT_NEAR(sum.share_of_cells, 1.0, 1e-12);
+    EXPECT_NEAR(sum.share_of_grains, 1.0, 1e-12);
+  }
+}
+
+TEST(RankCost, OfOneRankSendsNothing) {
+  const Case c = wide_bed();
+  const RankWork work = rank_work(c, decomposition_of(c, {1, 1, 1}), 0);
+  EXPECT_EQ(work.bytes, 0.0);
+  EXPECT_EQ(work.messages, 0.0);
+  EXPECT_EQ(work.ghosts, 0.0);
+}
+
+// Two ranks along x are each other's neighbours on both sides; eight in four by two have each three beside them.
+TEST(RankCost, CountsMessagesAndBytes) {
+  const Case c = wide_bed();
+  // Every sub-step and once after them, the halo, the sums of the links and what comes back.
+  RankWork work = rank_work(c, decomposition_of(c, {2, 1, 1}), 0);
+  EXPECT_EQ(work.rounds, 54.0);
+  EXPECT_EQ(work.messages, 54.0);
+  // Grains a diameter and a skin of a tenth of one beyond the block, on both sides.
+  EXPECT_NEAR(work.ghosts, 1000.0 * 2.0 * 1.1 * 5e-3 / 0.120, 1e-9);
+  // Two faces of five populations. Towards the edges along y lies the same rank, with one population each.
+  const double halo = 4.0 * (2.0 * 5.0 * 80.0 * 212.0 + 4.0 * 212.0 + 4.0 * 80.0 - 2.0 * 80.0 * 2.0);
+  const double grains = work.ghosts * 8.0 * ((0.6 * 50.0 + 1.0) * 9.0 + 18.0 + 5.0);  // six of ten in sub-steps
+  EXPECT_NEAR(work.bytes, halo + grains, 0.01 * halo);
+  work = rank_work(c, decomposition_of(c, {4, 2, 1}), 5);
+  // Along x two ranks, along y one, and the two at the corners in plan.
+  EXPECT_EQ(work.messages, 5.0 * 54.0);
+}
+
+// A rank above the bed has cells and no grains; without an excess of grains nobody waits for one.
+TEST(RankCost, KnowsWhereTheBedIs) {
+  const Case c = wide_bed();
+  const Decomposition halves = decomposition_of(c, {1, 1, 2});
+  EXPECT_EQ(rank_work(c, halves, 1).grains, 0.0);
+  EXPECT_NEAR(rank_work(c, halves, 0).grains, 1000.0, 1e-9);
+  CoreSpeed speed;
+  speed.of_cells = 0.02;
+  speed.of_grains = 0.08;
+  const Network at_once{1e-30, 1e-30, 1e30};
+  EXPECT_NEAR(step_times(rank_work(c, halves, 1), 2, speed, at_once).sum(), 0.01, 1e-9);
+  const SlowestRank slowest = slowest_rank(c, halves, speed, at_once);
+  EXPECT_NEAR(slowest.times.computing, 0.09, 1e-9);
+  EXPECT_NEAR(slowest.times.waiting, 0.08 / std::sqrt(1000.0), 1e-9);
+}
+
+TEST(RankCost, AddsLatencyOverheadAndBandwidth) {
+  RankWork work;
+  work.rounds = 54.0;
+  work.messages = 108.0;
+  work.bytes = 2e6;
+  const StepTimes times = step_times(work, 16, {}, {2e-6, 1e-6, 1e9});
+  EXPECT_NEAR(times.sending, 54.0 * 2e-6 + 108.0 * 1e-6 + 2e-3, 1e-12);
+  EXPECT_NEAR(times.reducing, 2.0 * 2.0 * 4.0 * 2e-6, 1e-12);  // up and down a tree of 16
+}
+
+// The piece that is timed has the section of the whole, and grains that touch as those of a bed do.
+TEST(SampleCase, IsAShortPieceOfTheWhole) {
+  Case c = wide_bed();
+  const Sample sample = sample_of(c);
+  EXPECT_LT(sample.share, 0.5);
+  EXPECT_NEAR(sample.c.domain.size.x(), sample.share * 0.120, 1e-12);
+  EXPECT_EQ(sample.c.domain.size.z(), c.domain.size.z());
+  ASSERT_EQ(sample.c.grains.size(), 1u);
+  EXPECT_NEAR(static_cast<double>(sample.c.grains[0].count), 1000.0 * sample.share, 1.0);
+  int touching = 0;
+  const std::vector<BedGrain>& bed = sample.c.grains[0].file;
+  for (const BedGrain& one : bed)
+    for (const BedGrain& other : bed)
+      touching += one.id < other.id && (one.position - other.position).norm() < one.radius + other.radius ? 1 : 0;
+  EXPECT_GT(2.0 * touching / static_cast<double>(bed.size()), 4.0);
+  EXPECT_NEAR(cells_of(sample.c.domain)[0] * c.domain.spacing, sample.c.domain.size.x(), 1e-12);
+}
+
+}  // namespace
+}  // namespace thalweg::driver::rank_cost_test

@@ -1,0 +1,324 @@
+#include "driver/estimate/flow_estimate.hpp"
+
+#include "driver/estimate/contact_estimate.hpp"
+#include "driver/estimate/drag_accuracy.hpp"
+#include "driver/plan/case_warnings.hpp"
+#include "tests/driver/water_over_glass.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace thalweg::driver::flow_estimate_test {
+namespace {
+
+constexpr double d = 5e-3, depth = 0.0412;
+
+Case wide_bed(double slope = 0.016) { return water_over_glass(d, slope, depth, 0.040, lbm::FaceType::periodic); }
+
+// Without its grains, and of another viscosity: a film over a bare floor of the whole height.
+Case film(double viscosity) {
+  Case c = wide_bed();
+  c.grains.clear();
+  c.domain.size.z() = 0.02;
+  c.fluid.kinematic_viscosity = viscosity;
+  return c;
+}
+
+bool any_contains(const std::vector<std::string>& texts, const std::string& part) {
+  for (const std::string& text : texts)
+    if (text.find(part) != std::string::npos) return true;
+  return false;
+}
+
+// Stokes' law; the sphere of benchmarks/validation/settle_in_water; ten Cate's E1 in an unbounded fluid (its README).
+TEST(SettlingVelocity, FollowsTheDragLaw) {
+  EXPECT_NEAR(settling_velocity(1e-4, 2.5, 9.81, 1e-3), 1.5 * 9.81 * 1e-8 / (18.0 * 1e-3), 1e-10);
+  EXPECT_NEAR(settling_velocity(5e-3, 2.55, 9.8, 1e-6), 0.480, 0.005);
+  EXPECT_NEAR(settling_velocity(0.015, 1120.0 / 970.0, 9.81, 0.373 / 970.0), 0.0409, 0.0003);
+  EXPECT_EQ(settling_velocity(5e-3, 1.0, 9.8, 1e-6), 0.0);
+  EXPECT_NEAR(settling_velocity(5e-3, 0.5, 9.8, 1e-6), settling_velocity(5e-3, 1.5, 9.8, 1e-6), 1e-12);  // rising
+}
+
+TEST(FlowEstimate, OfASlopeIsTheLogLaw) {
+  const FlowEstimate flow = flow_estimate(wide_bed());
+  const double along = 9.8 * std::sin(std::atan(0.016));
+  EXPECT_EQ(flow.cause, FlowCause::slope);
+  EXPECT_FALSE(flow.laminar);
+  EXPECT_NEAR(flow.speed, 0.94, 0.01);
+  EXPECT_NEAR(flow.friction_velocity, std::sqrt(along * depth), 1e-12);
+  // The mean of a log law is u_tau/kappa below its largest value.
+  EXPECT_NEAR(flow.bulk_velocity, flow.speed - flow.friction_velocity / 0.41, 1e-12);
+  EXPECT_NEAR(flow.spin_up, 2.0 * flow.bulk_velocity / along, 1e-12);
+}
+
+// g_x t, and as much more than the start; the friction velocity stays that of the developed flow.
+TEST(FlowEstimate, OfASlopeIsNoMoreThanTheRunHasTimeFor) {
+  Case c = wide_bed();
+  c.grains[0].fixed = true;  // or water that falling grains push aside would be faster
+  const FlowEstimate developed = flow_estimate(c);
+  const double along = 9.8 * std::sin(std::atan(0.016));
+  c.run.until = 2.0;
+  EXPECT_TRUE(flow_estimate(c).still_gaining);
+  EXPECT_NEAR(flow_estimate(c).speed, 2.0 * along, 1e-12);
+  EXPECT_EQ(flow_estimate(c).friction_velocity, developed.friction_velocity);
+  c.initial.fluid.uniform = Vec3(0.2, 0.0, 0.0);
+  EXPECT_NEAR(flow_estimate(c).speed, 0.2 + 2.0 * along, 1e-12);
+  c.run.until = 10.0;
+  EXPECT_FALSE(flow_estimate(c).still_gaining);
+  EXPECT_EQ(flow_estimate(c).speed, developed.speed);
+  c.run.until = 2.0;
+  c.initial.from.run = "another run";  // whose speed is not known
+  EXPECT_EQ(flow_estimate(c).speed, developed.speed);
+}
+
+// A very slow start of a short run is meant to be slow; that of a long run is a mistake to warn of.
+TEST(FlowEstimate, WarnsOfAnInitialShearVelocityThatDoesNotLast) {
+  Case c = wide_bed();
+  c.initial.fluid.log_profile.emplace();
+  c.initial.fluid.log_profile->bed_height = c.domain.size.z() - depth;
+  c.initial.fluid.log_profile->shear_velocity = 0.008;
+  c.initial.fluid.log_profile->roughness = 3e-4;
+  c.run.until = 2.0;
+  EXPECT_FALSE(any_contains(warnings_of_plan(c), "shear velocity"));
+  c.initial.fluid.log_profile->shear_velocity = 0.04;  // half of it
+  EXPECT_TRUE(any_contains(warnings_of_plan(c), "shear velocity of 0.04"));
+  c.initial.fluid.log_profile->shear_velocity = 0.008;
+  c.run.until = 30.0;
+  EXPECT_TRUE(any_contains(warnings_of_plan(c), "shear velocity of 0.008"));
+}
+
+TEST(FlowEstimate, OfAFilmOfOilIsItsParabola) {
+  const FlowEstimate flow = flow_estimate(film(1e-3));
+  const double along = 9.8 * std::sin(std::atan(0.016));
+  EXPECT_TRUE(flow.laminar);
+  EXPECT_NEAR(flow.speed, along * 4e-4 / 2e-3, 1e-12);
+  EXPECT_NEAR(flow.bulk_velocity, flow.speed / 1.5, 1e-12);
+  EXPECT_NEAR(flow.spin_up, 1.2 * 4e-4 / 1e-3, 1e-12);
+  // exp(-pi^2 nu t/(4 H^2)) of the difference, 8/pi^2 of the mean at first, is left: 5 %.
+  const double left = 8.0 / (std::numbers::pi * std::numbers::pi) *
+                      std::exp(-0.25 * std::numbers::pi * std::numbers::pi * 1e-3 * flow.spin_up / 4e-4);
+  EXPECT_NEAR(left, 0.05, 0.01);
+}
+
+// Plates hold the flow on both sides: u_max = g H^2/(8 nu), a quarter of a film's.
+TEST(FlowEstimate, BetweenFloorAndLidIsTheParabolaOfPlates) {
+  Case c = film(1e-3);
+  c.domain.faces[top].type = lbm::FaceType::no_slip;
+  const FlowEstimate flow = flow_estimate(c);
+  const double along = 9.8 * std::sin(std::atan(0.016));
+  EXPECT_TRUE(flow.laminar);
+  EXPECT_NEAR(flow.speed, along * 4e-4 / 8e-3, 1e-12);
+  EXPECT_NEAR(flow.bulk_velocity, flow.speed / 1.5, 1e-12);
+  EXPECT_NEAR(flow.friction_velocity, std::sqrt(along * 0.01), 1e-12);
+  EXPECT_NEAR(flow.spin_up, 1.2 * 1e-4 / 1e-3, 1e-12);
+}
+
+// A slot much narrower than deep: u_max = g W^2/(8 nu), and Re 0.2 is laminar.
+TEST(FlowEstimate, BetweenNearSideWallsIsThatOfTheSlot) {
+  Case c = film(1e-3);
+  c.domain.size.y() = 0.002;
+  c.domain.faces[y_low].type = c.domain.faces[y_high].type = lbm::FaceType::no_slip;
+  const double along = 9.8 * std::sin(std::atan(0.016));
+  FlowEstimate flow = flow_estimate(c);
+  EXPECT_TRUE(flow.laminar);
+  EXPECT_NEAR(flow.speed, along * 4e-6 / 8e-3, 1e-6 * flow.speed);
+  EXPECT_NEAR(flow.bulk_velocity, flow.speed / 1.5, 0.035 * flow.speed);  // less at the floor, by 0.63 W/(2 H)
+  EXPECT_NEAR(flow.friction_velocity, std::sqrt(along * 0.02 * 0.002 / 0.042), 1e-12);
+  // The same slot without a floor, and half of one as wide: a plane of symmetry.
+  c.domain.faces[bottom].type = lbm::FaceType::free_slip;
+  EXPECT_NEAR(flow_estimate(c).bulk_velocity, along * 4e-6 / 12e-3, 1e-12);
+  c.domain.faces[y_high].type = lbm::FaceType::free_slip;
+  EXPECT_NEAR(flow_estimate(c).speed, along * 4e-6 / 2e-3, 1e-12);
+}
+
+// U R/nu = 500, the 2000 of the hydraulic diameter: of a film U = g H^2/(3 nu).
+TEST(FlowEstimate, IsLaminarByItsReynoldsNumber) {
+  const double along = 9.8 * std::sin(std::atan(0.016)), nu = std::sqrt(along * 8e-6 / 3.0 / 500.0);
+  EXPECT_TRUE(flow_estimate(film(1.01 * nu)).laminar);
+  EXPECT_FALSE(flow_estimate(film(0.99 * nu)).laminar);
+  EXPECT_LT(flow_estimate(film(0.99 * nu)).speed, flow_estimate(film(1.01 * nu)).speed);
+}
+
+// A mean velocity that is held makes the same profile as a slope that gives it.
+TEST(FlowEstimate, OfASlowMeanVelocityIsThatOfTheSameChannel) {
+  Case c = film(1e-3);
+  c.domain.faces[top].type = lbm::FaceType::no_slip;
+  c.domain.faces[y_low].type = c.domain.faces[y_high].type = lbm::FaceType::no_slip;
+  const FlowEstimate by_slope = flow_estimate(c);
+  c.gravity.slope = 0.0;
+  c.fluid.mean_velocity = coupling::FlowTargetKeys{.velocity = by_slope.bulk_velocity, .response_time = 0.5};
+  const FlowEstimate held = flow_estimate(c);
+  EXPECT_TRUE(held.laminar);
+  EXPECT_NEAR(held.speed, by_slope.speed, 1e-12);
+  EXPECT_NEAR(held.friction_velocity, by_slope.friction_velocity, 1e-12);
+}
+
+TEST(FlowEstimate, OfAMovingTopIsCouetteFlow) {
+  Case c = film(1e-3);
+  c.gravity.slope = 0.0;
+  c.domain.faces[top] = {.type = lbm::FaceType::moving, .velocity = Vec3(0.05, 0.0, 0.0)};
+  FlowEstimate flow = flow_estimate(c);
+  EXPECT_EQ(flow.cause, FlowCause::moving_face);
+  EXPECT_EQ(flow.speed, 0.05);
+  EXPECT_TRUE(flow.laminar);
+  EXPECT_NEAR(flow.friction_velocity, std::sqrt(1e-3 * 0.05 / 0.02), 1e-12);
+  // In water: Re_tau of turbulent Couette flow with V H/nu = 5200 (half and half: 1300) is 80 to 83 (Kitoh et al.
+  // 2005).
+  c.fluid.kinematic_viscosity = 1e-6;
+  c.domain.faces[top].velocity.x() = 0.26;
+  flow = flow_estimate(c);
+  EXPECT_FALSE(flow.laminar);
+  EXPECT_NEAR(flow.friction_velocity * 0.01 / 1e-6, 81.0, 12.0);
+}
+
+TEST(FlowEstimate, OfAMeanVelocityCountsTheWaterAboveTheBedAlone) {
+  Case c = wide_bed(0.0);
+  c.grains[0].fixed = true;  // else they fall faster than this
+  c.fluid.mean_velocity = coupling::FlowTargetKeys{.velocity = 0.2, .response_time = 0.5};
+  const FlowEstimate flow = flow_estimate(c);
+  const Vec3 size = c.domain.size;
+  const double water = size.prod() - 1000.0 * std::numbers::pi / 6.0 * d * d * d;
+  EXPECT_EQ(flow.cause, FlowCause::mean_velocity);
+  EXPECT_NEAR(flow.bulk_velocity, 0.2 * water / (size.x() * size.y() * depth), 1e-12);
+  const double logarithm = std::log(depth / (d / 15.0));
+  EXPECT_NEAR(flow.bulk_velocity, flow.friction_velocity / 0.41 * (logarithm - 1.0), 1e-9);
+  EXPECT_NEAR(flow.speed, flow.friction_velocity / 0.41 * logarithm, 1e-9);
+}
+
+TEST(FlowEstimate, KnowsInletsStartsAndGrainsThatFall) {
+  Case c = wide_bed(0.0);
+  EXPECT_EQ(flow_estimate(c).cause, FlowCause::settling);
+  EXPECT_NEAR(flow_estimate(c).speed, settling_velocity(d, 2.55, 9.8, 1e-6), 1e-12);
+  c.grains[0].fixed = true;
+  EXPECT_EQ(flow_estimate(c).speed, 0.0);
+  c.initial.fluid.uniform = Vec3(0.1, 0.0, 0.0);
+  EXPECT_EQ(flow_estimate(c).cause, FlowCause::initial_fluid);
+  c.domain.faces[x_low] = {.type = lbm::FaceType::velocity_inlet, .velocity = Vec3(0.3, 0.0, 0.0)};
+  c.domain.faces[x_high].type = lbm::FaceType::pressure_outlet;
+  EXPECT_EQ(flow_estimate(c).cause, FlowCause::inlet);
+  EXPECT_NEAR(flow_estimate(c).speed, 0.3 * c.domain.size.z() / depth, 1e-12);  // all of it above the bed
+}
+
+TEST(Warnings, CompareTheExpectedVelocityWithTheEstimate) {
+  Case c = wide_bed(5.0);
+  c.fluid.time_step.reset();
+  c.fluid.maximum_lattice_velocity = 0.1;
+  c.fluid.expected_velocity = 0.5;
+  EXPECT_TRUE(any_contains(warnings(c), "times fluid.expected_velocity"));
+  c = wide_bed();
+  c.fluid.expected_velocity = 0.9;
+  EXPECT_FALSE(any_contains(warnings(c), "The flow may reach"));
+}
+
+TEST(Warnings, OfLaminarFlowWithSmagorinskysModel) {
+  Case c = film(1e-3);
+  c.fluid.smagorinsky_constant = 0.27;
+  EXPECT_TRUE(any_contains(warnings(c), "consider fluid.subgrid_model: qr and fluid.smagorinsky_constant: null"));
+  c.fluid.smagorinsky_constant.reset();  // the default vanishes in shear
+  EXPECT_FALSE(any_contains(warnings(c), "The flow is laminar"));
+  c.fluid.subgrid_model = lbm::SubgridModel::smagorinsky;
+  EXPECT_TRUE(any_contains(warnings(c), "consider fluid.subgrid_model: qr."));
+  c.fluid.subgrid_model = lbm::SubgridModel::none;
+  EXPECT_FALSE(any_contains(warnings(c), "The flow is laminar"));
+  c = wide_bed();
+  c.fluid.smagorinsky_constant = 0.27;
+  EXPECT_FALSE(any_contains(warnings(c), "The flow is laminar"));
+}
+
+TEST(Warnings, OfRelaxationTimesBelowTheMap) {
+  Case c = wide_bed();
+  EXPECT_FALSE(any_contains(warnings(c), "has not been tested below"));  // 2.4e-4
+  c.fluid.time_step = 0.9 * 1e-4 * 2.5e-7 / 3e-6;                        // 0.9e-4
+  EXPECT_TRUE(any_contains(warnings(c), "has not been tested below"));
+}
+
+TEST(Warnings, OfThePlan) {
+  Case c = wide_bed();
+  c.domain.size.z() = 0.064;  // a whole number of cells
+  c.run.until = 30.0;
+  EXPECT_TRUE(warnings_of_plan(c).empty());
+  c.run.until = 1.0;  // of 9 s
+  EXPECT_TRUE(any_contains(warnings_of_plan(c), "from rest"));
+  EXPECT_TRUE(any_contains(warnings_of_plan(c), "initial.fluid.log_profile: {bed_height: 0.0"));
+  c.initial.fluid.log_profile = coupling::LogProfileKeys{0.06, 0.080, 2e-4, std::nullopt};
+  EXPECT_TRUE(warnings_of_plan(c).empty());
+  c.initial.fluid.log_profile->shear_velocity = 0.040;
+  c.run.until = 30.0;
+  EXPECT_TRUE(any_contains(warnings_of_plan(c), "shear_velocity: 0.08"));
+  c.run.until = 0.4;  // H/u_tau = 0.51 s
+  EXPECT_TRUE(any_contains(warnings_of_plan(c), "one turnover"));
+  EXPECT_FALSE(any_contains(warnings_of_plan(c), "developed"));  // it is
+}
+
+// A column of grains under water, by hand: shear stress rho_f g_x H + (rho_f + 0.6 excess) g_x h.
+TEST(SlidingBed, IsThatOfTheStressesAtItsBase) {
+  Case c = wide_bed();
+  const double height = c.domain.size.z() - depth, sine = std::sin(std::atan(0.016)),
+               cosine = std::cos(std::atan(0.016));
+  const double shear = (1000.0 * depth + (1000.0 + 0.6 * 1550.0) * height) * sine;
+  EXPECT_NEAR(stress_ratio_at_base(c), shear / (0.6 * 1550.0 * height * cosine), 1e-12);
+  c.contact.friction = 0.5;
+  EXPECT_FALSE(any_contains(warnings(c), "slides as a whole"));
+  c.gravity.slope = 0.2;
+  EXPECT_TRUE(any_contains(warnings(c), "slides as a whole"));
+  c.system = SystemKind::grains;
+  EXPECT_NEAR(stress_ratio_at_base(c), 0.2, 1e-12);  // dry: the tangent
+  EXPECT_EQ(bulk_friction(0.5), 0.382);
+  EXPECT_NEAR(bulk_friction(0.2), 0.5 * (0.268 + 0.357), 1e-12);
+  EXPECT_EQ(bulk_friction(50.0), 0.405);
+}
+
+// benchmarks/validation/rebound_in_water: 2 % of a diameter for 555 N/m at 0.3 m/s, here at the speed of a fall.
+TEST(Overlaps, OfLinearAndOfElasticContacts) {
+  Case c = wide_bed();
+  c.contact.normal_stiffness = 555.0;
+  const Overlaps soft = expected_overlaps(c);
+  const double mass = 2550.0 * std::numbers::pi / 6.0 * d * d * d;
+  EXPECT_NEAR(soft.in_impact, 0.48 * std::sqrt(0.5 * mass / 555.0) / d, 2e-4 + 0.01 * soft.in_impact);
+  const double height = c.domain.size.z() - depth;
+  EXPECT_NEAR(soft.under_weight, 0.6 * 1550.0 * 9.8 * std::cos(std::atan(0.016)) * height * d / 555.0, 1e-9);
+  c.contact.normal_stiffness = 100.0;
+  EXPECT_TRUE(any_contains(warnings(c), "would overlap"));
+  c.contact.normal_stiffness = 20000.0;
+  EXPECT_FALSE(any_contains(warnings(c), "would overlap"));
+
+  // Hertz: the energy of the deepest overlap, 8/15 E* sqrt(R*) delta^(5/2), is that of the impact.
+  c.contact.law = dem::Law::hertz_mindlin;
+  c.contact.youngs_modulus = 1e7;
+  c.contact.poisson_ratio = 0.2;
+  const Overlaps elastic = expected_overlaps(c);
+  const double modulus = 1e7 / (2.0 * (1.0 - 0.04)), energy = 0.5 * 0.5 * mass * elastic.speed * elastic.speed;
+  EXPECT_NEAR(8.0 / 15.0 * modulus * std::sqrt(0.25 * d) * std::pow(elastic.in_impact * d, 2.5), energy, 1e-9 * energy);
+}
+
+// The table of benchmarks/validation/simple_cubic_arrays, and second order beyond it.
+TEST(SlowDrag, IsThatOfTheValidation) {
+  EXPECT_NEAR(slow_drag_error(10.0, false).among_others, -0.044, 1e-12);
+  EXPECT_NEAR(slow_drag_error(7.1, false).alone, 0.5 * (-0.041 - 0.023), 1e-12);
+  EXPECT_NEAR(slow_drag_error(40.2, false).among_others, -0.009 / 4.0, 1e-12);
+  EXPECT_NEAR(slow_drag_error(5.0, true).alone, -0.017 * 1.44, 1e-12);
+}
+
+TEST(DragText, DependsOnReynoldsNumberAndSubgridModel) {
+  Case c = wide_bed();
+  c.fluid.collision = lbm::CollisionModel::trt_at_bodies;
+  c.fluid.subgrid_model = lbm::SubgridModel::qr;
+  EXPECT_NE(drag_text(c).find("20 % too slowly"), std::string::npos) << drag_text(c);
+  c.fluid.subgrid_model.reset();
+  c.fluid.smagorinsky_constant = 0.27;
+  EXPECT_NE(drag_text(c).find("28 % too slowly"), std::string::npos) << drag_text(c);
+  c.fluid.smagorinsky_constant = 0.1;
+  EXPECT_NE(drag_text(c).find("14 % too slowly"), std::string::npos) << drag_text(c);
+  c.fluid.smagorinsky_constant.reset();
+  c.fluid.subgrid_model = lbm::SubgridModel::none;
+  EXPECT_NE(drag_text(c).find("not validated"), std::string::npos) << drag_text(c);
+  c.fluid.kinematic_viscosity = 1e-3;  // Re 0.5
+  EXPECT_NE(drag_text(c).find("off by -1.6 % alone and -4.4 % among others"), std::string::npos) << drag_text(c);
+  c.grains.clear();
+  EXPECT_EQ(drag_text(c), "");
+}
+
+}  // namespace
+}  // namespace thalweg::driver::flow_estimate_test

@@ -1,0 +1,105 @@
+#include "driver/estimate/obstacles.hpp"
+
+#include "driver/estimate/bed_flow.hpp"
+#include "tests/driver/case_texts.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace thalweg::driver::obstacles_test {
+namespace {
+
+// A bed of 12 mm over 72 mm x 48 mm, and fixed grains to be added in front of it: 220 grains of 6 mm, 11.9996 mm at a
+// solid fraction of 0.6.
+std::string bed_with(const std::string& fixed) {
+  return fmt::format(R"(system: resolved
+name: obstacles
+domain: {{size: [0.072, 0.048, 0.042], spacing: 1.0e-3, boundaries: {{x: periodic, y: periodic, bottom: no_slip, top: free_slip}}}}
+fluid: {{density: 1000, kinematic_viscosity: 1.0e-6, smagorinsky_constant: 0.27, time_step: 1.0e-4}}
+gravity: {{magnitude: 9.81, slope: 0.02}}
+grains:
+{}  - {{fill: {{depth: 0.012}}, diameter: 6.0e-3, density: 2650, placement: {{pattern: random, seed: 1}}}}
+contact: {{normal_stiffness: 20000, tangential_stiffness: 5714, restitution: 0.5, friction: 0.5}}
+coupling: {{grain_steps_per_fluid_step: auto}}
+run: {{until: 0.05}}
+)",
+                     fixed);
+}
+
+std::string fixed_at(const std::string& positions, double diameter) {
+  return fmt::format("  - {{density: 2650, fixed: true, diameter: {}, placement: {{positions: [{}]}}}}\n", diameter,
+                     positions);
+}
+
+// Twelve spheres of 16 mm, 4 mm apart across the stream, sunk into the floor by 4 mm.
+std::string sill() {
+  std::string positions;
+  for (int n = 1; n <= 12; ++n) positions += fmt::format("{}[0.03, {}, 0.004]", n > 1 ? ", " : "", 0.004 * n);
+  return fixed_at(positions, 0.016);
+}
+
+// The section of the sill between the spheres' largest and smallest, 2 mm off a centre, is that of cylinders of 8 and
+// 7.75 mm; the bed fills the room beside them: 12 mm + section/72 mm.
+TEST(Obstacles, ASillTakesItsRoomInTheBedOnce) {
+  const Case c = testing::read_text(bed_with(sill()));
+  EXPECT_EQ(obstacles_of(c).spheres.size(), 12U);
+  const auto section = [](double r, double up) {  // of a cylinder, above the floor; mm^2
+    return std::numbers::pi * r * r - r * r * std::acos(up / r) + up * std::sqrt(r * r - up * up);
+  };
+  EXPECT_LT(settled_height(c), 0.001 * (12.0 + section(8.0, 4.0) / 72.0) + 1e-5);
+  EXPECT_GT(settled_height(c), 0.001 * (11.9996 + section(7.75, 4.0) / 72.0) - 1e-5);
+  const double volume = solid_volume(c), grains = 220 * std::numbers::pi / 6.0 * 216e-9;
+  EXPECT_LT(volume - grains, section(8.0, 4.0) * 48e-9 * 1.002);
+  EXPECT_GT(volume - grains, section(7.75, 4.0) * 48e-9 * 0.998);
+}
+
+// A pier through the whole depth: only what is in the bed takes room, half a sphere at the floor and above it nearly a
+// cylinder, pi (r^2 - s^2/12) of spheres s apart.
+TEST(Obstacles, APierIsNoBedAboveTheBed) {
+  std::string positions;
+  for (int n = 0; n < 10; ++n) positions += fmt::format("{}[0.03, 0.02, {}]", n > 0 ? ", " : "", 0.006 + 0.0033 * n);
+  const Case c = testing::read_text(bed_with(fixed_at(positions, 0.012)));
+  constexpr double pi = std::numbers::pi, area = 72.0 * 48.0, section = pi * (36.0 - 3.3 * 3.3 / 12.0);  // mm^2
+  const double height = (11.9996 * area + 2.0 / 3.0 * pi * 216.0 - 6.0 * section) / (area - section);    // mm
+  EXPECT_NEAR(settled_height(c), 0.001 * height, 5e-6);
+}
+
+TEST(Obstacles, AreNotTheGrainsOfAFixedLayer) {
+  const std::string layer =
+      fixed_at("[0.01, 0.01, 0.003], [0.0159, 0.01, 0.003], [0.02, 0.02, 0.003]", 0.006);  // 0.1 mm
+  const Case glued = testing::read_text(bed_with(layer));
+  EXPECT_TRUE(obstacles_of(glued).spheres.empty());
+  EXPECT_EQ(solid_volume(glued), grain_volume(glued));
+  EXPECT_NEAR(settled_height(glued), 223 * std::numbers::pi / 6.0 * 216e-9 / (0.6 * 0.072 * 0.048), 1e-12);
+  const std::string trefoil =
+      "  - {density: 2650, fixed: true, orientation: {angle: 0}, placement: {positions: [[0.01, 0.01, 0.004]]},\n"
+      "     shape: {clump: [{position: [0, 0, 0], diameter: 5.0e-3}, {position: [3.0e-3, 0, 0], diameter: 5.0e-3}]}}\n";
+  EXPECT_TRUE(obstacles_of(testing::read_text(bed_with(trefoil))).spheres.empty());
+}
+
+TEST(Obstacles, AreGrainsTwiceAsLongAsTheFreeOnes) {
+  EXPECT_TRUE(obstacles_of(testing::read_text(bed_with(fixed_at("[0.03, 0.02, 0.006]", 0.0119)))).spheres.empty());
+  EXPECT_EQ(obstacles_of(testing::read_text(bed_with(fixed_at("[0.03, 0.02, 0.006]", 0.0121)))).spheres.size(), 1U);
+  const std::string post =
+      "  - {density: 2650, fixed: true, orientation: {angle: 0}, placement: {positions: [[0.03, 0.02, 0.012]]},\n"
+      "     shape: {clump: [{position: [0, 0, 0], diameter: 6.0e-3}, {position: [0, 0, 4.0e-3], diameter: 6.0e-3}, "
+      "{position: [0, 0, 8.0e-3], diameter: 6.0e-3}]}}\n";
+  const Obstacles found = obstacles_of(testing::read_text(bed_with(post)));
+  ASSERT_EQ(found.spheres.size(), 3U);
+  for (std::size_t n = 0; n < 3; ++n) {
+    EXPECT_EQ(found.spheres[n].id, static_cast<GlobalId>(n));
+    EXPECT_NEAR(found.spheres[n].centre[2], 0.008 + 0.004 * static_cast<double>(n), 1e-9);
+  }
+}
+
+// Through a periodic face, and not through a wall; free grains are never obstacles.
+TEST(Obstacles, OverlapThroughPeriodicFaces) {
+  const std::string ends = fixed_at("[0.0005, 0.02, 0.003], [0.0715, 0.02, 0.003]", 0.006);
+  EXPECT_EQ(obstacles_of(testing::read_text(bed_with(ends))).spheres.size(), 2U);
+}
+
+}  // namespace
+}  // namespace thalweg::driver::obstacles_test

@@ -1,0 +1,85 @@
+#include "driver/execution/watch_rules.hpp"
+
+#include "driver/estimate/flow_estimate.hpp"
+#include "tests/driver/case_texts.hpp"
+#include "tests/loop/made_up_system.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace thalweg::driver::watch_rules_test {
+namespace {
+
+using namespace loop;
+
+using testing::flume;
+using testing::read_text;
+
+const MPI_Comm world = MPI_COMM_WORLD;
+
+TEST(WatchRules, EveryRuleOfACaseWarnsAndStops) {
+  const MadeUp system;
+  const Case c = read_text(flume);
+  struct Trouble {
+    const char* figure;
+    double suspicious, impossible;
+    std::vector<std::string> words;
+  };
+  // A lattice velocity of 1 is 25 m/s here: the grains are limited by 0.2 and 0.3 of it, or by what they can reach.
+  const double reach = expected_grain_speed(c);
+  const std::vector<Trouble> troubles{
+      {"largest_lattice_velocity", 0.21, 0.31, {"velocity of the fluid", "fluid.time_step", "docs/stability.md"}},
+      {"mean_density_deviation", -0.0011, -0.011, {"mean density", "mass_by_links"}},
+      {"mean_density_deviation", 0.0011, 0.011, {"mean density", "mass_by_links"}},
+      {"smallest_density_deviation", -0.31, -0.51, {"smallest density", "fluid.time_step"}},
+      {"largest_density_deviation", 0.31, 1.01, {"largest density", "fluid.time_step"}},
+      {"largest_grain_speed", 2.01 * reach, 5.01 * reach, {"speed of a grain", "a longer contact.duration"}},
+      {"largest_overlap", 0.11, 0.51, {"overlap", "a shorter contact.duration than 0.000792 s"}}};
+  for (const Trouble& trouble : troubles) {
+    Watchdog dog(world, system, watch_rules(c), OutOfBounds::stop);
+    const std::vector<std::string> warnings = dog.judge({{trouble.figure, "1", trouble.suspicious}});
+    ASSERT_EQ(warnings.size(), 1u) << trouble.figure;
+    expect_words(warnings[0], trouble.words);
+    const std::string message = message_of(dog, {{trouble.figure, "1", trouble.impossible}});
+    expect_words(message, trouble.words);
+    expect_words(message, {"2.5 s (step 250)", "beyond the limit", "in the pore between grains 10 and 11"});
+  }
+  Watchdog dog(world, system, watch_rules(c), OutOfBounds::stop);
+  EXPECT_EQ(dog.judge({{"fast_cell_fraction", "1", 1.1e-3}}).size(), 1u);
+  EXPECT_EQ(message_of(dog, {{"fast_cell_fraction", "1", 1.0}}), "");  // never stops a run
+}
+
+// 2/3 (rho_s - rho) g d = 2/3 1550 9.8 4.95e-3 = 50.13 Pa and 2/3 1550 9.8 4e-3 of grains that are fixed;
+// rho c_s^2 = 1000 (dx/dt)^2/3.
+TEST(WatchRules, MeanDensityIsLimitedByTheWeightOfAGrain) {
+  const Case coarse = read_text(flume, {"fluid.time_step=1e-4"});  // 5 m/s: 8333 Pa
+  EXPECT_NEAR(mean_density_limits(coarse).warn, 50.127 / 8333.33, 1e-6);
+  EXPECT_NEAR(mean_density_limits(coarse).stop, 501.27 / 8333.33, 1e-5);
+  EXPECT_NEAR(mean_density_limits(read_text(flume)).warn, 1e-3, 1e-15);  // 25 m/s: 2.4e-4, below the least
+  Case empty = coarse;
+  empty.grains.clear();
+  EXPECT_NEAR(mean_density_limits(empty).warn, 0.01, 1e-15);
+  empty.domain.faces[x_low].type = lbm::FaceType::velocity_inlet;
+  empty.domain.faces[x_high].type = lbm::FaceType::pressure_outlet;
+  empty.domain.faces[x_high].pressure = -83.3333;
+  EXPECT_NEAR(mean_density_limits(empty).warn, 0.06, 1e-6);
+  EXPECT_NEAR(mean_density_limits(empty).stop, 0.21, 1e-6);
+}
+
+// Terminal speed sqrt(4/3 1.55 g 4.95e-3/0.4) with g = 9.8 m/s^2, and the flow of estimated_velocity().
+TEST(WatchRules, GrainsMayFallAndBeCarried) {
+  const Case wet = read_text(flume);
+  EXPECT_NEAR(expected_grain_speed(wet), std::sqrt(4.0 / 3.0 * 1.55 * 9.8 * 4.95e-3 / 0.4) + estimated_velocity(wet),
+              1e-9);
+  Case dry = wet;
+  dry.system = SystemKind::grains;
+  dry.grains[0].velocity = Vec3(0.0, 0.0, -3.0);
+  // Down the periodic slope as long as the run lasts, and a fall through the height of the box.
+  const double angle = std::atan(0.07);
+  EXPECT_NEAR(expected_grain_speed(dry),
+              3.0 + 3.0 * 9.8 * std::sin(angle) + std::sqrt(2.0 * 9.8 * std::cos(angle) * 0.075), 1e-9);
+}
+
+}  // namespace
+}  // namespace thalweg::driver::watch_rules_test

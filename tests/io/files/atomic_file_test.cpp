@@ -1,0 +1,39 @@
+// Room on the disk for a file, while signals arrive.
+#include "io/files/atomic_file.hpp"
+#include "tests/io/scratch_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fcntl.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <cerrno>
+
+static int interruptions = 0;
+
+// That of the system, but for the first calls, which fail as on tmpfs while a signal is pending.
+extern "C" int fallocate(int file, int mode, off_t offset, off_t length) {
+  if (interruptions == 0) return static_cast<int>(::syscall(SYS_fallocate, file, mode, offset, length));
+  --interruptions;
+  errno = EINTR;
+  return -1;
+}
+
+namespace thalweg::io::atomic_file_test {
+namespace {
+
+TEST(AtomicFile, ASignalDoesNotMakeTheDiskFull) {
+  const testing::ScratchFolder folder;
+  if (rank_of(MPI_COMM_WORLD) != 0) return;
+  const std::filesystem::path path = folder / "room";
+  testing::put(path, "kept");
+  interruptions = 3;
+  EXPECT_TRUE(reserve_on_disk(path, 4, 5000));
+  EXPECT_EQ(interruptions, 0);
+  EXPECT_EQ(std::filesystem::file_size(path), 5004u);
+  EXPECT_TRUE(testing::contents(path).starts_with("kept"));
+}
+
+}  // namespace
+}  // namespace thalweg::io::atomic_file_test

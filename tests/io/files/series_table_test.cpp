@@ -1,0 +1,77 @@
+// series.csv: header, round trip of every digit, and what a restart keeps.
+#include "io/files/series_table.hpp"
+#include "core/base/error.hpp"
+#include "tests/io/scratch_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace thalweg::io::series_table_test {
+namespace {
+
+using testing::contents;
+using testing::message_of;
+using testing::ScratchFolder;
+
+const std::vector<SeriesTable::Column> columns{{"q_star", "1"}, {"speed", "m/s"}};
+
+TEST(SeriesTable, EveryNumberReadsBackToTheSameBits) {
+  const ScratchFolder folder;
+  const std::vector<double> values{1.0 / 3.0, -4.9406564584124654e-300};
+  SeriesTable table(MPI_COMM_WORLD, folder / "series.csv", columns);
+  table.append(0.1 + 0.2, values);
+  const std::string text = contents(folder / "series.csv");  // on the disk while the table is open
+  const std::string header = "time [s],q_star [1],speed [m/s]\n";
+  ASSERT_EQ(text.substr(0, header.size()), header);
+  double time = 0.0, a = 0.0, b = 0.0;
+  ASSERT_EQ(std::sscanf(text.c_str() + header.size(), "%lf,%lf,%lf\n", &time, &a, &b), 3);
+  EXPECT_EQ(time, 0.1 + 0.2);
+  EXPECT_EQ(a, values[0]);
+  EXPECT_EQ(b, values[1]);
+}
+
+TEST(SeriesTable, ARestartDropsWhatCameAfterIt) {
+  const ScratchFolder folder;
+  const auto path = folder / "series.csv";
+  {
+    SeriesTable table(MPI_COMM_WORLD, path, columns);
+    for (int n = 0; n <= 4; ++n) table.append(0.25 * n, std::vector<double>{1.0 * n, 2.0 * n});
+  }
+  if (rank_of(MPI_COMM_WORLD) == 0) std::ofstream(path, std::ios::app) << "0.25,0.5";  // cut short by a kill
+  MPI_Barrier(MPI_COMM_WORLD);
+  SeriesTable table(MPI_COMM_WORLD, path, columns, 0.5);
+  table.append(0.6, std::vector<double>{7.0, 8.0});
+  EXPECT_EQ(contents(path), "time [s],q_star [1],speed [m/s]\n0,0,0\n0.25,1,2\n0.5,2,4\n0.6,7,8\n");
+}
+
+TEST(SeriesTable, ANewTableForgetsAnOldFile) {
+  const ScratchFolder folder;
+  if (rank_of(MPI_COMM_WORLD) == 0) testing::put(folder / "series.csv", "anything\n");
+  MPI_Barrier(MPI_COMM_WORLD);
+  const SeriesTable table(MPI_COMM_WORLD, folder / "series.csv", columns);
+  EXPECT_EQ(contents(folder / "series.csv"), "time [s],q_star [1],speed [m/s]\n");
+}
+
+TEST(SeriesTable, AFileWithOtherColumnsIsLeftAlone) {
+  const ScratchFolder folder;
+  const std::string other = "time [s],height [m]\n0,1\n";
+  if (rank_of(MPI_COMM_WORLD) == 0) testing::put(folder / "series.csv", other);
+  MPI_Barrier(MPI_COMM_WORLD);
+  const std::string message =
+      message_of<InputError>([&] { SeriesTable(MPI_COMM_WORLD, folder / "series.csv", columns, 1.0); });
+  EXPECT_EQ(message_of<InputError>([&] { SeriesTable::check_columns(MPI_COMM_WORLD, folder / "series.csv", columns); }),
+            message);
+  EXPECT_NE(message.find("the file has other columns than this run writes (time [s],q_star [1],speed [m/s])"),
+            std::string::npos)
+      << message;
+  EXPECT_EQ(contents(folder / "series.csv"), other);
+}
+
+TEST(SeriesTable, AMissingFolderIsARunErrorOnEveryRank) {
+  const ScratchFolder folder;
+  EXPECT_NE(message_of<RunError>([&] { SeriesTable(MPI_COMM_WORLD, folder / "missing/series.csv", columns); }), "");
+}
+
+}  // namespace
+}  // namespace thalweg::io::series_table_test

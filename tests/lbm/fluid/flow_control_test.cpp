@@ -1,0 +1,100 @@
+// The controlled body force: it reaches its target, and a restart does not change one bit, whatever the ranks.
+#include "core/base/error.hpp"
+#include "core/parallel/mpi_session.hpp"
+#include "lbm/fluid/fluid.hpp"
+#include "tests/support/memory_archive.hpp"
+
+#include <gtest/gtest.h>
+
+namespace thalweg::lbm::flow_control_test {
+namespace {
+
+struct Channel {
+  std::array<bool, 3> periodic;
+  FaceConditions faces;
+};
+
+Channel between_plates() {
+  Channel channel{{true, false, true}, {}};
+  channel.faces[2].type = channel.faces[3].type = FaceType::no_slip;
+  return channel;
+}
+
+// An outlet looks at the velocity of the last step, and the controller sets the force of the next.
+Channel under_an_outlet() {
+  Channel channel{{true, true, false}, {}};
+  channel.faces[4].type = FaceType::no_slip;
+  channel.faces[5].type = FaceType::pressure_outlet;
+  return channel;
+}
+
+CollisionParameters viscous() {
+  CollisionParameters parameters;
+  parameters.model = CollisionModel::trt;  // no wall error
+  parameters.relaxation_time = 0.8;
+  return parameters;
+}
+
+// In steady Poiseuille flow of mean U the force is 12 nu U/h^2; the mean over cell centres of the exact parabola is
+// larger than U by the factor 1 + 1/(2 h^2). With the drag 0.012 u and T = 50 the error decays as exp(-0.0035 t):
+// nothing is left after 20000 steps.
+TEST(FlowControl, HoldsTheTargetWithTheForceOfPoiseuilleFlow) {
+  const Decomposition decomposition({4, 10, 4}, 1.0, {true, false, true}, {1, 1, 1});
+  Fluid<double> fluid(decomposition, MPI_COMM_SELF, viscous(), between_plates().faces);
+  fluid.control_flow({0, 0.01, 50.0, 5});
+  for (int step = 0; step < 20000; ++step) fluid.advance();
+  const FluidTotals sums = fluid.totals();
+  const double mean = sums.momentum.x() / static_cast<double>(sums.cells) - 0.5 * fluid.parameters().force[0];
+  EXPECT_NEAR(mean, 0.01, 1e-9);
+  const double nu = 0.1, h = 10.0;
+  EXPECT_NEAR(fluid.parameters().force[0], 12.0 * nu * 0.01 / (h * h) / (1.0 + 0.5 / (h * h)), 1e-10);
+}
+
+template <typename Real>
+test::MemoryArchive state_after(int steps, const Channel& channel, MPI_Comm communicator, const Index3& layout,
+                                const test::MemoryArchive* from = nullptr) {
+  const Decomposition decomposition({17, 16, 18}, 1.0, channel.periodic, layout);
+  Fluid<Real> fluid(decomposition, communicator, viscous(), channel.faces);
+  fluid.control_flow({0, 0.02, 50.0, 4});
+  if (from) {
+    test::MemoryReader reader(*from);
+    fluid.load(reader);
+  }
+  for (int step = 0; step < steps; ++step) fluid.advance();
+  test::MemoryArchive archive;
+  test::MemoryWriter writer(archive, communicator);
+  fluid.save(writer);
+  return archive;
+}
+
+TEST(FlowControl, RestartsToTheSameBitsOnAnyRanks) {
+  const Index3 layout = Decomposition::best_layout({17, 16, 18}, size_of(MPI_COMM_WORLD));
+  for (const Channel& channel : {between_plates(), under_an_outlet()}) {
+    const test::MemoryArchive straight = state_after<float>(23, channel, MPI_COMM_SELF, {1, 1, 1});
+    const test::MemoryArchive half = state_after<float>(9, channel, MPI_COMM_WORLD, layout);  // between two looks
+    const test::MemoryArchive resumed = state_after<float>(14, channel, MPI_COMM_WORLD, layout, &half);
+    EXPECT_EQ(test::first_difference(straight, resumed), "");
+  }
+}
+
+// With and without a halo that is hidden behind the sweep.
+TEST(FlowControl, HasTheSameBitsUnderAnOutletInAnyLayout) {
+  const int ranks = size_of(MPI_COMM_WORLD), few = ranks < 8 ? 1 : 2, many = ranks / few;
+  const auto expect_the_same = [&]<typename Real>(const Index3& layout) {
+    const test::MemoryArchive alone = state_after<Real>(14, under_an_outlet(), MPI_COMM_SELF, {1, 1, 1});
+    const test::MemoryArchive shared = state_after<Real>(14, under_an_outlet(), MPI_COMM_WORLD, layout);
+    EXPECT_EQ(test::first_difference(alone, shared), "") << layout[0] << layout[1] << layout[2] << sizeof(Real);
+  };
+  for (const Index3& layout : {Index3{few, many, 1}, Index3{many, few, 1}, Index3{1, few, many}}) {
+    expect_the_same.template operator()<float>(layout);
+    expect_the_same.template operator()<double>(layout);
+  }
+}
+
+TEST(FlowControl, RefusesToRespondFasterThanItLooks) {
+  EXPECT_THROW(FlowControl({0, 0.1, 20.0, 10}), InputError);
+  EXPECT_THROW(FlowControl({0, 0.1, 100.0, 0}), InputError);
+}
+
+}  // namespace
+}  // namespace thalweg::lbm::flow_control_test
