@@ -12,7 +12,7 @@ void Extreme::consider(const Extreme& candidate) {
     *this = candidate;
 }
 
-std::optional<Place> Extreme::place_over_ranks(MPI_Comm communicator) const {
+std::optional<Location> Extreme::place_over_ranks(MPI_Comm communicator) const {
   const int ranks = size_of(communicator);
   struct Row {
     double value, position[3];
@@ -26,7 +26,7 @@ std::optional<Place> Extreme::place_over_ranks(MPI_Comm communicator) const {
     if (row.first >= 0)
       largest.consider({row.value, row.first, row.second, Vec3(row.position[0], row.position[1], row.position[2])});
   if (largest.first < 0) return std::nullopt;
-  Place place{largest.position, {largest.first}};
+  Location place{largest.position, {largest.first}};
   if (largest.second >= 0) place.grains.push_back(largest.second);
   return place;
 }

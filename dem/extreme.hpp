@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/base/types.hpp"
-#include "core/state/place.hpp"
+#include "core/state/location.hpp"
 
 #include <mpi.h>
 
@@ -20,7 +20,7 @@ struct Extreme {
   void consider(const Extreme& candidate);
 
   // That of all ranks, the same on each; empty where no rank has any. Collective.
-  std::optional<Place> place_over_ranks(MPI_Comm communicator) const;
+  std::optional<Location> place_over_ranks(MPI_Comm communicator) const;
 };
 
 }  // namespace thalweg::dem

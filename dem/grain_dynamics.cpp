@@ -237,7 +237,7 @@ GrainDynamics::Outlook GrainDynamics::look_ahead() {
     const double pull = (store_.load_force[s] + body_force_[s]).norm() * store_.inverse_mass[s];
     farthest = std::max(farthest, displacement);
     fastest = std::max(fastest, 2.0 * speed + pull * step_time());
-    trouble = trouble || watch.trouble_of(store_, s, displacement) != GrainTrouble::none;
+    trouble = trouble || watch.trouble_of(store_, s, displacement) != GrainFault::none;
   }
   fastest = std::max(fastest, fastest_member());
   const double mine[3] = {farthest, fastest, trouble ? 1.0 : 0.0};

@@ -13,14 +13,14 @@
 #include "core/base/archive.hpp"
 #include "core/base/phase_timer.hpp"
 #include "core/parallel/decomposition.hpp"
-#include "core/state/place.hpp"
+#include "core/state/location.hpp"
 #include "core/state/snapshot.hpp"
 #include "core/state/system.hpp"
 #include "dem/clumps/assemblies.hpp"
 #include "dem/clumps/clump_seed.hpp"
 #include "dem/clumps/clumps.hpp"
-#include "dem/contact/contact_list.hpp"
 #include "dem/contact/lubrication.hpp"
+#include "dem/contact/neighbour_list.hpp"
 #include "dem/contact/solid.hpp"
 #include "dem/force_field.hpp"
 #include "dem/laws/material.hpp"
@@ -193,8 +193,8 @@ public:
   // Where these two figures have their values: the pair that overlaps most, and the grain or clump (by its first
   // member) that largest_speed() belongs to; of several, those with the lowest ids. Empty where there are none.
   // Collective.
-  std::optional<Place> place_of_deepest_overlap() const;
-  std::optional<Place> place_of_fastest() const;
+  std::optional<Location> place_of_deepest_overlap() const;
+  std::optional<Location> place_of_fastest() const;
 
   // Everything the next sub-step depends on, sorted by id, below `group`; collective. To be called after
   // refresh_ghosts(). Loading replaces all grains, whatever the seeds were; parameters stay those given at
@@ -285,7 +285,7 @@ private:
 
   GrainStore store_;
   GhostExchange ghosts_;
-  ContactList list_;
+  NeighbourList list_;
   GearPredictor gear_;
   MovingGrains moving_;  // the state during the sub-steps
   Clumps clumps_{parameters_.disk_thickness};

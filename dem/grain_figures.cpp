@@ -1,6 +1,6 @@
 // Figures of the state of all grains: GrainDynamics looked at, never changed.
 #include "core/parallel/mpi_session.hpp"
-#include "core/sums/order_free_sum.hpp"
+#include "core/sums/reproducible_sum.hpp"
 #include "dem/contact/contact_forces.hpp"
 #include "dem/extreme.hpp"
 #include "dem/grain_dynamics.hpp"
@@ -15,7 +15,7 @@ namespace {
 
 // Calls visit(pair, overlap, separation) for every touching pair of the list whose lower id is owned.
 template <typename Visitor>
-void for_each_touching(const ContactList& list, const GrainStore& store, const PeriodicBox& box, Visitor&& visit) {
+void for_each_touching(const NeighbourList& list, const GrainStore& store, const PeriodicBox& box, Visitor&& visit) {
   for (const PairContact& c : list.pairs) {
     if (store.is_ghost(c.first)) continue;
     const Vec3 separation = box.difference(store.position[c.first], store.position[c.second]);
@@ -137,7 +137,7 @@ std::vector<Vec3> GrainDynamics::wall_forces() const {
     for (std::size_t axis = 0; axis < 3; ++axis)
       terms[first + 3 * wall + axis] = -end.force[static_cast<Eigen::Index>(axis)];
   });
-  const std::vector<double> sums = order_free_sums(communicator_, terms, 3 * walls);
+  const std::vector<double> sums = reproducible_sums(communicator_, terms, 3 * walls);
   std::vector<Vec3> forces;
   for (std::size_t w = 0; w < walls; ++w) forces.emplace_back(sums[3 * w], sums[3 * w + 1], sums[3 * w + 2]);
   return forces;
@@ -157,7 +157,7 @@ double GrainDynamics::largest_overlap() const {
   return max_over_ranks(communicator_, largest);
 }
 
-std::optional<Place> GrainDynamics::place_of_deepest_overlap() const {
+std::optional<Location> GrainDynamics::place_of_deepest_overlap() const {
   Extreme deepest;
   for_each_touching(list_, store_, box_, [&](const PairContact& c, double overlap, const Vec3& separation) {
     deepest.consider({overlap_in_diameters(store_, c, overlap), store_.id[c.first], store_.id[c.second],
@@ -166,7 +166,7 @@ std::optional<Place> GrainDynamics::place_of_deepest_overlap() const {
   return deepest.place_over_ranks(communicator_);
 }
 
-std::optional<Place> GrainDynamics::place_of_fastest() const {
+std::optional<Location> GrainDynamics::place_of_fastest() const {
   Extreme fastest;
   for (std::size_t s = 0; s < store_.owned; ++s)
     if (store_.clump[s] < 0) fastest.consider({store_.velocity[s].norm(), store_.id[s], -1, store_.position[s]});
@@ -219,7 +219,7 @@ std::span<const std::uint8_t> GrainDynamics::motion() const {
 double GrainDynamics::kinetic_energy() const {
   std::vector<double> energies;
   for_each_body([&](double, const Vec3&, double energy, Motion, auto&&) { energies.push_back(energy); });
-  return order_free_sums(communicator_, energies, 1)[0];
+  return reproducible_sums(communicator_, energies, 1)[0];
 }
 
 Vec3 GrainDynamics::momentum() const {
@@ -228,7 +228,7 @@ Vec3 GrainDynamics::momentum() const {
   for_each_body([&](double mass, const Vec3& velocity, double, Motion, auto&&) {
     for (int axis = 0; axis < 3; ++axis) terms.push_back(mass * velocity[axis]);
   });
-  const std::vector<double> sums = order_free_sums(communicator_, terms, 3);
+  const std::vector<double> sums = reproducible_sums(communicator_, terms, 3);
   return {sums[0], sums[1], sums[2]};
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 struct Report {
   std::int64_t id = std::numeric_limits<std::int64_t>::max();
-  GrainTrouble trouble = GrainTrouble::none;
+  GrainFault trouble = GrainFault::none;
   double x[3] = {}, speed = 0.0;
 };
 
@@ -32,46 +32,46 @@ Report lowest_of(Report report, MPI_Comm communicator) {
 
 }  // namespace
 
-GrainTrouble GrainWatch::trouble_of(const GrainStore& store, std::size_t s, double displacement) const {
+GrainFault GrainWatch::trouble_of(const GrainStore& store, std::size_t s, double displacement) const {
   const Vec3& x = store.position[s];
   const double speed = store.velocity[s].norm(), radius = store.radius[s];
-  if (!x.allFinite() || !std::isfinite(speed)) return GrainTrouble::not_finite;
-  if (!space.holds(x, radius)) return GrainTrouble::outside;
+  if (!x.allFinite() || !std::isfinite(speed)) return GrainFault::not_finite;
+  if (!space.holds(x, radius)) return GrainFault::outside;
   if (!holds_translation(store.motion[s])) {
-    if (space.beyond_moving_wall(x, radius)) return GrainTrouble::beyond_wall;
-    if (space.deep_in_plate(x, radius)) return GrainTrouble::in_plate;
-    if (std::binary_search(in_solids.begin(), in_solids.end(), s)) return GrainTrouble::in_solid;
+    if (space.beyond_moving_wall(x, radius)) return GrainFault::beyond_wall;
+    if (space.deep_in_plate(x, radius)) return GrainFault::in_plate;
+    if (std::binary_search(in_solids.begin(), in_solids.end(), s)) return GrainFault::in_solid;
   }
-  if (speed * step_time > radius) return GrainTrouble::too_fast;
-  return displacement > 0.5 * skin ? GrainTrouble::outran : GrainTrouble::none;
+  if (speed * step_time > radius) return GrainFault::too_fast;
+  return displacement > 0.5 * skin ? GrainFault::outran : GrainFault::none;
 }
 
 void GrainWatch::throw_first(const GrainStore& store, const PeriodicBox& box, const std::vector<Vec3>& listed,
                              MPI_Comm communicator) const {
   Report mine;
-  for (std::size_t s = 0; s < store.owned && mine.trouble == GrainTrouble::none; ++s) {
+  for (std::size_t s = 0; s < store.owned && mine.trouble == GrainFault::none; ++s) {
     const Vec3& x = store.position[s];
-    const GrainTrouble trouble = trouble_of(store, s, box.difference(x, listed[s]).norm());
-    if (trouble != GrainTrouble::none) mine = {store.id[s], trouble, {x[0], x[1], x[2]}, store.velocity[s].norm()};
+    const GrainFault trouble = trouble_of(store, s, box.difference(x, listed[s]).norm());
+    if (trouble != GrainFault::none) mine = {store.id[s], trouble, {x[0], x[1], x[2]}, store.velocity[s].norm()};
   }
   const Report report = lowest_of(mine, communicator);
   const std::string grain = fmt::format("Grain {} at ({:g}, {:g}, {:g}) m, moving at {:g} m/s,", report.id, report.x[0],
                                         report.x[1], report.x[2], report.speed);
   switch (report.trouble) {
-    case GrainTrouble::not_finite:
+    case GrainFault::not_finite:
       throw RunError(grain +
                      " has a position or velocity that is not a number; its load or its contacts have blown up.");
-    case GrainTrouble::outside:
+    case GrainFault::outside:
       throw RunError(grain + " is more than its radius beyond a face of the box that is not periodic.");
-    case GrainTrouble::beyond_wall:
+    case GrainFault::beyond_wall:
       throw RunError(grain + " is more than its radius beyond a wall that moves.");
-    case GrainTrouble::in_plate:
+    case GrainFault::in_plate:
       throw RunError(grain +
                      " is more than half its radius deep in a plate; use stiffer contacts, or less load or speed.");
-    case GrainTrouble::in_solid:
+    case GrainFault::in_solid:
       throw RunError(grain +
                      " is more than half its radius deep in a solid; use stiffer contacts, or less load or speed.");
-    case GrainTrouble::too_fast:
+    case GrainFault::too_fast:
       throw RunError(fmt::format("{} moves more than its radius in one step of {:g} s; use a shorter time step.", grain,
                                  step_time));
     default:

@@ -13,7 +13,7 @@
 
 namespace thalweg::dem {
 
-enum class GrainTrouble { none, not_finite, outside, beyond_wall, in_plate, in_solid, too_fast, outran };
+enum class GrainFault { none, not_finite, outside, beyond_wall, in_plate, in_solid, too_fast, outran };
 
 struct GrainWatch {
   GrainSpace space;
@@ -22,7 +22,7 @@ struct GrainWatch {
   std::vector<std::size_t> in_solids;  // slots of grains that are half their radius deep in a solid, rising
 
   // displacement: m, since the contact list was built.
-  GrainTrouble trouble_of(const GrainStore& store, std::size_t owned_slot, double displacement) const;
+  GrainFault trouble_of(const GrainStore& store, std::size_t owned_slot, double displacement) const;
 
   // Throws RunError, the same on every rank: of all grains in trouble, about the one with the lowest id. There must be
   // one on some rank. listed: places of owned grains when the list was built. Collective.

@@ -1,8 +1,8 @@
 #include "loop/watchdog.hpp"
 
 #include "core/base/error.hpp"
+#include "loop/location_text.hpp"
 #include "loop/progress.hpp"
-#include "loop/whereabouts.hpp"
 
 #include <fmt/format.h>
 
@@ -29,9 +29,9 @@ Watchdog::Watchdog(MPI_Comm communicator, const System& system, std::vector<Watc
 
 std::string Watchdog::moment() const { return fmt::format("{:.6g} s (step {})", system_.time(), system_.step()); }
 
-std::string Watchdog::place_of(const std::string& figure) const {
-  const std::optional<Place> place = system_.place_of(figure);
-  return place ? ", " + whereabouts(communicator_, *place, system_.snapshot()) : "";
+std::string Watchdog::location_of(const std::string& figure) const {
+  const std::optional<Location> place = system_.location_of(figure);
+  return place ? ", " + location_text(communicator_, *place, system_.snapshot()) : "";
 }
 
 std::vector<std::string> Watchdog::judge(const std::vector<Figure>& figures) {
@@ -40,7 +40,7 @@ std::vector<std::string> Watchdog::judge(const std::vector<Figure>& figures) {
       throw RunError(fmt::format(
           "The run broke down before {}: {} is not a finite number{}. Shorten the time step, or restart from "
           "an earlier checkpoint with a shorter output.series.every to see how it comes about.",
-          moment(), figure.name, place_of(figure.name)));
+          moment(), figure.name, location_of(figure.name)));
   std::vector<std::string> warnings;
   for (Watched& watched : watched_) {
     const WatchRule& rule = watched.rule;
@@ -54,7 +54,7 @@ std::vector<std::string> Watchdog::judge(const std::vector<Figure>& figures) {
     if (badness > limits.stop && out_of_bounds_ == OutOfBounds::stop)
       throw RunError(fmt::format("The run has gone wrong at {}: {} is {}, beyond the limit of {}{}. {}", moment(),
                                  rule.meaning, with_unit(*figure, figure->value), with_unit(*figure, limits.stop),
-                                 place_of(rule.figure), rule.advice));
+                                 location_of(rule.figure), rule.advice));
     if (!watched.suspicious || badness < growth_between_warnings * watched.warned) continue;
     watched.warned = badness;
     const std::string stops = std::isfinite(limits.stop) && out_of_bounds_ == OutOfBounds::stop
@@ -62,7 +62,7 @@ std::vector<std::string> Watchdog::judge(const std::vector<Figure>& figures) {
                                   : "";
     warnings.push_back(fmt::format("At {} {} is {}, beyond {}{}{}. {}", moment(), rule.meaning,
                                    with_unit(*figure, figure->value), with_unit(*figure, limits.warn), stops,
-                                   place_of(rule.figure), rule.advice));
+                                   location_of(rule.figure), rule.advice));
   }
   return warnings;
 }

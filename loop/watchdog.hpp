@@ -38,7 +38,7 @@ private:
   };
 
   std::string moment() const;
-  std::string place_of(const std::string& figure) const;
+  std::string location_of(const std::string& figure) const;
 
   MPI_Comm communicator_;
   const System& system_;

@@ -3,7 +3,7 @@
 #include "dem/motion/cell_grid.hpp"
 #include "dem/motion/grain_volume.hpp"
 #include "dem/motion/minimum_image.hpp"
-#include "model_fluid/lens.hpp"
+#include "model_fluid/sphere_overlap.hpp"
 
 #include <algorithm>
 #include <array>

@@ -54,7 +54,7 @@ void Entrainment::watch(std::span<const GlobalId> ids, std::vector<char> chosen)
   watched_count_ = sum_over_ranks(communicator_, static_cast<std::int64_t>(rows.size()));
   watched_here_.set(ids, std::move(chosen));
   std::vector<char> at_home(memory_.size(), 0);
-  for (const Watched& row : homes_->bring_home(rows)) at_home[homes_->place_of(row.id)] = 1;
+  for (const Watched& row : homes_->bring_home(rows)) at_home[homes_->location_of(row.id)] = 1;
   for (std::size_t m = 0; m < memory_.size(); ++m) {
     const bool watched = at_home[m] != 0;
     if (watched != memory_[m].watched) memory_[m] = Memory{};
@@ -67,7 +67,7 @@ void Entrainment::watch(std::span<const GlobalId> ids, std::vector<char> chosen)
 std::vector<GlobalId> Entrainment::take_samples(const Snapshot& snapshot) {
   const GrainView& grains = snapshot.grains;
   const std::vector<char>& chosen = watched_here_.flags(
-      communicator_, grains.id, *homes_, [this](GlobalId id) { return memory_[homes_->place_of(id)].watched; });
+      communicator_, grains.id, *homes_, [this](GlobalId id) { return memory_[homes_->location_of(id)].watched; });
   std::vector<Seen> seen;
   std::vector<TouchRow> touches;
   for (std::size_t n = 0; n < chosen.size(); ++n)
@@ -78,13 +78,13 @@ std::vector<GlobalId> Entrainment::take_samples(const Snapshot& snapshot) {
     });
   std::vector<GlobalId> came;
   for (const Seen& one : homes_->bring_home(seen)) {
-    remember(memory_[homes_->place_of(one.id)], one, snapshot.time);
+    remember(memory_[homes_->location_of(one.id)], one, snapshot.time);
     came.push_back(one.id);
   }
   for (const TouchRow& row : homes_->bring_home(touches))
-    memory_[homes_->place_of(row.id)].ring.back().touches.push_back(touch_of(row));
+    memory_[homes_->location_of(row.id)].ring.back().touches.push_back(touch_of(row));
   std::sort(came.begin(), came.end());
-  std::erase_if(came, [this](GlobalId id) { return !starts(memory_[homes_->place_of(id)]); });
+  std::erase_if(came, [this](GlobalId id) { return !starts(memory_[homes_->location_of(id)]); });
   return came;
 }
 
@@ -135,7 +135,7 @@ void Entrainment::count(const std::vector<GlobalId>& started, double time) {
   if (sum_over_ranks(communicator_, static_cast<std::int64_t>(started.size())) == 0) return;
   std::vector<Start> starts_here;
   for (const GlobalId id : started) {
-    const Memory& memory = memory_[homes_->place_of(id)];
+    const Memory& memory = memory_[homes_->location_of(id)];
     Start start{id, memory.radius, memory.mass, 0.0, {memory.rest.x(), memory.rest.y(), memory.rest.z()}};
     start.share = entraining_of(grain_of(start), memory.ring, settings_.moving_speed).couple_share();
     starts_here.push_back(start);
@@ -162,7 +162,7 @@ void Entrainment::count(const std::vector<GlobalId>& started, double time) {
 std::vector<GrainRing> Entrainment::rings_on_first_rank(const std::vector<GlobalId>& started) const {
   std::vector<SampleRow> samples;
   std::vector<TouchRow> touches;
-  for (const GlobalId id : started) add_rows(id, memory_[homes_->place_of(id)].ring, samples, touches);
+  for (const GlobalId id : started) add_rows(id, memory_[homes_->location_of(id)].ring, samples, touches);
   samples = exchange_rows(communicator_, samples, std::vector<int>(samples.size(), 0));
   touches = exchange_rows(communicator_, touches, std::vector<int>(touches.size(), 0));
   std::vector<GrainRing> rings;

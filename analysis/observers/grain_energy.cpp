@@ -1,6 +1,6 @@
 #include "analysis/observers/grain_energy.hpp"
 
-#include "core/sums/order_free_sum.hpp"
+#include "core/sums/reproducible_sum.hpp"
 
 namespace thalweg::analysis {
 
@@ -20,7 +20,7 @@ void GrainEnergy::observe(const Snapshot& snapshot) {
         grains.velocity[i]);
   }
   for (const ClumpState& clump : grains.clumps) add(clump.kinetic_energy, clump.mass, clump.velocity);
-  const std::vector<double> sums = order_free_sums(communicator_, terms, columns);
+  const std::vector<double> sums = reproducible_sums(communicator_, terms, columns);
   energy_ = sums[0];
   momentum_ = Vec3(sums[1], sums[2], sums[3]);
 }

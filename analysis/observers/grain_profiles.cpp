@@ -71,7 +71,7 @@ void GrainProfiles::observe(const Snapshot& snapshot) {
   if (snapshot.step <= counted_step_ || snapshot.time < keys_.from * (1.0 - 1e-12)) return;
   counted_step_ = snapshot.step;
   ++measurements_;
-  const std::vector<double> sums = order_free_sums_by_bin(
+  const std::vector<double> sums = reproducible_sums_by_bin(
       communicator_, layers_, quantities, [this, &snapshot, bodies = WeightedBodies(snapshot)](const TermTaker& take) {
         for (std::size_t i = 0; i < snapshot.grains.id.size(); ++i) give_parts(snapshot.grains, i, bodies[i], take);
       });

@@ -16,12 +16,12 @@
 // A clump's volume, mass and contacts (with arms from its centre) are spread over its members as their volumes are to
 // each other, and it moves as its centre does.
 //
-// The sums of a measurement have the same bits on any number of ranks (core/sums/order_free_sum.hpp), and so have the
+// The sums of a measurement have the same bits on any number of ranks (core/sums/reproducible_sum.hpp), and so have the
 // means, also after a restart.
 #pragma once
 
 #include "analysis/observer/observer_keys.hpp"
-#include "core/sums/order_free_sum.hpp"
+#include "core/sums/reproducible_sum.hpp"
 
 #include <mpi.h>
 

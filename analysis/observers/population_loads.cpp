@@ -1,6 +1,6 @@
 #include "analysis/observers/population_loads.hpp"
 
-#include "core/sums/order_free_sum.hpp"
+#include "core/sums/reproducible_sum.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -39,7 +39,7 @@ void PopulationLoads::observe(const Snapshot& snapshot) {
       add(grains.fluid_force[i]);
       add(arm.cross(grains.fluid_force[i]) + grains.fluid_torque[i]);
     }
-    for (const double sum : order_free_sums(communicator_, terms, columns)) (figure++)->value = sum;
+    for (const double sum : reproducible_sums(communicator_, terms, columns)) (figure++)->value = sum;
   }
 }
 

@@ -67,8 +67,8 @@ void StressBalance::add_grains(const Snapshot& snapshot) {
   if (snapshot.grains.global_count == 0) return;
   const Moments moments{contact_moments(snapshot), lubrication_moments(snapshot)};
   const std::vector<double> sums =
-      order_free_sums_by_bin(communicator_, layers_.count(), grain_columns,
-                             [&](const TermTaker& take) { give_parts(snapshot, moments, take); });
+      reproducible_sums_by_bin(communicator_, layers_.count(), grain_columns,
+                               [&](const TermTaker& take) { give_parts(snapshot, moments, take); });
   for (std::size_t s = 0; s < sums.size(); ++s) grains_[s] += sums[s];
 }
 
@@ -114,7 +114,7 @@ void StressBalance::add_grains_at_walls(const Snapshot& snapshot) {
            std::array{end.force.x(), end.force.x() * (height - layers_.bottom(layer))});
     });
   };
-  const std::vector<double> sums = order_free_sums_by_bin(communicator_, layers_.count() + 1, 2, give_forces);
+  const std::vector<double> sums = reproducible_sums_by_bin(communicator_, layers_.count() + 1, 2, give_forces);
   for (std::size_t s = 0; s < sums.size(); ++s) held_up_[s] += sums[s];
 }
 

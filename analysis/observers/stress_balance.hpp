@@ -26,7 +26,7 @@
 
 #include "analysis/observer/observer_keys.hpp"
 #include "analysis/tools/cell_layers.hpp"
-#include "core/sums/order_free_sum.hpp"
+#include "core/sums/reproducible_sum.hpp"
 
 #include <mpi.h>
 

@@ -2,7 +2,7 @@
 
 #include "core/parallel/mpi_session.hpp"
 #include "core/state/whole_dataset.hpp"
-#include "core/sums/order_free_sum.hpp"
+#include "core/sums/reproducible_sum.hpp"
 
 #include <fmt/format.h>
 
@@ -92,7 +92,7 @@ void TransportRate::measure(const Snapshot& snapshot, const std::vector<Body>& b
   }
   const Vec3 size = snapshot.decomposition->box().size;
   const double width = snapshot.grains.disk_thickness > 0.0 ? snapshot.grains.disk_thickness : size.y();
-  const std::vector<double> sums = order_free_sums(communicator_, terms, 2);
+  const std::vector<double> sums = reproducible_sums(communicator_, terms, 2);
   latest_.q_s = sums[0] / (size.x() * width);
   latest_.activity = sums[1] / (size.x() * width);
   latest_.moving = sum_over_ranks(communicator_, moving);

@@ -8,7 +8,7 @@
 // grains of the whole domain count). Grains whose velocity is held, at rest or moving, are no sediment and count
 // nowhere. Without a fluid s has no meaning and q* is left out. A clump is one grain.
 //
-// The mean of q_s comes with its error (correlated_mean.hpp) and a test of whether it drifts (trend_test.hpp); moving
+// The mean of q_s comes with its error (correlated_mean.hpp) and a test of whether it drifts (stationarity.hpp); moving
 // grains with the distribution of their velocities (histogram.hpp) and their hops (hops.hpp).
 #pragma once
 
@@ -17,7 +17,7 @@
 #include "analysis/tools/histogram.hpp"
 #include "analysis/tools/hops.hpp"
 #include "analysis/tools/saved_settings.hpp"
-#include "analysis/tools/trend_test.hpp"
+#include "analysis/tools/stationarity.hpp"
 
 #include <mpi.h>
 

@@ -57,7 +57,7 @@ std::vector<double> BedLayers::obstacles_below(const Snapshot& snapshot) const {
 }
 
 std::vector<double> BedLayers::grains_below(const Snapshot& snapshot) const {
-  const std::vector<double> in_layer = order_free_sums_by_bin(
+  const std::vector<double> in_layer = reproducible_sums_by_bin(
       communicator_, layers_, 1, [&, shares = shares_of_members(snapshot.grains)](const TermTaker& take) {
         give_volumes(snapshot.grains, shares, take);
       });

@@ -4,7 +4,7 @@
 #include "analysis/tools/bed_height.hpp"
 #include "core/geometry/periodic_box.hpp"
 #include "core/state/snapshot.hpp"
-#include "core/sums/order_free_sum.hpp"
+#include "core/sums/reproducible_sum.hpp"
 
 #include <mpi.h>
 

@@ -28,7 +28,7 @@ public:
   GlobalId count() const { return count_; }
   GlobalId begin() const { return begin_; }  // first id whose home is here
   std::size_t size() const { return static_cast<std::size_t>(end_ - begin_); }
-  std::size_t place_of(GlobalId id) const { return static_cast<std::size_t>(id - begin_); }  // among those here
+  std::size_t location_of(GlobalId id) const { return static_cast<std::size_t>(id - begin_); }  // among those here
 
   // Rows have a member `id`; each comes to the home of its id. In no particular order. Collective.
   template <typename Row>

@@ -2,7 +2,7 @@
 
 #include "analysis/tools/sphere_in_layer.hpp"
 #include "core/state/whole_dataset.hpp"
-#include "core/sums/order_free_sum.hpp"
+#include "core/sums/reproducible_sum.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -47,7 +47,7 @@ void Hops::observe(double time, const PeriodicBox& box, GlobalId id_count, const
   }
   std::vector<double> ended;
   for (const Sighting& seen : homes_->bring_home(sightings))
-    follow(memory_[homes_->place_of(seen.id)], seen, time, box, counts, ended);
+    follow(memory_[homes_->location_of(seen.id)], seen, time, box, counts, ended);
   last_time_ = time;
   take_in(ended);
 }
@@ -89,7 +89,7 @@ void Hops::take_in(const std::vector<double>& ended) {
     lengths_.counts()[b] += counts[b];
     times_.counts()[b] += counts[cells + b];
   }
-  const std::vector<double> sums = order_free_sums(communicator_, ended, 2);
+  const std::vector<double> sums = reproducible_sums(communicator_, ended, 2);
   sum_of_lengths_ += sums[0];
   sum_of_times_ += sums[1];
 }

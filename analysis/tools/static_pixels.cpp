@@ -67,14 +67,14 @@ StaticPixels::Rows StaticPixels::covered(const Disk& disk, double x, std::int64_
 }
 
 void StaticPixels::begin(const Disk& disk) {
-  const std::size_t grain = homes_->place_of(disk.id);
+  const std::size_t grain = homes_->location_of(disk.id);
   first_[grain] = first_column(disk.x, disk.radius);
   Rows* rows = rows_.data() + grain * static_cast<std::size_t>(columns_a_grain_);
   for (std::int64_t c = 0; c < columns_a_grain_; ++c) rows[c] = covered(disk, disk.x, first_[grain] + c);
 }
 
 void StaticPixels::narrow(const Disk& disk) {
-  const std::size_t grain = homes_->place_of(disk.id);
+  const std::size_t grain = homes_->location_of(disk.id);
   const double x = near(disk.x, first_[grain]);
   Rows* rows = rows_.data() + grain * static_cast<std::size_t>(columns_a_grain_);
   for (std::int64_t c = 0; c < columns_a_grain_; ++c) {

@@ -30,7 +30,7 @@ struct PackedBody {
   double move[3];       // m, the last one
 };
 
-Eigen::Map<Vec3> place_of(PackedBody& body) { return Vec3::Map(body.position); }
+Eigen::Map<Vec3> location_of(PackedBody& body) { return Vec3::Map(body.position); }
 
 bool has_lower_number(const PackedBody& a, const PackedBody& b) { return a.number < b.number; }
 
@@ -99,11 +99,11 @@ public:
 
   std::vector<PlacedGrain> placed() {
     bodies_.resize(own_);
-    for (PackedBody& body : bodies_) place_of(body) = box_.wrapped(place_of(body));
+    for (PackedBody& body : bodies_) location_of(body) = box_.wrapped(location_of(body));
     std::vector<PackedBody> known = ranks_.to_knowing(bodies_);
     std::sort(known.begin(), known.end(), has_lower_number);
     std::vector<PlacedGrain> placed;
-    for (PackedBody& body : known) placed.push_back({body.number, place_of(body)});
+    for (PackedBody& body : known) placed.push_back({body.number, location_of(body)});
     return placed;
   }
 
@@ -126,7 +126,7 @@ private:
   // first, and pairs come in the order of their numbers, which depends neither on the grid nor on the ranks.
   void find_pairs(double distance) {
     bodies_.resize(own_);
-    for (PackedBody& body : bodies_) place_of(body) = box_.wrapped(place_of(body));
+    for (PackedBody& body : bodies_) location_of(body) = box_.wrapped(location_of(body));
     bodies_ = ranks_.to_owners(std::move(bodies_));
     std::sort(bodies_.begin(), bodies_.end(), has_lower_number);
     own_ = bodies_.size();
@@ -137,7 +137,7 @@ private:
     bodies_.insert(bodies_.end(), obstacles_.begin(), obstacles_.end());
 
     std::vector<Vec3> places;
-    for (PackedBody& body : bodies_) places.push_back(place_of(body));
+    for (PackedBody& body : bodies_) places.push_back(location_of(body));
     pairs_.clear();
     const dem::CellGrid grid(box_, distance, places);
     grid.for_each_near_pair([&](std::uint32_t m, std::uint32_t n) {
@@ -160,7 +160,7 @@ private:
     for (std::size_t n = 0; n < own_; ++n) Vec3::Map(bodies_[n].move) *= momentum;
     for (const auto& [a, b] : pairs_) {
       PackedBody &one = bodies_[a], &other = bodies_[b];
-      const Vec3 apart = box_.difference(place_of(one), place_of(other));
+      const Vec3 apart = box_.difference(location_of(one), location_of(other));
       const double distance = apart.norm(), touching = one.radius + other.radius;
       if (distance >= touching) continue;
       largest = std::max(largest, 1.0 - distance / touching);
@@ -177,12 +177,12 @@ private:
     double longest = 0.0;
     for (std::size_t n = 0; n < own_; ++n) {
       PackedBody& body = bodies_[n];
-      const Vec3 from = place_of(body), lower = lower_of(body), upper = upper_of(body);
+      const Vec3 from = location_of(body), lower = lower_of(body), upper = upper_of(body);
       for (int axis = 0; axis < 3; ++axis) {
         const double wanted = from[axis] + body.move[axis];
         body.position[axis] = wraps_[axis] ? wanted : std::clamp(wanted, lower[axis], upper[axis]);
       }
-      Vec3::Map(body.move) = place_of(body) - from;
+      Vec3::Map(body.move) = location_of(body) - from;
       longest = std::max(longest, Vec3::Map(body.move).norm());
     }
     return longest;

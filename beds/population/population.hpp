@@ -4,7 +4,7 @@
 
 #include "beds/population/material_keys.hpp"
 #include "beds/population/placement_keys.hpp"
-#include "beds/sizes/grain_sizes.hpp"
+#include "beds/sizes/size_distribution.hpp"
 #include "core/base/types.hpp"
 #include "core/keys/section_visitor.hpp"
 #include "core/state/bed.hpp"

@@ -14,14 +14,14 @@ constexpr double density = 2550.0;       // kg/m^3
 constexpr Index3 tile_cells{24, 8, 32};  // of one diameter; high enough for the loose grains at the start
 constexpr double settling_time = 0.35;   // s; the highest grain falls 19 diameters in 0.14 s
 
-struct Place {
+struct Location {
   GlobalId id;
   double position[3];
 };
 
 // The positions of all grains, by id, on every rank.
 std::vector<Vec3> gathered_positions(const dem::GrainDynamics& grains, MPI_Comm communicator) {
-  std::vector<Place> rows;
+  std::vector<Location> rows;
   std::vector<int> to;
   const dem::GrainStore& s = grains.store();
   for (int rank = 0; rank < size_of(communicator); ++rank)
@@ -30,7 +30,7 @@ std::vector<Vec3> gathered_positions(const dem::GrainDynamics& grains, MPI_Comm 
       to.push_back(rank);
     }
   std::vector<Vec3> positions(static_cast<std::size_t>(grains.global_count()));
-  for (const Place& place : exchange_rows(communicator, rows, to))
+  for (const Location& place : exchange_rows(communicator, rows, to))
     positions[static_cast<std::size_t>(place.id)] = Vec3(place.position);
   return positions;
 }

@@ -98,8 +98,8 @@ void LinkTable::replace(int body, int tile, std::span<const Link> links, std::sp
     places_.resize(body + 1);
     sums_.resize(body + 1);
   }
-  std::vector<Place>& places = places_[body];
-  const auto place = std::find_if(places.begin(), places.end(), [tile](const Place& p) { return p.tile == tile; });
+  std::vector<Location>& places = places_[body];
+  const auto place = std::find_if(places.begin(), places.end(), [tile](const Location& p) { return p.tile == tile; });
   Tile& t = tiles_[tile];
   if (links.empty()) {
     if (place == places.end()) return;
@@ -114,7 +114,7 @@ void LinkTable::replace(int body, int tile, std::span<const Link> links, std::sp
 
 void LinkTable::remove(int body) {
   if (static_cast<std::size_t>(body) >= places_.size()) return;
-  for (const Place& place : places_[body]) drop_chunk(tiles_[place.tile], place.chunk);
+  for (const Location& place : places_[body]) drop_chunk(tiles_[place.tile], place.chunk);
   places_[body].clear();
 }
 

@@ -178,7 +178,7 @@ public:
   void remove(int body);
 
 private:
-  struct Place {
+  struct Location {
     int tile;
     std::uint32_t chunk;
   };
@@ -187,9 +187,9 @@ private:
   void put(Tile& tile, Chunk& chunk, std::span<const Link> links, std::span<const LinkCrossing> crossings);
   static void compact(Tile& tile);
 
-  mutable std::vector<Tile> tiles_;         // sorted on demand
-  std::vector<std::vector<Place>> places_;  // of each body
-  std::vector<LinkSums> sums_;              // of each body
+  mutable std::vector<Tile> tiles_;            // sorted on demand
+  std::vector<std::vector<Location>> places_;  // of each body
+  std::vector<LinkSums> sums_;                 // of each body
 };
 
 }  // namespace thalweg::bodies

@@ -32,7 +32,7 @@ struct Block {
     return cells;
   }
   // Index of a cell of the block in arrays over the block: x fastest, z slowest.
-  std::int64_t place_of(const Index3& cell) const {
+  std::int64_t location_of(const Index3& cell) const {
     const Index3 n = size();
     const std::int64_t row = static_cast<std::int64_t>(cell[2] - lower[2]) * n[1] + (cell[1] - lower[1]);
     return row * n[0] + (cell[0] - lower[0]);

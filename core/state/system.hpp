@@ -4,7 +4,7 @@
 #include "core/base/archive.hpp"
 #include "core/base/error.hpp"
 #include "core/base/phase_timer.hpp"
-#include "core/state/place.hpp"
+#include "core/state/location.hpp"
 #include "core/state/profile.hpp"
 #include "core/state/snapshot.hpp"
 
@@ -63,19 +63,19 @@ public:
 
   // Where the figure of that name, one of figures(), takes its value; empty where it belongs to no place. Collective,
   // the same on every rank; may cost as much as figures().
-  virtual std::optional<Place> place_of(const std::string&) const { return std::nullopt; }
+  virtual std::optional<Location> location_of(const std::string&) const { return std::nullopt; }
 
   virtual void save(ArchiveWriter& archive) const = 0;  // everything the next step depends on; collective
   virtual void load(ArchiveReader& archive) = 0;        // throws InputError where it does not fit; collective
   // Takes the fluid alone from the state of another run in the same box, whose cells had the size `spacing` (m), as an
   // initial state. Throws InputError where it does not fit, or there is no fluid; collective.
-  virtual void take_fluid(ArchiveReader&, double /*spacing*/) {
+  virtual void import_fluid(ArchiveReader&, double /*spacing*/) {
     throw InputError("this system has no fluid that could be taken over.");
   }
 
   // The same for the grains alone, with their contact springs, from a run with as many grains; velocities are kept, the
-  // time is not. To be called before take_fluid().
-  virtual void take_grains(ArchiveReader&, double /*spacing*/) {
+  // time is not. To be called before import_fluid().
+  virtual void import_grains(ArchiveReader&, double /*spacing*/) {
     throw InputError("this system has no grains that could be taken over.");
   }
 

@@ -25,7 +25,7 @@ void add_momentum(const lbm::FluidSurvey& survey, const Vec3& force, const Units
     figures.push_back({fmt::format("fluid_momentum_{}", "xyz"[axis]), "kg m/s", momentum[axis]});
 }
 
-std::optional<Place> place_in_fluid(const lbm::FluidSurvey& survey, const Units& units, const std::string& figure) {
+std::optional<Location> place_in_fluid(const lbm::FluidSurvey& survey, const Units& units, const std::string& figure) {
   std::optional<lbm::CellExtreme> found;
   if (figure == "smallest_density_deviation")
     found = survey.lowest;
@@ -35,7 +35,7 @@ std::optional<Place> place_in_fluid(const lbm::FluidSurvey& survey, const Units&
     found = survey.fastest;
   if (!found || found->cell[0] < 0) return std::nullopt;
   const Index3& cell = found->cell;
-  return Place{Vec3(cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5) * units.spacing, {}};
+  return Location{Vec3(cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5) * units.spacing, {}};
 }
 
 }  // namespace thalweg::coupling

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/base/units.hpp"
-#include "core/state/place.hpp"
+#include "core/state/location.hpp"
 #include "core/state/system.hpp"
 #include "lbm/fluid/fluid_survey.hpp"
 
@@ -25,6 +25,6 @@ void add_momentum(const lbm::FluidSurvey& survey, const Vec3& force, const Units
 
 // Where the survey found the extreme value of a figure: largest_lattice_velocity, those of add_extremes(); where cells
 // are broken, the first of them for any name. Empty for other names.
-std::optional<Place> place_in_fluid(const lbm::FluidSurvey& survey, const Units& units, const std::string& figure);
+std::optional<Location> place_in_fluid(const lbm::FluidSurvey& survey, const Units& units, const std::string& figure);
 
 }  // namespace thalweg::coupling

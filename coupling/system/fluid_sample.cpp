@@ -27,7 +27,7 @@ template <typename Real, typename Visit>
 void for_each_shown_cell(const lbm::Fluid<Real>& fluid, const FluidFields& fields, Visit visit) {
   const Block part = lbm::local_block(fluid.block(), fields.block);
   lbm::for_each_cell(fluid.indexing(), part, [&](std::ptrdiff_t cell, const Index3& local) {
-    visit(cell, local, static_cast<std::size_t>(part.place_of(local)));
+    visit(cell, local, static_cast<std::size_t>(part.location_of(local)));
   });
 }
 

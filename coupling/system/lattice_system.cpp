@@ -6,7 +6,7 @@
 #include "coupling/system/fluid_figures.hpp"
 #include "coupling/system/fluid_mass.hpp"
 #include "coupling/system/fluid_sample.hpp"
-#include "coupling/system/taken_fluid.hpp"
+#include "coupling/system/imported_fluid.hpp"
 
 #include <fmt/format.h>
 
@@ -327,7 +327,7 @@ void LatticeSystem<Real>::add_wall_forces(std::vector<Figure>& figures) const {
 }
 
 template <typename Real>
-std::optional<Place> LatticeSystem<Real>::place_of(const std::string& figure) const {
+std::optional<Location> LatticeSystem<Real>::location_of(const std::string& figure) const {
   if (grains_ && figure == "largest_overlap") return grains_->place_of_deepest_overlap();
   if (grains_ && figure == "largest_grain_speed") return grains_->place_of_fastest();
   return place_in_fluid(survey_of(fluid_), parameters_.units, figure);
@@ -398,8 +398,8 @@ void LatticeSystem<Real>::load(ArchiveReader& archive) {
 }
 
 template <typename Real>
-void LatticeSystem<Real>::take_fluid(ArchiveReader& archive, double spacing) {
-  const double density_unit = coupling::take_fluid(fluid_, archive, spacing, parameters_);
+void LatticeSystem<Real>::import_fluid(ArchiveReader& archive, double spacing) {
+  const double density_unit = coupling::import_fluid(fluid_, archive, spacing, parameters_);
   open_account();
   // As the run that is taken over would go on.
   if (grains_ && archive.has("mass/reference"))
@@ -409,7 +409,7 @@ void LatticeSystem<Real>::take_fluid(ArchiveReader& archive, double spacing) {
 // Grains of a resolved run keep the places their links were cut at, others begin where they are. What is in lattice
 // units begins anew on another lattice.
 template <typename Real>
-void LatticeSystem<Real>::take_grains(ArchiveReader& archive, double spacing) {
+void LatticeSystem<Real>::import_grains(ArchiveReader& archive, double spacing) {
   bodies_.remove_all();
   grains_->take(archive);
   grain_bodies_->begin_where_grains_are();

@@ -55,11 +55,11 @@ public:
   // asked for wall_force_bottom_x ... and fluid_wall_force_bottom_x ... (N); without grains mean_velocity_x (m/s) and
   // body_force_x (N/m^3). Collective.
   std::vector<Figure> figures() const override;
-  std::optional<Place> place_of(const std::string& figure) const override;
+  std::optional<Location> location_of(const std::string& figure) const override;
   void save(ArchiveWriter& archive) const override;
   void load(ArchiveReader& archive) override;
-  void take_fluid(ArchiveReader& archive, double spacing) override;
-  void take_grains(ArchiveReader& archive, double spacing) override;
+  void import_fluid(ArchiveReader& archive, double spacing) override;
+  void import_grains(ArchiveReader& archive, double spacing) override;
   PhaseTimer& timer() override { return timer_; }
   std::int64_t cells() const override;
   std::int64_t grain_steps_per_step() const override;

@@ -16,7 +16,7 @@ namespace thalweg::dem {
 namespace {
 
 // Finds the near ones of all pairs; the others are beyond the range of the law (m) and have no history.
-void look_for_near_pairs(const MovingGrains& grains, ContactList& list, double range_of_law,
+void look_for_near_pairs(const MovingGrains& grains, NeighbourList& list, double range_of_law,
                          const MinimumImage& image) {
   list.near.begin();
   const double range = range_of_law + list.near.margin();
@@ -41,7 +41,7 @@ void evaluate_near_pairs(const std::vector<NearPair>& near, Batch& batch) {
 }
 
 template <typename ContactLaw>
-void evaluate_pairs(const ContactLaw& law, MovingGrains& grains, ContactList& list, const PeriodicBox& box,
+void evaluate_pairs(const ContactLaw& law, MovingGrains& grains, NeighbourList& list, const PeriodicBox& box,
                     const MaterialTable& materials, std::span<const std::uint8_t> material) {
   if (list.near.stale()) look_for_near_pairs(grains, list, law.range(), MinimumImage(box));
   PairBatch<ContactLaw> batch(law, grains, list.pair_rows, box, materials, material);
@@ -103,12 +103,12 @@ ContactMotion motion_of(const ContactBody& grain, const SolidTouch& touch) {
   return motion;
 }
 
-double friction_of(const SolidTouch& touch, const ContactList& list, const Surroundings& around) {
+double friction_of(const SolidTouch& touch, const NeighbourList& list, const Surroundings& around) {
   return around.solids[list.solids[touch.near].solid].friction;
 }
 
 template <typename ContactLaw>
-void evaluate_solids(const ContactLaw& law, MovingGrains& grains, ContactList& list, const Surroundings& around,
+void evaluate_solids(const ContactLaw& law, MovingGrains& grains, NeighbourList& list, const Surroundings& around,
                      const MaterialTable& materials, std::span<const std::uint8_t> material) {
   SolidTouches touches(around.box, around.placed, around.solids);
   SolidTouches::for_each_grain(list.solids, [&](std::size_t first, std::size_t last) {
@@ -147,7 +147,7 @@ std::optional<Vec3> force_of(const ContactLaw& law, const ContactMotion& motion,
 
 // Calls visit(contact number, motion, force on the grain) for every wall contact of the list that acts.
 template <typename Visitor>
-void visit_walls(const GrainStore& store, const ContactList& list, const Surroundings& around,
+void visit_walls(const GrainStore& store, const NeighbourList& list, const Surroundings& around,
                  const MaterialTable& materials, Visitor&& visit) {
   with_law(list.wall_rows.law(), 0.0, [&](const auto& law) {
     for (std::size_t number = 0; number < list.walls.size(); ++number) {
@@ -164,7 +164,7 @@ void visit_walls(const GrainStore& store, const ContactList& list, const Surroun
 
 // The same of every touch with a solid: visit(touch, motion, force on the grain).
 template <typename Visitor>
-void visit_solids(const GrainStore& store, const ContactList& list, const Surroundings& around,
+void visit_solids(const GrainStore& store, const NeighbourList& list, const Surroundings& around,
                   const MaterialTable& materials, Visitor&& visit) {
   if (list.solids.empty()) return;
   SolidTouches touches(around.box, around.placed, around.solids);
@@ -188,7 +188,7 @@ void visit_solids(const GrainStore& store, const ContactList& list, const Surrou
 
 // The same of pairs, of which either grain is wanted: visit(contact number, motion, separation, force on the first).
 template <typename Wanted, typename Visitor>
-void visit_pairs(const GrainStore& store, const ContactList& list, const PeriodicBox& box,
+void visit_pairs(const GrainStore& store, const NeighbourList& list, const PeriodicBox& box,
                  const MaterialTable& materials, const Wanted& wanted, Visitor&& visit) {
   with_law(list.pair_rows.law(), 0.0, [&](const auto& law) {
     for (std::size_t number = 0; number < list.pairs.size(); ++number) {
@@ -205,7 +205,7 @@ void visit_pairs(const GrainStore& store, const ContactList& list, const Periodi
 
 }  // namespace
 
-void evaluate_contacts(MovingGrains& grains, ContactList& list, const Surroundings& around,
+void evaluate_contacts(MovingGrains& grains, NeighbourList& list, const Surroundings& around,
                        const MaterialTable& materials, std::span<const std::uint8_t> material, double time_step) {
   with_law(list.pair_rows.law(), time_step,
            [&](const auto& law) { evaluate_pairs(law, grains, list, around.box, materials, material); });
@@ -217,7 +217,7 @@ void evaluate_contacts(MovingGrains& grains, ContactList& list, const Surroundin
                    [&](const auto& law) { evaluate_solids(law, grains, list, around, materials, material); });
 }
 
-void for_each_contact_end(const GrainStore& store, const ContactList& list, const Surroundings& around,
+void for_each_contact_end(const GrainStore& store, const NeighbourList& list, const Surroundings& around,
                           const MaterialTable& materials, std::span<const char> chosen,
                           const ContactEndVisitor& visit) {
   const auto wanted = [&](std::size_t slot) { return !store.is_ghost(slot) && (chosen.empty() || chosen[slot] != 0); };
@@ -236,7 +236,7 @@ void for_each_contact_end(const GrainStore& store, const ContactList& list, cons
   });
 }
 
-void for_each_wall_contact(const GrainStore& store, const ContactList& list, const Surroundings& around,
+void for_each_wall_contact(const GrainStore& store, const NeighbourList& list, const Surroundings& around,
                            const MaterialTable& materials, const ContactEndVisitor& visit) {
   const auto visit_end = [&](std::size_t slot, std::size_t partner, const ContactMotion& motion, const Vec3& force) {
     if (store.is_ghost(slot)) return;

@@ -93,7 +93,7 @@ void add_to_pair(MovingGrain& first, MovingGrain& second, const Vec3& separation
 }
 
 // Finds the pairs between which the force may act before the list is searched again. reach: m.
-void look_for_near_surfaces(const MovingGrains& grains, ContactList& list, double reach, const MinimumImage& image) {
+void look_for_near_surfaces(const MovingGrains& grains, NeighbourList& list, double reach, const MinimumImage& image) {
   list.near_surfaces.begin();
   const double range = reach + list.near_surfaces.margin();
   for (std::size_t p = 0; p < list.pairs.size(); ++p) {
@@ -113,7 +113,7 @@ void add_to_grain(MovingGrain& grain, const NearSurfaces& near) {
 // Calls visit(slot, partner, surfaces) for every wall and every place of a solid that is near a grain. sphere_of(slot)
 // and position_of(slot): as the grain is now.
 template <typename SphereOf, typename PositionOf, typename Visit>
-void for_each_near_wall(const ContactList& list, const Surroundings& around, const LubricationParameters& parameters,
+void for_each_near_wall(const NeighbourList& list, const Surroundings& around, const LubricationParameters& parameters,
                         SphereOf sphere_of, PositionOf position_of, Visit visit) {
   for (const WallContact& c : list.walls) {
     if (!parameters.walls[c.wall]) continue;
@@ -187,7 +187,7 @@ void check(const LubricationParameters& parameters, double largest_radius, doubl
                   time_step, longest, parameters.minimum_gap * time_step / longest));
 }
 
-void add_lubrication(MovingGrains& grains, ContactList& list, const Surroundings& around,
+void add_lubrication(MovingGrains& grains, NeighbourList& list, const Surroundings& around,
                      const LubricationParameters& parameters) {
   if (list.near_surfaces.stale()) look_for_near_surfaces(grains, list, parameters.reach(), MinimumImage(around.box));
   for (const NearPair& c : list.near_surfaces.pairs()) {
@@ -201,7 +201,7 @@ void add_lubrication(MovingGrains& grains, ContactList& list, const Surroundings
       [&](std::uint32_t slot, std::size_t, const NearSurfaces& near) { add_to_grain(grains[slot], near); });
 }
 
-void for_each_lubrication_end(const GrainStore& store, const ContactList& list, const Surroundings& around,
+void for_each_lubrication_end(const GrainStore& store, const NeighbourList& list, const Surroundings& around,
                               const LubricationParameters& parameters, const LubricationVisitor& visit) {
   for (const PairContact& c : list.pairs) {
     const auto near = between(moving_sphere_of(store, c.first), moving_sphere_of(store, c.second),
@@ -214,7 +214,7 @@ void for_each_lubrication_end(const GrainStore& store, const ContactList& list, 
                             [&visit](std::size_t slot, const ContactEnd& end) { visit(slot, end.arm, end.force); });
 }
 
-void for_each_wall_lubrication(const GrainStore& store, const ContactList& list, const Surroundings& around,
+void for_each_wall_lubrication(const GrainStore& store, const NeighbourList& list, const Surroundings& around,
                                const LubricationParameters& parameters, const ContactSource::ContactEndVisitor& visit) {
   for_each_near_wall(
       list, around, parameters, [&](std::uint32_t slot) { return moving_sphere_of(store, slot); },

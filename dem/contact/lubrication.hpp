@@ -19,7 +19,7 @@
 
 #include "core/geometry/periodic_box.hpp"
 #include "core/state/snapshot.hpp"
-#include "dem/contact/contact_list.hpp"
+#include "dem/contact/neighbour_list.hpp"
 #include "dem/motion/moving_grains.hpp"
 #include "dem/motion/walls.hpp"
 
@@ -62,18 +62,18 @@ void check(const LubricationParameters& parameters, double largest_radius, doubl
 
 // Adds these forces and torques for all pairs, walls and solids of the list whose gap is below the cut-offs. Surfaces
 // that touch feel their contact law alone. The edge of a solid counts as the plane across the line from it to the
-// grain. Sums run in the order of the list, of whose pairs only the near ones are looked at (near_pairs.hpp).
-void add_lubrication(MovingGrains& grains, ContactList& list, const Surroundings& around,
+// grain. Sums run in the order of the list, of whose pairs only the near ones are looked at (inner_neighbour_list.hpp).
+void add_lubrication(MovingGrains& grains, NeighbourList& list, const Surroundings& around,
                      const LubricationParameters& parameters);
 
 // Calls visit(slot, arm, force) for every such force on every owned grain, in the order of the list, pairs first: m
 // from its centre to the middle of the gap (to a wall's surface), N. By the present positions and velocities.
 using LubricationVisitor = std::function<void(std::size_t slot, const Vec3& arm, const Vec3& force)>;
-void for_each_lubrication_end(const GrainStore& store, const ContactList& list, const Surroundings& around,
+void for_each_lubrication_end(const GrainStore& store, const NeighbourList& list, const Surroundings& around,
                               const LubricationParameters& parameters, const LubricationVisitor& visit);
 
 // The same for walls and solids only, with the partner as for_each_wall_contact() gives it.
-void for_each_wall_lubrication(const GrainStore& store, const ContactList& list, const Surroundings& around,
+void for_each_wall_lubrication(const GrainStore& store, const NeighbourList& list, const Surroundings& around,
                                const LubricationParameters& parameters, const ContactSource::ContactEndVisitor& visit);
 
 }  // namespace thalweg::dem

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "core/geometry/periodic_box.hpp"
-#include "dem/contact/contact_list.hpp"
+#include "dem/contact/neighbour_list.hpp"
 #include "dem/laws/contact_law.hpp"
 #include "dem/laws/material.hpp"
 #include "dem/motion/minimum_image.hpp"

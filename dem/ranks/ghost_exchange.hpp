@@ -4,7 +4,7 @@
 
 #include "core/parallel/decomposition.hpp"
 #include "core/parallel/packed_exchange.hpp"
-#include "dem/contact/contact_list.hpp"
+#include "dem/contact/neighbour_list.hpp"
 #include "dem/motion/grain_store.hpp"
 #include "dem/motion/moving_grains.hpp"
 

@@ -5,7 +5,7 @@
 #include "core/base/shell_word.hpp"
 #include "core/parallel/mpi_session.hpp"
 #include "core/parallel/on_first_rank.hpp"
-#include "dem/dry_grains.hpp"
+#include "dem/grain_system.hpp"
 #include "driver/cli/error_message.hpp"
 #include "driver/cli/resume.hpp"
 #include "driver/cli/run_places.hpp"
@@ -97,7 +97,7 @@ struct Beginning {
   fs::path checkpoint;              // empty: from the start
   std::vector<std::string> damage;  // of checkpoints that were passed over
   std::vector<CaseChange> changes;  // since the run that is continued
-  Accounts accounts;                // of that run
+  RunHistory run_history;           // of that run
 };
 
 // Throws InputError where the case is not one with which that run can go on.
@@ -125,7 +125,7 @@ void print_header(const Case& c, RunIdentity& identity, const System& system, co
     log.line(fmt::format("going on from {} at {:.6g} s", beginning.checkpoint.string(), system.time()));
   for (const CaseChange& change : beginning.changes)
     log.line(fmt::format("changed since then: {}: {} -> {}", change.key, change.before, change.now));
-  for (const auto& [observer, time] : beginning.accounts.since)
+  for (const auto& [observer, time] : beginning.run_history.since)
     log.line(fmt::format("analysis.{}: its sums count from {:.6g} s on", observer, time));
   log.line(fmt::format("writing {}", places.folder.path().string()));
   if (const double strokes = loop::seconds_between_strokes(); strokes > 0.0)
@@ -224,9 +224,9 @@ std::string rest_remark(const Case& c, const loop::LoopPlan& plan, const loop::L
         "not at rest when last looked at, every {} steps: {:.0f} grains move, and a share of {:g} at rest leaves {}; a "
         "later --until goes on with --restart",
         plan.steps_between_looks_for_enough,
-        find_figure(system.figures(), dem::DryGrains::restless_figure).value_or(0.0), c.run.until_at_rest->quantile,
+        find_figure(system.figures(), dem::GrainSystem::restless_figure).value_or(0.0), c.run.until_at_rest->quantile,
         allowed_restless(c));
-  const double speed = find_figure(system.figures(), dem::DryGrains::largest_speed_figure).value_or(0.0);
+  const double speed = find_figure(system.figures(), dem::GrainSystem::largest_speed_figure).value_or(0.0);
   return fmt::format(
       "not at rest: the fastest grain moves at {:.2g} m/s (run.until_at_rest asks for {:g} m/s and {:g} "
       "m/s^2); a later --until goes on with --restart",
@@ -236,11 +236,11 @@ std::string rest_remark(const Case& c, const loop::LoopPlan& plan, const loop::L
 // What may finish the run before its time.
 void set_end(const Case& c, loop::LoopPlan& plan) {
   if (c.run.until_at_rest && c.run.until_at_rest->quantile < 1.0) {
-    plan.enough = {{dem::DryGrains::restless_figure, static_cast<double>(allowed_restless(c) + 1)}};
+    plan.enough = {{dem::GrainSystem::restless_figure, static_cast<double>(allowed_restless(c) + 1)}};
     plan.enough_means = fmt::format("a share of {:g} of the grains at rest", c.run.until_at_rest->quantile);
   } else if (c.run.until_at_rest) {
-    plan.enough = {{dem::DryGrains::largest_speed_figure, c.run.until_at_rest->largest_speed},
-                   {dem::DryGrains::largest_acceleration_figure, c.run.until_at_rest->largest_acceleration}};
+    plan.enough = {{dem::GrainSystem::largest_speed_figure, c.run.until_at_rest->largest_speed},
+                   {dem::GrainSystem::largest_acceleration_figure, c.run.until_at_rest->largest_acceleration}};
     plan.enough_means = "all grains at rest";
   } else if (c.run.until_steady) {
     plan.enough = {{continuum::ContinuumSystem::unsteadiness_figure, c.run.until_steady->unsteadiness}};
@@ -312,14 +312,15 @@ Outcome run_case(Command command, MPI_Comm communicator, loop::WallClock::time_p
     about_case(command.path, [&] { take_initial_fields(communicator, c, *system); });
   else
     beginning.checkpoint = read_first_whole_checkpoint(communicator, places.checkpoints, c, *system, observers,
-                                                       beginning.damage, beginning.accounts);
+                                                       beginning.damage, beginning.run_history);
   if (restarts && system->step() > loop::final_step(c.run.until, system->time_step()))
     throw InputError(fmt::format("{} is at {:.6g} s already and the run ends at {:.6g} s: give a later --until.",
                                  beginning.checkpoint.string(), system->time(), c.run.until));
 
   if (!lock) lock = lock_folder(places, communicator);
   RunOutput output(communicator, c, places.folder, *system, observers, loop::series_row(*system, observers),
-                   beginning.accounts.since, places.same_folder ? std::optional<double>(system->time()) : std::nullopt);
+                   beginning.run_history.since,
+                   places.same_folder ? std::optional<double>(system->time()) : std::nullopt);
   prepare_folder(places, c, command, system->step(), communicator, log);
   RunIdentity identity{c.name, name_of(c.system), command.line, c.run.until, layout, size_of(communicator)};
   if (!c.grains.empty()) identity.reference = reference_grain(c);
@@ -338,8 +339,8 @@ Outcome run_case(Command command, MPI_Comm communicator, loop::WallClock::time_p
   plan.checkpoint_guess = bytes_of_checkpoint(c) / slow_disk;
   plan.stop_file = places.folder.stop();
   plan.between_strokes = loop::seconds_between_strokes();
-  plan.largest = beginning.accounts.largest;
-  plan.largest_from = beginning.accounts.largest_from;
+  plan.largest = beginning.run_history.largest;
+  plan.largest_from = beginning.run_history.largest_from;
   plan.write_at_start = !places.same_folder;
   output.add_to(plan);
   loop::TimeLoop time_loop(communicator, *system, observers, plan, log);
@@ -353,7 +354,7 @@ Outcome run_case(Command command, MPI_Comm communicator, loop::WallClock::time_p
     record.reason = told.what();
     try {
       if (!failures.all_ranks_failed(seconds_to_wait_for_others) || log.prints())
-        summary_of(identity, *system, record, observers, beginning.accounts, {}, {}).write(places.folder.summary());
+        summary_of(identity, *system, record, observers, beginning.run_history, {}, {}).write(places.folder.summary());
     } catch (const RunError&) {  // the first error is the one to tell
     }
     throw told;
@@ -364,7 +365,7 @@ Outcome run_case(Command command, MPI_Comm communicator, loop::WallClock::time_p
   print_outcome(identity, time_loop.record(), *system, observers, bed, phases, places.folder, log);
   if (const std::string remark = rest_remark(c, plan, time_loop.record(), *system); !remark.empty()) log.line(remark);
   const io::JsonObject summary =
-      summary_of(identity, *system, time_loop.record(), observers, beginning.accounts, bed, phases);
+      summary_of(identity, *system, time_loop.record(), observers, beginning.run_history, bed, phases);
   on_first_rank(communicator, [&] {
     summary.write(places.folder.summary());
     std::error_code ignored;  // a request that came too late

@@ -4,7 +4,7 @@
 #include "analysis/observer/observer.hpp"
 #include "core/state/system.hpp"
 #include "driver/case/case.hpp"
-#include "driver/setup/accounts.hpp"
+#include "driver/setup/run_history.hpp"
 #include "io/files/series_table.hpp"
 #include "io/folder/run_folder.hpp"
 #include "io/hdf5/record_parts.hpp"

@@ -20,7 +20,7 @@ io::JsonObject figures_as_json(const std::vector<Figure>& figures, io::JsonObjec
 }  // namespace
 
 io::JsonObject summary_of(const RunIdentity& identity, const System& system, const loop::LoopRecord& record,
-                          const Observers& observers, const Accounts& accounts, const std::vector<Figure>& bed,
+                          const Observers& observers, const RunHistory& run_history, const std::vector<Figure>& bed,
                           const std::vector<loop::PhaseShare>& phases) {
   const loop::Speeds speeds = loop::speeds_of(system, record);
   io::JsonObject summary;
@@ -57,7 +57,7 @@ io::JsonObject summary_of(const RunIdentity& identity, const System& system, con
   summary.set("figures", figures_as_json(record.figures, units)).set("largest", figures_as_json(record.largest, units));
   summary.set("largest_from", record.largest_from);
   for (const auto& observer : observers)
-    summary.set(observer->name(), figures_as_json(accounts.results_of(*observer), units));
+    summary.set(observer->name(), figures_as_json(run_history.results_of(*observer), units));
   if (!bed.empty()) summary.set("bed", figures_as_json(bed, units));
   if (identity.reference) units.set("reference_diameter", "m").set("reference_density", "kg/m^3");
   summary.set("units", units);

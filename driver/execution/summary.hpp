@@ -3,7 +3,7 @@
 
 #include "driver/cost/memory.hpp"
 #include "driver/estimate/reference_grain.hpp"
-#include "driver/setup/accounts.hpp"
+#include "driver/setup/run_history.hpp"
 #include "io/files/json_object.hpp"
 #include "loop/phase_shares.hpp"
 
@@ -29,7 +29,7 @@ struct RunIdentity {
 
 // summary.json of a run that has ended in whatever way. `bed` (final_bed.hpp) and `phases` may be empty.
 io::JsonObject summary_of(const RunIdentity& identity, const System& system, const loop::LoopRecord& record,
-                          const Observers& observers, const Accounts& accounts, const std::vector<Figure>& bed,
+                          const Observers& observers, const RunHistory& run_history, const std::vector<Figure>& bed,
                           const std::vector<loop::PhaseShare>& phases);
 
 }  // namespace thalweg::driver

@@ -1,5 +1,5 @@
 // From a case to grains without a fluid, or with a force in its place.
-#include "dem/dry_grains.hpp"
+#include "dem/grain_system.hpp"
 #include "driver/case/grain_setup.hpp"
 #include "driver/setup/build_system.hpp"
 
@@ -23,7 +23,7 @@ std::vector<std::string> measured_walls(const Case& c) {
 
 std::unique_ptr<System> build_grains_system(const Case& c, MPI_Comm communicator, const Decomposition& decomposition,
                                             Start start) {
-  dem::DryParameters parameters;
+  dem::GrainSystemParameters parameters;
   parameters.grains = grain_parameters(c, decomposition.box());
   parameters.gravity = gravity_vector(c.gravity);
   parameters.measured_walls = measured_walls(c);
@@ -33,7 +33,7 @@ std::unique_ptr<System> build_grains_system(const Case& c, MPI_Comm communicator
     parameters.fluid_density = c.model_fluid.fluid_density;
     parameters.field = std::make_shared<model_fluid::ModelFluidField>(decomposition.box(), model_fluid_of(c));
   }
-  return std::make_unique<dem::DryGrains>(
+  return std::make_unique<dem::GrainSystem>(
       decomposition, communicator, parameters,
       start == Start::as_placed ? grain_seeds(c, communicator, decomposition) : dem::GrainSeeds{});
 }

@@ -99,7 +99,7 @@ std::string kept_case_of(const Case& c) { return state_of_case(resolved_yaml(c),
 
 void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c,
                            const std::string& kept_case, const System& system, const Observers& observers,
-                           const Accounts& accounts) {
+                           const RunHistory& run_history) {
   io::Hdf5Writer archive(communicator, path);
   archive.attribute("run/format", checkpoint_format);
   archive.attribute("run/system", std::string(name_of(c.system)));
@@ -112,12 +112,12 @@ void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& p
   save_kept_case(archive, kept_case);
   save_beds(archive, communicator, c);
   system.save(archive);
-  accounts.save(archive, observers, c.output.series.every);
+  run_history.save(archive, observers, c.output.series.every);
   archive.close();
 }
 
-Accounts read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c, System& system,
-                              Observers& observers) {
+RunHistory read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c, System& system,
+                                Observers& observers) {
   io::Hdf5Reader archive(communicator, path);
   if (!archive.has("run/system"))
     throw InputError(fmt::format("{} is an HDF5 file but not a checkpoint of this program.", path.string()));
@@ -132,23 +132,23 @@ Accounts read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path
   if (saved != name_of(c.system))
     throw InputError(fmt::format("{} holds a run with system: {}, but this case has system: {}.", path.string(), saved,
                                  name_of(c.system)));
-  Accounts accounts;
+  RunHistory run_history;
   about_file(path, [&] {
     refuse_other_spacing(archive, c);
     refuse_other_case(archive, c);
     system.load(archive);
-    accounts = Accounts::load(archive, system, observers, c.output.series.every);
+    run_history = RunHistory::load(archive, system, observers, c.output.series.every);
   });
-  return accounts;
+  return run_history;
 }
 
 std::filesystem::path read_first_whole_checkpoint(MPI_Comm communicator,
                                                   const std::vector<std::filesystem::path>& checkpoints, const Case& c,
                                                   System& system, Observers& observers,
-                                                  std::vector<std::string>& damage, Accounts& accounts) {
+                                                  std::vector<std::string>& damage, RunHistory& run_history) {
   for (const std::filesystem::path& path : checkpoints) {
     try {
-      accounts = read_checkpoint_file(communicator, path, c, system, observers);
+      run_history = read_checkpoint_file(communicator, path, c, system, observers);
       return path;
     } catch (const io::DamagedFile& error) {
       if (path == checkpoints.back()) throw;

@@ -4,7 +4,7 @@
 #include "analysis/observer/observer.hpp"
 #include "core/state/system.hpp"
 #include "driver/case/case.hpp"
-#include "driver/setup/accounts.hpp"
+#include "driver/setup/run_history.hpp"
 #include "io/hdf5/hdf5_archive.hpp"
 
 #include <mpi.h>
@@ -17,11 +17,11 @@ namespace thalweg::driver {
 
 // A checkpoint: what it is (group "run": format, system, name, version, step, time and time_step in s, spacing in m),
 // the keys of the case that a restart may not change (group "kept_case", case_changes.hpp), the beds it began with, the
-// system, the observers and the accounts. Its bytes do not depend on the number of ranks. kept_case: kept_case_of(c).
-// Collective; RunError on every rank.
+// system, the observers and the run_history. Its bytes do not depend on the number of ranks. kept_case:
+// kept_case_of(c). Collective; RunError on every rank.
 void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c,
                            const std::string& kept_case, const System& system, const Observers& observers,
-                           const Accounts& accounts);
+                           const RunHistory& run_history);
 
 // Lets a checkpoint be read only where its data have the checksums that it was written with. (Those from before the
 // formats had numbers may have none.)
@@ -32,13 +32,13 @@ std::string kept_case_of(const Case& c);
 
 // The state of a checkpoint into a system and observers built from a case. Throws InputError where they do not fit (in
 // system, cells, time step or one of the kept keys), and io::DamagedFile.
-Accounts read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c, System& system,
-                              Observers& observers);
+RunHistory read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c, System& system,
+                                Observers& observers);
 
 // That of the first one which is not damaged; `damage`, a sentence about each before it, is added to. Returns its path.
 std::filesystem::path read_first_whole_checkpoint(MPI_Comm communicator,
                                                   const std::vector<std::filesystem::path>& checkpoints, const Case& c,
                                                   System& system, Observers& observers,
-                                                  std::vector<std::string>& damage, Accounts& accounts);
+                                                  std::vector<std::string>& damage, RunHistory& run_history);
 
 }  // namespace thalweg::driver

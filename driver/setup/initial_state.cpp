@@ -138,9 +138,9 @@ void take_initial_fields(MPI_Comm communicator, const Case& c, System& system) {
       require_checksums(archive);
       const double spacing = archive.real_attribute("run/spacing");
       if (field == InitialField::grains)
-        system.take_grains(archive, spacing);
+        system.import_grains(archive, spacing);
       else
-        system.take_fluid(archive, spacing);
+        system.import_fluid(archive, spacing);
     });
 }
 

@@ -39,7 +39,7 @@ private:
 };
 
 YamlNode converted(const YAML::Node& node, const std::string& place, const std::string& key_path,
-                   const PlaceOf& place_of, int depth, ValueCount& count) {
+                   const PlaceOf& location_of, int depth, ValueCount& count) {
   if (depth > deepest)
     throw InputError(fmt::format("{}: {}: the file is nested more than {} levels deep.", place, key_path, deepest));
   count.add(place, key_path);
@@ -49,7 +49,7 @@ YamlNode converted(const YAML::Node& node, const std::string& place, const std::
     result.kind = YamlNode::Kind::section;
     std::map<std::string, std::string> known;  // keys, and where they are given
     for (const auto& entry : node) {
-      const std::string here = place_of(entry.first.Mark());
+      const std::string here = location_of(entry.first.Mark());
       if (!entry.first.IsScalar())
         throw InputError(fmt::format("{}: {}: a key must be a single word.", here, key_path));
       const std::string key = entry.first.Scalar();
@@ -57,13 +57,13 @@ YamlNode converted(const YAML::Node& node, const std::string& place, const std::
       if (const auto [first, is_new] = known.emplace(key, here); !is_new)
         throw InputError(fmt::format("{}: {}: the key is given twice (first at {}); remove one of the two.", here, path,
                                      first->second));
-      result.entries.push_back({key, converted(entry.second, here, path, place_of, depth + 1, count)});
+      result.entries.push_back({key, converted(entry.second, here, path, location_of, depth + 1, count)});
     }
   } else if (node.IsSequence()) {
     result.kind = YamlNode::Kind::list;
     for (const auto& item : node)
-      result.items.push_back(converted(item, place_of(item.Mark()),
-                                       joined_key(key_path, fmt::format("{}", result.items.size())), place_of,
+      result.items.push_back(converted(item, location_of(item.Mark()),
+                                       joined_key(key_path, fmt::format("{}", result.items.size())), location_of,
                                        depth + 1, count));
   } else {
     result.kind = YamlNode::Kind::scalar;
@@ -87,11 +87,11 @@ bool is_control(char c) {
 }
 
 // What YAML does not allow in a text, and its parser might take for the end of the file.
-void refuse_odd_bytes(std::string_view text, const PlaceOf& place_of) {
+void refuse_odd_bytes(std::string_view text, const PlaceOf& location_of) {
   const auto place_at = [&](std::size_t at) {
     YAML::Mark mark;
     mark.line = static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
-    return place_of(mark);
+    return location_of(mark);
   };
   if (const std::size_t at = first_not_utf8(text); at < text.size())
     throw InputError(fmt::format("{}: the byte {:#04x} here is not UTF-8; save the text as UTF-8.", place_at(at),
@@ -107,9 +107,9 @@ void refuse_odd_bytes(std::string_view text, const PlaceOf& place_of) {
                                  static_cast<unsigned char>(*odd)));
 }
 
-YamlNode parsed(const std::string& text, const PlaceOf& place_of, const std::string& whole_place,
+YamlNode parsed(const std::string& text, const PlaceOf& location_of, const std::string& whole_place,
                 const std::string& key_path) {
-  refuse_odd_bytes(text, place_of);
+  refuse_odd_bytes(text, location_of);
   try {
     const std::vector<YAML::Node> documents = YAML::LoadAll(text);
     for (std::size_t n = 1; n < documents.size(); ++n)
@@ -117,11 +117,12 @@ YamlNode parsed(const std::string& text, const PlaceOf& place_of, const std::str
         throw InputError(fmt::format(
             "{}: a second document begins here, after a line ---, and would be ignored; remove that line, or "
             "what follows it.",
-            place_of(documents[n].Mark())));
+            location_of(documents[n].Mark())));
     ValueCount count(text.size());
-    return converted(documents.empty() ? YAML::Node() : documents.front(), whole_place, key_path, place_of, 0, count);
+    return converted(documents.empty() ? YAML::Node() : documents.front(), whole_place, key_path, location_of, 0,
+                     count);
   } catch (const YAML::Exception& error) {
-    const std::string place = error.mark.is_null() ? whole_place : place_of(error.mark);
+    const std::string place = error.mark.is_null() ? whole_place : location_of(error.mark);
     throw InputError(
         fmt::format("{}: this is not valid YAML: {}; look for a missing colon, bracket or quote and for "
                     "uneven indentation here or just above.",
@@ -190,14 +191,14 @@ YamlDocument::YamlDocument(const std::filesystem::path& path, const std::vector<
                            const Ranks& ranks)
     : path_(path) {
   const std::string name = path.string();
-  const auto place_of = [&](const YAML::Mark& mark) { return fmt::format("{}:{}", name, mark.line + 1); };
+  const auto location_of = [&](const YAML::Mark& mark) { return fmt::format("{}:{}", name, mark.line + 1); };
   const std::string text = told_by_first_rank(ranks.communicator(), [&] {
     if (std::filesystem::is_directory(path))
       throw InputError(fmt::format("{}: this is a folder: give the case file itself, for example {}.", name,
                                    (path / "case.yaml").string()));
     return read_text(path);
   });
-  root_ = parsed(text, place_of, name + ":1", "");
+  root_ = parsed(text, location_of, name + ":1", "");
   if (root_.kind == YamlNode::Kind::scalar && root_.text.empty()) root_.kind = YamlNode::Kind::section;
   if (root_.kind != YamlNode::Kind::section)
     throw InputError(fmt::format("{}:1: expected keys with values, for example system: resolved.", name));

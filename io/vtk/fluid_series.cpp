@@ -53,7 +53,7 @@ std::vector<Number> shown(const std::vector<Number>& values, int components, con
     for (int j = part.lower[1]; j < part.upper[1]; ++j)
       for (int i = part.lower[0]; i < part.upper[0]; ++i) {
         const auto first =
-            values.begin() + fine.place_of({fine_place(0, i), fine_place(1, j), fine_place(2, k)}) * components;
+            values.begin() + fine.location_of({fine_place(0, i), fine_place(1, j), fine_place(2, k)}) * components;
         chosen.insert(chosen.end(), first, first + components);
       }
   return chosen;

@@ -17,7 +17,7 @@ void for_each_row(const Block& block, const Block& region, Visit visit) {
   if (block.volume() == 0) return;
   for (int k = block.lower[2]; k < block.upper[2]; ++k)
     for (int j = block.lower[1]; j < block.upper[1]; ++j) {
-      const std::int64_t first = region.place_of({block.lower[0], j, k});
+      const std::int64_t first = region.location_of({block.lower[0], j, k});
       visit(first, first + length);
     }
 }

@@ -92,7 +92,7 @@ std::uint64_t VtkXmlFile::header_bytes(const Array& array) {
 }
 
 // Where this rank writes what; `total` becomes the size of all appended data.
-std::vector<VtkXmlFile::Place> VtkXmlFile::places(std::uint64_t& total) const {
+std::vector<VtkXmlFile::Location> VtkXmlFile::places(std::uint64_t& total) const {
   std::vector<std::uint64_t> here, before, all;
   for (const Array& array : arrays_) here.push_back(array.data.size());
   before.assign(here.size(), 0);
@@ -101,7 +101,7 @@ std::vector<VtkXmlFile::Place> VtkXmlFile::places(std::uint64_t& total) const {
   MPI_Exscan(here.data(), before.data(), count, MPI_UINT64_T, MPI_SUM, communicator_);
   MPI_Allreduce(here.data(), all.data(), count, MPI_UINT64_T, MPI_SUM, communicator_);
   const int me = rank_of(communicator_);
-  std::vector<Place> result;
+  std::vector<Location> result;
   total = 0;
   for (std::size_t n = 0; n < arrays_.size(); ++n) {
     const std::uint64_t ours = me == 0 ? 0 : before[n];  // not defined on the first rank
@@ -116,7 +116,7 @@ std::vector<VtkXmlFile::Place> VtkXmlFile::places(std::uint64_t& total) const {
 void VtkXmlFile::write(const std::filesystem::path& path, double time, const std::string& type,
                        const std::string& attributes, const std::string& piece_attributes) const {
   std::uint64_t appended = 0;
-  const std::vector<Place> at = places(appended);
+  const std::vector<Location> at = places(appended);
   std::string text = fmt::format(
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"{0}\" version=\"1.0\" byte_order=\"LittleEndian\" "
       "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n  <{0}{1}>\n    <FieldData>\n      {2}{3}"

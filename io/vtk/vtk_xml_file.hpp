@@ -52,14 +52,14 @@ private:
     std::vector<std::uint64_t> sizes;  // of this rank's blocks, compressed
     std::vector<std::byte> data;       // those blocks
   };
-  struct Place {  // in the file, from the start of the appended data
+  struct Location {  // in the file, from the start of the appended data
     std::uint64_t header, sizes, data;
   };
 
   void add(const std::string& section, const std::string& head, std::size_t bytes_per_row,
            std::span<const std::byte> values);
   static std::uint64_t header_bytes(const Array& array);
-  std::vector<Place> places(std::uint64_t& total) const;
+  std::vector<Location> places(std::uint64_t& total) const;
   static std::vector<std::uint64_t> header_of(const Array& array);
 
   MPI_Comm communicator_;

@@ -139,7 +139,7 @@ private:
 
   // The place of an extreme in the order of cells along x, then y, then z of the whole domain; `nowhere` if this rank
   // does not have it.
-  std::int64_t place_of(int extreme, double value) const {
+  std::int64_t location_of(int extreme, double value) const {
     const RowExtreme& e = extremes_[extreme];
     if (e.y < 0 || e.value != value) return nowhere;
     const Index3 &lower = fluid_.block().lower, &cells = fluid_.decomposition().cells();
@@ -171,7 +171,7 @@ private:
     for (int e = 0; e < extremes; ++e) values[e] = extremes_[e].value;
     MPI_Allreduce(MPI_IN_PLACE, values.data(), extremes, MPI_DOUBLE, MPI_MIN, communicator);
     std::array<std::int64_t, extremes> places;
-    for (int e = 0; e < extremes; ++e) places[e] = place_of(e, values[e]);
+    for (int e = 0; e < extremes; ++e) places[e] = location_of(e, values[e]);
     MPI_Allreduce(MPI_IN_PLACE, places.data(), extremes, MPI_INT64_T, MPI_MIN, communicator);
 
     FluidSurvey s;

@@ -1,5 +1,5 @@
 // Populations whose number follows from the depth of their settled bed.
-#include "beds/sizes/grain_sizes.hpp"
+#include "beds/sizes/size_distribution.hpp"
 #include "core/base/error.hpp"
 #include "driver/input/case_reader.hpp"
 #include "tests/driver/case_texts.hpp"

@@ -38,9 +38,9 @@ public:
     return s;
   }
   std::vector<Figure> figures() const override { return {}; }
-  std::optional<Place> place_of(const std::string& figure) const override {
+  std::optional<Location> location_of(const std::string& figure) const override {
     if (figure == "nowhere") return std::nullopt;
-    return Place{Vec3(0.95, 0.5, 0.5), {}};
+    return Location{Vec3(0.95, 0.5, 0.5), {}};
   }
   void save(ArchiveWriter&) const override {}
   void load(ArchiveReader&) override {}

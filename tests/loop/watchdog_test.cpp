@@ -1,6 +1,6 @@
 #include "loop/watchdog.hpp"
 
-#include "loop/whereabouts.hpp"
+#include "loop/location_text.hpp"
 #include "tests/loop/made_up_system.hpp"
 
 #include <gtest/gtest.h>
@@ -71,11 +71,12 @@ TEST(Watchdog, OnlyWarnsWhereAskedToButNeverGoesOnWithoutNumbers) {
 TEST(Whereabouts, SaysWhatIsAround) {
   const MadeUp system;
   const Snapshot s = system.snapshot();
-  EXPECT_EQ(whereabouts(world, {Vec3(0.05, 0.95, 0.5), {}}, s), "in the cell at (0.05, 0.95, 0.5) m, in open water");
-  EXPECT_EQ(whereabouts(world, {Vec3(0.4, 0.65, 0.55), {}}, s), "in the cell at (0.4, 0.65, 0.55) m, beside grain 12");
-  EXPECT_EQ(whereabouts(world, {Vec3(0.1, 0.2, 0.3), {12}}, s), "grain 12 at (0.1, 0.2, 0.3) m");
-  EXPECT_EQ(whereabouts(world, {Vec3(0.1, 0.2, 0.3), {10, 12}}, s), "grains 10 and 12 at (0.1, 0.2, 0.3) m");
-  EXPECT_EQ(whereabouts(world, {Vec3(0.1, 0.2, 0.3), {}}, Snapshot{}), "in the cell at (0.1, 0.2, 0.3) m");
+  EXPECT_EQ(location_text(world, {Vec3(0.05, 0.95, 0.5), {}}, s), "in the cell at (0.05, 0.95, 0.5) m, in open water");
+  EXPECT_EQ(location_text(world, {Vec3(0.4, 0.65, 0.55), {}}, s),
+            "in the cell at (0.4, 0.65, 0.55) m, beside grain 12");
+  EXPECT_EQ(location_text(world, {Vec3(0.1, 0.2, 0.3), {12}}, s), "grain 12 at (0.1, 0.2, 0.3) m");
+  EXPECT_EQ(location_text(world, {Vec3(0.1, 0.2, 0.3), {10, 12}}, s), "grains 10 and 12 at (0.1, 0.2, 0.3) m");
+  EXPECT_EQ(location_text(world, {Vec3(0.1, 0.2, 0.3), {}}, Snapshot{}), "in the cell at (0.1, 0.2, 0.3) m");
 }
 
 }  // namespace

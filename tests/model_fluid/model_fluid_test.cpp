@@ -1,6 +1,6 @@
-#include "model_fluid/lens.hpp"
 #include "model_fluid/model_fluid_field.hpp"
 #include "model_fluid/model_fluid_keys.hpp"
+#include "model_fluid/sphere_overlap.hpp"
 
 #include <gtest/gtest.h>
 

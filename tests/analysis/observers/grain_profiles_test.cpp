@@ -4,7 +4,7 @@
 
 #include "analysis/tools/sphere_in_layer.hpp"
 #include "core/state/contact_stress.hpp"
-#include "core/sums/order_free_sum.hpp"
+#include "core/sums/reproducible_sum.hpp"
 #include "dem/clumps/clump_seed.hpp"
 #include "tests/dem/grain_cases.hpp"
 #include "tests/support/memory_archive.hpp"
@@ -243,7 +243,7 @@ TEST(GrainProfiles, OfABedBalanceItsWeight) {
   std::vector<double> terms;
   for (std::size_t i = 0; i < s.owned; ++i)
     terms.insert(terms.end(), {s.mass[i] * g, s.mass[i] * g * s.position[i][2]});
-  const std::vector<double> sums = order_free_sums(MPI_COMM_WORLD, terms, 2);
+  const std::vector<double> sums = reproducible_sums(MPI_COMM_WORLD, terms, 2);
   const double area = 0.025 * 0.025, layer = 0.06 / 24;
   // At rest the virial theorem makes the integral of the stress the weights times their heights, exactly.
   double integral = 0.0, above = 0.0;

@@ -28,7 +28,7 @@ TEST(HomeById, AnswersInTheOrderOfTheQuestions) {
   const std::vector<GlobalId> ids = ids_here(3);
   const std::vector<double> answers = homes.ask(ids, [&](GlobalId id) {
     EXPECT_GE(id, homes.begin());
-    EXPECT_LT(homes.place_of(id), homes.size());
+    EXPECT_LT(homes.location_of(id), homes.size());
     return 0.5 * static_cast<double>(id);
   });
   ASSERT_EQ(answers.size(), ids.size());

@@ -2,7 +2,7 @@
 #include "tests/coupling/water_box.hpp"
 
 #include "core/parallel/mpi_session.hpp"
-#include "core/sums/order_free_sum.hpp"
+#include "core/sums/reproducible_sum.hpp"
 
 #include <gtest/gtest.h>
 
@@ -84,7 +84,7 @@ TEST(HeldGrains, ARigidAssemblyTakesFromTheFluidWhatItsLoadSays) {
     std::vector<double> load;
     for (std::size_t g = 0; g < s.owned; ++g)
       load.insert(load.end(), s.load_force[g].data(), s.load_force[g].data() + 3);
-    const std::vector<double> sum = order_free_sums(MPI_COMM_WORLD, load, 3);
+    const std::vector<double> sum = reproducible_sums(MPI_COMM_WORLD, load, 3);
     const double unit = 1000.0 * std::pow(box.spacing, 4) / (box.time_step * box.time_step);
     Vec3 links;
     for (int a = 0; a < 3; ++a) links[a] = unit * sum_over_ranks(MPI_COMM_WORLD, t.link_momentum[a]);

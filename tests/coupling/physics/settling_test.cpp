@@ -10,12 +10,12 @@
 namespace thalweg::coupling::settling_test {
 namespace {
 
-struct Place {
+struct Location {
   double height = 0.0, speed = 0.0;  // m, m/s upwards
 };
 
-Place place_of_grain(const dem::GrainDynamics& grains) {
-  Place p;
+Location place_of_grain(const dem::GrainDynamics& grains) {
+  Location p;
   if (grains.store().owned == 1) p = {grains.store().position[0].z(), grains.store().velocity[0].z()};
   return {sum_over_ranks(MPI_COMM_WORLD, p.height), sum_over_ranks(MPI_COMM_WORLD, p.speed)};
 }
@@ -49,7 +49,7 @@ TEST(Settling, SphereReachesItsTerminalSpeedAndRestsOnTheFloor) {
   }
   EXPECT_GT(-fastest, 0.64 * terminal);
   EXPECT_LT(-fastest, 1.05 * terminal);
-  const Place at_rest = place_of_grain(system->grains());
+  const Location at_rest = place_of_grain(system->grains());
   EXPECT_LT(std::abs(at_rest.speed), 1e-4);
   // On the floor: the overlap that carries the submerged weight, m g (1 - 1/2.55) / k_n = 5e-8 m.
   EXPECT_NEAR(at_rest.height, 2.5e-3, 1e-6);

@@ -37,7 +37,7 @@ LubricationParameters parameters() {
 }
 
 // What observers see is the force that acts, and meets in the middle of the gap.
-void expect_seen(GrainStore& store, const MovingGrains& grains, const ContactList& list, const PeriodicBox& box,
+void expect_seen(GrainStore& store, const MovingGrains& grains, const NeighbourList& list, const PeriodicBox& box,
                  std::span<const Plane> walls) {
   store.owned = store.total();
   std::vector<Vec3> force(store.owned, Vec3::Zero()), place(store.owned, Vec3::Zero());
@@ -66,7 +66,7 @@ Loads pair_loads(const Body& first, const Body& second, const Vec3& direction, d
   }
   MovingGrains grains;
   grains.load(store, {});
-  ContactList list;
+  NeighbourList list;
   list.pairs.push_back({0, 1, first.radius + second.radius});
   const PeriodicBox box{Vec3(0.1, 0.1, 0.1), {false, false, false}};
   add_lubrication(grains, list, {box, {}, {}, {}}, parameters());
@@ -81,7 +81,7 @@ Loads wall_loads(const Body& body, double gap) {
   store.velocity.back() = body.velocity, store.angular_velocity.back() = body.spin;
   MovingGrains grains;
   grains.load(store, {});
-  ContactList list;
+  NeighbourList list;
   list.walls.push_back({0, 0});
   const Plane floor;
   const PeriodicBox box{Vec3(0.1, 0.1, 0.1), {false, false, false}};
@@ -219,8 +219,8 @@ TEST(Lubrication, OfNearPairsIsThatOfAllPairs) {
     store.velocity.back() = 0.1 * Vec3(draw(4) - 0.5, draw(5) - 0.5, draw(6) - 0.5);
     store.angular_velocity.back() = Vec3(draw(7), draw(8), draw(9));
   }
-  ContactList kept;
-  kept.near_surfaces = NearPairs(1e-4);
+  NeighbourList kept;
+  kept.near_surfaces = InnerNeighbourList(1e-4);
   for (std::uint32_t i = 0; i < 60; ++i)
     for (std::uint32_t j = i + 1; j < 60; ++j) kept.pairs.push_back({i, j, store.radius[i] + store.radius[j]});
   const double dt = 5e-5, fastest = 0.1 * std::sqrt(0.75);  // s, m/s: each moves less than 4.4e-6 m in a step
@@ -229,8 +229,8 @@ TEST(Lubrication, OfNearPairsIsThatOfAllPairs) {
     MovingGrains by_near, by_all;
     by_near.load(store, {});
     by_all.load(store, {});
-    ContactList whole = kept;
-    whole.near_surfaces = NearPairs(1.0);  // all are near
+    NeighbourList whole = kept;
+    whole.near_surfaces = InnerNeighbourList(1.0);  // all are near
     add_lubrication(by_near, kept, {box, {}, {}, {}}, parameters());
     add_lubrication(by_all, whole, {box, {}, {}, {}}, parameters());
     ASSERT_EQ(whole.near_surfaces.pairs().size(), kept.pairs.size());

@@ -1,7 +1,7 @@
 // Many grains: free flight of a colliding cloud, coming to rest, rolling, held grains, loads.
 #include "beds/packing/packing.hpp"
 #include "core/base/error.hpp"
-#include "core/sums/order_free_sum.hpp"
+#include "core/sums/reproducible_sum.hpp"
 #include "tests/dem/grain_cases.hpp"
 
 #include <gtest/gtest.h>
@@ -71,11 +71,11 @@ TEST(Settling, GrainsComeToRestAndTheFloorCarriesTheirWeight) {
     carried.push_back(s.contact_force[i][2]);
     height.push_back(s.position[i][2]);
   }
-  const double weight = g * order_free_sums(MPI_COMM_WORLD, mass, 1)[0];
-  EXPECT_NEAR(order_free_sums(MPI_COMM_WORLD, carried, 1)[0] / weight, 1.0, 1e-2);
+  const double weight = g * reproducible_sums(MPI_COMM_WORLD, mass, 1)[0];
+  EXPECT_NEAR(reproducible_sums(MPI_COMM_WORLD, carried, 1)[0] / weight, 1.0, 1e-2);
   // 100 spheres on a plan of 36 square diameters: between the height of a dense and of a very loose bed.
-  EXPECT_GT(order_free_sums(MPI_COMM_WORLD, height, 1)[0] / 100.0, 0.9 * diameter);
-  EXPECT_LT(order_free_sums(MPI_COMM_WORLD, height, 1)[0] / 100.0, 2.0 * diameter);
+  EXPECT_GT(reproducible_sums(MPI_COMM_WORLD, height, 1)[0] / 100.0, 0.9 * diameter);
+  EXPECT_LT(reproducible_sums(MPI_COMM_WORLD, height, 1)[0] / 100.0, 2.0 * diameter);
   // At least the overlap of a column of three, at most a few times the mean pressure concentrated in one contact.
   const double unit = g * s.mass[0] / p.contact.normal_stiffness / diameter;
   EXPECT_GT(grains.largest_overlap(), unit);

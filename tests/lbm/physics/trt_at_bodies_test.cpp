@@ -14,11 +14,11 @@ namespace {
 constexpr SubgridModel qr = SubgridModel::qr;
 
 // Cells beside bodies, in a gap and not.
-struct Place {
+struct Location {
   double in_gap, lambda;
   int power;
 };
-constexpr Place places[] = {{0.0, quiet, 4}, {1.0, quiet_in_gaps, 2}};
+constexpr Location places[] = {{0.0, quiet, 4}, {1.0, quiet_in_gaps, 2}};
 
 CollisionParameters water() {
   CollisionParameters p;
@@ -85,14 +85,14 @@ Cell after_at_bodies(const double (&f)[19], const CollisionParameters& p, double
 struct Both {
   Cell trt, bgk, blend;
 
-  Both(const double (&f)[19], const Place& place)
+  Both(const double (&f)[19], const Location& place)
       : trt(after<CollisionModel::trt, false>(f, water())),
         bgk(after<CollisionModel::bgk, true>(f, water())),
         blend(after_at_bodies(f, water(), place.in_gap)) {}
 };
 
 TEST(TrtAtBodies, IsTrtInCalmCellsAndLeavesTheTraceToTheShear) {
-  for (const Place& place : places) {
+  for (const Location& place : places) {
     double f[19];
     fill_with_odd_part(f, 1e-3 * place.lambda);
     const Both both(f, place);
@@ -103,7 +103,7 @@ TEST(TrtAtBodies, IsTrtInCalmCellsAndLeavesTheTraceToTheShear) {
 }
 
 TEST(TrtAtBodies, IsBgkWithItsBulkViscosityInNoisyCells) {
-  for (const Place& place : places) {
+  for (const Location& place : places) {
     double f[19];
     fill_with_odd_part(f, 1e3 * place.lambda);
     const Both both(f, place);
@@ -114,7 +114,7 @@ TEST(TrtAtBodies, IsBgkWithItsBulkViscosityInNoisyCells) {
 // The odd rate and the bulk term both enter a collision linearly: with a = 1/[(n/lambda)^p + 1], p = 2 in a gap and 4
 // elsewhere, it is a times trt and 1 - a times bgk.
 TEST(TrtAtBodies, IsBetweenThemAsItsFormulaSays) {
-  for (const Place& place : places)
+  for (const Location& place : places)
     for (const double times_quiet : {0.1, 0.5, 1.0, 2.0, 10.0}) {
       double f[19];
       fill_with_odd_part(f, times_quiet * place.lambda);
@@ -129,7 +129,7 @@ TEST(TrtAtBodies, IsBetweenThemAsItsFormulaSays) {
 
 TEST(TrtAtBodies, ConservesMassAndAddsTheForceHoweverNoisy) {
   const CollisionParameters p = water();
-  for (const Place& place : places)
+  for (const Location& place : places)
     for (const double times_quiet : {0.0, 0.3, 1.0, 3.0}) {
       double f[19], g[19];
       fill_with_odd_part(f, times_quiet * place.lambda);

@@ -1,7 +1,7 @@
 // Clumps under the force of a model fluid.
 #include "dem/motion/grain_volume.hpp"
-#include "model_fluid/lens.hpp"
 #include "model_fluid/model_fluid_field.hpp"
+#include "model_fluid/sphere_overlap.hpp"
 #include "tests/dem/clump_cases.hpp"
 
 #include <gtest/gtest.h>

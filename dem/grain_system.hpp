@@ -23,7 +23,7 @@ struct RestBounds {
   double acceleration = 0.0;  // m/s^2, by all forces
 };
 
-struct DryParameters {
+struct GrainSystemParameters {
   GrainParameters grains;                   // without body force
   Vec3 gravity = Vec3::Zero();              // m/s^2
   std::vector<std::string> measured_walls;  // names of all walls, in their order, or none
@@ -33,11 +33,11 @@ struct DryParameters {
   double fluid_density = 0.0;  // kg/m^3, of the buoyancy
 };
 
-class DryGrains final : public System, private ContactSource {
+class GrainSystem final : public System, private ContactSource {
 public:
   // Throws InputError where the grains do not fit or the time step is too long. Collective.
-  DryGrains(const Decomposition& decomposition, MPI_Comm communicator, const DryParameters& parameters,
-            GrainSeeds seeds);
+  GrainSystem(const Decomposition& decomposition, MPI_Comm communicator, const GrainSystemParameters& parameters,
+              GrainSeeds seeds);
 
   void advance() override;
   std::int64_t step() const override { return step_; }
@@ -47,13 +47,13 @@ public:
   // (m/s^2), with RestBounds restless_grains (1), those of the field, and three for each measured wall and each
   // solid (N): wall_force_bottom_x ..., wall_force_wall_0_x ..., solid_0_grain_force_x ...
   std::vector<Figure> figures() const override;
-  std::optional<Place> place_of(const std::string& figure) const override;
+  std::optional<Location> location_of(const std::string& figure) const override;
   static constexpr const char* largest_speed_figure = "largest_grain_speed";
   static constexpr const char* largest_acceleration_figure = "largest_grain_acceleration";
   static constexpr const char* restless_figure = "restless_grains";
   void save(ArchiveWriter& archive) const override;
   void load(ArchiveReader& archive) override;
-  void take_grains(ArchiveReader& archive, double spacing) override;
+  void import_grains(ArchiveReader& archive, double spacing) override;
   PhaseTimer& timer() override { return timer_; }
   std::int64_t cells() const override { return 0; }
   std::int64_t grain_steps_per_step() const override { return grains_.global_count() * sub_steps_; }

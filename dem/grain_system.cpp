@@ -1,4 +1,4 @@
-#include "dem/dry_grains.hpp"
+#include "dem/grain_system.hpp"
 
 #include "core/state/same_time_step.hpp"
 #include "dem/motion/grain_volume.hpp"
@@ -14,7 +14,7 @@ namespace {
 // Without a fluid step to respect, the neighbour lists are looked at more often, so that faster grains are welcome.
 constexpr int sub_steps_between_list_checks = 10;
 
-GrainParameters dry_parameters(const DryParameters& dry) {
+GrainParameters dry_parameters(const GrainSystemParameters& dry) {
   GrainParameters parameters = dry.grains;
   parameters.sub_steps = std::min(parameters.sub_steps, sub_steps_between_list_checks);
   parameters.movable_cuts = true;
@@ -29,8 +29,8 @@ GrainParameters dry_parameters(const DryParameters& dry) {
 
 }  // namespace
 
-DryGrains::DryGrains(const Decomposition& decomposition, MPI_Comm communicator, const DryParameters& parameters,
-                     GrainSeeds seeds)
+GrainSystem::GrainSystem(const Decomposition& decomposition, MPI_Comm communicator,
+                         const GrainSystemParameters& parameters, GrainSeeds seeds)
     : field_(parameters.field),
       sub_steps_(parameters.grains.sub_steps),
       time_step_(parameters.grains.time_step * sub_steps_),
@@ -40,7 +40,7 @@ DryGrains::DryGrains(const Decomposition& decomposition, MPI_Comm communicator, 
       lists_(timer_.phase("grain lists")),
       motion_(timer_.phase("grain motion")) {}
 
-void DryGrains::advance() {
+void GrainSystem::advance() {
   for (int done = 0; done < sub_steps_;) {
     int now = sub_steps_ - done;
     {
@@ -56,7 +56,7 @@ void DryGrains::advance() {
   if (field_) field_->step_ended(grains_, time());
 }
 
-Snapshot DryGrains::snapshot() const {
+Snapshot GrainSystem::snapshot() const {
   const GrainStore& store = grains_.store();
   const std::size_t owned = store.owned;
   Snapshot snapshot;
@@ -83,7 +83,7 @@ Snapshot DryGrains::snapshot() const {
   return snapshot;
 }
 
-std::vector<Figure> DryGrains::figures() const {
+std::vector<Figure> GrainSystem::figures() const {
   std::vector<Figure> figures{{"contacts", "1", static_cast<double>(grains_.contact_count())},
                               {"largest_overlap", "1", grains_.largest_overlap()},
                               {largest_speed_figure, "m/s", grains_.largest_free_speed()},
@@ -102,20 +102,20 @@ std::vector<Figure> DryGrains::figures() const {
   return figures;
 }
 
-std::optional<Place> DryGrains::place_of(const std::string& figure) const {
+std::optional<Location> GrainSystem::location_of(const std::string& figure) const {
   if (figure == "largest_overlap") return grains_.place_of_deepest_overlap();
   if (figure == largest_speed_figure) return grains_.place_of_fastest();
   return std::nullopt;
 }
 
-void DryGrains::save(ArchiveWriter& archive) const {
+void GrainSystem::save(ArchiveWriter& archive) const {
   archive.attribute("system/step", step_);
   archive.attribute("system/time_step", time_step_);
   if (field_) field_->save(archive);
   grains_.save(archive);
 }
 
-void DryGrains::load(ArchiveReader& archive) {
+void GrainSystem::load(ArchiveReader& archive) {
   require_same_time_step(archive, time_step_);
   step_ = archive.integer_attribute("system/step");
   if (field_) field_->load(archive);
@@ -123,7 +123,7 @@ void DryGrains::load(ArchiveReader& archive) {
 }
 
 // Whatever a fluid did to them is over.
-void DryGrains::take_grains(ArchiveReader& archive, double /*spacing*/) {
+void GrainSystem::import_grains(ArchiveReader& archive, double /*spacing*/) {
   grains_.take(archive, "grains", false);
   GrainStore& store = grains_.store();
   std::fill(store.load_force.begin(), store.load_force.end(), Vec3::Zero());

@@ -1,12 +1,12 @@
 // Sizes by mass, and the numbers of grains that have them.
-#include "beds/sizes/mass_curve.hpp"
+#include "beds/sizes/grading_curve.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace thalweg::beds::mass_curve_test {
+namespace thalweg::beds::grading_curve_test {
 namespace {
 
 struct Sample {
@@ -21,22 +21,22 @@ struct Sample {
   }
 };
 
-Sample sample_of(const MassCurve& curve, std::int64_t count, double power = 3.0) {
+Sample sample_of(const GradingCurve& curve, std::int64_t count, double power = 3.0) {
   return {diameters_by_mass(curve, count, power), power};
 }
 
-double share_finer(const MassCurve& curve, double d) {
+double share_finer(const GradingCurve& curve, double d) {
   std::size_t n = 0;
   while (n + 2 < curve.diameters.size() && curve.diameters[n + 1] < d) ++n;
   const double way = std::log(d / curve.diameters[n]) / std::log(curve.diameters[n + 1] / curve.diameters[n]);
   return std::clamp(curve.finer[n] + way * (curve.finer[n + 1] - curve.finer[n]), 0.0, 1.0);
 }
 
-const MassCurve sieved{{1e-3, 1.6e-3, 2.5e-3, 4e-3, 6.3e-3}, {0.0, 0.15, 0.4, 0.4, 1.0}};
+const GradingCurve sieved{{1e-3, 1.6e-3, 2.5e-3, 4e-3, 6.3e-3}, {0.0, 0.15, 0.4, 0.4, 1.0}};
 
 // The mass finer than any size is that of the curve to within the mass of the one grain that spans it: the next coarser
 // one, or the one just below.
-TEST(MassCurve, TheMassFinerFollowsTheCurveToWithinAGrain) {
+TEST(GradingCurve, TheMassFinerFollowsTheCurveToWithinAGrain) {
   for (const double power : {3.0, 2.0})
     for (const std::int64_t count : {1, 2, 10, 300, 20000}) {
       const Sample sample = sample_of(sieved, count, power);
@@ -55,7 +55,7 @@ TEST(MassCurve, TheMassFinerFollowsTheCurveToWithinAGrain) {
 }
 
 // Of a curve straight over ln d from a to b, dN goes as d^-4: the number finer than d is (1 - (a/d)^3)/(1 - (a/b)^3).
-TEST(MassCurve, TheNumberIsTheMassOverThatOfAGrain) {
+TEST(GradingCurve, TheNumberIsTheMassOverThatOfAGrain) {
   const double a = 1e-3, b = 4e-3;
   const std::int64_t count = 10000;
   const Sample sample = sample_of({{a, b}, {0.0, 1.0}}, count);
@@ -70,7 +70,7 @@ TEST(MassCurve, TheNumberIsTheMassOverThatOfAGrain) {
 }
 
 // Where no mass lies between two sieves, one grain at most does.
-TEST(MassCurve, AGapStaysEmpty) {
+TEST(GradingCurve, AGapStaysEmpty) {
   const Sample sample = sample_of(sieved, 5000);
   EXPECT_LE(std::count_if(sample.diameters.begin(), sample.diameters.end(),
                           [](double d) { return d > 2.5e-3 * (1.0 + 1e-12) && d < 4e-3 * (1.0 - 1e-12); }),
@@ -78,9 +78,9 @@ TEST(MassCurve, AGapStaysEmpty) {
 }
 
 // d16, d50 and d84 of the grains: where they have these shares of the mass, the curve has them to within one grain.
-TEST(MassCurve, PercentilesAreThoseOfTheMass) {
+TEST(GradingCurve, PercentilesAreThoseOfTheMass) {
   const double d16 = 2e-3, d50 = 3e-3, d84 = 5e-3;
-  const MassCurve curve = curve_through(1e-3, d16, d50, d84, 8e-3);
+  const GradingCurve curve = curve_through(1e-3, d16, d50, d84, 8e-3);
   EXPECT_NEAR(curve.diameters.front(), 1e-3, 1e-15);
   EXPECT_NEAR(curve.diameters.back(), 8e-3, 1e-15);
   for (const std::int64_t count : {100, 3000, 100000}) {
@@ -94,8 +94,8 @@ TEST(MassCurve, PercentilesAreThoseOfTheMass) {
 }
 
 // Between d50 and d84 ln d is normally distributed: at the middle of the two, in ln d, lies half the deviation of d84.
-TEST(MassCurve, IsLognormalBetweenThePercentiles) {
-  const MassCurve curve = curve_through(1e-3, 2e-3, 3e-3, 5e-3, 8e-3);
+TEST(GradingCurve, IsLognormalBetweenThePercentiles) {
+  const GradingCurve curve = curve_through(1e-3, 2e-3, 3e-3, 5e-3, 8e-3);
   const double z84 = 0.994457883209753, half = 0.5 * std::erfc(-0.5 * z84 / std::sqrt(2.0));
   EXPECT_NEAR(share_finer(curve, std::sqrt(3e-3 * 5e-3)), half, 1e-5);
   EXPECT_NEAR(share_finer(curve, std::sqrt(3e-3 * 2e-3)), 1.0 - half, 1e-5);
@@ -107,4 +107,4 @@ TEST(MassCurve, IsLognormalBetweenThePercentiles) {
 }
 
 }  // namespace
-}  // namespace thalweg::beds::mass_curve_test
+}  // namespace thalweg::beds::grading_curve_test

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "core/geometry/periodic_box.hpp"
-#include "dem/contact/near_pairs.hpp"
+#include "dem/contact/inner_neighbour_list.hpp"
 #include "dem/contact/solid_contacts.hpp"
 #include "dem/laws/contact_history.hpp"
 #include "dem/laws/material.hpp"
@@ -61,12 +61,12 @@ private:
   std::vector<Row> values_;  // for its alignment
 };
 
-struct ContactList {
+struct NeighbourList {
   std::vector<PairContact> pairs;
   ContactRows pair_rows;
-  NearPairs near;                  // of the pairs; kept by evaluate_contacts()
-  NearPairs near_surfaces;         // the same for lubrication; kept by add_lubrication()
-  std::vector<WallContact> walls;  // of owned grains, sorted by id, then from the last wall to the first
+  InnerNeighbourList near;           // of the pairs; kept by evaluate_contacts()
+  InnerNeighbourList near_surfaces;  // the same for lubrication; kept by add_lubrication()
+  std::vector<WallContact> walls;    // of owned grains, sorted by id, then from the last wall to the first
   ContactRows wall_rows;
   std::vector<NearSolid> solids;
   ContactRows solid_rows;  // touches_per_solid for each of these
@@ -87,14 +87,14 @@ GlobalId solid_key(std::size_t walls, std::size_t solid, std::size_t row);
 
 // What a grain at a position (m) touches of the entries first to last - 1 of the list's solids, its own, each with the
 // row of its history. range: of the law, m.
-std::span<const SolidTouch> touches_of(SolidTouches& touches, const ContactList& list, std::size_t first,
+std::span<const SolidTouch> touches_of(SolidTouches& touches, const NeighbourList& list, std::size_t first,
                                        std::size_t last, const Vec3& position, double radius, double range);
 
 // The row of a touch among those of the list.
 inline std::size_t row_of(const SolidTouch& touch) { return touch.near * touches_per_solid + touch.row; }
 
 // The parts of the histories of all contacts of the list: contacts of pairs and of walls may have different ones.
-std::vector<HistoryPart> history_parts_of(const ContactList& list);
+std::vector<HistoryPart> history_parts_of(const NeighbourList& list);
 
 // What grains may touch besides each other.
 struct Surroundings {
@@ -107,14 +107,14 @@ struct Surroundings {
 // All pairs with at least one owned grain whose surfaces are closer than `range` (m), and all owned grains closer than
 // that to a wall or a solid, but no two members of one clump; without history. Positions must be wrapped.
 // largest_radius: m, of all grains.
-ContactList find_contacts(const GrainStore& store, const Surroundings& around, const MaterialTable& materials,
-                          double range, double largest_radius);
+NeighbourList find_contacts(const GrainStore& store, const Surroundings& around, const MaterialTable& materials,
+                            double range, double largest_radius);
 
 // The histories that are not zero, sorted by ids, with the doubles of history_parts_of(). walls: their number.
-ContactHistories histories_of(const ContactList& list, const GrainStore& store, std::size_t walls);
+ContactHistories histories_of(const NeighbourList& list, const GrainStore& store, std::size_t walls);
 
 // Gives the contacts of the list their histories; those (sorted by ids) of pairs not in the list are dropped.
-void restore_histories(ContactList& list, const GrainStore& store, std::size_t walls,
+void restore_histories(NeighbourList& list, const GrainStore& store, std::size_t walls,
                        const ContactHistories& histories);
 
 }  // namespace thalweg::dem

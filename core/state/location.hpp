@@ -7,7 +7,7 @@
 
 namespace thalweg {
 
-struct Place {
+struct Location {
   Vec3 position = Vec3::Zero();  // m
   std::vector<GlobalId> grains;  // the grain, or the two in contact; none: the place is the centre of a fluid cell
 };

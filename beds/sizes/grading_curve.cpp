@@ -1,4 +1,4 @@
-#include "beds/sizes/mass_curve.hpp"
+#include "beds/sizes/grading_curve.hpp"
 
 #include "beds/sizes/normal_distribution.hpp"
 
@@ -20,7 +20,7 @@ struct NormalPiece {
 };
 
 // Without the first point.
-void add(const NormalPiece& piece, MassCurve& curve) {
+void add(const NormalPiece& piece, GradingCurve& curve) {
   const double first = normal_share_below(piece.z_from), last = normal_share_below(piece.z_to);
   const int points = std::max(1, static_cast<int>(std::ceil((piece.z_to - piece.z_from) / z_step)));
   for (int n = 1; n <= points; ++n) {
@@ -34,11 +34,11 @@ void add(const NormalPiece& piece, MassCurve& curve) {
 // How many grains are coarser than a size, in units of the number of the smallest grains that have all of the mass.
 class NumberCurve {
 public:
-  struct Place {
+  struct Location {
     double diameter, finer;
   };
 
-  NumberCurve(const MassCurve& curve, double mass_power)
+  NumberCurve(const GradingCurve& curve, double mass_power)
       : curve_(curve), mass_power_(mass_power), coarser_(curve.diameters.size(), 0.0) {
     for (std::size_t n = coarser_.size() - 1; n-- > 0;)
       coarser_[n] = coarser_[n + 1] + steepness(n) * (inverse_mass(n) - inverse_mass(n + 1));
@@ -47,7 +47,7 @@ public:
   double total() const { return coarser_.front(); }
 
   // Where this share of the number is coarser. Summed up from the coarse end, where a few grains have much of the mass.
-  Place place_of(double share_coarser) const {
+  Location location_of(double share_coarser) const {
     const double number = share_coarser * total();
     const auto above = std::partition_point(coarser_.begin() + 1, coarser_.end() - 1,
                                             [number](double coarser) { return coarser > number; });
@@ -74,19 +74,19 @@ private:
            (mass_power_ * std::log(curve_.diameters[n + 1] / curve_.diameters[n]));
   }
 
-  const MassCurve& curve_;
+  const GradingCurve& curve_;
   double mass_power_;
   std::vector<double> coarser_;
 };
 
 }  // namespace
 
-MassCurve curve_through(double minimum, double d16, double d50, double d84, double maximum) {
+GradingCurve curve_through(double minimum, double d16, double d50, double d84, double maximum) {
   const double z84 = normal_quantile(0.84, 0.0, farthest_tail);
   const double fine = std::log(d50 / d16) / z84, coarse = std::log(d84 / d50) / z84;
   const double lowest = std::max(std::log(minimum / d50) / fine, -farthest_tail);
   const double highest = std::min(std::log(maximum / d50) / coarse, farthest_tail);
-  MassCurve curve{{d50 * std::exp(fine * lowest)}, {0.0}};
+  GradingCurve curve{{d50 * std::exp(fine * lowest)}, {0.0}};
   add({d50, fine, lowest, -z84, 0.0, 0.16}, curve);
   add({d50, fine, -z84, 0.0, 0.16, 0.5}, curve);
   add({d50, coarse, 0.0, z84, 0.5, 0.84}, curve);
@@ -94,13 +94,13 @@ MassCurve curve_through(double minimum, double d16, double d50, double d84, doub
   return curve;
 }
 
-std::vector<double> diameters_by_mass(const MassCurve& curve, std::int64_t count, double mass_power) {
+std::vector<double> diameters_by_mass(const GradingCurve& curve, std::int64_t count, double mass_power) {
   const NumberCurve numbers(curve, mass_power);
   const auto all = static_cast<double>(count);
   std::vector<double> diameters;
-  NumberCurve::Place lower{curve.diameters.front(), 0.0};
+  NumberCurve::Location lower{curve.diameters.front(), 0.0};
   for (std::int64_t n = 1; n <= count; ++n) {
-    const NumberCurve::Place upper = numbers.place_of(static_cast<double>(count - n) / all);
+    const NumberCurve::Location upper = numbers.location_of(static_cast<double>(count - n) / all);
     const double mean = numbers.diameter_of((upper.finer - lower.finer) * all / numbers.total());
     diameters.push_back(std::clamp(mean, lower.diameter, upper.diameter));
     lower = upper;

@@ -1,4 +1,4 @@
-#include "loop/whereabouts.hpp"
+#include "loop/location_text.hpp"
 
 #include "core/parallel/ranks.hpp"
 
@@ -39,7 +39,7 @@ std::string listed(const std::vector<GlobalId>& ids) {
 
 }  // namespace
 
-std::string whereabouts(MPI_Comm communicator, const Place& place, const Snapshot& snapshot) {
+std::string location_text(MPI_Comm communicator, const Location& place, const Snapshot& snapshot) {
   const std::string point =
       fmt::format("at ({:.6g}, {:.6g}, {:.6g}) m", place.position.x(), place.position.y(), place.position.z());
   if (!place.grains.empty())

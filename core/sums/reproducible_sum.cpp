@@ -1,4 +1,4 @@
-#include "core/sums/order_free_sum.hpp"
+#include "core/sums/reproducible_sum.hpp"
 
 #include "core/parallel/mpi_count.hpp"
 #include "core/parallel/mpi_session.hpp"
@@ -23,15 +23,15 @@ int shift_for(double largest, std::int64_t terms) {
 
 }  // namespace
 
-std::vector<double> order_free_sums(MPI_Comm communicator, std::span<const double> terms, std::size_t columns) {
+std::vector<double> reproducible_sums(MPI_Comm communicator, std::span<const double> terms, std::size_t columns) {
   const std::size_t rows = columns == 0 ? 0 : terms.size() / columns;
-  return order_free_sums_by_bin(communicator, 1, columns, [&](const TermTaker& take) {
+  return reproducible_sums_by_bin(communicator, 1, columns, [&](const TermTaker& take) {
     for (std::size_t row = 0; row < rows; ++row) take(0, terms.subspan(row * columns, columns));
   });
 }
 
-std::vector<double> order_free_sums_by_bin(MPI_Comm communicator, int bins, std::size_t columns,
-                                           const std::function<void(const TermTaker&)>& rows) {
+std::vector<double> reproducible_sums_by_bin(MPI_Comm communicator, int bins, std::size_t columns,
+                                             const std::function<void(const TermTaker&)>& rows) {
   // One reduction for the largest term of every column; infinity stands for anything not finite.
   std::vector<double> largest(columns, 0.0);
   std::int64_t rows_here = 0;

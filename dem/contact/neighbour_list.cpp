@@ -1,4 +1,4 @@
-#include "dem/contact/contact_list.hpp"
+#include "dem/contact/neighbour_list.hpp"
 
 #include "dem/motion/cell_grid.hpp"
 #include "dem/motion/minimum_image.hpp"
@@ -141,7 +141,7 @@ ContactRows::ContactRows(const LawChoice& law, std::span<const ContactBodies> bo
   });
 }
 
-std::vector<HistoryPart> history_parts_of(const ContactList& list) {
+std::vector<HistoryPart> history_parts_of(const NeighbourList& list) {
   LawChoice law = list.pair_rows.law();
   for (const ContactRows* rows : {&list.wall_rows, &list.solid_rows}) {
     law.rolling_friction = law.rolling_friction || rows->law().rolling_friction;
@@ -150,7 +150,7 @@ std::vector<HistoryPart> history_parts_of(const ContactList& list) {
   return history_parts_of(law);
 }
 
-std::span<const SolidTouch> touches_of(SolidTouches& touches, const ContactList& list, std::size_t first,
+std::span<const SolidTouch> touches_of(SolidTouches& touches, const NeighbourList& list, std::size_t first,
                                        std::size_t last, const Vec3& position, double radius, double range) {
   // The normal of the last evaluation is the last part of the history (surface_law.hpp).
   return touches.of(list.solids, first, last, position, radius, range, [&list](std::size_t near, std::size_t row) {
@@ -163,11 +163,11 @@ GlobalId solid_key(std::size_t walls, std::size_t solid, std::size_t row) {
   return wall_key(static_cast<std::uint32_t>(walls + touches_per_solid * solid + (touches_per_solid - 1 - row)));
 }
 
-ContactList find_contacts(const GrainStore& store, const Surroundings& around, const MaterialTable& materials,
-                          double range, double largest_radius) {
-  ContactList list;
+NeighbourList find_contacts(const GrainStore& store, const Surroundings& around, const MaterialTable& materials,
+                            double range, double largest_radius) {
+  NeighbourList list;
   constexpr double near_share = 0.03;  // of the range
-  list.near = list.near_surfaces = NearPairs(near_share * range);
+  list.near = list.near_surfaces = InnerNeighbourList(near_share * range);
   std::vector<ContactBodies> bodies;
   for (const Candidate& p : find_pairs(store, around.box, range, largest_radius)) {
     list.pairs.push_back({p.first, p.second, store.radius[p.first] + store.radius[p.second]});
@@ -197,7 +197,7 @@ ContactList find_contacts(const GrainStore& store, const Surroundings& around, c
   return list;
 }
 
-ContactHistories histories_of(const ContactList& list, const GrainStore& store, std::size_t walls) {
+ContactHistories histories_of(const NeighbourList& list, const GrainStore& store, std::size_t walls) {
   const std::vector<HistoryPart> all = history_parts_of(list);
   ContactHistories histories(doubles_of(all));
   add_histories(histories, list.pairs, list.pair_rows, all, store, walls);
@@ -207,7 +207,7 @@ ContactHistories histories_of(const ContactList& list, const GrainStore& store, 
   return histories;
 }
 
-void restore_histories(ContactList& list, const GrainStore& store, std::size_t walls,
+void restore_histories(NeighbourList& list, const GrainStore& store, std::size_t walls,
                        const ContactHistories& histories) {
   const std::vector<HistoryPart> all = history_parts_of(list);
   take_histories(list.pairs, list.pair_rows, all, store, walls, histories);

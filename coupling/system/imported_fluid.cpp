@@ -1,4 +1,4 @@
-#include "coupling/system/taken_fluid.hpp"
+#include "coupling/system/imported_fluid.hpp"
 
 #include "core/base/error.hpp"
 #include "lbm/fluid/flow_transfer.hpp"
@@ -11,7 +11,8 @@
 namespace thalweg::coupling {
 
 template <typename Real>
-double take_fluid(lbm::Fluid<Real>& fluid, ArchiveReader& archive, double spacing, const FluidParameters& parameters) {
+double import_fluid(lbm::Fluid<Real>& fluid, ArchiveReader& archive, double spacing,
+                    const FluidParameters& parameters) {
   const Units& units = parameters.units;
   const Index3& here = fluid.decomposition().cells();
   const std::vector<std::uint64_t> saved = archive.shape("fluid/populations_00");
@@ -35,7 +36,7 @@ double take_fluid(lbm::Fluid<Real>& fluid, ArchiveReader& archive, double spacin
   return velocity_unit * velocity_unit;
 }
 
-template double take_fluid(lbm::Fluid<float>&, ArchiveReader&, double, const FluidParameters&);
-template double take_fluid(lbm::Fluid<double>&, ArchiveReader&, double, const FluidParameters&);
+template double import_fluid(lbm::Fluid<float>&, ArchiveReader&, double, const FluidParameters&);
+template double import_fluid(lbm::Fluid<double>&, ArchiveReader&, double, const FluidParameters&);
 
 }  // namespace thalweg::coupling

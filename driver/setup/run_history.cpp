@@ -1,4 +1,4 @@
-#include "driver/setup/accounts.hpp"
+#include "driver/setup/run_history.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -27,7 +27,7 @@ bool has_other_weights(ArchiveReader& archive, const analysis::Observer& observe
 
 }  // namespace
 
-void Accounts::save(ArchiveWriter& archive, const Observers& observers, double series_every) const {
+void RunHistory::save(ArchiveWriter& archive, const Observers& observers, double series_every) const {
   archive.attribute("largest/from", largest_from);
   for (const Figure& figure : largest)
     if (std::isfinite(figure.value)) archive.attribute(largest_path(figure.name), figure.value);
@@ -38,25 +38,25 @@ void Accounts::save(ArchiveWriter& archive, const Observers& observers, double s
   }
 }
 
-Accounts Accounts::load(ArchiveReader& archive, const System& system, Observers& observers, double series_every) {
-  Accounts accounts;
-  accounts.largest_from = archive.has("largest/from") ? archive.real_attribute("largest/from") : system.time();
+RunHistory RunHistory::load(ArchiveReader& archive, const System& system, Observers& observers, double series_every) {
+  RunHistory run_history;
+  run_history.largest_from = archive.has("largest/from") ? archive.real_attribute("largest/from") : system.time();
   for (Figure figure : system.figures())
     if (archive.has(largest_path(figure.name))) {
       figure.value = archive.real_attribute(largest_path(figure.name));
-      accounts.largest.push_back(figure);
+      run_history.largest.push_back(figure);
     }
   for (const auto& observer : observers) {
     const std::string name = observer->name(), path = since_path(name);
     if (has_other_weights(archive, *observer, series_every) || !observer->load(archive))
-      accounts.since[name] = system.time();
+      run_history.since[name] = system.time();
     else if (archive.has(path))
-      accounts.since[name] = archive.real_attribute(path);
+      run_history.since[name] = archive.real_attribute(path);
   }
-  return accounts;
+  return run_history;
 }
 
-std::vector<Figure> Accounts::results_of(const analysis::Observer& observer) const {
+std::vector<Figure> RunHistory::results_of(const analysis::Observer& observer) const {
   std::vector<Figure> results = observer.results();
   const auto begun = since.find(observer.name());
   if (begun == since.end()) return results;

@@ -11,6 +11,6 @@ namespace thalweg::coupling {
 // same, so that it goes on as that run would, else its flow (lbm::transfer_flow). Returns what rho - 1 was multiplied
 // by. Throws InputError where the boxes differ by more than a cell, or the precisions. Collective.
 template <typename Real>
-double take_fluid(lbm::Fluid<Real>& fluid, ArchiveReader& archive, double spacing, const FluidParameters& parameters);
+double import_fluid(lbm::Fluid<Real>& fluid, ArchiveReader& archive, double spacing, const FluidParameters& parameters);
 
 }  // namespace thalweg::coupling

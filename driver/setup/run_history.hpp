@@ -14,7 +14,7 @@ namespace thalweg::driver {
 
 using Observers = std::vector<std::unique_ptr<analysis::Observer>>;
 
-struct Accounts {
+struct RunHistory {
   std::vector<Figure> largest;  // of the system, since largest_from
   double largest_from = 0.0;    // s, simulated
   // s, by the name of an observer: from when its sums count, where that is later than the start of the run.
@@ -26,7 +26,7 @@ struct Accounts {
 
   // Loads the observers as well. What the archive lacks begins at its time. `system` must be loaded already.
   // Means of measurements at another interval are not taken over either. Collective.
-  static Accounts load(ArchiveReader& archive, const System& system, Observers& observers, double series_every);
+  static RunHistory load(ArchiveReader& archive, const System& system, Observers& observers, double series_every);
 
   // The results of an observer with the time from which they really count: mean_from, or since where it has none.
   std::vector<Figure> results_of(const analysis::Observer& observer) const;

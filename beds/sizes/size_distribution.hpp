@@ -28,7 +28,7 @@ struct SizesKeys {
   std::vector<double> sizes;                  // m, in place of a distribution
   std::vector<double> fractions;              // of the number of grains, as many as sizes
   std::optional<SieveKeys> sieve;
-  std::optional<double> d16, d50, d84;  // m, by mass (mass_curve.hpp)
+  std::optional<double> d16, d50, d84;  // m, by mass (grading_curve.hpp)
   bool operator==(const SizesKeys&) const = default;
 
   bool given() const { return distribution || !sizes.empty() || sieve || d50; }

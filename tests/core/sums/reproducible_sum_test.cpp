@@ -1,4 +1,4 @@
-#include "core/sums/order_free_sum.hpp"
+#include "core/sums/reproducible_sum.hpp"
 
 #include "core/parallel/mpi_session.hpp"
 
@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-namespace thalweg::order_free_sum_test {
+namespace thalweg::reproducible_sum_test {
 namespace {
 
 const MPI_Comm world = MPI_COMM_WORLD;
@@ -27,8 +27,8 @@ std::vector<double> my_share(int terms, int part, int parts) {
 
 TEST(OrderFreeSum, HasTheSameBitsHoweverTheTermsAreDealtOut) {
   constexpr int terms = 1000;
-  const double together = order_free_sums(MPI_COMM_SELF, my_share(terms, 0, 1), 1)[0];
-  const double dealt_out = order_free_sums(world, my_share(terms, rank_of(world), size_of(world)), 1)[0];
+  const double together = reproducible_sums(MPI_COMM_SELF, my_share(terms, 0, 1), 1)[0];
+  const double dealt_out = reproducible_sums(world, my_share(terms, rank_of(world), size_of(world)), 1)[0];
   EXPECT_EQ(together, dealt_out);
 
   long double exact = 0.0L;
@@ -42,7 +42,7 @@ TEST(OrderFreeSum, KeepsColumnsApartWhateverTheirScale) {
   const int ranks = size_of(world);
   const std::vector<double> terms{3.0 * std::ldexp(1.0, -900), 5.0, -2.0 * std::ldexp(1.0, 800), 0.0,
                                   1.0 * std::ldexp(1.0, -900), 7.0, +6.0 * std::ldexp(1.0, 800), 0.0};
-  const std::vector<double> sums = order_free_sums(world, terms, 4);
+  const std::vector<double> sums = reproducible_sums(world, terms, 4);
   EXPECT_EQ(sums[0], ranks * 4.0 * std::ldexp(1.0, -900));
   EXPECT_EQ(sums[1], ranks * 12.0);
   EXPECT_EQ(sums[2], ranks * 4.0 * std::ldexp(1.0, 800));
@@ -50,10 +50,10 @@ TEST(OrderFreeSum, KeepsColumnsApartWhateverTheirScale) {
 }
 
 TEST(OrderFreeSum, OfNothingIsZeroAndOfNonsenseIsNotANumber) {
-  EXPECT_EQ(order_free_sums(world, std::vector<double>{}, 2), (std::vector<double>{0.0, 0.0}));
+  EXPECT_EQ(reproducible_sums(world, std::vector<double>{}, 2), (std::vector<double>{0.0, 0.0}));
   const bool last = rank_of(world) == size_of(world) - 1;
   const std::vector<double> mine{last ? std::numeric_limits<double>::quiet_NaN() : 1.0, 1.0};
-  const std::vector<double> sums = order_free_sums(world, mine, 2);
+  const std::vector<double> sums = reproducible_sums(world, mine, 2);
   EXPECT_TRUE(std::isnan(sums[0]));
   EXPECT_EQ(sums[1], size_of(world));
 }
@@ -66,7 +66,7 @@ TEST(OrderFreeSum, OfBinsHoldsTheRowsOfEach) {
     exact[static_cast<std::size_t>(i * i % bins)][0] += i - 300;
     exact[static_cast<std::size_t>(i * i % bins)][1] += 7 * i;
   }
-  const std::vector<double> sums = order_free_sums_by_bin(world, bins, 2, [&](const TermTaker& take) {
+  const std::vector<double> sums = reproducible_sums_by_bin(world, bins, 2, [&](const TermTaker& take) {
     for (int i = rank_of(world); i < rows; i += size_of(world))
       take(i * i % bins, std::array{0.125 * (i - 300), 7e3 * i});
   });
@@ -79,7 +79,7 @@ TEST(OrderFreeSum, OfBinsHoldsTheRowsOfEach) {
 
 TEST(OrderFreeSum, OfBinsHasTheSameBitsHoweverTheRowsAreDealtOut) {
   const auto sums_of = [](MPI_Comm communicator) {
-    return order_free_sums_by_bin(communicator, 3, 1, [&](const TermTaker& take) {
+    return reproducible_sums_by_bin(communicator, 3, 1, [&](const TermTaker& take) {
       for (int i = 999 - rank_of(communicator); i >= 0; i -= size_of(communicator))
         take(i % 3, std::array{awkward_term(i)});
     });
@@ -96,7 +96,7 @@ TEST(OrderFreeSum, KeepsNoRows) {
   };
   const long before = peak_kilobytes();
   const std::array<double, 46> row{1.0};
-  const std::vector<double> sums = order_free_sums_by_bin(world, 10, 46, [&](const TermTaker& take) {
+  const std::vector<double> sums = reproducible_sums_by_bin(world, 10, 46, [&](const TermTaker& take) {
     for (int i = 0; i < 2'000'000; ++i) take(i % 10, row);
   });
   EXPECT_EQ(sums[0], 2e5 * size_of(world));
@@ -104,4 +104,4 @@ TEST(OrderFreeSum, KeepsNoRows) {
 }
 
 }  // namespace
-}  // namespace thalweg::order_free_sum_test
+}  // namespace thalweg::reproducible_sum_test

@@ -18,9 +18,9 @@ struct NearPair {
   std::uint32_t pair;           // number in the contact list
 };
 
-class NearPairs {
+class InnerNeighbourList {
 public:
-  explicit NearPairs(double margin = 0.0) : margin_(margin) {}
+  explicit InnerNeighbourList(double margin = 0.0) : margin_(margin) {}
 
   double margin() const { return margin_; }  // m
   // Whether the whole list of pairs must be searched again.

@@ -1,6 +1,6 @@
-#include "beds/sizes/grain_sizes.hpp"
+#include "beds/sizes/size_distribution.hpp"
 
-#include "beds/sizes/mass_curve.hpp"
+#include "beds/sizes/grading_curve.hpp"
 #include "beds/sizes/normal_distribution.hpp"
 #include "core/base/counter_random.hpp"
 
@@ -165,7 +165,7 @@ std::vector<double> listed_diameters(const SizesKeys& sizes, std::int64_t count)
   return by_place;
 }
 
-MassCurve mass_curve(const SizesKeys& sizes) {
+GradingCurve mass_curve(const SizesKeys& sizes) {
   if (sizes.sieve) return {sizes.sieve->sizes, sizes.sieve->finer};
   const double d16 = *sizes.d16, d50 = *sizes.d50, d84 = *sizes.d84;
   return curve_through(sizes.minimum.value_or(d16 * d16 / d50), d16, d50, d84, sizes.maximum.value_or(d84 * d84 / d50));

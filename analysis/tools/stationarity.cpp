@@ -1,4 +1,4 @@
-#include "analysis/tools/trend_test.hpp"
+#include "analysis/tools/stationarity.hpp"
 
 #include "analysis/tools/long_run_variance.hpp"
 

@@ -10,7 +10,7 @@
 namespace thalweg::beds {
 
 // F at a few diameters, linear in ln d between them.
-struct MassCurve {
+struct GradingCurve {
   std::vector<double> diameters;  // m, rising
   std::vector<double> finer;      // 1, as many; from 0 to 1, never falling
 };
@@ -18,11 +18,11 @@ struct MassCurve {
 // The curve through d16, d50 and d84 (m): ln d is normally distributed with one deviation from d50 down and another one
 // from d50 up. The tails beyond d16 and d84 are cut at minimum and maximum (m) and hold 0.16 of the mass each, so that
 // the three sizes are those of the whole. It differs from these distributions by less than 1e-5.
-MassCurve curve_through(double minimum, double d16, double d50, double d84, double maximum);
+GradingCurve curve_through(double minimum, double d16, double d50, double d84, double maximum);
 
 // `count` diameters (m), rising. Each stands for an equal share of the number of grains of the curve and has the mean
 // mass of that share, so that the mass finer than any d differs from F(d) by less than that of the one grain whose
 // share contains d. mass_power: 3 for spheres, 2 for disks.
-std::vector<double> diameters_by_mass(const MassCurve& curve, std::int64_t count, double mass_power);
+std::vector<double> diameters_by_mass(const GradingCurve& curve, std::int64_t count, double mass_power);
 
 }  // namespace thalweg::beds
