@@ -42,14 +42,19 @@ void check(const MaterialKeys& material, const dem::ContactParameters& contact) 
   const auto refuse = [&](bool given, const char* key, const std::string& remedy) {
     if (given) throw KeyError(key, remedy);
   };
-  if (contact.law == dem::Law::linear) {
-    const std::string remedy = "contact.law is linear, which has stiffnesses; remove it or set hertz_mindlin there";
-    refuse(material.youngs_modulus.has_value(), "youngs_modulus", remedy);
-    refuse(material.poisson_ratio.has_value(), "poisson_ratio", remedy);
-  } else {
-    const std::string remedy = "contact.law is hertz_mindlin, which has moduli; remove it or set linear there";
-    refuse(material.normal_stiffness.has_value(), "normal_stiffness", remedy);
-    refuse(material.tangential_stiffness.has_value(), "tangential_stiffness", remedy);
+  switch (contact.law) {
+    case dem::Law::linear: {
+      const std::string remedy = "contact.law is linear, which has stiffnesses; remove it or set hertz_mindlin there";
+      refuse(material.youngs_modulus.has_value(), "youngs_modulus", remedy);
+      refuse(material.poisson_ratio.has_value(), "poisson_ratio", remedy);
+      break;
+    }
+    case dem::Law::hertz_mindlin: {
+      const std::string remedy = "contact.law is hertz_mindlin, which has moduli; remove it or set linear there";
+      refuse(material.normal_stiffness.has_value(), "normal_stiffness", remedy);
+      refuse(material.tangential_stiffness.has_value(), "tangential_stiffness", remedy);
+      break;
+    }
   }
   refuse(material.damping && !contact.damping, "damping",
          "the section contact gives a restitution; give restitution here, too");

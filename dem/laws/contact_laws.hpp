@@ -23,8 +23,13 @@ struct LawChoice {
 // Calls visit(std::type_identity<Springs>()) with what is the same of a law in a liquid and without one.
 template <typename Visitor>
 decltype(auto) with_spring_law(Law law, Visitor&& visit) {
-  if (law == Law::linear) return visit(std::type_identity<SpringDashpot>());
-  return visit(std::type_identity<HertzMindlin>());
+  switch (law) {
+    case Law::linear:
+      return visit(std::type_identity<SpringDashpot>());
+    case Law::hertz_mindlin:
+      return visit(std::type_identity<HertzMindlin>());
+  }
+  __builtin_unreachable();
 }
 
 // time_step: s, with 0 no spring grows.
@@ -39,8 +44,13 @@ decltype(auto) with_law(const LawChoice& choice, double time_step, Visitor&& vis
   };
   const auto in = [&](auto film) -> decltype(auto) {
     using Film = typename decltype(film)::type;
-    if (common.law == Law::linear) return and_rolling(SpringDashpotFriction<Film>(common, time_step));
-    return and_rolling(HertzMindlinFriction<Film>(common, time_step));
+    switch (common.law) {
+      case Law::linear:
+        return and_rolling(SpringDashpotFriction<Film>(common, time_step));
+      case Law::hertz_mindlin:
+        return and_rolling(HertzMindlinFriction<Film>(common, time_step));
+    }
+    __builtin_unreachable();
   };
   return common.film_viscosity > 0.0 ? in(std::type_identity<ContactFilm>()) : in(std::type_identity<NoFilm>());
 }

@@ -14,6 +14,11 @@ namespace {
 
 double shear_modulus(const ContactParameters& p) { return 0.5 * p.youngs_modulus / (1.0 + p.poisson_ratio); }
 
+// Pa, of two bodies of the same material (Hertz).
+double effective_modulus(const ContactParameters& p) {
+  return p.youngs_modulus / (2.0 * (1.0 - p.poisson_ratio * p.poisson_ratio));
+}
+
 }  // namespace
 
 HertzMindlin::Coefficients HertzMindlin::between(const ContactParameters& a, const ContactParameters& b) {
@@ -31,6 +36,16 @@ double HertzMindlin::contact_time(const Coefficients& k, double damping, double 
   const double elastic =
       std::pow(effective_mass * effective_mass / (effective_radius * modulus * modulus * elastic_contact_speed), 0.2);
   return 2.868 * elastic / std::max(1.0, zeta);
+}
+
+double HertzMindlin::overlap_under(const ContactParameters& material, double force, double diameter) {
+  return std::pow(0.75 * force / (effective_modulus(material) * std::sqrt(0.25 * diameter)), 2.0 / 3.0);
+}
+
+double HertzMindlin::overlap_in_impact(const ContactParameters& material, double effective_mass, double speed,
+                                       double diameter) {
+  return std::pow(
+      15.0 * effective_mass * speed * speed / (16.0 * effective_modulus(material) * std::sqrt(0.25 * diameter)), 0.4);
 }
 
 void HertzMindlin::check(const ContactParameters& p) {

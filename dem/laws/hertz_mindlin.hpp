@@ -53,6 +53,19 @@ struct HertzMindlin {
   // v))^(1/5) (Hertz); m* in kg, R* in m. Divided by the damping ratio where that is above 1.
   static double contact_time(const Coefficients& k, double damping, double effective_mass, double effective_radius);
 
+  // m, of two grains of one material and diameter (m): under a force (N), and in an impact of an effective mass (kg) at
+  // a speed (m/s) without damping.
+  static double overlap_under(const ContactParameters& material, double force, double diameter);
+  static double overlap_in_impact(const ContactParameters& material, double effective_mass, double speed,
+                                  double diameter);
+  // Powers of the modulus: an overlap under a force falls as its inverse to the 2/3, one in an impact and the time of a
+  // contact as its inverse to the 2/5.
+  static constexpr double overlaps_per_stiffness = 1.5, impacts_per_stiffness = 2.5;
+
+  // What sets the stiffness, its key, and the unit of the dashpot.
+  static constexpr double ContactParameters::*stiffness = &ContactParameters::youngs_modulus;
+  static constexpr const char *stiffness_key = "youngs_modulus", *damping_unit = "kg/(s m^1/2)";
+
   static void check(const ContactParameters& parameters);  // throws InputError
   // What makes a contact of a grain and another, or a wall, softer; completes "a lower ..." in a message.
   static std::string softer(const ContactParameters& grain, const ContactParameters& other);

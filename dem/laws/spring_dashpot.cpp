@@ -24,6 +24,15 @@ double SpringDashpot::contact_time(const Coefficients& k, double damping, double
   return dem::contact_time(k.stiffness, effective_mass, damping);
 }
 
+double SpringDashpot::overlap_under(const ContactParameters& material, double force, double /*diameter*/) {
+  return force / material.normal_stiffness;
+}
+
+double SpringDashpot::overlap_in_impact(const ContactParameters& material, double effective_mass, double speed,
+                                        double /*diameter*/) {
+  return speed * std::sqrt(effective_mass / material.normal_stiffness);
+}
+
 void SpringDashpot::check(const ContactParameters& p) {
   require(std::isfinite(p.normal_stiffness) && p.normal_stiffness > 0.0, "normal_stiffness", p.normal_stiffness, " N/m",
           "positive");

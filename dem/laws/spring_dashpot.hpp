@@ -44,6 +44,19 @@ struct SpringDashpot {
   // s, of m* (kg) with the dashpot (kg/s).
   static double contact_time(const Coefficients& k, double damping, double effective_mass, double effective_radius);
 
+  // m, of two grains of one material and diameter (m): under a force (N), and in an impact of an effective mass (kg) at
+  // a speed (m/s) without damping.
+  static double overlap_under(const ContactParameters& material, double force, double diameter);
+  static double overlap_in_impact(const ContactParameters& material, double effective_mass, double speed,
+                                  double diameter);
+  // Powers of the stiffness: an overlap under a force falls as its inverse, one in an impact and the time of a contact
+  // as the inverse of its root.
+  static constexpr double overlaps_per_stiffness = 1.0, impacts_per_stiffness = 2.0;
+
+  // What sets the stiffness, its key, and the unit of the dashpot.
+  static constexpr double ContactParameters::*stiffness = &ContactParameters::normal_stiffness;
+  static constexpr const char *stiffness_key = "normal_stiffness", *damping_unit = "kg/s";
+
   static void check(const ContactParameters& parameters);  // throws InputError
   // What makes a contact of a grain and another, or a wall, softer; completes "a lower ..." in a message.
   static std::string softer(const ContactParameters& grain, const ContactParameters& other);

@@ -1,6 +1,7 @@
 #include "driver/estimate/contact_estimate.hpp"
 
 #include "beds/population_seeds.hpp"
+#include "dem/laws/contact_laws.hpp"
 #include "dem/laws/material.hpp"
 #include "driver/estimate/bed_flow.hpp"
 #include "driver/estimate/flow_estimate.hpp"
@@ -19,20 +20,16 @@ namespace {
 // kg/m^3, of grains less that of the fluid around them.
 double submerged_density(const Case& c, double density) { return density - (has_fluid(c) ? c.fluid.density : 0.0); }
 
-// Pa, of two bodies of the same material (Hertz).
-double effective_modulus(const dem::ContactParameters& material) {
-  return material.youngs_modulus / (2.0 * (1.0 - material.poisson_ratio * material.poisson_ratio));
-}
-
-// m, under a force (N) and in an impact of an effective mass (kg) at a speed (m/s), of two grains of a diameter (m).
+// m, by the law of the material.
 double overlap_under(const dem::ContactParameters& material, double force, double diameter) {
-  if (material.law == dem::Law::linear) return force / material.normal_stiffness;
-  return std::pow(0.75 * force / (effective_modulus(material) * std::sqrt(0.25 * diameter)), 2.0 / 3.0);
+  return dem::with_spring_law(
+      material.law, [&](auto spring) { return decltype(spring)::type::overlap_under(material, force, diameter); });
 }
 
 double overlap_in_impact(const dem::ContactParameters& material, double mass, double speed, double diameter) {
-  if (material.law == dem::Law::linear) return speed * std::sqrt(mass / material.normal_stiffness);
-  return std::pow(15.0 * mass * speed * speed / (16.0 * effective_modulus(material) * std::sqrt(0.25 * diameter)), 0.4);
+  return dem::with_spring_law(material.law, [&](auto spring) {
+    return decltype(spring)::type::overlap_in_impact(material, mass, speed, diameter);
+  });
 }
 
 // m/s, of free grains that start towards or past those of another population.

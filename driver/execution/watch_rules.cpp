@@ -1,5 +1,6 @@
 #include "driver/execution/watch_rules.hpp"
 
+#include "dem/laws/contact_laws.hpp"
 #include "driver/estimate/contact_stiffness.hpp"
 #include "driver/estimate/flow_estimate.hpp"
 
@@ -189,11 +190,11 @@ enum class Contacts { softer, stiffer };
 // By the key that the case gives, or by the duration that it leaves open.
 std::string change_of_contacts(const Case& c, Contacts to) {
   const bool softer = to == Contacts::softer;
-  if (c.contact.law != dem::Law::linear)
-    return softer ? "lower contact.youngs_modulus" : "raise contact.youngs_modulus";
   if (goes_by_duration(c))
     return fmt::format("give a {} contact.duration than {:.3g} s", softer ? "longer" : "shorter", contact_duration(c));
-  return softer ? "lower contact.normal_stiffness" : "raise contact.normal_stiffness";
+  return dem::with_spring_law(c.contact.law, [&](auto spring) {
+    return fmt::format("{} contact.{}", softer ? "lower" : "raise", decltype(spring)::type::stiffness_key);
+  });
 }
 
 void add_grain_rules(const Case& c, std::vector<WatchRule>& rules) {

@@ -3,6 +3,7 @@
 #include "beds/population_rows.hpp"
 #include "core/base/error.hpp"
 #include "dem/laws/contact_film.hpp"
+#include "dem/laws/contact_laws.hpp"
 #include "dem/laws/material.hpp"
 #include "dem/motion/grain_seed.hpp"
 #include "driver/case/grain_setup.hpp"
@@ -50,7 +51,8 @@ std::string damping_text(const Case& c) {
     const double damping = dem::Damping(material).coefficient(0.5 * c.grains[p].lightest_mass());
     text += fmt::format("{}{:.3g}", p > 0 ? ", " : "", damping);
   }
-  return text + (c.contact.law == dem::Law::linear ? " kg/s" : " kg/(s m^1/2)");
+  return dem::with_spring_law(c.contact.law,
+                              [&](auto spring) { return text + " " + decltype(spring)::type::damping_unit; });
 }
 
 std::string range_text(double least, double most) {

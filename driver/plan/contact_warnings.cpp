@@ -1,5 +1,6 @@
 #include "driver/plan/contact_warnings.hpp"
 
+#include "dem/laws/contact_laws.hpp"
 #include "driver/case/limit_text.hpp"
 #include "driver/estimate/contact_estimate.hpp"
 #include "driver/estimate/contact_stiffness.hpp"
@@ -16,23 +17,23 @@ namespace {
 
 constexpr int digits_kept = 6;  // of what is scaled along
 
-bool is_linear(const Case& c) { return c.contact.law == dem::Law::linear; }
-
-// The least factor of the stiffness that keeps the overlaps small: under weight a linear contact overlaps by the
-// inverse of its stiffness, in an impact by the inverse of its root; one of Hertz by the powers 2/3 and 2/5 of the
-// inverse modulus.
+// The least factor of the stiffness that keeps the overlaps small.
 double least_factor(const Case& c) {
   const Overlaps overlaps = expected_overlaps(c);
-  return std::max(std::pow(overlaps.under_weight / deep_under_weight, is_linear(c) ? 1.0 : 1.5),
-                  std::pow(overlaps.in_impact / deep_in_impact, is_linear(c) ? 2.0 : 2.5));
+  return dem::with_spring_law(c.contact.law, [&](auto spring) {
+    using Spring = typename decltype(spring)::type;
+    return std::max(std::pow(overlaps.under_weight / deep_under_weight, Spring::overlaps_per_stiffness),
+                    std::pow(overlaps.in_impact / deep_in_impact, Spring::impacts_per_stiffness));
+  });
 }
 
-// The largest that keeps contacts long enough for a rebound: they last as long as the inverse root of the stiffness,
-// those of Hertz the power 2/5 of the inverse modulus.
+// The largest that keeps contacts long enough for a rebound.
 double most_factor(const Case& c) {
   const std::optional<ReboundTimes> times = rebound_times(c);
-  return times ? std::pow(times->contact / times->around, is_linear(c) ? 2.0 : 2.5)
-               : std::numeric_limits<double>::infinity();
+  if (!times) return std::numeric_limits<double>::infinity();
+  return dem::with_spring_law(c.contact.law, [&](auto spring) {
+    return std::pow(times->contact / times->around, decltype(spring)::type::impacts_per_stiffness);
+  });
 }
 
 // A stiffness with which the grains overlap little enough and rebound, with a shorter step where there is none.
@@ -69,12 +70,6 @@ void scale_material(Case c, const std::string& section, const Material& material
 // Of the stiffness of the section contact, or of what it follows from; factor: what it is multiplied with, on return as
 // rounded.
 Change main_stiffness_change(const Case& c, double& factor, int digits, Rounding rounding) {
-  if (!is_linear(c)) {
-    const Change change = number_change("contact.youngs_modulus", factor * c.contact.youngs_modulus, digits, rounding,
-                                        [](Case& other, double to) { other.contact.youngs_modulus = to; });
-    factor = changed(c, {change}).contact.youngs_modulus / c.contact.youngs_modulus;
-    return change;
-  }
   if (goes_by_duration(c)) {
     const double lasts = contact_duration(c);
     const Change change =
@@ -85,13 +80,17 @@ Change main_stiffness_change(const Case& c, double& factor, int digits, Rounding
     factor = std::pow(lasts / std::stod(change.value), 2);
     return change;
   }
-  const Change change = number_change("contact.normal_stiffness", factor * c.contact.normal_stiffness, digits, rounding,
-                                      [](Case& other, double to) {
-                                        other.contact.normal_stiffness = to;
-                                        other.filled_in.stiffness = false;
-                                      });
-  factor = changed(c, {change}).contact.normal_stiffness / c.contact.normal_stiffness;
-  return change;
+  return dem::with_spring_law(c.contact.law, [&](auto spring) {
+    using Spring = typename decltype(spring)::type;
+    const Change change =
+        number_change(fmt::format("contact.{}", Spring::stiffness_key), factor * c.contact.*Spring::stiffness, digits,
+                      rounding, [](Case& other, double to) {
+                        other.contact.*Spring::stiffness = to;
+                        other.filled_in.stiffness = false;
+                      });
+    factor = changed(c, {change}).contact.*Spring::stiffness / c.contact.*Spring::stiffness;
+    return change;
+  });
 }
 
 }  // namespace
@@ -99,7 +98,7 @@ Change main_stiffness_change(const Case& c, double& factor, int digits, Rounding
 Remedy stiffness_changes(const Case& c, double factor, int digits, Rounding rounding) {
   double rounded = factor;
   Remedy changes{main_stiffness_change(c, rounded, digits, rounding)};
-  if (is_linear(c) && c.contact.tangential_stiffness > 0.0 && !c.filled_in.tangential_stiffness)
+  if (c.contact.law == dem::Law::linear && c.contact.tangential_stiffness > 0.0 && !c.filled_in.tangential_stiffness)
     changes.push_back(exact_change("contact.tangential_stiffness", rounded * c.contact.tangential_stiffness,
                                    digits_kept,
                                    [](Case& other, double to) { other.contact.tangential_stiffness = to; }));

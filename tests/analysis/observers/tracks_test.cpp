@@ -113,7 +113,7 @@ TEST(Tracks, AreRefusedOfMoreGrainsThanOneRankGathers) {
   const auto facts_of = [](GlobalId count) {
     RunFacts run;
     run.grains.emplace();
-    run.grains->populations.push_back({.name = "all", .first = 0, .end = count});
+    run.grains->populations.push_back({.name = "all", .first = 0, .end = count, .pivot = {}});
     return run;
   };
   EXPECT_NO_THROW(check(TracksKeys{}, facts_of(most)));
