@@ -21,15 +21,10 @@ struct FaceKeys {
   std::optional<dem::Oscillation> oscillation = {};    // moving; dry grains only
 
   // Whether it is a wall that the boundary layer of a smooth one stands on.
-  bool obeys_the_law_of_the_wall() const {
-    return type == lbm::FaceType::law_of_the_wall || type == lbm::FaceType::slip_law_of_the_wall;
-  }
+  bool obeys_the_law_of_the_wall() const { return lbm::traits_of(type).is_smooth; }
   // Whether it exerts shear on a flow along it.
-  bool drags() const {
-    return type == lbm::FaceType::no_slip || type == lbm::FaceType::moving || type == lbm::FaceType::navier_slip ||
-           obeys_the_law_of_the_wall();
-  }
-  bool has_velocity() const { return type == lbm::FaceType::moving || type == lbm::FaceType::velocity_inlet; }
+  bool drags() const { return lbm::traits_of(type).drags; }
+  bool has_velocity() const { return lbm::traits_of(type).has_velocity; }
   bool operator==(const FaceKeys& other) const;  // what the type does not use does not count
 };
 

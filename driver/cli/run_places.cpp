@@ -9,7 +9,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char separator = '\0';  // in no path
+constexpr char path_end = '\0';  // in no path
 
 // The run folder a checkpoint lies in; empty if it lies anywhere else.
 fs::path run_folder_of(const fs::path& checkpoint) {
@@ -33,15 +33,15 @@ Places found_by(const Command& command) {
 
 std::string as_text(const Places& places) {
   std::string text(1, places.same_folder ? 's' : 'o');
-  text += places.folder.path().string() + separator + places.origin.string() + separator;
-  for (const fs::path& checkpoint : places.checkpoints) text += checkpoint.string() + separator;
+  text += places.folder.path().string() + path_end + places.origin.string() + path_end;
+  for (const fs::path& checkpoint : places.checkpoints) text += checkpoint.string() + path_end;
   return text;
 }
 
 Places of_text(const std::string& text) {
   std::vector<fs::path> paths;
   for (std::size_t start = 1; start < text.size();) {
-    const std::size_t end = text.find(separator, start);
+    const std::size_t end = text.find(path_end, start);
     paths.emplace_back(text.substr(start, end - start));
     start = end + 1;
   }

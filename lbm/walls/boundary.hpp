@@ -20,8 +20,42 @@ enum class FaceType {
   pressure_outlet        // fluid leaves (or enters) at a given density
 };
 
-// Lets fluid in or out.
-constexpr bool is_open(FaceType type) { return type == FaceType::velocity_inlet || type == FaceType::pressure_outlet; }
+// Everything that is asked of a type of face, in one place.
+struct FaceTraits {
+  int precedence = 3;         // of two faces at an edge, that with the larger number decides what comes out of it
+  bool is_open = false;       // lets fluid in or out
+  bool reflects = false;      // gives back what comes to it, bounced back or mirrored
+  bool has_velocity = false;  // FaceCondition::velocity
+  bool slips = false;         // Navier's slip
+  bool drags = false;         // exerts shear on a flow along it
+  bool is_smooth = false;     // a boundary layer by the law of the wall stands on it
+};
+
+constexpr FaceTraits traits_of(FaceType type) {
+  switch (type) {
+    case FaceType::periodic:
+      return {};
+    case FaceType::no_slip:
+      return {.reflects = true, .drags = true};
+    case FaceType::free_slip:
+      return {.precedence = 0, .reflects = true};
+    case FaceType::moving:
+      return {.has_velocity = true, .drags = true};
+    case FaceType::navier_slip:
+      return {.reflects = true, .slips = true, .drags = true};
+    case FaceType::law_of_the_wall:
+      return {.reflects = true, .drags = true, .is_smooth = true};
+    case FaceType::slip_law_of_the_wall:
+      return {.reflects = true, .slips = true, .drags = true, .is_smooth = true};
+    case FaceType::velocity_inlet:
+      return {.precedence = 2, .is_open = true, .has_velocity = true};
+    case FaceType::pressure_outlet:
+      return {.precedence = 1, .is_open = true};
+  }
+  __builtin_unreachable();
+}
+
+constexpr bool is_open(FaceType type) { return traits_of(type).is_open; }
 
 // Slip velocity over friction velocity of a slip_law_of_the_wall. Zhang et al. (2022) print 2.35; their own recipe, the
 // tangent of u+ = ln(y+)/0.41 + 5 at y+ = 10.8 taken to the wall, gives 8.36.

@@ -8,24 +8,8 @@ namespace thalweg::lbm {
 
 namespace {
 
-// Who decides about a population that comes out of an edge: the larger number.
-int precedence(FaceType type) {
-  switch (type) {
-    case FaceType::free_slip:
-      return 0;
-    case FaceType::pressure_outlet:
-      return 1;
-    case FaceType::velocity_inlet:
-      return 2;
-    default:
-      return 3;
-  }
-}
-
-bool has_velocity(FaceType type) { return type == FaceType::moving || type == FaceType::velocity_inlet; }
-
-// Walls that give back what comes to them, bounced back or reflected.
-bool reflects(FaceType type) { return type != FaceType::periodic && !has_velocity(type) && !is_open(type); }
+bool has_velocity(FaceType type) { return traits_of(type).has_velocity; }
+bool reflects(FaceType type) { return traits_of(type).reflects; }
 
 double dot(int direction, const Vec3& v) {
   return D3Q19::c[direction][0] * v.x() + D3Q19::c[direction][1] * v.y() + D3Q19::c[direction][2] * v.z();
@@ -69,7 +53,7 @@ Walls<Real>::Entry::Entry(const CellIndexing& indexing, int from_face, int along
 
 template <typename Real>
 bool Walls<Real>::decides_edge(int face, int other) const {
-  return precedence(faces_[face].type) >= precedence(faces_[other].type);
+  return traits_of(faces_[face].type).precedence >= traits_of(faces_[other].type).precedence;
 }
 
 template <typename Real>
@@ -126,14 +110,21 @@ void Walls<Real>::reflect_run(Populations<Real>& populations, const CellMap& cel
         into[u * stride] = body[u * stride] == CellMap::fluid ? other[u * stride] - half * stress[u] : own[u * stride];
       break;
     }
-    default: {
+    case FaceType::navier_slip:
+    case FaceType::slip_law_of_the_wall: {
       const Real* r = bounced_[run.face].row(run.v);
       const Real* r_source = bounced_[run.face].row(run.v - cv) - cu;
       for (int u = run.begin; u < run.end; ++u) {
         const Real mixed = r[u] * own[u * stride] + (Real(1) - r_source[u]) * other[u * stride];
         into[u * stride] = body[u * stride] == CellMap::fluid ? mixed : own[u * stride];
       }
+      break;
     }
+    case FaceType::periodic:  // the others reflect nothing
+    case FaceType::moving:
+    case FaceType::velocity_inlet:
+    case FaceType::pressure_outlet:
+      break;
   }
 }
 

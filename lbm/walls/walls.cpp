@@ -17,7 +17,7 @@ namespace {
 constexpr const char* face_names[6] = {"x_low", "x_high", "y_low", "y_high", "z_low", "z_high"};
 constexpr double smallest_bounced_fraction = 1e-6;  // lets a wall without shear (a start from rest) take hold
 
-bool slips(FaceType type) { return type == FaceType::navier_slip || type == FaceType::slip_law_of_the_wall; }
+bool slips(FaceType type) { return traits_of(type).slips; }
 
 void check(const FaceCondition& wall, int axis, const char* name) {
   if (wall.type == FaceType::moving && wall.velocity[axis] != 0.0)
