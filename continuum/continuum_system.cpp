@@ -218,14 +218,14 @@ double ContinuumSystem::moving_depth(double surface) const {
   return std::max(0.0, surface - static_cast<double>(lowest) * dz);
 }
 
-std::vector<Figure> ContinuumSystem::figures() const {
+std::vector<Diagnostic> ContinuumSystem::diagnostics() const {
   const ColumnParameters& column = parameters_.column;
   const Mixture& mixture = column.mixture;
   const double gravity = std::hypot(column.gravity_x, column.gravity_z), d = mixture.diameter;
   const double weight = mixture.excess_density() * gravity * d;
   const double transport = transport_rate(), surface = surface_height(), stress = bed_stress();
   const ColumnState& state = equations_.state_of(unknowns_);
-  std::vector<Figure> figures{
+  std::vector<Diagnostic> diagnostics{
       {"q_s", "m^2/s", transport},
       {"q_star", "1", transport / std::sqrt(weight / mixture.fluid_density * d * d)},
       {"shields_number", "1", stress / weight},
@@ -236,14 +236,14 @@ std::vector<Figure> ContinuumSystem::figures() const {
       {"largest_fluid_speed", "m/s", *std::max_element(state.fluid_velocity.begin(), state.fluid_velocity.end())},
       {"solid_volume", "m", unknowns_[unknowns_.size() - ColumnEquations::unknowns_per_cell]},
       {"integrator_steps", "1", static_cast<double>(integrator_steps_)},
-      {unsteadiness_figure, "1", std::max(transport_change_, momentum_change_)}};
-  if (!creep_) return figures;
+      {unsteadiness_diagnostic, "1", std::max(transport_change_, momentum_change_)}};
+  if (!creep_) return diagnostics;
   const double above = (parameters_.creep->lower - creep_decay_depth) * d / creep_stress_->spacing;
   const double length =
       decay_length(*creep_, creep_stress_->spacing, static_cast<std::size_t>(std::max(0.0, std::round(above))));
-  figures.push_back({"creep_decay_length", "m", length});
-  figures.push_back({"creep_decade_length", "m", length * std::numbers::ln10});
-  return figures;
+  diagnostics.push_back({"creep_decay_length", "m", length});
+  diagnostics.push_back({"creep_decade_length", "m", length * std::numbers::ln10});
+  return diagnostics;
 }
 
 std::vector<Profile> ContinuumSystem::profiles() const {

@@ -59,8 +59,8 @@ public:
   //
   // unsteadiness: the larger of two changes over the latest step, of momentum, over the driving stress on the floor
   // times the step, and of q_s, relative (to 1e-4 sqrt((s - 1) g d^3) where it is less). 1 before the first step.
-  std::vector<Figure> figures() const override;
-  static constexpr const char* unsteadiness_figure = "unsteadiness";
+  std::vector<Diagnostic> diagnostics() const override;
+  static constexpr const char* unsteadiness_diagnostic = "unsteadiness";
 
   // Over z (m, cell middles), named and shaped as those of analysis::StressBalance where they are the same: thickness,
   // solid_fraction, grain_velocity, fluid_velocity, drag_density (x, y, z), drag_function, drag_reynolds_number,

@@ -35,7 +35,7 @@ public:
   // A step of the system has ended (time: s). Collective, as are the next three.
   virtual void step_ended(const GrainDynamics&, double /*time*/) {}
   // Its own state, besides the columns it keeps with the grains.
-  virtual std::vector<Figure> figures(double /*time*/) const { return {}; }
+  virtual std::vector<Diagnostic> diagnostics(double /*time*/) const { return {}; }
   virtual void save(ArchiveWriter&) const {}
   virtual void load(ArchiveReader&) {}
 };

@@ -86,8 +86,8 @@ struct Contact {
   std::vector<double> history;  // what its law keeps (contact_law.hpp), at the last evaluation
 };
 
-// The name of the figures of the force of all grains on a solid.
-std::string solid_force_figure(std::size_t solid);
+// The name of the diagnostics of the force of all grains on a solid.
+std::string solid_force_diagnostic(std::size_t solid);
 
 class GrainDynamics {
 public:
@@ -175,7 +175,7 @@ public:
   // Of walls on all owned grains: contacts, then lubrication.
   void for_each_wall_force(const std::function<void(std::size_t slot, const ContactEnd& end)>& visit) const;
 
-  // Figures over all ranks, the same bits in any layout; a clump is one grain, with the velocity of its centre, but
+  // Diagnostics over all ranks, the same bits in any layout; a clump is one grain, with the velocity of its centre, but
   // overlap and contacts are those of its members. Collective.
   std::vector<Vec3> wall_forces() const;  // N, of all grains on each wall, then each solid, by contacts and lubrication
   std::int64_t contact_count() const;     // touching pairs of grains
@@ -190,7 +190,7 @@ public:
   // Free grains that are not slower than speed (m/s), or not accelerated by less than this (m/s^2).
   std::int64_t restless_count(double speed, double acceleration) const;
 
-  // Where these two figures have their values: the pair that overlaps most, and the grain or clump (by its first
+  // Where these two diagnostics have their values: the pair that overlaps most, and the grain or clump (by its first
   // member) that largest_speed() belongs to; of several, those with the lowest ids. Empty where there are none.
   // Collective.
   std::optional<Location> place_of_deepest_overlap() const;

@@ -83,28 +83,28 @@ Snapshot GrainSystem::snapshot() const {
   return snapshot;
 }
 
-std::vector<Figure> GrainSystem::figures() const {
-  std::vector<Figure> figures{{"contacts", "1", static_cast<double>(grains_.contact_count())},
-                              {"largest_overlap", "1", grains_.largest_overlap()},
-                              {largest_speed_figure, "m/s", grains_.largest_free_speed()},
-                              {largest_acceleration_figure, "m/s^2", grains_.largest_acceleration()}};
+std::vector<Diagnostic> GrainSystem::diagnostics() const {
+  std::vector<Diagnostic> diagnostics{{"contacts", "1", static_cast<double>(grains_.contact_count())},
+                                      {"largest_overlap", "1", grains_.largest_overlap()},
+                                      {largest_speed_diagnostic, "m/s", grains_.largest_free_speed()},
+                                      {largest_acceleration_diagnostic, "m/s^2", grains_.largest_acceleration()}};
   if (rest_)
-    figures.push_back(
-        {restless_figure, "1", static_cast<double>(grains_.restless_count(rest_->speed, rest_->acceleration))});
+    diagnostics.push_back(
+        {restless_diagnostic, "1", static_cast<double>(grains_.restless_count(rest_->speed, rest_->acceleration))});
   if (field_)
-    for (const Figure& figure : field_->figures(time())) figures.push_back(figure);
-  if (wall_names_.empty() && grains_.parameters().solids.empty()) return figures;
+    for (const Diagnostic& diagnostic : field_->diagnostics(time())) diagnostics.push_back(diagnostic);
+  if (wall_names_.empty() && grains_.parameters().solids.empty()) return diagnostics;
   const std::vector<Vec3> forces = grains_.wall_forces();
   for (std::size_t wall = 0; wall < wall_names_.size(); ++wall)
-    add_vector("wall_force_" + wall_names_[wall], "N", forces[wall], figures);
+    add_vector("wall_force_" + wall_names_[wall], "N", forces[wall], diagnostics);
   for (std::size_t solid = 0; solid < grains_.parameters().solids.size(); ++solid)
-    add_vector(solid_force_figure(solid), "N", forces[grains_.walls().size() + solid], figures);
-  return figures;
+    add_vector(solid_force_diagnostic(solid), "N", forces[grains_.walls().size() + solid], diagnostics);
+  return diagnostics;
 }
 
-std::optional<Location> GrainSystem::location_of(const std::string& figure) const {
-  if (figure == "largest_overlap") return grains_.place_of_deepest_overlap();
-  if (figure == largest_speed_figure) return grains_.place_of_fastest();
+std::optional<Location> GrainSystem::location_of(const std::string& diagnostic) const {
+  if (diagnostic == "largest_overlap") return grains_.place_of_deepest_overlap();
+  if (diagnostic == largest_speed_diagnostic) return grains_.place_of_fastest();
   return std::nullopt;
 }
 

@@ -1,4 +1,4 @@
-// What to do with a run whose figures leave their bounds.
+// What to do with a run whose diagnostics leave their bounds.
 #pragma once
 
 namespace thalweg::loop {

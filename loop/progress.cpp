@@ -23,10 +23,10 @@ std::string progress_line(const ProgressState& state) {
       "t {:<9.5g} of {:g} s  {:3.0f} %  left {:<9} {:>7.4g} steps/s", state.time, state.until, 100.0 * state.share_done,
       state.seconds_left < 0.0 ? "?" : clock_text(state.seconds_left), state.steps_per_second);
   if (state.mlups > 0.0) line += fmt::format("  {:>6.3g} MLUPS", state.mlups);
-  if (const auto moving = find_figure(state.figures, "moving_grains"))
+  if (const auto moving = find_diagnostic(state.diagnostics, "moving_grains"))
     line += fmt::format("  moving {:<6.0f}", *moving);
-  if (const auto q_star = find_figure(state.figures, "q_star")) line += fmt::format("  q* {:<9.3g}", *q_star);
-  if (const auto speed = find_figure(state.figures, "largest_lattice_velocity"))
+  if (const auto q_star = find_diagnostic(state.diagnostics, "q_star")) line += fmt::format("  q* {:<9.3g}", *q_star);
+  if (const auto speed = find_diagnostic(state.diagnostics, "largest_lattice_velocity"))
     line += fmt::format("  u_max {:.3g}", *speed);
   if (!state.notice.empty()) line += "  warning: " + state.notice;
   return line.substr(0, line.find_last_not_of(' ') + 1);

@@ -15,13 +15,13 @@ struct ProgressState {
   double seconds_left;  // s of wall time; negative: not known yet
   double steps_per_second;
   double mlups;  // million lattice cell updates a second; 0: no lattice
-  std::vector<Figure> figures;
+  std::vector<Diagnostic> diagnostics;
   std::string notice = {};  // of the watchdog; empty: none
 };
 
 // e.g. "t 1.2345 of 3 s   41 %   left 1:23   812 steps/s   12.3 MLUPS   moving 23   q* 0.0123   u_max 0.081"
-// Of the figures it shows moving_grains, q_star and largest_lattice_velocity, as far as they are there; a notice comes
-// last: "warning: mean_density_deviation -0.0031".
+// Of the diagnostics it shows moving_grains, q_star and largest_lattice_velocity, as far as they are there; a notice
+// comes last: "warning: mean_density_deviation -0.0031".
 std::string progress_line(const ProgressState& state);
 
 // s of wall time from a progress line at `now` s after the begin of the run to the next: often at first, when somebody

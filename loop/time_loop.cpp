@@ -32,13 +32,13 @@ double seconds_since(WallClock::time_point start) {
 // SIGUSR1 and SIGUSR2 are passed on by mpirun, and nothing follows.
 bool is_followed_by_a_kill(int signal) { return signal == SIGTERM || signal == SIGINT; }
 
-// Of such a figure the smallest value is kept, not the largest.
-bool is_smallest(const Figure& figure) { return figure.name.starts_with("smallest_"); }
+// Of such a diagnostic the smallest value is kept, not the largest.
+bool is_smallest(const Diagnostic& diagnostic) { return diagnostic.name.starts_with("smallest_"); }
 
-// Of such a figure the value that is furthest from zero is kept, with its sign.
-bool is_bad_either_way(const Figure& figure, const std::vector<WatchRule>& rules) {
-  return std::any_of(rules.begin(), rules.end(), [&figure](const WatchRule& rule) {
-    return rule.figure == figure.name && rule.side == WatchRule::Side::either;
+// Of such a diagnostic the value that is furthest from zero is kept, with its sign.
+bool is_bad_either_way(const Diagnostic& diagnostic, const std::vector<WatchRule>& rules) {
+  return std::any_of(rules.begin(), rules.end(), [&diagnostic](const WatchRule& rule) {
+    return rule.diagnostic == diagnostic.name && rule.side == WatchRule::Side::either;
   });
 }
 
@@ -48,25 +48,25 @@ bool was_asked_to_stop(const std::filesystem::path& file) {
   return !file.empty() && std::filesystem::remove(file, ignored);
 }
 
-std::vector<Figure> figures_of(const std::vector<std::unique_ptr<analysis::Observer>>& observers) {
-  std::vector<Figure> figures;
+std::vector<Diagnostic> diagnostics_of(const std::vector<std::unique_ptr<analysis::Observer>>& observers) {
+  std::vector<Diagnostic> diagnostics;
   for (const auto& observer : observers)
-    for (const Figure& figure : observer->figures()) figures.push_back(figure);
-  return figures;
+    for (const Diagnostic& diagnostic : observer->diagnostics()) diagnostics.push_back(diagnostic);
+  return diagnostics;
 }
 
-std::vector<Figure> row_of(const std::vector<Figure>& of_system, const std::vector<Figure>& measured) {
-  std::vector<Figure> row = of_system;
-  for (const Figure& figure : measured)
-    if (!find_figure(of_system, figure.name)) row.push_back(figure);
+std::vector<Diagnostic> row_of(const std::vector<Diagnostic>& of_system, const std::vector<Diagnostic>& measured) {
+  std::vector<Diagnostic> row = of_system;
+  for (const Diagnostic& diagnostic : measured)
+    if (!find_diagnostic(of_system, diagnostic.name)) row.push_back(diagnostic);
   return row;
 }
 
 }  // namespace
 
-std::vector<Figure> series_row(const System& system,
-                               const std::vector<std::unique_ptr<analysis::Observer>>& observers) {
-  return row_of(system.figures(), figures_of(observers));
+std::vector<Diagnostic> series_row(const System& system,
+                                   const std::vector<std::unique_ptr<analysis::Observer>>& observers) {
+  return row_of(system.diagnostics(), diagnostics_of(observers));
 }
 
 // Rounded up, except where the quotient misses a whole number of steps by round-off only.
@@ -124,9 +124,9 @@ void TimeLoop::look_at_health(bool is_regular) {
   if (looked_at_step_ == system_.step()) return;
   looked_at_step_ = system_.step();
   const auto scope = timer_.measure(timer_.phase("figures"));
-  record_.figures = system_.figures();
+  record_.diagnostics = system_.diagnostics();
   if (record_.largest.empty()) begin_largest();
-  for (const std::string& warning : watchdog_.judge(record_.figures)) {
+  for (const std::string& warning : watchdog_.judge(record_.diagnostics)) {
     ++record_.warnings;
     log_.line("warning: " + warning);
   }
@@ -139,21 +139,21 @@ void TimeLoop::look_at_health(bool is_regular) {
 }
 
 void TimeLoop::begin_largest() {
-  record_.largest = record_.figures;
-  for (Figure& figure : record_.largest) {
+  record_.largest = record_.diagnostics;
+  for (Diagnostic& diagnostic : record_.largest) {
     const double none = std::numeric_limits<double>::infinity();
-    const double first = is_smallest(figure) ? none : is_bad_either_way(figure, plan_.watch) ? 0.0 : -none;
-    figure.value = find_figure(plan_.largest, figure.name).value_or(first);
+    const double first = is_smallest(diagnostic) ? none : is_bad_either_way(diagnostic, plan_.watch) ? 0.0 : -none;
+    diagnostic.value = find_diagnostic(plan_.largest, diagnostic.name).value_or(first);
   }
 }
 
 void TimeLoop::count_among_largest() {
-  for (std::size_t f = 0; f < record_.figures.size(); ++f) {
-    const double now = record_.figures[f].value;
+  for (std::size_t f = 0; f < record_.diagnostics.size(); ++f) {
+    const double now = record_.diagnostics[f].value;
     double& extreme = record_.largest[f].value;
-    if (is_smallest(record_.figures[f]))
+    if (is_smallest(record_.diagnostics[f]))
       extreme = std::min(extreme, now);
-    else if (is_bad_either_way(record_.figures[f], plan_.watch))
+    else if (is_bad_either_way(record_.diagnostics[f], plan_.watch))
       extreme = std::abs(now) > std::abs(extreme) ? now : extreme;
     else
       extreme = std::max(extreme, now);
@@ -183,8 +183,8 @@ void TimeLoop::measure() {
 bool TimeLoop::has_enough() {
   if (plan_.enough.empty()) return false;
   look_at_health();
-  const auto below = [this](const FigureLimit& limit) {
-    const std::optional<double> value = find_figure(record_.figures, limit.figure);
+  const auto below = [this](const DiagnosticLimit& limit) {
+    const std::optional<double> value = find_diagnostic(record_.diagnostics, limit.diagnostic);
     return value && *value < limit.limit;
   };
   return std::all_of(plan_.enough.begin(), plan_.enough.end(), below);
@@ -195,10 +195,10 @@ void TimeLoop::write_what_is_due() {
   measure();
   if (plan_.series.due(step)) {
     look_at_health();
-    measured_ = figures_of(observers_);
+    measured_ = diagnostics_of(observers_);
     if (plan_.write_row) {
       const auto scope = timer_.measure(timer_.phase("series"));
-      plan_.write_row(system_.time(), step, row_of(record_.figures, measured_));
+      plan_.write_row(system_.time(), step, row_of(record_.diagnostics, measured_));
     }
   }
   for (const OutputTask& output : plan_.outputs) {
@@ -331,8 +331,8 @@ void TimeLoop::report(double now) {
   state.seconds_left = done > 0.0 ? now / done * static_cast<double>(final_step_ - system_.step()) : -1.0;
   state.steps_per_second = steps / interval;
   state.mlups = state.steps_per_second * static_cast<double>(system_.cells()) * 1e-6;
-  state.figures = record_.figures;
-  state.figures.insert(state.figures.end(), measured_.begin(), measured_.end());
+  state.diagnostics = record_.diagnostics;
+  state.diagnostics.insert(state.diagnostics.end(), measured_.begin(), measured_.end());
   state.notice = watchdog_.notice();
   log_.line(progress_line(state));
   printed_at_ = now;

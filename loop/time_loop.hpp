@@ -3,7 +3,7 @@
 // A step is: advance; look at the system's health if due (watchdog.hpp judges it); measure and write what is due;
 // checkpoint if due; and every few steps the ranks agree (one small reduction) whether to print a progress line or to
 // stop early. Those decisions never touch the state, so the clock cannot change one bit of the run; nor does it decide
-// when to look: a progress line shows the figures of the latest look.
+// when to look: a progress line shows the diagnostics of the latest look.
 #pragma once
 
 #include "analysis/observer/observer.hpp"
@@ -33,7 +33,7 @@ struct OutputTask {
   std::function<void(const Snapshot&)> act;  // collective
 };
 
-using SeriesRow = std::function<void(double time, std::int64_t step, const std::vector<Figure>&)>;  // collective
+using SeriesRow = std::function<void(double time, std::int64_t step, const std::vector<Diagnostic>&)>;  // collective
 
 inline constexpr const char* stopped_on_request = "stopped on request (thalweg stop)";  // LoopRecord::reason
 
@@ -44,13 +44,13 @@ struct LoopRecord {
   std::string reason;  // why it is not finished; empty if it is
   bool asked = false;  // stopped by LoopPlan::stop_file
   std::int64_t first_step = 0, last_step = 0;
-  double wall_seconds = 0.0;     // in run(), this time
-  double advance_seconds = 0.0;  // of which in System::advance()
-  std::vector<Figure> figures;   // of the system, at the latest look
-  // Of the system: the largest value of each figure (the smallest of those named smallest_..., and of those that are
-  // bad either way the one furthest from zero) since largest_from (s, simulated), at the regular looks and at the end;
-  // an infinity, or 0 of the last kind, as long as there was none.
-  std::vector<Figure> largest;
+  double wall_seconds = 0.0;            // in run(), this time
+  double advance_seconds = 0.0;         // of which in System::advance()
+  std::vector<Diagnostic> diagnostics;  // of the system, at the latest look
+  // Of the system: the largest value of each diagnostic (the smallest of those named smallest_..., and of those that
+  // are bad either way the one furthest from zero) since largest_from (s, simulated), at the regular looks and at the
+  // end; an infinity, or 0 of the last kind, as long as there was none.
+  std::vector<Diagnostic> largest;
   double largest_from = 0.0;
   std::int64_t warnings = 0;  // of the watchdog
 };
@@ -58,27 +58,27 @@ struct LoopRecord {
 using WriteCheckpoint =
     std::function<std::uint64_t(const LoopRecord&)>;  // collective; returns its bytes, on the first rank
 
-// A figure of the system and what it must fall below.
-struct FigureLimit {
-  std::string figure;
+// A diagnostic of the system and what it must fall below.
+struct DiagnosticLimit {
+  std::string diagnostic;
   double limit;
 };
 
 struct LoopPlan {
-  double until = 0.0;               // s, simulated
-  std::vector<FigureLimit> enough;  // the run is finished when all hold; none: at `until` only
+  double until = 0.0;                   // s, simulated
+  std::vector<DiagnosticLimit> enough;  // the run is finished when all hold; none: at `until` only
   std::int64_t steps_between_looks_for_enough = 200;
   std::string enough_means;                          // in words for the log, e.g. "all grains at rest"
-  std::vector<WatchRule> watch;                      // what may not happen to the figures of the system
+  std::vector<WatchRule> watch;                      // what may not happen to the diagnostics of the system
   OutOfBounds out_of_bounds = OutOfBounds::stop;     // what to do if it does
   double walltime = 0.0;                             // s of wall time from `started` on; 0: as long as it takes
   WallClock::time_point started = WallClock::now();  // of the program
   std::filesystem::path stop_file;                   // if it appears, the run stops and removes it; empty: none
   double between_strokes = 0.0;                      // s, stop_request.hpp; 0: no kill follows a signal
-  std::vector<Figure> largest;                       // before the loop, since largest_from
+  std::vector<Diagnostic> largest;                   // before the loop, since largest_from
   double largest_from = 0.0;                         // s, simulated
   bool write_at_start = true;                        // false where a run goes on: its first frame exists already
-  Schedule series;                                   // when observers measure and a row of figures is written
+  Schedule series;                                   // when observers measure and a row of diagnostics is written
   Schedule checkpoint;                               // a last one is written in any case
   double checkpoint_wall = 0.0;                      // s of wall time since the last one; 0: only as scheduled
   // s that a checkpoint takes, at the worst, as long as none has been timed: with a wall time, the first is written
@@ -89,9 +89,10 @@ struct LoopPlan {
   std::vector<OutputTask> outputs;
 };
 
-// A row of the series with the current values: the figures of the system and those of the observers, a column a name.
-// Collective.
-std::vector<Figure> series_row(const System& system, const std::vector<std::unique_ptr<analysis::Observer>>& observers);
+// A row of the series with the current values: the diagnostics of the system and those of the observers, a column a
+// name. Collective.
+std::vector<Diagnostic> series_row(const System& system,
+                                   const std::vector<std::unique_ptr<analysis::Observer>>& observers);
 
 // The step at or after `until` (s) with which a run ends. It may come too early by rounding_of_the_end, relative to the
 // time.
@@ -118,8 +119,8 @@ private:
   // Of several the last: whoever asks for a stop means more than the end of a job.
   enum class Decision : int { go_on = 0, wall_time_is_up = 1, signal = 2, asked = 3, enough = 4 };
 
-  // Only the regular looks, by the number of the step alone, count among the largest figures: a run that writes more,
-  // or is saved elsewhere, has the same checkpoints.
+  // Only the regular looks, by the number of the step alone, count among the largest diagnostics: a run that writes
+  // more, or is saved elsewhere, has the same checkpoints.
   void look_at_health(bool is_regular = false);
   void begin_largest();
   void count_among_largest();
@@ -150,9 +151,9 @@ private:
   WallClock::time_point begin_;
   std::int64_t final_step_ = 0;
   std::int64_t looked_at_step_ = -1, saved_step_ = -1, next_decision_ = 0;
-  std::vector<Figure> measured_;     // by the observers, latest
-  double longest_checkpoint_ = 0.0;  // s
-  double saved_at_ = 0.0;            // s since the beginning of run()
+  std::vector<Diagnostic> measured_;  // by the observers, latest
+  double longest_checkpoint_ = 0.0;   // s
+  double saved_at_ = 0.0;             // s since the beginning of run()
   // Rank 0's own: when and where the last line was printed and the latest decision was taken.
   double printed_at_ = 0.0, decided_at_ = 0.0;
   std::int64_t printed_step_ = 0, decided_step_ = 0;

@@ -1,5 +1,5 @@
-// A figure of the system that is watched while a run goes on: beyond which value it is suspicious, and beyond which the
-// run stops.
+// A diagnostic of the system that is watched while a run goes on: beyond which value it is suspicious, and beyond which
+// the run stops.
 #pragma once
 
 #include "core/state/system.hpp"
@@ -11,7 +11,7 @@
 
 namespace thalweg::loop {
 
-// In the figure's unit, of its badness (WatchRule::badness); infinite: never. warn is at most stop.
+// In the diagnostic's unit, of its badness (WatchRule::badness); infinite: never. warn is at most stop.
 struct WatchLimits {
   double warn, stop;
 };
@@ -19,11 +19,11 @@ struct WatchLimits {
 struct WatchRule {
   enum class Side { above, below, either };  // which values are bad: large ones, those far below zero, both
 
-  std::string figure;  // its name; where the system has no such figure, the rule does not apply
+  std::string diagnostic;  // its name; where the system has no such diagnostic, the rule does not apply
   Side side;
-  std::function<WatchLimits(const std::vector<Figure>&)> limits;  // at a look, from all figures of the system
-  std::string meaning;                                            // of the figure, e.g. "the largest lattice velocity"
-  std::string advice;                                             // likely cause and remedy, in whole sentences
+  std::function<WatchLimits(const std::vector<Diagnostic>&)> limits;  // at a look, from all diagnostics of the system
+  std::string meaning;  // of the diagnostic, e.g. "the largest lattice velocity"
+  std::string advice;   // likely cause and remedy, in whole sentences
 
   // How bad a value is, to be compared with the limits: the value, its negative or its size.
   double badness(double value) const {

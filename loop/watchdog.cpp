@@ -15,9 +15,9 @@ namespace {
 
 constexpr double growth_between_warnings = 1.5;
 
-std::string with_unit(const Figure& figure, double value) {
-  const bool bare = figure.unit == "1" || figure.unit == "diameter";
-  return fmt::format("{:.3g}{}", value, bare ? "" : " " + figure.unit);
+std::string with_unit(const Diagnostic& diagnostic, double value) {
+  const bool bare = diagnostic.unit == "1" || diagnostic.unit == "diameter";
+  return fmt::format("{:.3g}{}", value, bare ? "" : " " + diagnostic.unit);
 }
 
 }  // namespace
@@ -29,40 +29,40 @@ Watchdog::Watchdog(MPI_Comm communicator, const System& system, std::vector<Watc
 
 std::string Watchdog::moment() const { return fmt::format("{:.6g} s (step {})", system_.time(), system_.step()); }
 
-std::string Watchdog::location_of(const std::string& figure) const {
-  const std::optional<Location> place = system_.location_of(figure);
+std::string Watchdog::location_of(const std::string& diagnostic) const {
+  const std::optional<Location> place = system_.location_of(diagnostic);
   return place ? ", " + location_text(communicator_, *place, system_.snapshot()) : "";
 }
 
-std::vector<std::string> Watchdog::judge(const std::vector<Figure>& figures) {
-  for (const Figure& figure : figures)
-    if (!std::isfinite(figure.value))
+std::vector<std::string> Watchdog::judge(const std::vector<Diagnostic>& diagnostics) {
+  for (const Diagnostic& diagnostic : diagnostics)
+    if (!std::isfinite(diagnostic.value))
       throw RunError(fmt::format(
           "The run broke down before {}: {} is not a finite number{}. Shorten the time step, or restart from "
           "an earlier checkpoint with a shorter output.series.every to see how it comes about.",
-          moment(), figure.name, location_of(figure.name)));
+          moment(), diagnostic.name, location_of(diagnostic.name)));
   std::vector<std::string> warnings;
   for (Watched& watched : watched_) {
     const WatchRule& rule = watched.rule;
-    const auto figure =
-        std::find_if(figures.begin(), figures.end(), [&](const Figure& f) { return f.name == rule.figure; });
-    if (figure == figures.end()) continue;
-    const WatchLimits limits = rule.limits(figures);
-    const double badness = rule.badness(figure->value);
-    watched.value = figure->value;
+    const auto diagnostic = std::find_if(diagnostics.begin(), diagnostics.end(),
+                                         [&](const Diagnostic& f) { return f.name == rule.diagnostic; });
+    if (diagnostic == diagnostics.end()) continue;
+    const WatchLimits limits = rule.limits(diagnostics);
+    const double badness = rule.badness(diagnostic->value);
+    watched.value = diagnostic->value;
     watched.suspicious = badness > limits.warn;
     if (badness > limits.stop && out_of_bounds_ == OutOfBounds::stop)
       throw RunError(fmt::format("The run has gone wrong at {}: {} is {}, beyond the limit of {}{}. {}", moment(),
-                                 rule.meaning, with_unit(*figure, figure->value), with_unit(*figure, limits.stop),
-                                 location_of(rule.figure), rule.advice));
+                                 rule.meaning, with_unit(*diagnostic, diagnostic->value),
+                                 with_unit(*diagnostic, limits.stop), location_of(rule.diagnostic), rule.advice));
     if (!watched.suspicious || badness < growth_between_warnings * watched.warned) continue;
     watched.warned = badness;
     const std::string stops = std::isfinite(limits.stop) && out_of_bounds_ == OutOfBounds::stop
-                                  ? fmt::format(" (the run stops at {})", with_unit(*figure, limits.stop))
+                                  ? fmt::format(" (the run stops at {})", with_unit(*diagnostic, limits.stop))
                                   : "";
     warnings.push_back(fmt::format("At {} {} is {}, beyond {}{}{}. {}", moment(), rule.meaning,
-                                   with_unit(*figure, figure->value), with_unit(*figure, limits.warn), stops,
-                                   location_of(rule.figure), rule.advice));
+                                   with_unit(*diagnostic, diagnostic->value), with_unit(*diagnostic, limits.warn),
+                                   stops, location_of(rule.diagnostic), rule.advice));
   }
   return warnings;
 }
@@ -71,7 +71,7 @@ std::string Watchdog::notice() const {
   std::string text;
   for (const Watched& watched : watched_)
     if (watched.suspicious)
-      text += fmt::format("{}{} {:.3g}", text.empty() ? "" : ", ", watched.rule.figure, watched.value);
+      text += fmt::format("{}{} {:.3g}", text.empty() ? "" : ", ", watched.rule.diagnostic, watched.value);
   return text;
 }
 

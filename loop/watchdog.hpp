@@ -1,8 +1,8 @@
-// Stops a run that is going wrong, and says so beforehand: compares the figures of the system with the limits of its
-// rules whenever the time loop looks.
+// Stops a run that is going wrong, and says so beforehand: compares the diagnostics of the system with the limits of
+// its rules whenever the time loop looks.
 //
-// A figure beyond its first limit is worth a warning: once, and again whenever it has grown by half. Beyond the second
-// the run ends. A figure that is not a finite number ends it in any case.
+// A diagnostic beyond its first limit is worth a warning: once, and again whenever it has grown by half. Beyond the
+// second the run ends. A diagnostic that is not a finite number ends it in any case.
 #pragma once
 
 #include "core/state/system.hpp"
@@ -21,11 +21,11 @@ public:
   // The system must outlive it.
   Watchdog(MPI_Comm communicator, const System& system, std::vector<WatchRule> rules, OutOfBounds out_of_bounds);
 
-  // Judges the figures of the present state; returns new warnings, whole sentences. Throws RunError, with value, limit,
-  // time, step, place, cause and remedy. Collective, the same on every rank.
-  std::vector<std::string> judge(const std::vector<Figure>& figures);
+  // Judges the diagnostics of the present state; returns new warnings, whole sentences. Throws RunError, with value,
+  // limit, time, step, place, cause and remedy. Collective, the same on every rank.
+  std::vector<std::string> judge(const std::vector<Diagnostic>& diagnostics);
 
-  // The figures that were beyond their first limit when last judged, e.g. "mean_density_deviation -0.0031"; empty:
+  // The diagnostics that were beyond their first limit when last judged, e.g. "mean_density_deviation -0.0031"; empty:
   // none.
   std::string notice() const;
 
@@ -38,7 +38,7 @@ private:
   };
 
   std::string moment() const;
-  std::string location_of(const std::string& figure) const;
+  std::string location_of(const std::string& diagnostic) const;
 
   MPI_Comm communicator_;
   const System& system_;

@@ -64,11 +64,11 @@ void ModelFluidField::step_ended(const dem::GrainDynamics& grains, double time) 
   for (std::size_t s = 0; s < velocity_.size(); ++s) update_flow(s);
 }
 
-std::vector<Figure> ModelFluidField::figures(double time) const {
+std::vector<Diagnostic> ModelFluidField::diagnostics(double time) const {
   if (!ramp_) return {};
   return {{"shields_number", "1", shields_number()},
           {"reynolds_number", "1", parameters_.numbers.reynolds * std::sqrt(ramp_->factor())},
-          {hold_left_figure, "s", ramp_->hold_left(time)}};
+          {hold_left_diagnostic, "s", ramp_->hold_left(time)}};
 }
 
 void ModelFluidField::save(ArchiveWriter& archive) const {

@@ -33,8 +33,8 @@ public:
   void step_ended(const dem::GrainDynamics& grains, double time) override;
   // With a ramp: shields_number; reynolds_number, Re_* as printed, which grows with its root; and hold_left (s): the
   // motion since the last step up counts as one without end when none is left.
-  std::vector<Figure> figures(double time) const override;
-  static constexpr const char* hold_left_figure = "hold_left";
+  std::vector<Diagnostic> diagnostics(double time) const override;
+  static constexpr const char* hold_left_diagnostic = "hold_left";
   void save(ArchiveWriter& archive) const override;
   void load(ArchiveReader& archive) override;
 

@@ -21,8 +21,8 @@ class ShieldsRamp {
 public:
   explicit ShieldsRamp(const ShieldsRampParameters& parameters) : parameters_(parameters) {}
 
-  // To be called after every step with the figures of all free grains, the speed in v_0 of the fluid as it is: raises
-  // the Shields number, if it is time, and returns whether it has.
+  // To be called after every step with the diagnostics of all free grains, the speed in v_0 of the fluid as it is:
+  // raises the Shields number, if it is time, and returns whether it has.
   bool advance(double time, double largest_speed, double largest_acceleration);
 
   // To be called after every step when watches_share(), with the share of free grains faster than moving_speed().

@@ -33,10 +33,10 @@ public:
   virtual void observe(const Snapshot& snapshot) = 0;
 
   // The latest measurement, the same on every rank: columns of the series. Their names and order never change.
-  virtual std::vector<Figure> figures() const = 0;
+  virtual std::vector<Diagnostic> diagnostics() const = 0;
 
   // What the run has come to so far, the same on every rank: means for the summary.
-  virtual std::vector<Figure> results() const { return figures(); }
+  virtual std::vector<Diagnostic> results() const { return diagnostics(); }
 
   // The same as arrays, for profiles.h5.
   virtual std::vector<Profile> profiles() const { return {}; }

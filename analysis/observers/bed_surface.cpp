@@ -40,7 +40,7 @@ BedSurface::BedSurface(MPI_Comm communicator, const PeriodicBox& box, const BedS
       pixels_(communicator, box, keys.pixel.value_or(diameter / 25.0), keys.static_time),
       surface_sums_(static_cast<std::size_t>(pixels_.columns()), 0.0),
       surface_counts_(surface_sums_) {
-  sums_.assign(figures().size(), 0.0);
+  sums_.assign(diagnostics().size(), 0.0);
 }
 
 void BedSurface::observe(const Snapshot& snapshot) {
@@ -60,8 +60,8 @@ void BedSurface::observe(const Snapshot& snapshot) {
   if (snapshot.time < from) return;
   ++measurements_;
   std::size_t n = 0;
-  for (const Figure& figure : figures())
-    if (figure.name != static_height) sums_[n++] += figure.value;
+  for (const Diagnostic& diagnostic : diagnostics())
+    if (diagnostic.name != static_height) sums_[n++] += diagnostic.value;
   sums_[n] += bulk_;
 }
 
@@ -84,23 +84,25 @@ double BedSurface::hydraulic_radius() const {
   return flow_depth() * layers_.width() / (layers_.width() + flow_->side_walls * flow_depth());
 }
 
-std::vector<Figure> BedSurface::figures() const {
-  std::vector<Figure> figures{{"bed_height", "m", bed_height_}, {static_height, "m", mean_height(pixels_.surface())}};
-  if (!flow_) return figures;
-  figures.push_back({"flow_depth", "m", flow_depth()});
-  figures.push_back({"hydraulic_radius", "m", hydraulic_radius()});
-  if (flow_->shields_stress <= 0.0) return figures;
-  figures.push_back({"bed_stress", "Pa", bed_stress_});
-  figures.push_back({"shields_number", "1", bed_stress_ / flow_->shields_stress});
-  return figures;
+std::vector<Diagnostic> BedSurface::diagnostics() const {
+  std::vector<Diagnostic> diagnostics{{"bed_height", "m", bed_height_},
+                                      {static_height, "m", mean_height(pixels_.surface())}};
+  if (!flow_) return diagnostics;
+  diagnostics.push_back({"flow_depth", "m", flow_depth()});
+  diagnostics.push_back({"hydraulic_radius", "m", hydraulic_radius()});
+  if (flow_->shields_stress <= 0.0) return diagnostics;
+  diagnostics.push_back({"bed_stress", "Pa", bed_stress_});
+  diagnostics.push_back({"shields_number", "1", bed_stress_ / flow_->shields_stress});
+  return diagnostics;
 }
 
-std::vector<Figure> BedSurface::results() const {
+std::vector<Diagnostic> BedSurface::results() const {
   const double count = static_cast<double>(measurements_);  // means of nothing are not a number
-  std::vector<Figure> results;
+  std::vector<Diagnostic> results;
   std::size_t n = 0;
-  for (const Figure& figure : figures())
-    if (figure.name != static_height) results.push_back({figure.name + "_mean", figure.unit, sums_[n++] / count});
+  for (const Diagnostic& diagnostic : diagnostics())
+    if (diagnostic.name != static_height)
+      results.push_back({diagnostic.name + "_mean", diagnostic.unit, sums_[n++] / count});
   results.push_back({"bulk_solid_fraction_mean", "1", sums_[n] / count});
   const double pictures = static_cast<double>(pictures_);
   results.push_back({static_height + "_mean", "m", mean_height(means_of(surface_sums_, surface_counts_))});

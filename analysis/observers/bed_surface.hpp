@@ -67,11 +67,11 @@ public:
   // bed_height (m), static_bed_height (m, mean of the columns that have a static pixel; not a number before the first
   // static_time is over); over a bed in a fluid flow_depth (m), hydraulic_radius (m), and where a slope, a steering
   // force or a moving top drives the flow bed_stress (Pa), shields_number (1).
-  std::vector<Figure> figures() const override;
+  std::vector<Diagnostic> diagnostics() const override;
 
   // The means of all of these (with _mean), bulk_solid_fraction_mean, static_share_mean (1: columns with a static
   // pixel), mean_from (s), measurements, static_pictures.
-  std::vector<Figure> results() const override;
+  std::vector<Diagnostic> results() const override;
 
   // x (m, middle of the column), static_surface (m: mean over the pictures in which the column has a static pixel),
   // latest_static_surface (m).
@@ -96,7 +96,7 @@ private:
   double bed_height_ = 0.0, bulk_ = 0.0, bed_stress_ = 0.0;  // m, 1, Pa: latest
   StaticPixels pixels_;
   std::int64_t seen_step_ = -1, measurements_ = 0, pictures_ = 0;
-  std::vector<double> sums_;            // of the figures but static_bed_height, and of the bulk's solid fraction
+  std::vector<double> sums_;            // of the diagnostics but static_bed_height, and of the bulk's solid fraction
   std::vector<double> surface_sums_;    // m, of each column
   std::vector<double> surface_counts_;  // of each column: pictures in which it has a static pixel
 };

@@ -174,7 +174,7 @@ std::vector<GrainRing> Entrainment::rings_on_first_rank(const std::vector<Global
   return rings;
 }
 
-std::vector<Figure> Entrainment::figures() const {
+std::vector<Diagnostic> Entrainment::diagnostics() const {
   return {{"watched_grains", "1", static_cast<double>(watched_count_)},
           {"entrainments", "1", static_cast<double>(events_)}};
 }
@@ -190,9 +190,9 @@ Entrainment::Shares Entrainment::shares() const {
   return found;
 }
 
-std::vector<Figure> Entrainment::results() const {
+std::vector<Diagnostic> Entrainment::results() const {
   const Shares found = shares();
-  std::vector<Figure> results = figures();
+  std::vector<Diagnostic> results = diagnostics();
   results.push_back({"entrainments_with_share", "1", static_cast<double>(shares_)});
   results.push_back({"couple_share_mean", "1", found.mean});
   results.push_back({"couple_share_deviation", "1", found.deviation});

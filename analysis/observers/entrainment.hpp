@@ -68,13 +68,13 @@ public:
   void observe(const Snapshot& snapshot) override;  // a step seen before does not count again
 
   // watched_grains, entrainments (1: so far).
-  std::vector<Figure> figures() const override;
+  std::vector<Diagnostic> diagnostics() const override;
   // These; entrainments_with_share, couple_share_mean, couple_share_deviation, couple_share_error (1; 0 where there are
   // too few events).
-  std::vector<Figure> results() const override;
+  std::vector<Diagnostic> results() const override;
   std::vector<std::string> remarks() const override;
 
-  // One event for each start, event_000001 and so on. Figures: onset_time (s), radius (m), couple_share and
+  // One event for each start, event_000001 and so on. Diagnostics: onset_time (s), radius (m), couple_share and
   // largest_torque_ratio (1, as Entraining has them). Arrays: id, rest_position (m), submerged_weight (N); [sample]:
   // time and those of GrainRecord; with a hinge hinge_partners, hinge_points (m), hinge_axis, and [sample]
   // fluid_torque, couple_torque, critical_torque (N m). Of each contact of each sample: contact_sample,

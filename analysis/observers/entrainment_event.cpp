@@ -95,10 +95,10 @@ Entraining entraining_of(const EntrainedGrain& grain, const GrainRing& ring, dou
 Event event_of(const std::string& name, const EntrainedGrain& grain, const GrainRing& ring,
                const Entraining& entraining) {
   Event event{name, ring.back().time, {}, {}, {}};
-  event.figures = {{"onset_time", "s", ring[entraining.onset].time},
-                   {"radius", "m", grain.radius},
-                   {"couple_share", "1", entraining.couple_share()},
-                   {"largest_torque_ratio", "1", entraining.largest_torque_ratio()}};
+  event.diagnostics = {{"onset_time", "s", ring[entraining.onset].time},
+                       {"radius", "m", grain.radius},
+                       {"couple_share", "1", entraining.couple_share()},
+                       {"largest_torque_ratio", "1", entraining.largest_torque_ratio()}};
   event.numbers.push_back({"id", {grain.id}});
   Profile rest{"rest_position", "m", {"x", "y", "z"}, {3}, {}},
       weight{"submerged_weight", "N", {"x", "y", "z"}, {3}, {}};

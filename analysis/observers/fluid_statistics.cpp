@@ -74,13 +74,13 @@ FluidStatistics::Means FluidStatistics::means_of(const WideSum* sums, double cel
   return means;
 }
 
-std::vector<Figure> FluidStatistics::results() const {
+std::vector<Diagnostic> FluidStatistics::results() const {
   std::vector<WideSum> all(quantities);
   for (int z = 0; z < cells_[2]; ++z) {
     const std::vector<WideSum> sums = layer(z);
     for (int q = 0; q < quantities; ++q) all[q].add(sums[q]);
   }
-  std::vector<Figure> results{{"mean_velocity_x", "m/s", means_of(all.data(), 1.0).velocity[0]}};
+  std::vector<Diagnostic> results{{"mean_velocity_x", "m/s", means_of(all.data(), 1.0).velocity[0]}};
   if (measurements_ == 0) forget_values(results);
   results.push_back({"mean_from", "s", keys_.from});
   results.push_back({"measurements", "1", static_cast<double>(measurements_)});

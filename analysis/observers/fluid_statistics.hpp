@@ -44,8 +44,8 @@ public:
   std::string name() const override { return "fluid_statistics"; }
   double every() const override { return keys_.every; }
   void observe(const Snapshot& snapshot) override;  // a step seen before does not count again
-  std::vector<Figure> figures() const override { return {}; }
-  std::vector<Figure> results() const override;  // mean_velocity_x (m/s), mean_from (s), measurements (1)
+  std::vector<Diagnostic> diagnostics() const override { return {}; }
+  std::vector<Diagnostic> results() const override;  // mean_velocity_x (m/s), mean_from (s), measurements (1)
 
   // z (m), velocity (m/s: x, y, z), reynolds_stress (m^2/s^2: xx, yy, zz, xy, xz, yz), fluid_fraction (1), over z; and
   // between side walls y (m), section_velocity, section_reynolds_stress, section_fluid_fraction, over z and y. Zero

@@ -25,7 +25,7 @@ void GrainEnergy::observe(const Snapshot& snapshot) {
   momentum_ = Vec3(sums[1], sums[2], sums[3]);
 }
 
-std::vector<Figure> GrainEnergy::figures() const {
+std::vector<Diagnostic> GrainEnergy::diagnostics() const {
   return {{"grain_kinetic_energy", "J", energy_},
           {"grain_momentum_x", "kg m/s", momentum_.x()},
           {"grain_momentum_y", "kg m/s", momentum_.y()},

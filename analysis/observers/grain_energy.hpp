@@ -17,7 +17,7 @@ public:
   void observe(const Snapshot& snapshot) override;
 
   // grain_kinetic_energy (J), grain_momentum_x, _y, _z (kg m/s).
-  std::vector<Figure> figures() const override;
+  std::vector<Diagnostic> diagnostics() const override;
 
   void save(ArchiveWriter&) const override {}  // nothing is remembered between measurements
   bool load(ArchiveReader&) override { return true; }

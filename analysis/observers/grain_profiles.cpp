@@ -100,7 +100,7 @@ void GrainProfiles::give_parts(const GrainView& grains, std::size_t i, const Wei
   }
 }
 
-std::vector<Figure> GrainProfiles::results() const {
+std::vector<Diagnostic> GrainProfiles::results() const {
   return {{"mean_from", "s", keys_.from}, {"measurements", "1", static_cast<double>(measurements_)}};
 }
 

@@ -57,8 +57,8 @@ public:
   std::string name() const override { return "grain_profiles"; }
   double every() const override { return keys_.every; }
   void observe(const Snapshot& snapshot) override;  // a step seen before does not count again
-  std::vector<Figure> figures() const override { return {}; }
-  std::vector<Figure> results() const override;  // mean_from (s), measurements (1)
+  std::vector<Diagnostic> diagnostics() const override { return {}; }
+  std::vector<Diagnostic> results() const override;  // mean_from (s), measurements (1)
 
   // Over z (m, middle of the layer): solid_fraction (1), velocity (m/s: x, y, z), flux (m/s: x, y, z),
   // granular_temperature (m^2/s^2), contact_stress (Pa: xx, xy, xz, yx, ... zz, the force's component first),

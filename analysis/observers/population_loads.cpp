@@ -17,14 +17,14 @@ PopulationLoads::PopulationLoads(MPI_Comm communicator, const PeriodicBox& box, 
       if (!with_fluid_ && source[0] == 'f') continue;
       for (const auto& [what, unit] : {std::pair("force", "N"), std::pair("torque", "N m")})
         for (const char axis : {'x', 'y', 'z'})
-          figures_.push_back({fmt::format("{}_{}_{}_{}", population.name, source, what, axis), unit, 0.0});
+          diagnostics_.push_back({fmt::format("{}_{}_{}_{}", population.name, source, what, axis), unit, 0.0});
     }
 }
 
 void PopulationLoads::observe(const Snapshot& snapshot) {
   const GrainView& grains = snapshot.grains;
   const std::size_t columns = with_fluid_ ? 12 : 6;
-  auto figure = figures_.begin();
+  auto diagnostic = diagnostics_.begin();
   std::vector<double> terms;
   const auto add = [&terms](const Vec3& v) { terms.insert(terms.end(), v.data(), v.data() + 3); };
   for (const Population& population : populations_) {
@@ -39,7 +39,7 @@ void PopulationLoads::observe(const Snapshot& snapshot) {
       add(grains.fluid_force[i]);
       add(arm.cross(grains.fluid_force[i]) + grains.fluid_torque[i]);
     }
-    for (const double sum : reproducible_sums(communicator_, terms, columns)) (figure++)->value = sum;
+    for (const double sum : reproducible_sums(communicator_, terms, columns)) (diagnostic++)->value = sum;
   }
 }
 

@@ -37,7 +37,7 @@ public:
 
   // For each population NAME_contact_force_x, _y, _z (N), NAME_contact_torque_x, ... (N m), and NAME_fluid_force_x,
   // NAME_fluid_torque_x, ...
-  std::vector<Figure> figures() const override { return figures_; }
+  std::vector<Diagnostic> diagnostics() const override { return diagnostics_; }
 
   void save(ArchiveWriter&) const override {}  // nothing is remembered between measurements
   bool load(ArchiveReader&) override { return true; }
@@ -47,7 +47,7 @@ private:
   PeriodicBox box_;
   std::vector<Population> populations_;
   bool with_fluid_;
-  std::vector<Figure> figures_;
+  std::vector<Diagnostic> diagnostics_;
 };
 
 }  // namespace thalweg::analysis

@@ -57,7 +57,7 @@ void Probes::observe(const Snapshot& snapshot) {
   }
 }
 
-std::vector<Figure> Probes::results() const {
+std::vector<Diagnostic> Probes::results() const {
   return {{"probes", "1", static_cast<double>(cells_.size())},
           {"probe_measurements", "1", static_cast<double>(measurements_)}};
 }

@@ -41,9 +41,9 @@ public:
   bool in_passing() const override { return true; }
   void observe(const Snapshot& snapshot) override;  // a step seen before does not count again
 
-  std::vector<Figure> figures() const override { return {}; }
+  std::vector<Diagnostic> diagnostics() const override { return {}; }
   // probes, probe_measurements (1).
-  std::vector<Figure> results() const override;
+  std::vector<Diagnostic> results() const override;
 
   // Fixed: cell_x, cell_y, cell_z of each point, whose centre is half a cell further. Rows: time (s); velocity (m/s)
   // [time, point, axis] and pressure (Pa) [time, point], both NaN while a grain covers the cell's centre.

@@ -73,13 +73,13 @@ public:
   double every() const override { return keys_.every; }
   bool needs_momentum() const override { return true; }
   void observe(const Snapshot& snapshot) override;  // a step seen before, or not booked, does not count
-  std::vector<Figure> figures() const override { return {}; }
+  std::vector<Diagnostic> diagnostics() const override { return {}; }
 
   // mean_from (s), measurements (1), bed_height (m): where, from above, the solid fraction first exceeds half of its
   // maximum; bed_stress (Pa): the driving stress there less the side walls' (its largest where there is no bed);
   // largest_difference (1): of the total stress from the driving stress less the side walls', over the bed stress;
   // largest_difference_at (m); and of the sum of stresses, largest_difference_of_sum, largest_difference_of_sum_at.
-  std::vector<Figure> results() const override;
+  std::vector<Diagnostic> results() const override;
   std::vector<std::string> remarks() const override;
 
   // Over z (m, middle of the layer): thickness (m), solid_fraction (1), grain_velocity, fluid_velocity (m/s: x, y, z),

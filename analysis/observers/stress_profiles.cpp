@@ -176,7 +176,7 @@ StressBalance::Difference StressBalance::largest_difference(const std::vector<La
   return largest;
 }
 
-std::vector<Figure> StressBalance::results() const {
+std::vector<Diagnostic> StressBalance::results() const {
   const std::vector<LayerMeans> layers = all_means();
   const int bed = bed_layer(layers);
   double bed_stress = bed >= 0 ? layers[static_cast<std::size_t>(bed)].left() : 0.0;
@@ -185,12 +185,12 @@ std::vector<Figure> StressBalance::results() const {
   const Difference total = largest_difference(layers, &LayerMeans::total, bed_stress);
   const Difference sum = largest_difference(layers, &LayerMeans::sum, bed_stress);
   const auto height = [this](const Difference& d) { return layers_.middle(d.layer); };
-  std::vector<Figure> results{{"bed_height", "m", bed >= 0 ? layers_.bottom(bed) + layers_.height(bed) : 0.0},
-                              {"bed_stress", "Pa", bed_stress},
-                              {"largest_difference", "1", total.share},
-                              {"largest_difference_at", "m", height(total)},
-                              {"largest_difference_of_sum", "1", sum.share},
-                              {"largest_difference_of_sum_at", "m", height(sum)}};
+  std::vector<Diagnostic> results{{"bed_height", "m", bed >= 0 ? layers_.bottom(bed) + layers_.height(bed) : 0.0},
+                                  {"bed_stress", "Pa", bed_stress},
+                                  {"largest_difference", "1", total.share},
+                                  {"largest_difference_at", "m", height(total)},
+                                  {"largest_difference_of_sum", "1", sum.share},
+                                  {"largest_difference_of_sum_at", "m", height(sum)}};
   if (measurements_ == 0) forget_values(results);
   results.push_back({"mean_from", "s", keys_.from});
   results.push_back({"measurements", "1", static_cast<double>(measurements_)});
@@ -199,9 +199,10 @@ std::vector<Figure> StressBalance::results() const {
 
 std::vector<std::string> StressBalance::remarks() const {
   if (measurements_ == 0) return {"stress balance: nothing was measured"};
-  const std::vector<Figure> r = results();
+  const std::vector<Diagnostic> r = results();
   const auto value = [&r](const std::string& name) {
-    return std::find_if(r.begin(), r.end(), [&name](const Figure& figure) { return figure.name == name; })->value;
+    return std::find_if(r.begin(), r.end(), [&name](const Diagnostic& diagnostic) { return diagnostic.name == name; })
+        ->value;
   };
   return {fmt::format(
       "largest difference of the total stress from the driving stress{}: {:.2g} % of the bed stress of {:.4g} Pa, at z "

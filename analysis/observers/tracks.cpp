@@ -45,7 +45,7 @@ void Tracks::go_on(GrainRecord& record, const GrainRecord& last, double interval
   record.set(GrainRecord::position, position);
 }
 
-std::vector<Figure> Tracks::results() const {
+std::vector<Diagnostic> Tracks::results() const {
   return {{"tracked_grains", "1", static_cast<double>(grains_.size())},
           {"track_measurements", "1", static_cast<double>(measurements_)}};
 }

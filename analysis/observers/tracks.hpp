@@ -40,9 +40,9 @@ public:
   bool in_passing() const override { return true; }
   void observe(const Snapshot& snapshot) override;  // a step seen before does not count again
 
-  std::vector<Figure> figures() const override { return {}; }
+  std::vector<Diagnostic> diagnostics() const override { return {}; }
   // tracked_grains, track_measurements (1).
-  std::vector<Figure> results() const override;
+  std::vector<Diagnostic> results() const override;
 
   // Fixed: id. Rows: time (s), [time] and of each grain in the order of ids, [time, grain, axis]: those of GrainRecord.
   bool has_records() const override { return true; }

@@ -110,33 +110,33 @@ void TransportRate::count_velocities(const std::vector<Body>& bodies) {
   for (std::size_t c = 0; c < counts.size(); ++c) velocities_[c / cells].counts()[c % cells] += counts[c];
 }
 
-std::vector<Figure> TransportRate::figures() const {
-  std::vector<Figure> figures{{"q_s", "m^2/s", latest_.q_s}};
-  if (scales_.have_q_star()) figures.push_back({"q_star", "1", latest_.q_s / scales_.flux()});
-  figures.push_back({"moving_grains", "1", static_cast<double>(latest_.moving)});
-  figures.push_back({"moving_share", "1", latest_.share()});
-  figures.push_back({"activity", "m", latest_.activity});
-  figures.push_back({"largest_grain_speed", "m/s", latest_.largest_speed});
-  return figures;
+std::vector<Diagnostic> TransportRate::diagnostics() const {
+  std::vector<Diagnostic> diagnostics{{"q_s", "m^2/s", latest_.q_s}};
+  if (scales_.have_q_star()) diagnostics.push_back({"q_star", "1", latest_.q_s / scales_.flux()});
+  diagnostics.push_back({"moving_grains", "1", static_cast<double>(latest_.moving)});
+  diagnostics.push_back({"moving_share", "1", latest_.share()});
+  diagnostics.push_back({"activity", "m", latest_.activity});
+  diagnostics.push_back({"largest_grain_speed", "m/s", latest_.largest_speed});
+  return diagnostics;
 }
 
 double TransportRate::interval() const {
   return q_s_.count() > 1 ? (last_time_ - first_time_) / static_cast<double>(q_s_.count() - 1) : 0.0;
 }
 
-std::vector<Figure> TransportRate::results() const {
+std::vector<Diagnostic> TransportRate::results() const {
   const CorrelatedMean::Error error = q_s_.error();
   const TrendVerdict verdict = trend_of(q_s_);
   const double values = static_cast<double>(std::max<std::int64_t>(1, q_s_.count()));
-  std::vector<Figure> results{{"q_s_mean", "m^2/s", q_s_.mean()},
-                              {"q_s_deviation", "m^2/s", q_s_.deviation()},
-                              {"q_s_error", "m^2/s", error.of_mean},
-                              {"q_s_independent", "1", error.independent},
-                              {"q_s_error_holds", "1", error.holds() ? 1.0 : 0.0},
-                              {"q_s_correlation_time", "s", 0.5 * values / error.independent * interval()},
-                              {"q_s_drift", "m^2/s", verdict.drift},
-                              {"q_s_drift_error", "m^2/s", verdict.error},
-                              {"steady", "1", verdict.as_number()}};
+  std::vector<Diagnostic> results{{"q_s_mean", "m^2/s", q_s_.mean()},
+                                  {"q_s_deviation", "m^2/s", q_s_.deviation()},
+                                  {"q_s_error", "m^2/s", error.of_mean},
+                                  {"q_s_independent", "1", error.independent},
+                                  {"q_s_error_holds", "1", error.holds() ? 1.0 : 0.0},
+                                  {"q_s_correlation_time", "s", 0.5 * values / error.independent * interval()},
+                                  {"q_s_drift", "m^2/s", verdict.drift},
+                                  {"q_s_drift_error", "m^2/s", verdict.error},
+                                  {"steady", "1", verdict.as_number()}};
   if (scales_.have_q_star()) {
     results.push_back({"q_star_mean", "1", q_s_.mean() / scales_.flux()});
     results.push_back({"q_star_deviation", "1", q_s_.deviation() / scales_.flux()});
@@ -148,7 +148,7 @@ std::vector<Figure> TransportRate::results() const {
   results.push_back({"moving_grains_error", "1", moving_.error().of_mean});
   results.push_back({"moving_share_mean", "1", sum_of_shares_ / values});
   results.push_back({"activity_mean", "m", sum_of_activity_ / values});
-  for (const Figure& of_hops : hops_.results()) results.push_back(of_hops);
+  for (const Diagnostic& of_hops : hops_.results()) results.push_back(of_hops);
   results.push_back({"measured_from", "s", first_time_});
   results.push_back({"measured_until", "s", last_time_});
   if (q_s_.count() == 0) forget_values(results);
@@ -157,7 +157,7 @@ std::vector<Figure> TransportRate::results() const {
   results.push_back({"moving_speed", "m/s", moving_speed_});
   results.push_back({"mean_from", "s", keys_.from});
   results.push_back({"measurements", "1", static_cast<double>(q_s_.count())});
-  for (const Figure& latest : figures()) results.push_back(latest);
+  for (const Diagnostic& latest : diagnostics()) results.push_back(latest);
   return results;
 }
 

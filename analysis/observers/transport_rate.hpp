@@ -70,7 +70,7 @@ public:
 
   // q_s (m^2/s), q_star (1; only in a fluid), moving_grains (1: faster than moving_speed), moving_share (1: of all
   // free grains), activity (m), largest_grain_speed (m/s).
-  std::vector<Figure> figures() const override;
+  std::vector<Diagnostic> diagnostics() const override;
 
   // q_s_mean, q_s_deviation (standard deviation of the measurements), q_s_error (standard error of the mean),
   // q_s_independent (values that the measurements are worth), q_s_error_holds (1, or 0: the run is too short for it,
@@ -79,8 +79,8 @@ public:
   // half of the mean may be hidden); in a fluid q_star_mean, _deviation, _error, _drift,
   // _drift_error; moving_grains_mean and _error, moving_share_mean, activity_mean; those of Hops; reference_diameter,
   // reference_density, moving_speed, mean_from (s), measured_from and measured_until (s: first and last measurement
-  // that counts), measurements; then the latest figures. Means are not a number as long as nothing was measured.
-  std::vector<Figure> results() const override;
+  // that counts), measurements; then the latest diagnostics. Means are not a number as long as nothing was measured.
+  std::vector<Diagnostic> results() const override;
   std::vector<std::string> remarks() const override;  // the mean, its error and whether it is steady
 
   // velocity_edges (m/s), velocity_density (s/m: of x, y, z of moving grains, times the width of a bin the share of all

@@ -94,7 +94,7 @@ void Hops::take_in(const std::vector<double>& ended) {
   sum_of_times_ += sums[1];
 }
 
-std::vector<Figure> Hops::results() const {
+std::vector<Diagnostic> Hops::results() const {
   const auto count = static_cast<double>(lengths_.total());
   const auto of_hops = [count](double value) { return count > 0.0 ? value : std::nan(""); };
   return {{"hops", "1", count},

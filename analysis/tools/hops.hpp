@@ -44,7 +44,7 @@ public:
 
   // hops (1: that have ended), hop_length_mean, hop_length_10, _50, _90 (m: quantiles in per cent, from the histogram),
   // hop_time_mean, hop_time_10, _50, _90 (s). Not a number as long as there was none.
-  std::vector<Figure> results() const;
+  std::vector<Diagnostic> results() const;
 
   // hop_length_edges (m), hop_time_edges (s), hop_length_count, hop_time_count (1: one more than there are edges, the
   // first and the last for what lies outside; hops against the stream are in the first, too).

@@ -1,4 +1,4 @@
-// A measured array with its unit: what an observer reports besides single figures.
+// A measured array with its unit: what an observer reports besides single diagnostics.
 #pragma once
 
 #include <cstdint>

@@ -20,7 +20,7 @@ struct WholeNumbers {
 struct Event {
   std::string name;  // of its group; unique
   double time;       // s
-  std::vector<Figure> figures;
+  std::vector<Diagnostic> diagnostics;
   std::vector<WholeNumbers> numbers;
   std::vector<Profile> arrays;
 };

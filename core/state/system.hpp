@@ -18,28 +18,28 @@
 namespace thalweg {
 
 // A number worth a column in the progress line, the series and the summary.
-struct Figure {
+struct Diagnostic {
   std::string name;  // e.g. "largest_lattice_velocity"
   std::string unit;  // e.g. "m/s", "1" for none
   double value;
 };
 
-// Three figures of a vector: `name`_x, `name`_y, `name`_z.
+// Three diagnostics of a vector: `name`_x, `name`_y, `name`_z.
 inline void add_vector(const std::string& name, const std::string& unit, const Vec3& value,
-                       std::vector<Figure>& figures) {
+                       std::vector<Diagnostic>& diagnostics) {
   const char* const axes[] = {"_x", "_y", "_z"};
-  for (int axis = 0; axis < 3; ++axis) figures.push_back({name + axes[axis], unit, value[axis]});
+  for (int axis = 0; axis < 3; ++axis) diagnostics.push_back({name + axes[axis], unit, value[axis]});
 }
 
 // Sets all values to NaN (null in JSON), as means are before anything has been measured.
-inline void forget_values(std::vector<Figure>& figures) {
-  for (Figure& figure : figures) figure.value = std::numeric_limits<double>::quiet_NaN();
+inline void forget_values(std::vector<Diagnostic>& diagnostics) {
+  for (Diagnostic& diagnostic : diagnostics) diagnostic.value = std::numeric_limits<double>::quiet_NaN();
 }
 
-// The figure of that name, if there is one.
-inline std::optional<double> find_figure(const std::vector<Figure>& figures, const std::string& name) {
-  for (const Figure& figure : figures)
-    if (figure.name == name) return figure.value;
+// The diagnostic of that name, if there is one.
+inline std::optional<double> find_diagnostic(const std::vector<Diagnostic>& diagnostics, const std::string& name) {
+  for (const Diagnostic& diagnostic : diagnostics)
+    if (diagnostic.name == name) return diagnostic.value;
   return std::nullopt;
 }
 
@@ -55,14 +55,14 @@ public:
   virtual double time_step() const = 0;                                      // s
   double time() const { return static_cast<double>(step()) * time_step(); }  // s
 
-  virtual Snapshot snapshot() const = 0;            // valid until the next advance()
-  virtual std::vector<Figure> figures() const = 0;  // state of health; collective, the same on every rank
+  virtual Snapshot snapshot() const = 0;                    // valid until the next advance()
+  virtual std::vector<Diagnostic> diagnostics() const = 0;  // state of health; collective, the same on every rank
 
   // The state as arrays for profiles.h5, where it consists of some; the same on every rank.
   virtual std::vector<Profile> profiles() const { return {}; }
 
-  // Where the figure of that name, one of figures(), takes its value; empty where it belongs to no place. Collective,
-  // the same on every rank; may cost as much as figures().
+  // Where the diagnostic of that name, one of diagnostics(), takes its value; empty where it belongs to no place.
+  // Collective, the same on every rank; may cost as much as diagnostics().
   virtual std::optional<Location> location_of(const std::string&) const { return std::nullopt; }
 
   virtual void save(ArchiveWriter& archive) const = 0;  // everything the next step depends on; collective

@@ -42,7 +42,7 @@ std::array<double, MassAccount::entries> MassAccount::totals() const {
   return totals;
 }
 
-std::vector<Figure> MassAccount::figures(double excess, double owed, const Units& units) const {
+std::vector<Diagnostic> MassAccount::diagnostics(double excess, double owed, const Units& units) const {
   const double cell = units.density * std::pow(units.spacing, 3);
   const std::array<double, entries> t = totals();
   const double by_walls = excess - kept_ - t[links] - t[covered] - t[uncovered] - t[corrections];

@@ -44,7 +44,7 @@ public:
   double kept() const { return kept_; }  // excess and owed mass at the start of the run, which are to stay
 
   // Columns of the series (kg): excess: E as measured; owed: what is still to be returned, over all ranks. Collective.
-  std::vector<Figure> figures(double excess, double owed, const Units& units) const;
+  std::vector<Diagnostic> diagnostics(double excess, double owed, const Units& units) const;
 
   void save(ArchiveWriter& archive) const;
   void load(ArchiveReader& archive);

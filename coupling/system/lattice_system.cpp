@@ -3,7 +3,7 @@
 #include "core/parallel/mpi_session.hpp"
 #include "core/state/same_time_step.hpp"
 #include "coupling/loads/momentum_book.hpp"
-#include "coupling/system/fluid_figures.hpp"
+#include "coupling/system/fluid_diagnostics.hpp"
 #include "coupling/system/fluid_mass.hpp"
 #include "coupling/system/fluid_sample.hpp"
 #include "coupling/system/imported_fluid.hpp"
@@ -268,69 +268,73 @@ void LatticeSystem<Real>::show_grains(Snapshot& s) const {
 }
 
 template <typename Real>
-std::vector<Figure> LatticeSystem<Real>::figures() const {
+std::vector<Diagnostic> LatticeSystem<Real>::diagnostics() const {
   const lbm::FluidSurvey survey = survey_of(fluid_);
   const ExcessMass excess = excess_mass(survey, rest_);
-  std::vector<Figure> figures = speed_figures(survey, parameters_.units);
-  if (!grains_) add_flow_figures(survey, figures);
-  figures.push_back({"mean_density_deviation", "1", excess.mean()});
-  figures.push_back({"fluid_cells", "1", static_cast<double>(excess.cells)});
-  if (grains_) figures.push_back({"largest_overlap", "diameter", grains_->largest_overlap()});
-  if (grains_ && parameters_.wall_forces) add_wall_forces(figures);
-  add_solid_figures(figures);
-  add_extremes(survey, figures);
-  if (grains_) add_grain_figures(survey, figures);
-  return figures;
+  std::vector<Diagnostic> diagnostics = speed_diagnostics(survey, parameters_.units);
+  if (!grains_) add_flow_diagnostics(survey, diagnostics);
+  diagnostics.push_back({"mean_density_deviation", "1", excess.mean()});
+  diagnostics.push_back({"fluid_cells", "1", static_cast<double>(excess.cells)});
+  if (grains_) diagnostics.push_back({"largest_overlap", "diameter", grains_->largest_overlap()});
+  if (grains_ && parameters_.wall_forces) add_wall_forces(diagnostics);
+  add_solid_diagnostics(diagnostics);
+  add_extremes(survey, diagnostics);
+  if (grains_) add_grain_diagnostics(survey, diagnostics);
+  return diagnostics;
 }
 
 template <typename Real>
-void LatticeSystem<Real>::add_flow_figures(const lbm::FluidSurvey& survey, std::vector<Figure>& figures) const {
+void LatticeSystem<Real>::add_flow_diagnostics(const lbm::FluidSurvey& survey,
+                                               std::vector<Diagnostic>& diagnostics) const {
   const double cells = static_cast<double>(std::max<std::int64_t>(1, survey.totals.cells));
   const double force = fluid_.parameters().force.x();
   const Units& units = parameters_.units;
-  figures.push_back({"mean_velocity_x", "m/s", (survey.totals.momentum.x() / cells - 0.5 * force) * units.velocity()});
-  figures.push_back({"body_force_x", "N/m^3", force * units.density * units.acceleration()});
+  diagnostics.push_back(
+      {"mean_velocity_x", "m/s", (survey.totals.momentum.x() / cells - 0.5 * force) * units.velocity()});
+  diagnostics.push_back({"body_force_x", "N/m^3", force * units.density * units.acceleration()});
 }
 
 template <typename Real>
-void LatticeSystem<Real>::add_grain_figures(const lbm::FluidSurvey& survey, std::vector<Figure>& figures) const {
-  figures.push_back({"largest_grain_speed", "m/s", grains_->largest_speed()});
-  const std::vector<Figure> account = mass_.figures(excess_mass(survey, rest_).sum, mass_owed(), parameters_.units);
-  figures.insert(figures.end(), account.begin(), account.end());
-  add_momentum(survey, fluid_.parameters().force, parameters_.units, figures);
+void LatticeSystem<Real>::add_grain_diagnostics(const lbm::FluidSurvey& survey,
+                                                std::vector<Diagnostic>& diagnostics) const {
+  diagnostics.push_back({"largest_grain_speed", "m/s", grains_->largest_speed()});
+  const std::vector<Diagnostic> account =
+      mass_.diagnostics(excess_mass(survey, rest_).sum, mass_owed(), parameters_.units);
+  diagnostics.insert(diagnostics.end(), account.begin(), account.end());
+  add_momentum(survey, fluid_.parameters().force, parameters_.units, diagnostics);
 }
 
 template <typename Real>
-void LatticeSystem<Real>::add_solid_figures(std::vector<Figure>& figures) const {
+void LatticeSystem<Real>::add_solid_diagnostics(std::vector<Diagnostic>& diagnostics) const {
   if (bodies_.solids() == 0) return;
-  const std::vector<Figure> of_fluid = solid_bodies_.figures();
-  figures.insert(figures.end(), of_fluid.begin(), of_fluid.end());
+  const std::vector<Diagnostic> of_fluid = solid_bodies_.diagnostics();
+  diagnostics.insert(diagnostics.end(), of_fluid.begin(), of_fluid.end());
   if (!grains_) return;
   const std::vector<Vec3> of_grains = grains_->wall_forces();
   for (std::size_t s = 0; s < static_cast<std::size_t>(bodies_.solids()); ++s)
-    add_vector(dem::solid_force_figure(s), "N", of_grains[grains_->walls().size() + s], figures);
+    add_vector(dem::solid_force_diagnostic(s), "N", of_grains[grains_->walls().size() + s], diagnostics);
 }
 
 // Of the grains at the end of the step; of the fluid what the walls take from it in the step to come.
 template <typename Real>
-void LatticeSystem<Real>::add_wall_forces(std::vector<Figure>& figures) const {
+void LatticeSystem<Real>::add_wall_forces(std::vector<Diagnostic>& diagnostics) const {
   const std::vector<Vec3> of_grains = grains_->wall_forces();
   const std::array<Vec3, 6> of_fluid = fluid_.wall_forces(bodies_.reference_density());
   std::size_t wall = 0;
   for (std::size_t face = 0; face < of_fluid.size(); ++face) {
     if (decomposition_->periodic()[face / 2]) continue;
     const Vec3 fluid_force = of_fluid[face] * parameters_.units.force();
-    add_vector(fmt::format("wall_force_{}", dem::face_names[face]), "N", of_grains[wall], figures);
-    add_vector(fmt::format("fluid_wall_force_{}", dem::face_names[face]), "N", fluid_force, figures);
+    add_vector(fmt::format("wall_force_{}", dem::face_names[face]), "N", of_grains[wall], diagnostics);
+    add_vector(fmt::format("fluid_wall_force_{}", dem::face_names[face]), "N", fluid_force, diagnostics);
     ++wall;
   }
 }
 
 template <typename Real>
-std::optional<Location> LatticeSystem<Real>::location_of(const std::string& figure) const {
-  if (grains_ && figure == "largest_overlap") return grains_->place_of_deepest_overlap();
-  if (grains_ && figure == "largest_grain_speed") return grains_->place_of_fastest();
-  return place_in_fluid(survey_of(fluid_), parameters_.units, figure);
+std::optional<Location> LatticeSystem<Real>::location_of(const std::string& diagnostic) const {
+  if (grains_ && diagnostic == "largest_overlap") return grains_->place_of_deepest_overlap();
+  if (grains_ && diagnostic == "largest_grain_speed") return grains_->place_of_fastest();
+  return place_in_fluid(survey_of(fluid_), parameters_.units, diagnostic);
 }
 
 template <typename Real>

@@ -21,7 +21,7 @@ namespace thalweg::coupling {
 struct LatticeParameters : FluidParameters {
   LoadRule load = LoadRule::extrapolated;            // of grains
   int sub_steps = 50;                                // DEM steps per lattice step
-  bool wall_forces = false;                          // whether the figures include the forces on walls
+  bool wall_forces = false;                          // whether the diagnostics include the forces on walls
   std::vector<dem::PrescribedMotion> solid_motions;  // SI, of the first solids; the others stand still
 };
 
@@ -49,13 +49,13 @@ public:
   double time_step() const override { return parameters_.units.time_step; }
   Snapshot snapshot() const override;
   // largest_lattice_velocity (1), largest_fluid_speed (m/s), mean_density_deviation (1), fluid_cells (1), those of
-  // add_extremes() (fluid_figures.hpp); those of SolidBodies, of the last step: what the fluid exerts on the surface of
+  // add_extremes() (fluid_diagnostics.hpp); those of SolidBodies, of the last step: what the fluid exerts on the surface of
   // each solid, without the reference pressure.
   // With grains largest_overlap (diameters), largest_grain_speed (m/s), those of MassAccount and of add_momentum(), if
   // asked for wall_force_bottom_x ... and fluid_wall_force_bottom_x ... (N); without grains mean_velocity_x (m/s) and
   // body_force_x (N/m^3). Collective.
-  std::vector<Figure> figures() const override;
-  std::optional<Location> location_of(const std::string& figure) const override;
+  std::vector<Diagnostic> diagnostics() const override;
+  std::optional<Location> location_of(const std::string& diagnostic) const override;
   void save(ArchiveWriter& archive) const override;
   void load(ArchiveReader& archive) override;
   void import_fluid(ArchiveReader& archive, double spacing) override;
@@ -97,10 +97,10 @@ private:
   void open_account();
   void keep_mass();
   void show_grains(Snapshot& s) const;
-  void add_grain_figures(const lbm::FluidSurvey& survey, std::vector<Figure>& figures) const;
-  void add_flow_figures(const lbm::FluidSurvey& survey, std::vector<Figure>& figures) const;
-  void add_wall_forces(std::vector<Figure>& figures) const;
-  void add_solid_figures(std::vector<Figure>& figures) const;
+  void add_grain_diagnostics(const lbm::FluidSurvey& survey, std::vector<Diagnostic>& diagnostics) const;
+  void add_flow_diagnostics(const lbm::FluidSurvey& survey, std::vector<Diagnostic>& diagnostics) const;
+  void add_wall_forces(std::vector<Diagnostic>& diagnostics) const;
+  void add_solid_diagnostics(std::vector<Diagnostic>& diagnostics) const;
 
   std::unique_ptr<Decomposition> decomposition_;
   MPI_Comm communicator_;

@@ -96,17 +96,17 @@ typename SolidBodies<Real>::Loads SolidBodies<Real>::loads() const {
 }
 
 template <typename Real>
-std::vector<Figure> SolidBodies<Real>::figures() const {
+std::vector<Diagnostic> SolidBodies<Real>::diagnostics() const {
   const Loads all = loads();
-  std::vector<Figure> figures;
+  std::vector<Diagnostic> diagnostics;
   for (int s = 0; s < bodies_.solids(); ++s)
     add_vector(fmt::format("solid_{}_force", s), "N", all.forces[static_cast<std::size_t>(s)] * units_.force(),
-               figures);
+               diagnostics);
   for (const Moving& m : moving_)
     if (m.motion.turns())
       add_vector(fmt::format("solid_{}_torque", m.solid), "N m",
-                 all.torques[static_cast<std::size_t>(m.solid)] * units_.torque(), figures);
-  return figures;
+                 all.torques[static_cast<std::size_t>(m.solid)] * units_.torque(), diagnostics);
+  return diagnostics;
 }
 
 template <typename Real>

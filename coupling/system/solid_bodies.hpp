@@ -36,7 +36,7 @@ public:
   };
   Loads loads() const;
   // solid_<n>_force_x, _y, _z (N), and of solids that turn solid_<n>_torque_x, _y, _z (N m). Collective.
-  std::vector<Figure> figures() const;
+  std::vector<Diagnostic> diagnostics() const;
 
   void save(ArchiveWriter& archive) const;
   // Until forget_loaded(), the loads are those of the checkpoint. Throws InputError where the archive does not hold as

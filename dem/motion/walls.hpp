@@ -54,7 +54,7 @@ private:
   WallView seen_as_plate(Vec3 from_point, const PeriodicBox& box) const;
 };
 
-// Names of the faces in cases and figures, in the order of all lists of faces.
+// Names of the faces in cases and diagnostics, in the order of all lists of faces.
 inline constexpr std::array<const char*, 6> face_names{"x_low", "x_high", "y_low", "y_high", "bottom", "top"};
 
 // The face of the box across `axis` (0, 1, 2) at its lower or upper end. velocity: m/s.

@@ -107,7 +107,7 @@ struct AtRestCase {
   bool operator==(const AtRestCase&) const = default;
 };
 
-// A column is steady where its figure `unsteadiness` (continuum/continuum_system.hpp) is below this.
+// A column is steady where its diagnostic `unsteadiness` (continuum/continuum_system.hpp) is below this.
 struct SteadyCase {
   double unsteadiness = 1e-4;
   bool operator==(const SteadyCase&) const = default;

@@ -45,10 +45,10 @@ void add_summary(const YAML::Node& summary, Table& table) {
     if (name == "finished" || name == "reason" || name == "phases" || name == "units") continue;
     if (entry.second.IsScalar()) table.set(with_unit(name, name, units), entry.second.Scalar());
     if (!entry.second.IsMap()) continue;
-    for (const auto& figure : entry.second) {
-      const std::string own = figure.first.Scalar();
+    for (const auto& diagnostic : entry.second) {
+      const std::string own = diagnostic.first.Scalar();
       table.set(with_unit(fmt::format("{}.{}", name, own), own, units),
-                figure.second.IsScalar() ? figure.second.Scalar() : "");
+                diagnostic.second.IsScalar() ? diagnostic.second.Scalar() : "");
     }
   }
 }

@@ -179,7 +179,7 @@ void prepare_folder(const Places& places, const Case& c, const Command& command,
 }
 
 void print_outcome(const RunIdentity& identity, const loop::LoopRecord& record, const System& system,
-                   const Observers& observers, const std::vector<Figure>& bed,
+                   const Observers& observers, const std::vector<Diagnostic>& bed,
                    const std::vector<loop::PhaseShare>& phases, const io::RunFolder& folder, loop::Log& log) {
   log.line("");
   if (!bed.empty()) log.line(final_bed_text(bed));
@@ -224,9 +224,9 @@ std::string rest_remark(const Case& c, const loop::LoopPlan& plan, const loop::L
         "not at rest when last looked at, every {} steps: {:.0f} grains move, and a share of {:g} at rest leaves {}; a "
         "later --until goes on with --restart",
         plan.steps_between_looks_for_enough,
-        find_figure(system.figures(), dem::GrainSystem::restless_figure).value_or(0.0), c.run.until_at_rest->quantile,
-        allowed_restless(c));
-  const double speed = find_figure(system.figures(), dem::GrainSystem::largest_speed_figure).value_or(0.0);
+        find_diagnostic(system.diagnostics(), dem::GrainSystem::restless_diagnostic).value_or(0.0),
+        c.run.until_at_rest->quantile, allowed_restless(c));
+  const double speed = find_diagnostic(system.diagnostics(), dem::GrainSystem::largest_speed_diagnostic).value_or(0.0);
   return fmt::format(
       "not at rest: the fastest grain moves at {:.2g} m/s (run.until_at_rest asks for {:g} m/s and {:g} "
       "m/s^2); a later --until goes on with --restart",
@@ -236,19 +236,19 @@ std::string rest_remark(const Case& c, const loop::LoopPlan& plan, const loop::L
 // What may finish the run before its time.
 void set_end(const Case& c, loop::LoopPlan& plan) {
   if (c.run.until_at_rest && c.run.until_at_rest->quantile < 1.0) {
-    plan.enough = {{dem::GrainSystem::restless_figure, static_cast<double>(allowed_restless(c) + 1)}};
+    plan.enough = {{dem::GrainSystem::restless_diagnostic, static_cast<double>(allowed_restless(c) + 1)}};
     plan.enough_means = fmt::format("a share of {:g} of the grains at rest", c.run.until_at_rest->quantile);
   } else if (c.run.until_at_rest) {
-    plan.enough = {{dem::GrainSystem::largest_speed_figure, c.run.until_at_rest->largest_speed},
-                   {dem::GrainSystem::largest_acceleration_figure, c.run.until_at_rest->largest_acceleration}};
+    plan.enough = {{dem::GrainSystem::largest_speed_diagnostic, c.run.until_at_rest->largest_speed},
+                   {dem::GrainSystem::largest_acceleration_diagnostic, c.run.until_at_rest->largest_acceleration}};
     plan.enough_means = "all grains at rest";
   } else if (c.run.until_steady) {
-    plan.enough = {{continuum::ContinuumSystem::unsteadiness_figure, c.run.until_steady->unsteadiness}};
+    plan.enough = {{continuum::ContinuumSystem::unsteadiness_diagnostic, c.run.until_steady->unsteadiness}};
     plan.enough_means = "steady";
     plan.steps_between_looks_for_enough = 1;  // its steps are long
   } else if (c.system == SystemKind::model_fluid && c.model_fluid.ramp) {
     plan.enough = {
-        {model_fluid::ModelFluidField::hold_left_figure, std::numeric_limits<double>::min()}};  // none is left
+        {model_fluid::ModelFluidField::hold_left_diagnostic, std::numeric_limits<double>::min()}};  // none is left
     plan.enough_means = "motion without end";
     plan.steps_between_looks_for_enough = 20;  // grains that take off are soon too fast for the time step
   }
@@ -360,7 +360,7 @@ Outcome run_case(Command command, MPI_Comm communicator, loop::WallClock::time_p
     throw told;
   }
   const std::vector<loop::PhaseShare> phases = loop::collect_phases(communicator, *system, time_loop);
-  const std::vector<Figure> bed = final_bed(communicator, c, *system);
+  const std::vector<Diagnostic> bed = final_bed(communicator, c, *system);
   identity.memory = memory_use(communicator);
   print_outcome(identity, time_loop.record(), *system, observers, bed, phases, places.folder, log);
   if (const std::string remark = rest_remark(c, plan, time_loop.record(), *system); !remark.empty()) log.line(remark);

@@ -10,24 +10,24 @@
 
 namespace thalweg::driver {
 
-std::vector<Figure> final_bed(MPI_Comm communicator, const Case& c, const System& system) {
+std::vector<Diagnostic> final_bed(MPI_Comm communicator, const Case& c, const System& system) {
   const Snapshot snapshot = system.snapshot();
   if (snapshot.grains.global_count == 0 || periodic_axes(c.domain)[2]) return {};
   const auto surface = make_observer(analysis::BedSurfaceKeys{}, run_facts(c),
                                      {communicator, *snapshot.decomposition, system.time_step()});
   surface->observe(snapshot);
-  std::vector<Figure> bed;
-  for (const Figure& figure : surface->figures())
-    if (!std::isnan(figure.value)) bed.push_back(figure);  // no pixel is known to be static after one look
-  const double fraction = find_figure(surface->results(), "bulk_solid_fraction_mean").value_or(0.0);
+  std::vector<Diagnostic> bed;
+  for (const Diagnostic& diagnostic : surface->diagnostics())
+    if (!std::isnan(diagnostic.value)) bed.push_back(diagnostic);  // no pixel is known to be static after one look
+  const double fraction = find_diagnostic(surface->results(), "bulk_solid_fraction_mean").value_or(0.0);
   bed.insert(bed.begin() + 1, {"porosity", "1", 1.0 - fraction});
   if (fraction < loosest_bed) bed.resize(2);
   return bed;
 }
 
-std::string final_bed_text(const std::vector<Figure>& bed) {
+std::string final_bed_text(const std::vector<Diagnostic>& bed) {
   if (bed.empty()) return {};
-  const auto value = [&bed](const char* name) { return find_figure(bed, name); };
+  const auto value = [&bed](const char* name) { return find_diagnostic(bed, name); };
   if (*value("porosity") > 1.0 - loosest_bed)
     return fmt::format("no bed at the end: the grains below {:.4g} m have a porosity of {:.3g}", *value("bed_height"),
                        *value("porosity"));

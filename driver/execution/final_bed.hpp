@@ -15,9 +15,9 @@ namespace thalweg::driver {
 // bed), and under a fluid flow_depth and hydraulic_radius (m) and, where something drives the flow, bed_stress (Pa) and
 // shields_number; of grains too loose to be a bed only the first two. Empty without grains, and where z is periodic.
 // Collective; the same on every rank.
-std::vector<Figure> final_bed(MPI_Comm communicator, const Case& c, const System& system);
+std::vector<Diagnostic> final_bed(MPI_Comm communicator, const Case& c, const System& system);
 
 // The same in words; empty where there are none.
-std::string final_bed_text(const std::vector<Figure>& bed);
+std::string final_bed_text(const std::vector<Diagnostic>& bed);
 
 }  // namespace thalweg::driver

@@ -15,23 +15,23 @@
 namespace thalweg::driver {
 
 // What is in every row of the series.
-static std::vector<Figure> constants_of(const Case& c) {
+static std::vector<Diagnostic> constants_of(const Case& c) {
   if (c.grains.empty()) return {};
   const ReferenceGrain reference = reference_grain(c);
   return {{"reference_diameter", "m", reference.diameter}, {"reference_density", "kg/m^3", reference.density}};
 }
 
-static std::vector<io::SeriesTable::Column> series_columns(const std::vector<Figure>& row,
-                                                           const std::vector<Figure>& constants) {
+static std::vector<io::SeriesTable::Column> series_columns(const std::vector<Diagnostic>& row,
+                                                           const std::vector<Diagnostic>& constants) {
   std::vector<io::SeriesTable::Column> columns;
-  for (const auto* figures : {&row, &constants})
-    for (const Figure& figure : *figures) columns.push_back({figure.name, figure.unit});
+  for (const auto* diagnostics : {&row, &constants})
+    for (const Diagnostic& diagnostic : *diagnostics) columns.push_back({diagnostic.name, diagnostic.unit});
   return columns;
 }
 
 RunOutput::RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& folder, const System& system,
-                     const Observers& observers, const std::vector<Figure>& row, std::map<std::string, double> since,
-                     std::optional<double> continue_from)
+                     const Observers& observers, const std::vector<Diagnostic>& row,
+                     std::map<std::string, double> since, std::optional<double> continue_from)
     : communicator_(communicator),
       case_(c),
       folder_(folder),
@@ -111,7 +111,7 @@ void RunOutput::write_solids(double time, std::int64_t step) {
 void RunOutput::add_to(loop::LoopPlan& plan) {
   const double time_step = system_.time_step();
   plan.series = Schedule(case_.output.series.every, time_step);
-  plan.write_row = [this](double time, std::int64_t, const std::vector<Figure>& row) { write_row(time, row); };
+  plan.write_row = [this](double time, std::int64_t, const std::vector<Diagnostic>& row) { write_row(time, row); };
   plan.checkpoint = Schedule(case_.output.checkpoint.every, time_step);
   plan.checkpoint_wall = case_.output.checkpoint.every_wall;
   plan.write_checkpoint = [this](const loop::LoopRecord& record) { return write_checkpoint(record); };
@@ -130,10 +130,10 @@ void RunOutput::add_to(loop::LoopPlan& plan) {
                             [this](const Snapshot&) { add_records(); }});
 }
 
-void RunOutput::write_row(double time, const std::vector<Figure>& measured) {
+void RunOutput::write_row(double time, const std::vector<Diagnostic>& measured) {
   std::vector<double> values;
-  for (const auto* figures : {&measured, &std::as_const(constants_)})
-    for (const Figure& figure : *figures) values.push_back(figure.value);
+  for (const auto* diagnostics : {&measured, &std::as_const(constants_)})
+    for (const Diagnostic& diagnostic : *diagnostics) values.push_back(diagnostic.value);
   series_->append(time, values);
 }
 

@@ -31,7 +31,7 @@ public:
   // folder's own series; empty: new series. Throws InputError where the folder has series or records of another kind,
   // and changes nothing. Everything referred to must outlive this.
   RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& folder, const System& system,
-            const Observers& observers, const std::vector<Figure>& row, std::map<std::string, double> since,
+            const Observers& observers, const std::vector<Diagnostic>& row, std::map<std::string, double> since,
             std::optional<double> continue_from);
 
   // Begins the files, or takes them up: what is later than the state the run goes on from is removed. Collective; the
@@ -47,7 +47,7 @@ private:
   void add_fluid(const std::filesystem::path& folder, const std::string& name, const io::FluidOutputKeys& keys);
   void begin_solids();
   void write_solids(double time, std::int64_t step);
-  void write_row(double time, const std::vector<Figure>& measured);
+  void write_row(double time, const std::vector<Diagnostic>& measured);
   std::uint64_t write_checkpoint(const loop::LoopRecord& record);  // bytes, on the first rank
   void write_profiles();
   void add_records();
@@ -62,7 +62,7 @@ private:
   std::map<std::string, double> since_;
   std::optional<double> continue_from_;                     // the time of the system's state, s
   std::string kept_case_;                                   // for checkpoints
-  std::vector<Figure> constants_;                           // of the run, in every row of the series
+  std::vector<Diagnostic> constants_;                       // of the run, in every row of the series
   std::vector<io::SeriesTable::Column> columns_;            // of the series
   std::unique_ptr<io::SeriesTable> series_;                 // from begin() on, if there is to be one
   std::vector<std::pair<double, io::GrainSeries>> grains_;  // each with the time between its frames, s

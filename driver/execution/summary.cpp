@@ -8,11 +8,11 @@ namespace thalweg::driver {
 
 namespace {
 
-io::JsonObject figures_as_json(const std::vector<Figure>& figures, io::JsonObject& units) {
+io::JsonObject diagnostics_as_json(const std::vector<Diagnostic>& diagnostics, io::JsonObject& units) {
   io::JsonObject object;
-  for (const Figure& figure : figures) {
-    object.set(figure.name, figure.value);
-    units.set(figure.name, figure.unit);
+  for (const Diagnostic& diagnostic : diagnostics) {
+    object.set(diagnostic.name, diagnostic.value);
+    units.set(diagnostic.name, diagnostic.unit);
   }
   return object;
 }
@@ -20,7 +20,7 @@ io::JsonObject figures_as_json(const std::vector<Figure>& figures, io::JsonObjec
 }  // namespace
 
 io::JsonObject summary_of(const RunIdentity& identity, const System& system, const loop::LoopRecord& record,
-                          const Observers& observers, const RunHistory& run_history, const std::vector<Figure>& bed,
+                          const Observers& observers, const RunHistory& run_history, const std::vector<Diagnostic>& bed,
                           const std::vector<loop::PhaseShare>& phases) {
   const loop::Speeds speeds = loop::speeds_of(system, record);
   io::JsonObject summary;
@@ -53,12 +53,13 @@ io::JsonObject summary_of(const RunIdentity& identity, const System& system, con
                               .set("share", phase.share));
   summary.set("phases", table);
   summary.set("warnings_at_start", identity.warnings).set("warnings", record.warnings);
-  io::JsonObject units;  // of figures and results, by name
-  summary.set("figures", figures_as_json(record.figures, units)).set("largest", figures_as_json(record.largest, units));
+  io::JsonObject units;  // of diagnostics and results, by name
+  summary.set("figures", diagnostics_as_json(record.diagnostics, units))
+      .set("largest", diagnostics_as_json(record.largest, units));
   summary.set("largest_from", record.largest_from);
   for (const auto& observer : observers)
-    summary.set(observer->name(), figures_as_json(run_history.results_of(*observer), units));
-  if (!bed.empty()) summary.set("bed", figures_as_json(bed, units));
+    summary.set(observer->name(), diagnostics_as_json(run_history.results_of(*observer), units));
+  if (!bed.empty()) summary.set("bed", diagnostics_as_json(bed, units));
   if (identity.reference) units.set("reference_diameter", "m").set("reference_density", "kg/m^3");
   summary.set("units", units);
   return summary;

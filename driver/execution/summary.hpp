@@ -29,7 +29,7 @@ struct RunIdentity {
 
 // summary.json of a run that has ended in whatever way. `bed` (final_bed.hpp) and `phases` may be empty.
 io::JsonObject summary_of(const RunIdentity& identity, const System& system, const loop::LoopRecord& record,
-                          const Observers& observers, const RunHistory& run_history, const std::vector<Figure>& bed,
+                          const Observers& observers, const RunHistory& run_history, const std::vector<Diagnostic>& bed,
                           const std::vector<loop::PhaseShare>& phases);
 
 }  // namespace thalweg::driver

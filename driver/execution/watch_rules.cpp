@@ -37,7 +37,7 @@ constexpr double suspicious_overlap = 0.1, impossible_overlap = 0.5;  // diamete
 constexpr double suspicious_speed = 2.0, impossible_speed = 5.0;      // times the expected
 
 auto always(double warn, double stop) {
-  return [limits = WatchLimits{std::min(warn, stop), stop}](const std::vector<Figure>&) { return limits; };
+  return [limits = WatchLimits{std::min(warn, stop), stop}](const std::vector<Diagnostic>&) { return limits; };
 }
 
 double oscillation_speed(const std::optional<dem::Oscillation>& oscillation) {
@@ -203,8 +203,8 @@ void add_grain_rules(const Case& c, std::vector<WatchRule>& rules) {
   const double unit = has_fluid(c) ? units_of(c).velocity() : never;
   rules.push_back(
       {"largest_grain_speed", Side::above,
-       [expected, unit](const std::vector<Figure>& figures) {
-         const double speed = expected + find_figure(figures, "largest_fluid_speed").value_or(0.0);
+       [expected, unit](const std::vector<Diagnostic>& diagnostics) {
+         const double speed = expected + find_diagnostic(diagnostics, "largest_fluid_speed").value_or(0.0);
          const double stop = std::min(impossible_speed * speed, broken_lattice_velocity * unit);
          return WatchLimits{std::min({suspicious_speed * speed, fast_lattice_velocity * unit, stop}), stop};
        },

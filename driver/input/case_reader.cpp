@@ -22,7 +22,8 @@
 namespace thalweg::driver {
 namespace {
 
-constexpr double column_time_step = 5.0;  // s, where the user gives none: of figures, and of looks whether it is steady
+constexpr double column_time_step =
+    5.0;  // s, where the user gives none: of diagnostics, and of looks whether it is steady
 
 // Plausible values for the keys that have no default: a small flume of glass spheres in water.
 Case example_column(Case c) {

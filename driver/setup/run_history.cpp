@@ -7,7 +7,7 @@ namespace thalweg::driver {
 
 namespace {
 
-std::string largest_path(const std::string& figure) { return "largest/" + figure; }
+std::string largest_path(const std::string& diagnostic) { return "largest/" + diagnostic; }
 std::string since_path(const std::string& observer) { return "run/since_" + observer; }
 
 std::string interval_path(const std::string& observer) { return "run/interval_" + observer; }
@@ -29,8 +29,8 @@ bool has_other_weights(ArchiveReader& archive, const analysis::Observer& observe
 
 void RunHistory::save(ArchiveWriter& archive, const Observers& observers, double series_every) const {
   archive.attribute("largest/from", largest_from);
-  for (const Figure& figure : largest)
-    if (std::isfinite(figure.value)) archive.attribute(largest_path(figure.name), figure.value);
+  for (const Diagnostic& diagnostic : largest)
+    if (std::isfinite(diagnostic.value)) archive.attribute(largest_path(diagnostic.name), diagnostic.value);
   for (const auto& [observer, time] : since) archive.attribute(since_path(observer), time);
   for (const auto& observer : observers) {
     observer->save(archive);
@@ -41,10 +41,10 @@ void RunHistory::save(ArchiveWriter& archive, const Observers& observers, double
 RunHistory RunHistory::load(ArchiveReader& archive, const System& system, Observers& observers, double series_every) {
   RunHistory run_history;
   run_history.largest_from = archive.has("largest/from") ? archive.real_attribute("largest/from") : system.time();
-  for (Figure figure : system.figures())
-    if (archive.has(largest_path(figure.name))) {
-      figure.value = archive.real_attribute(largest_path(figure.name));
-      run_history.largest.push_back(figure);
+  for (Diagnostic diagnostic : system.diagnostics())
+    if (archive.has(largest_path(diagnostic.name))) {
+      diagnostic.value = archive.real_attribute(largest_path(diagnostic.name));
+      run_history.largest.push_back(diagnostic);
     }
   for (const auto& observer : observers) {
     const std::string name = observer->name(), path = since_path(name);
@@ -56,12 +56,12 @@ RunHistory RunHistory::load(ArchiveReader& archive, const System& system, Observ
   return run_history;
 }
 
-std::vector<Figure> RunHistory::results_of(const analysis::Observer& observer) const {
-  std::vector<Figure> results = observer.results();
+std::vector<Diagnostic> RunHistory::results_of(const analysis::Observer& observer) const {
+  std::vector<Diagnostic> results = observer.results();
   const auto begun = since.find(observer.name());
   if (begun == since.end()) return results;
-  const auto from =
-      std::find_if(results.begin(), results.end(), [](const Figure& figure) { return figure.name == "mean_from"; });
+  const auto from = std::find_if(results.begin(), results.end(),
+                                 [](const Diagnostic& diagnostic) { return diagnostic.name == "mean_from"; });
   if (from != results.end())
     from->value = std::max(from->value, begun->second);
   else

@@ -1,4 +1,4 @@
-// What a checkpoint keeps of a run besides its state: how far back its largest figures and its means go.
+// What a checkpoint keeps of a run besides its state: how far back its largest diagnostics and its means go.
 #pragma once
 
 #include "analysis/observer/observer.hpp"
@@ -15,12 +15,12 @@ namespace thalweg::driver {
 using Observers = std::vector<std::unique_ptr<analysis::Observer>>;
 
 struct RunHistory {
-  std::vector<Figure> largest;  // of the system, since largest_from
-  double largest_from = 0.0;    // s, simulated
+  std::vector<Diagnostic> largest;  // of the system, since largest_from
+  double largest_from = 0.0;        // s, simulated
   // s, by the name of an observer: from when its sums count, where that is later than the start of the run.
   std::map<std::string, double> since;
 
-  // Saves the observers as well, and attributes largest/<figure>, largest/from, run/since_<observer> and
+  // Saves the observers as well, and attributes largest/<diagnostic>, largest/from, run/since_<observer> and
   // run/interval_<observer>. series_every: s, the interval of observers that have none of their own. Collective.
   void save(ArchiveWriter& archive, const Observers& observers, double series_every) const;
 
@@ -29,7 +29,7 @@ struct RunHistory {
   static RunHistory load(ArchiveReader& archive, const System& system, Observers& observers, double series_every);
 
   // The results of an observer with the time from which they really count: mean_from, or since where it has none.
-  std::vector<Figure> results_of(const analysis::Observer& observer) const;
+  std::vector<Diagnostic> results_of(const analysis::Observer& observer) const;
 };
 
 }  // namespace thalweg::driver

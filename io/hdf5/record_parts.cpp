@@ -62,9 +62,9 @@ void write(Hdf5Writer& file, const Event& event) {
   const std::string group = event.name + "/";
   file.attribute(group + "time", event.time);
   file.attribute(group + "time_unit", std::string("s"));
-  for (const Figure& figure : event.figures) {
-    file.attribute(group + figure.name, figure.value);
-    file.attribute(group + figure.name + "_unit", figure.unit);
+  for (const Diagnostic& diagnostic : event.diagnostics) {
+    file.attribute(group + diagnostic.name, diagnostic.value);
+    file.attribute(group + diagnostic.name + "_unit", diagnostic.unit);
   }
   for (const WholeNumbers& numbers : event.numbers) write(file, group, numbers);
   for (const Profile& array : event.arrays) write(file, group, array);
@@ -74,7 +74,7 @@ std::size_t bytes_of(const Records& records) {
   std::size_t numbers = 0;
   for (const Profile& array : records.rows) numbers += array.values.size();
   for (const Event& event : records.events) {
-    numbers += 1 + event.figures.size();
+    numbers += 1 + event.diagnostics.size();
     for (const WholeNumbers& list : event.numbers) numbers += list.values.size();
     for (const Profile& array : event.arrays) numbers += array.values.size();
   }

@@ -80,11 +80,11 @@ private:
   std::vector<ClumpState> clumps_;
 };
 
-// The value of a figure by name; fails loudly when there is none.
-inline double value_of(const std::vector<Figure>& figures, const std::string& name) {
-  for (const Figure& figure : figures)
-    if (figure.name == name) return figure.value;
-  throw std::out_of_range("no figure " + name);
+// The value of a diagnostic by name; fails loudly when there is none.
+inline double value_of(const std::vector<Diagnostic>& diagnostics, const std::string& name) {
+  for (const Diagnostic& diagnostic : diagnostics)
+    if (diagnostic.name == name) return diagnostic.value;
+  throw std::out_of_range("no diagnostic " + name);
 }
 
 }  // namespace thalweg::analysis

@@ -13,7 +13,7 @@
 namespace thalweg::loop {
 
 // At step 250 of 0.01 s, in a box of 1 m with cells of 0.1 m and three grains of 0.1 m, dealt out to the ranks; every
-// figure is found in the pore between two of them.
+// diagnostic is found in the pore between two of them.
 class MadeUp : public System {
 public:
   MadeUp() : decomposition_({10, 10, 10}, 0.1, {true, true, true}, {1, 1, 1}) {
@@ -37,9 +37,9 @@ public:
     s.grains.radius = radius_;
     return s;
   }
-  std::vector<Figure> figures() const override { return {}; }
-  std::optional<Location> location_of(const std::string& figure) const override {
-    if (figure == "nowhere") return std::nullopt;
+  std::vector<Diagnostic> diagnostics() const override { return {}; }
+  std::optional<Location> location_of(const std::string& diagnostic) const override {
+    if (diagnostic == "nowhere") return std::nullopt;
     return Location{Vec3(0.95, 0.5, 0.5), {}};
   }
   void save(ArchiveWriter&) const override {}
@@ -56,10 +56,10 @@ private:
   PhaseTimer timer_;
 };
 
-// What a look at these figures throws; empty: nothing.
-inline std::string message_of(Watchdog& dog, const std::vector<Figure>& figures) {
+// What a look at these diagnostics throws; empty: nothing.
+inline std::string message_of(Watchdog& dog, const std::vector<Diagnostic>& diagnostics) {
   try {
-    dog.judge(figures);
+    dog.judge(diagnostics);
   } catch (const RunError& error) {
     return error.what();
   }

@@ -7,10 +7,10 @@ namespace {
 
 TEST(Progress, ShowsWhatAPersonWantsToSee) {
   ProgressState state{1.25, 3.0, 1.25 / 3.0, 83.0, 812.0, 12.34, {}};
-  state.figures = {{"largest_lattice_velocity", "1", 0.081},
-                   {"q_s", "m^2/s", 1.0},
-                   {"q_star", "1", 0.0123},
-                   {"moving_grains", "1", 23.0}};
+  state.diagnostics = {{"largest_lattice_velocity", "1", 0.081},
+                       {"q_s", "m^2/s", 1.0},
+                       {"q_star", "1", 0.0123},
+                       {"moving_grains", "1", 23.0}};
   EXPECT_EQ(progress_line(state),
             "t 1.25      of 3 s   42 %  left 1:23          812 steps/s    12.3 MLUPS  moving 23      q* 0.0123     "
             "u_max 0.081");

@@ -28,7 +28,7 @@ namespace {
 
 const MPI_Comm world = MPI_COMM_WORLD;
 
-// Counts its steps, and has one figure that follows a given function of the step.
+// Counts its steps, and has one diagnostic that follows a given function of the step.
 class Counter : public System {
 public:
   std::function<double(std::int64_t)> lattice_velocity = [](std::int64_t) { return 0.05; };
@@ -48,7 +48,9 @@ public:
     snapshot.step = step_;
     return snapshot;
   }
-  std::vector<Figure> figures() const override { return {{"largest_lattice_velocity", "1", lattice_velocity(step_)}}; }
+  std::vector<Diagnostic> diagnostics() const override {
+    return {{"largest_lattice_velocity", "1", lattice_velocity(step_)}};
+  }
   void save(ArchiveWriter&) const override {}
   void load(ArchiveReader&) override {}
   PhaseTimer& timer() override { return timer_; }
@@ -67,7 +69,7 @@ public:
   bool in_passing() const override { return in_passing_; }
   std::string name() const override { return "looks_on"; }
   void observe(const Snapshot& snapshot) override { steps.push_back(snapshot.step); }
-  std::vector<Figure> figures() const override { return {{"seen", "1", static_cast<double>(steps.size())}}; }
+  std::vector<Diagnostic> diagnostics() const override { return {{"seen", "1", static_cast<double>(steps.size())}}; }
   void save(ArchiveWriter&) const override {}
   bool load(ArchiveReader&) override { return true; }
   std::vector<std::int64_t> steps;
@@ -83,13 +85,13 @@ struct Bench {
     listen_for_stop_signals();  // forget the signal of an earlier test
     plan.until = until;
     plan.watch = {{"largest_lattice_velocity", WatchRule::Side::above,
-                   [](const std::vector<Figure>&) {
+                   [](const std::vector<Diagnostic>&) {
                      return WatchLimits{0.2, 0.3};
                    },
                    "the speed", "Slow down."}};
     plan.series = Schedule(0.003, 0.001);
     plan.checkpoint = Schedule(0.004, 0.001);
-    plan.write_row = [this](double, std::int64_t step, const std::vector<Figure>& row) {
+    plan.write_row = [this](double, std::int64_t step, const std::vector<Diagnostic>& row) {
       rows.push_back(step);
       columns = row.size();
     };
@@ -217,8 +219,8 @@ TEST(TimeLoop, EndsWhereASumHasLeftItsRangeBeforeAnythingIsWritten) {
   EXPECT_EQ(bench.pictures, (Steps{0, 5}));
 }
 
-// A figure that is bad either way keeps the value furthest from zero, with its sign.
-TEST(TimeLoop, LargestOfAFigureThatIsBadEitherWay) {
+// A diagnostic that is bad either way keeps the value furthest from zero, with its sign.
+TEST(TimeLoop, LargestOfADiagnosticThatIsBadEitherWay) {
   for (const double worst : {-0.15, 0.15}) {
     Bench bench(0.4);
     bench.plan.watch[0].side = WatchRule::Side::either;
@@ -231,12 +233,12 @@ TEST(TimeLoop, LargestOfAFigureThatIsBadEitherWay) {
 
 // The regular looks at steps 100, 200, 300, 400 count, and the end at 450; others, here at step 7 and at the stops, do
 // not, so that a run is saved with the same numbers wherever it was interrupted.
-TEST(TimeLoop, LargestFiguresGoOnWithARun) {
+TEST(TimeLoop, LargestDiagnosticsGoOnWithARun) {
   const auto speed = [](std::int64_t step) {
     return step == 450 ? 0.18 : step == 300 ? 0.17 : step % 100 == 0 ? 0.1 : 0.19;
   };
   for (const std::int64_t stop : {150, 300, 420}) {
-    std::vector<Figure> saved;
+    std::vector<Diagnostic> saved;
     const auto keep = [&saved](const LoopRecord& record) {
       saved = record.largest;
       return std::uint64_t{0};

@@ -14,12 +14,12 @@ namespace {
 const MPI_Comm world = MPI_COMM_WORLD;
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
-WatchRule rule(const std::string& figure, WatchRule::Side side, double warn, double stop) {
-  return {figure, side,
-          [=](const std::vector<Figure>&) {
+WatchRule rule(const std::string& diagnostic, WatchRule::Side side, double warn, double stop) {
+  return {diagnostic, side,
+          [=](const std::vector<Diagnostic>&) {
             return WatchLimits{warn, stop};
           },
-          "the " + figure, "Because of this. Do that."};
+          "the " + diagnostic, "Because of this. Do that."};
 }
 
 TEST(Watchdog, WarnsOnceAndAgainWhenItHasGrownByHalf) {

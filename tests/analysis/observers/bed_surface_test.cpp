@@ -114,14 +114,14 @@ TEST(BedSurface, OfACubicLatticeIsTheTopOfItsHighestLayer) {
   // The one above moves the quantiles by up to half a grain's volume, which near the plane between two layers of 128
   // grains is as much as lies within h of it, 128 pi R h^2 = V/2, h = 0.036 d: 2 % of the bulk's fraction over its 4 d,
   // and 1 % of d in the height, where phi falls by 0.8 a diameter.
-  EXPECT_NEAR(value_of(surface.figures(), "bed_height"), 10.0 * d, 0.01 * d);
+  EXPECT_NEAR(value_of(surface.diagnostics(), "bed_height"), 10.0 * d, 0.01 * d);
   EXPECT_NEAR(value_of(surface.results(), "bulk_solid_fraction_mean"), std::numbers::pi / 6.0, 0.02 * 0.53);
-  const double depth = 32.0 * d - value_of(surface.figures(), "bed_height"), width = 8.0 * d;
+  const double depth = 32.0 * d - value_of(surface.diagnostics(), "bed_height"), width = 8.0 * d;
   const double radius = depth * width / (2.0 * depth + width);
-  EXPECT_NEAR(value_of(surface.figures(), "flow_depth"), depth, 1e-15);
-  EXPECT_NEAR(value_of(surface.figures(), "hydraulic_radius"), radius, 1e-15);
-  EXPECT_NEAR(value_of(surface.figures(), "bed_stress"), 500.0 * radius, 1e-10);
-  EXPECT_NEAR(value_of(surface.figures(), "shields_number"), 500.0 * radius / 80.0, 1e-12);
+  EXPECT_NEAR(value_of(surface.diagnostics(), "flow_depth"), depth, 1e-15);
+  EXPECT_NEAR(value_of(surface.diagnostics(), "hydraulic_radius"), radius, 1e-15);
+  EXPECT_NEAR(value_of(surface.diagnostics(), "bed_stress"), 500.0 * radius, 1e-10);
+  EXPECT_NEAR(value_of(surface.diagnostics(), "shields_number"), 500.0 * radius / 80.0, 1e-12);
   EXPECT_EQ(value_of(surface.results(), "measurements"), 5.0);
   EXPECT_NEAR(value_of(surface.results(), "shields_number_mean"), 500.0 * radius / 80.0, 1e-12);
 
@@ -129,9 +129,9 @@ TEST(BedSurface, OfACubicLatticeIsTheTopOfItsHighestLayer) {
       dry(world, spheres.box(), keys(), d, {}, 0.0);
   wide.observe(spheres.at(0, cubic_lattice(10)));
   dry.observe(spheres.at(0, cubic_lattice(10)));
-  EXPECT_NEAR(value_of(wide.figures(), "bed_height"), 10.0 * d, 1e-12);
-  EXPECT_NEAR(value_of(wide.figures(), "hydraulic_radius"), 22.0 * d, 1e-12);
-  EXPECT_EQ(dry.figures().size(), 2u);
+  EXPECT_NEAR(value_of(wide.diagnostics(), "bed_height"), 10.0 * d, 1e-12);
+  EXPECT_NEAR(value_of(wide.diagnostics(), "hydraulic_radius"), 22.0 * d, 1e-12);
+  EXPECT_EQ(dry.diagnostics().size(), 2u);
 }
 
 // A sill of overlapping spheres across a lattice of nine layers, four diameters wide and six high, in place of its
@@ -153,14 +153,14 @@ TEST(BedSurface, LeavesOutASillOfOverlappingSpheres) {
     if (grain.x() < 4.0 * d || grain.x() > 8.0 * d || grain.z() > 6.0 * d) grains.push_back(grain);
   BedSurface surface(world, spheres.box(), keys(), d, flume, 0.0, sill);
   surface.observe(spheres.at(0, grains));
-  EXPECT_NEAR(value_of(surface.figures(), "bed_height"), 9.0 * d, 0.02 * d);
+  EXPECT_NEAR(value_of(surface.diagnostics(), "bed_height"), 9.0 * d, 0.02 * d);
   EXPECT_NEAR(value_of(surface.results(), "bulk_solid_fraction_mean"), std::numbers::pi / 6.0, 0.02 * 0.53);
   // Where there is nothing else, it is the bed.
   grains.resize(sill.size());
   BedSurface alone(world, spheres.box(), keys(), d, flume, 0.0, sill);
   alone.observe(spheres.at(0, grains));
   EXPECT_NEAR(value_of(alone.results(), "bulk_solid_fraction_mean"), 0.25, 0.03 * 0.25);
-  EXPECT_NEAR(value_of(alone.figures(), "bed_height"), 6.0 * d, 0.08 * d);
+  EXPECT_NEAR(value_of(alone.diagnostics(), "bed_height"), 6.0 * d, 0.08 * d);
 }
 
 // A fluid that a force drives and whose top takes or gives stress.
@@ -191,7 +191,7 @@ TEST(BedSurface, TakesTheStressFromTheForcesOnTheWater) {
     snapshot.fluid = &fluid;
     surface.observe(snapshot);
     const double stress = (e.force * depth + e.top) * width / (width + e.walls * depth);
-    EXPECT_NEAR(value_of(surface.figures(), "bed_stress"), stress, 1e-9);
+    EXPECT_NEAR(value_of(surface.diagnostics(), "bed_stress"), stress, 1e-9);
     EXPECT_NEAR(value_of(surface.results(), "shields_number_mean"), stress / 80.0, 1e-11);
   }
 }
@@ -204,7 +204,7 @@ TEST(BedSurface, HasAStressUnderTheLid) {
   Snapshot snapshot = spheres.at(0, cubic_lattice(32));
   snapshot.fluid = &fluid;
   surface.observe(snapshot);
-  EXPECT_EQ(value_of(surface.figures(), "flow_depth"), 0.0);
+  EXPECT_EQ(value_of(surface.diagnostics(), "flow_depth"), 0.0);
   EXPECT_NEAR(value_of(surface.results(), "bed_stress_mean"), 2.5, 1e-12);
 }
 
@@ -228,7 +228,7 @@ TEST(BedSurface, BeginsAnewWithOtherSettings) {
 
 // Which runs have a stress at all, and where it comes from. The grains: 1 mm, 2000 kg/m^3 heavier than the water.
 TEST(BedSurface, KnowsWhatDrivesTheWater) {
-  const auto figure_count = [](const Vec3& gravity, bool steered, bool top_drags, bool top_moves) {
+  const auto diagnostic_count = [](const Vec3& gravity, bool steered, bool top_drags, bool top_moves) {
     Spheres spheres(world);
     RunFacts run;
     run.box = spheres.box();
@@ -239,14 +239,14 @@ TEST(BedSurface, KnowsWhatDrivesTheWater) {
     run.grains->reference_density = 3000.0;
     const Decomposition decomposition({32, 16, 64}, d / 2.0, {true, true, false}, {1, 1, 1});
     const auto observer = make_observer(BedSurfaceKeys{}, run, {world, decomposition, 1e-3});
-    return observer->figures().size();
+    return observer->diagnostics().size();
   };
   const Vec3 down(0.0, 0.0, -9.8), tilted(1.0, 0.0, -9.7);
-  EXPECT_EQ(figure_count(down, false, false, false), 4u);  // heights, depth, radius
-  EXPECT_EQ(figure_count(down, false, true, false), 4u);   // a lid at rest
-  EXPECT_EQ(figure_count(tilted, false, false, false), 6u);
-  EXPECT_EQ(figure_count(down, true, false, false), 6u);
-  EXPECT_EQ(figure_count(down, false, true, true), 6u);
+  EXPECT_EQ(diagnostic_count(down, false, false, false), 4u);  // heights, depth, radius
+  EXPECT_EQ(diagnostic_count(down, false, true, false), 4u);   // a lid at rest
+  EXPECT_EQ(diagnostic_count(tilted, false, false, false), 6u);
+  EXPECT_EQ(diagnostic_count(down, true, false, false), 6u);
+  EXPECT_EQ(diagnostic_count(down, false, true, true), 6u);
 }
 
 // Places that jiggle by up to half a diameter about a drift of half a box in a picture, for some of them.
@@ -338,7 +338,7 @@ TEST(BedSurface, LeavesColumnsWithoutStaticPixelsOut) {
   EXPECT_NEAR(seen * width, 25.0, 1.0);                                                       // a diameter, to a pixel
   // The upper half of a circle is pi d/8 high on average; to a pixel of d/25.
   EXPECT_NEAR(value_of(surface.results(), "static_bed_height_mean"), (2.5 + std::numbers::pi / 8.0) * d, d / 25.0);
-  EXPECT_NEAR(value_of(surface.figures(), "static_bed_height"), (2.5 + std::numbers::pi / 8.0) * d, d / 25.0);
+  EXPECT_NEAR(value_of(surface.diagnostics(), "static_bed_height"), (2.5 + std::numbers::pi / 8.0) * d, d / 25.0);
 }
 
 }  // namespace

@@ -112,9 +112,10 @@ TEST(Entrainment, CountsTheStartsOfTheSurfaceAndMeansTheirShares) {
   Bed bed;
   Entrainment observer(MPI_COMM_WORLD, bed.decomposition().box(), settings({}));
   for (std::int64_t step = 0; step <= 150; ++step) bed.show(observer, step);
-  bed.show(observer, 150);                                         // seen before
-  EXPECT_EQ(value_of(observer.figures(), "watched_grains"), 9.0);  // of 60, not the bed's and not the one that is held
-  EXPECT_EQ(value_of(observer.figures(), "entrainments"), 4.0);
+  bed.show(observer, 150);  // seen before
+  EXPECT_EQ(value_of(observer.diagnostics(), "watched_grains"),
+            9.0);  // of 60, not the bed's and not the one that is held
+  EXPECT_EQ(value_of(observer.diagnostics(), "entrainments"), 4.0);
   double mean = 0.0, squares = 0.0;
   for (const GlobalId n : {0, 4, 6, 8}) mean += Bed::share(n) / 4.0;
   for (const GlobalId n : {0, 4, 6, 8}) squares += std::pow(Bed::share(n) - mean, 2);
@@ -132,9 +133,9 @@ TEST(Entrainment, CountsTheStartsOfTheSurfaceAndMeansTheirShares) {
   EXPECT_EQ(second.numbers.at(0).values.at(0), 54);
   // It starts at 0.705 s and has gone more than 0.1 diameters (0.1 m) after 0.05 s and a sample.
   EXPECT_NEAR(second.time, 0.76, 1e-12);
-  EXPECT_NEAR(value_of(second.figures, "onset_time"), 0.70, 1e-12);
-  EXPECT_NEAR(value_of(second.figures, "couple_share"), Bed::share(4), 1e-14);
-  EXPECT_TRUE(std::isnan(value_of(second.figures, "largest_torque_ratio")));  // the hinge is below the centre
+  EXPECT_NEAR(value_of(second.diagnostics, "onset_time"), 0.70, 1e-12);
+  EXPECT_NEAR(value_of(second.diagnostics, "couple_share"), Bed::share(4), 1e-14);
+  EXPECT_TRUE(std::isnan(value_of(second.diagnostics, "largest_torque_ratio")));  // the hinge is below the centre
   const Profile& time = array_of(second, "time");
   ASSERT_EQ(time.values.size(), 11u);  // 0.1 s
   EXPECT_NEAR(time.values.front(), 0.66, 1e-12);
@@ -150,8 +151,8 @@ TEST(Entrainment, FollowsListedGrainsBeyondTheBoxAndRestsAnew) {
   s.displacement = 0.2;
   Entrainment observer(MPI_COMM_WORLD, bed.decomposition().box(), s);
   for (std::int64_t step = 0; step <= 150; ++step) bed.show(observer, step);
-  EXPECT_EQ(value_of(observer.figures(), "watched_grains"), 2.0);
-  EXPECT_EQ(value_of(observer.figures(), "entrainments"), 1.0);
+  EXPECT_EQ(value_of(observer.diagnostics(), "watched_grains"), 2.0);
+  EXPECT_EQ(value_of(observer.diagnostics(), "entrainments"), 1.0);
   const Records records = observer.take_records();
   if (rank_of(MPI_COMM_WORLD) != 0) return;
   const std::vector<double>& position = array_of(records.events.at(0), "position").values;

@@ -123,7 +123,7 @@ TEST(FluidStatistics, AreThoseOfPlainSums) {
                    named(profiles, "section_fluid_fraction"), static_cast<std::size_t>(z * cells[1] + y),
                    Plain([&](int at_y, int at_z) { return at_y == y && at_z == z; }));
   }
-  const std::vector<Figure> results = bench.statistics.results();
+  const std::vector<Diagnostic> results = bench.statistics.results();
   EXPECT_NEAR(results[0].value, static_cast<double>(Plain([](int, int) { return true; }).u[0]), 1e-11);
   EXPECT_EQ(results[2].value, 21.0);
 }

@@ -15,10 +15,10 @@ TEST(GrainEnergy, SumsMotionAndSpinOfSpheres) {
   });
   GrainEnergy energy(MPI_COMM_WORLD);
   energy.observe(grains.snapshot(0.0));
-  EXPECT_NEAR(value_of(energy.figures(), "grain_kinetic_energy"), 101 * 19.0, 101 * 19.0 * 1e-15);
-  EXPECT_EQ(value_of(energy.figures(), "grain_momentum_x"), 2.0);  // one grain more goes forward: m v, exact
-  EXPECT_EQ(value_of(energy.figures(), "grain_momentum_y"), 4.0);
-  EXPECT_EQ(value_of(energy.figures(), "grain_momentum_z"), -4.0);
+  EXPECT_NEAR(value_of(energy.diagnostics(), "grain_kinetic_energy"), 101 * 19.0, 101 * 19.0 * 1e-15);
+  EXPECT_EQ(value_of(energy.diagnostics(), "grain_momentum_x"), 2.0);  // one grain more goes forward: m v, exact
+  EXPECT_EQ(value_of(energy.diagnostics(), "grain_momentum_y"), 4.0);
+  EXPECT_EQ(value_of(energy.diagnostics(), "grain_momentum_z"), -4.0);
 }
 
 TEST(GrainEnergy, TakesAClumpForOneGrain) {
@@ -29,9 +29,9 @@ TEST(GrainEnergy, TakesAClumpForOneGrain) {
   grains.bind(5, {3, 7.0, 1.0, Vec3::Zero(), Vec3(0.0, 0.0, 2.0), 30.0});
   GrainEnergy energy(MPI_COMM_WORLD);
   energy.observe(grains.snapshot(0.0));
-  EXPECT_NEAR(value_of(energy.figures(), "grain_kinetic_energy"), 3 * 19.0 + 30.0, 87.0 * 1e-15);
-  EXPECT_EQ(value_of(energy.figures(), "grain_momentum_x"), 6.0);
-  EXPECT_EQ(value_of(energy.figures(), "grain_momentum_z"), -12.0 + 14.0);
+  EXPECT_NEAR(value_of(energy.diagnostics(), "grain_kinetic_energy"), 3 * 19.0 + 30.0, 87.0 * 1e-15);
+  EXPECT_EQ(value_of(energy.diagnostics(), "grain_momentum_x"), 6.0);
+  EXPECT_EQ(value_of(energy.diagnostics(), "grain_momentum_z"), -12.0 + 14.0);
   EXPECT_EQ(grains.snapshot(0.0).grains.body_count(), 4);
 }
 

@@ -40,28 +40,28 @@ TEST(PopulationLoads, AddsForcesAndTurnsThemAboutThePivot) {
                          {"bed", 2, 3, [](double) { return Vec3(4.0, 4.0, 0.0); }}},
                         true);
   loads.observe(snapshot);
-  const std::vector<Figure> figures = loads.figures();
-  EXPECT_EQ(figures.size(), 24u);
-  EXPECT_EQ(value_of(figures, "wall_contact_force_z"), 4.0);
+  const std::vector<Diagnostic> diagnostics = loads.diagnostics();
+  EXPECT_EQ(diagnostics.size(), 24u);
+  EXPECT_EQ(value_of(diagnostics, "wall_contact_force_z"), 4.0);
   // Arms 0 and (-2, 0, 0) from the pivot at z = 2: -2 x 2 about y is +4, and one of their own each.
-  EXPECT_EQ(value_of(figures, "wall_contact_torque_y"), 6.0);
-  EXPECT_EQ(value_of(figures, "wall_contact_torque_x"), 0.0);
-  EXPECT_EQ(value_of(figures, "wall_fluid_force_x"), 1.0);
-  EXPECT_EQ(value_of(figures, "wall_fluid_torque_y"), 0.0);
-  EXPECT_EQ(value_of(figures, "bed_contact_torque_x"), 4.0);  // 2 m along y, 2 N up
-  EXPECT_EQ(value_of(figures, "bed_fluid_force_x"), 2.0);
-  EXPECT_EQ(value_of(figures, "bed_fluid_torque_y"), 6.0);  // 3 m up, 2 N along x
-  EXPECT_EQ(value_of(figures, "bed_fluid_torque_z"), -4.0);
+  EXPECT_EQ(value_of(diagnostics, "wall_contact_torque_y"), 6.0);
+  EXPECT_EQ(value_of(diagnostics, "wall_contact_torque_x"), 0.0);
+  EXPECT_EQ(value_of(diagnostics, "wall_fluid_force_x"), 1.0);
+  EXPECT_EQ(value_of(diagnostics, "wall_fluid_torque_y"), 0.0);
+  EXPECT_EQ(value_of(diagnostics, "bed_contact_torque_x"), 4.0);  // 2 m along y, 2 N up
+  EXPECT_EQ(value_of(diagnostics, "bed_fluid_force_x"), 2.0);
+  EXPECT_EQ(value_of(diagnostics, "bed_fluid_torque_y"), 6.0);  // 3 m up, 2 N along x
+  EXPECT_EQ(value_of(diagnostics, "bed_fluid_torque_z"), -4.0);
 
   // A pivot that has gone around the box three times is at x = 1 as well.
   PopulationLoads travelling(MPI_COMM_WORLD, decomposition.box(),
                              {{"roller", 0, 2, [](double) { return Vec3(61.0, 5.0, 2.0); }}}, true);
   travelling.observe(snapshot);
-  EXPECT_EQ(value_of(travelling.figures(), "roller_contact_torque_y"), 6.0);
+  EXPECT_EQ(value_of(travelling.diagnostics(), "roller_contact_torque_y"), 6.0);
 
   PopulationLoads dry(MPI_COMM_WORLD, decomposition.box(), {{"wall", 0, 2, [](double) { return Vec3::Zero(); }}},
                       false);
-  EXPECT_EQ(dry.figures().size(), 6u);
+  EXPECT_EQ(dry.diagnostics().size(), 6u);
 }
 
 // A model fluid loads grains as water does.
@@ -71,12 +71,12 @@ TEST(PopulationLoads, HasTheLoadOfAModelFluid) {
   run.box = decomposition.box();
   run.grains.emplace();
   run.grains->populations = {{"bed", 0, 3, [](double) { return Vec3::Zero(); }}};
-  const auto figures = [&] {
-    return make_observer(PopulationLoadsKeys{}, run, {MPI_COMM_WORLD, decomposition, 1e-3})->figures().size();
+  const auto diagnostics = [&] {
+    return make_observer(PopulationLoadsKeys{}, run, {MPI_COMM_WORLD, decomposition, 1e-3})->diagnostics().size();
   };
-  EXPECT_EQ(figures(), 6u);  // dry: force and torque of contacts
+  EXPECT_EQ(diagnostics(), 6u);  // dry: force and torque of contacts
   run.model_fluid.emplace();
-  EXPECT_EQ(figures(), 12u);
+  EXPECT_EQ(diagnostics(), 12u);
 }
 
 }  // namespace

@@ -14,8 +14,8 @@ namespace {
 using coupling::FluidInitialState;
 
 double result(const StressBalance& balance, const std::string& name) {
-  for (const Figure& figure : balance.results())
-    if (figure.name == name) return figure.value;
+  for (const Diagnostic& diagnostic : balance.results())
+    if (diagnostic.name == name) return diagnostic.value;
   throw std::out_of_range("no result " + name);
 }
 

@@ -32,12 +32,12 @@ TEST(TransportRate, IsTheVolumeFluxOfAllGrainsPerWidth) {
 
   const double volume = std::numbers::pi / 6.0 * 0.25 * 0.25 * 0.25;
   const double q_s = volume * sum_of_speeds / (20.0 * 10.0);
-  EXPECT_NEAR(value_of(rate.figures(), "q_s"), q_s, 4e-16 * 1e3 * q_s);  // a few roundings a term
-  EXPECT_NEAR(value_of(rate.figures(), "q_star"), q_s / 0.75, 4e-16 * 1e3 * q_s);
-  EXPECT_EQ(value_of(rate.figures(), "moving_grains"), 200.0);  // 0.03 m/s itself is not moving
-  EXPECT_EQ(value_of(rate.figures(), "moving_share"), 200.0 / 300.0);
-  EXPECT_NEAR(value_of(rate.figures(), "activity"), volume * 200.0 / (20.0 * 10.0), 1e-12 * volume);
-  EXPECT_NEAR(value_of(rate.figures(), "largest_grain_speed"), std::sqrt(2.99 * 2.99 + 1.0), 1e-15 * 4);
+  EXPECT_NEAR(value_of(rate.diagnostics(), "q_s"), q_s, 4e-16 * 1e3 * q_s);  // a few roundings a term
+  EXPECT_NEAR(value_of(rate.diagnostics(), "q_star"), q_s / 0.75, 4e-16 * 1e3 * q_s);
+  EXPECT_EQ(value_of(rate.diagnostics(), "moving_grains"), 200.0);  // 0.03 m/s itself is not moving
+  EXPECT_EQ(value_of(rate.diagnostics(), "moving_share"), 200.0 / 300.0);
+  EXPECT_NEAR(value_of(rate.diagnostics(), "activity"), volume * 200.0 / (20.0 * 10.0), 1e-12 * volume);
+  EXPECT_NEAR(value_of(rate.diagnostics(), "largest_grain_speed"), std::sqrt(2.99 * 2.99 + 1.0), 1e-15 * 4);
 }
 
 TEST(TransportRate, TakesAClumpForOneGrainWithItsVolumeAtItsCentre) {
@@ -49,9 +49,9 @@ TEST(TransportRate, TakesAClumpForOneGrainWithItsVolumeAtItsCentre) {
   const double volume = std::numbers::pi / 6.0 * 0.25 * 0.25 * 0.25;
   const double gone = (295.0 + 296.0 + 298.0 + 299.0) / 100.0;
   const double q_s = (volume * (sum_of_speeds - gone) + 0.05 * 0.5) / (20.0 * 10.0);
-  EXPECT_NEAR(value_of(rate.figures(), "q_s"), q_s, 4e-16 * 1e3 * q_s);
-  EXPECT_EQ(value_of(rate.figures(), "moving_grains"), 197.0);
-  EXPECT_NEAR(value_of(rate.figures(), "largest_grain_speed"), std::sqrt(2.93 * 2.93 + 1.0), 1e-15 * 4);
+  EXPECT_NEAR(value_of(rate.diagnostics(), "q_s"), q_s, 4e-16 * 1e3 * q_s);
+  EXPECT_EQ(value_of(rate.diagnostics(), "moving_grains"), 197.0);
+  EXPECT_NEAR(value_of(rate.diagnostics(), "largest_grain_speed"), std::sqrt(2.93 * 2.93 + 1.0), 1e-15 * 4);
 }
 
 // A plate of grains 0 to 99 that is driven along is no sediment, nor is a clump that is.
@@ -66,10 +66,10 @@ TEST(TransportRate, LeavesOutGrainsWhoseMotionIsGiven) {
   // The ids from 100 to 293 that are no multiple of 3: 130 of 194; their sum is 300 - (4950 - 1683)/100 - 11.88.
   const double volume = std::numbers::pi / 6.0 * 0.25 * 0.25 * 0.25;
   const double q_s = volume * (sum_of_speeds - 32.67 - 11.88) / (20.0 * 10.0);
-  EXPECT_NEAR(value_of(rate.figures(), "q_s"), q_s, 4e-16 * 1e3 * q_s);
-  EXPECT_EQ(value_of(rate.figures(), "moving_grains"), 130.0);
-  EXPECT_EQ(value_of(rate.figures(), "moving_share"), 130.0 / 194.0);
-  EXPECT_NEAR(value_of(rate.figures(), "largest_grain_speed"), std::sqrt(2.93 * 2.93 + 1.0), 1e-15 * 4);
+  EXPECT_NEAR(value_of(rate.diagnostics(), "q_s"), q_s, 4e-16 * 1e3 * q_s);
+  EXPECT_EQ(value_of(rate.diagnostics(), "moving_grains"), 130.0);
+  EXPECT_EQ(value_of(rate.diagnostics(), "moving_share"), 130.0 / 194.0);
+  EXPECT_NEAR(value_of(rate.diagnostics(), "largest_grain_speed"), std::sqrt(2.93 * 2.93 + 1.0), 1e-15 * 4);
 }
 
 // Grains of 1 mm and 1.15 times the density of an oil of 1e-4 m^2/s fall at 0.8 mm/s, not at the 38 mm/s of inertia; in
@@ -86,7 +86,7 @@ TEST(TransportScales, KnowAGrainThatMovesInAViscousFluid) {
   TransportRate chosen(world, scales, {.moving_speed = 2.0});
   chosen.observe(MadeUpGrains(world, 300, [](GlobalId id) { return runner(id, 1.0); }).snapshot(0.0));
   // v_x^2 + 1 > 4 from id 174 on: the 84 of those up to 299 that are no multiple of 3.
-  EXPECT_EQ(value_of(chosen.figures(), "moving_grains"), 84.0);
+  EXPECT_EQ(value_of(chosen.diagnostics(), "moving_grains"), 84.0);
   EXPECT_EQ(value_of(chosen.results(), "moving_speed"), 2.0);
 }
 
@@ -99,7 +99,7 @@ TEST(TransportRate, HasTheSameBitsOnAnyNumberOfRanks) {
   alone.observe(MadeUpGrains(MPI_COMM_SELF, 1000, made).snapshot(0.0));
   shared.observe(MadeUpGrains(world, 1000, made).snapshot(0.0));
   for (const char* name : {"q_s", "q_star", "moving_grains", "activity", "largest_grain_speed"})
-    EXPECT_EQ(value_of(alone.figures(), name), value_of(shared.figures(), name)) << name;
+    EXPECT_EQ(value_of(alone.diagnostics(), name), value_of(shared.diagnostics(), name)) << name;
 }
 
 TEST(TransportRate, TakesTheMeanFromAGivenTimeAndCarriesItOverARestart) {
@@ -139,10 +139,10 @@ TEST(TransportRate, TakesTheMeanFromAGivenTimeAndCarriesItOverARestart) {
 TEST(TransportRate, OfDryGrainsHasNoQStar) {
   TransportRate rate(world, {0.25, 2500.0, 0.0, 9.8}, {});
   rate.observe(MadeUpGrains(world, 10, [](GlobalId id) { return runner(id, 1.0); }).snapshot(0.0));
-  EXPECT_THROW(value_of(rate.figures(), "q_star"), std::out_of_range);
+  EXPECT_THROW(value_of(rate.diagnostics(), "q_star"), std::out_of_range);
   // v_x = 0.01, 0.02, 0.04, 0.05, 0.07, 0.08 m/s: sum 0.27 m/s.
   const double q_s = std::numbers::pi / 6.0 / 64.0 * 0.27 / 200.0;
-  EXPECT_NEAR(value_of(rate.figures(), "q_s"), q_s, 1e-14 * q_s);
+  EXPECT_NEAR(value_of(rate.diagnostics(), "q_s"), q_s, 1e-14 * q_s);
 }
 
 // v_x = id/100 of the grains that are no multiple of 3, from 0.01 to 2.99 m/s, v_z = -1 m/s of all of them; the rest,

@@ -60,7 +60,7 @@ TEST(Hops, AreFromRestToRestThroughPeriodicFacesAndFromRankToRank) {
     ways += Track(id).way();
     times += Track(id).time();
   }
-  const std::vector<Figure> results = hops.results();
+  const std::vector<Diagnostic> results = hops.results();
   EXPECT_EQ(value_of(results, "hops"), 90.0);
   EXPECT_NEAR(value_of(results, "hop_length_mean"), ways / 90.0, 1e-12);
   EXPECT_NEAR(value_of(results, "hop_time_mean"), times / 90.0, 1e-12);

@@ -31,7 +31,9 @@ SystemParameters coarse_column() {
   return parameters;
 }
 
-double figure(const System& system, const std::string& name) { return *find_figure(system.figures(), name); }
+double diagnostic(const System& system, const std::string& name) {
+  return *find_diagnostic(system.diagnostics(), name);
+}
 
 std::vector<double> profile(const ContinuumSystem& column, const std::string& name) {
   for (const Profile& found : column.profiles())
@@ -94,11 +96,11 @@ TEST(Column, AStateGoesOnInCellsOfItsOwnHeightOnly) {
 
 TEST(Column, ConservesSolidsAndComesToTheBalanceOfStresses) {
   ContinuumSystem column(MPI_COMM_SELF, coarse_column());
-  const double solids = figure(column, "solid_volume");
+  const double solids = diagnostic(column, "solid_volume");
   EXPECT_NEAR(solids, 0.62 * coarse_column().bed_cells * coarse_column().column.spacing, 1e-15);
-  EXPECT_EQ(figure(column, "unsteadiness"), 1.0);
-  while (column.time() < 100.0 && figure(column, "unsteadiness") > 1e-4) column.advance();
-  EXPECT_LT(figure(column, "unsteadiness"), 1e-4);
+  EXPECT_EQ(diagnostic(column, "unsteadiness"), 1.0);
+  while (column.time() < 100.0 && diagnostic(column, "unsteadiness") > 1e-4) column.advance();
+  EXPECT_LT(diagnostic(column, "unsteadiness"), 1e-4);
   double sum = 0.0;
   for (const double fraction : profile(column, "solid_fraction")) sum += fraction * coarse_column().column.spacing;
   EXPECT_NEAR(sum / solids, 1.0, 1e-12);

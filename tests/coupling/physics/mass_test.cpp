@@ -102,9 +102,9 @@ TEST(WaterMass, IsBookedForTheOtherLinkRule) {
   balance_closes<double>(box, 80);
 }
 
-double figure(const System& system, const std::string& name) {
-  for (const Figure& figure : system.figures())
-    if (figure.name == name) return figure.value;
+double diagnostic(const System& system, const std::string& name) {
+  for (const Diagnostic& diagnostic : system.diagnostics())
+    if (diagnostic.name == name) return diagnostic.value;
   return HUGE_VAL;
 }
 
@@ -119,9 +119,9 @@ void keeps_its_mass(const WaterBox& box, double accuracy, int steps = 1200) {
   for (int step = 1; step <= steps; ++step) {
     system->advance();
     if (step % 20 != 0) continue;
-    const double mass = cell * figure(*system, "fluid_cells");
-    ASSERT_LT(std::abs(figure(*system, "mean_density_deviation")), 4e-5) << step;
-    ASSERT_LT(std::abs(figure(*system, "excess_mass") + figure(*system, "mass_owed")), accuracy * mass) << step;
+    const double mass = cell * diagnostic(*system, "fluid_cells");
+    ASSERT_LT(std::abs(diagnostic(*system, "mean_density_deviation")), 4e-5) << step;
+    ASSERT_LT(std::abs(diagnostic(*system, "excess_mass") + diagnostic(*system, "mass_owed")), accuracy * mass) << step;
   }
 }
 
@@ -151,7 +151,8 @@ TEST(WaterMass, ComesToRestWhereASurfaceGrazesACell) {
   box.seeds.back().motion = dem::Motion::fixed;
   const auto system = make<float>(box);
   for (int step = 0; step < 4000; ++step) system->advance();
-  EXPECT_LT(std::abs(figure(*system, "mass_owed")), 400.0 / 36.0 * std::exp2(-24) * 1000.0 * std::pow(box.spacing, 3));
+  EXPECT_LT(std::abs(diagnostic(*system, "mass_owed")),
+            400.0 / 36.0 * std::exp2(-24) * 1000.0 * std::pow(box.spacing, 3));
 }
 
 // Three hundred grains of three densities, thrown through each other, over 1e4 steps.
@@ -211,7 +212,7 @@ TEST(WaterMass, IsTheSameAfterARestart) {
   second->save(to_continued);
   EXPECT_EQ(test::first_difference(end, continued), "");
   for (const char* name : {"mass_by_links", "mass_by_covered_cells", "mass_by_uncovered_cells", "mass_owed"})
-    EXPECT_EQ(figure(*whole, name), figure(*second, name)) << name;
+    EXPECT_EQ(diagnostic(*whole, name), diagnostic(*second, name)) << name;
 }
 
 // A term of a LatticeFixed sum ends at 128.
@@ -223,7 +224,7 @@ TEST(WaterMass, OfAGrainThatOwesMoreThanALinkMayCarryIsStillExact) {
   for (std::size_t s = 0; s < store.owned; ++s)
     GrainExchange<double>(store.attached_of(s)).owed_mass() = store.id[s] == 0 ? 1000.0 : -300.25;
   SumRange::reset();
-  const std::optional<double> owed = find_figure(system->figures(), "mass_owed");
+  const std::optional<double> owed = find_diagnostic(system->diagnostics(), "mass_owed");
   EXPECT_FALSE(SumRange::was_left());
   SumRange::reset();
   ASSERT_TRUE(owed);

@@ -16,7 +16,7 @@ FluidInitialState compressed(const Vec3&) { return {0.01, Vec3::Zero()}; }
 struct Loads {
   std::vector<Vec3> force, torque;  // N, N m, of owned grains
   std::vector<Mat3> stress;         // Pa
-  std::vector<double> walls;        // N, from the figures
+  std::vector<double> walls;        // N, from the diagnostics
 };
 
 // Seven grains held fast: they touch each other, overlap a little, touch the floor and a side, or stand alone.
@@ -46,8 +46,8 @@ Loads loads_in(WaterBox box, FluidInitialState (*initial)(const Vec3&)) {
     loads.torque.push_back(s.grains.fluid_torque[g]);
     loads.stress.push_back(s.grains.fluid_stress[g]);
   }
-  for (const Figure& figure : system->figures())
-    if (figure.name.starts_with("fluid_wall_force")) loads.walls.push_back(figure.value);
+  for (const Diagnostic& diagnostic : system->diagnostics())
+    if (diagnostic.name.starts_with("fluid_wall_force")) loads.walls.push_back(diagnostic.value);
   return loads;
 }
 

@@ -30,10 +30,10 @@ std::unique_ptr<LatticeSystem<double>> fluid_in(const LatticeParameters& paramet
   return std::make_unique<LatticeSystem<double>>(std::move(decomposition), MPI_COMM_WORLD, parameters);
 }
 
-double figure(const System& system, const std::string& name) {
-  for (const Figure& f : system.figures())
+double diagnostic(const System& system, const std::string& name) {
+  for (const Diagnostic& f : system.diagnostics())
     if (f.name == name) return f.value;
-  ADD_FAILURE() << "no figure " << name;
+  ADD_FAILURE() << "no diagnostic " << name;
   return 0.0;
 }
 
@@ -42,8 +42,8 @@ double figure(const System& system, const std::string& name) {
 TEST(Ramp, GivesThePeriodicFluidItsIntegral) {
   const double ramp = 80.5;
   const auto system = fluid_in(falling_fluid(ramp));
-  EXPECT_EQ(figure(*system, "mean_velocity_x"), 0.0);
-  EXPECT_EQ(figure(*system, "body_force_x"), 0.0);
+  EXPECT_EQ(diagnostic(*system, "mean_velocity_x"), 0.0);
+  EXPECT_EQ(diagnostic(*system, "body_force_x"), 0.0);
   for (int step = 1; step <= 200; ++step) {
     system->advance();
     const double x = 80.0 / ramp, integral = ramp * (x * x * x - 0.5 * x * x * x * x);
@@ -54,7 +54,7 @@ TEST(Ramp, GivesThePeriodicFluidItsIntegral) {
     EXPECT_NEAR(mean.y(), -4e-6 * full_steps, 1e-11) << step;
     EXPECT_EQ(mean.z(), 0.0);
   }
-  EXPECT_EQ(figure(*system, "body_force_x"), 1e-5);
+  EXPECT_EQ(diagnostic(*system, "body_force_x"), 1e-5);
 }
 
 // What the controller steers is its own from the first step; the other axes rise.
@@ -67,7 +67,7 @@ TEST(Ramp, LeavesTheSteeredAxisAlone) {
   for (int step = 0; step < 30; ++step) {
     ramped->advance();
     at_once->advance();
-    EXPECT_NEAR(figure(*ramped, "body_force_x"), figure(*at_once, "body_force_x"), 1e-14) << step;
+    EXPECT_NEAR(diagnostic(*ramped, "body_force_x"), diagnostic(*at_once, "body_force_x"), 1e-14) << step;
   }
   EXPECT_LT(std::abs(ramped->fluid().parameters().force[1]), std::abs(at_once->fluid().parameters().force[1]));
 }
@@ -158,7 +158,7 @@ TEST(Ramp, GoesOnInItsMiddleWithTheSameBits) {
   whole->save(to_middle);
   test::MemoryReader from_middle(middle);
   again->load(from_middle);
-  EXPECT_EQ(figure(*again, "largest_lattice_velocity"), figure(*whole, "largest_lattice_velocity"));
+  EXPECT_EQ(diagnostic(*again, "largest_lattice_velocity"), diagnostic(*whole, "largest_lattice_velocity"));
   for (int step = 23; step < 60; ++step) {
     whole->advance();
     again->advance();

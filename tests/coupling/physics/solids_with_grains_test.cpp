@@ -28,9 +28,9 @@ WaterBox basin() {
   return box;
 }
 
-double figure_of(const LatticeSystem<double>& system, const std::string& name) {
-  for (const Figure& figure : system.figures())
-    if (figure.name == name) return figure.value;
+double diagnostic_of(const LatticeSystem<double>& system, const std::string& name) {
+  for (const Diagnostic& diagnostic : system.diagnostics())
+    if (diagnostic.name == name) return diagnostic.value;
   ADD_FAILURE() << name;
   return 0.0;
 }
@@ -42,10 +42,10 @@ TEST(SolidsWithGrains, CarryAGrainsSubmergedWeight) {
   const auto system =
       make_system<double>(box, MPI_COMM_WORLD, Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD)));
   for (int n = 0; n < 3000; ++n) system->advance();
-  const double on_solid = figure_of(*system, "solid_0_grain_force_z");
+  const double on_solid = diagnostic_of(*system, "solid_0_grain_force_z");
   EXPECT_NEAR(on_solid / -submerged_weight(), 1.0, 1e-3);
   EXPECT_LT(system->grains().largest_speed(), 1e-5);
-  EXPECT_LT(figure_of(*system, "largest_fluid_speed"), 1e-5);
+  EXPECT_LT(diagnostic_of(*system, "largest_fluid_speed"), 1e-5);
 }
 
 }  // namespace

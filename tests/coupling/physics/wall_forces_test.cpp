@@ -68,10 +68,11 @@ TEST(WallForces, OfAGrainHeldOnTheFloorAreItsSpring) {
       make_system<double>(box, MPI_COMM_WORLD, Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD)));
   for (int step = 0; step < 20; ++step) system->advance();
   int found = 0;
-  for (const Figure& figure : system->figures()) {
-    if (figure.name.find("wall_force") == std::string::npos) continue;
+  for (const Diagnostic& diagnostic : system->diagnostics()) {
+    if (diagnostic.name.find("wall_force") == std::string::npos) continue;
     ++found;
-    EXPECT_NEAR(figure.value, figure.name == "wall_force_bottom_z" ? -press : 0.0, 1e-9 * press) << figure.name;
+    EXPECT_NEAR(diagnostic.value, diagnostic.name == "wall_force_bottom_z" ? -press : 0.0, 1e-9 * press)
+        << diagnostic.name;
   }
   EXPECT_EQ(found, 12);
 }

@@ -22,7 +22,7 @@ TEST(WatchRules, EveryRuleOfACaseWarnsAndStops) {
   const MadeUp system;
   const Case c = read_text(flume);
   struct Trouble {
-    const char* figure;
+    const char* diagnostic;
     double suspicious, impossible;
     std::vector<std::string> words;
   };
@@ -38,10 +38,10 @@ TEST(WatchRules, EveryRuleOfACaseWarnsAndStops) {
       {"largest_overlap", 0.11, 0.51, {"overlap", "a shorter contact.duration than 0.000792 s"}}};
   for (const Trouble& trouble : troubles) {
     Watchdog dog(world, system, watch_rules(c), OutOfBounds::stop);
-    const std::vector<std::string> warnings = dog.judge({{trouble.figure, "1", trouble.suspicious}});
-    ASSERT_EQ(warnings.size(), 1u) << trouble.figure;
+    const std::vector<std::string> warnings = dog.judge({{trouble.diagnostic, "1", trouble.suspicious}});
+    ASSERT_EQ(warnings.size(), 1u) << trouble.diagnostic;
     expect_words(warnings[0], trouble.words);
-    const std::string message = message_of(dog, {{trouble.figure, "1", trouble.impossible}});
+    const std::string message = message_of(dog, {{trouble.diagnostic, "1", trouble.impossible}});
     expect_words(message, trouble.words);
     expect_words(message, {"2.5 s (step 250)", "beyond the limit", "in the pore between grains 10 and 11"});
   }

@@ -1,4 +1,4 @@
-// Figures of the state of all grains: GrainDynamics looked at, never changed.
+// Diagnostics of the state of all grains: GrainDynamics looked at, never changed.
 #include "core/parallel/mpi_session.hpp"
 #include "core/sums/reproducible_sum.hpp"
 #include "dem/contact/contact_forces.hpp"
@@ -32,7 +32,7 @@ double overlap_in_diameters(const GrainStore& store, const PairContact& c, doubl
 
 }  // namespace
 
-std::string solid_force_figure(std::size_t solid) { return fmt::format("solid_{}_grain_force", solid); }
+std::string solid_force_diagnostic(std::size_t solid) { return fmt::format("solid_{}_grain_force", solid); }
 
 std::vector<Contact> GrainDynamics::contacts() const {
   const auto kept = [](std::span<const double> history) { return std::vector<double>(history.begin(), history.end()); };
