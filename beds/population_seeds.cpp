@@ -1,6 +1,6 @@
 #include "beds/population_seeds.hpp"
 
-#include "beds/file_seeds.hpp"
+#include "beds/bed_redistribution.hpp"
 #include "beds/packing/packing.hpp"
 #include "beds/packing/random_packing.hpp"
 #include "beds/population/population_clumps.hpp"
@@ -102,7 +102,7 @@ Places places_on(UniformSites sites, std::int64_t count) {
 }
 
 // A rigid assembly is known to all ranks.
-std::vector<PlacedGrain> known_to_all(const PlacingRanks& ranks, std::vector<PlacedGrain> known) {
+std::vector<PlacedGrain> known_to_all(const PackingDomain& ranks, std::vector<PlacedGrain> known) {
   struct Row {
     std::int64_t number;
     double position[3];
@@ -116,7 +116,7 @@ std::vector<PlacedGrain> known_to_all(const PlacingRanks& ranks, std::vector<Pla
   return known;
 }
 
-Places pack(const Population& population, const Region& region, const PlacingRanks& ranks,
+Places pack(const Population& population, const Region& region, const PackingDomain& ranks,
             std::span<const Obstacle> obstacles) {
   const PlacementKeys& placement = population.placement;
   const GrainsToPlace grains{
@@ -135,7 +135,7 @@ Places pack(const Population& population, const Region& region, const PlacingRan
   };
 }
 
-Places place(const Population& population, const PlacingRanks& ranks, std::span<const Obstacle> obstacles) {
+Places place(const Population& population, const PackingDomain& ranks, std::span<const Obstacle> obstacles) {
   const PlacementKeys& placement = population.placement;
   Region region = region_of(placement, ranks.box());
   region.plane = population.thickness > 0.0;
@@ -157,7 +157,7 @@ Places place(const Population& population, const PlacingRanks& ranks, std::span<
 // Adds the grains of a population that this rank knows, one after the other, with ids that count up through all.
 class SeedAdder {
 public:
-  SeedAdder(const PlacingRanks& ranks, dem::GrainSeeds& seeds) : ranks_(ranks), seeds_(seeds) {}
+  SeedAdder(const PackingDomain& ranks, dem::GrainSeeds& seeds) : ranks_(ranks), seeds_(seeds) {}
 
   void add(const Population& population, const dem::GrainSeed& common, const Places& places) {
     const auto seed_of = [&](std::size_t grain, const Vec3& centre) {
@@ -234,7 +234,7 @@ private:
     if (wants(clump.position, -1)) seeds_.clumps.push_back(clump_seed_of(seed, clump));
   }
 
-  const PlacingRanks& ranks_;
+  const PackingDomain& ranks_;
   dem::GrainSeeds& seeds_;
   GlobalId first_ = 0;  // id of the population's first grain
 };
@@ -247,7 +247,7 @@ bool anyone_keeps_clear(std::span<const Population> populations) {
 }
 
 // The room of its grains that this rank knows, for others to keep clear of; numbered within the population.
-std::vector<Obstacle> spheres_of(const Population& population, const PlacingRanks& ranks, const Places& places) {
+std::vector<Obstacle> spheres_of(const Population& population, const PackingDomain& ranks, const Places& places) {
   std::vector<Obstacle> spheres;
   const auto add = [&](std::int64_t number, const Vec3& centre, double radius) {
     const Vec3 in_box = ranks.box().wrapped(in_plane(centre, population, ranks.box()));
@@ -266,7 +266,7 @@ std::vector<Obstacle> spheres_of(const Population& population, const PlacingRank
 
 }  // namespace
 
-dem::GrainSeeds grain_seeds(std::span<const Population> populations, const PlacingRanks& ranks) {
+dem::GrainSeeds grain_seeds(std::span<const Population> populations, const PackingDomain& ranks) {
   std::vector<Places> places(populations.size());
   std::vector<Obstacle> obstacles;
   std::int64_t first = 0;  // number of a population's first grain among the obstacles

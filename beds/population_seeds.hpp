@@ -1,7 +1,7 @@
 // From populations to single grains at the start, to rigid assemblies and to materials.
 #pragma once
 
-#include "beds/packing/placing_ranks.hpp"
+#include "beds/packing/packing_domain.hpp"
 #include "beds/population/material_keys.hpp"
 #include "beds/population/population.hpp"
 #include "core/geometry/periodic_box.hpp"
@@ -15,11 +15,11 @@
 
 namespace thalweg::beds {
 
-// The grains at the start that this rank knows (placing_ranks.hpp), a clump with its centre at its place, and the
+// The grains at the start that this rank knows (packing_domain.hpp), a clump with its centre at its place, and the
 // members of rigid assemblies: the same grains on any number of ranks. Ids run through the populations in their order.
 // Given positions are taken first, then uniform patterns, then dense and random ones, which keep clear of all others.
 // Collective. Throws InputError, on every rank, where they do not fit.
-dem::GrainSeeds grain_seeds(std::span<const Population> populations, const PlacingRanks& ranks);
+dem::GrainSeeds grain_seeds(std::span<const Population> populations, const PackingDomain& ranks);
 
 // Which components of the motion of its grains are held.
 dem::Motion motion_of(const Population& population);

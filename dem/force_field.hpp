@@ -5,7 +5,7 @@
 #include "core/state/system.hpp"
 #include "dem/clumps/clumps.hpp"
 #include "dem/motion/grain_store.hpp"
-#include "dem/motion/moving_grains.hpp"
+#include "dem/motion/packed_grain_state.hpp"
 
 #include <span>
 #include <vector>
@@ -30,7 +30,7 @@ public:
   virtual void find_neighbours(const GrainStore& store, double skin, const Clumps& clumps) = 0;
   // After the contacts: sets the loads of owned grains and clumps, in the store and, with the body forces (N) added, in
   // `grains` and `clumps`.
-  virtual void act(MovingGrains& grains, GrainStore& store, Clumps& clumps, std::span<const Vec3> body_force) = 0;
+  virtual void act(PackedGrainState& grains, GrainStore& store, Clumps& clumps, std::span<const Vec3> body_force) = 0;
 
   // A step of the system has ended (time: s). Collective, as are the next three.
   virtual void step_ended(const GrainDynamics&, double /*time*/) {}

@@ -2,7 +2,7 @@
 #include "core/parallel/mpi_session.hpp"
 #include "core/sums/reproducible_sum.hpp"
 #include "dem/contact/contact_forces.hpp"
-#include "dem/extreme.hpp"
+#include "dem/distributed_argmax.hpp"
 #include "dem/grain_dynamics.hpp"
 
 #include <fmt/format.h>
@@ -158,21 +158,21 @@ double GrainDynamics::largest_overlap() const {
 }
 
 std::optional<Location> GrainDynamics::place_of_deepest_overlap() const {
-  Extreme deepest;
+  DistributedArgmax deepest;
   for_each_touching(list_, store_, box_, [&](const PairContact& c, double overlap, const Vec3& separation) {
     deepest.consider({overlap_in_diameters(store_, c, overlap), store_.id[c.first], store_.id[c.second],
                       box_.wrapped(store_.position[c.second] + 0.5 * separation)});
   });
-  return deepest.place_over_ranks(communicator_);
+  return deepest.over_ranks(communicator_);
 }
 
 std::optional<Location> GrainDynamics::place_of_fastest() const {
-  Extreme fastest;
+  DistributedArgmax fastest;
   for (std::size_t s = 0; s < store_.owned; ++s)
     if (store_.clump[s] < 0) fastest.consider({store_.velocity[s].norm(), store_.id[s], -1, store_.position[s]});
   for (std::size_t n = 0; n < clumps_.size(); ++n)
     fastest.consider({clumps_[n].velocity.norm(), clumps_[n].id, -1, clumps_[n].centre});
-  return fastest.place_over_ranks(communicator_);
+  return fastest.over_ranks(communicator_);
 }
 
 // Calls visit(mass, velocity, kinetic energy, motion, force) for every grain and clump owned here; force: N, of all

@@ -29,7 +29,7 @@
 #include "dem/motion/grain_seed.hpp"
 #include "dem/motion/grain_store.hpp"
 #include "dem/motion/integrator.hpp"
-#include "dem/motion/moving_grains.hpp"
+#include "dem/motion/packed_grain_state.hpp"
 #include "dem/motion/walls.hpp"
 #include "dem/ranks/ghost_exchange.hpp"
 #include "dem/ranks/grain_batch.hpp"
@@ -287,7 +287,7 @@ private:
   GhostExchange ghosts_;
   NeighbourList list_;
   GearPredictor gear_;
-  MovingGrains moving_;  // the state during the sub-steps
+  PackedGrainState moving_;  // the state during the sub-steps
   Clumps clumps_{parameters_.disk_thickness};
   std::vector<Vec3> listed_position_;  // of owned grains, when the list was built
   std::vector<Plane> listed_planes_;

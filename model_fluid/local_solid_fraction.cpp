@@ -23,8 +23,8 @@ constexpr std::size_t solid_at = 0, solid_known = 3, weight_at = 4, clump_at = 5
 // m^3, of disks of a thickness of 1, which is their area (m^2).
 double size_of_grain(double radius, bool disk) { return dem::grain_volume(radius, disk ? 1.0 : 0.0); }
 
-bool same_bits(const std::vector<dem::Row>& a, const std::vector<dem::Row>& b) {
-  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(dem::Row)) == 0);
+bool same_bits(const std::vector<dem::Double4>& a, const std::vector<dem::Double4>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(dem::Double4)) == 0);
 }
 
 using SlotPair = std::pair<std::uint32_t, std::uint32_t>;
@@ -34,15 +34,15 @@ using SlotPair = std::pair<std::uint32_t, std::uint32_t>;
 std::vector<SlotPair> pairs_within(double distance, const PeriodicBox& box, const dem::GrainStore& store) {
   const dem::CellGrid grid(box, distance, store.position);
   const std::span<const std::uint32_t> slot = grid.order();
-  std::vector<dem::Row> position;
-  for (const std::uint32_t s : slot) position.push_back(dem::row_of(store.position[s], store.is_ghost(s) ? 1.0 : 0.0));
+  std::vector<dem::Double4> position;
+  for (const std::uint32_t s : slot) position.push_back(dem::double4(store.position[s], store.is_ghost(s) ? 1.0 : 0.0));
   const dem::MinimumImage image(box);
   const double limit = distance * distance;
   std::vector<SlotPair> pairs(64 * store.total() + 1);
   std::size_t count = 0;
   grid.for_each_near_pair([&](std::uint32_t m, std::uint32_t n) {
     if (count == pairs.size()) pairs.resize(2 * count);
-    const dem::Row d = image(position[m] - position[n]), square = d * d;
+    const dem::Double4 d = image(position[m] - position[n]), square = d * d;
     pairs[count] = {slot[m], slot[n]};
     count += static_cast<std::size_t>((square[0] + square[1] + square[2] <= limit) &
                                       (position[m][3] + position[n][3] < 2.0));
@@ -118,11 +118,11 @@ void LocalSolidFraction::find_neighbours(const dem::GrainStore& store, double sk
 // Takes what is remembered from the columns. False if it is known in these slots already, with all it adds up to.
 bool LocalSolidFraction::recall(const dem::GrainStore& store, const dem::Clumps& clumps) {
   const std::size_t owned = std::exchange(owned_, store.owned);
-  const std::vector<dem::Row> solids = std::exchange(solids_, {}), bodies = std::exchange(bodies_, {});
+  const std::vector<dem::Double4> solids = std::exchange(solids_, {}), bodies = std::exchange(bodies_, {});
   const std::vector<double> weights = std::exchange(weights_, {});
   const auto remembered = [&store](std::size_t slot, std::size_t at, std::size_t known, double radius) {
     const std::span<const double> attached = store.attached_of(slot);
-    return dem::Row{attached[at], attached[at + 1], attached[at + 2], attached[known] != 0.0 ? radius : 0.0};
+    return dem::Double4{attached[at], attached[at + 1], attached[at + 2], attached[known] != 0.0 ? radius : 0.0};
   };
   solids_.resize(store.total());
   weights_.assign(store.total(), 1.0);
@@ -130,7 +130,7 @@ bool LocalSolidFraction::recall(const dem::GrainStore& store, const dem::Clumps&
     solids_[s] = remembered(s, solid_at, solid_known, store.radius[s]);
     if (parameters_.clumps) weights_[s] = store.attached_of(s)[weight_at];
   }
-  bodies_.assign(parameters_.clumps ? store.total() : 0, dem::Row{});
+  bodies_.assign(parameters_.clumps ? store.total() : 0, dem::Double4{});
   if (parameters_.clumps) {
     for (std::size_t s = 0; s < owned_; ++s)
       if (store.clump[s] < 0) bodies_[s] = solids_[s];
@@ -142,26 +142,26 @@ bool LocalSolidFraction::recall(const dem::GrainStore& store, const dem::Clumps&
   return owned != owned_ || !same_bits(solids, solids_) || !same_bits(bodies, bodies_) || weights != weights_;
 }
 
-std::span<const std::uint32_t> LocalSolidFraction::update(const dem::MovingGrains& grains, const dem::Clumps& clumps,
-                                                          dem::GrainStore& store) {
+std::span<const std::uint32_t> LocalSolidFraction::update(const dem::PackedGrainState& grains,
+                                                          const dem::Clumps& clumps, dem::GrainStore& store) {
   for (const std::uint32_t s : changed_) is_changed_[s] = 0;
   changed_.clear();
   for (std::size_t s = 0; s < grains.size(); ++s)
     if (has_moved(solids_[s], grains[s].position)) move_solid(s, grains[s].position, store);
   for (std::size_t n = 0; n < clumps.size(); ++n) {
-    const dem::Row centre = dem::row_of(clumps[n].centre, clumps.radius_of(clumps[n]));
+    const dem::Double4 centre = dem::double4(clumps[n].centre, clumps.radius_of(clumps[n]));
     if (has_moved(bodies_[clumps.first_slot(n)], centre)) move_clump(clumps.first_slot(n), centre, store);
   }
   return changed_;
 }
 
-bool LocalSolidFraction::has_moved(const dem::Row& remembered, const dem::Row& now) const {
+bool LocalSolidFraction::has_moved(const dem::Double4& remembered, const dem::Double4& now) const {
   if (remembered[3] == 0.0) return true;
   const double limit = parameters_.tolerance * parameters_.tolerance;
   return box_.difference(dem::vector_of(now), dem::vector_of(remembered)).squaredNorm() > limit;
 }
 
-void LocalSolidFraction::move_solid(std::size_t slot, const dem::Row& position, dem::GrainStore& store) {
+void LocalSolidFraction::move_solid(std::size_t slot, const dem::Double4& position, dem::GrainStore& store) {
   copy_neighbours(slot, bodies());
   if (solids_[slot][3] > 0.0) add_to_neighbours(slot, -1.0);
   solids_[slot] = position;
@@ -179,7 +179,7 @@ void LocalSolidFraction::move_solid(std::size_t slot, const dem::Row& position, 
   sum_own(slot);
 }
 
-void LocalSolidFraction::move_clump(std::size_t first_member, const dem::Row& centre, dem::GrainStore& store) {
+void LocalSolidFraction::move_clump(std::size_t first_member, const dem::Double4& centre, dem::GrainStore& store) {
   bodies_[first_member] = centre;
   const std::span<double> attached = store.attached_of(first_member);
   for (std::size_t axis = 0; axis < 3; ++axis) attached[clump_at + axis] = centre[axis];
@@ -196,7 +196,7 @@ void LocalSolidFraction::mark(std::size_t slot) {
 }
 
 // remembered: solids_ or bodies().
-void LocalSolidFraction::copy_neighbours(std::size_t slot, const std::vector<dem::Row>& remembered) {
+void LocalSolidFraction::copy_neighbours(std::size_t slot, const std::vector<dem::Double4>& remembered) {
   const std::span<const std::uint32_t> neighbours = neighbours_of(slot);
   if (near_.slot.size() < neighbours.size() + 1 + group) {
     near_.slot.resize(2 * (neighbours.size() + 1 + group));
@@ -205,7 +205,7 @@ void LocalSolidFraction::copy_neighbours(std::size_t slot, const std::vector<dem
   }
   std::size_t n = 0;
   for (const std::uint32_t neighbour : neighbours) {
-    const dem::Row& at = remembered[neighbour];
+    const dem::Double4& at = remembered[neighbour];
     if (at[3] == 0.0) continue;
     near_.slot[n] = neighbour;
     near_.x[n] = at[0];
@@ -246,7 +246,7 @@ void LocalSolidFraction::add_to_neighbours(std::size_t slot, double sign) {
 
 void LocalSolidFraction::intersect(std::size_t slot, About about, double height) {
   std::fill_n(near_.common.begin(), near_.size, 0.0);
-  const dem::Row grain = about == About::grain ? bodies()[slot] : solids_[slot];
+  const dem::Double4 grain = about == About::grain ? bodies()[slot] : solids_[slot];
   const double weight = weights_[slot];
   for (const Vec3& image : images_) {
     if (about == About::grain && parameters_.disks) add_image<About::grain, true>(grain, weight, image, height);
@@ -261,7 +261,7 @@ void LocalSolidFraction::intersect(std::size_t slot, About about, double height)
 // Adds what a grain and each of its neighbours have in common, the sphere being about the one or the other, times the
 // weight of the solid. It gives the same bits seen from either.
 template <LocalSolidFraction::About about, bool disks>
-void LocalSolidFraction::add_image(const dem::Row& grain, double weight, const Vec3& image, double height) {
+void LocalSolidFraction::add_image(const dem::Double4& grain, double weight, const Vec3& image, double height) {
   const double *x = near_.x.data(), *y = near_.y.data(), *z = near_.z.data(), *radius = near_.radius.data(),
                *weights = near_.weight.data();
   double* common = near_.common.data();

@@ -15,7 +15,7 @@
 #include "core/geometry/periodic_box.hpp"
 #include "dem/clumps/clumps.hpp"
 #include "dem/motion/grain_store.hpp"
-#include "dem/motion/moving_grains.hpp"
+#include "dem/motion/packed_grain_state.hpp"
 
 #include <cstdint>
 #include <span>
@@ -52,7 +52,7 @@ public:
   // Brings the columns and the solid fractions of owned grains up to date; positions are those of `grains` and
   // `clumps`. Returns the owned slots whose solid fraction may have changed, in no particular order, valid until the
   // next call.
-  std::span<const std::uint32_t> update(const dem::MovingGrains& grains, const dem::Clumps& clumps,
+  std::span<const std::uint32_t> update(const dem::PackedGrainState& grains, const dem::Clumps& clumps,
                                         dem::GrainStore& store);
 
   // Of a grain, or of the clump whose first member this is.
@@ -76,33 +76,33 @@ private:
     return {neighbours_.data() + first_[slot], first_[slot + 1] - first_[slot]};
   }
   // The grains that solid fractions are of.
-  const std::vector<dem::Row>& bodies() const { return parameters_.clumps ? bodies_ : solids_; }
+  const std::vector<dem::Double4>& bodies() const { return parameters_.clumps ? bodies_ : solids_; }
   bool recall(const dem::GrainStore& store, const dem::Clumps& clumps);
-  bool has_moved(const dem::Row& remembered, const dem::Row& now) const;
-  void move_solid(std::size_t slot, const dem::Row& position, dem::GrainStore& store);
-  void move_clump(std::size_t first_member, const dem::Row& centre, dem::GrainStore& store);
+  bool has_moved(const dem::Double4& remembered, const dem::Double4& now) const;
+  void move_solid(std::size_t slot, const dem::Double4& position, dem::GrainStore& store);
+  void move_clump(std::size_t first_member, const dem::Double4& centre, dem::GrainStore& store);
   void mark(std::size_t slot);
 
-  void copy_neighbours(std::size_t slot, const std::vector<dem::Row>& remembered);
+  void copy_neighbours(std::size_t slot, const std::vector<dem::Double4>& remembered);
   void sum_own(std::size_t slot);
   void add_to_neighbours(std::size_t slot, double sign);
   void intersect(std::size_t slot, About about, double height);
   template <About about, bool disks>
-  void add_image(const dem::Row& grain, double weight, const Vec3& image, double height);
+  void add_image(const dem::Double4& grain, double weight, const Vec3& image, double height);
 
   double fraction(std::size_t slot, int which) const;
 
   PeriodicBox box_;
   SolidFractionParameters parameters_;
-  std::vector<double> heights_;     // radii: where the spheres of a grain are, above its centre
-  double rounding_;                 // added and taken away, rounds a common volume
-  std::vector<Vec3> images_;        // m, beyond the nearest image, that may reach a grain as well
-  std::size_t owned_ = 0;           // slots
-  std::vector<dem::Row> solids_;    // m, remembered position and radius; radius 0: not yet
-  std::vector<dem::Row> bodies_;    // with clumps: the same of owned grains and, by first member, of clumps
-  std::vector<double> weights_;     // of the solids
-  std::vector<double> sums_;        // m^3 (m^2), of each owned slot's spheres
-  std::vector<std::size_t> first_;  // of each slot's neighbours
+  std::vector<double> heights_;       // radii: where the spheres of a grain are, above its centre
+  double rounding_;                   // added and taken away, rounds a common volume
+  std::vector<Vec3> images_;          // m, beyond the nearest image, that may reach a grain as well
+  std::size_t owned_ = 0;             // slots
+  std::vector<dem::Double4> solids_;  // m, remembered position and radius; radius 0: not yet
+  std::vector<dem::Double4> bodies_;  // with clumps: the same of owned grains and, by first member, of clumps
+  std::vector<double> weights_;       // of the solids
+  std::vector<double> sums_;          // m^3 (m^2), of each owned slot's spheres
+  std::vector<std::size_t> first_;    // of each slot's neighbours
   std::vector<std::uint32_t> neighbours_;
   std::vector<std::uint32_t> changed_;  // owned slots
   std::vector<char> is_changed_;

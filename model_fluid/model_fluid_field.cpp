@@ -35,12 +35,12 @@ ModelForce ModelFluidField::force_on(std::size_t slot, double radius, const Vec3
                      lift_[slot]);
 }
 
-void ModelFluidField::act(dem::MovingGrains& grains, dem::GrainStore& store, dem::Clumps& clumps,
+void ModelFluidField::act(dem::PackedGrainState& grains, dem::GrainStore& store, dem::Clumps& clumps,
                           std::span<const Vec3> body_force) {
   for (const std::uint32_t s : fraction_.update(grains, clumps, store)) update_flow(s);
   for (std::size_t s = 0; s < store.owned; ++s) {
     if (store.clump[s] >= 0) continue;
-    const dem::MovingGrain& grain = grains[s];
+    const dem::PackedGrain& grain = grains[s];
     const double radius = grain.position[3];
     const ModelForce f = force_on(s, radius, dem::vector_of(grain.velocity));
     store.load_force[s] = Vec3(f.x, f.y, f.z);

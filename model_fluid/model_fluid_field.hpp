@@ -28,7 +28,7 @@ public:
   double reach() const override { return fraction_.reach(); }
   void fill_columns(dem::GrainStore& store, const dem::Clumps& clumps) override { fraction_.weigh(store, clumps); }
   void find_neighbours(const dem::GrainStore& store, double skin, const dem::Clumps& clumps) override;
-  void act(dem::MovingGrains& grains, dem::GrainStore& store, dem::Clumps& clumps,
+  void act(dem::PackedGrainState& grains, dem::GrainStore& store, dem::Clumps& clumps,
            std::span<const Vec3> body_force) override;
   void step_ended(const dem::GrainDynamics& grains, double time) override;
   // With a ramp: shields_number; reynolds_number, Re_* as printed, which grows with its root; and hold_left (s): the

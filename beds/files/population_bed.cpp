@@ -1,7 +1,7 @@
 #include "beds/files/population_bed.hpp"
 
-#include "beds/files/bed_rows.hpp"
-#include "beds/files/row_overlaps.hpp"
+#include "beds/files/bed_import.hpp"
+#include "beds/files/bed_overlap_check.hpp"
 #include "beds/packing/packing.hpp"
 #include "beds/population/population_clumps.hpp"
 #include "core/base/error.hpp"

@@ -36,7 +36,7 @@ bool has_lower_number(const PackedBody& a, const PackedBody& b) { return a.numbe
 
 class Relaxation {
 public:
-  Relaxation(const PlacingRanks& ranks, const GrainsToPlace& grains, std::span<const Obstacle> obstacles)
+  Relaxation(const PackingDomain& ranks, const GrainsToPlace& grains, std::span<const Obstacle> obstacles)
       : ranks_(ranks),
         box_(ranks.box()),
         grains_(grains),
@@ -193,7 +193,7 @@ private:
   public:
     Copies() = default;
     // Of grains within this distance (m) of a block.
-    Copies(const PlacingRanks& ranks, const std::vector<PackedBody>& own, double distance) : ranks_(&ranks) {
+    Copies(const PackingDomain& ranks, const std::vector<PackedBody>& own, double distance) : ranks_(&ranks) {
       if (ranks.alone()) return;
       for (std::size_t n = 0; n < own.size(); ++n)
         for (const int rank : ranks.decomposition().ranks_reached(Vec3(own[n].position), distance))
@@ -211,12 +211,12 @@ private:
     }
 
   private:
-    const PlacingRanks* ranks_ = nullptr;
+    const PackingDomain* ranks_ = nullptr;
     std::vector<std::size_t> sent_;  // numbers in the list of own grains
     std::vector<int> homes_;         // where to
   };
 
-  const PlacingRanks& ranks_;
+  const PackingDomain& ranks_;
   PeriodicBox box_;
   const GrainsToPlace& grains_;
   double largest_;      // m, radius, grown
@@ -232,7 +232,7 @@ private:
 
 }  // namespace
 
-std::vector<PlacedGrain> dense_packing(const PlacingRanks& ranks, const GrainsToPlace& grains,
+std::vector<PlacedGrain> dense_packing(const PackingDomain& ranks, const GrainsToPlace& grains,
                                        std::span<const Obstacle> obstacles) {
   check_region(ranks.box(), grains.region);
   if (grains.count == 0) return {};

@@ -1,7 +1,10 @@
 #include "beds/packing/random_packing.hpp"
 
-#include "beds/packing/random_places.hpp"
 #include "beds/packing/sphere_cells.hpp"
+#include "core/base/counter_random.hpp"
+#include "core/base/error.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
@@ -9,6 +12,43 @@
 
 namespace thalweg::beds {
 namespace {
+
+constexpr unsigned most_attempts = 5000;  // of one grain
+
+// The place (m, wrapped) that a grain tries in an attempt, both numbered from 0 on. The region must have room for it.
+Vec3 random_place(const PeriodicBox& box, const GrainsToPlace& grains, std::int64_t number, unsigned attempt) {
+  const Region& region = grains.region;
+  Vec3 place;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    if (region.plane && axis == 1) {
+      place[1] = 0.5 * (region.lower[1] + region.upper[1]);
+      continue;
+    }
+    const double margin = wraps(box, region, static_cast<int>(axis)) ? 0.0 : grains.radius(number) + grains.clearance;
+    const double free = region.upper[axis] - region.lower[axis] - 2.0 * margin;
+    place[axis] = region.lower[axis] + margin +
+                  free * uniform_random(grains.seed, static_cast<std::uint64_t>(number), 3u * attempt + axis);
+  }
+  return box.wrapped(place);
+}
+
+// True if the largest grain fits between the faces of the region.
+bool has_room_at_random(const PeriodicBox& box, const GrainsToPlace& grains) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (wraps(box, grains.region, axis) || (grains.region.plane && axis == 1)) continue;
+    const double extent = grains.region.upper[axis] - grains.region.lower[axis];
+    if (extent - 2.0 * (grains.largest_radius + grains.clearance) < 0.0) return false;
+  }
+  return true;
+}
+
+InputError too_many_at_random(const GrainsToPlace& grains, std::int64_t placed) {
+  const Vec3 extent = grains.region.upper - grains.region.lower;
+  return InputError(
+      fmt::format("{} grains do not fit at random in {:g} x {:g} x {:g} m: {} did; use fewer or smaller "
+                  "grains, a larger region, or another placement.pattern (dense or uniform).",
+                  grains.count, extent.x(), extent.y(), extent.z(), placed));
+}
 
 // A place that a grain tries, or has been given.
 struct Trial {
@@ -20,12 +60,12 @@ struct Trial {
 };
 
 // Trials after which to check whether grains still find places.
-constexpr std::int64_t trials_between_looks = 100'000;
+constexpr std::int64_t trials_between_checks = 100'000;
 
-class PlacingTogether {
+class SequentialAddition {
 public:
-  PlacingTogether(const PlacingRanks& ranks, const GrainsToPlace& grains, std::span<const Obstacle> obstacles,
-                  double largest_radius)
+  SequentialAddition(const PackingDomain& ranks, const GrainsToPlace& grains, std::span<const Obstacle> obstacles,
+                     double largest_radius)
       : ranks_(ranks), grains_(grains), largest_(largest_radius), placed_cells_(ranks.box(), largest_radius) {
     for (const Obstacle& obstacle : obstacles)
       placed_cells_.add({ranks.box().wrapped(obstacle.sphere.position), obstacle.sphere.radius});
@@ -38,7 +78,7 @@ public:
     auto waiting = ranks_.sum(static_cast<std::int64_t>(trials.size()));
     if (waiting == 0) return true;
     for (unsigned attempt = 0; waiting > 0; ++attempt) {
-      if (attempt == most_attempts_at_random || hopeless()) return false;
+      if (attempt == most_attempts || hopeless()) return false;
       trials = round(ranks_.to_knowing(trials), attempt);
       const std::int64_t fitted = ranks_.sum(std::count_if(trials.begin(), trials.end(), &has_place));
       tried_ += waiting;
@@ -105,24 +145,24 @@ private:
 
   // Whether so few of the last trials fitted that a grain has no fair chance of a place.
   bool hopeless() {
-    if (tried_ < trials_between_looks) return false;
-    const bool too_few = fitted_ * most_attempts_at_random < tried_;
+    if (tried_ < trials_between_checks) return false;
+    const bool too_few = fitted_ * most_attempts < tried_;
     tried_ = fitted_ = 0;
     return too_few;
   }
 
-  const PlacingRanks& ranks_;
+  const PackingDomain& ranks_;
   const GrainsToPlace& grains_;
   double largest_;  // m, radius
   SphereCells placed_cells_;
   std::vector<PlacedGrain> placed_;
   std::int64_t placed_by_all_ = 0;
-  std::int64_t tried_ = 0, fitted_ = 0;  // by all ranks, since the last look
+  std::int64_t tried_ = 0, fitted_ = 0;  // by all ranks, since the last check
 };
 
 }  // namespace
 
-std::vector<PlacedGrain> random_packing(const PlacingRanks& ranks, const GrainsToPlace& grains,
+std::vector<PlacedGrain> random_packing(const PackingDomain& ranks, const GrainsToPlace& grains,
                                         std::span<const Obstacle> obstacles) {
   check_region(ranks.box(), grains.region);
   if (grains.count == 0) return {};
@@ -131,7 +171,7 @@ std::vector<PlacedGrain> random_packing(const PlacingRanks& ranks, const GrainsT
   const RowRange share = ranks.share_of(grains.count);
   for (auto number = share.first; number < share.last; ++number) smallest = std::min(smallest, grains.radius(number));
   smallest = ranks.smallest(smallest);
-  PlacingTogether placing(ranks, grains, obstacles, ranks.largest(largest));
+  SequentialAddition placing(ranks, grains, obstacles, ranks.largest(largest));
   bool all = has_room_at_random(ranks.box(), grains);
   constexpr double next_size = 0.95;
   for (double below = std::numeric_limits<double>::infinity(), from = next_size * grains.largest_radius; all;
@@ -160,7 +200,7 @@ std::vector<Vec3> packed_alone(const auto& packing, const PeriodicBox& box, cons
                              clearance,
                              seed};
   std::vector<Vec3> centres;
-  for (const PlacedGrain& grain : packing(PlacingRanks(box), grains, numbered)) centres.push_back(grain.centre);
+  for (const PlacedGrain& grain : packing(PackingDomain(box), grains, numbered)) centres.push_back(grain.centre);
   return centres;
 }
 

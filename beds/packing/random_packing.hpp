@@ -3,7 +3,7 @@
 #pragma once
 
 #include "beds/packing/packing.hpp"
-#include "beds/packing/placing_ranks.hpp"
+#include "beds/packing/packing_domain.hpp"
 #include "core/base/types.hpp"
 #include "dem/clumps/placed_sphere.hpp"
 
@@ -35,20 +35,20 @@ struct PlacedGrain {
   bool operator<(const PlacedGrain& other) const { return number < other.number; }
 };
 
-// The grains that this rank knows (placing_ranks.hpp), in order of their numbers. obstacles: those that it knows.
+// The grains that this rank knows (packing_domain.hpp), in order of their numbers. obstacles: those that it knows.
 // Collective. Throws InputError on every rank where the grains do not fit.
 //
 // Each grain is put anywhere, again and again until it is clear of all others and of the obstacles (random sequential
 // addition). Beyond about a third of the volume that gets hard. Each rank decides about the places in its block. All
 // grains of a size class try at once, the largest first, each class down to 0.95 of the one before; of two in each
 // other's way the one with the lower number goes first.
-std::vector<PlacedGrain> random_packing(const PlacingRanks& ranks, const GrainsToPlace& grains,
+std::vector<PlacedGrain> random_packing(const PackingDomain& ranks, const GrainsToPlace& grains,
                                         std::span<const Obstacle> obstacles);
 
 // The same for beds and suspensions that fill up to 0.6 of the volume: grains start at random and are pushed apart, in
 // proportion to their overlaps, until none overlap (after W. S. Jodrey and E. M. Tory, Phys. Rev. A 32 (1985) 2347).
 // Nearest neighbours are then at least a diameter apart, most of them little more.
-std::vector<PlacedGrain> dense_packing(const PlacingRanks& ranks, const GrainsToPlace& grains,
+std::vector<PlacedGrain> dense_packing(const PackingDomain& ranks, const GrainsToPlace& grains,
                                        std::span<const Obstacle> obstacles);
 
 // For one process: centres (m), one for each radius (m).

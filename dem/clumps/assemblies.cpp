@@ -46,14 +46,14 @@ void Assemblies::find(const GrainStore& store) {
   }
 }
 
-void Assemblies::place(MovingGrains& grains, const PeriodicBox& box, double time, double time_of_velocity) const {
+void Assemblies::place(PackedGrainState& grains, const PeriodicBox& box, double time, double time_of_velocity) const {
   for (const OwnedMember& owned : owned_) {
     const Member& member = members_[owned.member];
     const PrescribedMotion& motion = motions_[static_cast<std::size_t>(member.assembly)];
-    MovingGrain& grain = grains[owned.slot];
-    grain.position = row_of(box.wrapped_from_afar(motion.place(member.at_start, time)), grain.position[3]);
-    grain.velocity = row_of(motion.velocity_of(member.at_start, time_of_velocity));
-    grain.spin = row_of(motion.spin());
+    PackedGrain& grain = grains[owned.slot];
+    grain.position = double4(box.wrapped_from_afar(motion.place(member.at_start, time)), grain.position[3]);
+    grain.velocity = double4(motion.velocity_of(member.at_start, time_of_velocity));
+    grain.spin = double4(motion.spin());
   }
 }
 

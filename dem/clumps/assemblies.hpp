@@ -5,7 +5,7 @@
 #include "core/geometry/periodic_box.hpp"
 #include "dem/motion/grain_seed.hpp"
 #include "dem/motion/grain_store.hpp"
-#include "dem/motion/moving_grains.hpp"
+#include "dem/motion/packed_grain_state.hpp"
 #include "dem/motion/prescribed_motion.hpp"
 
 #include <mpi.h>
@@ -30,7 +30,7 @@ public:
   void find(const GrainStore& store);
 
   // Places owned members as they are at one time (s), wrapped into the box, with their velocities at another (s).
-  void place(MovingGrains& grains, const PeriodicBox& box, double time, double time_of_velocity) const;
+  void place(PackedGrainState& grains, const PeriodicBox& box, double time, double time_of_velocity) const;
 
   // The initial places of all members, which every rank knows; loading replaces those of the seeds, and throws
   // InputError where the archive has none or more than here. Collective.

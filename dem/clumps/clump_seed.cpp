@@ -1,7 +1,7 @@
 #include "dem/clumps/clump_seed.hpp"
 
 #include "core/base/error.hpp"
-#include "dem/clumps/union_moments.hpp"
+#include "dem/clumps/sphere_union_inertia.hpp"
 #include "dem/motion/grain_volume.hpp"
 
 #include <fmt/format.h>

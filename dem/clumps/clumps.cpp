@@ -143,11 +143,11 @@ void Clumps::add_loads(std::size_t n, const GrainStore& store, Vec3& force, Vec3
   force += body_force_[n];
 }
 
-void Clumps::load(const GrainStore& store) {
-  for (std::size_t n = 0; n < clumps_.size(); ++n) load(n, store);
+void Clumps::gather_loads(const GrainStore& store) {
+  for (std::size_t n = 0; n < clumps_.size(); ++n) gather_load(n, store);
 }
 
-void Clumps::load(std::size_t n, const GrainStore& store) {
+void Clumps::gather_load(std::size_t n, const GrainStore& store) {
   loads_[n] = {Vec3::Zero(), Vec3::Zero()};
   add_loads(n, store, loads_[n].force, loads_[n].torque);
 }
@@ -159,29 +159,29 @@ void Clumps::set_central_force(std::size_t n, const Vec3& force, GrainStore& sto
     store.load_force[slot] = share;
     store.load_torque[slot] = -arm(n, m).cross(share);
   }
-  load(n, store);
+  gather_load(n, store);
 }
 
-void Clumps::stop_along_floor(std::size_t n, MovingGrains& grains) {
+void Clumps::stop_along_floor(std::size_t n, PackedGrainState& grains) {
   Clump& clump = clumps_[n];
   clump.velocity[0] = clump.velocity[1] = 0.0;
   Vec3 pull = loads_[n].force;
   for (std::size_t m = 0; m < count(n); ++m) pull += vector_of(grains[first_slot_[n] + m].force);
   const Vec3 share(-pull[0] / static_cast<double>(count(n)), -pull[1] / static_cast<double>(count(n)), 0.0);
   for (std::size_t m = 0; m < count(n); ++m) {
-    MovingGrain& member = grains[first_slot_[n] + m];
-    member.force += row_of(share);
-    member.torque -= row_of(arm(n, m).cross(share));
+    PackedGrain& member = grains[first_slot_[n] + m];
+    member.force += double4(share);
+    member.torque -= double4(arm(n, m).cross(share));
   }
 }
 
-void Clumps::half_kicks(const MovingGrains& grains, double time_step, int kicks) {
+void Clumps::half_kicks(const PackedGrainState& grains, double time_step, int kicks) {
   const double half = 0.5 * time_step;
   for (std::size_t n = 0; n < clumps_.size(); ++n) {
     Clump& clump = clumps_[n];
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
     for (std::size_t m = 0; m < count(n); ++m) {
-      const MovingGrain& member = grains[first_slot_[n] + m];
+      const PackedGrain& member = grains[first_slot_[n] + m];
       const Vec3 pull = vector_of(member.force);
       force += pull;
       torque += vector_of(member.torque) + arm(n, m).cross(pull);
@@ -212,16 +212,16 @@ void Clumps::drift(double time_step) {
   }
 }
 
-void Clumps::place(MovingGrains& grains, const PeriodicBox& box) const {
+void Clumps::place(PackedGrainState& grains, const PeriodicBox& box) const {
   for (std::size_t n = 0; n < clumps_.size(); ++n) {
     const Clump& clump = clumps_[n];
     for (std::size_t m = 0; m < count(n); ++m) {
-      MovingGrain& member = grains[first_slot_[n] + m];
+      PackedGrain& member = grains[first_slot_[n] + m];
       const Vec3 r = arm(n, m);
       // The centre may be just outside the box, and no member is further than half the box from it.
-      member.position = dem::row_of(box.wrapped(box.wrapped(clump.centre) + r), member.position[3]);
-      member.velocity = dem::row_of(clump.velocity + clump.angular_velocity.cross(r));
-      member.spin = dem::row_of(clump.angular_velocity);
+      member.position = dem::double4(box.wrapped(box.wrapped(clump.centre) + r), member.position[3]);
+      member.velocity = dem::double4(clump.velocity + clump.angular_velocity.cross(r));
+      member.spin = dem::double4(clump.angular_velocity);
     }
   }
 }

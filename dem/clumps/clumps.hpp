@@ -13,7 +13,7 @@
 #include "core/parallel/decomposition.hpp"
 #include "dem/clumps/clump_seed.hpp"
 #include "dem/motion/grain_store.hpp"
-#include "dem/motion/moving_grains.hpp"
+#include "dem/motion/packed_grain_state.hpp"
 
 #include <mpi.h>
 
@@ -85,16 +85,16 @@ public:
   void migrate(const Decomposition& decomposition, MPI_Comm communicator);
 
   // Before the sub-steps: takes over the loads of the store, with torques about the present centres.
-  void load(const GrainStore& store);
+  void gather_loads(const GrainStore& store);
   // During the sub-steps: sets a load (N) that acts at the centre; the store gets it in equal shares on the members.
   void set_central_force(std::size_t n, const Vec3& force, GrainStore& store);
   // Stops the clump along x and y and balances the force on it in these directions, without a torque.
-  void stop_along_floor(std::size_t n, MovingGrains& grains);
+  void stop_along_floor(std::size_t n, PackedGrainState& grains);
   // `count` half kicks (one or two) by the members' present forces. time_step: s.
-  void half_kicks(const MovingGrains& grains, double time_step, int count);
+  void half_kicks(const PackedGrainState& grains, double time_step, int count);
   void drift(double time_step);  // s
   // Writes position, velocity and spin of all members.
-  void place(MovingGrains& grains, const PeriodicBox& box) const;
+  void place(PackedGrainState& grains, const PeriodicBox& box) const;
 
   // Of all contacts, loads and the body force, from the store: force (N), and torque (N m) about the centre.
   Vec3 force(std::size_t n, const GrainStore& store) const;
@@ -107,7 +107,7 @@ private:
   Vec3 arm(std::size_t n, std::size_t member) const { return arms_[first_arm_[n] + member]; }
   std::size_t count(std::size_t n) const { return static_cast<std::size_t>(clumps_[n].members); }
   void turn_arms(std::size_t n);
-  void load(std::size_t n, const GrainStore& store);
+  void gather_load(std::size_t n, const GrainStore& store);
   void add_loads(std::size_t n, const GrainStore& store, Vec3& force, Vec3& torque) const;
 
   // What pulls at a clump besides contacts, about its centre.

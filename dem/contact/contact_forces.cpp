@@ -1,7 +1,7 @@
 #include "dem/contact/contact_forces.hpp"
 
+#include "dem/contact/contact_kernel.hpp"
 #include "dem/contact/contact_motion.hpp"
-#include "dem/contact/pair_batch.hpp"
 #include "dem/laws/contact_laws.hpp"
 
 #include <Eigen/Geometry>
@@ -16,13 +16,13 @@ namespace thalweg::dem {
 namespace {
 
 // Finds the near ones of all pairs; the others are beyond the range of the law (m) and have no history.
-void look_for_near_pairs(const MovingGrains& grains, NeighbourList& list, double range_of_law,
+void look_for_near_pairs(const PackedGrainState& grains, NeighbourList& list, double range_of_law,
                          const MinimumImage& image) {
   list.near.begin();
   const double range = range_of_law + list.near.margin();
   for (std::size_t p = 0; p < list.pairs.size(); ++p) {
     const PairContact& c = list.pairs[p];
-    const Row d = image(grains[c.first].position - grains[c.second].position), square = d * d;
+    const Double4 d = image(grains[c.first].position - grains[c.second].position), square = d * d;
     const double squared = square[0] + square[1] + square[2], limit = c.reach + range;
     if (squared < limit * limit)
       list.near.add({c.first, c.second, static_cast<std::uint32_t>(p)});
@@ -41,15 +41,15 @@ void evaluate_near_pairs(const std::vector<NearPair>& near, Batch& batch) {
 }
 
 template <typename ContactLaw>
-void evaluate_pairs(const ContactLaw& law, MovingGrains& grains, NeighbourList& list, const PeriodicBox& box,
+void evaluate_pairs(const ContactLaw& law, PackedGrainState& grains, NeighbourList& list, const PeriodicBox& box,
                     const MaterialTable& materials, std::span<const std::uint8_t> material) {
   if (list.near.stale()) look_for_near_pairs(grains, list, law.range(), MinimumImage(box));
-  PairBatch<ContactLaw> batch(law, grains, list.pair_rows, box, materials, material);
+  ContactKernel<ContactLaw> batch(law, grains, list.pair_rows, box, materials, material);
   // What does not stay in the cache from one sub-step to the next is prefetched.
   constexpr std::size_t cached = 2 << 20;  // bytes
   constexpr std::size_t bytes_a_pair = sizeof(NearPair) + sizeof(double) * ContactRows::width_of<ContactLaw>;
   const std::vector<NearPair>& near = list.near.pairs();
-  if (near.size() * bytes_a_pair + grains.size() * sizeof(MovingGrain) > cached)
+  if (near.size() * bytes_a_pair + grains.size() * sizeof(PackedGrain) > cached)
     evaluate_near_pairs<true>(near, batch);
   else
     evaluate_near_pairs<false>(near, batch);
@@ -69,20 +69,21 @@ ContactLoad load_of(const ContactLaw& law, const ContactMotion& motion, const Ma
 
 // The load of a wall, or of a solid, on a grain.
 template <bool rolls>
-void add_wall_load(const ContactLoad& f, const WallView& view, MovingGrain& grain) {
+void add_wall_load(const ContactLoad& f, const WallView& view, PackedGrain& grain) {
   const Vec3 tangential(f.tx, f.ty, f.tz);
-  grain.force += row_of(f.normal * view.normal + tangential);
-  grain.torque += row_of(view.distance * tangential.cross(view.normal));
-  if constexpr (rolls) grain.torque += Row{f.mx, f.my, f.mz, 0.0};
+  grain.force += double4(f.normal * view.normal + tangential);
+  grain.torque += double4(view.distance * tangential.cross(view.normal));
+  if constexpr (rolls) grain.torque += Double4{f.mx, f.my, f.mz, 0.0};
 }
 
 template <typename ContactLaw>
-[[gnu::flatten]] void evaluate_walls(const ContactLaw& law, MovingGrains& grains, std::vector<WallContact>& contacts,
-                                     ContactRows& rows, const PeriodicBox& box, std::span<const Plane> walls,
-                                     const MaterialTable& materials, std::span<const std::uint8_t> material) {
+[[gnu::flatten]] void evaluate_walls(const ContactLaw& law, PackedGrainState& grains,
+                                     std::vector<WallContact>& contacts, ContactRows& rows, const PeriodicBox& box,
+                                     std::span<const Plane> walls, const MaterialTable& materials,
+                                     std::span<const std::uint8_t> material) {
   for (std::size_t number = 0; number < contacts.size(); ++number) {
     const WallContact& c = contacts[number];
-    MovingGrain& grain = grains[c.grain];
+    PackedGrain& grain = grains[c.grain];
     const Plane& wall = walls[c.wall];
     const WallView view = wall.seen_from(vector_of(grain.position), box);
     const ContactMotion motion = motion_of(body_of(grain), view, wall.velocity);
@@ -108,12 +109,12 @@ double friction_of(const SolidTouch& touch, const NeighbourList& list, const Sur
 }
 
 template <typename ContactLaw>
-void evaluate_solids(const ContactLaw& law, MovingGrains& grains, NeighbourList& list, const Surroundings& around,
+void evaluate_solids(const ContactLaw& law, PackedGrainState& grains, NeighbourList& list, const Surroundings& around,
                      const MaterialTable& materials, std::span<const std::uint8_t> material) {
   SolidTouches touches(around.box, around.placed, around.solids);
   SolidTouches::for_each_grain(list.solids, [&](std::size_t first, std::size_t last) {
     const std::uint32_t slot = list.solids[first].grain;
-    MovingGrain& grain = grains[slot];
+    PackedGrain& grain = grains[slot];
     const auto found =
         touches_of(touches, list, first, last, vector_of(grain.position), grain.position[3], law.range());
     for (std::size_t near = first; near < last; ++near)
@@ -205,7 +206,7 @@ void visit_pairs(const GrainStore& store, const NeighbourList& list, const Perio
 
 }  // namespace
 
-void evaluate_contacts(MovingGrains& grains, NeighbourList& list, const Surroundings& around,
+void evaluate_contacts(PackedGrainState& grains, NeighbourList& list, const Surroundings& around,
                        const MaterialTable& materials, std::span<const std::uint8_t> material, double time_step) {
   with_law(list.pair_rows.law(), time_step,
            [&](const auto& law) { evaluate_pairs(law, grains, list, around.box, materials, material); });

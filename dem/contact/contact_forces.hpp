@@ -5,7 +5,7 @@
 #include "core/state/snapshot.hpp"
 #include "dem/contact/neighbour_list.hpp"
 #include "dem/laws/material.hpp"
-#include "dem/motion/moving_grains.hpp"
+#include "dem/motion/packed_grain_state.hpp"
 
 #include <functional>
 
@@ -16,7 +16,7 @@ namespace thalweg::dem {
 // The lever arm of a grain reaches to the middle of the overlap (to the surface of a wall), so that angular momentum is
 // conserved; across a gap it reaches to the middle of that. Sums run over pairs in the order of the list, then over
 // walls, then over solids. material: of every slot; time_step: s, with 0 no spring grows.
-void evaluate_contacts(MovingGrains& grains, NeighbourList& list, const Surroundings& around,
+void evaluate_contacts(PackedGrainState& grains, NeighbourList& list, const Surroundings& around,
                        const MaterialTable& materials, std::span<const std::uint8_t> material, double time_step);
 
 // Calls visit(slot, end) for every contact, touching or acting across a gap, of every owned grain, in the order of the

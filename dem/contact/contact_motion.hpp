@@ -1,5 +1,5 @@
 // The relative motion of two grains, or of a grain and a wall, at their contact, one contact at a time. The loop over
-// all pairs of a sub-step has the same formulas for many at once (pair_batch.hpp).
+// all pairs of a sub-step has the same formulas for many at once (contact_kernel.hpp).
 //
 // The lever arm of a grain reaches to the middle of the overlap (to the surface of a wall): l = R - delta/2.
 #pragma once
@@ -7,7 +7,7 @@
 #include "core/base/types.hpp"
 #include "dem/laws/contact_law.hpp"
 #include "dem/motion/grain_store.hpp"
-#include "dem/motion/moving_grains.hpp"
+#include "dem/motion/packed_grain_state.hpp"
 #include "dem/motion/walls.hpp"
 
 #include <Eigen/Geometry>
@@ -20,7 +20,7 @@ struct ContactBody {
   double radius;  // m
 };
 
-inline ContactBody body_of(const MovingGrain& grain) {
+inline ContactBody body_of(const PackedGrain& grain) {
   return {vector_of(grain.velocity), vector_of(grain.spin), grain.position[3]};
 }
 inline ContactBody body_of(const GrainStore& store, std::size_t slot) {

@@ -40,7 +40,7 @@ struct MovingSphere {
   double radius;
   Vec3 velocity, spin;
 };
-MovingSphere moving_sphere_of(const MovingGrain& grain) {
+MovingSphere moving_sphere_of(const PackedGrain& grain) {
   return {grain.position[3], vector_of(grain.velocity), vector_of(grain.spin)};
 }
 MovingSphere moving_sphere_of(const GrainStore& store, std::size_t slot) {
@@ -80,12 +80,13 @@ std::optional<NearSurfaces> between(const MovingSphere& sphere, const WallView& 
                               approach - height * sphere.spin.cross(n), sphere.spin)};
 }
 
-void add_to_pair(MovingGrain& first, MovingGrain& second, const Vec3& separation,
+void add_to_pair(PackedGrain& first, PackedGrain& second, const Vec3& separation,
                  const LubricationParameters& parameters) {
   const auto near = between(moving_sphere_of(first), moving_sphere_of(second), separation, parameters);
   if (!near) return;
   const LubricationLoad& load = near->load;
-  const Row force = row_of(load.force), turn = row_of(load.force.cross(near->normal)), couple = row_of(load.couple);
+  const Double4 force = double4(load.force), turn = double4(load.force.cross(near->normal)),
+                couple = double4(load.couple);
   first.force += force;
   second.force -= force;
   first.torque += near->first_arm * turn + couple;
@@ -93,21 +94,22 @@ void add_to_pair(MovingGrain& first, MovingGrain& second, const Vec3& separation
 }
 
 // Finds the pairs between which the force may act before the list is searched again. reach: m.
-void look_for_near_surfaces(const MovingGrains& grains, NeighbourList& list, double reach, const MinimumImage& image) {
+void look_for_near_surfaces(const PackedGrainState& grains, NeighbourList& list, double reach,
+                            const MinimumImage& image) {
   list.near_surfaces.begin();
   const double range = reach + list.near_surfaces.margin();
   for (std::size_t p = 0; p < list.pairs.size(); ++p) {
     const PairContact& c = list.pairs[p];
-    const Row d = image(grains[c.first].position - grains[c.second].position), square = d * d;
+    const Double4 d = image(grains[c.first].position - grains[c.second].position), square = d * d;
     const double limit = c.reach + range;
     if (square[0] + square[1] + square[2] < limit * limit)
       list.near_surfaces.add({c.first, c.second, static_cast<std::uint32_t>(p)});
   }
 }
 
-void add_to_grain(MovingGrain& grain, const NearSurfaces& near) {
-  grain.force += row_of(near.load.force);
-  grain.torque += row_of(near.first_arm * near.load.force.cross(near.normal) + near.load.couple);
+void add_to_grain(PackedGrain& grain, const NearSurfaces& near) {
+  grain.force += double4(near.load.force);
+  grain.torque += double4(near.first_arm * near.load.force.cross(near.normal) + near.load.couple);
 }
 
 // Calls visit(slot, partner, surfaces) for every wall and every place of a solid that is near a grain. sphere_of(slot)
@@ -187,11 +189,11 @@ void check(const LubricationParameters& parameters, double largest_radius, doubl
                   time_step, longest, parameters.minimum_gap * time_step / longest));
 }
 
-void add_lubrication(MovingGrains& grains, NeighbourList& list, const Surroundings& around,
+void add_lubrication(PackedGrainState& grains, NeighbourList& list, const Surroundings& around,
                      const LubricationParameters& parameters) {
   if (list.near_surfaces.stale()) look_for_near_surfaces(grains, list, parameters.reach(), MinimumImage(around.box));
   for (const NearPair& c : list.near_surfaces.pairs()) {
-    MovingGrain &first = grains[c.first], &second = grains[c.second];
+    PackedGrain &first = grains[c.first], &second = grains[c.second];
     add_to_pair(first, second, around.box.difference(vector_of(first.position), vector_of(second.position)),
                 parameters);
   }

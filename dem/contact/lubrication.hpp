@@ -20,7 +20,7 @@
 #include "core/geometry/periodic_box.hpp"
 #include "core/state/snapshot.hpp"
 #include "dem/contact/neighbour_list.hpp"
-#include "dem/motion/moving_grains.hpp"
+#include "dem/motion/packed_grain_state.hpp"
 #include "dem/motion/walls.hpp"
 
 #include <functional>
@@ -63,7 +63,7 @@ void check(const LubricationParameters& parameters, double largest_radius, doubl
 // Adds these forces and torques for all pairs, walls and solids of the list whose gap is below the cut-offs. Surfaces
 // that touch feel their contact law alone. The edge of a solid counts as the plane across the line from it to the
 // grain. Sums run in the order of the list, of whose pairs only the near ones are looked at (inner_neighbour_list.hpp).
-void add_lubrication(MovingGrains& grains, NeighbourList& list, const Surroundings& around,
+void add_lubrication(PackedGrainState& grains, NeighbourList& list, const Surroundings& around,
                      const LubricationParameters& parameters);
 
 // Calls visit(slot, arm, force) for every such force on every owned grain, in the order of the list, pairs first: m

@@ -28,11 +28,11 @@ std::vector<Candidate> find_pairs(const GrainStore& store, const PeriodicBox& bo
   const CellGrid grid(box, 2.0 * largest_radius + range, store.position);
   const MinimumImage image(box);
   const std::span<const std::uint32_t> slot = grid.order();
-  std::vector<Row> spheres;
+  std::vector<Double4> spheres;
   spheres.reserve(slot.size());
-  for (const std::uint32_t s : slot) spheres.push_back(row_of(store.position[s], store.radius[s]));
+  for (const std::uint32_t s : slot) spheres.push_back(double4(store.position[s], store.radius[s]));
   grid.for_each_near_pair([&](std::uint32_t m, std::uint32_t n) {
-    const Row d = image(spheres[m] - spheres[n]), square = d * d;
+    const Double4 d = image(spheres[m] - spheres[n]), square = d * d;
     const double limit = spheres[m][3] + spheres[n][3] + range;
     if (!(square[0] + square[1] + square[2] <= limit * limit)) return;
     std::uint32_t first = slot[m], second = slot[n];
@@ -133,7 +133,7 @@ ContactRows::ContactRows(const LawChoice& law, std::span<const ContactBodies> bo
     using ContactLaw = std::decay_t<decltype(chosen)>;
     history_ = std::tuple_size_v<typename ContactLaw::History>;
     width_ = width_of<ContactLaw>;
-    values_.assign(width_ / 4 * bodies.size(), Row{});
+    values_.assign(width_ / 4 * bodies.size(), Double4{});
     for (std::size_t c = 0; c < bodies.size(); ++c) {
       const typename ContactLaw::Constants constants = ContactLaw::constants_of(bodies[c]);
       std::memcpy((*this)[c] + history_, &constants, sizeof(constants));

@@ -11,7 +11,7 @@
 #include "dem/laws/contact_history.hpp"
 #include "dem/laws/material.hpp"
 #include "dem/motion/grain_store.hpp"
-#include "dem/motion/moving_grains.hpp"
+#include "dem/motion/packed_grain_state.hpp"
 #include "dem/motion/walls.hpp"
 
 #include <algorithm>
@@ -58,7 +58,7 @@ public:
 private:
   LawChoice law_;
   std::size_t history_ = 0, width_ = 0;
-  std::vector<Row> values_;  // for its alignment
+  std::vector<Double4> values_;  // for its alignment
 };
 
 struct NeighbourList {

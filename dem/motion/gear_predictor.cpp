@@ -9,11 +9,11 @@ constexpr double of_higher[4] = {1.0, 11.0 / 18.0, 1.0 / 6.0, 1.0 / 60.0};
 
 // Pascal's triangle on q_2 ... q_5; returns what they add to q_1 and, with that, to q_0.
 struct Advance {
-  Row first, zeroth;
+  Double4 first, zeroth;
 };
-inline Advance predicted(Row (&q)[4], const Row& q1) {
-  const Row first = q1 + 2.0 * q[0] + 3.0 * q[1] + 4.0 * q[2] + 5.0 * q[3];
-  const Row zeroth = q1 + q[0] + q[1] + q[2] + q[3];
+inline Advance predicted(Double4 (&q)[4], const Double4& q1) {
+  const Double4 first = q1 + 2.0 * q[0] + 3.0 * q[1] + 4.0 * q[2] + 5.0 * q[3];
+  const Double4 zeroth = q1 + q[0] + q[1] + q[2] + q[3];
   q[0] += 3.0 * q[1] + 6.0 * q[2] + 10.0 * q[3];
   q[1] += 4.0 * q[2] + 10.0 * q[3];
   q[2] += 5.0 * q[3];
@@ -21,20 +21,20 @@ inline Advance predicted(Row (&q)[4], const Row& q1) {
 }
 
 // Corrects q_2 ... q_5 towards the q_2 found; returns the difference.
-inline Row corrected(Row (&q)[4], const Row& found) {
-  const Row difference = found - q[0];
+inline Double4 corrected(Double4 (&q)[4], const Double4& found) {
+  const Double4 difference = found - q[0];
   for (int k = 0; k < 4; ++k) q[k] += of_higher[k] * difference;
   return difference;
 }
 
 // dt^2/2 times the acceleration (of the rotation); the last entry of a load is the inverse mass or moment of inertia.
-inline Row found(const Row& contacts, const Row& load, double half_square) {
+inline Double4 found(const Double4& contacts, const Double4& load, double half_square) {
   return half_square * load[3] * first_three * (contacts + load);
 }
 
 }  // namespace
 
-void GearPredictor::load(const GrainStore& store, const MovingGrains& grains, double time_step) {
+void GearPredictor::gather_from(const GrainStore& store, const PackedGrainState& grains, double time_step) {
   time_step_ = time_step;
   derivatives_.resize(store.owned);
   for (std::size_t s = 0; s < store.owned; ++s) {
@@ -42,12 +42,12 @@ void GearPredictor::load(const GrainStore& store, const MovingGrains& grains, do
     d.q[0] = found(grains[s].force, grains.load_force(s), half_square());
     d.angle[0] = found(grains[s].torque, grains.load_torque(s), half_square());
     const double* value = store.attached_of(s).data() + store.attached_width - columns;
-    for (int k = 1; k < 4; ++k, value += 3) d.q[k] = Row{value[0], value[1], value[2], 0.0};
-    for (int k = 1; k < 4; ++k, value += 3) d.angle[k] = Row{value[0], value[1], value[2], 0.0};
+    for (int k = 1; k < 4; ++k, value += 3) d.q[k] = Double4{value[0], value[1], value[2], 0.0};
+    for (int k = 1; k < 4; ++k, value += 3) d.angle[k] = Double4{value[0], value[1], value[2], 0.0};
   }
 }
 
-void GearPredictor::unload(GrainStore& store) const {
+void GearPredictor::scatter_to(GrainStore& store) const {
   for (std::size_t s = 0; s < store.owned; ++s) {
     double* value = store.attached_of(s).data() + store.attached_width - columns;
     for (const auto* rows : {&derivatives_[s].q, &derivatives_[s].angle})
@@ -56,10 +56,10 @@ void GearPredictor::unload(GrainStore& store) const {
   }
 }
 
-void GearPredictor::predict(MovingGrains& grains) {
+void GearPredictor::predict(PackedGrainState& grains) {
   grains.forget_forces();
   for (std::size_t s = 0; s < derivatives_.size(); ++s) {
-    MovingGrain& grain = grains[s];
+    PackedGrain& grain = grains[s];
     const Advance way = predicted(derivatives_[s].q, time_step_ * grain.velocity);
     const Advance turn = predicted(derivatives_[s].angle, time_step_ * grain.spin);
     grain.position += way.zeroth;
@@ -68,13 +68,13 @@ void GearPredictor::predict(MovingGrains& grains) {
   }
 }
 
-void GearPredictor::correct(MovingGrains& grains) {
+void GearPredictor::correct(PackedGrainState& grains) {
   for (const std::size_t s : grains.stopped())
-    for (Row& q : derivatives_[s].q) q[0] = q[1] = 0.0;
+    for (Double4& q : derivatives_[s].q) q[0] = q[1] = 0.0;
   for (std::size_t s = 0; s < derivatives_.size(); ++s) {
-    MovingGrain& grain = grains[s];
-    const Row way = corrected(derivatives_[s].q, found(grain.force, grains.load_force(s), half_square()));
-    const Row turn = corrected(derivatives_[s].angle, found(grain.torque, grains.load_torque(s), half_square()));
+    PackedGrain& grain = grains[s];
+    const Double4 way = corrected(derivatives_[s].q, found(grain.force, grains.load_force(s), half_square()));
+    const Double4 turn = corrected(derivatives_[s].angle, found(grain.torque, grains.load_torque(s), half_square()));
     grain.position += of_position * way;
     grain.velocity += of_velocity / time_step_ * way;
     grain.spin += of_velocity / time_step_ * turn;

@@ -11,7 +11,7 @@
 #pragma once
 
 #include "dem/motion/grain_store.hpp"
-#include "dem/motion/moving_grains.hpp"
+#include "dem/motion/packed_grain_state.hpp"
 
 #include <cstddef>
 #include <vector>
@@ -26,19 +26,19 @@ public:
 
   // Takes the higher derivatives of owned grains, and their accelerations by the present forces. grains: loaded from
   // the same store; time_step: s.
-  void load(const GrainStore& store, const MovingGrains& grains, double time_step);
-  void unload(GrainStore& store) const;
+  void gather_from(const GrainStore& store, const PackedGrainState& grains, double time_step);
+  void scatter_to(GrainStore& store) const;
 
   // Moves owned grains to the predicted state, and sets the contact forces of all grains to zero.
-  void predict(MovingGrains& grains);
+  void predict(PackedGrainState& grains);
   // Moves owned grains to the corrected state, by the forces at the predicted one; those that have been stopped stay
   // where they are along the floor.
-  void correct(MovingGrains& grains);
+  void correct(PackedGrainState& grains);
 
 private:
   // q of the second to the fifth derivative of position (m) and angle (rad).
   struct Derivatives {
-    Row q[4], angle[4];
+    Double4 q[4], angle[4];
   };
   double half_square() const { return 0.5 * time_step_ * time_step_; }
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/geometry/periodic_box.hpp"
-#include "dem/motion/moving_grains.hpp"
+#include "dem/motion/packed_grain_state.hpp"
 
 #include <limits>
 
@@ -17,10 +17,10 @@ public:
       half_[axis] = box.periodic[axis] ? 0.5 * box.size[axis] : std::numeric_limits<double>::infinity();
     }
   }
-  Row operator()(const Row& d) const { return d > half_ ? d - size_ : d < -half_ ? d + size_ : d; }
+  Double4 operator()(const Double4& d) const { return d > half_ ? d - size_ : d < -half_ ? d + size_ : d; }
 
 private:
-  Row size_{}, half_{0.0, 0.0, 0.0, std::numeric_limits<double>::infinity()};
+  Double4 size_{}, half_{0.0, 0.0, 0.0, std::numeric_limits<double>::infinity()};
 };
 
 }  // namespace thalweg::dem

@@ -167,18 +167,18 @@ void GhostExchange::refresh(GrainStore& store) {
       });
 }
 
-void GhostExchange::refresh(MovingGrains& grains) {
+void GhostExchange::refresh(PackedGrainState& grains) {
   exchange_motion(
       follows_ ? followed_ : neighbours_, follows_ ? followed_motion_ : motion_,
       [&](std::size_t s) -> MotionRow {
-        const Row &x = grains[s].position, &v = grains[s].velocity, &w = grains[s].spin;
+        const Double4 &x = grains[s].position, &v = grains[s].velocity, &w = grains[s].spin;
         return {{x[0], x[1], x[2], v[0], v[1], v[2], w[0], w[1], w[2]}};
       },
       [&](std::size_t s, const MotionRow& row) {
         const double* value = row.value;
-        grains[s].position = Row{value[0], value[1], value[2], grains[s].position[3]};
-        grains[s].velocity = Row{value[3], value[4], value[5], 0.0};
-        grains[s].spin = Row{value[6], value[7], value[8], 0.0};
+        grains[s].position = Double4{value[0], value[1], value[2], grains[s].position[3]};
+        grains[s].velocity = Double4{value[3], value[4], value[5], 0.0};
+        grains[s].spin = Double4{value[6], value[7], value[8], 0.0};
       });
 }
 

@@ -6,7 +6,7 @@
 #include "core/parallel/packed_exchange.hpp"
 #include "dem/contact/neighbour_list.hpp"
 #include "dem/motion/grain_store.hpp"
-#include "dem/motion/moving_grains.hpp"
+#include "dem/motion/packed_grain_state.hpp"
 
 #include <mpi.h>
 
@@ -27,14 +27,14 @@ public:
   // Positions must be wrapped. Collective.
   void build(GrainStore& store);
 
-  // Until the next build(), refresh(MovingGrains&) leaves out ghosts that are in none of these pairs. pairs: all pairs
-  // of an owned grain with another one up to some gap, the same gap on every rank, so that both ranks of a pair know of
-  // it and one sends what the other expects.
+  // Until the next build(), refresh(PackedGrainState&) leaves out ghosts that are in none of these pairs. pairs: all
+  // pairs of an owned grain with another one up to some gap, the same gap on every rank, so that both ranks of a pair
+  // know of it and one sends what the other expects.
   void follow(std::span<const PairContact> pairs, const GrainStore& store);
 
   // Brings the ghosts' position, velocity and angular velocity up to date.
   void refresh(GrainStore& store);
-  void refresh(MovingGrains& grains);
+  void refresh(PackedGrainState& grains);
 
   // Brings some of the ghosts' attached columns up to date: `count` of them from `first` on. count must always be the
   // same.
@@ -62,7 +62,7 @@ private:
   double reach_;
   std::vector<int> candidates_;        // ranks whose block is within reach of this rank's
   std::vector<Neighbour> neighbours_;  // ranks grains are sent to or received from; ghosts side by side
-  std::vector<Neighbour> followed_;    // the same without what refresh(MovingGrains&) leaves out, where it does
+  std::vector<Neighbour> followed_;    // the same without what refresh(PackedGrainState&) leaves out, where it does
   PackedExchange motion_, followed_motion_, attached_, values_;
   bool follows_ = false;         // whether follow() has been called for the present ghosts
   bool values_ready_ = false;    // values_ fits the present ghosts

@@ -63,7 +63,7 @@ std::vector<dem::Solid> solids_of(const Case& c, const dem::ContactParameters& c
 }
 
 // The box with its solids where they are at the start, for the placing of grains.
-beds::PlacingRanks keeping_clear(beds::PlacingRanks ranks, const Case& c) {
+beds::PackingDomain keeping_clear(beds::PackingDomain ranks, const Case& c) {
   if (c.solids.empty()) return ranks;
   const std::vector<dem::Solid> solids = solids_of(c, {});
   std::vector<dem::PlacedSolid> placed;
@@ -109,13 +109,13 @@ dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box) {
 }
 
 dem::GrainSeeds grain_seeds(const Case& c) {
-  return beds::grain_seeds(c.grains, keeping_clear(beds::PlacingRanks(grain_box(c)), c));
+  return beds::grain_seeds(c.grains, keeping_clear(beds::PackingDomain(grain_box(c)), c));
 }
 
 dem::GrainSeeds grain_seeds(const Case& c, MPI_Comm communicator, const Decomposition& decomposition) {
   const double reach = (1.0 + dem::allowed_initial_overlap) * largest_extent(c);  // of two centres that touch
   return beds::grain_seeds(c.grains,
-                           keeping_clear(beds::PlacingRanks(grain_box(c), communicator, decomposition, reach), c));
+                           keeping_clear(beds::PackingDomain(grain_box(c), communicator, decomposition, reach), c));
 }
 
 }  // namespace thalweg::driver

@@ -1,6 +1,6 @@
 #include "driver/cost/sample_case.hpp"
 
-#include "beds/files/bed_rows.hpp"
+#include "beds/files/bed_import.hpp"
 #include "core/state/bed.hpp"
 #include "driver/estimate/bed_flow.hpp"
 

@@ -23,7 +23,7 @@ struct HeldGrain {
 
 // first: id of the population's first.
 std::vector<HeldGrain> held_grains(const beds::Population& population, const PeriodicBox& box, GlobalId first) {
-  dem::GrainSeeds start = beds::grain_seeds(std::span(&population, 1), beds::PlacingRanks(box));
+  dem::GrainSeeds start = beds::grain_seeds(std::span(&population, 1), beds::PackingDomain(box));
   const std::vector<dem::GrainSeed> rows = dem::with_members(std::move(start.grains), start.clumps, box);
   std::vector<HeldGrain> grains(static_cast<std::size_t>(population.count));
   const auto members = static_cast<std::size_t>(population.row_count() / std::max<std::int64_t>(1, population.count));

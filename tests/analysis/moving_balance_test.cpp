@@ -95,8 +95,8 @@ void expect_closed(bool keep) {
   EXPECT_GT(std::abs(exchanged), 1000.0 * bound);
 }
 
-TEST(MovingGrains, BalanceClosesWhereTheMomentumOfCoveredCellsIsLost) { expect_closed(false); }
-TEST(MovingGrains, BalanceClosesWhereGrainsKeepIt) { expect_closed(true); }
+TEST(PackedGrainState, BalanceClosesWhereTheMomentumOfCoveredCellsIsLost) { expect_closed(false); }
+TEST(PackedGrainState, BalanceClosesWhereGrainsKeepIt) { expect_closed(true); }
 
 }  // namespace
 }  // namespace thalweg::analysis::moving_balance_test

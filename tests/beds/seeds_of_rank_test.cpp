@@ -46,11 +46,11 @@ std::vector<Population> four_kinds() {
 }
 
 GrainSeeds of_this_rank(const std::vector<Population>& populations, const Decomposition& decomposition = shared_box()) {
-  return grain_seeds(populations, PlacingRanks(decomposition.box(), MPI_COMM_WORLD, decomposition, reach));
+  return grain_seeds(populations, PackingDomain(decomposition.box(), MPI_COMM_WORLD, decomposition, reach));
 }
 
 GrainSeeds of_one_process(const std::vector<Population>& populations) {
-  return grain_seeds(populations, PlacingRanks(shared_box().box()));
+  return grain_seeds(populations, PackingDomain(shared_box().box()));
 }
 
 bool same(const GrainSeed& a, const GrainSeed& b) {
@@ -119,11 +119,11 @@ TEST(SeedsOfRank, PlacedTogetherAreThoseOfOneRank) {
   const auto radius = [](std::int64_t number) { return number % 3 == 0 ? 2.5e-3 : 1.8e-3; };
   const GrainsToPlace grains{whole(box), 720, radius, 2.5e-3, 0.0, 7};
   const std::vector<Obstacle> obstacles{{{Vec3(0.03, 0.02, 0.03), 2.4e-3}, 1}, {{Vec3(0.0, 0.0, 0.05), 1e-3}, 2}};
-  const PlacingRanks together(box, MPI_COMM_WORLD, decomposition, reach);
+  const PackingDomain together(box, MPI_COMM_WORLD, decomposition, reach);
   std::vector<Obstacle> known;
   for (const Obstacle& obstacle : obstacles)
     if (together.knows(obstacle.sphere.position)) known.push_back(obstacle);
-  const std::vector<PlacedGrain> all = random_packing(PlacingRanks(box), grains, obstacles),
+  const std::vector<PlacedGrain> all = random_packing(PackingDomain(box), grains, obstacles),
                                  mine = random_packing(together, grains, known);
   ASSERT_EQ(all.size(), 720u);
   auto here = mine.begin();
@@ -146,7 +146,7 @@ TEST(SeedsOfRank, PlacedTogetherAreThoseOfOneRank) {
 TEST(SeedsOfRank, TooManyPlacedTogetherAreRefusedOnAllRanks) {
   const Decomposition decomposition = shared_box();
   const GrainsToPlace grains{whole(decomposition.box()), 1100, [](std::int64_t) { return 2.5e-3; }, 2.5e-3, 0.0, 7};
-  const PlacingRanks ranks(decomposition.box(), MPI_COMM_WORLD, decomposition, reach);
+  const PackingDomain ranks(decomposition.box(), MPI_COMM_WORLD, decomposition, reach);
   EXPECT_THROW(random_packing(ranks, grains, {}), InputError);
 }
 

@@ -79,7 +79,7 @@ TEST(ModelFluid, ForceOnAGrainByHand) {
 struct Packing {
   PeriodicBox box{Vec3(3.0, 4.0, 6.0), {true, true, false}};
   GrainStore store{4};
-  MovingGrains moving;
+  PackedGrainState moving;
   SolidFractionParameters parameters;
 
   explicit Packing(bool disks) {

@@ -37,7 +37,7 @@ LubricationParameters parameters() {
 }
 
 // What observers see is the force that acts, and meets in the middle of the gap.
-void expect_seen(GrainStore& store, const MovingGrains& grains, const NeighbourList& list, const PeriodicBox& box,
+void expect_seen(GrainStore& store, const PackedGrainState& grains, const NeighbourList& list, const PeriodicBox& box,
                  std::span<const Plane> walls) {
   store.owned = store.total();
   std::vector<Vec3> force(store.owned, Vec3::Zero()), place(store.owned, Vec3::Zero());
@@ -64,8 +64,8 @@ Loads pair_loads(const Body& first, const Body& second, const Vec3& direction, d
                  body == &first ? centre : Vec3(centre + distance * direction));
     store.velocity.back() = body->velocity, store.angular_velocity.back() = body->spin;
   }
-  MovingGrains grains;
-  grains.load(store, {});
+  PackedGrainState grains;
+  grains.gather_from(store, {});
   NeighbourList list;
   list.pairs.push_back({0, 1, first.radius + second.radius});
   const PeriodicBox box{Vec3(0.1, 0.1, 0.1), {false, false, false}};
@@ -79,8 +79,8 @@ Loads wall_loads(const Body& body, double gap) {
   GrainStore store;
   store.append(0, body.radius, 1e-4, Motion::free, Vec3(0.05, 0.05, body.radius + gap));
   store.velocity.back() = body.velocity, store.angular_velocity.back() = body.spin;
-  MovingGrains grains;
-  grains.load(store, {});
+  PackedGrainState grains;
+  grains.gather_from(store, {});
   NeighbourList list;
   list.walls.push_back({0, 0});
   const Plane floor;
@@ -226,9 +226,9 @@ TEST(Lubrication, OfNearPairsIsThatOfAllPairs) {
   const double dt = 5e-5, fastest = 0.1 * std::sqrt(0.75);  // s, m/s: each moves less than 4.4e-6 m in a step
   bool any_near = false, any_far = false;
   for (int step = 0; step < 100; ++step) {
-    MovingGrains by_near, by_all;
-    by_near.load(store, {});
-    by_all.load(store, {});
+    PackedGrainState by_near, by_all;
+    by_near.gather_from(store, {});
+    by_all.gather_from(store, {});
     NeighbourList whole = kept;
     whole.near_surfaces = InnerNeighbourList(1.0);  // all are near
     add_lubrication(by_near, kept, {box, {}, {}, {}}, parameters());

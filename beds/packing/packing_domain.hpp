@@ -11,15 +11,15 @@
 
 namespace thalweg::beds {
 
-class PlacingRanks : public Ranks {
+class PackingDomain : public Ranks {
 public:
   // One process that places all grains of the box; no messages.
-  explicit PlacingRanks(const PeriodicBox& box) : box_(box) {}
+  explicit PackingDomain(const PeriodicBox& box) : box_(box) {}
 
   // The ranks of a decomposition, which must outlive this object. reach: m, up to which each also knows the grains
   // around its block; at least the largest distance of two centres that touch. box: the decomposition's, whose size may
   // differ from its cells times spacing by rounding.
-  PlacingRanks(const PeriodicBox& box, MPI_Comm communicator, const Decomposition& decomposition, double reach)
+  PackingDomain(const PeriodicBox& box, MPI_Comm communicator, const Decomposition& decomposition, double reach)
       : Ranks(decomposition.ranks() > 1 ? communicator : MPI_COMM_NULL),
         box_(box),
         decomposition_(&decomposition),

@@ -1,7 +1,7 @@
 // Volume, centre and inertia of overlapping spheres and disks against closed forms. Bounds: the integration is adaptive
 // to 1e-14 of the body's size cubed (to the fifth for the inertia), a few intervals of it; 1e-11 relative holds it to
 // that with room for a body thinner than it is long.
-#include "dem/clumps/union_moments.hpp"
+#include "dem/clumps/sphere_union_inertia.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <numbers>
 #include <vector>
 
-namespace thalweg::dem::union_moments_test {
+namespace thalweg::dem::sphere_union_inertia_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -73,19 +73,19 @@ std::vector<Eigen::Quaterniond> some_rotations() {
   return rotations;
 }
 
-TEST(UnionMoments, OneSphereAndManyTimesTheSame) {
+TEST(SphereUnionInertia, OneSphereAndManyTimesTheSame) {
   const Vec3 place(0.3, -0.2, 0.7);
   for (const std::size_t copies : {1u, 2u, 5u})
     expect_same(union_of_spheres(std::vector<PlacedSphere>(copies, PlacedSphere{place, 0.8})),
                 4.0 / 3.0 * pi * std::pow(0.8, 3), place, of_ball(0.8));
 }
 
-TEST(UnionMoments, SphereInsideAnotherAddsNothing) {
+TEST(SphereUnionInertia, SphereInsideAnotherAddsNothing) {
   const std::vector<PlacedSphere> spheres{{{0.1, 0.2, 0.3}, 0.2}, {{0.0, 0.2, 0.25}, 1.0}};
   expect_same(union_of_spheres(spheres), 4.0 / 3.0 * pi, spheres[1].position, of_ball(1.0));
 }
 
-TEST(UnionMoments, TwoSpheresApartAndTouching) {
+TEST(SphereUnionInertia, TwoSpheresApartAndTouching) {
   for (const double distance : {1.5, 2.3}) {
     for (const Eigen::Quaterniond& turn : some_rotations()) {
       const std::vector<PlacedSphere> spheres{{Vec3::Zero(), 0.5}, {turn * Vec3(distance, 0, 0), 1.0}};
@@ -97,7 +97,7 @@ TEST(UnionMoments, TwoSpheresApartAndTouching) {
   }
 }
 
-TEST(UnionMoments, TwoOverlappingSpheresInAnyOrientation) {
+TEST(SphereUnionInertia, TwoOverlappingSpheresInAnyOrientation) {
   for (const auto& [r1, r2, distance] :
        {std::array{1.0, 1.0, 1.0}, {1.0, 0.6, 0.9}, {1.0, 0.5, 0.51}, {1.0, 1.0, 1.99}, {1.0, 0.3, 1.0}}) {
     const Revolution exact = dumbbell(r1, r2, distance);
@@ -110,7 +110,7 @@ TEST(UnionMoments, TwoOverlappingSpheresInAnyOrientation) {
   }
 }
 
-TEST(UnionMoments, ThreeSpheresInARow) {
+TEST(SphereUnionInertia, ThreeSpheresInARow) {
   // The outer ones meet the middle one only: a body of revolution again.
   const double a = 0.8, b = 0.5, d1 = 0.7, d2 = 1.0;
   Revolution exact;
@@ -126,7 +126,7 @@ TEST(UnionMoments, ThreeSpheresInARow) {
   }
 }
 
-TEST(UnionMoments, TetrahedronWithACommonCoreIsTheSameFromEverySide) {
+TEST(SphereUnionInertia, TetrahedronWithACommonCoreIsTheSameFromEverySide) {
   // Four unit spheres round a common middle: every pair, every triple and all four share space. By symmetry the centre
   // is the middle and the inertia isotropic; from other sides the slices differ, the result must not.
   std::vector<PlacedSphere> spheres;
@@ -147,7 +147,7 @@ TEST(UnionMoments, TetrahedronWithACommonCoreIsTheSameFromEverySide) {
   EXPECT_LT(first.volume, 4.0 * ball - 6.0 * lens + 4.0 * lens);
 }
 
-TEST(UnionMoments, DisksApartTheSameAndOverlapping) {
+TEST(SphereUnionInertia, DisksApartTheSameAndOverlapping) {
   const double thickness = 0.3;
   const auto polar = [](const BodyMoments& body) { return body.inertia(1, 1); };
   const BodyMoments one = union_of_disks(std::vector<PlacedSphere>(3, PlacedSphere{{1.0, 0.5, -2.0}, 0.7}), thickness);
@@ -177,4 +177,4 @@ TEST(UnionMoments, DisksApartTheSameAndOverlapping) {
 }
 
 }  // namespace
-}  // namespace thalweg::dem::union_moments_test
+}  // namespace thalweg::dem::sphere_union_inertia_test

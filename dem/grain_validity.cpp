@@ -1,4 +1,4 @@
-#include "dem/grain_watch.hpp"
+#include "dem/grain_validity.hpp"
 
 #include "core/base/error.hpp"
 #include "core/parallel/mpi_session.hpp"
@@ -32,7 +32,7 @@ Report lowest_of(Report report, MPI_Comm communicator) {
 
 }  // namespace
 
-GrainFault GrainWatch::trouble_of(const GrainStore& store, std::size_t s, double displacement) const {
+GrainFault GrainValidity::fault_of(const GrainStore& store, std::size_t s, double displacement) const {
   const Vec3& x = store.position[s];
   const double speed = store.velocity[s].norm(), radius = store.radius[s];
   if (!x.allFinite() || !std::isfinite(speed)) return GrainFault::not_finite;
@@ -46,12 +46,12 @@ GrainFault GrainWatch::trouble_of(const GrainStore& store, std::size_t s, double
   return displacement > 0.5 * skin ? GrainFault::outran : GrainFault::none;
 }
 
-void GrainWatch::throw_first(const GrainStore& store, const PeriodicBox& box, const std::vector<Vec3>& listed,
-                             MPI_Comm communicator) const {
+void GrainValidity::throw_first(const GrainStore& store, const PeriodicBox& box, const std::vector<Vec3>& listed,
+                                MPI_Comm communicator) const {
   Report mine;
   for (std::size_t s = 0; s < store.owned && mine.trouble == GrainFault::none; ++s) {
     const Vec3& x = store.position[s];
-    const GrainFault trouble = trouble_of(store, s, box.difference(x, listed[s]).norm());
+    const GrainFault trouble = fault_of(store, s, box.difference(x, listed[s]).norm());
     if (trouble != GrainFault::none) mine = {store.id[s], trouble, {x[0], x[1], x[2]}, store.velocity[s].norm()};
   }
   const Report report = lowest_of(mine, communicator);

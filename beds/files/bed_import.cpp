@@ -1,4 +1,4 @@
-#include "beds/files/bed_rows.hpp"
+#include "beds/files/bed_import.hpp"
 
 #include "beds/population/population_clumps.hpp"
 #include "dem/motion/grain_volume.hpp"

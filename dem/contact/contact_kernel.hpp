@@ -10,7 +10,7 @@
 #include "dem/laws/contact_law.hpp"
 #include "dem/laws/material.hpp"
 #include "dem/motion/minimum_image.hpp"
-#include "dem/motion/moving_grains.hpp"
+#include "dem/motion/packed_grain_state.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,17 +25,17 @@
 
 namespace thalweg::dem {
 
-inline Row last_everywhere(const Row& r) { return Row{r[3], r[3], r[3], r[3]}; }
+inline Double4 broadcast_last(const Double4& r) { return Double4{r[3], r[3], r[3], r[3]}; }
 
-inline Row row_at(const double* values) {
-  Row row;
-  std::memcpy(&row, values, sizeof(Row));
+inline Double4 double4_at(const double* values) {
+  Double4 row;
+  std::memcpy(&row, values, sizeof(Double4));
   return row;
 }
 
 // The entries of two rows, counted from 0 to 7, that `entry` names.
 template <int... entry>
-Row picked(const Row& first, const Row& second) {
+Double4 shuffled(const Double4& first, const Double4& second) {
 #if defined(__clang__) || __GNUC__ >= 12
   return __builtin_shufflevector(first, second, entry...);
 #else
@@ -45,24 +45,24 @@ Row picked(const Row& first, const Row& second) {
 }
 
 // Turns four rows into four columns, and back.
-inline void transpose(Row (&r)[4]) {
-  const Row a = picked<0, 4, 2, 6>(r[0], r[1]), b = picked<1, 5, 3, 7>(r[0], r[1]);
-  const Row c = picked<0, 4, 2, 6>(r[2], r[3]), d = picked<1, 5, 3, 7>(r[2], r[3]);
-  r[0] = picked<0, 1, 4, 5>(a, c);
-  r[1] = picked<0, 1, 4, 5>(b, d);
-  r[2] = picked<2, 3, 6, 7>(a, c);
-  r[3] = picked<2, 3, 6, 7>(b, d);
+inline void transpose(Double4 (&r)[4]) {
+  const Double4 a = shuffled<0, 4, 2, 6>(r[0], r[1]), b = shuffled<1, 5, 3, 7>(r[0], r[1]);
+  const Double4 c = shuffled<0, 4, 2, 6>(r[2], r[3]), d = shuffled<1, 5, 3, 7>(r[2], r[3]);
+  r[0] = shuffled<0, 1, 4, 5>(a, c);
+  r[1] = shuffled<0, 1, 4, 5>(b, d);
+  r[2] = shuffled<2, 3, 6, 7>(a, c);
+  r[3] = shuffled<2, 3, 6, 7>(b, d);
 }
 
 template <typename ContactLaw>
-class PairBatch {
+class ContactKernel {
 public:
   static constexpr int capacity = 64;
   static constexpr int lanes = 8;  // whole vectors: the last one is filled up with copies of the first pair
 
   // rows: of the pairs of the list; material: of every slot.
-  PairBatch(const ContactLaw& law, MovingGrains& grains, ContactRows& rows, const PeriodicBox& box,
-            const MaterialTable& materials, std::span<const std::uint8_t> material)
+  ContactKernel(const ContactLaw& law, PackedGrainState& grains, ContactRows& rows, const PeriodicBox& box,
+                const MaterialTable& materials, std::span<const std::uint8_t> material)
       : law_(law), grains_(grains), rows_(rows.data()), image_(box), materials_(materials), material_(material) {
     // One material's numbers are the same in all lanes, so they are put there once.
     if (materials.count() > 1) return;
@@ -96,11 +96,11 @@ private:
 
   double* row(const NearPair& pair) const { return rows_ + pair.pair * width; }
 
-  static void store(const Row (&r)[4], int k, Lane& x, Lane& y, Lane& z, Lane& last) {
-    std::memcpy(x + k, &r[0], sizeof(Row));
-    std::memcpy(y + k, &r[1], sizeof(Row));
-    std::memcpy(z + k, &r[2], sizeof(Row));
-    std::memcpy(last + k, &r[3], sizeof(Row));
+  static void store(const Double4 (&r)[4], int k, Lane& x, Lane& y, Lane& z, Lane& last) {
+    std::memcpy(x + k, &r[0], sizeof(Double4));
+    std::memcpy(y + k, &r[1], sizeof(Double4));
+    std::memcpy(z + k, &r[2], sizeof(Double4));
+    std::memcpy(last + k, &r[3], sizeof(Double4));
   }
 
   // What lane k of consecutive lanes has, as a struct of doubles.
@@ -119,19 +119,19 @@ private:
     for (std::size_t line = 0; line < width * sizeof(double); line += 64) __builtin_prefetch(values + line, 1);
     for (const std::uint32_t slot : {next.first, next.second}) {
       const char* grain = reinterpret_cast<const char*>(&grains_[slot]);
-      for (std::size_t line = 0; line < sizeof(MovingGrain); line += 64) __builtin_prefetch(grain + line, 1);
+      for (std::size_t line = 0; line < sizeof(PackedGrain); line += 64) __builtin_prefetch(grain + line, 1);
     }
   }
 
   void gather(int k) {
-    Row separation[4], v[4], rw[4], w[4], values[width / 4][4];
+    Double4 separation[4], v[4], rw[4], w[4], values[width / 4][4];
     for (int m = 0; m < 4; ++m) {
-      const MovingGrain &first = grains_[pair_[k + m].first], &second = grains_[pair_[k + m].second];
+      const PackedGrain &first = grains_[pair_[k + m].first], &second = grains_[pair_[k + m].second];
       separation[m] = image_(first.position - second.position);
       v[m] = first.velocity - second.velocity;
-      rw[m] = last_everywhere(first.position) * first.spin + last_everywhere(second.position) * second.spin;
+      rw[m] = broadcast_last(first.position) * first.spin + broadcast_last(second.position) * second.spin;
       w[m] = first.spin + second.spin;
-      for (std::size_t n = 0; n < width / 4; ++n) values[n][m] = row_at(row(pair_[k + m]) + 4 * n);
+      for (std::size_t n = 0; n < width / 4; ++n) values[n][m] = double4_at(row(pair_[k + m]) + 4 * n);
       reach_[k + m] = first.position[3] + second.position[3];
     }
     transpose(separation), transpose(v), transpose(rw), transpose(w);
@@ -147,7 +147,7 @@ private:
   }
 
   void gather_spins(int k) {
-    Row spin[4];
+    Double4 spin[4];
     for (int m = 0; m < 4; ++m) spin[m] = grains_[pair_[k + m].first].spin - grains_[pair_[k + m].second].spin;
     transpose(spin);
     store(spin, k, roll_.x, roll_.y, roll_.z, unused_);
@@ -199,29 +199,29 @@ private:
 
   // Pair by pair, so that no sum depends on which pairs are gathered together.
   void scatter(int k, int count) {
-    Row force[4] = {row_at(x_ + k), row_at(y_ + k), row_at(z_ + k), row_at(difference_ + k)};
-    Row turn[4] = {row_at(wx_ + k), row_at(wy_ + k), row_at(wz_ + k), Row{}};
+    Double4 force[4] = {double4_at(x_ + k), double4_at(y_ + k), double4_at(z_ + k), double4_at(difference_ + k)};
+    Double4 turn[4] = {double4_at(wx_ + k), double4_at(wy_ + k), double4_at(wz_ + k), Double4{}};
     transpose(force), transpose(turn);
-    Row moment[4]{};
+    Double4 moment[4]{};
     if constexpr (ContactLaw::rolls) {
-      moment[0] = row_at(roll_.x + k), moment[1] = row_at(roll_.y + k), moment[2] = row_at(roll_.z + k);
+      moment[0] = double4_at(roll_.x + k), moment[1] = double4_at(roll_.y + k), moment[2] = double4_at(roll_.z + k);
       transpose(moment);
     }
     constexpr std::size_t vectors = (history + 3) / 4;  // of a row that change
-    Row values[vectors][4];
+    Double4 values[vectors][4];
     for (std::size_t n = 0; n < vectors; ++n) {
-      for (std::size_t i = 0; i < 4; ++i) values[n][i] = row_at(value_[4 * n + i] + k);
+      for (std::size_t i = 0; i < 4; ++i) values[n][i] = double4_at(value_[4 * n + i] + k);
       transpose(values[n]);
     }
     for (int m = 0; m < count; ++m) {
       const NearPair& pair = pair_[k + m];
-      for (std::size_t n = 0; n < vectors; ++n) std::memcpy(row(pair) + 4 * n, &values[n][m], sizeof(Row));
-      MovingGrain &first = grains_[pair.first], &second = grains_[pair.second];
-      const Row half = last_everywhere(force[m]), f = force[m] * Row{1.0, 1.0, 1.0, 0.0};
+      for (std::size_t n = 0; n < vectors; ++n) std::memcpy(row(pair) + 4 * n, &values[n][m], sizeof(Double4));
+      PackedGrain &first = grains_[pair.first], &second = grains_[pair.second];
+      const Double4 half = broadcast_last(force[m]), f = force[m] * Double4{1.0, 1.0, 1.0, 0.0};
       first.force += f;
       second.force -= f;
-      first.torque += (last_everywhere(first.position) - half) * turn[m];
-      second.torque += (last_everywhere(second.position) - half) * turn[m];
+      first.torque += (broadcast_last(first.position) - half) * turn[m];
+      second.torque += (broadcast_last(second.position) - half) * turn[m];
       if constexpr (!ContactLaw::rolls) continue;
       first.torque += moment[m];
       second.torque -= moment[m];
@@ -234,7 +234,7 @@ private:
   struct Nothing {};
 
   const ContactLaw law_;
-  MovingGrains& grains_;
+  PackedGrainState& grains_;
   double* const rows_;
   const MinimumImage image_;
   const MaterialTable& materials_;

@@ -1,4 +1,4 @@
-#include "dem/clumps/union_moments.hpp"
+#include "dem/clumps/sphere_union_inertia.hpp"
 
 #include <algorithm>
 #include <array>

@@ -15,14 +15,14 @@ namespace thalweg::dem {
 
 enum class GrainFault { none, not_finite, outside, beyond_wall, in_plate, in_solid, too_fast, outran };
 
-struct GrainWatch {
+struct GrainValidity {
   GrainSpace space;
   double skin;                         // m, of the contact list: a grain may go half of it
   double step_time;                    // s, of the caller's step, in which a grain may move its radius
   std::vector<std::size_t> in_solids;  // slots of grains that are half their radius deep in a solid, rising
 
   // displacement: m, since the contact list was built.
-  GrainFault trouble_of(const GrainStore& store, std::size_t owned_slot, double displacement) const;
+  GrainFault fault_of(const GrainStore& store, std::size_t owned_slot, double displacement) const;
 
   // Throws RunError, the same on every rank: of all grains in trouble, about the one with the lowest id. There must be
   // one on some rank. listed: places of owned grains when the list was built. Collective.

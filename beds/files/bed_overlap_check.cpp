@@ -1,4 +1,4 @@
-#include "beds/files/row_overlaps.hpp"
+#include "beds/files/bed_overlap_check.hpp"
 
 #include "core/base/error.hpp"
 #include "dem/motion/grain_seed.hpp"

@@ -12,27 +12,27 @@
 namespace thalweg::dem {
 
 // Four doubles that the processor handles at once: x, y, z and one more.
-using Row = double __attribute__((vector_size(32)));
+using Double4 = double __attribute__((vector_size(32)));
 
-inline constexpr Row first_three{1.0, 1.0, 1.0, 0.0};  // as a factor: without the last entry
-inline Row row_of(const Vec3& v, double last = 0.0) { return Row{v[0], v[1], v[2], last}; }
-inline Vec3 vector_of(const Row& r) { return {r[0], r[1], r[2]}; }
+inline constexpr Double4 first_three{1.0, 1.0, 1.0, 0.0};  // as a factor: without the last entry
+inline Double4 double4(const Vec3& v, double last = 0.0) { return Double4{v[0], v[1], v[2], last}; }
+inline Vec3 vector_of(const Double4& r) { return {r[0], r[1], r[2]}; }
 
-struct MovingGrain {
-  Row position;  // m; last: radius, m
-  Row velocity;  // m/s; last: 0
-  Row spin;      // rad/s; last: 0
-  Row force;     // N, of contacts; last: 0
-  Row torque;    // N m, of contacts; last: 0
+struct PackedGrain {
+  Double4 position;  // m; last: radius, m
+  Double4 velocity;  // m/s; last: 0
+  Double4 spin;      // rad/s; last: 0
+  Double4 force;     // N, of contacts; last: 0
+  Double4 torque;    // N m, of contacts; last: 0
 };
 
-class MovingGrains {
+class PackedGrainState {
 public:
   // Copies the state of all grains and the loads of owned ones. body_force: N, of owned grains.
-  void load(const GrainStore& store, std::span<const Vec3> body_force);
+  void gather_from(const GrainStore& store, std::span<const Vec3> body_force);
 
   // Copies position, velocity and spin of all grains back, and the contact forces of owned ones.
-  void unload(GrainStore& store) const;
+  void scatter_to(GrainStore& store) const;
 
   // v += dt/2 F/m, w += dt/2 T/I of owned grains (s).
   void half_kick(double time_step);
@@ -41,12 +41,12 @@ public:
   // half_kick(), half_kick(), drift(): from the end of one sub-step to the forces of the next, in one pass.
   void two_half_kicks_and_drift(double time_step);
 
-  // Replaces the force (N) on an owned grain besides its contacts, until the next load().
-  void set_load(std::size_t slot, const Vec3& force) { loads_[slot].force = row_of(force, loads_[slot].force[3]); }
+  // Replaces the force (N) on an owned grain besides its contacts, until the next gather_from().
+  void set_load(std::size_t slot, const Vec3& force) { loads_[slot].force = double4(force, loads_[slot].force[3]); }
 
   // The force (N) on an owned grain besides its contacts, and its inverse mass (1/kg) last; likewise the torque.
-  const Row& load_force(std::size_t slot) const { return loads_[slot].force; }
-  const Row& load_torque(std::size_t slot) const { return loads_[slot].torque; }
+  const Double4& load_force(std::size_t slot) const { return loads_[slot].force; }
+  const Double4& load_torque(std::size_t slot) const { return loads_[slot].torque; }
 
   // An owned grain does not move along the floor, in x and y: stops it, and has its contacts take the load along them.
   void stop_along_floor(std::size_t slot);
@@ -62,21 +62,21 @@ public:
   double speed_bound(bool written) const;
 
   std::size_t size() const { return grains_.size(); }
-  MovingGrain* data() { return grains_.data(); }
-  const MovingGrain& operator[](std::size_t slot) const { return grains_[slot]; }
-  MovingGrain& operator[](std::size_t slot) { return grains_[slot]; }
+  PackedGrain* data() { return grains_.data(); }
+  const PackedGrain& operator[](std::size_t slot) const { return grains_[slot]; }
+  PackedGrain& operator[](std::size_t slot) { return grains_[slot]; }
 
 private:
   // What pulls at an owned grain besides its contacts, and how readily it follows.
   struct Load {
-    Row force;   // N; last: 1/m, 1/kg
-    Row torque;  // N m; last: 1/I, 1/(kg m^2)
+    Double4 force;   // N; last: 1/m, 1/kg
+    Double4 torque;  // N m; last: 1/I, 1/(kg m^2)
   };
 
-  std::vector<MovingGrain> grains_;
+  std::vector<PackedGrain> grains_;
   std::vector<Load> loads_;
   std::vector<std::size_t> stopped_;
-  Row fastest_{};  // of the last drift: the largest squares of the components of a velocity
+  Double4 fastest_{};  // of the last drift: the largest squares of the components of a velocity
 };
 
 }  // namespace thalweg::dem

@@ -1,7 +1,7 @@
 // Brings the rows of bed files to the ranks that need them when a run begins.
 #pragma once
 
-#include "beds/packing/placing_ranks.hpp"
+#include "beds/packing/packing_domain.hpp"
 #include "beds/packing/random_packing.hpp"
 #include "beds/population/population.hpp"
 #include "core/state/bed.hpp"
@@ -17,9 +17,9 @@ using CentreOf = std::function<Vec3(std::span<const BedGrain> body)>;
 
 // Of a population from a file, in the order of the file: the rows of the grains and clumps whose centre is in the part
 // of the box that this rank knows; all rows, where they move as one body. Needs several ranks. Collective.
-std::vector<BedGrain> rows_known(const Population& population, const PlacingRanks& ranks, const CentreOf& centre_of);
+std::vector<BedGrain> rows_known(const Population& population, const PackingDomain& ranks, const CentreOf& centre_of);
 
 // Its grains and members of clumps that this rank knows, numbered by row, as obstacles for others. Collective.
-std::vector<Obstacle> spheres_of_file(const Population& population, const PlacingRanks& ranks);
+std::vector<Obstacle> spheres_of_file(const Population& population, const PackingDomain& ranks);
 
 }  // namespace thalweg::beds

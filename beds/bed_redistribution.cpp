@@ -1,4 +1,4 @@
-#include "beds/file_seeds.hpp"
+#include "beds/bed_redistribution.hpp"
 
 #include "beds/population/population_clumps.hpp"
 
@@ -35,7 +35,7 @@ struct SphereRow {
 
 }  // namespace
 
-std::vector<BedGrain> rows_known(const Population& population, const PlacingRanks& ranks, const CentreOf& centre_of) {
+std::vector<BedGrain> rows_known(const Population& population, const PackingDomain& ranks, const CentreOf& centre_of) {
   std::vector<FileRow> sent;
   sent.reserve(population.file.size());
   for (const std::span<const BedGrain> body : bodies_of(population.file)) {
@@ -48,7 +48,7 @@ std::vector<BedGrain> rows_known(const Population& population, const PlacingRank
   return rows;
 }
 
-std::vector<Obstacle> spheres_of_file(const Population& population, const PlacingRanks& ranks) {
+std::vector<Obstacle> spheres_of_file(const Population& population, const PackingDomain& ranks) {
   std::vector<SphereRow> mine;
   for (const BedGrain& row : population.file) {
     const Vec3 at = ranks.box().wrapped(row.position);
