@@ -3,11 +3,13 @@
 A test script is called THE_SCRIPT THALWEG MPIEXEC [unittest arguments]; it ends with program.main().
 """
 import csv
+import io
 import json
 import subprocess
 import sys
 import tempfile
 import unittest
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import h5py
@@ -27,6 +29,27 @@ domain:
 gravity: {magnitude: 9.8, slope: 0.3}
 grains: [{count: 60, diameter: 5.0e-3, density: 2550, placement: {pattern: random, seed: 3}}]
 contact: {normal_stiffness: 2000, tangential_stiffness: 571, restitution: 0.7, friction: 0.3, wall_friction: 0.3}
+"""
+
+# 40 grains tumbling down a bumpy slope: contacts, walls, periodic sides and, on several ranks, migration.
+TUMBLING_GRAINS = """
+system: grains
+name: tumbling grains
+domain:
+  size: [0.040, 0.020, 0.040]     # m
+  spacing: 1.0e-3                 # m
+  boundaries: {x: periodic, y: periodic, bottom: no_slip, top: no_slip}
+gravity: {magnitude: 9.8, slope: 0.5}
+grains:
+  - {count: 40, diameter: 5.0e-3, density: 2550, placement: {pattern: random, seed: 3}}
+contact: {normal_stiffness: 20000, tangential_stiffness: 5714, restitution: 0.8, friction: 0.5}
+run: {until: 0.1, time_step: 4.0e-6}
+output:
+  series: {every: 2.0e-3}
+  grains: {every: 0.02}
+  checkpoint: {every: 0.04, keep: 2}
+analysis:
+  transport_rate: {from: 0.05}
 """
 
 
@@ -127,5 +150,25 @@ class ProgramTest(unittest.TestCase):
         self.assertEqual(contents_below(self.folder), contents)
 
 
-def main():
-    unittest.main(argv=sys.argv[:1] + sys.argv[3:], verbosity=2)
+class SideBySide:
+    """Runner of unittest.main() that runs four tests at a time: for tests that mostly wait."""
+    def run(self, suite):
+        def flat(tests):
+            return [one for test in tests for one in (flat(test) if isinstance(test, unittest.TestSuite) else [test])]
+
+        def run_alone(test):
+            said = io.StringIO()
+            return unittest.TextTestRunner(said, verbosity=2).run(test), said.getvalue()
+
+        every = unittest.TestResult()
+        with ThreadPoolExecutor(4) as pool:
+            for result, said in pool.map(run_alone, flat(suite)):
+                sys.stderr.write(said)
+                every.testsRun += result.testsRun
+                every.failures += result.failures
+                every.errors += result.errors
+        return every
+
+
+def main(side_by_side=False):
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:], verbosity=2, testRunner=SideBySide() if side_by_side else None)

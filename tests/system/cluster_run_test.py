@@ -281,4 +281,4 @@ del Turns   # only what there are queues for
 
 
 if __name__ == "__main__":
-    program.main()
+    program.main(side_by_side=True)
